@@ -37,7 +37,7 @@ const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 const SILVER: u64 = 0xd1b5_4a32_d192_ed03;
 const EXTENSION: u64 = 0x8cb9_2ba7_2f3d_8dd7;
 
-/// What a stream is for. Two purposes never share a number, whatever the rest of the key.
+/// Purpose of a stream. Two purposes never share a number, whatever the rest of the key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u64)]
 pub enum Purpose {
@@ -49,7 +49,7 @@ pub enum Purpose {
     Insertion = 3,
     /// Exit choice of the particles of a chunk in an increment.
     Step = 4,
-    /// How many of an increment's particles are coarse (engine `counts`).
+    /// Number of coarse particles of an increment (engine `counts`).
     CoarseShare = 5,
     /// Start nodes and binomial splits of passive particles kept as counts.
     Passive = 6,
@@ -65,7 +65,7 @@ pub enum Purpose {
     Resampling = 11,
     /// Permutations of strata (stratified sampling).
     Strata = 12,
-    /// Which particles jam.
+    /// Jams of particles.
     Arching = 13,
     /// Circles inscribed between grains, to guess constrictions.
     Inscribed = 14,
@@ -76,7 +76,7 @@ pub enum Purpose {
 pub struct Key {
     /// The seed of this replicate.
     pub seed: u64,
-    /// What the stream is for.
+    /// Purpose of the stream.
     pub purpose: Purpose,
     /// Run, counted from 1; 0 where no run is under way.
     pub run: u64,
@@ -165,7 +165,7 @@ impl Words {
     }
 }
 
-/// The low 48 bits that complete a sixteen-bit draw where sixteen bits do not decide.
+/// Low 48 bits that complete a sixteen-bit draw where sixteen bits do not decide.
 ///
 /// A function of the key and the draw's index, so that it costs nothing unless it is asked for and
 /// leaves the stream where it is.
@@ -202,10 +202,10 @@ impl Lanes {
         out
     }
 
-    /// The same `N` times, one after the other.
+    /// Returns the next `N` blocks.
     ///
-    /// A call, so that the generators stay in memory: a machine has no registers for all of them beside what
-    /// the caller does, and would move their words to and fro.
+    /// A call, so that the generators stay in memory: a machine has no registers for all of them beside the
+    /// caller's own, and would move their words to and fro.
     #[inline(never)]
     #[cfg(target_arch = "x86_64")]
     pub fn next_blocks<const N: usize>(&mut self) -> [[u64; LANES]; N] {
@@ -221,7 +221,7 @@ impl Lanes {
         out
     }
 
-    /// The same with AVX2: four generators a register.
+    /// Returns the next `N` blocks with AVX2: four generators a register.
     #[cfg(target_arch = "x86_64")]
     #[inline]
     #[target_feature(enable = "avx2")]
@@ -244,13 +244,13 @@ impl Lanes {
         }
     }
 
-    /// The same `N` times, one after the other.
+    /// Returns the next `N` blocks.
     #[cfg(not(target_arch = "x86_64"))]
     pub fn next_blocks<const N: usize>(&mut self) -> [[u64; LANES]; N] {
         std::array::from_fn(|_| self.next_block())
     }
 
-    /// What completes the draws of this stream to 64 bits.
+    /// Extension that completes the draws of this stream to 64 bits.
     pub fn extension(&self) -> Extension {
         self.extension
     }
@@ -261,15 +261,15 @@ impl Lanes {
         &self.state
     }
 
-    /// The same, for a kernel to put back where it has drawn on.
+    /// State word by lane, for a kernel to put back after drawing from it.
     #[cfg(target_arch = "x86_64")]
     pub(crate) fn state_mut(&mut self) -> &mut [[u64; LANES]; 4] {
         &mut self.state
     }
 }
 
-/// Next word of two generators; their state by word and generator. In vector registers, where the compiler
-/// by itself would turn each word in a register of its own.
+/// Next word of two generators; their state by word and generator. Uses vector registers; the compiler by
+/// itself would turn each word in a register of its own.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 fn next_of_pair(state: &mut [[u64; 2]; 4]) -> [u64; 2] {
@@ -322,18 +322,18 @@ pub fn below(word: u64, n: u64) -> u64 {
     ((u128::from(word) * u128::from(n)) >> 64) as u64
 }
 
-/// [`below`] for fewer than 2^32 values, of products that vector code has.
+/// [`below`] for fewer than 2^32 values, by products that vector code has.
 #[inline(always)]
 pub fn below_32(word: u64, n: u32) -> u32 {
     let (high, low) = (word >> 32, word & u64::from(u32::MAX));
     ((high * u64::from(n) + ((low * u64::from(n)) >> 32)) >> 32) as u32
 }
 
-/// `word` as an f64 strictly between 0 and 1 (53 bits, centred).
+/// `word` as an f64 strictly between 0 and 1 (its upper 52 bits, centred).
 #[inline(always)]
 pub fn unit(word: u64) -> f64 {
-    // As the mantissa of a number from 1 to 2, of which all but half of the last bit is taken: exact, and
-    // many machines have no instruction that makes floats of several 64-bit integers.
+    // Taken as the mantissa of a number from 1 to 2, less 1, with half of the last bit added: exact, and many
+    // machines have no instruction that makes floats of several 64-bit integers.
     f64::from_bits(1.0f64.to_bits() | (word >> 12)) - (1.0 - f64::EPSILON / 2.0)
 }
 

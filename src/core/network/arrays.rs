@@ -24,15 +24,15 @@ const INLETS: &[&str] = &["pore.inlets", "inlets", "pore.left", "pore.xmin"];
 const OUTLETS: &[&str] = &["pore.outlets", "outlets", "pore.right", "pore.xmax"];
 const COORDS: &[&str] = &["pore.coords", "coords"];
 
-/// As many voids may be named by few constrictions.
+/// Number of voids that a file may name by few constrictions.
 const MANY: usize = 1 << 16;
 
-/// How the arrays of a file are to be taken.
+/// Options for reading the arrays of a file.
 #[derive(Clone, Copy, Debug)]
 pub struct ArrayOptions {
     /// The unit of the diameters; a file does not say it.
     pub unit: LengthUnit,
-    /// How particles choose.
+    /// Rule by which particles choose.
     pub rule: ExitRule,
     /// Part of its conductance that a blocked constriction keeps.
     pub rho: f64,
@@ -89,8 +89,9 @@ impl Network {
 /// An array and its name.
 type Named = (&'static str, Array);
 
-/// How many voids there are: as many as the longest array with an entry a void has entries; without one as
-/// many as the constrictions name, but not far more than they are, as every void takes memory.
+/// Number of voids: the entries of the longest array with an entry for each void; without such an array the
+/// number that the constrictions name, but not far more than there are constrictions, as every void takes
+/// memory.
 fn number_of_voids(
     name: &str,
     conns: &[[i64; 2]],
@@ -219,7 +220,7 @@ mod tests {
         assert!(read(&other, ExitRule::Area).is_ok());
     }
 
-    /// A void without constrictions has a number where an array with an entry a void says that it is there.
+    /// A void without constrictions has a number if an array with an entry for each void lists it.
     #[test]
     fn the_number_of_a_void_is_explained_by_the_constrictions_or_an_array_of_the_voids() {
         let ring = |last: i64| whole(4, Some(2), &[0, 1, 1, 2, 0, last, last, 2]);

@@ -6,11 +6,10 @@ use super::listed::listed_twice;
 use super::undirected::{Link, LinkEnd, LinkedVoids, WIDE};
 use super::{END, NO_LAYER, Network, NetworkError};
 
-/// Power of its diameter that a constriction conducts water in proportion to, unless more is known of it
-/// (Poiseuille).
+/// Exponent of the diameter in the conductance of a constriction, unless more is known of it (Poiseuille).
 pub const CONDUCTANCE_EXPONENT: f64 = 4.0;
 
-/// The exit of a constriction that has none: one whose two ends are the same void.
+/// Marks a constriction without an exit: one whose two ends are the same void.
 pub const NO_EXIT: u32 = u32::MAX;
 
 /// A network as columns; constriction `c` is entry `c` of each.
@@ -30,8 +29,8 @@ pub struct NetworkColumns<'a> {
     pub inlets: &'a [u32],
     /// Voids that particles leave the filter from, by ways that nothing can block.
     pub outlets: &'a [u32],
-    /// How particles choose. By [`ExitRule::Area`] each constriction leads from its first void to its second;
-    /// by any other it can be passed both ways, and water says which.
+    /// Rule by which particles choose. With [`ExitRule::Area`] each constriction leads from its first void to
+    /// its second; with any other it can be passed both ways, and water decides which.
     pub rule: ExitRule,
     /// Part of its conductance that a blocked constriction keeps.
     pub rho: f64,
@@ -40,8 +39,8 @@ pub struct NetworkColumns<'a> {
 }
 
 impl Network {
-    /// The network of these columns, and of each constriction the exit that it is, seen from the first of its
-    /// voids ([`NO_EXIT`] where it is none).
+    /// Builds the network of these columns, and lists the exit of each constriction as seen from the first of
+    /// its voids ([`NO_EXIT`] if it has no exit).
     ///
     /// Ways in and out of an undirected network conduct as a constriction does on average.
     ///
@@ -57,9 +56,9 @@ impl Network {
     /// ```
     ///
     /// # Errors
-    /// Columns of unequal length, a void that is none, a diameter or conductance that none can have; no
-    /// constriction, no inlet, no way out, no open way between the two; a rule that goes by height, of which
-    /// the columns say nothing.
+    /// Columns of unequal length, a void that does not exist, a diameter or conductance that no constriction
+    /// can have; no constriction, no inlet, no way out, no open way between the two; a rule that goes by
+    /// height, which the columns do not give.
     pub fn from_columns(columns: &NetworkColumns) -> Result<(Self, Vec<u32>), NetworkError> {
         let diameter = columns.checked()?;
         match columns.rule {
@@ -75,7 +74,7 @@ fn wrong(problem: impl Into<String>) -> NetworkError {
 }
 
 impl NetworkColumns<'_> {
-    /// Refuses columns that are no network; their diameters in units.
+    /// Refuses columns that make no network; returns their diameters in units.
     fn checked(&self) -> Result<Vec<f32>, NetworkError> {
         let count = self.conns.len();
         let same_length = |name, len| match len == count {
@@ -121,8 +120,8 @@ impl NetworkColumns<'_> {
                 }
             }
         }
-        // Extracted networks have voids at their faces that nothing joins; of numbers that count from 1 it
-        // is the first.
+        // Extracted networks have voids at their faces that nothing joins; if numbers count from 1, void 0 is
+        // one of them.
         let is_joined = self.conns.iter().flatten().any(|&end| end == 0);
         for (name, voids) in [("inlet", self.inlets), ("outlet", self.outlets)] {
             if !is_joined && voids.contains(&0) {
@@ -243,7 +242,7 @@ impl NetworkColumns<'_> {
         Ok((network, exit))
     }
 
-    /// The fewest constrictions between each void and the way in, whichever way they are passed.
+    /// Fewest constrictions between each void and the way in, whichever way they are passed.
     fn layers(&self) -> Vec<u32> {
         let ends = |&[a, b]: &[i64; 2]| Some((usize::try_from(a).ok()?, usize::try_from(b).ok()?));
         let mut begin = vec![0usize; self.voids + 1];
@@ -313,7 +312,7 @@ mod tests {
         }
     }
 
-    /// Against the same network as a file.
+    /// Comparison with the same network read from a file.
     #[test]
     fn a_directed_network_is_that_of_its_file() {
         let text = "from,to,diameter_mm\nstart,1,\n2,end,0.3\n1,0,0.2\n1,2,0.4\n0,2,0.5\n";
@@ -331,7 +330,7 @@ mod tests {
         let (network, exit) = Network::from_columns(&columns).unwrap();
         assert_eq!(network, file);
         assert_eq!(exit, [3, 1, 2, 0]);
-        // An outlet is one exit more, which nothing can block.
+        // An outlet is one more exit, which nothing can block.
         let (network, _) = Network::from_columns(&NetworkColumns { outlets: &[0], ..columns }).unwrap();
         assert_eq!(network.constrictions(), 5);
         assert_eq!((network.targets()[1], network.diameters()[1]), (END, WIDE));
@@ -359,7 +358,7 @@ mod tests {
         }
         // Two constrictions side by side.
         assert!(!refused(&[there, there].concat(), &[alike, alike].concat(), ExitRule::Flux));
-        // There and back they are one, whatever the sizes.
+        // Rows there and back are one constriction, whatever the sizes.
         for factor in [1.0 + 1e-12, 1.001, 2.0] {
             let (sizes, rows) = ([d, d.map(|d| d * factor)].concat(), [there, back].concat());
             assert!(refused(&rows, &sizes, ExitRule::Flux) && refused(&rows, &sizes, ExitRule::Area));
@@ -421,7 +420,7 @@ mod tests {
             (NetworkColumns { unit_mm: 0.0, ..CHAIN }, "the unit of length is 0 mm"),
             (NetworkColumns { inlets: &[], ..area }, "no inlet"),
             (NetworkColumns { outlets: &[], ..area }, "no outlet"),
-            // Each leads away from the outlet; the same ones can be passed both ways where water flows.
+            // Each leads away from the outlet; these constrictions can be passed both ways where water flows.
             (NetworkColumns { conns: &[[2, 1], [1, 0], [3, 2]], ..area }, "from the first of its two voids"),
             (NetworkColumns { diameter_mm: &[1.0, 1.0, 0.0], conns: &CHAIN_DOWN, ..area }, "no open way"),
             (NetworkColumns { conns: &[[-1, 1], [0, 1], [2, 3]], ..area }, "leads from the outside"),

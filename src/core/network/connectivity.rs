@@ -41,13 +41,13 @@ use crate::stream::{Key, Purpose, below};
 /// Table 3 of the paper: connectivity, and percent of the voids.
 pub const TABLE_3: [(u32, f64); 5] = [(4, 3.5), (5, 22.8), (6, 47.6), (7, 22.6), (8, 3.5)];
 
-/// How far the share of a connectivity may be from what is wanted (percent of all voids).
+/// Allowed error of the share of a connectivity (percent of all voids).
 pub const TOLERANCE_PERCENT: f64 = 0.05;
 
 /// Possible exits of a void.
 const SLOTS: usize = 6;
 
-/// What each possible exit adds to x, y and z.
+/// Step of each possible exit along x, y and z.
 const STEPS: [[u32; 3]; SLOTS] = [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, 0, 1], [0, 1, 1]];
 
 /// The largest connectivity: six exits and six entrances.
@@ -68,13 +68,13 @@ const PATIENCE_AGAIN: u64 = 6;
 /// Proposals without progress that every search makes at least.
 const LEAST_PATIENCE: u64 = 100_000;
 
-/// How often a search that is stuck is begun again from elsewhere.
+/// Number of times that a stuck search begins again from elsewhere.
 const SHAKES: u32 = 60;
 
-/// Proposals of all searches together, a second or less; what is missing then is changed along chains.
+/// Proposals of all searches together, a second or less; the rest is changed along chains.
 const MOST_PROPOSALS: u64 = 10_000_000;
 
-/// Of so many proposals that lead farther away one is taken when a search begins elsewhere.
+/// One in this many proposals that lead farther away is taken when a search begins elsewhere.
 const WORSE_IN: u64 = 4;
 
 /// First block of the stream that diagonals draw their diameters from; those of the lattice begin at 0.
@@ -118,7 +118,7 @@ impl Connectivity {
         if (sum - 100.0).abs() > 0.5 {
             return refused(format!("a sum of {sum}"), "percentages that sum to 100");
         }
-        // What was made exact before stays as it is, bit for bit.
+        // A distribution that was made exact before stays as it is, bit for bit.
         if (sum - 100.0).abs() > 1e-9 {
             percent.iter_mut().for_each(|(_, share)| *share *= 100.0 / sum);
         }
@@ -153,7 +153,7 @@ impl Network {
     /// [`Network::cubic`].
     ///
     /// # Errors
-    /// As [`Network::cubic`], and a distribution that no such network has.
+    /// Those of [`Network::cubic`], and a distribution that no such network has.
     ///
     /// ```
     /// use voidwalk_core::constrictions::{Curve, CurveUnit};
@@ -221,10 +221,10 @@ impl Network {
     }
 }
 
-/// The exits that voids have, while they are changed.
+/// Exits of the voids while they are changed.
 struct PossibleExits {
     shape: [u32; 3],
-    /// Void, and in bit s whether possible exit s is there.
+    /// By void: bit s is set if possible exit s is there.
     present: Vec<u8>,
     /// Entrances of each void, its inlet included.
     entrances: Vec<u8>,
@@ -249,7 +249,7 @@ impl PossibleExits {
         }
     }
 
-    /// Where a possible exit leads; `None` for a diagonal out of the last layer.
+    /// Void that a possible exit leads to; `None` for a diagonal out of the last layer.
     fn target(&self, void: u32, slot: usize) -> Option<u32> {
         let [nx, ny, nz] = self.shape;
         let (x, y, z) = (void % nx, void / nx % ny, void / (nx * ny));
@@ -266,8 +266,8 @@ impl PossibleExits {
         (self.present[void as usize].count_ones() + u32::from(self.entrances[void as usize])) as usize
     }
 
-    /// Counts that a void's connectivity goes from `k` to one more, or one less; how much nearer that is
-    /// (negative) or not.
+    /// Counts that a void's connectivity goes from `k` to one more, or one less; returns the change of
+    /// distance (negative if nearer).
     fn count_change(&mut self, k: usize, more: bool) -> i64 {
         // One more: the voids up to k are one fewer. One less: those up to k - 1 are one more.
         let (at, by) = if more { (k, -1) } else { (k - 1, 1) };
@@ -288,7 +288,7 @@ impl PossibleExits {
         change
     }
 
-    /// Whether an exit can be deleted and each void keeps the exits and the entrance that it must have.
+    /// Tells if an exit can be deleted while each void keeps the exits and the entrance that it must have.
     fn spare(&self, void: u32, target: u32) -> bool {
         self.present[void as usize].count_ones() > self.kept_exits
             && (target == END || self.entrances[target as usize] > 1)
@@ -321,13 +321,13 @@ impl PossibleExits {
         self.check(&counts)
     }
 
-    /// How far the distribution is from the wanted one.
+    /// Distance of the distribution from the wanted one.
     fn distance(&self) -> i64 {
         self.surplus.iter().map(|s| s.abs()).sum()
     }
 
-    /// Draws a proposal and carries it out; gives how much farther it leads, and what takes it back. `None`
-    /// where it cannot be.
+    /// Draws a proposal and carries it out; returns how much farther it leads, and the change that undoes it.
+    /// `None` if it cannot be made.
     fn propose(&mut self, draws: &mut impl Rng) -> Option<(i64, (u32, usize, u32, bool))> {
         let possible = SLOTS as u64 * self.present.len() as u64;
         let drawn = below(draws.next_u64(), possible);
@@ -340,8 +340,8 @@ impl PossibleExits {
         Some((self.toggle(void, slot, target, more), (void, slot, target, !more)))
     }
 
-    /// Takes what leads nearer, and after long without that what leads as near, until it is there or gives
-    /// up.
+    /// Takes proposals that lead nearer, and after long without one those that lead as near, until the wanted
+    /// distribution is reached or patience ends.
     fn search(&mut self, draws: &mut impl Rng, patience: u64) {
         let possible = SLOTS as u64 * self.present.len() as u64;
         let mut distance = self.distance();
@@ -360,8 +360,8 @@ impl PossibleExits {
         }
     }
 
-    /// Takes whatever is proposed for a while, one in [`WORSE_IN`] of what leads farther away, so that a
-    /// search which was stuck begins elsewhere.
+    /// Takes all proposals for a while, but only one in [`WORSE_IN`] of those that lead farther away, so that
+    /// a stuck search begins elsewhere.
     fn shake(&mut self, draws: &mut impl Rng) {
         for _ in 0..SLOTS * self.present.len() {
             let Some((change, (void, slot, target, back))) = self.propose(draws) else { continue };
@@ -371,7 +371,7 @@ impl PossibleExits {
         }
     }
 
-    /// Whether every number of voids is near enough to what is wanted.
+    /// Refuses numbers of voids that are too far from those wanted.
     fn check(&self, counts: &[i64; MOST + 1]) -> Result<(), NetworkError> {
         let voids = self.present.len() as f64;
         let off = |k: usize| self.surplus[k] - if k == 0 { 0 } else { self.surplus[k - 1] };

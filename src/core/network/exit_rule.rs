@@ -1,9 +1,9 @@
-//! How a particle chooses among the open exits of its void.
+//! Rules by which a particle chooses among the open exits of its void.
 
 use crate::schema::Leaf;
 use serde::{Deserialize, Serialize};
 
-/// How a particle chooses among the open exits of its void.
+/// Rule by which a particle chooses among the open exits of its void.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ExitRule {
@@ -25,7 +25,7 @@ impl ExitRule {
     /// Every rule, in the order in which a user is told of them.
     pub const ALL: [Self; 4] = [Self::Area, Self::Flux, Self::AreaAlongFlow, Self::Height];
 
-    /// Its name in a scene.
+    /// Name of the rule in a scene.
     pub fn name(self) -> &'static str {
         match self {
             Self::Area => "area",
@@ -35,15 +35,15 @@ impl ExitRule {
         }
     }
 
-    /// Whether it needs to know where water flows.
+    /// Tells if the rule needs to know where water flows.
     pub fn needs_flow(self) -> bool {
         matches!(self, Self::Flux | Self::AreaAlongFlow)
     }
 
-    /// How an exit of this area (the square of its diameter) weighs, through which `flux` flows out, or in
-    /// where it is negative; fluxes up to `least` are none.
+    /// Weight of an exit of this area (the square of its diameter), with `flux` out through it, or in if
+    /// negative; fluxes up to `least` count as zero.
     pub(super) fn weight(self, area: f64, flux: f64, least: f64) -> f64 {
-        // Which way water flows cannot be foreseen: chosen without a branch.
+        // The direction of water cannot be foreseen: chosen without a branch.
         match self {
             Self::Area | Self::Height => area,
             Self::Flux if flux > least => flux,

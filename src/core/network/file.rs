@@ -11,10 +11,10 @@ use std::io::Write;
 use super::listed::listed_twice;
 use super::{END, Network};
 
-/// What one void of a cubic lattice takes while it is walked: three constrictions, tables and tallies.
+/// Bytes that one void of a cubic lattice takes while it is walked: three constrictions, tables and tallies.
 const BYTES_A_VOID: f64 = 215.0;
 
-/// Why a network cannot be had.
+/// Reasons why a network cannot be built.
 #[derive(Debug, thiserror::Error)]
 pub enum NetworkError {
     /// A lattice of no voids, or of more constrictions than 32 bits can number.
@@ -53,27 +53,27 @@ pub enum NetworkError {
         /// The value found.
         value: f64,
     },
-    /// Voids and constrictions that are no network that anything can pass.
+    /// Voids and constrictions that make no network that anything can pass.
     #[error("the network cannot be walked: {problem}")]
     Unlinked {
-        /// What is wrong.
+        /// Description of the problem.
         problem: String,
     },
     /// A distribution of connectivity that cannot be.
     #[error("connectivity {value} is not allowed; {allowed}")]
     Connectivity {
-        /// What was given.
+        /// The value given.
         value: String,
-        /// What is allowed.
+        /// Allowed values.
         allowed: String,
     },
-    /// Closed loops but for a way out that is hardly ever taken.
+    /// Closed loops with a way out that is hardly ever taken.
     #[error(
         "a network has loops with so narrow a way out that what a particle can expect there is not known \
          after {sweeps} sweeps over its voids"
     )]
     NarrowWayOut {
-        /// How often all voids were looked at.
+        /// Number of sweeps over all voids.
         sweeps: usize,
     },
     /// A row that is not understood.
@@ -85,17 +85,17 @@ pub enum NetworkError {
         line: u64,
         /// Name of the field.
         field: &'static str,
-        /// What stands there.
+        /// The value in the file.
         value: String,
-        /// What may stand there.
+        /// Allowed values.
         allowed: String,
     },
-    /// The rows are understood, but are no network together.
+    /// The rows are understood, but together make no network.
     #[error("{file}: {problem}")]
     Whole {
         /// The file.
         file: String,
-        /// What is wrong with the file as a whole.
+        /// Problem of the file as a whole.
         problem: String,
     },
 }
@@ -113,7 +113,7 @@ impl Network {
     /// Writes the network as CSV, such that [`Network::from_csv`] gives it back bit for bit.
     ///
     /// # Errors
-    /// What the writer says.
+    /// Those of the writer.
     pub fn write_csv(&self, mut out: impl Write) -> std::io::Result<()> {
         if let Some([nx, ny, nz]) = self.shape {
             writeln!(out, "# shape = {nx}, {ny}, {nz}")?;
@@ -288,8 +288,8 @@ impl Rows {
     }
 }
 
-/// First exit of each void, and one more entry, and the place of each constriction among the exits, for those
-/// that lead from these voids.
+/// First exit of each void with one more entry at the end, and the place of each constriction among the
+/// exits, for constrictions that lead from these voids.
 pub(super) fn in_order_of_voids(voids: usize, from: &[u32]) -> (Vec<u32>, Vec<u32>) {
     let mut exit_begin = vec![0u32; voids + 1];
     for &from in from {
@@ -402,7 +402,7 @@ mod tests {
             let mut text = Vec::new();
             network.write_csv(&mut text).unwrap();
             prop_assert_eq!(Network::from_csv(&text, "net.csv", unit_mm).unwrap(), network.clone());
-            // As a general network it has the same voids, constrictions and layers.
+            // Read as a general network it has the same voids, constrictions and layers.
             let general = text.split(|&b| b == b'\n').skip(1).collect::<Vec<_>>().join(&b'\n');
             let general = Network::from_csv(&general, "net.csv", unit_mm).unwrap();
             prop_assert_eq!(general.shape(), None);

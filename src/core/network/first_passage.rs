@@ -1,4 +1,4 @@
-//! What the first particle does on a given network: an exact answer, by a linear solve.
+//! Fate of the first particle on a given network: an exact answer, by a linear solve.
 //!
 //! A particle of diameter `d` that alone enters a network picks one of the open exits of its void with a
 //! probability proportional to area, `p_e = A_e / sum A`. It is stopped where that exit is finer than it, and
@@ -16,7 +16,7 @@
 
 use super::{END, Network, NetworkError};
 
-/// Sweeps end when nothing changes by more than this part of itself.
+/// Relative change below which sweeps end.
 const CONVERGED: f64 = 1e-15;
 
 /// Constrictions looked at until an answer is given up: seconds. A loop that is left once in `n` moves takes
@@ -26,7 +26,7 @@ const MOST_LOOKS: usize = 1 << 30;
 /// Sweeps until an answer is given up on the largest network, at least.
 const LEAST_SWEEPS: usize = 1 << 12;
 
-/// What a single particle can expect, by the void that it starts in.
+/// Expectations of a single particle, by the void that it starts in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FirstPassage {
     /// Probability to leave the filter.
@@ -47,7 +47,7 @@ impl FirstPassage {
 }
 
 impl Network {
-    /// What a single particle of diameter `d` (in units of [`Network::unit_mm`]) can expect while `closed`
+    /// Expectations of a single particle of diameter `d` (in units of [`Network::unit_mm`]) while `closed`
     /// constrictions, and those of size 0, are closed.
     ///
     /// ```
@@ -97,8 +97,8 @@ impl Network {
         marked
     }
 
-    /// Marks the voids from which a marked one can be reached through exits with a share, and gives all that
-    /// are marked, none before one that its shortest way leads to.
+    /// Marks the voids from which a marked one can be reached through exits with a share, and returns all
+    /// marked voids, each after the one that its shortest way leads to.
     fn upstream_of(&self, share: &[f64], marked: &mut [bool]) -> Vec<u32> {
         let (begin, entrances) = self.entrances();
         let upstream = self.upstream();
@@ -117,9 +117,10 @@ impl Network {
         found
     }
 
-    /// About how many moves a particle that fits everywhere makes until it leaves, comes to a void without an
-    /// open exit, or is in closed loops for good; infinite where that is more than numbers can tell. It looks
-    /// at about `most` constrictions, one after another, and goes on from there by what changes.
+    /// Approximate number of moves that a particle that fits everywhere makes until it leaves, comes to a
+    /// void without an open exit, or is in closed loops for good; infinite if that is more than numbers can
+    /// hold. It looks at about `most` constrictions, one after another, and extrapolates from there by the
+    /// changes.
     pub fn moves_to_an_end(&self, most: u64) -> f64 {
         let mut share = vec![0.0; self.constrictions()];
         let mut ends = vec![false; self.voids()];
@@ -134,7 +135,7 @@ impl Network {
         }
         let order = self.upstream_of(&share, &mut ends);
         let mut moves = vec![0.0; self.voids()];
-        // Means after each round; where they grow by ever the same part less, the rest of the sum is known.
+        // Means after each round; once they grow by a constant ratio, the rest of the sum is known.
         let mut means = vec![0.0];
         // From layer to layer an answer takes a few rounds.
         let least = 4 * self.layers() + 100;
@@ -164,7 +165,7 @@ impl Network {
         }
     }
 
-    /// In at most so many sweeps the smallest solution of
+    /// Finds, in at most this many sweeps, the smallest solution of
     /// `x(v) = sum share_e (gain(e leads out) + x(t(e)))`; infinite where `unending`.
     fn relax(
         &self,
@@ -218,7 +219,7 @@ mod tests {
             (passage.leaves[0], passage.moves[0], passage.moves[4]),
             (0.0, f64::INFINITY, f64::INFINITY)
         );
-        // Where everything is closed it moves no more.
+        // Once everything is closed it moves no more.
         let stuck = network.first_passage(0.5, |_| true).unwrap();
         assert_eq!((stuck.leaves[0], stuck.moves[0]), (0.0, 0.0));
     }
@@ -234,7 +235,7 @@ mod tests {
         };
         let (leaves, moves) = of(0.01).unwrap();
         assert!((leaves - 1.0).abs() < 1e-9 && (moves / 10_001.0 - 1.0).abs() < 1e-6, "{leaves} {moves}");
-        // As few sweeps as on a large network, so that the test is short.
+        // With as few sweeps as on a large network, so that the test is short.
         let text = "from,to,diameter_mm\nstart,0,\n0,0,1\n0,end,0.000001\n";
         let network = Network::from_csv(text.as_bytes(), "n.csv", 1.0).unwrap();
         let error = network.relax(&[1.0, 1e-12], &[false], |_| 1.0, 1000).unwrap_err().to_string();

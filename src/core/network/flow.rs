@@ -1,12 +1,12 @@
-//! Water through a network: pressures, fluxes, and how well the whole conducts.
+//! Water through a network: pressures, fluxes, and the conductance of the whole.
 //!
-//! At every void what flows in flows out, `sum over its constrictions of g (p - p_other) = 0`, with pressure
-//! 1 in the reservoir and 0 behind the filter. A blocked constriction keeps a part `rho` of its conductance.
-//! The system is symmetric and positive, and is solved by conjugate gradients, with an approximate factor
-//! (module `elimination`) of what is open, or was until a little of it closed, from the last answer on. So an
-//! answer depends, within what is asked of it, on those before. Where conductances lie so far apart that this
-//! does not tell fluxes from residuals, voids are eliminated without subtraction (module `exact`), if the
-//! network is small enough for that. What counts as solved stands in module `thresholds`.
+//! At every void inflow equals outflow, `sum over its constrictions of g (p - p_other) = 0`, with pressure 1
+//! in the reservoir and 0 behind the filter. A blocked constriction keeps a part `rho` of its conductance.
+//! The system is symmetric and positive, and is solved by conjugate gradients from the last answer on, with
+//! an approximate factor (module `elimination`) of the open constrictions, or of those that were open until a
+//! few closed. So an answer depends, within the accuracy asked for, on those before. If conductances lie so
+//! far apart that fluxes cannot be told from residuals, voids are eliminated without subtraction (module
+//! `exact`), provided the network is small enough. Module `thresholds` defines when a flow counts as solved.
 
 mod elimination;
 mod error;
@@ -32,7 +32,7 @@ use together::Together;
 pub use error::FlowError;
 pub use permeability::permeability_mm2;
 
-/// How well a network conducts.
+/// Conductance and permeability of a network.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Permeability {
     /// Flow times viscosity for a pressure of 1 across the whole.
@@ -45,13 +45,13 @@ pub struct Permeability {
 struct Passage {
     /// The void that it is an exit of.
     one: u32,
-    /// The void beyond: the reservoir is one, and so is what lies behind the filter.
+    /// The void beyond; the reservoir counts as a void, and so does the space behind the filter.
     other: u32,
     /// The exit.
     exit: u32,
 }
 
-/// The sides of the filter that a void hangs together with, neither by way of the other.
+/// Sides of the filter that a void is connected to, neither by way of the other.
 #[derive(Clone, Copy, Default, PartialEq)]
 struct Meets {
     reservoir: bool,
@@ -76,28 +76,28 @@ pub struct Flow {
     flux: Vec<f64>,
     /// Exits that were blocked when the flow was solved last.
     blocked: BitVec,
-    /// Whether it was solved for parts of conductances then.
+    /// True if that solution was for parts of conductances.
     is_of_parts: bool,
     /// Flow times viscosity in from the reservoir.
     through: f64,
-    /// Residual that the last solution may have, over the inflow.
+    /// Residual allowed in the last solution, over the inflow.
     accuracy: f64,
-    /// Flow that no flux of the last solution is wrong by more than.
+    /// Largest possible error of a flux of the last solution.
     missing: f64,
-    /// Fluxes up to this may have the wrong sign, and lead round in a circle; 0 where they follow pressures.
+    /// Fluxes up to this may have the wrong sign, and lead round in a circle; 0 if they follow pressures.
     noise: f64,
-    /// The most that the network was found to conduct.
+    /// Largest conductance found for the network.
     most: f64,
-    /// Voids that were too many to eliminate; far fewer are tried again.
+    /// Number of voids that were too many to eliminate; far fewer are tried again.
     too_many: usize,
-    /// What serves solution after solution.
+    /// Factor kept from one solution to the next.
     kept: Option<Kept>,
-    /// By void: whether water flowed through it when the factor that is kept was first wanted.
+    /// By void: true if water flowed through it when the kept factor was first wanted.
     inside: BitVec,
 }
 
 impl Flow {
-    /// Of a clean network, before it is solved: until then pressures are a guess.
+    /// Prepares the flow of a clean network; pressures are a guess until it is solved.
     pub fn new(network: &Network) -> Self {
         let (outside, reservoir) = (network.voids() as u32, network.reservoir());
         let twins = network.undirected.as_ref().map(|undirected| &undirected.twin);
@@ -114,7 +114,7 @@ impl Flow {
         let open: Vec<f64> = (0..network.constrictions()).map(|c| whole(network, c)).collect();
         let mut pressure = vec![0.0; network.voids() + 1];
         if let Some(reservoir) = reservoir {
-            // Falls evenly from layer to layer.
+            // Pressure falls evenly from layer to layer.
             let layers = network.layers().max(1) as f64;
             for (p, &layer) in pressure.iter_mut().zip(network.layer_of()) {
                 *p = 1.0 - (f64::from(layer) + 0.5) / layers;
@@ -146,7 +146,7 @@ impl Flow {
         &self.pressure
     }
 
-    /// Rounds of conjugate gradients that the system took whose factor is kept; 0 where none is.
+    /// Rounds of conjugate gradients for the system whose factor is kept; 0 if no factor is kept.
     pub fn rounds(&self) -> usize {
         self.kept.as_ref().map_or(0, |kept| kept.rounds)
     }
@@ -156,28 +156,29 @@ impl Flow {
         self.flux[exit]
     }
 
-    /// Flux through a constriction over what flows in, in size, by one of its exits; 0 where nothing does.
+    /// Absolute flux through a constriction over the inflow, by one of its exits; 0 if nothing flows in.
     pub fn share(&self, exit: usize) -> f64 {
         let through = self.through;
         if through > 0.0 { (self.flux[exit] / through).abs() } else { 0.0 }
     }
 
-    /// Solves for the constrictions that `blocked` leaves open: a bit for each exit, the same for both of one
-    /// constriction. What is found is 0 where no way leads through, and nowhere else.
+    /// Solves for the constrictions that `blocked` leaves open: a bit for each exit, equal for both exits of
+    /// one constriction. The conductance found is 0 if no way leads through, and only then.
     ///
     /// # Errors
-    /// Conductances so far apart that the flow is not known to half a millionth of the most that the network
-    /// was found to conduct, or, while open ways lead through, that it does not tell where water goes: every
-    /// flux would count as none and all particles would wait, so that a filter that lets everything through
+    /// Conductances so far apart that the flow is not known to half a millionth of the largest conductance
+    /// found for the network, or, while open ways lead through, that it does not tell where water goes: every
+    /// flux would count as zero and all particles would wait, so that a filter that lets everything through
     /// would seem to hold it.
     pub fn solve(&mut self, network: &Network, blocked: &BitSlice) -> Result<Permeability, FlowError> {
         self.solve_as(network, blocked, false)
     }
 
-    /// The same, as close as rounding lets pressures come: for a reader of every flux.
+    /// Solves like [`Flow::solve`], as closely as rounding allows: for a reader of every flux.
     ///
     /// # Errors
-    /// As [`Flow::solve`], and fluxes that are not known to a hundred-millionth of what passes.
+    /// Those of [`Flow::solve`], and fluxes that are not known to a hundred-millionth of the flow through the
+    /// filter.
     pub fn solve_closely(
         &mut self,
         network: &Network,
@@ -194,19 +195,19 @@ impl Flow {
     ) -> Result<Permeability, FlowError> {
         let rho = network.undirected.as_ref().map_or(0.0, |u| u.rho);
         self.set_blocked(network, blocked, rho);
-        // What leaks through blocked constrictions carries no particle out.
+        // Leaks through blocked constrictions carry no particle out.
         let is_open = |passage: &Passage| !blocked[passage.exit as usize];
         self.solve_now(network, closely, rho > 0.0, is_open)
     }
 
     /// Solves for constrictions that keep these parts of their conductance, from 0 to 1: one for each exit,
-    /// the same for both of one constriction. All that conduct let particles pass.
+    /// equal for both exits of one constriction. All that conduct let particles pass.
     ///
     /// # Errors
-    /// As [`Flow::solve`].
+    /// Those of [`Flow::solve`].
     pub fn solve_parts(&mut self, network: &Network, parts: &[f64]) -> Result<Permeability, FlowError> {
         assert_eq!(parts.len(), self.open.len(), "one part for each exit");
-        // What was blocked leads on again, however much of it leaked.
+        // Blocked constrictions lead on again, however much they leaked.
         let mut changed = std::mem::replace(&mut self.blocked, BitVec::repeat(false, parts.len()));
         let mut is_open_again = false;
         for (c, (open, part)) in self.open.iter_mut().zip(parts).enumerate() {
@@ -222,7 +223,7 @@ impl Flow {
         self.solve_now(network, false, false, |_| true)
     }
 
-    /// Solves for conductances as they are; `leaks`: some conduct that are not open to particles.
+    /// Solves for the present conductances; `leaks`: some constrictions conduct that are closed to particles.
     fn solve_now(
         &mut self,
         network: &Network,
@@ -247,7 +248,7 @@ impl Flow {
         let mut found = self.find_pressures(network, &meets, CONVERGED);
         if leads_through && (closely || found.is_err() || !tells(self, CLEAR)) {
             if found.is_ok() {
-                // Where they come no closer in time, what there is has to do.
+                // If they come no closer in time, the present solution has to do.
                 let _ = self.find_pressures(network, &meets, CLOSEST);
             }
             if (found.is_err() || !tells(self, CLEAR)) && self.eliminate(network, &meets) {
@@ -265,8 +266,7 @@ impl Flow {
         Ok(Permeability { conductance, k_mm2: factor.map(|factor| factor * conductance) })
     }
 
-    /// The sides that each void hangs together with, by way of other voids and of such constrictions that
-    /// conduct.
+    /// Sides that each void is connected to by constrictions that conduct and are a way, and by other voids.
     fn meets(&self, is_way: impl Fn(&Passage) -> bool) -> Vec<Meets> {
         let outside = self.pressure.len() - 1;
         let is_side = |of: &Passage| Some(of.other) == self.reservoir || of.other as usize == outside;
@@ -282,11 +282,11 @@ impl Flow {
         (0..outside as u32).map(|void| of_root[together.root(void) as usize]).collect()
     }
 
-    /// Conducts as these blocked constrictions let it.
+    /// Sets the conductances that these blocked constrictions leave.
     fn set_blocked(&mut self, network: &Network, blocked: &BitSlice, rho: f64) {
         assert_eq!(blocked.len(), self.open.len(), "one bit for each exit");
         if std::mem::take(&mut self.is_of_parts) {
-            // Nothing is blocked, and what was narrowed is whole again.
+            // Nothing is blocked, and narrowed constrictions are whole again.
             self.kept = None;
             self.open.iter_mut().enumerate().for_each(|(c, open)| *open = whole(network, c));
         }
@@ -299,7 +299,7 @@ impl Flow {
         }
     }
 
-    /// Keeps the factor where few exits have changed since it was made, and none has opened again.
+    /// Keeps the factor if few exits have changed since it was made, and no exit has opened again.
     fn keep_factor(&mut self, network: &Network, changed: &BitSlice, is_open_again: bool) {
         if let Some(kept) = &mut self.kept {
             kept.closed += changed.count_ones();
@@ -316,7 +316,7 @@ impl Flow {
         self.passages.iter().filter(is_in).map(with_open).filter(|&(_, open)| open > 0.0)
     }
 
-    /// Pressures and fluxes, within so much of the inflow.
+    /// Finds pressures and fluxes, to this part of the inflow.
     fn find_pressures(&mut self, network: &Network, meets: &[Meets], within: f64) -> Result<(), FlowError> {
         let Some(reservoir) = self.reservoir else { return Ok(()) };
         let outside = meets.len() as u32;
@@ -333,7 +333,7 @@ impl Flow {
         let fit = system.solve(&mut self.pressure, network.layers(), within, &mut self.kept)?;
         self.stand_still(meets, reservoir);
         self.missing = fit.missing;
-        // What is asked for, but where rounding allows no more.
+        // The accuracy asked for, or as much of it as rounding allows.
         let asked = within.max(ROUNDING);
         self.accuracy = if fit.residual <= 2.0 * asked { asked } else { fit.residual };
         self.noise = 0.0;
@@ -344,7 +344,8 @@ impl Flow {
         Ok(())
     }
 
-    /// The same without subtraction; `false` where that takes too much work, and nothing has changed then.
+    /// Finds pressures and fluxes without subtraction; returns `false`, with nothing changed, if that takes
+    /// too much work.
     fn eliminate(&mut self, network: &Network, meets: &[Meets]) -> bool {
         let Some(reservoir) = self.reservoir else { return false };
         let mut nodes: Vec<u32> = vec![0; meets.len() + 1];
@@ -377,7 +378,7 @@ impl Flow {
         true
     }
 
-    /// Water flows where it comes in and gets out; elsewhere it stands under the pressure of the one side.
+    /// Gives voids that water does not flow through the pressure of the one side that they meet.
     fn stand_still(&mut self, meets: &[Meets], reservoir: u32) {
         for (pressure, &meets) in self.pressure.iter_mut().zip(meets) {
             if meets != THROUGH {
@@ -387,7 +388,7 @@ impl Flow {
         self.pressure[reservoir as usize] = 1.0;
     }
 
-    /// Fluxes by falls of pressure through passages.
+    /// Sets fluxes from the falls of pressure through passages.
     fn set_fluxes(&mut self, network: &Network, falls: &[f64]) {
         for (passage, fall) in self.passages.iter().zip(falls) {
             let exit = passage.exit as usize;
@@ -399,26 +400,27 @@ impl Flow {
         self.through = self.flux[self.inlets.clone()].iter().sum();
     }
 
-    /// Mean flux of an inlet over what the residual may stand for.
+    /// Mean flux of an inlet over the flux that the residual may account for.
     fn part(&self) -> f64 {
         self.through / self.inlets.len().max(1) as f64 / self.residual_of_inlets()
     }
 
-    /// Flux of an inlet that the residual may stand for.
+    /// Flux of an inlet that the residual may account for.
     fn residual_of_inlets(&self) -> f64 {
         let open = &self.open[self.inlets.clone()];
         let largest = open.iter().copied().fold(0.0, f64::max);
         if largest == 0.0 {
             return 0.0;
         }
-        // A power of two changes no digit, and squares of very large and very small numbers are none.
+        // Scaling by a power of two changes no digit; unscaled squares of very large and very small numbers
+        // would overflow or vanish.
         let unit = libm::scalbn(1.0, -libm::ilogb(largest).max(-1000));
         let square = |open: &f64| (open * unit) * (open * unit);
         self.accuracy * open.iter().map(square).sum::<f64>().sqrt() / unit
     }
 
-    /// Gives each exit of the network its weight by the flow that was solved last; what was blocked then has
-    /// none. A void whose open exits each pass too little to count keeps the one that passes most, so that
+    /// Gives each exit of the network its weight by the flow that was solved last; exits blocked then weigh
+    /// nothing. A void whose open exits each pass too little to count keeps the one that passes most, so that
     /// it retains nothing that water carries into it.
     pub fn direct(&self, network: &mut Network) {
         if self.reservoir.is_none() {

@@ -5,12 +5,12 @@ use super::undirected::{Link, LinkEnd, LinkedVoids};
 use super::{Network, NetworkError};
 use crate::constrictions::VoidGraph;
 
-/// How a packing's voids become a network.
+/// Settings for turning a packing's voids into a network.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GraphShape {
     /// Equal copies of the cell along the flow.
     pub copies: u32,
-    /// How particles choose.
+    /// Rule by which particles choose.
     pub rule: ExitRule,
     /// Part of its conductance that a blocked constriction keeps.
     pub rho: f64,
@@ -19,13 +19,13 @@ pub struct GraphShape {
 }
 
 impl Network {
-    /// The voids of a packing, in `copies` equal cells one behind the other along z and periodic in x and y:
-    /// void `v` of copy `k` is void `k N + v`. A constriction that leads into the first copy from before it
-    /// is an inlet, one that leads out of the last an outlet. Layers are as thick as the edge of the cube
-    /// that a void has on average.
+    /// Builds the network of the voids of a packing, in `copies` equal cells one behind the other along z and
+    /// periodic in x and y: void `v` of copy `k` is void `k N + v`. A constriction that leads into the first
+    /// copy from before it is an inlet, one that leads out of the last an outlet. Layers are as thick as the
+    /// edge of the cube that a void has on average.
     ///
     /// # Errors
-    /// What [`Network::linked`] refuses, as no way through.
+    /// Refusals of [`Network::linked`], such as no way through.
     pub fn of_graph(graph: &VoidGraph, shape: GraphShape) -> Result<Self, NetworkError> {
         let (voids, unit) = (graph.voids() as u32, shape.unit_mm);
         let copies = shape.copies;

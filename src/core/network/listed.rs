@@ -1,20 +1,20 @@
 //! Constrictions that a file lists twice.
 
-/// Part of the larger by which the sizes of one constriction may differ, listed there and back.
+/// Allowed difference of the sizes of one constriction listed there and back, as a part of the larger.
 const BACK: f64 = 2e-3;
-/// The same of a row that is listed again.
+/// Allowed difference of the sizes of a row that is listed again, as a part of the larger.
 const AGAIN: f64 = 1e-9;
-/// Fewer rows may have a partner by chance.
+/// Number of rows below which partners may arise by chance.
 const FEW: usize = 8;
 
 /// Lower and higher void, sizes, whether the row leads back, and its number.
 type Row = ([i64; 2], [f64; 2], bool, usize);
 
-/// Two rows that are one constriction, where too many rows are listed twice: there and back, as in lists of
-/// neighbours, or the same row again. One constriction would be two, of which one stays open when the other
-/// is blocked. Some voids may well be joined by several constrictions, which can all be passed both ways:
-/// half of all rows there and back, of whatever sizes, are too many, and a twentieth of like sizes. Where
-/// each row leads one way, as `directed` says, only nine rows of ten of like sizes are.
+/// Finds two rows that are one constriction, if too many rows are listed twice: there and back, as in lists
+/// of neighbours, or the same row again. One constriction would become two, and one of them would stay open
+/// when the other is blocked. Some voids may well be joined by several constrictions, which can all be passed
+/// both ways: half of all rows there and back, whatever their sizes, are too many, and so is a twentieth of
+/// like sizes. If each row leads one way (`directed`), only nine rows of ten of like sizes are too many.
 pub(super) fn listed_twice(
     rows: impl Iterator<Item = ([i64; 2], [f64; 2])>,
     directed: bool,

@@ -1,8 +1,8 @@
 //! Void networks: voids joined by directed constrictions.
 //!
-//! A [`Network`] is any directed graph of voids. A constriction belongs to its upstream void, whose
-//! *exit* it is; exits of one void stand next to each other, in a fixed order. Start nodes receive
-//! base particles; an exit whose target is [`END`] leaves the filter.
+//! A [`Network`] is any directed graph of voids. A constriction belongs to its upstream void, as an *exit* of
+//! it; exits of one void are neighbours, in a fixed order. Start nodes receive base particles; an exit whose
+//! target is [`END`] leaves the filter.
 //!
 //! The paper's network is the directed cubic lattice ([`Network::cubic`], Fig. 2): `nx x ny x nz`
 //! voids, periodic in x and y, flow along +z. [`Network::connected`] changes it until its voids have a given
@@ -75,14 +75,14 @@ pub struct Network {
     unit_mm: f64,
     /// Voids along x, y, z where the network is the cubic lattice.
     shape: Option<[u32; 3]>,
-    /// What there is besides where constrictions have no direction of their own.
+    /// Columns that exist only if constrictions have no direction of their own.
     undirected: Option<Box<Undirected>>,
 }
 
 impl Network {
-    /// How a constriction weighs in the choice among the open exits of its void: its area, but for a factor
-    /// that all have (the paper's Fig. 4), or what its [`ExitRule`] makes of area and flow. One that is
-    /// closed from the start weighs nothing.
+    /// Weight of a constriction in the choice among the open exits of its void: its area, but for a factor
+    /// that all have (the paper's Fig. 4), or the weight that its [`ExitRule`] makes of area and flow. One
+    /// that is closed from the start weighs nothing.
     ///
     /// Engines, first passage and Eq. (1) all take it from here; the slow reference of the walk works it out
     /// by itself, on purpose.
@@ -95,7 +95,7 @@ impl Network {
         diameter * diameter
     }
 
-    /// Fingerprint of everything that a walk takes from the network: a new column must say here what it is.
+    /// Fingerprint of everything that a walk takes from the network; a new column must be declared here.
     pub fn fingerprint(&self) -> u64 {
         let Self { exit_begin, target, diameter, start, layer, unit_mm, shape: _, undirected } = self;
         let mut hash = xxhash_rust::xxh3::Xxh3::new();
@@ -173,8 +173,8 @@ impl Network {
         upstream
     }
 
-    /// The finest constriction that `closed` leaves open (`f32::INFINITY` where none is): a base
-    /// particle no coarser than it is *passive*, it can block nothing.
+    /// The finest constriction that `closed` leaves open (`f32::INFINITY` if all are closed): a base particle
+    /// no coarser than it is *passive*, it can block nothing.
     pub fn finest_open(&self, closed: impl Fn(usize) -> bool) -> f32 {
         const TOGETHER: usize = 64;
         let mut finest = f32::INFINITY;
@@ -185,7 +185,7 @@ impl Network {
                 continue;
             }
             for (c, &d) in (part * TOGETHER..).zip(diameters) {
-                // Few are finer than all before: of the others it does not matter whether they are closed.
+                // Few are finer than all before: for the others it does not matter if they are closed.
                 if d < finest && d > 0.0 && !closed(c) {
                     finest = d;
                 }

@@ -1,4 +1,4 @@
-//! How far one particle comes in a clean cubic lattice: Eq. (1) of the paper.
+//! Depth that one particle reaches in a clean cubic lattice: Eq. (1) of the paper.
 //!
 //! A particle that alone enters a clean network blocks nothing that matters to it. In each void it picks one
 //! of three exits with a probability proportional to area; it is stopped where that exit is finer than it.
@@ -11,8 +11,9 @@
 //! ```
 //!
 //! s follows from q: a third of the moves that succeed lead downstream. Eq. (1) in the paper speaks of
-//! Schuler's network, in which a void has five exits; this P(F) is that of the directed lattice the program
-//! walks. It takes every void as new, which holds for lattices wider than a particle's way around them.
+//! Schuler's network, in which a void has five exits; this P(F) holds for the directed lattice that the
+//! program walks. It takes every void as new, which holds for lattices wider than a particle's way around
+//! them.
 
 use crate::constrictions::Curve;
 
@@ -60,7 +61,7 @@ impl<'a> Passage<'a> {
             sum += 3.0 * share / PARTS as f64;
             stopped.push(sum);
         }
-        // The three shares sum to 1; what rounding and the coarser parts leave is taken out.
+        // The three shares sum to 1; the difference that rounding and the coarser parts leave is taken out.
         stopped.iter_mut().for_each(|s| *s /= sum);
         Self { curve, stopped }
     }
@@ -80,14 +81,14 @@ impl<'a> Passage<'a> {
         (1.0 - q) / (1.0 + 2.0 * q)
     }
 
-    /// Eq. (1): the layers that it does not pass with this confidence (0 to 1); `None` where nothing can stop
+    /// Eq. (1): the layers that it does not pass with this confidence (0 to 1); `None` if nothing can stop
     /// it.
     pub fn layers(&self, d: f64, confidence: f64) -> Option<f64> {
         let s = self.downstream(d);
         (s < 1.0).then(|| if s > 0.0 { libm::log(1.0 - confidence) / libm::log(s) } else { 0.0 })
     }
 
-    /// The probability that it leaves a lattice of so many layers: `s ^ layers`.
+    /// Probability that it leaves a lattice of this many layers: `s ^ layers`.
     pub fn through(&self, d: f64, layers: u64) -> f64 {
         libm::pow(self.downstream(d), layers as f64)
     }

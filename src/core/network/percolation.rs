@@ -26,9 +26,8 @@ use crate::stream::{Key, LANES, Purpose};
 /// Share of all constrictions of an `nx x ny x nz` lattice that is open when it first percolates, in
 /// realisation `realisation` (counted from 1) of `seed`.
 ///
-/// The lattice is that of [`Network::cubic`]: directed, periodic in x and y, every void of layer 0 a start
-/// node, +z of the last layer the end. Memory grows with `nx ny` alone; time with the number of
-/// constrictions.
+/// The lattice of [`Network::cubic`]: directed, periodic in x and y, every void of layer 0 a start node, +z
+/// of the last layer the end. Memory grows with `nx ny` alone; time with the number of constrictions.
 ///
 /// # Errors
 /// A length of 0, or more constrictions than 32 bits can number.
@@ -77,7 +76,7 @@ fn key_of([nx, ny, nz]: [u32; 3], seed: u64, realisation: u64) -> Key {
 struct Layer {
     nx: usize,
     plane: usize,
-    /// Opening values: those of +x of all voids, then of +y, then of +z.
+    /// Opening values: +x of all voids, then +y, then +z.
     opening: Vec<u64>,
     /// The least over paths from the start layer of the largest opening value on the path; 0 in the start
     /// layer.
@@ -111,7 +110,7 @@ impl Layer {
         }
     }
 
-    /// Moves along +z: from here on, `least` is that of the layer below.
+    /// Moves along +z: from here on, `least` belongs to the layer below.
     fn descend(&mut self) {
         for (least, &value) in self.least.iter_mut().zip(&self.opening[2 * self.plane..]) {
             *least = (*least).max(value);
@@ -138,7 +137,7 @@ fn sweep(nx: usize, along_x: &[u64], along_y: &[u64], least: &mut [u64]) {
     }
 }
 
-/// The moves over the seams; whether one of them improved a void.
+/// Makes the moves over the seams; tells if one of them improved a void.
 fn cross_seams(nx: usize, along_x: &[u64], along_y: &[u64], least: &mut [u64]) -> bool {
     let mut improved = false;
     let mut cross = |least: &mut [u64], from: usize, to: usize, value: u64| {

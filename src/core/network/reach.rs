@@ -1,8 +1,8 @@
-//! What can be reached through open constrictions: the backbone, and the blocked set of one size.
+//! Reach of paths through open constrictions: the backbone, and the blocked set of one size.
 
 use super::{END, NO_LAYER, Network, WIDE};
 
-/// Where paths through passable constrictions lead, found breadth-first.
+/// Voids that paths through passable constrictions join to the start and the end, found breadth-first.
 pub struct Reachability {
     /// Voids that a start node leads to.
     pub from_start: Vec<bool>,
@@ -18,8 +18,8 @@ impl Network {
         Reachability { from_start, to_end: self.leading_to_end(&passable) }
     }
 
-    /// Whether an open way leads from a start node out of the network: nothing can leave any other, whatever
-    /// it would hold.
+    /// Tells if an open way leads from a start node out of the network: nothing can leave any other network,
+    /// whatever it would hold.
     pub fn leads_out(&self) -> bool {
         let open = |c: usize| self.diameter[c] > 0.0;
         let reached = self.distances(open);
@@ -29,8 +29,8 @@ impl Network {
         (0..self.voids() as u32).any(|void| is_last(&void))
     }
 
-    /// Share of all constrictions that lie on a path from start to end through constrictions that
-    /// `open` admits.
+    /// Share of all constrictions that lie on a path from start to end through constrictions that `open`
+    /// admits.
     pub fn backbone_fraction(&self, open: impl Fn(usize) -> bool) -> f64 {
         if let Some(shape) = self.shape {
             return self.on_paths_of_lattice(shape, open) as f64 / self.passages().max(1) as f64;
@@ -47,7 +47,8 @@ impl Network {
         on_path as f64 / self.passages().max(1) as f64
     }
 
-    /// The same as a number, of a lattice: layer by layer, as no path leads back into one that it left.
+    /// Number of these constrictions on a lattice: layer by layer, as no path leads back into one that it
+    /// left.
     fn on_paths_of_lattice(&self, shape: [u32; 3], open: impl Fn(usize) -> bool) -> u64 {
         let [nx, _, _, plane, voids] = lengths(shape);
         let open = open_exits(voids, open);
@@ -110,7 +111,7 @@ impl Network {
             for void in front {
                 for exit in self.exits(void) {
                     let target = self.target[exit];
-                    // Most have been reached already, which is known at less cost than what is passable.
+                    // Most have been reached already, which costs less to know than if an exit is passable.
                     if target != END && distance[target as usize] == NO_LAYER && passable(exit) {
                         distance[target as usize] = moves;
                         next.push(target);
@@ -129,7 +130,7 @@ impl Network {
         self.leading_to((first..self.voids() as u32).filter(is_last).collect(), passable)
     }
 
-    /// Voids from which constrictions that `passable` admits lead to any of `those`, which are among them.
+    /// Voids from which constrictions that `passable` admits lead to any of `those`; these are included.
     pub(crate) fn leading_to(&self, those: Vec<u32>, passable: impl Fn(usize) -> bool) -> Vec<bool> {
         let mut leads = vec![false; self.voids()];
         those.iter().for_each(|&void| leads[void as usize] = true);
@@ -188,8 +189,8 @@ fn open_exits(voids: usize, open: impl Fn(usize) -> bool) -> Vec<u8> {
     (0..voids).map(of_void).collect()
 }
 
-/// Adds the voids of a lattice from which open exits lead to those that are there: layer by layer, as none
-/// leads back into a layer, so that what is looked at lies close together.
+/// Adds the voids of a lattice from which open exits lead to marked ones: layer by layer, as no exit leads
+/// back into a layer, so that memory is read close together.
 fn spread_upstream(shape: [u32; 3], open: &[u8], leads: &mut [bool]) {
     let [nx, _, _, plane, voids] = lengths(shape);
     let mut stack = Vec::new();
@@ -235,7 +236,7 @@ mod tests {
         assert_eq!(network.blocked_by_one_size(1.0), Vec::<u32>::new());
     }
 
-    /// The voids before a void of a lattice are worked out, and those of other networks looked up.
+    /// Voids before a void are computed on a lattice, and looked up in other networks.
     #[test]
     fn as_many_voids_lead_on_in_a_lattice_as_in_the_network_that_it_is() {
         for shape in [[4, 3, 5], [1, 4, 3], [5, 1, 3], [1, 1, 4], [2, 2, 1]] {

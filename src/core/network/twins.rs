@@ -1,35 +1,36 @@
-//! What a network has besides where its constrictions have no direction of their own: columns by exit.
+//! Columns by exit of a network whose constrictions have no direction of their own.
 
 use super::exit_rule::ExitRule;
 
-/// The twin of an exit that has none.
+/// Marks an exit without a twin.
 pub(super) const NO_TWIN: u32 = u32::MAX;
 
-/// What a network has besides where its constrictions have no direction of their own.
+/// Columns by exit of a network whose constrictions have no direction of their own.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Undirected {
-    /// The same constriction as an exit of its other void, or [`NO_TWIN`].
+    /// Exit of the other void that is the same constriction, or [`NO_TWIN`].
     pub(super) twin: Vec<u32>,
     /// Conductance times viscosity, in any one unit, by exit.
     pub(super) conductance: Vec<f64>,
-    /// How an exit weighs now, by exit.
+    /// Present weight in the choice, by exit.
     pub(super) weight: Vec<f64>,
-    /// How particles choose.
+    /// Rule by which particles choose.
     pub(super) rule: ExitRule,
     /// Part of its conductance that a blocked constriction keeps.
     pub(super) rho: f64,
-    /// When a walk solves the flow again: see [`Network::with_flow_tolerance`](super::Network).
+    /// Tolerance beyond which a walk solves the flow again: see
+    /// [`Network::with_flow_tolerance`](super::Network).
     pub(super) flow_tolerance: f64,
     /// Volume by void, in units of the network's reference length cubed; empty where it is not known.
     pub(super) volume: Vec<f64>,
-    /// Constrictions: each pair of twins once, and none that nothing can block.
+    /// Constrictions: each pair of twins once, without those that nothing can block.
     pub(super) passages: usize,
-    /// What the conductance of the whole is to be multiplied by for its permeability, in mm2.
+    /// Factor from the conductance of the whole to its permeability, in mm2.
     pub(super) permeability_mm2: Option<f64>,
 }
 
 impl Undirected {
-    /// Adds what a walk takes from it; the weights follow from the rest.
+    /// Adds the columns that a walk takes to a hash; the weights follow from the rest.
     pub(super) fn hash(&self, hash: &mut xxhash_rust::xxh3::Xxh3) {
         let Self { twin, conductance, rule, rho, flow_tolerance, volume, .. } = self;
         hash_column(hash, twin, |number| number.to_le_bytes());

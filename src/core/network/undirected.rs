@@ -10,12 +10,12 @@ use super::exit_rule::ExitRule;
 use super::twins::{NO_TWIN, Undirected};
 use super::{END, Network, NetworkError};
 
-/// The tolerance of the flow in a walk where nobody sets it.
+/// Default tolerance of the flow in a walk.
 pub const FLOW_TOLERANCE: f64 = 0.03;
 
-/// Up to a tolerance, the percentage points of eroded mass by which its walks differ at most from those of
-/// tolerance 0: both runs of eleven filters from open to sealed, on a lattice (`src/docs/graph.md`) and on
-/// the voids of a packing (`results/graph.md`), rounded up.
+/// Tolerances, and the largest difference in eroded mass (percentage points) between walks up to each and
+/// walks of tolerance 0: both runs of eleven filters from open to sealed, on a lattice (`src/docs/graph.md`)
+/// and on the voids of a packing (`results/graph.md`), rounded up.
 const FLOW_ERRORS: [(f64, f64); 4] = [(0.0, 0.0), (FLOW_TOLERANCE, 0.3), (0.1, 0.5), (1.0, 11.0)];
 
 /// Measured error of the eroded mass at a tolerance of the flow (percentage points); `None` above 1, where
@@ -34,15 +34,15 @@ pub const WIDE: f32 = 1e30;
 /// A constriction of an undirected network.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Link {
-    /// Where it leads from: a void, or the reservoir.
+    /// Void that it leads from, or the reservoir.
     pub from: LinkEnd,
-    /// Where it leads to: a void, or out of the filter.
+    /// Void that it leads to, or out of the filter.
     pub to: LinkEnd,
     /// Diameter, in units of the network's reference length.
     pub diameter: f32,
     /// Conductance times viscosity, in any one unit.
     pub conductance: f64,
-    /// Whether it leads against the axis of flow, level, or along it: below, at or above 0.
+    /// Direction along the axis of flow: against it, level, or along it if below, at or above 0.
     pub rise: f64,
 }
 
@@ -51,11 +51,11 @@ pub struct Link {
 pub enum LinkEnd {
     /// A void.
     Void(u32),
-    /// Outside: the reservoir before the filter, or what lies behind it.
+    /// Outside: the reservoir before the filter, or the space behind it.
     Outside,
 }
 
-/// What is to be known of an undirected network besides its links.
+/// Data of an undirected network besides its links.
 #[derive(Clone, Debug, Default)]
 pub struct LinkedVoids {
     /// Layer by void.
@@ -64,32 +64,32 @@ pub struct LinkedVoids {
     pub volume: Vec<f64>,
     /// Length of one unit of diameter (mm).
     pub unit_mm: f64,
-    /// How particles choose.
+    /// Rule by which particles choose.
     pub rule: ExitRule,
     /// Part of its conductance that a blocked constriction keeps.
     pub rho: f64,
-    /// What the conductance of the whole is to be multiplied by for its permeability, in mm2.
+    /// Factor from the conductance of the whole to its permeability, in mm2.
     pub permeability_mm2: Option<f64>,
 }
 
 impl Network {
-    /// A network of voids joined by constrictions without a direction of their own.
+    /// Builds a network of voids joined by constrictions without a direction of their own.
     ///
     /// # Errors
-    /// A diameter or a conductance that is negative or not a number; a void that is none; no inlet; no
+    /// A diameter or a conductance that is negative or not a number; a void that does not exist; no inlet; no
     /// outlet; no open way from an inlet to an outlet; more exits than 32 bits can number.
     pub fn linked(voids: LinkedVoids, links: &[Link]) -> Result<Self, NetworkError> {
         Ok(Self::linked_numbered(voids, links)?.0)
     }
 
-    /// The same, and of each link its exit, the first of two; `u32::MAX` where it has none.
+    /// Builds the network, and lists the exit of each link, the first of two; `u32::MAX` if it has no exit.
     pub(super) fn linked_numbered(
         voids: LinkedVoids,
         links: &[Link],
     ) -> Result<(Self, Vec<u32>), NetworkError> {
         let reservoir = voids.layer.len() as u32;
         check(links, reservoir)?;
-        // Two exits by link, or one: from where, to where, of which link.
+        // Two exits by link, or one: from this void, to that one, by this link.
         let mut exits: Vec<(u32, u32, u32)> = Vec::with_capacity(2 * links.len());
         for (i, link) in (0u32..).zip(links) {
             match (link.from, link.to) {
@@ -154,9 +154,9 @@ impl Network {
     }
 
     /// This network with another tolerance of the flow in a walk. Water is solved again once the
-    /// constrictions that have closed since carried this part of it, summed over the whole filter: so many
-    /// constrictions on the mean way of a particle are closed at most that the flow does not know of. With 0
-    /// it is solved again as soon as any has closed.
+    /// constrictions that have closed since carried this part of it, summed over the whole filter: at most
+    /// this many closed constrictions on the mean way of a particle are unknown to the flow. With 0 it is
+    /// solved again as soon as any has closed.
     #[must_use]
     pub fn with_flow_tolerance(mut self, tolerance: f64) -> Self {
         if let Some(undirected) = &mut self.undirected {
@@ -175,7 +175,7 @@ impl Network {
     /// the first layer leads a way in that nothing can block, with the mean conductance of all constrictions.
     ///
     /// # Errors
-    /// As [`Network::cubic_from_diameters`] and [`Network::linked`].
+    /// Those of [`Network::cubic_from_diameters`] and [`Network::linked`].
     pub fn undirected_lattice(&self, rule: ExitRule, rho: f64, exponent: f64) -> Result<Self, NetworkError> {
         let conductance = |c: usize| match f64::from(self.diameter[c]) {
             0.0 => 0.0,
@@ -227,12 +227,12 @@ impl Network {
         self.undirected.as_ref().map(|_| self.start[0])
     }
 
-    /// How particles choose among exits.
+    /// Rule by which particles choose among exits.
     pub fn exit_rule(&self) -> ExitRule {
         self.undirected.as_ref().map_or(ExitRule::Area, |u| u.rule)
     }
 
-    /// The same constriction as an exit of its other void.
+    /// Exit of the other void that is the same constriction.
     #[inline]
     pub fn twin(&self, exit: usize) -> Option<usize> {
         let twin = self.undirected.as_ref()?.twin[exit];
@@ -253,8 +253,8 @@ impl Network {
         }
     }
 
-    /// Whether an exit stands for its constriction where each is to be counted once: it has no twin, or comes
-    /// first; ways in that nothing can block are none.
+    /// Tells if an exit represents its constriction where each is to be counted once: it has no twin, or
+    /// comes first; ways in that nothing can block do not count.
     #[inline]
     pub fn counts(&self, exit: usize) -> bool {
         self.diameter[exit] != WIDE && self.twin(exit).is_none_or(|twin| exit < twin)
@@ -278,7 +278,7 @@ impl Network {
         }
     }
 
-    /// Whether ways in are no constrictions, so that coming in is no move.
+    /// Tells if ways in are no constrictions, so that coming in is no move.
     pub fn entry_is_free(&self) -> bool {
         self.reservoir().is_some_and(|r| self.exits(r).all(|c| self.diameter[c] == WIDE))
     }

@@ -1,8 +1,8 @@
-//! Arches, once the particles of all chunks have attempted their move: who of those that jammed stays.
+//! Arches, once the particles of all chunks have attempted their move: which of the jammed particles stay.
 //!
-//! Those that jammed in one constriction in one increment are one arch (module `arching`): the first in the
-//! order of insertion says how many it has, and those beyond it pass the constriction after all. They are in
-//! the void beyond it then, or have left the filter, and keep their place in the order of insertion.
+//! Particles that jammed in one constriction in one increment are one arch (module `arching`): the first in
+//! the order of insertion says how many it has, and those beyond it pass the constriction after all. They are
+//! in the void beyond it then, or have left the filter, and keep their place in the order of insertion.
 
 use std::collections::HashMap;
 
@@ -20,18 +20,18 @@ pub(super) struct Jam {
     pub exit: u32,
     /// Its size.
     pub diameter: f32,
-    /// Particles of the arch of which it is the first.
+    /// Particles of the arch that it begins.
     pub particles: u32,
 }
 
-/// Keeps the arches of an increment and lets the others go on; what jammed, chunk by chunk, is used up.
+/// Keeps the arches of an increment and lets the others go on; the jams of all chunks are used up.
 pub(super) fn settle<'a>(
     network: &Network,
     jams: impl Iterator<Item = &'a mut Vec<Jam>>,
     upstream: &[u32],
     state: &mut State,
 ) {
-    // By constriction: how many more its arch takes.
+    // By constriction: room left in its arch.
     let mut room = HashMap::new();
     let mut released = Vec::new();
     for (chunk, jams) in jams.enumerate().filter(|(_, jams)| !jams.is_empty()) {
@@ -53,7 +53,7 @@ pub(super) fn settle<'a>(
     }
 }
 
-/// It stays in its arch.
+/// Keeps a particle in its arch.
 fn keep(network: &Network, jam: Jam, upstream: &[u32], state: &mut State) {
     let tally = &mut state.tally;
     tally.moving -= 1;
@@ -64,7 +64,7 @@ fn keep(network: &Network, jam: Jam, upstream: &[u32], state: &mut State) {
     state.stop(network, upstream, jam.exit as usize, jam.diameter);
 }
 
-/// It passes: the void where it is then, unless it has left the filter.
+/// Lets a particle pass; returns the void that it is in then, unless it has left the filter.
 fn release(network: &Network, jam: Jam, state: &mut State) -> Option<u32> {
     let tally = &mut state.tally;
     tally.particle_moves = tally.particle_moves.saturating_add(1);

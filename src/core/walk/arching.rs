@@ -2,19 +2,19 @@
 //!
 //! # What is decided
 //! A particle that would pass a constriction of `R` times its size (diameter by diameter) jams with the
-//! probability that a [`Law`] gives, by a draw of its own. Those that jam in one constriction in one
+//! probability that a [`Law`] gives, by a draw of its own. Particles that jam in one constriction in one
 //! increment are one arch, in the order of insertion, up to as many as an arch of the `R` of the first has
 //! ([`in_arch`]); those beyond pass (module `arches`). Particles so fine that the law gives no arch pass, and
-//! are none of an arch.
+//! belong to no arch.
 //!
-//! The constriction closes from the next increment on, as one that a coarser particle blocked, however many
+//! The constriction closes from the next increment on, like one that a coarser particle blocked, however many
 //! are in the arch: the law has decided that it is jammed, and a walk of few particles an increment brings
 //! fewer than an arch has.
 //!
-//! Whether a particle jams depends on itself and the constriction alone, and who stays on the order of
-//! insertion alone. So the cutting of the particles into chunks plays no part, but in which draw a particle
-//! takes: the one at place `j` of chunk `c` takes draw `j` of the stream (seed, arching, run, increment,
-//! `c`), completed to 64 bits where sixteen do not decide.
+//! Jamming depends on the particle and the constriction alone, and staying on the order of insertion alone.
+//! So the cutting of the particles into chunks plays no part, except in the draw that a particle takes: the
+//! one at place `j` of chunk `c` takes draw `j` of the stream (seed, arching, run, increment, `c`), completed
+//! to 64 bits where sixteen do not decide.
 //!
 //! # Concentration
 //! A law may depend on the solids fraction of the suspension that enters the filter: the volume of particles
@@ -29,23 +29,23 @@ use crate::schema::Leaf;
 use libm::{exp, lgamma, log, pow};
 use serde::{Deserialize, Serialize};
 
-/// Solids fraction of grains that lie densely: no suspension has a larger one.
+/// Solids fraction of densely packed grains: no suspension has a larger one.
 pub const DENSEST: f64 = 0.64;
 
 /// A published law of clogging.
 ///
-/// The laws are data: what the walk reads is a table of each over `R` ([`Arching`]).
+/// The laws are data: the walk reads a table of each over `R` ([`Arching`]).
 #[derive(Debug)]
 pub struct Law {
-    /// Its name in a scene.
+    /// Name of the law in a scene.
     pub name: &'static str,
-    /// Where it was published.
+    /// Publication of the law.
     pub source: &'static str,
-    /// What of that source could be read, and what was taken besides.
+    /// Parts of that source that could be read, and other sources used.
     pub basis: &'static str,
     /// `R` from which nothing arches.
     pub widest: f64,
-    /// Whether the probability depends on the concentration; the others hold for dense flow.
+    /// True if the probability depends on the concentration; the others hold for dense flow.
     pub of_concentration: bool,
     probability: fn(f64, f64) -> f64,
 }
@@ -73,12 +73,12 @@ impl LawName {
     /// All names, in the order in which a user is told of them.
     pub const ALL: [Self; 4] = [Self::None, Self::Zuriguel2005, Self::Marin2018, Self::Critical3];
 
-    /// The name itself.
+    /// The name as text.
     pub fn name(self) -> &'static str {
         self.law().map_or("none", |law| law.name)
     }
 
-    /// Its law; `None` where particles do not arch.
+    /// Law of this name; `None` if particles do not arch.
     pub fn law(self) -> Option<&'static Law> {
         (self as usize).checked_sub(1).map(|place| &LAWS[place])
     }
@@ -152,16 +152,16 @@ impl Law {
     }
 }
 
-/// One in as many as pass before a jam, and the one that jams.
+/// One over the number of particles that pass before a jam, plus the one that jams.
 fn zuriguel(ratio: f64, _: f64) -> f64 {
     1.0 / (1.0 + 9900.0 / pow(4.94 - ratio, 6.9))
 }
 
 /// The probability of the others of an arch being in a neck as long as it is wide, beside this particle.
 ///
-/// As 1 less a sum it is 0 where it is less than the last bit of 1.
+/// Computed as 1 less a sum, so that it is 0 if it is less than the last bit of 1.
 fn at_the_neck(ratio: f64, concentration: f64) -> f64 {
-    // pi / 4 D^2 D by pi / 6 d^3.
+    // Neck pi / 4 D^2 D by particle pi / 6 d^3.
     let mean = 1.5 * ratio * ratio * ratio * concentration;
     let others = in_arch(ratio) - 1;
     if mean <= 0.0 {
@@ -182,7 +182,7 @@ const STEPS: usize = 1 << 14;
 /// Bits of a draw that decide.
 const BITS: u32 = 48;
 
-/// The least probability that draws of so many bits can have.
+/// Least probability that draws of this many bits can have.
 const RAREST: f64 = 1.0 / (1u64 << BITS) as f64;
 
 /// The power of two of 1, as a class.
@@ -197,24 +197,24 @@ fn wider(ratio: f64) -> f32 {
 #[derive(Clone, Debug)]
 pub struct Arching {
     law: &'static Law,
-    /// Probability at equal steps of `R` from 1 to the widest; the last is that just below the widest.
+    /// Probability at equal steps of `R` from 1 to the widest; the last entry is for just below the widest.
     table: Vec<f64>,
-    /// `R` from which the table has nothing.
+    /// `R` from which the table has no jams.
     stops_to: f64,
     reach: Reach,
 }
 
-/// By the sixteen bits of a draw, in classes of half a power of two ([`Arching::class_of`]): up to how many
-/// times a particle's size a constriction may be in which it jams by that draw; at least 1.
+/// By the sixteen bits of a draw, in classes of half a power of two ([`Arching::class_of`]): largest ratio of
+/// a constriction to a particle that jams in it by that draw; at least 1.
 pub(super) type Reach = [f32; 32];
 
 impl Arching {
-    /// A law at this concentration (volume of particles by volume of suspension). Jams that come less often
-    /// than once in `2^48` draws are none.
+    /// Tabulates a law at this concentration (volume of particles by volume of suspension). Jams rarer than
+    /// once in `2^48` draws count as impossible.
     pub fn new(law: &'static Law, concentration: f64) -> Self {
         let step = (law.widest - 1.0) / STEPS as f64;
         let at = |k: usize| {
-            // At the widest itself the law says nothing: its table ends with what it comes to there.
+            // At the widest itself the law says nothing: its table ends with its limit there.
             let ratio = 1.0 + step * k as f64;
             let probability = (law.probability)(ratio.min(law.widest * (1.0 - 1e-12)), concentration);
             if probability < RAREST { 0.0 } else { probability }
@@ -249,7 +249,7 @@ impl Arching {
         self.law.passive_limit(finest)
     }
 
-    /// Whether a particle of this size may arch in this constriction, which it fits.
+    /// Tells if a particle of this size may arch in this constriction, which it fits.
     #[inline]
     fn may(&self, width: f32, diameter: f32) -> bool {
         f64::from(width) < self.law.widest * f64::from(diameter)
@@ -266,8 +266,8 @@ impl Arching {
         ((f32::from(draw).to_bits() >> 22) as usize).saturating_sub(CLASS_OF_ONE)
     }
 
-    /// Particles of the arch of which a particle of this size is the first, which jams in this constriction
-    /// by this word; `None` where it passes.
+    /// Particles of the arch that a particle of this size begins if it jams in this constriction by this
+    /// word; `None` if it passes.
     #[inline]
     pub(super) fn jams(&self, width: f32, diameter: f32, word: u64) -> Option<u32> {
         if !self.may(width, diameter) {
@@ -278,7 +278,7 @@ impl Arching {
         (draw < self.by_table(ratio)).then(|| in_arch(ratio))
     }
 
-    /// The probability by the table: the law's at its steps, and between them by a straight line.
+    /// Probability by the table: the law's at its steps, and between them by a straight line.
     pub(super) fn by_table(&self, ratio: f64) -> f64 {
         let place = ((ratio - 1.0) / (self.law.widest - 1.0)).clamp(0.0, 1.0) * STEPS as f64;
         let step = (place as usize).min(STEPS - 1);
@@ -330,7 +330,7 @@ mod tests {
         for ratios in [1.23, 2.0, 2.5, 2.9].windows(2) {
             assert!(of(ratios[0], 0.2) < of(ratios[1], 0.2) && of(ratios[0], 0.6) < of(ratios[1], 0.6));
         }
-        // So rarely that nothing is left of 1 less a sum.
+        // Too rare to leave anything of 1 less a sum.
         assert_eq!(of(2.8, 0.001), 0.0);
     }
 

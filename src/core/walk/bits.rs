@@ -23,7 +23,7 @@ pub fn from_words(words: &[u64], len: usize) -> BitVec {
     bits
 }
 
-/// Words that hold so many bits.
+/// Number of words that hold `len` bits.
 pub(super) fn words_for(len: usize) -> usize {
     len.div_ceil(64)
 }

@@ -1,5 +1,4 @@
-//! The chunks of the particles, one after another or over threads: nothing that a chunk does depends on
-//! which.
+//! The chunks of the particles, one after another or over threads: no result depends on which.
 
 use std::cell::RefCell;
 use std::iter;
@@ -7,7 +6,7 @@ use std::iter;
 use super::merge::Events;
 use super::{CHUNK, Particles};
 
-/// What belongs to one chunk: its part of every column, `CHUNK` entries or fewer, and its events.
+/// Columns of one chunk: its part of every column, `CHUNK` entries or fewer, and its events.
 pub(super) struct ChunkColumns<'a> {
     pub chunk: u64,
     pub void: &'a mut [u32],
@@ -26,9 +25,9 @@ thread_local! {
     static SIZES: RefCell<Vec<f32>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Does `work` on all chunks, which is as much as to move `effort` particles once. `single_size`: that of all
-/// base particles, where they have one. Threads begin with the chunks from `receiving` on, which take longest
-/// where particles are inserted: the others fill the time that is left.
+/// Does `work` on all chunks, which costs as much as moving `effort` particles once. `single_size`: size of
+/// all base particles, if they have one. Threads begin with the chunks from `receiving` on, which take
+/// longest where particles are inserted: the others fill the time that is left.
 pub(super) fn for_each(
     particles: &mut Particles,
     single_size: Option<f32>,
@@ -53,7 +52,7 @@ struct Neighbours<'a> {
     /// The first of them.
     first: usize,
     void: &'a mut [u32],
-    /// Of no use where all base particles have one size.
+    /// Unused if all base particles have one size.
     diameter: &'a mut [f32],
     live: &'a mut [u32],
     events: &'a mut [Events],
@@ -61,7 +60,7 @@ struct Neighbours<'a> {
 }
 
 impl Neighbours<'_> {
-    /// Those before chunk `chunk` of them, and the others.
+    /// Columns of the chunks before `chunk`, and of the others.
     fn split_at(self, chunk: usize) -> (Self, Self) {
         let Self { first, void, diameter, live, events, one_size } = self;
         let (chunk, entry) = (chunk.min(live.len()), chunk * CHUNK);
@@ -81,7 +80,7 @@ impl Neighbours<'_> {
         (before, after)
     }
 
-    /// Over threads, which halve what is left until it is one chunk.
+    /// Spreads the work over threads, which halve the rest until it is one chunk.
     fn spread(self, work: &(impl Fn(ChunkColumns) + Sync)) {
         let chunks = self.live.len();
         if chunks <= 1 {

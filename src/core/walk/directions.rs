@@ -1,4 +1,4 @@
-//! Directions of constrictions, where water decides: when the flow is solved again, and what it came to.
+//! Directions of constrictions, where water decides: when the flow is solved again, and its solutions.
 //!
 //! The flow is solved before the first increment, and at the beginning of an increment once the constrictions
 //! that have closed since the last time carried more of it than a tolerance: the sum over them of flux over
@@ -8,8 +8,8 @@
 //! at the latest, so that no particle waits longer before ways that have closed, and once more at the end. In
 //! between directions stay as they are, and a particle in a void whose exits have all been blocked since
 //! waits where it is. When to solve follows from the history of changes alone, so a walk that continues from
-//! a checkpoint solves again what was solved before and gives directions each time, in the same order, to the
-//! same bits.
+//! a checkpoint repeats the earlier solutions and gives directions each time, in the same order, to the same
+//! bits.
 
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
@@ -21,7 +21,7 @@ use crate::network::{ExitRule, Flow, FlowError, Network};
 /// Increments after which the flow is solved again where anything has closed since.
 const INCREMENTS: u64 = 10;
 
-/// How the permeability fell in a run.
+/// Fall of the permeability in a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FlowRecord {
     /// Permeability of the filter before anything was blocked (mm2), where the network knows its lengths.
@@ -35,7 +35,7 @@ pub struct FlowRecord {
 pub struct FlowSolution {
     /// Increments that were done.
     pub increment: u64,
-    /// Permeability over that of the clean filter.
+    /// Permeability over the permeability of the clean filter.
     pub k_over_k0: f64,
     /// Part of the inflow that went through constrictions which had closed since the solution before, summed
     /// over the filter.
@@ -52,20 +52,20 @@ pub(super) struct Directions {
     solved_at: u64,
     /// Constrictions blocked or narrowed in this run until then.
     changes_then: usize,
-    /// Of those since: how many, and the flow that they carried, over the inflow.
+    /// Number of changes since, and the flow that they carried, over the inflow.
     since: (usize, f64),
     /// By exit, as wide as it was then, where blocked constrictions leave openings.
     widths_then: Vec<f32>,
-    /// How particles choose.
+    /// Rule by which particles choose.
     rule: ExitRule,
 }
 
-/// What a state has made of its constrictions, now or before.
+/// Constrictions of a state, now or before.
 #[derive(Clone, Copy)]
 enum Passable<'a> {
-    /// These are blocked.
+    /// Blocked constrictions.
     Blocked(&'a BitSlice),
-    /// Openings are left, and exits are as wide as this.
+    /// Widths of the exits, where openings are left.
     Widths(&'a [f32]),
 }
 
@@ -78,7 +78,7 @@ impl<'a> Passable<'a> {
     }
 }
 
-/// What constrictions were at an earlier time of the run of a state.
+/// Constrictions at an earlier time of the run of a state.
 struct Past<'a> {
     state: &'a State,
     blocked: BitVec,
@@ -86,7 +86,7 @@ struct Past<'a> {
 }
 
 impl<'a> Past<'a> {
-    /// When the run began.
+    /// State of the constrictions when the run began.
     fn begin(network: &Network, state: &'a State) -> Self {
         let widths = state.openings.as_ref().map(|openings| openings.widths.clone());
         let mut past = Self { state, blocked: state.blocked.clone(), widths };
@@ -127,7 +127,7 @@ impl<'a> Past<'a> {
 }
 
 impl Directions {
-    /// Those that `state` has come to, by all that has been blocked until now; the network is given them.
+    /// Directions that `state` has come to, by all blocking until now; sets them in the network.
     pub fn new(network: &mut Network, state: &State) -> Result<Self, FlowError> {
         let clean_filter: BitVec = BitVec::repeat(false, network.constrictions());
         let mut flow = Flow::new(network);
@@ -162,7 +162,7 @@ impl Directions {
         Ok(directions)
     }
 
-    /// What the weights of exits are of, where blocked constrictions leave openings.
+    /// Widths that the weights of exits refer to, where blocked constrictions leave openings.
     pub fn weighed(&self) -> Weighed<'_> {
         match self.rule {
             ExitRule::Flux => Weighed::Solved(&self.widths_then, CONDUCTS),
@@ -170,14 +170,15 @@ impl Directions {
         }
     }
 
-    /// Whether the flow is to be solved at the beginning of an increment, after so many changes of this run.
+    /// Tells if the flow is to be solved at the beginning of an increment, after this many changes of this
+    /// run.
     fn is_due(&mut self, network: &Network, state: &State, increment: u64, changes: usize) -> bool {
         self.count(network, state, changes);
         let is_late = increment > self.solved_at + INCREMENTS;
         changes > self.changes_then && (is_late || self.since.1 >= network.flow_tolerance())
     }
 
-    /// Counts what has closed since the flow was solved, up to so many changes of this run.
+    /// Counts the closures since the flow was solved, up to this many changes of this run.
     fn count(&mut self, network: &Network, state: &State, changes: usize) {
         let (counted, mut carried) = self.since;
         for at in self.changes_then + counted..changes {
@@ -202,8 +203,8 @@ impl Directions {
         }
     }
 
-    /// Solves the flow where the increment that `state` begins is due for it, and gives the network its
-    /// directions; whether it did.
+    /// Solves the flow if the increment that `state` begins is due for it, and gives the network its
+    /// directions; tells if it did.
     pub fn renew(&mut self, network: &mut Network, state: &State) -> Result<bool, FlowError> {
         let changes = state.changes();
         let is_due = self.is_due(network, state, state.increment, changes);

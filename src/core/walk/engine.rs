@@ -1,4 +1,4 @@
-//! Which engine walks a run, and what that run does not need: decided here and nowhere else.
+//! Choice of the engine of a run, and of the work that the run can leave out: decided here and nowhere else.
 
 use crate::schema::Leaf;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use super::{Arching, Sampling, Supply};
 use crate::gradation::SizeSampler;
 use crate::network::Network;
 
-/// How passive base particles are moved; a run has the same distribution with the first three.
+/// Methods of moving passive base particles; a run has the same distribution with the first three.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Engine {
@@ -30,9 +30,9 @@ impl Engine {
     /// Every engine, in the order in which a user is told of them.
     pub const ALL: [Engine; 4] = [Engine::Auto, Engine::Particles, Engine::Counts, Engine::Expected];
 
-    /// Whether it walks every base particle one by one when each increment inserts so many passive ones on
-    /// this many start nodes: the others are walked one by one by every engine. A question of numbers alone,
-    /// so that a seed gives the same bits on every machine.
+    /// Tells if it walks every base particle one by one when each increment inserts this many passive ones on
+    /// this many start nodes: the others are walked one by one by every engine. Depends on numbers alone, so
+    /// that a seed gives the same bits on every machine.
     pub fn takes_each(self, passive_share: u64, start_nodes: u64) -> bool {
         match self {
             Engine::Particles => true,
@@ -41,12 +41,12 @@ impl Engine {
         }
     }
 
-    /// Passive ones of `share` base particles, where this many of all 2^64 words draw one.
+    /// Number of passive ones among `share` base particles, if this many of all 2^64 words draw one.
     pub fn passive_share(share: u64, passive_words: u128) -> u64 {
         ((u128::from(share) * passive_words) >> 64) as u64
     }
 
-    /// Its name in a scene.
+    /// Name of the engine in a scene.
     pub fn name(self) -> &'static str {
         match self {
             Engine::Auto => "auto",
@@ -58,11 +58,11 @@ impl Engine {
 }
 
 /// Twice the passive particles inserted on a start node in an increment from which counts of them are faster
-/// than one by one: both take as long between 5 (AVX2, base Cu 3) and 9 (AVX-512, base Cu 1.5), see
+/// than one by one: both take equally long between 5 (AVX2, base Cu 3) and 9 (AVX-512, base Cu 1.5), see
 /// `results/speed.md`.
 const WORTH_TWICE: u128 = 13;
 
-/// What one run needs: an engine, and how much of the base is passive.
+/// Plan of one run: an engine, and the passive part of the base.
 ///
 /// ```
 /// use bitvec::vec::BitVec;
@@ -93,8 +93,8 @@ pub struct RunPlan {
 }
 
 impl RunPlan {
-    /// What a run of this base needs on the constrictions that `blocked` leaves open, where each increment
-    /// inserts `share` base particles.
+    /// Plans a run of this base on the constrictions that `blocked` leaves open, if each increment inserts
+    /// `share` base particles.
     pub fn new(
         wanted: Engine,
         network: &Network,
@@ -105,8 +105,8 @@ impl RunPlan {
         Self::with_clogging(wanted, network, sampler, blocked, share, (None, false))
     }
 
-    /// The same with particles that arch by this law, so that only those too fine for that are passive; and
-    /// whether blocked constrictions leave openings, so that none is.
+    /// Plans a run whose particles arch by this law, if given, so that only those too fine for that are
+    /// passive. If blocked constrictions leave openings, no particle is passive.
     pub fn with_clogging(
         wanted: Engine,
         network: &Network,
@@ -122,7 +122,7 @@ impl RunPlan {
         };
         let finest = network.finest_open(|c| blocked[c]);
         let passive_words = sampler.word_limit(passive_limit(finest));
-        // On the open network, so that all runs of a replicate have one engine.
+        // The open network decides, so that all runs of a replicate have one engine.
         let on_open = sampler.word_limit(passive_limit(network.finest_open(|_| false)));
         let passive = Engine::passive_share(share, on_open);
         let engine = match wanted {
@@ -156,7 +156,7 @@ impl RunPlan {
         self.engine
     }
 
-    /// What is left out.
+    /// Work that is left out.
     pub fn left_out(&self) -> &[Shortcut] {
         &self.left_out
     }
@@ -182,27 +182,28 @@ impl RunPlan {
 pub struct Finest {
     /// Its size (mm).
     pub size_mm: f64,
-    /// Whether particles arch in it, so that only those too fine for that are passive.
+    /// True if particles arch in it, so that only those too fine for that are passive.
     pub arches: bool,
 }
 
-/// What is not needed of a run.
+/// Work that a run does not need.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shortcut {
     /// Nothing moves, as no constriction is open.
     NothingOpen,
-    /// No base particle is a count, as none is as fine as this.
+    /// No base particle is a count: all are coarser than this.
     NonePassive(Finest),
-    /// No base particle is a count, as openings beside particles may stop any.
+    /// No base particle is a count: openings beside particles may stop any.
     Openings,
-    /// Every base particle is a count of this engine, as none is coarser than this.
+    /// Every base particle is a count of this engine: no particle is coarser than this.
     AllPassive(Finest, Engine),
-    /// All but so many percent of the base particles are counts of this engine.
+    /// All base particles but this percentage are counts of this engine.
     MostPassive(f64, Finest, Engine),
-    /// No column of diameters is kept, as the base has one size.
+    /// No column of diameters is kept: the base has one size.
     OneSize,
-    /// So many passive base particles an increment on so many start nodes are too few for counts.
+    /// Too few passive base particles an increment (first number) on the start nodes (second number) for
+    /// counts.
     FewPassive(u64, u64),
 }
 

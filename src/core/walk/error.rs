@@ -1,8 +1,8 @@
-//! Why a walk ended before its run did.
+//! Reasons why a walk ended before its run did.
 
 use crate::network::FlowError;
 
-/// Why a walk ended before its run did.
+/// Reason why a walk ended before its run did.
 #[derive(Debug, thiserror::Error)]
 pub enum WalkError {
     /// Inserted particles are not all accounted for.
@@ -20,7 +20,7 @@ pub enum WalkError {
     Flow {
         /// The increment.
         increment: u64,
-        /// Why.
+        /// The reason.
         source: FlowError,
     },
     /// The caller asked the run to stop.

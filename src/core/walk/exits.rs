@@ -1,4 +1,4 @@
-//! Which exit a draw picks: thresholds by void, renewed where an exit closes or water turns.
+//! Exits that draws pick: thresholds by void, renewed where an exit closes or water turns.
 
 mod few;
 
@@ -11,7 +11,7 @@ use super::{Arching, Isa};
 use crate::network::Network;
 use few::FewExits;
 
-/// The exits of one void, as draws see them.
+/// Exits of one void, for draws.
 #[derive(Clone, Copy)]
 pub(super) struct VoidExits<'a> {
     /// The void.
@@ -20,15 +20,15 @@ pub(super) struct VoidExits<'a> {
     pub thresholds: &'a [u64],
     /// Position of the last open exit, or `None` where every exit is closed.
     pub last_open: Option<usize>,
-    /// Every exit is closed, and particles wait: water left the void when the flow was solved last, by exits
-    /// that have been blocked since.
+    /// True if every exit is closed, and particles wait: water left the void when the flow was solved last,
+    /// by exits that have been blocked since.
     pub waits: bool,
 }
 
 /// Voids that a thread renews one after another.
 const PART: usize = 1 << 13;
 
-/// Looks at the exits of one void after another, of which `ways` are open.
+/// Looks at the exits of one void after another; `ways` tells which are open.
 pub(super) fn of_each(
     network: &Network,
     ways: Ways,
@@ -50,7 +50,7 @@ pub(super) fn of_each(
     }
 }
 
-/// The same, with what finds the thresholds of a void.
+/// Looks at the exits of these voids, with thresholds by `find`.
 #[inline(always)]
 fn each_by(
     network: &Network,
@@ -66,8 +66,8 @@ fn each_by(
     }
 }
 
-/// Thresholds of the exits of one void on the 64-bit scale, written into `thresholds`; the position
-/// of the last open exit, or `None` where every exit is closed.
+/// Thresholds of the exits of one void on the 64-bit scale, written into `thresholds`; returns the position
+/// of the last open exit, or `None` if every exit is closed.
 pub(super) fn thresholds(
     network: &Network,
     ways: Ways,
@@ -77,7 +77,7 @@ pub(super) fn thresholds(
     thresholds_by(network, void, |c| ways.weight(network, c), thresholds)
 }
 
-/// The same by the weights of exits.
+/// Thresholds by the weights of exits.
 #[inline(always)]
 fn thresholds_by(
     network: &Network,
@@ -127,31 +127,31 @@ pub(super) enum Form {
 
 /// Thresholds of a cubic lattice, two words a void, and its shape.
 ///
-/// A step reads the words that suit the particles of its chunk: they say the same, but where one says it with
-/// fewer bits there are more draws that they leave open.
+/// A step reads the words that suit the particles of its chunk: both kinds say the same, but the one that
+/// says it with fewer bits leaves more draws open.
 #[derive(Clone)]
 pub(super) struct Lattice {
     /// For particles that are nearly all as fine as the finest open exit of the network. Bits 16..32: top
     /// sixteen bits of the second threshold. Bits 2..16: top fourteen bits of the first. Bit 1: +y wraps. Bit
     /// 0: +x wraps. A void without open exits has the first above the second.
     pub plain: Vec<u32>,
-    /// For coarser ones, unless widths are read: the same, but bits 21..32: top eleven bits of the second
+    /// For coarser ones, unless widths are read: like `plain`, but bits 21..32: top eleven bits of the second
     /// threshold, and bits 16..21: class of the void's finest open exit.
     pub classed: Vec<u32>,
-    /// What a move adds to the void, modulo 2^32. Bits 0 and 1 of the index: as in a word. Bit 2: not the
-    /// first exit. Bit 3: the third exit. With the latter alone there is no open exit: a void that does not
-    /// exist.
+    /// Number that a move adds to the void, modulo 2^32. Bits 0 and 1 of the index: those of a word. Bit 2:
+    /// not the first exit. Bit 3: the third exit. With the latter alone there is no open exit: a void that
+    /// does not exist.
     pub moves: [u32; 16],
     /// Bits, as an integer, of a diameter that no open exit is finer than. Particles up to
     /// `finest + (class << CLASS_SHIFT)`, compared as bits, pass every open exit of a void of that class.
     pub finest: u32,
-    /// Particles are held against widths: there are no words with classes.
+    /// True if particles are held against widths: there are no words with classes.
     by_widths: bool,
     nx: u32,
     plane: u32,
 }
 
-/// Bits of a diameter below those of its class: 32 classes in a factor of two.
+/// Bits of a diameter below its class: 32 classes in a factor of two.
 pub(super) const CLASS_SHIFT: u32 = 18;
 
 /// Bits of the class in a word of [`Lattice::classed`].
@@ -165,33 +165,33 @@ pub(super) struct General {
     pub top: Vec<u16>,
     /// By void: its last open exit as a constriction, or `NONE`, or `WAIT`.
     pub last_open: Vec<u32>,
-    /// By void: the same of few open exits, in half a cache line.
+    /// By void: its exits if few are open, in half a cache line.
     pub few: Vec<FewExits>,
     /// By constriction: the void that it leads to and its width, beside each other.
     pub beyond: Vec<(u32, f32)>,
 }
 
-/// Stands for "no open exit".
+/// Marks a void without an open exit.
 pub(super) const NONE: u32 = u32::MAX;
-/// Stands for "no exit has been open since the flow was solved last": particles wait until it is solved
+/// Marks a void that has had no open exit since the flow was solved last: particles wait until it is solved
 /// again.
 pub(super) const WAIT: u32 = u32::MAX - 1;
 
-/// Whether water left a void when the flow was solved last.
+/// Tells if water left a void when the flow was solved last.
 fn waits(network: &Network, void: u32) -> bool {
     network.exit_rule().needs_flow() && network.exits(void).any(|c| network.exit_weight(c) > 0.0)
 }
 
-/// What a kernel reads: the network and its exits open at the start of the increment.
+/// Network and exits open at the start of the increment, for a kernel to read.
 pub(super) struct OpenExits<'a> {
     pub network: &'a Network,
     pub table: &'a ExitTable,
-    /// What of the exits is open.
+    /// Open exits.
     pub ways: Ways<'a>,
     /// By constriction: its widest way.
     pub widths: &'a [f32],
     pub passive_limit: f32,
-    /// How particles arch; only with a table of the general form, or that has widths read.
+    /// Law by which particles arch; only with a table of the general form, or one that has widths read.
     pub arching: Option<&'a Arching>,
 }
 
@@ -201,15 +201,15 @@ impl ExitTable {
         Self::empty(network, blocked).filled(network, Ways::Unblocked(blocked))
     }
 
-    /// The same, of which no void is set yet.
+    /// Table with no void set yet.
     pub(super) fn empty(network: &Network, blocked: &BitSlice) -> Self {
         let Some([nx, ny, _]) = network.shape() else { return Self::empty_general(network) };
         let finest = network.finest_open(|c| blocked[c]).to_bits();
         Self::of_form(network, Form::Lattice(Lattice::new(network.voids(), nx, nx * ny, finest)))
     }
 
-    /// Classes anew, where many constrictions have closed since the table was made: those that are left may
-    /// be coarser than every class.
+    /// Recomputes the classes after many constrictions have closed: the remaining ones may be coarser than
+    /// every class.
     pub(super) fn class_anew(&mut self, network: &Network, blocked: &BitSlice) {
         if let Form::Lattice(lattice) = &mut self.form
             && !lattice.by_widths
@@ -218,8 +218,8 @@ impl ExitTable {
         }
     }
 
-    /// The same for particles that arch or constrictions that leave openings: each particle is held against
-    /// the width of the exit that it chose.
+    /// Table for particles that arch or constrictions that leave openings: each particle is held against the
+    /// width of the exit that it chose.
     pub(super) fn by_widths(network: &Network, ways: Ways) -> Self {
         let Some([nx, ny, _]) = network.shape() else {
             return Self::empty_general(network).filled(network, ways);
@@ -229,7 +229,7 @@ impl ExitTable {
         Self::of_form(network, Form::Lattice(lattice)).filled(network, ways)
     }
 
-    /// A table in the form that any network has, of which no void is set yet.
+    /// Table in the form that any network has, with no void set yet.
     fn empty_general(network: &Network) -> Self {
         let general = General {
             threshold: vec![0; network.constrictions()],
@@ -251,7 +251,7 @@ impl ExitTable {
         self
     }
 
-    /// Renews a void of which an exit has just closed, is narrower, or leads elsewhere.
+    /// Renews a void with an exit that has just closed, is narrower, or leads elsewhere.
     pub(super) fn set(&mut self, network: &Network, ways: Ways, of_void: VoidExits) {
         match &mut self.form {
             Form::Lattice(lattice) => {
@@ -368,7 +368,7 @@ impl GeneralPart<'_> {
     }
 }
 
-/// The class of a void of which this is the finest open exit, as it stands in a word.
+/// Class of a void whose finest open exit is this, at its place in a word.
 #[inline]
 fn class_of(finest: f32, of_all: u32) -> u32 {
     // Nothing opens again.
@@ -389,7 +389,7 @@ impl Lattice {
         Self { plain: vec![0; voids], classed: vec![0; voids], moves, finest, by_widths: false, nx, plane }
     }
 
-    /// Whether particles are held against widths.
+    /// Tells if particles are held against widths.
     pub fn by_widths(&self) -> bool {
         self.by_widths
     }
@@ -401,7 +401,7 @@ impl Lattice {
         self.classed[void as usize] = (plain >> 21) << 21 | class | plain & 0xffff;
     }
 
-    /// The class of every void, where no open exit is finer than this.
+    /// Recomputes the class of every void; no open exit is finer than `finest`.
     fn class_anew(&mut self, diameters: &[f32], blocked: &BitSlice, finest: f32) {
         self.finest = finest.to_bits();
         let of_voids = diameters.as_chunks::<3>().0.iter().zip(&mut self.classed);
@@ -427,12 +427,12 @@ impl Lattice {
         if R::CLASSED { &self.classed } else { &self.plain }
     }
 
-    /// Bits of a word that are of no threshold.
+    /// Bits of a word that belong to no threshold.
     pub const fn below<R: Reads>() -> u32 {
         if R::CLASSED { CLASS | 3 } else { 3 }
     }
 
-    /// Whether no exit is open, by a plain word: thresholds of open ones rise.
+    /// Tells if no exit is open, by a plain word: thresholds of open ones rise.
     #[inline(always)]
     pub fn has_no_exit(plain: u32) -> bool {
         plain & 0xfffc > plain >> 16

@@ -20,14 +20,14 @@ pub(super) struct Drawing<'a> {
     pub supply: &'a Supply,
     /// The stream of this chunk.
     pub key: Key,
-    /// How many particles the increment inserts before these.
+    /// Number of particles that the increment inserts before these.
     pub before: u64,
     pub passive_limit: f32,
     pub void: &'a mut [u32],
     pub diameter: &'a mut [f32],
 }
 
-/// What was drawn.
+/// Sums over the particles drawn.
 pub(super) struct Drawn {
     /// Sum of diameters cubed, in particle order.
     pub mass: f64,
@@ -53,7 +53,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// The same, where `next` takes the next words of the stream.
+    /// Draws them; `next` takes the next words of the stream.
     #[inline(always)]
     fn draw_by(self, next: impl Fn(&mut Lanes, &mut Words)) -> Drawn {
         let Self { network, supply, key, before, passive_limit, void, diameter } = self;
@@ -103,7 +103,7 @@ fn start(network: &Network, pairs: &[[u64; 2]], void: &mut [u32]) {
         }
         return;
     }
-    // Those of a lattice are its first voids, in order.
+    // Start nodes of a lattice are its first voids, in order.
     for (void, pair) in void.iter_mut().zip(pairs) {
         *void = below_32(pair[0], nodes.len() as u32);
     }
@@ -159,7 +159,7 @@ mod tests {
         ]
     }
 
-    /// What each particle is by definition, from its two words of the stream.
+    /// Each particle by definition, from its two words of the stream.
     fn by_definition(
         network: &Network,
         supply: &Supply,

@@ -21,7 +21,7 @@ pub(super) struct Insertion<'a> {
 }
 
 impl<'a> Insertion<'a> {
-    /// Of the increment that `state` is in.
+    /// Insertion of the increment that `state` is in.
     pub fn new(network: &'a Network, supply: &'a Supply, isa: Isa, state: &State) -> Self {
         let (increment, purpose) = (state.increment, Purpose::Insertion);
         Self {

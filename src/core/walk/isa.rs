@@ -1,11 +1,11 @@
-//! Which instructions the step uses: found once, when the program runs.
+//! Instructions that the step uses: found once, when the program runs.
 
 use std::sync::OnceLock;
 
 /// Instruction sets that the step is written for; all give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Isa {
-    /// What every machine has.
+    /// Instructions that every machine has.
     Portable,
     /// AVX2: eight particles at once.
     Avx2,
@@ -26,7 +26,7 @@ impl Isa {
         }
     }
 
-    /// Whether this machine has it.
+    /// Tells if this machine has it.
     pub fn is_available(self) -> bool {
         #[cfg(target_arch = "x86_64")]
         match self {
@@ -46,8 +46,8 @@ impl Isa {
         }
     }
 
-    /// The one that walks use: the fastest that this machine has, or what the environment variable
-    /// `VOIDWALK_ISA` names when the first walk starts, where this machine has that.
+    /// Set that walks use: the fastest that this machine has, or the one that the environment variable
+    /// `VOIDWALK_ISA` names when the first walk starts, if this machine has it.
     pub fn chosen() -> Self {
         static CHOSEN: OnceLock<Isa> = OnceLock::new();
         *CHOSEN.get_or_init(|| {

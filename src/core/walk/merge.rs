@@ -1,4 +1,4 @@
-//! What the chunks hand back, and its deterministic merge.
+//! Events that the chunks hand back, and their deterministic merge.
 //!
 //! Counts are added and blocked constrictions joined by OR, which no order can change. Masses are added
 //! within a chunk in particle order and over chunks in chunk order.
@@ -15,7 +15,7 @@ thread_local! {
     static ERODED: RefCell<Vec<f32>> = const { RefCell::new(Vec::new()) };
 }
 
-/// What one chunk did in one increment.
+/// Events of one chunk in one increment.
 #[derive(Default)]
 pub(super) struct Events {
     /// Particles that the chunk received.
@@ -29,8 +29,7 @@ pub(super) struct Events {
     eroded_count: u64,
     /// Constriction and diameter of the particles that were stopped, in particle order.
     pub stopped: Vec<(u32, f32)>,
-    /// Particles that jammed, in particle order; none of them is among those stopped or those that still
-    /// move.
+    /// Particles that jammed, in particle order; they are not among those stopped or those that still move.
     pub jams: Vec<Jam>,
     /// Void and diameter of the particles without open exit, in particle order.
     pub stranded: Vec<(u32, f32)>,

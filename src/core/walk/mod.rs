@@ -26,18 +26,18 @@
 //! replicates scatter less.
 //!
 //! # Exit choice
-//! With `c_e` the sum of open areas up to exit `e` and `c` that of all, exit `e` is the first whose
-//! `floor(2^64 c_e / c)` exceeds the 64-bit draw, else the last open exit. A closed exit has exactly
-//! no width.
+//! With `c_e` the sum of open areas up to exit `e` and `c` the sum of all, exit `e` is the first whose
+//! `floor(2^64 c_e / c)` exceeds the 64-bit draw, else the last open exit. A closed exit has exactly no
+//! width.
 //!
 //! # Arches
-//! A particle that fits may jam (module `arching`) where a law of that is asked for, at one concentration
-//! for the whole walk. Those that jam in one constriction in one increment are one arch: step 3 keeps as
+//! A particle that fits may jam (module `arching`) if the scene asks for a law of that, at one concentration
+//! for the whole walk. Particles that jam in one constriction in one increment are one arch: step 3 keeps as
 //! many as it has (module `arches`), and lets the others pass.
 //!
 //! # Residual openings
-//! Where a scene asks for it, a blocked constriction is not closed: it leaves openings (module `openings`),
-//! by which finer particles go on and which stop coarser ones. Step 3 then narrows constrictions.
+//! If a scene asks for it, a blocked constriction is not closed: it leaves openings (module `openings`), by
+//! which finer particles go on and which stop coarser ones. Step 3 then narrows constrictions.
 //!
 //! # The end
 //! A run ends when nothing moves, or when every moving particle is *trapped*: x and y are periodic, so
@@ -47,8 +47,8 @@
 //! Passive particles may be followed as one count a void instead ([`RunPlan`], module `counts`): each
 //! increment then also inserts and splits counts, on the same open set, before the merge. Everything else is
 //! the same code, so whoever watches a [`State`] need not know which engine walks. [`Engine::Auto`] takes
-//! counts unless particles are few: a choice by numbers alone, never by the clock, so a seed stands for the
-//! same bits everywhere.
+//! counts unless particles are few: a choice by numbers alone, never by the clock, so a seed gives the same
+//! bits everywhere.
 //!
 //! # Memory
 //! The columns of the particles take 8 bytes each. [`State::placed`] puts them into mapped files where they
@@ -109,7 +109,7 @@ use directions::Directions;
 use merge::Events;
 use openings::{Ways, Weighed};
 
-/// Whether a run goes on after an increment.
+/// Decision after an increment to go on or to stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WalkControl {
     /// Go on.
@@ -118,7 +118,7 @@ pub enum WalkControl {
     Stop,
 }
 
-/// What happens after each increment: recording, progress, a request to stop.
+/// Callback after each increment: recording, progress, a request to stop.
 pub type Observer<'a> = dyn FnMut(&State) -> WalkControl + Send + 'a;
 
 /// A run under way: the machinery that is rebuilt from network and state, and never stored.
@@ -145,48 +145,48 @@ pub type Observer<'a> = dyn FnMut(&State) -> WalkControl + Send + 'a;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Walk<'a> {
-    /// A copy of its own where water gives constrictions their direction.
+    /// An owned copy if water gives constrictions their direction.
     network: Cow<'a, Network>,
-    /// The network as it was given, where its exits are to outlive the walk.
+    /// The network as given, if its exits are to outlive the walk.
     kept: Option<&'a Arc<Network>>,
     directions: Option<Directions>,
-    /// Why the flow is not known.
+    /// Reason why the flow is not known.
     no_flow: Option<FlowError>,
     supply: &'a Supply,
     table: ExitTable,
     events: Vec<Events>,
     trap: trapped::Search,
-    /// Every particle walked one by one is trapped, or there is none.
+    /// True if every particle walked one by one is trapped, or there is no such particle.
     all_caught: bool,
     passive: Option<counts::PassiveWalk<'a>>,
 }
 
-/// Which exit a draw picks where that hangs on nothing but what is blocked: worked out once for the first
-/// runs of many walks, or left by a run to the next.
+/// Exit tables that depend only on the blocked set: worked out once for the first runs of many walks, or left
+/// by a run to the next.
 ///
 /// They keep their network, so that no other one takes its place in memory and is taken for it.
 #[derive(Clone)]
 pub struct PlainExits {
     network: Arc<Network>,
-    /// The blocked constrictions that they hold for.
+    /// Blocked constrictions that they hold for.
     blocked: BitVec,
     table: ExitTable,
-    /// How passive particles are split, where there were any.
+    /// Shares of passive particles by exit, if there were any.
     shares: Option<counts::Shares>,
 }
 
-/// What is left of a walk: its network, how the permeability fell, and its exits.
+/// Result of a walk: its network, the fall of the permeability, and its exits.
 type WalkEnd<'a> = (Cow<'a, Network>, Option<FlowRecord>, Option<PlainExits>);
 
 impl PlainExits {
-    /// Those of this network with nothing blocked.
+    /// Exits of this network with nothing blocked.
     pub fn unblocked(network: &Arc<Network>) -> Self {
         let blocked = BitVec::repeat(false, network.constrictions());
         let (table, shares) = Self::work_out(network, &blocked, true);
         Self { network: network.clone(), blocked, table, shares }
     }
 
-    /// Of what `blocked` leaves open; with or without the shares of passive particles.
+    /// Works out the exits that `blocked` leaves open; with or without the shares of passive particles.
     fn work_out(
         network: &Network,
         blocked: &BitSlice,
@@ -204,12 +204,12 @@ impl PlainExits {
         (table, shares)
     }
 
-    /// Whether they are those of this very network with these constrictions blocked.
+    /// Tells if they belong to this very network with these constrictions blocked.
     fn are_of(&self, network: &Network, blocked: &BitSlice) -> bool {
         std::ptr::eq(&*self.network, network) && self.blocked == *blocked
     }
 
-    /// The same for a run that begins with them.
+    /// Exits and shares for a run that begins with them.
     fn again(self) -> (ExitTable, Option<counts::Shares>) {
         let Self { network, blocked, mut table, shares } = self;
         if blocked.any() {
@@ -225,8 +225,8 @@ impl<'a> Walk<'a> {
         Self::prepare(network, supply, state, None)
     }
 
-    /// As [`Walk::new`], with exits that are known already; they are worked out where they are those of
-    /// another network or state, or where a particle's way depends on more than what is blocked.
+    /// Prepares like [`Walk::new`], with exits that are known already; they are worked out if they belong to
+    /// another network or state, or if a particle's way depends on more than the blocked set.
     pub fn with_exits(
         network: &'a Arc<Network>,
         supply: &'a Supply,
@@ -279,8 +279,8 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// What is left of a walk at the end of its run: the network with the directions that it has then, and
-    /// how the permeability fell, where water gives them.
+    /// Result of a walk at the end of its run: the network with the directions that it has then, and the fall
+    /// of the permeability, if water gives them.
     ///
     /// # Errors
     /// [`WalkError::Flow`].
@@ -289,8 +289,8 @@ impl<'a> Walk<'a> {
         Ok((network, record))
     }
 
-    /// The same, and the exits that the next run on this network may begin with, of a walk that was prepared
-    /// by [`Walk::with_exits`].
+    /// Result of a walk that was prepared by [`Walk::with_exits`], with the exits that the next run on this
+    /// network may begin with.
     ///
     /// # Errors
     /// [`WalkError::Flow`].
@@ -340,7 +340,7 @@ impl<'a> Walk<'a> {
         self.tally(state)
     }
 
-    /// Gives constrictions the directions of the flow, where it is to be solved again.
+    /// Gives constrictions the directions of the flow, if it is to be solved again.
     fn direct(&mut self, state: &State) -> Result<(), FlowError> {
         if let Some(error) = self.no_flow.take() {
             return Err(error);
@@ -362,7 +362,7 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    /// This increment's share of the base starts, each particle on a start node, and every moving particle
+    /// Starts this increment's share of the base, each particle on a start node; then every moving particle
     /// attempts one move, on the open set at the start of the increment.
     fn insert_and_step(&mut self, state: &mut State) {
         let Self { network, table, supply, events, passive, .. } = self;
@@ -376,7 +376,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// What happened is added to the state, and the constrictions that were blocked close or are narrower.
+    /// Adds the events to the state; the constrictions that were blocked close or are narrower.
     fn merge(&mut self, state: &mut State) {
         let closed = merge::merge(&self.network, &mut self.events, self.table.upstream(), state);
         let both = closed.iter().flat_map(|&c| [Some(c as usize), self.network.twin(c as usize)]);
@@ -384,7 +384,7 @@ impl<'a> Walk<'a> {
         self.set(state, voids);
     }
 
-    /// Renews voids of which exits have just closed, are narrower, or lead elsewhere.
+    /// Renews voids with exits that have just closed, are narrower, or lead elsewhere.
     fn set(&mut self, state: &State, voids: impl IntoIterator<Item = u32>) {
         let Self { network, table, passive, directions, .. } = self;
         let ways = state.ways(weighed(directions.as_ref()));
@@ -396,7 +396,7 @@ impl<'a> Walk<'a> {
         });
     }
 
-    /// Whether the run has ended, and whether every particle inserted is somewhere.
+    /// Finds out if the run has ended, and checks that every particle inserted is somewhere.
     fn tally(&mut self, state: &mut State) -> Result<(), WalkError> {
         let inserting = state.increment < self.supply.increments();
         if !inserting && state.tally.moving > 0 && self.all_trapped(state) {
@@ -406,7 +406,7 @@ impl<'a> Walk<'a> {
         state.tally.check(state.increment)
     }
 
-    /// Whether every moving particle is trapped. Once those walked one by one are, nothing can block any
+    /// Tells if every moving particle is trapped. Once those walked one by one are, nothing can block any
     /// more, so they stay so.
     fn all_trapped(&mut self, state: &mut State) -> bool {
         self.all_caught = self.all_caught || self.trap.all_trapped(&self.network, state);
@@ -414,10 +414,10 @@ impl<'a> Walk<'a> {
             && self.passive.as_mut().is_none_or(|passive| passive.all_trapped(&self.network, state))
     }
 
-    /// Increments until the run ends or `observe` stops it.
+    /// Makes increments until the run ends or `observe` stops it.
     ///
     /// # Errors
-    /// As [`Walk::increment`], and [`WalkError::Stopped`].
+    /// Those of [`Walk::increment`], and [`WalkError::Stopped`].
     pub fn run(&mut self, state: &mut State, observe: &mut Observer) -> Result<(), WalkError> {
         while !state.finished {
             self.increment(state)?;
@@ -429,7 +429,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// What the weights of exits are of.
+/// Widths that the weights of exits refer to.
 fn weighed(directions: Option<&Directions>) -> Weighed<'_> {
     directions.map_or(Weighed::Whole, Directions::weighed)
 }

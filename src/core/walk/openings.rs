@@ -1,19 +1,19 @@
 //! Openings that a blocked constriction leaves beside the particle that blocks it.
 //!
 //! # Geometry
-//! A constriction of size `D` is taken as that of three equal grains that touch each other, whose diameter is
-//! `G = D / (2 / sqrt(3) - 1) = 6.46 D`. A particle of diameter `d` that does not pass rests on all three.
+//! A constriction of size `D` is taken as the gap of three equal grains that touch each other, whose diameter
+//! is `G = D / (2 / sqrt(3) - 1) = 6.46 D`. A particle of diameter `d` that does not pass rests on all three.
 //! Between it and each two of the grains is an opening: these three spheres touch each other, and the
 //! narrowest place between them is the circle inside their three circles in the plane of their centres. By
 //! Descartes' circle theorem its diameter `x` is
 //!
 //! `1 / x = 1 / d + 2 / G + 2 sqrt(1 / G^2 + 2 / (d G))`.
 //!
-//! How high the particle rests does not matter: the plane goes through its own centre. The third grain leaves
-//! the circle free, because spheres that touch three others which touch each other form a ring (Soddy's
-//! hexlet), and its sphere is always more than a place away. For `d = D` the opening is 0.406 `D`. It grows
-//! with `d` and reaches `D` where the particle is as large as the grains; it is never taken as wider than
-//! `D`, through which what passes it must pass as well.
+//! The height at which the particle rests does not matter: the plane goes through its own centre. The third
+//! grain leaves the circle free, because spheres that touch three others which touch each other form a ring
+//! (Soddy's hexlet), and its sphere is always more than a place away. For `d = D` the opening is 0.406 `D`.
+//! It grows with `d` and reaches `D` where the particle is as large as the grains; it is never taken as wider
+//! than `D`, because everything that passes it must pass `D` as well.
 //!
 //! # What is decided
 //! - The three openings beside a particle are equal, and are taken as one exit of that size with three times
@@ -35,15 +35,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::network::Network;
 
-/// Size of the constriction of three equal grains that touch each other, by that of a grain:
-/// `2 / sqrt(3) - 1`.
+/// Size of the constriction of three equal grains that touch each other, over the size of a grain: `2 /
+/// sqrt(3) - 1`.
 const OF_GRAIN: f64 = 0.154_700_538_379_251_53;
 
 /// Openings beside a particle that rests on three grains.
 const OPENINGS: f64 = 3.0;
 
-/// Power of its diameter that the conductance of an opening grows with (Hagen-Poiseuille), against that of
-/// the whole constriction.
+/// Power of its diameter that the conductance of an opening grows with (Hagen-Poiseuille), against the
+/// conductance of the whole constriction.
 pub(super) const CONDUCTS: f64 = 4.0;
 
 /// Diameter of the opening that is left between a particle and each two of the three equal, touching grains
@@ -66,13 +66,13 @@ pub fn residual_opening(constriction: f64, particle: f64) -> f64 {
     (1.0 / inside).min(constriction)
 }
 
-/// Part of its value that a constriction keeps of what grows with the power `exponent` of a diameter, where
-/// an opening `ratio` times as wide is left on each of the three sides of a particle: of its area with 2.
+/// Part that a constriction keeps of a quantity that grows with the power `exponent` of a diameter, where an
+/// opening `ratio` times as wide is left on each of the three sides of a particle: of its area with 2.
 pub(super) fn part_kept(ratio: f64, exponent: f64) -> f64 {
     if ratio > 0.0 { (OPENINGS * libm::pow(ratio, exponent)).min(1.0) } else { 0.0 }
 }
 
-/// What a blocked constriction is to the particles after it.
+/// Effect of a blocked constriction on the particles after it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum BlockedAs {
@@ -88,7 +88,7 @@ impl BlockedAs {
     /// Both, in the order in which a user is told of them.
     pub const ALL: [Self; 2] = [Self::Closed, Self::Open];
 
-    /// Its name in a scene.
+    /// Name of the choice in a scene.
     pub fn name(self) -> &'static str {
         match self {
             Self::Closed => "closed",
@@ -97,7 +97,7 @@ impl BlockedAs {
     }
 }
 
-/// What base particles have made of the constrictions of a network, as a run hands it on to the next.
+/// Constrictions of a network after base particles, for a run to hand on to the next.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Clogged {
     /// Bit `c`: constriction `c` is blocked.
@@ -139,13 +139,13 @@ pub struct Narrowing {
 pub struct Openings {
     /// By exit: the widest way through its constriction, in units of the network's reference length.
     pub widths: Vec<f32>,
-    /// What was narrowed in this run, by increment, then by constriction.
+    /// Narrowings of this run, by increment, then by constriction.
     pub history: Vec<Narrowing>,
 }
 
 impl Openings {
-    /// Before the first increment of a run, on these constrictions. Of those that are blocked without an
-    /// opening of their own nothing is left.
+    /// Openings before the first increment of a run, on these constrictions. Blocked ones without an opening
+    /// of their own are closed.
     pub(super) fn new(network: &Network, clogged: &Clogged) -> Self {
         let of = |c: usize| match clogged.widths.get(c) {
             Some(&width) => width,
@@ -155,7 +155,7 @@ impl Openings {
         Self { widths: (0..network.constrictions()).map(of).collect(), history: Vec::new() }
     }
 
-    /// A particle of this size was stopped by the constriction of this exit.
+    /// Narrows the constriction of this exit after it stopped a particle of this size.
     pub(super) fn stop(&mut self, network: &Network, exit: usize, diameter: f32) {
         let left = residual_opening(f64::from(network.diameters()[exit]), f64::from(diameter)) as f32;
         if left < self.widths[exit] {
@@ -166,8 +166,8 @@ impl Openings {
         }
     }
 
-    /// Takes what was narrowed since there were `from` entries as that of one increment, each constriction
-    /// once; returns these constrictions.
+    /// Merges the narrowings from entry `from` on into those of one increment, each constriction once;
+    /// returns these constrictions.
     pub(super) fn end_increment(&mut self, increment: u64, from: usize) -> Vec<u32> {
         let new = &mut self.history[from..];
         // By constriction, the widest first, which came first.
@@ -189,7 +189,7 @@ impl Openings {
         self.history[from..].iter().map(|narrowing| narrowing.constriction).collect()
     }
 
-    /// Whether a walk of so many increments may have left these openings, where no run had finer particles
+    /// Tells if a walk of this many increments may have left these openings, if no run had finer particles
     /// than `smallest`: those of blocked constrictions are no narrower than beside such a one, both ways
     /// alike, and others are whole; and each was narrowed step by step, at most once an increment.
     pub(super) fn can_be(
@@ -210,7 +210,7 @@ impl Openings {
                 && (blocked[c] || is_whole)
                 && network.twin(c).is_none_or(|twin| self.widths[twin] == width)
         };
-        // Back from what they are now.
+        // Back from the present widths.
         let mut then = self.widths.clone();
         let mut of_history = |n: &Narrowing| {
             let c = n.constriction as usize;
@@ -237,16 +237,16 @@ impl Openings {
     }
 }
 
-/// What of the exits of voids is open to base particles.
+/// Exits of voids that are open to base particles.
 #[derive(Clone, Copy)]
 pub(super) enum Ways<'a> {
     /// All but those that are blocked.
     Unblocked(&'a BitSlice),
-    /// All, as wide as this, against those that the exits' weights are of.
+    /// All, with these widths, against the widths that the exits' weights refer to.
     Openings(&'a [f32], Weighed<'a>),
 }
 
-/// What the weights of exits are of, where blocked constrictions leave openings.
+/// Widths that the weights of exits refer to, where blocked constrictions leave openings.
 #[derive(Clone, Copy)]
 pub(super) enum Weighed<'a> {
     /// Whole constrictions.
@@ -257,7 +257,7 @@ pub(super) enum Weighed<'a> {
 }
 
 impl Ways<'_> {
-    /// How an exit weighs in the choice of a particle.
+    /// Weight of an exit in the choice of a particle.
     #[inline]
     pub fn weight(&self, network: &Network, c: usize) -> f64 {
         match *self {
@@ -268,7 +268,7 @@ impl Ways<'_> {
 }
 
 impl Weighed<'_> {
-    /// How an exit weighs that is as wide as this. Not inlined, so that what is blocked or not is.
+    /// Weight of an exit with this width. Not inlined, so that the check for blocked exits is.
     #[inline(never)]
     pub fn weight(&self, network: &Network, c: usize, width: f32) -> f64 {
         let whole = f64::from(network.diameters()[c]);
@@ -321,7 +321,7 @@ mod tests {
         let sizes = [0.1, 0.3, 0.5, 1.0, 1.5, 2.0, 4.0, 6.0];
         let widths = sizes.map(|d| residual_opening(1.0, d));
         assert!(widths.windows(2).all(|pair| pair[0] < pair[1]) && widths[7] < 1.0, "{widths:?}");
-        // What was stopped does not pass afterwards.
+        // Particles that were stopped do not pass afterwards.
         assert!(sizes.iter().zip(widths).all(|(&d, width)| width < d));
         assert_eq!(residual_opening(1.0, 10.0), 1.0);
         // A factor of two on every length changes no bit.

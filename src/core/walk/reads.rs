@@ -1,8 +1,10 @@
-//! What a step on the lattice reads of each void: chosen once for a chunk, so that the loops hold no choice.
+//! Data that a step on the lattice reads of each void: chosen once for a chunk, so that the loops hold no
+//! choice.
 
-/// How a kernel of the lattice finds out which particles a constriction stops.
+/// Ways in which a kernel of the lattice finds out which particles a constriction stops.
 pub(super) trait Reads {
-    /// By classes of the finest open exit of each void; else, and without widths, by that of the network.
+    /// By classes of the finest open exit of each void; else, and without widths, by the finest open exit of
+    /// the network.
     const CLASSED: bool = false;
     /// By the width of the very exit that a particle has chosen.
     const WIDTHS: bool = false;

@@ -1,4 +1,4 @@
-//! The slow, obvious walk that the fast one is held against.
+//! Slow, obvious walk as a check of the fast one.
 //!
 //! One particle after another, every weight computed afresh from the network, in the words of the model. It
 //! shares nothing with the kernel but the network, the flow that is solved on it, the base's sizes, the
@@ -40,7 +40,7 @@ pub struct Reference<'a> {
     pub eroded: Vec<Particle>,
     /// Particles stopped by a constriction, with that constriction.
     pub stopped: Vec<(Particle, usize)>,
-    /// How many of them stay in arches.
+    /// Number of them that stay in arches.
     pub arched: u64,
     /// Their diameters cubed, summed.
     pub arched_mass: f64,
@@ -50,13 +50,13 @@ pub struct Reference<'a> {
     pub stranded: Vec<Particle>,
     /// Particles trapped in closed loops.
     pub trapped: Vec<Particle>,
-    /// Whether each constriction is blocked.
+    /// By constriction: true if it is blocked.
     pub blocked: Vec<bool>,
     /// The widest way through each constriction, where blocked ones leave openings.
     pub widths: Option<Vec<f32>>,
-    /// How often any was narrowed, in an increment once.
+    /// Number of narrowings; one a constriction in an increment.
     pub narrowings: usize,
-    /// The same when the flow was solved last.
+    /// Widths when the flow was solved last.
     widths_then: Vec<f32>,
     /// Increment and constriction of each blocking.
     pub history: Vec<(u64, usize)>,
@@ -65,7 +65,7 @@ pub struct Reference<'a> {
 }
 
 impl<'a> Reference<'a> {
-    /// Before the first increment.
+    /// Prepares for the first increment.
     pub fn new(network: &'a Network, supply: &'a Supply, blocked: Vec<bool>, seed: u64, run: u64) -> Self {
         Self {
             network: Cow::Borrowed(network),
@@ -96,7 +96,7 @@ impl<'a> Reference<'a> {
         Self { widths, ..self }
     }
 
-    /// Whether the run has ended.
+    /// Tells if the run has ended.
     pub fn finished(&self) -> bool {
         self.increment >= self.supply.increments() && self.moving.is_empty()
     }
@@ -165,8 +165,8 @@ impl<'a> Reference<'a> {
         self.widths.as_ref().map_or(self.network.diameters()[exit], |widths| widths[exit])
     }
 
-    /// Narrows what stopped particles from this one on: to the circle inside those of the finest of them and
-    /// two grains, where three grains that touch each other leave the whole constriction.
+    /// Narrows the constrictions that stopped particles from this one on: to the circle inside those of the
+    /// finest of them and two grains, where three grains that touch each other leave the whole constriction.
     fn narrow(&mut self, from: usize) {
         let Some(widths) = &mut self.widths else { return };
         let mut narrowed = BTreeSet::new();
@@ -182,15 +182,15 @@ impl<'a> Reference<'a> {
         self.narrowings += narrowed.len();
     }
 
-    /// Parts that constrictions of these widths keep of what grows with this power of a diameter: three
-    /// openings beside a particle.
+    /// Part that a constriction of this width keeps of a quantity that grows with this power of a diameter:
+    /// three openings beside a particle.
     fn part(&self, exit: usize, width: f32, power: i32) -> f64 {
         let whole = f64::from(self.network.diameters()[exit]);
         if whole == 0.0 { 0.0 } else { (3.0 * (f64::from(width) / whole).powi(power)).min(1.0) }
     }
 
-    /// Solves the flow before the first increment; then where what has closed since carried more of it than
-    /// the tolerance, or anything has closed since ten increments.
+    /// Solves the flow before the first increment; and again if the constrictions that have closed since
+    /// carried more of it than the tolerance, or anything has closed since ten increments.
     fn direct(&mut self) {
         let Some((mut flow, solved_at, changes_then)) = self.flow.take() else { return };
         let changes = if self.widths.is_some() { self.narrowings } else { self.history.len() };
@@ -232,7 +232,7 @@ impl<'a> Reference<'a> {
         });
     }
 
-    /// Whether the particle at a place of a chunk stays in an arch: if it jams by its own draw, and the arch
+    /// Tells if the particle at a place of a chunk stays in an arch: if it jams by its own draw, and the arch
     /// that the first of an increment began there has room. `begun`: by constriction, the room that is left.
     fn arches(
         &self,
@@ -257,7 +257,7 @@ impl<'a> Reference<'a> {
         joins
     }
 
-    /// Whether water left a void when the flow was solved, so that its particles wait for another way.
+    /// Tells if water left a void when the flow was solved, so that its particles wait for another way.
     fn waits(&self, void: u32) -> bool {
         self.flow.is_some() && self.network.exits(void).any(|e| self.network.exit_weight(e) > 0.0)
     }
@@ -302,7 +302,7 @@ impl<'a> Reference<'a> {
         self.draw_of(self.key(Purpose::Step, chunk), place)
     }
 
-    /// The same by which it jams.
+    /// The 64-bit draw by which it jams.
     fn jam_draw(&self, chunk: u64, place: u64) -> u64 {
         self.draw_of(self.key(Purpose::Arching, chunk), place)
     }
@@ -348,8 +348,8 @@ impl<'a> Reference<'a> {
         open.last().copied()
     }
 
-    /// Whether the particle can reach, through open constrictions that it fits, no end, no open
-    /// constriction finer than it, and no void without open exits.
+    /// Tells if the particle can reach, through open constrictions that it fits, no end, no open constriction
+    /// finer than it, and no void without open exits.
     fn is_trapped(&self, particle: &Particle) -> bool {
         let mut seen = BTreeSet::from([particle.void]);
         let mut todo = vec![particle.void];

@@ -38,12 +38,12 @@ use crate::store::checkpoint::{Checkpoint, CheckpointError, Section};
 /// | `eroded_mass`, `retained_mass` | f64 | mass by size class |
 /// | `retained_cubes` | f64 | diameters cubed of what is retained, by void; only where voids have a volume |
 ///
-/// The record holds, in these fields, those of [`State`] of the same names: `seed`, `run`, `increment`,
-/// `finished`, `passive_limit` (`null` where no constriction was open when the run began) and `tally` (all
-/// fields of [`Tally`]). Besides: `passive`, how the passive particles are followed (`one_by_one`, `counts`
-/// or `expected`); `constrictions`, their number; `expected`, with that engine alone the sums `eroded`,
-/// `moves` and `inserted`, and in `counted` the whole numbers `moves`, `eroded` and `at_rest` that the tally
-/// holds of them.
+/// The record holds the fields of [`State`] with these names: `seed`, `run`, `increment`, `finished`,
+/// `passive_limit` (`null` where no constriction was open when the run began) and `tally` (all fields of
+/// [`Tally`]). Besides: `passive`, how the passive particles are followed (`one_by_one`, `counts` or
+/// `expected`); `constrictions`, their number; `expected`, with that engine alone the sums `eroded`, `moves`
+/// and `inserted`, and in `counted` the whole numbers `moves`, `eroded` and `at_rest` that the tally holds of
+/// them.
 pub struct SavedState<'a> {
     state: &'a State,
     record: Vec<u8>,
@@ -53,7 +53,7 @@ pub struct SavedState<'a> {
     narrowed: Option<SavedNarrowings>,
 }
 
-/// What was narrowed in a run, as columns.
+/// Narrowings of a run, as columns.
 struct SavedNarrowings {
     increment: Vec<u64>,
     constriction: Vec<u32>,
@@ -99,7 +99,7 @@ impl SavedNarrowings {
     }
 }
 
-/// What of a state is not a column.
+/// Fields of a state that are not columns.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Record {
@@ -114,7 +114,7 @@ struct Record {
     constrictions: usize,
 }
 
-/// How a run follows its passive particles.
+/// Way in which a run follows its passive particles.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum PassiveKind {
@@ -139,7 +139,7 @@ fn finite(limit: f32) -> Option<f32> {
 }
 
 impl<'a> SavedState<'a> {
-    /// Of this state.
+    /// Sections of this state.
     pub fn new(state: &'a State) -> Self {
         let record = Record {
             seed: state.seed,
@@ -199,9 +199,9 @@ impl<'a> SavedState<'a> {
 }
 
 impl State {
-    /// Takes a state from a checkpoint into this one, which is that of the same run before its first
-    /// increment. Whatever a walk relies on is checked, so that a forged checkpoint with right checksums
-    /// brings no panic and no walk without an end.
+    /// Takes a state from a checkpoint into this one, which belongs to the same run before its first
+    /// increment. Everything that a walk relies on is checked, so that a forged checkpoint with right
+    /// checksums brings no panic and no walk without an end.
     ///
     /// # Errors
     /// A checkpoint that is corrupt, or of another run.
@@ -311,7 +311,7 @@ impl State {
     }
 }
 
-/// Where the next moving particle of a column goes; no more come than `live` says.
+/// Place of the next moving particle of a column; no more come than `live` says.
 struct Place<'a> {
     live: &'a [u32],
     chunk: usize,

@@ -1,17 +1,17 @@
-//! What a walk relies on in a state that was loaded: numbers that cannot be of any walk are found here.
+//! Checks of a loaded state that a walk relies on: they find numbers that no walk can have.
 //!
 //! Checksums keep chance away from a checkpoint, not somebody who makes them right again. Such a state may
 //! give a wrong answer; it must not index beyond a column, wrap a sum, or move for ever.
 
 use super::{CHUNK, Expected, Passive, State, Supply, Tally};
 
-/// How far the sum of an expectation may be off, as a part of it: sums over very many increments round.
+/// Relative error allowed in the sum of an expectation: sums over very many increments round.
 const ROUNDING: f64 = 1e-6;
 
 /// Increments that no walk reaches.
 const MOST_INCREMENTS: u64 = 1 << 62;
 
-/// What a checkpoint says of a walk, beside what that walk inserts.
+/// Numbers of a checkpoint about a walk, beside the supply of that walk.
 pub(super) struct Forgery<'a> {
     pub supply: &'a Supply,
     pub increment: u64,
@@ -19,14 +19,14 @@ pub(super) struct Forgery<'a> {
 }
 
 impl Forgery<'_> {
-    /// Whether chunks may hold so many moving particles: no more than were inserted into each.
+    /// Tells if chunks may hold this many moving particles: no more than were inserted into each.
     pub fn live_can_be(&self, live: &[u32]) -> bool {
         let inserted = self.supply.inserted(self.increment);
         let into = |chunk: usize| inserted.saturating_sub((chunk * CHUNK) as u64).min(CHUNK as u64);
         live.iter().enumerate().all(|(chunk, &n)| u64::from(n) <= into(chunk))
     }
 
-    /// What cannot be in a state whose columns have the right lengths and whose tally adds up.
+    /// Finds an impossible number in a state whose columns have the right lengths and whose tally adds up.
     pub fn of(&self, state: &State) -> Option<&'static str> {
         let (tally, supply) = (self.tally, self.supply);
         let passive = supply.passive_inserted(self.increment);
@@ -68,8 +68,8 @@ impl Forgery<'_> {
         (!state.history.iter().all(|b| is_past(b.increment))).then_some("history")
     }
 
-    /// Whether an expectation is one: numbers, none below 0, that sum to what was inserted; and the whole
-    /// numbers that were counted of it are in the tally.
+    /// Tells if an expectation is valid: numbers, no one below 0, that sum to the number inserted; and the
+    /// whole numbers that were counted of it are in the tally.
     fn expectation_can_be(&self, expected: &Expected, inserted: u64, state: &State) -> bool {
         let (sums, counted) = (&expected.sums, &expected.sums.counted);
         let columns = || expected.moving.iter().chain(&expected.retained);

@@ -1,4 +1,4 @@
-//! Size classes: how many particles, and how much of the mass, is of which size.
+//! Size classes: number and mass of particles by size.
 
 /// Bounds of size classes, ascending; class `k` holds diameters above bound `k - 1` up to bound `k`.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,11 +9,12 @@ pub struct SizeClasses {
     guide: Vec<(u32, f32)>,
     /// Bucket of the first entry of `guide`.
     first_bucket: u32,
-    /// Whether a bucket holds more than one bound, as 64 classes have it of sizes in a ratio of less than 7.
+    /// True if a bucket holds more than one bound, for example with 64 classes of sizes in a ratio of less
+    /// than 7.
     several_bounds: bool,
 }
 
-/// Bits of an f32 below those of its bucket: 32 buckets in a factor of two.
+/// Bits of an f32 below its bucket: 32 buckets in a factor of two.
 const BELOW_BUCKET: u32 = 18;
 
 impl SizeClasses {
@@ -86,7 +87,7 @@ impl SizeCounts {
         self.mass.fill(0.0);
     }
 
-    /// Adds what `other` holds.
+    /// Adds the numbers and masses of `other`.
     pub fn merge(&mut self, other: &Self) {
         for (sum, n) in self.number.iter_mut().zip(&other.number) {
             *sum += n;

@@ -54,13 +54,13 @@ impl Particles {
         (&self.void[chunk * CHUNK..][..live], &self.diameter[sizes..][..live])
     }
 
-    /// Puts particles back among those of a chunk, before each of which so many of these move, ascending.
+    /// Puts particles back among those of a chunk, each behind as many of these as its rank says, ascending.
     pub(super) fn put_back(&mut self, chunk: usize, back: &[Moving]) {
         let first = chunk * CHUNK;
         let mut end = first + self.live[chunk] as usize;
         self.live[chunk] += back.len() as u32;
         let one_size = self.has_one_size();
-        // From the last on: what stands behind it moves up by as many as are put back before that.
+        // From the last on: particles behind it move up by the number put back before them.
         for (before, particle) in back.iter().enumerate().rev() {
             let at = first + particle.rank;
             self.void.copy_within(at..end, at + before + 1);
@@ -73,13 +73,13 @@ impl Particles {
         }
     }
 
-    /// Whether the column of diameters stands for chunks that it does not hold.
+    /// Tells if the column of diameters holds one chunk for all.
     pub(super) fn has_one_size(&self) -> bool {
         self.diameter.len() < self.void.len()
     }
 }
 
-/// Everything that a run is after a whole increment. A walk goes on from this alone.
+/// Complete state of a run after a whole increment. A walk goes on from this alone.
 #[derive(Debug)]
 pub struct State {
     /// Seed of the replicate.
@@ -88,7 +88,7 @@ pub struct State {
     pub run: u64,
     /// Last whole increment, counted from 1; 0 before the first.
     pub increment: u64,
-    /// Whether the run has ended.
+    /// True if the run has ended.
     pub finished: bool,
     /// The finest constriction open when the run began, or less where particles arch: no particle up to this
     /// diameter, called *passive*, can be stopped by a constriction in this run.
@@ -186,7 +186,7 @@ impl State {
         })
     }
 
-    /// Whether base particles cannot use constriction `c`: blocked without an opening that is left, of size
+    /// Tells if base particles cannot use constriction `c`: blocked without an opening that is left, of size
     /// 0, or no exit by the rule that gives constrictions their direction.
     #[inline(always)]
     pub fn is_closed(&self, network: &Network, c: usize) -> bool {
@@ -197,7 +197,7 @@ impl State {
         is_shut || network.diameters()[c] == 0.0 || network.exit_weight(c) == 0.0
     }
 
-    /// What of the exits is open.
+    /// Open exits.
     pub(super) fn ways<'a>(&'a self, weighed: Weighed<'a>) -> Ways<'a> {
         match &self.openings {
             None => Ways::Unblocked(&self.blocked),
@@ -211,13 +211,13 @@ impl State {
         self.openings.as_ref().map_or(network.diameters()[exit], |openings| openings.widths[exit])
     }
 
-    /// What has been blocked or narrowed in this run, as a number that only grows.
+    /// Number of blockings in this run, or of narrowings with openings; it only grows.
     pub(super) fn changes(&self) -> usize {
         self.openings.as_ref().map_or(self.history.len(), |openings| openings.history.len())
     }
 
-    /// A particle of this size is stopped in an exit, whose constriction it blocks or narrows; `upstream`
-    /// says of which void the exit is.
+    /// Stops a particle of this size in an exit, whose constriction it blocks or narrows; `upstream` gives
+    /// the void of each exit.
     pub(super) fn stop(&mut self, network: &Network, upstream: &[u32], exit: usize, diameter: f32) {
         let void = upstream[exit] as usize;
         self.retained_in_constrictions[void] += 1;
@@ -233,7 +233,7 @@ impl State {
         }
     }
 
-    /// What this run leaves to the next.
+    /// Constrictions that this run leaves to the next.
     pub fn into_clogged(self) -> Clogged {
         Clogged {
             blocked: self.blocked,

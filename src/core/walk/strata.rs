@@ -5,21 +5,22 @@
 //! A run of `T` increments that inserts at most `K` particles in each has `T K` strata of equal probability:
 //! `K` groups of `T`, finest first. Within each group every increment has one stratum, and within an
 //! increment every particle has a group of its own; so the sizes of an increment are stratified, and so are
-//! those of the whole run. Particle `m` of increment `t` takes group `k = P_t(m)` and in it stratum `Q_k(t -
-//! 1)`; `P` and `Q` are keyed permutations.
+//! the sizes of the whole run. Particle `m` of increment `t` takes group `k = P_t(m)` and in it stratum
+//! `Q_k(t - 1)`; `P` and `Q` are keyed permutations.
 //!
 //! # Start nodes
 //! The `n` particles of an increment divide the start nodes, in their order, into `n` equal parts, and each
 //! takes a place in its part.
 //!
 //! Group, stratum, place in the stratum and place among the nodes of any one particle are uniform, so its
-//! marginal distribution is exactly that of independent draws; only the joint distribution differs. The order
-//! of the particles in an increment plays no part in the walk, so that of the nodes needs no permutation.
+//! marginal distribution is exactly the one of independent draws; only the joint distribution differs. The
+//! order of the particles in an increment plays no part in the walk, so the order of the nodes needs no
+//! permutation.
 
 use crate::schema::Leaf;
 use crate::stream::{Key, Purpose, Words, below};
 
-/// How start nodes and sizes of the base particles are drawn.
+/// Sampling of start nodes and sizes of the base particles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Sampling {
@@ -37,7 +38,7 @@ impl Sampling {
     /// Every sampling, in the order in which a user is told of them.
     pub const ALL: [Sampling; 2] = [Sampling::Independent, Sampling::Stratified];
 
-    /// Its name in a scene.
+    /// Name of the sampling in a scene.
     pub fn name(self) -> &'static str {
         match self {
             Sampling::Independent => "independent",
@@ -59,7 +60,7 @@ pub(super) struct Strata {
 }
 
 impl Strata {
-    /// For a run that inserts up to `most` particles, at least one, in each of its increments.
+    /// Strata of a run that inserts up to `most` particles, at least one, in each of its increments.
     pub fn new(seed: u64, run: u64, most: u64, increments: u64) -> Self {
         let strata = u128::from(most) * u128::from(increments);
         let all = 1u128 << 64;
@@ -185,7 +186,7 @@ fn turn(at: u64, by: u64, size: u64) -> u64 {
     if sum >= size { sum - size } else { sum }
 }
 
-/// How many of the first `inserted` particles of a run are coarse, given that `coarse_words` of all 2^64
+/// Number of coarse particles among the first `inserted` of a run, given that `coarse_words` of all 2^64
 /// words draw coarse ones: the expected number, rounded up or down with one random word for the whole run.
 pub(super) fn coarse_until(inserted: u64, coarse_words: u128, word: u64) -> u64 {
     ((u128::from(inserted) * coarse_words).saturating_add(u128::from(word)) >> 64) as u64

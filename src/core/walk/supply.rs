@@ -1,4 +1,4 @@
-//! What a run inserts: how many base particles in each increment, and of what sizes.
+//! Base particles that a run inserts: their number in each increment, and their sizes.
 
 use std::sync::Arc;
 
@@ -17,28 +17,28 @@ pub struct Supply {
     sampler: SizeSampler,
     /// Lowest random word handed to the sampler: 0 for the whole base, larger for its coarse part.
     first_word: u64,
-    /// Where the sampler looks for the words from that one on.
+    /// Place where the sampler looks for the words from that one on.
     guide: SizeGuide,
     /// Particles inserted one by one up to and including each increment; entry `t - 1` is increment `t`.
     inserted: Vec<u64>,
     /// The particles that are kept as counts.
     passive: PassiveSupply,
-    /// What start nodes and sizes are spread over, where they are not independent.
+    /// Strata that start nodes and sizes are spread over, if they are not independent.
     strata: Option<Strata>,
-    /// How its particles arch, where they do.
+    /// Law by which its particles arch, if they do.
     arching: Option<Arc<Arching>>,
-    /// Whether constrictions that its particles block leave openings.
+    /// True if constrictions that its particles block leave openings.
     leaves_openings: bool,
 }
 
 /// The passive particles of a run that are not walked one by one.
 #[derive(Clone, Debug, Default)]
 struct PassiveSupply {
-    /// Particles inserted up to and including each increment; empty where there are none.
+    /// Particles inserted up to and including each increment; empty if there are no such particles.
     inserted: Vec<u64>,
     /// The sampler gives passive particles for words below this.
     words: u128,
-    /// Whether their expectation is enough.
+    /// True if their expectation is enough.
     expected: bool,
 }
 
@@ -69,12 +69,12 @@ impl Supply {
         Self { leaves_openings, ..self }
     }
 
-    /// Whether constrictions that its particles block leave openings.
+    /// Tells if constrictions that its particles block leave openings.
     pub fn leaves_openings(&self) -> bool {
         self.leaves_openings
     }
 
-    /// How its particles arch; `None` where they do not.
+    /// Law by which its particles arch; `None` if they do not.
     pub fn arching(&self) -> Option<&Arching> {
         self.arching.as_deref()
     }
@@ -96,8 +96,8 @@ impl Supply {
         Self { strata: Some(strata), ..self }
     }
 
-    /// This supply, of which the particles drawn by words below `passive_words` are kept as counts, or as an
-    /// expectation. How many of each increment's share these are is drawn for run `run` of `seed`.
+    /// This supply with the particles drawn by words below `passive_words` kept as counts, or as an
+    /// expectation. Their number in each increment's share is drawn for run `run` of `seed`.
     pub fn with_passive_part(self, passive_words: u128, expected: bool, seed: u64, run: u64) -> Self {
         let increments = 1..=self.increments();
         let share = |t| self.inserted(t) - self.inserted(t - 1);
@@ -165,7 +165,7 @@ impl Supply {
         self.strata.as_ref().map(|strata| strata.increment(increment, count))
     }
 
-    /// Whether start nodes are spread evenly.
+    /// Tells if start nodes are spread evenly.
     pub fn is_stratified(&self) -> bool {
         self.strata.is_some()
     }

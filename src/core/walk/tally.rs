@@ -39,7 +39,7 @@ pub struct Tally {
     pub passive_inserted: u64,
     /// Passive base particles eroded.
     pub passive_eroded: u64,
-    /// Diameter of the largest eroded particle; 0 where none is.
+    /// Diameter of the largest eroded particle; 0 if no particle has eroded.
     pub largest_eroded: f32,
 }
 
@@ -57,7 +57,7 @@ impl Tally {
         self.trapped += std::mem::take(&mut self.moving);
     }
 
-    /// Every particle inserted is somewhere.
+    /// Checks that every particle inserted is somewhere.
     pub(super) fn check(&self, increment: u64) -> Result<(), WalkError> {
         let all =
             [self.moving, self.eroded, self.retained_in_constrictions, self.retained_in_voids, self.trapped];

@@ -6,13 +6,13 @@ use crate::store::platform::{processors, stay_on};
 
 /// A pool of `count` threads to run walks in (0: one for each processor that the program may use).
 ///
-/// With `pinned`, thread `i` stays on the `i`-th of those processors, where there are as many as threads:
-/// some systems keep the threads of a busy program together on one. Whether it could (macOS cannot) is not an
+/// With `pinned`, thread `i` stays on the `i`-th of those processors, if there are as many as threads: some
+/// systems keep the threads of a busy program together on one. A failure to pin (macOS cannot) is not an
 /// error: results do not depend on it. Use it where the machine is for this program alone: two programs that
 /// pin their threads share the same processors.
 ///
 /// # Errors
-/// What the system says when it cannot start a thread.
+/// Those of the system when it cannot start a thread.
 ///
 /// ```
 /// let pool = voidwalk_core::walk::threads(2, true)?;

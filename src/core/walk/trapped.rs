@@ -27,7 +27,7 @@ pub(super) struct Search {
     known: Option<(usize, u32)>,
     /// Chunk in which the last particle that is not trapped was found.
     hint: usize,
-    /// A constriction may stop particles down to its size by this.
+    /// Ratio of a constriction to the finest particle that it may stop.
     stops_from: f64,
 }
 
@@ -46,16 +46,16 @@ impl Search {
         }
     }
 
-    /// Whether every moving particle is trapped.
+    /// Tells if every moving particle is trapped.
     pub fn all_trapped(&mut self, network: &Network, state: &State) -> bool {
         let chunks = state.particles.live.len();
         let mut trapped = HashSet::new();
-        // The last that were inserted first: those that are trapped stay, and lie in front.
+        // The last that were inserted come first: trapped ones stay, and lie in front.
         let hint = self.hint.min(chunks.saturating_sub(1));
         for chunk in (0..chunks.min(hint + 1)).rev().chain((hint + 1..chunks).rev()) {
             let (void, diameter) = state.particles.chunk(chunk);
             for (&void, &diameter) in void.iter().zip(diameter).rev() {
-                // Passive particles fit everywhere: what holds for one holds for all.
+                // Passive particles fit everywhere: an answer for one holds for all.
                 let size = if diameter <= state.passive_limit { 0.0 } else { diameter };
                 if trapped.contains(&(void, size.to_bits())) {
                     continue;

@@ -13,7 +13,7 @@ type Exit = (u32, usize, u32);
 /// A void that a chain has come to.
 struct Reached {
     void: u32,
-    /// Whether the next exit of the chain is created, else deleted.
+    /// True if the next exit of the chain is created, false if it is deleted.
     more: bool,
     /// The exit by which the chain came here, and the place of the void before among those reached.
     by: Option<(Exit, usize)>,
@@ -28,7 +28,7 @@ impl PossibleExits {
         }
         let mut seen = vec![false; 2 * starts.len()];
         loop {
-            // Where one start led nowhere, others need not look in this pass.
+            // If one start leads nowhere, others need not look in this pass.
             seen.fill(false);
             let before = self.distance();
             for &start in &starts {
@@ -42,17 +42,17 @@ impl PossibleExits {
         }
     }
 
-    /// Whether one exit or entrance more of this void (else one less) leads nearer.
+    /// Tells if one exit or entrance more of this void (else one less) leads nearer.
     fn wants(&self, void: u32, more: bool) -> bool {
         let k = self.connectivity(void);
         if more { k < MOST && self.surplus[k] > 0 } else { k > 0 && self.surplus[k - 1] < 0 }
     }
 
     /// Changes the shortest chain from this void to another that wants to be changed, or to an exit out of
-    /// the last layer; `false` where there is none.
+    /// the last layer; returns `false` if no such chain exists.
     fn change_chain(&mut self, start: u32, more: bool, seen: &mut [bool]) -> bool {
         let k = self.connectivity(start);
-        // The other end is judged by what is still wanted after this one.
+        // The other end is judged by the numbers still wanted after this one.
         self.count_change(k, more);
         let (reached, chain) = self.chain(start, more, seen);
         self.count_change(if more { k + 1 } else { k - 1 }, !more);
@@ -63,7 +63,7 @@ impl PossibleExits {
         is_changed
     }
 
-    /// The voids that were looked at, and the chain: exits that are to be created (`true`) or deleted.
+    /// Voids that were looked at, and the chain: exits that are to be created (`true`) or deleted.
     fn chain(&self, start: u32, more: bool, seen: &mut [bool]) -> (Vec<Reached>, Option<Vec<(Exit, bool)>>) {
         let mut reached = vec![Reached { void: start, more, by: None }];
         let mut at = 0;
@@ -101,7 +101,7 @@ impl PossibleExits {
         })
     }
 
-    /// The void whose possible exit leads here; `None` before the first layer.
+    /// Void whose possible exit leads here; `None` before the first layer.
     fn source(&self, void: u32, slot: usize) -> Option<u32> {
         let [nx, ny, nz] = self.shape;
         let (x, y, z) = (void % nx, void / nx % ny, void / (nx * ny));
@@ -114,7 +114,8 @@ impl PossibleExits {
         is_present != more && (more || self.spare(void, target))
     }
 
-    /// Changes all exits of a chain, or none: a chain that passes a void twice may ask for too much of it.
+    /// Changes all exits of a chain or leaves all: a chain that passes a void twice may ask for too much of
+    /// it.
     fn change(&mut self, chain: &[(Exit, bool)]) -> bool {
         for (changed, &(exit, more)) in chain.iter().enumerate() {
             if !self.can_change(exit, more) {

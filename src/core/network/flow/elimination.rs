@@ -1,15 +1,15 @@
-//! A network of conductances taken apart void by void, with few of the links that this makes.
+//! Elimination of a network of conductances, void by void, with few of the links that this makes.
 //!
-//! To eliminate a void is to join all its neighbours with one another: void by void until none is left, that
-//! is Cholesky's factor, and soon everything is joined with everything. Here the neighbours of an eliminated
-//! void are joined by a tree instead: in rising order of their conductances `w` each is joined with one of
-//! those after it, chosen in proportion to theirs, by what it would conduct to all of them together (Kyng &
-//! Sachdeva 2016, doi:10.1109/FOCS.2016.68; Gao, Kyng & Spielman 2023, arXiv:2303.00709). On average over
-//! the choices that is the network itself, and no elimination adds a link. Choices follow the golden ratio,
-//! so that they are spread evenly and always the same.
+//! Eliminating a void joins all its neighbours with one another: done void by void until no void is left,
+//! this is Cholesky's factor, and soon everything is joined with everything. Here the neighbours of an
+//! eliminated void are joined by a tree instead: in rising order of their conductances `w` each is joined
+//! with one of those after it, chosen in proportion to their conductances, by the conductance that it would
+//! have to all of them together (Kyng & Sachdeva 2016, doi:10.1109/FOCS.2016.68; Gao, Kyng & Spielman 2023,
+//! arXiv:2303.00709). Averaged over the choices this is the network itself, and no elimination adds a link.
+//! Choices follow the golden ratio, so that they are spread evenly and always the same.
 //!
-//! Dead ends, which one link holds, go first, from their ends on: they are many where a filter has clogged,
-//! and taken away exactly. The others follow by number of neighbours, and among equals in turns that are
+//! Dead ends, which one link holds, go first, from their ends on: a clogged filter has many of them, and
+//! their elimination is exact. The others follow by number of neighbours, and among equals in turns that are
 //! scattered over the network, so that few of them meet; within a turn by row, so that memory is read in
 //! order.
 
@@ -21,7 +21,7 @@ use super::rest::{Link, Meeting, Rest};
 pub(super) struct Factor {
     /// Row of the system by place in the order of elimination.
     row: Vec<u32>,
-    /// What places make up of one another, in the order of elimination.
+    /// Parts that places make up of one another, in the order of elimination.
     parts: Vec<Parts>,
     /// By place: reciprocal of the sum of its conductances at its elimination.
     pivot: Vec<f64>,
@@ -29,12 +29,12 @@ pub(super) struct Factor {
     choices: u64,
 }
 
-/// Parts that stand together: those of a place are filled up with parts of 0, so that what goes through them
-/// has no loop that ends where no processor expects it.
+/// Parts stored as one group: the parts of a place are padded with parts of 0, so that no loop over them ends
+/// where a processor does not expect it.
 const TOGETHER: usize = 4;
 
-/// Parts of the pressure of one place that the pressures of later ones make up. Single precision is enough of
-/// what is approximate.
+/// Parts of the pressure of one place that the pressures of later ones make up. Single precision is enough
+/// for an approximation.
 struct Parts {
     of: u32,
     by: [u32; TOGETHER],
@@ -48,12 +48,12 @@ const GOLDEN_32: u32 = 0x9e37_79b9;
 /// Turns, as a power of two.
 const TURNS: u32 = 6;
 
-/// At most so many sums are counted, without a branch: those of stars whose number of arms is known.
+/// Most sums that are counted without a branch: those of stars whose number of arms is known.
 const COUNTED: usize = 16;
 
 impl Factor {
-    /// Of the system whose row `i` conducts `ground[i]` to known pressures, and whose rows are joined by
-    /// `links`.
+    /// Makes the factor of the system whose row `i` conducts `ground[i]` to known pressures, and whose rows
+    /// are joined by `links`.
     pub(super) fn new(ground: &[f64], links: &[Link]) -> Self {
         let order = order(ground.len(), links);
         let mut rest = Rest::new(&order, ground, links);
@@ -62,19 +62,19 @@ impl Factor {
         factor
     }
 
-    /// Before anything is eliminated; with room for so many groups of parts.
+    /// Factor with nothing eliminated yet, and room for this many groups of parts.
     fn of_none(row: Vec<u32>, parts: usize) -> Self {
         let (parts, pivot) = (Vec::with_capacity(parts), Vec::with_capacity(row.len()));
         Self { row, parts, pivot, choices: 0 }
     }
 
-    /// Takes these places, one after another, from what is left of the system.
+    /// Eliminates these places, one after another, from the rest of the system.
     fn eliminate(&mut self, rest: &mut Rest, places: Range<u32>) {
         let mut meeting = Meeting::of(self.row.len());
         for place in places {
             let ground = rest.take(place, &mut meeting);
             let found = &mut meeting.found[..];
-            // Most have few: loops over a number that is known have no end that no processor expects.
+            // Most have few: loops over a known number end where a processor expects it.
             macro_rules! of_number {
                 ($($few:literal)*) => {
                     match found.len() {
@@ -87,14 +87,14 @@ impl Factor {
         }
     }
 
-    /// Takes a place with so many neighbours.
+    /// Eliminates a place with this many neighbours.
     #[inline(always)]
     fn take_few<const N: usize>(&mut self, rest: &mut Rest, place: u32, ground: f64, found: &[(u32, f64)]) {
         let found: &[(u32, f64); N] = found.try_into().expect("so many were found");
         self.give_way(rest, place, ground, &sorted(found), &mut [0.0; N]);
     }
 
-    /// Takes a place with any number of neighbours.
+    /// Eliminates a place with any number of neighbours.
     #[inline(never)]
     fn take_many(&mut self, rest: &mut Rest, place: u32, ground: f64, found: &mut [(u32, f64)]) {
         found.sort_by_key(|&(_, conductance)| rising(conductance));
@@ -109,7 +109,7 @@ impl Factor {
             all += conductance;
             *sum = all;
         }
-        // Of nothing, and of so little that its inverse is no number, nothing is known.
+        // A sum of 0, or one so small that its inverse is no number, gets 0: nothing is known there.
         let pivot = Some(1.0 / (ground + all)).filter(|inverse| inverse.is_finite()).unwrap_or(0.0);
         self.pivot.push(pivot);
         for some in met.chunks(TOGETHER) {
@@ -148,16 +148,17 @@ impl Factor {
     }
 }
 
-/// What rises as conductances do, but for those that differ by a millionth.
+/// Key that rises with conductance, except between conductances that differ by a millionth.
 fn rising(conductance: f64) -> u64 {
-    // Bits of floats that are not negative rise as they do.
+    // Bits of floats that are not negative rise as the floats do.
     conductance.to_bits() >> 32
 }
 
-/// Neighbours in rising order of conductance; those that differ by a millionth as they were found.
+/// Neighbours in rising order of conductance; those that differ by a millionth in the order in which they
+/// were found.
 #[inline(always)]
 fn sorted<const N: usize>(found: &[(u32, f64); N]) -> [(u32, f64); N] {
-    // Compared as floats, for which all processors have fast instructions: no two are the same.
+    // Compared as floats, for which all processors have fast instructions: no two keys are equal.
     let key: [f64; N] = std::array::from_fn(|i| f64::from_bits(rising(found[i].1) << 32 | i as u64));
     let mut sorted = [(0, 0.0); N];
     for i in 0..N {
@@ -166,7 +167,7 @@ fn sorted<const N: usize>(found: &[(u32, f64); N]) -> [(u32, f64); N] {
     sorted
 }
 
-/// How many of these rising sums do not exceed a share.
+/// Number of these rising sums that do not exceed a share.
 #[inline(always)]
 fn passed(sums: &[f64], share: f64) -> usize {
     match sums.len() {
@@ -177,7 +178,7 @@ fn passed(sums: &[f64], share: f64) -> usize {
 
 /// Rows in the order of elimination.
 fn order(rows: usize, links: &[Link]) -> Vec<u32> {
-    // Of each row how many links are left, and their other rows by exclusive or: where one is left, its row.
+    // By row: the number of links left, and their other rows by exclusive or: once one is left, its row.
     let mut left = vec![(0u32, 0u32); rows];
     for &Link { one, other, .. } in links {
         for (row, met) in [(one, other), (other, one)] {
@@ -294,8 +295,8 @@ mod tests {
         }
     }
 
-    /// What joins the four neighbours of an eliminated row conducts on average, over choices, what the star
-    /// did; what is taken leaves its room to what comes.
+    /// Links among the four neighbours of an eliminated row conduct on average, over choices, as the star
+    /// did; links that are taken leave their room to those that come.
     #[test]
     fn a_star_gives_way_to_trees_that_conduct_as_much() {
         const STARS: usize = 4000;
@@ -329,7 +330,7 @@ mod tests {
         }
     }
 
-    /// Each of so few, and then more, by shares on both sides of every sum.
+    /// Every small number of sums, and larger ones, by shares on both sides of every sum.
     #[test]
     fn the_first_sum_beyond_a_share_is_found() {
         for many in [1, 3, COUNTED, COUNTED + 1, 40] {
@@ -341,7 +342,8 @@ mod tests {
         }
     }
 
-    /// In all their orders; the second and third differ by less than a millionth and stay as they were found.
+    /// All orders of five conductances; the second and third differ by less than a millionth and stay as they
+    /// were found.
     #[test]
     fn neighbours_are_sorted() {
         const CONDUCTANCES: [f64; 5] = [1e-300, 0.25, 0.25 * (1.0 + 1e-9), 0.75, 1.0];
@@ -369,7 +371,7 @@ mod tests {
         assert_eq!(orders, 120);
     }
 
-    /// However many neighbours: numbers that the loops know beforehand, and more.
+    /// Any number of neighbours: numbers that the loops know beforehand, and more.
     #[test]
     fn a_row_gives_way_whatever_it_meets() {
         for many in 0..40 {
@@ -382,7 +384,7 @@ mod tests {
             factor.eliminate(&mut rest, 0..1);
             let all: f64 = links.iter().map(|link| link.conductance).sum();
             assert!((factor.pivot[0] * (1.0 + all) - 1.0).abs() < 1e-14);
-            // A tree, of what the star conducted to each, and what leads on through the star's ground.
+            // A tree of the star's conductances, and the part that leads on through the star's ground.
             let (mut meeting, mut links_of_tree, mut ground) = (Meeting::of(many as usize + 1), 0, 0.0);
             for place in 1..=many {
                 ground += rest.take(place, &mut meeting) - 1.0;

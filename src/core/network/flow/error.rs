@@ -1,11 +1,11 @@
-//! Why no flow through a network is known.
+//! Reasons why no flow through a network is known.
 
 use super::system::NotConverged;
 
-/// Why no flow is known.
+/// Reason why no flow is known.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FlowError {
-    /// Conductances so far apart that numbers do not tell.
+    /// Conductances so far apart that pressures cannot be resolved.
     #[error(
         "the flow through the network cannot be solved: after {rounds} rounds the residual is \
          still {residual:.1e} \
@@ -17,7 +17,7 @@ pub enum FlowError {
         /// Residual over inflow.
         residual: f64,
     },
-    /// Conductances so far apart that what passes is lost in their rounding.
+    /// Conductances so far apart that the flow is lost in their rounding.
     #[error(
         "the flow through the network cannot be told: as close as rounding lets pressures come, voids take \
          in {off:.1e} of what passes the network more or less than they let out. Conductances lie too many \
@@ -25,7 +25,7 @@ pub enum FlowError {
          ones too, since a way in that nothing can block conducts as constrictions do on average"
     )]
     Unresolved {
-        /// What the balances of all voids are off by together, over what passes.
+        /// Sum of the imbalances of all voids, over the flow through the filter.
         off: f64,
     },
 }

@@ -3,27 +3,27 @@
 //! A void is eliminated by joining its neighbours with one another: two of them by `g_j g_k / sum of g`. All
 //! numbers are positive and are multiplied, divided and added only, so each is known to a few roundings,
 //! however far conductances lie apart (Grassmann, Taksar & Heyman 1985, doi:10.1287/opre.33.5.1107).
-//! Pressures alone would not do: where a constriction conducts very well, those on its sides differ in digits
-//! that they do not have. So falls of pressure are found instead, from the last void to the first: the fall
-//! from a void to a neighbour is the mean of the falls from its neighbours to that one, weighted by what
-//! conducts there. A fall times a conductance is a part of the whole flow, and so no flux is wrong by more
-//! than some roundings of the whole.
+//! Pressures alone would not do: on the two sides of a constriction that conducts very well, they differ in
+//! digits that floats do not have. So falls of pressure are found instead, from the last void to the first:
+//! the fall from a void to a neighbour is the mean of the falls from its neighbours to that one, weighted by
+//! conductance. A fall times a conductance is a part of the whole flow, and so no flux is wrong by more than
+//! some roundings of the whole.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::thresholds::PAIRS;
 
-/// Not eliminated.
+/// Turn of a node that is not eliminated.
 const LAST: u32 = u32::MAX;
 
 /// A neighbour of a void when it was eliminated.
 #[derive(Clone, Copy, Debug)]
 struct Neighbour {
     node: u32,
-    /// What conducts to it, of all that conducts from the void.
+    /// Conductance to it, as a part of all conductance from the void.
     part: f64,
-    /// Pressure of the void less that of the neighbour.
+    /// Pressure of the void minus the pressure of the neighbour.
     fall: f64,
 }
 
@@ -37,13 +37,14 @@ pub(super) struct Eliminated {
     turn: Vec<u32>,
     /// By node, the known ones at last.
     pub pressure: Vec<f64>,
-    /// What conducts between the two known nodes.
+    /// Conductance between the two known nodes.
     pub conductance: f64,
 }
 
 impl Eliminated {
-    /// Of so many nodes and two known ones, joined by `links`; `None` where that takes too much work, or a
-    /// conductance is no number. Every node is joined with both known ones by some way.
+    /// Eliminates this many nodes, joined by `links` with one another and with two known nodes; `None` if
+    /// that takes too much work, or a conductance is no number. Every node is joined with both known ones by
+    /// some way.
     pub(super) fn new(nodes: usize, links: impl Iterator<Item = (u32, u32, f64)>) -> Option<Self> {
         let [high, low] = [nodes as u32, nodes as u32 + 1];
         let is_known = |node: u32| node >= high;
@@ -128,7 +129,7 @@ impl Eliminated {
         self.rows[node] = row.iter().zip(falls).map(|(other, fall)| Neighbour { fall, ..*other }).collect();
     }
 
-    /// Pressure of a node less that of another which it is joined with.
+    /// Fall of pressure from a node to another that it is joined with.
     pub(super) fn fall(&self, one: u32, other: u32) -> f64 {
         let [first, second] = [one, other].map(|node| self.turn[node as usize]);
         match (first == LAST, second == LAST) {
@@ -144,8 +145,8 @@ impl Eliminated {
     }
 }
 
-/// The neighbours of a node, of which `gone` was one with conductance `g`, with those that it is joined with
-/// instead.
+/// Neighbours of a node once its neighbour `gone`, with conductance `g`, is eliminated: the others, and those
+/// that it is joined with instead.
 fn joined(row: &[(u32, f64)], of_gone: &[Neighbour], (gone, node): (u32, u32), g: f64) -> Vec<(u32, f64)> {
     let mut old = row.iter().copied().filter(|&(other, _)| other != gone).peekable();
     let new = of_gone.iter().filter(|met| met.node != node).map(|met| (met.node, g * met.part));
@@ -183,7 +184,7 @@ mod tests {
         }
     }
 
-    /// Two voids joined so well that their pressures do not differ in any digit: what passes between them is
+    /// Two voids joined so well that their pressures do not differ in any digit: the flow between them is
     /// known all the same.
     #[test]
     fn a_flux_is_known_where_pressures_do_not_differ() {

@@ -8,7 +8,7 @@ use crate::constrictions::VoidGraph;
 
 /// Permeability (mm2) of the medium that the graph repeats without end, along `axis` (0, 1, 2 for x, y, z).
 ///
-/// Pressure falls by 1 from each cell to the next, and is otherwise the same in all: so no face of the filter
+/// Pressure falls by 1 from each cell to the next, and is otherwise equal in all: so no face of the filter
 /// plays a part. Darcy's law `k = mu Q L / (A dP)` then gives the permeability.
 ///
 /// # Errors
@@ -16,7 +16,7 @@ use crate::constrictions::VoidGraph;
 pub fn permeability_mm2(graph: &VoidGraph, axis: usize) -> Result<f64, FlowError> {
     let voids = graph.voids();
     let links = || (0..graph.from.len()).filter(|&c| graph.conductance_mm3[c] > 0.0);
-    // Pressures are known but for a constant: one void of each part that hangs together is at 0.
+    // Pressures are known but for a constant: one void of each connected part is at 0.
     let mut together = Together::of(voids);
     links().for_each(|c| together.join(graph.from[c], graph.to[c]));
     let root: Vec<u32> = (0..voids as u32).map(|void| together.root(void)).collect();

@@ -1,4 +1,4 @@
-//! What is left of a system of conductances while its rows are eliminated.
+//! The rest of a system of conductances while its rows are eliminated.
 
 /// A conductance between two rows.
 #[derive(Clone, Copy, Debug)]
@@ -8,16 +8,16 @@ pub(super) struct Link {
     pub conductance: f64,
 }
 
-/// Places that meet one, each once. Serves every place once.
+/// Places that meet one place, each once. Serves one place after another.
 pub(super) struct Meeting {
     /// With their conductances, in the order in which they were found.
     pub found: Vec<(u32, f64)>,
-    /// By place: the one that it met last, and where it stood among those found.
+    /// By place: the place that it met last, and its position in `found` then.
     met: Vec<(u32, u32)>,
 }
 
 impl Meeting {
-    /// Of none of so many places.
+    /// No meetings yet, among this many places.
     pub(super) fn of(places: usize) -> Self {
         Self { found: Vec::new(), met: vec![(NONE, 0); places] }
     }
@@ -37,11 +37,12 @@ impl Meeting {
 /// No handful, and no place.
 const NONE: u32 = u32::MAX;
 
-/// Links that stand together.
+/// Links in one handful.
 const HANDFUL: usize = 6;
 
 /// Links of one place: the last that it was given, and where those before them are. A cache line; single
-/// precision is enough of what is approximate, and what it cannot tell from 0 is the least that it can.
+/// precision is enough for an approximation, and a conductance that it cannot tell from 0 becomes the least
+/// that it can.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 struct Head {
@@ -53,7 +54,7 @@ struct Head {
     before: u32,
 }
 
-/// Links of one place that stand before others.
+/// Links of one place that precede others.
 #[derive(Clone, Copy)]
 struct Handful {
     conductance: [f32; HANDFUL],
@@ -61,17 +62,17 @@ struct Handful {
     before: u32,
 }
 
-/// What is left of the system while rows are eliminated, by place: a link stands with the one of its two
-/// places that is eliminated first.
+/// The rest of the system while rows are eliminated, by place: a link is kept with the one of its two places
+/// that is eliminated first.
 pub(super) struct Rest {
     head: Vec<Head>,
     handfuls: Vec<Handful>,
-    /// The first handful of those that are free again.
+    /// First handful of those that are free again.
     free: u32,
 }
 
 impl Rest {
-    /// Places follow one another in this order of rows.
+    /// Builds the system with places in this order of rows.
     pub(super) fn new(order: &[u32], ground: &[f64], links: &[Link]) -> Self {
         let mut place_of: Vec<u32> = vec![0; order.len()];
         order.iter().zip(0u32..).for_each(|(&row, place)| place_of[row as usize] = place);
@@ -89,7 +90,7 @@ impl Rest {
         rest
     }
 
-    /// Adds a conductance between two places, beside those that there are.
+    /// Adds a conductance between two places to those that exist.
     #[inline]
     pub(super) fn join(&mut self, one: u32, other: u32, conductance: f64) {
         let (from, to) = (one.min(other), one.max(other));
@@ -111,7 +112,7 @@ impl Rest {
         head.count += 1;
     }
 
-    /// Takes away a place: what it meets, and its conductance to known pressures.
+    /// Removes a place: its neighbours go to `meeting`, and its conductance to known pressures is returned.
     pub(super) fn take(&mut self, place: u32, meeting: &mut Meeting) -> f64 {
         meeting.found.clear();
         let Head { conductance, to, ground, count, before } = self.head[place as usize];
@@ -126,7 +127,7 @@ impl Rest {
         ground
     }
 
-    /// Adds to what a place conducts to known pressures.
+    /// Adds to the conductance from a place to known pressures.
     pub(super) fn hold(&mut self, place: u32, conductance: f64) {
         self.head[place as usize].ground += conductance;
     }
@@ -163,7 +164,7 @@ mod tests {
         let mut meeting = Meeting::of(3);
         rest.hold(0, 0.25);
         assert_eq!(rest.take(0, &mut meeting), 0.75);
-        // The first that it was given stand behind those that came last.
+        // The first links that it was given follow those that came last.
         meeting.found.sort_by_key(|found| found.0);
         assert_eq!(meeting.found, [(1, 21.0), (2, 34.0)]);
         rest.take(1, &mut meeting);

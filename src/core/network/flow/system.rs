@@ -14,7 +14,7 @@ const SIDE_BY_SIDE: usize = 8;
 /// No row.
 const NONE: u32 = u32::MAX;
 
-/// Conductances so far apart that numbers do not tell.
+/// Conductances so far apart that pressures cannot be resolved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct NotConverged {
     /// Rounds.
@@ -23,21 +23,21 @@ pub(super) struct NotConverged {
     pub residual: f64,
 }
 
-/// How well pressures fit their equations.
+/// Quality of the fit of pressures to their equations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fit {
     /// Residual over the inflow, both as roots of sums of squares.
     pub residual: f64,
-    /// What the balances of all voids are off by together, rounding included. No flux, and no sum of fluxes
-    /// through a cut, differs by more from that of the exact pressures: a unit of flow that is fed into a
-    /// void passes no constriction more than once.
+    /// Sum of the imbalances of all voids, rounding included. No flux, and no sum of fluxes through a cut,
+    /// differs by more from the flux of the exact pressures: a unit of flow that is fed into a void passes no
+    /// constriction more than once.
     pub missing: f64,
 }
 
 /// A factor that serves one system after another of the same rows.
 pub(super) struct Kept {
     factor: Factor,
-    /// Rounds that the system took that it is of.
+    /// Rounds of the system that the factor was made for.
     pub rounds: usize,
     /// Exits that have closed since.
     pub closed: usize,
@@ -60,11 +60,11 @@ pub(super) struct System {
 /// The numbers of conjugate gradients, by row.
 struct Columns {
     pressure: Vec<f64>,
-    /// What is missing of the right side.
+    /// Missing part of the right side.
     residual: Vec<f64>,
-    /// Where the next step goes.
+    /// Direction of the next step.
     direction: Vec<f64>,
-    /// The matrix times one of them.
+    /// The matrix times one of these columns.
     product: Vec<f64>,
     /// The residual, solved by the factor.
     solved: Vec<f64>,
@@ -72,7 +72,7 @@ struct Columns {
 }
 
 impl System {
-    /// The equations of the voids `inside` of so many, which `fill` joins.
+    /// Builds the equations of the voids `inside`, out of this many, which `fill` joins.
     pub(super) fn new(voids: usize, inside: impl Fn(u32) -> bool, fill: impl FnOnce(&mut Self)) -> Self {
         let void: Vec<u32> = (0..voids as u32).filter(|&void| inside(void)).collect();
         let mut row_of = vec![NONE; voids];
@@ -87,8 +87,8 @@ impl System {
         Some(self.row_of[void as usize]).filter(|&row| row != NONE)
     }
 
-    /// Joins two voids. One that is not inside has pressure 0, and between two of these nothing is asked; nor
-    /// does a void lead to itself.
+    /// Joins two voids. One that is not inside has pressure 0; links between two of these, and from a void to
+    /// itself, are ignored.
     pub(super) fn join(&mut self, one: u32, other: u32, conductance: f64) {
         match [one, other].map(|void| self.row(void)) {
             [None, None] => {}
@@ -105,7 +105,7 @@ impl System {
         self.inflow[row] += conductance * pressure;
     }
 
-    /// Lets so much flow into a void, if it is inside.
+    /// Adds an inflow into a void, if it is inside.
     pub(super) fn feed(&mut self, void: u32, inflow: f64) {
         if let Some(row) = self.row(void) {
             self.inflow[row as usize] += inflow;
@@ -113,7 +113,7 @@ impl System {
     }
 
     /// Multiplies both sides by a power of two, which changes no digit of a solution, so that squares of very
-    /// large and very small conductances are numbers still. Gives that power.
+    /// large and very small conductances remain numbers. Returns that power.
     fn normalise(&mut self) -> f64 {
         let mut diagonal = self.ground.clone();
         for link in &self.links {
@@ -130,10 +130,10 @@ impl System {
         unit
     }
 
-    /// Conjugate gradients from the pressures that there are, and again from where they end while what they
-    /// carry along as the residual has left the true one, until that is about `within` of the inflow or
-    /// rounding lets it come no closer. What is kept is a factor of nearly this system; where there is none,
-    /// or it takes too many rounds, one of this system is made and left there.
+    /// Runs conjugate gradients from the present pressures, and again from where they end while the residual
+    /// that they carry along has left the true one, until the true one is about `within` of the inflow or
+    /// rounding lets it come no closer. `kept` holds a factor of nearly this system; if it is empty, or takes
+    /// too many rounds, a factor of this system is made and left there.
     pub(super) fn solve(
         mut self,
         pressure: &mut [f64],
@@ -181,7 +181,7 @@ impl System {
         }
     }
 
-    /// How well the pressures of these columns fit, whose residual is so large over the inflow.
+    /// Fit of the pressures of these columns, given their residual over the inflow.
     fn fit(&self, columns: &Columns, residual: f64) -> Fit {
         let off: f64 = columns.residual.iter().copied().map(f64::abs).sum();
         let held = self.ground.iter().zip(&columns.pressure).map(|(ground, p)| (ground * p).abs());
@@ -189,7 +189,7 @@ impl System {
         Fit { residual, missing: off + ROUNDING * known }
     }
 
-    /// The fit, and the rounds that it took: at most so many. Pressures stay where these do not suffice.
+    /// Fit, and the rounds that it took, up to a limit. Pressures stay unchanged if these do not suffice.
     fn solve_within(
         &self,
         pressure: &mut [f64],
@@ -203,7 +203,7 @@ impl System {
         loop {
             let size = self.find_residual(&mut columns);
             let is_close = size <= if rounds == 0 { 1.0 } else { 2.0 } * within * scale;
-            // Closer than rounding lets them come they do not get.
+            // They come no closer than rounding lets them.
             let is_stuck = size > 0.5 * before && size <= BEST_OF_ROUNDING * scale;
             if is_close || is_stuck {
                 self.void.iter().zip(&columns.pressure).for_each(|(&v, &p)| pressure[v as usize] = p);
@@ -218,8 +218,8 @@ impl System {
         }
     }
 
-    /// The matrix times a column. Link by link: loops over those of each row would end where no processor
-    /// expects it.
+    /// The matrix times a column. Goes link by link: loops over the links of each row would end where no
+    /// processor expects it.
     fn times(&self, x: &[f64], out: &mut [f64]) {
         out.iter_mut().zip(self.ground.iter().zip(x)).for_each(|(out, (ground, x))| *out = ground * x);
         for &Link { one, other, conductance } in &self.links {
@@ -229,7 +229,7 @@ impl System {
         }
     }
 
-    /// What is missing of the right side, and its size.
+    /// Finds the missing part of the right side, and its size.
     fn find_residual(&self, columns: &mut Columns) -> f64 {
         let Columns { pressure, residual, product, .. } = columns;
         self.times(pressure, product);
@@ -238,8 +238,8 @@ impl System {
         dot(residual, residual).sqrt()
     }
 
-    /// Conjugate gradients until the residual that they carry along, which begins so large, is small; the
-    /// rounds that there were.
+    /// Runs conjugate gradients until the residual that they carry along, which begins at this size, is
+    /// small; returns the number of rounds.
     fn descend(
         &self,
         factor: &Factor,
@@ -286,8 +286,8 @@ mod tests {
     use super::*;
     use crate::network::flow::thresholds::CONVERGED;
 
-    /// A column of voids that each meet themselves, too: the same bits, where the factor knew of loops it
-    /// would take hundreds of rounds.
+    /// A column of voids that each also meet themselves: the same bits; if the factor knew of loops it would
+    /// take hundreds of rounds.
     #[test]
     fn nothing_flows_from_a_void_to_itself() {
         const VOIDS: u32 = 500;
@@ -314,7 +314,7 @@ mod tests {
         assert!(of(true).is_sorted_by(|above, below| above > below));
     }
 
-    /// A factor of a network that conducts elsewhere does not do: it makes way for one that does.
+    /// A factor of a network that conducts elsewhere makes way for one that fits.
     #[test]
     fn a_factor_that_does_not_serve_is_replaced() {
         const SIDE: u32 = 40;
@@ -358,8 +358,8 @@ mod tests {
         assert_eq!(own.unwrap().closed, 7, "one that serves stays");
     }
 
-    /// Links that single precision rounds to 0 beside one dead end that conducts enormously: what they hold
-    /// is solved all the same.
+    /// Links that single precision rounds to 0 beside one dead end that conducts enormously: the voids that
+    /// they hold are solved all the same.
     #[test]
     fn conductances_that_single_precision_does_not_tell_apart_are_solved() {
         const VOIDS: u32 = 300;

@@ -1,7 +1,7 @@
 use super::*;
 use crate::network::ExitRule;
 
-/// Whatever closed and opened again before: conductances are those of what is blocked now.
+/// Conductances follow the present blocked set, whatever closed and opened again before.
 #[test]
 fn conductances_follow_what_is_blocked() {
     let diameters = (0..3 * 4 * 3 * 5).map(|c| if c % 17 == 0 { 0.0 } else { 1.0 + 0.01 * c as f32 });
@@ -29,8 +29,8 @@ fn conductances_follow_what_is_blocked() {
     }
 }
 
-/// Blocks of voids are cut off one after another, some with a factor that is kept: pressures are those
-/// that are found without it, all the way to where no water comes through.
+/// Blocks of voids are cut off one after another, some with a factor that is kept: pressures agree with those
+/// found without it, all the way to where no water comes through.
 #[test]
 fn a_factor_serves_while_little_has_closed() {
     let [n, layers] = [12, 14];
@@ -51,7 +51,7 @@ fn a_factor_serves_while_little_has_closed() {
             }
             permeability.conductance
         };
-        // Two by two by one voids, with open ways between them and none out.
+        // Two by two by one voids, with open ways between them and no way out.
         for corner in
             (3 * n * n + 1..(layers - 3) * n * n).step_by(2 * n as usize + 5).filter(|v| v % n < n - 1)
         {
@@ -80,8 +80,8 @@ fn a_factor_serves_while_little_has_closed() {
     }
 }
 
-/// Two chains of voids, of which the one conducts next to nothing: once the other is blocked, squares of what
-/// is left are no numbers beside those of before.
+/// Two chains of voids, one of which conducts next to nothing: once the other is blocked, squares of the
+/// remaining conductances vanish beside the squares of before.
 #[test]
 fn next_to_nothing_is_solved_once_it_is_all_there_is() {
     use crate::network::{Link, LinkEnd, LinkedVoids};
@@ -104,15 +104,16 @@ fn next_to_nothing_is_solved_once_it_is_all_there_is() {
     flow.solve(&network, &blocked).unwrap();
     let inlet = network.exits(network.reservoir().unwrap()).next().unwrap();
     network.set_blocked(&mut blocked, inlet, true);
-    // Half a millionth of what passed before is not known of what passes now; but it is not what it was.
+    // An accuracy of half a millionth of the flow before says nothing of the flow now; but it is not the old
+    // one.
     let found = flow.solve(&network, &blocked);
     let exact = 1.0 / (0..=LONG).map(|i| 1.0 / small(i)).sum::<f64>();
     let through = flow.through;
     assert!((through / exact - 1.0).abs() < 1e-6, "{through} for {exact}, {found:?}");
 }
 
-/// Parts that shrink a few at a time, solved with a factor that is kept: pressures are those that are
-/// found without it. What is blocked afterwards is solved without those parts.
+/// Parts that shrink a few at a time, solved with a factor that is kept: pressures agree with those found
+/// without it. A later solution for blocked constrictions forgets those parts.
 #[test]
 fn parts_are_solved_as_afresh_and_forgotten() {
     let diameters = (0..3 * 10 * 10 * 10).map(|c| 1.0 + (c * 7919 % 100) as f32 / 100.0);
@@ -183,8 +184,8 @@ fn what_opens_again_needs_another_factor() {
     }
 }
 
-/// Each exit weighs by what flows out of it, and nothing where water flows in, or where it is blocked,
-/// though it leaks.
+/// Each exit weighs by its outflow, and nothing where water flows in, or where it is blocked, though it
+/// leaks.
 #[test]
 fn exits_weigh_by_what_leaves_through_them() {
     let diameters = (0..3 * 6 * 6 * 6).map(|c| 1.0 + (c * 7919 % 100) as f32 / 100.0);

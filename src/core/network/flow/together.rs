@@ -1,26 +1,26 @@
-//! What hangs together.
+//! Connected groups.
 
-/// Members in groups, each known by its smallest member. Ways are halved as they are gone, which keeps them
-/// short without a count of members (a logarithm on average).
+/// Members in groups, each known by its smallest member. Ways are halved as they are followed, which keeps
+/// them short without a count of members (a logarithm on average).
 pub(super) struct Together {
     /// A member of the same group that is no larger: the smallest points at itself.
     towards: Vec<u32>,
 }
 
 impl Together {
-    /// So many, each by itself.
+    /// Groups of one: this many members, each by itself.
     pub(super) fn of(members: usize) -> Self {
         Self { towards: (0..members as u32).collect() }
     }
 
-    /// The smallest member that hangs together with this one.
+    /// Smallest member of the group of this one.
     pub(super) fn root(&mut self, mut member: u32) -> u32 {
         loop {
             let next = self.towards[member as usize];
             if next == member {
                 return member;
             }
-            // Half as far the next time.
+            // Halves the way for the next time.
             let after = self.towards[next as usize];
             self.towards[member as usize] = after;
             member = after;

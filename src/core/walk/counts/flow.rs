@@ -1,8 +1,8 @@
 //! One increment of passive particles kept as counts per void.
 //!
 //! The voids are cut into blocks of fixed size, each with its own stream. Workers take blocks as they come
-//! and add what moves to a column of their own; the columns are then added. Integer sums do not depend on
-//! their order, so neither do the bits on the number of workers.
+//! and add the moving particles to a column of their own; the columns are then added. Integer sums do not
+//! depend on their order, so neither do the bits on the number of workers.
 //!
 //! A few particles in a void of three exits choose each by themselves, with one random word for both
 //! thresholds. More of them are split exit by exit, and draws for many voids are made at once.
@@ -34,7 +34,7 @@ const INSERTION: u64 = u64::MAX;
 /// With fewer occupied blocks, waking other threads costs more than they bring.
 const ALONE: usize = 4;
 
-/// What one increment did to the passive particles.
+/// Result of one increment for the passive particles.
 #[derive(Debug, Default)]
 pub(super) struct Moved {
     /// Particles that attempted a move and made it.
@@ -51,7 +51,7 @@ pub(super) struct Moved {
 pub(super) struct Flow {
     /// By block: the blocks that exits of its voids lead to.
     downstream: Vec<Vec<u32>>,
-    /// By block: whether it holds a particle.
+    /// By block: true if it holds a particle.
     occupied: Vec<bool>,
     workers: Vec<Worker>,
     /// Particles that move: those inserted are added, and all are counted afresh in every step.
@@ -63,7 +63,7 @@ pub(super) struct Flow {
 struct Worker {
     /// By void: particles that this worker moved there; one entry more for those that left the filter.
     next: Vec<u64>,
-    /// By block: whether `next` may hold something.
+    /// By block: true if `next` may hold something.
     touched: Vec<bool>,
     moved: Moved,
     batch: Box<SplitBatch>,
@@ -196,7 +196,7 @@ impl Flow {
                 })
                 .sum::<u64>();
         }
-        // Which worker found what depends on the threads; the order of the voids does not.
+        // The division of these among workers depends on the threads; the order of the voids does not.
         moved.stranded.sort_unstable();
         moved
     }
@@ -226,7 +226,7 @@ fn step(isa: Isa, worker: &mut Worker, block: Block) {
     }
 }
 
-/// As long as a line of the cache, and where one begins.
+/// Size and alignment of a line of the cache.
 #[cfg(target_arch = "x86_64")]
 #[repr(align(64))]
 struct CacheLine {
@@ -324,8 +324,8 @@ impl Worker {
     }
 }
 
-/// A bit for each of up to 64 voids: whether it holds particles, and whether it holds more than a few. With
-/// bits to go through, what the next void holds needs no guess.
+/// Two bits for each of up to 64 voids: it holds particles, and it holds more than a few. With bits to go
+/// through, the contents of the next void need no guess.
 #[inline(always)]
 fn occupied_and_crowded(counts: &[u64]) -> [u64; 2] {
     let of = |(i, &n): (usize, &u64)| [u64::from(n > 0) << i, u64::from(n > FEW) << i];
@@ -347,8 +347,8 @@ impl SplitBatch {
         Self { rows: 0, exit: [0; BLOCK], count: [0; BLOCK], probability: [0; BLOCK], taken: [0; BLOCK] }
     }
 
-    /// `n` particles face the open exit `exit` of a void: they are through where it is the last, else they
-    /// are row `row`. Returns the row after them.
+    /// `n` particles face the open exit `exit` of a void: they are through if it is the last, else they are
+    /// row `row`. Returns the row after them.
     #[inline(always)]
     fn face(
         &mut self,
@@ -367,7 +367,7 @@ impl SplitBatch {
         row + 1
     }
 
-    /// Draws how many take the exit they face; the others face the next.
+    /// Draws the number that takes the exit it faces; the others face the next.
     #[inline(always)]
     fn round(&mut self, draws: &mut Draws, shares: &Shares, arrive: &mut impl FnMut(usize, u64)) {
         let rows = self.rows;

@@ -63,13 +63,13 @@ struct Trap {
     /// Number of blocked constrictions that this holds for.
     blocked: u64,
     leads_out: Vec<bool>,
-    /// Whether all of them do.
+    /// True if all voids do.
     none: bool,
 }
 
 impl<'a> PassiveWalk<'a> {
-    /// Prepares to move the passive particles of `state`, by the shares of its open exits where they are
-    /// known; `None` where there are none but one by one.
+    /// Prepares to move the passive particles of `state`, by the shares of its open exits if they are known;
+    /// `None` if all are walked one by one.
     pub fn new(network: &Network, supply: &'a Supply, state: &State, known: Option<Shares>) -> Option<Self> {
         let shares = || known.unwrap_or_else(|| Shares::new(network, Ways::Unblocked(&state.blocked)));
         let (shares, mover) = match &state.passive {
@@ -121,7 +121,7 @@ impl<'a> PassiveWalk<'a> {
         }
     }
 
-    /// Moves all, and counts what became of them.
+    /// Moves all particles, and counts their fates.
     pub fn step(&mut self, network: &Network, state: &mut State) {
         let (key, tally) = (passive_key(state), &mut state.tally);
         match (&mut self.mover, &mut state.passive) {
@@ -172,7 +172,7 @@ impl<'a> PassiveWalk<'a> {
         }
     }
 
-    /// Adds what left and what stays in voids to the tally, with drawn sizes.
+    /// Adds the particles that left and those that stay in voids to the tally, with drawn sizes.
     fn count(&self, eroded: u64, stranded: &[(u32, u64)], state: &mut State) {
         let retained: u64 = stranded.iter().map(|&(_, n)| n).sum();
         if eroded == 0 && retained == 0 {
@@ -207,7 +207,7 @@ impl<'a> PassiveWalk<'a> {
         let [retained, retained_now] = [before, now].map(|counted| counted.at_rest - counted.eroded);
         let tally = &mut state.tally;
         tally.particle_moves = tally.particle_moves.saturating_add(now.moves - before.moves);
-        // What was counted before is taken off first: the sums may come near 2^64.
+        // The earlier count is taken off first: the sums may come near 2^64.
         tally.eroded = tally.eroded - before.eroded + now.eroded;
         tally.passive_eroded = now.eroded;
         tally.eroded_mass += self.sizes.mass(now.eroded) - self.sizes.mass(before.eroded);
@@ -219,7 +219,7 @@ impl<'a> PassiveWalk<'a> {
         tally.largest_eroded = tally.largest_eroded.max(largest);
     }
 
-    /// Renews a void of which exits have closed, or lead elsewhere.
+    /// Renews a void with exits that have closed, or lead elsewhere.
     pub fn set(&mut self, network: &Network, of_void: VoidExits) {
         self.shares.set(network, of_void);
         if let Mover::Expected(flow) = &mut self.mover {
@@ -227,12 +227,12 @@ impl<'a> PassiveWalk<'a> {
         }
     }
 
-    /// Exits lead elsewhere: who is trapped is not known any more.
+    /// Forgets the trap once exits lead elsewhere: who is trapped is not known any more.
     pub fn forget_trap(&mut self) {
         self.trap = None;
     }
 
-    /// Whether every moving passive particle is trapped; to be asked when everything is inserted and nothing
+    /// Tells if every moving passive particle is trapped; to be asked when everything is inserted and nothing
     /// can block any more.
     pub fn all_trapped(&mut self, network: &Network, state: &mut State) -> bool {
         let trapped = match &state.passive {
@@ -283,7 +283,7 @@ impl Trap {
     }
 }
 
-/// Voids from which open constrictions lead to an end, or to a void that has none.
+/// Voids from which open constrictions lead to an end, or to a void without open constrictions.
 fn leads_out(network: &Network, open: impl Fn(usize) -> bool) -> Vec<bool> {
     let ends = |void: &u32| {
         let mut exits = network.exits(*void).filter(|&c| open(c)).peekable();

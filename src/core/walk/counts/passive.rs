@@ -7,14 +7,14 @@ use super::expected::Expected;
 pub enum Passive {
     /// Among the particles, like any other.
     OneByOne,
-    /// How many move, by void.
+    /// Number that moves, by void.
     Counts(Vec<u64>),
-    /// How many are expected to move, by void.
+    /// Number that is expected to move, by void.
     Expected(Box<Expected>),
 }
 
 impl Passive {
-    /// None yet, on a network of `voids` voids.
+    /// No particle yet, on a network of `voids` voids.
     pub(in crate::walk) fn none_yet(voids: usize, expected: bool) -> Self {
         match expected {
             true => Passive::Expected(Box::new(Expected::new(voids))),

@@ -1,34 +1,34 @@
-//! How the passive particles of a void are split over its exits.
+//! Shares of the passive particles of a void by exit.
 
 use super::binomial::CERTAIN;
 use crate::network::Network;
 use crate::walk::exits::{self, VoidExits};
 use crate::walk::openings::Ways;
 
-/// Which way the passive particles of a void go.
+/// Way that the passive particles of a void go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::walk) enum Way {
     /// No exit is open, and they rest.
     None,
     /// No exit is open until the flow is solved again.
     Wait,
-    /// Of three exits, the third is the last open one.
+    /// Three exits; the third is the last open one.
     Three,
-    /// Of three exits, the first is the only open one.
+    /// Three exits; the first is the only open one.
     First,
-    /// Of three exits, the second is the last open one.
+    /// Three exits; the second is the last open one.
     Second,
     /// There are more or fewer than three exits.
     Other,
 }
 
-/// How the passive particles of every void are split over its exits.
+/// Shares of the passive particles of every void by exit.
 #[derive(Clone)]
 pub(in crate::walk) struct Shares {
     /// By constriction: the probability that a particle which has not taken an earlier exit of its void takes
-    /// this one, as a 64-bit fraction. The last open exit is certain; closed ones have none.
+    /// this one, as a 64-bit fraction. The last open exit is certain; closed ones have 0.
     probability: Vec<u64>,
-    /// By constriction: how many exits on the next open one of its void is; no open one is passed over.
+    /// By constriction: number of exits to the next open one of its void; no open one is passed over.
     on: Vec<u8>,
     /// By void.
     way: Vec<Way>,
@@ -48,7 +48,7 @@ impl Shares {
         shares
     }
 
-    /// The same, of which no void is set yet.
+    /// Shares with no void set yet.
     pub fn empty(network: &Network) -> Self {
         Self {
             probability: vec![0; network.constrictions()],
@@ -73,7 +73,7 @@ impl Shares {
                 Some(last) if e == last => CERTAIN,
                 Some(last) if e < last && thresholds[e] > before => {
                     let (width, rest) = (thresholds[e] - before, before.wrapping_neg());
-                    // Nothing is taken before the first that is open: all of 2^64 is left.
+                    // Before the first open exit nothing is taken: all of 2^64 is left.
                     let of_rest =
                         if rest == 0 { width } else { ((u128::from(width) << 64) / u128::from(rest)) as u64 };
                     of_rest.min(CERTAIN - 1)
@@ -132,12 +132,12 @@ impl Shares {
     pub fn thresholds_of_three(&self, exit: usize) -> [u64; 2] {
         let (first, second) = (self.probability[exit], self.probability[exit + 1]);
         let of_rest = second - ((u128::from(second) * u128::from(first)) >> 64) as u64;
-        // The sum is a probability and stays below 1, except beside an exit that is certain: what it wraps to
-        // there is the threshold that does not hold.
+        // The sum is a probability and stays below 1, except beside an exit that is certain: there it wraps
+        // to the threshold that does not hold.
         [first, first.wrapping_add(of_rest)]
     }
 
-    /// Which way the particles of a void go.
+    /// Way that the particles of a void go.
     #[inline(always)]
     pub fn way(&self, void: usize) -> Way {
         self.way[void]
@@ -149,18 +149,18 @@ impl Shares {
         self.tops[void]
     }
 
-    /// A bit for each of the 64 voids of `word`: whether it has no open exit, and whether it has three exits.
+    /// Two bits for each of the 64 voids of `word`: it has no open exit, and it has three exits.
     #[inline(always)]
     pub fn shut_and_of_three(&self, word: usize) -> [u64; 2] {
         [self.shut[word], self.of_three[word]]
     }
 
-    /// Whether the particles of a void without open exits stay there until the flow is solved again.
+    /// Tells if the particles of a void without open exits stay there until the flow is solved again.
     pub fn waits(&self, void: usize) -> bool {
         self.way[void] == Way::Wait
     }
 
-    /// Whether a void has an open exit.
+    /// Tells if a void has an open exit.
     #[inline]
     pub fn leads_on(&self, void: usize) -> bool {
         !matches!(self.way[void], Way::None | Way::Wait)
@@ -193,7 +193,7 @@ mod tests {
         assert!(!of([0.0; 3], [false; 3]).1);
     }
 
-    /// Up to the last exit the thresholds are those of the walk one by one, to a unit; what stands beside a
+    /// Up to the last exit the thresholds agree with the walk one by one, to a unit; the value beside a
     /// certain exit is not used.
     #[test]
     fn thresholds_of_three_exits_never_wrap_where_they_hold() {

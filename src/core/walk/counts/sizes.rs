@@ -50,7 +50,7 @@ impl<'a> PassiveSizes<'a> {
         count as f64 * self.mean_cube_of_all
     }
 
-    /// Adds `count` particles with drawn sizes; the largest of them, where there are any.
+    /// Adds `count` particles with drawn sizes; returns the largest of them, if there are any.
     pub fn draw(&self, count: u64, draws: &mut Draws, into: &mut SizeCounts) -> Option<f32> {
         let (mut left, mut coarsest) = (count, None);
         for class in 0..self.words.len() {
@@ -94,7 +94,7 @@ impl<'a> PassiveSizes<'a> {
     }
 }
 
-/// How many of an increment's `share` of base particles are coarse, given that `passive_words` of the
+/// Number of coarse particles in an increment's `share` of base particles, given that `passive_words` of the
 /// sampler's words draw passive ones.
 pub(in crate::walk) fn coarse_share(
     share: u64,

@@ -6,7 +6,7 @@ use super::*;
 use crate::gradation::{Gradation, SizeSampler};
 use crate::walk::{Blocking, SizeClasses, Walk, WalkControl, exits};
 
-/// What is expected of passive particles on a given history.
+/// Expected passive particles on a given history.
 struct Flowed {
     /// Eroded in each increment.
     eroded: Vec<f64>,
@@ -153,7 +153,7 @@ fn both_engines_follow_one_history() {
     }
     let flowed = expectation(&network, &walked.history, &differences(&inserted), increments);
     judge(&differences(&eroded), &moving, &flowed);
-    // No coarse particle walked here, so whatever is retained is passive.
+    // No coarse particle walked here, so all that is retained is passive.
     let z = z_score(&state.retained_in_voids, &flowed.retained);
     assert!(z.abs() < 4.0, "{z}");
 
@@ -180,7 +180,7 @@ fn both_engines_follow_one_history() {
     }
 }
 
-/// As many particles as a number holds are counted to the last one, and no sum on the way is larger.
+/// The largest count that a number holds is exact to the last particle, and no sum on the way is larger.
 #[test]
 fn the_most_particles_that_can_be_are_conserved() {
     let network = Network::cubic_from_diameters([3, 3, 4], vec![1.0; 108], 1.0).unwrap();

@@ -1,7 +1,7 @@
-//! The exits of a void as a draw reads them first: all that it needs where few are open, side by side, and
-//! where the others begin.
+//! Exits of a void in the form that a draw reads first: all that it needs if few are open, side by side, and
+//! the place of the others.
 
-/// Open exits of a void, where they are few; where the others are found, else.
+/// Open exits of a void, if they are few; else the place of its exits.
 #[derive(Clone, Copy)]
 #[repr(align(32))]
 pub struct FewExits {
@@ -11,27 +11,27 @@ pub struct FewExits {
     pub position: [u8; FEW_EXITS],
     /// First exit of the void.
     pub begin: u32,
-    /// Exits of a void whose open ones do not fit in here; 0 where they do, none is open, or there are more
+    /// Exits of a void whose open ones do not fit in here; 0 if they fit, all are closed, or there are more
     /// exits than this can say.
     pub exits: u16,
-    /// Whether it has an open exit, and no more than fit in here.
+    /// True if it has an open exit, and no more than fit in here.
     pub is_few: bool,
 }
 
 /// Open exits that fit in a [`FewExits`].
 pub const FEW_EXITS: usize = 8;
 
-/// Up to so many exits are counted without a branch.
+/// Most exits that are counted without a branch.
 const COUNTED: usize = 64;
 
 impl FewExits {
     pub const NONE: Self =
         Self { top: [u16::MAX; FEW_EXITS], position: [0; FEW_EXITS], begin: 0, exits: 0, is_few: false };
 
-    /// Of a void whose exits from `begin` on have these thresholds, which rise where an exit is open; `last`
-    /// is the position of its last open one.
+    /// Builds it for a void whose exits from `begin` on have these thresholds, which rise where an exit is
+    /// open; `last` is the position of its last open one.
     pub fn new(begin: u32, thresholds: &[u64], last: usize) -> Self {
-        // Which exits are open cannot be foreseen: one that is not leaves its place to the next.
+        // It cannot be foreseen which exits are open: one that is closed leaves its place to the next.
         let (mut top, mut position) = ([u16::MAX; FEW_EXITS + 1], [0; FEW_EXITS + 1]);
         let (mut before, mut open) = (0, 0);
         for (place, &threshold) in thresholds[..last].iter().enumerate() {
@@ -55,12 +55,12 @@ impl FewExits {
     pub fn chosen(&self, draw: u16) -> Option<usize> {
         let passed: u16 = self.top.iter().map(|&top| u16::from(top < draw)).sum();
         let is_tie = self.top.iter().fold(false, |tie, &top| tie | (top == draw));
-        // Thresholds rise, and there is none for the last exit.
+        // Thresholds rise, and the last exit has no threshold.
         (!is_tie).then(|| self.begin as usize + usize::from(self.position[usize::from(passed)]))
     }
 
-    /// The same where more are open than fit in here, by the upper sixteen bits of all thresholds of the
-    /// network.
+    /// Exit that a draw picks if more are open than fit in here, by the upper sixteen bits of all thresholds
+    /// of the network.
     #[inline(always)]
     pub fn chosen_of(&self, tops: &[u16], draw: u16) -> Option<usize> {
         let tops = &tops[self.begin as usize..][..usize::from(self.exits)];

@@ -26,7 +26,7 @@ fn a_closed_exit_has_no_width() {
     assert_eq!(of([0.0, 1.0, 1.0], [false, true, true]).1, None);
 }
 
-/// Exits of very different widths, any of them blocked: a plain word tells a void that none leads out of.
+/// Exits of very different widths, any of them blocked: a plain word tells if a void has no way out.
 #[test]
 fn a_word_tells_whether_an_exit_is_open() {
     let mut seen = [0; 2];
@@ -49,7 +49,7 @@ fn a_word_tells_whether_an_exit_is_open() {
 }
 
 /// Any number of exits, closed ones among them, and every sixteen-bit draw: the exit by the definition,
-/// whatever the other bits, or none where these decide.
+/// whatever the other bits, or no exit if these decide.
 #[test]
 fn few_exits_are_chosen_as_by_the_definition() {
     let mut word = 1u64;
@@ -92,8 +92,8 @@ fn few_exits_are_chosen_as_by_the_definition() {
     }
 }
 
-/// Of many exits, some of them closed, at the end too, the one that the definition picks for every draw whose
-/// upper bits decide; the others, and those of more exits than can be counted, are left to the long way.
+/// Many exits, some of them closed, at the end too: the exit that the definition picks for every draw whose
+/// upper bits decide; other draws, and voids of more exits than can be counted, are left to the long way.
 #[test]
 fn many_exits_are_chosen_as_by_looking_at_each() {
     let mut word = 5u64;
@@ -116,7 +116,7 @@ fn many_exits_are_chosen_as_by_looking_at_each() {
         if few.is_few {
             continue;
         }
-        // Those of seven exits of other voids stand before.
+        // Seven exits of other voids come before.
         let tops: Vec<u16> = [9; 7].into_iter().chain(thresholds.iter().map(|t| (t >> 48) as u16)).collect();
         let mut decided = 0;
         for draw in 0..=u16::MAX {
@@ -145,7 +145,7 @@ fn many_exits_are_chosen_as_by_looking_at_each() {
     assert_eq!(FewExits::NONE.chosen_of(&[], 9), None);
 }
 
-/// Exits that stand too far from the first for a byte are not few; in reach of one they are.
+/// Exits too far from the first for a byte are not few; exits in reach of one are.
 #[test]
 fn exits_beyond_a_byte_are_not_few() {
     for (last, is_few) in [(255, true), (256, false), (299, false)] {
@@ -171,8 +171,8 @@ fn nothing_is_left_of_a_blocked_giant() {
     }
 }
 
-/// A table whose voids were renewed one after another as constrictions closed, and classed anew, is the one
-/// that is made of what is left open.
+/// A table whose voids were renewed one after another as constrictions closed, with classes recomputed,
+/// equals the table made of the constrictions left open.
 #[test]
 fn a_table_that_a_run_leaves_is_that_of_the_next() {
     let shape = [7, 5, 4];

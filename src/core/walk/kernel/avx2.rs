@@ -42,7 +42,7 @@ fn step_vectors<R: Reads>(mut chunk: LatticeChunk) -> usize {
     chunk.step_rest::<R>(|| [next_block(&mut state), next_of_jams()], kept)
 }
 
-/// As [`super::lattice`]'s.
+/// Predicts like the portable `predict` of [`super::lattice`].
 #[inline]
 #[target_feature(enable = "avx2,popcnt")]
 fn predict<R: Reads>(
@@ -57,7 +57,7 @@ fn predict<R: Reads>(
     let below = _mm256_set1_epi32(Lattice::below::<R>() as i32);
     let finest = _mm256_set1_epi32(table.finest as i32);
     let downstream = _mm256_castsi256_ps(_mm256_set1_epi32(table.moves[15] as i32));
-    // The first eight entries of `moves`: those of the first two exits.
+    // The first eight entries of `moves` belong to the first two exits.
     // SAFETY: `moves` has sixteen entries.
     let moves = unsafe { _mm256_loadu_si256(table.moves.as_ptr().cast()) };
     // A draw into both halves of its word.
@@ -81,7 +81,7 @@ fn predict<R: Reads>(
     for (group, (draw, jam_draw)) in draws.enumerate() {
         let (at, place) = (begin + WIDTH * group, kept + WIDTH * group);
         // SAFETY: eight entries from `at` on are within both columns, as asserted, and the voids within the
-        // table: what was written since they were checked lies before `at`.
+        // table: entries written since they were checked lie before `at`.
         let (from, d, word) = unsafe {
             (
                 _mm256_loadu_si256(void.add(at).cast()),
@@ -104,8 +104,8 @@ fn predict<R: Reads>(
         let by = _mm256_castps_si256(_mm256_blendv_ps(by, downstream, _mm256_castsi256_ps(past)));
         let to = _mm256_add_epi32(from, by);
 
-        // The sign says whether: leaves (neither reaches 2^31), no open exit, a tie in either half, perhaps
-        // too coarse.
+        // The sign is set for: leaves (neither reaches 2^31), no open exit, a tie in either half, perhaps too
+        // coarse.
         let out = _mm256_cmpgt_epi32(to, last);
         let closed = _mm256_andnot_si256(_mm256_slli_epi32::<16>(past), past);
         let tie = _mm256_or_si256(tie, _mm256_slli_epi32::<16>(tie));
@@ -115,7 +115,7 @@ fn predict<R: Reads>(
             passes = _mm256_add_epi32(finest, _mm256_slli_epi32::<{ CLASS_UP as i32 }>(class));
         }
         let coarse = if R::WIDTHS {
-            // The exit by its place: the second where past the first threshold alone, the third past the
+            // The exit by its place: the second if past the first threshold alone, the third if past the
             // second.
             let past_second = _mm256_srli_epi32::<31>(past);
             let past_either = _mm256_or_si256(_mm256_and_si256(past, _mm256_set1_epi32(1)), past_second);
@@ -148,7 +148,7 @@ fn predict<R: Reads>(
     rare
 }
 
-/// How far draws reach, in registers.
+/// Reach of draws, in registers.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn load_reach(reach: &Reach) -> [__m256; 4] {
@@ -157,8 +157,8 @@ fn load_reach(reach: &Reach) -> [__m256; 4] {
     [0, 1, 2, 3].map(|part| unsafe { _mm256_loadu_ps(parts[part].as_ptr()) })
 }
 
-/// How far eight draws reach: by [`Arching::class_of`](crate::walk::arching::Arching::class_of), whose lower
-/// three bits are a place in a register and whose upper two say in which.
+/// Reach of eight draws: by [`Arching::class_of`](crate::walk::arching::Arching::class_of), whose lower three
+/// bits are a place in a register and whose upper two say in which.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn reach_of(reach: [__m256; 4], draws: __m128i) -> __m256 {
@@ -208,7 +208,7 @@ const fn staying() -> [[u32; WIDTH]; 1 << WIDTH] {
     table
 }
 
-/// Closes up the block of particles from `kept` on over those that are gone; returns where it ends then.
+/// Closes up the block of particles from `kept` on over those that are gone; returns its new end.
 #[inline]
 #[target_feature(enable = "avx2,popcnt")]
 fn close_up(chunk: &mut LatticeChunk, kept: usize, gone: u64) -> usize {
@@ -218,7 +218,7 @@ fn close_up(chunk: &mut LatticeChunk, kept: usize, gone: u64) -> usize {
     for group in 0..BLOCK / WIDTH {
         let (at, gone) = (kept + WIDTH * group, (gone >> (WIDTH * group)) as u8);
         // SAFETY: a row of the table has eight entries. `at + 8` and `end + 8` are within both columns, since
-        // `end <= at`; and what is written over has been read.
+        // `end <= at`; and overwritten entries have been read.
         unsafe {
             let order = _mm256_loadu_si256(STAYING[usize::from(gone)].as_ptr().cast());
             let (place, d) =

@@ -2,7 +2,7 @@
 //!
 //! The generator stays in four registers; constriction diameters are gathered for particles alone that may be
 //! coarser than the void's finest open exit. Particles that still move are brought together in a register and
-//! stored as whole vectors: what lies behind them has been read. Only draws that tie with a threshold are
+//! stored as whole vectors: the entries behind them have been read. Only draws that tie with a threshold are
 //! looked at one by one.
 
 use std::arch::x86_64::*;
@@ -131,7 +131,7 @@ fn step_vectors<R: Reads>(mut chunk: LatticeChunk) -> usize {
     chunk.step_rest::<R>(|| [block_of(next_block(&mut state)), next_of_jams()], kept)
 }
 
-/// Words of the table for sixteen voids, as [`avx2::look_up`]'s.
+/// Words of the table for sixteen voids, by [`avx2::look_up`].
 ///
 /// # Safety
 /// There are sixteen entries at `voids`, each less than the table's length.
@@ -179,7 +179,7 @@ fn decide(
     unsafe { _mm512_loadu_si512(indices.as_ptr().cast()) }
 }
 
-/// How far draws reach, in registers.
+/// Reach of draws, in registers.
 #[inline]
 #[target_feature(enable = "avx512f")]
 fn load_reach(reach: &Reach) -> [__m512; 2] {
@@ -195,7 +195,7 @@ fn half_of(draws: __m512i, half: usize) -> __m256i {
     if half == 0 { _mm512_castsi512_si256(draws) } else { _mm512_extracti64x4_epi64::<1>(draws) }
 }
 
-/// How far sixteen draws reach: by [`Arching::class_of`](crate::walk::arching::Arching::class_of).
+/// Reach of sixteen draws: by [`Arching::class_of`](crate::walk::arching::Arching::class_of).
 #[inline]
 #[target_feature(enable = "avx512f")]
 fn reach_of(reach: [__m512; 2], draws: __m256i) -> __m512 {
@@ -206,9 +206,9 @@ fn reach_of(reach: [__m512; 2], draws: __m256i) -> __m512 {
     _mm512_permutex2var_ps(reach[0], class, reach[1])
 }
 
-/// Which of the lanes that may jam do: asked one by one, in order, with the constriction that each has
-/// chosen, its size and the block of the draws by which they jam. Those that leave or are stopped for another
-/// reason have a bit in `gone`; `kept` before this vector still move.
+/// Lanes that jam, of those that may: asked one by one, in order, with the constriction that each has chosen,
+/// its size and the block of the draws by which they jam. Those that leave or are stopped for another reason
+/// have a bit in `gone`; `kept` before this vector still move.
 #[inline(never)]
 #[target_feature(enable = "avx512f,popcnt")]
 fn jammed(
@@ -270,7 +270,7 @@ fn note(column: &mut Vec<(u32, f32)>, place: __m512i, d: __m512i, lanes: __mmask
 #[target_feature(enable = "avx512f,popcnt")]
 fn note_eroded(column: &mut Vec<f32>, d: __m512i, eroded: __mmask16) {
     column.reserve(WIDTH);
-    // SAFETY: there is room for sixteen, of which the first as many as lanes eroded are values.
+    // SAFETY: there is room for sixteen; as many of the first as lanes eroded are values.
     unsafe {
         let end = column.as_mut_ptr().add(column.len());
         _mm512_storeu_si512(end.cast(), _mm512_maskz_compress_epi32(eroded, d));

@@ -1,6 +1,6 @@
-//! What is asked for from memory before it is read.
+//! Requests to memory before it is read.
 
-/// Asks for an entry of a column, or of what lies behind it, before it is read.
+/// Asks for an entry of a column, or of the memory behind it, before it is read.
 #[inline(always)]
 pub(super) fn fetch<T>(column: &[T], at: usize) {
     #[cfg(target_arch = "x86_64")]

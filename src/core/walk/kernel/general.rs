@@ -22,14 +22,14 @@ pub(super) fn step(
     diameter: &mut [f32],
     events: &mut Events,
 ) -> usize {
-    // Two loops, of which one has no question of arches.
+    // Two loops, one of them without arches.
     match jams {
         None => step_all(network, table, key, void, diameter, events, None),
         jams => step_all(network, table, key, void, diameter, events, jams),
     }
 }
 
-/// How the particles of a chunk jam, and the stream of that.
+/// Jams of the particles of a chunk, and their stream.
 pub(super) struct Jams<'a> {
     arching: &'a Arching,
     lanes: Lanes,
@@ -38,13 +38,13 @@ pub(super) struct Jams<'a> {
 }
 
 impl<'a> Jams<'a> {
-    /// Before the first particle.
+    /// Prepares for the first particle.
     pub fn new(arching: &'a Arching, lanes: Lanes) -> Self {
         Self { arching, extension: lanes.extension(), lanes, block: [0; LANES] }
     }
 
-    /// The jam of the particle at place `j` in this exit, which it fits; so many before it still move. `None`
-    /// where it passes.
+    /// Jam of the particle at place `j` in this exit, which it fits; `rank` particles before it still move.
+    /// `None` if it passes.
     #[inline]
     fn of(&self, j: usize, (exit, width): (u32, f32), d: f32, rank: usize) -> Option<Jam> {
         let draw = draw16(&self.block, j % DRAWS_PER_BLOCK);
@@ -57,7 +57,7 @@ impl<'a> Jams<'a> {
     }
 }
 
-/// The step, with how particles that fit may jam.
+/// The step; particles that fit may jam by `jams`.
 #[inline(always)]
 fn step_all(
     network: &Network,
@@ -78,7 +78,8 @@ fn step_all(
             jams.block = jams.lanes.next_block();
         }
         let particles = begin..void.len().min(begin + DRAWS_PER_BLOCK);
-        // All of a block choose before any moves: what one reads far away does not wait for another's move.
+        // All particles of a block choose before any moves: a distant read of one does not wait for another's
+        // move.
         for (chosen, j) in chosen.iter_mut().zip(particles.clone()) {
             if let Some(&next) = void.get(j + AHEAD) {
                 fetch(&table.few, next as usize);
@@ -147,7 +148,7 @@ enum Chosen {
     Wait,
 }
 
-/// The exit by the definition: of any number of them, and with all bits of the draw where they are needed.
+/// Exit by the definition: of any number of them, and with all bits of the draw where they are needed.
 #[cold]
 #[inline(never)]
 fn any(
@@ -190,7 +191,7 @@ fn choose(thresholds: &[u64], draw: u16, index: usize, extension: Extension) -> 
     (first < rest.len()).then_some(passed + first)
 }
 
-/// Up to so many exits are looked at one after another.
+/// Most exits that are looked at one after another.
 const LOOKED_AT: usize = 16;
 
 #[cfg(test)]
@@ -198,7 +199,7 @@ mod tests {
     use super::*;
     use crate::stream::Purpose;
 
-    /// Of thousands of exits, many of which share their upper bits or are closed: as by looking at each.
+    /// Thousands of exits, many with equal upper bits or closed, against a look at each.
     #[test]
     fn an_exit_of_thousands_is_found_as_by_looking_at_each() {
         let key = Key { seed: 3, purpose: Purpose::Step, run: 1, increment: 1, chunk: 0 };
@@ -212,7 +213,7 @@ mod tests {
         for exits in [17, 100, 3000] {
             let mut thresholds: Vec<u64> = (0..exits).map(|_| next()).collect();
             for first in (0..exits - 5).step_by(10) {
-                // As closed exits have them, and such as differ below.
+                // Thresholds such as closed exits have, and others that differ below.
                 thresholds[first + 1] = thresholds[first];
                 thresholds[first + 2] = thresholds[first] ^ 1 << 47;
                 thresholds[first + 3] = thresholds[first] ^ 0xff << 40;

@@ -1,5 +1,5 @@
-//! The step on the cubic lattice: one table word a void, targets by arithmetic. The portable kernel, and
-//! what the vector kernels share with it.
+//! The step on the cubic lattice: one table word a void, targets by arithmetic. The portable kernel, and the
+//! parts that the vector kernels share with it.
 //!
 //! It and the AVX2 kernel take a block of particles at a time. They predict where these go, without a branch,
 //! and say for which that may be wrong: a draw that equals a threshold as far as the table's word goes, no
@@ -13,7 +13,8 @@
 //!
 //! Where particles arch, or blocked constrictions leave openings, a particle is held against the width of the
 //! exit that it chose. One that may jam is taken as larger than it is, as far as its draw reaches
-//! ([`Arching::reach`]): what is then no finer than that width goes the long way, where the law decides.
+//! ([`Arching::reach`]): a particle that is then no finer than that width goes the long way, where the law
+//! decides.
 
 use std::ops::Range;
 
@@ -32,7 +33,7 @@ pub(super) const BLOCK: usize = 2 * DRAWS_PER_BLOCK;
 /// The draws of a block of particles, as they come.
 pub(super) type Draws = [u64; 2 * LANES];
 
-/// What brings a class in its place in a word to that in the bits of a diameter.
+/// Shift from a class at its place in a word to its place in the bits of a diameter.
 pub(super) const CLASS_UP: u32 = CLASS_SHIFT - CLASS.trailing_zeros();
 
 /// Bit of an index of [`Lattice::moves`]: the draw is no less than the first threshold.
@@ -62,33 +63,33 @@ fn fetch_range(void: &[u32], diameter: &[f32], range: Range<usize>) {
     }
 }
 
-/// First particles of a chunk, which stand for all of it.
+/// First particles of a chunk, which represent all of it.
 const SAMPLE: usize = 256;
 
 /// Particles of a sample that are not passive, up to which it takes less time to look at each of them than to
 /// read classes: at 3 in 100 it takes a third more.
 const FEW_COARSE: usize = 1;
 
-/// Whether the particles of a chunk are better off with words that have classes: more than a few are not
+/// Tells if the particles of a chunk are better off with words that have classes: more than a few are not
 /// passive. A question of time alone.
 pub(super) fn reads_classes(diameter: &[f32], passive_limit: f32) -> bool {
     let sample = &diameter[..diameter.len().min(SAMPLE)];
     sample.iter().map(|&d| usize::from(d > passive_limit)).sum::<usize>() > FEW_COARSE
 }
 
-/// Whether there is a void, and every constriction has a number that a gather can use as an offset.
+/// Tells if there is a void, and every constriction has a number that a gather can use as an offset.
 #[cfg(target_arch = "x86_64")]
 pub(super) fn fits_gathers(table: &Lattice) -> bool {
     (1..=i32::MAX as usize).contains(&(3 * table.plain.len()))
 }
 
-/// The moving particles of one chunk, and what their step reads and writes.
+/// The moving particles of one chunk, and the columns that their step reads and writes.
 pub(super) struct LatticeChunk<'a> {
     pub exits: &'a OpenExits<'a>,
     pub table: &'a Lattice,
     /// The stream of this chunk and increment.
     pub lanes: Lanes,
-    /// How its particles arch, and the stream of that; only where they do.
+    /// Law by which its particles arch, and their stream; only if they arch.
     pub jams: Option<(&'a Arching, Lanes)>,
     pub void: &'a mut [u32],
     pub diameter: &'a mut [f32],
@@ -156,7 +157,7 @@ fn predict<R: Reads>(
     let end = signed(u32::try_from(words.len()).unwrap_or(u32::MAX));
     let outside = from.iter().fold(0, |outside, &from| outside | ones(signed(from) >= end));
     assert!(outside == 0, "a void beyond the lattice");
-    // As a map it takes a third longer.
+    // A map takes a third longer.
     let mut word = [0; PART];
     for (word, &from) in word.iter_mut().zip(from) {
         // SAFETY: no void is beyond the words, as asserted.
@@ -214,7 +215,7 @@ fn predict<R: Reads>(
     u64::from(rare)
 }
 
-/// All bits where `yes`, else none: conditions as arithmetic.
+/// All bits if `yes`, else 0: conditions as arithmetic.
 #[inline(always)]
 fn ones(yes: bool) -> u32 {
     0u32.wrapping_sub(u32::from(yes))
@@ -245,7 +246,7 @@ impl<'a> LatticeChunk<'a> {
         gone
     }
 
-    /// Closes up the block of particles from `kept` on over those that are gone; returns where it ends then.
+    /// Closes up the block of particles from `kept` on over those that are gone; returns its new end.
     #[inline]
     fn close_up(&mut self, kept: usize, mut gone: u64) -> usize {
         let (mut done, mut end) = (kept, kept);
@@ -262,7 +263,7 @@ impl<'a> LatticeChunk<'a> {
         end
     }
 
-    /// Moves what particles are left after whole blocks, by the blocks of both streams that come next; `kept`
+    /// Moves the particles left after whole blocks, by the blocks of both streams that come next; `kept`
     /// before them still move.
     pub fn step_rest<R: Reads>(
         &mut self,
@@ -287,8 +288,8 @@ impl<'a> LatticeChunk<'a> {
         kept
     }
 
-    /// The attempt of the particle at `place` by draw `index` of both streams in full: where it is then, if
-    /// it still moves. So many before it do.
+    /// Attempts the move of the particle at `place` by draw `index` of both streams in full; returns the void
+    /// where it is then, if it still moves. `rank` particles before it do.
     #[inline]
     fn attempt<R: Reads>(
         &mut self,
@@ -320,8 +321,8 @@ impl<'a> LatticeChunk<'a> {
         Some(to)
     }
 
-    /// Whether a particle that fits jams in a constriction by draw `index`; it is then noted, with the number
-    /// of those before it that still move.
+    /// Tells if a particle that fits jams in a constriction by draw `index`; a jam is noted, with the number
+    /// of particles before it that still move.
     pub fn jams(&mut self, exit: u32, diameter: f32, [index, rank]: [usize; 2], draw: u16) -> bool {
         let Some((arching, lanes)) = &self.jams else { return false };
         let word = lanes.extension().complete(draw, index as u64);
@@ -332,13 +333,13 @@ impl<'a> LatticeChunk<'a> {
         jam.is_some()
     }
 
-    /// The stream by which particles jam, where they do; else that of the step, unused.
+    /// Stream by which particles jam, if they do; else the stream of the step, unused.
     pub fn jam_lanes<R: Reads>(&self) -> Lanes {
         let jams = self.jams.as_ref().filter(|_| R::JAMS);
         jams.map_or_else(|| self.lanes.clone(), |(_, lanes)| lanes.clone())
     }
 
-    /// How far draws reach, where particles jam.
+    /// Reach of draws, if particles jam.
     pub fn reach(&self) -> &'a Reach {
         self.jams.as_ref().expect("particles jam").0.reach()
     }

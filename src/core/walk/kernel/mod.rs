@@ -26,8 +26,8 @@ use crate::stream::{Key, Lanes, Purpose};
 use general::Jams;
 use lattice::LatticeChunk;
 
-/// Inserts this increment's particles and moves those of all chunks, in parallel where that pays; what
-/// happened is in `events`.
+/// Inserts this increment's particles and moves those of all chunks, in parallel where that pays; the results
+/// are in `events`.
 pub(super) fn step(
     network: &Network,
     table: &ExitTable,
@@ -52,7 +52,7 @@ pub(super) fn step(
         table,
         ways: match &state.openings {
             None => Ways::Unblocked(&state.blocked),
-            // What water weighs has no lattice, which alone asks for it.
+            // No lattice table exists where water sets the weights, and only such a table asks for them.
             Some(openings) => Ways::Openings(&openings.widths, Weighed::Whole),
         },
         widths: state.openings.as_ref().map_or(network.diameters(), |openings| &openings.widths),
@@ -114,12 +114,12 @@ fn step_chunk(
     }
 }
 
-/// The stream by which the particles of a chunk jam.
+/// Stream by which the particles of a chunk jam.
 fn jam_lanes(key: Key) -> Lanes {
     Key { purpose: Purpose::Arching, ..key }.lanes()
 }
 
-/// The step on a lattice, by what it reads of each void.
+/// The step on a lattice, by the data that it reads of each void.
 fn step_lattice<R: Reads>(chunk: LatticeChunk, isa: Isa) -> usize {
     match isa {
         #[cfg(target_arch = "x86_64")]

@@ -9,7 +9,7 @@ use crate::stream::{DRAWS_PER_BLOCK, LANES, draw16};
 use crate::walk::arches::Jam;
 use crate::walk::{Arching, Isa, LAWS, SizeClasses, exits};
 
-/// A lattice, and what is blocked in it.
+/// A lattice, and its blocked constrictions.
 #[derive(Clone, Debug)]
 struct Scene {
     shape: [u32; 3],
@@ -28,7 +28,7 @@ struct After {
     jams: Vec<Jam>,
 }
 
-/// What a kernel reads.
+/// Data that a kernel reads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Reading {
     Plain,
@@ -38,7 +38,7 @@ enum Reading {
     Jamming(usize),
 }
 
-/// A kernel: its instructions, and what it reads.
+/// A kernel: its instructions, and the data that it reads.
 type Kernel = (Isa, Reading);
 
 /// One step of the particles in `void` and `diameter`.
@@ -87,7 +87,7 @@ fn after(scene: &Scene, key: Key, (isa, reading): Kernel, void: &[u32], diameter
     After { void, diameter, eroded, stopped, stranded, jams }
 }
 
-/// Its law.
+/// Law of this reading.
 fn arching(reading: Reading) -> Option<Arching> {
     let Reading::Jamming(law) = reading else { return None };
     Some(Arching::new(&LAWS[law], 0.25))

@@ -38,7 +38,7 @@ impl Draws {
         self.lanes.state()
     }
 
-    /// The same, for whoever has drawn blocks in vector registers.
+    /// State word by lane, to be changed by callers that have drawn blocks in vector registers.
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub(super) fn state_mut(&mut self) -> &mut [[u64; LANES]; 4] {
@@ -52,19 +52,19 @@ impl Draws {
     }
 }
 
-/// `drawn` is of the rarer outcome.
+/// Successes, if the rarer outcome turned up `drawn` times.
 #[inline(always)]
 pub(super) fn turned(n: u64, p: u64, drawn: u64) -> u64 {
     if p > 1 << 63 { n.wrapping_sub(drawn) } else { drawn }
 }
 
-/// The probability of the rarer outcome.
+/// Probability of the rarer outcome.
 #[inline(always)]
 pub(super) fn rarer(p: u64) -> u64 {
     p.min(p.wrapping_neg())
 }
 
-/// A share of 2^64 as a number: of what is certain, 1.
+/// A share of 2^64 as a number; 1 for [`CERTAIN`].
 #[inline(always)]
 pub(in crate::walk::counts) fn as_unit(p: u64) -> f64 {
     p as f64 * TWO_TO_MINUS_64

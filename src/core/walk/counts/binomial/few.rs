@@ -2,12 +2,12 @@
 //! [`below_both`] of [`trials`](super::trials).
 //!
 //! The eight generators of the stream stay in vector registers from void to void; in memory, every void would
-//! wait for what the one before it has just stored.
+//! wait for the store of the one before it.
 
 use super::draws::Draws;
 use super::trials::below_both;
 
-/// How few trials are made, for void after void of one stream.
+/// Small numbers of trials, for void after void of one stream.
 pub(in crate::walk::counts) trait FewTrials {
     /// Takes the stream's generators from where they are.
     ///
@@ -15,8 +15,8 @@ pub(in crate::walk::counts) trait FewTrials {
     /// The machine has the instructions that this is made with.
     unsafe fn begin(draws: &Draws) -> Self;
 
-    /// How many of `n` uniform 64-bit words are below each of two thresholds, of which `tops` are the upper
-    /// sixteen bits; the whole is asked for where they do not decide.
+    /// Counts the `n` uniform 64-bit words that are below each of two thresholds, whose upper sixteen bits
+    /// are `tops`; the whole is asked for where they do not decide.
     fn below_both(
         &mut self,
         draws: &mut Draws,
@@ -29,7 +29,7 @@ pub(in crate::walk::counts) trait FewTrials {
     fn end(self, draws: &mut Draws);
 }
 
-/// With what every machine has.
+/// Instructions that every machine has.
 pub(in crate::walk::counts) struct Portable;
 
 impl FewTrials for Portable {
@@ -72,7 +72,7 @@ mod x86 {
     /// With AVX2: the state words of the lower and the upper four generators.
     pub(in crate::walk::counts) struct Avx2([[__m256i; 4]; 2]);
 
-    /// How many draws of a block are below each threshold, and the block where one is equal to the top of a
+    /// Number of draws of a block below each threshold, and the block if a draw equals the top of a
     /// threshold.
     pub(in crate::walk::counts) type Counted = ([u32; 2], Option<[u16; DRAWS_PER_BLOCK]>);
 
@@ -156,8 +156,8 @@ mod x86 {
         }
     }
 
-    /// How many of the first `counted` draws of the next block are below each threshold, and the block where
-    /// one is equal to the top of a threshold.
+    /// Counts the first `counted` draws of the next block that are below each threshold; also returns the
+    /// block if one of them equals the top of a threshold.
     #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
     #[inline]
     fn block_avx512(state: &mut [__m512i; 4], counted: u64, tops: [u16; 2]) -> Counted {
@@ -226,7 +226,7 @@ mod x86 {
     #[target_feature(enable = "avx2,popcnt")]
     #[inline]
     fn block_avx2(state: &mut [[__m256i; 4]; 2], counted: u64, tops: [u16; 2]) -> Counted {
-        // What is unsigned is compared as signed, less 2^15.
+        // Unsigned numbers are compared as signed, less 2^15.
         let sign = _mm256_set1_epi16(i16::MIN);
         let counts = MASKS[counted as usize];
         let blocks = [next_of_four(&mut state[0]), next_of_four(&mut state[1])];

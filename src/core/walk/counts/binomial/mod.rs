@@ -43,7 +43,7 @@ pub(super) const FEW: u64 = 64;
 /// Up to this many trials, bits are compared where the variance is small.
 const FEW_RARE: u64 = 2048;
 
-/// How many of `n` trials with probability `p` succeed.
+/// Number of `n` trials with probability `p` that succeed.
 pub(super) fn one(draws: &mut Draws, n: u64, p: u64) -> u64 {
     if p == CERTAIN {
         n
@@ -57,7 +57,7 @@ pub(super) fn one(draws: &mut Draws, n: u64, p: u64) -> u64 {
     }
 }
 
-/// How many of `n[i]` trials with probability `p[i]` succeed, for every `i`, into `k`.
+/// Draws into `k` the number of `n[i]` trials with probability `p[i]` that succeed, for every `i`.
 ///
 /// # Panics
 /// If the slices differ in length.
@@ -78,7 +78,7 @@ pub(super) fn fill(draws: &mut Draws, n: &[u64], p: &[u64], k: &mut [u64]) {
     }
 }
 
-/// Eight draws, of which the first `used` count.
+/// Eight draws; the first `used` count.
 #[inline(always)]
 fn eight(draws: &mut Draws, used: usize, n: [u64; LANES], p: [u64; LANES]) -> [u64; LANES] {
     let words = draws.block();

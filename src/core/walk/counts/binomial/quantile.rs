@@ -25,7 +25,7 @@ pub(super) const MOST_TRIALS: u64 = 1 << 32;
 /// 2^-53.
 const TWO_TO_MINUS_53: f64 = f64::EPSILON / 2.0;
 
-/// Whether `n` trials with probability `p` can be drawn here.
+/// Tells if `n` trials with probability `p` can be drawn here.
 #[inline(always)]
 pub(super) fn holds(n: u64, p: u64) -> bool {
     let row = Row::new(n, p);
@@ -39,10 +39,10 @@ pub(super) fn draw(normal: &Normal, n: u64, p: u64, word: u64) -> u64 {
     if sure { turned(n, p, rare) } else { decide(n, p, word) }
 }
 
-/// Eight draws, and a bit for each that is not one: `F` has to decide on it, or it cannot be drawn here.
+/// Eight draws, and a bit for each that is not certain: `F` has to decide on it, or it cannot be drawn here.
 ///
-/// Everything is taken and returned by value: between columns that might overlap, the compiler would make
-/// one draw after another.
+/// Everything is taken and returned by value: between columns that might overlap, the compiler would make one
+/// draw after another.
 #[inline(always)]
 pub(super) fn draw_eight(
     normal: &Normal,
@@ -59,7 +59,7 @@ pub(super) fn draw_eight(
     (k, open.iter().fold(0, |all, one| all | one) as u32)
 }
 
-/// The tail that a word stands for, between 0 and 1/2, and whether it is the upper one.
+/// Tail of a word, between 0 and 1/2; true if it is the upper one.
 #[inline(always)]
 fn tail(word: u64) -> (f64, bool) {
     let upper = word >> 63 == 1;
@@ -69,7 +69,7 @@ fn tail(word: u64) -> (f64, bool) {
     ((whole + 0.5) * TWO_TO_MINUS_53, upper)
 }
 
-/// How many times the rarer outcome turns up, and whether that is certain.
+/// Number of times that the rarer outcome turns up; true if that is certain.
 #[inline(always)]
 fn propose(normal: &Normal, n: u64, p: u64, word: u64) -> (u64, bool) {
     let row = Row::new(n, p);
@@ -82,7 +82,7 @@ fn propose(normal: &Normal, n: u64, p: u64, word: u64) -> (u64, bool) {
     (k, row.holds & (t >= FAR) & (off.abs() + row.margin(z) < 0.5))
 }
 
-/// What the draws of one binomial distribution of the rarer outcome have in common.
+/// Constants that the draws of one binomial distribution of the rarer outcome have in common.
 #[derive(Clone, Copy)]
 struct Row {
     n: f64,
@@ -95,7 +95,7 @@ struct Row {
     skew: f64,
     /// Fourth cumulant over the variance.
     kurtosis: f64,
-    /// Whether the variance is large enough.
+    /// True if the variance is large enough.
     holds: bool,
 }
 
@@ -123,8 +123,8 @@ impl Row {
         }
     }
 
-    /// About where the distribution function crosses the normal one's value at `z`, on a scale on which
-    /// outcome `k` begins at `k - 1/2`.
+    /// Approximate place where the distribution function crosses the normal one's value at `z`, on a scale on
+    /// which outcome `k` begins at `k - 1/2`.
     #[inline(always)]
     fn crossing(&self, z: f64) -> f64 {
         let zz = z * z;

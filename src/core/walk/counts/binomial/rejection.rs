@@ -54,7 +54,7 @@ impl Hat {
         (2.0 * self.a / us + self.b) * u + self.mean
     }
 
-    /// What `v` is multiplied by before it is compared with the probability of the proposal over that of the
+    /// Factor of `v` before it is compared with the probability of the proposal over the probability of the
     /// mode.
     pub fn scale(&self, u: f64) -> f64 {
         let us = 0.5 - u.abs();
@@ -62,7 +62,7 @@ impl Hat {
         (2.83 * self.b + 5.1) * self.sigma * square / (self.b * (self.a + self.b * square))
     }
 
-    /// The probability of `k` over that of the mode.
+    /// Logarithm of the probability of `k` over the probability of the mode.
     pub fn ln_ratio(&self, k: f64) -> f64 {
         // The likeliest outcome, or another as likely.
         let mode = whole((self.n + 1.0) * self.p - 0.5);

@@ -230,7 +230,7 @@ fn two_thresholds_are_compared_with_the_same_words() {
         for (part, probability) in [(0, first), (1, second), (2, second - first)] {
             let of = |[a, b]: &[u64; 2]| [*a, *b, b - a][part];
             let sample: Vec<u64> = drawn.iter().map(of).collect();
-            // In 2,000 draws of some 32 words none of the few possible ones may turn up.
+            // The few outcomes that are possible here may all be missing in 2,000 draws of some 32 words.
             if n as f64 * as_unit(probability) > 1.0 && n as f64 * as_unit(probability) < n as f64 - 1.0 {
                 let z = z_score(n, probability, &sample);
                 assert!(z < 4.0, "{n} {first} {second}, part {part}: {z}");
@@ -268,7 +268,8 @@ fn few_trials_are_the_same_with_any_instructions() {
         // SAFETY: as promised.
         let mut few = unsafe { F::begin(&draws) };
         for void in 0..20_000 {
-            // Every number of trials, and thresholds of which every seventh pair shares its top sixteen bits.
+            // Every number of trials, and thresholds; every seventh pair of these shares its top sixteen
+            // bits.
             let (n, first) = (void % (FEW + 1), words.word());
             let second = if void % 7 == 0 { first | 0xffff } else { words.word() };
             let thresholds = [first.min(second), first.max(second)];
@@ -309,7 +310,7 @@ fn few_trials_are_the_same_with_any_instructions() {
     assert_eq!(wanted.len(), 40_100 + 3 * 3 * DRAWS_PER_BLOCK);
 }
 
-/// Draws are part of what a seed means: these may not change unnoticed.
+/// Draws are part of the meaning of a seed: these may not change unnoticed.
 #[test]
 fn draws_are_pinned() {
     let mut words = draws(3000);

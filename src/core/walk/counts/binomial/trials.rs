@@ -3,7 +3,7 @@
 use super::draws::Draws;
 use crate::stream::DRAWS_PER_BLOCK;
 
-/// How many of `n` uniform 64-bit words are below each of two thresholds.
+/// Number of `n` uniform 64-bit words that are below each of two thresholds.
 ///
 /// Sixteen bits of each are drawn, and the other 48 where those are equal to a threshold's.
 #[inline(always)]
@@ -31,7 +31,7 @@ pub(in crate::walk::counts) fn below_both(draws: &mut Draws, n: u64, thresholds:
     below
 }
 
-/// Adds those whose sixteen bits are equal to a threshold's, and that are below it.
+/// Adds the words whose sixteen bits are equal to a threshold's, and that are below it.
 #[cold]
 #[inline(never)]
 pub(super) fn complete(draws: &mut Draws, sixteens: &[u16], thresholds: [u64; 2], below: &mut [u64; 2]) {
@@ -46,7 +46,7 @@ pub(super) fn complete(draws: &mut Draws, sixteens: &[u16], thresholds: [u64; 2]
     }
 }
 
-/// Compares `n` uniform words with `p`, bit by bit: how many are below.
+/// Compares `n` uniform words with `p`, bit by bit; returns the number below.
 pub(super) fn by_bits(draws: &mut Draws, n: u64, p: u64) -> u64 {
     let (mut undecided, mut below, mut bits) = (n, 0, p);
     // Once the rest of `p` is zero, words equal so far are not below.

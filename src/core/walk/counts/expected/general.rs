@@ -5,11 +5,12 @@ use crate::network::Network;
 use crate::walk::counts::binomial::as_unit;
 use crate::walk::counts::shares::Shares;
 
-/// The shares of the exits, and room for what moves.
+/// The shares of the exits, and room for the moves.
 pub(super) struct GeneralFlow {
-    /// By constriction: the share of what has not taken an earlier exit of its void that takes this one.
+    /// By constriction: the share that takes it, among the particles that have not taken an earlier exit of
+    /// its void.
     shares: Vec<f64>,
-    /// By void: what is expected there after the step; nothing between two of them.
+    /// By void: expected number there after the step; 0 between two steps.
     pub next: Vec<f64>,
 }
 
@@ -19,14 +20,14 @@ impl GeneralFlow {
         Self { shares, next: vec![0.0; voids] }
     }
 
-    /// The shares of one void are others now.
+    /// Renews the shares of one void.
     pub fn set(&mut self, network: &Network, shares: &Shares, void: u32) {
         let exits = network.exits(void);
         let news = &shares.probability()[exits.clone()];
         self.shares[exits].iter_mut().zip(news).for_each(|(old, &p)| *old = as_unit(p));
     }
 
-    /// Moves what is expected in each void.
+    /// Moves the expected numbers in each void.
     pub fn step(
         &mut self,
         network: &Network,

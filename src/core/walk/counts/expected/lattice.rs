@@ -1,8 +1,9 @@
 //! The step of the expectation on the cubic lattice: layer by layer and row by row, in place, each void from
 //! the three that lead there.
 //!
-//! What leaves a void is known once its row is read, and a row needs besides only what leaves the row before
-//! it along y and the layer above it along z: a row and a layer of buffers, which stay in the first cache.
+//! The outflow of a void is known once its row is read, and a row needs besides only the outflow of the row
+//! before it along y and of the layer above it along z: a row and a layer of buffers, which stay in the first
+//! cache.
 
 use super::numbers::{Expected, NOTHING, retain};
 use crate::walk::Isa;
@@ -13,13 +14,13 @@ use crate::walk::counts::shares::Shares;
 pub(super) struct LatticeFlow {
     /// Voids along x and y.
     across: [usize; 2],
-    /// By void: the share that takes the first exit, and of the others the share that takes the second.
+    /// By void: the share that takes the first exit, and the share of the others that takes the second.
     shares: [Vec<f64>; 2],
     /// Voids without an open exit, ascending.
     dead_ends: Vec<u32>,
-    /// By void of a row: what leaves the row before it along y.
+    /// By void of a row: outflow of the row before it along y.
     along_y: Vec<f64>,
-    /// By void of a layer: what leaves the layer above it along z, and then what leaves it.
+    /// By void of a layer: outflow of the layer above it along z, and then its own.
     along_z: Vec<f64>,
     /// Instructions that it uses.
     pub isa: Isa,
@@ -41,7 +42,7 @@ impl LatticeFlow {
         }
     }
 
-    /// The shares of one void are others now.
+    /// Renews the shares of one void.
     pub fn set(&mut self, shares: &Shares, void: u32) {
         if !shares.leads_on(void as usize)
             && let Err(place) = self.dead_ends.binary_search(&void)
@@ -53,7 +54,7 @@ impl LatticeFlow {
         }
     }
 
-    /// Moves what is expected in each void.
+    /// Moves the expected numbers in each void.
     pub fn step(&mut self, expected: &mut Expected, holding: &mut Vec<u32>) {
         let Expected { moving, retained, sums, .. } = expected;
         for void in self.dead_ends.iter().map(|&void| void as usize) {
@@ -77,7 +78,7 @@ impl LatticeFlow {
         }
     }
 
-    /// Moves layer by layer; what leaves the last layer is in `along_z` then.
+    /// Moves layer by layer; `along_z` then holds the outflow of the last layer.
     #[inline(always)]
     fn layers(&mut self, moving: &mut [f64], mut step: impl FnMut(Row)) {
         let [nx, ny] = self.across;
@@ -89,7 +90,7 @@ impl LatticeFlow {
         for (here, (first, second)) in moving.chunks_exact_mut(plane).zip(shares) {
             let nothing_here = is_nothing(here);
             if nothing_here && nothing_above {
-                // What leaves it is as little as what leaves the layer above.
+                // Its outflow is as little as the outflow of the layer above.
                 continue;
             }
             nothing_above = nothing_here;
@@ -110,34 +111,34 @@ impl LatticeFlow {
 
 /// A row of a layer; all slices are as long as it.
 struct Row<'a> {
-    /// Whether it is the first of its layer: the row before it is the last, whose voids come later.
+    /// True if it is the first of its layer: the row before it is the last, whose voids come later.
     is_first: bool,
-    /// What is expected in its voids.
+    /// Expected numbers in its voids.
     here: &'a mut [f64],
     first: &'a [f64],
     second: &'a [f64],
-    /// What leaves the row before it along y, and then what leaves it.
+    /// Outflow of the row before it along y, and then its own.
     along_y: &'a mut [f64],
-    /// What leaves the layer above it along z, and then what leaves it.
+    /// Outflow of the layer above it along z, and then its own.
     along_z: &'a mut [f64],
 }
 
 impl Row<'_> {
-    /// What leaves its last void along x, which leads to its first.
+    /// Outflow of its last void along x, which leads to its first.
     #[inline(always)]
     fn round(&self) -> f64 {
         let last = self.here.len() - 1;
         leave(self.here[last], &self.first[last], &self.second[last])[0]
     }
 
-    /// Moves what is expected in its voids.
+    /// Moves the expected numbers in its voids.
     #[inline(always)]
     fn step(mut self) {
         let along_x = self.round();
         self.step_from(0, along_x);
     }
 
-    /// The same of its voids from one on, where so much leaves the void before that along x.
+    /// Moves the expectation in its voids from `begin` on, with this outflow of the void before along x.
     #[inline(always)]
     fn step_from(&mut self, begin: usize, mut along_x: f64) {
         let is_first = self.is_first;
@@ -151,31 +152,31 @@ impl Row<'_> {
     }
 }
 
-/// What leaves a void along x, along y and along z. The last open exit is certain: along z goes what is left.
+/// Outflow of a void along x, along y and along z. The last open exit is certain: the rest goes along z.
 #[inline(always)]
 fn leave(here: f64, first: &f64, second: &f64) -> [f64; 3] {
-    // What is no number is nothing, as in the vectors.
+    // NaN counts as nothing, as in the vectors.
     let n = if here >= NOTHING { here } else { 0.0 };
     let along_x = n * first;
     let along_y = (n - along_x) * second;
     [along_x, along_y, n - along_x - along_y]
 }
 
-/// Adds up what arrives in a void along z, x and y: from above, and then in the order of the voids that it
+/// Adds up the arrivals in a void along z, x and y: from above, and then in the order of the voids that it
 /// comes from, as on any network, but for a single row.
 #[inline(always)]
 fn arrive<T>(is_first: bool, [z, x, y]: [T; 3], add: impl Fn(T, T) -> T) -> T {
     if is_first { add(add(z, x), y) } else { add(add(z, y), x) }
 }
 
-/// Whether nothing is expected in any of these voids; many at a time without a branch for each.
+/// Tells if nothing is expected in any of these voids; many at a time without a branch for each.
 #[inline(always)]
 fn is_nothing(voids: &[f64]) -> bool {
     voids.chunks(64).all(|voids| voids.iter().fold(0, |bits, n| bits | n.to_bits()) == 0)
 }
 
-/// Rows by vectors. What leaves a void along x comes to the next by a shift within registers: a store that is
-/// read again one place further on would have to reach the cache first.
+/// Rows by vectors. The outflow of a void along x comes to the next by a shift within registers: a store that
+/// is read again one place further on would have to reach the cache first.
 #[cfg(target_arch = "x86_64")]
 mod vector {
     use std::arch::x86_64::*;
@@ -243,8 +244,8 @@ mod vector {
         }
     }
 
-    /// Moves four voids of a row at a time, from one on, where so much leaves the void before that along x;
-    /// up to which void, and what leaves the last of these along x.
+    /// Moves four voids of a row at a time, from one on, with this outflow of the void before along x;
+    /// returns the void reached, and the outflow of the last of these along x.
     #[target_feature(enable = "avx2,popcnt")]
     #[inline]
     fn by_four<const FIRST: bool>(row: &mut Row, begin: usize, along_x: f64) -> (usize, f64) {

@@ -1,7 +1,7 @@
 //! The expectation of the passive particles given the history of blocking: one f64 a void, no draw.
 //!
-//! Sums run in an order that hangs on nothing but the network, on one thread, so they are the same
-//! everywhere. Whole numbers for the tally are rounded from running sums, so that they add up.
+//! Sums run in an order fixed by the network alone, on one thread, so they are the same everywhere. Whole
+//! numbers for the tally are rounded from running sums, so that they add up.
 
 mod general;
 mod lattice;
@@ -21,7 +21,7 @@ pub(super) struct ExpectedFlow {
     by_network: ByNetwork,
     /// Voids that retain something, ascending.
     holding: Vec<u32>,
-    /// What they retain together.
+    /// Sum that they retain.
     rests: f64,
 }
 
@@ -56,12 +56,12 @@ impl ExpectedFlow {
         &self.holding
     }
 
-    /// What they retain together.
+    /// Sum that these voids retain.
     pub fn rests(&self) -> f64 {
         self.rests
     }
 
-    /// The shares of one void are others now.
+    /// Renews the shares of one void.
     pub fn set(&mut self, network: &Network, shares: &Shares, void: u32) {
         match &mut self.by_network {
             ByNetwork::General(flow) => flow.set(network, shares, void),
@@ -77,7 +77,7 @@ impl ExpectedFlow {
             ByNetwork::Lattice(flow) => flow.step(expected, &mut self.holding),
         }
         if self.holding.len() > known {
-            // Two runs, each of which rises: what was known, and what is new.
+            // Two runs, each rising: the voids known before, and the new ones.
             self.holding.sort();
         }
         self.rests = resting(&self.holding, expected);
@@ -88,7 +88,7 @@ impl ExpectedFlow {
     }
 }
 
-/// What these voids retain together.
+/// Sum that these voids retain.
 fn resting(holding: &[u32], expected: &Expected) -> f64 {
     holding.iter().map(|&void| expected.retained[void as usize]).sum()
 }

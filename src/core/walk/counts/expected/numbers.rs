@@ -18,7 +18,7 @@ pub struct Expected {
     pub sums: ExpectedSums,
 }
 
-/// Sums over the voids of what is expected of the passive particles, over the run so far.
+/// Sums over the voids of the expected passive particles, over the run so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExpectedSums {
@@ -61,8 +61,8 @@ impl Expected {
         network.start().iter().for_each(|&void| self.moving[void as usize] += each);
     }
 
-    /// Whether a whole particle and more is expected to move in voids that lead out: seen from the last
-    /// voids on, where the last ones are, so that few have to be looked at.
+    /// Tells if more than a whole particle is expected to move in voids that lead out: seen from the last
+    /// voids on, where the last particles are, so that few voids have to be looked at.
     pub(in crate::walk::counts) fn surely_moves(&self, leads_out: &[bool]) -> bool {
         let free = self.moving.iter().zip(leads_out).rev().filter(|(_, leads_out)| **leads_out);
         let mut sum = 0.0;
@@ -72,9 +72,9 @@ impl Expected {
         })
     }
 
-    /// Renews the whole numbers that the state counts, and gives those before and after. `holding` are the
-    /// voids that retain something, ascending, and what they retain together. With `trapped`, what moves
-    /// beside so many trapped particles is less than half a particle, and is counted as come to rest.
+    /// Renews the whole numbers that the state counts, and returns those before and after. `holding` are the
+    /// voids that retain something, ascending, with their sum. With `trapped`, the particles that move beside
+    /// this many trapped ones are less than half a particle, and are counted at rest.
     pub(in crate::walk::counts) fn count(
         &mut self,
         (holding, stranded): (&[u32], f64),
@@ -101,7 +101,7 @@ impl Expected {
                 }
                 last = upto;
             }
-            // What rounding left over, to the last void that retains something.
+            // The remainder of rounding goes to the last void that retains something.
             if let Some(&void) = holding.last() {
                 retained_in_voids[void as usize] += at_rest - last;
                 self.counted_retained[void as usize] += at_rest - last;
@@ -113,7 +113,7 @@ impl Expected {
     }
 }
 
-/// `n` more come to rest in a void, which is added to `holding` where they are the first.
+/// Adds `n` particles at rest in a void, which is added to `holding` if they are the first.
 pub(super) fn retain(void: usize, n: f64, retained: &mut [f64], holding: &mut Vec<u32>) {
     if retained[void] == 0.0 {
         holding.push(void as u32);

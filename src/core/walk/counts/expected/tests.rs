@@ -11,8 +11,8 @@ fn lattice(shape: [u32; 3]) -> Network {
     Network::cubic_from_diameters(shape, diameter, 1.0).unwrap()
 }
 
-/// Walks while ever more constrictions close, by one of the two steps: what is expected after every
-/// increment, and the voids that retain something.
+/// Walks while ever more constrictions close, by one of the two steps: the expectation after every increment,
+/// and the voids that retain something.
 fn walked(network: &Network, is_general: bool, isa: Isa) -> Vec<(Expected, Vec<u32>)> {
     let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
     let mut shares = Shares::new(network, Ways::Unblocked(&blocked));
@@ -30,7 +30,7 @@ fn walked(network: &Network, is_general: bool, isa: Isa) -> Vec<(Expected, Vec<u
         }
         flow.step(network, &shares, &mut expected);
         if let ByNetwork::General(flow) = &flow.by_network {
-            // It adds to what it finds there.
+            // It adds to the numbers that it finds there.
             assert!(flow.next.iter().all(|&n| n == 0.0));
         }
         all.push((expected.clone(), flow.holding.clone()));
@@ -69,7 +69,7 @@ fn both_steps_move_the_same() {
     }
 }
 
-/// Of a lattice with a single row along y the order in which three numbers are added may differ.
+/// A lattice with a single row along y may add three numbers in a different order.
 #[test]
 fn one_row_moves_the_same_to_rounding() {
     for shape in [[6, 1, 4], [1, 1, 5]] {
@@ -85,7 +85,7 @@ fn one_row_moves_the_same_to_rounding() {
 
 #[test]
 fn every_instruction_set_sums_to_the_same_bits() {
-    // Whole vectors and what is left over of eight and four, one row, one void across, one layer.
+    // Whole vectors and remainders of eight and four, one row, one void across, one layer.
     for shape in [[13, 7, 6], [1, 1, 5], [4, 1, 4], [12, 1, 3], [16, 2, 3], [31, 1, 4], [7, 3, 2], [3, 3, 1]]
     {
         let network = lattice(shape);
