@@ -376,11 +376,11 @@ mod tests {
 
     #[test]
     fn blocks_at_once_are_one_after_the_other() {
-        let (mut at_once, mut each) = (key(2, 5).lanes(), key(2, 5).lanes());
+        let (mut at_once, mut one_by_one) = (key(2, 5).lanes(), key(2, 5).lanes());
         for _ in 0..100 {
-            assert_eq!(at_once.next_blocks::<2>(), [each.next_block(), each.next_block()]);
-            assert_eq!(at_once.next_blocks::<1>(), [each.next_block()]);
-            assert_eq!(at_once.state, each.state);
+            assert_eq!(at_once.next_blocks::<2>(), [one_by_one.next_block(), one_by_one.next_block()]);
+            assert_eq!(at_once.next_blocks::<1>(), [one_by_one.next_block()]);
+            assert_eq!(at_once.state, one_by_one.state);
         }
     }
 
@@ -390,13 +390,13 @@ mod tests {
         if !is_x86_feature_detected!("avx2") {
             return;
         }
-        let (mut by_four, mut each) = (key(2, 5).lanes(), key(2, 5).lanes());
+        let (mut by_four, mut one_by_one) = (key(2, 5).lanes(), key(2, 5).lanes());
         for _ in 0..100 {
             let mut blocks = [[0; LANES]; 3];
             // SAFETY: the machine has AVX2.
             unsafe { by_four.next_blocks_avx2(&mut blocks) };
-            assert_eq!(blocks, [each.next_block(), each.next_block(), each.next_block()]);
-            assert_eq!(by_four.state, each.state);
+            assert_eq!(blocks, [one_by_one.next_block(), one_by_one.next_block(), one_by_one.next_block()]);
+            assert_eq!(by_four.state, one_by_one.state);
         }
     }
 

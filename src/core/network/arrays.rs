@@ -50,8 +50,8 @@ impl Network {
         let mut npz = Npz::open(bytes).map_err(whole)?;
         let known = npz.names().join(", ");
         let mut needed = |names: &[&'static str]| {
-            let found = npz.first(names).map_err(whole)?;
-            found.ok_or_else(|| whole(format!("has no array {}; it has {known}", names.join(" or "))))
+            let array = npz.first(names).map_err(whole)?;
+            array.ok_or_else(|| whole(format!("has no array {}; it has {known}", names.join(" or "))))
         };
         let conns = needed(CONNS)?;
         let (conns_name, conns) = (conns.0, pairs(conns).map_err(whole)?);

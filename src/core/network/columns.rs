@@ -219,10 +219,10 @@ impl NetworkColumns<'_> {
             conductance: conductance(c),
             rise: 0.0,
         };
-        let way = |from, to| Link { from, to, diameter: WIDE, conductance: mean, rise: 0.0 };
+        let open_link = |from, to| Link { from, to, diameter: WIDE, conductance: mean, rise: 0.0 };
         let mut links: Vec<Link> = self.conns.iter().enumerate().map(link).collect();
-        links.extend(self.inlets.iter().map(|&void| way(LinkEnd::Outside, LinkEnd::Void(void))));
-        links.extend(self.outlets.iter().map(|&void| way(LinkEnd::Void(void), LinkEnd::Outside)));
+        links.extend(self.inlets.iter().map(|&void| open_link(LinkEnd::Outside, LinkEnd::Void(void))));
+        links.extend(self.outlets.iter().map(|&void| open_link(LinkEnd::Void(void), LinkEnd::Outside)));
         let voids = LinkedVoids {
             layer: self.layers(),
             unit_mm: self.unit_mm,
@@ -260,15 +260,15 @@ impl NetworkColumns<'_> {
         }
         let from_outside = self.conns.iter().filter(|ends| ends[0] < 0).map(|ends| ends[1] as u32);
         let mut layer = vec![NO_LAYER; self.voids];
-        let mut found: Vec<u32> = self.inlets.iter().copied().chain(from_outside).collect();
-        found.retain(|&void| std::mem::replace(&mut layer[void as usize], 0) == NO_LAYER);
+        let mut reached: Vec<u32> = self.inlets.iter().copied().chain(from_outside).collect();
+        reached.retain(|&void| std::mem::replace(&mut layer[void as usize], 0) == NO_LAYER);
         let mut at = 0;
-        while let Some(&void) = found.get(at) {
+        while let Some(&void) = reached.get(at) {
             at += 1;
             for &other in &beside[begin[void as usize]..begin[void as usize + 1]] {
                 if layer[other as usize] == NO_LAYER {
                     layer[other as usize] = layer[void as usize] + 1;
-                    found.push(other);
+                    reached.push(other);
                 }
             }
         }
@@ -345,8 +345,8 @@ mod tests {
     #[test]
     fn constrictions_that_are_listed_twice_are_refused() {
         let refused = |conns: &[[i64; 2]], diameter_mm: &[f64], rule: ExitRule| {
-            let found = Network::from_columns(&NetworkColumns { conns, diameter_mm, rule, ..CHAIN });
-            found.is_err_and(|error| error.to_string().contains("listed twice"))
+            let result = Network::from_columns(&NetworkColumns { conns, diameter_mm, rule, ..CHAIN });
+            result.is_err_and(|error| error.to_string().contains("listed twice"))
         };
         let (there, back) = (CHAIN_DOWN, CHAIN_DOWN.map(|[a, b]| [b, a]));
         let (d, alike) = ([0.3, 0.2, 0.4], [0.3; 3]);

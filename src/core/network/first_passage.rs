@@ -38,8 +38,8 @@ pub struct FirstPassage {
 impl FirstPassage {
     /// Mean of both over the start nodes of the network: a particle starts on each with the same probability.
     pub fn from_start(&self, network: &Network) -> (f64, f64) {
-        let mean = |of: &[f64]| {
-            let sum: f64 = network.start().iter().map(|&void| of[void as usize]).sum();
+        let mean = |values: &[f64]| {
+            let sum: f64 = network.start().iter().map(|&void| values[void as usize]).sum();
             sum / network.start().len() as f64
         };
         (mean(&self.leaves), mean(&self.moves))
@@ -102,19 +102,20 @@ impl Network {
     fn upstream_of(&self, share: &[f64], marked: &mut [bool]) -> Vec<u32> {
         let (begin, entrances) = self.entrances();
         let upstream = self.upstream();
-        let mut found: Vec<u32> = (0..self.voids() as u32).filter(|&void| marked[void as usize]).collect();
+        let mut marked_voids: Vec<u32> =
+            (0..self.voids() as u32).filter(|&void| marked[void as usize]).collect();
         let mut next = 0;
-        while let Some(&void) = found.get(next) {
+        while let Some(&void) = marked_voids.get(next) {
             next += 1;
             for &entrance in &entrances[begin[void as usize] as usize..begin[void as usize + 1] as usize] {
                 let above = upstream[entrance as usize];
                 if share[entrance as usize] > 0.0 && !marked[above as usize] {
                     marked[above as usize] = true;
-                    found.push(above);
+                    marked_voids.push(above);
                 }
             }
         }
-        found
+        marked_voids
     }
 
     /// Approximate number of moves that a particle that fits everywhere makes until it leaves, comes to a
@@ -228,12 +229,12 @@ mod tests {
     /// ten thousand has its answer.
     #[test]
     fn an_answer_that_takes_too_long_is_given_up_in_words() {
-        let of = |narrow: f64| {
+        let passage = |narrow: f64| {
             let text = format!("from,to,diameter_mm\nstart,0,\n0,0,1\n0,end,{narrow}\n");
             let network = Network::from_csv(text.as_bytes(), "n.csv", 1.0).unwrap();
             network.first_passage(0.0, |_| false).map(|passage| passage.from_start(&network))
         };
-        let (leaves, moves) = of(0.01).unwrap();
+        let (leaves, moves) = passage(0.01).unwrap();
         assert!((leaves - 1.0).abs() < 1e-9 && (moves / 10_001.0 - 1.0).abs() < 1e-6, "{leaves} {moves}");
         // With as few sweeps as on a large network, so that the test is short.
         let text = "from,to,diameter_mm\nstart,0,\n0,0,1\n0,end,0.000001\n";
@@ -246,18 +247,18 @@ mod tests {
     /// of many; and ordinary lattices, closed loops and dead ends, which take few.
     #[test]
     fn narrow_ways_out_are_known_without_going_them() {
-        let of =
+        let moves =
             |text: &str| Network::from_csv(text.as_bytes(), "n.csv", 1.0).unwrap().moves_to_an_end(1 << 22);
         let head = "from,to,diameter_mm\nstart,0,\n";
-        let about = |found: f64, wanted: f64| (found / wanted - 1.0).abs() < 0.02;
-        assert!(about(of(&format!("{head}0,0,1\n0,end,0.001\n")), 1e6));
-        assert!(of(&format!("{head}0,0,1000\n0,end,0.001\n")) > 1e11);
-        assert!(about(of(&format!("{head}0,1,1\n1,2,1\n2,0,1\n2,end,0.001\n")), 3e6));
+        let about = |moves: f64, wanted: f64| (moves / wanted - 1.0).abs() < 0.02;
+        assert!(about(moves(&format!("{head}0,0,1\n0,end,0.001\n")), 1e6));
+        assert!(moves(&format!("{head}0,0,1000\n0,end,0.001\n")) > 1e11);
+        assert!(about(moves(&format!("{head}0,1,1\n1,2,1\n2,0,1\n2,end,0.001\n")), 3e6));
         // The way out hides in a void that is seldom seen and easily left.
-        assert!(about(of(&format!("{head}0,1,1\n1,0,1\n1,2,0.001\n2,0,1\n2,end,1\n")), 4e6));
-        assert!(of(&format!("{head}0,1,1\n1,0,1\n")) == 0.0);
-        assert!(of(&format!("{head}0,1,1\n0,end,1\n1,1,1\n")) <= 1.0);
-        assert!(of(&format!("{head}0,1,1\n1,2,1\n2,2,0\n")) == 2.0);
+        assert!(about(moves(&format!("{head}0,1,1\n1,0,1\n1,2,0.001\n2,0,1\n2,end,1\n")), 4e6));
+        assert!(moves(&format!("{head}0,1,1\n1,0,1\n")) == 0.0);
+        assert!(moves(&format!("{head}0,1,1\n0,end,1\n1,1,1\n")) <= 1.0);
+        assert!(moves(&format!("{head}0,1,1\n1,2,1\n2,2,0\n")) == 2.0);
         let lattice = Network::cubic_from_diameters([5, 4, 40], vec![0.5; 2400], 1.0).unwrap();
         assert!(about(lattice.moves_to_an_end(1 << 22), 120.0));
         let few = lattice.moves_to_an_end(0);

@@ -47,11 +47,10 @@ struct Passage {
     one: u32,
     /// The void beyond; the reservoir counts as a void, and so does the space behind the filter.
     other: u32,
-    /// The exit.
     exit: u32,
 }
 
-/// Sides of the filter that a void is connected to, neither by way of the other.
+/// Sides of the filter that a void is connected to, without passing the other side.
 #[derive(Clone, Copy, Default, PartialEq)]
 struct Meets {
     reservoir: bool,
@@ -245,17 +244,17 @@ impl Flow {
                 && (!is_passed || flow.part() >= clear)
                 && (!closely || flow.missing <= CLOSELY * flow.through)
         };
-        let mut found = self.find_pressures(network, &meets, CONVERGED);
-        if leads_through && (closely || found.is_err() || !tells(self, CLEAR)) {
-            if found.is_ok() {
+        let mut result = self.find_pressures(network, &meets, CONVERGED);
+        if leads_through && (closely || result.is_err() || !tells(self, CLEAR)) {
+            if result.is_ok() {
                 // If they come no closer in time, the present solution has to do.
                 let _ = self.find_pressures(network, &meets, CLOSEST);
             }
-            if (found.is_err() || !tells(self, CLEAR)) && self.eliminate(network, &meets) {
-                found = Ok(());
+            if (result.is_err() || !tells(self, CLEAR)) && self.eliminate(network, &meets) {
+                result = Ok(());
             }
         }
-        found?;
+        result?;
         let through = self.through;
         if leads_through && !tells(self, RESOLVED) {
             return Err(FlowError::Unresolved { off: self.missing / through.abs() });
@@ -269,12 +268,17 @@ impl Flow {
     /// Sides that each void is connected to by constrictions that conduct and are a way, and by other voids.
     fn meets(&self, is_way: impl Fn(&Passage) -> bool) -> Vec<Meets> {
         let outside = self.pressure.len() - 1;
-        let is_side = |of: &Passage| Some(of.other) == self.reservoir || of.other as usize == outside;
-        let ways = || self.passages.iter().filter(|of| self.open[of.exit as usize] > 0.0 && is_way(of));
-        let mut together = Together::of(outside);
-        ways().filter(|of| !is_side(of)).for_each(|of| together.join(of.one, of.other));
+        let is_side =
+            |passage: &Passage| Some(passage.other) == self.reservoir || passage.other as usize == outside;
+        let ways = || {
+            self.passages.iter().filter(|passage| self.open[passage.exit as usize] > 0.0 && is_way(passage))
+        };
+        let mut together = Together::new(outside);
+        ways()
+            .filter(|passage| !is_side(passage))
+            .for_each(|passage| together.join(passage.one, passage.other));
         let mut of_root = vec![Meets::default(); outside];
-        for passage in ways().filter(|of| is_side(of)) {
+        for passage in ways().filter(|passage| is_side(passage)) {
             let meets = &mut of_root[together.root(passage.one) as usize];
             meets.reservoir |= Some(passage.other) == self.reservoir;
             meets.end |= passage.other as usize == outside;
@@ -338,7 +342,7 @@ impl Flow {
         self.accuracy = if fit.residual <= 2.0 * asked { asked } else { fit.residual };
         self.noise = 0.0;
         let pressure = &self.pressure;
-        let fall = |of: &Passage| pressure[of.one as usize] - pressure[of.other as usize];
+        let fall = |passage: &Passage| pressure[passage.one as usize] - pressure[passage.other as usize];
         let falls: Vec<f64> = self.passages.iter().map(fall).collect();
         self.set_fluxes(network, &falls);
         Ok(())
@@ -358,21 +362,24 @@ impl Flow {
         }
         (nodes[reservoir as usize], nodes[meets.len()]) = (count, count + 1);
         let node = |void: u32| nodes[void as usize];
-        let links = self.conducting(meets).map(|(of, open)| (node(of.one), node(of.other), open));
-        let Some(found) = Eliminated::new(count as usize, links) else {
+        let links =
+            self.conducting(meets).map(|(passage, open)| (node(passage.one), node(passage.other), open));
+        let Some(eliminated) = Eliminated::new(count as usize, links) else {
             self.too_many = count as usize;
             return false;
         };
-        let fall = |of: &Passage| match meets[of.one as usize] == THROUGH {
-            true if self.open[of.exit as usize] > 0.0 => found.fall(node(of.one), node(of.other)),
+        let fall = |passage: &Passage| match meets[passage.one as usize] == THROUGH {
+            true if self.open[passage.exit as usize] > 0.0 => {
+                eliminated.fall(node(passage.one), node(passage.other))
+            }
             _ => 0.0,
         };
         let falls: Vec<f64> = self.passages.iter().map(fall).collect();
         for (void, _) in meets.iter().enumerate().filter(|&(_, &meets)| meets == THROUGH) {
-            self.pressure[void] = found.pressure[nodes[void] as usize];
+            self.pressure[void] = eliminated.pressure[nodes[void] as usize];
         }
         self.stand_still(meets, reservoir);
-        (self.missing, self.accuracy) = (ELIMINATED * found.conductance, 0.0);
+        (self.missing, self.accuracy) = (ELIMINATED * eliminated.conductance, 0.0);
         self.noise = self.missing;
         self.set_fluxes(network, &falls);
         true

@@ -74,11 +74,11 @@ impl Network {
             let down = graph.point_mm[void as usize][2] - origin + f64::from(copy) * z;
             libm::floor(down / spacing) as u32
         };
-        let each = || (0..copies).flat_map(|copy| (0..voids).map(move |void| (copy, void)));
+        let copied_voids = || (0..copies).flat_map(|copy| (0..voids).map(move |void| (copy, void)));
         let cube = unit * unit * unit;
         let linked = LinkedVoids {
-            layer: each().map(|(copy, void)| layer(copy, void)).collect(),
-            volume: each().map(|(_, void)| graph.volume_mm3[void as usize] / cube).collect(),
+            layer: copied_voids().map(|(copy, void)| layer(copy, void)).collect(),
+            volume: copied_voids().map(|(_, void)| graph.volume_mm3[void as usize] / cube).collect(),
             unit_mm: unit,
             rule: shape.rule,
             rho: shape.rho,
@@ -184,9 +184,9 @@ mod tests {
         assert_eq!(network.passages(), 3 * 120 + 12);
         let open: BitVec = BitVec::repeat(false, network.constrictions());
         let mut flow = Flow::new(&network);
-        let found = flow.solve(&network, &open).unwrap();
+        let solution = flow.solve(&network, &open).unwrap();
         let k = permeability_mm2(&graph, 2).unwrap();
-        assert!((found.k_mm2.unwrap() / k - 1.0).abs() < 1e-9);
+        assert!((solution.k_mm2.unwrap() / k - 1.0).abs() < 1e-9);
         flow.direct(&mut network);
         for void in 0..network.filter_voids() as u32 {
             let out: Vec<usize> = network.exits(void).filter(|&c| network.exit_weight(c) > 0.0).collect();

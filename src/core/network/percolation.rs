@@ -239,9 +239,14 @@ mod tests {
 
     #[test]
     fn shapes_and_realisations_have_streams_of_their_own() {
-        let of = |shape, seed, r| percolation_threshold(shape, seed, r).unwrap();
-        assert_eq!(of([6, 6, 6], 1, 1), of([6, 6, 6], 1, 1));
-        let all = [of([6, 6, 6], 1, 1), of([6, 6, 6], 1, 2), of([6, 6, 6], 2, 1), of([12, 3, 6], 1, 1)];
+        let threshold = |shape, seed, r| percolation_threshold(shape, seed, r).unwrap();
+        assert_eq!(threshold([6, 6, 6], 1, 1), threshold([6, 6, 6], 1, 1));
+        let all = [
+            threshold([6, 6, 6], 1, 1),
+            threshold([6, 6, 6], 1, 2),
+            threshold([6, 6, 6], 2, 1),
+            threshold([12, 3, 6], 1, 1),
+        ];
         for (i, a) in all.iter().enumerate() {
             assert!(all[..i].iter().all(|b| a != b), "{all:?}");
         }

@@ -247,11 +247,11 @@ mod tests {
             for closed in 2..9 {
                 let open = |c: usize| !(c * 7919 % 101).is_multiple_of(closed);
                 let those = || vec![(closed * 5 % lattice.voids()) as u32, lattice.voids() as u32 - 1];
-                let [led, expected] = [&lattice, &network].map(|of| of.leading_to(those(), open));
+                let [led, expected] = [&lattice, &network].map(|network| network.leading_to(those(), open));
                 assert_eq!(led, expected, "{shape:?}");
-                let [on_path, expected] = [&lattice, &network].map(|of| of.backbone_fraction(open));
+                let [on_path, expected] = [&lattice, &network].map(|network| network.backbone_fraction(open));
                 assert_eq!(on_path.to_bits(), expected.to_bits(), "{shape:?}");
-                let [to_end, expected_end] = [&lattice, &network].map(|of| of.leading_to_end(open));
+                let [to_end, expected_end] = [&lattice, &network].map(|network| network.leading_to_end(open));
                 assert_eq!(to_end, expected_end, "{shape:?}");
                 some += [&led, &to_end].into_iter().flatten().filter(|&&leads| leads).count();
             }

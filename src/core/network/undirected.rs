@@ -114,9 +114,9 @@ impl Network {
                 other => (twin[other as usize], twin[exit as usize]) = (exit, other),
             }
         }
-        let of = |link: u32| &links[link as usize];
+        let link_at = |link: u32| &links[link as usize];
         let weight = |&(from, to, link): &(u32, u32, u32)| {
-            let link = of(link);
+            let link = link_at(link);
             let forward = match link.from {
                 LinkEnd::Void(a) => a == from && to != reservoir,
                 LinkEnd::Outside => from == reservoir,
@@ -132,14 +132,14 @@ impl Network {
         let network = Self {
             exit_begin: begin,
             target: exits.iter().map(|&(_, to, _)| to).collect(),
-            diameter: exits.iter().map(|&(_, _, link)| of(link).diameter).collect(),
+            diameter: exits.iter().map(|&(_, _, link)| link_at(link).diameter).collect(),
             start: vec![reservoir],
             layer,
             unit_mm: voids.unit_mm,
             shape: None,
             undirected: Some(Box::new(Undirected {
                 twin,
-                conductance: exits.iter().map(|&(_, _, link)| of(link).conductance).collect(),
+                conductance: exits.iter().map(|&(_, _, link)| link_at(link).conductance).collect(),
                 weight: exits.iter().map(weight).collect(),
                 rule: voids.rule,
                 rho: voids.rho,

@@ -167,8 +167,8 @@ fn at_the_neck(ratio: f64, concentration: f64) -> f64 {
     if mean <= 0.0 {
         return 0.0;
     }
-    let of = |k: u32| exp(f64::from(k) * log(mean) - mean - lgamma(f64::from(k) + 1.0));
-    (1.0 - (0..others).map(of).sum::<f64>()).max(0.0)
+    let poisson = |k: u32| exp(f64::from(k) * log(mean) - mean - lgamma(f64::from(k) + 1.0));
+    (1.0 - (0..others).map(poisson).sum::<f64>()).max(0.0)
 }
 
 /// Particles of an arch over a constriction `ratio` times their size: R^2 + 1, at least 2.
@@ -323,15 +323,18 @@ mod tests {
     /// 1 - e^-m (1 + m) with m = 0.1312.
     #[test]
     fn a_suspension_is_saw_toothed_and_rises_where_it_is_dense() {
-        let of = |ratio, concentration| at_the_neck(ratio, concentration);
+        let chance = at_the_neck;
         for (ratio, wanted) in [(1.22, 0.12016), (1.23, 0.007888), (1.58, 0.03223), (1.59, 0.003072)] {
-            assert!((of(ratio, 0.047) / wanted - 1.0).abs() < 2e-3, "{ratio}: {}", of(ratio, 0.047));
+            assert!((chance(ratio, 0.047) / wanted - 1.0).abs() < 2e-3, "{ratio}: {}", chance(ratio, 0.047));
         }
         for ratios in [1.23, 2.0, 2.5, 2.9].windows(2) {
-            assert!(of(ratios[0], 0.2) < of(ratios[1], 0.2) && of(ratios[0], 0.6) < of(ratios[1], 0.6));
+            assert!(
+                chance(ratios[0], 0.2) < chance(ratios[1], 0.2)
+                    && chance(ratios[0], 0.6) < chance(ratios[1], 0.6)
+            );
         }
         // Too rare to leave anything of 1 less a sum.
-        assert_eq!(of(2.8, 0.001), 0.0);
+        assert_eq!(chance(2.8, 0.001), 0.0);
     }
 
     /// By hand: four others in a neck of R = 2 come with m^4 / 24, m = 12 times the concentration. At 0.0001

@@ -40,8 +40,13 @@ mod tests {
     #[test]
     fn bits_come_back_from_words_and_stand_in_them_in_order() {
         for len in [0, 1, 31, 32, 33, 63, 64, 65, 127, 128, 1000] {
-            let of = |is: fn(usize) -> bool| (0..len).map(is).collect::<BitVec>();
-            for bits in [of(|_| false), of(|_| true), of(|i| i % 3 == 1), of(|i| i * i % 7 < 3)] {
+            let bits_where = |is: fn(usize) -> bool| (0..len).map(is).collect::<BitVec>();
+            for bits in [
+                bits_where(|_| false),
+                bits_where(|_| true),
+                bits_where(|i| i % 3 == 1),
+                bits_where(|i| i * i % 7 < 3),
+            ] {
                 let words = to_words(&bits);
                 assert_eq!(words.len(), words_for(len));
                 for at in 0..64 * words.len() {

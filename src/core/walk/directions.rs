@@ -70,7 +70,7 @@ enum Passable<'a> {
 }
 
 impl<'a> Passable<'a> {
-    fn of(state: &'a State) -> Self {
+    fn new(state: &'a State) -> Self {
         match &state.openings {
             None => Self::Blocked(&state.blocked),
             Some(openings) => Self::Widths(&openings.widths),
@@ -209,7 +209,7 @@ impl Directions {
         let changes = state.changes();
         let is_due = self.is_due(network, state, state.increment, changes);
         if is_due {
-            self.solve(network, Passable::of(state), state.increment - 1, changes)?;
+            self.solve(network, Passable::new(state), state.increment - 1, changes)?;
             self.flow.direct(network);
         }
         Ok(is_due)
@@ -220,7 +220,7 @@ impl Directions {
         let changes = state.changes();
         if changes > self.changes_then {
             self.count(network, state, changes);
-            self.solve(network, Passable::of(state), state.increment, changes)?;
+            self.solve(network, Passable::new(state), state.increment, changes)?;
         }
         self.flow.direct(network);
         Ok(self.record)
@@ -234,7 +234,7 @@ impl Directions {
         increment: u64,
         changes: usize,
     ) -> Result<(), FlowError> {
-        let found = match passable {
+        let solution = match passable {
             Passable::Blocked(blocked) => self.flow.solve(network, blocked)?,
             Passable::Widths(widths) => {
                 let part = |(&width, &whole): (&f32, &f32)| {
@@ -246,7 +246,7 @@ impl Directions {
                 self.flow.solve_parts(network, &parts)?
             }
         };
-        let part = if self.clean > 0.0 { (found.conductance / self.clean).min(1.0) } else { 0.0 };
+        let part = if self.clean > 0.0 { (solution.conductance / self.clean).min(1.0) } else { 0.0 };
         self.record.solutions.push(FlowSolution { increment, k_over_k0: part, closed: self.since.1 });
         (self.solved_at, self.changes_then, self.since) = (increment, changes, (0, 0.0));
         Ok(())

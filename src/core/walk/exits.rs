@@ -14,7 +14,6 @@ use few::FewExits;
 /// Exits of one void, for draws.
 #[derive(Clone, Copy)]
 pub(super) struct VoidExits<'a> {
-    /// The void.
     pub void: u32,
     /// Threshold of each exit on the 64-bit scale.
     pub thresholds: &'a [u64],
@@ -167,7 +166,7 @@ pub(super) struct General {
     pub last_open: Vec<u32>,
     /// By void: its exits if few are open, in half a cache line.
     pub few: Vec<FewExits>,
-    /// By constriction: the void that it leads to and its width, beside each other.
+    /// By constriction: the void that it leads to and its width, next to each other.
     pub beyond: Vec<(u32, f32)>,
 }
 
@@ -273,11 +272,11 @@ impl ExitTable {
             let voids = 0..network.voids() as u32;
             return of_each(network, ways, voids, |exits| self.set(network, ways, exits));
         };
-        let each = |mut part: GeneralPart| {
+        let renew_part = |mut part: GeneralPart| {
             let voids = part.first_void..part.first_void + part.few.len() as u32;
             of_each(network, ways, voids, |exits| part.set(network, ways, exits));
         };
-        general.parts(network).into_par_iter().for_each(each);
+        general.parts(network).into_par_iter().for_each(renew_part);
     }
 
     pub(super) fn isa(&self) -> Isa {
@@ -348,13 +347,16 @@ impl GeneralPart<'_> {
     fn set(&mut self, network: &Network, ways: Ways, of_void: VoidExits) {
         let VoidExits { void, thresholds, last_open, waits } = of_void;
         let exits = network.exits(void);
-        let own = exits.start - self.first_exit..exits.end - self.first_exit;
+        let part = exits.start - self.first_exit..exits.end - self.first_exit;
         if let Ways::Openings(widths, _) = ways {
             let widths = &widths[exits.clone()];
-            self.beyond[own.clone()].iter_mut().zip(widths).for_each(|(beyond, &width)| beyond.1 = width);
+            self.beyond[part.clone()].iter_mut().zip(widths).for_each(|(beyond, &width)| beyond.1 = width);
         }
-        self.threshold[own.clone()].copy_from_slice(thresholds);
-        self.top[own].iter_mut().zip(thresholds).for_each(|(top, threshold)| *top = (threshold >> 48) as u16);
+        self.threshold[part.clone()].copy_from_slice(thresholds);
+        self.top[part]
+            .iter_mut()
+            .zip(thresholds)
+            .for_each(|(top, threshold)| *top = (threshold >> 48) as u16);
         let at = (void - self.first_void) as usize;
         self.few[at] = match last_open {
             Some(last) => FewExits::new(exits.start as u32, thresholds, last),

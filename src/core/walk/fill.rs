@@ -72,8 +72,8 @@ impl Drawing<'_> {
                 None => start(network, pairs, void),
                 Some(strata) => {
                     let nodes = network.start();
-                    let each = void.iter_mut().zip(&mut size_words).zip(pairs);
-                    for (place, ((void, size_word), pair)) in (place..).zip(each) {
+                    let particles = void.iter_mut().zip(&mut size_words).zip(pairs);
+                    for (place, ((void, size_word), pair)) in (place..).zip(particles) {
                         *void = nodes[strata.node(place, pair[0], nodes.len() as u64)];
                         *size_word = strata.size_word(place, pair[1]);
                     }
@@ -169,7 +169,7 @@ mod tests {
     ) -> Vec<(u32, f32)> {
         let (mut lanes, strata, nodes) = (key.lanes(), supply.strata(key.increment), network.start());
         let words: Vec<u64> = (0..count.div_ceil(4)).flat_map(|_| lanes.next_block()).collect();
-        let of = |(place, pair): (u64, &[u64; 2])| {
+        let particle = |(place, pair): (u64, &[u64; 2])| {
             let [first, second] = *pair;
             let (node, size_word) = match &strata {
                 None => (below(first, nodes.len() as u64) as usize, second),
@@ -179,7 +179,7 @@ mod tests {
             };
             (nodes[node], supply.diameter(size_word))
         };
-        (before..).zip(words.as_chunks::<2>().0).map(of).take(count).collect()
+        (before..).zip(words.as_chunks::<2>().0).map(particle).take(count).collect()
     }
 
     #[test]
@@ -201,8 +201,8 @@ mod tests {
                         diameter: &mut diameter,
                     };
                     let drawn = drawing.draw(isa);
-                    let found: Vec<_> = void.into_iter().zip(diameter).collect();
-                    assert_eq!(found, expected, "{isa:?} {count}");
+                    let particles: Vec<_> = void.into_iter().zip(diameter).collect();
+                    assert_eq!(particles, expected, "{isa:?} {count}");
                     let mass = expected.iter().fold(0.0, |mass, &(_, d)| mass + cube(d));
                     let passive = expected.iter().filter(|&&(_, d)| d <= passive_limit).count();
                     assert_eq!((drawn.mass, drawn.passive), (mass, passive as u32), "{isa:?} {count}");

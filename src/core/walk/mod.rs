@@ -247,7 +247,7 @@ impl<'a> Walk<'a> {
         let (mut directions, mut no_flow) = (None, None);
         if network.exit_rule().needs_flow() {
             match Directions::new(network.to_mut(), state) {
-                Ok(found) => directions = Some(found),
+                Ok(solved) => directions = Some(solved),
                 Err(error) => no_flow = Some(error),
             }
         }

@@ -147,12 +147,12 @@ impl Openings {
     /// Openings before the first increment of a run, on these constrictions. Blocked ones without an opening
     /// of their own are closed.
     pub(super) fn new(network: &Network, clogged: &Clogged) -> Self {
-        let of = |c: usize| match clogged.widths.get(c) {
+        let width_of = |c: usize| match clogged.widths.get(c) {
             Some(&width) => width,
             None if clogged.blocked[c] => 0.0,
             None => network.diameters()[c],
         };
-        Self { widths: (0..network.constrictions()).map(of).collect(), history: Vec::new() }
+        Self { widths: (0..network.constrictions()).map(width_of).collect(), history: Vec::new() }
     }
 
     /// Narrows the constriction of this exit after it stopped a particle of this size.

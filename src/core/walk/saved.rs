@@ -62,7 +62,7 @@ struct SavedNarrowings {
 }
 
 impl SavedNarrowings {
-    fn of(history: &[Narrowing]) -> Self {
+    fn new(history: &[Narrowing]) -> Self {
         Self {
             increment: history.iter().map(|n| n.increment).collect(),
             constriction: history.iter().map(|n| n.constriction).collect(),
@@ -88,13 +88,13 @@ impl SavedNarrowings {
             saved.read_exact("narrowed_before", increment.len())?,
             saved.read_exact("narrowed_after", increment.len())?,
         ];
-        let of = |at: usize| Narrowing {
+        let narrowing = |at: usize| Narrowing {
             increment: increment[at],
             constriction: constriction[at],
             before: before[at],
             after: after[at],
         };
-        let history = (0..increment.len()).map(of).collect();
+        let history = (0..increment.len()).map(narrowing).collect();
         Ok(Openings { widths: saved.read_exact("widths", exits)?, history })
     }
 }
@@ -124,7 +124,7 @@ enum PassiveKind {
 }
 
 impl PassiveKind {
-    fn of(passive: &Passive) -> Self {
+    fn new(passive: &Passive) -> Self {
         match passive {
             Passive::OneByOne => Self::OneByOne,
             Passive::Counts(_) => Self::Counts,
@@ -146,7 +146,7 @@ impl<'a> SavedState<'a> {
             run: state.run,
             increment: state.increment,
             finished: state.finished,
-            passive: PassiveKind::of(&state.passive),
+            passive: PassiveKind::new(&state.passive),
             passive_limit: finite(state.passive_limit),
             expected: state.passive.expected().map(|expected| expected.sums),
             tally: state.tally,
@@ -158,7 +158,7 @@ impl<'a> SavedState<'a> {
             blocked: to_words(&state.blocked),
             history_increment: state.history.iter().map(|b| b.increment).collect(),
             history_constriction: state.history.iter().map(|b| b.constriction).collect(),
-            narrowed: state.openings.as_ref().map(|openings| SavedNarrowings::of(&openings.history)),
+            narrowed: state.openings.as_ref().map(|openings| SavedNarrowings::new(&openings.history)),
         }
     }
 
@@ -214,18 +214,18 @@ impl State {
         let wrong = |what: &str| saved.corrupt(format!("{what} cannot be of this run"));
         let record: Record = saved.read_record("state")?;
         let forgery = Forgery { supply, increment: record.increment, tally: &record.tally };
-        let other = |found: String, expected: String| CheckpointError::OtherWalk {
+        let other = |walk: String, expected: String| CheckpointError::OtherWalk {
             file: saved.path().to_owned(),
-            found,
+            found: walk,
             expected,
         };
         let name = |seed: u64, run: u64, kind: &PassiveKind| {
             format!("seed {seed}, run {run}, passive particles {kind:?}")
         };
-        let found = name(record.seed, record.run, &record.passive);
-        let expected = name(self.seed, self.run, &PassiveKind::of(&self.passive));
-        if found != expected {
-            return Err(other(found, expected));
+        let saved_walk = name(record.seed, record.run, &record.passive);
+        let expected = name(self.seed, self.run, &PassiveKind::new(&self.passive));
+        if saved_walk != expected {
+            return Err(other(saved_walk, expected));
         }
         if record.constrictions != self.blocked.len() || record.passive_limit != finite(self.passive_limit) {
             return Err(CheckpointError::OtherNetwork { file: saved.path().to_owned() });
@@ -307,7 +307,7 @@ impl State {
         {
             return Err(wrong("sums"));
         }
-        forgery.of(self).map_or(Ok(()), |what| Err(wrong(what)))
+        forgery.fault(self).map_or(Ok(()), |what| Err(wrong(what)))
     }
 }
 

@@ -27,7 +27,7 @@ impl Forgery<'_> {
     }
 
     /// Finds an impossible number in a state whose columns have the right lengths and whose tally adds up.
-    pub fn of(&self, state: &State) -> Option<&'static str> {
+    pub fn fault(&self, state: &State) -> Option<&'static str> {
         let (tally, supply) = (self.tally, self.supply);
         let passive = supply.passive_inserted(self.increment);
         let inserting = self.increment < supply.increments();

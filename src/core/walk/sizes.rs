@@ -118,7 +118,7 @@ mod tests {
         assert_eq!(SizeClasses::logarithmic(2.0, 2.0, 64).upper(), [2.0]);
     }
 
-    /// Against the definition: at every bound, beside it, at every bucket's start, far out.
+    /// Comparison with the definition: at every bound, next to it, at every bucket's start, far out.
     #[test]
     fn the_guide_finds_the_class_by_definition() {
         for (smallest, largest, count) in [

@@ -88,7 +88,6 @@ impl Strata {
     }
 }
 
-/// The strata of one increment.
 pub(super) struct IncrementStrata<'a> {
     strata: &'a Strata,
     increment: u64,
@@ -114,9 +113,9 @@ impl IncrementStrata<'_> {
     #[inline]
     pub fn size_word(&self, m: u64, word: u64) -> u64 {
         let strata = self.strata;
-        let group = strata.within_increment.of(m, self.groups, 0);
+        let group = strata.within_increment.image(m, self.groups, 0);
         let stratum = group * strata.within_group.size
-            + strata.within_group.of(self.increment - 1, self.order, 1 + group);
+            + strata.within_group.image(self.increment - 1, self.order, 1 + group);
         let before = u128::from(stratum) * strata.width + u128::from(stratum.min(strata.longer));
         let width = strata.width + u128::from(stratum < strata.longer);
         (before + ((u128::from(word) * width) >> 64)) as u64
@@ -148,7 +147,7 @@ impl Permutation {
 
     /// The image of `element` under the permutation that `key` names among those of `words`.
     #[inline]
-    fn of(&self, element: u64, words: Words, key: u64) -> u64 {
+    fn image(&self, element: u64, words: Words, key: u64) -> u64 {
         let base = words.at(key);
         if self.size <= SHUFFLED as u64 {
             return self.shuffled(element, words, base);
@@ -206,7 +205,7 @@ mod tests {
         for size in [1, 2, 3, 4, 5, 7, 10, 99, 100, 101, 1000, 4099] {
             let permutation = Permutation::new(size);
             for key in 0..4 {
-                let images: BTreeSet<u64> = (0..size).map(|e| permutation.of(e, words(9), key)).collect();
+                let images: BTreeSet<u64> = (0..size).map(|e| permutation.image(e, words(9), key)).collect();
                 assert_eq!((images.len() as u64, images.last()), (size, Some(&(size - 1))), "{size}, {key}");
             }
         }
@@ -220,7 +219,7 @@ mod tests {
             let (permutation, keys) = (Permutation::new(size), 2_000 * size * size);
             let mut seen = vec![0u64; (size * size) as usize];
             for key in 0..keys {
-                let image = |e| permutation.of(e, words(key % 7), key);
+                let image = |e| permutation.image(e, words(key % 7), key);
                 seen[(image(0) * size + image(1)) as usize] += 1;
             }
             let expected = keys as f64 / (size * (size - 1)) as f64;

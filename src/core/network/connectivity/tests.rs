@@ -187,10 +187,10 @@ proptest! {
         let network = connected(shape, seed, &percent).unwrap();
         check_directed(&network, shape);
         let voids = network.voids() as f64;
-        let found = counts(&network);
+        let counted = counts(&network);
         for (k, share) in percent {
             // Rounding moves a number by one, the tolerance by one more.
-            prop_assert!((found[k as usize] as f64 - share / 100.0 * voids).abs() <= 2.0);
+            prop_assert!((counted[k as usize] as f64 - share / 100.0 * voids).abs() <= 2.0);
         }
     }
 }

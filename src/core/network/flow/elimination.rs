@@ -36,7 +36,7 @@ const TOGETHER: usize = 4;
 /// Parts of the pressure of one place that the pressures of later ones make up. Single precision is enough
 /// for an approximation.
 struct Parts {
-    of: u32,
+    place: u32,
     by: [u32; TOGETHER],
     part: [f32; TOGETHER],
 }
@@ -70,16 +70,16 @@ impl Factor {
 
     /// Eliminates these places, one after another, from the rest of the system.
     fn eliminate(&mut self, rest: &mut Rest, places: Range<u32>) {
-        let mut meeting = Meeting::of(self.row.len());
+        let mut meeting = Meeting::new(self.row.len());
         for place in places {
             let ground = rest.take(place, &mut meeting);
-            let found = &mut meeting.found[..];
+            let neighbours = &mut meeting.neighbours[..];
             // Most have few: loops over a known number end where a processor expects it.
             macro_rules! of_number {
                 ($($few:literal)*) => {
-                    match found.len() {
-                        $($few => self.take_few::<$few>(rest, place, ground, found),)*
-                        _ => self.take_many(rest, place, ground, found),
+                    match neighbours.len() {
+                        $($few => self.take_few::<$few>(rest, place, ground, neighbours),)*
+                        _ => self.take_many(rest, place, ground, neighbours),
                     }
                 };
             }
@@ -89,16 +89,22 @@ impl Factor {
 
     /// Eliminates a place with this many neighbours.
     #[inline(always)]
-    fn take_few<const N: usize>(&mut self, rest: &mut Rest, place: u32, ground: f64, found: &[(u32, f64)]) {
-        let found: &[(u32, f64); N] = found.try_into().expect("so many were found");
-        self.give_way(rest, place, ground, &sorted(found), &mut [0.0; N]);
+    fn take_few<const N: usize>(
+        &mut self,
+        rest: &mut Rest,
+        place: u32,
+        ground: f64,
+        neighbours: &[(u32, f64)],
+    ) {
+        let neighbours: &[(u32, f64); N] = neighbours.try_into().expect("so many were found");
+        self.give_way(rest, place, ground, &sorted(neighbours), &mut [0.0; N]);
     }
 
     /// Eliminates a place with any number of neighbours.
     #[inline(never)]
-    fn take_many(&mut self, rest: &mut Rest, place: u32, ground: f64, found: &mut [(u32, f64)]) {
-        found.sort_by_key(|&(_, conductance)| rising(conductance));
-        self.give_way(rest, place, ground, found, &mut vec![0.0; found.len()]);
+    fn take_many(&mut self, rest: &mut Rest, place: u32, ground: f64, neighbours: &mut [(u32, f64)]) {
+        neighbours.sort_by_key(|&(_, conductance)| rising(conductance));
+        self.give_way(rest, place, ground, neighbours, &mut vec![0.0; neighbours.len()]);
     }
 
     /// Joins the neighbours of a place, which are sorted, by a tree instead of it; `sums` has their number.
@@ -113,7 +119,7 @@ impl Factor {
         let pivot = Some(1.0 / (ground + all)).filter(|inverse| inverse.is_finite()).unwrap_or(0.0);
         self.pivot.push(pivot);
         for some in met.chunks(TOGETHER) {
-            let mut parts = Parts { of: place, by: [some[0].0; TOGETHER], part: [0.0; TOGETHER] };
+            let mut parts = Parts { place, by: [some[0].0; TOGETHER], part: [0.0; TOGETHER] };
             for (i, &(to, conductance)) in some.iter().enumerate() {
                 (parts.by[i], parts.part[i]) = (to, (conductance * pivot) as f32);
             }
@@ -135,14 +141,14 @@ impl Factor {
     /// Solves the factor, once down and once up; `scratch` has a number for each row.
     pub(super) fn solve(&self, residual: &[f64], scratch: &mut [f64], out: &mut [f64]) {
         scratch.iter_mut().zip(&self.row).for_each(|(value, &row)| *value = residual[row as usize]);
-        for Parts { of, by, part } in &self.parts {
-            let value = scratch[*of as usize];
+        for Parts { place, by, part } in &self.parts {
+            let value = scratch[*place as usize];
             by.iter().zip(part).for_each(|(&by, &part)| scratch[by as usize] += f64::from(part) * value);
         }
         scratch.iter_mut().zip(&self.pivot).for_each(|(value, pivot)| *value *= pivot);
-        for Parts { of, by, part } in self.parts.iter().rev() {
+        for Parts { place, by, part } in self.parts.iter().rev() {
             let [a, b, c, d] = std::array::from_fn(|i| f64::from(part[i]) * scratch[by[i] as usize]);
-            scratch[*of as usize] += (a + b) + (c + d);
+            scratch[*place as usize] += (a + b) + (c + d);
         }
         scratch.iter().zip(&self.row).for_each(|(value, &row)| out[row as usize] = *value);
     }
@@ -157,12 +163,12 @@ fn rising(conductance: f64) -> u64 {
 /// Neighbours in rising order of conductance; those that differ by a millionth in the order in which they
 /// were found.
 #[inline(always)]
-fn sorted<const N: usize>(found: &[(u32, f64); N]) -> [(u32, f64); N] {
+fn sorted<const N: usize>(neighbours: &[(u32, f64); N]) -> [(u32, f64); N] {
     // Compared as floats, for which all processors have fast instructions: no two keys are equal.
-    let key: [f64; N] = std::array::from_fn(|i| f64::from_bits(rising(found[i].1) << 32 | i as u64));
+    let key: [f64; N] = std::array::from_fn(|i| f64::from_bits(rising(neighbours[i].1) << 32 | i as u64));
     let mut sorted = [(0, 0.0); N];
     for i in 0..N {
-        sorted[key.iter().map(|&key_of| usize::from(key_of < key[i])).sum::<usize>()] = found[i];
+        sorted[key.iter().map(|&key_of| usize::from(key_of < key[i])).sum::<usize>()] = neighbours[i];
     }
     sorted
 }
@@ -315,10 +321,10 @@ mod tests {
         factor.eliminate(&mut rest, 0..STARS as u32);
         let mut sum = [[0.0; 4]; 4];
         let arm = |place: u32| (factor.row[place as usize] % 5 - 1) as usize;
-        let mut meeting = Meeting::of(5 * STARS);
+        let mut meeting = Meeting::new(5 * STARS);
         for from in STARS as u32..5 * STARS as u32 {
             rest.take(from, &mut meeting);
-            for &(to, conductance) in &meeting.found {
+            for &(to, conductance) in &meeting.neighbours {
                 sum[arm(from)][arm(to)] += conductance / STARS as f64;
             }
         }
@@ -347,17 +353,17 @@ mod tests {
     #[test]
     fn neighbours_are_sorted() {
         const CONDUCTANCES: [f64; 5] = [1e-300, 0.25, 0.25 * (1.0 + 1e-9), 0.75, 1.0];
-        let mut found: [(u32, f64); 5] = std::array::from_fn(|i| (i as u32, CONDUCTANCES[i]));
+        let mut neighbours: [(u32, f64); 5] = std::array::from_fn(|i| (i as u32, CONDUCTANCES[i]));
         // Every order by exchanges (Heap 1963).
         let (mut turns, mut at, mut orders) = ([0; 5], 0, 0);
         loop {
             let by_hand = {
-                let mut all = found.to_vec();
+                let mut all = neighbours.to_vec();
                 all.sort_by_key(|&(_, conductance)| rising(conductance));
                 all
             };
-            assert_eq!(sorted(&found), by_hand[..], "{found:?}");
-            assert_eq!([0, 3, 4].map(|i| sorted(&found)[i].0), [0, 3, 4]);
+            assert_eq!(sorted(&neighbours), by_hand[..], "{neighbours:?}");
+            assert_eq!([0, 3, 4].map(|i| sorted(&neighbours)[i].0), [0, 3, 4]);
             orders += 1;
             while at < 5 && turns[at] == at {
                 (turns[at], at) = (0, at + 1);
@@ -365,7 +371,7 @@ mod tests {
             if at == 5 {
                 break;
             }
-            found.swap(if at % 2 == 0 { 0 } else { turns[at] }, at);
+            neighbours.swap(if at % 2 == 0 { 0 } else { turns[at] }, at);
             (turns[at], at) = (turns[at] + 1, 0);
         }
         assert_eq!(orders, 120);
@@ -385,10 +391,10 @@ mod tests {
             let all: f64 = links.iter().map(|link| link.conductance).sum();
             assert!((factor.pivot[0] * (1.0 + all) - 1.0).abs() < 1e-14);
             // A tree of the star's conductances, and the part that leads on through the star's ground.
-            let (mut meeting, mut links_of_tree, mut ground) = (Meeting::of(many as usize + 1), 0, 0.0);
+            let (mut meeting, mut links_of_tree, mut ground) = (Meeting::new(many as usize + 1), 0, 0.0);
             for place in 1..=many {
                 ground += rest.take(place, &mut meeting) - 1.0;
-                links_of_tree += meeting.found.len() as u32;
+                links_of_tree += meeting.neighbours.len() as u32;
             }
             assert_eq!(links_of_tree, many.saturating_sub(1), "{many}");
             assert!((ground - all / (1.0 + all)).abs() < 1e-12, "{many}: {ground}");

@@ -108,11 +108,11 @@ impl Eliminated {
         }
         let mut pressure = vec![0.0; nodes + 2];
         pressure[nodes] = 1.0;
-        let mut found = Self { rows, turn, pressure, conductance };
+        let mut eliminated = Self { rows, turn, pressure, conductance };
         for node in order.into_iter().rev() {
-            found.put_back(node as usize);
+            eliminated.put_back(node as usize);
         }
-        Some(found)
+        Some(eliminated)
     }
 
     /// Finds the pressure of a node, and its falls, from those of its neighbours.
@@ -171,16 +171,16 @@ mod tests {
     fn a_bridge_has_the_falls_of_its_formula() {
         for [a, b, c, d, across] in [[1.0, 2.0, 3.0, 4.0, 5.0], [1.0, 2.0, 2.0, 4.0, 7.0]] {
             let links = [(2, 0, a), (2, 1, b), (0, 3, c), (1, 3, d), (0, 1, across)];
-            let found = Eliminated::new(2, links.into_iter()).unwrap();
+            let eliminated = Eliminated::new(2, links.into_iter()).unwrap();
             // Kirchhoff's two equations by Cramer's rule.
             let [[p, q], [r, s]] = [[a + c + across, -across], [-across, b + d + across]];
             let det = p * s - q * r;
             let exact = [(a * s - q * b) / det, (p * b - r * a) / det];
             for (void, exact) in exact.iter().enumerate() {
-                assert!((found.pressure[void] - exact).abs() < 1e-15, "{void}");
+                assert!((eliminated.pressure[void] - exact).abs() < 1e-15, "{void}");
             }
-            assert!((found.fall(0, 1) - (exact[0] - exact[1])).abs() < 1e-15);
-            assert!((found.conductance - a * (1.0 - exact[0]) - b * (1.0 - exact[1])).abs() < 1e-14);
+            assert!((eliminated.fall(0, 1) - (exact[0] - exact[1])).abs() < 1e-15);
+            assert!((eliminated.conductance - a * (1.0 - exact[0]) - b * (1.0 - exact[1])).abs() < 1e-14);
         }
     }
 
@@ -189,9 +189,9 @@ mod tests {
     #[test]
     fn a_flux_is_known_where_pressures_do_not_differ() {
         let links = [(2, 0, 1.0), (0, 1, 1e20), (1, 3, 1.0), (0, 3, 0.5)];
-        let found = Eliminated::new(2, links.into_iter()).unwrap();
-        assert_eq!(found.pressure[0], found.pressure[1]);
-        let flux = 1e20 * found.fall(0, 1);
+        let eliminated = Eliminated::new(2, links.into_iter()).unwrap();
+        assert_eq!(eliminated.pressure[0], eliminated.pressure[1]);
+        let flux = 1e20 * eliminated.fall(0, 1);
         assert!((flux - 0.4).abs() < 1e-15, "{flux}");
     }
 }

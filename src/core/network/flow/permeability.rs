@@ -17,7 +17,7 @@ pub fn permeability_mm2(graph: &VoidGraph, axis: usize) -> Result<f64, FlowError
     let voids = graph.voids();
     let links = || (0..graph.from.len()).filter(|&c| graph.conductance_mm3[c] > 0.0);
     // Pressures are known but for a constant: one void of each connected part is at 0.
-    let mut together = Together::of(voids);
+    let mut together = Together::new(voids);
     links().for_each(|c| together.join(graph.from[c], graph.to[c]));
     let root: Vec<u32> = (0..voids as u32).map(|void| together.root(void)).collect();
     let inside = |void: u32| root[void as usize] != void;

@@ -11,25 +11,25 @@ pub(super) struct Link {
 /// Places that meet one place, each once. Serves one place after another.
 pub(super) struct Meeting {
     /// With their conductances, in the order in which they were found.
-    pub found: Vec<(u32, f64)>,
-    /// By place: the place that it met last, and its position in `found` then.
+    pub neighbours: Vec<(u32, f64)>,
+    /// By place: the place that it met last, and its position in `neighbours` then.
     met: Vec<(u32, u32)>,
 }
 
 impl Meeting {
     /// No meetings yet, among this many places.
-    pub(super) fn of(places: usize) -> Self {
-        Self { found: Vec::new(), met: vec![(NONE, 0); places] }
+    pub(super) fn new(places: usize) -> Self {
+        Self { neighbours: Vec::new(), met: vec![(NONE, 0); places] }
     }
 
     /// Adds a conductance between a place and one that it meets.
     fn add(&mut self, place: u32, to: u32, conductance: f64) {
         let (met, at) = &mut self.met[to as usize];
         if *met == place {
-            self.found[*at as usize].1 += conductance;
+            self.neighbours[*at as usize].1 += conductance;
         } else {
-            (*met, *at) = (place, self.found.len() as u32);
-            self.found.push((to, conductance));
+            (*met, *at) = (place, self.neighbours.len() as u32);
+            self.neighbours.push((to, conductance));
         }
     }
 }
@@ -114,7 +114,7 @@ impl Rest {
 
     /// Removes a place: its neighbours go to `meeting`, and its conductance to known pressures is returned.
     pub(super) fn take(&mut self, place: u32, meeting: &mut Meeting) -> f64 {
-        meeting.found.clear();
+        meeting.neighbours.clear();
         let Head { conductance, to, ground, count, before } = self.head[place as usize];
         (0..count as usize).for_each(|i| meeting.add(place, to[i], f64::from(conductance[i])));
         let mut next = before;
@@ -146,9 +146,9 @@ mod tests {
         let mut rest = Rest::new(&order, &[0.0; 200], &links);
         let room = rest.handfuls.len();
         for _ in 0..20 {
-            let mut meeting = Meeting::of(200);
+            let mut meeting = Meeting::new(200);
             rest.take(0, &mut meeting);
-            assert_eq!(meeting.found.iter().map(|&(to, _)| to).sum::<u32>(), 199 * 100);
+            assert_eq!(meeting.neighbours.iter().map(|&(to, _)| to).sum::<u32>(), 199 * 100);
             (rest.head[0].count, rest.head[0].before) = (0, NONE);
             links.iter().for_each(|link| rest.join(link.one, link.other, link.conductance));
             assert_eq!(rest.handfuls.len(), room);
@@ -161,13 +161,13 @@ mod tests {
         let joined = [(0, 1, 1.0), (2, 0, 2.0), (0, 1, 4.0), (1, 2, 8.0), (1, 0, 16.0), (2, 0, 32.0)];
         let links = joined.map(|(one, other, conductance)| Link { one, other, conductance });
         let mut rest = Rest::new(&[0, 1, 2], &[0.5, 0.0, 0.0], &links);
-        let mut meeting = Meeting::of(3);
+        let mut meeting = Meeting::new(3);
         rest.hold(0, 0.25);
         assert_eq!(rest.take(0, &mut meeting), 0.75);
         // The first links that it was given follow those that came last.
-        meeting.found.sort_by_key(|found| found.0);
-        assert_eq!(meeting.found, [(1, 21.0), (2, 34.0)]);
+        meeting.neighbours.sort_by_key(|neighbour| neighbour.0);
+        assert_eq!(meeting.neighbours, [(1, 21.0), (2, 34.0)]);
         rest.take(1, &mut meeting);
-        assert_eq!(meeting.found, [(2, 8.0)]);
+        assert_eq!(meeting.neighbours, [(2, 8.0)]);
     }
 }

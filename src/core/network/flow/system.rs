@@ -291,7 +291,7 @@ mod tests {
     #[test]
     fn nothing_flows_from_a_void_to_itself() {
         const VOIDS: u32 = 500;
-        let of = |loops: bool| {
+        let solved = |loops: bool| {
             let system = System::new(
                 VOIDS as usize,
                 |_| true,
@@ -310,15 +310,15 @@ mod tests {
             system.solve(&mut pressure, VOIDS as usize, CONVERGED, &mut None).unwrap();
             pressure
         };
-        assert_eq!(of(true), of(false));
-        assert!(of(true).is_sorted_by(|above, below| above > below));
+        assert_eq!(solved(true), solved(false));
+        assert!(solved(true).is_sorted_by(|above, below| above > below));
     }
 
     /// A factor of a network that conducts elsewhere makes way for one that fits.
     #[test]
     fn a_factor_that_does_not_serve_is_replaced() {
         const SIDE: u32 = 40;
-        let of = |wide: u32, kept: &mut Option<Kept>| {
+        let solved = |wide: u32, kept: &mut Option<Kept>| {
             let system = System::new(
                 (SIDE * SIDE) as usize,
                 |_| true,
@@ -345,17 +345,18 @@ mod tests {
             assert!(fit.residual < 2.0 * CONVERGED, "{fit:?}");
             pressure
         };
-        let (mut own, mut other) = (None, None);
-        let pressure = of(0, &mut own);
-        of(1, &mut other);
-        for kept in [&mut own, &mut other] {
+        let (mut same, mut other) = (None, None);
+        let pressure = solved(0, &mut same);
+        solved(1, &mut other);
+        for kept in [&mut same, &mut other] {
             kept.as_mut().unwrap().closed = 7;
         }
-        // To the bit, since it begins anew where it began, and with the factor that it would have made.
-        assert_eq!(of(0, &mut other), pressure);
+        // Equal to the bit, since it starts again from the same pressures, with the factor that it would have
+        // made.
+        assert_eq!(solved(0, &mut other), pressure);
         assert_eq!(other.unwrap().closed, 0);
-        assert_eq!(of(0, &mut own), pressure);
-        assert_eq!(own.unwrap().closed, 7, "one that serves stays");
+        assert_eq!(solved(0, &mut same), pressure);
+        assert_eq!(same.unwrap().closed, 7, "one that serves stays");
     }
 
     /// Links that single precision rounds to 0 beside one dead end that conducts enormously: the voids that

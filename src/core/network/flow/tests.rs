@@ -92,7 +92,7 @@ fn next_to_nothing_is_solved_once_it_is_all_there_is() {
         let ends = |i: u32| if i < LONG { LinkEnd::Void(first + i) } else { LinkEnd::Outside };
         for i in 0..=LONG {
             let from = if i == 0 { LinkEnd::Outside } else { ends(i - 1) };
-            let conductance = conductance.map_or(1.0, |of| of(i));
+            let conductance = conductance.map_or(1.0, |law| law(i));
             links.push(Link { from, to: ends(i), diameter: 1.0, conductance, rise: 1.0 });
         }
     }
@@ -106,10 +106,10 @@ fn next_to_nothing_is_solved_once_it_is_all_there_is() {
     network.set_blocked(&mut blocked, inlet, true);
     // An accuracy of half a millionth of the flow before says nothing of the flow now; but it is not the old
     // one.
-    let found = flow.solve(&network, &blocked);
+    let solution = flow.solve(&network, &blocked);
     let exact = 1.0 / (0..=LONG).map(|i| 1.0 / small(i)).sum::<f64>();
     let through = flow.through;
-    assert!((through / exact - 1.0).abs() < 1e-6, "{through} for {exact}, {found:?}");
+    assert!((through / exact - 1.0).abs() < 1e-6, "{through} for {exact}, {solution:?}");
 }
 
 /// Parts that shrink a few at a time, solved with a factor that is kept: pressures agree with those found
@@ -119,10 +119,10 @@ fn parts_are_solved_as_afresh_and_forgotten() {
     let diameters = (0..3 * 10 * 10 * 10).map(|c| 1.0 + (c * 7919 % 100) as f32 / 100.0);
     let lattice = Network::cubic_from_diameters([10, 10, 10], diameters.collect(), 1.0).unwrap();
     let network = lattice.undirected_lattice(ExitRule::Flux, 0.1, 4.0).unwrap();
-    let is_like = |flow: &mut Flow, found: Permeability, solve: &dyn Fn(&mut Flow) -> Permeability| {
+    let is_like = |flow: &mut Flow, solution: Permeability, solve: &dyn Fn(&mut Flow) -> Permeability| {
         let mut afresh = Flow::new(&network);
         let anew = solve(&mut afresh);
-        assert!((found.conductance / anew.conductance - 1.0).abs() < 1e-7, "{found:?} {anew:?}");
+        assert!((solution.conductance / anew.conductance - 1.0).abs() < 1e-7, "{solution:?} {anew:?}");
         for (v, (kept, anew)) in flow.pressure.iter().zip(&afresh.pressure).enumerate() {
             assert!((kept - anew).abs() < 1e-7, "void {v}: {kept} for {anew}");
         }
@@ -139,9 +139,9 @@ fn parts_are_solved_as_afresh_and_forgotten() {
                 parts[twin] = part;
             }
         }
-        let found = flow.solve_parts(&network, &parts).unwrap();
+        let solution = flow.solve_parts(&network, &parts).unwrap();
         served += usize::from(flow.kept.as_ref().is_some_and(|kept| kept.closed > 0));
-        is_like(&mut flow, found, &|flow| flow.solve_parts(&network, &parts).unwrap());
+        is_like(&mut flow, solution, &|flow| flow.solve_parts(&network, &parts).unwrap());
     }
     assert!(served > 3, "{served}");
     let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
@@ -150,8 +150,8 @@ fn parts_are_solved_as_afresh_and_forgotten() {
             network.set_blocked(&mut blocked, c, every == 50);
         });
         flow.solve_parts(&network, &parts).unwrap();
-        let found = flow.solve(&network, &blocked).unwrap();
-        is_like(&mut flow, found, &|flow| flow.solve(&network, &blocked).unwrap());
+        let solution = flow.solve(&network, &blocked).unwrap();
+        is_like(&mut flow, solution, &|flow| flow.solve(&network, &blocked).unwrap());
         for c in 0..network.constrictions() {
             let rho = if blocked[c] { 0.1 } else { 1.0 };
             assert_eq!(flow.open[c], rho * whole(&network, c), "{every} {c}");

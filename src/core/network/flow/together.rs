@@ -9,7 +9,7 @@ pub(super) struct Together {
 
 impl Together {
     /// Groups of one: this many members, each by itself.
-    pub(super) fn of(members: usize) -> Self {
+    pub(super) fn new(members: usize) -> Self {
         Self { towards: (0..members as u32).collect() }
     }
 
@@ -40,7 +40,7 @@ mod tests {
 
     #[test]
     fn what_is_joined_has_one_root() {
-        let mut together = Together::of(9);
+        let mut together = Together::new(9);
         for (one, other) in [(8, 3), (3, 5), (5, 8), (2, 7), (7, 4), (6, 4)] {
             together.join(one, other);
         }

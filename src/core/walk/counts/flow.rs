@@ -295,12 +295,13 @@ impl Worker {
                 }
             }
             for void in bits(occupied & !shut & of_three & !crowded).map(|bit| first + 64 * word + bit) {
-                let (n, way, exit) = (counts[void % 64], shares.way(void), network.exits(void as u32).start);
+                let (n, route, exit) =
+                    (counts[void % 64], shares.route(void), network.exits(void as u32).start);
                 let thresholds = || shares.thresholds_of_three(exit);
                 let [mut to_first, mut to_second] =
                     few.below_both(&mut draws, n, shares.tops(void), thresholds);
-                to_first = if matches!(way, Way::First) { n } else { to_first };
-                to_second = if matches!(way, Way::First | Way::Second) { n } else { to_second };
+                to_first = if matches!(route, Way::First) { n } else { to_first };
+                to_second = if matches!(route, Way::First | Way::Second) { n } else { to_second };
                 arrive(exit, to_first);
                 arrive(exit + 1, to_second - to_first);
                 arrive(exit + 2, n - to_second);
@@ -328,8 +329,8 @@ impl Worker {
 /// through, the contents of the next void need no guess.
 #[inline(always)]
 fn occupied_and_crowded(counts: &[u64]) -> [u64; 2] {
-    let of = |(i, &n): (usize, &u64)| [u64::from(n > 0) << i, u64::from(n > FEW) << i];
-    counts.iter().enumerate().map(of).fold([0; 2], |all, one| [all[0] | one[0], all[1] | one[1]])
+    let bit = |(i, &n): (usize, &u64)| [u64::from(n > 0) << i, u64::from(n > FEW) << i];
+    counts.iter().enumerate().map(bit).fold([0; 2], |all, one| [all[0] | one[0], all[1] | one[1]])
 }
 
 /// The places of the ones in a word, from the lowest on.

@@ -31,7 +31,7 @@ pub(in crate::walk) struct Shares {
     /// By constriction: number of exits to the next open one of its void; no open one is passed over.
     on: Vec<u8>,
     /// By void.
-    way: Vec<Way>,
+    route: Vec<Way>,
     /// A bit for each void without an open exit.
     shut: Vec<u64>,
     /// A bit for each void that has three exits.
@@ -53,7 +53,7 @@ impl Shares {
         Self {
             probability: vec![0; network.constrictions()],
             on: vec![1; network.constrictions()],
-            way: vec![Way::None; network.voids()],
+            route: vec![Way::None; network.voids()],
             shut: vec![0; network.voids().div_ceil(64)],
             of_three: vec![0; network.voids().div_ceil(64)],
             tops: vec![[0; 2]; network.voids()],
@@ -89,7 +89,7 @@ impl Shares {
             *to_next = on;
             on = if *probability == 0 { on.saturating_add(1) } else { 1 };
         }
-        self.way[void as usize] = match last {
+        self.route[void as usize] = match last {
             None if waits => Way::Wait,
             None => Way::None,
             Some(_) if exits.len() != 3 => Way::Other,
@@ -139,8 +139,8 @@ impl Shares {
 
     /// Way that the particles of a void go.
     #[inline(always)]
-    pub fn way(&self, void: usize) -> Way {
-        self.way[void]
+    pub fn route(&self, void: usize) -> Way {
+        self.route[void]
     }
 
     /// The upper sixteen bits of the thresholds of a void that has three exits.
@@ -157,13 +157,13 @@ impl Shares {
 
     /// Tells if the particles of a void without open exits stay there until the flow is solved again.
     pub fn waits(&self, void: usize) -> bool {
-        self.way[void] == Way::Wait
+        self.route[void] == Way::Wait
     }
 
     /// Tells if a void has an open exit.
     #[inline]
     pub fn leads_on(&self, void: usize) -> bool {
-        !matches!(self.way[void], Way::None | Way::Wait)
+        !matches!(self.route[void], Way::None | Way::Wait)
     }
 }
 
@@ -173,7 +173,7 @@ mod tests {
     use crate::network::{ExitRule, Link, LinkEnd, LinkedVoids};
     use bitvec::vec::BitVec;
 
-    fn of(diameters: [f32; 3], closed: [bool; 3]) -> (Vec<u64>, bool) {
+    fn shares_of(diameters: [f32; 3], closed: [bool; 3]) -> (Vec<u64>, bool) {
         let network = Network::cubic_from_diameters([1, 1, 1], diameters.to_vec(), 1.0).unwrap();
         let blocked: BitVec = closed.into_iter().collect();
         let shares = Shares::new(&network, Ways::Unblocked(&blocked));
@@ -182,15 +182,15 @@ mod tests {
 
     #[test]
     fn probabilities_are_conditional_and_the_last_open_exit_is_certain() {
-        let (probability, on) = of([1.0, 1.0, f32::sqrt(2.0)], [false; 3]);
+        let (probability, on) = shares_of([1.0, 1.0, f32::sqrt(2.0)], [false; 3]);
         assert!(on && probability[2] == CERTAIN);
         assert!((probability[0] as f64 / 2f64.powi(62) - 1.0).abs() < 1e-6);
         assert!((probability[1] as f64 / 2f64.powi(64) - 1.0 / 3.0).abs() < 1e-6);
-        assert_eq!(of([1.0; 3], [false, true, true]).0, [CERTAIN, 0, 0]);
-        assert_eq!(of([1.0; 3], [true, false, true]).0, [0, CERTAIN, 0]);
-        assert_eq!(of([1.0; 3], [false, true, false]).0[..2], [1 << 63, 0]);
-        assert!(!of([1.0; 3], [true; 3]).1);
-        assert!(!of([0.0; 3], [false; 3]).1);
+        assert_eq!(shares_of([1.0; 3], [false, true, true]).0, [CERTAIN, 0, 0]);
+        assert_eq!(shares_of([1.0; 3], [true, false, true]).0, [0, CERTAIN, 0]);
+        assert_eq!(shares_of([1.0; 3], [false, true, false]).0[..2], [1 << 63, 0]);
+        assert!(!shares_of([1.0; 3], [true; 3]).1);
+        assert!(!shares_of([0.0; 3], [false; 3]).1);
     }
 
     /// Up to the last exit the thresholds agree with the walk one by one, to a unit; the value beside a
@@ -206,9 +206,9 @@ mod tests {
             let [to_first, to_second] = shares.thresholds_of_three(0);
             assert_eq!(to_first, shares.probability[0]);
             assert_eq!(shares.tops(0), [to_first, to_second].map(|t| (t >> 48) as u16));
-            assert_eq!(shares.way[0] == Way::First, shares.probability[0] == CERTAIN, "{d:?}");
-            assert_eq!(shares.way[0] == Way::Second, shares.probability[1] == CERTAIN, "{d:?}");
-            if shares.way[0] == Way::Three {
+            assert_eq!(shares.route[0] == Way::First, shares.probability[0] == CERTAIN, "{d:?}");
+            assert_eq!(shares.route[0] == Way::Second, shares.probability[1] == CERTAIN, "{d:?}");
+            if shares.route[0] == Way::Three {
                 assert!(to_second >= to_first, "{d:?}");
             }
         }
@@ -264,7 +264,7 @@ mod tests {
         assert_eq!(open.shut_and_of_three(0), [0, u64::MAX]);
         assert_eq!(open.shut_and_of_three(1), [0, 0b11_1111]);
         let mut shares = Shares::new(&network, Ways::Unblocked(&blocked));
-        for (close, way, shut) in
+        for (close, route, shut) in
             [([2], Way::Second, 0), ([1], Way::First, 0), ([0], Way::None, 0b1_0000), ([0], Way::First, 0)]
         {
             for exit in close {
@@ -272,20 +272,20 @@ mod tests {
                 blocked.set(3 * 68 + exit, !is_closed);
             }
             exits::of_each(&network, Ways::Unblocked(&blocked), [68], |exits| shares.set(&network, exits));
-            assert_eq!((shares.way(68), shares.shut_and_of_three(1)), (way, [shut, 0b11_1111]));
+            assert_eq!((shares.route(68), shares.shut_and_of_three(1)), (route, [shut, 0b11_1111]));
             let tops = shares.thresholds_of_three(3 * 68).map(|t| (t >> 48) as u16);
             assert_eq!((shares.tops(68), shares.tops(67)), (tops, open.tops(67)));
         }
         blocked.set(3 * 68 + 1, false);
         blocked.set(3 * 68 + 2, false);
         exits::of_each(&network, Ways::Unblocked(&blocked), [68], |exits| shares.set(&network, exits));
-        assert_eq!((shares.way(68), shares.tops(68)), (Way::Three, open.tops(68)));
+        assert_eq!((shares.route(68), shares.tops(68)), (Way::Three, open.tops(68)));
     }
 
     /// An exit with 1e24 times the area leaves the others possible.
     #[test]
     fn a_giant_is_not_certain() {
-        assert_eq!(of([1e12, 1.0, 1.0], [false; 3]).0[0], CERTAIN - 1);
-        assert_eq!(of([1e12, 1.0, 1.0], [true, false, false]).0[1], 1 << 63);
+        assert_eq!(shares_of([1e12, 1.0, 1.0], [false; 3]).0[0], CERTAIN - 1);
+        assert_eq!(shares_of([1e12, 1.0, 1.0], [true, false, false]).0[1], 1 << 63);
     }
 }

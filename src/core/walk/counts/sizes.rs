@@ -70,8 +70,8 @@ impl<'a> PassiveSizes<'a> {
         self.sampler.part(from..self.words[class]).largest_of(n, draws.word())
     }
 
-    /// Raises the expected number of particles from `before` to `after`, rounded class by class such that
-    /// the sum stays exact.
+    /// Raises the expected number of particles from `before` to `after`, rounded class by class so that the
+    /// sum stays exact.
     pub fn expect(&self, before: u64, after: u64, into: &mut SizeCounts) {
         if before == after {
             return;
@@ -214,7 +214,7 @@ mod tests {
         assert_eq!(grown.number, at_once.number);
     }
 
-    /// Against the division, at halves and beside them too, and on both sides of where it is not divided.
+    /// Comparison with the division, at halves and next to them, and on both sides of the limit of division.
     #[test]
     fn rounded_products_are_those_of_the_division() {
         let by_division = |count: u64, words: u128, all: u128| {
@@ -232,8 +232,8 @@ mod tests {
                 let drawn = (0..20).map(|at| words.word() >> (3 * at));
                 let edges = [0, 1, 2, 3, 999, 1 << 32, NEARLY_EXACT - 1, NEARLY_EXACT, u64::MAX];
                 for count in edges.into_iter().chain(drawn) {
-                    let found = scaled(count, part, all, part as f64 / all as f64);
-                    assert_eq!(found, by_division(count, part, all), "{count} {part} {all}");
+                    let rounded = scaled(count, part, all, part as f64 / all as f64);
+                    assert_eq!(rounded, by_division(count, part, all), "{count} {part} {all}");
                     compared += 1;
                 }
             }

@@ -61,11 +61,11 @@ fn expectation(network: &Network, history: &[Blocking], inserted: &[u64], increm
 
 /// Chi-square of counts against expectations of independent particles, each unlikely to be in any one cell,
 /// as a z score.
-fn z_score(found: &[u64], expected: &[f64]) -> f64 {
+fn z_score(observed: &[u64], expected: &[f64]) -> f64 {
     let (mut square, mut cells, mut e, mut f) = (0.0, 0.0, 0.0, 0.0);
-    for (&found, &expected) in found.iter().zip(expected) {
+    for (&observed, &expected) in observed.iter().zip(expected) {
         e += expected;
-        f += found as f64;
+        f += observed as f64;
         if e >= 20.0 {
             square += (f - e) * (f - e) / e;
             cells += 1.0;

@@ -2,7 +2,7 @@ use super::few::FEW_EXITS;
 use super::*;
 use bitvec::prelude::*;
 
-fn of(diameters: [f32; 3], blocked: [bool; 3]) -> (Vec<u64>, Option<usize>) {
+fn thresholds_of(diameters: [f32; 3], blocked: [bool; 3]) -> (Vec<u64>, Option<usize>) {
     let network = Network::cubic_from_diameters([1, 1, 1], diameters.to_vec(), 1.0).unwrap();
     let blocked: BitVec = blocked.into_iter().collect();
     let mut out = Vec::new();
@@ -12,7 +12,7 @@ fn of(diameters: [f32; 3], blocked: [bool; 3]) -> (Vec<u64>, Option<usize>) {
 
 #[test]
 fn widths_are_areas() {
-    let (t, last) = of([1.0, 1.0, f32::sqrt(2.0)], [false; 3]);
+    let (t, last) = thresholds_of([1.0, 1.0, f32::sqrt(2.0)], [false; 3]);
     assert_eq!(last, Some(2));
     assert!((t[0] as f64 / TWO_TO_64 - 0.25).abs() < 1e-7);
     assert!((t[1] as f64 / TWO_TO_64 - 0.5).abs() < 1e-7);
@@ -20,10 +20,10 @@ fn widths_are_areas() {
 
 #[test]
 fn a_closed_exit_has_no_width() {
-    assert_eq!(of([0.0, 1.0, 1.0], [false; 3]).0[0], 0);
-    assert_eq!(of([1.0, 1.0, 1.0], [true, true, false]), (vec![0, 0, u64::MAX], Some(2)));
-    assert_eq!(of([1.0, 1.0, 1.0], [false, true, true]), (vec![u64::MAX; 3], Some(0)));
-    assert_eq!(of([0.0, 1.0, 1.0], [false, true, true]).1, None);
+    assert_eq!(thresholds_of([0.0, 1.0, 1.0], [false; 3]).0[0], 0);
+    assert_eq!(thresholds_of([1.0, 1.0, 1.0], [true, true, false]), (vec![0, 0, u64::MAX], Some(2)));
+    assert_eq!(thresholds_of([1.0, 1.0, 1.0], [false, true, true]), (vec![u64::MAX; 3], Some(0)));
+    assert_eq!(thresholds_of([0.0, 1.0, 1.0], [false, true, true]).1, None);
 }
 
 /// Exits of very different widths, any of them blocked: a plain word tells if a void has no way out.
@@ -34,7 +34,7 @@ fn a_word_tells_whether_an_exit_is_open() {
         let diameters = [0, 1, 2].map(|exit| [0.0, 1e-4, 1.0, 1e4][widths / 4usize.pow(exit) % 4]);
         for blocked in 0..8 {
             let blocked = [0, 1, 2].map(|exit| blocked >> exit & 1 == 1);
-            let (thresholds, last_open) = of(diameters, blocked);
+            let (thresholds, last_open) = thresholds_of(diameters, blocked);
             let mut lattice = Lattice::new(1, 1, 1, 0);
             lattice.set_plain(0, &thresholds, last_open);
             assert_eq!(
@@ -59,12 +59,12 @@ fn few_exits_are_chosen_as_by_the_definition() {
     };
     for _ in 0..300 {
         let exits = 1 + next() % 14;
-        let of = |next: u64| match next % 5 {
+        let weight_by = |next: u64| match next % 5 {
             0 | 1 => 0.0,
             2 => 1e-9,
             _ => (next % 97) as f64,
         };
-        let weight: Vec<f64> = (0..exits).map(|_| of(next())).collect();
+        let weight: Vec<f64> = (0..exits).map(|_| weight_by(next())).collect();
         let Some(last) = weight.iter().rposition(|&w| w > 0.0) else { continue };
         let total: f64 = weight.iter().sum();
         let mut sum = 0.0;
@@ -162,11 +162,11 @@ fn exits_beyond_a_byte_are_not_few() {
 /// Once the exit with nearly all the area is blocked, the others keep their exact ratio.
 #[test]
 fn nothing_is_left_of_a_blocked_giant() {
-    let (giant, _) = of([1e6, 1.0, 1.0], [false; 3]);
+    let (giant, _) = thresholds_of([1e6, 1.0, 1.0], [false; 3]);
     assert!(((u64::MAX - giant[0]) as f64 / TWO_TO_64 / 2e-12 - 1.0).abs() < 1e-3);
-    assert_eq!(of([1e6, 1.0, 1.0], [true, false, false]).0[1], 1 << 63);
+    assert_eq!(thresholds_of([1e6, 1.0, 1.0], [true, false, false]).0[1], 1 << 63);
     for scale in [1e-6, 1e6] {
-        let (t, last) = of([scale, 1.0, scale], [false; 3]);
+        let (t, last) = thresholds_of([scale, 1.0, scale], [false; 3]);
         assert!(t[0] <= t[1] && last == Some(2));
     }
 }

@@ -46,7 +46,7 @@ impl<'a> Jams<'a> {
     /// Jam of the particle at place `j` in this exit, which it fits; `rank` particles before it still move.
     /// `None` if it passes.
     #[inline]
-    fn of(&self, j: usize, (exit, width): (u32, f32), d: f32, rank: usize) -> Option<Jam> {
+    fn jam(&self, j: usize, (exit, width): (u32, f32), d: f32, rank: usize) -> Option<Jam> {
         let draw = draw16(&self.block, j % DRAWS_PER_BLOCK);
         if d * self.arching.reach()[Arching::class_of(draw)] <= width {
             return None;
@@ -119,7 +119,7 @@ fn step_all(
                 events.stopped.push((exit, d));
                 continue;
             }
-            let jam = jams.as_ref().and_then(|jams| jams.of(j, (exit, width), d, kept));
+            let jam = jams.as_ref().and_then(|jams| jams.jam(j, (exit, width), d, kept));
             if let Some(jam) = jam {
                 events.jams.push(jam);
                 continue;

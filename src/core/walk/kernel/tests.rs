@@ -159,8 +159,8 @@ proptest! {
             let reading = Reading::Jamming(law);
             let expected = by_definition(&scene, key(seed), reading, &void, &diameter);
             for isa in available() {
-                let found = after(&scene, key(seed), (isa, reading), &void, &diameter);
-                prop_assert_eq!(&found, &expected, "{:?} {}", isa, law);
+                let result = after(&scene, key(seed), (isa, reading), &void, &diameter);
+                prop_assert_eq!(&result, &expected, "{:?} {}", isa, law);
             }
         }
     }

@@ -109,7 +109,7 @@ fn by_other(draws: &mut Draws, n: u64, p: u64) -> u64 {
         }
         sum
     } else if n as f64 * as_unit(rarer(p)) >= LEAST_MEAN {
-        turned(n, p, Hat::of(n, p).draw(draws))
+        turned(n, p, Hat::new(n, p).draw(draws))
     } else {
         turned(n, p, by_inversion(draws, n, as_unit(rarer(p))))
     }

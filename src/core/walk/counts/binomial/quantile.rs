@@ -22,7 +22,6 @@ pub(super) const LEAST_VARIANCE: f64 = 6.0;
 /// Most trials: `F` is a sum over some standard deviations, which is to stay short.
 pub(super) const MOST_TRIALS: u64 = 1 << 32;
 
-/// 2^-53.
 const TWO_TO_MINUS_53: f64 = f64::EPSILON / 2.0;
 
 /// Tells if `n` trials with probability `p` can be drawn here.
@@ -212,11 +211,11 @@ mod tests {
             above[i] = above[i + 1] + pmf[i];
         }
         let mut below = 0.0;
-        let each = (0..count).map(|i| {
+        let rows = (0..count).map(|i| {
             below += pmf[i];
             (low + i as f64, below, above[i + 1])
         });
-        each.filter(|(k, ..)| (k - mean).abs() < 4.5 * sigma).collect()
+        rows.filter(|(k, ..)| (k - mean).abs() < 4.5 * sigma).collect()
     }
 
     fn rows() -> Vec<(u64, f64)> {

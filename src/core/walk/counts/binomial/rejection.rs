@@ -26,7 +26,7 @@ pub(super) struct Hat {
 
 impl Hat {
     /// Draws the rarer outcome of `n` trials with probability `p`.
-    pub fn of(n: u64, p: u64) -> Self {
+    pub fn new(n: u64, p: u64) -> Self {
         let (n, p, q) = (n as f64, as_unit(rarer(p)), as_unit(rarer(p).wrapping_neg()));
         let mean = n * p;
         let sigma = (mean * q).sqrt();

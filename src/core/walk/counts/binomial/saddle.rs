@@ -64,9 +64,9 @@ mod tests {
             let mut sum = 0.0;
             let mut ln = n as f64 * libm::log1p(-p);
             for k in 0..=n {
-                let found = ln_probability(n as f64, p, 1.0 - p, k as f64);
-                assert!((found - ln).abs() < 1e-9, "{n} {p} {k}: {found} {ln}");
-                sum += libm::exp(found);
+                let logarithm = ln_probability(n as f64, p, 1.0 - p, k as f64);
+                assert!((logarithm - ln).abs() < 1e-9, "{n} {p} {k}: {logarithm} {ln}");
+                sum += libm::exp(logarithm);
                 ln += libm::log((n - k).max(1) as f64 / (k + 1) as f64 * p / (1.0 - p));
             }
             assert!((sum - 1.0).abs() < 1e-13, "{n} {p}: {sum}");

@@ -62,16 +62,16 @@ fn z_score(n: u64, p: u64, sample: &[u64]) -> f64 {
         }
     }
     expected[cells + 1] = 1.0 - expected.iter().sum::<f64>();
-    let mut found = vec![0.0; cells + 2];
+    let mut observed = vec![0.0; cells + 2];
     for &k in sample {
         assert!(k <= n);
-        found[cell(k)] += 1.0;
+        observed[cell(k)] += 1.0;
     }
     // Neighbouring cells join until each expects eight draws.
     let (mut square, mut freedom, mut e, mut f) = (0.0, -1.0, 0.0, 0.0);
     for c in 0..cells + 2 {
         e += expected[c] * sample.len() as f64;
-        f += found[c];
+        f += observed[c];
         let left: f64 = expected[c + 1..].iter().sum::<f64>() * sample.len() as f64;
         if (e >= 8.0 && left >= 8.0) || c == cells + 1 {
             square += (f - e) * (f - e) / e;
@@ -190,7 +190,7 @@ fn the_squeeze_lies_inside_and_the_hat_outside() {
     let pairs = counts.into_iter().flat_map(|n| probabilities.map(|p| (n, p)));
     let mut scanned = 0;
     for (n, p) in pairs.filter(|&(n, p)| n as f64 * p >= LEAST_MEAN) {
-        let hat = Hat::of(n, fraction(p));
+        let hat = Hat::new(n, fraction(p));
         scanned += 1;
         for i in 0..4000 {
             let u = (f64::from(i) + 0.5) / 4000.0 - 0.5;
@@ -228,8 +228,8 @@ fn two_thresholds_are_compared_with_the_same_words() {
         let drawn: Vec<[u64; 2]> = (0..SAMPLE).map(|_| below_both(&mut words, n, [first, second])).collect();
         assert!(drawn.iter().all(|&[a, b]| a <= b && b <= n));
         for (part, probability) in [(0, first), (1, second), (2, second - first)] {
-            let of = |[a, b]: &[u64; 2]| [*a, *b, b - a][part];
-            let sample: Vec<u64> = drawn.iter().map(of).collect();
+            let count = |[a, b]: &[u64; 2]| [*a, *b, b - a][part];
+            let sample: Vec<u64> = drawn.iter().map(count).collect();
             // The few outcomes that are possible here may all be missing in 2,000 draws of some 32 words.
             if n as f64 * as_unit(probability) > 1.0 && n as f64 * as_unit(probability) < n as f64 - 1.0 {
                 let z = z_score(n, probability, &sample);
@@ -299,11 +299,11 @@ fn few_trials_are_the_same_with_any_instructions() {
     {
         use crate::walk::Isa;
         // SAFETY: each is called where the machine has it.
-        let found = [
+        let results = [
             Isa::Avx2.is_available().then(|| unsafe { drawn::<Avx2>() }),
             Isa::Avx512.is_available().then(|| unsafe { drawn::<Avx512>() }),
         ];
-        assert!(found.iter().flatten().all(|found| *found == wanted));
+        assert!(results.iter().flatten().all(|result| *result == wanted));
     }
     // Some 20,000 x 32 draws, each equal to either threshold's top with 2^-15. Two numbers a void, 100 words
     // after them, three numbers for each tie.

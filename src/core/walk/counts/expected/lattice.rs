@@ -31,10 +31,10 @@ impl LatticeFlow {
         let across = [shape[0] as usize, shape[1] as usize];
         let (of_void, _) = shares.probability().as_chunks::<3>();
         let voids = of_void.len();
-        let of = |exit: usize| of_void.iter().map(|of_void| as_unit(of_void[exit])).collect();
+        let share = |exit: usize| of_void.iter().map(|of_void| as_unit(of_void[exit])).collect();
         Self {
             across,
-            shares: [of(0), of(1)],
+            shares: [share(0), share(1)],
             dead_ends: (0..voids).filter(|&void| !shares.leads_on(void)).map(|void| void as u32).collect(),
             along_y: vec![0.0; across[0]],
             along_z: vec![0.0; across[0] * across[1]],

@@ -57,8 +57,8 @@ impl Expected {
     /// Puts `count` particles on the start nodes, the same number on each.
     pub(in crate::walk::counts) fn insert(&mut self, network: &Network, count: u64) {
         self.sums.inserted += count;
-        let each = count as f64 / network.start().len() as f64;
-        network.start().iter().for_each(|&void| self.moving[void as usize] += each);
+        let part = count as f64 / network.start().len() as f64;
+        network.start().iter().for_each(|&void| self.moving[void as usize] += part);
     }
 
     /// Tells if more than a whole particle is expected to move in voids that lead out: seen from the last
