@@ -1,24 +1,24 @@
-//! Names as they may be shown: without characters that are not seen or that change how others are seen, which
-//! no page and no terminal gets, and not too long. Moments as they are written.
+//! Names in a form fit to show: short, and without characters that are invisible or change how others look,
+//! which no page and no terminal gets. Moments in written form.
 
 use std::ops::RangeInclusive;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// Seconds after 1970 of the last moment that has a year of four digits.
+/// Last moment that has a year of four digits (seconds after 1970).
 const LAST_MOMENT: u64 = 253_402_300_799;
 
-/// A moment as `2026-11-25T23:59:59Z`. A clock that is wrong, as on a board without a battery, may say any:
-/// the first moment of 1970 is written for those before it, the last of 9999 for those after it.
+/// Writes a moment as `2026-11-25T23:59:59Z`. A wrong clock, as on a board without a battery, may give any
+/// moment: one before 1970 is written as the first of 1970, one after 9999 as the last of 9999.
 pub fn moment(at: SystemTime) -> String {
     let last = UNIX_EPOCH + Duration::from_secs(LAST_MOMENT);
     humantime::format_rfc3339_seconds(at.clamp(UNIX_EPOCH, last)).to_string()
 }
 
-/// Those that turn the direction of writing.
+/// Characters that turn the direction of writing.
 const TURNING: [RangeInclusive<char>; 4] =
     ['\u{061c}'..='\u{061c}', '\u{200e}'..='\u{200f}', '\u{202a}'..='\u{202e}', '\u{2066}'..='\u{2069}'];
 
-/// Those without a width, of other line ends, and tags. Some scripts join letters by them.
+/// Characters without a width, other line ends, and tags. Some scripts join letters by them.
 const WITHOUT_WIDTH: [RangeInclusive<char>; 10] = [
     '\u{00ad}'..='\u{00ad}',
     '\u{034f}'..='\u{034f}',
@@ -32,19 +32,19 @@ const WITHOUT_WIDTH: [RangeInclusive<char>; 10] = [
     '\u{e0000}'..='\u{e0fff}',
 ];
 
-/// Whether a character turns the direction of writing of those around it.
+/// Tells if a character turns the direction of writing of those around it.
 pub fn turns_direction(character: char) -> bool {
     TURNING.iter().any(|range| range.contains(&character))
 }
 
-/// Whether a character is not seen where it stands: control characters, those without a width, and those that
-/// turn the direction of writing.
+/// Tells if a character is invisible: control characters, those without a width, and those that turn the
+/// direction of writing.
 pub fn is_hidden(character: char) -> bool {
     let without_width = || WITHOUT_WIDTH.iter().any(|range| range.contains(&character));
     character.is_control() || turns_direction(character) || without_width()
 }
 
-/// The character itself, or U+FFFD for one that is hidden, other than tab and line feed, or that XML 1.0
+/// Returns the character, or U+FFFD for one that is hidden, other than tab and line feed, or that XML 1.0
 /// forbids.
 pub fn visible(character: char) -> char {
     match character {
@@ -55,12 +55,12 @@ pub fn visible(character: char) -> char {
     }
 }
 
-/// A text on one line, with U+FFFD for each hidden character.
+/// Puts a text on one line, with U+FFFD for each hidden character.
 pub fn plain(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { visible(c) }).collect()
 }
 
-/// A word that can be pasted into a shell (POSIX, fish), in quotes where it needs them.
+/// Makes a word that can be pasted into a shell (POSIX, fish), with quotes if it needs them.
 pub fn shell_word(word: &str) -> String {
     let needs_none = |c: char| c.is_ascii_alphanumeric() || "/._-+=,:@".contains(c);
     match !word.is_empty() && word.chars().all(needs_none) {
@@ -69,25 +69,25 @@ pub fn shell_word(word: &str) -> String {
     }
 }
 
-/// A word in quotes into which no shell looks (POSIX, fish).
+/// Quotes a word so that no shell (POSIX, fish) interprets it.
 pub fn quoted(word: &str) -> String {
-    // fish takes a backslash within quotes for more than itself.
+    // fish treats a backslash within quotes as special.
     let inert = |c: char| if c == '\'' || c == '\\' { format!("'\\{c}'") } else { c.to_string() };
     format!("'{}'", word.chars().map(inert).collect::<String>())
 }
 
-/// Whether a character means the same in a file name, an address and a table.
+/// Tells if a character means the same in a file name, an address and a table.
 pub fn is_plain(character: char) -> bool {
     character.is_ascii_alphanumeric() || "=.,-_".contains(character)
 }
 
-/// Whether a part of a path leads down into a folder or to a file, by plain characters alone: no hidden file,
-/// and not up.
+/// Tells if a part of a path leads down into a folder or to a file, by plain characters alone: no hidden
+/// file, and not up.
 pub fn is_plain_part(part: &str) -> bool {
     !part.is_empty() && !part.starts_with('.') && part.chars().all(is_plain)
 }
 
-/// The text cut to `most` characters, with an ellipsis where something is missing.
+/// Cuts the text to `most` characters, with an ellipsis in place of the rest.
 pub fn shorten(text: &str, most: usize) -> String {
     if text.chars().count() <= most {
         return text.to_owned();

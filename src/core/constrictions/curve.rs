@@ -5,7 +5,7 @@ use crate::stream::unit;
 use std::fmt;
 use std::path::Path;
 
-/// What the diameters of a [`Curve`] are measured in.
+/// Unit of the diameters of a [`Curve`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CurveUnit {
     /// Millimetres.
@@ -33,21 +33,21 @@ impl fmt::Display for CurveUnit {
     }
 }
 
-/// A constriction curve that cannot be.
+/// An invalid constriction curve.
 #[derive(Debug, thiserror::Error)]
 pub enum CurveError {
     /// The table of the curve.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// A number that is not in a table.
+    /// A number from outside a table.
     #[error(transparent)]
     Number(#[from] NumberError),
     /// No shipped filter has this name.
     #[error("no shipped filter is called \"{name}\"; the nearest is \"{nearest}\" (shipped: {all})")]
     UnknownFilter {
-        /// The name asked for.
+        /// Name asked for.
         name: String,
-        /// The shipped name that is most like it.
+        /// Shipped name that resembles it most.
         nearest: String,
         /// All shipped names.
         all: String,
@@ -59,9 +59,9 @@ const PERCENT: &str = "percent_smaller";
 /// A constriction size distribution (CSD): percent smaller by number against diameter, straight in
 /// percent against diameter between its points.
 ///
-/// Checked when it is made: diameters and percent never fall, from 0 % to 100 %. One point is a single
-/// size; the same diameter twice is a vertical step; the same percent twice is a plateau, a gap in the
-/// sizes. A first point above 0 % is a step at its diameter.
+/// Invariants: diameters and percent never fall, from 0 % to 100 %. One point is a single size; the same
+/// diameter twice is a vertical step; the same percent twice is a plateau, a gap in the sizes. A first point
+/// above 0 % is a step at its diameter.
 ///
 /// ```
 /// use voidwalk_core::constrictions::{Curve, CurveUnit};
@@ -81,10 +81,10 @@ pub struct Curve {
 }
 
 impl Curve {
-    /// A curve through pairs of percent smaller and diameter, in `unit`, rising or falling.
+    /// Makes a curve through pairs of percent smaller and diameter, in `unit`, rising or falling.
     ///
     /// # Errors
-    /// What [`Curve::from_csv`] refuses, with the point's place in the list as the line.
+    /// Errors of [`Curve::from_csv`], with the point's place in the list as the line.
     pub fn from_points(points: &[(f64, f64)], unit: CurveUnit) -> Result<Curve, CurveError> {
         let rows: Vec<Row> = points
             .iter()
@@ -94,13 +94,13 @@ impl Curve {
         Curve::from_rows("points", Row::checked("points", rows, [unit.field(), PERCENT])?, unit)
     }
 
-    /// A curve from a CSV file with the columns `percent_smaller` and `diameter_mm` or
+    /// Reads a curve from a CSV file with the columns `percent_smaller` and `diameter_mm` or
     /// `diameter_over_d0f`, in either order, named in a header.
     ///
     /// # Errors
-    /// A file that cannot be read, is a folder, is too large or no UTF-8; no header, or one with other
-    /// names; no rows; a row without exactly two fields; a value that is no finite number in range;
-    /// diameters that go both ways; percent that falls as diameter rises; a largest diameter below 100 %.
+    /// A file that cannot be read, is a folder, is too large or no UTF-8; no header, or one with other names;
+    /// no rows; a row without exactly two fields; a value that is no finite number in range; diameters that
+    /// both rise and fall; percent that falls as diameter rises; a largest diameter below 100 %.
     pub fn from_csv(path: impl AsRef<Path>) -> Result<Curve, CurveError> {
         Curve::from_table(&Table::open(path.as_ref())?)
     }
@@ -108,7 +108,7 @@ impl Curve {
     /// [`Curve::from_csv`] on the content of a file, called `name` in messages.
     ///
     /// # Errors
-    /// As [`Curve::from_csv`].
+    /// Errors of [`Curve::from_csv`].
     pub fn from_csv_text(name: &str, content: &[u8]) -> Result<Curve, CurveError> {
         Curve::from_table(&Table::parse(name, content)?)
     }
@@ -152,7 +152,7 @@ impl Curve {
             if points.last() == Some(&(row.percent, row.size)) {
                 continue;
             }
-            // Of the points on one vertical or one level, the two ends say it all.
+            // Only the two ends of a vertical or level run of points are kept.
             if let [.., (p, d), (q, e)] = points[..]
                 && ((d == e && e == row.size) || (p == q && q == row.percent))
             {
@@ -167,8 +167,8 @@ impl Curve {
         Ok(Curve { percent, diameter, unit })
     }
 
-    /// D_cx: the smallest diameter that `percent` of the constrictions are no larger than; `None`
-    /// outside 0 to 100.
+    /// D_cx: the smallest diameter that `percent` of the constrictions do not exceed; `None` outside 0 to
+    /// 100.
     pub fn dc(&self, percent: f64) -> Option<f64> {
         if !(0.0..=100.0).contains(&percent) {
             return None;
@@ -182,11 +182,11 @@ impl Curve {
     /// The part of the curve that ends with point `i`, which is not the first.
     #[inline(always)]
     fn up_to(&self, i: usize) -> Part {
-        let of = |points: &[f64]| [points[i - 1], points[i]];
-        Part { percent: of(&self.percent), diameter: of(&self.diameter) }
+        let ends = |points: &[f64]| [points[i - 1], points[i]];
+        Part { percent: ends(&self.percent), diameter: ends(&self.diameter) }
     }
 
-    /// The diameters that random words draw: those of [`Curve::quantile`] at [`unit`] of each.
+    /// Diameters drawn by random words: [`Curve::quantile`] at [`unit`] of each word.
     pub(crate) fn draws(&self) -> CurveDraws<'_> {
         // There are two points at least, the first at 0 %.
         let mut end = 1;
@@ -212,8 +212,8 @@ impl Curve {
         (p + (diameter - a) / (b - a) * (q - p)).clamp(p, q)
     }
 
-    /// The diameter of the draw `unit`: the inverse of the distribution, so that `unit` uniform in 0 to 1
-    /// draws a constriction. Never falls as `unit` rises; outside 0 to 1 it is the nearest end.
+    /// Diameter of the draw `unit`: the inverse of the distribution, so that `unit` uniform in 0 to 1 draws a
+    /// constriction. It never falls as `unit` rises; outside 0 to 1 it is the nearest end.
     pub fn quantile(&self, unit: f64) -> f64 {
         match self.dc(100.0 * unit) {
             Some(diameter) => diameter,
@@ -237,18 +237,18 @@ impl Curve {
         self.diameter[self.diameter.len() - 1]
     }
 
-    /// What diameters are measured in.
+    /// Unit of the diameters.
     pub fn unit(&self) -> CurveUnit {
         self.unit
     }
 
-    /// The points of the curve, from 0 % to 100 %.
+    /// Points of the curve, from 0 % to 100 %.
     pub fn points(&self) -> Vec<CurvePoint> {
         let point = |(&size, &percent): (&f64, &f64)| CurvePoint { size, percent };
         self.diameter.iter().zip(&self.percent).map(point).collect()
     }
 
-    /// This curve, in its unit, with every diameter multiplied by `factor`.
+    /// Multiplies every diameter by `factor`; the unit is kept.
     ///
     /// # Errors
     /// A factor that is not positive and finite, or that takes a diameter out of range.
@@ -261,10 +261,10 @@ impl Curve {
         Ok(Curve { percent: self.percent.clone(), diameter, unit: self.unit })
     }
 
-    /// This curve in mm, for a filter whose smallest grain is `d0f_mm`.
+    /// Converts the curve to mm, for a filter whose smallest grain is `d0f_mm`.
     ///
     /// # Errors
-    /// As [`Curve::scaled`].
+    /// Errors of [`Curve::scaled`].
     pub fn in_mm(&self, d0f_mm: f64) -> Result<Curve, CurveError> {
         match self.unit {
             CurveUnit::Mm => Ok(self.clone()),
@@ -276,13 +276,13 @@ impl Curve {
 /// A part of a curve that is straight in percent against diameter.
 #[derive(Clone, Copy, Default)]
 struct Part {
-    /// At its ends.
+    /// Percent at the two ends.
     percent: [f64; 2],
     diameter: [f64; 2],
 }
 
 impl Part {
-    /// The diameter at `percent`, which is above the first end and no more than the second.
+    /// Diameter at `percent`, which is above the first end and no more than the second.
     #[inline(always)]
     fn at(self, percent: f64) -> f64 {
         let ([p, q], [a, b]) = (self.percent, self.diameter);
@@ -299,15 +299,15 @@ const BELOW_BUCKET: u32 = 54;
 /// Words whose diameters are drawn together.
 const AT_ONCE: usize = 64;
 
-/// The inverse of a curve for random words: where each is on the curve is looked up, not searched for.
+/// The inverse of a curve for random words: the place of each on the curve is looked up, not searched for.
 pub(crate) struct CurveDraws<'a> {
     curve: &'a Curve,
-    /// By bucket, the upper bits of a word: the point that ends the part of its smallest word.
+    /// Point that ends the part of the bucket's smallest word, by bucket (the upper bits of a word).
     end: Vec<u32>,
 }
 
 impl CurveDraws<'_> {
-    /// The diameters, in the curve's unit, that the words which `next` gives draw one after another.
+    /// Draws diameters, in the curve's unit, from the words that `next` gives one after another.
     pub(crate) fn fill(&self, mut next: impl FnMut() -> u64, out: &mut [f32], unit_mm: f64) {
         for out in out.chunks_mut(AT_ONCE) {
             let (mut percent, mut parts) = ([0.0; AT_ONCE], [Part::default(); AT_ONCE]);
@@ -327,7 +327,7 @@ impl CurveDraws<'_> {
     }
 }
 
-/// Which of `known` is most like `name`; none where `known` is empty.
+/// Entry of `known` that resembles `name` most; `None` if `known` is empty.
 pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     known.into_iter().max_by(|a, b| strsim::jaro_winkler(name, a).total_cmp(&strsim::jaro_winkler(name, b)))
 }
@@ -340,7 +340,7 @@ mod tests {
         Curve::from_points(points, CurveUnit::D0f).unwrap()
     }
 
-    /// As `from_points` takes them.
+    /// Points in the form that `from_points` takes.
     fn pairs(curve: &Curve) -> Vec<(f64, f64)> {
         curve.points().iter().map(|point| (point.percent, point.size)).collect()
     }
@@ -387,7 +387,8 @@ mod tests {
         assert_eq!((c.percent_smaller(0.0), c.percent_smaller(1.0)), (0.0, 100.0));
     }
 
-    /// Of curves with one size, steps, levels, and many points: at bounds of buckets, beside them, anywhere.
+    /// Checks curves with one size, steps, levels, and many points: at bounds of buckets, beside them,
+    /// anywhere.
     #[test]
     fn words_draw_what_the_quantile_of_each_is() {
         let many: Vec<_> = (0..=5000).map(|i| (0.02 * f64::from(i), 0.1 + 1e-5 * f64::from(i))).collect();

@@ -1,12 +1,11 @@
 //! The disc of a facet: the largest that passes between its three grains.
 //!
-//! It is the circle tangent to the three grains in the plane of their centres. Where further grains
-//! cut into it, it is the largest circle through any three of the grains concerned (their sections by
-//! that plane) that none of the others cuts: Reboul, Vincens & Cambou, *A computational procedure to
-//! assess the distribution of constriction sizes for an assembly of spheres*,
-//! doi:10.1016/j.compgeo.2009.09.002. The others are the corners of the two tetrahedra at the facet, of
-//! their neighbours and of their neighbours' neighbours: on packings of Cu 1.5 and Cu 3 looking one
-//! step further cut no further disc.
+//! The disc is the circle tangent to the three grains in the plane of their centres. If further grains cut
+//! into it, it is the largest circle through any three of the grains concerned (their sections by that plane)
+//! that none of the others cuts: Reboul, Vincens & Cambou, *A computational procedure to assess the
+//! distribution of constriction sizes for an assembly of spheres*, doi:10.1016/j.compgeo.2009.09.002. The
+//! others are the corners of the two tetrahedra at the facet, of their neighbours and of their neighbours'
+//! neighbours: on packings of Cu 1.5 and Cu 3 a search one step further cut no further disc.
 
 use super::tangent::{Tangent, circle, cross};
 use super::triangulation::{GrainPoint, Positions, Shift, Triangulation};
@@ -17,17 +16,17 @@ const CONTACT: f64 = 1e-9;
 /// Grains that may cut into a disc at the same time; more are not tried.
 const MOST_CUTTING: usize = 8;
 
-/// How many facets away from the disc's two tetrahedra other grains are looked for.
+/// Number of facets to search for other grains, from the disc's two tetrahedra.
 const RINGS: usize = 2;
 
-/// Where grains may pass a facet, in grid units.
+/// Opening through which grains may pass a facet, in grid units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ConstrictionDisc {
-    /// In the stored translate of the tetrahedron it was asked for.
+    /// Centre in the stored translate of the requested tetrahedron.
     pub(super) centre: [f64; 3],
-    /// Zero where the grains leave no room.
+    /// Radius; zero if the grains leave no room.
     pub(super) radius: f64,
-    /// Whether a further grain cuts into the circle tangent to the three.
+    /// True if a further grain cuts into the circle tangent to the three.
     pub(super) cut: bool,
 }
 
@@ -68,7 +67,7 @@ impl Plane {
     }
 }
 
-/// The disc of the facet opposite a corner of a tetrahedron.
+/// Finds the disc of the facet opposite a corner of a tetrahedron.
 pub(super) fn disc(
     t: &Triangulation,
     positions: &Positions<'_>,
@@ -78,16 +77,16 @@ pub(super) fn disc(
     let corners = t.at(positions, tetrahedron, Shift::ZERO);
     let facet = [1, 2, 3].map(|k| corners[(corner + k) % 4]);
     let plane = Plane::through(&facet);
-    let own = facet.map(|g| {
+    let sections = facet.map(|g| {
         let [u, v, _] = plane.local(&g);
         [u, v, g[3]]
     });
-    let place = |found: Option<Tangent<2>>, cut: bool| match found {
+    let place = |circle: Option<Tangent<2>>, cut: bool| match circle {
         Some(Tangent { centre, radius }) => ConstrictionDisc { centre: plane.global(centre), radius, cut },
         None => ConstrictionDisc { centre: [facet[0][0], facet[0][1], facet[0][2]], radius: 0.0, cut },
     };
-    let Some(first) = circle(&own) else { return place(None, false) };
-    // Few discs are cut: look for one grain that does before listing all.
+    let Some(first) = circle(&sections) else { return place(None, false) };
+    // Few discs are cut: look for one cutting grain before listing all.
     let (centre, mut cut) = (plane.global(first.centre), false);
     around(t, positions, tetrahedron, corner, |grain| {
         let d: [f64; 3] = std::array::from_fn(|axis| grain[axis] - centre[axis]);
@@ -107,16 +106,16 @@ pub(super) fn disc(
             others.push(section);
         }
     });
-    place(largest(&own, &others, &first), true)
+    place(largest(&sections, &others, &first), true)
 }
 
-/// Whether a circle reaches into a tangent one.
+/// Tells if a circle reaches into a tangent one.
 fn cuts(disc: &Tangent<2>, other: &[f64; 3]) -> bool {
     let (x, y) = (other[0] - disc.centre[0], other[1] - disc.centre[1]);
     (x * x + y * y).sqrt() < other[2] + disc.radius * (1.0 - CONTACT)
 }
 
-/// The largest circle through three of the grains concerned that none cuts.
+/// Finds the largest circle through three of the grains concerned that no other grain cuts.
 fn largest(own: &[[f64; 3]; 3], others: &[[f64; 3]], first: &Tangent<2>) -> Option<Tangent<2>> {
     let mut concerned = own.to_vec();
     concerned.extend(others.iter().filter(|other| cuts(first, other)).take(MOST_CUTTING));
@@ -152,7 +151,7 @@ fn around(
     }
 }
 
-/// The corners beyond the facets of a tetrahedron other than the one it was entered by.
+/// Corners beyond the facets of a tetrahedron, except the facet of entry.
 fn beyond(
     t: &Triangulation,
     positions: &Positions<'_>,

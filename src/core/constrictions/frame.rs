@@ -1,4 +1,4 @@
-//! Where a packing lies in millimetres, and the part of it that statistics are taken over.
+//! Place of a packing in millimetres, and the part of it that statistics are taken over.
 
 use super::tangent::cross;
 use super::throat::solid_angle;
@@ -25,7 +25,7 @@ impl Region {
     }
 }
 
-/// From grid units to millimetres.
+/// Conversion from grid units to millimetres.
 pub(super) struct Frame {
     pub(super) unit_mm: f64,
     origin_mm: [f64; 3],
@@ -62,8 +62,7 @@ impl Frame {
         square.sqrt()
     }
 
-    /// What statistics are taken over: all of a cell; of a free packing what is left without the outer
-    /// share at either end.
+    /// Region for statistics: the whole cell, or a free packing without the outer share at either end.
     pub(super) fn region(&self, t: &Triangulation) -> Region {
         if self.cell.is_some() {
             return Region::Everything;
@@ -81,10 +80,11 @@ impl Frame {
     }
 }
 
-/// Share of its radius by which a grain lies within the hull of all centres that has others all around it.
+/// Depth within the hull of all centres, as a share of the grain's radius, at which a grain counts as
+/// surrounded.
 const WITHIN: f64 = 0.5;
 
-/// Whether a grain has others all around it, as in a periodic cell every grain has.
+/// Tells if a grain has others all around it; in a periodic cell every grain has.
 pub(super) fn is_surrounded(t: &Triangulation, positions: &Positions<'_>) -> bool {
     let planes: Vec<([f64; 3], [f64; 3])> = (0..t.tetrahedra())
         .flat_map(|i| (0..4).map(move |k| (i, k)))
@@ -112,8 +112,8 @@ fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// Void ratio of the tetrahedra whose centroid lies in a region: their volume, and the sectors that
-/// their grains fill.
+/// Void ratio of the tetrahedra whose centroid lies in a region, from their volume and the sectors that their
+/// grains fill.
 pub(super) fn void_ratio_within(
     t: &Triangulation,
     positions: &Positions<'_>,

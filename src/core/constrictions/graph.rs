@@ -1,4 +1,4 @@
-//! The void graph of a packing: voids, the constrictions between them, and what each conducts.
+//! The void graph of a packing: voids, the constrictions between them, and their conductances.
 
 use rayon::prelude::*;
 
@@ -8,7 +8,7 @@ use super::triangulation::{GrainPoint, Positions, Shift, Triangulation};
 use super::voids::{Insphere, Voids};
 use crate::packing::Packing;
 
-/// Two void points are no nearer than this part of the smallest grain: a way of no length would conduct
+/// Least distance of two void points, as a part of the smallest grain: a path of no length would conduct
 /// without limit.
 const LEAST_WAY: f64 = 0.05;
 
@@ -43,7 +43,7 @@ pub struct VoidGraph {
     pub from: Vec<u32>,
     /// Void on the other side, by constriction.
     pub to: Vec<u32>,
-    /// By how many cells along x, y, z that other void is shifted, by constriction.
+    /// Shift of that other void in cells along x, y, z, by constriction.
     pub shift: Vec<[i32; 3]>,
     /// Diameter (mm) by constriction.
     pub diameter_mm: Vec<f64>,
@@ -53,7 +53,7 @@ pub struct VoidGraph {
     pub point_mm: Vec<[f64; 3]>,
     /// Volume outside the grains (mm3) by void.
     pub volume_mm3: Vec<f64>,
-    /// Grains that take part.
+    /// Number of grains that take part.
     pub grains: usize,
     /// Sum of their diameters cubed (mm3).
     pub cubes_mm3: f64,
@@ -61,7 +61,7 @@ pub struct VoidGraph {
     pub d32_mm: f64,
     /// Smallest grain (mm).
     pub d0_mm: f64,
-    /// Volume of the voids over that of the cell.
+    /// Porosity: volume of the voids over the cell's.
     pub porosity: f64,
 }
 
@@ -69,8 +69,8 @@ impl VoidGraph {
     /// Triangulates a packing and measures its constrictions and its graph.
     ///
     /// # Errors
-    /// What [`Constrictions::measure`] refuses; a packing without a periodic cell, or whose grains
-    /// do not fit theirs; a void that meets itself through the cell.
+    /// Errors of [`Constrictions::measure`]; a packing without a periodic cell, or whose grains do not fit
+    /// their cell; a void that meets itself through the cell.
     pub fn measure(
         packing: &Packing,
         merge_overlap: f64,
@@ -79,12 +79,12 @@ impl VoidGraph {
         let voids = merged(&t, merge_overlap)?;
         let passages = Passages::new(&t, &t.positions(), &voids, Facets::All);
         let constrictions = Constrictions::between(&t, &voids, &passages, merge_overlap, Facets::All);
-        // First, or what is wrong with the cell would be said of the graph.
+        // Checked first, or an error of the cell would appear as one of the graph.
         constrictions.check()?;
         Ok((constrictions, Self::between(&t, &voids, &passages, merge_overlap)?))
     }
 
-    /// The graph of a triangulation.
+    /// Makes the graph of a triangulation.
     ///
     /// # Errors
     /// A triangulation without a periodic cell; a void that meets itself through the cell.
@@ -94,7 +94,7 @@ impl VoidGraph {
         Self::between(t, &voids, &passages, merge_overlap)
     }
 
-    /// The graph of the voids of a triangulation and of all facets between them.
+    /// Makes the graph of a triangulation's voids and of all facets between them.
     fn between(
         t: &Triangulation,
         voids: &Voids,
@@ -133,7 +133,7 @@ impl VoidGraph {
             let (i, k) = passage.facet;
             let Some((u, _, across)) = t.across(i, k) else { continue };
             let (a, b) = (voids.of[i] as usize, voids.of[u] as usize);
-            // Where the far void stands when the near one stands at its own place, and then in the cell.
+            // Place of the far void if the near one is at its own place, and then its place in the cell.
             let by = voids.shift[i].plus(across).minus(voids.shift[u]);
             let far = moved(&points[b], &positions.displacement(by));
             let length = distance(&points[a], &far).max(LEAST_WAY * 2.0 * smallest);
@@ -179,7 +179,7 @@ impl VoidGraph {
         self.point_mm.len()
     }
 
-    /// Edge of the cube that a void has on average (mm): the thickness of a layer.
+    /// Edge of the mean void's cube (mm): the thickness of a layer.
     pub fn spacing_mm(&self) -> f64 {
         let [x, y, z] = self.cell_mm;
         libm::cbrt(x * y * z / self.voids() as f64)
@@ -191,15 +191,15 @@ impl VoidGraph {
         n * n * n * self.d32_mm * self.d32_mm / (180.0 * solid * solid)
     }
 
-    /// The graph as CSV: `from,to,shift_x,shift_y,shift_z,diameter_mm,conductance_mm3`, where the conductance
-    /// is multiplied by the viscosity.
+    /// Writes the graph as CSV: `from,to,shift_x,shift_y,shift_z,diameter_mm,conductance_mm3`, where the
+    /// conductance is multiplied by the viscosity.
     pub fn to_csv(&self) -> String {
         use std::fmt::Write;
         let mut text = String::from("from,to,shift_x,shift_y,shift_z,diameter_mm,conductance_mm3\n");
         for c in 0..self.from.len() {
             let [x, y, z] = self.shift[c];
             let (d, g) = (self.diameter_mm[c], self.conductance_mm3[c]);
-            // A String takes whatever is written to it.
+            // Writing to a String never fails.
             let _ = writeln!(text, "{},{},{x},{y},{z},{d},{g:e}", self.from[c], self.to[c]);
         }
         text
@@ -215,7 +215,7 @@ fn distance(p: &[f64; 3], q: &[f64; 3]) -> f64 {
     (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt()
 }
 
-/// By how many cells a point is to be moved into the cell.
+/// Shift in cells that moves a point into the cell.
 fn fold(p: &[f64; 3], cell: &[f64; 3]) -> Shift {
     Shift::new(std::array::from_fn(|axis| -libm::floor(p[axis] / cell[axis]) as i32))
 }
@@ -227,7 +227,7 @@ fn place(p: &[f64; 3], t: &Triangulation) -> [f64; 3] {
 }
 
 /// Centre of the largest tangent sphere of each void, beside the stored translate of its first tetrahedron; a
-/// corner of that where there is none.
+/// void without one has a corner of that tetrahedron.
 fn void_points(t: &Triangulation, positions: &Positions<'_>, voids: &Voids) -> Vec<[f64; 3]> {
     let mut largest = vec![-1.0; voids.count];
     let mut points = vec![[0.0; 3]; voids.count];
@@ -248,29 +248,29 @@ fn void_points(t: &Triangulation, positions: &Positions<'_>, voids: &Voids) -> V
     points
 }
 
-/// Power centre of each tetrahedron, in its stored translate. One of four grains on a circle has none to rely
-/// on: it has that of the neighbour whose void it belongs to.
+/// Power centre of each tetrahedron, in its stored translate. For four grains on a circle it is ill-defined:
+/// the centre of the neighbour in the same void replaces it.
 fn power_centres(t: &Triangulation, positions: &Positions<'_>, voids: &Voids) -> Vec<[f64; 3]> {
-    let own: Vec<[f64; 3]> = (0..t.tetrahedra())
+    let by_tetrahedron: Vec<[f64; 3]> = (0..t.tetrahedra())
         .into_par_iter()
         .with_min_len(1024)
         .map(|i| power_centre(&t.at(positions, i, Shift::ZERO)))
         .collect();
-    let mut centres = own.clone();
-    for i in (0..own.len()).filter(|&i| voids.inspheres[i] == Insphere::Flat) {
+    let mut centres = by_tetrahedron.clone();
+    for i in (0..by_tetrahedron.len()).filter(|&i| voids.inspheres[i] == Insphere::Flat) {
         let beside = (0..4).filter_map(|k| t.across(i, k)).find(|&(u, _, shift)| {
             voids.of[u] == voids.of[i]
                 && voids.inspheres[u] != Insphere::Flat
                 && voids.shift[i].plus(shift) == voids.shift[u]
         });
         if let Some((u, _, shift)) = beside {
-            centres[i] = moved(&own[u], &positions.displacement(shift));
+            centres[i] = moved(&by_tetrahedron[u], &positions.displacement(shift));
         }
     }
     centres
 }
 
-/// Volume of each void outside the grains (mm3); 0 where they overlap so far that the sum has nothing left.
+/// Volume of each void outside the grains (mm3); 0 if overlaps make the sum negative.
 fn volumes(t: &Triangulation, positions: &Positions<'_>, voids: &Voids, unit_mm: f64) -> Vec<f64> {
     let mut volumes = vec![0.0; voids.count];
     for i in 0..t.tetrahedra() {
@@ -331,7 +331,7 @@ mod tests {
             let facet = [1, 2, 3].map(|e| corners[(k + e) % 4]);
             let other = moved(&centres[u], &positions.displacement(across));
             let throat = Throat::new(&facet, &corners[k], [&centres[i], &other]);
-            // Every facet is seen from both sides.
+            // Both sides of a facet count it.
             volume += 0.5 * throat.volume;
             surface += 0.5 * throat.surface;
         }
@@ -357,7 +357,7 @@ mod tests {
         assert!(seen > 30, "{seen}");
     }
 
-    /// Where voids merge into one that fills the cell, no way through it is known.
+    /// A graph is refused if voids merge into one that fills the cell: no path through it is known.
     #[test]
     fn a_void_through_the_whole_cell_is_refused() {
         let mut sparse = packing();

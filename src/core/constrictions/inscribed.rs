@@ -1,16 +1,16 @@
-//! A guess at a filter's constrictions from its gradation alone: circles inscribed between touching grains.
+//! Estimates a filter's constrictions from its gradation alone: circles inscribed between touching grains.
 //!
 //! After the idea of Silveira: grains that meet at a constriction are drawn from the gradation and laid
 //! touching in a plane. *Dense*: three touch each other, and the constriction is the circle between them.
-//! *Loose*: four touch in a ring that is opened until the area between them is largest and the constriction
+//! *Loose*: four touch in a ring that is opened until the area between them is largest, and the constriction
 //! is the largest circle in it. Each grain is drawn with a probability proportional to its surface. In
-//! between, diameters of one percentage are mixed by relative density; that mixture is linear here, which is
-//! this program's choice.
+//! between, diameters at the same percentage are mixed by relative density; the linear mixture is this
+//! program's choice.
 //!
-//! Nothing of the packing but three or four grains is looked at. In a filter of wide gradation coarse grains
-//! meet through many fine ones, and fine grains hide in the gaps of coarse ones, so the guess gets worse the
-//! wider the gradation: beside the triangulation of the same filters its Dc50 is off by the percentages in
-//! `results/packing.md`.
+//! Only three or four grains of the packing are considered. In a filter of wide gradation coarse grains meet
+//! through many fine ones, and fine grains hide in the gaps of coarse ones, so the estimate gets worse the
+//! wider the gradation: `results/packing.md` gives the errors of its Dc50 beside the triangulation of the
+//! same filters.
 
 use super::curve::{Curve, CurveError, CurveUnit};
 use super::tangent::circle;
@@ -21,17 +21,17 @@ use std::collections::VecDeque;
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Constrictions that a curve is made of.
+/// Number of constrictions that make a curve.
 const DRAWS: usize = 8_000;
 
-/// Sizes that stand for a gradation.
+/// Number of sizes that represent a gradation.
 const SIZES: usize = 4000;
 
-/// Steps by which the angle of a ring is found.
+/// Number of steps that find the angle of a ring.
 const STEPS: usize = 34;
 
-/// The constriction curve (mm, by number) of touching grains of this gradation, at a relative density from 0,
-/// loose, to 1, dense. A pan fraction is left out.
+/// Makes the constriction curve (mm, by number) of touching grains of this gradation, at a relative density
+/// from 0, loose, to 1, dense. A pan fraction is left out.
 ///
 /// ```
 /// use voidwalk_app::{constrictions::inscribed, gradation::Gradation};
@@ -42,9 +42,9 @@ const STEPS: usize = 34;
 /// ```
 ///
 /// # Errors
-/// None for a gradation with a known size.
+/// Never, for a gradation with a known size.
 pub fn inscribed(gradation: &Gradation, relative_density: f64) -> Result<Curve, CurveError> {
-    let drawn = Drawn::of(Sizes::new(gradation));
+    let drawn = Drawn::cached(Sizes::new(gradation));
     let (dense, loose) = (&drawn.dense, &drawn.loose);
     let density = relative_density.clamp(0.0, 1.0);
     let last = (DRAWS - 1) as f64;
@@ -58,23 +58,23 @@ pub fn inscribed(gradation: &Gradation, relative_density: f64) -> Result<Curve, 
     Curve::from_points(&points, CurveUnit::Mm)
 }
 
-/// Diameters of the constrictions that were drawn for a gradation, ascending: of every density the same.
+/// Diameters of the constrictions that were drawn for a gradation, ascending: all densities share the draws.
 struct Drawn {
     sizes: Sizes,
     dense: Vec<f64>,
     loose: Vec<f64>,
 }
 
-/// The filters that were asked for last. Drawing takes most of the time of a small case, and a check, a run
-/// or a search asks for the same filter at its own density and at both ends of the range, several times.
+/// Filters of the last requests. Drawing takes most of the time of a small case, and a check, a run or a
+/// search asks for the same filter at its own density and at both ends of the range, several times.
 static KEPT: Mutex<VecDeque<Arc<Drawn>>> = Mutex::new(VecDeque::new());
 
-/// Filters that are kept, of 200 kB each: those of one comparison.
+/// Number of filters kept, of 200 kB each: enough for one comparison.
 const KEPT_FILTERS: usize = 8;
 
 impl Drawn {
-    /// Those that are kept, or drawn anew; nobody waits for the drawing of another filter.
-    fn of(sizes: Sizes) -> Arc<Self> {
+    /// Returns the kept constrictions or draws them anew; no thread waits for the drawing of another filter.
+    fn cached(sizes: Sizes) -> Arc<Self> {
         let kept = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
         let known = kept().iter().find(|drawn| drawn.sizes == sizes).cloned();
         known.unwrap_or_else(|| {
@@ -101,7 +101,7 @@ impl Drawn {
     }
 }
 
-/// Sizes (mm) of a gradation, and the running sum of the surface of each.
+/// Sizes (mm) of a gradation, and the running sum of their surfaces.
 #[derive(PartialEq)]
 struct Sizes {
     diameter: Vec<f64>,
@@ -112,7 +112,7 @@ impl Sizes {
     fn new(gradation: &Gradation) -> Self {
         let percent = |i: usize| 100.0 * (i as f64 + 0.5) / SIZES as f64;
         let diameter: Vec<f64> = (0..SIZES).filter_map(|i| gradation.d(percent(i))).collect();
-        // Each stands for the same mass, so its surface is proportional to 1 / D.
+        // All sizes have the same mass, so the surface of each is proportional to 1 / D.
         let mut sum = 0.0;
         let surface = diameter
             .iter()
@@ -141,7 +141,7 @@ fn between_three(radius: [f64; 3]) -> f64 {
 /// largest.
 fn between_four(radius: [f64; 4]) -> f64 {
     let [a, b, c, d] = radius;
-    // The angle at `a` runs from where `b` and `d` touch to where `a` and `c` do.
+    // The angle at `a` runs from the contact of `b` and `d` to the contact of `a` and `c`.
     let (ab, ad) = (a + b, a + d);
     let least = angle(ab, ad, b + d);
     let most = angle(ab, a + c, b + c) + angle(ad, a + c, c + d);
@@ -172,7 +172,7 @@ fn between_four(radius: [f64; 4]) -> f64 {
             largest = largest.max(found.radius);
         }
     }
-    // Where rounding lets none through, the circle is that of the three smallest.
+    // If rounding lets no circle through, use the circle of the three smallest.
     if largest > 0.0 {
         return largest;
     }
@@ -181,7 +181,7 @@ fn between_four(radius: [f64; 4]) -> f64 {
     between_three([sorted[0], sorted[1], sorted[2]])
 }
 
-/// The angle between sides `p` and `q` of a triangle whose third side is `opposite`.
+/// Angle between sides `p` and `q` of a triangle whose third side is `opposite`.
 fn angle(p: f64, q: f64, opposite: f64) -> f64 {
     libm::acos(((p * p + q * q - opposite * opposite) / (2.0 * p * q)).clamp(-1.0, 1.0))
 }
@@ -233,9 +233,9 @@ mod tests {
     #[test]
     fn a_ring_touches_and_its_area_is_largest() {
         for radius in [[1.0, 2.0, 1.5, 3.0], [1.0, 1.0, 4.0, 1.0], [2.0, 1.0, 1.0, 8.0]] {
-            let found = between_four(radius);
+            let circle = between_four(radius);
             let smallest = radius.iter().fold(f64::MAX, |m: f64, &r| m.min(r));
-            assert!(found > 0.15 * smallest && found < radius.iter().fold(0.0, |m: f64, &r| m.max(r)));
+            assert!(circle > 0.15 * smallest && circle < radius.iter().fold(0.0, |m: f64, &r| m.max(r)));
             let r = ring(radius, 1.2);
             for k in 0..4 {
                 let (p, q) = (r[k], r[(k + 1) % 4]);

@@ -11,12 +11,12 @@ struct Lattice {
     basis: Vec<[f64; 3]>,
     lengths: [f64; 3],
     repeat: [usize; 3],
-    /// Constriction over grain diameter, and constrictions a grain.
+    /// Constriction over grain diameter, and constrictions per grain.
     size: f64,
     per_grain: usize,
 }
 
-/// All with grains of diameter 1 that touch.
+/// All lattices, with grains of diameter 1 that touch.
 fn lattices() -> Vec<Lattice> {
     let (root2, root3, root6) = (2f64.sqrt(), 3f64.sqrt(), 6f64.sqrt());
     let scaled = |points: &[[f64; 3]], by: [f64; 3]| -> Vec<[f64; 3]> {
@@ -64,7 +64,8 @@ fn lattices() -> Vec<Lattice> {
 }
 
 impl Lattice {
-    /// In a periodic box, scaled, axes turned round `turn` times, each centre moved by up to `jitter`.
+    /// Places the lattice in a periodic box, scaled, axes turned round `turn` times, each centre moved by up
+    /// to `jitter`.
     fn periodic(&self, scale: f64, jitter: f64, turn: usize) -> Packing {
         let [nx, ny, nz] = self.repeat;
         let lengths = [nx as f64 * self.lengths[0], ny as f64 * self.lengths[1], nz as f64 * self.lengths[2]];
@@ -98,14 +99,14 @@ impl Lattice {
     }
 
     fn check(&self, packing: &Packing, scale: f64, tolerance: f64, case: &str) {
-        let found = Constrictions::measure(packing, 0.1).unwrap();
+        let measured = Constrictions::measure(packing, 0.1).unwrap();
         let grains = packing.diameter.len();
-        assert_eq!(found.constrictions(), self.per_grain * grains, "{} {case}", self.name);
-        for &d in &found.diameter_mm {
+        assert_eq!(measured.constrictions(), self.per_grain * grains, "{} {case}", self.name);
+        for &d in &measured.diameter_mm {
             let error = d / scale / self.size - 1.0;
             assert!(error.abs() < tolerance, "{} {case}: {d}, {error:e}", self.name);
         }
-        assert_eq!(found.closed, 0);
+        assert_eq!(measured.closed, 0);
     }
 }
 
@@ -133,7 +134,7 @@ fn jittered_lattices_keep_them() {
     }
 }
 
-/// Turned by an angle that no axis has, a lattice fits no periodic box: a free pack, in whose inner part
+/// A lattice turned by an arbitrary angle fits no periodic box: it becomes a free pack, and in its inner part
 /// every size is the lattice's.
 #[test]
 fn rotated_lattices_keep_their_sizes() {
@@ -149,17 +150,17 @@ fn rotated_lattices_keep_their_sizes() {
             let (y, z) = (turned(&y, &z, c, -s), turned(&y, &z, s, c));
             let diameter = vec![1.0; x.len()];
             let packing = Packing { cell: Cell::Free, x, y, z, diameter };
-            let found = Constrictions::measure(&packing, 0.1).unwrap();
-            // On the hull tetrahedra stretch along its faces; the middle knows nothing of them.
+            let measured = Constrictions::measure(&packing, 0.1).unwrap();
+            // On the hull tetrahedra stretch along its faces; the middle is unaffected.
             let middle = |axis: usize, column: &[f64]| {
                 let (low, high) = column.iter().fold((f64::MAX, f64::MIN), |(a, b), &v| (a.min(v), b.max(v)));
                 (axis, 0.5 * (low + high))
             };
             let middle = [middle(0, &packing.x), middle(1, &packing.y), middle(2, &packing.z)];
-            let inner: Vec<f64> = found
+            let inner: Vec<f64> = measured
                 .centre_mm
                 .iter()
-                .zip(&found.diameter_mm)
+                .zip(&measured.diameter_mm)
                 .filter(|(p, _)| middle.iter().all(|&(axis, m)| (p[axis] - m).abs() < 1.2))
                 .map(|(_, &d)| d)
                 .collect();
@@ -187,7 +188,7 @@ fn a_factor_of_two_changes_no_bit() {
     }
 }
 
-/// Cubes meet six others, octahedra (one a grain) eight tetrahedra (two a grain), which meet four.
+/// Cubes meet six others, octahedra (one per grain) eight tetrahedra (two per grain), which meet four.
 #[test]
 fn voids_and_their_connectivity() {
     let all = lattices();
@@ -206,15 +207,19 @@ fn voids_and_their_connectivity() {
     }
 }
 
-/// A free simple cubic block: what the outer 5 % leaves has the lattice's void ratio.
+/// The middle of a free simple cubic block, without the outer 5 %, has the lattice's void ratio.
 #[test]
 fn a_free_block_has_the_void_ratio_of_its_middle() {
     let mut block = lattices().swap_remove(0).periodic(1.0, 0.0, 0);
     block.cell = Cell::Free;
-    let found = Constrictions::measure(&block, 0.1).unwrap();
-    assert!((found.void_ratio - (6.0 / std::f64::consts::PI - 1.0)).abs() < 1e-9, "{}", found.void_ratio);
-    assert_eq!(found.grains(), 2 * 3 * 4);
-    assert_eq!(found.voids(), 3 * 4 * 5);
+    let measured = Constrictions::measure(&block, 0.1).unwrap();
+    assert!(
+        (measured.void_ratio - (6.0 / std::f64::consts::PI - 1.0)).abs() < 1e-9,
+        "{}",
+        measured.void_ratio
+    );
+    assert_eq!(measured.grains(), 2 * 3 * 4);
+    assert_eq!(measured.voids(), 3 * 4 * 5);
 }
 
 #[test]
@@ -228,10 +233,11 @@ fn grains_that_cannot_be_a_packing_are_refused() {
     let checked = |change: &dyn Fn(&mut Packing)| measured(change).unwrap().check();
     let doubts = |factor: f64| {
         let swollen = |p: &mut Packing| p.diameter.iter_mut().for_each(|d| *d *= factor);
-        let found = measured(&swollen).unwrap();
-        (found.check().is_ok(), found.doubts().len())
+        let swollen = measured(&swollen).unwrap();
+        (swollen.check().is_ok(), swollen.doubts().len())
     };
-    // A simple cubic lattice has 0.91; grains of 1.25 times the size 0.98 of the volume, of 1.26 all of it.
+    // A simple cubic lattice has 0.91; grains of 1.25 times the size fill 0.98 of the volume, of 1.26 all of
+    // it.
     assert_eq!([1.0, 0.9, 1.2, 1.26].map(doubts), [(true, 0), (true, 1), (true, 1), (false, 1)]);
     let again = |by: f64| {
         move |p: &mut Packing| {
@@ -247,8 +253,8 @@ fn grains_that_cannot_be_a_packing_are_refused() {
     }
     // Nearer than a quarter of a diameter.
     let near = |by: f64| {
-        let found = measured(&again(by)).unwrap();
-        (found.check().is_ok(), found.near.len(), found.doubts().len())
+        let doubled = measured(&again(by)).unwrap();
+        (doubled.check().is_ok(), doubled.near.len(), doubled.doubts().len())
     };
     assert_eq!([0.002, 0.2].map(near), [(true, 1, 1); 2]);
     assert_eq!(near(0.3).1, 0);
@@ -256,7 +262,7 @@ fn grains_that_cannot_be_a_packing_are_refused() {
     for (layers, tilt, rough) in
         [(2, 0.0, 0.0), (2, 0.4, 0.0), (2, 0.0, 0.1), (2, 0.4, 0.1), (3, 0.0, 0.1), (3, 0.4, 0.0)]
     {
-        let found = measured(&|p: &mut Packing| {
+        let layer = measured(&|p: &mut Packing| {
             *p = Packing { cell: Cell::Free, x: vec![], y: vec![], z: vec![], diameter: vec![] };
             for at in 0..144 * layers {
                 let (i, j, k) = ((at % 12) as f64, (at / 12 % 12) as f64, (at / 144) as f64);
@@ -267,7 +273,7 @@ fn grains_that_cannot_be_a_packing_are_refused() {
                 p.diameter.push(1.0);
             }
         });
-        let refused = matches!(found.unwrap().check(), Err(ConstrictionsError::Outside));
+        let refused = matches!(layer.unwrap().check(), Err(ConstrictionsError::Outside));
         assert_eq!(refused, layers == 2, "{layers} {tilt} {rough}");
     }
     // One layer, tilted, and moved out of its plane by less than a millionth of a diameter.
@@ -285,14 +291,14 @@ fn grains_that_cannot_be_a_packing_are_refused() {
 
 #[test]
 fn what_is_written_can_be_read() {
-    let found = Constrictions::measure(&lattices()[0].periodic(1.0, 1e-6, 0), 0.1).unwrap();
-    let summary = serde_json::to_value(found.summary().unwrap()).unwrap();
+    let measured = Constrictions::measure(&lattices()[0].periodic(1.0, 1e-6, 0), 0.1).unwrap();
+    let summary = serde_json::to_value(measured.summary().unwrap()).unwrap();
     assert_eq!((&summary["grains"], &summary["voids"]), (&120.into(), &120.into()));
     assert_eq!(summary["connectivity"].as_array().unwrap().len(), 7);
     assert!((summary["dc_mm"]["1.5"].as_f64().unwrap() - 0.414).abs() < 0.01);
-    let curve = super::Curve::from_csv_text("f", found.curve_csv().unwrap().as_bytes()).unwrap();
-    assert_eq!(curve, found.curve().unwrap());
-    assert!(found.to_vtp().contains("Name=\"downstream\""));
+    let curve = super::Curve::from_csv_text("f", measured.curve_csv().unwrap().as_bytes()).unwrap();
+    assert_eq!(curve, measured.curve().unwrap());
+    assert!(measured.to_vtp().contains("Name=\"downstream\""));
 }
 
 #[test]

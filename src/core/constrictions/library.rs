@@ -1,15 +1,16 @@
-//! A filter's constrictions from a library of packings: a gradation's curve lies between those of its like.
+//! Finds a filter's constrictions in a library of packings: a gradation's curve lies between those of similar
+//! gradations.
 //!
 //! `src/data/library.csv` holds packings of many shapes of gradation, each dense (friction 0), medium (0.1)
-//! and loose (0.3), made by `scripts/studies/library_of_packings.py`. Nothing in it has a length: sizes are
-//! in units of the size that halves the surface of the grains, `S50`.
+//! and loose (0.3), made by `scripts/studies/library_of_packings.py`. It holds no lengths: sizes are in units
+//! of the size that halves the surface of the grains, `S50`.
 //!
-//! Constrictions are made by grains that touch, and grains meet by surface. So a shape is known by six
-//! numbers, `ln(S/S50)` of the sizes below which 5, 20, 30, 70, 80 and 95 % of the surface lie, and a place
-//! in the library by these and the relative density. Each percentile of the curve is `ln(Dc/S50)`: a trend
-//! that is linear in the shape and quadratic in the density, and beside it a Gaussian process that draws it
-//! to what was measured nearby (universal kriging; Rasmussen & Williams 2006, section 2.7). Grains per void
-//! and void ratio are found likewise.
+//! Grains that touch form the constrictions, and grains meet by surface. So six numbers describe a shape,
+//! `ln(S/S50)` of the sizes below which 5, 20, 30, 70, 80 and 95 % of the surface lie; these and the relative
+//! density give a place in the library. Each percentile of the curve is `ln(Dc/S50)`: a trend that is linear
+//! in the shape and quadratic in the density, and beside it a Gaussian process that draws it to nearby
+//! measurements (universal kriging; Rasmussen & Williams 2006, section 2.7). Grains per void and void ratio
+//! are found likewise.
 
 use std::sync::OnceLock;
 
@@ -21,51 +22,52 @@ use crate::gradation::Gradation;
 
 const TABLE: &str = include_str!("../data/library.csv");
 
-/// Shares of the surface (%) whose sizes tell a shape, beside the half.
+/// Shares of the surface (%) whose sizes describe a shape, beside the half.
 const SHAPE: [f64; 6] = [5.0, 20.0, 30.0, 70.0, 80.0, 95.0];
-/// Numbers that tell a place: those of the shape, and the relative density.
+/// Number of coordinates of a place: the shape's, and the relative density.
 const PLACE: usize = SHAPE.len() + 1;
-/// Terms of the trend: 1, each number, the square of the density, its product with each of the shape.
+/// Number of terms of the trend: 1, each coordinate, the square of the density, its product with each
+/// coordinate of the shape.
 const TREND: usize = 1 + PLACE + 1 + SHAPE.len();
-/// Distance at which two places still say much of each other.
+/// Distance at which two places are still correlated.
 const REACH: f64 = 0.7;
-/// Variance of a packing's own scatter, by that of the process.
+/// Variance of a packing's own scatter, by the process's.
 const SCATTER: f64 = 0.05;
-/// Keeps the trend from being singular where the library is small.
+/// Ridge that keeps the trend from being singular if the library is small.
 const RIDGE: f64 = 1e-6;
 /// Errors of the library by the distance to its nearest shape, relative: of constrictions from Dc5 to Dc95,
-/// and of grains per void. Nine in ten and more of the packings whose shape was left out lay within both
-/// (`results/library.md`). A shape that is farther is like none of the library.
+/// and of grains per void. At least nine in ten of the packings whose shape was left out lay within both
+/// (`results/library.md`). A shape that is farther resembles no shape of the library.
 const ERRORS: [LibraryError; 3] = [
     LibraryError { up_to: 0.2, curve: 0.03, grains: 0.06 },
     LibraryError { up_to: 0.35, curve: 0.10, grains: 0.25 },
     LibraryError { up_to: 0.7, curve: 0.13, grains: 0.75 },
 ];
 
-/// Errors of shapes whose nearest in the library lies `up_to` this distance.
+/// Errors of shapes whose nearest in the library is within the distance `up_to`.
 struct LibraryError {
     up_to: f64,
     curve: f64,
     grains: f64,
 }
 
-/// What the library says of a filter.
+/// A filter's values from the library.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FromLibrary {
     /// The constriction curve (mm), by number.
     pub curve: Curve,
     /// Grains of the filter per void.
     pub grains_per_void: f64,
-    /// Volume of the voids by that of the grains.
+    /// Volume of the voids by the grains'.
     pub void_ratio: f64,
-    /// Relative error of the curve, by shapes that the library did not hold.
+    /// Relative error of the curve, for shapes outside the library.
     pub curve_error: f64,
-    /// Relative error of the grains per void, by the same shapes.
+    /// Relative error of the grains per void, for the same shapes.
     pub grains_error: f64,
 }
 
-/// The constrictions of a filter by its gradation, at a relative density from 0, loose, to 1, dense. A pan
-/// fraction is left out. `None` for a shape that is like none of the library.
+/// Finds the constrictions of a filter from its gradation, at a relative density from 0, loose, to 1, dense.
+/// A pan fraction is left out. `None` for a shape that resembles no shape of the library.
 ///
 /// ```
 /// use voidwalk_app::{constrictions::from_library, gradation::Gradation};
@@ -76,17 +78,17 @@ pub struct FromLibrary {
 /// ```
 ///
 /// # Errors
-/// None for a gradation with a known size.
+/// Never, for a gradation with a known size.
 pub fn from_library(gradation: &Gradation, relative_density: f64) -> Result<Option<FromLibrary>, CurveError> {
     static LIBRARY: OnceLock<Library> = OnceLock::new();
-    LIBRARY.get_or_init(|| Library::of(packings(TABLE))).filter(gradation, relative_density)
+    LIBRARY.get_or_init(|| Library::fitted(packings(TABLE))).filter(gradation, relative_density)
 }
 
 /// A packing of the library.
 #[derive(Clone, Debug)]
 struct Shipped {
     place: [f64; PLACE],
-    /// Logarithms: of the curve's percentiles by `S50`, of grains per void, of the void ratio.
+    /// Logarithms of the curve's percentiles by `S50`, of grains per void, and of the void ratio.
     measured: Vec<f64>,
 }
 
@@ -109,7 +111,7 @@ fn packings(table: &str) -> Vec<Shipped> {
     .collect()
 }
 
-/// The library, ready to be asked.
+/// The library with its fitted model.
 struct Library {
     places: Vec<[f64; PLACE]>,
     /// Factors of the trend, for each measured number.
@@ -119,7 +121,7 @@ struct Library {
 }
 
 impl Library {
-    fn of(packings: Vec<Shipped>) -> Self {
+    fn fitted(packings: Vec<Shipped>) -> Self {
         let places: Vec<_> = packings.iter().map(|packing| packing.place).collect();
         let n = places.len();
         let covariance: Vec<Vec<f64>> = (0..n)
@@ -131,7 +133,7 @@ impl Library {
         let solved = |column: Vec<f64>| back(&root, forward(&root, column));
         let terms: Vec<[f64; TREND]> = places.iter().map(terms).collect();
         let by_term: Vec<Vec<f64>> =
-            (0..TREND).map(|t| solved(terms.iter().map(|of| of[t]).collect())).collect();
+            (0..TREND).map(|t| solved(terms.iter().map(|row| row[t]).collect())).collect();
         let normal: Vec<Vec<f64>> = (0..TREND)
             .map(|t| {
                 (0..=t).map(|u| column(&terms, t, &by_term[u]) + if t == u { RIDGE } else { 0.0 }).collect()
@@ -141,7 +143,10 @@ impl Library {
         let (mut trend, mut weights) = (Vec::new(), Vec::new());
         for k in 0..packings.first().map_or(0, |packing| packing.measured.len()) {
             let mut values: Vec<f64> = packings.iter().map(|packing| packing.measured[k]).collect();
-            let right = by_term.iter().map(|of| of.iter().zip(&values).map(|(a, b)| a * b).sum()).collect();
+            let right = by_term
+                .iter()
+                .map(|solution| solution.iter().zip(&values).map(|(a, b)| a * b).sum())
+                .collect();
             let factors = back(&normal, forward(&normal, right));
             let factors: [f64; TREND] = std::array::from_fn(|t| factors[t]);
             for (value, terms) in values.iter_mut().zip(&terms) {
@@ -161,8 +166,8 @@ impl Library {
         });
         let nearest = self.distance(&place);
         let Some(error) = ERRORS.iter().find(|error| nearest < error.up_to) else { return Ok(None) };
-        let found = self.at(&place);
-        let (curve, rest) = found.split_at(found.len() - 2);
+        let values = self.at(&place);
+        let (curve, rest) = values.split_at(values.len() - 2);
         let mut size = 0.0f64;
         let points: Vec<(f64, f64)> = percentages()
             .into_iter()
@@ -188,7 +193,7 @@ impl Library {
         self.places.iter().map(far).fold(f64::INFINITY, f64::min)
     }
 
-    /// What would be measured at a place.
+    /// Expected measurements at a place.
     fn at(&self, place: &[f64; PLACE]) -> Vec<f64> {
         let terms = terms(place);
         let near: Vec<f64> = self.places.iter().map(|other| near(place, other)).collect();
@@ -200,7 +205,7 @@ impl Library {
     }
 }
 
-/// The size (mm) below which this share (%) of the grains' surface lies.
+/// Size (mm) below which this share (%) of the grains' surface lies.
 fn by_surface(gradation: &Gradation, percent: f64) -> f64 {
     let (mut low, mut high) = (log(gradation.smallest_mm()), log(gradation.largest_mm()));
     for _ in 0..52 {
@@ -240,10 +245,6 @@ fn column(terms: &[[f64; TREND]], t: usize, of: &[f64]) -> f64 {
 }
 
 /// Cholesky's root of a positive definite matrix, both by the rows of their lower halves.
-///
-/// A row's numbers follow from one another, so each is taken off all that come after it as soon as it is
-/// known, by the columns of the root: the same products in the same order as number by number, many at a
-/// time.
 fn root_of(rows: Vec<Vec<f64>>) -> Root {
     let mut root = Root { columns: rows.iter().map(|_| Vec::with_capacity(rows.len())).collect(), rows };
     for i in 0..root.rows.len() {
@@ -262,14 +263,14 @@ fn root_of(rows: Vec<Vec<f64>>) -> Root {
 /// The lower half of a root.
 struct Root {
     rows: Vec<Vec<f64>>,
-    /// Of each column what stands on the diagonal and below it, from there on.
+    /// Lower part of each column, from the diagonal down.
     columns: Vec<Vec<f64>>,
 }
 
 /// Solves the lower triangle for `right`, one equation after another.
 #[multiversion(targets("x86_64+avx+avx2+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx+avx2"))]
 fn eliminate(columns: &[Vec<f64>], rows: &[Vec<f64>], right: &mut [f64]) {
-    // As a sum begins.
+    // -0.0, the neutral start of a sum.
     let mut sums = vec![-0.0; right.len()];
     for (i, column) in columns.iter().enumerate() {
         right[i] = (right[i] - sums[i]) / rows[i][i];
@@ -296,16 +297,16 @@ fn back(root: &Root, mut right: Vec<f64>) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// A packing of the library that was found without its shape.
+    /// A packing of the library, predicted without its shape.
     struct LeftOut {
         cu: f64,
         density: f64,
         distance: f64,
-        /// Relative: of the percentiles, grains per void and void ratio.
+        /// Relative errors of the percentiles, grains per void and void ratio.
         errors: Vec<f64>,
     }
 
-    /// Every packing, found by a library that holds none of its shape.
+    /// Predicts every packing from a library without its shape.
     fn left_out() -> Vec<LeftOut> {
         let all = packings(TABLE);
         let rows: Vec<Vec<f64>> = TABLE
@@ -317,11 +318,14 @@ mod tests {
         let of_shape = |shape: u64| {
             let is_out = |k: &usize| rows[*k][0] as u64 == shape;
             let others = (0..all.len()).filter(|k| !is_out(k)).map(|k| all[k].clone()).collect();
-            let library = Library::of(others);
+            let library = Library::fitted(others);
             let error = |k: usize| {
-                let found = library.at(&all[k].place);
-                let errors =
-                    found.iter().zip(&all[k].measured).map(|(found, of)| found / exp(*of) - 1.0).collect();
+                let values = library.at(&all[k].place);
+                let errors = values
+                    .iter()
+                    .zip(&all[k].measured)
+                    .map(|(value, measured)| value / exp(*measured) - 1.0)
+                    .collect();
                 LeftOut {
                     cu: rows[k][1],
                     density: rows[k][2],
@@ -346,39 +350,40 @@ mod tests {
             })
             .chain([("grains per void".into(), percent.len()), ("void ratio".into(), percent.len() + 1)])
             .collect();
-        let table = |name: &str, of: &[&LeftOut]| {
+        let table = |name: &str, cases: &[&LeftOut]| {
             let cells = columns.iter().map(|(_, k)| {
-                let mut sizes: Vec<f64> = of.iter().map(|of| 100.0 * of.errors[*k].abs()).collect();
+                let mut sizes: Vec<f64> = cases.iter().map(|case| 100.0 * case.errors[*k].abs()).collect();
                 sizes.sort_by(f64::total_cmp);
                 let at = |share: f64| sizes[((sizes.len() as f64 - 1.0) * share).round() as usize];
                 format!("{:.1} ({:.1}, {:.0})", at(0.5), at(0.9), at(1.0))
             });
-            println!("| {name} | {} | {} |", of.len(), cells.collect::<Vec<_>>().join(" | "));
+            println!("| {name} | {} | {} |", cases.len(), cells.collect::<Vec<_>>().join(" | "));
         };
         let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
         println!("| packings | number | {} |", names.join(" | "));
         table("all", &all.iter().collect::<Vec<_>>());
         for [low, high] in [[1.0, 2.0], [2.0, 5.0], [5.0, 10.0], [10.0, 31.0]] {
-            let of: Vec<&LeftOut> = all.iter().filter(|of| (low..high).contains(&of.cu)).collect();
-            table(&format!("Cu {low} to {high}"), &of);
+            let cases: Vec<&LeftOut> = all.iter().filter(|case| (low..high).contains(&case.cu)).collect();
+            table(&format!("Cu {low} to {high}"), &cases);
         }
         for (name, density) in [("loose", 0.0), ("medium", 0.5), ("dense", 1.0)] {
-            table(name, &all.iter().filter(|of| of.density == density).collect::<Vec<_>>());
+            table(name, &all.iter().filter(|case| case.density == density).collect::<Vec<_>>());
         }
-        // From Dc5 to Dc95 together, by the distance that sets what is said of the error.
+        // From Dc5 to Dc95 together, by the distance that sets the stated error.
         let inner: Vec<usize> = (0..percent.len()).filter(|k| (5.0..=95.0).contains(&percent[*k])).collect();
         let mut nearer = 0.0;
         for LibraryError { up_to, curve, grains } in ERRORS {
-            let of: Vec<&LeftOut> = all.iter().filter(|of| (nearer..up_to).contains(&of.distance)).collect();
-            let most = |of: &LeftOut| inner.iter().map(|k| of.errors[*k].abs()).fold(0.0, f64::max);
-            let far = of.iter().filter(|of| most(of) > curve).count();
-            let of_grains = of.iter().filter(|of| of.errors[percent.len()].abs() > grains).count();
+            let cases: Vec<&LeftOut> =
+                all.iter().filter(|case| (nearer..up_to).contains(&case.distance)).collect();
+            let most = |case: &LeftOut| inner.iter().map(|k| case.errors[*k].abs()).fold(0.0, f64::max);
+            let far = cases.iter().filter(|case| most(case) > curve).count();
+            let of_grains = cases.iter().filter(|case| case.errors[percent.len()].abs() > grains).count();
             println!(
                 "nearest shape at {nearer} to {up_to}, of {}: curves of {far} beyond {curve}, grains per \
                  void of {of_grains} beyond {grains}",
-                of.len()
+                cases.len()
             );
-            assert!(10 * far.max(of_grains) <= of.len(), "at {nearer} to {up_to}: {far}, {of_grains}");
+            assert!(10 * far.max(of_grains) <= cases.len(), "at {nearer} to {up_to}: {far}, {of_grains}");
             nearer = up_to;
         }
     }
@@ -389,7 +394,7 @@ mod tests {
     fn packings_that_were_never_fitted_lie_as_near_as_it_says() {
         let table = concat!(env!("CARGO_MANIFEST_DIR"), "/../../results/library-held-out.csv");
         let packed = packings(&std::fs::read_to_string(table).unwrap());
-        let library = Library::of(packings(TABLE));
+        let library = Library::fitted(packings(TABLE));
         let percent = percentages();
         let mut beyond = [[0; 3]; ERRORS.len()];
         for packing in &packed {
@@ -416,7 +421,7 @@ mod tests {
         assert!(beyond.iter().all(|[all, curves, grains]| *all >= 8 && 10 * curves.max(grains) <= *all));
     }
 
-    /// Broad filters are packed in their finer part, which narrower ones resemble.
+    /// Broad filters are packed in their finer part, which resembles narrower filters.
     #[test]
     fn the_shapes_before_them_say_the_broad_ones() {
         const BEFORE: usize = 126;
@@ -424,13 +429,14 @@ mod tests {
         let shapes = rows.map(|line| line.split(',').next().unwrap().parse::<usize>().unwrap());
         let (before, broad): (Vec<_>, Vec<_>) =
             shapes.zip(packings(TABLE)).partition(|(shape, _)| *shape < BEFORE);
-        let library = Library::of(before.into_iter().map(|(_, packing)| packing).collect());
-        let inner = percentages().into_iter().enumerate().filter(|(_, of)| (5.0..=95.0).contains(of));
+        let library = Library::fitted(before.into_iter().map(|(_, packing)| packing).collect());
+        let inner =
+            percentages().into_iter().enumerate().filter(|(_, percent)| (5.0..=95.0).contains(percent));
         let inner: Vec<usize> = inner.map(|(k, _)| k).collect();
         let mut most = 0.0;
         for (_, packing) in &broad {
-            let found = library.at(&packing.place);
-            let errors = inner.iter().map(|&k| (found[k] / exp(packing.measured[k]) - 1.0).abs());
+            let values = library.at(&packing.place);
+            let errors = inner.iter().map(|&k| (values[k] / exp(packing.measured[k]) - 1.0).abs());
             most = errors.fold(most, f64::max);
         }
         println!("{} broad packings by the others: Dc5 to Dc95 within {:.2} %", broad.len(), 100.0 * most);
@@ -450,7 +456,7 @@ mod tests {
 
     #[test]
     fn a_shape_like_no_other_is_not_answered() {
-        // Half of the surface is of dust, half of boulders.
+        // Half of the surface belongs to dust, half to boulders.
         let dust_and_boulders = [(0.001, 0.0), (0.0011, 0.1), (1.0, 0.1), (1.1, 100.0)];
         let filter = Gradation::from_points(&dust_and_boulders, None).unwrap();
         assert_eq!(from_library(&filter, 0.0).unwrap(), None);

@@ -1,4 +1,4 @@
-//! From a packing to its constrictions.
+//! Measures the constrictions of a packing.
 
 use super::curve::{Curve, CurveError, CurveUnit};
 use super::discs::{ConstrictionDisc, disc};
@@ -11,8 +11,8 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
-/// Two discs between the same voids are one when centre and radius agree to this part of the radius
-/// (four grains on one circle, up to a jitter of 1e-6 of a grain).
+/// Relative difference of centre and radius, by the radius, within which two discs between the same voids are
+/// one (four grains on one circle, up to a jitter of 1e-6 of a grain).
 const SAME_DISC: f64 = 1e-4;
 
 /// Overlap from which two tetrahedra share a void, unless it is given.
@@ -36,11 +36,11 @@ pub enum Facets {
     OnBothHulls,
 }
 
-/// The constrictions of a packing, the voids they lie between, and what a filter is judged by.
+/// The constrictions of a packing, the voids between them, and the quantities for judging a filter.
 ///
 /// Constriction `c` is entry `c` of the constriction columns, void `v` entry `v` of the void columns.
-/// Constrictions stand in the order of their tetrahedra, which the packing alone decides. A free
-/// packing's columns hold everything; its statistics leave out what lies in the outer 5 %.
+/// Constrictions are in the order of their tetrahedra, which the packing alone decides. A free packing's
+/// columns hold everything; its statistics leave out the outer 5 %.
 ///
 /// ```
 /// use voidwalk_core::constrictions::Constrictions;
@@ -52,9 +52,9 @@ pub enum Facets {
 ///     x: along(1), y: along(3), z: along(9),
 ///     diameter: vec![1.0; 27],
 /// };
-/// let found = Constrictions::measure(&packing, 0.1)?;
-/// assert_eq!((found.voids(), found.constrictions()), (27, 81));
-/// assert!((found.diameter_mm[0] - 0.414_214).abs() < 1e-6);
+/// let measured = Constrictions::measure(&packing, 0.1)?;
+/// assert_eq!((measured.voids(), measured.constrictions()), (27, 81));
+/// assert!((measured.diameter_mm[0] - 0.414_214).abs() < 1e-6);
 /// # Ok::<(), voidwalk_core::constrictions::ConstrictionsError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
@@ -67,10 +67,10 @@ pub struct Constrictions {
     pub upstream: Vec<u32>,
     /// Void on the side of higher z, by constriction.
     pub downstream: Vec<u32>,
-    /// Diameter (mm) of the largest sphere tangent to four grains of the void, by void; 0 where there
-    /// is none.
+    /// Diameter (mm) of the largest sphere tangent to four grains of the void, by void; 0 if there is no such
+    /// sphere.
     pub void_diameter_mm: Vec<f64>,
-    /// Its centre x, y, z (mm), by void; where there is none, a corner of the void.
+    /// Its centre x, y, z (mm), by void; a corner of the void if there is no such sphere.
     pub void_centre_mm: Vec<[f64; 3]>,
     /// Tetrahedra by void.
     pub void_tetrahedra: Vec<u32>,
@@ -84,7 +84,7 @@ pub struct Constrictions {
     pub flat_tetrahedra: usize,
     /// Tetrahedra.
     pub tetrahedra: usize,
-    /// Grains that lie inside others, ascending; they take no part.
+    /// Grains inside others, ascending; they take no part.
     pub hidden: Vec<u32>,
     /// Pairs of grains with the same centre, to a thousandth of the smaller diameter.
     pub duplicates: Vec<[u32; 2]>,
@@ -96,23 +96,23 @@ pub struct Constrictions {
     pub d0_mm: f64,
     /// Overlap from which two tetrahedra share a void.
     pub merge_overlap: f64,
-    /// Which facets between voids were counted.
+    /// Facets between voids that were counted.
     pub counted: Facets,
-    /// What statistics are taken over.
+    /// Region for statistics.
     pub(super) region: Region,
     /// Grains in the region, hidden ones left out.
     pub(super) grains: usize,
-    /// Whether a grain has others all around it.
+    /// True if a grain has others all around it.
     pub(super) is_surrounded: bool,
 }
 
-/// Why a packing's constrictions cannot be measured.
+/// Reasons why a packing's constrictions cannot be measured.
 #[derive(Clone, Debug, thiserror::Error, PartialEq)]
 pub enum ConstrictionsError {
     /// The packing has no triangulation.
     #[error(transparent)]
     Triangulation(#[from] TriangulationError),
-    /// Grains without a periodic cell, where the graph of their voids is wanted.
+    /// Grains without a periodic cell, which the graph of their voids needs.
     #[error("the grains have no periodic cell, and the graph of their voids needs one")]
     NoCell,
     /// A void that meets itself on the other side of the cell.
@@ -126,7 +126,7 @@ pub enum ConstrictionsError {
         /// Overlap from which tetrahedra share a void.
         merge_overlap: f64,
     },
-    /// Grains inside others, which a periodic cell of another size or unit makes of grains side by side.
+    /// Grains inside others: a periodic cell of another size or unit makes them of grains side by side.
     #[error(
         "the grains do not fit their cell: {hidden} of {grains} lie inside others, the first of them grain \
          {first} (counted from 0). The cell is too small, or in another unit than the grains, or grains \
@@ -140,16 +140,16 @@ pub enum ConstrictionsError {
         /// The first grain inside another.
         first: u32,
     },
-    /// Grains that stand twice.
+    /// Grains that occur twice.
     #[error(
         "{pairs} pairs of grains have the same centre, the first of them grains {} and {} (counted from 0); \
          leave out those that stand twice",
         first[0], first[1]
     )]
     Twice {
-        /// Such pairs.
+        /// Number of such pairs.
         pairs: usize,
-        /// The first.
+        /// First such pair.
         first: [u32; 2],
     },
     /// Grains that leave no voids.
@@ -161,17 +161,17 @@ pub enum ConstrictionsError {
         /// Volume of voids over volume of grains.
         void_ratio: f64,
     },
-    /// Grains of which none has others all around it.
+    /// Grains without any that has others all around it.
     #[error(
         "no grain has others all around it: the grains are a layer, a heap or a row, and their voids are \
          open \
          outwards. Take a block of at least three grains along each axis, or give its periodic cell"
     )]
     Outside,
-    /// A merge overlap that is none.
+    /// An invalid merge overlap.
     #[error("merge_overlap = {value} is not allowed; allowed: a finite number from 0")]
     MergeOverlap {
-        /// What was asked for.
+        /// Requested value.
         value: f64,
     },
 }
@@ -187,33 +187,33 @@ pub(super) fn merged(t: &Triangulation, merge_overlap: f64) -> Result<Voids, Con
     Ok(Voids::merge(t, &t.positions(), merge_overlap))
 }
 
-/// An open facet between two voids, and the constriction that it is, or is a part of.
+/// An open facet between two voids, and the constriction that it forms, or forms a part of.
 pub(super) struct Passage {
-    /// Tetrahedron and corner opposite the facet, on the side that comes first.
+    /// Tetrahedron and corner opposite the facet, on the side with the lower index.
     pub(super) facet: (usize, usize),
-    /// Its constriction; facets come in such an order that a new one is one more than those before.
+    /// Its constriction; a new one is numbered one above those of earlier facets.
     pub(super) constriction: usize,
     /// Radius of the disc, in grid units.
     pub(super) radius: f64,
     /// Its centre, in the stored translate of the tetrahedron.
     pub(super) centre: [f64; 3],
-    /// Whether a fourth grain cuts into it.
+    /// True if a fourth grain cuts into it.
     pub(super) cut: bool,
 }
 
 /// The facets between voids.
 pub(super) struct Passages {
-    /// Those that are open.
+    /// Open facets.
     pub(super) of: Vec<Passage>,
-    /// Number of those that the grains close.
+    /// Number of facets that the grains close.
     pub(super) closed: usize,
 }
 
 impl Passages {
-    /// The facets between voids that are `counted`.
+    /// Finds the facets between voids that are `counted`.
     pub(super) fn new(t: &Triangulation, positions: &Positions<'_>, voids: &Voids, counted: Facets) -> Self {
         let counts = |i: usize, k: usize| {
-            // Each facet from the tetrahedron that comes first.
+            // Each facet is taken from the tetrahedron with the lower index.
             t.across(i, k).is_some_and(|(u, j, _)| {
                 u > i
                     && voids.of[u] != voids.of[i]
@@ -230,14 +230,14 @@ impl Passages {
         let discs: Vec<ConstrictionDisc> =
             facets.par_iter().with_min_len(256).map(|&(i, k)| disc(t, positions, i, k)).collect();
         let frame = Frame::new(t);
-        let mut found = Self { of: Vec::new(), closed: 0 };
+        let mut passages = Self { of: Vec::new(), closed: 0 };
         // Diameter and centre (mm) of each constriction.
         let mut constrictions: Vec<(f64, [f64; 3])> = Vec::new();
         let mut between: HashMap<(u32, u32), Vec<usize>> = HashMap::new();
         for (&(i, k), disc) in facets.iter().zip(&discs) {
             let Some((u, _, _)) = t.across(i, k) else { continue };
             if disc.radius <= 0.0 {
-                found.closed += 1;
+                passages.closed += 1;
                 continue;
             }
             let (centre, diameter) = (frame.inside_mm(disc.centre), 2.0 * disc.radius * frame.unit_mm);
@@ -256,9 +256,9 @@ impl Passages {
                 }
             };
             let &ConstrictionDisc { centre, radius, cut } = disc;
-            found.of.push(Passage { facet: (i, k), constriction, radius, centre, cut });
+            passages.of.push(Passage { facet: (i, k), constriction, radius, centre, cut });
         }
-        found
+        passages
     }
 }
 
@@ -266,7 +266,7 @@ impl Constrictions {
     /// Triangulates a packing and measures it.
     ///
     /// # Errors
-    /// What [`Triangulation::new`] refuses; a `merge_overlap` that is negative or not finite.
+    /// Errors of [`Triangulation::new`]; a `merge_overlap` that is negative or not finite.
     pub fn measure(packing: &Packing, merge_overlap: f64) -> Result<Self, ConstrictionsError> {
         Self::from_triangulation(&Triangulation::new(packing)?, merge_overlap, Facets::All)
     }
@@ -295,27 +295,27 @@ impl Constrictions {
     ) -> Self {
         let positions = t.positions();
         let frame = Frame::new(t);
-        let mut found = Self::empty(t, voids, &frame);
-        (found.merge_overlap, found.counted) = (merge_overlap, counted);
-        found.closed = passages.closed;
+        let mut measured = Self::empty(t, voids, &frame);
+        (measured.merge_overlap, measured.counted) = (merge_overlap, counted);
+        measured.closed = passages.closed;
         for passage in &passages.of {
-            if passage.constriction < found.diameter_mm.len() {
+            if passage.constriction < measured.diameter_mm.len() {
                 continue;
             }
             let (i, k) = passage.facet;
             let Some((u, _, _)) = t.across(i, k) else { continue };
             let (a, b) = (voids.of[i], voids.of[u]);
-            found.cut += usize::from(passage.cut);
-            found.diameter_mm.push(2.0 * passage.radius * frame.unit_mm);
-            found.centre_mm.push(frame.inside_mm(passage.centre));
+            measured.cut += usize::from(passage.cut);
+            measured.diameter_mm.push(2.0 * passage.radius * frame.unit_mm);
+            measured.centre_mm.push(frame.inside_mm(passage.centre));
             let up = leads_up(&t.at(&positions, i, Shift::ZERO), k);
-            found.upstream.push(if up { a } else { b });
-            found.downstream.push(if up { b } else { a });
+            measured.upstream.push(if up { a } else { b });
+            measured.downstream.push(if up { b } else { a });
         }
-        found
+        measured
     }
 
-    /// Everything but the constrictions.
+    /// Fills everything but the constrictions.
     fn empty(t: &Triangulation, voids: &Voids, frame: &Frame) -> Self {
         let positions = t.positions();
         let mut void_diameter_mm = vec![0.0; voids.count];
@@ -423,11 +423,11 @@ impl Constrictions {
         ends as f64 / counts.iter().sum::<usize>() as f64
     }
 
-    /// The curve by number (mm): constriction `i` of `n` in ascending order at `i / (n - 1)`, so that
-    /// D_c0 and D_c100 are the smallest and the largest.
+    /// Curve by number (mm): constriction `i` of `n` in ascending order at `i / (n - 1)`, so that D_c0 and
+    /// D_c100 are the smallest and the largest.
     ///
     /// # Errors
-    /// A packing without constrictions, or with sizes that are none for a [`Curve`].
+    /// A packing without constrictions, or with sizes that are invalid in a [`Curve`].
     pub fn curve(&self) -> Result<Curve, CurveError> {
         let mut sizes: Vec<f64> = (self.diameter_mm.iter().zip(&self.centre_mm))
             .filter(|(_, centre)| self.region.holds(centre))
@@ -444,7 +444,7 @@ impl Constrictions {
     }
 }
 
-/// Whether the facet opposite a corner leads from its tetrahedron towards higher z.
+/// Tells if the facet opposite a corner leads from its tetrahedron towards higher z.
 fn leads_up(corners: &[GrainPoint; 4], corner: usize) -> bool {
     let facet = [1, 2, 3].map(|k| corners[(corner + k) % 4]);
     let edge = |k: usize| -> [f64; 2] { [facet[k][0] - facet[0][0], facet[k][1] - facet[0][1]] };

@@ -3,8 +3,8 @@
 //! ```text
 //! Packing -> Triangulation -> voids, discs -> Constrictions -> Curve
 //! ```
-//! [`from_library()`] finds a curve between those of packings that were made before, and [`inscribed()`]
-//! guesses one from the gradation alone.
+//! [`from_library()`] finds a curve from packings made earlier, and [`inscribed()`] estimates one from the
+//! gradation alone.
 
 mod curve;
 mod discs;

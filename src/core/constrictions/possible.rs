@@ -1,15 +1,15 @@
-//! Grains that cannot be a packing, and those that hardly are one.
+//! Checks for grains that cannot be a packing, and doubts about unlikely ones.
 
 use super::frame::Region;
 use super::measure::{Constrictions, ConstrictionsError};
 
-/// Void ratios between which grains rest on each other.
+/// Least void ratio at which grains rest on each other.
 const DENSEST: f64 = 0.2;
 const LOOSEST: f64 = 1.5;
 
 impl Constrictions {
-    /// Refuses grains that cannot be a packing: in a periodic cell those that lie inside others, whose cell
-    /// is not the one given; those that stand twice; those that leave no voids; those that enclose no grain.
+    /// Refuses grains that cannot be a packing: grains inside others in a periodic cell, which must then be
+    /// the wrong cell; grains that occur twice; grains that leave no voids; grains that enclose no grain.
     ///
     /// # Errors
     /// [`ConstrictionsError::Hidden`], [`ConstrictionsError::Twice`], [`ConstrictionsError::Outside`] or
@@ -23,13 +23,13 @@ impl Constrictions {
             }),
             (_, Some(&first)) => Err(ConstrictionsError::Twice { pairs: self.duplicates.len(), first }),
             _ if !self.is_surrounded => Err(ConstrictionsError::Outside),
-            // It is no number where the region holds no tetrahedron.
+            // The ratio is NaN if the region holds no tetrahedron.
             _ if self.void_ratio <= 0.0 => Err(ConstrictionsError::Full { void_ratio: self.void_ratio }),
             _ => Ok(()),
         }
     }
 
-    /// Doubts whether the grains are a packing.
+    /// Reasons to doubt that the grains are a packing.
     pub fn doubts(&self) -> Vec<String> {
         let (ratio, is_periodic) = (self.void_ratio, self.region == Region::Everything);
         let rest = "grains that rest on each other hardly leave";

@@ -1,7 +1,7 @@
-//! The filters that come with the program: a constriction curve each, so that no packing is needed.
+//! The filters shipped with the program: each has a constriction curve, so that no packing is needed.
 //!
-//! They lie in `src/data/filters`: one CSV file a filter, and `filters.toml`, which says what each is.
-//! A new one takes a file, an entry there and a line in `TEXTS` here.
+//! They are in `src/data/filters`: one CSV file per filter, and `filters.toml` with their descriptions. A new
+//! one takes a file, an entry there and a line in `TEXTS` here.
 
 use super::curve::{Curve, CurveError, nearest};
 use std::sync::OnceLock;
@@ -22,25 +22,25 @@ const TEXTS: [(&str, &str); 9] = [
     ("cu6-friction0.7", include_str!("../data/filters/cu6-friction0.7.csv")),
 ];
 
-/// What is known about a shipped filter; its gradation is linear and scale-free, with D0F = 1.
+/// Facts about a shipped filter; its gradation is linear and scale-free, with D0F = 1.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ShippedFilter {
-    /// Name, as in `filter.curve`.
+    /// Name, for use in `filter.curve`.
     pub name: String,
-    /// What it is, in a line.
+    /// Description in one line.
     pub title: String,
     /// Coefficient of uniformity of the filter's gradation.
     pub cu: f64,
     /// Void ratio of the packing.
     pub void_ratio: f64,
-    /// Where the void ratio comes from.
+    /// Source of the void ratio.
     pub void_ratio_source: String,
-    /// Grains per void of a packing like it, N_p / N_voids.
+    /// Grains per void of a similar packing, N_p / N_voids.
     pub grains_per_void: f64,
-    /// Where the grains per void come from.
+    /// Source of the grains per void.
     pub grains_per_void_source: String,
-    /// Whom to name.
+    /// Authors to name.
     pub attribution: String,
     /// Licence of the curve.
     pub licence: String,
@@ -59,7 +59,7 @@ impl ShippedFilter {
     /// The constriction curve, in units of D0F.
     ///
     /// # Errors
-    /// None for a filter from [`shipped`]: each is read in a test.
+    /// Never for a filter from [`shipped`]: a test reads each.
     pub fn curve(&self) -> Result<Curve, CurveError> {
         Curve::from_csv_text(&format!("{}.csv", self.name), self.curve_csv.as_bytes())
     }
@@ -68,7 +68,7 @@ impl ShippedFilter {
 /// All shipped filters, in the order of their manifest.
 ///
 /// # Panics
-/// If the embedded manifest cannot be read; it is read in a test.
+/// If the embedded manifest cannot be read; a test reads it.
 pub fn shipped() -> &'static [ShippedFilter] {
     static FILTERS: OnceLock<Vec<ShippedFilter>> = OnceLock::new();
     FILTERS.get_or_init(|| {
@@ -84,7 +84,7 @@ pub fn shipped() -> &'static [ShippedFilter] {
 /// The shipped filter called `name`.
 ///
 /// # Errors
-/// An unknown name; the error names the nearest and all.
+/// An unknown name; the error gives the nearest name and all names.
 ///
 /// ```
 /// let filter = voidwalk_core::constrictions::find("shire2016-cu1.5-loose")?;
@@ -133,9 +133,9 @@ mod tests {
         }
     }
 
-    /// The program's own six beside Table 2: Cu_CSD within 0.04, but for Cu 6 (0.049 too wide, a finding);
-    /// void ratio within 0.006 without friction, 0.02 with 0.3, 0.03 with 0.7. And beside the published
-    /// curves: 3 % at Dc5, Dc25, Dc50, 5 % at Dc75.
+    /// The program's own six curves beside Table 2: Cu_CSD within 0.04, but for Cu 6 (0.049 too wide, a
+    /// finding); void ratio within 0.006 without friction, 0.02 with 0.3, 0.03 with 0.7. And beside the
+    /// published curves: 3 % at Dc5, Dc25, Dc50, 5 % at Dc75.
     #[test]
     fn own_curves_are_near_table_2_and_the_published_ones() {
         for (name, void_ratio, within, cu_csd, cu_within) in [

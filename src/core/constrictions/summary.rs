@@ -1,4 +1,4 @@
-//! What is written about a packing's constrictions.
+//! Files about a packing's constrictions.
 
 use super::curve::CurveError;
 use super::measure::{Constrictions, Facets};
@@ -62,10 +62,10 @@ pub struct Summary {
 }
 
 impl Constrictions {
-    /// All figures together.
+    /// Computes all figures.
     ///
     /// # Errors
-    /// As [`Constrictions::curve`].
+    /// Errors of [`Constrictions::curve`].
     pub fn summary(&self) -> Result<Summary, CurveError> {
         let curve = self.curve()?;
         let dc = |percent: f64| curve.dc(percent).map(|d| (percent.to_string(), d.into()));
@@ -93,10 +93,10 @@ impl Constrictions {
         })
     }
 
-    /// The files that say all of it, by name: curve, the constrictions for ParaView, and this summary.
+    /// Files with the results, by name: curve, the constrictions for ParaView, and this summary.
     ///
     /// # Errors
-    /// As [`Constrictions::curve`].
+    /// Errors of [`Constrictions::curve`].
     pub fn files(&self, summary: &Summary) -> Result<[(&'static str, String); 3], CurveError> {
         let json = format::CONSTRICTIONS.json(summary).expect("numbers and names");
         Ok([
@@ -106,20 +106,20 @@ impl Constrictions {
         ])
     }
 
-    /// The curve as CSV, `percent_smaller,diameter_mm`.
+    /// Writes the curve as CSV, `percent_smaller,diameter_mm`.
     ///
     /// # Errors
-    /// As [`Constrictions::curve`].
+    /// Errors of [`Constrictions::curve`].
     pub fn curve_csv(&self) -> Result<String, CurveError> {
         let mut text = String::from("percent_smaller,diameter_mm\n");
         for CurvePoint { size: diameter, percent } in self.curve()?.points() {
-            // A String takes whatever is written to it.
+            // Writing to a String never fails.
             let _ = writeln!(text, "{percent},{diameter}");
         }
         Ok(text)
     }
 
-    /// The constrictions for ParaView: points (mm) with their diameter and the voids they join.
+    /// Writes the constrictions for ParaView: points (mm) with their diameter and the voids they join.
     pub fn to_vtp(&self) -> String {
         let column = |voids: &[u32]| voids.iter().map(|&v| f64::from(v)).collect::<Vec<_>>();
         let (upstream, downstream) = (column(&self.upstream), column(&self.downstream));

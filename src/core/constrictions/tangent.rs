@@ -26,9 +26,9 @@ fn half_power<const N: usize>(d: &[f64; N], delta: f64) -> f64 {
     0.5 * (length - delta) * (length + delta)
 }
 
-/// The distance `s` of `A + B s` from the origin that equals `s`: the smaller positive one. Where a
-/// size changes smoothly it is this root that does; the larger one, where there is one, comes in from
-/// infinity (a sphere that holds the grains on its other side).
+/// Distance `s` of `A + B s` from the origin that equals `s`: the smaller positive root. This root changes
+/// smoothly with the sizes; a larger one, if any, comes in from infinity (a sphere that holds the grains on
+/// its other side).
 fn distance<const N: usize>(a: &[f64; N], b: &[f64; N]) -> Option<f64> {
     let (square, half, constant) = (dot(b, b) - 1.0, dot(a, b), dot(a, a));
     let discriminant = half * half - square * constant;
@@ -40,7 +40,7 @@ fn distance<const N: usize>(a: &[f64; N], b: &[f64; N]) -> Option<f64> {
     (s.is_finite() && s > 0.0).then_some(s)
 }
 
-/// The sphere that touches four grains (centre and radius each); none where they leave no such room.
+/// Finds the sphere that touches four grains (centre and radius each); `None` if they leave no such room.
 pub(super) fn sphere(grains: &[[f64; 4]; 4]) -> Option<Tangent<3>> {
     let first = least(grains.map(|g| g[3]));
     let origin = grains[first];
@@ -59,7 +59,7 @@ pub(super) fn sphere(grains: &[[f64; 4]; 4]) -> Option<Tangent<3>> {
     (s > origin[3]).then_some(Tangent { centre, radius: s - origin[3] })
 }
 
-/// The circle that touches three circles (centre and radius each); none where they leave no room.
+/// Finds the circle that touches three circles (centre and radius each); `None` if they leave no room.
 pub(super) fn circle(circles: &[[f64; 3]; 3]) -> Option<Tangent<2>> {
     let first = least(circles.map(|c| c[2]));
     let origin = circles[first];
@@ -95,7 +95,7 @@ mod tests {
         [[0.0, 0.0, r[0]], [ab, 0.0, r[1]], [x, 2.0 * area / ab, r[2]]]
     }
 
-    /// The known geometry: three equal grains 0.154701 of their diameter; radii of wide ratios.
+    /// Known geometry: three equal grains 0.154701 of their diameter; radii of wide ratios.
     #[test]
     fn known_discs() {
         for (r, expected) in [
@@ -106,8 +106,8 @@ mod tests {
             ([1e6, 1.0, 1e6], 0.997_178),
             ([1e6, 1e6, 1.0], 0.997_178),
         ] {
-            let found = circle(&touching(r)).unwrap().radius;
-            assert!((found / expected - 1.0).abs() < 3e-6, "{r:?}: {found}");
+            let radius = circle(&touching(r)).unwrap().radius;
+            assert!((radius / expected - 1.0).abs() < 3e-6, "{r:?}: {radius}");
         }
     }
 
@@ -119,20 +119,20 @@ mod tests {
             let k = r.map(|r| 1.0 / r);
             let pairs = k[0] * k[1] + k[1] * k[2] + k[2] * k[0];
             let expected = 1.0 / (k[0] + k[1] + k[2] + 2.0 * pairs.sqrt());
-            let found = circle(&touching(r)).unwrap().radius;
-            prop_assert!((found / expected - 1.0).abs() < 1e-8, "{r:?}: {found} {expected}");
+            let radius = circle(&touching(r)).unwrap().radius;
+            prop_assert!((radius / expected - 1.0).abs() < 1e-8, "{r:?}: {radius} {expected}");
         }
 
-        /// A sphere found is at its radius from all four grains.
+        /// A tangent sphere is at its radius from all four grains.
         #[test]
         fn a_tangent_sphere_touches(
             v in prop::collection::vec(0.0..10.0, 12), r in prop::collection::vec(0.1..1.0, 4)) {
             let grains: [[f64; 4]; 4] = std::array::from_fn(|i| [v[3 * i], v[3 * i + 1], v[3 * i + 2], r[i]]);
-            if let Some(found) = sphere(&grains) && found.radius < 1e3 {
+            if let Some(tangent) = sphere(&grains) && tangent.radius < 1e3 {
                 for g in grains {
-                    let d: [f64; 3] = std::array::from_fn(|axis| g[axis] - found.centre[axis]);
-                    let gap = dot(&d, &d).sqrt() - g[3] - found.radius;
-                    prop_assert!(gap.abs() < 1e-6 * (1.0 + found.radius), "{gap}");
+                    let d: [f64; 3] = std::array::from_fn(|axis| g[axis] - tangent.centre[axis]);
+                    let gap = dot(&d, &d).sqrt() - g[3] - tangent.radius;
+                    prop_assert!(gap.abs() < 1e-6 * (1.0 + tangent.radius), "{gap}");
                 }
             }
         }
@@ -142,14 +142,14 @@ mod tests {
     #[test]
     fn simple_cubic_insphere() {
         let corner = |x, y, z| [x, y, z, 0.5];
-        let found = sphere(&[
+        let tangent = sphere(&[
             corner(0.0, 0.0, 0.0),
             corner(1.0, 0.0, 0.0),
             corner(0.0, 1.0, 0.0),
             corner(0.0, 0.0, 1.0),
         ]);
-        let found = found.unwrap();
-        assert!((2.0 * found.radius - 0.732_051).abs() < 1e-6);
-        assert!(found.centre.iter().all(|c| (c - 0.5).abs() < 1e-12));
+        let tangent = tangent.unwrap();
+        assert!((2.0 * tangent.radius - 0.732_051).abs() < 1e-6);
+        assert!(tangent.centre.iter().all(|c| (c - 0.5).abs() < 1e-12));
     }
 }

@@ -1,4 +1,4 @@
-//! The room for water around a facet: what it conducts.
+//! The water around a facet, and its conductance.
 //!
 //! After Chareyre, Cortis, Catalano & Barthelemy (2012), *Pore-scale modeling of viscous flow and induced
 //! forces in dense sphere packings*, doi:10.1007/s11242-011-9915-6. A throat is the bipyramid of a facet and
@@ -8,9 +8,9 @@
 //! ```text
 //! g = A_f R_h^2 / (2 mu L)
 //! ```
-//! with `A_f` the part of the facet outside the grains and `L` the way between the two voids. Volumes and
-//! solid angles have a sign: a power centre on the far side of a facet takes away. So those of all facets sum
-//! to the volume of the voids and the surface of the grains, exactly.
+//! with `A_f` the part of the facet outside the grains and `L` the path between the two voids. Volumes and
+//! solid angles have a sign: a power centre on the far side of a facet subtracts. So the sums over all facets
+//! are exactly the volume of the voids and the surface of the grains.
 
 use super::tangent::cross;
 use super::triangulation::GrainPoint;
@@ -27,8 +27,8 @@ pub(super) struct Throat {
 }
 
 impl Throat {
-    /// Of the facet between two tetrahedra: its grains, the corner opposite it on this side, and the power
-    /// centres of both sides.
+    /// Makes the throat of the facet between two tetrahedra from its grains, the corner opposite it on this
+    /// side, and the power centres of both sides.
     pub(super) fn new(facet: &[GrainPoint; 3], own: &GrainPoint, centres: [&[f64; 3]; 2]) -> Self {
         let [first, second] = centres;
         let here = half(facet, own, first);
@@ -37,7 +37,7 @@ impl Throat {
         Self { volume: here.0 - there.0, surface: here.1 - there.1, area: open_area(facet) }
     }
 
-    /// Conductance times viscosity over a way `length`; none where the bipyramid holds no water or no grain.
+    /// Conductance times viscosity over a path of `length`; zero if the bipyramid holds no water or no grain.
     pub(super) fn conductance(&self, length: f64) -> f64 {
         if self.volume <= 0.0 || self.surface <= 0.0 {
             return 0.0;
@@ -47,8 +47,8 @@ impl Throat {
     }
 }
 
-/// Volume of water and surface of grains between a facet and a point, positive where the point is on the side
-/// of `own`.
+/// Volume of water and surface of grains between a facet and a point, positive if the point is on the side of
+/// `own`.
 fn half(facet: &[GrainPoint; 3], own: &GrainPoint, apex: &[f64; 3]) -> (f64, f64) {
     let from = |p: &GrainPoint, q: &[f64]| -> [f64; 3] { std::array::from_fn(|axis| q[axis] - p[axis]) };
     let (e, f) = (from(&facet[0], &facet[1]), from(&facet[0], &facet[2]));
@@ -67,8 +67,8 @@ fn half(facet: &[GrainPoint; 3], own: &GrainPoint, apex: &[f64; 3]) -> (f64, f64
     (sign * volume, sign * surface)
 }
 
-/// Solid angle between three edges from a corner, of which six times the volume is known (Van Oosterom &
-/// Strackee, doi:10.1109/TBME.1983.325207).
+/// Solid angle between three edges from a corner; `six` is six times the volume of their tetrahedron (Van
+/// Oosterom & Strackee, doi:10.1109/TBME.1983.325207).
 pub(super) fn solid_angle(edges: &[[f64; 3]; 3], six: f64) -> f64 {
     let [l, m, n] = edges.map(|e| dot(&e, &e).sqrt());
     let [e, f, g] = edges;
@@ -104,7 +104,7 @@ fn sector(radius: f64, height: f64, from: f64, to: f64) -> f64 {
     0.5 * radius * radius * round + 0.5 * height * height * (libm::tan(cut_to) - libm::tan(cut_from))
 }
 
-/// The point of equal power to the four grains of a tetrahedron; not finite where they lie in a plane.
+/// Point of equal power to the four grains of a tetrahedron; not finite if they lie in a plane.
 pub(super) fn power_centre(corners: &[GrainPoint; 4]) -> [f64; 3] {
     let origin = corners[0];
     let others = [corners[1], corners[2], corners[3]];

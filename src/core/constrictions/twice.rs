@@ -1,11 +1,11 @@
-//! Grains that stand twice in a packing.
+//! Grains that occur twice in a packing.
 
 use super::triangulation::{Positions, Shift, Triangulation};
 
-/// Distance of two centres, over the smaller diameter, below which they are one grain that stands twice.
+/// Distance of two centres, over the smaller diameter, below which they are one grain that occurs twice.
 const SAME_GRAIN: f64 = 1e-3;
 
-/// The same, below which they may well be.
+/// Distance of two centres, over the smaller diameter, below which they may well be one grain.
 const NEAR: f64 = 0.25;
 
 /// Hidden grains with the centre of another, and neighbours nearer than [`SAME_GRAIN`].

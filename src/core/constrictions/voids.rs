@@ -2,7 +2,7 @@
 //!
 //! A tetrahedron's insphere is the sphere tangent to its four grains from between them. Two tetrahedra belong
 //! to one void when `overlap = (r1 + r2 - distance) / min(r1, r2) >= merge_overlap`, for neighbours and
-//! neighbours' neighbours, transitively. Two kinds have no such sphere to go by:
+//! neighbours' neighbours, transitively. Two kinds have no usable insphere:
 //! - wide gradings have tetrahedra without one: they join all four neighbours;
 //! - four grains (nearly) on one circle make a flat tetrahedron, whose sphere may lie anywhere on the
 //!   axis of that circle. It is a window, not a void: it joins the neighbour with the largest sphere
@@ -18,15 +18,16 @@ use std::collections::HashSet;
 /// have 1e-5; no tetrahedron of the disordered packings tried was flat.
 const FLAT: f64 = 1e-4;
 
-/// A grain beyond the plane of a facet by less than this part of the tetrahedron's height is in it.
+/// Height over the plane of a facet, as a part of the tetrahedron's height, below which a grain is in the
+/// plane.
 const COPLANAR: f64 = 1e-4;
 
-/// What a tetrahedron encloses, in grid units.
+/// Content of a tetrahedron, in grid units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Insphere {
     /// The sphere tangent to its grains, in its stored translate.
     Sphere(Tangent<3>),
-    /// No sphere touches all four from between them.
+    /// No sphere that touches all four from between them.
     Open,
     /// Four grains on one circle.
     Flat,
@@ -34,12 +35,12 @@ pub(super) enum Insphere {
 
 /// The void of each tetrahedron.
 pub(super) struct Voids {
-    /// Void by tetrahedron, numbered by their first tetrahedra.
+    /// Void by tetrahedron, numbered in the order of their first tetrahedra.
     pub(super) of: Vec<u32>,
-    /// By tetrahedron: the translate of it that belongs to the same image of the void as the stored translate
-    /// of the void's first tetrahedron.
+    /// Translate of each tetrahedron that belongs to the same image of the void as the stored translate of
+    /// the void's first tetrahedron.
     pub(super) shift: Vec<Shift>,
-    /// By void: whether it meets an image of itself, and so runs through the whole periodic cell.
+    /// True for each void that meets an image of itself, and so runs through the whole periodic cell.
     pub(super) endless: Vec<bool>,
     /// Number of voids.
     pub(super) count: usize,
@@ -82,8 +83,8 @@ impl Voids {
 }
 
 impl Voids {
-    /// Whether the facet opposite a corner lies on the convex hull of the grain centres of its
-    /// tetrahedron's void.
+    /// Tells if the facet opposite a corner lies on the convex hull of the grain centres of its tetrahedron's
+    /// void.
     pub(super) fn on_hull(
         &self,
         t: &Triangulation,
@@ -91,15 +92,15 @@ impl Voids {
         tetrahedron: usize,
         corner: usize,
     ) -> bool {
-        let own = t.at(positions, tetrahedron, Shift::ZERO);
-        let [a, b, c] = [1, 2, 3].map(|k| own[(corner + k) % 4]);
+        let corners = t.at(positions, tetrahedron, Shift::ZERO);
+        let [a, b, c] = [1, 2, 3].map(|k| corners[(corner + k) % 4]);
         let from_a = |p: &GrainPoint| -> [f64; 3] { std::array::from_fn(|axis| p[axis] - a[axis]) };
         let normal = cross(&from_a(&b), &from_a(&c));
         let height = |p: &GrainPoint| {
             let d = from_a(p);
             d[0] * normal[0] + d[1] * normal[1] + d[2] * normal[2]
         };
-        let inside = height(&own[corner]);
+        let inside = height(&corners[corner]);
         let void = self.of[tetrahedron];
         let mut seen = HashSet::from([tetrahedron]);
         let mut open = vec![(tetrahedron, Shift::ZERO)];
@@ -142,8 +143,8 @@ fn is_flat(corners: &[GrainPoint; 4]) -> bool {
     })
 }
 
-/// The tetrahedra that tetrahedron `i` shares its void with, by what can be seen from it: `i`, the other, and
-/// the translate of the other that the stored one of `i` meets.
+/// Finds the tetrahedra that share a void with tetrahedron `i`, as far as `i` tells: `i`, the other, and the
+/// translate of the other that the stored one of `i` meets.
 fn joined(
     t: &Triangulation,
     positions: &Positions<'_>,
@@ -163,8 +164,8 @@ fn joined(
                 .into_iter()
                 .collect()
         }
-        Insphere::Sphere(own) => {
-            let mut found = Vec::new();
+        Insphere::Sphere(sphere) => {
+            let mut pairs = Vec::new();
             let mut test = |u: usize, shift: Shift| {
                 // Each pair is seen from both sides.
                 if u > i
@@ -172,11 +173,11 @@ fn joined(
                 {
                     let by = positions.displacement(shift);
                     let d: [f64; 3] =
-                        std::array::from_fn(|axis| other.centre[axis] + by[axis] - own.centre[axis]);
+                        std::array::from_fn(|axis| other.centre[axis] + by[axis] - sphere.centre[axis]);
                     let distance = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-                    let overlap = own.radius + other.radius - distance;
-                    if overlap >= merge_overlap * own.radius.min(other.radius) {
-                        found.push(pair((u, shift)));
+                    let overlap = sphere.radius + other.radius - distance;
+                    if overlap >= merge_overlap * sphere.radius.min(other.radius) {
+                        pairs.push(pair((u, shift)));
                     }
                 }
             };
@@ -186,13 +187,13 @@ fn joined(
                     test(w, shift.plus(further));
                 }
             }
-            found
+            pairs
         }
     }
 }
 
-/// Disjoint sets; each is known by its smallest member, whatever the order of the unions. Every member knows
-/// which of its translates goes with the stored translate of its set's smallest member.
+/// Disjoint sets, each identified by its smallest member, whatever the order of the unions. Every member
+/// stores its translate that goes with the stored translate of its set's smallest member.
 struct Sets {
     above: Vec<u32>,
     /// Translate of each member that goes with the stored one of the member above it.
@@ -210,7 +211,7 @@ impl Sets {
         let mut shift = Shift::ZERO;
         while self.above[at] as usize != at {
             let above = self.above[at] as usize;
-            // Halves the way for the next time.
+            // Halves the path for the next search.
             self.shift[at] = self.shift[at].plus(self.shift[above]);
             self.above[at] = self.above[above];
             shift = shift.plus(self.shift[at]);
@@ -219,8 +220,8 @@ impl Sets {
         (at as u32, shift)
     }
 
-    /// Joins the sets of `a` and `b`, where translate `by` of `b` goes with the stored one of `a`. False
-    /// where they are of one set already, by another translate.
+    /// Joins the sets of `a` and `b`, where translate `by` of `b` goes with the stored one of `a`. False if
+    /// they are in one set already, by another translate.
     fn unite(&mut self, a: u32, b: u32, by: Shift) -> bool {
         let ((root_a, of_a), (root_b, of_b)) = (self.root(a), self.root(b));
         let between = of_a.plus(by).minus(of_b);

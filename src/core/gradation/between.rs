@@ -1,4 +1,4 @@
-//! Sizes that lie between two sieves which stand far apart, where no sieve tells how the mass is spread.
+//! Sizes between two sieves that are far apart, where the distribution of the mass is unknown.
 
 use super::curve_point::TIE;
 use super::{FINES_MM, GRAVEL_MM, Gradation};
@@ -7,22 +7,23 @@ use super::{FINES_MM, GRAVEL_MM, Gradation};
 /// 12.5 and 4.75 mm (2.63) are neighbours among the sieves that ASTM D448 asks for of a No. 57 stone.
 pub const USUAL_STEP: f64 = 2.65;
 
-/// Ratio of two neighbouring sieves above which a rule has no result where its answer hangs on the sizes
+/// Ratio of two neighbouring sieves above which a rule has no result if its answer depends on the sizes
 /// between them.
 pub const WIDE_STEP: f64 = 4.0;
 
-/// Mass (%) that stays spread over a step that is not wide and whose mass stands at one of its sieves.
+/// Mass (%) that remains spread over a step that is not wide when the rest of its mass is at one of its
+/// sieves.
 pub(super) const TRACE_PERCENT: f64 = 1e-6;
 
-/// How near to a sieve, relatively, mass stands that stands at it, and how near to a size at which a rule
-/// counts fines or gravel it stands beside it.
+/// Relative distance from a sieve of mass that counts as being at it, and relative distance of mass beside a
+/// size at which a rule counts fines or gravel.
 const NEXT: f64 = 1e-12;
 const BESIDE: f64 = 1e-6;
 
-/// Single sizes in a wide step are these parts of it, less one.
+/// Parts of a wide step, equal in ln(size); the bounds between them are its single sizes.
 const FILLINGS: i32 = 6;
 
-/// Two neighbouring sieves that stand further apart than [`USUAL_STEP`], with mass between them.
+/// Two neighbouring sieves with a ratio above [`USUAL_STEP`] and mass between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
     /// The finer sieve (mm).
@@ -33,7 +34,7 @@ pub struct Step {
 }
 
 impl Step {
-    /// Whether the sieves stand further apart than [`WIDE_STEP`].
+    /// Tells if the ratio of the sieves is above [`WIDE_STEP`].
     pub fn is_wide(self) -> bool {
         self.to_mm > self.from_mm * WIDE_STEP * (1.0 + TIE)
     }
@@ -43,19 +44,19 @@ impl Step {
         self.to_mm / self.from_mm
     }
 
-    /// Whether a size lies between the two sieves, and on none of them.
+    /// Tells if a size lies strictly between the two sieves.
     pub fn holds(self, size_mm: f64) -> bool {
         size_mm > self.from_mm * (1.0 + TIE) && size_mm < self.to_mm * (1.0 - TIE)
     }
 
-    /// Whether a size lies between the two sieves, or on one of them.
+    /// Tells if a size lies between the two sieves, or on one of them.
     pub fn encloses(self, size_mm: f64) -> bool {
         (self.from_mm * (1.0 - TIE)..=self.to_mm * (1.0 + TIE)).contains(&size_mm)
     }
 }
 
 impl Gradation {
-    /// The steps between its sieves that are wider than practice interpolates over, the finest first. A
+    /// Finds the steps between sieves that are wider than practice interpolates over, the finest first. A
     /// stated straight line has none.
     ///
     /// ```
@@ -74,7 +75,7 @@ impl Gradation {
         (self.lines..self.log_ratio.len()).filter(is_open).map(step).collect()
     }
 
-    /// This curve through these points between the sieves of its own steps: size (mm) and percent finer,
+    /// Fills the curve's own steps with these points between their sieves: size (mm) and percent finer,
     /// rising.
     pub fn filled(&self, steps: &[(Step, Vec<(f64, f64)>)]) -> Gradation {
         let (mut size_mm, mut percent) = (self.size_mm.clone(), self.percent.clone());
@@ -86,10 +87,10 @@ impl Gradation {
         Gradation::new(size_mm, percent)
     }
 
-    /// Points by which the mass of a step stands at one of its sieves.
+    /// Points that place the mass of a step at one of its sieves.
     pub fn mass_at(&self, step: &Step, end: End) -> Vec<(f64, f64)> {
         let [low, high] = self.percents(step);
-        // Of sieves not far apart, each tells the size of its own percent.
+        // The sieves of a step that is not wide keep their own percents: a trace of mass marks each.
         let trace = if step.is_wide() { 0.0 } else { TRACE_PERCENT.min((high - low) / 3.0) };
         match end {
             End::Fine => vec![(step.from_mm * (1.0 + NEXT), high - trace)],
@@ -97,15 +98,15 @@ impl Gradation {
         }
     }
 
-    /// Points by which the mass of a wide step stands where neither of its ends is the worst: at single
-    /// sizes, and in two parts with a gap between them.
+    /// Points that place the mass of a wide step inside it, in case neither of its ends is the worst: at
+    /// single sizes, and in two parts with a gap between them.
     pub fn fillings(&self, step: &Step) -> Vec<Vec<(f64, f64)>> {
         let [low, high] = self.percents(step);
         let within =
             (1..FILLINGS).map(|i| step.from_mm * libm::pow(step.ratio(), f64::from(i) / f64::from(FILLINGS)));
         let beside = |size: f64| [size * (1.0 - 2.0 * BESIDE), size * (1.0 + BESIDE)];
         let sizes = [FINES_MM, GRAVEL_MM].into_iter().flat_map(beside).chain(within);
-        // A gap reaches over a factor of four.
+        // A gap covers a factor of four.
         let sizes = sizes.chain([step.from_mm * 3.9, step.to_mm / 3.9]);
         let at_once = sizes.filter(|size| step.holds(*size) && step.holds(size * (1.0 + BESIDE)));
         let at_once = at_once.map(|size| vec![(size, low), (size * (1.0 + NEXT), high)]);
@@ -116,13 +117,13 @@ impl Gradation {
         at_once.chain(parts.map(|percent| ends.map(|end| (end, percent)).to_vec())).collect()
     }
 
-    /// Percent finer than the two sieves of a step of its own.
+    /// Percent finer than each of the two sieves of a step.
     fn percents(&self, step: &Step) -> [f64; 2] {
         [self.percent[step.segment], self.percent[step.segment + 1]]
     }
 
-    /// D_x as the largest size (mm) that no more than `percent` of the mass is finer than, where
-    /// [`Gradation::d`] gives the smallest: they differ where the curve is flat at this percent.
+    /// D_x as the largest size (mm) that no more than `percent` of the mass is finer than; [`Gradation::d`]
+    /// gives the smallest: they differ where the curve is flat at this percent.
     pub fn coarse_d(&self, percent: f64) -> Option<f64> {
         let above = self.percent.partition_point(|&p| p <= percent + 100.0 * TIE);
         match above.checked_sub(1).map(|i| (self.percent[i], self.size_mm[i])) {
@@ -132,12 +133,12 @@ impl Gradation {
     }
 }
 
-/// Where between its two sieves the mass of a step stands.
+/// Place of a step's mass at one of its two sieves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
-    /// At the finer one.
+    /// At the finer sieve.
     Fine,
-    /// At the coarser one.
+    /// At the coarser sieve.
     Coarse,
 }
 
@@ -151,7 +152,7 @@ mod tests {
         assert!(Gradation::from_points(&stone, None).unwrap().open_steps().is_empty());
         let four = Gradation::from_points(&[(0.075, 0.0), (0.3, 50.0), (1.3, 100.0)], None).unwrap();
         assert_eq!(four.open_steps().iter().map(|step| step.is_wide()).collect::<Vec<_>>(), [false, true]);
-        // Between the finest sieve and a size that the user states there is no sieve to be missed.
+        // No sieve is missing between the finest sieve and a size that the user states.
         let stated = Gradation::from_points(&[(0.3, 12.0), (0.6, 100.0)], Some(0.01)).unwrap();
         assert!(stated.open_steps().is_empty());
     }

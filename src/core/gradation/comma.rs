@@ -1,6 +1,6 @@
-//! What a comma within a number may be.
+//! Meanings of a comma within a number.
 
-/// What the comma in a number is.
+/// Meaning of the comma in a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Comma {
     /// A decimal sign.
@@ -9,7 +9,7 @@ pub enum Comma {
     Either,
 }
 
-/// What the only comma of the number in a text, such as `1,180 um`, is.
+/// Reads the only comma of the number in a text, such as `1,180 um`.
 pub fn comma(text: &str) -> Option<Comma> {
     let at = text.find(',')?;
     let before = text[..at].bytes().rev().take_while(u8::is_ascii_digit).count();

@@ -1,9 +1,9 @@
-//! A point of a curve, with names: a gradation and a constriction curve list size and percent in other
+//! A point of a curve, with names: a gradation and a constriction curve list size and percent in opposite
 //! orders.
 
 use serde::Serialize;
 
-/// By how much, relatively, numbers of one curve may differ between two ways of writing it.
+/// Relative difference allowed between two ways of writing the numbers of one curve.
 pub const TIE: f64 = 1e-9;
 
 /// A point of a gradation or of a constriction curve; in JSON a row of size and percent.
@@ -17,7 +17,7 @@ pub struct CurvePoint {
 }
 
 impl CurvePoint {
-    /// A row of a record: size, percent.
+    /// Row of a record: size, percent.
     pub fn row(self) -> [f64; 2] {
         [self.size, self.percent]
     }

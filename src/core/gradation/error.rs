@@ -1,16 +1,16 @@
-//! What can be wrong with a gradation or with a table of two columns.
+//! Errors of a gradation or of a table of two columns.
 
 use std::fmt;
 
 use crate::store::in_mb;
 use crate::text::{is_hidden, quoted};
 
-/// Where in an input something stands.
+/// Place in an input.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Position {
-    /// File as the user named it, or what the points were called.
+    /// File as the user named it, or the name of a list of points.
     pub file: String,
-    /// Line, counted from 1 (point, counted from 1, where there is no file).
+    /// Line, counted from 1 (point, counted from 1, if there is no file).
     pub line: usize,
     /// Name of the column.
     pub field: &'static str,
@@ -27,7 +27,7 @@ impl fmt::Display for Position {
     }
 }
 
-/// The name of a column of a sheet: A, B, ... Z, AA.
+/// Name of a column of a sheet: A, B, ... Z, AA.
 pub fn letters(column: u32) -> String {
     let mut name = String::new();
     let mut rest = column + 1;
@@ -47,10 +47,10 @@ pub enum TableError {
     Read {
         /// File as the user named it.
         file: String,
-        /// What the system said.
+        /// Error of the system.
         source: std::io::Error,
     },
-    /// A folder where a file is wanted.
+    /// A folder in place of a file.
     #[error("{file} is a folder; allowed: a CSV file of two columns")]
     Folder {
         /// Folder as the user named it.
@@ -61,10 +61,10 @@ pub enum TableError {
     NoTables {
         /// Folder as the user named it.
         folder: String,
-        /// Endings of the files that are looked for.
+        /// Endings of the accepted files.
         endings: String,
     },
-    /// More bytes than any such table has.
+    /// A file larger than any such table.
     #[error("{file} is larger than {}; allowed: a CSV file of two columns up to that size", in_mb(*.limit))]
     TooLarge {
         /// File as the user named it.
@@ -87,36 +87,36 @@ pub enum TableError {
     Format {
         /// File as the user named it.
         file: String,
-        /// What it is.
+        /// Description of its actual kind.
         is: String,
     },
-    /// A workbook that is refused as a whole.
+    /// A refused workbook.
     #[error("{file}: this workbook cannot be read: {why}; allowed: .xlsx or .ods, small and without macros")]
     Workbook {
         /// File as the user named it.
         file: String,
-        /// What is wrong.
+        /// Reason.
         why: String,
     },
-    /// Several soils, and none of them named.
+    /// Several soils, without a name to choose one.
     #[error("{file} holds several soils: {soils}; name one of them, as in {}",
             quoted(&format!("{file}#{first}")))]
     SeveralSoils {
         /// File as the user named it.
         file: String,
-        /// Their names.
+        /// Names of the soils.
         soils: String,
-        /// The first of them.
+        /// First name.
         first: String,
     },
-    /// No soil of the name that is asked for.
+    /// A name that no soil has.
     #[error("{file} holds no soil called \"{name}\"; it holds {soils}")]
     NoSuchSoil {
         /// File as the user named it.
         file: String,
-        /// The name asked for.
+        /// Name asked for.
         name: String,
-        /// The names there are.
+        /// Names of the soils in the file.
         soils: String,
     },
     /// No row of numbers.
@@ -125,10 +125,10 @@ pub enum TableError {
     NoRows {
         /// File as the user named it.
         file: String,
-        /// There is a header.
+        /// True if there is a header.
         header: bool,
     },
-    /// A row that has not two fields.
+    /// A row without exactly two fields.
     #[error("{file}, line {line}: {found} field(s) in \"{value}\"; allowed: {allowed}")]
     Fields {
         /// File as the user named it.
@@ -139,7 +139,7 @@ pub enum TableError {
         found: usize,
         /// The row, shortened.
         value: String,
-        /// What is allowed there.
+        /// Allowed form of a row.
         allowed: &'static str,
     },
     /// A header that names the wrong columns.
@@ -151,28 +151,28 @@ pub enum TableError {
         line: usize,
         /// The header, shortened.
         value: String,
-        /// What is allowed there.
+        /// Allowed headers.
         allowed: String,
     },
-    /// A value that is not allowed where it stands.
+    /// A value that is not allowed in its place.
     #[error("{at}: \"{value}\" is not allowed; allowed: {allowed}")]
     Value {
-        /// Where it stands.
+        /// Place of the value.
         at: Position,
         /// The value, shortened.
         value: String,
-        /// What is allowed there.
+        /// Allowed values.
         allowed: String,
     },
 }
 
 impl TableError {
-    /// The same for a table whose rows were counted from 1: `place` gives the line and the column of a row's
-    /// opening or percent, `said` what the row is called.
+    /// Moves the error to the rows of the original table: `place` gives the line and the column of a row's
+    /// opening or percent, `row_name` the row's name; rows count from 1.
     pub fn placed(
         self,
         place: impl Fn(usize, bool) -> (usize, Option<u32>),
-        said: impl Fn(usize) -> String,
+        row_name: impl Fn(usize) -> String,
     ) -> TableError {
         let TableError::Value { mut at, value, allowed } = self else { return self };
         (at.line, at.column) = place(at.line, at.field.starts_with("percent"));
@@ -181,7 +181,7 @@ impl TableError {
         for part in parts {
             let digits = part.find(|c: char| !c.is_ascii_digit()).unwrap_or(part.len());
             match part[..digits].parse() {
-                Ok(row) => renamed.push_str(&format!("{}{}", said(row), &part[digits..])),
+                Ok(row) => renamed.push_str(&format!("{}{}", row_name(row), &part[digits..])),
                 Err(_) => renamed.push_str(&format!("line {part}")),
             }
         }
@@ -189,13 +189,13 @@ impl TableError {
     }
 }
 
-/// A gradation, or a number of base particles, that cannot be.
+/// An invalid gradation or number of base particles.
 #[derive(Debug, thiserror::Error)]
 pub enum GradationError {
     /// The table of a sieve curve.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// A number that is not in a table.
+    /// A number from outside a table.
     #[error(transparent)]
     Number(#[from] NumberError),
 }
@@ -204,11 +204,11 @@ pub enum GradationError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{name} = {value:?} is not allowed; allowed: {allowed}")]
 pub struct NumberError {
-    /// What the number is.
+    /// Name of the number.
     pub name: &'static str,
     /// The number.
     pub value: f64,
-    /// What is allowed.
+    /// Allowed values.
     pub allowed: String,
 }
 
@@ -226,7 +226,7 @@ impl NumberError {
     }
 }
 
-/// `text` short enough, and free of hidden characters, for a message on one line.
+/// Shortens `text` and escapes its hidden characters, for a message on one line.
 pub fn shortened(text: &str) -> String {
     const LONGEST: usize = 60;
     let mut out: String = text.chars().take(LONGEST).flat_map(shown).collect();
@@ -236,7 +236,7 @@ pub fn shortened(text: &str) -> String {
     out
 }
 
-/// A hidden character as its escape, anything else as it is.
+/// Escapes a hidden character and leaves any other.
 fn shown(c: char) -> Box<dyn Iterator<Item = char>> {
     if is_hidden(c) { Box::new(c.escape_default()) } else { Box::new(std::iter::once(c)) }
 }

@@ -1,4 +1,4 @@
-//! The group of a soil by ASTM D2487, as far as a sieve curve tells it.
+//! Group of a soil by ASTM D2487, as far as a sieve curve decides it.
 
 use super::sieve::Gradation;
 
@@ -11,16 +11,17 @@ pub const GRAVEL_MM: f64 = 4.75;
 /// Coarser grains are cobbles, which the groups leave out (mm).
 const COBBLES_MM: f64 = 75.0;
 
-/// The same sieve in exact inches, as older tables have it (mm): what passes it has no cobbles worth a name.
+/// The sieve for cobbles in exact inches, as in older tables (mm): a soil that passes it counts as free of
+/// cobbles.
 const THREE_INCHES_MM: f64 = 76.2;
 
 /// Coarser cobbles are boulders (mm).
 const BOULDERS_MM: f64 = 300.0;
 
-/// From this much gravel on a sand is one with gravel, and a gravel with as much sand one with sand (%).
+/// Least percentage at which gravel makes a sand "with gravel", and sand makes a gravel "with sand".
 const WITH_OTHER: f64 = 15.0;
 
-/// A group. Where more than 12 % are fines their plasticity decides, and no shape is asked for.
+/// A group. Above 12 % of fines their plasticity decides, and the shape is not needed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Group {
     FineGrained,
@@ -29,8 +30,8 @@ enum Group {
 }
 
 impl Group {
-    /// The group of a soil with so many percent of fines and of gravel, and of this Cu and Cc.
-    fn of(fines: f64, gravel: f64, shape: Option<(f64, f64)>) -> Option<Self> {
+    /// Group of a soil from its percentages of fines and gravel, and its Cu and Cc.
+    fn classify(fines: f64, gravel: f64, shape: Option<(f64, f64)>) -> Option<Self> {
         if fines >= 50.0 {
             return Some(Self::FineGrained);
         }
@@ -47,7 +48,7 @@ impl Group {
         Some(Self::FewFines { is_gravel, is_well_graded, has_fines: fines >= 5.0, has_other })
     }
 
-    /// Its symbol; where the plasticity of the fines decides, both that it may come to.
+    /// Symbol; both possible symbols if the plasticity of the fines decides.
     fn symbol(self) -> String {
         let letter = |is_gravel| if is_gravel { 'G' } else { 'S' };
         match self {
@@ -64,7 +65,7 @@ impl Group {
         }
     }
 
-    /// What of sand and gravel it has beside the one that it is called after.
+    /// Sand or gravel, if the soil has enough of the one that its name leaves out.
     fn other(self) -> Option<&'static str> {
         match self {
             Self::ManyFines { is_gravel, has_other: true }
@@ -76,7 +77,7 @@ impl Group {
     }
 }
 
-/// What a soil is by the standard: the group of its part finer than 75 mm, and what it has beside it.
+/// Classification of a soil by the standard: the group of its part finer than 75 mm, and its other parts.
 struct Class {
     group: Group,
     has_cobbles: bool,
@@ -84,24 +85,24 @@ struct Class {
 }
 
 impl Class {
-    /// Of a soil; `None` where more than half is cobbles, or a finest tail leaves it open.
-    fn of(soil: &Gradation) -> Option<Self> {
+    /// Classifies a soil; `None` if more than half is cobbles, or a finest tail leaves the group open.
+    fn classify(soil: &Gradation) -> Option<Self> {
         let has_cobbles = soil.largest_mm() > THREE_INCHES_MM;
         if has_cobbles && soil.percent_finer_by_mass(COBBLES_MM) < 50.0 {
             return None;
         }
         let part = if has_cobbles { soil.passing(COBBLES_MM)? } else { soil.clone() };
-        // Of less than 5 % no finest tail has more.
+        // A finest tail is part of the fines, so below 5 % it does not matter.
         let fines = part.percent_finer_by_mass(FINES_MM);
         if fines >= 5.0 && part.percent_finer_if_known(FINES_MM).is_none() {
             return None;
         }
         let gravel = 100.0 - part.percent_finer_by_mass(GRAVEL_MM);
-        let group = Group::of(fines, gravel, part.cu().zip(part.cc()))?;
+        let group = Group::classify(fines, gravel, part.cu().zip(part.cc()))?;
         Some(Self { group, has_cobbles, has_boulders: soil.largest_mm() > BOULDERS_MM })
     }
 
-    /// `, with gravel and cobbles`.
+    /// Suffix such as `, with gravel and cobbles`.
     fn with(&self) -> String {
         let cobbles = self.has_cobbles.then_some("cobbles");
         let boulders = self.has_boulders.then_some("boulders");
@@ -117,16 +118,16 @@ impl Class {
         format!("{}{}", self.group.symbol(), self.with())
     }
 
-    /// What it is called, and its symbol.
+    /// Name and symbol.
     fn in_words(&self) -> String {
         let noun = |is_gravel| if is_gravel { "gravel" } else { "sand" };
         let part = if self.has_cobbles { " in the part finer than 75 mm" } else { "" };
         let name = match self.group {
             Group::FineGrained => {
-                let of = if self.has_cobbles { " of the part finer than 75 mm" } else { "" };
+                let scope = if self.has_cobbles { " of the part finer than 75 mm" } else { "" };
                 let with = self.with();
                 return format!(
-                    "fine-grained soil (half or more{of} is finer than 0.075 mm): silt or clay{with}"
+                    "fine-grained soil (half or more{scope} is finer than 0.075 mm): silt or clay{with}"
                 );
             }
             Group::ManyFines { is_gravel, .. } => format!("{} with more than 12 % fines", noun(is_gravel)),
@@ -141,9 +142,9 @@ impl Class {
 }
 
 impl Gradation {
-    /// The symbol of its group, sizes in mm: that of the part finer than 75 mm, with what it has beside it.
-    /// Where the plasticity of the fines decides, both symbols that it may come to; `None` where more than
-    /// half is coarser than 75 mm, or a finest tail leaves it open.
+    /// Symbol of the soil's group, sizes in mm: the group of the part finer than 75 mm, with the soil's other
+    /// parts. If the plasticity of the fines decides, both possible symbols; `None` if more than half is
+    /// coarser than 75 mm, or a finest tail leaves the group open.
     ///
     /// ```
     /// use voidwalk_core::Gradation;
@@ -152,12 +153,12 @@ impl Gradation {
     /// # Ok::<(), voidwalk_core::gradation::GradationError>(())
     /// ```
     pub fn group(&self) -> Option<String> {
-        Class::of(self).map(|class| class.symbol())
+        Class::classify(self).map(|class| class.symbol())
     }
 
-    /// The same with the name of the soil.
+    /// Name of the soil and the symbol of its group.
     pub fn group_in_words(&self) -> Option<String> {
-        Class::of(self).map(|class| class.in_words())
+        Class::classify(self).map(|class| class.in_words())
     }
 }
 
@@ -177,7 +178,7 @@ mod tests {
         let dual = [(0.075, 8.0), (0.15, 10.0), (0.3, 30.0), (0.6, 60.0), (2.0, 100.0)];
         assert_eq!(group(&dual).as_deref(), Some("SP-SM or SP-SC"));
         assert_eq!(group(&[(0.075, 22.0), (0.3, 85.0), (0.6, 100.0)]).as_deref(), Some("SM or SC"));
-        // Half of what is coarser than No. 200 is gravel, and no more.
+        // Exactly half of the part coarser than No. 200 is gravel.
         assert_eq!(
             group(&[(0.075, 20.0), (4.75, 60.0), (19.0, 100.0)]).as_deref(),
             Some("SM or SC, with gravel")
@@ -189,7 +190,7 @@ mod tests {
             assert_eq!(group(&sand).as_deref(), Some(name));
         }
         assert_eq!(group(&[(0.01, 0.0), (0.075, 50.0), (0.3, 100.0)]).as_deref(), Some("fine-grained"));
-        // Nobody sieved its fines; of so few it does not matter.
+        // The fines were not sieved; it does not matter if they are few.
         assert_eq!(group(&[(0.3, 25.0), (1.0, 100.0)]), None);
         assert_eq!(group(&[(0.3, 4.0), (1.0, 100.0)]).as_deref(), Some("SP"));
         assert_eq!(group(&[(5.0, 5.0), (10.0, 100.0)]), None);
@@ -208,7 +209,7 @@ mod tests {
         }
     }
 
-    /// Of the whole it is a gravel, of the part that counts a sand.
+    /// The whole is a gravel, the classified part a sand.
     #[test]
     fn only_the_part_finer_than_75_mm_is_classified() {
         let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
@@ -217,7 +218,7 @@ mod tests {
         let name = "sand with more than 12 % fines in the part finer than 75 mm";
         let words = format!("{name}: SM or SC, with gravel and cobbles");
         assert_eq!(cobbles.group_in_words(), Some(words));
-        // 41 % of 80 % are fines: half of the part, less than half of the whole.
+        // 41 % of 80 % are fines: more than half of the part, less than half of the whole.
         let fines = soil(&[(0.075, 41.0), (4.75, 80.0), (75.0, 80.0), (350.0, 100.0)]);
         assert_eq!(fines.group().as_deref(), Some("fine-grained, with cobbles and boulders"));
         let words = fines.group_in_words().unwrap();
@@ -225,11 +226,11 @@ mod tests {
             words.contains("(half or more of the part finer than 75 mm is finer than 0.075 mm)"),
             "{words}"
         );
-        // Cu and Cc are those of the part, too.
+        // Cu and Cc are taken from the part, too.
         let gravel = soil(&[(4.75, 0.0), (75.0, 75.0), (150.0, 100.0)]);
         let part = soil(&[(4.75, 0.0), (75.0, 100.0)]);
         assert_eq!(gravel.group().unwrap(), format!("{}, with cobbles", part.group().unwrap()));
-        // More cobbles than soil; three inches to the letter.
+        // More cobbles than soil; three inches exactly.
         assert_eq!(soil(&[(1.0, 0.0), (75.0, 49.9), (150.0, 100.0)]).group(), None);
         assert_eq!(soil(&[(5.0, 0.0), (76.2, 100.0)]).group().as_deref(), Some("GP"));
     }
@@ -246,7 +247,7 @@ mod tests {
             (2.0, 10.0, None, None),
             (50.0, 0.0, None, Some("fine-grained soil (half or more is finer than 0.075 mm): silt or clay")),
         ] {
-            let group = Group::of(fines, gravel, shape);
+            let group = Group::classify(fines, gravel, shape);
             let class = group.map(|group| Class { group, has_cobbles: false, has_boulders: false });
             assert_eq!(class.map(|class| class.in_words()).as_deref(), expected);
         }

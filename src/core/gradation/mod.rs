@@ -1,23 +1,23 @@
-//! Gradations: how the mass of a soil is spread over particle sizes, and how many particles that is.
+//! Gradations: the distribution of a soil's mass over particle sizes, and the number of its particles.
 //!
-//! - [`Gradation`] is a sieve curve, percent finer by mass, straight in percent against ln(size)
-//!   between its points. "Linear" in the paper is one such straight line:
-//!   `D_x = D_0 Cu^(x / 50)`, so `D_60 / D_10 = Cu` and `D_100 / D_0 = Cu^2`.
-//! - [`Soil`] is a table as it stands in a file: CSV, workbook or AGS4, as laboratories write them.
+//! - [`Gradation`] is a sieve curve, percent finer by mass, straight in percent against ln(size) between its
+//!   points. "Linear" in the paper is one such straight line: `D_x = D_0 Cu^(x / 50)`, so `D_60 / D_10 = Cu`
+//!   and `D_100 / D_0 = Cu^2`.
+//! - [`Soil`] is a table in the form of its file: CSV, workbook or AGS4, as laboratories write them.
 //! - [`SizeSampler`] draws diameters from it by number.
-//! - [`Gradation::kenney_lau`] and [`Gradation::kezdi`] say whether a soil holds its own fines,
-//!   with [`Gradation::li_fannin`] and [`Gradation::uniformity_factors`]; [`Gradation::gap`] whether sizes
-//!   are missing; [`Gradation::regraded`] is a base as filter practice regrades it.
-//! - [`base_particles`] is Eq. (2) of the paper: how many base particles a test inserts.
+//! - [`Gradation::kenney_lau`] and [`Gradation::kezdi`] tell if a soil holds its own fines, with
+//!   [`Gradation::li_fannin`] and [`Gradation::uniformity_factors`]; [`Gradation::gap`] finds missing sizes;
+//!   [`Gradation::regraded`] regrades a base by filter practice.
+//! - [`base_particles`] is Eq. (2) of the paper: the number of base particles that a test inserts.
 //!
 //! # By mass and by number
 //! Between two points of a curve the mass is spread evenly over ln(D), so the number of particles
 //! per mm of diameter is proportional to `D^-4`, and the number finer than `D` is linear in `D^-3`.
 //!
 //! # The pan fraction
-//! A finest row above 0 % leaves a pan fraction, finer than the finest sieve. With `d0_mm` it ends there, as
-//! one more straight segment. Without it the pan fraction is taken as passive and counted by mass only:
-//! number statistics cover the sized part, and [`Gradation::pan_fraction`] says what they leave out.
+//! A finest row above 0 % leaves a pan fraction, finer than the finest sieve. With `d0_mm` it ends at that
+//! size, as one more straight segment. Without it the pan fraction is taken as passive and counted by mass
+//! only: number statistics cover the sized part, and [`Gradation::pan_fraction`] gives the rest.
 //!
 //! # Units
 //! Sizes are diameters in mm. Only ratios of sizes enter a formula that rounds, so a factor of two

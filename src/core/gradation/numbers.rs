@@ -1,4 +1,4 @@
-//! What a gradation is by number of particles.
+//! Gradations by number of particles.
 
 use super::Gradation;
 use super::segments::count;
@@ -6,10 +6,8 @@ use super::segments::count;
 impl Gradation {
     /// Number of particles of known size in one mm3 of solid: the integral of `6 / (pi D^3)` over the
     /// mass fraction.
-    ///
-    /// Base and filter have one solid density, so the ratio of two of these is
-    /// `N_base,unit / N_filter,unit` of Eq. (2). A pan fraction is in the solid, not in the
-    /// number.
+    /// Base and filter have one solid density, so the ratio of two of these is `N_base,unit / N_filter,unit`
+    /// of Eq. (2). A pan fraction is in the solid, not in the number.
     pub fn particles_per_unit_volume(&self) -> f64 {
         self.number[self.number.len() - 1]
     }
@@ -19,8 +17,8 @@ impl Gradation {
         100.0 * self.number_fraction_in(0.0, d_mm)
     }
 
-    /// The smallest size (mm) that `percent` by number of the particles of known size is finer than or
-    /// equal to; `None` outside 0 to 100.
+    /// Smallest size (mm) that `percent` by number of the particles of known size is finer than or equal to;
+    /// `None` outside 0 to 100.
     pub fn d_by_number(&self, percent: f64) -> Option<f64> {
         if !(0.0..=100.0).contains(&percent) {
             return None;

@@ -1,4 +1,4 @@
-//! Regrading: the part of a base soil that filter practice looks at.
+//! Regrading: the part of a base soil that filter practice considers.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,23 +7,23 @@ use super::curve_point::TIE;
 use super::group::{FINES_MM, GRAVEL_MM};
 use super::shape::{FLAT_PERCENT, GAP_PERCENT, Gap};
 
-/// Percent of fines below which a base has few.
+/// Percent of fines below which a base has few fines.
 pub const FEW_FINES: f64 = 15.0;
 
-/// Cu from which a soil counts as broadly graded: that of well-graded sands by ASTM D2487.
+/// Cu from which a soil counts as broadly graded: the limit of well-graded sands in ASTM D2487.
 pub const BROAD_CU: f64 = 6.0;
 
-/// A base soil regraded as filter practice does, or left as it is.
+/// A base soil regraded by filter practice, or unchanged.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Regraded {
-    /// The soil after regrading; as it was where it is not regraded.
+    /// Soil after regrading; unchanged if it is not regraded.
     pub gradation: Gradation,
-    /// The size on which it was regraded (mm); `None` where it was not.
+    /// Size on which it was regraded (mm); `None` if it was not.
     pub at_mm: Option<f64>,
-    /// Why it was regraded, or not.
+    /// Reason why it was regraded, or not.
     pub why: RegradeReason,
-    /// The size below which practice looks at it, where no sieve tells the sizes there: `gradation` is then
-    /// the whole soil, coarser than what practice looks at.
+    /// Size below which practice considers it, if the sizes there are unknown: `gradation` is then the whole
+    /// soil, coarser than the part that practice considers.
     pub hidden_below_mm: Option<f64>,
 }
 
@@ -61,14 +61,14 @@ pub enum RegradeCause {
 }
 
 impl Gradation {
-    /// This soil as filter practice regrades a base; sizes in mm.
+    /// Regrades this soil as a base by filter practice; sizes in mm.
     ///
-    /// Regrading is that of the U.S. Army Corps of Engineers' Filter Evaluation manual (chapter Base
+    /// The rules are from the U.S. Army Corps of Engineers' Filter Evaluation manual (chapter Base
     /// Gradation), after Sherard and Dunnigan (1989): a gap-graded soil at its gap; a soil with grains
     /// coarser than No. 4 (4.75 mm) to 100 % passing No. 4, unless it has less than 15 % fines and is not
-    /// broadly graded. Where what is finer than a gap has such grains, and fines or a gradation of which it
-    /// asks the same, it is regraded on No. 4 too: the manual stops at the gap, whose limit is coarser. Every
-    /// percent is divided by that passing.
+    /// broadly graded. If the part finer than a gap has such grains, and the fines or the gradation that make
+    /// the rule apply, it is regraded on No. 4 too: the manual stops at the gap, whose limit is coarser.
+    /// Every percent is divided by the percent passing.
     ///
     /// ```
     /// use voidwalk_core::gradation::Gradation;
@@ -81,14 +81,14 @@ impl Gradation {
         self.regraded_as(self)
     }
 
-    /// The same where another curve tells on which size.
+    /// Regrades this soil on the size that another curve decides.
     pub fn regraded_as(&self, other: &Self) -> Regraded {
         self.regraded_on(other.regrading(other.gap(FINES_MM)))
     }
 
-    /// This soil as practice regrades it where its curve is flat enough to be a gap, and is not read as one
-    /// by [`Gradation::regraded_as`] of this other curve, or the other way round; `None` where that is steep,
-    /// or level.
+    /// Regrades this soil with the opposite reading of the other curve's flattest part: as a gap if
+    /// [`Gradation::regraded_as`] does not read it as one, and as no gap if it does; `None` if that part is
+    /// steep, or level.
     pub fn regraded_otherwise(&self, other: &Self) -> Option<Regraded> {
         let flat = other.flattest(FINES_MM)?;
         let is_open = (100.0 * TIE..FLAT_PERCENT - 100.0 * TIE).contains(&flat.within);
@@ -109,7 +109,7 @@ impl Gradation {
         }
     }
 
-    /// The size on which practice regrades this base, and why.
+    /// Size on which practice regrades this base, and the reason.
     fn regrading(&self, gap: Option<Gap>) -> (Option<f64>, RegradeCause) {
         let Some(Gap { from_mm, .. }) = gap else { return self.regrading_for_gravel() };
         let finer = self.passing(from_mm).filter(|_| from_mm > GRAVEL_MM);
@@ -120,13 +120,13 @@ impl Gradation {
         }
     }
 
-    /// The same of a soil without a gap.
+    /// Size and reason for a soil without a gap.
     fn regrading_for_gravel(&self) -> (Option<f64>, RegradeCause) {
         if self.largest_mm() <= GRAVEL_MM {
             return (None, RegradeCause::NoGravel);
         }
         let broad = self.is_broad();
-        // Where the finest sieve is coarser, this is the most that the fines can be.
+        // If the finest sieve is coarser, this is an upper bound of the fines.
         let many_fines = self.percent_finer_by_mass(FINES_MM) >= FEW_FINES;
         if !many_fines && broad == Some(false) {
             return (None, RegradeCause::NarrowGravel);
@@ -139,10 +139,10 @@ impl Gradation {
         (Some(GRAVEL_MM), cause)
     }
 
-    /// Whether a soil is broadly graded: Cu of at least 6, as of well-graded sands by ASTM D2487, or 4, as of
-    /// gravels; `None` where D10 is not known. The manual asks for Cc of 1 to 3 besides and leaves the last
-    /// word to the engineer; a soil of that Cu whose Cc lies outside has more of one size and is no
-    /// narrower.
+    /// Tells if a soil is broadly graded: Cu of at least 6, the limit of well-graded sands in ASTM D2487, or
+    /// 4, the limit of gravels; `None` if D10 is not known. The manual asks for Cc of 1 to 3 besides and
+    /// leaves the last word to the engineer; a soil of that Cu whose Cc lies outside has more of one size and
+    /// is no narrower.
     pub fn is_broad(&self) -> Option<bool> {
         let coarse = 100.0 - self.percent_finer_by_mass(FINES_MM);
         let gravel = 100.0 - self.percent_finer_by_mass(GRAVEL_MM);
@@ -180,7 +180,7 @@ mod tests {
         // Coarser and broadly graded: Cu 15.0, Cc 1.01.
         let broad = regraded(&[(0.1, 0.0), (0.5, 20.0), (2.0, 45.0), (4.75, 70.0), (19.0, 100.0)]);
         assert!(broad.at_mm.is_some() && broad.why.cause == RegradeCause::BroadGravel, "{:?}", broad.why);
-        // The same sand with more gravel: Cu 20.9, but Cc 0.70.
+        // A similar sand with more gravel: Cu 20.9, but Cc 0.70.
         let skewed = regraded(&[(0.1, 0.0), (0.42, 20.0), (2.0, 45.0), (4.75, 62.0), (19.0, 100.0)]);
         assert!(skewed.at_mm.is_some() && skewed.why.cause == RegradeCause::BroadGravel, "{:?}", skewed.why);
         // Coarser, and D10 in a tail: on the safe side.
@@ -191,8 +191,8 @@ mod tests {
         assert_eq!((gap.at_mm, gap.gradation.largest_mm()), (Some(0.5), 0.5));
     }
 
-    /// A gap from 12.5 to 50 mm: 65 % is finer, of which a third is gravel. With fines its limit is that of
-    /// what passes No. 4; a narrow gravel below a gap is left whole.
+    /// A gap from 12.5 to 50 mm: 65 % is finer, a third of it gravel. With fines its limit is set by the part
+    /// that passes No. 4; a narrow gravel below a gap is left whole.
     #[test]
     fn a_gap_among_gravel_regrades_on_no_4_too() {
         let till =

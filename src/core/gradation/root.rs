@@ -12,13 +12,13 @@ pub(crate) fn inverse_cube_root(x: f64) -> f64 {
     inverse_cube_roots(&[x])[0]
 }
 
-/// [`inverse_cube_root`] of each number.
+/// Applies [`inverse_cube_root`] to each number.
 ///
 /// Two steps of fourth order for `z^-3 = x`: with `e = 1 - x z^3`,
-/// `z (1 - e)^(-1/3) = z (1 + e/3 + 2 e^2/9 + 14 e^3/81 + ...)`. Only additions and multiplications
-/// of f64, in this order: no library call, no fused operation, and no branch, so that the loops become vector
-/// code. Each step takes two short loops over all: of one root after another, a machine would wait for each
-/// operation's result before the next.
+/// `z (1 - e)^(-1/3) = z (1 + e/3 + 2 e^2/9 + 14 e^3/81 + ...)`. Only additions and multiplications of f64,
+/// in this order: no library call, no fused operation, and no branch, so that the loops become vector code.
+/// Each step takes two short loops over all numbers: one root after another would make the machine wait for
+/// each operation's result before the next.
 #[inline(always)]
 pub(super) fn inverse_cube_roots<const N: usize>(x: &[f64; N]) -> [f64; N] {
     let (mut z, mut e) = ([0.0; N], [0.0; N]);
@@ -61,7 +61,7 @@ mod tests {
         ((z - near) - correction).abs() / ulp
     }
 
-    /// Over every exponent that sizes can produce, and beyond: 2e6 random mantissas and the edges.
+    /// Checks every exponent that sizes can produce, and beyond: 2e6 random mantissas and the edges.
     #[test]
     fn is_within_two_units_in_the_last_place() {
         let mut generator =
@@ -84,8 +84,8 @@ mod tests {
     #[test]
     fn known_roots() {
         for (x, root) in [(1.0, 1.0), (8.0, 0.5), (0.125, 2.0), (1e-72, 1e24), (1e72, 1e-24)] {
-            let found = inverse_cube_root(x);
-            assert!((found / root - 1.0f64).abs() < 1e-15, "{x} {found}");
+            let computed = inverse_cube_root(x);
+            assert!((computed / root - 1.0f64).abs() < 1e-15, "{x} {computed}");
         }
     }
 }

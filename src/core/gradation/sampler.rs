@@ -1,26 +1,25 @@
-//! Drawing diameters by number.
+//! Draws diameters by number.
 
 use super::root::{inverse_cube_root, inverse_cube_roots};
 use super::{Gradation, GradationError, NumberError};
 use crate::stream::unit;
 use std::ops::Range;
 
-/// All words, as a count: 2^64.
+/// Number of all words: 2^64.
 const ALL_WORDS: u128 = 1 << 64;
 
-/// Buckets of a guide are no more than two to this power.
+/// Largest number of buckets of a guide, as a power of two.
 const BUCKET_BITS: u32 = 8;
 
 /// Words whose diameters are drawn together.
 const AT_ONCE: usize = 64;
 
-/// Keeps 40 bits of the mantissa.
+/// Mask that keeps 40 bits of the mantissa.
 const COARSE: u64 = !0 << 12;
 
 /// A segment of the gradation, in reference units.
 ///
-/// `v` is the share, by number, of the particles that are coarser; within a segment `D^-3` is
-/// linear in it.
+/// `v` is the share, by number, of the particles that are coarser; within a segment `D^-3` is linear in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Segment {
     /// Smallest diameter.
@@ -38,11 +37,11 @@ struct Segment {
 }
 
 impl Segment {
-    /// The diameter at `v`, for `v_b <= v <= v_a`.
+    /// Diameter at `v`, for `v_b <= v <= v_a`.
     ///
-    /// Never rises with `v`: every operation is monotone but the root, whose error (2^-51) is smaller
-    /// than the step that 40 bits of mantissa leave (2^-41.6). Those 40 bits are 2^16 times finer
-    /// than the f32 it ends in.
+    /// It never rises with `v`: every operation is monotone but the root, whose error (2^-51) is smaller than
+    /// the step that 40 bits of mantissa leave (2^-41.6). Those 40 bits are 2^16 times finer than the f32
+    /// that is returned.
     #[inline(always)]
     fn diameter(&self, v: f64) -> f32 {
         root_within(self.y_at(v), [self.a, self.b])
@@ -65,7 +64,7 @@ impl Segment {
         self.y_b + (v - self.v_b) * self.slope
     }
 
-    /// The integral of `D^3` over `low <= v <= high`: `ln(y_high / y_low) / slope`.
+    /// Integral of `D^3` over `low <= v <= high`: `ln(y_high / y_low) / slope`.
     fn cubes(&self, low: f64, high: f64) -> f64 {
         let (y, width) = (self.y_at(low), high - low);
         let t = width * self.slope / y;
@@ -79,7 +78,7 @@ fn root_within(y: f64, bounds: [f64; 2]) -> f32 {
     within(inverse_cube_root(coarse(y)), bounds)
 }
 
-/// [`root_within`] of each number, from `least` to `most`.
+/// Applies [`root_within`] to each number, from `least` to `most`.
 #[inline(always)]
 fn roots_within(
     mut y: [f64; AT_ONCE],
@@ -93,13 +92,13 @@ fn roots_within(
     }
 }
 
-/// With 40 bits of the mantissa.
+/// Keeps 40 bits of the mantissa.
 #[inline(always)]
 fn coarse(y: f64) -> f64 {
     f64::from_bits(y.to_bits() & COARSE)
 }
 
-/// At least `a` and at most `b`.
+/// Clamps to `a` at least and `b` at most.
 #[inline(always)]
 fn within(d: f64, [a, b]: [f64; 2]) -> f32 {
     let d = if d > a { d } else { a };
@@ -108,10 +107,9 @@ fn within(d: f64, [a, b]: [f64; 2]) -> f32 {
 
 /// Draws diameters of a [`Gradation`] by number: the inverse of its distribution.
 ///
-/// Diameters are in units of a reference length, as f32. A word of 64 random bits gives one
-/// diameter, which never falls as the word rises; so the particles no coarser than a limit are
-/// those whose word is below a threshold ([`SizeSampler::word_limit`]), exactly. A tail of unknown
-/// size is never drawn.
+/// Diameters are in units of a reference length, as f32. A word of 64 random bits gives one diameter, which
+/// never falls as the word rises; so a word below a threshold ([`SizeSampler::word_limit`]) gives a particle
+/// no coarser than a limit, exactly. A tail of unknown size is never drawn.
 ///
 /// ```
 /// use voidwalk_core::gradation::{Gradation, SizeSampler};
@@ -127,24 +125,24 @@ fn within(d: f64, [a, b]: [f64; 2]) -> f32 {
 pub struct SizeSampler {
     /// Sizes rise from one to the next; `v` falls from 1 to 0.
     segments: Vec<Segment>,
-    /// Where the segments of all words are looked for.
+    /// Guide to the segments of all words.
     guide: SizeGuide,
 }
 
-/// Where to look for the segments of the words from one on: words that draw coarse particles are few among
+/// Guide to the segments of the words from a first one on: words that draw coarse particles are few among
 /// all, and so lie close together.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SizeGuide {
     /// The first word.
     first: u64,
-    /// A word's bucket is how far it is from the first, less so many bits.
+    /// Number of low bits to drop from a word's distance to the first, which gives its bucket.
     shift: u32,
     /// Segment of the smallest word of each bucket.
     segment: Vec<u32>,
 }
 
 impl SizeGuide {
-    /// A segment that is no coarser than that of a word, and close to it.
+    /// Segment no coarser than the word's own, and close to it.
     #[inline(always)]
     fn start(&self, word: u64) -> usize {
         debug_assert!(word >= self.first, "a word below the first of the guide");
@@ -153,11 +151,11 @@ impl SizeGuide {
 }
 
 impl SizeSampler {
-    /// A sampler of `gradation` with diameters in units of `reference_mm`.
+    /// Makes a sampler of `gradation` with diameters in units of `reference_mm`.
     ///
     /// # Errors
-    /// A reference length that is not a positive finite number, or that takes a size out of what a
-    /// gradation may hold.
+    /// A reference length that is not a positive finite number, or that takes a size out of the range of a
+    /// gradation.
     pub fn new(gradation: &Gradation, reference_mm: f64) -> Result<SizeSampler, GradationError> {
         NumberError::unless_positive("reference_mm", reference_mm)?;
         let size: Vec<f64> = gradation.size_mm.iter().map(|d| d / reference_mm).collect();
@@ -189,7 +187,7 @@ impl SizeSampler {
         Ok(sampler)
     }
 
-    /// Where to look for the segments of the words from this one on.
+    /// Makes the guide to the segments of the words from this one on.
     pub(crate) fn guide_from(&self, first: u64) -> SizeGuide {
         let last = u64::MAX - first;
         let shift = (u64::BITS - last.leading_zeros()).saturating_sub(BUCKET_BITS);
@@ -201,7 +199,8 @@ impl SizeSampler {
         SizeGuide { first, shift, segment: (0..=last >> shift).map(of_bucket).collect() }
     }
 
-    /// The segment of `v`, at or after segment `start`. The last one's `v_b` is 0, which no `v` is below.
+    /// Finds the segment of `v`, at or after segment `start`. The last one's `v_b` is 0, and no `v` is below
+    /// it.
     #[inline(always)]
     fn segment(&self, start: usize, v: f64) -> usize {
         let mut i = start;
@@ -211,14 +210,14 @@ impl SizeSampler {
         i
     }
 
-    /// The diameter, in reference units, that `word` draws.
+    /// Diameter, in reference units, that `word` draws.
     #[inline]
     pub fn diameter(&self, word: u64) -> f32 {
         let v = coarser_share(word);
         self.segments[self.segment(self.guide.start(word), v)].diameter(v)
     }
 
-    /// [`SizeSampler::diameter`] of every word, in vector code as wide as the caller is compiled for.
+    /// Applies [`SizeSampler::diameter`] to every word, in vector code as wide as the caller is compiled for.
     ///
     /// # Panics
     /// If the slices differ in length.
@@ -227,10 +226,10 @@ impl SizeSampler {
         self.fill_guided(&self.guide, words, out);
     }
 
-    /// The same with a guide of these words; the caller sees to it that none is below the guide's first.
+    /// Fills like [`SizeSampler::fill`], with a guide of these words; no word may be below the guide's first.
     ///
     /// # Panics
-    /// As [`SizeSampler::fill`]; with debug assertions if a word is below the first of the guide.
+    /// Panics of [`SizeSampler::fill`]; with debug assertions if a word is below the first of the guide.
     #[inline(always)]
     pub(crate) fn fill_guided(&self, guide: &SizeGuide, words: &[u64], out: &mut [f32]) {
         assert_eq!(words.len(), out.len(), "one diameter per word");
@@ -247,7 +246,7 @@ impl SizeSampler {
         }
     }
 
-    /// The same of so many words that are drawn together. What hangs on the segment is looked up one by one.
+    /// Fills `AT_ONCE` diameters together. The values of each segment are looked up one by one.
     #[inline(always)]
     fn fill_some(&self, guide: &SizeGuide, words: &[u64; AT_ONCE], out: &mut [f32; AT_ONCE]) {
         let mut y = [0.0; AT_ONCE];
@@ -266,8 +265,8 @@ impl SizeSampler {
         roots_within(y, &least, &most, out);
     }
 
-    /// The number of words whose diameter is no coarser than `limit`: `diameter(word) <= limit` exactly
-    /// where `word` is below it. 2^64 when all are.
+    /// Number of words whose diameter is no coarser than `limit`: `diameter(word) <= limit` exactly if `word`
+    /// is below it. 2^64 if all are.
     pub fn word_limit(&self, limit: f32) -> u128 {
         let (mut low, mut high) = (0, ALL_WORDS);
         while low < high {
@@ -291,7 +290,7 @@ impl SizeSampler {
         self.diameter(u64::MAX)
     }
 
-    /// The particles whose word lies in `words`, as a distribution of its own.
+    /// Particles whose word lies in `words`, as a distribution of its own.
     ///
     /// # Panics
     /// If the range ends before it starts or beyond 2^64.
@@ -308,7 +307,7 @@ impl SizeSampler {
     }
 }
 
-/// Share by number that is coarser than what `word` draws: exactly `1 - unit(word)`, without the
+/// Share by number that is coarser than the diameter of `word`: exactly `1 - unit(word)`, without the
 /// cancellation.
 #[inline(always)]
 fn coarser_share(word: u64) -> f64 {
@@ -317,8 +316,7 @@ fn coarser_share(word: u64) -> f64 {
 
 /// The particles of a [`SizeSampler`] whose word lies in a range: closed forms, in reference units.
 ///
-/// The limits are those of the words; between them sizes count as continuous, before the rounding
-/// to f32.
+/// The limits are those of the words; between them sizes count as continuous, before the rounding to f32.
 #[derive(Clone, Debug)]
 pub struct SizeRange<'a> {
     sampler: &'a SizeSampler,
@@ -330,31 +328,31 @@ pub struct SizeRange<'a> {
 }
 
 impl SizeRange<'_> {
-    /// Share of all particles that are in this part, by number.
+    /// Share of all particles in this part, by number.
     pub fn number_fraction(&self) -> f64 {
         ((self.words.end - self.words.start) as f64) * (1.0 / ALL_WORDS as f64)
     }
 
-    /// Mean of the cubed diameter; `None` where the part is empty.
+    /// Mean of the cubed diameter; `None` if the part is empty.
     pub fn mean_cube(&self) -> Option<f64> {
         let width = self.number_fraction();
         (width > 0.0).then(|| self.cubes(0.0) / width)
     }
 
-    /// Share of this part's particles, 0 to 1, no coarser than `d`; `None` where the part is empty.
+    /// Share of this part's particles, 0 to 1, no coarser than `d`; `None` if the part is empty.
     pub fn finer_by_number(&self, d: f64) -> Option<f64> {
         let width = self.number_fraction();
         (width > 0.0).then(|| ((self.v_fine - self.v_at(d)) / width).clamp(0.0, 1.0))
     }
 
-    /// Share of this part's mass, 0 to 1, no coarser than `d`; `None` where the part is empty.
+    /// Share of this part's mass, 0 to 1, no coarser than `d`; `None` if the part is empty.
     pub fn finer_by_mass(&self, d: f64) -> Option<f64> {
         let all = self.cubes(0.0);
         (all > 0.0).then(|| (self.cubes(self.v_at(d)) / all).clamp(0.0, 1.0))
     }
 
-    /// The diameter that `share` (0 to 1) of this part's particles are no coarser than; `None` where the
-    /// part is empty or the share is out of range.
+    /// Diameter that `share` (0 to 1) of this part's particles do not exceed; `None` if the part is empty or
+    /// the share is out of range.
     pub fn d_by_number(&self, share: f64) -> Option<f64> {
         if self.words.is_empty() || !(0.0..=1.0).contains(&share) {
             return None;
@@ -364,14 +362,14 @@ impl SizeRange<'_> {
         Some((1.0 / libm::cbrt(segment.y_at(v))).clamp(segment.a, segment.b))
     }
 
-    /// The diameter that `share` (0 to 1) of this part's mass is no coarser than; `None` where the part
-    /// is empty or the share is out of range.
+    /// Diameter that `share` (0 to 1) of this part's mass does not exceed; `None` if the part is empty or the
+    /// share is out of range.
     pub fn d_by_mass(&self, share: f64) -> Option<f64> {
         if self.words.is_empty() || !(0.0..=1.0).contains(&share) {
             return None;
         }
         let mut left = share * self.cubes(0.0);
-        let mut found = None;
+        let mut size = None;
         for segment in &self.sampler.segments {
             let (low, high) = (segment.v_b.max(self.v_coarse), segment.v_a.min(self.v_fine));
             if low > high {
@@ -379,19 +377,18 @@ impl SizeRange<'_> {
             }
             let mass = segment.cubes(low, high);
             let y = segment.y_at(high) * libm::exp(-left.clamp(0.0, mass) * segment.slope);
-            found = Some((1.0 / libm::cbrt(y)).clamp(segment.a, segment.b));
+            size = Some((1.0 / libm::cbrt(y)).clamp(segment.a, segment.b));
             if left <= mass {
                 break;
             }
             left -= mass;
         }
-        found
+        size
     }
 
-    /// One draw of the largest diameter among `count` particles of this part; `None` where there are
-    /// none.
+    /// Draws the largest diameter among `count` particles of this part; `None` if there are no particles.
     ///
-    /// The largest of `n` uniform draws is `u^(1/n)` of one.
+    /// The largest of `n` uniform draws has the distribution of `u^(1/n)`.
     pub fn largest_of(&self, count: u64, word: u64) -> Option<f32> {
         if self.words.is_empty() || count == 0 {
             return None;
@@ -410,7 +407,7 @@ impl SizeRange<'_> {
         v.clamp(self.v_coarse, self.v_fine)
     }
 
-    /// The integral of `D^3` over this part from its finest particle up to share `v`.
+    /// Integral of `D^3` over this part from its finest particle up to share `v`.
     fn cubes(&self, v: f64) -> f64 {
         let coarse = v.max(self.v_coarse);
         let one = |s: &Segment| {
@@ -427,7 +424,7 @@ mod tests {
     use crate::stream::{Key, Purpose};
     use rand::Rng;
 
-    /// Segments of very unequal numbers of particles, of which those of the coarse ones lie close together.
+    /// Segments of very unequal numbers of particles; the words of the coarse ones lie close together.
     #[test]
     fn a_guide_of_coarse_words_finds_the_same_diameters() {
         let points =
@@ -441,9 +438,9 @@ mod tests {
             let width = u128::from(u64::MAX - first) + 1;
             let drawn = (0..1000).map(|_| first + ((u128::from(generator.next_u64()) * width) >> 64) as u64);
             let words: Vec<u64> = drawn.chain([first, u64::MAX]).collect();
-            let mut found = vec![0.0; words.len()];
-            sampler.fill_guided(&guide, &words, &mut found);
-            assert!(words.iter().zip(&found).all(|(&word, &d)| sampler.diameter(word) == d), "{first}");
+            let mut filled = vec![0.0; words.len()];
+            sampler.fill_guided(&guide, &words, &mut filled);
+            assert!(words.iter().zip(&filled).all(|(&word, &d)| sampler.diameter(word) == d), "{first}");
             assert!(guide.segment.len() <= 1 << BUCKET_BITS, "{first}");
             assert!(
                 words.iter().all(|&word| { guide.start(word) <= sampler.segment(0, coarser_share(word)) })

@@ -1,8 +1,8 @@
-//! Counting the particles of a segment of a sieve curve.
+//! Counts the particles of a segment of a sieve curve.
 //!
-//! Within a segment from size `a` to `b = a e^L` that holds the fraction `m` of the mass, one mm3 of
-//! solid holds `integral of 6 / (pi D^3) dm` = `2 m / (pi a^3) * (1 - e^(-3 L)) / L` particles, and the
-//! number finer than `D` is linear in `D^-3`.
+//! Within a segment from size `a` to `b = a e^L` that holds the fraction `m` of the mass, one mm3 of solid
+//! holds `integral of 6 / (pi D^3) dm` = `2 m / (pi a^3) * (1 - e^(-3 L)) / L` particles, and the number
+//! finer than `D` is linear in `D^-3`.
 
 use std::f64::consts::PI;
 

@@ -1,21 +1,21 @@
-//! What practice reads from a sieve curve besides its sizes: curvature, a gap, the part that passes a sieve.
+//! Shape of a sieve curve in practice, besides its sizes: curvature, a gap, the part that passes a sieve.
 
 use super::Gradation;
 use super::between::TRACE_PERCENT;
 
-/// Sizes are missing where less of the mass than this (%) lies between D and 4 D.
+/// Percent of the mass between D and 4 D below which sizes are missing.
 pub const GAP_PERCENT: f64 = 5.0;
 
-/// A curve may be gap-graded where less of the mass than this (%) lies between D and 4 D.
+/// Percent of the mass between D and 4 D below which a curve may be gap-graded.
 pub(crate) const FLAT_PERCENT: f64 = 2.0 * GAP_PERCENT;
 
-/// A gap is looked for where this much of the mass is finer, and no more than the second (%).
+/// Least and greatest percent finer at which a gap is searched for.
 const GAP_RANGE: [f64; 2] = [10.0, 80.0];
 
-/// Percents that differ by less are one, however a step of the curve is read.
+/// Difference below which percents count as equal, however a step of the curve is read.
 const SAME_PERCENT: f64 = 10.0 * TRACE_PERCENT;
 
-/// Sizes that are missing from a soil.
+/// Sizes missing from a soil.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
     /// Its fine end (mm); its coarse end is four times as large, or more.
@@ -27,23 +27,23 @@ pub struct Gap {
 }
 
 impl Gradation {
-    /// Coefficient of curvature, `D_30^2 / (D_10 D_60)`; `None` where D_10 lies in a pan fraction.
+    /// Coefficient of curvature, `D_30^2 / (D_10 D_60)`; `None` if D_10 lies in a pan fraction.
     pub fn cc(&self) -> Option<f64> {
         let [d10, d30, d60] = [self.d(10.0)?, self.d(30.0)?, self.d(60.0)?];
         Some(d30 * d30 / (d10 * d60))
     }
 
-    /// The widest gap of the curve from `least_mm` on: less than 5 % of the mass between D and 4 D, where
-    /// 10 to 80 % is finer than D.
+    /// Finds the widest gap of the curve from `least_mm` on: less than 5 % of the mass between D and 4 D,
+    /// with 10 to 80 % finer than D.
     ///
     /// Manuals leave gaps to the eye; these numbers are ours. A straight line on semi-log paper has less than
-    /// 5 % in a factor of 4 only where its Cu is above a million.
+    /// 5 % in a factor of 4 only if its Cu is above a million.
     pub fn gap(&self, least_mm: f64) -> Option<Gap> {
         self.flattest(least_mm).filter(|gap| gap.within < GAP_PERCENT)
     }
 
-    /// Where the curve is flattest from `least_mm` on: of D up to 4 D with the least of the mass between
-    /// them, where 10 to 80 % is finer than D. `None` where no D is.
+    /// Finds the flattest part of the curve from `least_mm` on: the D with the least mass between D and 4 D,
+    /// with 10 to 80 % finer than D. `None` if there is no such D.
     pub fn flattest(&self, least_mm: f64) -> Option<Gap> {
         let at = |d: f64| {
             let percent = self.percent_finer_by_mass(d);
@@ -62,10 +62,10 @@ impl Gradation {
         ties.min_by(|a, b| a.from_mm.total_cmp(&b.from_mm))
     }
 
-    /// The part of this soil that passes a sieve, as a soil of its own: every percent divided by that
+    /// Part of this soil that passes a sieve, as a soil of its own: every percent is divided by the percent
     /// passing.
     ///
-    /// `None` where nothing of known size passes.
+    /// `None` if nothing of known size passes.
     ///
     /// ```
     /// use voidwalk_core::gradation::Gradation;
@@ -78,14 +78,14 @@ impl Gradation {
         if opening_mm >= self.largest_mm() {
             return Some(self.clone());
         }
-        let of = self.percent_finer_by_mass(opening_mm);
-        if opening_mm <= self.smallest_mm() || of <= 0.0 {
+        let passing = self.percent_finer_by_mass(opening_mm);
+        if opening_mm <= self.smallest_mm() || passing <= 0.0 {
             return None;
         }
-        // Up to the first size that all of what passes is finer than.
-        let below = self.percent.partition_point(|&p| p < of);
+        // Up to the first size at which all passing mass is finer.
+        let below = self.percent.partition_point(|&p| p < passing);
         let (mut size_mm, mut percent): (Vec<f64>, Vec<f64>) =
-            (0..below).map(|i| (self.size_mm[i], self.percent[i] / of * 100.0)).unzip();
+            (0..below).map(|i| (self.size_mm[i], self.percent[i] / passing * 100.0)).unzip();
         size_mm.push(self.size_mm[below].min(opening_mm));
         percent.push(100.0);
         (size_mm.len() > 1).then(|| Gradation::sieved(size_mm, percent, self.lines))
@@ -130,8 +130,8 @@ mod tests {
         // 12 % of the mass over a factor of 8.33: the flattest factor of 4 begins at 0.6 mm.
         let flat = points(&[(0.1, 0.0), (0.6, 59.0), (5.0, 71.0), (20.0, 100.0)]);
         let within = 12.0 * libm::log(4.0) / libm::log(5.0 / 0.6);
-        let found = flat.flattest(0.0).unwrap();
-        assert!(flat.gap(0.0).is_none() && (found.within - within).abs() < 1e-9, "{found:?}");
+        let flattest = flat.flattest(0.0).unwrap();
+        assert!(flat.gap(0.0).is_none() && (flattest.within - within).abs() < 1e-9, "{flattest:?}");
     }
 
     #[test]

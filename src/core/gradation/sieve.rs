@@ -1,4 +1,4 @@
-//! A sieve curve: how it is made, checked and read.
+//! Makes, checks and reads a sieve curve.
 
 use super::curve_point::{CurvePoint, TIE};
 use super::error::Position;
@@ -11,8 +11,8 @@ pub const FIELDS: [&str; 2] = ["opening_mm", "percent_finer"];
 
 /// A sieve curve: percent finer by mass against size, straight in percent against ln(size).
 ///
-/// Checked when it is made: sizes rise, percent never falls, the coarsest point is 100 %. A flat
-/// piece between two points (a gap-graded soil) has no particles in it.
+/// Invariants: sizes rise, percent never falls, the coarsest point is 100 %. A flat piece between two points
+/// (a gap-graded soil) has no particles in it.
 ///
 /// ```
 /// use voidwalk_core::gradation::Gradation;
@@ -32,12 +32,13 @@ pub struct Gradation {
     pub(super) log_ratio: Vec<f64>,
     /// Particles finer than each point, in one mm3 of solid.
     pub(super) number: Vec<f64>,
-    /// Segments, from the finest on, that are stated as straight lines and are no steps between two sieves.
+    /// Number of segments, from the finest on, that are stated as straight lines and are no steps between two
+    /// sieves.
     pub(super) lines: usize,
 }
 
 impl Gradation {
-    /// A straight line on semi-log paper from its smallest size: `D_x = d0_mm Cu^(x / 50)`.
+    /// Makes a straight line on semi-log paper from its smallest size: `D_x = d0_mm Cu^(x / 50)`.
     ///
     /// # Errors
     /// A size out of range (`SIZE_MIN_MM ..= SIZE_MAX_MM`, also for the largest, `d0_mm cu^2`), or a `cu`
@@ -53,10 +54,10 @@ impl Gradation {
         Ok(Gradation::new(vec![d0_mm, largest], vec![0.0, 100.0]))
     }
 
-    /// A straight line on semi-log paper through one of its sizes: `D_percent` is `dx_mm`.
+    /// Makes a straight line on semi-log paper through one of its sizes: `D_percent` is `dx_mm`.
     ///
     /// # Errors
-    /// As [`Gradation::linear_from_d0`], and a `percent` outside 0 to 100.
+    /// Errors of [`Gradation::linear_from_d0`], and a `percent` outside 0 to 100.
     pub fn linear_from_dx(percent: f64, dx_mm: f64, cu: f64) -> Result<Gradation, GradationError> {
         check_percent("percent", percent)?;
         check_size("dx_mm", dx_mm)?;
@@ -64,7 +65,7 @@ impl Gradation {
         Gradation::linear_from_d0(dx_mm / libm::pow(cu, percent / 50.0), cu)
     }
 
-    /// Particles of one size.
+    /// Makes a gradation of particles of one size.
     ///
     /// # Errors
     /// A size out of range (`SIZE_MIN_MM ..= SIZE_MAX_MM`).
@@ -73,49 +74,49 @@ impl Gradation {
         Ok(Gradation::new(vec![d_mm], vec![100.0]))
     }
 
-    /// A sieve table: pairs of opening (mm) and percent finer by mass, ascending or descending.
+    /// Makes a gradation from a sieve table: pairs of opening (mm) and percent finer by mass, ascending or
+    /// descending.
     ///
-    /// A finest point above 0 % leaves a tail: with `d0_mm` the curve goes on straight to 0 % there;
+    /// A finest point above 0 % leaves a tail: with `d0_mm` the curve goes on straight to 0 % at that size;
     /// without it the pan fraction is counted by mass only.
     ///
     /// # Errors
-    /// What [`read_gradation`] refuses of a table's rows, with the point's place in the list as
-    /// the line.
+    /// Errors of [`read_gradation`] on a table's rows, with the point's place in the list as the line.
     pub fn from_points(points: &[(f64, f64)], d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
         let rows = points.iter().enumerate().map(|(i, &(size, percent))| Row { line: i + 1, size, percent });
         from_rows("points", Row::checked("points", rows.collect(), FIELDS)?, d0_mm)
     }
 
-    /// A curve that is stated as straight lines between these points, and not by sieves: nothing is open
-    /// between them.
+    /// Makes a curve that is stated as straight lines between these points, and not by sieves: nothing is
+    /// open between them.
     ///
     /// # Errors
-    /// As [`Gradation::from_points`].
+    /// Errors of [`Gradation::from_points`].
     pub fn from_lines(points: &[(f64, f64)]) -> Result<Gradation, GradationError> {
         let curve = Gradation::from_points(points, None)?;
         Ok(Gradation { lines: curve.size_mm.len(), ..curve })
     }
 
-    /// The same from rows as records hold them: size (mm), percent finer by mass.
+    /// Makes a gradation from rows of a record: size (mm), percent finer by mass.
     pub fn of_rows(rows: &[[f64; 2]]) -> Result<Gradation, GradationError> {
         let points: Vec<(f64, f64)> = rows.iter().map(|&[size, percent]| (size, percent)).collect();
         Gradation::from_lines(&points)
     }
 
-    /// A curve of straight lines from checked points.
+    /// Makes a curve of straight lines from checked points.
     pub(super) fn new(size_mm: Vec<f64>, percent: Vec<f64>) -> Gradation {
         let lines = size_mm.len();
         Gradation::sieved(size_mm, percent, lines)
     }
 
-    /// A curve from checked points, of which all but the first segments lie between sieves.
+    /// Makes a curve from checked points; all but the first `lines` segments lie between sieves.
     pub(super) fn sieved(size_mm: Vec<f64>, percent: Vec<f64>, lines: usize) -> Gradation {
         let log_ratio: Vec<f64> = size_mm.windows(2).map(|w| libm::log(w[1] / w[0])).collect();
         let number = cumulative(&size_mm, &percent, &log_ratio);
         Gradation { size_mm, percent, log_ratio, number, lines }
     }
 
-    /// This curve with every size multiplied by `factor`.
+    /// Multiplies every size by `factor`.
     ///
     /// # Errors
     /// A factor that is not positive and finite, or that takes a size out of range.
@@ -145,12 +146,12 @@ impl Gradation {
         Some(d.clamp(self.size_mm[i - 1], self.size_mm[i]))
     }
 
-    /// Coefficient of uniformity, `D_60 / D_10`; `None` where D_10 lies in a pan fraction.
+    /// Coefficient of uniformity, `D_60 / D_10`; `None` if D_10 lies in a pan fraction.
     pub fn cu(&self) -> Option<f64> {
         Some(self.d(60.0)? / self.d(10.0)?)
     }
 
-    /// Smallest size of known mass (mm): D_0, or the finest opening where there is a tail.
+    /// Smallest size of known mass (mm): D_0, or the finest opening if there is a tail.
     pub fn smallest_mm(&self) -> f64 {
         self.size_mm[0]
     }
@@ -160,7 +161,7 @@ impl Gradation {
         self.size_mm[self.size_mm.len() - 1]
     }
 
-    /// Percent by mass no coarser than `d_mm`; `None` where that lies in a pan fraction.
+    /// Percent by mass no coarser than `d_mm`; `None` if that lies in a pan fraction.
     pub fn percent_finer_if_known(&self, d_mm: f64) -> Option<f64> {
         (self.pan_fraction() == 0.0 || self.smallest_mm() <= d_mm).then(|| self.percent_finer_by_mass(d_mm))
     }
@@ -184,8 +185,7 @@ impl Gradation {
         self.tail_percent() / 100.0
     }
 
-    /// The points of the curve for a plot; sizes never fall.
-    /// A single size is the two ends of its vertical line.
+    /// Points of the curve for a plot; sizes never fall. A single size is the two ends of its vertical line.
     pub fn points(&self) -> Vec<CurvePoint> {
         let point = |(&size, &percent): (&f64, &f64)| CurvePoint { size, percent };
         let mut points: Vec<_> = self.size_mm.iter().zip(&self.percent).map(point).collect();
@@ -195,7 +195,7 @@ impl Gradation {
         points
     }
 
-    /// The same as rows of a record: size, percent finer by mass.
+    /// Points as rows of a record: size, percent finer by mass.
     pub fn rows(&self) -> Vec<[f64; 2]> {
         self.points().into_iter().map(CurvePoint::row).collect()
     }
@@ -212,7 +212,7 @@ fn check_cu(value: f64) -> Result<(), NumberError> {
     }
 }
 
-/// A curve from the rows of a table, in any order that goes one way.
+/// Makes a curve from the rows of a table, in ascending or descending order.
 pub fn from_rows(file: &str, rows: Vec<Row>, d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
     let rows = rising(file, rows, FIELDS, Direction::Strict)?;
     let (finest, single) = (rows[0], rows.len() == 1);

@@ -1,14 +1,14 @@
-//! Whether a soil holds its own fines: the two classical indices of a sieve curve's shape.
+//! Tests if a soil holds its own fines: the two classical indices of a sieve curve's shape.
 //!
-//! - Kenney and Lau (1985, 1986): F is the mass finer than D, H the mass between D and 4 D. Where H is less
-//!   than F, the coarse part does not hold the fine part. Only the part of a curve that can be loose counts:
-//!   F up to 20 % where Cu > 3, up to 30 % otherwise. The limit of 1986 is H / F = 1 (1985: 1.3).
-//! - Kezdi (1979): the curve is split in two; Terzaghi's ratio of the coarser part over the finer,
-//!   D'15 / d'85, is not to be more than 4. Whatever the split, 15 % of the whole mass lie between the two
-//!   sizes: H is to be at least 15 % in the words of Kenney and Lau. Splits near the ends say nothing: below
-//!   F = 15 % the limit of Kenney and Lau is the better one (Li and Fannin), and where the coarser part is
-//!   small its grains float in the finer part and are no filter for it. Judged are splits with d'85 at
-//!   F = 15 % to 55 %; the second limit is ours.
+//! - Kenney and Lau (1985, 1986): F is the mass finer than D, H the mass between D and 4 D. If H is less than
+//!   F, the coarse part does not hold the fine part. Only the part of a curve that can be loose counts: F up
+//!   to 20 % if Cu > 3, up to 30 % otherwise. The limit of 1986 is H / F = 1 (1985: 1.3).
+//! - Kezdi (1979): the curve is split in two; Terzaghi's ratio of the coarser part over the finer, D'15 /
+//!   d'85, is not to be more than 4. Whatever the split, 15 % of the whole mass lie between the two sizes: H
+//!   is to be at least 15 % in the words of Kenney and Lau. Splits near the ends are meaningless: below F =
+//!   15 % the limit of Kenney and Lau is the better one (Li and Fannin), and if the coarser part is small its
+//!   grains float in the finer part and are no filter for it. Only splits with d'85 at F = 15 % to 55 % are
+//!   judged; the second limit is ours.
 //! - Li and Fannin (2008): both together. H / F of at least 1 for F up to 15 %, H of at least 15 % from there
 //!   to the F of Kenney and Lau; so the least H / min(F, 15 %) is to be at least 1.
 //!
@@ -17,7 +17,7 @@
 //! follows Li and Fannin (2008).
 //!
 //! Both indices are extreme at a point of the curve, or where the other end of their window is at one; so
-//! they are found exactly. A pan fraction is left out: what it would say is not known.
+//! they are found exactly. A pan fraction is left out: its effect is not known.
 
 use super::Gradation;
 use super::curve_point::TIE;
@@ -41,8 +41,8 @@ pub struct ShapeIndex {
     pub value: f64,
     /// Percent finer where it is: F of Kenney and Lau.
     pub percent: f64,
-    /// The greatest percent finer, among those looked at, at which the index is less than 1: so much of the
-    /// soil may be lost. `None` where it is nowhere less.
+    /// Greatest percent finer, in the examined range, at which the index is less than 1: that percentage of
+    /// the soil may be lost. `None` if the index is nowhere less.
     pub lost_percent: Option<f64>,
 }
 
@@ -60,16 +60,14 @@ pub struct SoilSplit {
 }
 
 impl Gradation {
-    /// Percent finer up to which Kenney and Lau look: 20 where Cu > 3, 30 otherwise; `None` where Cu is not
-    /// known.
+    /// Percent finer up to which Kenney and Lau look: 20 if Cu > 3, 30 otherwise; `None` if Cu is not known.
     pub fn loose_percent(&self) -> Option<f64> {
         Some(if self.cu()? > NARROW_CU { WIDE_LOOSE_PERCENT } else { 30.0 })
     }
 
-    /// Kenney and Lau: the least H / F over F up to [`Gradation::loose_percent`].
+    /// Index of Kenney and Lau: the least H / F over F up to [`Gradation::loose_percent`].
     ///
-    /// `None` for a single size, where D_10 lies in a pan fraction, or where that pan fraction reaches beyond
-    /// F.
+    /// `None` for a single size, or if D_10 lies in a pan fraction or that pan fraction reaches beyond F.
     ///
     /// ```
     /// use voidwalk_core::gradation::Gradation;
@@ -82,17 +80,18 @@ impl Gradation {
         self.least_of_next(self.loose_percent()?, |finer| finer)
     }
 
-    /// The same of as much of the curve as sieves tell: where D10 lies in a pan fraction, and Cu is more than
-    /// 3 all the same, from there up to F = 20 %. What it finds below 1 is not met, whatever the pan hides.
+    /// Index of Kenney and Lau over the part of the curve that sieves show: if D10 lies in a pan fraction,
+    /// and Cu is more than 3 all the same, from there up to F = 20 %. An index below 1 is a failure, whatever
+    /// the pan hides.
     pub fn known_kenney_lau(&self) -> Option<ShapeIndex> {
         let is_wide = self.d(60.0)? > NARROW_CU * self.smallest_mm();
         let limit = self.loose_percent().or(is_wide.then_some(WIDE_LOOSE_PERCENT))?;
         self.least_of_next(limit, |finer| finer)
     }
 
-    /// Li and Fannin: the least H / min(F, 15 %) over F up to [`Gradation::loose_percent`].
+    /// Index of Li and Fannin: the least H / min(F, 15 %) over F up to [`Gradation::loose_percent`].
     ///
-    /// `None` as for [`Gradation::kenney_lau`].
+    /// `None` in the cases of [`Gradation::kenney_lau`].
     ///
     /// ```
     /// use voidwalk_core::gradation::Gradation;
@@ -113,8 +112,8 @@ impl Gradation {
         let index = |d: f64| {
             let finer = self.percent_finer_by_mass(d);
             let next = self.percent_finer_by_mass(4.0 * d) - finer;
-            let of = over(finer);
-            (finer > 0.0 && finer <= limit * (1.0 + 1e-9)).then_some((next / of, finer))
+            let divisor = over(finer);
+            (finer > 0.0 && finer <= limit * (1.0 + 1e-9)).then_some((next / divisor, finer))
         };
         let sizes: Vec<f64> = candidates.filter(|d| (self.smallest_mm()..=last).contains(d)).collect();
         let indices: Vec<(f64, f64)> = sizes.iter().filter_map(|&d| index(d)).collect();
@@ -126,9 +125,9 @@ impl Gradation {
         Some(ShapeIndex { value, percent, lost_percent })
     }
 
-    /// Kezdi: the greatest D'15 / d'85 over splits with d'85 within [`KEZDI_RANGE`].
+    /// Kezdi's split: the greatest D'15 / d'85 over splits with d'85 within [`KEZDI_RANGE`].
     ///
-    /// `None` for a single size, or where a pan fraction hides all of that range.
+    /// `None` for a single size, or if a pan fraction hides all of that range.
     ///
     /// ```
     /// use voidwalk_core::gradation::Gradation;
@@ -147,8 +146,8 @@ impl Gradation {
         ties.max_by(|a, b| a.percent.total_cmp(&b.percent))
     }
 
-    /// Kezdi: the greatest split at up to so many percent with a D'15 / d'85 above this limit; `None` where
-    /// there is none.
+    /// Kezdi's greatest split at up to `most_percent` with a D'15 / d'85 above this limit; `None` if there is
+    /// no such split.
     pub fn greatest_split_above(&self, limit: f64, most_percent: f64) -> Option<SoilSplit> {
         let splits: Vec<f64> = self.splits(0.85 * most_percent).collect();
         let is_above = |finer: f64| self.split(finer).is_some_and(|split| split.value > limit * (1.0 + TIE));
@@ -163,22 +162,22 @@ impl Gradation {
         candidates.filter(move |finer| is_split && (low..=high).contains(finer))
     }
 
-    /// The split with d'85 at so many percent: it is at 1/0.85 of them, and D'15 at 15 % more of the whole
-    /// mass.
+    /// Split with d'85 at the percent `finer`: the split is at 1/0.85 times `finer`, and D'15 at 15 % more of
+    /// the whole mass.
     fn split(&self, finer: f64) -> Option<SoilSplit> {
         let (coarse, fine) = (self.highest_size_at(finer + BETWEEN)?, self.d(finer)?);
         let percent = finer / 0.85;
         Some(SoilSplit { value: coarse / fine, percent, coarse_d15_mm: coarse, fine_d85_mm: fine })
     }
 
-    /// The largest size (mm) that no more than `percent` of the mass is finer than; [`Gradation::d`] gives
-    /// the smallest.
+    /// Largest size (mm) that no more than `percent` of the mass is finer than; [`Gradation::d`] gives the
+    /// smallest.
     fn highest_size_at(&self, percent: f64) -> Option<f64> {
         self.coarse_d(percent)
     }
 }
 
-/// The greatest place at which something holds that changes at most once between two neighbours of these.
+/// Greatest place at which a condition holds that changes at most once between two neighbours of `places`.
 fn greatest(places: &[f64], holds: impl Fn(f64) -> bool) -> Option<f64> {
     let last = places.iter().copied().filter(|&at| holds(at)).max_by(f64::total_cmp)?;
     let next = places.iter().copied().filter(|&at| at > last).min_by(f64::total_cmp);
@@ -198,8 +197,8 @@ mod tests {
         Gradation::from_points(points, None).unwrap()
     }
 
-    /// Straight on semi-log paper the mass between D and 4 D is the same everywhere, 50 ln 4 / ln Cu percent,
-    /// so H / F is least at the largest F; and 15 % of the mass always spans Cu^0.3.
+    /// On a straight line on semi-log paper the mass between D and 4 D is the same everywhere, 50 ln 4 / ln
+    /// Cu percent, so H / F is least at the largest F; and 15 % of the mass always spans Cu^0.3.
     #[test]
     fn straight_curves_by_hand() {
         for (cu, limit) in [(3.0, 30.0), (8.0, 20.0), (60.0, 20.0)] {
@@ -212,7 +211,7 @@ mod tests {
         }
     }
 
-    /// A size at F = 20 % may read as a hair more than 20 % finer, and is looked at all the same.
+    /// A size at F = 20 % that reads as a hair more than 20 % finer is still examined.
     #[test]
     fn the_end_of_the_loose_part_is_looked_at_whatever_its_last_digit() {
         let mut beyond = 0;
@@ -227,7 +226,7 @@ mod tests {
         assert!(beyond > 10, "{beyond}");
     }
 
-    /// A gap from 0.2 to 2 mm at 25 %: F = 25 % is within the loose part of no widely graded soil, but
+    /// A gap from 0.2 to 2 mm at 25 %: F = 25 % is outside the loose part of every widely graded soil, but
     /// Kezdi's split there has d'85 at 21.25 % and D'15 at 36.25 %.
     #[test]
     fn a_gap_by_hand() {
@@ -235,8 +234,8 @@ mod tests {
         let fine = 0.1 * libm::pow(2.0, 21.25 / 25.0);
         let coarse = 2.0 * libm::pow(10.0, 11.25 / 75.0);
         assert!(gap.kezdi().unwrap().value >= coarse / fine - 1e-12);
-        // The widest window of 15 % ends where it begins in the gap: D(40) over D(25); or it begins at the
-        // first F that is judged: D(30) over D(15).
+        // The widest window of 15 % begins in the gap and ends at D(40): D(40) over D(25); or it begins at
+        // the first judged F: D(30) over D(15).
         let d_40 = 2.0 * libm::pow(10.0, 15.0 / 75.0);
         let (d_15, d_30) = (0.1 * libm::pow(2.0, 0.6), 2.0 * libm::pow(10.0, 5.0 / 75.0));
         let widest = (d_40 / 0.2).max(d_30 / d_15);
@@ -245,7 +244,7 @@ mod tests {
         assert!((gap.kenney_lau().unwrap().value - 0.25).abs() < 1e-9);
     }
 
-    /// Against a fine scan of the curve.
+    /// The extremes equal those of a fine scan of the curve.
     #[test]
     fn extremes_are_those_of_a_scan() {
         let g = points(&[
@@ -298,7 +297,7 @@ mod tests {
     }
 
     /// ASTM C33 sand, split at 17.65 %: 85 % of the finer part is 15 % of the whole, and 15 % of the coarser
-    /// part with the finer one 30 %. Both parts are worked out by themselves here, each as 100 %.
+    /// part with the finer one 30 %. Each part is worked out by itself here, as 100 %.
     #[test]
     fn a_split_is_that_of_both_parts_by_themselves() {
         let sizes = [0.15, 0.3, 0.6, 1.18, 2.36, 4.75, 9.5];
@@ -328,10 +327,10 @@ mod tests {
         assert_eq!(tail.known_kenney_lau(), None);
         // 14 % below the finest sieve, and 46 % straight over the next two decades: H is least at F = 20 %.
         let clayey = points(&[(0.002, 14.0), (0.2, 60.0), (0.4, 100.0)]);
-        let found = clayey.known_kenney_lau().unwrap();
+        let known = clayey.known_kenney_lau().unwrap();
         let h = 46.0 * libm::log(4.0) / libm::log(100.0);
-        assert!(clayey.kenney_lau().is_none() && (found.value - h / 20.0).abs() < 1e-9, "{found:?}");
-        assert!((found.percent - 20.0).abs() < 1e-9);
+        assert!(clayey.kenney_lau().is_none() && (known.value - h / 20.0).abs() < 1e-9, "{known:?}");
+        assert!((known.percent - 20.0).abs() < 1e-9);
         assert!(tail.kezdi().is_some());
         assert_eq!(Gradation::single(1.0).unwrap().kezdi(), None);
         assert_eq!(Gradation::single(1.0).unwrap().kenney_lau(), None);

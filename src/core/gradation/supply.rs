@@ -1,34 +1,34 @@
-//! How many base particles a test inserts: Eq. (2) of the paper.
+//! Number of base particles that a test inserts: Eq. (2) of the paper.
 
 use super::{Gradation, GradationError, NumberError};
 
-/// The number of base particles, and whether it is capped.
+/// Number of base particles, and its cap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BaseSupply {
     /// Base particles to insert.
     pub n_base: u64,
     /// Base particles by Eq. (2).
     pub n_base_eq2: u64,
-    /// The cap made `n_base` smaller than `n_base_eq2`.
+    /// True if the cap made `n_base` smaller than `n_base_eq2`.
     pub capped: bool,
 }
 
-/// The number of base particles, Eq. (2) of the paper:
+/// Computes the number of base particles, Eq. (2) of the paper:
 ///
 /// ```text
 /// N_base = F_base * (N_p / N_voids) * voids * N_base,unit / N_filter,unit
 /// ```
 ///
 /// rounded to the nearest integer. `mass_ratio` is F_base, the mass of base over the mass of filter;
-/// `grains_per_void` is N_p / N_voids of the filter's packing; `voids` is the number of voids of the
-/// network. N_unit is the number of particles per unit mass; base and filter have one solid density,
-/// so numbers per unit of solid volume ([`Gradation::particles_per_unit_volume`]) do.
+/// `grains_per_void` is N_p / N_voids of the filter's packing; `voids` is the number of voids of the network.
+/// N_unit is the number of particles per unit mass; base and filter have one solid density, so numbers per
+/// unit of solid volume ([`Gradation::particles_per_unit_volume`]) serve as well.
 ///
-/// A pan fraction in the base is in its mass, not in its number: the particles stand for
-/// `1 - tail` of `mass_ratio`.
+/// A pan fraction in the base is in its mass, not in its number: the particles represent `1 - tail` of
+/// `mass_ratio`.
 ///
-/// `cap` is a limit on the number, off with `None`. Fewer particles than Eq. (2) requires is a bias
-/// towards more erosion, not noise, so the result says when it is capped.
+/// `cap` limits the number; `None` is no limit. Fewer particles than Eq. (2) requires is a bias towards more
+/// erosion, not noise, so the result tells if it is capped.
 ///
 /// # Errors
 /// A mass ratio or grains per void that is not a positive finite number, no voids, or a number of
@@ -77,7 +77,7 @@ mod tests {
         base_particles(0.05, 0.61, 96_000, &base, &filter, cap).unwrap()
     }
 
-    /// Against Eq. (2) with N_unit of a straight semi-log line worked out by hand:
+    /// Compares with Eq. (2) for N_unit of a straight semi-log line worked out by hand:
     /// `N_unit = (1 - Cu^-6) / (pi D0^3 ln Cu)`.
     #[test]
     fn equation_two_by_hand() {

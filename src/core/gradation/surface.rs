@@ -1,4 +1,4 @@
-//! What a gradation is by surface of its particles.
+//! Gradations by surface of their particles.
 
 use super::Gradation;
 
@@ -24,9 +24,9 @@ impl Gradation {
             if log_ratio <= 0.0 || mass <= 0.0 {
                 continue;
             }
-            let of = |from: f64| (mass / log_ratio * (1.0 / from - 1.0 / b)).max(0.0);
-            all += of(a);
-            coarser += of(d_mm.clamp(a, b));
+            let coarser_than = |from: f64| (mass / log_ratio * (1.0 / from - 1.0 / b)).max(0.0);
+            all += coarser_than(a);
+            coarser += coarser_than(d_mm.clamp(a, b));
         }
         match all > 0.0 {
             true => coarser / all,

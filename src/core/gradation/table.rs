@@ -1,9 +1,9 @@
-//! The reader of every table of two columns, size and percent: sieve curves and constriction curves.
+//! Reads every table of two columns, size and percent: sieve curves and constriction curves.
 //!
-//! Understood: comma, semicolon or tab between the columns; decimal commas wherever the comma does
-//! not separate columns (or the number is quoted); a byte order mark; CRLF; blank lines; `#`
-//! comments; one header row; quotes; empty fields at the end of a row, as spreadsheets write them.
-//! A row is the header when it is the first and none of its fields is a number.
+//! Accepted: comma, semicolon or tab between the columns; decimal commas wherever the comma does not separate
+//! columns (or the number is quoted); a byte order mark; CRLF; blank lines; `#` comments; one header row;
+//! quotes; empty fields at the end of a row, as spreadsheets write them. A row is the header if it is the
+//! first and has no number among its fields.
 
 use super::comma::{Comma, comma};
 use super::error::{NumberError, Position, TableError, shortened};
@@ -19,7 +19,7 @@ pub const SIZE_MAX_MM: f64 = 1e12;
 /// Largest file that is read, in bytes.
 pub const FILE_LIMIT_BYTES: u64 = 16 << 20;
 
-/// One row of a table: where it stands and its two numbers.
+/// One row of a table: its line and its two numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Row {
     /// Line of the file, counted from 1.
@@ -31,7 +31,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// `rows` that come from a list, not from a file, with the values checked.
+    /// Makes `rows` from a list, not from a file, and checks the values.
     pub(crate) fn checked(
         file: &str,
         mut rows: Vec<Row>,
@@ -67,12 +67,12 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// The table in the file at `path`.
+    /// Reads the table in the file at `path`.
     pub(crate) fn open(path: &Path) -> Result<Table, TableError> {
         Table::parse(&path.display().to_string(), &bytes_of(path)?)
     }
 
-    /// The table in `bytes`, called `file` in messages.
+    /// Reads the table in `bytes`, called `file` in messages.
     pub(crate) fn parse(file: &str, bytes: &[u8]) -> Result<Table, TableError> {
         let file = file.to_string();
         if bytes.len() as u64 > FILE_LIMIT_BYTES {
@@ -101,9 +101,9 @@ impl Table {
                 continue;
             }
             let heading = std::mem::take(&mut first) && fields.iter().all(|f| number(f).is_none());
-            let found = fields.len();
+            let count = fields.len();
             let Ok(fields) = <[String; 2]>::try_from(fields) else {
-                return Err(table.not_two_fields(line, found, content, delimiter));
+                return Err(table.not_two_fields(line, count, content, delimiter));
             };
             if heading && fields.iter().all(|f| !f.is_empty()) {
                 table.header = Some((line, fields));
@@ -127,13 +127,13 @@ impl Table {
         TableError::Fields { file: self.file.clone(), line, found, value: shortened(content.trim()), allowed }
     }
 
-    /// A file that uses both `.` and `,` inside numbers has thousands separators, or a mistake; one that
-    /// separates its columns by commas may have them in `"1,180"`.
+    /// Refuses ambiguous commas: a file that uses both `.` and `,` inside numbers has thousands separators,
+    /// or a mistake; one that separates its columns by commas may have them in `"1,180"`.
     fn check_decimal_signs(&self, delimiter: char) -> Result<(), TableError> {
         let is = |wanted: Comma| {
             let of_row = move |(line, fields): &(usize, [String; 2])| {
-                let found = fields.iter().find(|f| number(f).is_some() && comma(f) == Some(wanted));
-                found.map(|f| (*line, f.clone()))
+                let field = fields.iter().find(|f| number(f).is_some() && comma(f) == Some(wanted));
+                field.map(|f| (*line, f.clone()))
             };
             self.rows.iter().find_map(of_row)
         };
@@ -174,7 +174,7 @@ impl Table {
         self.rows.first().map_or(1, |(line, _)| *line)
     }
 
-    /// The rows as numbers, with the size in column `size_column` and the percent in the other.
+    /// Rows as numbers, with the size in column `size_column` and the percent in the other.
     pub(crate) fn rows(
         &self,
         size_column: usize,
@@ -202,7 +202,7 @@ impl Table {
     }
 }
 
-/// The bytes of a file, of which no more than a table can have are read.
+/// Reads the bytes of a file, up to the largest size of a table.
 pub fn bytes_of(path: &Path) -> Result<Vec<u8>, TableError> {
     let file = path.display().to_string();
     let read = |source| TableError::Read { file: file.clone(), source };
@@ -218,7 +218,7 @@ pub fn bytes_of(path: &Path) -> Result<Vec<u8>, TableError> {
     }
 }
 
-/// Refuses a `value` that no size may be.
+/// Refuses a `value` that is not allowed as a size.
 pub(crate) fn check_size(name: &'static str, value: f64) -> Result<(), NumberError> {
     match size_is_allowed(value) {
         true => Ok(()),
@@ -226,7 +226,7 @@ pub(crate) fn check_size(name: &'static str, value: f64) -> Result<(), NumberErr
     }
 }
 
-/// Refuses a `value` that no percentage may be.
+/// Refuses a `value` that is not allowed as a percentage.
 pub(super) fn check_percent(name: &'static str, value: f64) -> Result<(), NumberError> {
     match percent_is_allowed(value) {
         true => Ok(()),
@@ -234,37 +234,37 @@ pub(super) fn check_percent(name: &'static str, value: f64) -> Result<(), Number
     }
 }
 
-/// A size may be this.
+/// Tells if a size is allowed.
 pub fn size_is_allowed(size: f64) -> bool {
     (SIZE_MIN_MM..=SIZE_MAX_MM).contains(&size)
 }
 
-/// A percentage may be this.
+/// Tells if a percentage is allowed.
 pub fn percent_is_allowed(percent: f64) -> bool {
     (0.0..=100.0).contains(&percent)
 }
 
-/// What a size may be.
+/// Allowed sizes, in words.
 pub fn allowed_size() -> String {
     format!("a number from {SIZE_MIN_MM:e} to {SIZE_MAX_MM:e}")
 }
 
-/// What a percentage may be.
+/// Allowed percentages, in words.
 pub fn allowed_percent() -> String {
     "a number from 0 to 100".into()
 }
 
-/// How a table's size column may go from one row to the next.
+/// Rule for the size column of a table from one row to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Direction {
     /// No size twice.
     Strict,
-    /// The same size again is a vertical step of the curve.
+    /// Allows equal sizes: a vertical step of the curve.
     Steps,
 }
 
-/// `rows` with rising sizes, after checking that sizes go one way, that percent never falls as size
-/// rises, and that the coarsest is 100 %.
+/// Returns `rows` with rising sizes, after checking that sizes only rise or only fall, that percent never
+/// falls as size rises, and that the coarsest is 100 %.
 pub(crate) fn rising(
     file: &str,
     mut rows: Vec<Row>,
@@ -314,12 +314,12 @@ pub(crate) fn rising(
     }
 }
 
-/// What separates the columns: the first of semicolon, tab and comma in the first line that has any.
+/// Separator of the columns: the first of semicolon, tab and comma in the first line that has any.
 fn delimiter<'a>(lines: impl Iterator<Item = &'a str>) -> char {
     lines.filter_map(|line| [';', '\t', ','].into_iter().find(|&c| line.contains(c))).next().unwrap_or(',')
 }
 
-/// The fields of one line, trimmed and without their quotes; empty ones at its end left out.
+/// Fields of one line, trimmed and without their quotes; empty ones at its end left out.
 fn split(line: &str, delimiter: char) -> Vec<String> {
     let mut fields = vec![String::new()];
     let mut quoted = false;
@@ -343,8 +343,8 @@ fn split(line: &str, delimiter: char) -> Vec<String> {
     fields
 }
 
-/// A field as a number: what Rust reads (so also `nan`, `inf` and `1e400`, for the caller to refuse),
-/// with a decimal comma in place of the point.
+/// Reads a field as a number: all that Rust reads (so also `nan`, `inf` and `1e400`, for the caller to
+/// refuse), with a decimal comma in place of the point.
 pub fn number(field: &str) -> Option<f64> {
     // An exponent has its sign, as spreadsheets write it: another letter e is a slip.
     if field.split_once(['e', 'E']).is_some_and(|(_, power)| !power.starts_with(['+', '-'])) {

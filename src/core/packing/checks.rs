@@ -1,4 +1,4 @@
-//! The contact law and the time integration against what is known exactly.
+//! Checks of the contact law and the time integration against exact results.
 
 use super::compression::Compression;
 use super::draw::{draw, random_start};
@@ -60,7 +60,7 @@ fn approach(c: &Compression) -> f64 {
     c.velocity[a][0] - c.velocity[b][0]
 }
 
-/// Time from touch to separation, the ends interpolated; and part of the approach speed that is left.
+/// Time from touch to separation, with interpolated ends, and the remaining part of the approach speed.
 fn collide(mut c: Compression) -> (f64, f64) {
     let before = approach(&c);
     let mut last = distance(&c);
@@ -109,7 +109,7 @@ fn restitution_is_kept_at_every_speed() {
                 let settings = Settings { restitution: e, ..undamped };
                 let ratio = -libm::log(e) / (PI * PI + libm::log(e) * libm::log(e)).sqrt();
                 for parts in [50.0, 200.0, 800.0, 3200.0] {
-                    // The damping force sets in and ends within a step: an error of first order.
+                    // The damping force begins and ends within a step: an error of first order.
                     let bound =
                         5.0 * PI * ratio / (1.0 - ratio * ratio).sqrt() / parts + 10.0 / (parts * parts);
                     let bound = if e >= 0.9 && parts == 50.0 { 0.005f64 } else { bound };
@@ -145,8 +145,8 @@ fn hertz_contact_time() {
     }
 }
 
-/// A slope that a contact rolls and slides on: a small grain pressed against a large one that turns at
-/// constant rate ends in rolling without sliding, with the friction force never above its limit.
+/// On a slope a contact rolls and slides: a small grain pressed against a large one that turns at constant
+/// rate ends in rolling without sliding, with the friction force never above its limit.
 #[test]
 fn coulomb_limit_holds_for_spring_and_damping_together() {
     let settings = Settings {
@@ -191,8 +191,8 @@ fn the_step_is_refused_with_both_numbers() {
     assert!(Compression::new(&grains, &settings).is_ok());
 }
 
-/// Squeezed and then held by the servo: the step that follows the contacts is below the critical one of every
-/// instant, with room.
+/// While the servo squeezes and then holds, the step that follows the contacts stays well below the critical
+/// one at every instant.
 #[test]
 fn the_automatic_step_stays_below_the_critical_one() {
     let filter = Gradation::linear_from_d0(1.0, 2.0).unwrap();
@@ -210,8 +210,8 @@ fn the_automatic_step_stays_below_the_critical_one() {
     }
 }
 
-/// With a gain far above the inverse of the contacts' viscosity, the strain rate goes to where it has to be
-/// instead of swinging between its limits: its changes of sign stay rare.
+/// With a gain far above the inverse of the contacts' viscosity, the strain rate settles at its value and
+/// does not swing between its limits: its changes of sign stay rare.
 #[test]
 fn the_servo_does_not_swing() {
     let filter = Gradation::linear_from_d0(1.0, 2.0).unwrap();
@@ -232,8 +232,7 @@ fn the_servo_does_not_swing() {
     assert!(swings < 100 && (c.pressure - 1.0).abs() < 0.005, "{swings} {}", c.pressure);
 }
 
-/// The step at which a chain of two grains really becomes unstable is not below the critical step of their
-/// contact.
+/// A chain of two grains becomes unstable at a step no shorter than the critical step of their contact.
 #[test]
 fn the_critical_step_is_stable_and_not_far_from_the_limit() {
     let k = STIFFNESS;
@@ -257,8 +256,8 @@ fn the_critical_step_is_stable_and_not_far_from_the_limit() {
     assert!((c.critical_step() / limit - 1.0).abs() < 1e-12);
 }
 
-/// A small grain pressed into a large one, from rest: its first velocity says what mass it was moved with,
-/// its own or that of which the contact's critical step is 1.5 times that before there are contacts.
+/// The first velocity of a small grain pressed into a large one, from rest, shows the mass that moved it: its
+/// own, or the mass at which the contact's critical step is 1.5 times the one before there are contacts.
 #[test]
 fn crowded_grains_of_wide_packings_are_moved_as_heavier_ones() {
     let first_velocity = |ratio: f64, step: Option<f64>| {
@@ -311,7 +310,7 @@ fn the_step_of_wide_packings_does_not_follow_the_most_crowded_grains() {
     assert!(closest < 1.0 && held > 0.2, "{closest} {held}");
 }
 
-/// The grains of a wide gradation, though none of its extremes was drawn.
+/// A wide gradation keeps its protocol even if no extreme grain was drawn.
 #[test]
 fn one_gradation_has_one_protocol() {
     for (cu, is_wide) in [(4.4, false), (4.6, true)] {
@@ -396,7 +395,7 @@ fn gas(n: usize, ratio: f64, fraction: f64, speed: f64, settings: &Settings) -> 
     c
 }
 
-/// Energy when no two grains touch: then the half step's velocities are those of the full step.
+/// Energy while no two grains touch: the half step's velocities then equal those of the full step.
 fn flying(c: &mut Compression) -> Energy {
     for _ in 0..100_000 {
         free(c, 1);
@@ -427,8 +426,8 @@ fn undamped_gas_keeps_energy_and_momentum() {
     }
 }
 
-/// Friction without damping, true masses: the energy of a gas of two sizes falls and never rises, beyond what
-/// the time step's error of single contacts allows.
+/// With friction, no damping and true masses, the energy of a gas of two sizes falls and never rises, beyond
+/// the time step's error of single contacts.
 #[test]
 fn friction_makes_no_energy_at_any_size_ratio() {
     for ratio in [1.0, 10.0, 36.0, 100.0] {
@@ -459,9 +458,9 @@ fn friction_makes_no_energy_at_any_size_ratio() {
     }
 }
 
-/// Vyas and others' case: a small grain squeezed between two large ones has to leave; where the tangential
-/// motion is taken in the wrong plane it sticks. Here: squeezed by two large grains that approach, it is
-/// expelled faster than they come, and the energy of the three never rises above what they brought.
+/// Case of Vyas and others: a small grain squeezed between two large ones has to leave; it sticks if the
+/// tangential motion is taken in the wrong plane. Two large grains that approach expel it here faster than
+/// they come, and the energy of the three never rises above the initial one.
 #[test]
 fn a_small_grain_between_large_ones_is_expelled() {
     for ratio in [4.0, 10.0, 36.0, 100.0] {

@@ -1,7 +1,7 @@
 //! The state of a compression, as columns, and one step of it.
 //!
 //! # Reduced units
-//! Length: the smallest diameter. Stress: the target pressure. Density: that of the grains. So the unit of
+//! Length: the smallest diameter. Stress: the target pressure. Density: the grains' density. So the unit of
 //! time is `smallest diameter * sqrt(density / pressure)` and a strain rate of 1e-3 is an inertial number of
 //! 1e-3 for the smallest grains.
 //!
@@ -12,16 +12,16 @@
 //!
 //! # Masses
 //! A grain of diameter `D` weighs `pi/6 D^(3 - mass_exponent)`. With the true masses (0) the smallest grains
-//! set the time step and the largest take `Dmax/Dmin` times as many steps to move as the smallest. Where the
-//! packing rests no mass matters.
+//! set the time step and the largest take `Dmax/Dmin` times as many steps to move as the smallest. Masses do
+//! not matter in a packing at rest.
 //!
-//! Where the largest grain is 20 times as wide as the smallest or more, a few small grains between large ones
-//! have so stiff contacts that the step of all would follow them. There a grain is moved with a mass of at
+//! If the largest grain is 20 times as wide as the smallest or more, a few small grains between large ones
+//! have contacts so stiff that they would set the step of all. Each grain is then moved with a mass of at
 //! least `s K t^2 / 4`, and the moment of inertia of that mass: `K` is the sum of its contacts' stiffness at
 //! that moment, `s` the factor of the critical step `2 / sqrt(s K / m)`, and `t` 1.5 times the critical step
-//! before there are contacts. The damping of contacts and the energies keep its own mass, so that the
-//! restitution of such a grain is another. A fixed step makes no grain heavier. A stage then ends after as
-//! much time as with the own masses: a hold is counted in the steps that those would have taken.
+//! before there are contacts. The damping of contacts and the energies keep the grain's own mass, so that its
+//! restitution differs. A fixed step makes no grain heavier. A stage then ends after as much time as with the
+//! own masses: a hold is counted in the steps that the own masses would have taken.
 
 use super::contact::{Grains, Law, Now, Work, pass};
 use super::grains::{Cell, Packing};
@@ -36,22 +36,22 @@ use crate::gradation::Gradation;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// A cell is at most so many times as tall as wide.
+/// Largest ratio of a cell's height to its width.
 pub(super) const TALLEST: f64 = 100.0;
 
-/// Steps between two looks at the time step.
+/// Steps between two checks of the time step.
 const STEP_CHECK: u64 = 16;
 
-/// Part of the critical step at which the step is looked at without waiting.
+/// Part of the critical step at which the step is checked without waiting.
 const CLOSE_STEP: f64 = 0.85;
 
-/// Part of the way to the strain rate it wants that the servo goes in a step. The contacts' damping makes the
+/// Part of the way to its target strain rate that the servo goes in a step. The contacts' damping makes the
 /// pressure answer at once to the strain rate; an immediate servo swings between its limits from step to step
-/// once its gain exceeds the viscosity's inverse (0.03 for Cu 6 at 5e4 times the pressure), this one from
-/// seven times as much on.
+/// once its gain exceeds the viscosity's inverse (0.03 for Cu 6 at 5e4 times the pressure), this one only
+/// above seven times that gain.
 const SERVO_SHARE: f64 = 0.25;
 
-/// What a compression is doing.
+/// Stages of a compression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stage {
@@ -66,7 +66,7 @@ pub enum Stage {
 }
 
 /// Grains under compression: columns by grain in memory order, which changes, and `rank` (0 = the largest),
-/// which stays.
+/// which is fixed.
 #[derive(Clone, Debug)]
 pub struct Compression {
     /// The settings.
@@ -87,7 +87,7 @@ pub struct Compression {
     pub(super) listed: Vec<[f64; 4]>,
     /// Edge of the cell when the lists were made.
     pub(super) listed_cell: f64,
-    /// How far the lists reach.
+    /// Reach of the lists.
     pub(super) reach: Reach,
     /// Step in which the lists were made.
     pub(super) listed_at: u64,
@@ -95,13 +95,13 @@ pub struct Compression {
     pub(super) picked: Vec<[f64; 4]>,
     /// Edge of the cell when the close pairs were picked.
     pub(super) picked_cell: f64,
-    /// How far the close pairs reach.
+    /// Reach of the close pairs.
     pub(super) close: Reach,
     /// Step in which the close pairs were picked.
     pub(super) picked_at: u64,
     /// Width of the cell.
     pub(super) cell: f64,
-    /// Its height by its width, which stays.
+    /// Height of the cell by its width, which is fixed.
     pub(super) aspect: Aspect,
     /// Relative growth of the cell per unit of time.
     pub(super) strain_rate: f64,
@@ -111,7 +111,7 @@ pub struct Compression {
     pub(super) time: f64,
     /// Steps done.
     pub(super) steps: u64,
-    /// What is going on.
+    /// Current stage.
     pub(super) stage: Stage,
     /// Mean contact pressure in the last step, by target.
     pub(super) pressure: f64,
@@ -125,18 +125,18 @@ pub struct Compression {
     pub(super) mean_normal: f64,
     /// Contacts in the last step.
     pub(super) contacts: u64,
-    /// What the protocol remembers of its checks.
+    /// State that the protocol keeps between its checks.
     pub(super) hold: HoldState,
     /// The contact law.
     pub(super) law: Law,
     /// The lists, with the tangential memory.
     pub(super) chunks: Vec<GrainChunk>,
-    /// Farthest any grain moved since the close pairs were picked, in units of the cell; infinite before the
-    /// first pick.
+    /// Farthest move of any grain since the close pairs were picked, in units of the cell; infinite before
+    /// the first pick.
     pub(super) moved: f64,
     /// The critical step before there are contacts.
     loose_step: f64,
-    /// Sizes differ so much that the most crowded grains are moved as heavier ones.
+    /// True if sizes differ so much that the most crowded grains are moved as heavier ones.
     pub(super) is_wide: bool,
     /// Chunk of each grain.
     chunk_of: Vec<u16>,
@@ -146,10 +146,10 @@ pub struct Compression {
 }
 
 impl Compression {
-    /// Grains of any position, at rest.
+    /// Makes a compression of grains at any position, at rest.
     ///
     /// # Errors
-    /// Settings out of range; grains that are none; a cell narrower than two of the largest grain; coincident
+    /// Settings out of range; invalid grains; a cell narrower than two of the largest grain; coincident
     /// centres; a fixed step that is not below the critical one.
     pub fn new(packing: &Packing, settings: &Settings) -> Result<Self, PackingError> {
         settings.check()?;
@@ -289,7 +289,7 @@ impl Compression {
         self.steps
     }
 
-    /// What is going on.
+    /// Current stage.
     pub fn stage(&self) -> Stage {
         self.stage
     }
@@ -326,18 +326,18 @@ impl Compression {
         self.critical(self.stiffest)
     }
 
-    /// The critical step of grains of which the stiffest contacts, by mass, sum up to `stiffest`.
+    /// Critical step of grains whose stiffest contacts, by mass, sum up to `stiffest`.
     fn critical(&self, stiffest: f64) -> f64 {
         if stiffest > 0.0 { 2.0 / (stability(&self.law) * stiffest).sqrt() } else { f64::INFINITY }
     }
 
-    /// The step that follows their critical one.
+    /// Step that follows their critical one.
     fn followed(&self, stiffest: f64) -> f64 {
         let part = self.settings.step_fraction.min(damped_part(&self.law));
         part * self.critical(stiffest).min(2.0 * self.loose_step)
     }
 
-    /// One step, without servo: the strain rate is what it is.
+    /// Takes one step, without servo: the strain rate is left as it is.
     pub(super) fn advance_once(&mut self, servo: Option<(f64, f64)>) -> Result<(), PackingError> {
         let pick = self.renew();
         self.steps += 1;
@@ -455,19 +455,19 @@ impl Compression {
         }
     }
 
-    /// Whether crowded grains are moved as heavier ones.
+    /// Tells if crowded grains are moved as heavier ones.
     pub(super) fn makes_heavier(&self) -> bool {
         self.is_wide && self.settings.step.is_none()
     }
 
-    /// This compression, with crowded grains moved as heavier ones where the gradation that its grains were
-    /// drawn from is wide: of few grains the extremes may be missing, and one gradation has one protocol.
+    /// Moves crowded grains as heavier ones if the gradation that the grains were drawn from is wide: a small
+    /// sample may miss the extremes, and one gradation has one protocol.
     pub fn of_gradation(mut self, gradation: &Gradation) -> Self {
         self.is_wide = is_wide(gradation);
         self
     }
 
-    /// Keeps the step below the critical one: follows it, or refuses a fixed step that it has fallen to.
+    /// Keeps the step below the critical one: follows it, or refuses a fixed step that is no longer below it.
     fn check_step(&mut self) -> Result<(), PackingError> {
         let critical = self.critical_step();
         match self.settings.step {
@@ -483,7 +483,7 @@ impl Compression {
         }
     }
 
-    /// The grains as they are, in the order that they were given in.
+    /// Grains in their present state, in the order that they were given in.
     pub fn packing(&self) -> Packing {
         let n = self.rank.len();
         let edge = self.cell * self.unit_mm;

@@ -15,7 +15,7 @@
 //!   cut alike.
 //!
 //! Torques act with the lever arms `r ri / (ri + rj)`, which add up to the distance `r` of the centres.
-//! A linear spring (constant `kn`) is there for tests.
+//! Tests use a linear spring (constant `kn`).
 //!
 //! # Time levels
 //! Positions are at full steps, velocities at half steps. The tangential motion over a step is the velocity
@@ -26,9 +26,9 @@
 //! doi:10.1016/j.cpc.2025.109524).
 //!
 //! # Order
-//! Each chunk first finds which of its close pairs touch, from the positions alone (of a wide gradation four
-//! in ten do), and then goes through those in list order, in blocks: gather, compute lane by lane, scatter.
-//! Which pairs count as close changes no bit: a pair that does not touch leaves no trace.
+//! Each chunk first finds the touching ones among its close pairs, from the positions alone (in a wide
+//! gradation four in ten touch), and then goes through those in list order, in blocks: gather, compute lane
+//! by lane, scatter. The choice of close pairs changes no bit: a pair that does not touch leaves no trace.
 //! Forces on grains of other chunks go to outboxes, one per chunk, which their chunk adds in the order of the
 //! senders. All sums therefore have one order, whatever the number of threads or the width of the vector
 //! unit.
@@ -52,26 +52,26 @@ pub(super) struct Law {
     pub damping: f64,
     /// Coulomb friction.
     pub friction: f64,
-    /// Cut the normal force at zero.
+    /// Cuts the normal force at zero.
     pub clip: bool,
 }
 
-/// What one step needs besides the grains.
+/// Input of one step besides the grains.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Now {
     /// Width of the cell.
     pub cell: f64,
-    /// Its height by its width.
+    /// Height of the cell by its width.
     pub aspect: Aspect,
     /// Relative growth of the cell per unit of time.
     pub strain_rate: f64,
     /// Time step.
     pub step: f64,
-    /// Pick the close pairs anew, this far.
+    /// Reach for a new pick of the close pairs, if one is due.
     pub pick: Option<Reach>,
 }
 
-/// The grains as the contact pass reads them.
+/// Grains in the form that the contact pass reads.
 #[derive(Clone, Copy)]
 pub(super) struct Grains<'a> {
     /// Position in units of the cell; radius.
@@ -103,11 +103,11 @@ impl Outbox {
     }
 }
 
-/// What the contact pass of a chunk leaves behind.
+/// Results of the contact pass of a chunk.
 #[derive(Clone, Debug)]
 pub(super) struct Work {
     block: Box<Block>,
-    /// Which of the close pairs touch.
+    /// Indices of the close pairs that touch.
     hits: Vec<u32>,
     /// Forces for the other chunks, by chunk.
     pub outbox: Vec<Outbox>,
@@ -135,12 +135,12 @@ impl Work {
 /// One value per pair of a block.
 type Lanes = [f64; BLOCK];
 
-/// A block of close pairs as columns, so that the law is computed for many side by side.
+/// A block of close pairs as columns, so that the law is computed for many of them side by side.
 #[derive(Clone, Debug)]
 struct Block {
     /// Separation from the larger to the smaller grain along x, y, z, in units of the cell.
     gap: [Lanes; 3],
-    /// Velocity of the smaller less that of the larger, along x, y, z.
+    /// Velocity of the smaller grain minus the larger's, along x, y, z.
     motion: [Lanes; 3],
     /// Radius times angular velocity, summed over both, about x, y, z.
     spin: [Lanes; 3],
@@ -181,9 +181,9 @@ impl Default for Block {
     }
 }
 
-/// Forces and torques on the grains of `chunk` from the pairs that it lists, into `force` and `torque` (of
-/// its grains), and for other chunks into the outboxes. The fourth entry of a force sums normal stiffness,
-/// that of a torque is zero.
+/// Adds the forces and torques on the grains of `chunk` from the pairs that it lists to `force` and `torque`
+/// (of its grains), and those for other chunks to the outboxes. The fourth entry of a force sums normal
+/// stiffness; the fourth entry of a torque is zero.
 #[multiversion(targets("x86_64+avx+avx2+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx+avx2"))]
 pub(super) fn pass(
     chunk: &mut GrainChunk,
@@ -231,12 +231,12 @@ fn sweep<const FRICTION: bool, const HERTZ: bool>(
     work.hits = hits;
 }
 
-/// Which of the close pairs touch, into `hits`, in list order; the others lose their memory.
+/// Collects the close pairs that touch in `hits`, in list order; the others lose their memory.
 #[inline(always)]
 fn touching(chunk: &mut GrainChunk, position: &[[f64; 4]], now: &Now, hits: &mut Vec<u32>) {
     hits.clear();
     let (mut gap, mut sum) = ([[0.0; BLOCK]; 3], [0.0; BLOCK]);
-    let mut found = [0u32; BLOCK];
+    let mut touching = [0u32; BLOCK];
     for (b, (close, memory)) in chunk.close.chunks(BLOCK).zip(chunk.memory.chunks_mut(BLOCK)).enumerate() {
         for (k, &[i, j]) in close.iter().enumerate().take(BLOCK) {
             let (p, q) = (position[i as usize], position[j as usize]);
@@ -252,17 +252,17 @@ fn touching(chunk: &mut GrainChunk, position: &[[f64; 4]], now: &Now, hits: &mut
         }
         let mut count = 0;
         for (k, memory) in memory.iter_mut().enumerate().take(BLOCK) {
-            found[count & (BLOCK - 1)] = (b * BLOCK + k) as u32;
+            touching[count & (BLOCK - 1)] = (b * BLOCK + k) as u32;
             count += usize::from(touch[k]);
             if !touch[k] && memory[3] != 0.0 {
                 *memory = [0.0; 4];
             }
         }
-        hits.extend_from_slice(&found[..count]);
+        hits.extend_from_slice(&touching[..count]);
     }
 }
 
-/// Separation from its value in units of the cell's width, to the nearest image; and the distance.
+/// Separation to the nearest image, from a difference in units of the cell's width; and the distance.
 #[inline(always)]
 fn distance([x, y, z]: [f64; 3], now: &Now) -> ([f64; 3], f64) {
     let [x, y, z] = [nearest(x) * now.cell, nearest(y) * now.cell, now.aspect.nearest(z) * now.cell];
@@ -342,7 +342,7 @@ fn block<const FRICTION: bool, const HERTZ: bool>(
     }
 }
 
-/// The law, for `lanes` pairs side by side.
+/// Computes the law for `lanes` pairs side by side.
 #[inline(always)]
 fn compute<const FRICTION: bool, const HERTZ: bool>(b: &mut Block, lanes: usize, law: &Law, now: &Now) {
     let floor = if law.clip { 0.0 } else { f64::NEG_INFINITY };

@@ -1,17 +1,18 @@
 //! Packings as CSV: a column each for x, y, z and the diameter or the radius, by their names.
 //!
-//! A comment above the header, `# cell_mm = Lx, Ly, Lz`, is a periodic cell with its corner at the origin,
-//! `# cell = none` free boundaries; without one the file does not say. The header names the columns in any
-//! order, with their unit at the end (`x_mm`, `Diameter (m)`), or without one, which leaves it open; further
-//! columns are passed over. ParaView's names of coordinates (`Points:0`, `coordinates_0`) are known. Comma,
-//! semicolon or tab between columns; a byte order mark, CRLF, blank lines and further `#` comments are fine.
+//! A comment above the header, `# cell_mm = Lx, Ly, Lz`, gives a periodic cell with its corner at the origin,
+//! `# cell = none` free boundaries; a file without one leaves the cell open. The header names the columns in
+//! any order, with their unit at the end (`x_mm`, `Diameter (m)`), or without one, which leaves it open;
+//! further columns are passed over. ParaView's names of coordinates (`Points:0`, `coordinates_0`) are known.
+//! Comma, semicolon or tab between columns; a byte order mark, CRLF, blank lines and further `#` comments are
+//! allowed.
 
 use super::fields::{ImportError, Kind, Line, number, refused};
 use super::found::{FileCell, FileGrains, grain, in_columns};
 use super::grains::Cell;
 use super::unit::LengthUnit;
 
-/// What the columns may be called, without a unit and in lower case: x, y, z, diameter, radius.
+/// Accepted names of the columns, without a unit and in lower case: x, y, z, diameter, radius.
 const CALLED: [&[&str]; 5] = [
     &[
         "x",
@@ -50,13 +51,13 @@ const CALLED: [&[&str]; 5] = [
     RADIUS,
 ];
 
-/// What a column of diameters may be called.
+/// Accepted names of a column of diameters.
 pub(super) const DIAMETER: &[&str] = &["diameter", "diam"];
 
-/// What a column of radii may be called.
+/// Accepted names of a column of radii.
 pub(super) const RADIUS: &[&str] = &["radius", "radii", "r"];
 
-/// Part of a diameter by which twice the radius beside it may differ: both are rounded.
+/// Relative difference allowed between a diameter and twice the radius beside it: both are rounded.
 const SAME_SIZE: f64 = 0.01;
 
 /// A name in a header, and the unit at its end.
@@ -66,7 +67,7 @@ pub(super) struct Named {
 }
 
 impl Named {
-    /// Of `X_mm`, `"Diameter (m)"`, `Points:0`.
+    /// Parses a name such as `X_mm`, `"Diameter (m)"` or `Points:0`.
     pub fn of(text: &str) -> Self {
         let text = text.trim().trim_matches('"').trim().to_lowercase();
         for unit in LengthUnit::ALL {
@@ -81,17 +82,17 @@ impl Named {
     }
 }
 
-/// The places of the four columns, their unit, and what makes the last a diameter.
+/// Places of the four columns, their unit, and the factor that makes the last a diameter.
 struct Header {
     places: [usize; 4],
     unit: Option<LengthUnit>,
     factor: f64,
-    /// Columns of radii beside the diameters, and what makes them diameters in their unit.
+    /// Columns of radii beside the diameters, and the factor that makes them diameters in their unit.
     radii: Vec<(usize, f64)>,
 }
 
 impl Header {
-    /// `None` where it is no header of a packing at all.
+    /// Reads a header; `None` if the line is no header of a packing.
     fn read(file: &str, (line, text): Line<'_>, delimiter: char) -> Result<Option<Self>, ImportError> {
         let names: Vec<Named> = text.split(delimiter).map(Named::of).collect();
         let called = |which: usize| -> Vec<usize> {
@@ -109,10 +110,10 @@ impl Header {
             places.iter_mut().zip([(0, "x"), (1, "y"), (2, "z"), (size, "diameter or radius")])
         {
             let [place] = all[which][..] else {
-                let found = all[which].len();
+                let count = all[which].len();
                 let allowed = format!(
                     "one column each for x, y, z and the diameter or radius, with their unit, as x_mm, \
-                     y_mm, z_mm and diameter_mm ({found} for {name} found)"
+                     y_mm, z_mm and diameter_mm ({count} for {name} found)"
                 );
                 return Err(refused(file, line, "header", text, allowed));
             };
@@ -187,7 +188,7 @@ pub(super) fn csv(file: &str, text: &str) -> Result<FileGrains, ImportError> {
     if grains.is_empty() {
         return Err(ended(last, "at least one grain"));
     }
-    // The line of the cell says its unit: the columns' too, where they say none.
+    // The line of the cell gives the unit of the columns too if they name none.
     let unit = unit.or(matches!(cell, FileCell::Known(Cell::Periodic(_))).then_some(LengthUnit::Mm));
     if matches!(cell, FileCell::Known(Cell::Periodic(_))) && unit != Some(LengthUnit::Mm) {
         let allowed = "columns in mm, as the cell above them";
@@ -198,7 +199,7 @@ pub(super) fn csv(file: &str, text: &str) -> Result<FileGrains, ImportError> {
 
 const CELL_LINES: &str = "a line \"# cell_mm = Lx, Ly, Lz\" or \"# cell = none\"";
 
-/// What a comment says of the cell; most say nothing.
+/// Reads the cell from a comment; most comments do not give one.
 fn said_of_cell(file: &str, (line, text): Line<'_>) -> Result<FileCell, ImportError> {
     let Some((key, value)) = text.trim().strip_prefix('#').and_then(|rest| rest.split_once('=')) else {
         return Ok(FileCell::Unsaid);

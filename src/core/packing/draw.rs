@@ -1,4 +1,4 @@
-//! Grains drawn from a gradation, and their loose start.
+//! Draws grains from a gradation and places them loosely.
 
 use super::compression::TALLEST;
 use super::grains::{Cell, Packing};
@@ -10,7 +10,7 @@ use crate::stream::{Key, Purpose, unit};
 use rand::Rng;
 use std::f64::consts::PI;
 
-/// Diameters (mm, descending) drawn from the known sizes of a gradation, one from each of `grains` equal
+/// Draws diameters (mm, descending) from the known sizes of a gradation, one from each of `grains` equal
 /// strata of the number: the sample's curve follows the gradation much more closely than independent draws
 /// would.
 ///
@@ -32,19 +32,20 @@ pub fn draw(gradation: &Gradation, grains: usize, seed: u64) -> Vec<f64> {
     diameter
 }
 
-/// These grains (mm, any order) at random places without overlap, at the packing fraction of the settings;
+/// Places these grains (mm, any order) at random without overlap, at the packing fraction of the settings;
 /// the grains of the result are in descending order of size.
 ///
 /// # Errors
-/// Settings out of range; a diameter that is none; a cell narrower than two of the largest grain; no room.
+/// Settings out of range; an invalid diameter; a cell narrower than two of the largest grain; no room.
 pub fn random_start(diameter_mm: &[f64], settings: &Settings) -> Result<Packing, PackingError> {
     tall_start(diameter_mm, 1.0, settings)
 }
 
-/// The same in a cell that is `aspect` times as tall (along z) as wide, 1 to 100 times.
+/// Places grains like [`random_start`] in a cell that is `aspect` times as tall (along z) as wide, 1 to 100
+/// times.
 ///
 /// # Errors
-/// As [`random_start`]; an aspect out of range.
+/// Errors of [`random_start`]; an aspect out of range.
 pub fn tall_start(diameter_mm: &[f64], aspect: f64, settings: &Settings) -> Result<Packing, PackingError> {
     settings.check()?;
     if !(1.0..=TALLEST).contains(&aspect) {

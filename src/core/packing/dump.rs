@@ -1,11 +1,10 @@
 //! Text dumps of LAMMPS and LIGGGHTS.
 //!
-//! The last frame with atoms of a dump with the columns `x y z` (or `xu`, `xs`, `xsu` and so on), `radius` or
-//! `diameter`, and `id` where there is one, which then decides the order. Boundaries `pp pp pp` are a
-//! periodic cell, moved to the origin; boundaries without any `p` are free, and so are others where a user
-//! says so. `ITEM: UNITS` (LAMMPS writes it after `dump_modify ID units yes`, LIGGGHTS does not) says what
-//! lengths are: `si`, `cgs`, `micro` and `nano` have a length of their own, `lj` has none, and the others are
-//! of atoms.
+//! Reads the last frame with atoms of a dump with the columns `x y z` (or `xu`, `xs`, `xsu` and so on),
+//! `radius` or `diameter`, and `id` if present, which then decides the order. Boundaries `pp pp pp` are a
+//! periodic cell, moved to the origin; boundaries without any `p` are free, and so are others if the user
+//! says so. `ITEM: UNITS` (LAMMPS writes it after `dump_modify ID units yes`, LIGGGHTS does not) gives the
+//! unit of length: `si`, `cgs`, `micro` and `nano` have one, `lj` has none, and the others are of atoms.
 
 use super::fields::{ImportError, Kind, Line, number, refused};
 use super::found::{FileCell, FileGrains};
@@ -13,29 +12,28 @@ use super::grains::Cell;
 use super::unit::LengthUnit;
 use crate::gradation::shortened;
 
-/// How a dump gives a coordinate.
+/// Form of a coordinate in a dump.
 #[derive(Clone, Copy)]
 struct Coordinate {
     place: usize,
-    /// As a fraction of the box.
+    /// True for a fraction of the box.
     scaled: bool,
 }
 
-/// Systems of units of LAMMPS that say what a length is.
+/// Systems of units of LAMMPS with a unit of length.
 const UNITS: [(&str, LengthUnit); 4] =
     [("si", LengthUnit::M), ("cgs", LengthUnit::Cm), ("micro", LengthUnit::Um), ("nano", LengthUnit::Nm)];
 
-/// The one in which a length has no unit.
+/// System of units in which a length has no unit.
 const REDUCED: &str = "lj";
 
-/// What a dump says of its units, of which it says something once or before every frame: the name, and the
-/// unit of length that it stands for.
+/// Reads the units of a dump, given once or before every frame: the name, and its unit of length.
 fn unit(
     file: &str,
     text: &str,
     given: Option<LengthUnit>,
 ) -> Result<Option<(&'static str, LengthUnit)>, ImportError> {
-    let mut found: Option<(&str, LengthUnit)> = None;
+    let mut named: Option<(&str, LengthUnit)> = None;
     for (at, item) in text.match_indices("ITEM: UNITS") {
         let line = 2 + text[..at].matches('\n').count();
         let name = text[at + item.len()..].lines().nth(1).map_or("", str::trim);
@@ -48,15 +46,15 @@ fn unit(
                 return Err(refused(file, line, "units", name, allowed));
             }
         };
-        if found.is_some_and(|before| before.0 != unit.0) {
+        if named.is_some_and(|before| before.0 != unit.0) {
             return Err(refused(file, line, "units", name, "the same units in every frame"));
         }
-        found = Some(unit);
+        named = Some(unit);
     }
-    Ok(found)
+    Ok(named)
 }
 
-/// The last frame; `given` is the unit that a user says.
+/// Reads the last frame; `given` is the unit that the user names.
 pub(super) fn dump(file: &str, text: &str, given: Option<LengthUnit>) -> Result<FileGrains, ImportError> {
     let unit = unit(file, text, given)?;
     let frames = text.matches(FRAME).count();
@@ -121,16 +119,16 @@ pub(super) fn dump(file: &str, text: &str, given: Option<LengthUnit>) -> Result<
     Err(ended(last, "ITEM: ATOMS"))
 }
 
-/// How a frame begins.
+/// First words of a frame.
 const FRAME: &str = "ITEM: TIMESTEP";
 
-/// Whether a frame says that it has no atoms.
+/// Tells if a frame declares no atoms.
 fn is_empty(frame: &str) -> bool {
     let number = frame.split_once("ITEM: NUMBER OF ATOMS").and_then(|(_, rest)| rest.lines().nth(1));
     number.is_some_and(|number| number.trim() == "0")
 }
 
-/// Whether the box is periodic (unknown of a box that is so along some axes only), and its bounds.
+/// Periodicity of the box (unknown if it is periodic along some axes only), and its bounds.
 type Bounds = (Option<bool>, [[f64; 2]; 3]);
 
 fn box_bounds(file: &str, (line, kinds): Line<'_>, lines: [Line<'_>; 3]) -> Result<Bounds, ImportError> {

@@ -1,11 +1,10 @@
-//! Packings, and anything else that is points with numbers, as files.
+//! Writes packings, and other points with numbers, as files.
 
 use super::grains::{Cell, Packing};
 use std::fmt::Write;
 
 impl Packing {
-    /// This packing as CSV: the cell, a header, a row a grain. [`Packing::parse`] reads the same bits
-    /// back.
+    /// This packing as CSV: the cell, a header, a row per grain. [`Packing::parse`] reads the same bits back.
     pub fn to_csv(&self) -> String {
         let mut text = match self.cell {
             Cell::Periodic([x, y, z]) => format!("# cell_mm = {x}, {y}, {z}\n"),
@@ -13,7 +12,7 @@ impl Packing {
         };
         text.push_str("x_mm,y_mm,z_mm,diameter_mm\n");
         for i in 0..self.diameter.len() {
-            // A String takes whatever is written to it.
+            // Writing to a String never fails.
             let _ = writeln!(text, "{},{},{},{}", self.x[i], self.y[i], self.z[i], self.diameter[i]);
         }
         text
@@ -27,7 +26,7 @@ impl Packing {
     }
 }
 
-/// Points with named numbers, a column each, as a VTK PolyData file.
+/// Writes points with named numbers, a column each, as a VTK PolyData file.
 pub fn vtp_points(points: &[[f64; 3]], columns: &[(&str, &[f64])]) -> String {
     let count = points.len();
     let mut text = format!(

@@ -1,18 +1,18 @@
-//! The fields of a packing file, and what is said of one that cannot be.
+//! The fields of a packing file, and the errors of a file that cannot be used.
 
 use crate::gradation::{Position, shortened};
 use crate::store::in_mb;
 
-/// Largest packing file that is read, in bytes; what is packed in it may unpack to no more.
+/// Largest packing file that is read, in bytes, and largest size that a packed file may unpack to.
 pub const PACKING_FILE_LIMIT_BYTES: u64 = 4 << 30;
 
-/// The formats that are read, in words.
+/// Formats that are read, in words.
 const KNOWN: &str = "CSV with columns as x_mm, y_mm, z_mm and diameter_mm (or Points:0, Points:1, Points:2 \
                      and Diameter of ParaView and MFIX; radius will do), text dumps of LAMMPS and LIGGGHTS, \
                      Yade's export.text, MercuryDPM's .data, and points of VTK with a diameter or radius \
                      (.vtk, .vtp, .vtu); each also packed by gzip";
 
-/// What other programs usually have.
+/// Usual units of other programs.
 const UNITS_OF_PROGRAMS: &str = " (LIGGGHTS, Yade, MercuryDPM and MFIX mostly have metres; LAMMPS says it \
                                  after `dump_modify ID units yes`)";
 
@@ -24,10 +24,10 @@ pub enum ImportError {
     Read {
         /// File as the user named it.
         file: String,
-        /// What the system said.
+        /// Error of the system.
         source: std::io::Error,
     },
-    /// A folder where a file is wanted.
+    /// A folder in place of a file.
     #[error("{file} is a folder; name a file of grains: {known}", known = KNOWN)]
     Folder {
         /// Folder as the user named it.
@@ -38,10 +38,10 @@ pub enum ImportError {
     Unknown {
         /// File as the user named it.
         file: String,
-        /// What it looks like instead.
+        /// Description of its actual content.
         looks_like: String,
     },
-    /// Nobody says what its lengths are.
+    /// Neither the file nor the user gives the unit of its lengths.
     #[error(
         "{file} does not say the unit of its lengths, and a guess may be wrong by a factor of 1000; say it: \
          --unit m (or cm, mm, um, nm), in a scene network.unit = \"m\"{programs}",
@@ -51,7 +51,7 @@ pub enum ImportError {
         /// File as the user named it.
         file: String,
     },
-    /// Nobody says whether its boundaries are periodic.
+    /// Neither the file nor the user tells if the boundaries are periodic.
     #[error(
         "{file} does not say whether its boundaries are periodic; say it: --cell none for free ones, --cell \
          Lx,Ly,Lz for a periodic cell with a corner at the origin (in the file's unit){bounds}; in a scene \
@@ -60,7 +60,7 @@ pub enum ImportError {
     NoCell {
         /// File as the user named it.
         file: String,
-        /// What else may be said, where the file gives bounds.
+        /// Further option, if the file gives bounds.
         bounds: &'static str,
     },
     /// Boundaries that are periodic along some axes only.
@@ -72,15 +72,15 @@ pub enum ImportError {
         /// File as the user named it.
         file: String,
     },
-    /// Grains that do not fit the periodic cell they are said to lie in.
+    /// Grains that do not fit the periodic cell given for them.
     #[error("{file}: the grains do not fit their cell: {problem}")]
     Misfit {
         /// File as the user named it.
         file: String,
-        /// What shows it.
+        /// Evidence of the misfit.
         problem: String,
     },
-    /// More bytes than any packing has.
+    /// A file larger than any packing.
     #[error("{file} is larger than {}; allowed: a packing file up to that size", in_mb(*.limit))]
     TooLarge {
         /// File as the user named it.
@@ -98,14 +98,14 @@ pub enum ImportError {
         /// The first byte that does not belong.
         byte: u8,
     },
-    /// A value that is not allowed where it stands.
+    /// A value that is not allowed in its place.
     #[error("{at}: \"{value}\" is not allowed; allowed: {allowed}")]
     Value {
-        /// Where it stands.
+        /// Place of the value.
         at: Position,
         /// The value, shortened.
         value: String,
-        /// What is allowed there.
+        /// Allowed values.
         allowed: String,
     },
     /// The file ends before the packing does.
@@ -115,7 +115,7 @@ pub enum ImportError {
         file: String,
         /// Its last line.
         line: usize,
-        /// What should have followed.
+        /// Expected rest of the file.
         expected: String,
     },
 }
@@ -134,7 +134,7 @@ pub(super) fn refused(
     ImportError::Value { at, value: shortened(value), allowed: allowed.into() }
 }
 
-/// What a number must be.
+/// Allowed range of a number.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Kind {
     Finite,

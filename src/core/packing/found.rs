@@ -1,4 +1,4 @@
-//! What a packing file says, before anything is added to it.
+//! Content of a packing file, before anything is added to it.
 
 use super::fields::{ImportError, Kind, number};
 use super::grains::Cell;
@@ -11,29 +11,29 @@ pub(super) const NAMES: [&str; 4] = ["x", "y", "z", "diameter"];
 pub(super) struct FileGrains {
     /// x, y, z and diameter, in the file's unit.
     pub columns: [Vec<f64>; 4],
-    /// The unit of its lengths, where it says one.
+    /// Unit of its lengths, if it gives one.
     pub unit: Option<LengthUnit>,
     /// Its cell.
     pub cell: FileCell,
     /// The line that names the columns, for messages.
     pub line: usize,
-    /// What a user must know of how it was understood.
+    /// Notes to the user on how the file was understood.
     pub notes: Vec<String>,
 }
 
-/// What a file says of its boundaries.
+/// Boundaries according to a file.
 pub(super) enum FileCell {
-    /// All there is to say.
+    /// A complete cell.
     Known(Cell),
-    /// Between which bounds the grains are, but not whether those are periodic.
+    /// Bounds of the grains, without telling if they are periodic.
     Bounds([[f64; 2]; 3]),
-    /// Periodic along some axes only, which no packing here is.
+    /// Periodic along some axes only, which no packing here can be.
     Mixed,
-    /// Nothing.
+    /// Not given.
     Unsaid,
 }
 
-/// One grain's row: the four numbers at `places` among its fields, the last times `factor`.
+/// Reads one grain's row: the four numbers at `places` among its fields, the last times `factor`.
 pub(super) fn grain(
     file: &str,
     line: usize,
@@ -50,7 +50,7 @@ pub(super) fn grain(
     Ok(grain)
 }
 
-/// Rows of grains as columns.
+/// Turns rows of grains into columns.
 pub(super) fn in_columns(grains: &[[f64; 4]]) -> [Vec<f64>; 4] {
     std::array::from_fn(|axis| grains.iter().map(|grain| grain[axis]).collect())
 }

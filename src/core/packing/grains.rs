@@ -1,11 +1,11 @@
 //! A packing: grains in a cell.
 
-/// Where the grains live.
+/// Cell that holds the grains.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cell {
     /// Periodic box from the origin to these lengths along x, y, z (mm).
     Periodic([f64; 3]),
-    /// No cell: free boundaries, of which the outer 5 % is ignored in every statistic.
+    /// No cell: free boundaries; every statistic ignores the outer 5 %.
     Free,
 }
 
@@ -25,7 +25,7 @@ pub enum Cell {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Packing {
-    /// Where the grains live.
+    /// Cell that holds the grains.
     pub cell: Cell,
     /// Centre along x (mm).
     pub x: Vec<f64>,
@@ -38,7 +38,7 @@ pub struct Packing {
 }
 
 impl Packing {
-    /// The same packing with every length multiplied by `factor`.
+    /// Multiplies every length of the packing by `factor`.
     pub fn scaled(mut self, factor: f64) -> Self {
         let columns = [&mut self.x, &mut self.y, &mut self.z, &mut self.diameter];
         columns.into_iter().flatten().for_each(|mm| *mm *= factor);

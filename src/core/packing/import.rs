@@ -1,4 +1,4 @@
-//! Packings from files, of this program and of others.
+//! Reads packings from files of this program and of others.
 //!
 //! # Formats
 //! - CSV with a column each for the coordinates of the centres and the diameter or radius, by their names
@@ -9,9 +9,9 @@
 //! - points of VTK with a diameter or radius, as LIGGGHTS, Yade, MercuryDPM and ParaView write them
 //!   ([`vtk`](super::vtk)).
 //!
-//! Each of them may be packed by gzip. What a file is, is seen by its first line, not by its name. What a
-//! file does not say, its unit of length or whether its boundaries are periodic, is never guessed:
-//! [`ReadOptions`] says it, or the file is refused.
+//! Each of them may be packed by gzip. The first line decides the format, not the file's name. The unit of
+//! length and the boundaries are never guessed: if a file does not give them, [`ReadOptions`] does, or the
+//! file is refused.
 
 use crate::schema::Leaf;
 use std::io::Read;
@@ -30,7 +30,7 @@ use super::unit::LengthUnit;
 use super::vtk::{legacy, xml};
 use crate::store::read_regular;
 
-/// What is known of a packing file that the file does not say itself.
+/// Facts about a packing file that the file itself does not give.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReadOptions {
     /// The unit of its lengths.
@@ -39,7 +39,7 @@ pub struct ReadOptions {
     pub cell: Option<CellOption>,
 }
 
-/// The cell of a packing whose file does not say it.
+/// Cell of a packing whose file does not give it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum CellOption {
@@ -93,20 +93,20 @@ impl From<CellOption> for String {
 }
 
 impl Packing {
-    /// Reads a packing from a file that says its unit and its cell.
+    /// Reads a packing from a file that gives its unit and its cell.
     ///
     /// # Errors
-    /// As [`Packing::read_as`].
+    /// Errors of [`Packing::read_as`].
     pub fn read(path: impl AsRef<Path>) -> Result<Packing, ImportError> {
         Ok(Self::read_as(path, &ReadOptions::default())?.0)
     }
 
-    /// Reads a packing, with what a user must know of how it was understood: which frame, which unit.
+    /// Reads a packing, with notes to the user on how it was understood: the frame, the unit.
     ///
     /// # Errors
     /// A file that cannot be read, is a folder, too large or no text; one of no known format, or that leaves
-    /// its unit or cell open where `options` do too; anything that is not as its format says, with the line,
-    /// the field, the value and what is allowed there.
+    /// its unit or cell open while `options` do too; any departure from its format, with the line, the field,
+    /// the value and the allowed values.
     pub fn read_as(
         path: impl AsRef<Path>,
         options: &ReadOptions,
@@ -137,7 +137,7 @@ impl Packing {
     /// ```
     ///
     /// # Errors
-    /// As [`Packing::read_as`].
+    /// Errors of [`Packing::read_as`].
     pub fn parse(name: &str, content: &[u8]) -> Result<Packing, ImportError> {
         Ok(Self::parse_as(name, content, &ReadOptions::default())?.0)
     }
@@ -155,7 +155,7 @@ impl Packing {
     /// ```
     ///
     /// # Errors
-    /// As [`Packing::read_as`].
+    /// Errors of [`Packing::read_as`].
     pub fn parse_as(
         name: &str,
         content: &[u8],
@@ -167,7 +167,7 @@ impl Packing {
         if let Some((_, what)) = NOT_TEXT.iter().find(|(begin, _)| content.starts_with(begin)) {
             return Err(ImportError::Unknown { file: name.into(), looks_like: (*what).into() });
         }
-        // Of these the numbers may be no text.
+        // These two may hold binary numbers.
         if content.starts_with(b"# vtk DataFile") {
             return complete(name, legacy(name, content)?, options);
         }
@@ -181,7 +181,7 @@ impl Packing {
         })?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let start = text.trim_start();
-        let found = if start.starts_with("ITEM:") {
+        let grains = if start.starts_with("ITEM:") {
             dump(name, text, options.unit)?
         } else if start.starts_with("#format") {
             yade(name, text)?
@@ -190,14 +190,14 @@ impl Packing {
         } else {
             csv(name, text)?
         };
-        complete(name, found, options)
+        complete(name, grains, options)
     }
 }
 
-/// How a file that is packed by gzip begins.
+/// First bytes of a gzip file.
 const GZIP: &[u8] = b"\x1f\x8b";
 
-/// What a file holds that is packed by gzip, once: what it holds is packed no more.
+/// Unpacks the content of a gzip file, once: nothing inside it is unpacked further.
 fn unpacked(name: &str, content: &[u8]) -> Result<Vec<u8>, ImportError> {
     let (mut bytes, limit) = (Vec::new(), PACKING_FILE_LIMIT_BYTES);
     let read = flate2::read::MultiGzDecoder::new(content).take(limit + 1).read_to_end(&mut bytes);
@@ -215,20 +215,20 @@ fn unpacked(name: &str, content: &[u8]) -> Result<Vec<u8>, ImportError> {
     Ok(bytes)
 }
 
-/// Whether a file of VTK in XML begins here, perhaps behind a byte order mark and a declaration.
+/// Tells if a VTK file in XML begins here, perhaps behind a byte order mark and a declaration.
 fn is_vtk_in_xml(content: &[u8]) -> bool {
     let start = String::from_utf8_lossy(&content[..content.len().min(1000)]);
     let start = start.trim_start_matches('\u{feff}').trim_start();
     start.starts_with("<VTKFile") || start.starts_with("<?xml") && start.contains("<VTKFile")
 }
 
-/// How files that are no text begin, and what they are.
+/// First bytes of some files that are no text, and the names of those files.
 const NOT_TEXT: [(&[u8], &str); 2] = [
     (b"PK\x03\x04", "a zip or a workbook (save a workbook's sheet as CSV)"),
     (b"\x28\xb5\x2f\xfd", "a compressed file (zstd): unpack it first"),
 ];
 
-/// The packing (mm), with what the file says and what `options` add; where both speak, the file does.
+/// Makes the packing (mm) from the file and from `options`; if both give a value, the file's counts.
 fn complete(
     file: &str,
     found: FileGrains,
@@ -280,9 +280,9 @@ fn complete(
     Ok((packing, notes))
 }
 
-/// Refuses grains that do not fit their cell: a wrong one would give constrictions that are too fine, so a
-/// filter that seems to hold more. Programs may keep grains outside a cell that they wrote themselves, but of
-/// one given by hand nothing else tells whether it is the grains' own.
+/// Refuses grains that do not fit their cell: a wrong cell would give constrictions that are too fine, so a
+/// filter that seems to hold more. Programs may keep grains outside a cell that they wrote themselves, but no
+/// other check can confirm a cell given by hand.
 fn fits(file: &str, packing: &Packing, by_hand: bool) -> Result<(), ImportError> {
     let Cell::Periodic(lengths) = packing.cell else { return Ok(()) };
     let misfit = |problem| Err(ImportError::Misfit { file: file.into(), problem });

@@ -4,12 +4,12 @@ use super::{Cell, CellOption, LengthUnit, Packing, ReadOptions};
 use proptest::prelude::*;
 
 const CSV: &str = "# cell_mm = 2, 3, 4\nx_mm,y_mm,z_mm,diameter_mm\n0.5,1,2,1\n1.5,2.5,3.25,0.75\n";
-/// In mm, with the cell that the file says.
+/// Options in mm, with the cell from the file.
 const MM: ReadOptions = ReadOptions { unit: Some(LengthUnit::Mm), cell: None };
 const DUMP: &str = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS pp pp pp\n-1 1\n0 3\n1 5\n\
                     ITEM: ATOMS id type x y z radius\n2 1 0.5 2.5 4.25 0.375\n1 1 -0.5 1 3 0.5\n";
 
-/// A file that says its unit and its cell; a dump without units is in mm here.
+/// Parses a file that gives its unit and its cell; a dump without units is in mm here.
 fn parsed(text: &str) -> Result<Packing, String> {
     let unit = (text.contains("ITEM:") && !text.contains("ITEM: UNITS")).then_some(LengthUnit::Mm);
     parsed_as(text, &ReadOptions { unit, cell: None })
@@ -54,7 +54,7 @@ fn the_same_packing_in_every_dress() {
     assert_eq!(parsed(&CSV.replace("cell_mm = 2, 3, 4", "cell = none")).unwrap().cell, Cell::Free);
 }
 
-/// A dump says once what its lengths are, before its first frame or before each.
+/// A dump names the unit of its lengths once, before its first frame, or before each frame.
 #[test]
 fn a_dump_says_which_frame_and_which_units_were_taken() {
     let units = |name: &str| format!("ITEM: UNITS\n{name}\n");
@@ -78,12 +78,12 @@ fn a_dump_says_which_frame_and_which_units_were_taken() {
             assert_eq!(packing.diameter, [scale, 0.75 * scale], "{text}");
             assert_eq!(packing.x, [0.5 * scale, 1.5 * scale]);
             assert_eq!(packing.cell, Cell::Periodic([2.0 * scale, 3.0 * scale, 4.0 * scale]));
-            // Who reads the file says which it is.
+            // The user names the unit.
             let lengths = format!("lengths are in {words}, and are turned into mm");
             assert_eq!(notes, ["holds 2 frames: the last one, timestep 0, is taken", lengths.as_str()]);
         }
     }
-    // LIGGGHTS, and LAMMPS unless it is told to, do not say.
+    // LIGGGHTS does not name its unit, nor does LAMMPS by default.
     let silent = read(DUMP).unwrap_err().to_string();
     assert!(
         silent.contains("does not say the unit of its lengths") && silent.contains("--unit m"),
@@ -92,7 +92,7 @@ fn a_dump_says_which_frame_and_which_units_were_taken() {
     let given = |unit| ReadOptions { unit: Some(unit), cell: None };
     assert_eq!(parsed_as(DUMP, &given(LengthUnit::Mm)), Ok(expected()));
     assert_eq!(parsed_as(DUMP, &given(LengthUnit::M)).unwrap().diameter, [1e3, 750.0]);
-    // Reduced units have no length of their own, and two that differ are no answer.
+    // Reduced units have no length of their own, and two that differ give no answer.
     let reduced = format!("{}{DUMP}", units("lj"));
     assert_eq!(parsed_as(&reduced, &given(LengthUnit::Mm)), Ok(expected()));
     let both = parsed_as(&format!("{}{DUMP}", units("si")), &given(LengthUnit::Mm)).unwrap_err();
@@ -120,7 +120,7 @@ fn what_is_written_is_read_back() {
     }
 }
 
-/// Each bad file carries what must be said about it.
+/// Each bad file has its own message.
 #[test]
 fn bad_files_are_refused_with_their_place() {
     let csv = |from: &str, to: &str| CSV.replacen(from, to, 1);
@@ -175,8 +175,8 @@ fn bad_files_are_refused_with_their_place() {
         (dump("0.375", "nan"), "f, line 10, diameter: \"nan\""),
         (DUMP[..80].to_string(), "f ends after line"),
     ] {
-        let found = parsed(&text).unwrap_err();
-        assert!(found.contains(message), "{found}\n{text}");
+        let error = parsed(&text).unwrap_err();
+        assert!(error.contains(message), "{error}\n{text}");
     }
     let binary = Packing::parse("f", b"# cell = none\n\xff").unwrap_err().to_string();
     assert!(binary.contains("f, line 2: byte 0xFF"), "{binary}");
@@ -188,7 +188,7 @@ fn bad_files_are_refused_with_their_place() {
 }
 
 proptest! {
-    /// Cut, garbled or repeated: an answer or an error, never a panic.
+    /// A cut, garbled or repeated file gives a packing or an error, never a panic.
     #[test]
     fn no_file_makes_it_panic(cut in 0usize..200, at in 0usize..200, with in ".{0,6}", which: bool) {
         let mut text: Vec<char> = if which { CSV } else { DUMP }.chars().collect();
@@ -210,7 +210,7 @@ fn rows(of: impl Fn([&str; 4]) -> String) -> String {
     METRES.map(of).concat()
 }
 
-/// What Yade, MercuryDPM and ParaView write of the two grains.
+/// Files of Yade, MercuryDPM and ParaView with the two grains.
 #[test]
 fn files_of_other_programs_are_read_when_unit_and_cell_are_said() {
     let yade = format!(
@@ -245,12 +245,12 @@ fn files_of_other_programs_are_read_when_unit_and_cell_are_said() {
         close(&free, [0.0; 3], text);
         let periodic = parsed_as(text, &options("0.002, 0.003,0.004")).unwrap();
         assert_eq!(periodic.cell, Cell::Periodic([2.0, 3.0, 4.0]));
-        let said = |options: ReadOptions| parsed_as(text, &options).unwrap_err();
+        let message = |options: ReadOptions| parsed_as(text, &options).unwrap_err();
         assert!(
-            said(ReadOptions { unit: None, ..options("none") }).contains("does not say the unit"),
+            message(ReadOptions { unit: None, ..options("none") }).contains("does not say the unit"),
             "{text}"
         );
-        let bounds = said(ReadOptions { unit: Some(LengthUnit::M), cell: None });
+        let bounds = message(ReadOptions { unit: Some(LengthUnit::M), cell: None });
         assert!(bounds.contains("does not say whether its boundaries are periodic"), "{bounds}");
         assert_eq!(bounds.contains("or bounds for one"), text.as_str() == mercury, "{bounds}");
     }
@@ -260,7 +260,7 @@ fn files_of_other_programs_are_read_when_unit_and_cell_are_said() {
     close(&moved, [1.0, 0.0, -1.0], "bounds");
     let (_, notes) = Packing::parse_as("f", mercury.as_bytes(), &options("none")).unwrap();
     assert!(notes[0].contains("holds 2 frames: the last one, time 1.5, is taken"), "{notes:?}");
-    // A unit in the names is as good as one that is said.
+    // A unit in the names does as well as one that the user gives.
     let named = paraview.replace("Points:0", "x (m)").replace("Points:1", "y (m)").replace("Points:2", "z_m");
     let named =
         parsed_as(&named.replace("Diameter", "Diameter [m]"), &ReadOptions { unit: None, ..options("none") });
@@ -292,8 +292,8 @@ fn files_of_other_programs_that_are_broken_are_refused_with_their_place() {
         ),
         ("# cell_mm = 1,1,1\nx_m,y_m,z_m,r_m\n0,0,0,1\n", "columns in mm, as the cell above them"),
     ] {
-        let found = parsed_as(text, &options).unwrap_err();
-        assert!(found.contains(message), "{found}\n{text}");
+        let error = parsed_as(text, &options).unwrap_err();
+        assert!(error.contains(message), "{error}\n{text}");
     }
     let zipped = Packing::parse("f", b"PK\x03\x04").unwrap_err().to_string();
     assert!(
@@ -352,7 +352,7 @@ fn grains_wider_than_a_cell_given_by_hand_are_refused() {
         error.contains("along x, and the cell is 1.7 long there") && error.contains("file's unit"),
         "{error}"
     );
-    // What a program wrote itself may lie outside its own cell.
+    // Grains may lie outside a cell that their own program wrote.
     assert!(parsed(&CSV.replace("1.5,2.5", "3.5,2.5")).is_ok());
 }
 

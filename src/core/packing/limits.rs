@@ -47,10 +47,10 @@ pub(super) fn stability(law: &Law) -> f64 {
 }
 
 /// Part of the critical step that damping leaves. The damping force takes the velocity of the last half step,
-/// so an oscillator of damping ratio `z` is stable up to `sqrt(1 + z^2) - z` of its undamped limit. The ratio
-/// of a grain between several contacts is above that of a pair, the critical step is below the true limit;
-/// 0.9 of the damping coefficient stands for both. Checked by packings: at restitution 0.2 this is 0.50, and
-/// 0.5 settles where 0.6 and 0.7 of the critical step never do.
+/// so an oscillator of damping ratio `z` is stable up to `sqrt(1 + z^2) - z` of its undamped limit. A grain
+/// between several contacts has a higher ratio than a pair, and the critical step is below the true limit;
+/// 0.9 of the damping coefficient covers both. Checked by packings: at restitution 0.2 this is 0.50, and 0.5
+/// settles where 0.6 and 0.7 of the critical step never do.
 pub(super) fn damped_part(law: &Law) -> f64 {
     let z = 0.9 * law.damping;
     (1.0 + z * z).sqrt() - z
@@ -96,20 +96,20 @@ pub(super) fn critical_step(
     least
 }
 
-/// Largest by smallest grain from which the most crowded grains are moved as heavier ones.
+/// Ratio of the largest to the smallest grain from which the most crowded grains are moved as heavier ones.
 pub(super) const WIDE: f64 = 20.0;
 
 /// Critical step of a heavier grain, by the critical step before there are contacts.
 const HEAVIER_STEP: f64 = 1.5;
 
-/// Whether sizes differ so much that the step of a compression would follow a few small grains pressed
-/// between large ones, so that such grains are moved as heavier ones.
+/// Tells if sizes differ so much that a few small grains pressed between large ones would set the step of a
+/// compression, so that such grains are moved as heavier ones.
 pub fn is_wide(gradation: &Gradation) -> bool {
     gradation.largest_mm() / gradation.smallest_mm() >= WIDE
 }
 
 /// Least mass of a grain in a step by the sum of its contacts' stiffness, so that its critical step is
-/// [`HEAVIER_STEP`] times `loose_step`, that before there are contacts.
+/// [`HEAVIER_STEP`] times `loose_step`, the critical step before there are contacts.
 pub(super) fn heavier_mass_by_stiffness(law: &Law, loose_step: f64) -> f64 {
     let step = HEAVIER_STEP * loose_step;
     0.25 * stability(law) * step * step

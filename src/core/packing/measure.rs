@@ -1,4 +1,4 @@
-//! The observables of a packing under compression, computed from positions and memory, apart from the fast
+//! Computes the observables of a packing under compression from positions and memory, apart from the fast
 //! pass.
 
 use super::compression::Compression;
@@ -6,8 +6,8 @@ use super::neighbours::{Memory, nearest};
 use super::observed::{Energy, Measure};
 
 impl Compression {
-    /// Calls `each` with the grains, distance, overlap and tangential memory of every contact.
-    pub(super) fn for_each_contact(&self, mut each: impl FnMut(usize, usize, f64, f64, &Memory)) {
+    /// Calls `visit` with the grains, distance, overlap and tangential memory of every contact.
+    pub(super) fn for_each_contact(&self, mut visit: impl FnMut(usize, usize, f64, f64, &Memory)) {
         for chunk in &self.chunks {
             for (&[i, j], memory) in chunk.close.iter().zip(&chunk.memory) {
                 let (i, j) = (i as usize, j as usize);
@@ -17,7 +17,7 @@ impl Compression {
                 let r = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
                 let overlap = p[3] + q[3] - r;
                 if overlap > 0.0 {
-                    each(i, j, r, overlap, memory);
+                    visit(i, j, r, overlap, memory);
                 }
             }
         }

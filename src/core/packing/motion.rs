@@ -1,14 +1,14 @@
-//! How grains move: forces from the other chunks, kick, drift and the sums over the grains.
+//! Motion of the grains: forces from the other chunks, kick, drift and the sums over the grains.
 
 use super::contact::Work;
 use super::neighbours::chunk_bounds;
 use multiversion::multiversion;
 
-/// Farthest a grain may move in a step, in units of the smallest diameter: only an overlapping start comes
+/// Farthest move of a grain in a step, in units of the smallest diameter: only an overlapping start comes
 /// near it.
 pub(super) const LONGEST_MOVE: f64 = 0.02;
 
-/// A column cut at the bounds of the chunks.
+/// Cuts a column at the bounds of the chunks.
 pub(super) fn split<T>(mut column: &mut [T]) -> Vec<&mut [T]> {
     let bounds = chunk_bounds(column.len());
     let mut parts = Vec::with_capacity(bounds.len());
@@ -20,7 +20,7 @@ pub(super) fn split<T>(mut column: &mut [T]) -> Vec<&mut [T]> {
     parts
 }
 
-/// How the grains of a chunk take a step.
+/// Parameters of a step for the grains of a chunk.
 pub(super) struct StepRule {
     pub step: f64,
     pub per_cell: f64,
@@ -29,16 +29,16 @@ pub(super) struct StepRule {
     pub local: f64,
     pub fastest: f64,
     pub rotate: bool,
-    /// Least mass of a grain by the sum of its contacts' stiffness; 0 where grains keep theirs.
+    /// Least mass of a grain by the sum of its contacts' stiffness; 0 if grains keep their own.
     pub least_mass: f64,
 }
 
-/// What the grains of a chunk add up to.
+/// Sums over the grains of a chunk.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Sums {
     pub moved: f64,
     pub stiffest: f64,
-    /// As `stiffest`, of the grains' own masses.
+    /// `stiffest` with the grains' own masses.
     pub stiffest_of_own: f64,
     pub twice_kinetic: f64,
     pub unbalanced: f64,
@@ -81,7 +81,7 @@ fn collect(to: &mut [[f64; 4]], first: usize, grain: &[u32], sent: &[[f64; 4]]) 
     }
 }
 
-/// A load as the local damping leaves it: less where it drives the motion, more where it resists.
+/// Load after local damping: less if it drives the motion, more if it resists.
 #[inline(always)]
 fn damped(load: f64, velocity: f64, local: f64) -> f64 {
     let along = f64::from(u8::from(velocity > 0.0)) - f64::from(u8::from(velocity < 0.0));
@@ -98,7 +98,8 @@ fn kick_by<const HEAVIER: bool>(part: &mut ChunkInStep<'_>, rule: &StepRule) -> 
     }
 }
 
-/// Kick and drift. The fourth entries go along, so that a row is one vector: they are set or added nothing.
+/// Does kick and drift. The fourth entries go along, so that a row is one vector: they are set, or zero is
+/// added.
 #[inline(always)]
 fn kick<const HEAVIER: bool, const ROTATE: bool, const LOCAL: bool>(
     part: &mut ChunkInStep<'_>,

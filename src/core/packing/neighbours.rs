@@ -1,35 +1,36 @@
-//! Which pairs of grains are close: Verlet lists from a multi-level grid.
+//! Finds close pairs of grains: Verlet lists from a multi-level grid.
 //!
 //! Grains are sorted into levels by size, each a factor of two wide, and every level has its own grid
 //! of cells about as wide as its largest grain. A grain looks only into its own level and the finer
 //! ones (large looks into small), so a grain of 36 times the size costs as many cell visits as the
 //! shell it touches holds, and the many small grains never look into coarse cells.
 //!
-//! A pair is listed, by its larger grain, when the grains are nearer than `R (1 + relative) + absolute`, R
-//! the sum of the radii. The list is complete as long as no grain has moved by more than `absolute / 2`
+//! A pair is listed, by its larger grain, when the grains are nearer than `R (1 + relative) + absolute`, with
+//! `R` the sum of the radii. The list is complete as long as no grain has moved by more than `absolute / 2`
 //! relative to the deforming cell and the cell has shrunk by less than `relative`: see [`Reach::holds`].
 //!
-//! From the lists, the pairs that are close within a much shorter reach are picked every few steps; the force
-//! pass goes through those alone. Most of them touch.
+//! Every few steps the pairs within a much shorter reach are picked from the lists; the force pass goes
+//! through those alone. Most of them touch.
 //!
 //! The grains are cut into chunks by their number alone; each chunk owns the pairs that its grains
 //! list. A chunk is the unit of parallel work, so that no sum depends on the number of threads.
 
 use rayon::prelude::*;
 
-/// Grains per chunk aimed at.
+/// Target number of grains per chunk.
 const CHUNK: usize = 1024;
 
 /// `1.5 * 2^52`: adding and subtracting it rounds to the nearest integer.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// A difference of two positions in units of the cell, to its nearest image.
+/// Takes a difference of two positions, in units of the cell, to its nearest image.
 #[inline(always)]
 pub(super) fn nearest(d: f64) -> f64 {
     d - ((d + ROUND) - ROUND)
 }
 
-/// Height of the cell by its width, which is the unit of all positions: along z they repeat after it.
+/// Height of the cell by its width, which is the unit of all positions: along z they repeat after this
+/// height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Aspect {
     height: f64,
@@ -37,7 +38,7 @@ pub(super) struct Aspect {
 }
 
 impl Aspect {
-    /// Of a cell that is so many times as tall as wide.
+    /// Makes the aspect of a cell that is `height` times as tall as wide.
     pub fn new(height: f64) -> Self {
         Self { height, per_height: 1.0 / height }
     }
@@ -47,18 +48,19 @@ impl Aspect {
         self.height
     }
 
-    /// A difference of two positions along z to its nearest image; of a cube the bits of [`nearest`].
+    /// Takes a difference of two positions along z to its nearest image; a cube gives the bits of
+    /// [`nearest`].
     #[inline(always)]
     pub fn nearest(self, d: f64) -> f64 {
         d - self.height * ((d * self.per_height + ROUND) - ROUND)
     }
 
-    /// Whole cells along z that are no flatter than `across` of them are wide.
+    /// Number of cells along z, none flatter than the width of one of `across` cells.
     pub fn along(self, across: usize) -> usize {
         (across as f64 * self.height) as usize
     }
 
-    /// A position inside the cell.
+    /// Moves a position into the cell.
     pub fn wrapped(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let inside = |s: f64, length: f64| {
             let s = s - length * libm::floor(s / length);
@@ -68,7 +70,7 @@ impl Aspect {
     }
 }
 
-/// How far beyond contact the lists reach.
+/// Reach of the lists beyond contact.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reach {
@@ -79,15 +81,15 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// No farther than contact.
+    /// Reach of contact alone.
     pub(super) const CONTACT: Self = Self { relative: 0.0, absolute: 0.0 };
 
-    /// Whether lists made when the cell was `listed_cell` wide still hold every pair within the shorter
+    /// Tells if lists made when the cell was `listed_cell` wide still hold every pair within the shorter
     /// `reach`, when the farthest any grain has moved since is `moved` (in units of the cell).
     ///
-    /// A pair that was not listed is, in units of the cell, at least `(R (1 + self.relative) + self.absolute)
-    /// / listed_cell - 2 moved` apart, for every `R`; that has to reach `(R (1 + reach.relative) +
-    /// reach.absolute) / cell`.
+    /// A pair that was not listed is, in units of the cell, at least
+    /// `(R (1 + self.relative) + self.absolute) / listed_cell - 2 moved` apart, for every `R`; that has to
+    /// reach `(R (1 + reach.relative) + reach.absolute) / cell`.
     pub(super) fn holds(&self, reach: Reach, cell: f64, listed_cell: f64, moved: f64) -> bool {
         let shrunk = listed_cell / cell;
         shrunk * (1.0 + reach.relative) <= 1.0 + self.relative
@@ -95,8 +97,8 @@ impl Reach {
     }
 }
 
-/// The tangential memory of a pair: spring force on the larger grain along x, y, z, and the tangential
-/// stiffness that it was made with; zero for pairs that do not touch.
+/// Tangential memory of a pair: spring force on the larger grain along x, y, z, and the tangential stiffness
+/// that it was made with; zero for pairs that do not touch.
 pub(super) type Memory = [f64; 4];
 
 /// The pairs that the grains `first .. last` list.
@@ -106,13 +108,13 @@ pub(super) struct GrainChunk {
     pub first: usize,
     /// One past the last grain.
     pub last: usize,
-    /// Where the pairs of grain `first + g` start; one entry more than there are grains.
+    /// First pair of grain `first + g`; one entry more than there are grains.
     pub start: Vec<u32>,
     /// The smaller grain of each pair.
     pub neighbour: Vec<u32>,
     /// The close pairs, in list order: larger grain, smaller grain.
     pub close: Vec<[u32; 2]>,
-    /// Which of the listed pairs each close pair is.
+    /// Index of each close pair among the listed pairs.
     pub close_pair: Vec<u32>,
     /// Tangential memory of each close pair.
     pub memory: Vec<Memory>,
@@ -125,7 +127,7 @@ impl GrainChunk {
         self.start[i - self.first] as usize..self.start[i - self.first + 1] as usize
     }
 
-    /// Picks the close pairs anew; those that stay close keep their memory, and those that touch stay close.
+    /// Picks the close pairs anew; those that remain keep their memory, and those that touch remain.
     pub fn pick(&mut self, position: &[[f64; 4]], cell: f64, aspect: Aspect, reach: Reach) {
         let per_cell = 1.0 / cell;
         let old_pair = std::mem::take(&mut self.close_pair);
@@ -169,7 +171,7 @@ struct Level {
     cells: usize,
     /// Cells along z.
     along: usize,
-    /// Where the grains of cell `(x * cells + y) * along + z` start.
+    /// First grain of cell `(x * cells + y) * along + z`.
     start: Vec<u32>,
     /// Grain, by cell.
     grain: Vec<u32>,
@@ -182,7 +184,7 @@ fn cell_of(s: f64, cells: usize) -> usize {
     ((s * cells as f64) as usize).min(cells - 1)
 }
 
-/// Level of each radius: how many factors of two above the smallest.
+/// Level of each radius: the number of factors of two above the smallest.
 fn levels_of(position: &[[f64; 4]]) -> (Vec<u8>, usize) {
     let smallest = position.iter().fold(f64::INFINITY, |m, p| m.min(p[3]));
     let level: Vec<u8> = position
@@ -248,7 +250,7 @@ fn grids(
         .collect()
 }
 
-/// The at most two runs of cells that hold `s - half ..= s + half` on a periodic axis.
+/// Runs of cells, two at most, that hold `s - half ..= s + half` on a periodic axis.
 fn runs(s: f64, half: f64, cells: usize) -> [(usize, usize); 2] {
     let n = cells as f64;
     let low = libm::floor((s - half) * n) as i64;
@@ -319,8 +321,7 @@ pub(super) fn list(
     }
 }
 
-/// What is remembered of the contacts, by the rank of the smaller grain: it has few contacts with larger
-/// ones.
+/// Memories of the contacts, by the rank of the smaller grain, which has few contacts with larger ones.
 pub(super) struct Remembered {
     start: Vec<u32>,
     /// Rank of the larger grain, and the memory.
@@ -331,11 +332,11 @@ impl Remembered {
     /// Collects the memories of the close pairs.
     pub fn collect(chunks: &[GrainChunk], rank: &[u32]) -> Self {
         let mut start = vec![0u32; rank.len() + 1];
-        let visit = |each: &mut dyn FnMut(u32, u32, Memory)| {
+        let visit = |keep: &mut dyn FnMut(u32, u32, Memory)| {
             for chunk in chunks {
                 for (&[i, j], &memory) in chunk.close.iter().zip(&chunk.memory) {
                     if memory[3] > 0.0 {
-                        each(rank[i as usize], rank[j as usize], memory);
+                        keep(rank[i as usize], rank[j as usize], memory);
                     }
                 }
             }
@@ -398,7 +399,8 @@ mod tests {
         (0..grains).map(|_| [u(), u(), u(), libm::pow(ratio, u())]).collect()
     }
 
-    /// The lists against all pairs, for size ratios up to 100 and cells from two of the largest grain up.
+    /// The lists equal a search of all pairs, for size ratios up to 100 and cells from two of the largest
+    /// grain up.
     #[test]
     fn lists_equal_all_pairs() {
         let cubes = [(1.0, 9.0), (1.5, 12.0), (10.0, 45.0), (36.0, 150.0), (100.0, 450.0), (3.0, 30.0)];
@@ -425,7 +427,7 @@ mod tests {
                 for j in i + 1..400 {
                     let (p, q) = (position[i], position[j]);
                     let [x, y, z] = [0, 1, 2].map(|a| q[a] - p[a]);
-                    // By hand, apart from the fast way.
+                    // By hand, apart from the fast method.
                     let z =
                         [z - height, z, z + height].map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
                     let d2 = nearest(x) * nearest(x) + nearest(y) * nearest(y) + z * z;

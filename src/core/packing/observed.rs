@@ -1,4 +1,4 @@
-//! What is observed of a packing under compression, and what the protocol remembers of it between its checks.
+//! Observables of a packing under compression, and the state that the protocol keeps between its checks.
 
 /// Observables of one instant.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -34,21 +34,21 @@ fn is_zero(saved: &f64) -> bool {
     *saved == 0.0
 }
 
-/// What the protocol remembers between its checks.
+/// State that the protocol keeps between its checks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HoldState {
-    /// Step since which everything has held.
+    /// Step since which all criteria have held.
     pub since: u64,
-    /// How many more steps of this time the grains' own masses would have taken, where some are moved as
-    /// heavier ones.
+    /// Number of further steps that the grains' own masses would have taken for this time, if some are moved
+    /// as heavier ones.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub saved: f64,
     /// Mean coordination number then.
     pub coordination: f64,
     /// Void ratio then.
     pub void_ratio: f64,
-    /// Whether the pressure has been near its target, from when on the drag is raised.
+    /// True once the pressure has been near its target; the drag is raised from then on.
     pub braking: bool,
     /// Observables before the friction was switched.
     pub before: Option<Measure>,

@@ -5,7 +5,7 @@ use super::settings::PackingError;
 use crate::stream::unit;
 use rand::Rng;
 
-/// Tries per grain before the placement is given up.
+/// Tries per grain before the placement fails.
 const TRIES: usize = 2_000_000;
 
 /// One size level: a grid of singly linked lists of the grains placed so far.
@@ -19,8 +19,8 @@ struct Grid {
     head: Vec<u32>,
 }
 
-/// Centres in units of the cell's width for spheres of these radii (descending), so that none overlap in a
-/// periodic cell as wide as `cell` and of this aspect.
+/// Finds centres in units of the cell's width for spheres of these radii (descending), so that no two overlap
+/// in a periodic cell as wide as `cell` and of this aspect.
 pub(super) fn place(
     radius: &[f64],
     cell: f64,
@@ -57,9 +57,9 @@ pub(super) fn place(
             }
         };
         let grid = grids.last_mut().expect("pushed above");
-        let of = |s: f64, n: usize| ((s * n as f64) as usize).min(n - 1);
-        let column = of(s[0], grid.cells) * grid.cells + of(s[1], grid.cells);
-        let head = &mut grid.head[column * grid.along + of(s[2] / aspect.height(), grid.along)];
+        let index = |s: f64, n: usize| ((s * n as f64) as usize).min(n - 1);
+        let column = index(s[0], grid.cells) * grid.cells + index(s[1], grid.cells);
+        let head = &mut grid.head[column * grid.along + index(s[2] / aspect.height(), grid.along)];
         next.push(*head);
         *head = i as u32;
         centre.push(s);

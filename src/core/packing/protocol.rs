@@ -24,18 +24,18 @@ const UNBALANCED: f64 = 0.05;
 /// Allowed kinetic by elastic energy.
 const KINETIC: f64 = 1e-2;
 
-/// Allowed change of the coordination number while it is held.
+/// Allowed change of the coordination number during a hold.
 const COORDINATION: f64 = 0.05;
 
-/// Allowed change of the void ratio while it is held: a quarter of the 0.002 that two seeds or half the rate
+/// Allowed change of the void ratio during a hold: a quarter of the 0.002 that two seeds or half the rate
 /// change it by. A wide grading with high friction creeps on as the logarithm of time, so some rate has to
 /// count as rest.
 const VOID_RATIO: f64 = 5e-4;
 
-/// How far a compression is, as it is told while it runs.
+/// Progress of a running compression.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompressionProgress {
-    /// What is going on.
+    /// Current stage.
     pub stage: Stage,
     /// Steps done.
     pub steps: u64,
@@ -51,7 +51,7 @@ pub struct CompressionProgress {
     pub step: f64,
 }
 
-/// What came out of a compression.
+/// Result of a compression.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PackReport {
     /// Settled with the friction of the compression.
@@ -65,8 +65,8 @@ pub struct PackReport {
 }
 
 /// Draws grains from the gradation, places them at random and compresses them: see the
-/// [module](crate::packing) for the protocol. `progress` is called every thousand steps and says whether to
-/// go on.
+/// [module](crate::packing) for the protocol. `progress` is called every thousand steps and returns false to
+/// stop.
 ///
 /// ```
 /// use voidwalk_app::{gradation::Gradation, packing::{Settings, compress}};
@@ -78,7 +78,7 @@ pub struct PackReport {
 /// ```
 ///
 /// # Errors
-/// Those of [`random_start`], [`Compression::new`] and [`Compression::run`].
+/// Errors of [`random_start`], [`Compression::new`] and [`Compression::run`].
 pub fn compress(
     gradation: &Gradation,
     settings: &Settings,
@@ -92,11 +92,11 @@ pub fn compress(
 }
 
 impl Compression {
-    /// Does `steps` steps of the protocol, or fewer if it settles. The result does not depend on how the
-    /// steps are divided into calls.
+    /// Does `steps` steps of the protocol, or fewer if it settles. The division of the steps into calls does
+    /// not change the result.
     ///
     /// # Errors
-    /// A fixed time step that the contacts have become too stiff for.
+    /// A fixed time step that is too long for the contacts by now.
     pub fn advance(&mut self, steps: u64) -> Result<(), PackingError> {
         for _ in 0..steps {
             match self.stage {
@@ -150,8 +150,8 @@ impl Compression {
         (self.hold.since, self.hold.saved) = (self.steps, 0.0);
     }
 
-    /// Pressure, unbalanced force, coordination number and void ratio have held for long enough, and the
-    /// grains rest.
+    /// Tells if pressure, unbalanced force, coordination number and void ratio have held for long enough, and
+    /// the grains rest.
     fn settled(&mut self) -> bool {
         let coordination = self.coordination();
         let void_ratio = self.void_ratio();
@@ -176,7 +176,7 @@ impl Compression {
         2.0 * self.contacts as f64 / self.rank.len() as f64
     }
 
-    /// Rough packing fraction to be expected: it only decides when the squeeze gives way to the servo.
+    /// Rough packing fraction to be expected: it only decides when the servo replaces the squeeze.
     fn expected_fraction(&self) -> f64 {
         let mut by_rank = vec![0.0; self.rank.len()];
         for (p, &r) in self.position.iter().zip(&self.rank) {
@@ -197,7 +197,7 @@ impl Compression {
         (0.635 + 0.08 * libm::log(uniformity) - 0.15 * self.settings.friction.min(0.4)).min(0.85)
     }
 
-    /// How far the compression is.
+    /// Progress of the compression.
     pub fn progress(&self) -> CompressionProgress {
         CompressionProgress {
             stage: self.stage,
@@ -210,10 +210,10 @@ impl Compression {
         }
     }
 
-    /// Goes on until settled, reporting every thousand steps; stops where `progress` says no.
+    /// Goes on until settled, reporting every thousand steps; stops if `progress` returns false.
     ///
     /// # Errors
-    /// Those of [`Compression::advance`]; stopped by `progress`; not settled after the most steps allowed.
+    /// Errors of [`Compression::advance`]; stopped by `progress`; not settled after the most steps allowed.
     pub fn run(
         &mut self,
         progress: impl FnMut(&CompressionProgress) -> bool,
@@ -221,10 +221,11 @@ impl Compression {
         self.run_until(|| false, progress)
     }
 
-    /// The same to the same bits, asking whether to stop every million steps of a grain.
+    /// Runs like [`Compression::run`], to the same bits, asking whether to stop every million steps of a
+    /// grain.
     ///
     /// # Errors
-    /// As [`Compression::run`].
+    /// Errors of [`Compression::run`].
     pub fn run_until(
         &mut self,
         is_stopped: impl Fn() -> bool,
@@ -233,10 +234,11 @@ impl Compression {
         self.run_asking(1000, is_stopped, progress)
     }
 
-    /// The same to the same bits, reporting every `every` steps: how soon it can be stopped.
+    /// Runs like [`Compression::run`], to the same bits, reporting every `every` steps, which sets how soon
+    /// it can be stopped.
     ///
     /// # Errors
-    /// As [`Compression::run`].
+    /// Errors of [`Compression::run`].
     pub fn run_reporting(
         &mut self,
         every: u64,
@@ -253,7 +255,7 @@ impl Compression {
     ) -> Result<PackReport, PackingError> {
         let at_once = (1_000_000 / self.position.len().max(1) as u64).max(1);
         while self.stage != Stage::Done {
-            // One that was stopped between two reports goes on to the next.
+            // After a stop between two reports the run goes on to the next.
             let report = (self.steps / every + 1) * every;
             while self.stage != Stage::Done && self.steps < report {
                 self.advance(at_once.min(report - self.steps))?;

@@ -1,4 +1,4 @@
-//! Keeping the lists good while the grains move: how far they reach follows from how long they last.
+//! Keeps the lists complete while the grains move: their reach follows from how long they last.
 
 use super::compression::Compression;
 use super::neighbours::{Reach, Remembered, list, morton};
@@ -9,7 +9,7 @@ const PICKS: (u64, u64) = (10, 25);
 /// Steps that lists are meant to last.
 const LISTS: (u64, u64) = (100, 300);
 
-/// Lengthens a reach that lasted too short, shortens one that lasted too long.
+/// Lengthens a reach that lasted too short a time, shortens one that lasted too long.
 fn follow(reach: &mut Reach, strained: bool, lasted: u64, meant: (u64, u64), least: Reach) {
     if lasted < meant.0 {
         if strained {
@@ -26,8 +26,8 @@ fn follow(reach: &mut Reach, strained: bool, lasted: u64, meant: (u64, u64), lea
 }
 
 impl Compression {
-    /// Makes sure that every pair that can touch is among the close ones; says whether they are to be picked
-    /// anew.
+    /// Makes sure that every pair that can touch is among the close ones; returns the reach of a new pick if
+    /// one is due.
     ///
     /// Both reaches follow from how long they last: a longer one costs more pairs a step, a shorter one is
     /// renewed more often.
@@ -61,7 +61,7 @@ impl Compression {
         Some(self.close)
     }
 
-    /// New lists, with the grains in the order of a space-filling curve.
+    /// Makes new lists, with the grains in the order of a space-filling curve.
     pub(super) fn relist(&mut self) {
         let remembered = Remembered::collect(&self.chunks, &self.rank);
         for p in &mut self.position {

@@ -1,10 +1,10 @@
 //! Packings as rows of numbers with spaces between: Yade's `export.text` and MercuryDPM's `.data`.
 //!
 //! Yade writes a first line `#format x_y_z_r` (further columns may follow, as `matId`), perhaps a comment,
-//! and a row a sphere. MercuryDPM writes frames: a line of the number of particles, the time and the bounds
-//! `xmin ymin zmin xmax ymax zmax`, then as many rows of 14 numbers or more: position, velocity, radius,
-//! rotation, angular velocity and one more. The last frame with grains is taken. Neither says its unit of
-//! length, nor whether its boundaries are periodic.
+//! and a row per sphere. MercuryDPM writes frames: a line with the number of particles, the time and the
+//! bounds `xmin ymin zmin xmax ymax zmax`, then as many rows of 14 numbers or more: position, velocity,
+//! radius, rotation, angular velocity and one more. The last frame with grains is taken. Neither gives its
+//! unit of length or tells if its boundaries are periodic.
 
 use super::fields::{ImportError, Kind, number, refused};
 use super::found::{FileCell, FileGrains, grain, in_columns};
@@ -12,14 +12,14 @@ use crate::gradation::shortened;
 
 /// Numbers of a MercuryDPM header: in three dimensions, and in two.
 const HEADERS: [usize; 2] = [8, 6];
-/// Numbers of one of its rows, and the place of the radius.
+/// Numbers in a MercuryDPM row, and the place of the radius.
 const ROW: (usize, usize) = (14, 6);
 
 fn ended(file: &str, line: usize, expected: impl Into<String>) -> ImportError {
     ImportError::Truncated { file: file.into(), line, expected: expected.into() }
 }
 
-/// What Yade writes.
+/// Reads a file of Yade.
 pub(super) fn yade(file: &str, text: &str) -> Result<FileGrains, ImportError> {
     let mut lines =
         text.lines().enumerate().map(|(i, line)| (i + 1, line.trim())).filter(|(_, l)| !l.is_empty());
@@ -52,7 +52,7 @@ pub(super) fn yade(file: &str, text: &str) -> Result<FileGrains, ImportError> {
     Ok(FileGrains { columns, unit: None, cell: FileCell::Unsaid, line, notes: Vec::new() })
 }
 
-/// Whether a text begins as a frame of MercuryDPM does: with numbers alone.
+/// Tells if a text begins like a frame of MercuryDPM: with numbers alone.
 pub(super) fn is_mercury(text: &str) -> bool {
     let line = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
     line.is_some_and(|line| {
@@ -63,7 +63,7 @@ pub(super) fn is_mercury(text: &str) -> bool {
     })
 }
 
-/// What MercuryDPM writes.
+/// Reads a file of MercuryDPM.
 pub(super) fn mercury(file: &str, text: &str) -> Result<FileGrains, ImportError> {
     let mut lines = text
         .lines()
@@ -99,7 +99,7 @@ pub(super) fn mercury(file: &str, text: &str) -> Result<FileGrains, ImportError>
             return Err(ended(file, line + rows.len(), expected));
         }
         frames += 1;
-        // A simulation that fills a box begins with none, and one that empties it ends with none.
+        // The first frame is empty in a simulation that fills a box, the last in one that empties it.
         (last, is_last) = (line, count > 0);
         if count > 0 {
             found = Some((line, words[1], bounds, rows));

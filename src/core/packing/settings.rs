@@ -1,4 +1,4 @@
-//! What a compression needs to know, its defaults, and what can be wrong.
+//! Settings of a compression, their defaults, and its errors.
 
 use super::neighbours::Reach;
 use crate::schema::{Allowed, OutOfRange, only, section, whole};
@@ -104,11 +104,12 @@ fn friction() -> Allowed<f64> {
     only("0 to 10", |v| (0.0..=10.0).contains(v))
 }
 
-/// With larger overlaps (%, of the diameter) grains are no spheres in contact any more: the void ratio falls
-/// with the stiffness, below 0 in the end, although every other criterion of a settled packing is met.
+/// Largest overlap (%, of the diameter) at which grains still count as spheres in contact: beyond it the void
+/// ratio falls with the stiffness, below 0 in the end, although every other criterion of a settled packing is
+/// met.
 const MOST_OVERLAP_PERCENT: f64 = 3.0;
 
-/// Why a packing could not be made.
+/// Reasons why no packing could be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PackingError {
     /// A setting is out of range.
@@ -118,7 +119,7 @@ pub enum PackingError {
         field: &'static str,
         /// Its value.
         value: String,
-        /// What is allowed.
+        /// Allowed values.
         allowed: String,
     },
     /// Grains so soft that their overlaps mean nothing.
@@ -130,23 +131,23 @@ pub enum PackingError {
     Soft {
         /// The ratio asked for.
         value: f64,
-        /// Pressure that is to be held.
+        /// Pressure to be held.
         pressure_kpa: f64,
-        /// Overlap of two grains under it, of their diameter.
+        /// Overlap of two grains under that pressure, of their diameter.
         overlap_percent: f64,
-        /// The least ratio that is allowed.
+        /// Least allowed ratio.
         least: f64,
     },
-    /// A grain is no grain.
+    /// An invalid grain.
     #[error("grain {grain}: {column} = {value} is not allowed: {allowed}")]
     Grain {
-        /// Which, counted from 0.
+        /// Index of the grain, counted from 0.
         grain: usize,
-        /// What is wrong with it.
+        /// Name of the wrong column.
         column: &'static str,
         /// The value.
         value: f64,
-        /// What is allowed.
+        /// Allowed values.
         allowed: &'static str,
     },
     /// Columns of different length, or no grain at all.
@@ -157,7 +158,7 @@ pub enum PackingError {
     /// The cell is not periodic, not square, or flatter than wide.
     #[error("compression needs a periodic cell, square across z and 1 to 100 times as tall as wide, not {0}")]
     Cell(String),
-    /// A cell so flat or so tall.
+    /// A cell too flat or too tall.
     #[error("a cell {0} times as tall as wide: allowed: a number from 1 to 100")]
     Aspect(f64),
     /// A grain would touch itself or another grain twice.
@@ -174,12 +175,12 @@ pub enum PackingError {
     /// Two grains with one centre: there is no direction to push them apart.
     #[error("grains {first} and {second} have the same centre")]
     Coincident {
-        /// The one, counted from 0.
+        /// First grain, counted from 0.
         first: usize,
-        /// The other.
+        /// Second grain, counted from 0.
         second: usize,
     },
-    /// The time step cannot be stable.
+    /// A time step that cannot be stable.
     #[error(
         "time step {step:e} (reduced units) is not below the critical time step {critical:e}, which is set \
          by {cause}"
@@ -189,17 +190,17 @@ pub enum PackingError {
         step: f64,
         /// The critical step.
         critical: f64,
-        /// Which limit.
+        /// Cause of the limit.
         cause: &'static str,
     },
     /// No room for a grain.
     #[error("no room for grain {grain} of {grains} at packing fraction {fraction}: start looser")]
     Placement {
-        /// Which, from the largest.
+        /// Rank of the grain, from the largest.
         grain: usize,
-        /// Of how many.
+        /// Number of grains.
         grains: usize,
-        /// The packing fraction tried.
+        /// Packing fraction that was tried.
         fraction: f64,
     },
     /// The stage did not settle.
@@ -255,8 +256,8 @@ impl Settings {
         self.check_softness()
     }
 
-    /// Two equal grains of diameter D that carry the force p D^2 overlap by `0.5 (4.24 (1 - nu) p / G)^(2/3)`
-    /// of D (Hertz).
+    /// Checks the overlap: two equal grains of diameter D that carry the force p D^2 overlap by
+    /// `0.5 (4.24 (1 - nu) p / G)^(2/3)` of D (Hertz).
     fn check_softness(&self) -> Result<(), PackingError> {
         if self.contact != Contact::Hertz {
             return Ok(());
@@ -269,7 +270,7 @@ impl Settings {
         }
         let softer = overlap_percent / MOST_OVERLAP_PERCENT;
         let least = self.stiffness_ratio * softer * softer.sqrt();
-        // To two digits, upwards, so that what is named is allowed.
+        // Rounded up to two digits, so that the value in the message is allowed.
         let unit = libm::pow(10.0, libm::floor(libm::log10(least)) - 1.0);
         Err(PackingError::Soft {
             value: self.stiffness_ratio,

@@ -1,4 +1,5 @@
-//! A compression as bytes, and back: a resumed compression gives the same bits as an unbroken one.
+//! Stores a compression as bytes and restores it: a resumed compression gives the same bits as an unbroken
+//! one.
 
 use super::compression::{Compression, Stage, TALLEST};
 use super::neighbours::{Aspect, Reach, list};
@@ -10,7 +11,8 @@ use xxhash_rust::xxh3::xxh3_64;
 const MAGIC: [u8; 8] = *b"vwpacked";
 const VERSION: u64 = 1;
 
-/// What of a compression is not a column; the fields of the same names in [`Compression`] say what each is.
+/// State of a compression besides its columns; the fields of [`Compression`] with these names have the
+/// details.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Record {
@@ -25,12 +27,12 @@ struct Record {
     step: f64,
     unit_mm: f64,
     cell: f64,
-    /// Height by width of the cell; a cube does not say.
+    /// Height by width of the cell; omitted for a cube.
     #[serde(default = "cube", skip_serializing_if = "is_cube")]
     aspect: f64,
     strain_rate: f64,
     friction: f64,
-    /// Whether crowded grains are moved as heavier ones.
+    /// True if crowded grains are moved as heavier ones.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     makes_heavier: bool,
     listed_at: u64,
@@ -39,7 +41,7 @@ struct Record {
     picked_at: u64,
     picked_cell: f64,
     close: Reach,
-    /// Infinity, before the first pick, is `null`.
+    /// `null` for infinity, before the first pick.
     moved: Option<f64>,
     contacts: u64,
     pressure: f64,
@@ -59,7 +61,7 @@ fn is_cube(aspect: &f64) -> bool {
 }
 
 impl Compression {
-    /// Everything that the next step depends on:
+    /// Writes everything that the next step depends on:
     ///
     /// | bytes | what |
     /// |---|---|
@@ -73,7 +75,7 @@ impl Compression {
     /// | 32 each | tangential memory of the close pairs, in list order |
     /// | 8 | XXH3-64 of everything before, which finds accidents, not attackers |
     ///
-    /// The lists are not among it: they follow from the positions at which they were made, which are.
+    /// The lists are left out: they follow from the stored positions at which they were made.
     pub fn to_bytes(&self) -> Vec<u8> {
         let memory: Vec<[f64; 4]> = self.chunks.iter().flat_map(|c| c.memory.iter().copied()).collect();
         let record = serde_json::to_vec(&self.record(memory.len())).expect("numbers and words");
@@ -122,7 +124,7 @@ impl Compression {
         }
     }
 
-    /// A compression from its bytes, with the settings that it was made with.
+    /// Restores a compression from its bytes, with the settings that it was made with.
     ///
     /// # Errors
     /// Bytes that are corrupt, of another version, or of other settings.
@@ -175,8 +177,8 @@ impl Compression {
             if this.moved < f64::INFINITY {
                 chunk.pick(&this.picked, this.picked_cell, this.aspect, this.close);
             }
-            let own = memory.get(taken..taken + chunk.close.len());
-            chunk.memory.copy_from_slice(own.ok_or(PackingError::State("memory is missing"))?);
+            let part = memory.get(taken..taken + chunk.close.len());
+            chunk.memory.copy_from_slice(part.ok_or(PackingError::State("memory is missing"))?);
             taken += chunk.close.len();
         }
         if taken != memory.len() {

@@ -1,4 +1,4 @@
-//! Units of length, for files that do not say theirs.
+//! Units of length, for files that do not give theirs.
 
 use crate::schema::Leaf;
 use std::str::FromStr;
@@ -24,10 +24,10 @@ pub enum LengthUnit {
 impl Leaf for LengthUnit {}
 
 impl LengthUnit {
-    /// All of them, from the largest.
+    /// All units, from the largest.
     pub const ALL: [Self; 5] = [Self::M, Self::Cm, Self::Mm, Self::Um, Self::Nm];
 
-    /// The word that a scene or a command line says.
+    /// Name in a scene or on a command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::M => "m",
@@ -38,7 +38,7 @@ impl LengthUnit {
         }
     }
 
-    /// Its full name, of many.
+    /// Full name, in the plural.
     pub fn words(self) -> &'static str {
         match self {
             Self::M => "metres",
@@ -49,7 +49,7 @@ impl LengthUnit {
         }
     }
 
-    /// One of it (mm).
+    /// Length of the unit (mm).
     pub fn mm(self) -> f64 {
         match self {
             Self::M => 1e3,

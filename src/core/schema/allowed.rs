@@ -1,4 +1,4 @@
-//! The types of settings, and which values they may have.
+//! The types of settings, and their allowed values.
 
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -9,26 +9,26 @@ use serde::de::DeserializeOwned;
 use super::Value;
 use super::length::{LENGTHS, millimetres};
 
-/// Which values a setting may have.
+/// Allowed values of a setting.
 pub struct Allowed<T> {
-    /// The same in words, as errors say it.
+    /// Allowed values in words, for errors.
     pub words: String,
     test: Box<dyn Fn(&T) -> bool>,
-    /// What reads it where it is written as text, if that may be.
+    /// Parser of the value from text, if text is accepted.
     of_text: Option<fn(&str) -> Option<T>>,
-    /// Values that it often has, for a shell to complete.
+    /// Common values, for a shell to complete.
     offered: Vec<String>,
 }
 
 impl<T> Allowed<T> {
-    /// Whether a value is allowed.
+    /// Tells if a value is allowed.
     pub fn admits(&self, value: &T) -> bool {
         (self.test)(value)
     }
 }
 
 impl<T: Leaf> Allowed<T> {
-    /// A value as it was written, where it is of this type and allowed.
+    /// Reads a value, if it is of this type and allowed.
     pub fn read(&self, value: &Value) -> Option<T> {
         let read = match (value, self.of_text) {
             (Value::Text(text), Some(of_text)) => of_text(text),
@@ -37,28 +37,28 @@ impl<T: Leaf> Allowed<T> {
         read.filter(|value| self.admits(value))
     }
 
-    /// The same, with values that it often has, for a shell to complete.
+    /// Adds common values, for a shell to complete.
     pub fn offering(self, words: &[&str]) -> Self {
         Self { offered: words.iter().map(|word| (*word).to_owned()).collect(), ..self }
     }
 
-    /// Values that it often has.
+    /// Common values.
     pub fn offered(&self) -> &[String] {
         &self.offered
     }
 
-    /// How it is written in TOML.
+    /// Type in TOML.
     pub fn toml_type(&self) -> &'static str {
         if self.of_text.is_some() { "float or string" } else { T::TOML_TYPE }
     }
 }
 
-/// Values that pass a test; `words` says which they are.
+/// Values that pass a test; `words` describes them.
 pub fn only<T>(words: impl Into<String>, test: impl Fn(&T) -> bool + 'static) -> Allowed<T> {
     Allowed { words: words.into(), test: Box::new(test), of_text: None, offered: Vec::new() }
 }
 
-/// Every value of the type; `words` says which they are.
+/// Every value of the type; `words` describes them.
 pub fn any<T>(words: impl Into<String>) -> Allowed<T> {
     only(words, |_| true)
 }
@@ -68,7 +68,7 @@ pub fn whole(range: RangeInclusive<u64>) -> Allowed<u64> {
     only(format!("a whole number from {} to {}", range.start(), range.end()), move |n| range.contains(n))
 }
 
-/// Numbers of a range; `words` says which.
+/// Numbers of a range; `words` describes it.
 pub fn within(range: RangeInclusive<f64>, words: &str) -> Allowed<f64> {
     only(words, move |n| range.contains(n))
 }
@@ -83,23 +83,23 @@ pub fn length() -> Allowed<f64> {
     Allowed { words: LENGTHS.into(), of_text: Some(millimetres), ..above_zero() }
 }
 
-/// The words of a type that has few.
+/// Words of a type that has few.
 pub fn words<T: Leaf>(all: &[&str]) -> Allowed<T> {
     let quoted: Vec<String> = all.iter().map(|word| format!("\"{word}\"")).collect();
-    let said = any(match quoted.split_last() {
+    let allowed = any(match quoted.split_last() {
         Some((last, [])) => last.clone(),
         Some((last, others)) => format!("{} or {last}", others.join(", ")),
         None => String::new(),
     });
-    said.offering(all)
+    allowed.offering(all)
 }
 
 /// The type of a setting's value.
 pub trait Leaf: Serialize + DeserializeOwned {
-    /// Its type in TOML; most are one of a few words.
+    /// Type in TOML; most types are one of a few words.
     const TOML_TYPE: &'static str = "string";
 
-    /// The value with its relative paths starting from `folder`.
+    /// Makes the relative paths of the value start from `folder`.
     fn placed(self, folder: &Path) -> Self {
         let _ = folder;
         self

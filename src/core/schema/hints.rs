@@ -1,19 +1,19 @@
-//! What a text that is no settings file looks like, and what to write instead.
+//! Guesses what a text that is no settings file is, and tells what to write instead.
 
 use toml::de::DeTable;
 
 use super::length;
 
-/// How workbooks begin: .xlsx and .ods are zips, .xls is older.
+/// First bytes of workbooks: .xlsx and .ods are zips, .xls is older.
 const WORKBOOKS: [&[u8]; 2] = [b"PK\x03\x04", b"\xd0\xcf\x11\xe0"];
 
 /// Sections and keys that only a plan of a campaign has.
 const OF_A_PLAN: [&str; 6] = ["factor", "case", "leave_out", "seeds", "title", "set"];
 
-/// A unit, and how many of another it is: a numerator and a denominator.
+/// A unit, and its size in another unit: a numerator and a denominator.
 type Unit = (&'static str, [f64; 2]);
 
-/// Units that the name of a setting may end in, and others by how many of them they are.
+/// Units at the end of a setting's name, and the sizes of other units in them.
 const UNITS: [(&str, &[Unit]); 4] = [
     ("mm", &length::UNITS),
     ("kPa", &[("kPa", [1.0, 1.0]), ("Pa", [1.0, 1e3]), ("MPa", [1e3, 1.0]), ("GPa", [1e6, 1.0])]),
@@ -21,7 +21,7 @@ const UNITS: [(&str, &[Unit]); 4] = [
     ("kg/m3", &[("kg/m3", [1.0, 1.0])]),
 ];
 
-/// What some write behind a number of things.
+/// Words that some users write behind a number of things.
 const COUNTED: [&str; 1] = ["layers"];
 
 /// Settings that are percentages.
@@ -33,7 +33,7 @@ const FRACTIONS: [&str; 5] = ["mass_ratio", "inject_share", "estimate", "rho", "
 /// Bytes as text; a byte order mark is left out.
 ///
 /// # Errors
-/// What the bytes look like instead.
+/// A description of the bytes.
 pub fn as_text(bytes: &[u8]) -> Result<&str, String> {
     if WORKBOOKS.iter().any(|begin| bytes.starts_with(begin)) {
         return Err("is a workbook, not TOML text; two of its soils are judged by `voidwalk judge \
@@ -52,7 +52,7 @@ pub fn as_text(bytes: &[u8]) -> Result<&str, String> {
     Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
 }
 
-/// What is wrong with a line that is no TOML, where it is one of the usual mistakes: `line` counts from 1.
+/// Describes the error in a line that is no TOML, if it is one of the usual mistakes: `line` counts from 1.
 pub fn of_line(text: &str, line: usize) -> Option<String> {
     let (key, value) = text.lines().nth(line.checked_sub(1)?)?.split_once('=')?;
     let (key, value) = (key.trim(), value.split('#').next().unwrap_or_default().trim());
@@ -80,8 +80,8 @@ pub fn of_line(text: &str, line: usize) -> Option<String> {
     })
 }
 
-/// What is wrong with a value of the setting `name` that is meant to be a number, where it is one of the
-/// usual mistakes. A number is named only where the setting's unit is certain.
+/// Describes the error in a value of the setting `name` that is meant to be a number, if it is one of the
+/// usual mistakes. A number is named only if the setting's unit is certain.
 pub fn of_value(name: &str, value: &str) -> Option<String> {
     let number = value.trim();
     if let Some((whole, part)) = number.split_once(',')
@@ -92,7 +92,7 @@ pub fn of_value(name: &str, value: &str) -> Option<String> {
     }
     let end = number.find(|c: char| !c.is_ascii_digit() && !".+-".contains(c))?;
     let (digits, unit) = (number[..end].trim(), number[end..].trim());
-    // What is not above 0 is wrong in any unit.
+    // A number that is not above 0 is wrong in any unit.
     let given = digits.parse().ok().filter(|given: &f64| *given > 0.0)?;
     // A name may be written with its section.
     let name = name.rsplit('.').next().unwrap_or(name).trim();
@@ -101,13 +101,15 @@ pub fn of_value(name: &str, value: &str) -> Option<String> {
         return None;
     }
     let alone = || Some(format!("the number alone, without its unit: {digits}"));
-    if let Some((own, units)) = UNITS.iter().find(|(own, _)| name.to_lowercase().ends_with(&ending(own))) {
+    if let Some((setting_unit, units)) =
+        UNITS.iter().find(|(setting_unit, _)| name.to_lowercase().ends_with(&ending(setting_unit)))
+    {
         return match units.iter().find(|(other, _)| *other == unit) {
-            Some((other, _)) if other == own => alone(),
+            Some((other, _)) if other == setting_unit => alone(),
             Some((_, [above, below])) => {
-                Some(format!("in {own}, without the unit: {}", rounded(given * above / below)))
+                Some(format!("in {setting_unit}, without the unit: {}", rounded(given * above / below)))
             }
-            None => Some(format!("in {own}, not in {unit}")),
+            None => Some(format!("in {setting_unit}, not in {unit}")),
         };
     }
     match unit {
@@ -120,12 +122,12 @@ pub fn of_value(name: &str, value: &str) -> Option<String> {
     }
 }
 
-/// How the name of a setting in this unit ends.
+/// Ending of the names of settings in this unit.
 fn ending(unit: &str) -> String {
     format!("_{}", unit.to_lowercase().replace('/', "_"))
 }
 
-/// Without the last digits, which a conversion may get wrong.
+/// Drops the last digits, which a conversion may get wrong.
 fn rounded(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
@@ -134,7 +136,7 @@ fn is_digits(text: &str) -> bool {
     !text.is_empty() && text.chars().all(|c| c.is_ascii_digit())
 }
 
-/// Whether a text that is no TOML is a table of numbers.
+/// Tells if a text that is no TOML is a table of numbers.
 pub fn is_table(text: &str) -> bool {
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
     let fields = |line: &str| line.split([',', ';', '\t']).filter(|field| !field.is_empty()).count();
@@ -142,7 +144,7 @@ pub fn is_table(text: &str) -> bool {
     lines.clone().all(|line| !line.contains('=')) && lines.any(is_row)
 }
 
-/// Whether a table is a campaign's plan.
+/// Tells if a table is a campaign's plan.
 pub fn is_plan(table: &DeTable) -> bool {
     table.keys().any(|key| OF_A_PLAN.contains(&&**key.get_ref()))
 }
@@ -174,9 +176,9 @@ mod tests {
     fn numbers_with_a_comma_or_a_unit_are_known() {
         let texts = ["3,5", "500mm", "0.5 mm", "500 mm", "1e3", "abc", "7", "12 weeks", ""]
             .map(|text| of_value("network.thickness_mm", text));
-        let said: Vec<Option<&str>> = texts.iter().map(|text| text.as_deref().map(|t| &t[..18])).collect();
+        let hints: Vec<Option<&str>> = texts.iter().map(|text| text.as_deref().map(|t| &t[..18])).collect();
         let [comma, unit] = [Some("a decimal point, n"), Some("the number alone, ")];
-        assert_eq!(said, [comma, unit, unit, unit, None, None, None, None, None]);
+        assert_eq!(hints, [comma, unit, unit, unit, None, None, None, None, None]);
     }
 
     #[test]

@@ -1,13 +1,13 @@
-//! Lengths as a user writes them: a number of mm, or a number with its unit, in metric or US units.
+//! Lengths in a user's input: a number of mm, or a number with its unit, in metric or US units.
 //!
 //! An inch is 25.4 mm and a foot 304.8 mm. The name of a sieve is no length: `3/8 in` in a sieve table is the
 //! nominal opening of ASTM E11, 9.5 mm, and `3/8in` as a length is 9.525 mm.
 
-/// What a length may be, in the words of the errors.
+/// Allowed lengths, in the words of the errors.
 pub const LENGTHS: &str = "a length above 0, in mm or with its unit, as 24in, 2ft, 3/8in, 500mm, 0.5m or 5cm";
 
-/// Units of length, and what one of them is in mm: a numerator and a denominator, so that 3/8 in is 9.525 mm
-/// to the last bit.
+/// Units of length, and the size of each in mm: a numerator and a denominator, so that 3/8 in is 9.525 mm to
+/// the last bit.
 pub(super) const UNITS: [(&str, [f64; 2]); 14] = [
     ("mm", [1.0, 1.0]),
     ("cm", [10.0, 1.0]),
@@ -43,13 +43,13 @@ pub fn millimetres(text: &str) -> Option<f64> {
     (f64::is_finite(mm) && mm > 0.0).then_some(mm)
 }
 
-/// `0.5`, `3/8` or `1 1/2`.
+/// Reads `0.5`, `3/8` or `1 1/2`.
 fn quantity(text: &str) -> Option<f64> {
     let plain = |text: &str| text.parse().ok();
     plain(text).or_else(|| if text.starts_with('-') { None } else { fraction(text, plain) })
 }
 
-/// `3/8`, `1 1/2`, `1-1/2`, `1½`; anything else is a decimal number.
+/// Reads `3/8`, `1 1/2`, `1-1/2`, `1½`; anything else is a decimal number.
 pub fn fraction(text: &str, decimal: impl Fn(&str) -> Option<f64>) -> Option<f64> {
     let mut plain = text.replace('-', " ");
     for (sign, words) in [

@@ -1,11 +1,10 @@
-//! Settings, each declared once: its name, type, default, what is allowed, and what a user is told of
-//! it.
+//! Settings, each declared once: its name, type, default, allowed values, and text for the user.
 //!
-//! A stage declares what it can be told with `section!`; from that one declaration follow the struct with
-//! its fields, the reading of a TOML file and of `--set` with errors that name the line ([`GivenSettings`]),
-//! the commented text that `voidwalk init` writes ([`KeyInfo`]), the check of values that a program gave, and
-//! what is written back ([`serde::Serialize`]). So a setting cannot be forgotten in one of these places.
-//! Which settings exclude each other is declared by [`Group`]s.
+//! A stage declares its settings with `section!`; from that one declaration follow the struct with its
+//! fields, the reading of a TOML file and of `--set` with errors that name the line ([`GivenSettings`]), the
+//! commented text that `voidwalk init` writes ([`KeyInfo`]), the check of values from a program, and the
+//! written record ([`serde::Serialize`]). So a setting cannot be forgotten in one of these places. [`Group`]s
+//! declare which settings exclude each other.
 
 mod allowed;
 pub mod hints;
@@ -21,66 +20,66 @@ pub use settings::setting_name;
 pub use settings::{Alternative, GivenSettings, Group, Names, Origin, SceneError};
 pub use value::Value;
 
-/// What a user is told of a setting, and which values it takes.
+/// Description of a setting for the user, and its allowed values.
 #[derive(Clone, Debug)]
 pub struct KeyInfo {
-    /// Its section, empty for the settings at the top.
+    /// Section, empty for the settings at the top.
     pub section: &'static str,
-    /// Its name inside the section.
+    /// Name inside the section.
     pub name: &'static str,
-    /// What it means, in words.
+    /// Meaning, in words.
     pub doc: String,
-    /// The type of its value in TOML: `float`, `array of integers`.
+    /// Type of the value in TOML: `float`, `array of integers`.
     pub toml_type: &'static str,
-    /// The value that it has where a scene does not set it, in TOML.
+    /// Value if a scene does not set it, in TOML.
     pub default: Option<String>,
-    /// What is allowed, in the words of the errors.
+    /// Allowed values, in the words of the errors.
     pub allowed: String,
-    /// Values that it often has, where those are words.
+    /// Common values, if they are words.
     pub offered: Vec<String>,
-    /// A value of it, in TOML.
+    /// Sample value, in TOML.
     pub shown: String,
-    /// Whether the built-in scene has that value; else it is an example.
+    /// True if the built-in scene has that value; else it is an example.
     pub is_set: bool,
-    /// Tells whether it may have a value.
+    /// Tells if a value is allowed.
     pub admits: fn(&Value) -> bool,
 }
 
 impl KeyInfo {
-    /// Its full name: `base.cu`.
+    /// Full name: `base.cu`.
     pub fn full_name(&self) -> String {
         full_name(self.section, self.name)
     }
 }
 
-/// The full name of a setting.
+/// Full name of a setting.
 pub fn full_name(section: &str, name: &str) -> String {
     if section.is_empty() { name.to_owned() } else { format!("{section}.{name}") }
 }
 
-/// A value that a program gave and that is out of range.
+/// A value from a program that is out of range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutOfRange {
     /// Name of the setting inside its section.
     pub name: &'static str,
-    /// The value, in TOML.
+    /// Value, in TOML.
     pub value: String,
-    /// What is allowed.
+    /// Allowed values.
     pub allowed: String,
 }
 
-/// The type of a setting: a value that is always there, or one that may be missing.
+/// Type of a setting: a value that is always there, or one that may be missing.
 pub trait Setting: Sized {
-    /// The type of its value.
+    /// Type of its value.
     type Value: Leaf;
 
-    /// The setting with this value.
+    /// Makes the setting from this value.
     fn given(value: Self::Value) -> Self;
 
-    /// Its value, where it has one.
+    /// Value, if there is one.
     fn value(&self) -> Option<&Self::Value>;
 
-    /// Whether it has none, so that nothing is written of it.
+    /// Tells if there is no value, so that nothing is written.
     fn is_missing(&self) -> bool {
         self.value().is_none()
     }
@@ -110,7 +109,7 @@ impl<T: Leaf> Setting for Option<T> {
     }
 }
 
-/// A value in TOML.
+/// Writes a value in TOML.
 pub fn in_toml(value: &impl Serialize) -> String {
     let mut text = String::new();
     match value.serialize(toml::ser::ValueSerializer::new(&mut text)) {
@@ -119,13 +118,13 @@ pub fn in_toml(value: &impl Serialize) -> String {
     }
 }
 
-/// Declares a section of settings: a struct of them, with what reads, checks, describes and writes it.
+/// Declares a section of settings: a struct with the code that reads, checks, describes and writes it.
 ///
 /// ```text
 /// section! {
-///     /// What the section is about.
+///     /// Subject of the section.
 ///     pub struct Base in "base" {
-///         /// What the setting means: for the docs and for `voidwalk init`.
+///         /// Meaning of the setting: for the docs and for `voidwalk init`.
 ///         pub cu: Option<f64> = None, set "1.5", within(1.0..=1000.0, "a number from 1 to 1000");
 ///         /// `name: type = default`; then how `init` shows it: `set` as in the built-in scene, or `off` in
 ///         /// a comment, with a value where the default has none; then what is allowed.
@@ -173,10 +172,10 @@ macro_rules! section {
         }
 
         impl $Section {
-            /// What a user is told of the section.
+            /// Text for the user about the section.
             pub const ABOUT: &'static [&'static str] = &[$($about),*];
 
-            /// What a user is told of each setting, in the order in which they are written.
+            /// Descriptions of the settings for the user, in the order in which they are written.
             pub fn keys() -> Vec<$crate::schema::KeyInfo> {
                 vec![$({
                     type Checked = $crate::schema::Allowed<<$Type as $crate::schema::Setting>::Value>;
@@ -203,7 +202,7 @@ macro_rules! section {
                 }),*]
             }
 
-            /// The settings that are given, and the defaults of the others.
+            /// Reads the given settings, with defaults for the others.
             ///
             /// # Errors
             /// A value that is not allowed.
@@ -220,7 +219,7 @@ macro_rules! section {
                 })
             }
 
-            /// The first setting whose value is not allowed.
+            /// First setting whose value is not allowed.
             pub fn out_of_range(&self) -> Option<$crate::schema::OutOfRange> {
                 $(
                     let allowed: $crate::schema::Allowed<<$Type as $crate::schema::Setting>::Value> =

@@ -1,11 +1,11 @@
-//! What a name that does not exist may have been meant to be.
+//! Guesses the name that a user meant by one that does not exist.
 
 use strsim::damerau_levenshtein;
 
-/// A list names no more settings than this.
+/// Largest number of settings in a list.
 const NAMED: usize = 30;
 
-/// `did you mean ...`, where a known name is much like `name`; else what there is in its section.
+/// `did you mean ...` if a known name resembles `name`; else the names in its section.
 pub fn instead_of(name: &str, known: &[String]) -> String {
     let sections = sections(known);
     // A section by itself, as `[filtre]`.
@@ -36,7 +36,7 @@ pub fn instead_of(name: &str, known: &[String]) -> String {
     format!("there are {}; and {} without a section", sections.join(", "), listed(&top))
 }
 
-/// Few letters changed, for its length.
+/// Tells if few letters differ, for the length of the name.
 fn is_like(known: &str, name: &str) -> bool {
     damerau_levenshtein(known, name) <= (name.chars().count() / 3).clamp(1, 3)
 }
@@ -47,10 +47,10 @@ fn sections(known: &[String]) -> Vec<&str> {
     sections
 }
 
-/// The name inside a section, where it is in that one.
+/// Name inside a section, if it is in that section.
 fn in_section<'a>(name: &'a str, section: &str) -> Option<&'a str> {
     match name.rsplit_once('.') {
-        Some((of, name)) => (of == section).then_some(name),
+        Some((its_section, name)) => (its_section == section).then_some(name),
         None => section.is_empty().then_some(name),
     }
 }

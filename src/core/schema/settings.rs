@@ -1,4 +1,4 @@
-//! Settings with where they come from: a line of a TOML file, or the command line.
+//! Settings with their origin: a line of a TOML file, or the command line.
 //!
 //! A setting has a dotted name (`base.cu`). Some exclude each other ([`Group`]): setting one on the command
 //! line replaces the others, and a file that gives both is refused.
@@ -12,7 +12,7 @@ use toml::de::{DeTable, DeValue};
 use super::{Allowed, Leaf, Value, hints, nearest};
 use crate::store::{read_regular, why_not_read};
 
-/// A scene that is refused.
+/// A refused scene.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// The file cannot be read.
@@ -20,7 +20,7 @@ pub enum SceneError {
     File {
         /// The file.
         file: String,
-        /// What the system says.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// The file is not TOML, or too large.
@@ -28,31 +28,31 @@ pub enum SceneError {
     Syntax {
         /// The file.
         file: String,
-        /// `, line N` where known.
+        /// `, line N` if known.
         at: String,
-        /// What is wrong.
+        /// Description of the error.
         problem: String,
     },
-    /// No setting has this name.
+    /// A name that no setting has.
     #[error("{origin}: there is no setting `{name}`; {instead}")]
     Unknown {
-        /// Where it stands.
+        /// Place of the name.
         origin: Origin,
         /// The name.
         name: String,
-        /// A valid name that is much like it, or else those of its section.
+        /// A valid name that resembles it, or else those of its section.
         instead: String,
     },
-    /// A setting has a value that it cannot have.
+    /// A value that the setting cannot have.
     #[error("{origin}, {name}: `{value}` is not allowed; {allowed}")]
     Value {
-        /// Where it stands.
+        /// Place of the value.
         origin: Origin,
         /// The setting.
         name: String,
         /// The value.
         value: String,
-        /// What is allowed.
+        /// Allowed values.
         allowed: String,
     },
     /// Settings that clash, or one that is missing.
@@ -60,12 +60,12 @@ pub enum SceneError {
     Clash {
         /// The scene.
         file: String,
-        /// What clashes.
+        /// Description of the clash.
         problem: String,
     },
 }
 
-/// Where a setting comes from.
+/// Origin of a setting.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Origin {
     /// A line of a file, counted from 1.
@@ -86,36 +86,36 @@ impl fmt::Display for Origin {
     }
 }
 
-/// Settings that say the same thing in different ways, of which a scene may use one.
+/// Settings that give the same thing in different ways; a scene may use one of them.
 #[derive(Clone, Copy, Debug)]
 pub struct Group {
-    /// What they say, after their names: `give the base`.
+    /// Purpose, for a message that begins with their names: `give the base`.
     pub says: &'static str,
-    /// The ways.
+    /// Alternatives.
     pub alternatives: &'static [Alternative],
 }
 
-/// One way to say what a [`Group`] says.
+/// One alternative of a [`Group`].
 #[derive(Clone, Copy, Debug)]
 pub struct Alternative {
-    /// Settings that say it, each by itself.
+    /// Settings that select it, each by itself.
     pub by: &'static [&'static str],
     /// Settings that go with these alone.
     pub with: &'static [&'static str],
-    /// Whether those choose this alternative too, on the command line.
+    /// True if those choose this alternative too, on the command line.
     pub with_chooses: bool,
-    /// Settings that mean something else under the other alternatives: choosing this one on the command
-    /// line removes them.
+    /// Settings that have another meaning under the other alternatives: choosing this one on the command line
+    /// removes them.
     pub resets: &'static [&'static str],
 }
 
 impl Alternative {
-    /// What is said by these settings.
+    /// Makes the alternative that these settings select.
     pub const fn by(by: &'static [&'static str]) -> Self {
         Self { by, with: &[], with_chooses: false, resets: &[] }
     }
 
-    /// Together with settings that go with it alone.
+    /// Adds settings that go with this alternative alone.
     pub const fn with(self, with: &'static [&'static str]) -> Self {
         Self { with, ..self }
     }
@@ -126,11 +126,11 @@ impl Alternative {
     }
 }
 
-/// What is known of the names: which exist, and which exclude each other.
+/// Facts about the names: which exist, and which exclude each other.
 pub struct Names {
-    /// Every valid name.
+    /// All valid names.
     pub known: Vec<String>,
-    /// Those whose value is a text even where it looks like a number or a date.
+    /// Names whose value is a text even if it looks like a number or a date.
     pub lines: Vec<String>,
     /// Settings that exclude each other.
     pub groups: &'static [Group],
@@ -144,12 +144,12 @@ pub struct GivenSettings {
     values: BTreeMap<String, (Value, Origin)>,
 }
 
-/// The name in `name=value`; empty without a `=`.
+/// Name in `name=value`; empty without a `=`.
 pub fn setting_name(assignment: &str) -> &str {
     assignment.split_once('=').map_or("", |(name, _)| name).trim()
 }
 
-/// A larger settings file is refused (bytes).
+/// Largest size of a settings file (bytes).
 const LARGEST_FILE: u64 = 1 << 20;
 
 const NO_SCENE: &str = "is a table of numbers, not a scene; two sieve tables are judged by `voidwalk judge \
@@ -177,7 +177,7 @@ impl GivenSettings {
     /// Reads TOML text; `file` names it in errors, and relative paths start from `folder`.
     ///
     /// # Errors
-    /// As [`GivenSettings::read`].
+    /// Errors of [`GivenSettings::read`].
     pub fn parse(bytes: &[u8], file: &str, folder: PathBuf, names: &Names) -> Result<Self, SceneError> {
         let syntax = |at, problem| SceneError::Syntax { file: file.into(), at, problem };
         let text = hints::as_text(bytes).map_err(|problem| syntax(String::new(), problem))?;
@@ -232,7 +232,7 @@ impl GivenSettings {
     /// one another.
     ///
     /// # Errors
-    /// As [`GivenSettings::set`].
+    /// Errors of [`GivenSettings::set`].
     pub fn set_together(
         &mut self,
         assignments: &[String],
@@ -270,22 +270,22 @@ impl GivenSettings {
         Ok(())
     }
 
-    /// What errors call the file.
+    /// Name of the file in errors.
     pub fn file(&self) -> &str {
         &self.file
     }
 
-    /// The first setting that is given among those whose names begin like this.
+    /// First given setting whose name begins with `beginning`.
     pub fn first_in(&self, beginning: &str) -> Option<&str> {
         self.values.keys().find(|name| name.starts_with(beginning)).map(String::as_str)
     }
 
-    /// Whether a setting is given.
+    /// Tells if a setting is given.
     pub fn has(&self, name: &str) -> bool {
         self.values.contains_key(name)
     }
 
-    /// The error for a setting's value.
+    /// Makes the error for a setting's value.
     pub fn refuse(&self, name: &str, allowed: impl Into<String>) -> SceneError {
         let (value, origin) = self
             .values
@@ -299,15 +299,15 @@ impl GivenSettings {
         SceneError::Value { origin, name: name.into(), value, allowed }
     }
 
-    /// The error for settings that clash.
+    /// Makes the error for settings that clash.
     pub fn clash(&self, problem: impl Into<String>) -> SceneError {
         SceneError::Clash { file: self.file.clone(), problem: problem.into() }
     }
 
-    /// The value of a setting, where it is given.
+    /// Reads the value of a setting, if it is given.
     ///
     /// # Errors
-    /// It is of another type, or not allowed.
+    /// A value of another type, or one that is not allowed.
     pub fn get<T: Leaf>(&self, name: &str, allowed: &Allowed<T>) -> Result<Option<T>, SceneError> {
         let Some((value, origin)) = self.values.get(name) else { return Ok(None) };
         let read = allowed.read(value);
@@ -329,21 +329,24 @@ impl GivenSettings {
 
     fn check_group(&self, group: &Group) -> Result<(), SceneError> {
         let given = |names: &[&'static str]| names.iter().copied().find(|&name| self.has(name));
-        let said: Vec<&str> = group.alternatives.iter().filter_map(|way| given(way.by)).collect();
-        if said.len() > 1 {
-            let all = if said.len() == 2 { "both" } else { "all" };
-            let problem = format!("{} {all} {}: keep one", said.join(" and "), group.says);
+        let names: Vec<&str> =
+            group.alternatives.iter().filter_map(|alternative| given(alternative.by)).collect();
+        if names.len() > 1 {
+            let all = if names.len() == 2 { "both" } else { "all" };
+            let problem = format!("{} {all} {}: keep one", names.join(" and "), group.says);
             let by_hand =
                 |name: &&str| self.values.get(*name).is_some_and(|(_, o)| *o == Origin::CommandLine);
-            return Err(match said.iter().all(by_hand) {
+            return Err(match names.iter().all(by_hand) {
                 true => SceneError::Clash { file: Origin::CommandLine.to_string(), problem },
                 false => self.clash(problem),
             });
         }
-        let Some(name) = said.first() else { return Ok(()) };
-        for way in group.alternatives.iter().filter(|way| !way.by.contains(name)) {
-            if let Some(companion) = given(way.with) {
-                return Err(self.clash(format!("{companion} goes with {}, not with {name}", way.by[0])));
+        let Some(name) = names.first() else { return Ok(()) };
+        for alternative in group.alternatives.iter().filter(|alternative| !alternative.by.contains(name)) {
+            if let Some(companion) = given(alternative.with) {
+                return Err(
+                    self.clash(format!("{companion} goes with {}, not with {name}", alternative.by[0]))
+                );
             }
         }
         Ok(())
@@ -355,7 +358,7 @@ impl Names {
         if self.known.iter().any(|known| known == name) { Ok(()) } else { Err(self.unknown(name, origin)) }
     }
 
-    /// The settings that give way when `name` is set on the command line.
+    /// Settings that give way when `name` is set on the command line.
     fn replaced_by(&self, name: &str) -> Vec<&'static str> {
         let mut replaced = Vec::new();
         for group in self.groups {

@@ -1,4 +1,4 @@
-//! A value as it was written, and how it becomes a typed one.
+//! Values in their written form, and their conversion to typed ones.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use serde::de::{Error as _, IntoDeserializer, Visitor};
 use serde::{Deserializer, forward_to_deserialize_any};
 use toml::de::DeValue;
 
-/// A value as it was written.
+/// A value in its written form.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// Text.
@@ -16,14 +16,14 @@ pub enum Value {
     Number(String),
     /// A list.
     List(Vec<Value>),
-    /// A table, in the order in which it was written.
+    /// A table, in the order of the text.
     Table(Vec<(String, Value)>),
     /// Anything else: a date, a truth value, an integer that is not decimal.
     Other(String),
 }
 
 impl Value {
-    /// A value in TOML, or else text, as a command line gives it.
+    /// Reads a value from a command line: TOML, or else text.
     pub fn of_assignment(text: &str) -> Self {
         match DeValue::parse(text) {
             Ok(parsed) => Self::from(parsed.get_ref()),
@@ -39,7 +39,7 @@ impl Value {
         }
     }
 
-    /// A whole number written as `200000000`, `2e8` or `2.5e8`.
+    /// Reads a whole number written as `200000000`, `2e8` or `2.5e8`.
     fn whole(&self) -> Option<u64> {
         let Self::Number(digits) = self else { return None };
         if let Ok(n) = digits.parse::<u64>() {
@@ -99,8 +99,7 @@ impl<'de> IntoDeserializer<'de> for &'de Value {
     }
 }
 
-/// What type a setting has decides how its digits are read: a count may be written `2e8`, a length may not be
-/// infinite.
+/// Reads digits by the type of the setting: a count may be written `2e8`, a length may not be infinite.
 impl<'de> Deserializer<'de> for &'de Value {
     type Error = Error;
 

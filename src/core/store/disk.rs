@@ -1,9 +1,9 @@
-//! What is asked of the disk: every call of the program that makes, changes, reads or removes a file of its
-//! own goes through `ask`, and through one [`Disk`].
+//! Calls to the disk: every call of the program that makes, changes, reads or removes a file of its own goes
+//! through `ask`, and through one [`Disk`].
 //!
 //! A process has one disk, so it is process-wide and not handed from function to function: a writer that has
-//! no folder at hand (a report, a ledger, a mapped column) cannot forget it, and nothing but a test ever sets
-//! it. The real disk is the absence of another; it costs one load of a pointer a call.
+//! no folder at hand (a report, a ledger, a mapped column) cannot forget it, and only a test ever sets it.
+//! The real disk is the absence of another; it costs one load of a pointer per call.
 
 use std::fmt;
 use std::fs::File;
@@ -20,25 +20,26 @@ use super::platform;
 pub enum Call<'a> {
     /// Lists a folder.
     List(&'a Path),
-    /// Makes one folder.
+    /// Makes a single folder.
     MakeFolder(&'a Path),
-    /// Removes a folder with all that is in it.
+    /// Removes a folder with all its content.
     RemoveFolder(&'a Path),
-    /// Opens the lock file, making it where it is missing, and locks it.
+    /// Opens the lock file, making it if it is missing, and locks it.
     Lock(&'a Path),
-    /// Writes into the lock file who holds it.
+    /// Writes the name of the holder into the lock file.
     Sign(&'a Path, &'a [u8]),
     /// Makes a new, empty file.
     Create(&'a Path),
     /// Adds bytes to the end of a file.
     Write(&'a Path, &'a [u8]),
-    /// Sends what was written to a file to the disk.
+    /// Sends the written part of a file to the disk.
     Sync(&'a Path),
-    /// Gives a file another name, replacing what had it.
+    /// Gives a file another name, replacing the former file of that name.
     Rename(&'a Path, &'a Path),
     /// Sends the names in a folder to the disk.
     SyncFolder(&'a Path),
-    /// Makes, in a folder, a file without a name of so many bytes, all of its blocks allocated, and maps it.
+    /// Makes, in a folder, a file without a name of this many bytes, all of its blocks allocated, and maps
+    /// it.
     Map(&'a Path, u64),
     /// Opens a file or reads from it.
     Read(&'a Path),
@@ -69,21 +70,21 @@ impl fmt::Debug for Call<'_> {
 
 /// A disk that may fail, or take notes.
 pub trait Disk: Send + Sync {
-    /// Answers a call; `act` is what the real disk does.
+    /// Answers a call; `act` does the work of the real disk.
     ///
     /// # Errors
-    /// What `act` says, or whatever this disk likes.
+    /// Error of `act`, or any error that this disk chooses.
     fn call(&self, call: Call<'_>, act: &mut dyn FnMut() -> io::Result<()>) -> io::Result<()>;
 }
 
 static DISK: OnceLock<Box<dyn Disk>> = OnceLock::new();
 
-/// Puts another disk in the place of the real one, for the rest of the process; only the first time counts.
+/// Replaces the real disk for the rest of the process; only the first call counts.
 pub fn replace_disk(disk: Box<dyn Disk>) {
     let _ = DISK.set(disk);
 }
 
-/// Asks the disk; a call that a signal interrupted is made again.
+/// Asks the disk; repeats a call that a signal interrupted.
 pub(super) fn ask<T>(call: Call<'_>, mut act: impl FnMut() -> io::Result<T>) -> io::Result<T> {
     loop {
         let answer = match DISK.get() {
@@ -104,15 +105,14 @@ pub(super) fn ask<T>(call: Call<'_>, mut act: impl FnMut() -> io::Result<T>) -> 
     }
 }
 
-/// What the names of files begin with that are not whole yet; one that a killed process left is removed when
-/// its folder is next taken.
+/// Beginning of the names of incomplete files; a file left by a killed process is removed when its folder is
+/// next taken.
 pub(super) const PART: &str = ".voidwalk-part-";
 
-/// After so many bytes more, a file that is being written is sent to the disk while the writing goes on
-/// (bytes).
+/// Number of bytes after which a growing file is sent to the disk while the writing goes on.
 const SEND_EVERY: u64 = 64 << 20;
 
-/// A new file beside the one that it is to become; removed unless it became it.
+/// A new file beside its final place; removed unless it gets there.
 pub(super) struct PartFile {
     path: PathBuf,
     file: Arc<File>,
@@ -134,15 +134,15 @@ impl PartFile {
                     let file = Arc::new(file);
                     return Ok(Self { path, file, waiting: 0, sending: None, whole: false });
                 }
-                // Left by a killed process of the same number, or made by one of another machine.
+                // Left by a killed process of the same number, or made by a process on another machine.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error),
             }
         }
     }
 
-    /// After an error of this, the file is given up: a second sync may say that all is well when nothing was
-    /// written.
+    /// Sends the file to the disk. After an error the file is given up: a second sync may report success when
+    /// nothing was written.
     pub fn sync(&mut self) -> io::Result<()> {
         self.sent()?;
         ask(Call::Sync(&self.path), || self.file.sync_all())
@@ -154,7 +154,7 @@ impl PartFile {
         Ok(())
     }
 
-    /// Has the disk work on what is there, if it is much and the disk is idle.
+    /// Starts sending the new bytes to the disk, if they are many and the disk is idle.
     fn send(&mut self) -> io::Result<()> {
         if self.waiting < SEND_EVERY || self.sending.as_ref().is_some_and(|thread| !thread.is_finished()) {
             return Ok(());
@@ -162,7 +162,7 @@ impl PartFile {
         self.send_by(File::sync_data)
     }
 
-    /// Has the disk take all that was written, and its length; [`Self::sent`] waits for it.
+    /// Starts sending all written bytes and the length to the disk; [`Self::sent`] waits for it.
     pub fn send_all(&mut self) -> io::Result<()> {
         self.send_by(File::sync_all)
     }
@@ -173,14 +173,14 @@ impl PartFile {
         let send = move || ask(Call::Sync(&path), || sync(&file));
         match std::thread::Builder::new().spawn(send.clone()) {
             Ok(thread) => self.sending = Some(thread),
-            // The system has no thread to give: this one waits for the disk.
+            // The system has no free thread: this one waits for the disk.
             Err(_) => send()?,
         }
         self.waiting = 0;
         Ok(())
     }
 
-    /// Waits for what is being sent; the system tells of an error only once.
+    /// Waits for the bytes under way; the system reports an error only once.
     pub fn sent(&mut self) -> io::Result<()> {
         match self.sending.take().map(JoinHandle::join) {
             None => Ok(()),
@@ -192,7 +192,7 @@ impl PartFile {
 
 impl Write for PartFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        // All of it, so that a disk that takes notes knows what is in the file.
+        // All bytes at once, so that a disk that takes notes knows the content of the file.
         ask(Call::Write(&self.path, bytes), || (&*self.file).write_all(bytes))?;
         self.waiting += bytes.len() as u64;
         self.send()?;
@@ -208,7 +208,7 @@ impl Drop for PartFile {
     fn drop(&mut self) {
         let _ = self.sent();
         if !self.whole {
-            // If this fails too, whoever takes the folder next removes it.
+            // If this fails too, the next process that takes the folder removes the file.
             let _ = ask(Call::Remove(&self.path), || std::fs::remove_file(&self.path));
         }
     }
@@ -220,7 +220,7 @@ pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
     ask(Call::SyncFolder(folder), || platform::sync_folder(folder))
 }
 
-/// A whole file, which is no link to one elsewhere.
+/// Reads a whole file, which is no link to one elsewhere.
 pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
     ask(Call::Read(path), || {
         let mut bytes = Vec::new();
@@ -235,16 +235,16 @@ pub(super) fn open_own(path: &Path) -> io::Result<File> {
         .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "is no regular file"))
 }
 
-/// The file; `None` where it is a folder, a pipe, a socket or a device.
+/// Returns the file; `None` if it is a folder, a pipe, a socket or a device.
 fn regular(file: File) -> io::Result<Option<File>> {
     Ok(file.metadata()?.is_file().then_some(file))
 }
 
-/// What a file of a user holds; `None` where it is no regular file, or has more bytes than `largest`. A pipe
-/// is not waited for.
+/// Reads a file of a user; `None` if it is no regular file, or has more bytes than `largest`. Does not wait
+/// for a pipe.
 ///
 /// # Errors
-/// What the system says.
+/// Error of the system.
 pub fn read_regular(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
     let Some(file) = open_regular(path)? else { return Ok(None) };
     let mut bytes = Vec::new();
@@ -252,7 +252,7 @@ pub fn read_regular(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
     Ok((bytes.len() as u64 <= largest).then_some(bytes))
 }
 
-/// Why [`read_regular`] gives nothing of a path: what it is, and what is allowed.
+/// Explains why [`read_regular`] refuses a path: its kind, and what is allowed.
 pub fn why_not_read(path: &Path, largest: u64) -> String {
     let largest = in_mb(largest);
     match std::fs::metadata(path) {
@@ -264,7 +264,7 @@ pub fn why_not_read(path: &Path, largest: u64) -> String {
     }
 }
 
-/// A limit of a file's size as it is said.
+/// A limit on a file's size, in words.
 pub fn in_mb(bytes: u64) -> String {
     match bytes >> 30 {
         0 => format!("{} MB", bytes >> 20),
@@ -272,10 +272,10 @@ pub fn in_mb(bytes: u64) -> String {
     }
 }
 
-/// Opens a file for reading; `None` where it is no regular file. A pipe is not waited for.
+/// Opens a file for reading; `None` if it is no regular file. Does not wait for a pipe.
 ///
 /// # Errors
-/// What the system says.
+/// Error of the system.
 pub fn open_regular(path: &Path) -> io::Result<Option<File>> {
     regular(platform::open_any(File::options().read(true), path)?)
 }
@@ -284,7 +284,7 @@ pub fn open_regular(path: &Path) -> io::Result<Option<File>> {
 mod tests {
     use super::*;
 
-    /// Whoever reads a pipe with nobody at its other end waits for ever.
+    /// A reader of a pipe with nobody at its other end waits for ever.
     #[test]
     #[cfg(unix)]
     fn what_is_no_regular_file_is_not_read_and_not_waited_for() {

@@ -1,9 +1,9 @@
-//! Why a folder or a file of the program's own cannot be used.
+//! Reasons why a folder or a file of the program's own cannot be used.
 
 use std::io;
 use std::path::PathBuf;
 
-/// Why a folder cannot be used.
+/// Reasons why a folder cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     /// The folder holds other things.
@@ -17,10 +17,10 @@ pub enum StoreError {
     NotAFolder {
         /// The path.
         path: PathBuf,
-        /// What it is instead.
+        /// Its actual kind.
         what: &'static str,
     },
-    /// Under the name of the lock file there is something else.
+    /// A file that is no lock file has the lock file's name.
     #[error(
         "{path}: is no lock file of voidwalk: another name of some other file, or no file at all; remove it, \
          or name another folder"
@@ -29,12 +29,12 @@ pub enum StoreError {
         /// The path.
         path: PathBuf,
     },
-    /// Somebody else is writing.
+    /// Another process is writing.
     #[error("{path}: another run writes to this folder ({holder})")]
     Held {
         /// The folder.
         path: PathBuf,
-        /// What the lock file says.
+        /// Content of the lock file.
         holder: String,
     },
     /// The system refuses.
@@ -42,19 +42,19 @@ pub enum StoreError {
     Io {
         /// The file or folder.
         path: PathBuf,
-        /// What was tried.
+        /// Action that failed.
         action: &'static str,
-        /// What the system says.
+        /// Error of the system.
         source: io::Error,
     },
 }
 
 impl StoreError {
-    /// Whether the user can fix it by naming another folder, before any work is done.
+    /// Tells if the user can fix it by naming another folder, before any work is done.
     pub fn is_refusal(&self) -> bool {
         use io::ErrorKind::{InvalidFilename, InvalidInput, NotADirectory, NotFound};
         use io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem};
-        // Windows calls the name of a device, as NUL, an input that is invalid.
+        // Windows reports the name of a device, such as NUL, as an invalid input.
         let by_name =
             [InvalidFilename, InvalidInput, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem];
         !matches!(self, Self::Io { source, .. } if !by_name.contains(&source.kind()))

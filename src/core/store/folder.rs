@@ -1,13 +1,12 @@
 //! The run folder: one writer, and no file that is half written.
 //!
-//! - A folder is ours when it was empty or absent, or holds our lock file [`LOCK_FILE`] or a finished run.
-//!   Anything else is not written to; neither is a folder reached through a symbolic link.
-//! - The lock belongs to the process: the system releases it however the process dies. The lock file
-//!   says who holds it.
-//! - A file appears under its name only when it is whole: written beside it, synced, renamed, and the
-//!   folder synced. A folder that is made is synced into the one that it is in.
-//! - What a killed process left half written beside a file is removed when its folder is next taken by one
-//!   process alone.
+//! - A folder is ours if it was empty or absent, or holds our lock file [`LOCK_FILE`] or a finished run. Any
+//!   other folder is not written to; neither is a folder reached through a symbolic link.
+//! - The lock belongs to the process: the system releases it however the process dies. The lock file names
+//!   its holder.
+//! - A file appears under its name only when it is whole: written beside it, synced, renamed, and the folder
+//!   synced. A new folder is synced into its parent.
+//! - Incomplete files of a killed process are removed when their folder is next taken by one process alone.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Seek, Write};
@@ -23,10 +22,10 @@ use super::whole::write_whole;
 /// Name of the lock file, which marks a folder as ours.
 pub const LOCK_FILE: &str = ".voidwalk.lock";
 
-/// How long a folder that is shared is asked for: another process may hold it alone while it clears up.
+/// Time during which a shared folder is asked for: another process may hold it alone while it clears up.
 const ASK_FOR: Duration = Duration::from_millis(500);
 
-/// How soon after locking a folder a process says who it is.
+/// Time within which a process signs the lock file after locking a folder.
 const SIGNS_WITHIN: Duration = Duration::from_millis(200);
 
 /// A folder that this process alone writes to, until it is dropped.
@@ -43,7 +42,7 @@ impl AsRef<Path> for Folder {
 }
 
 impl Folder {
-    /// Makes the folder where it is missing, and locks it.
+    /// Makes the folder if it is missing, and locks it.
     ///
     /// # Errors
     /// The folder is a link, holds other things, is held by another process, or cannot be written.
@@ -51,11 +50,11 @@ impl Folder {
         Self::open_locked(path, false)
     }
 
-    /// [`Folder::open`] for a folder that several processes work in, each in folders of its own inside; it is
-    /// not taken while one process holds it alone.
+    /// Opens a folder like [`Folder::open`], for several processes that each work in folders of their own
+    /// inside; it is not taken while one process holds it alone.
     ///
     /// # Errors
-    /// As [`Folder::open`].
+    /// Errors of [`Folder::open`].
     pub fn open_shared(path: &Path) -> Result<Self, StoreError> {
         Self::open_locked(path, true)
     }
@@ -94,7 +93,7 @@ impl Folder {
             true => share(&lock_path)?,
         };
         if !marked {
-            // Or the power may fail when the folder holds other things and not this mark.
+            // Without this, a power failure could leave a folder with other files but without this mark.
             disk::sync_folder(path).map_err(io("sync the folder"))?;
         }
         if !shared {
@@ -111,20 +110,20 @@ impl Folder {
         Ok(Self { path: path.to_owned(), _lock: lock })
     }
 
-    /// The folder's path.
+    /// Path of the folder.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Whether the folder holds a file of this name.
+    /// Tells if the folder holds a file of this name.
     pub fn has(&self, name: &str) -> bool {
         self.path.join(name).symlink_metadata().is_ok()
     }
 
-    /// What a file of the folder holds; `None` where there is none.
+    /// Reads a file of the folder; `None` if it is missing.
     ///
     /// # Errors
-    /// What the system says, with the file's path.
+    /// Error of the system, with the file's path.
     pub fn read(&self, name: &str) -> Result<Option<Vec<u8>>, StoreError> {
         let path = self.path.join(name);
         match disk::read(&path) {
@@ -137,7 +136,7 @@ impl Folder {
     /// Removes a file of the folder, if it is there.
     ///
     /// # Errors
-    /// What the system says, with the file's path.
+    /// Error of the system, with the file's path.
     pub fn remove(&self, name: &str) -> Result<(), StoreError> {
         let path = self.path.join(name);
         match ask(Call::Remove(&path), || fs::remove_file(&path)) {
@@ -148,10 +147,10 @@ impl Folder {
         }
     }
 
-    /// Removes files of the folder, those that are there, for good: a power cut brings none of them back.
+    /// Removes files of the folder, if present, for good: a power cut restores no file.
     ///
     /// # Errors
-    /// What the system says, with the file's path.
+    /// Error of the system, with the file's path.
     pub fn remove_all(&self, names: &[&str]) -> Result<(), StoreError> {
         let there: Vec<&&str> = names.iter().filter(|name| self.has(name)).collect();
         there.iter().try_for_each(|name| self.remove(name))?;
@@ -161,10 +160,11 @@ impl Folder {
         }
     }
 
-    /// [`Folder::remove_all`] for files in a folder inside, which goes too where nothing else is in it.
+    /// Removes files like [`Folder::remove_all`] in a folder inside, and that folder too if nothing else is
+    /// in it.
     ///
     /// # Errors
-    /// That folder is a link, or what the system says.
+    /// A link in place of that folder, or an error of the system.
     pub fn remove_all_in(&self, inside: &str, names: &[impl AsRef<str>]) -> Result<(), StoreError> {
         let path = self.path.join(inside);
         if path.symlink_metadata().is_err() {
@@ -185,10 +185,10 @@ impl Folder {
         }
     }
 
-    /// Writes a whole file: either all of it is there afterwards, or what was there before.
+    /// Writes a whole file: afterwards either all of it is there, or the former content.
     ///
     /// # Errors
-    /// What the system says, with the file's path.
+    /// Error of the system, with the file's path.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), StoreError> {
         let path = self.path.join(name);
         if let Some(folder) = path.parent().filter(|p| *p != self.path) {
@@ -205,7 +205,7 @@ struct Lock(File);
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // Where this fails, the system unlocks when the last copy is closed.
+        // If this fails, the system unlocks when the last copy is closed.
         let _ = self.0.unlock();
     }
 }
@@ -216,10 +216,10 @@ fn lock(path: &Path, shared: bool) -> Result<Lock, StoreError> {
     let failed = |source| StoreError::Io { path: folder.to_owned(), action: "write to the folder", source };
     let mut options = File::options();
     options.read(true).write(true).create(true).truncate(false);
-    // A lock file that is a link would have the file it leads to emptied.
+    // A link in place of the lock file would cause its target to be emptied.
     let file = ask(Call::Lock(path), || platform::open_own(&mut options, path)).map_err(failed)?;
     let meta = file.metadata().map_err(failed)?;
-    // So would another name of a file that somebody else needs.
+    // So would a second name of a file that somebody else needs.
     if !meta.is_file() || platform::has_other_names(&file).map_err(failed)? {
         return Err(StoreError::NotALock { path: path.to_owned() });
     }
@@ -234,7 +234,7 @@ fn lock(path: &Path, shared: bool) -> Result<Lock, StoreError> {
     }
 }
 
-/// What the lock file says; whoever has just locked it is about to write that.
+/// Reads the holder from the lock file; a process that has just locked it is about to write that.
 fn holder(path: &Path) -> String {
     let begun = Instant::now();
     loop {
@@ -248,7 +248,7 @@ fn holder(path: &Path) -> String {
     }
 }
 
-/// Opens a lock file and shares it; whoever happens to be alone with it first clears up.
+/// Opens a lock file and shares it; a process that is alone with it first clears up.
 fn share(path: &Path) -> Result<Lock, StoreError> {
     if let Ok(alone) = lock(path, false) {
         let folder = path.parent().unwrap_or(path);
@@ -268,7 +268,7 @@ fn share(path: &Path) -> Result<Lock, StoreError> {
     }
 }
 
-/// Removes what killed processes left half written in a folder and in those inside that have no lock of their
+/// Removes incomplete files of killed processes in a folder and in its subfolders without a lock of their
 /// own.
 fn clear_parts(folder: &Path) -> io::Result<()> {
     let entries = ask(Call::List(folder), || fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>())?;
@@ -286,8 +286,8 @@ fn clear_parts(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Whether a name is that of a part whose process is gone. Where locks do not work, a process that lives may
-/// be at it.
+/// Tells if a name belongs to an incomplete file whose process is gone. Without working locks, a live process
+/// may still be writing it.
 fn is_left(name: &str) -> bool {
     let Some(process) = name.strip_prefix(PART).and_then(|rest| rest.split('-').next()) else { return false };
     process == std::process::id().to_string() || !platform::is_running(process)

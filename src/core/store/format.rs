@@ -1,11 +1,10 @@
-//! The JSON files of the program: each begins with the name and number of its form and the program's version.
+//! JSON files of the program: each begins with the name and number of its form and the program's version.
 //!
 //! ```json
 //! { "format": "voidwalk-outcome/1", "voidwalk": "0.1.0", ... }
 //! ```
-//! The number rises when a program that read the file before would now misread it: a field is gone, or means
-//! something else. A new field raises nothing. A file without such a beginning, or with another number, is
-//! refused.
+//! The number rises when an older program would misread the file: a field is gone, or has another meaning. A
+//! new field changes nothing. A file without such a beginning, or with another number, is refused.
 
 use std::fmt;
 
@@ -15,14 +14,14 @@ use serde_json::Value;
 
 use crate::text::is_hidden;
 
-/// The form of a file of JSON.
+/// The form of a JSON file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Format {
-    /// Its name, without the program's.
+    /// Name, without the program's.
     name: &'static str,
-    /// Its number.
+    /// Number of the form.
     number: u32,
-    /// The file; what prints it, where it is no file.
+    /// Name of the file, or the command that prints it.
     pub file: &'static str,
 }
 
@@ -36,9 +35,9 @@ macro_rules! formats {
 }
 
 formats! {
-    /// What came of a scene.
+    /// Outcome of a scene.
     OUTCOME = "outcome" / 1, "outcome.json";
-    /// What made a run folder.
+    /// Origin of a run folder.
     MANIFEST = "manifest" / 1, "manifest.json";
     /// Boundaries of the model.
     BOUNDARY = "boundary" / 1, "boundary.json";
@@ -46,7 +45,7 @@ formats! {
     DESIGNS = "designs" / 1, "designs.json";
     /// The specification of a filter.
     SPECIFICATION = "specification" / 1, "specification.json";
-    /// Many samples against filters.
+    /// Many samples tested against filters.
     BATCH = "batch" / 1, "batch.json";
     /// A campaign, with its `ledger.jsonl` and `cases.csv`.
     CAMPAIGN = "campaign" / 1, "campaign.json";
@@ -60,9 +59,9 @@ formats! {
     PERCOLATION = "percolation" / 1, "percolation.json";
     /// The folder of a page on this machine.
     SERVE = "serve" / 1, "serve.json";
-    /// What a run would do.
+    /// Plan of a run.
     CHECK = "check" / 1, "voidwalk check --json";
-    /// What the cases of a plan would take.
+    /// Cost of the cases of a plan.
     PLAN_CHECK = "plan-check" / 1, "voidwalk check PLAN --json";
     /// The rules of practice for two soils.
     RULES = "rules" / 1, "voidwalk rules --json";
@@ -72,7 +71,7 @@ formats! {
     SETTINGS = "settings" / 1, "voidwalk init --json";
 }
 
-/// How every file begins.
+/// Beginning of every file.
 #[derive(Serialize)]
 struct Headed<'a, T> {
     format: String,
@@ -81,7 +80,7 @@ struct Headed<'a, T> {
     content: &'a T,
 }
 
-/// The beginning of a file that is read.
+/// Beginning of a file that is read.
 #[derive(Deserialize)]
 struct Beginning {
     #[serde(default)]
@@ -91,12 +90,12 @@ struct Beginning {
 }
 
 impl Format {
-    /// Its name, without the program's and without its number.
+    /// Name, without the program's and without the number.
     pub fn name(self) -> &'static str {
         self.name
     }
 
-    /// A record in this form, as indented JSON with a newline at its end.
+    /// Writes a record in this form, as indented JSON with a newline at its end.
     ///
     /// # Errors
     /// A record that is no map, or that JSON cannot hold.
@@ -106,7 +105,7 @@ impl Format {
     }
 }
 
-/// JSON text of the same content whose hidden characters are escapes: no terminal acts on them.
+/// Escapes the hidden characters of JSON text, so that no terminal acts on them; the content is unchanged.
 pub fn visible_json(text: String) -> String {
     let acts = |c: char| c != '\n' && is_hidden(c);
     if !text.contains(acts) {
@@ -122,20 +121,20 @@ impl fmt::Display for Format {
     }
 }
 
-/// A record from the text of its file.
+/// Reads a record from the text of its file.
 ///
 /// # Errors
 /// Text without the name of a form, in a form that this version does not read, or that is no such record.
 pub fn from_json<T: serde::de::DeserializeOwned>(text: &[u8]) -> Result<T, serde_json::Error> {
     let read = serde_json::from_slice(text);
-    // Read second: where the file is no JSON, its own error names the line.
+    // Read second: if the file is no JSON, its own error names the line.
     match serde_json::from_slice(text).ok().and_then(|beginning: Beginning| refused(&beginning)) {
         Some(problem) => Err(serde_json::Error::custom(problem)),
         None => read,
     }
 }
 
-/// Why a beginning is refused; `None` where it is that of a form known here.
+/// Reason for refusing a beginning; `None` if its form is known here.
 fn refused(beginning: &Beginning) -> Option<String> {
     let this = concat!("this is voidwalk ", env!("CARGO_PKG_VERSION"));
     let Some(form) = beginning.format.as_str() else {

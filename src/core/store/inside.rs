@@ -1,4 +1,4 @@
-//! Folders inside one of ours: made, looked into, removed.
+//! Folders inside one of ours: makes, reads and removes them.
 
 use std::fs;
 use std::io;
@@ -16,12 +16,12 @@ pub(super) fn sync(folder: &Path) -> Result<(), StoreError> {
     })
 }
 
-/// Whether nothing is in a folder.
+/// Tells if a folder is empty.
 pub(super) fn is_empty(folder: &Path) -> io::Result<bool> {
     ask(Call::List(folder), || Ok(fs::read_dir(folder)?.next().is_none()))
 }
 
-/// Makes a folder and those above it that are missing, each synced into the one that it is in.
+/// Makes a folder and its missing parents, each synced into its own parent.
 pub(super) fn make_folders(path: &Path) -> io::Result<()> {
     let missing: Vec<&Path> =
         path.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists()).collect();
@@ -35,10 +35,10 @@ pub(super) fn make_folders(path: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Makes a folder inside one of ours, if it is not there; one reached through a link is refused.
+/// Makes a folder inside one of ours, if it is missing; one reached through a link is refused.
 ///
 /// # Errors
-/// It is a link or a file, or what the system says.
+/// A link or a file in its place, or an error of the system.
 pub fn make_folder(path: &Path) -> Result<(), StoreError> {
     let not = |what| Err(StoreError::NotAFolder { path: path.to_owned(), what });
     match path.symlink_metadata() {
@@ -53,10 +53,10 @@ pub fn make_folder(path: &Path) -> Result<(), StoreError> {
     }
 }
 
-/// Removes a folder with all that is in it, if it is there.
+/// Removes a folder with all its content, if it exists.
 ///
 /// # Errors
-/// It is a link, which somebody has laid there; or what the system says.
+/// A link that somebody has put in its place, or an error of the system.
 pub fn remove_folder(path: &Path) -> Result<(), StoreError> {
     if path.symlink_metadata().is_ok_and(|meta| meta.is_symlink()) {
         return Err(StoreError::NotAFolder { path: path.to_owned(), what: "a symbolic link" });
@@ -69,10 +69,10 @@ pub fn remove_folder(path: &Path) -> Result<(), StoreError> {
     }
 }
 
-/// The files of a folder; none where there is no such folder.
+/// Lists the files of a folder; empty if there is no such folder.
 ///
 /// # Errors
-/// What the system says.
+/// Error of the system.
 pub fn files_in(folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
     let list = || fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>();
     match ask(Call::List(folder), list) {

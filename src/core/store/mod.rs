@@ -1,4 +1,4 @@
-//! Where things are kept: the run folder, its checkpoints, and the columns of a simulation.
+//! Storage: the run folder, its checkpoints, and the columns of a simulation.
 
 pub mod checkpoint;
 mod column;

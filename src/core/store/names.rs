@@ -1,8 +1,8 @@
-//! Names of files and folders that every system takes, and no two of which one takes for the same.
+//! Names of files and folders that every system accepts, and that no system takes for one another.
 
 use crate::text::is_plain;
 
-/// Whether Windows takes a name for that of a device, with whatever ending.
+/// Tells if Windows takes a name for a device's, whatever its ending.
 pub fn is_device(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or_default().trim_end().to_lowercase();
     let numbered =
@@ -11,7 +11,8 @@ pub fn is_device(name: &str) -> bool {
     is_numbered || ["con", "prn", "aux", "nul", "conin$", "conout$"].contains(&stem.as_str())
 }
 
-/// A name as that of a folder: one that is not plain, is a device's or ends with a dot ends with its hash.
+/// Turns a name into a folder's: if it is not plain, is a device's or ends with a dot, its hash is added at
+/// the end.
 pub fn folder_name(name: &str) -> String {
     let safe = |c: char| if is_plain(c) { c } else { '_' };
     let plain: String = name.chars().take(120).map(safe).collect();

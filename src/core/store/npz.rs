@@ -1,17 +1,17 @@
 //! Arrays of NumPy: `.npy`, and several of them by name in a zip, `.npz`.
 //!
-//! Numbers of 8 to 64 bits, whole or with a point, little-endian, and truth values, with one or two
-//! dimensions, in the order of C or of Fortran; as `numpy.savez` and `numpy.savez_compressed` write them.
+//! Numbers of 8 to 64 bits, integers or floats, little-endian, and booleans, with one or two dimensions, in
+//! the order of C or of Fortran; as `numpy.savez` and `numpy.savez_compressed` write them.
 
 use std::io::{self, Cursor, Read, Write};
 
 use zip::write::SimpleFileOptions;
 use zip::{DateTime, ZipArchive, ZipWriter};
 
-/// What every `.npy` begins with.
+/// First bytes of every `.npy`.
 const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// Of a file of `n` bytes no array is unpacked to more than this many bytes, and as many times `n`.
+/// Limits on the unpacked size of an array: this many bytes, or this many times the size of the file.
 const UNPACKED: (u64, u64) = (8 << 20, 200);
 
 /// Longest header (bytes).
@@ -20,38 +20,38 @@ const HEADER: usize = 1 << 16;
 /// An array of one or two dimensions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Array {
-    /// Rows.
+    /// Number of rows.
     pub rows: usize,
-    /// Numbers of a row; `None` where there is one dimension.
+    /// Numbers per row; `None` for one dimension.
     pub columns: Option<usize>,
-    /// The numbers, row by row.
+    /// Numbers, row by row.
     pub numbers: Numbers,
 }
 
 /// The numbers of an [`Array`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Numbers {
-    /// With a point.
+    /// Floats.
     Float(Vec<f64>),
-    /// Whole.
+    /// Integers.
     Whole(Vec<i64>),
-    /// Truth values.
+    /// Booleans.
     Truth(Vec<bool>),
 }
 
 impl Array {
-    /// One dimension of numbers.
+    /// Makes a one-dimensional array of floats.
     pub fn of_floats(numbers: Vec<f64>) -> Self {
         Self { rows: numbers.len(), columns: None, numbers: Numbers::Float(numbers) }
     }
 
-    /// One dimension of whole numbers.
+    /// Makes a one-dimensional array of integers.
     pub fn of_whole(numbers: Vec<i64>) -> Self {
         Self { rows: numbers.len(), columns: None, numbers: Numbers::Whole(numbers) }
     }
 }
 
-/// A `.npz` that is read.
+/// An open `.npz`.
 pub struct Npz<'a> {
     archive: ZipArchive<Cursor<&'a [u8]>>,
     names: Vec<String>,
@@ -59,10 +59,10 @@ pub struct Npz<'a> {
 }
 
 impl<'a> Npz<'a> {
-    /// Opens it.
+    /// Opens a `.npz`.
     ///
     /// # Errors
-    /// In words: it is no zip.
+    /// A message: it is no zip.
     pub fn open(bytes: &'a [u8]) -> Result<Self, String> {
         let archive = ZipArchive::new(Cursor::new(bytes))
             .map_err(|_| "is no .npz: it cannot be read as a zip".to_owned())?;
@@ -72,15 +72,15 @@ impl<'a> Npz<'a> {
         Ok(Self { archive, names, most })
     }
 
-    /// Names of its arrays.
+    /// Names of the arrays.
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// The first array that there is with one of these names, and that name.
+    /// Reads the first array that exists under one of these names, and that name.
     ///
     /// # Errors
-    /// In words, with its name: it cannot be read, or is of a kind that is not.
+    /// A message with its name: it cannot be read, or its kind is not supported.
     pub fn first<'n>(&mut self, names: &[&'n str]) -> Result<Option<(&'n str, Array)>, String> {
         let Some(&name) = names.iter().find(|name| self.names.iter().any(|known| known == *name)) else {
             return Ok(None);
@@ -98,7 +98,7 @@ impl<'a> Npz<'a> {
     }
 }
 
-/// An array from the bytes of a `.npy`.
+/// Reads an array from the bytes of a `.npy`.
 fn parse(bytes: &[u8]) -> Result<Array, String> {
     let no_array = || "is no array of NumPy".to_owned();
     let rest = bytes.strip_prefix(MAGIC).ok_or_else(no_array)?;
@@ -127,7 +127,7 @@ fn parse(bytes: &[u8]) -> Result<Array, String> {
         [rows, columns] => (rows, Some(columns)),
         ref other => return Err(format!("has {} dimensions; one or two are read", other.len())),
     };
-    // No byte stands behind rows of nothing, and nobody should go through as many as a header likes.
+    // Rows without columns take no bytes, so a header could claim any number of them.
     if rows > 0 && columns == Some(0) {
         return Err(format!("has the shape ({rows}, 0); rows of 1 or more numbers are allowed"));
     }
@@ -144,13 +144,13 @@ fn parse(bytes: &[u8]) -> Result<Array, String> {
     Ok(Array { rows, columns, numbers })
 }
 
-/// What stands column by column, row by row.
+/// Turns column order into row order.
 fn by_rows<T: Copy>(all: &[T], rows: usize, columns: usize) -> Vec<T> {
     (0..rows).flat_map(|row| (0..columns).map(move |column| all[column * rows + row])).collect()
 }
 
 fn numbers(kind: &str, data: &[u8], count: usize) -> Result<Numbers, String> {
-    fn each<const N: usize, T>(
+    fn decoded<const N: usize, T>(
         data: &[u8],
         count: usize,
         one: impl Fn([u8; N]) -> T,
@@ -162,21 +162,21 @@ fn numbers(kind: &str, data: &[u8], count: usize) -> Result<Numbers, String> {
         }
     }
     Ok(match kind {
-        "<f8" => Numbers::Float(each(data, count, f64::from_le_bytes)?),
-        "<f4" => Numbers::Float(each(data, count, |bytes| f64::from(f32::from_le_bytes(bytes)))?),
-        "<i8" => Numbers::Whole(each(data, count, i64::from_le_bytes)?),
+        "<f8" => Numbers::Float(decoded(data, count, f64::from_le_bytes)?),
+        "<f4" => Numbers::Float(decoded(data, count, |bytes| f64::from(f32::from_le_bytes(bytes)))?),
+        "<i8" => Numbers::Whole(decoded(data, count, i64::from_le_bytes)?),
         "<u8" => {
             let whole =
-                each(data, count, |bytes| i64::try_from(u64::from_le_bytes(bytes)).unwrap_or(i64::MAX))?;
+                decoded(data, count, |bytes| i64::try_from(u64::from_le_bytes(bytes)).unwrap_or(i64::MAX))?;
             Numbers::Whole(whole)
         }
-        "<i4" => Numbers::Whole(each(data, count, |bytes| i32::from_le_bytes(bytes).into())?),
-        "<u4" => Numbers::Whole(each(data, count, |bytes| u32::from_le_bytes(bytes).into())?),
-        "<i2" => Numbers::Whole(each(data, count, |bytes| i16::from_le_bytes(bytes).into())?),
-        "<u2" => Numbers::Whole(each(data, count, |bytes| u16::from_le_bytes(bytes).into())?),
-        "|i1" => Numbers::Whole(each(data, count, |bytes| i8::from_le_bytes(bytes).into())?),
-        "|u1" => Numbers::Whole(each(data, count, |bytes| u8::from_le_bytes(bytes).into())?),
-        "|b1" => Numbers::Truth(each(data, count, |[byte]: [u8; 1]| byte != 0)?),
+        "<i4" => Numbers::Whole(decoded(data, count, |bytes| i32::from_le_bytes(bytes).into())?),
+        "<u4" => Numbers::Whole(decoded(data, count, |bytes| u32::from_le_bytes(bytes).into())?),
+        "<i2" => Numbers::Whole(decoded(data, count, |bytes| i16::from_le_bytes(bytes).into())?),
+        "<u2" => Numbers::Whole(decoded(data, count, |bytes| u16::from_le_bytes(bytes).into())?),
+        "|i1" => Numbers::Whole(decoded(data, count, |bytes| i8::from_le_bytes(bytes).into())?),
+        "|u1" => Numbers::Whole(decoded(data, count, |bytes| u8::from_le_bytes(bytes).into())?),
+        "|b1" => Numbers::Truth(decoded(data, count, |[byte]: [u8; 1]| byte != 0)?),
         other => {
             return Err(format!(
                 "has numbers of type {other}; f4, f8, i1 to i8, u1 to u8 (little-endian) and b1 are read"
@@ -185,10 +185,10 @@ fn numbers(kind: &str, data: &[u8], count: usize) -> Result<Numbers, String> {
     })
 }
 
-/// A `.npz` of these arrays, compressed; the same arrays give the same bytes.
+/// Writes a `.npz` of these arrays, compressed; the same arrays give the same bytes.
 ///
 /// # Errors
-/// What the writer of zips says.
+/// Error of the zip writer.
 pub fn npz(arrays: &[(String, Array)]) -> io::Result<Vec<u8>> {
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
     for (name, array) in arrays {
@@ -202,7 +202,7 @@ pub fn npz(arrays: &[(String, Array)]) -> io::Result<Vec<u8>> {
     Ok(zip.finish().map_err(io::Error::other)?.into_inner())
 }
 
-/// The bytes of a `.npy`, version 1.
+/// Writes the bytes of a `.npy`, version 1.
 fn npy(array: &Array) -> Vec<u8> {
     let kind = match array.numbers {
         Numbers::Float(_) => "<f8",
@@ -267,16 +267,17 @@ mod tests {
 
     #[test]
     fn arrays_of_other_kinds_are_read_or_refused_in_words() {
-        let of = |kind: &str, order: &str, shape: &str, data: &[u8]| {
+        let parsed = |kind: &str, order: &str, shape: &str, data: &[u8]| {
             parse(&raw(&format!("{{'descr': '{kind}', 'fortran_order': {order}, 'shape': {shape}, }}"), data))
         };
-        let columns = of("<i4", "True", "(2, 2)", &[0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0]).unwrap();
+        let columns =
+            parsed("<i4", "True", "(2, 2)", &[0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0]).unwrap();
         assert_eq!(columns.numbers, Numbers::Whole(vec![0, 2, 1, 3]));
         assert_eq!(
-            of("<f4", "False", "(1,)", &1.5f32.to_le_bytes()).unwrap().numbers,
+            parsed("<f4", "False", "(1,)", &1.5f32.to_le_bytes()).unwrap().numbers,
             Numbers::Float(vec![1.5])
         );
-        assert_eq!(of("|u1", "False", "(2,)", &[1, 255]).unwrap().numbers, Numbers::Whole(vec![1, 255]));
+        assert_eq!(parsed("|u1", "False", "(2,)", &[1, 255]).unwrap().numbers, Numbers::Whole(vec![1, 255]));
         for (kind, shape, message) in [
             (">f8", "(1,)", "type >f8"),
             ("<U3", "(1,)", "type <U3"),
@@ -286,19 +287,19 @@ mod tests {
             ("<f8", "(99999999999, 99999999999999)", "no array"),
             ("<f8", "(x,)", "no array"),
         ] {
-            let error = of(kind, "False", shape, &[0; 8]).unwrap_err();
+            let error = parsed(kind, "False", shape, &[0; 8]).unwrap_err();
             assert!(error.contains(message), "{kind} {shape}: {error}");
         }
-        // Rows of nothing are backed by no byte, and there can be any number of them.
+        // Rows without columns take no bytes, so there can be any number of them.
         for order in ["False", "True"] {
             for (kind, shape) in
                 [("<f8", "(4000000000, 0)"), ("|b1", "(3, 0)"), ("<i8", "(1152921504606846976, 0)")]
             {
-                let error = of(kind, order, shape, &[]).unwrap_err();
+                let error = parsed(kind, order, shape, &[]).unwrap_err();
                 assert!(error.contains("has the shape (") && error.contains("rows of 1 or more"), "{error}");
             }
             for shape in ["(0, 2)", "(0, 1152921504606846976)", "(0,)"] {
-                let empty = of("<i8", order, shape, &[]).unwrap();
+                let empty = parsed("<i8", order, shape, &[]).unwrap();
                 assert_eq!((empty.rows, empty.numbers), (0, Numbers::Whole(vec![])));
             }
         }

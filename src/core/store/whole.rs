@@ -10,26 +10,26 @@ use super::disk::{self, PartFile};
 use super::error::StoreError;
 use super::inside::make_folder;
 
-/// A whole file that the program wrote itself.
+/// Reads a whole file that the program wrote itself.
 ///
 /// # Errors
-/// What the system says.
+/// Error of the system.
 pub fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
     disk::read(path)
 }
 
-/// Writes a whole file: either all of it is there afterwards, or what was there before.
+/// Writes a whole file: afterwards either all of it is there, or the former content.
 ///
 /// # Errors
-/// What the system says, with the file's path.
+/// Error of the system, with the file's path.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     write_whole_with(path, |file| file.write_all(bytes))
 }
 
-/// [`write_whole`] for what does not lie in one piece.
+/// Writes like [`write_whole`], for content that is not in one piece.
 ///
 /// # Errors
-/// What the system says, with the file's path.
+/// Error of the system, with the file's path.
 pub fn write_whole_with(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -39,25 +39,25 @@ pub fn write_whole_with(
     file.name(true)
 }
 
-/// Files of one folder, and of folders inside it. The disk takes each while the next is being made. They
-/// appear in the order in which they were added, when all are there; each folder is then synced once.
+/// Files of one folder and its subfolders. The disk takes each while the next is being made. They appear in
+/// the order in which they were added, when all are there; each folder is then synced once.
 ///
-/// Files that are given up, as one of them cannot be written, appear nowhere.
+/// If one of them cannot be written, none of the files appears.
 pub struct Together {
     folder: PathBuf,
     files: Vec<Unnamed>,
 }
 
 impl Together {
-    /// None yet, for this folder.
+    /// Starts without files, for this folder.
     pub fn in_folder(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), files: Vec::new() }
     }
 
-    /// Adds a file by its name in the folder; a folder inside is made where it is missing.
+    /// Adds a file by its name in the folder; a missing subfolder is made.
     ///
     /// # Errors
-    /// What the system says, with the file's path.
+    /// Error of the system, with the file's path.
     pub fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), StoreError> {
         let path = self.folder.join(name);
         if folder_of(&path) != self.folder {
@@ -69,11 +69,11 @@ impl Together {
         Ok(())
     }
 
-    /// Waits for the disk, then gives the files their names; those of a folder are on the disk before the
+    /// Waits for the disk, then gives the files their names; the files of a folder are on the disk before the
     /// first of another folder appears.
     ///
     /// # Errors
-    /// What the system says, with the path of a file.
+    /// Error of the system, with the path of a file.
     pub fn finish(mut self) -> Result<(), StoreError> {
         for file in &mut self.files {
             file.part.sent().map_err(failed(&file.path, "sync"))?;
@@ -88,14 +88,14 @@ impl Together {
     }
 }
 
-/// A file that is written and has not its name yet.
+/// A written file that has no final name yet.
 struct Unnamed {
     part: PartFile,
     path: PathBuf,
 }
 
 impl Unnamed {
-    /// What `fill` writes, beside the place of the file.
+    /// Writes the output of `fill` beside the place of the file.
     fn beside(
         path: PathBuf,
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -105,7 +105,7 @@ impl Unnamed {
         Ok(Self { part, path })
     }
 
-    /// Gives a file that is on the disk its name, and syncs its folder where it `is_last` of it.
+    /// Gives a file that is on the disk its name, and syncs its folder if it `is_last` of it.
     fn name(self, is_last: bool) -> Result<(), StoreError> {
         let Self { part, path } = self;
         part.rename(&path).map_err(failed(&path, "rename"))?;

@@ -1,8 +1,8 @@
-//! What can be wrong with a packing that is to be triangulated.
+//! Errors of a packing that is to be triangulated.
 
 use thiserror::Error;
 
-/// Why a packing has no triangulation.
+/// Reasons why a packing has no triangulation.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum TriangulationError {
     /// Fewer than four grains.
@@ -34,7 +34,7 @@ pub enum TriangulationError {
         grain: usize,
         /// Name of the column.
         column: &'static str,
-        /// What it holds.
+        /// Value of the column.
         value: f64,
     },
     /// A diameter that is not a size.
@@ -42,7 +42,7 @@ pub enum TriangulationError {
     Diameter {
         /// Index of the grain, from 0.
         grain: usize,
-        /// What it holds.
+        /// Value of the diameter.
         value: f64,
     },
     /// Lengths so large or so small that their products leave the range of f64.

@@ -23,7 +23,7 @@ const MOST_IMAGES: usize = 20_000_000;
 /// A class of translates: its corners relative to the least of them, ascending.
 type Class = [(u32, Shift); 4];
 
-/// The periodic mesh of the grains in `sample`; none where they are too few to fill the cell.
+/// Finds the periodic mesh of the grains in `sample`; `None` if they are too few to fill the cell.
 pub(super) fn triangulate(points: &Points, cell: [f64; 3], sample: &[u32]) -> Option<Mesh> {
     MARGINS.into_iter().find_map(|margin| {
         let reach = libm::ceil(margin) as i32;
@@ -87,7 +87,7 @@ impl Images {
     /// One tetrahedron of each class, linked on the torus.
     fn fold(&self, mesh: &Mesh, points: &Points, cell: [f64; 3]) -> Option<Mesh> {
         let mut folded = Mesh::default();
-        // By kept tetrahedron: where it came from, and the shift from its stored translate.
+        // Origin of each kept tetrahedron, and the shift from its stored translate.
         let (mut origin, mut least) = (Vec::new(), Vec::new());
         let mut kept: HashMap<Class, u32> = HashMap::new();
         for t in 0..mesh.corners.len() as u32 {
@@ -120,7 +120,7 @@ impl Images {
     }
 }
 
-/// The class of a tetrahedron, and the shift of the corner it is measured from.
+/// Class of a tetrahedron, and the shift of its reference corner.
 fn class(corners: &[(u32, Shift); 4]) -> (Class, Shift) {
     let mut class = *corners;
     class.sort_unstable_by_key(|&(grain, shift)| (grain, shift.cells()));
@@ -128,7 +128,7 @@ fn class(corners: &[(u32, Shift); 4]) -> (Class, Shift) {
     (class.map(|(grain, shift)| (grain, shift.minus(anchor))), anchor)
 }
 
-/// Whether every facet meets exactly one other, which meets it.
+/// Tells if every facet meets exactly one other, which meets it.
 pub(super) fn paired(mesh: &Mesh) -> bool {
     (0..mesh.corners.len()).all(|t| {
         (0..4).all(|i| {
@@ -141,7 +141,7 @@ pub(super) fn paired(mesh: &Mesh) -> bool {
     })
 }
 
-/// Whether all tetrahedra are positive and their volumes add up to the cell, exactly.
+/// Tells if all tetrahedra are positive and their volumes add up to the cell, exactly.
 pub(super) fn fills(mesh: &Mesh, points: &Points, cell: [f64; 3]) -> bool {
     let positions = Positions::new(points);
     let mut sum = Wide::ZERO;

@@ -1,9 +1,9 @@
-//! The algorithm: one grain after another carves its cavity and fills it (Bowyer, Watson).
+//! Inserts one grain after another: each carves its cavity and fills it (Bowyer, Watson).
 //!
-//! The same steps run in space, where the triangulation is closed by tetrahedra with a corner at
-//! infinity, and on the torus, where a grain stands for all its images at once. The latter is right
-//! as long as the cavity of a grain neither overlaps nor touches, facet to facet, the cavities of its
-//! own images; that is noticed when it happens ([`Wrapped`]).
+//! The steps are identical in space, where tetrahedra with a corner at infinity close the triangulation, and
+//! on the torus, where a grain represents all its images at once. The torus is right as long as the cavity of
+//! a grain neither overlaps nor touches, facet to facet, the cavities of its own images; a violation is
+//! detected ([`Wrapped`]).
 
 use super::mesh::{Corner, INFINITE, Mesh, NONE, Positions, Shift, corner, grain, image};
 use super::points::GrainPoint;
@@ -14,7 +14,7 @@ use std::cmp::Ordering;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Wrapped;
 
-/// What a tetrahedron was found to be in the insertion that numbered it.
+/// State of a tetrahedron in the insertion that numbered it.
 #[derive(Clone, Copy)]
 struct Mark {
     insertion: u32,
@@ -24,13 +24,13 @@ struct Mark {
 
 const IN_CAVITY: u32 = 1 << 31;
 
-/// A facet of the cavity: the tetrahedron that will stand on it.
+/// A facet of the cavity and the tetrahedron to be built on it.
 #[derive(Clone, Copy)]
 struct Stand {
     grains: [u32; 4],
     /// Shift of each corner as seen from the new grain.
     images: [Shift; 4],
-    /// Which corner is the new grain.
+    /// Index of the corner that is the new grain.
     apex: usize,
     /// The tetrahedron outside, and its corner opposite the facet.
     outside: u32,
@@ -51,11 +51,11 @@ struct Edge {
 pub(super) struct Builder<'a> {
     pub(super) mesh: Mesh,
     positions: Positions<'a>,
-    /// Breaks ties between coincident centres: the grain that a point is an image of.
+    /// Grain behind each point and its images, which breaks ties between coincident centres.
     identity: &'a [u32],
     marks: Vec<Mark>,
     insertion: u32,
-    /// Where the next walk starts, and in which translate.
+    /// Start of the next walk, and its translate.
     last: (u32, Shift),
     dead: Vec<u32>,
     stack: Vec<(u32, Shift)>,
@@ -85,12 +85,12 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// A free triangulation of the first four points of `order` that span space: these points come
-    /// first in `order` afterwards. None if all lie in one plane.
+    /// Makes a free triangulation of the first four points of `order` that span space: these points come
+    /// first in `order` afterwards. `None` if all lie in one plane.
     pub(super) fn first(positions: Positions<'a>, identity: &'a [u32], order: &mut [u32]) -> Option<Self> {
         let spanning = spanning(positions.at, order)?;
         for (place, at) in spanning.into_iter().enumerate() {
-            // Later places hold later positions, so nothing already placed moves.
+            // Later places hold later positions, so no placed point moves.
             order[place..=at].rotate_right(1);
         }
         let mut corners = [order[0], order[1], order[2], order[3]];
@@ -102,7 +102,7 @@ impl<'a> Builder<'a> {
         let outer: [u32; 4] = std::array::from_fn(|i| {
             let mut outside = corners;
             outside[i] = INFINITE;
-            // Seen from infinity the facet turns the other way.
+            // The facet turns the other way as seen from infinity.
             outside.swap((i + 1) % 4, (i + 2) % 4);
             mesh.push(outside)
         });
@@ -120,7 +120,7 @@ impl<'a> Builder<'a> {
         Some(Self::new(mesh, positions, identity))
     }
 
-    /// Whether point `p` at `at` takes tetrahedron `t`, in the translate `shift`, away.
+    /// Tells if point `p` at `at` removes tetrahedron `t`, in the translate `shift`.
     #[inline(always)]
     fn conflict<const PERIODIC: bool>(&self, t: u32, shift: Shift, p: u32, at: &GrainPoint) -> bool {
         let corners = &self.mesh.corners[t as usize];
@@ -134,7 +134,7 @@ impl<'a> Builder<'a> {
         in_conflict(&self.positions.corners::<PERIODIC>(corners, shift), at, tie)
     }
 
-    /// Beyond a facet of the hull; in its plane, what the tetrahedron behind it says.
+    /// Tells if a point is beyond a facet of the hull; in its plane, the tetrahedron behind it decides.
     #[inline(never)]
     fn infinite_conflict(&self, t: u32, infinite: usize, p: u32, at: &GrainPoint) -> bool {
         let mut corners = self.mesh.corners[t as usize];
@@ -324,7 +324,7 @@ fn stored(grains: &[u32; 4], images: &[Shift; 4]) -> Result<([Corner; 4], Shift)
     normalised(grains, images).ok_or(Wrapped)
 }
 
-/// See [`stored`]; none if the images reach over more than four cells.
+/// Does the work of [`stored`]; `None` if the images reach over more than four cells.
 pub(super) fn normalised(grains: &[u32; 4], images: &[Shift; 4]) -> Option<([Corner; 4], Shift)> {
     let cells = images.map(Shift::cells);
     let least = Shift::new(std::array::from_fn(|axis| cells.iter().fold(i32::MAX, |m, c| m.min(c[axis]))));

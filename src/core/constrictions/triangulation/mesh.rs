@@ -1,8 +1,8 @@
 //! Topology: tetrahedra as columns, in space or on the torus.
 //!
-//! Tetrahedron `t` is entry `t` of each column. Its corners are stored in one of its periodic
-//! translates; a walk that crosses a facet carries along by how many cells the translate it stands in
-//! is shifted from the stored one. Without a cell all shifts are zero.
+//! Tetrahedron `t` is entry `t` of each column. Its corners are stored in one of its periodic translates; a
+//! walk that crosses a facet carries along the shift, in cells, of its present translate from the stored one.
+//! Without a cell all shifts are zero.
 
 use super::points::{GrainPoint, MOST_GRAINS, Points};
 
@@ -22,7 +22,7 @@ impl Shift {
         [self.0 as i8, (self.0 >> 8) as i8, (self.0 >> 16) as i8].map(i32::from)
     }
 
-    /// Bytewise, without carries from one axis into the next.
+    /// Adds bytewise, without carries from one axis into the next.
     #[inline(always)]
     pub(in crate::constrictions) fn plus(self, other: Self) -> Self {
         const LOW: u32 = 0x7f7f_7f7f;
@@ -36,8 +36,8 @@ impl Shift {
     }
 }
 
-/// A corner: the grain in the low 26 bits, above them by how many cells (0 .. 3 along each axis, two
-/// bits each, x lowest) its image is shifted.
+/// A corner: the grain in the low 26 bits, above them the shift of its image in cells (0 .. 3 along each
+/// axis, two bits each, x lowest).
 pub(super) type Corner = u32;
 
 const GRAIN_BITS: u32 = 26;
@@ -60,7 +60,7 @@ pub(super) fn image(corner: Corner) -> Shift {
     Shift((bits & 3) | ((bits & 12) << 6) | ((bits & 48) << 12))
 }
 
-/// The corner of a grain shifted by 0 .. 3 cells along each axis; none outside that range.
+/// Makes the corner of a grain shifted by 0 .. 3 cells along each axis; `None` outside that range.
 pub(super) fn corner(grain: u32, image: Shift) -> Option<Corner> {
     let [x, y, z] = image.cells();
     let fits = |c: i32| (0..4).contains(&c);
@@ -68,14 +68,14 @@ pub(super) fn corner(grain: u32, image: Shift) -> Option<Corner> {
         .then_some(grain | (x as u32 | (y as u32) << 2 | (z as u32) << 4) << GRAIN_BITS)
 }
 
-/// Tetrahedra and how they meet.
+/// Tetrahedra and their adjacency.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Mesh {
     /// Corners by tetrahedron, positively oriented. A dead slot has [`NONE`] first.
     pub(super) corners: Vec<[Corner; 4]>,
-    /// Across the facet opposite corner `i`: `4 * neighbour + its corner opposite that facet`.
+    /// Neighbour across the facet opposite corner `i`: `4 * neighbour + its corner opposite that facet`.
     pub(super) neighbours: Vec<[u32; 4]>,
-    /// Across the facet opposite corner `i`: shift of the neighbour's stored translate.
+    /// Shift of the neighbour's stored translate, across the facet opposite corner `i`.
     pub(super) shifts: Vec<[Shift; 4]>,
 }
 
@@ -88,7 +88,7 @@ impl Mesh {
         (self.corners.len() - 1) as u32
     }
 
-    /// Makes two facets meet; the second tetrahedron is shifted by `shift` as seen from the first.
+    /// Links two facets; the second tetrahedron is shifted by `shift` as seen from the first.
     #[inline(always)]
     pub(super) fn link(&mut self, (t, i): (u32, usize), (u, j): (u32, usize), shift: Shift) {
         self.neighbours[t as usize][i] = 4 * u + j as u32;
@@ -97,7 +97,7 @@ impl Mesh {
         self.shifts[u as usize][j] = Shift::ZERO.minus(shift);
     }
 
-    /// Whether a corner lies at infinity.
+    /// Index of the corner at infinity, if any.
     #[inline(always)]
     pub(super) fn infinite_corner(&self, t: u32) -> Option<usize> {
         self.corners[t as usize].iter().position(|&c| c == INFINITE)
@@ -126,7 +126,7 @@ impl Mesh {
     }
 }
 
-/// Where corners are.
+/// Positions of the corners.
 #[derive(Clone, Debug)]
 pub(in crate::constrictions) struct Positions<'a> {
     pub(super) at: &'a [GrainPoint],
@@ -152,7 +152,7 @@ impl<'a> Positions<'a> {
         [f64::from(x) * self.cell[0], f64::from(y) * self.cell[1], f64::from(z) * self.cell[2]]
     }
 
-    /// A corner in the translate `shift`.
+    /// Position of a corner in the translate `shift`.
     #[inline(always)]
     pub(super) fn corner(&self, corner: Corner, shift: Shift) -> GrainPoint {
         let (at, by) = (&self.at[grain(corner) as usize], self.displacement(shift));

@@ -1,10 +1,9 @@
 //! The periodic regular (power, weighted Delaunay) triangulation of a packing.
 
 //!
-//! In layers: [`points`] (grain centres on an integer grid, so that images are exact), [`predicates`]
-//! (exact answers, ties broken), [`mesh`] (tetrahedra and how they meet), [`insertion`] (grain after
-//! grain, in the order of [`order`]), [`images`] (how a triangulation of the torus begins), [`sanity`]
-//! (what must hold for the result).
+//! Its layers: [`points`] (grain centres on an integer grid, so that images are exact), [`predicates`] (exact
+//! answers, ties broken), [`mesh`] (tetrahedra and their adjacency), [`insertion`] (grain after grain, in the
+//! order of [`order`]), [`images`] (the first triangulation of the torus), [`sanity`] (checks of the result).
 
 mod error;
 mod images;
@@ -28,14 +27,15 @@ pub(super) use mesh::{Positions, Shift};
 pub(super) use points::GrainPoint;
 use points::Points;
 
-/// Grains of the first sample on the torus; should cavities wrap around the cell, the next is tried.
+/// Sizes of the first sample of grains on the torus; if cavities wrap around the cell, the next size is
+/// tried.
 const SAMPLES: [usize; 3] = [128, 1_024, 8_192];
 
 /// Tetrahedra of grain centres weighted by the square of their radii.
 ///
-/// On a periodic packing every tetrahedron stands for all its translates: the triangulation is one of
-/// the torus, and its corners name a grain and by how many cells that grain's image is shifted. On a
-/// free packing it fills the convex hull of the centres.
+/// On a periodic packing every tetrahedron represents all its translates: the triangulation covers the torus,
+/// and its corners name a grain and the shift of that grain's image in cells. On a free packing it fills the
+/// convex hull of the centres.
 ///
 /// ```
 /// use voidwalk_core::constrictions::Triangulation;
@@ -75,13 +75,13 @@ impl Triangulation {
     /// Triangulates a packing.
     ///
     /// # Errors
-    /// Fewer than four grains; a centre or diameter that is none; a periodic cell narrower than two
-    /// of the largest grain, or so empty that tetrahedra reach across it; free grains in one plane.
+    /// Fewer than four grains; an invalid centre or diameter; a periodic cell narrower than two of the
+    /// largest grain, or so empty that tetrahedra reach across it; free grains in one plane.
     pub fn new(packing: &Packing) -> Result<Self, TriangulationError> {
         Self::with_samples(packing, &SAMPLES)
     }
 
-    /// [`Triangulation::new`] with the sizes of the first samples to try.
+    /// Triangulates like [`Triangulation::new`], with the sizes of the first samples to try.
     pub(super) fn with_samples(packing: &Packing, samples: &[usize]) -> Result<Self, TriangulationError> {
         let points = Points::new(packing)?;
         let mesh = match points.cell {
@@ -107,22 +107,22 @@ impl Triangulation {
         self.points.at.len()
     }
 
-    /// Whether the triangulation is one of a periodic cell.
+    /// Tells if the triangulation has a periodic cell.
     pub fn is_periodic(&self) -> bool {
         self.points.cell.is_some()
     }
 
-    /// The four grains of a tetrahedron, positively oriented.
+    /// Grains at the four corners of a tetrahedron, positively oriented.
     pub fn corners(&self, tetrahedron: usize) -> [u32; 4] {
         self.mesh.corners[tetrahedron].map(grain)
     }
 
-    /// By how many cells along x, y, z the image of each corner is shifted.
+    /// Shift of the image of each corner, in cells along x, y, z.
     pub fn images(&self, tetrahedron: usize) -> [[i32; 3]; 4] {
         self.mesh.corners[tetrahedron].map(|corner| image(corner).cells())
     }
 
-    /// The tetrahedron across the facet opposite a corner; none on the hull of a free packing.
+    /// Tetrahedron across the facet opposite a corner; `None` on the hull of a free packing.
     pub fn neighbour(&self, tetrahedron: usize, corner: usize) -> Option<usize> {
         let across = self.mesh.neighbours[tetrahedron][corner];
         (across != NONE).then_some((across / 4) as usize)
@@ -143,12 +143,12 @@ impl Triangulation {
         self.points.unit_mm
     }
 
-    /// Where the grid begins (mm).
+    /// Origin of the grid (mm).
     pub(super) fn origin_mm(&self) -> [f64; 3] {
         self.points.origin_mm
     }
 
-    /// Cell lengths in grid units; none for free boundaries.
+    /// Cell lengths in grid units; `None` for free boundaries.
     pub(super) fn cell(&self) -> Option<[f64; 3]> {
         self.points.cell
     }
@@ -158,8 +158,8 @@ impl Triangulation {
         &self.points.at
     }
 
-    /// The tetrahedron across a facet, its corner opposite that facet, and the shift of its stored
-    /// translate as seen from this one's.
+    /// Tetrahedron across a facet, its corner opposite that facet, and the shift of its stored translate as
+    /// seen from this one's.
     #[inline]
     pub(super) fn across(&self, tetrahedron: usize, corner: usize) -> Option<(usize, usize, Shift)> {
         let across = self.mesh.neighbours[tetrahedron][corner];
@@ -167,7 +167,7 @@ impl Triangulation {
         (across != NONE).then_some(((across / 4) as usize, (across % 4) as usize, shift))
     }
 
-    /// Where corners are, in grid units.
+    /// Positions of the corners, in grid units.
     pub(super) fn positions(&self) -> Positions<'_> {
         Positions::new(&self.points)
     }

@@ -1,4 +1,4 @@
-//! The order in which grains are inserted: coarse to fine, each level along a Hilbert curve.
+//! Order in which grains are inserted: coarse to fine, each level along a Hilbert curve.
 //!
 //! Neighbours on the curve are neighbours in space, so a walk from the grain before is short; and
 //! each level is an even sample of the whole, so no cavity grows long (the purpose of the biased
@@ -9,7 +9,7 @@ use super::points::GrainPoint;
 /// Bits per axis of a place on the curve.
 const BITS: u32 = 16;
 
-/// Each level holds about this many times the grains of the one before.
+/// Growth of the number of grains from one level to the next, about.
 const GROWTH: usize = 8;
 
 /// Distance along the Hilbert curve of a cell of a grid of 2^[`BITS`] cells a side (Skilling,
@@ -50,7 +50,7 @@ fn along_curve(mut x: [u32; 3]) -> u64 {
     spread(x[0]) << 2 | spread(x[1]) << 1 | spread(x[2])
 }
 
-/// All points along the curve through the box from `low` to `low + extent`.
+/// Sorts all points along the curve through the box from `low` to `low + extent`.
 pub(super) fn sorted(at: &[GrainPoint], low: [f64; 3], extent: f64) -> Vec<u32> {
     let scale = f64::from(1u32 << BITS) / extent;
     let mut keyed: Vec<(u64, u32)> = at
@@ -65,7 +65,7 @@ pub(super) fn sorted(at: &[GrainPoint], low: [f64; 3], extent: f64) -> Vec<u32> 
     keyed.into_iter().map(|(_, i)| i).collect()
 }
 
-/// The same points, every `stride`th first, then level by level the rest.
+/// Reorders the points: every `stride`th first, then level by level the rest.
 pub(super) fn levels(sorted: &[u32], mut stride: usize) -> Vec<u32> {
     let mut placed = vec![false; sorted.len()];
     let mut order = Vec::with_capacity(sorted.len());

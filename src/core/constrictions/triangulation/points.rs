@@ -1,12 +1,12 @@
 //! Grain centres on an integer grid, so that a periodic image is exact.
 //!
-//! `x + L` rounds, and a rounded image no longer lies on exactly the sphere its grain lies on: facets
-//! then fail to pair across the boundary of a lattice. So centres, radii and cell lengths are first
-//! rounded to multiples of one power of two, 2^-50 of the largest length (a grain of a thousandth of
-//! the cell moves by 1e-12 of its size at most; centres that are already such multiples do not move).
-//! From there on every coordinate, every image up to seven cells away and every difference of two is
-//! an integer held exactly by an f64, every predicate has one exact answer, and that answer is the
-//! same for all images. A factor of two on all lengths changes the grid with them, hence no bit.
+//! `x + L` rounds, and a rounded image no longer lies on exactly the grain's sphere: facets then fail to pair
+//! across the boundary of a lattice. So centres, radii and cell lengths are first rounded to multiples of one
+//! power of two, 2^-50 of the largest length (a grain of a thousandth of the cell moves by 1e-12 of its size
+//! at most; centres that are already such multiples do not move). From there on every coordinate, every image
+//! up to seven cells away and every difference of two is an integer held exactly by an f64, every predicate
+//! has one exact answer, and that answer is the same for all images. A factor of two on all lengths changes
+//! the grid with them, hence no bit.
 
 use super::super::tangent::cross;
 use super::error::TriangulationError;
@@ -21,7 +21,7 @@ const FLAT: f64 = 1e-6;
 /// Bits of the largest length in grid units.
 const BITS: i32 = 50;
 
-/// Grains a corner can name ([`super::mesh`]).
+/// Largest number of grains that a corner can name ([`super::mesh`]).
 pub(super) const MOST_GRAINS: usize = (1 << 26) - 1;
 
 /// The grains of a packing on the grid.
@@ -29,11 +29,11 @@ pub(super) const MOST_GRAINS: usize = (1 << 26) - 1;
 pub(super) struct Points {
     /// Centre, wrapped into the cell, and radius by grain.
     pub(super) at: Vec<GrainPoint>,
-    /// Cell lengths in grid units; none for free boundaries.
+    /// Cell lengths in grid units; `None` for free boundaries.
     pub(super) cell: Option<[f64; 3]>,
     /// Length of a grid unit (mm), a power of two.
     pub(super) unit_mm: f64,
-    /// What was subtracted from the coordinates before they were rounded (mm).
+    /// Origin that was subtracted from the coordinates before rounding (mm).
     pub(super) origin_mm: [f64; 3],
 }
 
@@ -76,7 +76,7 @@ impl Points {
         Ok(Self { at, cell, unit_mm, origin_mm })
     }
 
-    /// Whether the centres lie in one plane, or on one line.
+    /// Tells if the centres lie in one plane, or on one line.
     pub(super) fn is_flat(&self) -> bool {
         let from = self.at[0];
         let offsets: Vec<[f64; 3]> =
@@ -95,7 +95,7 @@ impl Points {
     }
 }
 
-/// `value` in grid units, brought into `0 .. cell`.
+/// Converts `value` to grid units, brought into `0 .. cell`.
 fn wrapped(value: f64, length: f64, scale: f64, cell: f64) -> f64 {
     let inside = libm::rint((value - libm::floor(value / length) * length) * scale);
     if inside >= cell {
@@ -131,7 +131,7 @@ fn check(packing: &Packing) -> Result<(usize, f64), TriangulationError> {
     let largest_mm = packing.diameter.iter().fold(0.0, |a: f64, &b| a.max(b));
     if let Cell::Periodic(lengths) = packing.cell {
         for (axis, length_mm) in ["x", "y", "z"].into_iter().zip(lengths) {
-            // Written so that NaN is refused as well.
+            // This form refuses NaN as well.
             if !(length_mm.is_finite() && length_mm >= 2.0 * largest_mm) {
                 return Err(TriangulationError::Narrow { axis, length_mm, largest_mm });
             }

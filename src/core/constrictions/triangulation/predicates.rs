@@ -1,14 +1,13 @@
-//! The two questions that a regular triangulation asks, answered exactly.
+//! The two exact predicates of a regular triangulation.
 //!
-//! For a tetrahedron with corners 0..3 of positive orientation and a point `p`, [`facets`] gives for
-//! each corner the orientation of the tetrahedron with that corner replaced by `p` (is `p` beyond the
-//! facet opposite it?), and [`in_conflict`] whether `p` lies closer, by power distance, than the
-//! corners allow: with heights `h = |x|^2 - r^2`, whether `p` lies below the plane through the four
-//! lifted corners.
+//! For a tetrahedron with corners 0..3 of positive orientation and a point `p`, [`facets`] gives for each
+//! corner the orientation of the tetrahedron with that corner replaced by `p` (is `p` beyond the facet
+//! opposite it?), and [`in_conflict`] tells if `p` lies closer, by power distance, than the corners allow:
+//! with heights `h = |x|^2 - r^2`, if `p` lies below the plane through the four lifted corners.
 //!
-//! Both are determinants of differences, which are exact on the grid ([`super::points`]). They are
-//! evaluated in f64 with a bound on the rounding error that follows from the sizes of the
-//! differences; where the bound does not decide, in integers of 320 bits.
+//! Both are determinants of differences, which are exact on the grid ([`super::points`]). They are evaluated
+//! in f64 with a bound on the rounding error that follows from the sizes of the differences; if the bound
+//! does not decide, in integers of 320 bits.
 //!
 //! # Ties
 //! Five centres on one sphere (every lattice) are separated by raising each height by a symbolic
@@ -80,8 +79,8 @@ fn exact_minors(d: &[[f64; 3]; 4]) -> [Wide; 4] {
     ]
 }
 
-/// Which facet a walk towards `p` should cross: the opposite corner of one that `p` lies strictly
-/// beyond, or none if the closed tetrahedron holds `p`.
+/// Finds the facet that a walk towards `p` should cross: the opposite corner of a facet that `p` lies
+/// strictly beyond, or `None` if the closed tetrahedron holds `p`.
 #[inline]
 pub(super) fn facets(corners: &[GrainPoint; 4], p: &GrainPoint) -> Option<usize> {
     let d = differences(corners, p);
@@ -122,8 +121,8 @@ fn row(a: &GrainPoint, p: &GrainPoint) -> [f64; 3] {
     [a[0] - p[0], a[1] - p[1], a[2] - p[2]]
 }
 
-/// Whether `p` takes the positively oriented tetrahedron away. `order` compares corners (0..3) and
-/// `p` (4) where their centres and so their heights are the same.
+/// Tells if `p` removes the positively oriented tetrahedron. `order` compares corners (0..3) and `p` (4) if
+/// their centres and so their heights are the same.
 #[inline]
 pub(super) fn in_conflict(
     corners: &[GrainPoint; 4],
@@ -172,8 +171,8 @@ fn exact_conflict(
     }
 }
 
-/// All five on one sphere: the sign of the largest perturbation whose factor is not zero. Raising
-/// corner `i` raises the plane at `p` by the barycentric coordinate of `p`; raising `p` lifts it out.
+/// Decides for five points on one sphere by the sign of the largest perturbation whose factor is not zero.
+/// Raising corner `i` raises the plane at `p` by the barycentric coordinate of `p`; raising `p` lifts it out.
 fn perturbed_conflict(
     corners: &[GrainPoint; 4],
     p: &GrainPoint,

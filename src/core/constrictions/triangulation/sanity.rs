@@ -1,4 +1,4 @@
-//! What must hold for every triangulation, checked outright.
+//! Direct checks of the identities of every triangulation.
 
 use super::Triangulation;
 use super::images;
@@ -31,7 +31,7 @@ pub enum SanityError {
         /// Difference over the volume of the cell.
         relative_error: f64,
     },
-    /// A corner across a facet that should have taken the tetrahedron away.
+    /// A corner across a facet that should have removed the tetrahedron.
     #[error("across facet {facet} of tetrahedron {tetrahedron} lies a grain inside its power sphere")]
     Irregular {
         /// Index of the tetrahedron.
@@ -39,7 +39,7 @@ pub enum SanityError {
         /// Corner opposite the facet.
         facet: usize,
     },
-    /// Euler's relation.
+    /// A violation of Euler's relation.
     #[error(
         "{vertices} vertices - {edges} edges + {facets} facets - {tetrahedra} tetrahedra is not {expected}"
     )]
@@ -133,7 +133,7 @@ impl Triangulation {
     }
 }
 
-/// Whether a facet and the one it is linked to have the same three corners, seen from both sides.
+/// Tells if a facet and its linked facet have the same three corners, seen from both sides.
 fn same_facet(mesh: &Mesh, t: usize, i: usize) -> bool {
     let across = mesh.neighbours[t][i];
     let (u, j) = ((across / 4) as usize, (across % 4) as usize);

@@ -11,7 +11,7 @@ fn key(chunk: u64) -> impl Rng {
     Key { seed: 20_261_121, purpose: Purpose::Packing, run: 0, increment: 0, chunk }.generator()
 }
 
-/// Grains at random, overlapping as they like, diameters between two sizes.
+/// Random grains, with any overlap, of diameters between two sizes.
 fn random(grains: usize, cell: Cell, extent: [f64; 3], sizes: [f64; 2], chunk: u64) -> Packing {
     let mut rng = key(chunk);
     let mut column = |low: f64, high: f64| -> Vec<f64> {
@@ -52,30 +52,30 @@ fn height(point: &[i64; 4]) -> BigInt {
     &x * &x + &y * &y + &z * &z - &r * &r
 }
 
-/// All tetrahedra whose lifted plane has every other lifted point above it, as `above` says.
+/// Finds all tetrahedra whose lifted plane has every other lifted point above it, according to `above`.
 fn brute_force(
     points: &[[i64; 4]],
     mut above: impl FnMut([usize; 4], usize) -> Option<bool>,
 ) -> BTreeSet<[u32; 4]> {
     let n = points.len();
-    let mut found = BTreeSet::new();
+    let mut regular = BTreeSet::new();
     for a in 0..n {
         for b in a + 1..n {
             for c in b + 1..n {
                 for d in c + 1..n {
                     let four = [a, b, c, d];
                     if (0..n).all(|e| four.contains(&e) || above(four, e) == Some(true)) {
-                        found.insert(four.map(|i| i as u32));
+                        regular.insert(four.map(|i| i as u32));
                     }
                 }
             }
         }
     }
-    found
+    regular
 }
 
-/// Heights raised by actual powers of two in lexicographic order instead of symbols, and the
-/// determinant of the five lifted points written out.
+/// Raises heights by actual powers of two in lexicographic order instead of symbols, and writes out the
+/// determinant of the five lifted points.
 fn literal(points: &[[i64; 4]]) -> BTreeSet<[u32; 4]> {
     const STEP: usize = 400;
     let (rank, n) = (ranks(points), points.len());
@@ -94,7 +94,7 @@ fn literal(points: &[[i64; 4]]) -> BTreeSet<[u32; 4]> {
     })
 }
 
-/// The same determinant as a polynomial in the raises: the factor of height `i` is a volume.
+/// Evaluates that determinant as a polynomial in the raises: the factor of height `i` is a volume.
 fn polynomial(points: &[[i64; 4]]) -> BTreeSet<[u32; 4]> {
     let rank = ranks(points);
     let heights: Vec<BigInt> = points.iter().map(height).collect();
@@ -105,8 +105,8 @@ fn polynomial(points: &[[i64; 4]]) -> BTreeSet<[u32; 4]> {
     };
     brute_force(points, |four, e| {
         let whole = volume(four).signum();
-        // Barycentric weights of e, times the volume, and -1 for e itself: zero where the plane
-        // through the four passes through e, negative where e lies above it.
+        // Barycentric weights of e, times the volume, and -1 for e itself: zero if the plane through the four
+        // passes through e, negative if e lies above it.
         let mut terms: Vec<(usize, i128)> = (0..4)
             .map(|k| {
                 let mut replaced = four;
@@ -125,7 +125,7 @@ fn polynomial(points: &[[i64; 4]]) -> BTreeSet<[u32; 4]> {
     })
 }
 
-/// Tetrahedra as sorted grains; several translates of the same four grains stay apart by count.
+/// Tetrahedra as sorted grains; translates of the same four grains remain apart by count.
 fn tetrahedra(t: &Triangulation) -> Vec<[u32; 4]> {
     let mut all: Vec<[u32; 4]> = (0..t.tetrahedra())
         .map(|i| {
@@ -144,8 +144,8 @@ fn integers(points: &[[i64; 4]]) -> Packing {
     Packing { cell: Cell::Free, x: column(0), y: column(1), z: column(2), diameter }
 }
 
-/// Ten thousand sets of five to eight grains. A third on a grid of 4 x 4 x 4 (nothing but ties,
-/// duplicates among them), a third on one of 32, a third with 40 bits.
+/// Ten thousand sets of five to eight grains: a third on a grid of 4 x 4 x 4 (nothing but ties, duplicates
+/// among them), a third on one of 32, a third with 40 bits.
 #[test]
 fn small_sets_agree_with_brute_force() {
     let mut flat = 0;
@@ -162,9 +162,9 @@ fn small_sets_agree_with_brute_force() {
         match Triangulation::new(&integers(&points)) {
             Ok(t) => {
                 assert_eq!(t.sanity_check(), Ok(()), "set {set}: {points:?}");
-                let found = tetrahedra(&t);
+                let actual = tetrahedra(&t);
                 let expected: Vec<_> = polynomial(&points).into_iter().collect();
-                assert_eq!(found, expected, "set {set}: {points:?}");
+                assert_eq!(actual, expected, "set {set}: {points:?}");
                 if set % 101 == 0 {
                     assert!(literal(&points).into_iter().eq(expected), "set {set}: {points:?}");
                 }
@@ -253,7 +253,7 @@ fn hidden_grains_and_duplicates_are_named() {
     }
     let t = Triangulation::new(&packing).unwrap();
     assert_eq!(t.sanity_check(), Ok(()));
-    // Of two equal grains either may stay.
+    // Either of two equal grains may remain.
     let gone = if t.hidden().contains(&17) { 17 } else { 300 };
     for hidden in [gone, 301, 302] {
         assert!(t.hidden().contains(&hidden), "{:?}", t.hidden());
@@ -294,7 +294,7 @@ fn what_has_no_triangulation_is_refused() {
     );
 }
 
-/// The check itself: a triangulation that is broken on purpose.
+/// A triangulation broken on purpose fails the check.
 #[test]
 fn a_broken_triangulation_is_noticed() {
     let packing = random(200, Cell::Periodic([5.0; 3]), [5.0; 3], [0.4, 0.5], 11);

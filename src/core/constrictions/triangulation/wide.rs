@@ -1,8 +1,8 @@
-//! Integers of 320 bits: what the exact predicates are decided in.
+//! Integers of 320 bits, which decide the exact predicates.
 //!
-//! Grain centres sit on an integer grid ([`super::points`]), so a determinant that plain f64 cannot
-//! sign is an integer below 2^272 and is computed outright. Two's complement, wrapping: the product
-//! of two numbers whose true product fits is right whatever happened above bit 320.
+//! Grain centres lie on an integer grid ([`super::points`]), so a determinant whose sign plain f64 cannot
+//! decide is an integer below 2^272 and is computed exactly. Two's complement, wrapping: the product of two
+//! numbers whose true product fits is right, whatever happened above bit 320.
 
 use std::ops::{Add, Mul, Neg, Sub};
 

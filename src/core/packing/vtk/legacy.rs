@@ -1,12 +1,12 @@
-//! Files of VTK before XML: a heading of four lines, and then words with numbers in text or, with the high
-//! byte first, in binary.
+//! VTK files before XML: a heading of four lines, and then words with numbers in text or, with the high byte
+//! first, in binary.
 
 use super::number::Number;
 use super::points::{PointArray, Points, grains};
 use crate::packing::fields::{ImportError, refused};
 use crate::packing::found::FileGrains;
 
-/// The grains of a file that begins with `# vtk DataFile`.
+/// Reads the grains of a file that begins with `# vtk DataFile`.
 pub fn legacy(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
     let mut cursor = Cursor { file, content, at: 0, line: 0, is_binary: false };
     let heading = [cursor.raw_line(), cursor.raw_line()];
@@ -72,12 +72,12 @@ pub fn legacy(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
     grains(file, Points { line, places, arrays })
 }
 
-/// A file as far as it has been read.
+/// A position in the file.
 struct Cursor<'a> {
     file: &'a str,
     content: &'a [u8],
     at: usize,
-    /// Lines begun, of a binary file as many as its bytes seem to have.
+    /// Number of lines begun, counted by line ends in a binary file too.
     line: usize,
     is_binary: bool,
 }
@@ -114,7 +114,7 @@ impl<'a> Cursor<'a> {
         self.next_words().ok_or_else(|| self.ended("further lines"))
     }
 
-    /// Goes on behind the next line where that is one of these; stays where it is not.
+    /// Passes over the next line if it is one of these, or else does not move.
     fn skip_if(&mut self, is: impl Fn(&str) -> bool) -> bool {
         let before = (self.at, self.line);
         let is_skipped = self.next_words().is_some_and(|words| is(&words[0]));
@@ -154,7 +154,7 @@ impl<'a> Cursor<'a> {
         Ok(PointArray { line, name: name.to_owned(), values })
     }
 
-    /// Passes over the lists of which points make a cell: since VTK 9 as offsets and points.
+    /// Passes over the lists of the points of each cell: since VTK 9 as offsets and points.
     fn cells(&mut self, count: &str, size: &str) -> Result<(), ImportError> {
         let before = (self.at, self.line);
         let words = self.words()?;
@@ -169,11 +169,11 @@ impl<'a> Cursor<'a> {
         self.numbers(size, 1, "int").map(drop)
     }
 
-    /// So many tuples of numbers.
+    /// Reads `tuples` tuples of numbers.
     fn numbers(&mut self, tuples: &str, components: usize, kind: &str) -> Result<Vec<f64>, ImportError> {
         let count = self.count(tuples)?.checked_mul(components);
         let left = self.content.len() - self.at;
-        // Each takes a byte at least, so that no number in a file asks for more memory than the file has.
+        // A number takes a byte at least, so a file can never ask for more memory than its own size.
         let Some(count) = count.filter(|&count| count <= left) else {
             return Err(self.ended(&format!("{tuples} times {components} numbers")));
         };

@@ -1,6 +1,6 @@
-//! Numbers of files of VTK as bytes.
+//! Numbers of VTK files as bytes.
 
-/// What one number of an array is made of.
+/// Type of the numbers of an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Number {
     I8,
@@ -16,7 +16,7 @@ pub enum Number {
 }
 
 impl Number {
-    /// Bytes that it takes.
+    /// Size in bytes.
     pub fn bytes(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -26,7 +26,7 @@ impl Number {
         }
     }
 
-    /// All numbers in a run of bytes; what is left of it is none.
+    /// All numbers in a run of bytes; an incomplete rest is ignored.
     pub fn all(self, bytes: &[u8], is_big_endian: bool) -> Vec<f64> {
         bytes.chunks_exact(self.bytes()).map(|bytes| self.one(bytes, is_big_endian)).collect()
     }

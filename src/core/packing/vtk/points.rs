@@ -1,15 +1,15 @@
-//! Points with numbers as grains.
+//! Turns points with numbers into grains.
 
 use crate::packing::LengthUnit;
 use crate::packing::csv::{DIAMETER, Named, RADIUS};
 use crate::packing::fields::{ImportError, refused};
 use crate::packing::found::{FileCell, FileGrains, NAMES};
 
-/// Points of a file and the numbers that they carry.
+/// Points of a file and their numbers.
 pub struct Points {
     /// The line that names them, for messages.
     pub line: usize,
-    /// x, y and z of each in turn.
+    /// x, y and z of each point in turn.
     pub places: Vec<f64>,
     pub arrays: Vec<PointArray>,
 }
@@ -21,7 +21,7 @@ pub struct PointArray {
     pub values: Vec<f64>,
 }
 
-/// The points as grains.
+/// Turns the points into grains.
 pub fn grains(file: &str, points: Points) -> Result<FileGrains, ImportError> {
     let named = |called: &[&str]| -> Vec<(&PointArray, Named)> {
         let all = points.arrays.iter().map(|array| (array, Named::of(&array.name)));

@@ -1,4 +1,4 @@
-//! The same grains in every form of VTK, and what is refused.
+//! Equal grains in every form of VTK, and the refusals.
 
 use std::io::Write;
 
@@ -49,7 +49,7 @@ fn files_before_xml() {
     assert_eq!(read(LEGACY.as_bytes()), Ok(expected()));
     assert_eq!(read(&gzip(LEGACY.as_bytes())), Ok(expected()));
     assert_eq!(read(LEGACY.replace('\n', "\r\n").as_bytes()), Ok(expected()));
-    // As VTK 9 writes it, in binary: cells by offsets, a field, and what it notes of arrays.
+    // Binary, in the form of VTK 9: cells by offsets, a field, and notes on arrays.
     let ints = |values: &[i64]| values.iter().flat_map(|v| v.to_be_bytes()).collect::<Vec<u8>>();
     let parts: [(&str, Vec<u8>); 7] = [
         (
@@ -65,14 +65,14 @@ fn files_before_xml() {
     ];
     let binary: Vec<u8> = parts.iter().flat_map(|(text, bytes)| [text.as_bytes(), bytes].concat()).collect();
     assert_eq!(read(&binary), Ok(expected()));
-    // Every shorter file is refused, or lacks nothing but what follows the radii.
+    // Every shorter file is refused, or lacks only the part behind the radii.
     for end in 0..binary.len() {
         let shorter = read(&binary[..end]);
         assert!(shorter.is_err() || shorter == Ok(expected()), "{end}: {shorter:?}");
     }
 }
 
-/// A file in XML whose arrays are declared so, with this content.
+/// A file in XML whose arrays have these attributes and this content.
 fn in_xml(attributes: &str, arrays: [(&str, &str); 2], appended: &[u8]) -> Vec<u8> {
     let [(of_places, places), (of_radii, radii)] = arrays;
     let head = format!(
@@ -111,7 +111,7 @@ fn files_in_xml() {
     let text = [words(&PLACES), words(&RADII)];
     let ascii = in_xml("", [("format=\"ascii\"", &text[0]), ("format=\"ascii\"", &text[1])], b"");
     assert_eq!(read(&ascii), Ok(expected()));
-    // What VTK notes of an array stands within it.
+    // Notes of VTK on an array lie within it.
     let noted =
         text.each_ref().map(|text| format!("{text}\n<InformationKey><Value>9</Value></InformationKey>"));
     let noted = [("format=\"ascii\"", noted[0].as_str()), ("format=\"ascii\"", &noted[1])];
@@ -125,13 +125,13 @@ fn files_in_xml() {
     let compressor = "compressor=\"vtkZLibDataCompressor\" header_type=\"UInt32\"";
     assert_eq!(read(&in_xml(compressor, inline, b"")), Ok(expected()));
     for (is_raw, is_zlib) in [(true, false), (false, false), (true, true), (false, true)] {
-        let of = |bytes: &[u8]| match (is_raw, is_zlib) {
+        let encoded = |bytes: &[u8]| match (is_raw, is_zlib) {
             (true, false) => with_length(bytes),
             (true, true) => zlib(bytes).concat(),
             (false, false) => STANDARD.encode(with_length(bytes)).into_bytes(),
             (false, true) => zlib(bytes).map(|part| STANDARD.encode(part)).concat().into_bytes(),
         };
-        let (first, second) = (of(&places), of(&radii));
+        let (first, second) = (encoded(&places), encoded(&radii));
         let encoding = if is_raw { "raw" } else { "base64" };
         let appended =
             [format!("<AppendedData encoding=\"{encoding}\">\n _").as_bytes(), &first, &second].concat();
@@ -141,7 +141,7 @@ fn files_in_xml() {
         let content = in_xml(if is_zlib { compressor } else { "" }, declared, &appended);
         assert_eq!(read(&content), Ok(expected()), "{is_raw} {is_zlib}");
     }
-    // What this program writes says its unit.
+    // Files written by this program give their unit.
     let packing = Packing { cell: Cell::Free, ..expected() };
     let options = ReadOptions { unit: None, cell: Some(CellOption::None) };
     let (back, _) = Packing::parse_as("grains.vtp", packing.to_vtp().as_bytes(), &options).unwrap();
@@ -202,7 +202,7 @@ fn what_is_refused_says_why() {
 }
 
 proptest! {
-    /// No bytes make it panic.
+    /// No bytes cause a panic.
     #[test]
     fn nothing_panics(at in 0usize..600, byte: u8, which in 0usize..3) {
         let zlib = [&PLACES[..], &RADII]

@@ -1,5 +1,5 @@
-//! Files of VTK in XML, `.vtp` and `.vtu`: numbers in text, in Base64, or appended behind the XML in Base64
-//! or as they are; compressed by zlib or not.
+//! VTK files in XML, `.vtp` and `.vtu`: numbers in text, in Base64, or appended behind the XML in Base64 or
+//! raw; compressed by zlib or not.
 
 use std::io::Read;
 
@@ -16,25 +16,25 @@ use crate::packing::found::FileGrains;
 /// Types of files that are read.
 const TYPES: [&str; 2] = ["PolyData", "UnstructuredGrid"];
 
-/// A block of compressed numbers is no larger than this, unpacked.
+/// Largest size of a block of compressed numbers, unpacked.
 const LARGEST_BLOCK: usize = 1 << 28;
 
-/// The grains of a file of VTK in XML.
+/// Reads the grains of a VTK file in XML.
 pub fn xml(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
     let (head, appended) = split(file, content)?;
     let line_ends =
         |part: std::ops::Range<usize>| head.as_bytes()[part].iter().filter(|&&byte| byte == b'\n').count();
     let mut reader = Reader::from_str(head);
     reader.config_mut().expand_empty_elements = true;
-    // Of a file with appended data the end is cut off.
+    // A file with appended data is cut off before its end.
     reader.config_mut().check_end_names = false;
     let mut form =
         Form { file, line: 1, is_big_endian: false, header: Number::U32, is_zlib: false, appended };
     let mut points = Points { line: 1, places: Vec::new(), arrays: Vec::new() };
-    // Points that the pieces say they have, and whether the file comes to its end.
-    let (mut said, mut is_whole) = (0usize, form.appended.is_some());
+    // Number of points in the pieces so far, and true once the file is complete.
+    let (mut point_count, mut is_whole) = (0usize, form.appended.is_some());
     let (mut room, mut open): (Option<Room>, Option<Declared>) = (None, None);
-    // How deep within an array: what VTK notes of one stands in elements of their own.
+    // Depth within an array: notes of VTK on an array are elements of their own.
     let mut within: i64 = 0;
     let mut at = 0;
     loop {
@@ -42,7 +42,7 @@ pub fn xml(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
         form.line += line_ends(before..at);
         let event = match reader.read_event() {
             Ok(event) => event,
-            // Where the numbers begin that are appended, the XML is cut off.
+            // The XML is cut off where the appended numbers begin.
             Err(_) if form.appended.is_some() && reader.buffer_position() as usize >= head.len() => break,
             Err(error) => {
                 return Err(form.refused("XML", &error.to_string(), "a whole file of VTK"));
@@ -53,8 +53,9 @@ pub fn xml(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
                 "VTKFile" => form.read(&e)?,
                 "Piece" => {
                     let count = attribute(&e, "NumberOfPoints").unwrap_or_default();
-                    let more = count.parse().ok().and_then(|more| said.checked_add(more));
-                    said = more.ok_or_else(|| form.refused("NumberOfPoints", &count, "a whole number"))?;
+                    let more = count.parse().ok().and_then(|more| point_count.checked_add(more));
+                    point_count =
+                        more.ok_or_else(|| form.refused("NumberOfPoints", &count, "a whole number"))?;
                 }
                 "Points" => {
                     (room, points.line) = (Some(Room::Places), form.line);
@@ -88,35 +89,35 @@ pub fn xml(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
         let (file, line) = (file.into(), form.line);
         return Err(ImportError::Truncated { file, line, expected: "</VTKFile>".into() });
     }
-    if said.checked_mul(3) != Some(points.places.len()) {
-        let found = format!("{} numbers", points.places.len());
-        let allowed = format!("x, y and z of {said} points, as NumberOfPoints says");
-        return Err(refused(file, points.line, "points", &found, allowed));
+    if point_count.checked_mul(3) != Some(points.places.len()) {
+        let actual = format!("{} numbers", points.places.len());
+        let allowed = format!("x, y and z of {point_count} points, as NumberOfPoints says");
+        return Err(refused(file, points.line, "points", &actual, allowed));
     }
     grains(file, points)
 }
 
-/// What an array is of.
+/// Target of an array.
 #[derive(Clone, Copy, PartialEq)]
 enum Room {
     Places,
     Numbers,
 }
 
-/// Adds an array to those of the pieces before it.
-fn keep(points: &mut Points, room: Room, of: Declared, form: &Form<'_>) -> Result<(), ImportError> {
+/// Adds an array to the arrays of earlier pieces.
+fn keep(points: &mut Points, room: Room, array: Declared, form: &Form<'_>) -> Result<(), ImportError> {
     match room {
-        Room::Places if of.components != 3 => {
+        Room::Places if array.components != 3 => {
             let allowed = "three: x, y and z";
-            Err(refused(form.file, of.line, "NumberOfComponents", &of.components.to_string(), allowed))
+            Err(refused(form.file, array.line, "NumberOfComponents", &array.components.to_string(), allowed))
         }
         Room::Places => {
-            points.places.extend(of.values(form)?);
+            points.places.extend(array.values(form)?);
             Ok(())
         }
-        Room::Numbers if of.components != 1 => Ok(()),
+        Room::Numbers if array.components != 1 => Ok(()),
         Room::Numbers => {
-            let (line, name, values) = (of.line, of.name.clone(), of.values(form)?);
+            let (line, name, values) = (array.line, array.name.clone(), array.values(form)?);
             match points.arrays.iter_mut().find(|array| array.name == name) {
                 Some(array) => array.values.extend(values),
                 None => points.arrays.push(PointArray { line, name, values }),
@@ -126,17 +127,17 @@ fn keep(points: &mut Points, room: Room, of: Declared, form: &Form<'_>) -> Resul
     }
 }
 
-/// The XML, and what is appended behind it.
+/// Separates the XML from the data appended behind it.
 fn split<'a>(file: &str, content: &'a [u8]) -> Result<(&'a str, Option<Appended<'a>>), ImportError> {
     const OPENS: &[u8] = b"<AppendedData";
-    let found = content.windows(OPENS.len()).position(|window| window == OPENS);
-    let end = found.unwrap_or(content.len());
+    let appended_at = content.windows(OPENS.len()).position(|window| window == OPENS);
+    let end = appended_at.unwrap_or(content.len());
     let head = std::str::from_utf8(&content[..end]).map_err(|error| {
         let good = error.valid_up_to();
         let line = 1 + content[..good].iter().filter(|&&byte| byte == b'\n').count();
         ImportError::Encoding { file: file.into(), line, byte: content[good] }
     })?;
-    let Some(begin) = found else { return Ok((head, None)) };
+    let Some(begin) = appended_at else { return Ok((head, None)) };
     let line = 1 + head.bytes().filter(|&byte| byte == b'\n').count();
     let tag = &content[begin..];
     let marks = |mark: u8, from: usize| tag[from..].iter().position(|&byte| byte == mark).map(|at| from + at);
@@ -157,12 +158,12 @@ struct Appended<'a> {
     content: &'a [u8],
 }
 
-/// How a file gives its numbers.
+/// Encoding of the numbers in a file.
 struct Form<'a> {
     file: &'a str,
     line: usize,
     is_big_endian: bool,
-    /// The whole numbers that say how many bytes follow.
+    /// Type of the whole numbers that give the length of what follows.
     header: Number,
     is_zlib: bool,
     appended: Option<Appended<'a>>,
@@ -201,11 +202,11 @@ impl Form<'_> {
 }
 
 fn attribute(element: &BytesStart<'_>, name: &str) -> Option<String> {
-    let found = element.attributes().with_checks(false).flatten().find(|a| a.key.as_ref() == name)?;
-    Some(quick_xml::escape::unescape(&found.value).ok()?.into_owned())
+    let entry = element.attributes().with_checks(false).flatten().find(|a| a.key.as_ref() == name)?;
+    Some(quick_xml::escape::unescape(&entry.value).ok()?.into_owned())
 }
 
-/// An array as it is declared, with the text in it.
+/// An array with its attributes and its text.
 struct Declared {
     line: usize,
     name: String,
@@ -215,11 +216,11 @@ struct Declared {
     text: String,
 }
 
-/// Where an array's numbers are.
+/// Location of an array's numbers.
 enum Place {
     Text,
     Base64,
-    /// So many bytes or characters behind the underscore.
+    /// Offset in bytes or characters behind the underscore.
     Appended(usize),
 }
 
@@ -276,15 +277,15 @@ impl Declared {
     }
 }
 
-/// Bytes as a file has them; more may follow than belong to an array.
+/// Bytes as encoded in the file; more may follow than belong to an array.
 enum Coded<'a> {
     Raw(&'a [u8]),
     Base64(&'a [u8]),
 }
 
 impl Coded<'_> {
-    /// So many bytes, and where the next run begins: runs in Base64 are filled up to whole groups.
-    /// Of a longer run it gives the first bytes.
+    /// Decodes `bytes` bytes, and returns the place of the next run: runs in Base64 are filled up to whole
+    /// groups. If the run is longer, its first bytes are returned.
     fn run(&self, from: usize, bytes: usize) -> Option<(Vec<u8>, usize)> {
         match self {
             Self::Raw(content) => {
@@ -301,7 +302,7 @@ impl Coded<'_> {
     }
 }
 
-/// The bytes of an array behind its header, unpacked.
+/// Reads the bytes of an array behind its header, unpacked.
 fn block(coded: &Coded<'_>, form: &Form<'_>) -> Option<Vec<u8>> {
     let word = form.header.bytes();
     let whole = |bytes: &[u8]| form.header.one(bytes, form.is_big_endian) as usize;
@@ -311,7 +312,7 @@ fn block(coded: &Coded<'_>, form: &Form<'_>) -> Option<Vec<u8>> {
         all.drain(..word);
         return Some(all);
     }
-    // Blocks, the bytes of each unpacked, of the last if it is shorter, and of each as packed.
+    // Number of blocks, the unpacked size of each, of the last if it is shorter, and the packed size of each.
     let (header, begin) = coded.run(0, first.checked_add(3)?.checked_mul(word)?)?;
     let sizes: Vec<usize> = header.chunks_exact(word).map(whole).collect();
     let (full, last) = (sizes[1], sizes[2]);

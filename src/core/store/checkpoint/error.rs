@@ -1,17 +1,17 @@
-//! Why a checkpoint is refused.
+//! Reasons for refusing a checkpoint.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why a checkpoint is refused. What can be done about it depends on the command, which says so.
+/// Reasons for refusing a checkpoint. The remedy depends on the command, which names it.
 #[derive(Debug, thiserror::Error)]
 pub enum CheckpointError {
-    /// The content of the file is not what was written.
+    /// The content of the file differs from what was written.
     #[error("{}: corrupt: {problem}", file.display())]
     Corrupt {
         /// The file.
         file: PathBuf,
-        /// What is wrong with it.
+        /// Description of the damage.
         problem: String,
     },
     /// The system fails to read the file, which may be whole.
@@ -22,7 +22,7 @@ pub enum CheckpointError {
     Unreadable {
         /// The file.
         file: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         source: io::Error,
     },
     /// The file is of another version of the format.
@@ -34,9 +34,9 @@ pub enum CheckpointError {
     OtherVersion {
         /// The file.
         file: PathBuf,
-        /// Version of its format.
+        /// Version of the file's format.
         found: u32,
-        /// The version that is read.
+        /// Version that is read.
         expected: u32,
     },
     /// The file was written on a machine of another kind.
@@ -56,9 +56,9 @@ pub enum CheckpointError {
     OtherWalk {
         /// The file.
         file: PathBuf,
-        /// The walk that it is of.
+        /// Walk of the file.
         found: String,
-        /// The walk that was asked for.
+        /// Walk asked for.
         expected: String,
     },
     /// The walk is the same, but the network is another one.
@@ -70,12 +70,12 @@ pub enum CheckpointError {
 }
 
 impl CheckpointError {
-    /// Whether the system failed to read the file, so that it may be whole.
+    /// Tells if the system failed to read the file, which may then be whole.
     pub fn is_unreadable(&self) -> bool {
         matches!(self, Self::Unreadable { .. })
     }
 
-    /// What reading a file came to: a file that ends too early is corrupt.
+    /// Turns an error of reading into one of the checkpoint: a file that ends too early is corrupt.
     pub(super) fn from_io(file: &Path, source: io::Error) -> Self {
         match source.kind() {
             io::ErrorKind::UnexpectedEof => Self::corrupt(file, "ends early"),

@@ -15,10 +15,10 @@ const MAGIC: [u8; 8] = *b"vwcheckp";
 const VERSION: u32 = 1;
 const BYTE_ORDER: u32 = 0x0a0b_0c0d;
 const MOST_SECTIONS: u64 = 64;
-/// A longer header is no header (bytes): that of 8 TB of columns.
+/// Longest header (bytes), enough for 8 TB of columns; a longer one is refused.
 const LONGEST_HEADER: u64 = 64 << 20;
 
-/// What every header begins with, byte for byte; the fields are those of the [module](super).
+/// Start of every header, byte for byte; the [module](super) describes the fields.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct Fixed {
@@ -57,14 +57,14 @@ pub(super) struct Entry {
     pub name: String,
     /// Bytes of an element.
     pub element: u64,
-    /// Elements.
+    /// Number of elements.
     pub count: u64,
     pub offset: u64,
     /// Checksums of its pieces.
     pub sums: Vec<u64>,
 }
 
-/// The header, filled up to a multiple of 4096 bytes.
+/// Encodes the header, filled up to a multiple of 4096 bytes.
 pub(super) fn encode(label: &Label, sections: &[Section]) -> Vec<u8> {
     let sums: Vec<u64> = sections.iter().flat_map(Section::sums).collect();
     let length = size_of::<Fixed>() + size_of::<Row>() * sections.len() + 8 * sums.len() + 8;
@@ -105,7 +105,7 @@ pub(super) fn encode(label: &Label, sections: &[Section]) -> Vec<u8> {
     bytes
 }
 
-/// Label, sections and length in bytes of the header of a file of `length` bytes.
+/// Reads the label, the sections and the length in bytes of the header, from a file of `length` bytes.
 pub(super) fn read(
     path: &Path,
     file: &mut impl Read,
@@ -154,7 +154,8 @@ pub(super) fn read(
     Ok((Label { identity, network, run, increment, generation }, sections, fixed.header_length))
 }
 
-/// The sections of a file of `length` bytes, from the table and the checksums after it; or what is wrong.
+/// Reads the sections of a file of `length` bytes, from the table and the checksums after it; or describes
+/// the error.
 fn entries(table: &[u8], number: u64, length: u64) -> Result<Vec<Entry>, String> {
     let rows = usize::try_from(number).unwrap_or(usize::MAX).saturating_mul(size_of::<Row>());
     if number > MOST_SECTIONS || rows > table.len() {
@@ -170,24 +171,24 @@ fn entries(table: &[u8], number: u64, length: u64) -> Result<Vec<Entry>, String>
         let (Some(size), Some(_)) = (size, end) else {
             return Err(format!("section {name} does not fit the file"));
         };
-        let own = 8 * size.div_ceil(PIECE as u64) as usize;
-        let Some((own, later)) = sums.split_at_checked(own) else {
+        let bytes = 8 * size.div_ceil(PIECE as u64) as usize;
+        let Some((bytes, later)) = sums.split_at_checked(bytes) else {
             return Err(format!("section {name} lacks checksums"));
         };
-        sections.push(Entry { name, element, count, offset, sums: bytemuck::pod_collect_to_vec(own) });
+        sections.push(Entry { name, element, count, offset, sums: bytemuck::pod_collect_to_vec(bytes) });
         sums = later;
     }
     Ok(sections)
 }
 
-/// Text in a field of fixed length.
+/// Writes text into a field of fixed length.
 fn field<const N: usize>(text: &str) -> [u8; N] {
     let mut field = [0; N];
     field[..text.len()].copy_from_slice(text.as_bytes());
     field
 }
 
-/// The text in a field.
+/// Reads the text in a field.
 fn text(field: &[u8]) -> Result<String, String> {
     let end = field.iter().position(|&b| b == 0).unwrap_or(field.len());
     let text = std::str::from_utf8(&field[..end]).map_err(|_| "a name in its header is no text")?;

@@ -1,13 +1,13 @@
-//! What a checkpoint is of, and how far it got.
+//! Subject and progress of a checkpoint.
 
 use std::fmt;
 
-/// What a checkpoint is of: a checkpoint of anything else is refused, even of another walk of the same scene.
+/// Subject of a checkpoint: a checkpoint of anything else is refused, even of another walk of the same scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Identity {
     /// Fingerprint of the scene, or of the plan of a packing; at most 32 characters.
     pub scene: String,
-    /// 0: the walks of the scene itself; from 1: those of the sensitivity study.
+    /// 0: the walks of the scene itself; from 1: the walks of the sensitivity study.
     pub part: u64,
     /// Replicate, counted from 1.
     pub replicate: u64,
@@ -24,10 +24,10 @@ impl fmt::Display for Identity {
     }
 }
 
-/// What a checkpoint is of, and how far it got.
+/// Subject and progress of a checkpoint.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Label {
-    /// What it is of.
+    /// Subject of the checkpoint.
     pub identity: Identity,
     /// Fingerprint of the network.
     pub network: u64,
@@ -35,6 +35,6 @@ pub struct Label {
     pub run: u64,
     /// Last whole increment.
     pub increment: u64,
-    /// Which checkpoint of its name it is, counted from 1.
+    /// Number of the checkpoint under its name, counted from 1.
     pub generation: u64,
 }

@@ -1,4 +1,4 @@
-//! Checkpoints: columns in a file that is whole, or refused.
+//! Checkpoints: columns in a file that is either whole or refused.
 //!
 //! # Format 1
 //! A file holds, in this order (numbers are little-endian, as on every machine that voidwalk is built for):
@@ -33,7 +33,7 @@
 //! find accidents, not forgers.
 //!
 //! A section is a column of numbers, or a record with named fields as JSON text, in which every
-//! floating-point number comes back bit for bit. Which sections there are:
+//! floating-point number comes back bit for bit. The sections:
 //!
 //! | checkpoint of | sections |
 //! |---|---|
@@ -43,16 +43,16 @@
 //! | a packing | `state`, see `packing::Compression::to_bytes`, and `seconds` (f64), spent so far |
 //!
 //! # Slots
-//! A checkpoint called `x` lives in `x.0` or `x.1`, whichever is older, and is written whole before it has
-//! its name. So the one before stays until the next is on the disk, and is taken when that one turns out to
-//! be corrupt. One that the system fails to read may be whole: nothing is taken in its place, and the program
-//! ends with an error instead.
+//! A checkpoint called `x` is stored in `x.0` or `x.1`, whichever is older, and is written whole before it
+//! gets its name. So the previous one remains until the next is on the disk, and is taken if the next turns
+//! out to be corrupt. A checkpoint that the system fails to read may be whole: no other is taken in its
+//! place, and the program ends with an error instead.
 //!
 //! # Read, not mapped
-//! A checkpoint is read piece by piece into the columns, each piece checked before it is used. It is not
-//! mapped: a mapped file that somebody cuts short ends the process (SIGBUS), and a mapped page can change
-//! after its sum was found right. What that costs is one copy in memory; `results/faults.md`
-//! holds the seconds of a whole resume.
+//! A checkpoint is read piece by piece into the columns, and each piece is checked before it is used. It is
+//! not mapped: a mapped file that somebody cuts short ends the process (SIGBUS), and a mapped page can change
+//! after its sum was found right. The cost is one copy in memory; `results/faults.md` holds the seconds of a
+//! whole resume.
 
 mod error;
 mod header;

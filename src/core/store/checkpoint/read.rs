@@ -1,4 +1,4 @@
-//! Reading a checkpoint: nothing of it is used before its checksum was found right.
+//! Reads a checkpoint: no part of it is used before its checksum was found right.
 
 use std::cmp::Reverse;
 use std::fs::File;
@@ -17,19 +17,19 @@ use super::write::slot;
 use crate::store::disk::{Call, ask, open_own};
 use crate::store::platform;
 
-/// A checkpoint whose header has been checked; its sections are as they are read.
+/// A checkpoint whose header has been checked; its sections are checked as they are read.
 #[derive(Debug)]
 pub struct Checkpoint {
-    /// What it is of.
+    /// Subject of the checkpoint.
     pub label: Label,
     path: PathBuf,
     source: Source,
     sections: Vec<Entry>,
-    /// Offset and length of what lies between the sections, all zeros.
+    /// Offset and length of the gaps between the sections, all zeros.
     gaps: Vec<(u64, usize)>,
 }
 
-/// Where its bytes are.
+/// Place of the bytes.
 #[derive(Debug)]
 enum Source {
     File(File),
@@ -51,7 +51,7 @@ impl Source {
 }
 
 impl Checkpoint {
-    /// Opens a checkpoint and checks its header; `None` where there is no such file.
+    /// Opens a checkpoint and checks its header; `None` if there is no such file.
     ///
     /// # Errors
     /// A file that is cut, corrupt, of another version or no checkpoint at all.
@@ -67,18 +67,18 @@ impl Checkpoint {
         }
         let mut file = ask(Call::Read(path), || open_own(path)).map_err(unreadable)?;
         let length = file.metadata().map_err(unreadable)?.len();
-        let of = header::read(path, &mut file, length)?;
-        Self::with_header(path, of, length, Source::File(file)).map(Some)
+        let header = header::read(path, &mut file, length)?;
+        Self::with_header(path, header, length, Source::File(file)).map(Some)
     }
 
     /// [`Checkpoint::open`] on the content of a file, called `name` in messages.
     ///
     /// # Errors
-    /// As [`Checkpoint::open`].
+    /// Errors of [`Checkpoint::open`].
     pub fn parse(name: &str, content: Vec<u8>) -> Result<Self, CheckpointError> {
         let (path, length) = (Path::new(name), content.len() as u64);
-        let of = header::read(path, &mut content.as_slice(), length)?;
-        Self::with_header(path, of, length, Source::Memory(content))
+        let header = header::read(path, &mut content.as_slice(), length)?;
+        Self::with_header(path, header, length, Source::Memory(content))
     }
 
     fn with_header(
@@ -92,17 +92,17 @@ impl Checkpoint {
         Ok(Self { label, path: path.to_owned(), source, sections, gaps })
     }
 
-    /// Where it is.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// This checkpoint with something wrong in what its checksums say is whole.
+    /// Makes the error for a checkpoint whose content is wrong although its checksums are right.
     pub fn corrupt(&self, problem: impl Into<String>) -> CheckpointError {
         CheckpointError::corrupt(&self.path, problem)
     }
 
-    /// Whether it is of what is expected.
+    /// Checks that the checkpoint has the expected subject.
     ///
     /// # Errors
     /// [`CheckpointError::OtherScene`] or [`CheckpointError::OtherWalk`].
@@ -118,10 +118,10 @@ impl Checkpoint {
         Ok(())
     }
 
-    /// Elements of a section.
+    /// Number of elements of a section.
     ///
     /// # Errors
-    /// There is no such section, or its elements have another size.
+    /// No such section, or elements of another size.
     pub fn count<T: Pod>(&self, name: &str) -> Result<usize, CheckpointError> {
         self.entry::<T>(name).map(|entry| entry.count as usize)
     }
@@ -135,42 +135,42 @@ impl Checkpoint {
         Ok(entry)
     }
 
-    /// A whole section.
+    /// Reads a whole section.
     ///
     /// # Errors
-    /// As [`Checkpoint::count`]; a piece whose checksum is wrong.
+    /// Errors of [`Checkpoint::count`]; a piece whose checksum is wrong.
     pub fn read<T: Pod>(&self, name: &str) -> Result<Vec<T>, CheckpointError> {
-        // The header's length bounds what is allocated: the file is as long as it says.
+        // The header's length bounds the allocation: the file is as long as the header states.
         let mut all = Vec::with_capacity(self.count::<T>(name)?);
         self.read_pieces::<T>(name, |piece| all.extend_from_slice(piece))?;
         Ok(all)
     }
 
-    /// A whole section of `count` elements.
+    /// Reads a whole section of `count` elements.
     ///
     /// # Errors
-    /// As [`Checkpoint::read`]; another number of elements.
+    /// Errors of [`Checkpoint::read`]; another number of elements.
     pub fn read_exact<T: Pod>(&self, name: &str, count: usize) -> Result<Vec<T>, CheckpointError> {
-        let found = self.count::<T>(name)?;
-        if found != count {
-            return Err(self.corrupt(format!("section {name} has {found} elements, not {count}")));
+        let elements = self.count::<T>(name)?;
+        if elements != count {
+            return Err(self.corrupt(format!("section {name} has {elements} elements, not {count}")));
         }
         self.read(name)
     }
 
-    /// A section that is a record with named fields.
+    /// Reads a section that is a record with named fields.
     ///
     /// # Errors
-    /// As [`Checkpoint::read`]; a field that is missing, unknown or of another type.
+    /// Errors of [`Checkpoint::read`]; a field that is missing, unknown or of another type.
     pub fn read_record<T: DeserializeOwned>(&self, name: &str) -> Result<T, CheckpointError> {
         let text = self.read::<u8>(name)?;
         serde_json::from_slice(&text).map_err(|e| self.corrupt(format!("section {name}: {e}")))
     }
 
-    /// A section piece by piece, each checked before it is handed on.
+    /// Reads a section piece by piece, each checked before it is handed on.
     ///
     /// # Errors
-    /// As [`Checkpoint::read`].
+    /// Errors of [`Checkpoint::read`].
     pub fn read_pieces<T: Pod>(&self, name: &str, mut take: impl FnMut(&[T])) -> Result<(), CheckpointError> {
         let entry = self.entry::<T>(name)?;
         let size = (entry.count * entry.element) as usize;
@@ -199,11 +199,10 @@ impl Checkpoint {
         read.map_err(|source| CheckpointError::from_io(&self.path, source))
     }
 
-    /// Reads every piece of every section, and what lies between them, and checks it; in order, as the disk
-    /// likes it.
+    /// Reads and checks every piece of every section, and the gaps between them, in the order of the disk.
     ///
     /// # Errors
-    /// The first that is wrong.
+    /// The first error.
     pub fn check(&self) -> Result<(), CheckpointError> {
         let longest = self.sections.iter().map(|entry| entry.count * entry.element).max().unwrap_or(0);
         let mut bytes = vec![0; PIECE.min(longest.max(4096) as usize)];
@@ -223,7 +222,7 @@ impl Checkpoint {
     }
 }
 
-/// What lies between the header and the sections, which follow one another to the end of the file.
+/// Gaps between the header and the sections, which follow one another to the end of the file.
 fn gaps(sections: &[Entry], header: u64, length: u64) -> Result<Vec<(u64, usize)>, String> {
     let mut spans: Vec<(u64, u64)> = sections.iter().map(|e| (e.offset, e.count * e.element)).collect();
     spans.sort_unstable();
@@ -240,31 +239,30 @@ fn gaps(sections: &[Entry], header: u64, length: u64) -> Result<Vec<(u64, usize)
     Ok(gaps)
 }
 
-/// The newest whole checkpoint of this name and of what is expected, and why any newer one was passed over.
+/// Finds the newest whole checkpoint of this name and the expected subject, and the errors of newer ones.
 ///
 /// # Errors
-/// There are checkpoints of this name, but none is whole and of what is expected; or the system fails to read
-/// one.
+/// Checkpoints of this name exist, but no whole one of the expected subject; or the system fails to read one.
 pub fn newest(
     folder: &Path,
     name: &str,
     expected: &Identity,
 ) -> Result<(Option<Checkpoint>, Vec<CheckpointError>), CheckpointError> {
     let mut refused = Vec::new();
-    let mut found = Vec::new();
+    let mut candidates = Vec::new();
     let open = |parity| match Checkpoint::open(&slot(folder, name, parity))? {
         None => Ok(None),
         Some(checkpoint) => checkpoint.expect(expected).map(|()| Some(checkpoint)),
     };
     for parity in 0..2 {
         match open(parity) {
-            Ok(checkpoint) => found.extend(checkpoint),
+            Ok(checkpoint) => candidates.extend(checkpoint),
             Err(error) if error.is_unreadable() => return Err(error),
             Err(error) => refused.push(error),
         }
     }
-    found.sort_by_key(|checkpoint| Reverse(checkpoint.label.generation));
-    for checkpoint in found {
+    candidates.sort_by_key(|checkpoint| Reverse(checkpoint.label.generation));
+    for checkpoint in candidates {
         match checkpoint.check() {
             Ok(()) => return Ok((Some(checkpoint), refused)),
             Err(error) if error.is_unreadable() => return Err(error),

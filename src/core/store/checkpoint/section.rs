@@ -17,12 +17,12 @@ pub struct Section<'a> {
 }
 
 impl<'a> Section<'a> {
-    /// A whole column.
+    /// Makes a section of a whole column.
     pub fn new<T: Pod>(name: &'static str, column: &'a [T]) -> Self {
         Self::parts(name, [column])
     }
 
-    /// A column from its parts, one after another.
+    /// Makes a section of a column from its parts, one after another.
     pub fn parts<T: Pod>(name: &'static str, parts: impl IntoIterator<Item = &'a [T]>) -> Self {
         Self { name, element: size_of::<T>(), parts: parts.into_iter().map(bytemuck::cast_slice).collect() }
     }
@@ -31,7 +31,7 @@ impl<'a> Section<'a> {
         self.parts.iter().map(|part| part.len() as u64).sum()
     }
 
-    /// XXH3 of each piece, on as many threads as there are.
+    /// XXH3 of each piece, on all available threads.
     pub(super) fn sums(&self) -> Vec<u64> {
         let mut pieces: Vec<Vec<&[u8]>> = Vec::new();
         let mut room = 0;

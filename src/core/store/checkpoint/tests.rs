@@ -1,4 +1,4 @@
-//! Checkpoints that come back, and those that are refused.
+//! Checkpoints that are read back, and refused ones.
 
 use std::path::Path;
 
@@ -32,20 +32,20 @@ fn what_is_kept_comes_back_and_the_newest_is_taken() {
     let root = tempfile::tempdir().unwrap();
     for generation in 1..=3 {
         let (numbers, words) = saved(root.path(), generation);
-        let (found, refused) = newest(root.path(), "x", &identity()).unwrap();
-        let found = found.unwrap();
+        let (checkpoint, refused) = newest(root.path(), "x", &identity()).unwrap();
+        let checkpoint = checkpoint.unwrap();
         assert!(refused.is_empty());
-        assert_eq!(found.label, label(generation));
-        assert_eq!(found.read::<u32>("numbers").unwrap(), numbers);
-        assert_eq!(found.read::<u64>("words").unwrap(), words);
-        assert!(found.read::<u32>("words").is_err() && found.read::<u64>("none").is_err());
+        assert_eq!(checkpoint.label, label(generation));
+        assert_eq!(checkpoint.read::<u32>("numbers").unwrap(), numbers);
+        assert_eq!(checkpoint.read::<u64>("words").unwrap(), words);
+        assert!(checkpoint.read::<u32>("words").is_err() && checkpoint.read::<u64>("none").is_err());
     }
     let other = Identity { scene: "other".into(), ..identity() };
     assert!(matches!(newest(root.path(), "x", &other), Err(CheckpointError::OtherScene { .. })));
     assert!(newest(root.path(), "y", &other).unwrap().0.is_none());
 }
 
-/// A walk of the same scene is another walk wherever one thing that names it differs.
+/// A walk of the same scene is another walk if any part of its name differs.
 #[test]
 fn another_walk_of_the_same_scene_is_refused() {
     let root = tempfile::tempdir().unwrap();

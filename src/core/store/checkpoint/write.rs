@@ -1,4 +1,4 @@
-//! Writing a checkpoint.
+//! Writes a checkpoint.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use super::section::Section;
 use crate::store::StoreError;
 use crate::store::whole::write_whole_with;
 
-/// Where the checkpoint of a generation lives.
+/// Path of the checkpoint of a generation.
 pub(super) fn slot(folder: &Path, name: &str, generation: u64) -> PathBuf {
     folder.join(format!("{name}.{}", generation % 2))
 }
@@ -17,7 +17,7 @@ pub(super) fn slot(folder: &Path, name: &str, generation: u64) -> PathBuf {
 /// Saves a checkpoint in the slot of its generation.
 ///
 /// # Errors
-/// What the system says; the other slot is untouched then, and so is what this one held before.
+/// Error of the system; the other slot is then untouched, and so is the former content of this one.
 pub fn save(folder: &Path, name: &str, label: &Label, sections: &[Section]) -> Result<(), StoreError> {
     let header = header::encode(label, sections);
     write_whole_with(&slot(folder, name, label.generation), |file| {

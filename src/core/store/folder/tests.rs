@@ -38,7 +38,7 @@ fn what_a_killed_process_left_is_cleared_up_by_the_sole_owner_only() {
     fs::write(path.join("notes.txt"), "mine").unwrap();
     let held = Folder::open_shared(&path).unwrap();
     assert!(!left.exists() && !inside.exists() && of_another.exists());
-    // While somebody is at it, it may be theirs.
+    // A live holder may own it.
     part(&path);
     let _other = Folder::open_shared(&path).unwrap();
     assert!(left.exists());

@@ -1,13 +1,13 @@
-//! What a control group (a container, a service, a job) leaves a process of the machine's memory.
+//! Memory that a control group (a container, a service, a job) leaves to a process.
 //!
-//! A process is in a group, that in another, and so on to the root; each may have a limit, and what is used
-//! in a group counts in all those around it. So what is left is the least of `limit - used` along the way.
-//! Pages of files that were not used for a while are given back when room is needed, and count as free.
+//! A process is in a group, that group in another, and so on to the root; each may have a limit, and the use
+//! of a group counts in all those around it. So the least of `limit - used` along the path is left. Pages of
+//! files that were not used for a while are given back when room is needed, and count as free.
 
 use std::path::{Component, Path, PathBuf};
 
-/// Names of the files of a group that say its limit, what is used, and in `memory.stat` the pages of files
-/// that can be given back.
+/// Names of the files of a group with its limit and its use, and in `memory.stat` the pages of files that can
+/// be given back.
 struct Names {
     limit: &'static str,
     used: &'static str,
@@ -20,14 +20,15 @@ const V1: Names =
 /// Version 2, with one hierarchy for all.
 const V2: Names = Names { limit: "memory.max", used: "memory.current", idle: "inactive_file" };
 
-/// Bytes that the groups of this process leave it; `None` where nothing limits it, or where nothing is known.
+/// Bytes that the groups of this process leave it; `None` if there is no limit, or nothing is known.
 pub fn memory_left() -> Option<u64> {
     let read = |path: &Path| std::fs::read_to_string(path).ok();
     let groups = read(Path::new("/proc/self/cgroup"))?;
     least_left(&groups, &read(Path::new("/proc/self/mountinfo"))?, read)
 }
 
-/// The same from `/proc/self/cgroup`, `/proc/self/mountinfo`, and the files of the groups.
+/// Finds the least memory left, from `/proc/self/cgroup`, `/proc/self/mountinfo`, and the files of the
+/// groups.
 fn least_left(groups: &str, mounts: &str, read: impl Fn(&Path) -> Option<String>) -> Option<u64> {
     let all = groups.lines().filter_map(|line| {
         // `5:memory:/docker/1f`, or `0::/user.slice` for version 2.
@@ -45,10 +46,10 @@ fn least_left(groups: &str, mounts: &str, read: impl Fn(&Path) -> Option<String>
     all.min()
 }
 
-/// The folder of a group, and the one of its hierarchy in which it is.
+/// Top folder of the hierarchy, and the folder of the group in it.
 fn folder_of(path: &Path, mounts: &str, names: &Names) -> Option<(PathBuf, PathBuf)> {
     let version_1 = names.limit == V1.limit;
-    let mut found = mounts.lines().rev().filter_map(|line| {
+    let mut mounted = mounts.lines().rev().filter_map(|line| {
         // `id parent device root mount-point options [more] - type source super-options`
         let (mount, kind) = line.split_once(" - ")?;
         let mut fields = mount.split(' ').skip(3);
@@ -59,8 +60,8 @@ fn folder_of(path: &Path, mounts: &str, names: &Names) -> Option<(PathBuf, PathB
         let wanted = if version_1 { has_memory } else { kind == "cgroup2" };
         wanted.then(|| (unescaped(root), unescaped(top)))
     });
-    found.next().map(|(root, top)| {
-        // A container sees the part of the hierarchy that is mounted, and may know its place in the whole.
+    mounted.next().map(|(root, top)| {
+        // A container sees the mounted part of the hierarchy, and may know its place in the whole.
         let inside = path
             .strip_prefix(&root)
             .ok()
@@ -70,13 +71,13 @@ fn folder_of(path: &Path, mounts: &str, names: &Names) -> Option<(PathBuf, PathB
     })
 }
 
-/// A path of `mountinfo`, where blanks and the like are octal numbers.
+/// Decodes a path of `mountinfo`, with blanks and the like as octal numbers.
 fn unescaped(field: &str) -> PathBuf {
     let codes = [("\\040", " "), ("\\011", "\t"), ("\\012", "\n"), ("\\134", "\\")];
     codes.iter().fold(field.to_owned(), |text, (code, plain)| text.replace(code, plain)).into()
 }
 
-/// What a group's limit leaves; `None` without a limit.
+/// Memory that a group's limit leaves; `None` without a limit.
 fn left_in(folder: &Path, names: &Names, read: impl Fn(&Path) -> Option<String>) -> Option<u64> {
     let number = |name: &str| read(&folder.join(name))?.trim().parse::<u64>().ok();
     // `max`, or a number beyond every memory, is no limit.
@@ -93,11 +94,11 @@ mod tests {
 
     const MIB: u64 = 1 << 20;
 
-    /// What is left, with these files of groups.
+    /// Memory left, with these files of groups.
     fn left(groups: &str, mounts: &str, files: &[(&str, &str)]) -> Option<u64> {
         least_left(groups, mounts, |path| {
-            let found = files.iter().find(|(name, _)| Path::new(name) == path);
-            found.map(|(_, text)| (*text).to_owned())
+            let file = files.iter().find(|(name, _)| Path::new(name) == path);
+            file.map(|(_, text)| (*text).to_owned())
         })
     }
 
@@ -134,11 +135,11 @@ mod tests {
             ("/sys/fs/cgroup/memory.max", "1073741824\n"),
         ];
         assert_eq!(left(groups, MOUNTS_2, &files), Some(104 * MIB));
-        let own = [("/sys/fs/cgroup/a.slice/b.service/memory.max", "5242880\n")];
-        assert_eq!(left(groups, MOUNTS_2, &[&own, &files[1..]].concat()), Some(4 * MIB));
+        let lower = [("/sys/fs/cgroup/a.slice/b.service/memory.max", "5242880\n")];
+        assert_eq!(left(groups, MOUNTS_2, &[&lower, &files[1..]].concat()), Some(4 * MIB));
     }
 
-    /// A container may see its own part of the hierarchy alone, at the place of the whole.
+    /// A container may see only its own part of the hierarchy, at the place of the whole.
     #[test]
     fn a_container_that_sees_its_part_alone_finds_its_limit() {
         let mounts = "31 24 0:27 /docker/1f /sys/fs/cgroup/memory ro - cgroup cgroup rw,memory\n";

@@ -24,14 +24,14 @@ pub fn processors() -> Vec<usize> {
     }
 }
 
-/// Keeps this thread on a processor. Refused: the thread goes where the system puts it.
+/// Keeps this thread on a processor. If refused, the system places the thread.
 pub fn stay_on(processor: usize) {
     let mut one = CpuSet::new();
     one.set(processor);
     let _ = sched_setaffinity(None, &one);
 }
 
-/// Memory of the machine, and what the groups of this process leave it of that.
+/// Memory of the machine, and the part that the groups of this process leave it.
 pub fn memory() -> Memory {
     let text = read_to_string("/proc/meminfo").unwrap_or_default();
     let bytes = |key: &str| -> Option<u64> {
@@ -43,14 +43,14 @@ pub fn memory() -> Memory {
     Memory { total: bytes("MemTotal:"), available }
 }
 
-/// The processor's own name.
+/// Name of the processor.
 pub fn processor() -> Option<String> {
     let text = read_to_string("/proc/cpuinfo").ok()?;
     let (_, name) = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "))?;
     Some(name.to_owned())
 }
 
-/// The table of what is mounted where, as `/proc/self/mountinfo` has it.
+/// Table of the mounts, in the form of `/proc/self/mountinfo`.
 pub fn mounts() -> Option<String> {
     read_to_string("/proc/self/mountinfo").ok()
 }

@@ -1,7 +1,7 @@
 //! Processors, memory and blocks of files on macOS.
 //!
-//! What is known of the machine is what its own commands print, which needs no call of the system that only
-//! a Mac could try; their text is read in tests on every system.
+//! Facts about the machine come from the output of its own commands, which needs no call of the system that
+//! only a Mac could try; tests on every system read such output.
 
 #[cfg(target_os = "macos")]
 use super::{Memory, write_zeros};
@@ -15,7 +15,7 @@ pub fn allocate(file: &std::fs::File, bytes: u64) -> std::io::Result<()> {
     }
 }
 
-/// None: the system keeps no thread on one processor.
+/// Empty: the system keeps no thread on one processor.
 #[cfg(target_os = "macos")]
 pub fn processors() -> Vec<usize> {
     Vec::new()
@@ -29,32 +29,32 @@ pub fn stay_on(_processor: usize) {}
 #[cfg(target_os = "macos")]
 pub fn memory() -> Memory {
     Memory {
-        total: said("/usr/sbin/sysctl", &["-n", "hw.memsize"]).and_then(|text| text.trim().parse().ok()),
-        available: said("/usr/bin/vm_stat", &[]).and_then(|text| not_in_use(&text)),
+        total: output_of("/usr/sbin/sysctl", &["-n", "hw.memsize"]).and_then(|text| text.trim().parse().ok()),
+        available: output_of("/usr/bin/vm_stat", &[]).and_then(|text| not_in_use(&text)),
     }
 }
 
-/// The processor's own name, by `sysctl`.
+/// Name of the processor, by `sysctl`.
 #[cfg(target_os = "macos")]
 pub fn processor() -> Option<String> {
-    let name = said("/usr/sbin/sysctl", &["-n", "machdep.cpu.brand_string"])?;
+    let name = output_of("/usr/sbin/sysctl", &["-n", "machdep.cpu.brand_string"])?;
     Some(name.trim().to_owned()).filter(|name| !name.is_empty())
 }
 
-/// Nothing: the table of mounts has another form here.
+/// `None`: the table of mounts has another form here.
 #[cfg(target_os = "macos")]
 pub fn mounts() -> Option<String> {
     None
 }
 
-/// What a command prints.
+/// Output of a command.
 #[cfg(target_os = "macos")]
-fn said(command: &str, words: &[&str]) -> Option<String> {
+fn output_of(command: &str, words: &[&str]) -> Option<String> {
     let output = std::process::Command::new(command).args(words).output().ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Bytes of the pages that `vm_stat` says are free or were only read ahead. Inactive pages are not all given
+/// Bytes of the pages that `vm_stat` lists as free or as only read ahead. Inactive pages are not all given
 /// back, and purgeable ones are counted among the active and inactive.
 pub(super) fn not_in_use(vm_stat: &str) -> Option<u64> {
     let mut lines = vm_stat.lines();

@@ -1,8 +1,8 @@
-//! What systems do each in their own way: locks, places in files, what is on the disk when a call returns,
-//! processors, clocks, memory and signals.
+//! Services that differ from system to system: locks, places in files, the state of the disk when a call
+//! returns, processors, clocks, memory and signals.
 //!
-//! No other file of the program names a system or a crate of one (`tests/house.rs` holds it so). Each file
-//! here offers the same calls; what a system cannot promise is said in the [page of long runs](crate::docs).
+//! No other file of the program names a system or a crate of one (`tests/house.rs` checks it). Each file here
+//! offers the same calls; the [page of long runs](crate::docs) lists what a system cannot promise.
 //!
 //! | file | systems |
 //! |---|---|
@@ -56,12 +56,12 @@ pub(super) use machine::allocate;
 pub use files::{THREAD_SECONDS_STEP, free_bytes, host_name, thread_seconds};
 pub use machine::{memory, mounts, processor, processors, stay_on};
 
-/// Memory of the machine; `None` where the system does not tell.
+/// Memory of the machine; `None` if the system does not report it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Memory {
-    /// All that is built in (bytes).
+    /// Installed memory (bytes).
     pub total: Option<u64>,
-    /// What this process may still take (bytes).
+    /// Memory that this process may still take (bytes).
     pub available: Option<u64>,
 }
 

@@ -1,5 +1,5 @@
-//! A system of which nothing is known but what the standard library offers, as a page in a browser. Calls
-//! that it does not have are errors, so that nothing is written without a lock.
+//! A system known only through the standard library, such as a page in a browser. Calls that it does not have
+//! are errors, so that nothing is written without a lock.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom};
@@ -17,7 +17,7 @@ pub fn open_any(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
     options.open(path)
 }
 
-/// Not known, so that no file is taken for one that has no other name.
+/// Not known: an error, so that no file counts as having a single name.
 pub fn has_other_names(_file: &File) -> io::Result<bool> {
     Err(io::ErrorKind::Unsupported.into())
 }
@@ -28,17 +28,17 @@ pub fn read_exact_at(mut file: &File, bytes: &mut [u8], offset: u64) -> io::Resu
     file.read_exact(bytes)
 }
 
-/// Locks a file, where the standard library can.
+/// Locks a file, if the standard library can.
 pub fn try_lock(file: &File, shared: bool) -> Result<(), TryLockError> {
     if shared { file.try_lock_shared() } else { file.try_lock() }
 }
 
-/// Sends the names in a folder to the disk, where a folder can be opened.
+/// Sends the names in a folder to the disk, if a folder can be opened.
 pub fn sync_folder(folder: &Path) -> io::Result<()> {
     File::open(folder)?.sync_all()
 }
 
-/// Makes a file `bytes` long; which blocks of it are there is not known.
+/// Makes a file `bytes` long; the allocation of its blocks is not known.
 pub fn allocate(file: &File, bytes: u64) -> io::Result<()> {
     file.set_len(bytes)
 }
@@ -48,7 +48,7 @@ pub fn free_bytes(_folder: &Path) -> Option<u64> {
     None
 }
 
-/// Not known, so that nobody's files are removed.
+/// Not known: true, so that nobody's files are removed.
 pub fn is_running(_process: &str) -> bool {
     true
 }
@@ -58,7 +58,7 @@ pub fn host_name() -> String {
     "unknown".to_owned()
 }
 
-/// Steps in which the processor time of a thread may go on (s): it does not.
+/// Step of the processor time of a thread (s): it does not advance.
 pub const THREAD_SECONDS_STEP: f64 = f64::INFINITY;
 
 /// Not known: no time passes.

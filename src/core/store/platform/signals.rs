@@ -1,34 +1,34 @@
-//! How the user, or the system, asks the program to end.
+//! Requests of the user, or the system, to end the program.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock};
 
-/// Whether a request ends the program at once: while it reads and prepares there is nothing to save, and no
+/// True if a request ends the program at once: while it reads and prepares there is nothing to save, and no
 /// loop need look for a request.
 static AT_ONCE: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
-/// From now on, and until the first folder is taken, requests end the program at once.
+/// Makes requests end the program at once, until the first folder is taken.
 pub fn end_at_once() {
     AT_ONCE.store(true, Ordering::SeqCst);
 }
 
-/// From now on requests set the flag of [`stop_on_request`] only: work would be lost.
+/// Makes requests only set the flag of [`stop_on_request`]: otherwise work would be lost.
 pub fn save_first() {
     AT_ONCE.store(false, Ordering::SeqCst);
 }
 
-/// A flag that the first request to end sets; an interrupt (Ctrl-C) after that ends the program at once, and
-/// so does any request after [`end_at_once`], as it ends a program that does not listen.
+/// Returns a flag that the first request to end sets; an interrupt (Ctrl-C) after that ends the program at
+/// once, and so does any request after [`end_at_once`], as it ends a program that does not listen.
 ///
-/// On Linux and macOS the requests are SIGINT, SIGTERM, SIGHUP where the terminal is closed (but on Linux not
-/// under `nohup`), and SIGXCPU where the processor time is used up. SIGTERM may come several times: a
-/// cluster's scheduler sends it to a job's script, which hands it on, and to all of the job's processes.
-/// On Windows they are Ctrl-C, Ctrl-Break, the window that is closed, and the end of the session; for the
-/// last two the system gives the program some seconds.
+/// On Linux and macOS the requests are SIGINT, SIGTERM, SIGHUP when the terminal is closed (but on Linux not
+/// under `nohup`), and SIGXCPU when the processor time is used up. SIGTERM may come several times: a
+/// cluster's scheduler sends it to a job's script, which hands it on, and to all of the job's processes. On
+/// Windows they are Ctrl-C, Ctrl-Break, the closing of the window, and the end of the session; for the last
+/// two the system gives the program some seconds.
 ///
 /// # Errors
-/// What the system says when it takes no handler.
+/// Error of a system that takes no handler.
 pub fn stop_on_request() -> io::Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(false));
     listen(&stop)?;
@@ -53,7 +53,7 @@ fn listen(stop: &Arc<AtomicBool>) -> io::Result<()> {
     super::windows::listen(stop, &AT_ONCE)
 }
 
-/// Nothing is known of such a system: whatever ends the program kills it.
+/// Does nothing: such a system offers no requests, only kills.
 #[cfg(not(any(unix, windows)))]
 fn listen(_stop: &Arc<AtomicBool>) -> io::Result<()> {
     Ok(())
@@ -67,7 +67,7 @@ fn requests() -> impl Iterator<Item = i32> {
     [SIGINT, SIGTERM, SIGHUP, SIGXCPU].into_iter().filter(move |signal| !ignored(*signal))
 }
 
-/// Whether whoever started the process had it ignore a signal, by `/proc/self/status`.
+/// Tells if the process was started with a signal ignored, by `/proc/self/status`.
 #[cfg(unix)]
 fn is_ignored(status: &str, signal: i32) -> bool {
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -75,15 +75,15 @@ fn is_ignored(status: &str, signal: i32) -> bool {
     mask.is_some_and(|mask| mask >> (signal - 1) & 1 == 1)
 }
 
-/// A write beyond the largest file that is allowed fails then with an error, and does not end the program.
-/// Without it, the program ends as before.
+/// Makes a write beyond the allowed file size fail with an error. If this fails, such a write ends the
+/// program as before.
 #[cfg(unix)]
 pub fn outlive_large_files() {
     let noticed = Arc::new(AtomicBool::new(false));
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, noticed);
 }
 
-/// Does nothing: only on unix does the system end a program for that.
+/// Does nothing: only unix ends a program for such a write.
 #[cfg(not(unix))]
 pub fn outlive_large_files() {}
 

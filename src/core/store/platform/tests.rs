@@ -1,4 +1,4 @@
-//! What every system must do the same.
+//! Behaviour common to all systems.
 
 use std::fs::{self, File, TryLockError};
 use std::io::ErrorKind;
@@ -79,7 +79,7 @@ fn a_process_runs_until_it_has_ended() {
     }
 }
 
-/// Only work passes processor time.
+/// Processor time passes only with work.
 #[test]
 #[cfg_attr(miri, ignore = "Miri knows no such calls")]
 fn processor_time_passes_while_there_is_work() {
@@ -104,7 +104,7 @@ fn the_machine_says_what_it_is() {
     assert!(all.is_sorted());
 }
 
-/// As a Mac prints it.
+/// Output in the form of a Mac's.
 #[test]
 fn free_memory_of_a_mac_is_read() {
     let text = "Mach Virtual Memory Statistics: (page size of 16384 bytes)\n\

@@ -8,18 +8,17 @@ use std::path::Path;
 use rustix::fs::OFlags;
 use rustix::time::{ClockId, clock_gettime};
 
-/// Opens a file of the program's own: what is a link fails, and what is no file, as a pipe, is not waited
-/// for.
+/// Opens a file of the program's own: a link is an error, and a pipe or the like is not waited for.
 pub fn open_own(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
     options.custom_flags((OFlags::NOFOLLOW | OFlags::NONBLOCK).bits() as i32).open(path)
 }
 
-/// Opens a file of a user: a link is followed, and what is no file is not waited for.
+/// Opens a file of a user: a link is followed, and a pipe or the like is not waited for.
 pub fn open_any(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
     options.custom_flags(OFlags::NONBLOCK.bits() as i32).open(path)
 }
 
-/// Whether a file has more than one name.
+/// Tells if a file has more than one name.
 pub fn has_other_names(file: &File) -> io::Result<bool> {
     Ok(file.metadata()?.nlink() > 1)
 }
@@ -29,7 +28,7 @@ pub fn read_exact_at(file: &File, bytes: &mut [u8], offset: u64) -> io::Result<(
     file.read_exact_at(bytes, offset)
 }
 
-/// Locks a file for this process alone or, `shared`, for all that share it. Others can read it all the same.
+/// Locks a file for this process alone or, if `shared`, for all that share it. Others can still read it.
 pub fn try_lock(file: &File, shared: bool) -> Result<(), TryLockError> {
     if shared { file.try_lock_shared() } else { file.try_lock() }
 }
@@ -39,28 +38,28 @@ pub fn sync_folder(folder: &Path) -> io::Result<()> {
     File::open(folder)?.sync_all()
 }
 
-/// Bytes that this user may still write on the disk of a folder; `None` where it cannot be told.
+/// Bytes that this user may still write on the disk of a folder; `None` if unknown.
 pub fn free_bytes(folder: &Path) -> Option<u64> {
     let disk = rustix::fs::statvfs(folder).ok()?;
     Some(disk.f_bavail.saturating_mul(disk.f_frsize))
 }
 
-/// Whether a process of this number runs.
+/// Tells if a process of this number runs.
 pub fn is_running(process: &str) -> bool {
     let number = process.parse::<u32>().ok().and_then(|number| i32::try_from(number).ok());
     let number = number.and_then(rustix::process::Pid::from_raw);
-    // A process of another user may not be asked, but is there.
+    // A process of another user refuses the question, but exists.
     number.is_some_and(|number| {
         !matches!(rustix::process::test_kill_process(number), Err(rustix::io::Errno::SRCH))
     })
 }
 
-/// The name of this machine.
+/// Name of this machine.
 pub fn host_name() -> String {
     rustix::system::uname().nodename().to_string_lossy().into_owned()
 }
 
-/// Steps in which the processor time of a thread may go on (s).
+/// Step of the processor time of a thread (s).
 pub const THREAD_SECONDS_STEP: f64 = 1e-6;
 
 /// Processor time of this thread (s).

@@ -27,24 +27,24 @@ use windows_sys::Win32::System::Threading::{
 
 use super::Memory;
 
-/// What `GetExitCodeProcess` says of a process that has not ended (STILL_ACTIVE).
+/// Result of `GetExitCodeProcess` for a process that has not ended (STILL_ACTIVE).
 const STILL_ACTIVE: u32 = 259;
 
-/// The byte that stands for a file when it is locked, far behind its end: the system lets nobody read what
-/// another process has locked, and the file says who that is.
+/// Byte that is locked in place of the file, far behind its end: the system lets nobody read what another
+/// process has locked, and the file names the holder.
 const LOCKED_BYTE: u64 = 1 << 62;
 
-/// Opens a file of the program's own: of a link, the link itself, which is no file.
+/// Opens a file of the program's own; a link is opened itself, and is no file.
 pub fn open_own(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
     options.custom_flags(FILE_FLAG_OPEN_REPARSE_POINT).open(path)
 }
 
-/// Opens a file of a user; the system waits for nobody.
+/// Opens a file of a user; the system never waits here.
 pub fn open_any(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
     options.open(path)
 }
 
-/// Whether a file has more than one name.
+/// Tells if a file has more than one name.
 pub fn has_other_names(file: &File) -> io::Result<bool> {
     let mut about = BY_HANDLE_FILE_INFORMATION::default();
     // SAFETY: the handle is open as long as `file` is borrowed, and the system writes a record of this type
@@ -65,7 +65,7 @@ pub fn read_exact_at(file: &File, mut bytes: &mut [u8], mut offset: u64) -> io::
     Ok(())
 }
 
-/// Locks a file for this process alone or, `shared`, for all that share it. Others can read it all the same.
+/// Locks a file for this process alone or, if `shared`, for all that share it. Others can still read it.
 pub fn try_lock(file: &File, shared: bool) -> Result<(), TryLockError> {
     let exclusive = if shared { 0 } else { LOCKFILE_EXCLUSIVE_LOCK };
     let place = OVERLAPPED_0_0 { Offset: LOCKED_BYTE as u32, OffsetHigh: (LOCKED_BYTE >> 32) as u32 };
@@ -82,8 +82,8 @@ pub fn try_lock(file: &File, shared: bool) -> Result<(), TryLockError> {
     })
 }
 
-/// Does nothing: the system has no call for it. It keeps the order of what happens to names, so that after a
-/// power cut a folder is as it was at some moment before.
+/// Does nothing: the system has no such call. It keeps the order of changes to names, so that after a power
+/// cut a folder is in a state that it had at some moment before.
 pub fn sync_folder(_folder: &Path) -> io::Result<()> {
     Ok(())
 }
@@ -93,25 +93,25 @@ pub fn allocate(file: &File, bytes: u64) -> io::Result<()> {
     file.set_len(bytes)
 }
 
-/// Bytes that this user may still write on the disk of a folder; `None` where it cannot be told.
+/// Bytes that this user may still write on the disk of a folder; `None` if unknown.
 pub fn free_bytes(folder: &Path) -> Option<u64> {
     let name: Vec<u16> = folder.as_os_str().encode_wide().chain([0]).collect();
     let mut free = 0;
     // SAFETY: `name` ends with a zero and lives until the call has returned; the system writes one number
-    // into `free`, and nothing where the other places are null.
+    // into `free`, and nothing to the null places.
     let done = unsafe {
         GetDiskFreeSpaceExW(name.as_ptr(), &raw mut free, std::ptr::null_mut(), std::ptr::null_mut())
     };
     (done != 0).then_some(free)
 }
 
-/// Whether a process of this number runs.
+/// Tells if a process of this number runs.
 pub fn is_running(process: &str) -> bool {
     let Ok(number) = process.parse() else { return false };
-    // SAFETY: the call takes and gives plain numbers.
+    // SAFETY: the call takes and returns plain numbers.
     let handle = unsafe { OpenProcess(PROCESS_QUERY_LIMITED_INFORMATION, 0, number) };
     if handle.is_null() {
-        // A process of another user may not be asked, but is there.
+        // A process of another user refuses the question, but exists.
         return io::Error::last_os_error().kind() == io::ErrorKind::PermissionDenied;
     }
     let mut code = 0;
@@ -124,22 +124,22 @@ pub fn is_running(process: &str) -> bool {
     }
 }
 
-/// The name of this machine.
+/// Name of this machine.
 pub fn host_name() -> String {
     std::env::var("COMPUTERNAME").unwrap_or_else(|_| "unknown".to_owned())
 }
 
-/// Steps in which the processor time of a thread may go on (s): those of the system's own clock.
+/// Step of the processor time of a thread (s): the step of the system's own clock.
 pub const THREAD_SECONDS_STEP: f64 = 0.016;
 
 /// Processor time of this thread (s).
 pub fn thread_seconds() -> f64 {
-    // SAFETY: the handle stands for this thread, and the system writes into the four places that it gets.
+    // SAFETY: the handle means this thread, and the system writes into the four places that it gets.
     seconds(|[a, b, c, d]| unsafe { GetThreadTimes(GetCurrentThread(), a, b, c, d) })
 }
 
-/// Seconds in the system and outside of it, the last two of the times that `ask` fills in: created, ended,
-/// in the system, outside of it.
+/// Seconds in the system and outside of it, the last two of the times that `ask` fills in: created, ended, in
+/// the system, outside of it.
 fn seconds(ask: impl FnOnce([&mut FILETIME; 4]) -> i32) -> f64 {
     let mut times = [FILETIME::default(); 4];
     if ask(times.each_mut()) == 0 {
@@ -152,25 +152,29 @@ fn seconds(ask: impl FnOnce([&mut FILETIME; 4]) -> i32) -> f64 {
 
 /// Processors that this program may use, by their numbers in its group (of at most 64).
 pub fn processors() -> Vec<usize> {
-    let (mut own, mut all) = (0, 0);
-    // SAFETY: the handle stands for this process, and the system writes a number into both places.
-    let done = unsafe { GetProcessAffinityMask(GetCurrentProcess(), &raw mut own, &raw mut all) };
-    if done == 0 { Vec::new() } else { (0..usize::BITS as usize).filter(|at| own >> at & 1 == 1).collect() }
+    let (mut usable, mut all) = (0, 0);
+    // SAFETY: the handle means this process, and the system writes a number into both places.
+    let done = unsafe { GetProcessAffinityMask(GetCurrentProcess(), &raw mut usable, &raw mut all) };
+    if done == 0 {
+        Vec::new()
+    } else {
+        (0..usize::BITS as usize).filter(|at| usable >> at & 1 == 1).collect()
+    }
 }
 
-/// Keeps this thread on a processor. Refused: the thread goes where the system puts it.
+/// Keeps this thread on a processor. If refused, the system places the thread.
 pub fn stay_on(processor: usize) {
     if let Some(one) = 1usize.checked_shl(processor as u32) {
-        // SAFETY: the handle stands for this thread; the rest are plain numbers.
+        // SAFETY: the handle means this thread; the rest are plain numbers.
         unsafe { SetThreadAffinityMask(GetCurrentThread(), one) };
     }
 }
 
-/// Memory of the machine, and what of it is not in use.
+/// Memory of the machine, and its unused part.
 pub fn memory() -> Memory {
     let mut about =
         MEMORYSTATUSEX { dwLength: size_of::<MEMORYSTATUSEX>() as u32, ..MEMORYSTATUSEX::default() };
-    // SAFETY: `about` says how long it is, and the system writes no further.
+    // SAFETY: `about` holds its own length, and the system writes no further.
     let done = unsafe { GlobalMemoryStatusEx(&raw mut about) };
     if done == 0 {
         return Memory::default();
@@ -178,26 +182,26 @@ pub fn memory() -> Memory {
     Memory { total: Some(about.ullTotalPhys), available: Some(about.ullAvailPhys) }
 }
 
-/// The processor's family and model.
+/// Family and model of the processor.
 pub fn processor() -> Option<String> {
     std::env::var("PROCESSOR_IDENTIFIER").ok()
 }
 
-/// Nothing: the system has no such table.
+/// `None`: the system has no such table.
 pub fn mounts() -> Option<String> {
     None
 }
 
-/// The flags that a request to end sets.
+/// Flags that a request to end sets.
 #[cfg(feature = "process")]
 static STOPS: Mutex<Vec<Arc<AtomicBool>>> = Mutex::new(Vec::new());
 
-/// Whether a request ends the program at once.
+/// True if a request ends the program at once.
 #[cfg(feature = "process")]
 static AT_ONCE: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 
-/// Has requests to end set the flag. Not by `signal` of the C library, which tells of no window that is
-/// closed, and whose ways differ from one such library to the next.
+/// Makes requests to end set the flag. `signal` of the C library will not do: it does not report a closed
+/// window, and differs from one such library to the next.
 #[cfg(feature = "process")]
 pub fn listen(stop: &Arc<AtomicBool>, at_once: &Arc<AtomicBool>) -> io::Result<()> {
     let _ = AT_ONCE.set(Arc::clone(at_once));
@@ -206,8 +210,9 @@ pub fn listen(stop: &Arc<AtomicBool>, at_once: &Arc<AtomicBool>) -> io::Result<(
     or_error(unsafe { SetConsoleCtrlHandler(Some(on_request), 1) })
 }
 
-/// The system calls this on a thread of its own. When it returns from what is no interrupt the program ends:
-/// so that waits, for as long as the system lets it, until the state is saved and the program ends by itself.
+/// Handles a request; the system calls this on a thread of its own. For requests other than interrupts the
+/// program ends when this returns: so it waits, for as long as the system lets it, until the state is saved
+/// and the program ends by itself.
 #[cfg(feature = "process")]
 unsafe extern "system" fn on_request(kind: u32) -> i32 {
     if AT_ONCE.get().is_some_and(|at_once| at_once.load(Ordering::SeqCst)) {
@@ -224,7 +229,7 @@ unsafe extern "system" fn on_request(kind: u32) -> i32 {
     1
 }
 
-/// Sets the flags; whether one was set before.
+/// Sets the flags; tells if one was set before.
 #[cfg(feature = "process")]
 fn request(stops: &[Arc<AtomicBool>]) -> bool {
     stops.iter().fold(false, |was, stop| stop.swap(true, Ordering::SeqCst) || was)
