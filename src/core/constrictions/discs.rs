@@ -116,18 +116,18 @@ fn cuts(disc: &Tangent<2>, other: &[f64; 3]) -> bool {
 }
 
 /// Finds the largest circle through three of the grains concerned that no other grain cuts.
-fn largest(own: &[[f64; 3]; 3], others: &[[f64; 3]], first: &Tangent<2>) -> Option<Tangent<2>> {
-    let mut concerned = own.to_vec();
+fn largest(facet: &[[f64; 3]; 3], others: &[[f64; 3]], first: &Tangent<2>) -> Option<Tangent<2>> {
+    let mut concerned = facet.to_vec();
     concerned.extend(others.iter().filter(|other| cuts(first, other)).take(MOST_CUTTING));
     let mut best: Option<Tangent<2>> = None;
     for a in 0..concerned.len() {
         for b in a + 1..concerned.len() {
             for c in b + 1..concerned.len() {
-                let Some(found) = circle(&[concerned[a], concerned[b], concerned[c]]) else { continue };
-                if best.is_none_or(|best| found.radius > best.radius)
-                    && !own.iter().chain(others).any(|other| cuts(&found, other))
+                let Some(disc) = circle(&[concerned[a], concerned[b], concerned[c]]) else { continue };
+                if best.is_none_or(|best| disc.radius > best.radius)
+                    && !facet.iter().chain(others).any(|other| cuts(&disc, other))
                 {
-                    best = Some(found);
+                    best = Some(disc);
                 }
             }
         }

@@ -129,10 +129,10 @@ impl VoidGraph {
             porosity: 0.0,
         };
         graph.weigh(t);
-        for passage in &passages.of {
+        for passage in &passages.open {
             let (i, k) = passage.facet;
             let Some((u, _, across)) = t.across(i, k) else { continue };
-            let (a, b) = (voids.of[i] as usize, voids.of[u] as usize);
+            let (a, b) = (voids.by_tetrahedron[i] as usize, voids.by_tetrahedron[u] as usize);
             // Place of the far void if the near one is at its own place, and then its place in the cell.
             let by = voids.shift[i].plus(across).minus(voids.shift[u]);
             let far = moved(&points[b], &positions.displacement(by));
@@ -232,7 +232,7 @@ fn void_points(t: &Triangulation, positions: &Positions<'_>, voids: &Voids) -> V
     let mut largest = vec![-1.0; voids.count];
     let mut points = vec![[0.0; 3]; voids.count];
     for (i, insphere) in voids.inspheres.iter().enumerate() {
-        let void = voids.of[i] as usize;
+        let void = voids.by_tetrahedron[i] as usize;
         let (radius, centre) = match insphere {
             Insphere::Sphere(s) => (s.radius, s.centre),
             _ => {
@@ -259,7 +259,7 @@ fn power_centres(t: &Triangulation, positions: &Positions<'_>, voids: &Voids) ->
     let mut centres = by_tetrahedron.clone();
     for i in (0..by_tetrahedron.len()).filter(|&i| voids.inspheres[i] == Insphere::Flat) {
         let beside = (0..4).filter_map(|k| t.across(i, k)).find(|&(u, _, shift)| {
-            voids.of[u] == voids.of[i]
+            voids.by_tetrahedron[u] == voids.by_tetrahedron[i]
                 && voids.inspheres[u] != Insphere::Flat
                 && voids.shift[i].plus(shift) == voids.shift[u]
         });
@@ -274,7 +274,7 @@ fn power_centres(t: &Triangulation, positions: &Positions<'_>, voids: &Voids) ->
 fn volumes(t: &Triangulation, positions: &Positions<'_>, voids: &Voids, unit_mm: f64) -> Vec<f64> {
     let mut volumes = vec![0.0; voids.count];
     for i in 0..t.tetrahedra() {
-        volumes[voids.of[i] as usize] +=
+        volumes[voids.by_tetrahedron[i] as usize] +=
             water(&t.at(positions, i, Shift::ZERO)) * unit_mm * unit_mm * unit_mm;
     }
     volumes.iter_mut().for_each(|volume| *volume = volume.max(0.0));

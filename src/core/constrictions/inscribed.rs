@@ -165,11 +165,11 @@ fn between_four(radius: [f64; 4]) -> f64 {
     let mut largest = 0.0_f64;
     for left_out in 0..4 {
         let three: [[f64; 3]; 3] = std::array::from_fn(|k| ring[(left_out + 1 + k) % 4]);
-        let Some(found) = circle(&three) else { continue };
+        let Some(inner) = circle(&three) else { continue };
         let [x, y, r] = ring[left_out];
-        let gap = libm::hypot(found.centre[0] - x, found.centre[1] - y) - r - found.radius;
-        if gap >= -1e-9 * found.radius {
-            largest = largest.max(found.radius);
+        let gap = libm::hypot(inner.centre[0] - x, inner.centre[1] - y) - r - inner.radius;
+        if gap >= -1e-9 * inner.radius {
+            largest = largest.max(inner.radius);
         }
     }
     // If rounding lets no circle through, use the circle of the three smallest.

@@ -240,8 +240,8 @@ fn product(a: &[f64; TREND], b: &[f64; TREND]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-fn column(terms: &[[f64; TREND]], t: usize, of: &[f64]) -> f64 {
-    terms.iter().zip(of).map(|(terms, value)| terms[t] * value).sum()
+fn column(terms: &[[f64; TREND]], t: usize, values: &[f64]) -> f64 {
+    terms.iter().zip(values).map(|(terms, value)| terms[t] * value).sum()
 }
 
 /// Cholesky's root of a positive definite matrix, both by the rows of their lower halves.

@@ -204,7 +204,7 @@ pub(super) struct Passage {
 /// The facets between voids.
 pub(super) struct Passages {
     /// Open facets.
-    pub(super) of: Vec<Passage>,
+    pub(super) open: Vec<Passage>,
     /// Number of facets that the grains close.
     pub(super) closed: usize,
 }
@@ -216,7 +216,7 @@ impl Passages {
             // Each facet is taken from the tetrahedron with the lower index.
             t.across(i, k).is_some_and(|(u, j, _)| {
                 u > i
-                    && voids.of[u] != voids.of[i]
+                    && voids.by_tetrahedron[u] != voids.by_tetrahedron[i]
                     && (counted == Facets::All
                         || voids.on_hull(t, positions, i, k) && voids.on_hull(t, positions, u, j))
             })
@@ -230,7 +230,7 @@ impl Passages {
         let discs: Vec<ConstrictionDisc> =
             facets.par_iter().with_min_len(256).map(|&(i, k)| disc(t, positions, i, k)).collect();
         let frame = Frame::new(t);
-        let mut passages = Self { of: Vec::new(), closed: 0 };
+        let mut passages = Self { open: Vec::new(), closed: 0 };
         // Diameter and centre (mm) of each constriction.
         let mut constrictions: Vec<(f64, [f64; 3])> = Vec::new();
         let mut between: HashMap<(u32, u32), Vec<usize>> = HashMap::new();
@@ -241,7 +241,7 @@ impl Passages {
                 continue;
             }
             let (centre, diameter) = (frame.inside_mm(disc.centre), 2.0 * disc.radius * frame.unit_mm);
-            let (a, b) = (voids.of[i], voids.of[u]);
+            let (a, b) = (voids.by_tetrahedron[i], voids.by_tetrahedron[u]);
             let seen = between.entry((a.min(b), a.max(b))).or_default();
             let same = |&&c: &&usize| {
                 (constrictions[c].0 - diameter).abs() <= SAME_DISC * diameter
@@ -256,7 +256,7 @@ impl Passages {
                 }
             };
             let &ConstrictionDisc { centre, radius, cut } = disc;
-            passages.of.push(Passage { facet: (i, k), constriction, radius, centre, cut });
+            passages.open.push(Passage { facet: (i, k), constriction, radius, centre, cut });
         }
         passages
     }
@@ -298,13 +298,13 @@ impl Constrictions {
         let mut measured = Self::empty(t, voids, &frame);
         (measured.merge_overlap, measured.counted) = (merge_overlap, counted);
         measured.closed = passages.closed;
-        for passage in &passages.of {
+        for passage in &passages.open {
             if passage.constriction < measured.diameter_mm.len() {
                 continue;
             }
             let (i, k) = passage.facet;
             let Some((u, _, _)) = t.across(i, k) else { continue };
-            let (a, b) = (voids.of[i], voids.of[u]);
+            let (a, b) = (voids.by_tetrahedron[i], voids.by_tetrahedron[u]);
             measured.cut += usize::from(passage.cut);
             measured.diameter_mm.push(2.0 * passage.radius * frame.unit_mm);
             measured.centre_mm.push(frame.inside_mm(passage.centre));
@@ -321,7 +321,7 @@ impl Constrictions {
         let mut void_diameter_mm = vec![0.0; voids.count];
         let mut void_centre_mm = vec![[f64::NAN; 3]; voids.count];
         let mut void_tetrahedra = vec![0; voids.count];
-        for (i, (&v, insphere)) in voids.of.iter().zip(&voids.inspheres).enumerate() {
+        for (i, (&v, insphere)) in voids.by_tetrahedron.iter().zip(&voids.inspheres).enumerate() {
             let v = v as usize;
             void_tetrahedra[v] += 1;
             match insphere {

@@ -3,7 +3,7 @@
 use super::frame::Region;
 use super::measure::{Constrictions, ConstrictionsError};
 
-/// Least void ratio at which grains rest on each other.
+/// Least and greatest void ratio of grains that rest on each other.
 const DENSEST: f64 = 0.2;
 const LOOSEST: f64 = 1.5;
 

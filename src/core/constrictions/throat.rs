@@ -29,11 +29,11 @@ pub(super) struct Throat {
 impl Throat {
     /// Makes the throat of the facet between two tetrahedra from its grains, the corner opposite it on this
     /// side, and the power centres of both sides.
-    pub(super) fn new(facet: &[GrainPoint; 3], own: &GrainPoint, centres: [&[f64; 3]; 2]) -> Self {
+    pub(super) fn new(facet: &[GrainPoint; 3], inside: &GrainPoint, centres: [&[f64; 3]; 2]) -> Self {
         let [first, second] = centres;
-        let here = half(facet, own, first);
+        let here = half(facet, inside, first);
         // The far side's inside is this side's outside.
-        let there = half(facet, own, second);
+        let there = half(facet, inside, second);
         Self { volume: here.0 - there.0, surface: here.1 - there.1, area: open_area(facet) }
     }
 
@@ -48,13 +48,13 @@ impl Throat {
 }
 
 /// Volume of water and surface of grains between a facet and a point, positive if the point is on the side of
-/// `own`.
-fn half(facet: &[GrainPoint; 3], own: &GrainPoint, apex: &[f64; 3]) -> (f64, f64) {
+/// `inside`.
+fn half(facet: &[GrainPoint; 3], inside: &GrainPoint, apex: &[f64; 3]) -> (f64, f64) {
     let from = |p: &GrainPoint, q: &[f64]| -> [f64; 3] { std::array::from_fn(|axis| q[axis] - p[axis]) };
     let (e, f) = (from(&facet[0], &facet[1]), from(&facet[0], &facet[2]));
     let normal = cross(&e, &f);
     let six = dot(&normal, &from(&facet[0], apex));
-    let sign = six.signum() * dot(&normal, &from(&facet[0], own)).signum();
+    let sign = six.signum() * dot(&normal, &from(&facet[0], inside)).signum();
     let (mut volume, mut surface) = (six.abs() / 6.0, 0.0);
     for k in 0..3 {
         let grain = &facet[k];

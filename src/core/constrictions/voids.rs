@@ -36,7 +36,7 @@ pub(super) enum Insphere {
 /// The void of each tetrahedron.
 pub(super) struct Voids {
     /// Void by tetrahedron, numbered in the order of their first tetrahedra.
-    pub(super) of: Vec<u32>,
+    pub(super) by_tetrahedron: Vec<u32>,
     /// Translate of each tetrahedron that belongs to the same image of the void as the stored translate of
     /// the void's first tetrahedron.
     pub(super) shift: Vec<Shift>,
@@ -65,7 +65,7 @@ impl Voids {
             pairs.into_iter().filter(|&(a, b, by)| !sets.unite(a, b, by)).map(|(a, _, _)| a).collect();
         let mut number = vec![u32::MAX; t.tetrahedra()];
         let mut count = 0;
-        let (of, shift): (Vec<u32>, Vec<Shift>) = (0..t.tetrahedra() as u32)
+        let (by_tetrahedron, shift): (Vec<u32>, Vec<Shift>) = (0..t.tetrahedra() as u32)
             .map(|i| {
                 let (root, shift) = sets.root(i);
                 let number = &mut number[root as usize];
@@ -77,8 +77,8 @@ impl Voids {
             })
             .unzip();
         let mut endless = vec![false; count as usize];
-        meets_itself.iter().for_each(|&i| endless[of[i as usize] as usize] = true);
-        Self { of, shift, endless, count: count as usize, inspheres }
+        meets_itself.iter().for_each(|&i| endless[by_tetrahedron[i as usize] as usize] = true);
+        Self { by_tetrahedron, shift, endless, count: count as usize, inspheres }
     }
 }
 
@@ -101,7 +101,7 @@ impl Voids {
             d[0] * normal[0] + d[1] * normal[1] + d[2] * normal[2]
         };
         let inside = height(&corners[corner]);
-        let void = self.of[tetrahedron];
+        let void = self.by_tetrahedron[tetrahedron];
         let mut seen = HashSet::from([tetrahedron]);
         let mut open = vec![(tetrahedron, Shift::ZERO)];
         while let Some((at, shift)) = open.pop() {
@@ -111,7 +111,7 @@ impl Voids {
                 return false;
             }
             for (u, _, further) in (0..4).filter_map(|k| t.across(at, k)) {
-                if self.of[u] == void && seen.insert(u) {
+                if self.by_tetrahedron[u] == void && seen.insert(u) {
                     open.push((u, shift.plus(further)));
                 }
             }

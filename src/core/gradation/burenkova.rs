@@ -70,13 +70,13 @@ mod tests {
         let points = [(0.05, 0.0), (0.1, 15.0), (5.0, 60.0), (10.0, 90.0), (20.0, 100.0)];
         let factors = Gradation::from_points(&points, None).unwrap().uniformity_factors().unwrap();
         assert!((factors.coarse - 2.0).abs() < 1e-12 && (factors.whole - 100.0).abs() < 1e-9);
-        for (found, by_hand) in [
+        for (computed, by_hand) in [
             (factors.stable()[0], 2.52),
             (factors.stable()[1], 4.72),
             (factors.probability_of_instability(true), 1.0 / (1.0 + (-3.004f64).exp())),
             (factors.probability_of_instability(false), 1.0 / (1.0 + (-1.161f64).exp())),
         ] {
-            assert!((found - by_hand).abs() < 1e-9, "{found} {by_hand}");
+            assert!((computed - by_hand).abs() < 1e-9, "{computed} {by_hand}");
         }
     }
 

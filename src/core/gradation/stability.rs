@@ -311,11 +311,11 @@ mod tests {
         assert!((split.value - 1.743).abs() < 1e-3 && split.value == split.coarse_d15_mm / split.fine_d85_mm);
         let at = sand.d(split.percent).unwrap();
         let (share, rows) = (split.percent, || sizes.into_iter().zip(percents));
-        let finer = rows().filter(|row| row.0 < at).map(|(size, of)| (size, 100.0 * of / share));
+        let finer = rows().filter(|row| row.0 < at).map(|(size, percent)| (size, 100.0 * percent / share));
         let finer = points(&finer.chain([(at, 100.0)]).collect::<Vec<_>>());
         assert!((finer.d(85.0).unwrap() - fine).abs() < 1e-9);
         let coarser = rows().filter(|row| row.0 > at);
-        let coarser = coarser.map(|(size, of)| (size, 100.0 * (of - share) / (100.0 - share)));
+        let coarser = coarser.map(|(size, percent)| (size, 100.0 * (percent - share) / (100.0 - share)));
         let coarser = points(&[(at, 0.0)].into_iter().chain(coarser).collect::<Vec<_>>());
         assert!((coarser.d(15.0).unwrap() - coarse).abs() < 1e-9);
     }

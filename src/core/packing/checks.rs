@@ -270,14 +270,14 @@ fn crowded_grains_of_wide_packings_are_moved_as_heavier_ones() {
         let (law, reduced) = (c.law, 0.5 * ratio / (ratio + 1.0));
         let stiffness = law.stiffness * (reduced * overlap).sqrt();
         let small = c.rank.iter().position(|&r| r == 1).unwrap();
-        let (own, loose) = (c.velocity[small][3], critical_step(&c.position, &c.velocity, &settings).0);
+        let (true_mass, loose) = (c.velocity[small][3], critical_step(&c.position, &c.velocity, &settings).0);
         let heavier = 0.25 * stability(&law) * stiffness * (1.5 * loose) * (1.5 * loose);
-        assert!(heavier > 1.2 * own, "{heavier} {own}");
+        assert!(heavier > 1.2 * true_mass, "{heavier} {true_mass}");
         let step = c.step;
         free(&mut c, 1);
-        assert_eq!(c.velocity[small][3], own);
+        assert_eq!(c.velocity[small][3], true_mass);
         let mass = 2.0 / 3.0 * stiffness * overlap * step / c.velocity[small][0];
-        (mass / own, heavier / own)
+        (mass / true_mass, heavier / true_mass)
     };
     for (ratio, step, is_heavier) in
         [(19.9, None, false), (20.0, None, true), (36.0, None, true), (36.0, Some(1e-4), false)]

@@ -305,7 +305,7 @@ fn block<const FRICTION: bool, const HERTZ: bool>(
     }
     let lanes = hits.len().min(BLOCK);
     compute::<FRICTION, HERTZ>(b, lanes.next_multiple_of(8), law, now);
-    let (first, own) = (chunk.first, chunk.last - chunk.first);
+    let (first, count) = (chunk.first, chunk.last - chunk.first);
     for (k, &hit) in hits.iter().enumerate().take(BLOCK) {
         let [i, j] = chunk.close[hit as usize];
         let kn = b.stiffness[k];
@@ -323,7 +323,7 @@ fn block<const FRICTION: bool, const HERTZ: bool>(
             let to = &mut torque[i];
             *to = [to[0] + ri * t[0], to[1] + ri * t[1], to[2] + ri * t[2], 0.0];
         }
-        if j < own {
+        if j < count {
             let to = &mut force[j];
             *to = [to[0] - f[0], to[1] - f[1], to[2] - f[2], to[3] + kn];
             if FRICTION {

@@ -231,16 +231,16 @@ const NOT_TEXT: [(&[u8], &str); 2] = [
 /// Makes the packing (mm) from the file and from `options`; if both give a value, the file's counts.
 fn complete(
     file: &str,
-    found: FileGrains,
+    grains: FileGrains,
     options: &ReadOptions,
 ) -> Result<(Packing, Vec<String>), ImportError> {
-    let FileGrains { columns: [mut x, mut y, mut z, diameter], unit, cell, line, mut notes } = found;
+    let FileGrains { columns: [mut x, mut y, mut z, diameter], unit, cell, line, mut notes } = grains;
     let unit = match (unit, options.unit) {
-        (Some(said), Some(given)) if said != given => {
-            let allowed = format!("{}: the file says the unit of its lengths itself", said.name());
+        (Some(from_file), Some(given)) if from_file != given => {
+            let allowed = format!("{}: the file says the unit of its lengths itself", from_file.name());
             return Err(refused(file, line, "unit", given.name(), allowed));
         }
-        (Some(said), _) => said,
+        (Some(from_file), _) => from_file,
         (None, Some(given)) => given,
         (None, None) => return Err(ImportError::NoUnit { file: file.into() }),
     };

@@ -190,8 +190,8 @@ fn bad_files_are_refused_with_their_place() {
 proptest! {
     /// A cut, garbled or repeated file gives a packing or an error, never a panic.
     #[test]
-    fn no_file_makes_it_panic(cut in 0usize..200, at in 0usize..200, with in ".{0,6}", which: bool) {
-        let mut text: Vec<char> = if which { CSV } else { DUMP }.chars().collect();
+    fn no_file_makes_it_panic(cut in 0usize..200, at in 0usize..200, with in ".{0,6}", is_csv: bool) {
+        let mut text: Vec<char> = if is_csv { CSV } else { DUMP }.chars().collect();
         let at = at.min(text.len());
         text.splice(at..(at + with.len()).min(text.len()), with.chars());
         text.truncate(text.len() - cut.min(text.len()) / 2);
@@ -206,8 +206,8 @@ proptest! {
 const METRES: [[&str; 4]; 2] =
     [["-0.0005", "0.001", "0.003", "0.0005"], ["0.0005", "0.0025", "0.00425", "0.000375"]];
 
-fn rows(of: impl Fn([&str; 4]) -> String) -> String {
-    METRES.map(of).concat()
+fn rows(row: impl Fn([&str; 4]) -> String) -> String {
+    METRES.map(row).concat()
 }
 
 /// Files of Yade, MercuryDPM and ParaView with the two grains.
@@ -226,14 +226,14 @@ fn files_of_other_programs_are_read_when_unit_and_cell_are_said() {
     let points = rows(|[x, y, z, r]| format!("{},7,{x},{y},{z}\n", 2.0 * r.parse::<f64>().unwrap()));
     let paraview = format!("\"Diameter\",\"ID\",\"Points:0\",\"Points:1\",\"Points:2\"\n{points}");
     let close = |packing: &Packing, shift: [f64; 3], text: &str| {
-        for ((found, wanted), shift) in
+        for ((actual, wanted), shift) in
             [(&packing.x, [-0.5, 0.5]), (&packing.y, [1.0, 2.5]), (&packing.z, [3.0, 4.25])]
                 .into_iter()
                 .zip(shift)
         {
             assert!(
-                found.iter().zip(wanted).all(|(a, b)| (a - b - shift).abs() < 1e-12),
-                "{text}: {found:?}"
+                actual.iter().zip(wanted).all(|(a, b)| (a - b - shift).abs() < 1e-12),
+                "{text}: {actual:?}"
             );
         }
         assert!((packing.diameter[0] - 1.0).abs() + (packing.diameter[1] - 0.75).abs() < 1e-12, "{text}");

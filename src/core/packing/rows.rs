@@ -70,7 +70,7 @@ pub(super) fn mercury(file: &str, text: &str) -> Result<FileGrains, ImportError>
         .enumerate()
         .map(|(i, line)| (i + 1, line.trim()))
         .filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-    let (mut frames, mut found, mut last, mut is_last) = (0, None, 0, true);
+    let (mut frames, mut frame, mut last, mut is_last) = (0, None, 0, true);
     while let Some((line, header)) = lines.next() {
         let words: Vec<&str> = header.split_whitespace().collect();
         if words.len() == HEADERS[1] {
@@ -102,10 +102,10 @@ pub(super) fn mercury(file: &str, text: &str) -> Result<FileGrains, ImportError>
         // The first frame is empty in a simulation that fills a box, the last in one that empties it.
         (last, is_last) = (line, count > 0);
         if count > 0 {
-            found = Some((line, words[1], bounds, rows));
+            frame = Some((line, words[1], bounds, rows));
         }
     }
-    let Some((line, time, bounds, rows)) = found else {
+    let Some((line, time, bounds, rows)) = frame else {
         return Err(ended(file, last, "a frame with at least one particle"));
     };
     let mut grains = Vec::with_capacity(rows.len());

@@ -362,8 +362,11 @@ impl Names {
     fn replaced_by(&self, name: &str) -> Vec<&'static str> {
         let mut replaced = Vec::new();
         for group in self.groups {
-            let Some(chosen) = group.alternatives.iter().find(|way| way.is_chosen_by(name)) else { continue };
-            for other in group.alternatives.iter().filter(|way| way.by != chosen.by) {
+            let Some(chosen) = group.alternatives.iter().find(|alternative| alternative.is_chosen_by(name))
+            else {
+                continue;
+            };
+            for other in group.alternatives.iter().filter(|alternative| alternative.by != chosen.by) {
                 replaced.extend(other.by.iter().chain(other.with));
             }
             replaced.extend(chosen.resets);

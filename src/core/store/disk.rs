@@ -256,8 +256,8 @@ pub fn read_regular(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
 pub fn why_not_read(path: &Path, largest: u64) -> String {
     let largest = in_mb(largest);
     match std::fs::metadata(path) {
-        Ok(found) if found.is_dir() => format!("is a folder; allowed: a file of at most {largest}"),
-        Ok(found) if !found.is_file() => {
+        Ok(metadata) if metadata.is_dir() => format!("is a folder; allowed: a file of at most {largest}"),
+        Ok(metadata) if !metadata.is_file() => {
             format!("is a pipe, a device or a socket; allowed: a regular file of at most {largest}")
         }
         _ => format!("is larger than {largest}; allowed: a file up to that size"),
@@ -293,14 +293,14 @@ mod tests {
         let made = std::process::Command::new("mkfifo").arg(&pipe).status().unwrap();
         assert!(made.success());
         std::fs::write(&text, "abc").unwrap();
-        for (path, largest, found) in [
+        for (path, largest, expected) in [
             (text.as_path(), 3, Some(b"abc".to_vec())),
             (&text, 2, None),
             (&pipe, 3, None),
             (root.path(), 3, None),
             (Path::new("/dev/zero"), u64::MAX, None),
         ] {
-            assert_eq!(read_regular(path, largest).unwrap(), found, "{}", path.display());
+            assert_eq!(read_regular(path, largest).unwrap(), expected, "{}", path.display());
         }
         let why = |path: &Path| why_not_read(path, 16 << 20);
         assert_eq!(why(root.path()), "is a folder; allowed: a file of at most 16 MB");

@@ -79,8 +79,8 @@ pub fn files_in(folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
         Err(source) if source.kind() != io::ErrorKind::NotFound => {
             Err(StoreError::Io { path: folder.to_owned(), action: "read the folder", source })
         }
-        found => {
-            let mut files = found.unwrap_or_default();
+        listed => {
+            let mut files = listed.unwrap_or_default();
             files.sort();
             Ok(files)
         }

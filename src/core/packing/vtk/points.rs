@@ -28,8 +28,8 @@ pub fn grains(file: &str, points: Points) -> Result<FileGrains, ImportError> {
         all.filter(|(_, named)| called.contains(&named.name.as_str())).collect()
     };
     let (mut sizes, factor) = match named(DIAMETER) {
-        found if found.is_empty() => (named(RADIUS), 2.0),
-        found => (found, 1.0),
+        diameters if diameters.is_empty() => (named(RADIUS), 2.0),
+        diameters => (diameters, 1.0),
     };
     let (Some((size, name)), true) = (sizes.pop(), sizes.is_empty()) else {
         let names: Vec<&str> = points.arrays.iter().map(|array| array.name.as_str()).collect();

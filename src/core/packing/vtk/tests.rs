@@ -204,11 +204,11 @@ fn what_is_refused_says_why() {
 proptest! {
     /// No bytes cause a panic.
     #[test]
-    fn nothing_panics(at in 0usize..600, byte: u8, which in 0usize..3) {
+    fn nothing_panics(at in 0usize..600, byte: u8, form in 0usize..3) {
         let zlib = [&PLACES[..], &RADII]
             .map(|values| zlib(&floats(values, false)).map(|part| STANDARD.encode(part)).concat());
         let inline = [("format=\"binary\"", zlib[0].as_str()), ("format=\"binary\"", &zlib[1])];
-        let mut content = match which {
+        let mut content = match form {
             0 => LEGACY.as_bytes().to_vec(),
             1 => LEGACY.replace("ASCII", "BINARY").into_bytes(),
             _ => in_xml("compressor=\"vtkZLibDataCompressor\"", inline, b""),

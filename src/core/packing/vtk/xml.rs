@@ -61,7 +61,7 @@ pub fn xml(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
                     (room, points.line) = (Some(Room::Places), form.line);
                 }
                 "PointData" => room = Some(Room::Numbers),
-                "DataArray" if room.is_some() => (open, within) = (Some(Declared::of(&e, &form)?), 0),
+                "DataArray" if room.is_some() => (open, within) = (Some(Declared::read(&e, &form)?), 0),
                 _ if open.is_some() => within += 1,
                 _ => {}
             },
@@ -225,7 +225,7 @@ enum Place {
 }
 
 impl Declared {
-    fn of(e: &BytesStart<'_>, form: &Form<'_>) -> Result<Self, ImportError> {
+    fn read(e: &BytesStart<'_>, form: &Form<'_>) -> Result<Self, ImportError> {
         let kind = attribute(e, "type").unwrap_or_default();
         let number = number(&kind)
             .ok_or_else(|| form.refused("type", &kind, "a number's type, as Float32, Float64 or Int32"))?;

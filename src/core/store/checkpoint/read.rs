@@ -107,13 +107,13 @@ impl Checkpoint {
     /// # Errors
     /// [`CheckpointError::OtherScene`] or [`CheckpointError::OtherWalk`].
     pub fn expect(&self, expected: &Identity) -> Result<(), CheckpointError> {
-        let (found, file) = (&self.label.identity, self.path.clone());
-        if found.scene != expected.scene {
+        let (identity, file) = (&self.label.identity, self.path.clone());
+        if identity.scene != expected.scene {
             return Err(CheckpointError::OtherScene { file });
         }
-        if found != expected {
-            let (found, expected) = (found.to_string(), expected.to_string());
-            return Err(CheckpointError::OtherWalk { file, found, expected });
+        if identity != expected {
+            let (identity, expected) = (identity.to_string(), expected.to_string());
+            return Err(CheckpointError::OtherWalk { file, found: identity, expected });
         }
         Ok(())
     }
