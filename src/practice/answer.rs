@@ -1,4 +1,4 @@
-//! What filter practice says of a pair, as it is written.
+//! The answer of filter practice on a pair, in its written form.
 
 use serde::{Deserialize, Serialize};
 
@@ -94,7 +94,7 @@ impl Headline {
         Self::TestMissing,
     ];
 
-    /// Its words, on every face and in every file.
+    /// Words of the headline, on every face and in every file.
     pub fn words(self) -> &'static str {
         match self {
             Self::Meets => "meets the rules checked",
@@ -113,7 +113,7 @@ impl Headline {
         }
     }
 
-    /// Whether practice is met.
+    /// Class of the headline: practice met, not met, or not known.
     pub fn class(self) -> PracticeClass {
         match self {
             Self::Meets

@@ -70,13 +70,13 @@ pub struct AppliedRule {
 }
 
 impl AppliedRule {
-    /// Everybody who states it: the one whose rule it is first; empty of a check of this program.
+    /// Authorities that state the rule: its own first; empty for a check of this program.
     pub fn authorities(&self) -> Vec<&str> {
         let stated_by = self.stated_by.iter().map(String::as_str);
         std::iter::once(self.authority.as_str()).chain(stated_by).filter(|name| !name.is_empty()).collect()
     }
 
-    /// Whether it is a rule of practice that was made for these soils and is not kept.
+    /// True for a rule of practice that was made for these soils and is not kept.
     pub fn is_broken(&self) -> bool {
         self.applies && self.met == Some(false) && self.role != RuleRole::Walk
     }
@@ -100,7 +100,7 @@ pub enum RuleUnit {
 }
 
 impl RuleUnit {
-    /// Its name, as it is written.
+    /// Name of the unit as written.
     pub fn name(self) -> &'static str {
         match self {
             Self::Mm => "mm",
@@ -151,11 +151,11 @@ pub enum RuleQuantity {
 }
 
 impl RuleQuantity {
-    /// One that is no limit of D15F.
+    /// A quantity that is not a limit of D15F.
     ///
     /// # Panics
-    /// The name is that of one that is: a record that is read back would take it for that. Of a rule, which
-    /// is a constant, this is an error of the compiler.
+    /// The name belongs to a limit of D15F: a record that is read back would be taken for that limit. For a
+    /// rule, which is a constant, this is a compile error.
     pub const fn named(name: &'static str) -> Self {
         let limits = ["D15F", "D15F/D85B", "D15F/D95B"];
         let mut at = 0;
@@ -166,7 +166,7 @@ impl RuleQuantity {
         Self::Named(Cow::Borrowed(name))
     }
 
-    /// Its name for a reader, as it is written.
+    /// Name for a reader.
     pub fn name(&self) -> &str {
         match self {
             Self::D15F => "D15F",
@@ -177,7 +177,7 @@ impl RuleQuantity {
     }
 }
 
-/// Whether two texts are the same, in a constant.
+/// Compares two texts in a constant.
 const fn is_same(a: &str, b: &str) -> bool {
     let (a, b) = (a.as_bytes(), b.as_bytes());
     let mut at = 0;

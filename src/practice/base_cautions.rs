@@ -1,10 +1,10 @@
-//! The caution of a broadly graded base, as it was sampled.
+//! Caution for a base that is broadly graded as sampled.
 
 use crate::Note;
 use voidwalk_core::gradation::{BROAD_CU, Gradation};
 
-/// That a base, as sampled, is so broad that practice looks at its finer part alone. Where D10 is finer than
-/// the finest sieve, its Cu is more than with D10 of that size.
+/// Cautions that a base is so broad as sampled that practice looks at its finer part alone. If D10 is finer
+/// than the finest sieve, its Cu is greater than with D10 at that sieve.
 pub fn broad_base(sampled: &Gradation) -> Option<Note> {
     match sampled.cu() {
         Some(cu) => (cu >= BROAD_CU).then_some(Note::BroadBase { cu }),

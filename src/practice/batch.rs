@@ -1,5 +1,5 @@
-//! Many samples of a base against filters: what practice says of each pair, in a row, and which samples
-//! govern.
+//! Many samples of a base against filters: the answer of practice for each pair, one row each, and the
+//! samples that govern.
 
 use super::mistake::Mistake;
 use super::pair::{PairOptions, PairRules};
@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use voidwalk_sheets::SoilSample;
 
-/// Samples that govern a filter and are named, to be walked in full.
+/// Number of governing samples that are named, to be walked in full.
 pub const NAMED: usize = 3;
 
 /// What practice says of one sample and one filter. Sizes are in mm.
@@ -104,13 +104,13 @@ pub struct JointErosion {
 }
 
 impl BatchRow {
-    /// Whether the limit is not known, or is at most a number.
+    /// True if the limit is not known, or is only known to be at most a number.
     pub fn limit_is_open(&self) -> bool {
         self.limit_mm.is_none() || self.limit_at_most
     }
 
-    /// What practice says of one sample and one filter. Two that look exchanged have no result, unless
-    /// `options` say that they are as given.
+    /// Applies practice to one sample and one filter. A pair that looks exchanged has no result, unless
+    /// `options` say that it is as given.
     ///
     /// ```
     /// use voidwalk_core::gradation::{Gradation, SoilSample};
@@ -125,7 +125,7 @@ impl BatchRow {
     /// ```
     ///
     /// # Panics
-    /// Where the filter has no curve.
+    /// The filter has no curve.
     pub fn of(sample: &SoilSample, (filter, curves): (&str, &[NamedCurve]), options: PairOptions) -> Self {
         let base = &sample.curve;
         let bases = [(sample.name.clone(), base.clone())];
@@ -170,7 +170,7 @@ impl BatchRow {
         let strictest = decision.strictest().map(|(rule, limit)| (rule, limit, rule.limit_at_most));
         let is_open = base.open_steps().into_iter().any(|step| step.is_wide());
         let open_base = is_open.then(|| OpenBase::of(base, false));
-        // The strictest that a limit can be which hangs on sieves of the base that stand far apart.
+        // The strictest value of a limit that depends on sieves of the base far apart.
         let hanging = |rule: &AppliedRule| {
             let limit = sieved_limit(&rule.id, base, open_base.as_ref()?, options.dispersive)?;
             limit.hangs_on.map(|_| limit.strictest)
@@ -181,7 +181,7 @@ impl BatchRow {
         let strictest = strictest.into_iter().chain(least).min_by(|a, b| a.1.total_cmp(&b.1));
         let is_size = |rule: &&AppliedRule| rule.applies && rule.quantity != RuleQuantity::D15FOverD85B;
         let judged = decision.applied(DESIGN).and_then(|rule| rule.value).or(row.d15f_mm);
-        // As on the page of the pair: what is left of a filter that may lose its own fines nobody knows.
+        // The remainder of a filter that may lose its own fines is unknown, like on the page of the pair.
         let unknown = decision.standing.class() == PracticeClass::NotKnown
             || retaining(rules).filter(is_size).any(|rule| rule.met.is_none());
         let met = match decision.breaks(RuleRole::Retention) || decision.breaks(RuleRole::Continuation) {
@@ -219,19 +219,20 @@ impl BatchRow {
     }
 }
 
-/// Whether a rule has no result, as D15F lies between two sieves that stand far apart.
+/// True for a rule without a result because D15F lies between two sieves far apart.
 fn leaves_d15f_open(rule: &AppliedRule) -> bool {
     let is_between = |note: &RuleNote| matches!(note, RuleNote::D15FBetween(..));
     rule.met.is_none() && rule.needs.iter().any(is_between)
 }
 
-/// Continuing erosion into a joint, where one is asked about.
+/// Continuing erosion into a joint, if the rule of the joint was applied.
 fn joint(rules: &[AppliedRule]) -> Option<JointErosion> {
     let rule = rules.iter().find(|rule| rule.id == CONSTRICTED_EXIT && rule.applies)?;
     Some(JointErosion { percent: rule.value, is_below_source: rule.value.is_none() && rule.needs.is_empty() })
 }
 
-/// Whose limit it is: of rules that say the same, as design and Terzaghi do for a clean sand, the first.
+/// Authority of the limit; among rules with equal limits, such as design and Terzaghi for a clean sand, the
+/// first.
 fn whose(rules: &[AppliedRule], strictest: &AppliedRule, limit: f64) -> String {
     let is_same = |rule: &&AppliedRule| {
         let is_limit = rule.limit.is_some_and(|of| (of - limit).abs() <= 1e-9 * limit);
@@ -240,8 +241,8 @@ fn whose(rules: &[AppliedRule], strictest: &AppliedRule, limit: f64) -> String {
     credit(rules.iter().find(is_same).unwrap_or(strictest)).to_owned()
 }
 
-/// Samples that govern a filter: those with the least limit, the strictest first, at most `most` of them; of
-/// equal limits that with the smaller D85B first, which is the finer base.
+/// Samples that govern a filter: at most `most` of those with the least limit, the strictest first. Among
+/// equal limits the smaller D85B comes first, which is the finer base.
 pub fn governing<'r>(rows: &'r [BatchRow], filter: &str, most: usize) -> Vec<&'r BatchRow> {
     let of_filter = rows.iter().filter(|row| row.filter == filter);
     let mut limits: Vec<(f64, &BatchRow)> = of_filter.filter_map(|row| Some((row.limit_mm?, row))).collect();
@@ -250,7 +251,7 @@ pub fn governing<'r>(rows: &'r [BatchRow], filter: &str, most: usize) -> Vec<&'r
     limits.into_iter().map(|(_, row)| row).take(most).collect()
 }
 
-/// How many more samples have the limit of the last of those that govern.
+/// Number of further samples with the limit of the last governing one.
 pub fn more_with_that_limit(rows: &[BatchRow], filter: &str, named: &[&BatchRow]) -> usize {
     let Some(limit) = named.last().and_then(|row| row.limit_mm) else { return 0 };
     let is_same = |row: &&BatchRow| {
@@ -260,8 +261,8 @@ pub fn more_with_that_limit(rows: &[BatchRow], filter: &str, named: &[&BatchRow]
     rows.iter().filter(is_same).count() - of_named
 }
 
-/// Samples of a filter whose limit is not known, or known to be at most a number: any of them may govern. Not
-/// those that are named as governing, and not those that look exchanged with the filter.
+/// Samples of a filter whose limit is not known, or known to be at most a number: any of them may govern.
+/// Leaves out samples named as governing and samples that look exchanged with the filter.
 pub fn may_govern<'r>(rows: &'r [BatchRow], filter: &str) -> Vec<&'r BatchRow> {
     let named = governing(rows, filter, NAMED);
     let is_named = |row: &BatchRow| named.iter().any(|other| std::ptr::eq(*other, row));

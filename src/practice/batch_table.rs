@@ -21,22 +21,22 @@ pub struct BatchFilter {
     pub gradations: Vec<Vec<[f64; 2]>>,
 }
 
-/// What practice says of every sample and filter, filter by filter.
+/// Answers of practice for every sample and filter, filter by filter.
 #[derive(Clone, Debug)]
 pub struct BatchTable {
     /// A row for each filter and sample.
     pub rows: Vec<BatchRow>,
-    /// The filters.
+    /// Filters of the batch.
     pub filters: Vec<BatchFilter>,
-    /// The curve of the base as sampled, rows of (size in mm, percent finer by mass); empty where there are
-    /// several samples.
+    /// Curve of the base as sampled, in rows of (size in mm, percent finer by mass); empty for several
+    /// samples.
     pub base: Vec<[f64; 2]>,
     /// Assumptions on the files, a sentence each.
     pub notes: Vec<String>,
 }
 
 impl BatchTable {
-    /// Of these samples, and of filters with their names, whose curves are those of an envelope.
+    /// Table of these samples and of named filters, each with the curves of its envelope.
     pub fn new(
         samples: &[SoilSample],
         filters: Vec<(String, Vec<NamedCurve>)>,

@@ -1,4 +1,4 @@
-//! What belongs to a sheet that is handed in: for whom and by whom it is, and of which day.
+//! Cover of a sheet that is handed in: client, author and date.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,9 +7,9 @@ use crate::quantity::SizeUnit;
 /// The page of a run, as its author states it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AboutPage {
-    /// Its cover, without a date where none is stated.
+    /// Cover of the sheet, without a date unless one is stated.
     pub cover: SheetCover,
-    /// Gradations are drawn with coarse sizes on the left.
+    /// True to draw gradations with coarse sizes on the left.
     pub coarse_left: bool,
     /// The unit of sizes in words and on the first sheet.
     pub unit: SizeUnit,
@@ -55,12 +55,12 @@ pub struct SheetCover {
 }
 
 impl SheetCover {
-    /// Whether it says nothing.
+    /// True if the cover states nothing.
     pub fn is_unset(&self) -> bool {
         *self == Self::default()
     }
 
-    /// With the day of its results, where no date is stated.
+    /// Fills in the day of the results if no date is stated.
     pub fn dated(self, day: Option<String>) -> Self {
         Self { date: self.date.or(day), ..self }
     }

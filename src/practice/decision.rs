@@ -1,4 +1,4 @@
-//! The decision of filter practice on a pair: made once, of its rules, for records, notes and every face.
+//! The decision of filter practice on a pair: made once from its rules, for records, notes and every face.
 
 use std::borrow::Cow;
 
@@ -14,53 +14,53 @@ use crate::{
     TestedClass, d15f_between,
 };
 
-/// Everything that practice decides of a pair by its rules.
+/// All decisions of practice on a pair by its rules.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decision {
     /// Every rule.
     pub rules: Vec<AppliedRule>,
     /// D15F in the unit of the rules, or 1.
     d15f: f64,
-    /// Where the filter stands.
+    /// Standing of the filter.
     pub standing: Standing,
-    /// The answer, which is on the condition that the base is not dispersive where the filter would not hold
-    /// such a base; `None` where no rule of design was applied.
+    /// Headline. It assumes a base that is not dispersive if the filter would not hold a dispersive one;
+    /// `None` if no rule of design was applied.
     pub headline: Option<Headline>,
-    /// The class by the boundaries of Foster and Fell.
+    /// Class by the boundaries of Foster and Fell.
     pub tests: TestedClass,
-    /// Whether the filter is coarser than any for which tests found no erosion.
+    /// True if the filter is coarser than any for which tests found no erosion.
     pub is_beyond_tests: bool,
-    /// Whether it is beyond a boundary of continuing erosion that tests leave unclear.
+    /// True if the filter is beyond a boundary of continuing erosion that tests leave unclear.
     pub is_beyond_unclear: bool,
-    /// What is left of a filter that is too coarse without its finer part.
+    /// Remainder of a filter that is too coarse without its finer part.
     pub washout: Option<Washout>,
-    /// Whether the strictest limit may be lower than that and is not known.
+    /// True if the strictest limit may be lower than stated and is not known.
     pub is_strictest_open: bool,
-    /// The limit of D15F if the base is dispersive, of which nobody has said whether it is.
+    /// Limit of D15F for a dispersive base, if nobody has said whether this base is dispersive.
     pub if_dispersive: Option<IfDispersive>,
-    /// The D15F that breaks that limit, where the filter keeps the others.
+    /// D15F that breaks this limit, if the filter keeps the others.
     pub beyond_dispersive: Option<BeyondDispersive>,
-    /// The sizes between two sieves that stand far apart, on which the limit of design or the stability of
-    /// the filter depends.
+    /// Sizes between two sieves far apart that decide the limit of design or the stability of the filter.
     pub open_sieves: Option<RuleNote>,
-    /// Whether the rule of drainage has no result.
+    /// True if the rule of drainage has no result.
     pub is_drainage_unknown: bool,
 }
 
-/// Where a filter stands by practice, the worst first.
+/// Standing of a filter by practice, the worst first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Standing {
     /// A rule of retention or of coarser filters is not kept, and no test held either.
     Fails,
-    /// No test speaks against it as placed, and it breaks a limit without the finer part that it may lose.
+    /// No test speaks against the filter as placed, but it breaks a limit without the finer part that it may
+    /// lose.
     WashedOut,
-    /// The limit of design is not kept, but such a filter is within the boundary of no erosion of tests.
+    /// The limit of design is not kept, but the filter is within the tests' boundary of no erosion.
     NoMargin,
-    /// It keeps the limits, but may lose its own fines.
+    /// The limits are kept, but the filter may lose its own fines.
     Unstable,
-    /// The limit of design has no result: what is missing.
+    /// The limit of design has no result: the input that is missing.
     Unknown(Option<RuleNote>),
-    /// A result depends on sizes between two sieves that stand far apart.
+    /// A result depends on sizes between two sieves far apart.
     Open(RuleNote),
     /// The limit of design is kept.
     Met,
@@ -69,7 +69,7 @@ pub enum Standing {
 }
 
 impl Standing {
-    /// Whether practice is met.
+    /// Class of the standing: practice met, not met, or not known.
     pub fn class(&self) -> PracticeClass {
         match self {
             Self::Fails | Self::WashedOut | Self::NoMargin => PracticeClass::DoesNotMeet,
@@ -85,7 +85,7 @@ impl Decision {
     pub fn new(rules: &[AppliedRule], if_dispersive: Option<IfDispersive>, d15f_mm: Option<f64>) -> Self {
         let facts = Self {
             rules: rules.to_vec(),
-            // A D15F that lies in a finest tail has the limits in mm all the same.
+            // With D15F in a finest tail, the limits are still in mm.
             d15f: d15f_mm.unwrap_or(1.0),
             standing: Standing::NoRules,
             headline: None,
@@ -107,17 +107,17 @@ impl Decision {
         Self { headline: facts.answer(), ..facts }
     }
 
-    /// The rule of this name, where it was made for these soils.
+    /// The rule of this name if it was made for these soils.
     pub fn applied(&self, id: &str) -> Option<&AppliedRule> {
         self.rules.iter().find(|rule| rule.id == id && rule.applies)
     }
 
-    /// Rules as a sheet lists them.
+    /// Rules in the form of a sheet's list.
     pub fn listed(&self) -> Vec<Cow<'_, AppliedRule>> {
         listed(&self.rules)
     }
 
-    /// The limit of design of a dispersive base, where the boundary of no erosion is the same number.
+    /// The limit of design of a dispersive base, if the boundary of no erosion is the same number.
     pub fn without_margin(&self) -> Option<&AppliedRule> {
         without_margin(&self.rules)
     }
@@ -127,22 +127,22 @@ impl Decision {
         retention(&self.rules, self.d15f)
     }
 
-    /// The rules of a role that were made for these soils and are not kept; of retention those by which
-    /// practice goes.
+    /// Rules of a role that were made for these soils and are not kept; among rules of retention, only those
+    /// that practice goes by.
     pub fn broken(&self, role: RuleRole) -> impl Iterator<Item = &AppliedRule> {
         let others = self.rules.iter().filter(|rule| rule.role != RuleRole::Retention);
         let broken = retaining(&self.rules).chain(others).filter(|rule| rule.is_broken());
         broken.filter(move |rule| rule.role == role)
     }
 
-    /// Whether a rule of a role is not kept.
+    /// True if a rule of a role is not kept.
     pub fn breaks(&self, role: RuleRole) -> bool {
         self.broken(role).next().is_some()
     }
 
     fn stand(&self) -> Standing {
         let Some(design) = self.applied(DESIGN) else { return Standing::NoRules };
-        // Beyond the limit of design alone, of which Terzaghi's ratio is that of a sand.
+        // Beyond the limit of design alone; Terzaghi's ratio is the limit of design for a sand.
         let is_within_tests = met_of(&self.rules, TESTS_NO_EROSION) == Some(true);
         let is_excused = |rule: &AppliedRule| is_within_tests && [DESIGN, "terzaghi"].contains(&&*rule.id);
         let fails = self.broken(RuleRole::Retention).any(|rule| !is_excused(rule));
@@ -174,8 +174,8 @@ impl Decision {
         })
     }
 
-    /// The boundary of tests that says more than the limit of design does: the one of continuing erosion that
-    /// the filter is beyond, or the one of no erosion where it is stricter than design or design is not kept.
+    /// The boundary of tests that adds to the limit of design: the one of continuing erosion if the filter is
+    /// beyond it, or the one of no erosion if it is stricter than design or design is not kept.
     pub fn boundary(&self) -> Option<&AppliedRule> {
         let (design, no_erosion) = (self.applied(DESIGN), self.applied(TESTS_NO_EROSION));
         let limits = no_erosion.and_then(|rule| rule.limit).zip(design.and_then(|rule| rule.limit));
@@ -186,7 +186,7 @@ impl Decision {
         }
     }
 
-    /// The decision for programs; `None` where no rule of design was applied.
+    /// The decision for programs; `None` if no rule of design was applied.
     pub fn record(&self, range_of_tests_mm: Option<[f64; 2]>) -> Option<Practice> {
         let design = self.applied(DESIGN)?;
         Some(Practice {
@@ -200,7 +200,7 @@ impl Decision {
     }
 
     /// Notes on rules of stability, drainage and placing that are not kept, and on a limit without a margin.
-    /// Rules of retention stand in the line of practice.
+    /// The line of practice covers rules of retention.
     pub fn notes(&self) -> impl Iterator<Item = Note> {
         let limit = |of_size: bool| {
             let is_wanted = |rule: &&AppliedRule| (rule.quantity == RuleQuantity::D15F) == of_size;
@@ -278,7 +278,7 @@ mod tests {
                 curve: soil(base).remove(0).1,
             };
             assert_eq!(BatchRow::of(&sample, ("F", &filter(d15f)), options).met, Some(true));
-            // Beyond the limit of design it is not met.
+            // Beyond the limit of design, practice is not met.
             let coarse = PairRules::of_envelopes(&soil(base), &filter(2.0 * d15f), options);
             assert_eq!(coarse.practice.unwrap().class, PracticeClass::DoesNotMeet);
         }

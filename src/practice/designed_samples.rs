@@ -1,4 +1,4 @@
-//! Many samples, and how coarse a filter may be for each by practice.
+//! Many samples, and the coarsest filter that practice allows for each.
 
 use std::path::PathBuf;
 
@@ -88,7 +88,7 @@ pub struct DesignedSample {
 }
 
 impl DesignedSample {
-    /// What practice says of a sample.
+    /// Answer of practice for a sample.
     pub fn of(sample: &SoilSample, practice: &Specification) -> Self {
         let curve = &practice.curves[0];
         Self {
@@ -113,14 +113,15 @@ impl DesignedSample {
         }
     }
 
-    /// Whether practice has a maximum D15F and a band for it.
+    /// True if practice has a maximum D15F and a band for the sample.
     pub fn is_settled(&self) -> bool {
         self.d15f_max_mm.is_some() && self.no_band.is_none()
     }
 }
 
 impl DesignedSamples {
-    /// Of these rows, with those that govern: the least maximum D15F first, and of equal ones the finer base.
+    /// Table of these rows, with the samples that govern: the least maximum D15F first, and among equal ones
+    /// the finer base.
     pub fn new(samples: String, mut rows: Vec<DesignedSample>) -> Self {
         let mut order: Vec<usize> = (0..rows.len()).filter(|&at| rows[at].d15f_max_mm.is_some()).collect();
         let key = |row: &DesignedSample| [row.d15f_max_mm, row.d85b_mm].map(|mm| mm.unwrap_or(f64::INFINITY));
@@ -142,7 +143,7 @@ impl DesignedSamples {
         }
     }
 
-    /// The samples that govern, the strictest first.
+    /// Samples that govern, the strictest first.
     pub fn governing(&self) -> Vec<&DesignedSample> {
         let mut rows: Vec<&DesignedSample> = self.rows.iter().filter(|row| row.governs.is_some()).collect();
         rows.sort_by_key(|row| row.governs);

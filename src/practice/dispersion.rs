@@ -1,7 +1,7 @@
-//! What is said of a base of which nobody has said whether it is dispersive.
+//! Answer for a base if nobody has said whether it is dispersive.
 //!
-//! A sieve table does not tell it, tests of dispersive soils had other boundaries, and practice has other
-//! limits for them.
+//! A sieve table does not show dispersion. Tests of dispersive soils had other boundaries, and practice has
+//! other limits for them.
 
 use super::washout::{lost_beyond, washout};
 use crate::design::retention::{open_retention, retention};
@@ -10,14 +10,14 @@ use crate::{AppliedRule, DispersiveLack, IfDispersive, Note};
 use voidwalk_core::gradation::{FEW_FINES, Gradation};
 
 impl IfDispersive {
-    /// Of a pair whose base is taken as dispersive. `None` where it has few fines, or they are not known.
+    /// Limit for a pair whose base is taken as dispersive; `None` if it has few fines, or they are not known.
     pub fn of(if_dispersive: &RuleInputs) -> Option<Self> {
         if if_dispersive.base_soil.fines_percent? < FEW_FINES {
             return None;
         }
         let rules = apply(if_dispersive);
         let (strictest, d15f_max_mm) = retention(&rules, if_dispersive.filter.d(15.0).unwrap_or(1.0))?;
-        // A rule that is broken in any case no longer says what it lacks.
+        // A rule that is broken in any case does not report a missing input.
         let lack = match if_dispersive.size_of_base(85.0).is_known {
             true if strictest.limit_at_most => DispersiveLack::AnyLimit,
             true => DispersiveLack::LimitOfDesign,
@@ -27,7 +27,7 @@ impl IfDispersive {
         Some(Self { d15f_max_mm, at_most: lacks.is_some(), lacks })
     }
 
-    /// The strictest of the curves of a base with one filter.
+    /// The strictest among the curves of a base with one filter.
     pub fn of_bases(bases: &[NamedCurve], filter: &Gradation) -> Option<Self> {
         let of = |(_, base): &NamedCurve| {
             Self::of(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(base, filter) })
@@ -39,7 +39,7 @@ impl IfDispersive {
     pub fn strictest(all: &[Self]) -> Option<Self> {
         let least = all.iter().min_by(|a, b| a.d15f_max_mm.total_cmp(&b.d15f_max_mm))?;
         let at_most = all.iter().any(|of| of.at_most);
-        // Where the strictest is known, the limit is no less than another curve leaves open.
+        // If the strictest limit is known, it is no lower than a limit that another curve leaves open.
         let of_another = || match all.iter().find_map(|of| of.lacks)? {
             DispersiveLack::AnyLimit => Some(DispersiveLack::LimitOfDesign),
             lack => Some(lack),
@@ -47,8 +47,9 @@ impl IfDispersive {
         Some(Self { at_most, lacks: least.lacks.or_else(of_another), ..*least })
     }
 
-    /// The D15F of a filter that breaks the limit then, as placed or without the finer part that it
-    /// may lose, where it keeps `rules` as they are: what does not hold anyway would not hold the more.
+    /// D15F of a filter that would break the limit of a dispersive base, as placed or without the finer part
+    /// that it may lose, if it keeps `rules` as they are: a filter that fails anyway gains no further
+    /// failure.
     pub(super) fn broken_by(&self, rules: &[AppliedRule], d15f_mm: Option<f64>) -> Option<BeyondDispersive> {
         let is_kept = |d15f: f64| retention(rules, d15f).is_none_or(|(_, limit)| d15f <= limit);
         if !d15f_mm.is_none_or(is_kept) {
@@ -62,7 +63,7 @@ impl IfDispersive {
         Some(BeyondDispersive { limit: *self, d15f_mm: left.d15f, without_percent })
     }
 
-    /// Whether a filter of this D15F (mm) is known to be too coarse for it.
+    /// True if a filter of this D15F (mm) is known to be too coarse for a dispersive base.
     pub fn is_broken_by(&self, d15f_mm: f64) -> bool {
         d15f_mm > self.d15f_max_mm * (1.0 + 1e-9)
     }
@@ -71,15 +72,15 @@ impl IfDispersive {
 /// A filter that is too coarse for a dispersive base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeyondDispersive {
-    /// The limit that it breaks.
+    /// Limit that the filter breaks.
     pub limit: IfDispersive,
-    /// Its D15F (mm).
+    /// D15F of the filter (mm).
     pub d15f_mm: f64,
-    /// The part (% of its mass) without which it has that D15F; `None` of the filter as placed.
+    /// Part (% of its mass) whose loss leaves this D15F; `None` for the filter as placed.
     pub without_percent: Option<f64>,
 }
 
-/// The note on a base of which nobody has said whether it is dispersive.
+/// Note on a base if nobody has said whether it is dispersive.
 pub fn note(if_dispersive: IfDispersive) -> Note {
     let most_d15f_mm = if_dispersive.d15f_max_mm;
     if if_dispersive.at_most {
@@ -102,7 +103,7 @@ mod tests {
         [(0.01, 0.0), (0.075, fines), (0.3, 92.0), (0.6, 100.0)]
     }
 
-    /// Whether a filter of this D15 breaks the limit of a dispersive base alone, and that limit.
+    /// True if a filter of this D15 breaks the limit of a dispersive base alone, and this limit.
     fn broken(base: &[(f64, f64)], d15f: f64) -> Option<(bool, IfDispersive)> {
         let filter = soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)]);
         let pair = PairRules::of(&soil(base), &filter);
@@ -110,7 +111,7 @@ mod tests {
         Some((limit.broken_by(&pair.rules, Some(d15f)).is_some(), limit))
     }
 
-    /// Practice has 0.7 mm for such soils, 0.5 mm where they are dispersive.
+    /// Practice has 0.7 mm for such soils, 0.5 mm if they are dispersive.
     #[test]
     fn a_filter_that_a_dispersive_base_would_have_finer_is_told_from_one_that_holds_it() {
         for fines in [36.0, 45.0, 80.0] {
@@ -119,16 +120,17 @@ mod tests {
                 let (breaks, limit) = broken(&base, d15f).unwrap();
                 assert_eq!((breaks, limit.is_broken_by(d15f)), (is_beyond, is_beyond));
                 assert!((limit.d15f_max_mm - 0.5).abs() < 1e-9, "{limit:?}");
-                // With less than 40 % the limit of design of such a soil was read nowhere, and may be less.
+                // Below 40 % fines no source was read that gives a limit of design for such a soil; it may be
+                // less.
                 assert_eq!(limit.at_most, fines < 40.0);
             }
-            // A filter that does not hold anyway would not hold the more.
+            // A filter that fails anyway gains no further failure.
             assert!(!broken(&base, 0.9).unwrap().0);
         }
     }
 
-    /// A clay whose table ends at No. 200 lacks its D85 alone: for such fines practice has a limit. The same
-    /// whether the filter is finer than the most of it, 6.4 times 0.075 mm, or not.
+    /// A clay whose table ends at No. 200 lacks only its D85: practice has a limit for such fines. This holds
+    /// for filters finer and coarser than the greatest possible limit, 6.4 times 0.075 mm.
     #[test]
     fn a_clay_that_no_hydrometer_tested_lacks_its_d85_and_no_source() {
         let clay = [(0.075, 97.0), (0.15, 99.0), (0.3, 100.0)];
@@ -143,13 +145,13 @@ mod tests {
         let open = of(0.9, Some(DispersiveLack::LimitOfDesign));
         let both = IfDispersive::strictest(&[of(0.5, None), open]).unwrap();
         assert_eq!(both, of(0.5, open.lacks));
-        // The limit that is known is not to be taken as lower.
+        // The known limit must not be read as an upper bound.
         let any = of(0.9, Some(DispersiveLack::AnyLimit));
         assert_eq!(IfDispersive::strictest(&[any, of(0.5, None)]).unwrap(), both);
         assert_eq!(IfDispersive::strictest(&[any, of(1.0, open.lacks)]).unwrap(), any);
     }
 
-    /// As placed a filter of 0.40 mm is within 0.500 mm, and within 0.700 mm without the part that it may
+    /// A filter of 0.40 mm is within 0.500 mm as placed, and within 0.700 mm without the part that it may
     /// lose; then it is beyond 0.500 mm.
     #[test]
     fn what_is_left_of_an_unstable_filter_is_judged_by_the_limit_of_a_dispersive_base_too() {
@@ -174,7 +176,7 @@ mod tests {
     fn with_fewer_fines_no_limit_is_known_and_sands_need_no_statement() {
         let (breaks, limit) = broken(&with_fines(25.0), 0.6).unwrap();
         assert_eq!((breaks, limit.lacks), (false, Some(DispersiveLack::AnyLimit)));
-        // Of other bases the limit is 0.902 mm: no size that a dispersive one may have.
+        // For other bases the limit is 0.902 mm, a size that a dispersive base cannot have.
         assert!((limit.d15f_max_mm - 0.902).abs() < 1e-3, "{limit:?}");
         assert!(broken(&with_fines(10.0), 0.6).is_none());
     }

@@ -1,10 +1,10 @@
-//! What is not sieved never makes a filter a better one, and one curve in two notations is one curve, over
-//! random tables.
+//! Sizes that are not sieved never improve a filter, and one curve in two notations is one curve, over random
+//! tables.
 //!
-//! What may differ: up to [`USUAL_STEP`] practice reads a straight line, so that leaving out a sieve between
-//! two that stand no further apart may change an answer. A base hides a gap between sieves that stand further
-//! apart than [`WIDE_STEP`] alone, and a filter hides nothing of its own stability where 5 % pass or less.
-//! Whether a curve is flat enough to be a gap hangs on single sieves, and is not held of bases with fewer.
+//! Exceptions: up to [`USUAL_STEP`] practice reads a straight line, so leaving out a sieve between two that
+//! lie no further apart may change an answer. A base hides a gap only between sieves further apart than
+//! [`WIDE_STEP`], and a filter hides nothing of its own stability where 5 % pass or less. Single sieves can
+//! decide if a curve is flat enough to be a gap, so this is not required of bases with fewer sieves.
 
 use super::decision::Standing;
 use super::{BatchRow, PairOptions, PairRules};
@@ -12,10 +12,10 @@ use crate::PracticeClass;
 use voidwalk_core::gradation::{FINES_MM, GAP_PERCENT, Gradation, USUAL_STEP, WIDE_STEP};
 use voidwalk_sheets::SoilSample;
 
-/// Pairs of tables that are drawn.
+/// Number of pairs of tables drawn.
 const PAIRS: u64 = 400;
 
-/// Numbers from 0 to 1 that look like chance.
+/// Pseudorandom numbers from 0 to 1.
 struct Chance(u64);
 
 type Points = Vec<(f64, f64)>;
@@ -53,7 +53,7 @@ impl Chance {
         [base, filter.into_iter().map(|(size, percent)| (size * factor, percent)).collect()]
     }
 
-    /// A table without some of its inner sieves, where that leaves steps of more than `step`.
+    /// A table without some of its inner sieves, chosen so that steps of more than `step` remain.
     fn leave_out(&mut self, points: &Points, step: f64) -> Points {
         let mut left = points.clone();
         for at in (1..points.len() - 1).rev() {
@@ -103,7 +103,7 @@ fn leaving_sieves_out_never_makes_a_filter_meet_practice() {
     assert!(failed > 100 && met > 30, "{failed} {met}");
 }
 
-/// Each step of a sparse table filled at either end, straight, or where it is wide with a gap.
+/// Fills each step of a sparse table at either end, straight, or with a gap if it is wide.
 #[test]
 fn no_sparse_table_meets_practice_where_what_it_hides_does_not() {
     let (mut chance, mut met, mut compared) = (Chance(11), 0, 0);
@@ -153,7 +153,7 @@ fn no_sparse_table_meets_practice_where_what_it_hides_does_not() {
     assert!(met > 10 && compared > 50, "{met} {compared}");
 }
 
-/// Numbers of one rule for two tables of one curve.
+/// Compares numbers of one rule for two tables of one curve.
 fn is_same(a: Option<f64>, b: Option<f64>) -> bool {
     match (a, b) {
         (Some(a), Some(b)) => (a - b).abs() <= 1e-9 * a.abs().max(b.abs()) + 1e-12,
@@ -197,7 +197,7 @@ fn a_curve_is_one_curve_in_every_notation() {
     let mut chance = Chance(17);
     for round in 0..PAIRS / 4 {
         let tables = chance.pair(2.6);
-        // As many digits as a sheet has.
+        // Rounds to the digits of a sheet.
         let tables = tables.map(|table| -> Points {
             table
                 .into_iter()
@@ -226,7 +226,7 @@ fn a_curve_is_one_curve_in_every_notation() {
     }
 }
 
-/// The table of many samples and the page of one pair.
+/// Compares the table of many samples with the page of one pair.
 #[test]
 fn a_row_of_many_samples_meets_practice_only_where_the_pair_does() {
     let (mut chance, mut met, mut open) = (Chance(17), 0, 0);
@@ -251,8 +251,8 @@ fn a_row_of_many_samples_meets_practice_only_where_the_pair_does() {
     assert!(met > 50 && open > 80, "{met} {open}");
 }
 
-/// Each has a filling of its wide step, seen by hand, by which the filter does not meet practice: two parts
-/// with a gap, all of it just above 0.075 mm, a tie of two gaps, and percents that a sieve has exactly.
+/// Each case has a filling of its wide step, seen by hand, for which the filter does not meet practice: two
+/// parts with a gap, all of it just above 0.075 mm, a tie of two gaps, and percents that a sieve has exactly.
 #[test]
 fn the_worst_of_a_wide_step_is_at_neither_end() {
     let uniform = |d15f: f64| vec![(0.85 * d15f, 0.0), (d15f, 15.0), (1.4 * d15f, 60.0), (2.0 * d15f, 100.0)];
@@ -296,7 +296,7 @@ fn the_last_digits_of_a_percent_move_no_size() {
     assert_eq!(at(85.0).d(85.0), at(84.999_999_999_999_99).d(85.0));
 }
 
-/// The table of samples has D15F and limit of the rules where the filter is flat at 15 %.
+/// The table of samples has D15F and limit of the rules if the filter is flat at 15 %.
 #[test]
 fn a_row_has_the_limit_by_which_the_filter_was_judged() {
     let base = soil(&[(0.15, 0.0), (0.212, 1.0), (0.3, 10.0), (0.5, 85.0), (0.85, 100.0)]);

@@ -1,4 +1,4 @@
-//! Filter practice: what its rules say of a base and a filter, and the specification of a filter for a base.
+//! Filter practice: its rules for a base and a filter, and the specification of a filter for a base.
 //!
 //! No result here depends on a walk.
 //!
@@ -17,10 +17,10 @@
 //! ```
 //!
 //! - [`rules`]: each rule with its limit, the soils that it was made for, and its source.
-//! - [`Decision`]: what practice decides of a pair; [`PairRules`]: two soils; [`batch`]: many samples.
+//! - [`Decision`]: the decision of practice on a pair; [`PairRules`]: two soils; [`batch`]: many samples.
 //! - [`design`]: the specification of a filter, step by step, with standard products.
-//! - [`washout`]: what is left of a filter that is not internally stable; [`dispersion`]: dispersive bases.
-//! - [`note`]: what else to know, as names and numbers; [`quantity`]: the way from a number to text.
+//! - [`washout`]: the remainder of a filter that is not internally stable; [`dispersion`]: dispersive bases.
+//! - [`note`]: notes, as names and numbers; [`quantity`]: the way from a number to text.
 
 mod answer;
 mod applied;

@@ -6,8 +6,9 @@ use super::rule_result::without_margin;
 use crate::AppliedRule;
 use crate::rules::{DESIGN, PERMEABILITY, PERMEABILITY_LEAST, TESTS_NO_EROSION};
 
-/// Rules as a sheet lists them: of two rules of drainage that come to one limit, their floor, the first; the
-/// limit of a dispersive base, which is one for design and for no erosion, once and under its own name.
+/// Rules in the form of a sheet's list. Of two rules of drainage with one limit, their floor, the list has
+/// the first. The limit of a dispersive base, one number for design and for no erosion, appears once and
+/// under its own name.
 pub(super) fn listed(rules: &[AppliedRule]) -> Vec<Cow<'_, AppliedRule>> {
     let repeats = |rule: &&AppliedRule| {
         let is_said =
@@ -32,15 +33,15 @@ fn of_dispersive(design: &AppliedRule) -> AppliedRule {
 /// The authors of the limit of a dispersive base.
 const FELL: &str = "Fell et al.";
 
-/// The name of the limit of a dispersive base, which leaves design no margin.
+/// Name of the limit of a dispersive base, which leaves design no margin.
 const OF_DISPERSIVE: &str =
     "Fell et al.: no erosion of a highly dispersive base (taken for design, too, without a margin)";
 
-/// What it was made for.
+/// Soils that the limit was made for.
 const FOR_DISPERSIVE: &str = "highly dispersive bases: the lower boundary of no erosion, without a margin of \
                               safety; this program takes it for design, too";
 
-/// Where it is stated.
+/// Source of the limit.
 const OF_DISPERSIVE_SOURCE: &str = "Fell, MacGregor, Stapledon & Bell, Geotechnical Engineering of Dams, \
                                     Table 9.2, note (b)";
 

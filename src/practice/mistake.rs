@@ -8,28 +8,28 @@ use voidwalk_core::gradation::Gradation;
 /// Two tables that can hardly be a base and its filter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mistake {
-    /// The error, where the two are refused.
+    /// The error, if the two are refused.
     pub sentence: String,
-    /// The same as a note, where they are not.
+    /// The note, if they are not refused.
     pub note: Note,
-    /// What it is.
+    /// Kind of mistake.
     pub kind: MistakeKind,
 }
 
-/// What is wrong with two tables.
+/// Kind of mistake in two tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MistakeKind {
-    /// Sizes are so far apart that a unit must be wrong, or the files are exchanged.
+    /// Sizes so far apart that a unit must be wrong, or the files are exchanged.
     Unit,
-    /// The D15 of the base is far above that of the filter.
+    /// The D15 of the base is far above the D15 of the filter.
     Exchanged,
-    /// The base is the coarser of the two, but not by so much that they must be exchanged.
+    /// The base is the coarser of the two, but not by enough to prove an exchange.
     Coarser,
     /// The filter's sizes may be micrometres.
     Boulders,
 }
 
-/// The size that a percentage is finer than, between two bounds where it lies in a finest tail.
+/// Bounds of the size that a percentage is finer than: two if it lies in a finest tail.
 struct Bounds {
     least: f64,
     most: f64,
@@ -51,10 +51,10 @@ impl Bounds {
 impl Mistake {
     /// Looks for exchanged tables, and for micrometres where mm are meant.
     ///
-    /// The D15 of both are compared as sampled, as for permeability: a broad till has a D50 above that of
-    /// many filters which hold it, and a D15 far below. Where a finest tail is open its bounds are compared.
-    /// Two soils that are close are told apart by the D50 of the regraded base, with a warning only. Sizes
-    /// that are multiples of D0F (`scale_free`) have no unit that could be wrong.
+    /// The D15 of both are compared as sampled, as for permeability: a broad till has a D50 above many
+    /// filters that hold it, and a D15 far below. The bounds of an open finest tail are compared. Two soils
+    /// that are close are told apart by the D50 of the regraded base, with a warning only. Sizes that are
+    /// multiples of D0F (`scale_free`) have no unit that could be wrong.
     ///
     /// ```
     /// use voidwalk_app::{Gradation, verdict::Mistake};
@@ -67,9 +67,8 @@ impl Mistake {
     pub fn find(base: &Gradation, filter: &Gradation, scale_free: bool) -> Option<Self> {
         /// No soil is so much coarser than its filter (D50).
         const HOPELESS: f64 = 50.0;
-        /// A filter whose D15 is so much finer than that of its base drains less than the base does, and
-        /// practice asks for the contrary, four or five times: of such a pair the other order is the
-        /// right one.
+        /// A filter whose D15 is this much finer than its base's drains less than the base does, and practice
+        /// asks for the contrary, four or five times: the other order of such a pair is the right one.
         const FINER: f64 = 2.0;
         /// No filter is coarser than this (D50, mm).
         const BOULDERS_MM: f64 = 300.0;
@@ -88,7 +87,7 @@ impl Mistake {
         }
         let BaseSoil { gradation, regraded_at_mm, .. } = BaseSoil::of(base, scale_free);
         let regraded = Bounds::of(&gradation, 50.0);
-        // Of a base that is regraded at a gap the part that practice looks at may be far finer than its D15.
+        // In a base regraded at a gap, the part that practice looks at may be far finer than its D15.
         let looked_at = Bounds::of(&gradation, 85.0);
         let is_fine = regraded_at_mm.is_some() && looked_at.most < d15f.least;
         let is_far = d15b.least > FINER * d15f.most && !is_fine;
@@ -117,8 +116,8 @@ impl Mistake {
         })
     }
 
-    /// The same of two envelopes: of every base and the coarsest filter, so that nothing is refused which one
-    /// pair of their curves makes sensible.
+    /// Looks for mistakes in two envelopes, by every base and the coarsest filter, so that a single sensible
+    /// pair of curves prevents a refusal.
     pub fn of_envelopes(bases: &[NamedCurve], filters: &[NamedCurve]) -> Option<Self> {
         let d15 = |curve: &NamedCurve| curve.1.d(15.0).unwrap_or(0.0);
         let (_, coarsest) = filters.iter().max_by(|a, b| d15(a).total_cmp(&d15(b)))?;
@@ -130,17 +129,17 @@ impl Mistake {
         all.into_iter().nth(refused)
     }
 
-    /// Whether two tables are refused for it, unless whoever names them says that they are as given.
+    /// True if the two tables are refused, unless the user says that they are as given.
     pub fn is_refused(&self) -> bool {
         matches!(self.kind, MistakeKind::Unit | MistakeKind::Exchanged)
     }
 
-    /// What is said where the two are refused, on the command line.
+    /// Text of the refusal on the command line.
     pub fn refusal(&self) -> String {
         self.refusal_unless("--as-given")
     }
 
-    /// The same where something else says that the two are as given.
+    /// Text of the refusal if another setting says that the two are as given.
     pub fn refusal_unless(&self, as_given: &str) -> String {
         format!(
             "{} The base is named first, then the filter: exchange the two, or say that they are as given \
@@ -167,7 +166,7 @@ mod tests {
         assert_eq!(exchanged.kind, MistakeKind::Exchanged);
         assert!(exchanged.refusal().contains("are the two files exchanged?"));
         assert!(exchanged.refusal().ends_with("(--as-given)"));
-        // 318 um as if they were mm.
+        // 318 um, read as mm.
         let micrometres = said(200.0, 2.0).unwrap();
         assert!(micrometres.sentence.contains("micrometres under a header in mm"));
         assert_eq!(micrometres.kind, MistakeKind::Unit);
@@ -175,7 +174,7 @@ mod tests {
         assert!(boulders.sentence.contains("the filter's D50 is 800 mm") && !boulders.is_refused());
     }
 
-    /// A base, its filter, and whether the filter drains it.
+    /// A base, its filter, and true if the filter drains the base.
     fn a_pair(draw: &mut impl FnMut() -> f64) -> Option<(Gradation, Gradation, bool)> {
         let mut between = |low: f64, high: f64| low + (high - low) * draw();
         // Three straight pieces over log size, of any breadth; two in five end at the No. 200 sieve.
@@ -201,8 +200,7 @@ mod tests {
         Some((base, filter, drains))
     }
 
-    /// 5000 pairs of which the filter holds the base, or nearly: half to one and a half of the limit of
-    /// design.
+    /// 5000 pairs whose filter holds the base, or nearly: half to one and a half of the limit of design.
     #[test]
     fn sensible_pairs_pass_in_their_order_and_are_refused_in_the_other() {
         let mut state = 20_261_124_u64;
@@ -233,7 +231,7 @@ mod tests {
         assert!(missed * 50 < all && missed_draining * 200 < draining, "{missed} {missed_draining}");
     }
 
-    /// A natural sand a little coarser than the sand that is to filter it is warned of, and not refused.
+    /// A natural sand a little coarser than its filter sand gets a warning and is not refused.
     #[test]
     fn two_soils_that_are_close_are_no_exchange() {
         let sand = |d15: f64| Gradation::linear_from_dx(15.0, d15, 2.0).unwrap();
@@ -242,7 +240,8 @@ mod tests {
         assert!(Mistake::find(&sand(0.37), &sand(0.18), false).unwrap().is_refused());
     }
 
-    /// A gravel with a gap, regraded on it: practice looks at the silt, which no filter is exchanged with.
+    /// A gravel with a gap, regraded on it: practice looks at the silt, which no filter can be exchanged
+    /// with.
     #[test]
     fn a_base_that_is_regraded_at_a_gap_is_no_exchange() {
         let soil = |points: &[(f64, f64)]| Gradation::from_lines(points).unwrap();
@@ -255,7 +254,7 @@ mod tests {
         assert_eq!(Mistake::find(&gravel, &filter, false), None);
     }
 
-    /// A till whose D50 is above that of the sand that filters it.
+    /// A till whose D50 is above the D50 of its filter sand.
     #[test]
     fn a_broad_till_is_no_exchange() {
         let till = [(0.002, 2.0), (0.02, 15.0), (0.075, 22.0), (0.425, 34.0), (5.0, 50.0), (75.0, 100.0)];

@@ -1,22 +1,22 @@
-//! Notes on an answer: the table of all of them, each with its numbers and its sentence.
+//! Notes on an answer: the table of all notes, each with its numbers and its sentence.
 //!
 //! A row makes a variant of [`Note`]. A name that ends in `_mm`, `_percent` or `_pp` (percentage points) has
-//! that unit, one that begins with `least_` or `most_` is a limit of that side, with `over_` a lower bound,
-//! and a whole number is a count. No sentence depends on another note. Faces fill the sentences in; nothing
-//! else reads them.
+//! that unit. A name that begins with `least_` or `most_` is a limit of that side, with `over_` a lower
+//! bound, and a whole number is a count. No sentence depends on another note. Faces fill in the sentences;
+//! nothing else reads them.
 
 use serde::{Deserialize, Serialize};
 
-/// What the table says of a note.
+/// Row of a note in the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// Its subject in a word or two.
+    /// Subject in a word or two.
     pub label: &'static str,
-    /// The page of `src/docs` that explains it.
+    /// Page of `src/docs` that explains the note.
     pub page: &'static str,
-    /// Its sentence, with the names of its numbers in braces.
+    /// Sentence, with the names of its numbers in braces.
     pub sentence: &'static str,
-    /// The setting that changes it; empty without one.
+    /// Setting that changes the note; empty without one.
     pub setting: &'static str,
 }
 
@@ -39,7 +39,7 @@ macro_rules! notes {
         }
 
         impl Note {
-            /// Its row of the table.
+            /// Row of the note in the table.
             pub fn entry(&self) -> Entry {
                 match self {
                     $(Self::$name { .. } => Entry {
@@ -51,7 +51,7 @@ macro_rules! notes {
                 }
             }
 
-            /// Its place in the table.
+            /// Index of the note in the table.
             pub fn place(&self) -> usize {
                 #[allow(clippy::enum_variant_names)]
                 enum Place { $($name,)* }
@@ -60,7 +60,7 @@ macro_rules! notes {
                 }
             }
 
-            /// Whether a table may be another than meant.
+            /// True if the note says that a table may be another than meant.
             pub fn is_of_a_mistake(&self) -> bool {
                 matches!(
                     self,
@@ -68,13 +68,13 @@ macro_rules! notes {
                 )
             }
 
-            /// Its name in a file.
+            /// Name of the note in a file.
             pub fn id(&self) -> String {
                 let record = serde_json::to_value(self).unwrap_or_default();
                 record["id"].as_str().unwrap_or_default().to_owned()
             }
 
-            /// Every note, with these numbers and this name: for tests of a face.
+            /// Every note with these numbers and this name, for tests of a face.
             #[doc(hidden)]
             pub fn all_with(sample: &Sample) -> Vec<Self> {
                 vec![$(Self::$name { $($number: sample.clone().into()),* }),*]

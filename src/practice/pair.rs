@@ -1,4 +1,4 @@
-//! Two soils as filter practice sees them, without a walk.
+//! Two soils judged by filter practice, without a walk.
 
 use serde::Serialize;
 
@@ -29,14 +29,14 @@ pub struct PairRules {
     pub notes: Vec<Note>,
 }
 
-/// What else the rules are told of two soils.
+/// Further inputs of the rules for two soils.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PairOptions {
-    /// Whether the base is dispersive.
+    /// True if the base is dispersive.
     pub dispersive: bool,
     /// Width of an open joint at the exit (mm).
     pub joint_mm: Option<f64>,
-    /// Whether base and filter are taken as they are given, though they look exchanged.
+    /// True to take base and filter as given, though they look exchanged.
     pub as_given: bool,
 }
 
@@ -116,13 +116,13 @@ impl PairRules {
         Self::of_envelopes(&one("base", base), &one("filter", filter), PairOptions::default())
     }
 
-    /// The same of two envelopes that are not exchanged, as far as their sizes tell.
+    /// Applies every rule to two envelopes, after a check of their sizes for an exchange.
     ///
     /// # Errors
     /// The two can hardly be a base and its filter, and `options` do not say that they are as given.
     ///
     /// # Panics
-    /// Where either has no curve.
+    /// Either envelope has no curve.
     pub fn guarded(
         bases: &[NamedCurve],
         filters: &[NamedCurve],
@@ -134,15 +134,15 @@ impl PairRules {
         }
     }
 
-    /// Every rule on the curves of a base and of a filter, all in mm: each of those that keep it worst.
+    /// Every rule on the curves of a base and of a filter, all in mm, each for the curves that keep it worst.
     ///
     /// # Panics
-    /// Where either has no curve.
+    /// Either envelope has no curve.
     pub fn of_envelopes(bases: &[NamedCurve], filters: &[NamedCurve], options: PairOptions) -> Self {
         Self::with_mistake(bases, filters, options, Mistake::of_envelopes(bases, filters).as_ref())
     }
 
-    /// Every rule, where it is known what is wrong with the two.
+    /// Applies every rule, given the mistake found in the two soils.
     pub(super) fn with_mistake(
         bases: &[NamedCurve],
         filters: &[NamedCurve],
@@ -207,7 +207,7 @@ impl PairRules {
         }
     }
 
-    /// The decision of practice on the pair.
+    /// Decision of practice on the pair.
     pub fn decision(&self) -> Decision {
         Decision::new(&self.rules, self.if_dispersive, self.filter.d15_mm)
     }
@@ -236,8 +236,8 @@ mod tests {
         assert!(pair.notes.is_empty());
     }
 
-    /// 45 % fines, and nobody has said whether they are dispersive: what is met without a condition is said
-    /// with it, by the rules alone too.
+    /// 45 % fines, and nobody has said whether they are dispersive: a filter that meets practice
+    /// unconditionally is reported with the condition, by the rules alone too.
     #[test]
     fn a_limit_that_a_dispersive_base_would_have_stands_in_the_line() {
         let soil = |points: &[(f64, f64)]| vec![("soil".to_owned(), Gradation::from_lines(points).unwrap())];
@@ -292,7 +292,7 @@ mod tests {
         }
     }
 
-    /// Never better than the worst of its curves alone, and by each rule as bad as that.
+    /// An envelope is never better than the worst of its curves alone, and by each rule exactly as bad.
     #[test]
     fn an_envelope_is_as_bad_as_the_worst_of_its_curves() {
         let mut state = 57u64;

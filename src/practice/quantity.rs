@@ -12,17 +12,16 @@
 
 use std::fmt;
 
-/// A narrow space that no line breaks at: it groups thousands and stands before units. A terminal shows a
-/// plain one.
+/// A narrow space without a line break: it groups thousands and precedes units. A terminal shows a plain one.
 pub const THIN: char = '\u{202f}';
 
-/// Millimetres of an inch.
+/// Length of an inch in millimetres.
 const INCH_MM: f64 = 25.4;
 
-/// What sizes on a sheet are shown in.
+/// Unit of sizes on a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SizeUnit {
-    /// Multiples of D0F, where nothing has a scale.
+    /// Multiples of D0F, for cases without a scale.
     D0f,
     /// mm.
     Mm,
@@ -31,7 +30,7 @@ pub enum SizeUnit {
 }
 
 impl SizeUnit {
-    /// The unit of a scene without a scale, or of a sheet with or without US customary units.
+    /// Unit of a scene without a scale, or of a sheet with or without US customary units.
     pub fn of(scale_free: bool, us: bool) -> Self {
         match (scale_free, us) {
             (true, _) => Self::D0f,
@@ -40,12 +39,12 @@ impl SizeUnit {
         }
     }
 
-    /// Its name behind a number.
+    /// Name of the unit behind a number.
     pub fn short(self) -> &'static str {
         if self == Self::D0f { "D0F" } else { "mm" }
     }
 
-    /// Its name at the head of a table.
+    /// Name of the unit at the head of a table.
     pub fn name(self) -> &'static str {
         if self == Self::MmAndInches { "mm (in)" } else { self.short() }
     }
@@ -66,45 +65,45 @@ pub enum Unit {
     Seconds,
 }
 
-/// What a number is: a limit is rounded to its safe side.
+/// Role of a number: a limit is rounded to its safe side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NumberRole {
     /// A value.
     Value,
-    /// The least that is allowed: rounded up.
+    /// The least allowed value, rounded up.
     Least,
-    /// The greatest that is allowed: rounded down.
+    /// The greatest allowed value, rounded down.
     Greatest,
 }
 
 impl NumberRole {
-    /// That of a limit.
+    /// Role of a limit.
     pub fn of_limit(at_least: bool) -> Self {
         if at_least { Self::Least } else { Self::Greatest }
     }
 }
 
-/// How many digits a number is shown with.
+/// Number of digits that are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Digits {
-    /// Three that mean something; of a percentage one decimal, or two below 10 %.
+    /// Three significant digits; for a percentage one decimal, or two below 10 %.
     Usual,
-    /// At most so many that mean something, and no zeros at the end.
+    /// At most this many significant digits, without zeros at the end.
     Few(u8),
-    /// So many decimals.
+    /// This many decimals.
     Decimals(u8),
-    /// As it was given.
+    /// The number as given.
     Given,
 }
 
-/// A number with its unit and its role; its text is by `Display`.
+/// A number with its unit and its role; `Display` renders its text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantity {
-    /// The number, of a percentage in percent.
+    /// The number; percentages are in percent.
     pub value: f64,
-    /// Its unit.
+    /// Unit of the number.
     pub unit: Unit,
-    /// What it is.
+    /// Role of the number.
     pub role: NumberRole,
     digits: Digits,
 }
@@ -114,7 +113,7 @@ pub fn significant(value: f64) -> Quantity {
     Quantity { value, unit: Unit::None, role: NumberRole::Value, digits: Digits::Usual }
 }
 
-/// A number without a unit, as it was given.
+/// A number without a unit, in the digits given.
 pub fn given(value: f64) -> Quantity {
     Quantity { digits: Digits::Given, ..significant(value) }
 }
@@ -140,32 +139,32 @@ pub fn length(value: f64, unit: SizeUnit) -> Quantity {
 }
 
 impl Quantity {
-    /// The same number as what it is.
+    /// Sets the role.
     pub fn role(self, role: NumberRole) -> Self {
         Self { role, ..self }
     }
 
-    /// The same number in this unit.
+    /// Sets the unit.
     pub fn in_unit(self, unit: Unit) -> Self {
         Self { unit, ..self }
     }
 
-    /// The same number with at most so many digits that mean something, and no zeros at the end.
+    /// Shows at most this many significant digits, without zeros at the end.
     pub fn in_digits(self, digits: u8) -> Self {
         Self { digits: Digits::Few(digits), ..self }
     }
 
-    /// The same number with so many decimals.
+    /// Shows this many decimals.
     pub fn decimals(self, decimals: u8) -> Self {
         Self { digits: Digits::Decimals(decimals), ..self }
     }
 
-    /// From this number to another of its unit.
+    /// Range from this number to another of its unit.
     pub fn to(self, high: Self) -> Span {
         Span { low: self, high }
     }
 
-    /// Its digits, without its unit.
+    /// Digits without the unit.
     pub fn number(self) -> String {
         let Self { value, unit, role, digits } = self;
         match (unit, role, digits) {
@@ -183,13 +182,13 @@ impl Quantity {
         }
     }
 
-    /// Its digits, and its inches where those are shown, without the name of its unit: for the cell of a
-    /// table that names it at its head.
+    /// Digits, with inches if the unit shows them, but without the name of the unit: for the cell of a table
+    /// whose head names the unit.
     pub fn in_cell(self) -> String {
         self.number() + &self.inches().map_or_else(String::new, |inches| bracket(&inches))
     }
 
-    /// A size in the cell of a table that names both units at its head, with at most three digits.
+    /// A size for the cell of a table whose head names both units, with at most three digits.
     pub fn in_both_units(self) -> String {
         let few = self.in_digits(3);
         match self.unit {
@@ -200,13 +199,12 @@ impl Quantity {
         }
     }
 
-    /// The number as its text has it: inches follow from the mm beside them, wherever both stand.
+    /// The number as its text shows it: inches follow from the mm beside them wherever both appear.
     fn shown(self) -> f64 {
         self.number().parse().unwrap_or(self.value)
     }
 
-    /// The digits of its inches, where those are shown: of a limit no more generous than the mm that are
-    /// shown.
+    /// Digits of the inches, if the unit shows them; for a limit, no more generous than the mm shown.
     fn inches(self) -> Option<String> {
         (self.unit == Unit::Size(SizeUnit::MmAndInches)).then(|| {
             let mm = if self.role == NumberRole::Value { self.value } else { self.shown() };
@@ -214,7 +212,7 @@ impl Quantity {
         })
     }
 
-    /// What stands behind its digits.
+    /// Text behind the digits.
     fn unit_text(self) -> String {
         match self.unit {
             Unit::None | Unit::Count => String::new(),
@@ -232,18 +230,18 @@ impl fmt::Display for Quantity {
     }
 }
 
-/// From one number to another of the same unit: both with its name once, and one of them where they read
-/// alike.
+/// A range between two numbers of the same unit: both numbers with the unit once, or a single number if they
+/// read alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
-    /// Where it begins.
+    /// Lower end.
     pub low: Quantity,
-    /// Where it ends.
+    /// Upper end.
     pub high: Quantity,
 }
 
 impl Span {
-    /// Its digits, and its inches where those are shown, without the name of its unit.
+    /// Digits, with inches if the unit shows them, but without the name of the unit.
     pub fn in_cell(self) -> String {
         self.text("")
     }
@@ -274,19 +272,19 @@ pub fn limits(least: f64, greatest: f64, unit: SizeUnit) -> Span {
     length(least, unit).role(NumberRole::Least).to(length(greatest, unit).role(NumberRole::Greatest))
 }
 
-/// The range of sizes in mm in which tests left a boundary, with ends rounded outward.
+/// The range of sizes in mm in which tests located a boundary, with ends rounded outward.
 pub fn range_of_tests(low: f64, high: f64, unit: SizeUnit) -> Span {
     length(low, unit).role(NumberRole::Greatest).to(length(high, unit).role(NumberRole::Least))
 }
 
-/// A value and its limit, as far as they are known: with as many digits as tell the two apart, so that what
-/// exceeds a limit never reads as within it, nor the other way round. The limit is never more generous than
-/// it is. A ratio has no zeros at its end: 4.00 times D85B is four times.
+/// A value and its limit, as far as they are known, with as many digits as tell the two apart: a value beyond
+/// a limit never reads as within it, nor the other way round. The limit is never shown more generous than it
+/// is. A ratio has no zeros at its end: 4.00 times D85B is four times.
 pub fn beside_limit(numbers: [Option<f64>; 2], at_least: bool, unit: Unit) -> [Option<String>; 2] {
     both_beside(numbers, at_least, unit, Quantity::unit_text)
 }
 
-/// The same for the cells of a table that names the unit at its head.
+/// Like [`beside_limit`], for the cells of a table whose head names the unit.
 pub fn beside_limit_in_cells(numbers: [Option<f64>; 2], at_least: bool, unit: Unit) -> [Option<String>; 2] {
     both_beside(numbers, at_least, unit, |_| String::new())
 }
@@ -323,13 +321,13 @@ fn both_beside(
     [Some(of_value + &inches[0]), Some(of_limit + &inches[1])]
 }
 
-/// Digits of a value and a limit, where more are not needed to tell them apart.
+/// Digits of a value and a limit unless more are needed to tell them apart.
 const DIGITS: i32 = 3;
 
-/// Most digits that are tried to tell two numbers apart.
+/// Most digits tried to tell two numbers apart.
 const MOST_DIGITS: i32 = 9;
 
-/// A number without zeros at its end, where it is no size.
+/// A number without zeros at its end, unless it is a size.
 fn without_zeros(number: &str, unit: Unit) -> &str {
     match unit {
         Unit::None | Unit::Percent if number.contains('.') => {
@@ -339,29 +337,29 @@ fn without_zeros(number: &str, unit: Unit) -> &str {
     }
 }
 
-/// The whole number that a limit is rounded to: a least upwards, a greatest downwards; one that is whole but
-/// for what arithmetic leaves stays.
+/// Rounds a limit to a whole number: a least upwards, a greatest downwards. A limit that is whole except for
+/// a rounding error of arithmetic keeps its value.
 pub fn whole_within(limit: f64, at_least: bool) -> f64 {
     const HAIR: f64 = 1e-9;
     if at_least { (limit * (1.0 - HAIR)).ceil() } else { (limit * (1.0 + HAIR)).floor() }
 }
 
-/// A value and its limit with as many digits as tell them apart, and this many at the least; of two that are
-/// the same, with as many as give both one text.
+/// A value and its limit with as many digits as tell them apart, but at least this many; two equal numbers
+/// get as many digits as give both one text.
 fn apart(value: f64, limit: f64, at_least: bool, digits: i32) -> [String; 2] {
     let pair = |digits| [digits_of(value, digits), digits_within(limit, digits, at_least)];
     let is_order = |[shown, of]: &[String; 2]| match (shown.parse::<f64>(), of.parse::<f64>()) {
         (Ok(shown), Ok(of)) => shown != of && (shown < of) == (value < limit),
         _ => shown != of,
     };
-    // A limit that is just reached is kept, and the value reads as it does elsewhere.
+    // A limit that is just reached is kept, and the value reads as elsewhere.
     let alike = || (digits..MOST_DIGITS).map(pair).find(|[shown, of]| shown == of);
     let cut = || [value, limit].map(|number| digits_within(number, digits, at_least));
     let apart = (digits..MOST_DIGITS).filter(|_| value != limit).map(pair).find(is_order);
     apart.or_else(alike).unwrap_or_else(cut)
 }
 
-/// A number with so many digits that mean something, without an exponent.
+/// A number with this many significant digits, without an exponent.
 fn digits_of(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
@@ -369,17 +367,17 @@ fn digits_of(value: f64, digits: i32) -> String {
     format!("{value:.*}", decimals_of(value, digits))
 }
 
-/// Decimals of a number with so many digits that mean something, as many as are shown at most.
+/// Decimals of a number with this many significant digits, up to the most that are shown.
 fn decimals_of(value: f64, digits: i32) -> usize {
     places(value, digits).clamp(0, digits + 4) as usize
 }
 
-/// The place of the last of so many digits behind the point; none of them is cut off before it.
+/// Decimal place of the last of this many significant digits; digits before the point are never cut off.
 fn places(value: f64, digits: i32) -> i32 {
     (digits - 1 - libm::floor(libm::log10(value.abs())) as i32).max(0)
 }
 
-/// A limit rounded inward to so many digits: a greatest down, a least up.
+/// Rounds a limit inward to this many digits: a greatest down, a least up.
 fn within(limit: f64, digits: i32, at_least: bool) -> f64 {
     if limit <= 0.0 || !limit.is_finite() {
         return limit;
@@ -388,10 +386,10 @@ fn within(limit: f64, digits: i32, at_least: bool) -> f64 {
     whole_within(limit * parts, at_least) / parts
 }
 
-/// The same as a text.
+/// Text of a limit rounded inward.
 fn digits_within(limit: f64, digits: i32, at_least: bool) -> String {
     let shown = within(limit, digits, at_least);
-    // Decimals of the limit itself: what was rounded up to the next power of ten keeps as many of them.
+    // Decimals of the unrounded limit: a number rounded up to the next power of ten keeps as many.
     if shown > 0.0 { format!("{shown:.*}", decimals_of(limit, digits)) } else { digits_of(shown, digits) }
 }
 
@@ -409,12 +407,12 @@ fn three_digits(value: f64) -> String {
     }
     let rounded = |magnitude: f64| format!("{value:.*}", (2.0 - magnitude).max(0.0) as usize);
     let text = rounded(magnitude);
-    // 9.999 has one digit more before the point once it is rounded.
+    // Rounding gives 9.999 one digit more before the point.
     let size = text.parse().map_or(magnitude, |shown: f64| libm::floor(libm::log10(shown.abs())));
     if size > magnitude { rounded(size) } else { text }
 }
 
-/// At most so many digits that mean something, and no zeros at the end.
+/// At most this many significant digits, without zeros at the end.
 fn few_digits(value: f64, digits: u8) -> String {
     if !(1e-4..1e6).contains(&value.abs()) {
         return three_digits(value);
@@ -423,12 +421,12 @@ fn few_digits(value: f64, digits: u8) -> String {
     ((value * scale).round() / scale).to_string()
 }
 
-/// So many decimals.
+/// A fixed number of decimals.
 fn fixed(value: f64, decimals: usize) -> String {
     if value.abs() < 1e7 { format!("{value:.decimals$}") } else { as_given(value) }
 }
 
-/// A number as it was given.
+/// The number in the digits given.
 fn as_given(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
@@ -438,7 +436,8 @@ fn as_given(value: f64) -> String {
     }
 }
 
-/// One decimal, two below 10; what is there but rounds to nothing, or is not all but rounds to it, says so.
+/// One decimal, two below 10. A part too small to show and a remainder too small to show are marked by `<`
+/// and `>`.
 fn percent_digits(percent: f64) -> String {
     match percent.abs() {
         0.0 => "0.0".into(),
@@ -449,7 +448,7 @@ fn percent_digits(percent: f64) -> String {
     }
 }
 
-/// A whole number with its thousands apart, from five digits on.
+/// A whole number with its thousands grouped, from five digits on.
 fn grouped(value: f64) -> String {
     let digits = format!("{value:.0}");
     if digits.len() < 5 {
@@ -503,7 +502,7 @@ mod tests {
         assert_eq!(down, ["0.700", "0.285", "12.3", "0.0700", "0"]);
         let up = texts([0.14, 0.2851, 0.9999, 12.31].map(rounded(NumberRole::Least)));
         assert_eq!(up, ["0.140", "0.286", "1.00", "12.4"]);
-        // A table and a sentence beside it have one limit.
+        // A table and a sentence beside it have the same limit.
         for step in 0..4000 {
             let limit = 0.001 * libm::pow(1.003, f64::from(step));
             for at_least in [false, true] {
@@ -524,7 +523,7 @@ mod tests {
                 let inches = of.inches().unwrap().parse::<f64>().unwrap() * INCH_MM;
                 let hair = 1e-8 * limit;
                 assert!(sign * (inches - of.shown()) <= hair && sign * (inches - limit) <= hair, "{of}");
-                // The same again, of the mm as they are shown.
+                // Rounding the shown mm again gives the same text.
                 assert_eq!(length(of.shown(), unit).role(role).to_string(), of.to_string());
             }
         }
@@ -549,9 +548,9 @@ mod tests {
         assert_eq!(pair(4.0004, 4.0), ["4.0004", "4.0000"]);
         assert_eq!(pair(3.9996, 4.0), ["3.9996", "4.0000"]);
         assert_eq!(pair(3.52, 4.0), ["3.52", "4.00"]);
-        // Rounded to the nearest the limit would be 2.86, too.
+        // Rounded to the nearest, the limit would also be 2.86.
         assert_eq!(pair(2.8572, 2.857), ["2.86", "2.85"]);
-        // Of a limit that is just reached both have the digits with which neither is rounded up.
+        // If a limit is just reached, both have the digits with which neither is rounded up.
         assert_eq!(pair(2.8571, 2.8571), ["2.857", "2.857"]);
         assert_eq!(pair(2.8579, 2.8579), ["2.8579", "2.8579"]);
         assert_eq!(pair(20.0 / 7.0 - 1e-9, 20.0 / 7.0 - 1e-9), ["2.857", "2.857"]);

@@ -1,4 +1,4 @@
-//! What rules say beside their results, as data.
+//! Notes of rules beside their results, as data.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +14,7 @@ macro_rules! notes {
         }
 
         impl RuleNote {
-            /// Every note, all its numbers being this one: for tests of a face.
+            /// Every note with all its numbers set to this one, for tests of a face.
             #[doc(hidden)]
             pub fn all_with(number: f64) -> Vec<Self> {
                 vec![$(Self::$id $(($(number as $type),*))?),*]
@@ -176,7 +176,7 @@ notes! {
 }
 
 impl RuleNote {
-    /// The openings (mm) of two sieves that stand far apart, on whose sizes between a result depends.
+    /// Openings (mm) of two sieves far apart, if the result depends on the sizes between them.
     pub fn sieves_between(self) -> Option<[f64; 2]> {
         match self {
             Self::D15FBetween(from, to)
@@ -190,7 +190,7 @@ impl RuleNote {
     }
 }
 
-/// The openings (mm) of the two sieves between which D15F lies, where they stand far apart.
+/// Openings (mm) of the two sieves around D15F, if they lie far apart.
 pub fn d15f_between(notes: &[RuleNote]) -> Option<[f64; 2]> {
     notes.iter().find_map(|note| match *note {
         RuleNote::D15FBetween(from, to) => Some([from, to]),

@@ -1,31 +1,31 @@
-//! The results of single rules of practice, and whose they are.
+//! Results of single rules of practice, and their authors.
 
 use crate::rules::{DESIGN, DESIGN_FLOOR_MM, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
 use crate::{AppliedRule, RuleNote, RuleRole};
 
-/// The result of a rule of practice, which `verdict` alone works out and faces show.
+/// Result of a rule of practice, worked out by `verdict` alone and shown by faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RuleResult {
-    /// Its limit is kept.
+    /// The limit is kept.
     Met,
-    /// It is not kept.
+    /// The limit is not kept.
     NotMet,
     /// A boundary of continuing erosion is not reached: no good news by itself.
     NotReached,
-    /// The same, and erosion may be excessive.
+    /// A boundary of continuing erosion is not reached, and erosion may be excessive.
     ExcessiveNotJudged,
-    /// What it states is no limit for these soils.
+    /// The number of the rule is no limit for these soils.
     NotALimit,
-    /// It states no limit.
+    /// The rule states no limit.
     NoLimit,
-    /// Something that it needs is not known.
+    /// An input of the rule is not known.
     NoResult,
-    /// It was not made for these soils.
+    /// The rule was not made for these soils.
     DoesNotApply,
 }
 
 impl RuleResult {
-    /// Those of rules that neither are kept nor broken, in the order of a reader.
+    /// Results of rules that are neither kept nor broken, in the order of a reader.
     pub const WITHOUT: [Self; 4] = [Self::NotALimit, Self::NoLimit, Self::NoResult, Self::DoesNotApply];
 }
 
@@ -47,8 +47,8 @@ pub fn result_of(rule: &AppliedRule) -> RuleResult {
     }
 }
 
-/// Whether the limit is that of a dispersive base, of which Fell et al. give one number: design has no limit
-/// of its own, and so no margin.
+/// True if the limit is for a dispersive base, for which Fell et al. give one number: design has no limit of
+/// its own, and so no margin.
 fn is_of_dispersive(rule: &AppliedRule) -> bool {
     [DESIGN, TESTS_NO_EROSION].contains(&rule.id.as_str())
         && rule.applies
@@ -57,14 +57,14 @@ fn is_of_dispersive(rule: &AppliedRule) -> bool {
         && rule.limit != Some(DESIGN_FLOOR_MM)
 }
 
-/// The limit of design of a dispersive base, where the boundary of no erosion is the same number.
+/// The limit of design of a dispersive base, if the boundary of no erosion is the same number.
 pub(super) fn without_margin(rules: &[AppliedRule]) -> Option<&AppliedRule> {
     let find = |id: &str| rules.iter().find(|rule| rule.id == id && is_of_dispersive(rule));
     let (design, tests) = (find(DESIGN)?, find(TESTS_NO_EROSION)?);
     (design.limit == tests.limit).then_some(design)
 }
 
-/// Whether the limit of design of a base has no margin: it is not below the boundary of no erosion, which is
+/// True if the limit of design of a base has no margin: it is not below the boundary of no erosion, which is
 /// the lower end of the range in which erosion began in tests, or within that range.
 pub(super) fn has_no_margin(rules: &[AppliedRule]) -> bool {
     let limit = |id: &str| {
@@ -74,13 +74,13 @@ pub(super) fn has_no_margin(rules: &[AppliedRule]) -> bool {
     limit(DESIGN).zip(limit(TESTS_NO_EROSION)).is_some_and(|(design, tests)| design >= tests * (1.0 - 1e-9))
 }
 
-/// Who gives the limit of a rule, as a sentence cites it.
+/// Source of a rule's limit, as a sentence cites it.
 pub fn credit(rule: &AppliedRule) -> &str {
     // One number for design and for no erosion.
     if is_of_dispersive(rule) { "Fell et al., Table 9.2, note b" } else { authority(rule) }
 }
 
-/// A rule of retention, as it is cited: whose it is, and which of theirs.
+/// Citation of a rule of retention: its author, and the rule among the author's.
 pub fn cited(id: &str, authority: &str) -> String {
     let which = match id {
         DESIGN => "limit of design",
@@ -91,7 +91,7 @@ pub fn cited(id: &str, authority: &str) -> String {
     format!("{authority}'s {which}")
 }
 
-/// The same of a rule that was applied.
+/// Citation of a rule that was applied.
 pub fn cited_rule(rule: &AppliedRule) -> String {
     match authority(rule) {
         name if *name == rule.name => name.into(),
@@ -100,7 +100,7 @@ pub fn cited_rule(rule: &AppliedRule) -> String {
     }
 }
 
-/// Whether a rule that was made for these soils is kept; `None` where it has no result.
+/// True if a rule that was made for these soils is kept; `None` without a result.
 pub(super) fn met_of(rules: &[AppliedRule], id: &str) -> Option<bool> {
     rules.iter().find(|rule| rule.id == id && rule.applies)?.met
 }
@@ -117,8 +117,8 @@ mod tests {
         PairRules::of(&base, &Gradation::linear_from_dx(15.0, d15f, 1.5).unwrap()).rules
     }
 
-    /// By Fell et al., Table 9.2: below 15 % fines tests begin at 6.8 D85B and design ends at 4, of 40 to
-    /// 85 % both have 0.7 mm, above 85 % both have 9 D85B, and tests begin at 6.4.
+    /// By Fell et al., Table 9.2: below 15 % fines tests begin at 6.8 D85B and design ends at 4; from 40 to
+    /// 85 % both have 0.7 mm; above 85 % both have 9 D85B, and tests begin at 6.4.
     #[test]
     fn a_limit_has_no_margin_where_design_is_not_below_the_tests() {
         let fines = |percent: f64| [(0.001, 0.0), (0.075, percent), (2.0, 100.0)];
@@ -126,7 +126,7 @@ mod tests {
         for (percent, wanted) in [(5.0, false), (25.0, false), (38.0, true), (60.0, true), (90.0, true)] {
             assert_eq!(no_margin_of(&fines(percent)), wanted, "{percent} % fines");
         }
-        // The same as the range of tests has it, where the limit of design is at or above its lower end.
+        // Agrees with the range of tests, in which the limit of design is at or above the lower end.
         for percent in [5.0, 25.0, 34.0, 34.9, 36.0, 38.0, 60.0, 90.0] {
             let base = Gradation::from_lines(&fines(percent)).unwrap();
             let all = rules(&fines(percent), 0.3);
@@ -134,7 +134,7 @@ mod tests {
             let [low, _] = range_of_tests(percent, base.d(85.0).unwrap());
             assert_eq!(has_no_margin(&all), design >= low * (1.0 - 1e-9), "{percent} % fines");
         }
-        // Of fines that are not known no more is known than the most of the limits.
+        // Without known fines, only the greatest possible limits are known.
         assert!(!no_margin_of(&[(0.2, 30.0), (0.5, 85.0), (1.0, 100.0)]));
     }
 

@@ -4,10 +4,10 @@ use super::quantity::{SizeUnit, length, significant};
 use voidwalk_core::gradation::{FINES_MM, Gradation};
 pub use voidwalk_sheets::us_sieve;
 
-/// A row of the table of sizes: its name, and its value of a soil.
+/// A row of the table of sizes: its name, and the function that gives its value for a soil.
 type SizeRow = (&'static str, fn(&Gradation, SizeUnit) -> Option<String>);
 
-/// A size that so many percent are finer than.
+/// The size that `PERCENT` percent are finer than.
 fn finer<const PERCENT: u8>(soil: &Gradation, unit: SizeUnit) -> Option<String> {
     soil.d(f64::from(PERCENT)).map(|size| length(size, unit).in_both_units())
 }
@@ -31,11 +31,11 @@ const SIZES: [SizeRow; 11] = [
     ("Cc", |soil, _| soil.cc().map(|cc| significant(cc).in_digits(3).to_string())),
 ];
 
-/// The same where sizes have a unit.
+/// Rows for sizes that have a unit.
 const OF_UNIT: [SizeRow; 2] = [("Fines (%)", percent_fines), ("Group", |soil, _| soil.group())];
 
-/// Each of them of a soil, by its name: `None` where the sieves do not tell. Without a unit there are neither
-/// fines nor a group.
+/// Sizes of a soil, by name: `None` if the sieves do not give one. Without a unit, fines and group are left
+/// out.
 pub fn sizes_of(rows: &[[f64; 2]], unit: SizeUnit) -> Vec<(&'static str, Option<String>)> {
     let soil = Gradation::of_rows(rows).ok();
     let of_unit = if unit == SizeUnit::D0f { &[] } else { &OF_UNIT[..] };

@@ -1,4 +1,4 @@
-//! Soils of tests, here and in the faces.
+//! Soils for tests, here and in the faces.
 
 /// A till with 28 % fines (37.8 % regraded on No. 4): limits 1.26 mm (design) and 0.700 mm (no erosion).
 pub const REGRADED_TILL: [(f64, f64); 9] = [
@@ -28,8 +28,8 @@ pub const GRAVEL_0_32: [(f64, f64); 11] = [
     (37.5, 100.0),
 ];
 
-/// Li and Fannin's index is worst at F = 4 %, where a step in the curve leaves little to be lost; at
-/// 14 %, where it is 0.993, much more is lost, and what is left has a D15F beyond 4.00 and 7.00 mm.
+/// Li and Fannin's index is worst at F = 4 %, where a step in the curve leaves little to be lost. At 14 %,
+/// where it is 0.993, much more is lost, and the remainder has a D15F beyond 4.00 and 7.00 mm.
 pub const STEPPED: [(f64, f64); 8] =
     [(0.1, 0.0), (0.2, 4.0), (0.8, 4.0), (1.0, 4.5), (2.0, 14.0), (8.0, 27.9), (16.0, 60.0), (32.0, 100.0)];
 

@@ -1,7 +1,7 @@
-//! The class of a pair by the boundaries that Foster and Fell saw in tests.
+//! Class of a pair by the boundaries that Foster and Fell saw in tests.
 //!
-//! No text that was read gives their boundary of excessive erosion, so what lies beyond that of no erosion is
-//! at least some erosion, and never read as no more than that.
+//! No text that was read gives their boundary of excessive erosion, so a pair beyond the boundary of no
+//! erosion has at least some erosion, and is never read as having no more.
 
 use super::rule_result::met_of;
 use crate::rules::{TESTS_CONTINUING, TESTS_NO_EROSION};
@@ -18,12 +18,12 @@ pub(super) fn tested(rules: &[AppliedRule]) -> TestedClass {
     }
 }
 
-/// Whether a filter is coarser than any for which tests of Foster and Fell found no erosion.
+/// True if a filter is coarser than any for which tests of Foster and Fell found no erosion.
 pub(super) fn is_beyond_tests(rules: &[AppliedRule]) -> bool {
     met_of(rules, TESTS_NO_EROSION) == Some(false)
 }
 
-/// Whether the filter lies beyond 9 D95B of a base for which tests identified no clear boundary.
+/// True if the filter lies beyond 9 D95B of a base for which tests identified no clear boundary.
 pub(super) fn is_beyond_unclear(rules: &[AppliedRule]) -> bool {
     let is_unclear = |rule: &&AppliedRule| rule.notes.contains(&RuleNote::BeyondUnclearBoundary);
     rules.iter().any(|rule| rule.id == TESTS_CONTINUING && is_unclear(&rule))
@@ -44,8 +44,8 @@ mod tests {
         PairRules::of(&soil(base), &soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)])).rules
     }
 
-    /// Excessive erosion damages a dam: what is not judged is never passed off as less. 7 D85B and 9 D95B of
-    /// this sand are 3.56 and 5.11 mm; with 38 % fines and a D95B of 2.6 mm tests identified no boundary of
+    /// Excessive erosion damages a dam: unjudged erosion is never reported as less. 7 D85B and 9 D95B of this
+    /// sand are 3.56 and 5.11 mm; with 38 % fines and a D95B of 2.6 mm tests identified no boundary of
     /// continuing erosion.
     #[test]
     fn beyond_no_erosion_worse_erosion_is_never_left_out() {

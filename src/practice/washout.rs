@@ -1,10 +1,11 @@
-//! What is left of a filter that is not internally stable, and whether that still retains its base.
+//! Remainder of a filter that is not internally stable, and a check that it still retains its base.
 //!
-//! Retention is judged of such a filter twice, as placed and after washout of its finer part (U.S. Army Corps
-//! of Engineers, Filter Evaluation manual, RMC-CPD-2023-04, chapter Filter Gradation). One of several
-//! published criteria that is not met is a doubt. Li and Fannin's takes the milder of Kenney and Lau's and
-//! Kezdi's at every size: where it is not met, or has no result and of these two one is not met and none met,
-//! and what is left breaks a limit of retention, practice is not met.
+//! Retention of such a filter is judged twice, as placed and after washout of its finer part (U.S. Army Corps
+//! of Engineers, Filter Evaluation manual, RMC-CPD-2023-04, chapter Filter Gradation). A single one of
+//! several published criteria that is not met is a doubt. Li and Fannin's criterion takes the milder of
+//! Kenney and Lau's and Kezdi's at every size. Practice is not met if the remainder breaks a limit of
+//! retention and Li and Fannin's criterion is not met, or has no result while one of the other two is not met
+//! and neither is met.
 
 use super::rule_result::met_of;
 use crate::design::retention::retention;
@@ -12,23 +13,23 @@ use crate::rules::{DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_CONTINUING};
 use crate::{AppliedRule, RuleRole, RuleUnit, WithoutFiner};
 use voidwalk_core::gradation::WIDE_LOOSE_PERCENT;
 
-/// A filter that without the finer part that it may lose is beyond a limit of retention.
+/// A filter beyond a limit of retention once the finer part that it may lose is gone.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Washout {
-    /// What is left.
+    /// Remainder of the filter.
     pub left: WithoutFiner,
-    /// The criterion by which it is the greatest part that fails.
+    /// Criterion by which the greatest part fails.
     pub by: AppliedRule,
     /// The least limit of retention.
     pub least: f64,
     /// Unit of sizes.
     pub unit: RuleUnit,
-    /// Beyond the boundary of continuing erosion of tests, too.
+    /// True if the remainder is also beyond the tests' boundary of continuing erosion.
     pub continues: bool,
 }
 
-/// Whether a filter is not internally stable, and beyond a limit of retention without its finer part. Of
-/// several parts that of Kezdi's split comes first, unless it is more than what may be loose.
+/// Checks a filter that is not internally stable for a remainder beyond a limit of retention. Among several
+/// parts the part of Kezdi's split comes first, unless it is more than may lie loose.
 pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout> {
     let unstable = unstable(rules);
     let d15f = rules.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.value);
@@ -45,7 +46,7 @@ pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout> {
     })
 }
 
-/// What is left of a filter that is not internally stable, where it is beyond a limit of D15F.
+/// Remainder of a filter that is not internally stable, if it is beyond a limit of D15F.
 pub(super) fn lost_beyond(rules: &[AppliedRule], limit: f64) -> Option<WithoutFiner> {
     lost(&unstable(rules), limit).map(|(_, left)| left)
 }
@@ -60,7 +61,7 @@ fn is_beyond(left: &WithoutFiner, limit: f64) -> bool {
     left.d15f > limit * (1.0 + 1e-9)
 }
 
-/// The criteria of internal stability that are not met, where they make a filter unstable.
+/// Criteria of internal stability that are not met, if they make a filter unstable.
 fn unstable(rules: &[AppliedRule]) -> Vec<&AppliedRule> {
     let is_unstable = |of: &&AppliedRule| of.is_broken() && of.role == RuleRole::Stability;
     let unstable: Vec<&AppliedRule> = rules.iter().filter(is_unstable).collect();
@@ -75,7 +76,7 @@ fn unstable(rules: &[AppliedRule]) -> Vec<&AppliedRule> {
 }
 
 impl Washout {
-    /// Whether no more of the filter was looked at than may lie loose, so that more may go.
+    /// True if the analysis stopped at the part that may lie loose, so that more may be lost.
     pub fn is_capped(&self) -> bool {
         self.left.percent >= WIDE_LOOSE_PERCENT * (1.0 - 1e-9)
     }
@@ -100,12 +101,12 @@ mod tests {
         let found = washout(&rules).unwrap();
         assert!((found.left.percent - 19.4).abs() < 0.05 && (found.left.d15f - 2.83).abs() < 0.01);
         assert_eq!((found.by.id.as_str(), found.continues), (KEZDI, false));
-        // A folder that is read back says the same.
+        // A folder that is read back gives the same remainder.
         let read: Vec<AppliedRule> = serde_json::from_str(&serde_json::to_string(&rules).unwrap()).unwrap();
         assert_eq!(washout(&read).unwrap().left, found.left);
     }
 
-    /// Without a fifth of it a gap-graded filter is beyond the boundary of continuing erosion, too.
+    /// Without a fifth of its mass, a gap-graded filter is also beyond the boundary of continuing erosion.
     #[test]
     fn the_boundary_of_continuing_erosion_is_said_where_what_is_left_is_beyond_it() {
         let gap = [(0.3, 0.0), (0.36, 15.0), (5.0, 15.0), (12.0, 100.0)];
@@ -119,13 +120,13 @@ mod tests {
         let rule = rules.iter().find(|rule| rule.id == LI_FANNIN).unwrap();
         assert!(rule.value == Some(0.0), "{rule:?}");
         let left = rule.without_finer.unwrap();
-        // H is below F up to 14 % and a hair more.
+        // H is below F up to slightly more than 14 %.
         assert!((14.0..14.6).contains(&left.percent) && (7.2..7.6).contains(&left.d15f), "{left:?}");
         assert!(washout(&rules).is_some());
     }
 
-    /// Where sieves end at 14 % finer, Li and Fannin's and Kenney and Lau's index may be less than found.
-    /// Where neither has a result Kezdi's alone judges.
+    /// If sieves end at 14 % finer, Li and Fannin's and Kenney and Lau's index may be less than computed. If
+    /// neither has a result, Kezdi's alone judges.
     #[test]
     fn an_index_above_a_pan_is_no_veto() {
         let filter = [(2.36, 14.0), (2.6, 15.3), (16.0, 32.0), (20.0, 80.0), (31.5, 100.0)];

@@ -1,25 +1,24 @@
 //! A worse soil never breaks fewer rules, over thousands of random soils.
 //!
-//! What is monotone, and so is held here:
+//! Monotone relations, which are tested here:
 //! - a dispersive base breaks every rule that it breaks otherwise, and its limits are never wider;
 //! - an open joint takes nothing away;
 //! - with more of its fines sieved, a base breaks every limit of D15F that it broke before, and keeps every
 //!   one that it kept before.
 //!
-//! What is not: whether a base with gravel is regraded hangs on its Cu and its fines. As long as no sieve
-//! tells them, it is regraded, which is the stricter reading; finer sieves may show that it need not be, and
-//! widen its limits. And Terzaghi's ratio gives way to limits by fines once a base is known to have 15 % of
-//! them.
+//! Exceptions: Cu and fines decide if a base with gravel is regraded. Without sieves for them it is regraded,
+//! which is the stricter reading; finer sieves may show that it need not be, and widen its limits. Terzaghi's
+//! ratio also gives way to limits by fines once a base is known to have 15 % of them.
 
 use super::decision::Decision;
 use crate::rules::{BaseSoil, RuleInputs, apply};
 use crate::{AppliedRule, PracticeClass, RuleRole};
 use voidwalk_core::gradation::Gradation;
 
-/// Pairs of soils that are drawn.
+/// Number of pairs of soils drawn.
 const PAIRS: u64 = 4000;
 
-/// Numbers from 0 to 1 that look like chance.
+/// Pseudorandom numbers from 0 to 1.
 struct Chance(u64);
 
 impl Chance {
@@ -28,12 +27,12 @@ impl Chance {
         ((self.0 >> 11) as f64) / (1u64 << 53) as f64
     }
 
-    /// A size (mm), as likely in every decade.
+    /// A size (mm), equally likely in every decade.
     fn size(&mut self, low: f64, high: f64) -> f64 {
         low * (high / low).powf(self.next())
     }
 
-    /// A soil down to 0 %, with gravel, gaps and fines as chance has it.
+    /// A soil down to 0 %, with random gravel, gaps and fines.
     fn soil(&mut self, low: f64, high: f64) -> Vec<(f64, f64)> {
         let count = 3 + (8.0 * self.next()) as usize;
         let mut sizes: Vec<f64> = (0..count).map(|_| self.size(low, high)).collect();
@@ -56,7 +55,7 @@ impl Chance {
         Gradation::linear_from_dx(15.0, d15, cu).unwrap()
     }
 
-    /// How many of the finest sieves of a table are missing, so that two are left at least.
+    /// Number of the finest sieves missing from a table, with at least two left.
     fn missing(&mut self, points: &[(f64, f64)]) -> usize {
         (points.len().saturating_sub(1) as f64 * self.next()) as usize
     }
@@ -74,7 +73,7 @@ fn broken(rules: &[AppliedRule]) -> Vec<&str> {
     rules.iter().filter(|rule| rule.is_broken()).map(|rule| rule.id.as_str()).collect()
 }
 
-/// Where the one does not meet practice, the other does not, either.
+/// Asserts that if `than` does not meet practice, `worse` does not, either.
 #[track_caller]
 fn no_better(worse: &[AppliedRule], than: &[AppliedRule]) {
     let fails = |rules: &[AppliedRule]| {
@@ -102,7 +101,7 @@ fn a_dispersive_base_or_an_open_joint_never_breaks_fewer_rules() {
         }
         for (before, after) in plain.iter().zip(&dispersive) {
             assert_eq!(before.id, after.id);
-            // No wider limit, and none that is kept where it was not before.
+            // The limit is no wider, and no rule is kept that was not kept before.
             assert!(before.limit.is_none_or(|limit| after.limit.is_some_and(|of| of <= limit)), "{after:?}");
             assert!(after.met != Some(true) || before.met == Some(true), "{before:?} {after:?}");
             let is_bound = after.limit_at_most && !before.limit_at_most;

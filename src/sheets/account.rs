@@ -11,7 +11,7 @@ use super::table::Soil;
 use voidwalk_core::gradation::FIELDS;
 use voidwalk_core::gradation::TableError;
 
-/// Refuses a table with a number that is in no curve and that no note names.
+/// Refuses a table that holds a number found in no curve and named by no note.
 pub(super) fn refuse_lost(
     grid: &Grid,
     layout: &Layout,
@@ -30,7 +30,7 @@ pub(super) fn refuse_lost(
     };
     let mut read: HashSet<usize> = HashSet::new();
     for (column, soil) in layout.soils.iter().zip(soils) {
-        // A refused soil is refused with its own reason.
+        // A refused soil carries its own reason.
         let Ok(soil) = soil else { return Ok(()) };
         let lines: HashSet<usize> = soil.rows.iter().map(|row| row.line).collect();
         for row in extent.rows(grid, layout).filter(|row| !lines.contains(&row.line)) {

@@ -1,4 +1,4 @@
-//! Tables that lie on their side: the openings in a row, and below it a row for each soil.
+//! Tables on their side: the openings in a row, and below it a row for each soil.
 
 use super::content::{begins_with_words, is_blank, is_data, is_text, is_value, is_words, percentage};
 use super::grid::{Grid, GridRow};
@@ -11,7 +11,7 @@ use super::torn;
 use voidwalk_core::gradation::percent_is_allowed;
 use voidwalk_core::gradation::{TableError, shortened};
 
-/// Fewer bare numbers in a row may be anything, and fewer named openings are no curve.
+/// Fewest openings of a row: fewer bare numbers may be anything, and fewer named openings make no curve.
 const LEAST_OPENINGS: usize = 3;
 const LEAST_NAMED: usize = 2;
 /// Most columns that a note names.
@@ -20,15 +20,16 @@ const MOST_NAMED: usize = 6;
 /// The openings of a table that lies on its side.
 struct Openings {
     columns: Vec<usize>,
-    /// As they are written, without the words around them.
+    /// Openings as written, without the words around them.
     texts: Vec<String>,
-    /// What is retained, where their words say so.
+    /// Role of the values if the words around the openings say retained.
     retained: Option<Role>,
-    /// All of them are numbers without a unit or a word.
+    /// True if all openings are numbers without a unit or a word.
     bare: bool,
 }
 
-/// The table of a grid that lies on its side, upright, and where it is read; nothing where there is none.
+/// Finds the table of a grid that lies on its side, and returns it upright with its layout; `None` without
+/// one.
 pub(super) fn find(grid: &Grid) -> Result<Option<(Grid, Layout)>, TableError> {
     let upper = &grid.rows[..grid.rows.len().min(ROWS_OF_TITLES)];
     if upper.iter().any(|row| is_heading(row) && says_soil(row) && openings(row).is_none_or(|o| o.bare)) {
@@ -60,7 +61,7 @@ fn openings(row: &GridRow) -> Option<Openings> {
     starts.find_map(|start| openings_from(row, start).filter(|openings| start == first || !openings.bare))
 }
 
-/// Those that begin in this column.
+/// Openings of a row that begin in this column.
 fn openings_from(row: &GridRow, first: usize) -> Option<Openings> {
     let mut heads: Vec<Head> = Vec::new();
     for c in first..row.cells.len() {
@@ -95,14 +96,14 @@ fn openings_from(row: &GridRow, first: usize) -> Option<Openings> {
     Some(Openings { columns: (first..end).chain(rest).collect(), texts, retained, bare })
 }
 
-/// Whether bare numbers stand beside openings with a unit, so that their order says nothing yet.
+/// True if bare numbers lie beside openings with a unit, so that their order says nothing yet.
 fn mixes_units(heads: &[Head]) -> bool {
     let is_bare = |head: &Head| matches!(opening(&head.text), Some((Opening::Bare(_), _)));
     heads.iter().any(|head| head.role.is_some()) && heads.iter().any(is_bare)
 }
 
-/// Whether a row of bare numbers holds openings, by the words at its left or its numbers, and is no row of
-/// percents beside the name of a soil.
+/// True if a row of bare numbers holds openings, by the words at its left or by its numbers, and is not a row
+/// of percents beside the name of a soil.
 fn are_openings(grid: &Grid, at: usize, columns: &[usize]) -> bool {
     let row = &grid.rows[at];
     let labels: Vec<&str> = (0..columns[0]).map(|c| row.cell(c)).filter(|cell| !is_blank(cell)).collect();
@@ -118,10 +119,10 @@ fn are_openings(grid: &Grid, at: usize, columns: &[usize]) -> bool {
     labels.is_empty() || most > 100.0 || most > 1.0 && least < LEAST_PERCENT
 }
 
-/// No percent in a row of percents is less, but openings are (mm).
+/// Least value in a row of percents; openings (mm) may be smaller.
 const LEAST_PERCENT: f64 = 0.1;
 
-/// The row of words above numbers, as over percents of which the headings are not understood.
+/// The row of words above numbers, such as percents under headings that are not understood.
 fn text_above<'a>(grid: &'a Grid, at: usize, columns: &[usize]) -> Option<&'a GridRow> {
     let is_words = |row: &&GridRow| {
         let words = columns.iter().filter(|&&c| !row.cell(c).is_empty() && !is_value(row.cell(c))).count();
@@ -130,7 +131,7 @@ fn text_above<'a>(grid: &'a Grid, at: usize, columns: &[usize]) -> Option<&'a Gr
     grid.rows[..at].iter().rev().find(is_words)
 }
 
-/// A row of percents beside the name of a soil, of which nothing says the openings.
+/// Error for a row of percents beside the name of a soil whose openings nothing names.
 fn refused_percents(grid: &Grid, at: usize, columns: &[usize]) -> TableError {
     let row = &grid.rows[at];
     let name = (0..columns[0]).map(|c| row.cell(c)).find(|cell| !is_blank(cell)).unwrap_or_default();
@@ -148,12 +149,12 @@ fn refused_percents(grid: &Grid, at: usize, columns: &[usize]) -> TableError {
     grid.refused(row.line, 0, "heading", name, allowed)
 }
 
-/// Whether a column is one of these, which stand side by side.
+/// True if a column is among these adjacent columns.
 fn is_between(columns: &[usize], c: usize) -> bool {
     columns.first().is_some_and(|&first| first <= c) && columns.last().is_some_and(|&last| c <= last)
 }
 
-/// Headings beside the openings that name more of them, or seem to.
+/// Refuses headings beside the openings that name more openings, or seem to.
 fn refuse_other_openings(
     grid: &Grid,
     at: usize,
@@ -182,9 +183,9 @@ fn refuse_other_openings(
     }
 }
 
-/// The rows below that hold a soil each: words, then percents.
+/// Rows below that hold a soil each: words, then percents.
 fn soils(heading: &GridRow, below: &[GridRow], openings: &[usize]) -> Option<Vec<usize>> {
-    // A number is a name only below a heading of names: below one of openings it is an opening.
+    // A number is a name only below a heading of names; below a heading of openings it is an opening.
     let of_names = |c: usize| !heading.cell(c).is_empty() && role(heading.cell(c)) == Role::Other;
     let is_sieve = |cell: &str| opening(cell).is_some_and(|(o, _)| !matches!(o, Opening::Class(..)));
     let is_name = |c: usize, cell: &str| match is_value(cell) || is_sieve(cell) {
@@ -194,7 +195,7 @@ fn soils(heading: &GridRow, below: &[GridRow], openings: &[usize]) -> Option<Vec
     let is_size = |c: &usize| role(heading.cell(*c)) == Role::Size && !openings.contains(c);
     let sizes: Vec<usize> = heading.filled().filter(is_size).collect();
     let is_soil = |row: &GridRow| {
-        // A size of its own in each row: the headings are names of soils such as p4.
+        // Each row has its own size, so the headings are names of soils such as p4.
         if sizes.iter().any(|&c| is_value(row.cell(c)) || is_sieve(row.cell(c))) {
             return false;
         }
@@ -208,7 +209,7 @@ fn soils(heading: &GridRow, below: &[GridRow], openings: &[usize]) -> Option<Vec
     (!soils.is_empty()).then_some(soils)
 }
 
-/// Rows below the soils that look like a table, too, are not passed over.
+/// Refuses rows below the soils that also look like a table, instead of passing over them.
 fn refuse_second(grid: &Grid, at: usize, soils: &[usize], columns: &[usize]) -> Result<(), TableError> {
     let after = at + 1 + soils.last().map_or(0, |last| last + 1);
     let heading = &grid.rows[at];
@@ -226,7 +227,8 @@ fn refuse_second(grid: &Grid, at: usize, soils: &[usize], columns: &[usize]) -> 
     Ok(())
 }
 
-/// Refuses rows of soils that cannot be read, openings that would be passed over, and values that have none.
+/// Refuses rows of soils that cannot be read, openings that would be passed over, and values without an
+/// opening.
 fn refuse_lost(grid: &Grid, at: usize, soils: &[usize], openings: &[usize]) -> Result<(), TableError> {
     let (heading, last) = (&grid.rows[at], openings[openings.len() - 1]);
     let refused =

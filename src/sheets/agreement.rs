@@ -1,4 +1,4 @@
-//! Whether two columns name the same openings.
+//! Comparison of two columns of openings.
 
 use super::grid::Grid;
 use super::heading::unit;
@@ -6,7 +6,7 @@ use super::layout::Headings;
 pub(super) use super::size::near;
 use super::size::{Opening, Unit, opening};
 
-/// Whether the openings in columns `a` and `b` are the same in every row, and any are given in both.
+/// True if columns `a` and `b` name the same openings in every row, and some row has both.
 pub(super) fn of(grid: &Grid, headings: &Headings, a: usize, b: usize) -> bool {
     let unit_of = |c: usize| headings.heads.get(c).and_then(|head| unit(head).ok().flatten());
     let (unit_a, unit_b) = (unit_of(a), unit_of(b));
@@ -21,7 +21,7 @@ pub(super) fn of(grid: &Grid, headings: &Headings, a: usize, b: usize) -> bool {
     both > 0
 }
 
-/// Openings in mm, where headings say their unit and where they do not.
+/// Opening of a cell in mm, whether or not its heading names a unit.
 fn in_mm(cell: &str, unit: Option<Unit>) -> Option<f64> {
     match opening(cell)?.0 {
         Opening::Mm(mm) => Some(mm),

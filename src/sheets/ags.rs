@@ -1,5 +1,5 @@
-//! AGS4, the format in which ground investigations are handed over: its group GRAT holds a row for each
-//! opening. Its group GRAG sums a grading up (percents of gravel, sand, silt and clay, Cu) and has no curve.
+//! AGS4, the exchange format of ground investigations. Its group GRAT holds a row for each opening; its group
+//! GRAG summarises a grading (percents of gravel, sand, silt and clay, Cu) and has no curve.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -12,13 +12,14 @@ use super::size::Unit;
 use voidwalk_core::gradation::number;
 use voidwalk_core::gradation::{TableError, shortened};
 
-/// The columns of size and percent of a group, and the unit of its sizes.
+/// Columns of size and percent of a group, and the unit of its sizes.
 type Written = ([usize; 2], Option<Unit>);
 
-/// What tells one specimen from another.
+/// Headings that tell one specimen from another.
 const KEYS: [&str; 7] = ["LOCA_ID", "SAMP_TOP", "SAMP_REF", "SAMP_TYPE", "SAMP_ID", "SPEC_REF", "SPEC_DPTH"];
 
-/// Whether a text is AGS4, as it is written or as a spreadsheet saves it; `group` may head a column too.
+/// True if a text is AGS4, in its own form or as a spreadsheet saves it; `group` may also head a column of
+/// other files.
 pub(super) fn is_ags(text: &str) -> bool {
     let kind =
         |line: &str| line.split(',').next().unwrap_or_default().trim_matches([' ', '"']).to_uppercase();
@@ -27,13 +28,13 @@ pub(super) fn is_ags(text: &str) -> bool {
         && text.lines().any(|line| ["HEADING", "DATA"].contains(&kind(line).as_str()))
 }
 
-/// Whether a sheet of a workbook holds groups of AGS4.
+/// True if a sheet of a workbook holds groups of AGS4.
 pub(super) fn is_ags_sheet(grid: &Grid) -> bool {
     let any = |kind: &str| grid.rows.iter().any(|row| row.cell(0) == kind);
     any("HEADING") && any("DATA")
 }
 
-/// The soils of the group GRAT: a name, its rows, and where they stand in these.
+/// Soils of the group GRAT: each with its name, its rows and their layout.
 pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)>, TableError> {
     let rows = text.lines().enumerate().map(|(index, content)| {
         let (cells, open) = all_cells(content, ',');
@@ -42,7 +43,7 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
     soils_of_rows(file, None, rows)
 }
 
-/// The soils of a sheet, which is called as its group or names it in a row.
+/// Soils of a sheet that bears the name of its group, or names the group in a row.
 pub(super) fn soils_of_sheet(grid: &Grid) -> Result<Vec<(String, Grid, Layout)>, TableError> {
     let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
     let named = |name: &str| vec!["GROUP".to_owned(), name.trim().to_uppercase()];
@@ -88,7 +89,7 @@ fn soils_of_rows(
         if group != "GRAT" {
             match kind.as_str() {
                 "HEADING" => headings.clone_from(&cells),
-                // It may be a row of GRAT, amid which another group was put.
+                // The row may belong to GRAT, with another group inserted within it.
                 "DATA" if cells.len() != headings.len() && cells.len() == of_grat => {
                     let allowed = format!("a row of {group} with a cell for each of its headings");
                     return Err(refused(line, &shortened(&cells.join(",")), &allowed));
@@ -183,7 +184,7 @@ fn soils_of_rows(
             at: 0,
             first: 0,
             headed: true,
-            // Headings of AGS4 say what the other columns are.
+            // The headings of AGS4 define the other columns.
             accounted: (0..width).collect(),
             notes: Vec::new(),
         };
@@ -192,7 +193,8 @@ fn soils_of_rows(
     Ok(soils.collect())
 }
 
-/// Sieves and hydrometer may come one after the other, in any order; a row that stands twice counts once.
+/// Sorts the rows by size: sieves and hydrometer may follow each other in any order. A repeated row counts
+/// once.
 fn in_order(grid: &mut Grid, columns: [usize; 2]) {
     let size = |row: &GridRow| number(row.cell(columns[0])).unwrap_or(f64::INFINITY);
     grid.rows.sort_by(|a, b| size(b).total_cmp(&size(a)));

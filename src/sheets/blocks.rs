@@ -1,5 +1,5 @@
-//! Cuts a grid into its tables, which may stand side by side and below each other: each part has its own
-//! headings and its own openings, and is read by itself.
+//! Cuts a grid into its tables, side by side or below each other. Each part has its own headings and its own
+//! openings, and is read by itself.
 
 use std::ops::Range;
 
@@ -12,21 +12,21 @@ use super::torn::whole_row;
 use super::{across, agreement, tidy};
 use voidwalk_core::gradation::TableError;
 
-/// A sheet of soils has some tens of tables; their columns may be many more.
+/// Most tables of a sheet. A sheet of soils has some tens of tables; their columns may be many more.
 const MOST_TABLES: usize = 10_000;
 
 /// A part of a grid that holds one table.
 pub(super) struct Block {
     pub(super) grid: Grid,
     pub(super) layout: Layout,
-    /// Its columns in the file.
+    /// Columns of the table in the file.
     pub(super) columns: Range<usize>,
-    /// Name of its sample, where the rows give one.
+    /// Name of the sample if the rows give one.
     pub(super) sample: Option<String>,
 }
 
 impl Block {
-    /// Line of its headings.
+    /// Line of the headings.
     pub(super) fn line(&self) -> usize {
         self.grid.rows.get(self.layout.at).map_or(0, |row| row.line)
     }
@@ -60,8 +60,8 @@ pub(super) fn blocks(grid: Grid) -> Result<Vec<Block>, TableError> {
     Ok(blocks)
 }
 
-/// Whether a sheet seems to hold a table: headings of openings, or rows of numbers. A cover has few numbers,
-/// behind words.
+/// True if a sheet seems to hold a table: headings of openings, or rows of numbers. A cover has few numbers,
+/// and those behind words.
 pub(super) fn has_table(grid: &Grid) -> bool {
     const LEAST_ROWS: usize = 2;
     const LEAST_VALUES: usize = 3;
@@ -81,7 +81,7 @@ fn bounded(place: &str, tables: usize) -> Result<(), TableError> {
     }
 }
 
-/// Whether a cell may be the heading of openings.
+/// True if a cell may be the heading of openings.
 fn is_size_heading(cell: &str) -> bool {
     cell.contains(char::is_alphabetic)
         && role(cell) == Role::Size
@@ -89,12 +89,13 @@ fn is_size_heading(cell: &str) -> bool {
         && opening(cell).is_none()
 }
 
-/// Runs of columns with nothing between them, each with a heading of openings, and what stands to its right.
+/// Runs of columns without an empty column between them, each with a heading of openings, together with the
+/// columns to the right of each run.
 fn regions(grid: &Grid, width: usize) -> Vec<Range<usize>> {
     let mut anchors = vec![false; width];
     let mut top = None;
     for (index, row) in grid.rows.iter().enumerate() {
-        // Numbers are no headings; their rows are passed over quickly.
+        // Skips rows of numbers quickly: numbers are never headings.
         let sizes: Vec<usize> = row.filled().filter(|&c| is_size_heading(row.cell(c))).collect();
         let is_table = sizes.len() > 1
             || sizes.len() == 1
@@ -127,7 +128,7 @@ fn regions(grid: &Grid, width: usize) -> Vec<Range<usize>> {
     if regions.is_empty() { std::iter::once(0..width).collect() } else { regions }
 }
 
-/// The rows of the tables that stand below each other, each with the titles above it.
+/// Rows of each of the tables below each other, with the titles above it.
 fn bands(grid: &Grid) -> Vec<Range<usize>> {
     let rows = &grid.rows;
     let whole = || std::iter::once(0..rows.len()).collect();
@@ -151,24 +152,24 @@ fn bands(grid: &Grid) -> Vec<Range<usize>> {
     bands
 }
 
-/// The first of the rows of a title above the end of `rows`, of which no title stands above `least`.
+/// Index of the first row of a title above the end of `rows`; titles above `least` are ignored.
 fn title_above(rows: &[GridRow], least: usize) -> usize {
     let next = rows.len();
     let is_title = |r: usize| {
         (!is_data(&rows[r]) || begins_with_words(&rows[r])) && whole_row(&rows[r], false).is_none()
     };
     let above = (least..next).rev().take_while(|&r| is_title(r)).last().unwrap_or(next);
-    // What stands directly below the numbers is theirs, up to the first empty row.
+    // Rows directly below the numbers belong to them, up to the first empty row.
     let gap = |r: &usize| rows[*r].line > rows[r - 1].line + 1;
     match (above.max(1)..next).find(gap) {
         Some(after) => after,
-        // Without one, the last row is a title where it is nothing but that.
+        // Without a gap, the last row is a title if it has a single cell.
         None if above < next && rows[next - 1].filled().count() == 1 => next - 1,
         None => next,
     }
 }
 
-/// Whether the same headings are repeated and the numbers below them go on as those above: one table.
+/// True if the headings repeat and the numbers below continue those above: one table.
 fn goes_on(above: &[GridRow], next: &GridRow, below: &[GridRow]) -> bool {
     let head = &above[0];
     let roles = |row: &GridRow| -> Vec<(usize, Role)> {
@@ -197,7 +198,7 @@ fn goes_on(above: &[GridRow], next: &GridRow, below: &[GridRow]) -> bool {
     last.0 >= 0.0 && (falls && (!is_finer || after.1 <= last.1) || rises && (!is_finer || after.1 >= last.1))
 }
 
-/// The tables of a band: one, or several with nothing between them, of which each begins with its openings.
+/// Tables of a band: one, or several without an empty column between them, each beginning with its openings.
 fn side_by_side(band: Grid, several: bool) -> Result<Vec<Block>, TableError> {
     let (groups, line) = match headings(&band) {
         (Some(headings), _) => (groups(&band, &headings)?, Some(band.rows[headings.at].line)),
@@ -231,7 +232,7 @@ fn side_by_side(band: Grid, several: bool) -> Result<Vec<Block>, TableError> {
     Ok(blocks)
 }
 
-/// Columns of the tables that stand side by side without an empty column.
+/// Columns of adjacent tables without an empty column between them.
 fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableError> {
     let Headings { at, first, roles, .. } = headings;
     let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
@@ -245,7 +246,7 @@ fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableEr
         }
     }
     let named = roles.iter().any(|role| matches!(role, Role::Finer | Role::Retained(_)));
-    // Openings, or values, or neither.
+    // `Some(true)` for openings, `Some(false)` for values, `None` for anything else.
     let kind = |c: usize| match roles[c] {
         Role::Size if holds[c].1 => Some(true),
         Role::Finer | Role::Retained(_) if holds[c].0 => Some(false),
@@ -254,7 +255,7 @@ fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableEr
     };
     let kinds: Vec<(usize, bool)> = (0..roles.len()).filter_map(|c| Some((c, kind(c)?))).collect();
     let (Some(&(_, begins)), Some(&(_, ends))) = (kinds.first(), kinds.last()) else { return Ok(Vec::new()) };
-    // Values may stand to the left of their openings, in all of the tables.
+    // In all of the tables, values may lie to the left of their openings.
     let swapped = !begins && ends;
     let mut starts = vec![0];
     for pair in kinds.windows(2) {
@@ -269,7 +270,7 @@ fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableEr
         return Err(grid.refused(grid.rows[*at].line, c, "heading", grid.rows[*at].cell(c), allowed));
     }
     let mut groups: Vec<Range<usize>> = Vec::new();
-    // Of the last group: its first openings, and whether all of its values are what is retained.
+    // First openings of the last group, and true if all of its values are retained.
     let (mut openings_before, mut retained_before) = (None, false);
     let mut rest = &kinds[..];
     for (place, &start) in starts.iter().enumerate() {
@@ -284,7 +285,7 @@ fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableEr
             _ => false,
         };
         match groups.last_mut() {
-            // The openings once more, behind the percents; or the same table with more columns.
+            // The openings repeat behind the percents, or the table repeats with more columns.
             Some(last) if !some && agrees() || some && all_finer && retained_before && agrees() => {
                 last.end = end;
             }
@@ -303,7 +304,7 @@ fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableEr
     Ok(groups)
 }
 
-/// Where several tables stand side by side, values behind an empty column may be those of either.
+/// Refuses values behind an empty column if several adjacent tables could own them.
 fn refuse_far_values(grid: &Grid, layout: &Layout) -> Result<(), TableError> {
     let columns: Vec<usize> = layout.soils.iter().map(|soil| soil.column).collect();
     let mut filled = vec![false; columns.last().map_or(0, |last| last + 1)];
@@ -325,7 +326,7 @@ fn refuse_far_values(grid: &Grid, layout: &Layout) -> Result<(), TableError> {
     Ok(())
 }
 
-/// Headings of a table amid the rows of another, below the line of its own.
+/// Refuses headings of a table amid the rows of another, below the line of its own.
 fn refuse_other_headings(grid: &Grid, line: usize) -> Result<(), TableError> {
     for row in grid.rows.iter().filter(|row| row.line > line && !is_text(row)) {
         let Some(size) = row.filled().find(|&c| is_size_heading(row.cell(c))) else { continue };

@@ -11,7 +11,7 @@ use super::size::{Opening, Unit, opening};
 use voidwalk_core::gradation::FIELDS;
 use voidwalk_core::gradation::{TableError, shortened};
 
-/// Fewer bounds that follow each other, under a heading that says nothing of openings, may be by chance.
+/// Fewest shared bounds: fewer under a heading that does not mention openings may be by chance.
 const LEAST_SHIFTED: usize = 2;
 
 /// The openings of a row in two columns.
@@ -79,7 +79,7 @@ fn heading_of_size(grid: &Grid, layout: &Layout) -> String {
     heading(grid, layout, layout.size)
 }
 
-/// The unit of a heading, `None` where it says none; nothing at all where it is none that is understood.
+/// The unit of a heading, `Some(None)` if it names no unit; `None` if the heading is not understood.
 fn unit_of(heading: &str) -> Option<Option<Unit>> {
     unit(heading).ok()
 }
@@ -93,7 +93,7 @@ fn in_mm(cell: &str, unit: Option<Unit>) -> Option<f64> {
     (mm > 0.0 && mm.is_finite()).then_some(mm)
 }
 
-/// Whether two columns have the same openings in every row, in units of their own.
+/// True if two columns hold the same openings in every row, each in its own unit.
 fn is_same(rows: &[&GridRow], size: usize, column: usize, first: Option<Unit>, second: Option<Unit>) -> bool {
     const UNITS: [Unit; 6] = [Unit::Mm, Unit::Inch, Unit::SieveNumber, Unit::Micrometre, Unit::Cm, Unit::Phi];
     let all = |cell: &str, unit: Option<Unit>| -> Vec<f64> {
@@ -122,8 +122,8 @@ fn pairs(
     rows.iter().filter_map(pair).collect()
 }
 
-/// How many neighbours there are, and how many of them share a bound: the second of one row is the first of
-/// the next, or the reverse.
+/// Number of neighbours, and number of them that share a bound: the second of one row is the first of the
+/// next, or the reverse.
 fn shifted(pairs: &[Pair]) -> (usize, usize) {
     let is_shared = |a: f64, b: f64| (a - b).abs() <= 1e-3 * a;
     let count =
@@ -133,7 +133,7 @@ fn shifted(pairs: &[Pair]) -> (usize, usize) {
     (pairs.len().saturating_sub(1), down.max(up))
 }
 
-/// Whether a column numbers its sieves from 1 on.
+/// True if a column numbers its sieves from 1 on.
 fn is_count(rows: &[&GridRow], column: usize, unit: Option<Unit>) -> bool {
     let values: Vec<f64> = rows
         .iter()
@@ -156,8 +156,8 @@ fn refused(grid: &Grid, rows: &[&GridRow], column: usize, pairs: &[Pair]) -> Tab
     grid.refused(line, column, FIELDS[0], cell, allowed)
 }
 
-/// Makes of classes a table of sieves: what is in a class stays on its lower sieve, and all passes the upper
-/// bound of the coarsest.
+/// Turns classes into a table of sieves: the mass in a class stays on its lower sieve, and all mass passes
+/// the upper bound of the coarsest class.
 fn read_classes(
     grid: &mut Grid,
     layout: &mut Layout,

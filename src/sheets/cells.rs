@@ -8,23 +8,23 @@ use super::lines::listed;
 use super::zipped::{too_large, unreadable};
 use voidwalk_core::gradation::{TableError, letters};
 
-/// Most columns and rows of which cells are kept; a sheet of soils has some tens.
+/// Most columns and rows that are kept; a sheet of soils has some tens.
 const MOST_COLUMNS: usize = 500;
 const MOST_ROWS: usize = 20_000;
 /// Most places for cells, and most characters, of a whole workbook.
 const MOST_PLACES: usize = 500_000;
 const MOST_CHARACTERS: usize = 4_000_000;
-/// What is kept of the text of a cell.
+/// Longest text of a cell that is kept.
 const LONGEST: usize = 200;
 
-/// What the sheets of a workbook may still take.
+/// Places and characters that the sheets of a workbook may still take.
 pub(super) struct Budget {
     places: usize,
     characters: usize,
 }
 
 impl Budget {
-    /// That of a workbook.
+    /// Budget of a whole workbook.
     pub(super) fn new() -> Budget {
         Budget { places: MOST_PLACES, characters: MOST_CHARACTERS }
     }
@@ -54,13 +54,13 @@ pub(super) struct Cells<'a> {
 }
 
 impl<'a> Cells<'a> {
-    /// No cells.
+    /// An empty sheet.
     pub(super) fn new(file: &str, sheet: &str, budget: &'a mut Budget) -> Cells<'a> {
         let grid = Grid { file: file.into(), sheet: Some(sheet.into()), delimiter: ',', ..Grid::default() };
         Cells { grid, budget, hidden_rows: Vec::new(), hidden_columns: Vec::new() }
     }
 
-    /// Takes a cell, which stands after all that came before; row and column are counted from 0.
+    /// Takes a cell behind all that came before; row and column are counted from 0.
     pub(super) fn put(&mut self, row: usize, column: usize, text: &str) -> Result<(), TableError> {
         let text = tidy(text);
         if text.is_empty() {
@@ -95,21 +95,21 @@ impl<'a> Cells<'a> {
         Ok(())
     }
 
-    /// Takes note that a row is hidden, counted from 0.
+    /// Marks a row as hidden, counted from 0.
     pub(super) fn hide_row(&mut self, row: usize) {
         if row < MOST_ROWS {
             self.hidden_rows.push(row + 1);
         }
     }
 
-    /// Takes note that columns are hidden, counted from 0.
+    /// Marks columns as hidden, counted from 0.
     pub(super) fn hide_columns(&mut self, columns: Range<usize>) {
         if self.hidden_columns.len() < MOST_COLUMNS {
             self.hidden_columns.push(columns);
         }
     }
 
-    /// All of them, with a note of those that nobody sees who opens the sheet.
+    /// Returns all cells as a grid, with a note of those hidden from a reader of the sheet.
     pub(super) fn done(mut self, hidden: bool) -> Grid {
         let grid = &mut self.grid;
         if hidden {

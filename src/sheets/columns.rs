@@ -1,4 +1,4 @@
-//! What the columns of a table hold, from one passage over its cells.
+//! Facts about the columns of a table, from one pass over its cells.
 
 use super::content::{is_blank, is_text, is_value, range};
 use super::grid::GridRow;
@@ -6,18 +6,19 @@ use voidwalk_core::gradation::number;
 
 /// Facts of each column.
 pub(super) struct Columns {
-    /// Any of its cells is a number, bare of signs.
+    /// True if any cell is a number, bare of signs.
     pub(super) with_numbers: Vec<bool>,
-    /// Any is a percentage or a range.
+    /// True if any cell is a percentage or a range.
     pub(super) with_values: Vec<bool>,
-    /// Any is a range such as `95-100`.
+    /// True if any cell is a range such as `95-100`.
     pub(super) with_ranges: Vec<bool>,
-    /// More are values than anything else, but for rows of text: one that is none is refused with its cell.
+    /// True if values outnumber other cells, rows of text apart: a cell that is no value is then refused by
+    /// name.
     pub(super) mostly_values: Vec<bool>,
 }
 
 impl Columns {
-    /// Of `rows`, of which a table has `width` columns.
+    /// Reads the facts from `rows` of a table with `width` columns.
     pub(super) fn of(rows: &[GridRow], width: usize) -> Columns {
         let width = rows.iter().map(|row| row.cells.len()).max().unwrap_or(0).max(width);
         let mut columns = Columns {

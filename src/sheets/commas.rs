@@ -1,4 +1,4 @@
-//! Whether the commas in the numbers of a table are decimal signs.
+//! Check of the commas in the numbers of a table: decimal signs, or signs of thousands.
 
 use super::content::percentage;
 use super::extent::Extent;
@@ -9,8 +9,7 @@ use super::size::Unit;
 use voidwalk_core::gradation::TableError;
 use voidwalk_core::gradation::{Comma, comma};
 
-/// Refuses a table whose numbers have points and commas, and one in which every comma may be that of
-/// thousands.
+/// Refuses a table whose numbers have points and commas, and one in which every comma may separate thousands.
 pub(super) fn check(
     grid: &Grid,
     layout: &Layout,
@@ -24,7 +23,7 @@ pub(super) fn check(
         let at = extent.column_of_size(layout, row);
         for c in [at, column.column] {
             let cell = row.cell(c);
-            // `1,254.6` has both: one of them parts thousands.
+            // `1,254.6` has both: one of them separates thousands.
             let is_number = percentage(cell).is_some() && !(cell.contains('.') && cell.contains(','));
             if is_number && cell.contains('.') {
                 point = point.or(Some(row.line));

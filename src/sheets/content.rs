@@ -1,4 +1,4 @@
-//! What stands in one cell: a percentage, a range, a date, words, nothing; and what a row of such cells is.
+//! Content of one cell (a percentage, a range, a date, words, nothing) and of a row of such cells.
 
 use super::grid::GridRow;
 use super::marks::{unmarked, with_thousands};
@@ -14,12 +14,12 @@ pub(super) fn percentage(cell: &str) -> Option<f64> {
     read(cell).or_else(|| read(unmarked(cell)))
 }
 
-/// The most that a percent may be of which a bound is given: `<1`, `< 0.5 %`.
+/// Upper bound of a percent, as in `<1`, `< 0.5 %`.
 pub(super) fn bound(cell: &str) -> Option<f64> {
     percentage(cell.strip_prefix(['<', '≤'])?.trim())
 }
 
-/// The least and the most that a specification allows: `95-100`, `95 to 100 %`.
+/// The least and the most that a specification allows, as in `95-100`, `95 to 100 %`.
 pub(super) fn range(cell: &str) -> Option<(f64, f64)> {
     const SIGNS: [&str; 7] = ["-", "–", "—", " to ", " bis ", " à ", " a "];
     let ends = SIGNS.iter().find_map(|sign| cell.split_once(sign));
@@ -32,12 +32,13 @@ pub(super) fn is_value(cell: &str) -> bool {
     percentage(cell).is_some() || range(cell).is_some()
 }
 
-/// Whether a cell says that there is no value.
+/// True if a cell says that it holds no value.
 pub(super) fn is_blank(cell: &str) -> bool {
     ["", "-", "–", "—", "n/a", "n.a.", "na", "N/A", "n.d.", "nd"].contains(&cell)
 }
 
-/// Spreadsheets turn `3/8` into a date; a cell of a workbook that is one says so at its end.
+/// True for a date: spreadsheets turn `3/8` into one, and a date cell of a workbook ends in a mark of its
+/// own.
 pub(super) fn is_date(cell: &str) -> bool {
     const MONTHS: [&str; 12] =
         ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
@@ -52,7 +53,8 @@ pub(super) fn is_date(cell: &str) -> bool {
             && parts.iter().all(|part| is_number(part) || is_month(part))
 }
 
-/// `Dry mass (g)`, `D10`, `Cu`: what a row below a table begins with, and no opening with a slip of the pen.
+/// `Dry mass (g)`, `D10`, `Cu`: words at the beginning of a row below a table, rather than an opening with a
+/// typing error.
 pub(super) fn is_words(cell: &str) -> bool {
     const OF_SIEVES: [&str; 14] = [
         "no", "nr", "nº", "n°", "num", "number", "us", "astm", "bs", "sieve", "mesh", "standard", "std",
@@ -63,7 +65,7 @@ pub(super) fn is_words(cell: &str) -> bool {
         return false;
     }
     let first: String = small.chars().take_while(|c| c.is_alphabetic()).collect();
-    // `D10`, `P80` name sizes of a curve; another letter before a number is a slip.
+    // `D10`, `P80` name sizes of a curve; another letter before a number is a typing error.
     if first.chars().count() == 1 && !["d", "p"].contains(&&*first) && number(&small[first.len()..]).is_some()
     {
         return false;
@@ -78,7 +80,7 @@ pub(super) fn is_short_opening(cell: &str) -> bool {
     matches!(opening(cell), Some((Opening::Mm(_), Said::UsNumber | Said::Inches)))
 }
 
-/// An opening in one cell and a value in another, and no words before them.
+/// True for an opening in one cell and a value in another, without words before them.
 pub(super) fn is_data(row: &GridRow) -> bool {
     let is_size = |cell: &str| {
         matches!(opening(cell), Some((Opening::Mm(_) | Opening::Bare(_) | Opening::Class(..), _)))
@@ -88,12 +90,12 @@ pub(super) fn is_data(row: &GridRow) -> bool {
     row.filled().any(|c| (more || c != first) && is_value(row.cell(c)))
 }
 
-/// `Depth (m) | 3.5 | 4.5`: numbers behind words, which may stand above a table or below it.
+/// True for numbers behind words, as in `Depth (m) | 3.5 | 4.5`, which may lie above a table or below it.
 pub(super) fn begins_with_words(row: &GridRow) -> bool {
     row.filled().next().is_some_and(|c| is_words(row.cell(c)))
 }
 
-/// Whether a row holds neither numbers nor openings nor dates.
+/// True if a row holds neither numbers nor openings nor dates.
 pub(super) fn is_text(row: &GridRow) -> bool {
     row.filled().all(|c| {
         let cell = row.cell(c);

@@ -1,4 +1,5 @@
-//! What is retained beside the column that is read, in percent or by mass: it says the same or is refused.
+//! Check of a retained column, in percent or by mass, beside the column that is read: a contradiction is
+//! refused.
 
 use std::collections::HashMap;
 
@@ -15,7 +16,7 @@ use voidwalk_core::gradation::TableError;
 /// Percents that were rounded to whole ones differ by less than this.
 const ROUNDED: f64 = 1.5;
 
-/// Refuses a column of what is retained that agrees with none of the soils.
+/// Refuses a retained column that agrees with no soil.
 pub(super) fn refuse(
     grid: &Grid,
     layout: &Layout,
@@ -61,7 +62,7 @@ pub(super) fn refuse(
     Ok(())
 }
 
-/// The first line in which masses with a pan, on each sieve or cumulative, are not what the curve leaves.
+/// The first line in which masses with a pan, on each sieve or cumulative, differ from the curve.
 fn masses_differ(soil: &Soil, masses: &HashMap<usize, f64>, pans: &[usize]) -> Option<usize> {
     let mut rows: Vec<_> = soil.rows.iter().filter(|row| masses.contains_key(&row.line)).collect();
     rows.sort_by(|a, b| b.size.total_cmp(&a.size));
@@ -72,7 +73,7 @@ fn masses_differ(soil: &Soil, masses: &HashMap<usize, f64>, pans: &[usize]) -> O
     let most = masses.values().fold(0.0, |most: f64, &mass| most.max(mass));
     let coarser = 1.0 - finest.percent / 100.0;
     let pan = of_pans.iter().sum::<f64>();
-    // What was washed out may be in the percents and not in the pan.
+    // Mass washed out may be in the percents and not in the pan.
     let whole = [on_sieves + pan, most, on_sieves / coarser, masses[&finest.line] / coarser];
     let line_of = |(at, &whole): (usize, &f64)| {
         let mut sum = 0.0;
@@ -88,7 +89,7 @@ fn masses_differ(soil: &Soil, masses: &HashMap<usize, f64>, pans: &[usize]) -> O
     lines.first().copied().filter(|_| lines.len() == whole.len())
 }
 
-/// The first line in which percents retained, on each sieve or cumulative, are not what the curve leaves.
+/// The first line in which percents retained, on each sieve or cumulative, differ from the curve.
 fn differs(soil: &Soil, retained: &HashMap<usize, f64>, pans: &[usize]) -> Option<usize> {
     let mut rows: Vec<_> = soil.rows.iter().filter(|row| retained.contains_key(&row.line)).collect();
     rows.sort_by(|a, b| b.size.total_cmp(&a.size));
@@ -102,7 +103,7 @@ fn differs(soil: &Soil, retained: &HashMap<usize, f64>, pans: &[usize]) -> Optio
         (sum - (100.0 - row.percent)).abs() > ROUNDED
     });
     let single = single.map(|row| row.line);
-    // What was washed out is a part of the pan.
+    // Mass washed out is a part of the pan.
     let of_pans: Vec<f64> = pans.iter().filter_map(|line| Some(factor * retained.get(line)?)).collect();
     let rest = pans.first().copied().filter(|_| {
         let finest = rows.last().filter(|row| !pans.contains(&row.line) && !of_pans.is_empty());

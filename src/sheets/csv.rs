@@ -10,7 +10,7 @@ use super::size::{opening, us_sieve_number};
 /// A quoted cell may go on over this many lines.
 const LINES_OF_A_CELL: usize = 6;
 
-/// The separators that a text may have, the likeliest first: `sep=` in its first line, or else the first of
+/// Separators that a text may have, the likeliest first: `sep=` in its first line, or else the first of
 /// semicolon, tab and comma in the first line that has any; then the others.
 pub(super) fn separators(text: &str) -> Vec<char> {
     if let Some(sign) = stated_separator(text) {
@@ -23,7 +23,7 @@ pub(super) fn separators(text: &str) -> Vec<char> {
     std::iter::once(found).chain(others).collect()
 }
 
-/// What Excel writes above a table to say what separates its columns: `sep=;`.
+/// Separator that Excel states above a table, as in `sep=;`.
 fn stated_separator(text: &str) -> Option<char> {
     let first = text.lines().next()?.trim().trim_matches('"').to_lowercase();
     let sign = first.strip_prefix("sep=")?;
@@ -88,12 +88,12 @@ enum Marked {
     Sieve,
     /// Another number and numbers, such as a row that is commented out.
     Numbers,
-    /// A number beside words: amid a table a row that is commented out.
+    /// A number beside words: amid a table, a row that is commented out.
     Number,
     Comment,
 }
 
-/// What a line holds that begins with `#`, of a text with this separator; nothing for any other.
+/// Kind of a line that begins with `#`, in a text with this separator; `None` for any other line.
 fn marked(line: &str, delimiter: char) -> Option<Marked> {
     let rest = line.trim_start().strip_prefix('#')?;
     let mut holds = Marked::Comment;
@@ -116,7 +116,7 @@ fn marked(line: &str, delimiter: char) -> Option<Marked> {
     Some(holds)
 }
 
-/// Whether a line is none of a table.
+/// True if a line is outside any table.
 fn is_comment(line: &str) -> bool {
     marked(line, ',').is_some_and(|marked| marked != Marked::Sieve)
 }
@@ -125,8 +125,8 @@ fn is_open(line: &str, delimiter: char) -> bool {
     split(line, delimiter).1
 }
 
-/// The cells of one line, trimmed and without their quotes, empty ones at its end left out; and whether a
-/// quote is left open. A quote counts at the beginning of a cell only: elsewhere it is inches.
+/// Cells of one line, trimmed, without their quotes and without empty cells at the end; and true if a quote
+/// is left open. A quote counts only at the beginning of a cell: elsewhere it means inches.
 pub(super) fn split(line: &str, delimiter: char) -> (Vec<String>, bool) {
     let (mut cells, open) = all_cells(line, delimiter);
     cells.truncate(filled(&cells));
@@ -138,7 +138,7 @@ fn filled(cells: &[String]) -> usize {
     cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1)
 }
 
-/// The cells of one line, empty ones at its end among them; and whether a quote is left open.
+/// Cells of one line, with empty cells at the end; and true if a quote is left open.
 pub(super) fn all_cells(line: &str, delimiter: char) -> (Vec<String>, bool) {
     let mut cells = vec![String::new()];
     let (mut quoted, mut was_quoted) = (false, false);

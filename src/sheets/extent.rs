@@ -1,5 +1,5 @@
-//! Which rows below the headings are the table's: not its remarks, not its headings again, not what a
-//! laboratory writes below it.
+//! Rows of the table below the headings, without its remarks, repeated headings and notes of the laboratory
+//! below it.
 
 use super::content::{is_blank, is_text, is_value, is_words, percentage};
 use super::grid::{Grid, GridRow};
@@ -13,30 +13,30 @@ use voidwalk_core::gradation::{TableError, shortened};
 /// A row below a table: `Dry mass (g) | 500`.
 pub(super) struct Below {
     pub(super) line: usize,
-    /// The column of its words.
+    /// Column of the words.
     pub(super) column: usize,
     pub(super) words: String,
-    /// The first number that stands behind them, and its column.
+    /// The first number behind the words, and its column.
     pub(super) value: Option<(usize, f64)>,
 }
 
 /// The rows of a table.
 pub(super) struct Extent {
-    /// Indices of its rows, counted from the first below the headings.
+    /// Indices of the rows, counted from the first below the headings.
     table: Vec<usize>,
-    /// The rows below it, which are left out.
+    /// Rows below the table, which are left out.
     pub(super) below: Vec<Below>,
-    /// What was left out, in words.
+    /// Notes on the rows that were left out.
     pub(super) notes: Vec<String>,
     /// The first column that holds a soil.
     first_value: usize,
 }
 
 impl Extent {
-    /// Of the table of a grid.
+    /// Determines the rows of the table in a grid.
     ///
     /// # Errors
-    /// A row that cannot be read as one, amid the others or as their last.
+    /// A row, amid the others or as the last, that cannot be read as one.
     pub(super) fn of(grid: &Grid, layout: &Layout) -> Result<Extent, TableError> {
         let rows = &grid.rows[layout.first..];
         let first_value = layout.soils.iter().map(|soil| soil.column).min().unwrap_or(0);
@@ -75,23 +75,23 @@ impl Extent {
         Ok(extent)
     }
 
-    /// The rows of the table.
+    /// Rows of the table.
     pub(super) fn rows<'a>(&'a self, grid: &'a Grid, layout: &Layout) -> impl Iterator<Item = &'a GridRow> {
         let first = layout.first;
         self.table.iter().map(move |index| &grid.rows[first + index])
     }
 
-    /// The column of a row that says its opening.
+    /// The column that holds the opening of a row.
     pub(super) fn column_of_size(&self, layout: &Layout, row: &GridRow) -> usize {
         let other = layout.other_size.filter(|&c| !row.cell(c).is_empty());
         match is_blank(row.cell(layout.size)) {
-            // Words in another column are where the row is refused.
+            // With words in another column, the row is refused at that column.
             true => other.or(self.column_of_words(layout, row)).unwrap_or(layout.size),
             false => layout.size,
         }
     }
 
-    /// Where the table ends: at the first row of words below its numbers, unless the numbers below it
+    /// Index at which the table ends: the first row of words below its numbers, unless the numbers below it
     /// continue those above, so that a row with a percent is refused.
     fn end(&self, rows: &[GridRow], layout: &Layout) -> usize {
         let is_data = |row: &GridRow| {
@@ -115,8 +115,8 @@ impl Extent {
         (begun..rows.len()).find(ends).unwrap_or(rows.len())
     }
 
-    /// Whether any of the rows `below` may continue those `above`: a size beyond the last of them, and a
-    /// percent finer that goes the same way.
+    /// True if any of the rows `below` may continue those `above`: a size beyond the last of them, and a
+    /// percent finer that goes in the same direction.
     fn continues(&self, above: &[GridRow], below: &[GridRow], layout: &Layout) -> bool {
         let Some(soil) = layout.soils.first() else { return true };
         let numbers = |row: &GridRow| match opening(row.cell(self.column_of_size(layout, row)))?.0 {

@@ -1,34 +1,34 @@
-//! Rows of cells: what every kind of file is brought to before its soils are looked for.
+//! Rows of cells: the common form of every kind of file before its soils are looked for.
 
 use std::ops::Range;
 use std::rc::Rc;
 
 use voidwalk_core::gradation::{Position, TableError, letters, shortened};
 
-/// Cells as text, and where they stand.
+/// Cells as text, with their places in the file.
 #[derive(Debug, Default)]
 pub(super) struct Grid {
     /// File as the user named it.
     pub(super) file: String,
     /// Sheet of a workbook.
     pub(super) sheet: Option<String>,
-    /// What separated the cells, in a text file.
+    /// Separator of the cells in a text file.
     pub(super) delimiter: char,
-    /// Rows that hold anything.
+    /// Rows that are not empty.
     pub(super) rows: Vec<GridRow>,
     /// Rows of numbers that are commented out: their lines and texts.
     pub(super) commented: Vec<(usize, String)>,
-    /// What was assumed so far.
+    /// Assumptions made so far.
     pub(super) notes: Vec<String>,
     /// Columns of the file to the left of this grid, where it is a part of one.
     pub(super) left: usize,
-    /// Where the rows of this grid are columns of the file: the line of the file that each column is.
+    /// For a grid whose rows are columns of the file: the line of the file that each column is.
     pub(super) across: Option<Vec<usize>>,
-    /// Which columns of a text file these are, where it holds several tables side by side.
+    /// Name of the columns if a text file holds several tables side by side.
     pub(super) part: Option<String>,
 }
 
-/// Where a cell stands in the file: its line, counted from 1, and its column, counted from 0.
+/// Place of a cell in the file: its line, counted from 1, and its column, counted from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Place {
     pub(super) line: usize,
@@ -39,37 +39,37 @@ pub(super) struct Place {
 #[derive(Debug)]
 pub(super) struct Line {
     pub(super) text: String,
-    /// The number of its cells, empty ones at its end among them.
+    /// Number of cells, empty ones at the end included.
     pub(super) cells: usize,
 }
 
 /// A row of cells.
 #[derive(Clone, Debug)]
 pub(super) struct GridRow {
-    /// Line of a text file, row of a sheet, counted from 1.
+    /// Line of a text file or row of a sheet, counted from 1.
     pub(super) line: usize,
-    /// Its cells, trimmed; empty ones at its end are left out.
+    /// Cells, trimmed, without empty ones at the end.
     pub(super) cells: Vec<String>,
-    /// The line itself, of a text file.
+    /// The whole line of a text file.
     pub(super) text: Option<Rc<Line>>,
-    /// A quote is left open in it.
+    /// True if a quote is left open in the row.
     pub(super) open: bool,
 }
 
 impl GridRow {
-    /// The cell in this column, empty where there is none.
+    /// The cell in this column; an empty text beyond the last cell.
     pub(super) fn cell(&self, column: usize) -> &str {
         self.cells.get(column).map_or("", String::as_str)
     }
 
-    /// Columns that hold anything.
+    /// Columns that are not empty.
     pub(super) fn filled(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.cells.len()).filter(|&column| !self.cells[column].is_empty())
     }
 }
 
 impl Grid {
-    /// Where the cell in this row and column of the grid stands in the file.
+    /// Place in the file of the cell in this row and column of the grid.
     pub(super) fn place_of(&self, line: usize, column: usize) -> Place {
         match &self.across {
             Some(lines) => {
@@ -80,7 +80,7 @@ impl Grid {
         }
     }
 
-    /// What a row of this grid is called: `line 3`, `row 3` of a sheet, `column D` where rows are columns.
+    /// Name of a row of this grid: `line 3`, `row 3` of a sheet, `column D` if rows are columns.
     pub(super) fn said(&self, line: usize) -> String {
         format!("{} {}", self.row_word(), self.row_name(line))
     }
@@ -94,7 +94,7 @@ impl Grid {
         }
     }
 
-    /// A row's number, or its letter where it is a column of a sheet.
+    /// Number of a row, or its letter if it is a column of a sheet.
     pub(super) fn row_name(&self, line: usize) -> String {
         match self.across.is_some() && self.sheet.is_some() {
             true => letters(line as u32 - 1),
@@ -102,7 +102,7 @@ impl Grid {
         }
     }
 
-    /// What a column of this grid is called: `column D` of a sheet, `column 4` of a text.
+    /// Name of a column of this grid: `column D` of a sheet, `column 4` of a text.
     pub(super) fn column_said(&self, column: usize) -> String {
         match &self.sheet {
             Some(_) => format!("column {}", letters((self.left + column) as u32)),
@@ -110,8 +110,8 @@ impl Grid {
         }
     }
 
-    /// The parts of the grid in these columns, which follow each other; rows that are empty there are left
-    /// out.
+    /// Parts of the grid in these columns, which follow each other; each part leaves out the rows that are
+    /// empty in it.
     pub(super) fn columns(&self, ranges: &[Range<usize>]) -> Vec<Grid> {
         let like = |range: &Range<usize>| Grid {
             file: self.file.clone(),
@@ -128,7 +128,7 @@ impl Grid {
             },
         };
         let mut parts: Vec<Grid> = ranges.iter().map(like).collect();
-        // Each row is gone through once, however many parts there are.
+        // Each row is visited once, whatever the number of parts.
         for row in &self.rows {
             for (range, part) in ranges.iter().zip(&mut parts) {
                 if range.start >= row.cells.len() {
@@ -160,7 +160,7 @@ impl Grid {
         }
     }
 
-    /// A cell whose `value` is refused as that of `field`.
+    /// Error for a cell whose `value` is refused as a value of `field`.
     pub(super) fn refused(
         &self,
         line: usize,
@@ -175,13 +175,13 @@ impl Grid {
         TableError::Value { at, value: shortened(value), allowed: allowed.into() }
     }
 
-    /// A heading that is refused.
+    /// Error for a heading that is refused.
     pub(super) fn refused_heading(&self, line: usize, value: &str, allowed: &str) -> TableError {
         let (file, value) = (self.place(), shortened(value));
         TableError::Header { file, line, value, allowed: allowed.into() }
     }
 
-    /// The file, and the sheet where there is one.
+    /// The file, and the sheet if the file has sheets.
     pub(super) fn place(&self) -> String {
         match (&self.sheet, &self.part) {
             (Some(sheet), _) => format!("{}, sheet \"{}\"", self.file, shortened(sheet)),

@@ -1,4 +1,4 @@
-//! What the heading of a column says it holds.
+//! Meaning of the heading of a column.
 
 use super::languages::{
     say_cumulative, say_finer, say_inches, say_individual, say_micrometres, say_millimetres, say_retained,
@@ -6,7 +6,7 @@ use super::languages::{
 };
 use super::size::Unit;
 
-/// What a column holds, by its heading.
+/// Content of a column by its heading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Role {
     /// Openings.
@@ -19,12 +19,13 @@ pub(super) enum Role {
     Other,
 }
 
-/// How what is retained is given.
+/// Form in which retained values are given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Retained {
-    /// Percents, whose total is 100; masses otherwise.
+    /// True for percents, whose total is 100; false for masses.
     pub(super) percent: bool,
-    /// On this sieve and all coarser ones, or on this one alone; `None` where the heading does not say.
+    /// True for values on this sieve and all coarser ones, false for values on this one alone; `None` if the
+    /// heading does not say.
     pub(super) cumulative: Option<bool>,
 }
 
@@ -123,7 +124,7 @@ const MASS: [&str; 11] =
 const GRAMS: [&str; 5] = ["g", "gram", "grams", "kg", "grammes"];
 const CUMULATIVE: [&str; 7] = ["cumulative", "cum", "cumul", "accumulated", "total", "coarser", "cumulated"];
 const INDIVIDUAL: [&str; 8] = ["individual", "each", "single", "partial", "on", "interval", "per", "ind"];
-/// The words of a column's name, in small letters.
+/// Words of a column's name, in small letters.
 pub(super) fn words(name: &str) -> Vec<String> {
     name.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).map(str::to_lowercase).collect()
 }
@@ -132,7 +133,8 @@ fn any(words: &[String], list: &[&str]) -> bool {
     words.iter().any(|word| list.contains(&word.as_str()))
 }
 
-/// Whether a heading says cumulative. `of total`, `total mass`, `total sample` say what percents are of.
+/// True if a heading says cumulative. `of total`, `total mass`, `total sample` name only the whole of the
+/// percents.
 fn is_cumulative(words: &[String]) -> bool {
     const OF: [&str; 8] = ["of", "the", "du", "del", "do", "von", "vom", "der"];
     const WHOLE: [&str; 10] =
@@ -155,7 +157,7 @@ fn is_characteristic(words: &[String]) -> bool {
     }
 }
 
-/// The words of a heading without the letter that is a sample's name.
+/// Words of a heading without the letter of a sample's name.
 fn words_of_column(name: &str) -> Vec<String> {
     let mut words = words(name);
     for letter in ["d", "g"] {
@@ -166,7 +168,7 @@ fn words_of_column(name: &str) -> Vec<String> {
     words
 }
 
-/// `Sample D`, `Zone G (%)`: a letter behind a name, neither that of diameters nor that of grams.
+/// `Sample D`, `Zone G (%)`: a letter behind a name that means neither diameters nor grams.
 fn is_letter_of_sample(name: &str, words: &[String], letter: &str) -> bool {
     let is_bracketed = ['(', '['].iter().any(|sign| name.to_lowercase().contains(&format!("{sign}{letter}")));
     let others = || words.iter().filter(|word| *word != letter);
@@ -177,12 +179,12 @@ fn is_letter_of_sample(name: &str, words: &[String], letter: &str) -> bool {
     !(is_bracketed || is_alone || letter == "g" && is_weighed)
 }
 
-/// Whether a heading names a unit of length.
+/// True if a heading names a unit of length.
 fn is_length(name: &str) -> bool {
     matches!(unit(name), Ok(Some(Unit::Mm | Unit::Micrometre | Unit::Cm | Unit::Inch)))
 }
 
-/// Whether a text says that a table goes on from the finest sieve: a hydrometer or another sedimentation
+/// True if a text says that a table goes on from the finest sieve: a hydrometer or another sedimentation
 /// test.
 pub(super) fn says_sedimentation(text: &str) -> bool {
     const STEMS: [&str; 10] = [
@@ -200,7 +202,7 @@ pub(super) fn says_sedimentation(text: &str) -> bool {
     words(text).iter().any(|word| STEMS.iter().any(|stem| word.starts_with(stem)))
 }
 
-/// Whether a soil is the mean of others by its name.
+/// True if the name of a soil says that it is the mean of others.
 pub(super) fn says_mean(name: &str) -> bool {
     const MEAN: [&str; 12] = [
         "average",
@@ -219,7 +221,7 @@ pub(super) fn says_mean(name: &str) -> bool {
     any(&words(name), &MEAN)
 }
 
-/// Whether a soil is a limit of others by its name.
+/// True if the name of a soil says that it is a limit of others.
 pub(super) fn says_limit(name: &str) -> bool {
     const LIMIT: [&str; 10] = [
         "min",
@@ -236,7 +238,7 @@ pub(super) fn says_limit(name: &str) -> bool {
     any(&words(name), &LIMIT)
 }
 
-/// `Sample no.`, `Borehole:`: what stands before the name of a soil.
+/// `Sample no.`, `Borehole:`: words before the name of a soil.
 pub(super) fn says_sample(text: &str) -> bool {
     const SAMPLE: [&str; 15] = [
         "sample",
@@ -258,7 +260,7 @@ pub(super) fn says_sample(text: &str) -> bool {
     any(&words(text), &SAMPLE)
 }
 
-/// Whether the heading of percents says that they are of the fines alone.
+/// True if the heading of percents says that they refer to the fines alone.
 pub(super) fn says_of_fines(text: &str) -> bool {
     let small = text.to_lowercase();
     let of_part =
@@ -266,7 +268,8 @@ pub(super) fn says_of_fines(text: &str) -> bool {
     of_part.iter().any(|part| small.contains(part)) || small.contains("200") && !small.contains("2000")
 }
 
-/// Whether a heading of percents says that they are finer, and not of the whole or cumulative alone.
+/// True if a heading of percents says that they are finer, without limiting them to the whole or to
+/// cumulative.
 pub(super) fn says_finer(name: &str) -> bool {
     const VAGUE: [&str; 6] = ["percent", "pct", "percentage", "cumulative", "massenanteil", "perp"];
     let words = words(name);
@@ -274,13 +277,13 @@ pub(super) fn says_finer(name: &str) -> bool {
         || words.iter().any(|word| FINER.contains(&word.as_str()) && !VAGUE.contains(&word.as_str()))
 }
 
-/// Whether a heading says cumulative, of what is finer or of what is retained.
+/// True if a heading says cumulative, for percents finer or retained.
 pub(super) fn says_cumulative(name: &str) -> bool {
     let words = words(name);
     words.iter().any(|word| word.starts_with("cum")) || say_cumulative(&words)
 }
 
-/// Whether a heading is that of a weighing from which the sieve or its tare is still to be subtracted.
+/// True for the heading of a weighing that still includes the sieve or its tare.
 pub(super) fn is_weighing(name: &str) -> bool {
     const TARE: [&str; 14] = [
         "tare",
@@ -322,7 +325,7 @@ pub(super) fn is_weighing(name: &str) -> bool {
             || size && !any(&words, &RETAINED) && !say_retained(&words))
 }
 
-/// What a column of this name holds.
+/// Content of a column of this name.
 pub(super) fn role(name: &str) -> Role {
     let words = words_of_column(name);
     if is_characteristic(&words) {
@@ -359,13 +362,13 @@ pub(super) fn role(name: &str) -> Role {
     }
     match (size, mass) {
         (true, _) => Role::Size,
-        // `mass` alone may be that of what passes; grams are weighed.
+        // `mass` alone may mean the mass that passes; grams are weighed.
         (false, true) if any(&words, &GRAMS) => Role::Retained(Retained { percent: false, cumulative }),
         _ => Role::Other,
     }
 }
 
-/// The unit that the heading of a column of openings names; an error where it is none that is understood.
+/// The unit that the heading of a column of openings names; an error for a unit that is not understood.
 pub(super) fn unit(name: &str) -> Result<Option<Unit>, ()> {
     // `SizeUm`
     let mut parted = String::new();
@@ -388,7 +391,7 @@ pub(super) fn unit(name: &str) -> Result<Option<Unit>, ()> {
     } else if any(&words, &["cm"]) {
         Unit::Cm
     } else if any(&words, &["m", "nm", "ø"]) {
-        // `Ø` is phi and a diameter.
+        // `Ø` means both phi and a diameter.
         return Err(());
     } else if any(&words, &["no", "number", "nr", "mesh"]) || name.contains('#') {
         Unit::SieveNumber
@@ -399,7 +402,7 @@ pub(super) fn unit(name: &str) -> Result<Option<Unit>, ()> {
     }))
 }
 
-/// Whether a heading of openings ends in a word in brackets that is neither a unit nor one of sieves.
+/// True if a heading of openings ends in a word in brackets that names neither a unit nor sieves.
 fn is_unknown(name: &str) -> bool {
     const OTHER: [&str; 14] = [
         "us", "uss", "astm", "aashto", "iso", "din", "en", "standard", "nominal", "square", "round", "x",

@@ -4,7 +4,7 @@ use super::content::is_words;
 use super::heading::{Retained, Role, role, says_finer, says_sample, words};
 use super::size::{Opening, opening};
 
-/// Words before or behind an opening that say what passes it.
+/// Words before or behind an opening that mean finer.
 const FINER: [&str; 17] = [
     "p",
     "pass",
@@ -24,7 +24,7 @@ const FINER: [&str; 17] = [
     "cumulative",
     "undersize",
 ];
-/// Words that say what stays on it.
+/// Words that mean retained.
 const RETAINED: [&str; 6] = ["ret", "retained", "coarser", "plus", "oversize", "cr"];
 /// Words between those and the opening.
 const BETWEEN: [&str; 8] = ["on", "sieve", "sieves", "size", "the", "by", "mass", "weight"];
@@ -33,11 +33,11 @@ const BETWEEN: [&str; 8] = ["on", "sieve", "sieves", "size", "the", "by", "mass"
 pub(super) struct Head {
     /// The opening without the words around it.
     pub(super) text: String,
-    /// What the words say: finer or retained; nothing where there are none.
+    /// Finer or retained, as the words say; `None` without words.
     pub(super) role: Option<Role>,
 }
 
-/// Words of percents at the edges of a heading, and what they say.
+/// The heading without the words of percents at its edges, and the role that they name.
 fn without_words(heading: &str) -> (String, Option<Role>) {
     let small = heading.to_lowercase().replace('_', " ");
     let (mut rest, mut said, mut retained, mut cumulative) = (small.as_str(), false, false, None);
@@ -96,7 +96,7 @@ fn is_size(text: &str) -> bool {
     }
 }
 
-/// The opening that a heading names, with words of percents around it or without.
+/// The opening that a heading names, with or without words of percents around it.
 pub(super) fn head(heading: &str) -> Option<Head> {
     if is_size(heading) && !heading.starts_with('+') {
         return Some(Head { text: heading.to_owned(), role: None });
@@ -105,20 +105,20 @@ pub(super) fn head(heading: &str) -> Option<Head> {
     (role.is_some() && is_size(&text)).then_some(Head { text, role })
 }
 
-/// Whether a heading seems to name an opening and does not: `P#4x`.
+/// True if a heading seems to name an opening and does not: `P#4x`.
 pub(super) fn is_broken(heading: &str) -> bool {
     let (text, role) = without_words(heading);
     role.is_some() && text.contains(|c: char| c.is_ascii_digit()) && !is_size(&text)
 }
 
-/// Whether a heading may be an opening with a slip of the pen: `#2OO`, `0..075`, `PO.O75`; not `LL`, `D60`.
+/// True if a heading may be an opening with a typing error: `#2OO`, `0..075`, `PO.O75`; not `LL`, `D60`.
 pub(super) fn is_misspelt(heading: &str) -> bool {
     let mended = heading.replace(['O', 'o'], "0").replace(['l', 'I'], "1");
     let has_digit = heading.contains(|c: char| c.is_ascii_digit() || c == '#');
     has_digit && (!is_words(heading) || head(&mended).is_some())
 }
 
-/// Whether a heading says that names stand below it, and is no name itself: `Sample no.`, `Hole`.
+/// True if a heading says that names lie below it, and is no name itself: `Sample no.`, `Hole`.
 pub(super) fn is_of_names(heading: &str) -> bool {
     const BESIDE: [&str; 18] = [
         "no",

@@ -1,4 +1,4 @@
-//! The part of a curve below the finest sieve, where it stands in a table of its own.
+//! The part of a curve below the finest sieve, given in a separate table.
 
 use super::blocks::Block;
 use super::heading::{Role, says_of_fines, says_sedimentation};
@@ -6,10 +6,10 @@ use super::table::Soil;
 use voidwalk_core::gradation::FIELDS;
 use voidwalk_core::gradation::TableError;
 
-/// A table that ends below this (mm) is of a hydrometer.
+/// A table that ends below this size (mm) is from a hydrometer.
 const HYDROMETER_MM: f64 = 0.08;
 
-/// A table with what was read of it.
+/// A table and its soils as read.
 pub(super) struct Read {
     pub(super) block: Block,
     pub(super) title: String,
@@ -29,7 +29,7 @@ impl Read {
     }
 }
 
-/// The size and percent of the coarsest and the finest row.
+/// Size and percent of the coarsest and the finest row.
 fn ends(soil: &Soil) -> Option<[(f64, f64); 2]> {
     let by_size =
         |a: &&voidwalk_core::gradation::Row, b: &&voidwalk_core::gradation::Row| a.size.total_cmp(&b.size);
@@ -37,7 +37,7 @@ fn ends(soil: &Soil) -> Option<[(f64, f64); 2]> {
     Some([(top.size, top.percent), (low.size, low.percent)])
 }
 
-/// Joins each table that continues one before it to that; the others stay as they are.
+/// Joins each table that continues an earlier one to that table; the others remain as they are.
 pub(super) fn joined(tables: Vec<Read>) -> Result<Vec<Read>, TableError> {
     let mut done: Vec<Read> = Vec::new();
     for table in tables {
@@ -49,9 +49,9 @@ pub(super) fn joined(tables: Vec<Read>) -> Result<Vec<Read>, TableError> {
     Ok(done)
 }
 
-/// The table that this one may continue: the one above it, or else the last to its left.
+/// The earlier table that this one may continue: the one above it, or else the last to its left.
 fn before(done: &[Read], table: &Read) -> Option<usize> {
-    // A sheet has few tables side by side; only the last are looked at.
+    // A sheet has few tables side by side, so only the last ones are considered.
     const NEAR: usize = 40;
     let columns = &table.block.columns;
     let near = || done.iter().enumerate().rev().take(NEAR);
@@ -69,7 +69,7 @@ fn before(done: &[Read], table: &Read) -> Option<usize> {
     above.or_else(left).map(|(at, _)| at)
 }
 
-/// Whether a table continues one before it; an error where it says so and does not, or seems to.
+/// True if a table continues an earlier one; an error if it says so or seems to, and does not.
 fn continues(sieves: &Read, table: &Read) -> Result<bool, TableError> {
     let (Some(above), Some(below)) = (sieves.curves(), table.curves()) else { return Ok(false) };
     let says = table.says_sedimentation() && !sieves.says_sedimentation();

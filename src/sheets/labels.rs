@@ -6,20 +6,21 @@ use super::content::{is_blank, is_value};
 use super::grid::GridRow;
 use super::heading::{says_sample, words};
 
-/// Most columns that tell soils of one name apart.
+/// Most further columns used to tell soils of one name apart.
 const MOST_MORE: usize = 8;
 
-/// What stands to the left of the openings.
+/// Columns to the left of the openings, read as names.
 pub(super) struct Labels {
     /// A name for each soil.
     pub(super) names: Vec<String>,
-    /// Columns that are in no name.
+    /// Columns that appear in no name.
     pub(super) unused: Vec<usize>,
 }
 
 impl Labels {
-    /// Of `rows` below `headings`, whose openings begin in column `end`. A name has the first column and
-    /// those whose heading says so; a depth and the others only where names would be the same without.
+    /// Reads the names of `rows` below `headings`, whose openings begin in column `end`. A name takes the
+    /// first column and those whose heading says so; a depth and the others only if names would otherwise be
+    /// equal.
     pub(super) fn new(headings: &[GridRow], rows: &[&GridRow], end: usize) -> Labels {
         let head = |c: usize| {
             let near = headings.iter().rev().take(3).map(|row| row.cell(c));
@@ -61,7 +62,7 @@ impl Labels {
     }
 }
 
-/// Whether a word of a heading says that depths stand below it.
+/// True if a word of a heading says that depths lie below it.
 pub(super) fn says_depth(word: &str) -> bool {
     ["depth", "tiefe", "profondeur", "profundidad", "prof", "from", "top", "elevation"].contains(&word)
 }

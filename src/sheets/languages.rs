@@ -1,7 +1,7 @@
-//! Words of laboratories in languages other than English, in small letters; some of the larger ones are with
-//! the English in `heading`.
+//! Words of laboratories in languages other than English, in small letters; some words of the larger
+//! languages are with the English ones in `heading`.
 
-/// What stays on a sieve.
+/// Words that mean retained on a sieve.
 const RETAINED: [&str; 24] = [
     "retido",
     "tertahan",
@@ -28,7 +28,7 @@ const RETAINED: [&str; 24] = [
     "retinut",
     "retenus",
 ];
-/// What passes it.
+/// Words that mean finer.
 const FINER: [&str; 26] = [
     "pas",
     "passante",
@@ -81,14 +81,14 @@ const SIZE: [&str; 21] = [
     "粒径",
     "粒徑",
 ];
-/// Words that are not parted by spaces, and stems.
+/// Stems, and words of languages without spaces.
 const RETAINED_WITHIN: [&str; 5] = ["筛余", "篩余", "残留", "殘留", "잔류"];
 const FINER_WITHIN: [&str; 5] = ["通过", "通過", "小于", "小於", "통과"];
 const SIZE_WITHIN: [&str; 6] = ["筛孔", "篩孔", "ふるい", "粒径", "粒徑", "체눈"];
 const CUMULATIVE_WITHIN: [&str; 10] =
     ["kümül", "kumul", "skumul", "累计", "累計", "累积", "加積", "누적", "накоплен", "полный"];
 const INDIVIDUAL_WITHIN: [&str; 4] = ["分计", "分計", "частн", "częściow"];
-/// What lies below the finest sieve.
+/// Words for the mass below the finest sieve.
 const PAN: [&str; 58] = [
     "schale",
     "siebpfanne",
@@ -149,7 +149,7 @@ const PAN: [&str; 58] = [
     "팬",
     "바닥",
 ];
-/// The sum of all rows.
+/// Words for the sum of all rows.
 const TOTAL: [&str; 22] = [
     "summe",
     "gesamt",
@@ -177,7 +177,7 @@ const TOTAL: [&str; 22] = [
 
 const MILLIMETRE: [&str; 6] = ["mm", "мм", "millimetre", "millimeter", "millimetres", "millimeters"];
 const MICROMETRE: [&str; 10] = ["um", "µm", "μm", "мкм", "µ", "μ", "mcm", "mic", "mu", "micro"];
-/// Stems of its words.
+/// Stems of the words for micrometres.
 const MICROMETRES: [&str; 12] = [
     "micron",
     "micrón",
@@ -243,7 +243,7 @@ pub(super) fn say_millimetres(words: &[String]) -> bool {
     any(words, &MILLIMETRE)
 }
 
-/// Whether a name, or the words of it, says micrometres, and not mm.
+/// True if a name, or its words, say micrometres and not mm.
 pub(super) fn say_micrometres(name: &str, words: &[String]) -> bool {
     let begins = |word: &String| MICROMETRES.iter().any(|stem| word.starts_with(stem));
     MICROMETRE_WITHIN.iter().any(|part| name.contains(part))
@@ -254,12 +254,12 @@ pub(super) fn say_inches(words: &[String]) -> bool {
     any(words, &INCH)
 }
 
-/// Whether a text, in small letters, names the pan.
+/// True if a text, in small letters, names the pan.
 pub(super) fn is_pan(text: &str) -> bool {
     PAN.contains(&text)
 }
 
-/// Whether a text, in small letters, names the sum.
+/// True if a text, in small letters, names the sum.
 pub(super) fn is_total(text: &str) -> bool {
     TOTAL.contains(&text)
 }

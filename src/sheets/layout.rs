@@ -1,4 +1,4 @@
-//! Where in a grid with one table the openings stand, and which columns hold a soil each.
+//! Place of the openings in a grid with one table, and the columns that hold a soil each.
 
 use super::columns::Columns;
 use super::content::{begins_with_words, is_data, is_short_opening, is_text, is_value, percentage};
@@ -8,32 +8,32 @@ use super::size::{Opening, Unit, opening};
 use super::torn::whole_row;
 use voidwalk_core::gradation::{TableError, shortened};
 
-/// Titles may take this many rows.
+/// Most rows that titles may take.
 pub(super) const ROWS_OF_TITLES: usize = 60;
 
-/// A table has at most this many places, filled or not.
+/// Most places of a table, filled or empty.
 const MOST_PLACES: usize = 40_000_000;
 
-/// Where the table is.
+/// Places of the parts of a table.
 #[derive(Debug)]
 pub(super) struct Layout {
     /// Column of the openings.
     pub(super) size: usize,
-    /// Another column with openings or their names, for rows where the first is empty.
+    /// Another column with openings or their names, for rows without an opening in the first.
     pub(super) other_size: Option<usize>,
-    /// Unit of the openings that have none of their own, where the heading says.
+    /// Unit that the heading gives to openings without one.
     pub(super) unit: Option<Unit>,
-    /// The columns that hold a soil each.
+    /// Columns that hold a soil each.
     pub(super) soils: Vec<SoilColumn>,
     /// Index of the row of headings.
     pub(super) at: usize,
     /// Index of the first row below the headings.
     pub(super) first: usize,
-    /// There are headings.
+    /// True if the table has headings.
     pub(super) headed: bool,
-    /// Columns beside these, whose numbers agree with what is read or are named in a note.
+    /// Further columns, whose numbers agree with those read or are named in a note.
     pub(super) accounted: Vec<usize>,
-    /// What was assumed or left out.
+    /// Notes on assumptions and on columns left out.
     pub(super) notes: Vec<String>,
 }
 
@@ -43,7 +43,7 @@ pub(super) struct SoilColumn {
     pub(super) column: usize,
     pub(super) heading: String,
     pub(super) role: Role,
-    /// Which end is read of ranges such as `95-100`.
+    /// The end that is read of ranges such as `95-100`.
     pub(super) end: Option<End>,
 }
 
@@ -54,19 +54,19 @@ pub(super) enum End {
     Most,
 }
 
-/// A row of headings: one of them that of openings, none of them a number.
+/// True for a row of headings: one of them names openings, and no cell is a number.
 pub(super) fn is_heading(row: &GridRow) -> bool {
     row.filled().take(2).count() == 2
         && row.filled().all(|c| !is_value(row.cell(c)) && !is_short_opening(row.cell(c)))
         && row.filled().any(|c| role(row.cell(c)) == Role::Size)
 }
 
-/// Whether a heading says that its column holds a soil.
+/// True if a heading says that its column holds a soil.
 pub(super) fn says_soil(row: &GridRow) -> bool {
     row.filled().any(|c| !matches!(role(row.cell(c)), Role::Size | Role::Other))
 }
 
-/// A table's headings again, as above the rows of a hydrometer.
+/// True for a repetition of a table's headings, as above the rows of a hydrometer.
 pub(super) fn repeats_headings(row: &GridRow, layout: &Layout) -> bool {
     is_text(row)
         && role(row.cell(layout.size)) == Role::Size
@@ -76,16 +76,16 @@ pub(super) fn repeats_headings(row: &GridRow, layout: &Layout) -> bool {
 
 /// The headings of a table.
 pub(super) struct Headings {
-    /// Index of their row.
+    /// Index of the row of headings.
     pub(super) at: usize,
-    /// Index of the first row below them and what belongs to them.
+    /// Index of the first row below the headings and the cells that belong to them.
     pub(super) first: usize,
-    /// What stands above each column.
+    /// Text above each column.
     pub(super) heads: Vec<String>,
     pub(super) roles: Vec<Role>,
 }
 
-/// The headings of the first table of a grid, and the first row of its numbers.
+/// Headings of the first table of a grid, and the index of the first row of its numbers.
 pub(super) fn headings(grid: &Grid) -> (Option<Headings>, Option<usize>) {
     let rows = &grid.rows;
     let upper = &rows[..rows.len().min(ROWS_OF_TITLES)];
@@ -102,7 +102,7 @@ pub(super) fn headings(grid: &Grid) -> (Option<Headings>, Option<usize>) {
         None => (above(any), any),
     };
     let Some(at) = at else { return (None, any) };
-    // Units, or the names of soils, may stand in rows below the headings.
+    // Rows below the headings may hold units or the names of soils.
     let sizes: Vec<usize> = rows[at].filled().filter(|&c| role(rows[at].cell(c)) == Role::Size).collect();
     let belongs = |row: &&GridRow| {
         is_text(row)
@@ -120,7 +120,7 @@ pub(super) fn headings(grid: &Grid) -> (Option<Headings>, Option<usize>) {
     (Some(Headings { at, first: at + 1 + below, heads, roles }), data)
 }
 
-/// Whether a cell below the heading of openings is a part of it, such as a unit; `4..75` is none.
+/// True if a cell below the heading of openings is a part of it, such as a unit; `4..75` is not.
 fn belongs_to_heading(cell: &str) -> bool {
     !cell.contains(|c: char| c.is_ascii_digit()) || cell.starts_with(char::is_alphabetic)
 }
@@ -133,7 +133,7 @@ pub(super) fn find(grid: &Grid) -> Result<Layout, TableError> {
     }
 }
 
-/// What stands above a column.
+/// Text above a column.
 pub(super) fn head(rows: &[GridRow], column: usize) -> String {
     let cells: Vec<&str> = rows.iter().map(|row| row.cell(column)).filter(|cell| !cell.is_empty()).collect();
     cells.join(" ")
@@ -188,7 +188,7 @@ fn with_headings(grid: &Grid, headings: Headings) -> Result<Layout, TableError> 
                        weighs with the soil";
         return Err(grid.refused_heading(line, &heads[c], allowed));
     }
-    // A specification is two soils.
+    // A specification counts as two soils.
     if rows.len().saturating_mul(2 * values.len()) > MOST_PLACES {
         let is = format!("a table of {} rows for {} soils, most of it empty", rows.len(), values.len());
         return Err(TableError::Format { file: grid.place(), is });
@@ -218,7 +218,7 @@ fn with_headings(grid: &Grid, headings: Headings) -> Result<Layout, TableError> 
     Ok(layout)
 }
 
-/// The columns of openings or of their names, the one to be read first.
+/// Columns of openings or of their names; the one to be read comes first.
 fn sizes(heads: &[String], roles: &[Role], columns: &Columns) -> Vec<usize> {
     let mut sizes: Vec<usize> = (0..heads.len()).filter(|&c| roles[c] == Role::Size).collect();
     let rank = |c: usize| match unit(&heads[c]) {
@@ -232,7 +232,7 @@ fn sizes(heads: &[String], roles: &[Role], columns: &Columns) -> Vec<usize> {
     sizes
 }
 
-/// The columns that are read as soils: what is finer, or else what is retained, or else the other numbers.
+/// Columns that are read as soils: percents finer, or else retained, or else the other numbers.
 fn value_columns(roles: &[Role], columns: &Columns) -> Vec<usize> {
     let with_values = |wanted: &dyn Fn(usize) -> bool| -> Vec<usize> {
         (0..roles.len()).filter(|&c| columns.with_values[c] && wanted(c)).collect()
@@ -256,7 +256,8 @@ fn value_columns(roles: &[Role], columns: &Columns) -> Vec<usize> {
     .unwrap_or_default()
 }
 
-/// Numbers that rise or fall all the way, between two columns of percents, may be the openings of the second.
+/// Refuses numbers between two columns of percents that only rise or only fall: they may be the openings of
+/// the second.
 fn refuse_unnamed_openings(
     grid: &Grid,
     heads: &[String],
@@ -287,7 +288,7 @@ fn refuse_unnamed_openings(
     Err(grid.refused(line, column, "heading", &heads[column], allowed))
 }
 
-/// Says which columns hold numbers and are not read.
+/// A note of the columns that hold numbers and are not read.
 fn not_used(grid: &Grid, heads: &[String], unused: &[usize]) -> Option<String> {
     const MOST: usize = 6;
     let name = |&c: &usize| match heads.get(c).map(String::as_str).unwrap_or_default() {
@@ -301,15 +302,15 @@ fn not_used(grid: &Grid, heads: &[String], unused: &[usize]) -> Option<String> {
     (!named.is_empty()).then(|| format!("not used: {}", named.join(", ")))
 }
 
-/// Whether a table has the header of a constriction curve: percents by number of constrictions, not by mass.
+/// True if a table has the header of a constriction curve: percents by number of constrictions, not by mass.
 fn is_constriction_curve(heads: &[String]) -> bool {
     let named = |name: &str| heads.iter().any(|head| words(head).join("_") == name);
     let is_diameter = named("diameter_mm") || named("diameter_over_d0f");
     heads.len() == 2 && named("percent_smaller") && is_diameter
 }
 
-/// A heading that is merged over several columns stands in the first of them; the rows below name each, or a
-/// row of samples above.
+/// Spreads a heading that is merged over several columns and lies in the first of them; the rows below name
+/// each column, or a row of samples above does.
 fn spread(rows: &[GridRow], samples: Option<&GridRow>, mut heads: Vec<String>) -> (Vec<String>, Vec<Role>) {
     let mut roles: Vec<Role> = heads.iter().map(|name| role(name)).collect();
     let (top, below) = (&rows[0], &rows[1..]);
@@ -340,7 +341,7 @@ fn spread(rows: &[GridRow], samples: Option<&GridRow>, mut heads: Vec<String>) -
     (heads, roles)
 }
 
-/// Whether a `D` is the name of a sample: behind the openings, and beside a `C` or an `E`.
+/// True if a `D` is the name of a sample: behind the openings, and beside a `C` or an `E`.
 fn is_sample_d(heads: &[String], roles: &[Role], column: usize) -> bool {
     let is = |at: usize, name: &str| {
         heads.get(at).is_some_and(|head| head.trim().eq_ignore_ascii_case(name)) && roles[at] != Role::Size
@@ -352,7 +353,7 @@ fn is_sample_d(heads: &[String], roles: &[Role], column: usize) -> bool {
 }
 
 impl Layout {
-    /// With the column that is not that of the openings as its only soil.
+    /// Keeps the one column besides the openings as the only soil.
     fn with_one(mut self, heads: &[String]) -> Layout {
         let column = usize::from(self.size == 0);
         let heading = heads[column].clone();
@@ -365,7 +366,8 @@ fn is_number(cell: &str) -> bool {
     percentage(cell).is_some()
 }
 
-/// No row names the openings: the first row of numbers begins the table, by place.
+/// Layout of a table whose openings no row names: the first row of numbers begins it, and places decide the
+/// rest.
 fn without_headings(grid: &Grid, data: Option<usize>) -> Result<Layout, TableError> {
     let begins = |row: &GridRow| {
         row.filled().any(|c| is_value(row.cell(c)) || is_short_opening(row.cell(c)))
@@ -373,7 +375,7 @@ fn without_headings(grid: &Grid, data: Option<usize>) -> Result<Layout, TableErr
     };
     let start = grid.rows.iter().position(begins);
     let start = match (start, data) {
-        // Titles hold numbers too; but a title looks like a row that is broken only where it has two cells.
+        // Titles hold numbers too; a title can be taken for a broken row only if it has two cells.
         (Some(start), Some(data))
             if grid.rows[start..data].iter().all(|row| {
                 row.filled().count() == 1 && !is_number(row.cell(0)) && whole_row(row, false).is_none()
@@ -426,7 +428,7 @@ fn without_headings(grid: &Grid, data: Option<usize>) -> Result<Layout, TableErr
     Ok(Layout { size, other_size: other, unit, soils, at, first: start, headed, accounted, notes })
 }
 
-/// A row with another number of cells than the table has columns.
+/// Error for a row whose number of cells differs from the table's number of columns.
 pub(super) fn fields(grid: &Grid, row: &GridRow) -> TableError {
     let found = row.cells.len();
     let allowed = if found > 2 && grid.delimiter == ',' {

@@ -1,12 +1,12 @@
 //! Soils as laboratories write them down: from the bytes of a file to tables of openings and percents finer.
 //!
 //! Bytes become text or sheets (`text`, `csv`; `workbook` with `xlsx` and `ods`, their `runs` and `literals`;
-//! `ags`), those become rows of cells (`grid`), which are cut into parts with one table each (`blocks`,
-//! `tidy`; `across` turns one that lies on its side, by `heads` and `labels`), in which the table is found
-//! (`layout`, by `heading` and `languages`; `extent` says where it ends) and read (`points`, `size`, `units`,
-//! `stated`, `roles`, `retained`). What continues another table is joined to it (`joined`); `names` says what
-//! the soils are called. `read` is the way through. What is taken for something that the file does not spell
-//! out becomes a note; what could be two things is refused.
+//! `ags`). Text and sheets become rows of cells (`grid`), which are cut into parts with one table each
+//! (`blocks`, `tidy`; `across` turns a table that lies on its side, by `heads` and `labels`). In each part
+//! the table is located (`layout`, by `heading` and `languages`; `extent` gives its end) and read (`points`,
+//! `size`, `units`, `stated`, `roles`, `retained`). A table that continues another is joined to it
+//! (`joined`); `names` names the soils. `read` runs all steps. An assumption about something that the file
+//! does not spell out becomes a note; an ambiguity is refused.
 
 mod account;
 mod across;

@@ -3,7 +3,7 @@
 use voidwalk_core::gradation::shortened;
 use voidwalk_core::text::plain;
 
-/// Most that are named one by one.
+/// Most items that are named one by one.
 const MOST: usize = 8;
 
 /// `line 5`, `rows 5, 7, 8`, `lines 5, 7 and 12 more`.
@@ -17,7 +17,7 @@ pub(super) fn listed<T>(word: &str, all: &[T], name: impl Fn(&T) -> String) -> S
     }
 }
 
-/// Names of soils, shortened, and the first of many.
+/// Names of soils, shortened; of many, the first ones.
 pub(super) fn names_listed(names: &[String]) -> String {
     const MOST: usize = 12;
     let mut shown: Vec<String> = names.iter().take(MOST).map(|name| shortened(&plain(name))).collect();

@@ -1,7 +1,7 @@
-//! What a format of numbers writes before and behind a number, as the unit in `0" µm"`.
+//! Text that a number format writes before and behind a number, such as the unit in `0" µm"`.
 
-/// A number with what stands around it, which may be its unit or a sign such as `<`; grams and percents go
-/// without saying.
+/// A number with the text around it, which may be its unit or a sign such as `<`; grams and percents are left
+/// out.
 pub(super) fn as_shown(before: &str, number: &str, after: &str) -> String {
     const USUAL: [&str; 11] = ["", "g", "gr", "gm", "gms", "gram", "grams", "gramm", "kg", "%", "pct"];
     let after = match after.trim().trim_end_matches('.').to_lowercase() {
@@ -11,7 +11,7 @@ pub(super) fn as_shown(before: &str, number: &str, after: &str) -> String {
     format!("{before}{number}{after}").trim().to_owned()
 }
 
-/// What stands before the first digit of a number as it is shown, and behind the last.
+/// Text before the first digit of a number as it is shown, and behind the last.
 pub(super) fn around(shown: &str) -> (&str, &str) {
     let is_digit = |c: char| c.is_ascii_digit();
     match (shown.find(is_digit), shown.rfind(is_digit)) {
@@ -23,8 +23,8 @@ pub(super) fn around(shown: &str) -> (&str, &str) {
     }
 }
 
-/// What the code of a format writes before a positive number and behind it, and the rest of the code without
-/// quoted text, colours and spaces of a character's width.
+/// Text that the code of a format writes before a positive number and behind it, and the rest of the code
+/// without quoted text, colours and spaces of a character's width.
 pub(super) fn parts_of(code: &str) -> (String, String, String) {
     let (mut before, mut after, mut plain) = (String::new(), String::new(), String::new());
     let (mut chars, mut quoted, mut is_first) = (code.chars(), false, true);

@@ -1,6 +1,6 @@
-//! What stands within or behind a number and is no part of it: signs of thousands, marks of footnotes.
+//! Signs within or behind a number that are no part of its value: signs of thousands, marks of footnotes.
 
-/// A number in which one sign parts thousands and the other decimals: `1,254.6`, `1.254,6`.
+/// A number in which one sign separates thousands and the other decimals: `1,254.6`, `1.254,6`.
 pub(super) fn with_thousands(text: &str) -> Option<f64> {
     let at = text.rfind(['.', ','])?;
     let (whole, decimals) = (&text[..at], &text[at + 1..]);

@@ -1,5 +1,4 @@
-//! What tables and columns are called: by the titles above them, and by a row of samples above their
-//! headings.
+//! Names of tables and columns: from the titles above them, and from a row of samples above their headings.
 
 use std::collections::HashMap;
 
@@ -12,7 +11,7 @@ use super::lines::names_listed;
 use voidwalk_core::gradation::TableError;
 use voidwalk_core::text::plain;
 
-/// Refuses to count soils that are no samples by their names, such as the mean of others.
+/// Refuses to count soils whose names say that they are no samples, such as the mean of others.
 pub(super) fn ask_about(
     file: &str,
     names: &[&str],
@@ -30,7 +29,7 @@ pub(super) fn ask_about(
     Err(TableError::SeveralSoils { file: file.to_owned(), soils, first })
 }
 
-/// What a line above a table says that names no soil.
+/// Beginnings of lines above a table that name no soil.
 const NO_NAME: [&str; 14] = [
     "date",
     "datum",
@@ -64,7 +63,7 @@ fn title_in(row: &GridRow) -> Option<&str> {
     }
 }
 
-/// The titles of tables, in their order; empty where there is none.
+/// Titles of the tables, in their order; an empty text for a table without one.
 pub(super) fn titles(blocks: &[Block]) -> Vec<String> {
     let mut beside: HashMap<usize, usize> = HashMap::new();
     let mut given: HashMap<(usize, usize), usize> = HashMap::new();
@@ -80,7 +79,7 @@ pub(super) fn titles(blocks: &[Block]) -> Vec<String> {
             *given.entry((block.line(), *line)).or_default() += 1;
         }
     }
-    // Of several side by side, a row that names one alone is a title of the sheet.
+    // With several tables side by side, a row that names only one is a title of the sheet.
     let of = |(block, candidates): (&Block, &Vec<(usize, String)>)| {
         let all = beside[&block.line()];
         let names = |least: usize| {
@@ -128,8 +127,8 @@ pub(super) fn name_columns(block: &mut Block) {
     }
 }
 
-/// The names of soils in a row of the headings, or directly above them, each merged over its columns: it
-/// stands in the first of these.
+/// Names of soils in a row of the headings, or directly above them, each in the first of the columns over
+/// which it is merged.
 fn merged_names(block: &Block, columns: &[usize]) -> Option<Vec<String>> {
     let (rows, layout) = (&block.grid.rows, &block.layout);
     let near = layout.at.saturating_sub(1)..layout.first.min(rows.len());

@@ -12,16 +12,16 @@ use super::runs::{Kind, Runs};
 use super::zipped::{Zipped, attribute, characters, too_large, unreadable};
 use voidwalk_core::gradation::TableError;
 
-/// A filled cell or row may stand for this many equal ones.
+/// Most equal cells or rows that one filled cell or row may repeat.
 const MOST_REPEATS: usize = 1000;
 
-/// Its sheets.
+/// Reads the sheets.
 pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, TableError> {
     let text = zipped.text("content.xml")?;
     let mut reader = Reader::from_str(&text);
     reader.config_mut().expand_empty_elements = true;
     let (mut sheets, mut budget) = (Vec::new(), Budget::new());
-    // Styles stand before the sheets; one that is not shown hides the sheets that have it.
+    // Styles come before the sheets; a style that is not displayed hides the sheets that use it.
     let (mut hidden, mut style) = (HashSet::new(), String::new());
     let mut kinds = HashMap::new();
     loop {
@@ -54,7 +54,7 @@ fn broken(file: &str) -> TableError {
     unreadable(file, "its content.xml is broken")
 }
 
-/// Kind of the text that has these properties, where it is no ordinary one.
+/// Kind of the text with these properties; `None` for ordinary text.
 fn kind_of(properties: &BytesStart) -> Option<Kind> {
     let has = |name: &str| attribute(properties, name).is_some_and(|value| value != "none");
     let position = attribute(properties, "style:text-position").unwrap_or_default();
@@ -139,7 +139,7 @@ fn read_row(
                 let formula = attribute(&e, "table:formula").is_some();
                 let is_error = attribute(&e, "calcext:value-type").is_some_and(|kind| kind == "error");
                 let shown = paragraphs(file, kinds, reader, &end)?;
-                // Of a formula that failed, the value is 0.
+                // The value of a formula that failed is 0.
                 let failed = is_error || shown.starts_with('#') || shown.starts_with("Err:");
                 let text = match (kind.as_str(), value) {
                     ("percentage" | "float" | "currency", Some(_)) if failed => shown,
@@ -172,7 +172,7 @@ fn read_row(
     }
 }
 
-/// A fraction as the percents that the sheet shows.
+/// A fraction as the percents that the sheet displays.
 fn percents(value: &str) -> Option<String> {
     let percent = value.parse::<f64>().ok()? * 100.0;
     Some(format!("{}%", (percent * 1e9).round() / 1e9))

@@ -1,4 +1,4 @@
-//! From a column of a table to openings in mm and percents finer.
+//! Conversion of a column of a table to openings in mm and percents finer.
 
 use std::collections::HashMap;
 
@@ -17,15 +17,15 @@ use voidwalk_core::gradation::FIELDS;
 use voidwalk_core::gradation::TableError;
 use voidwalk_core::gradation::{Row, allowed_percent, allowed_size, percent_is_allowed, size_is_allowed};
 
-/// Percents from here on at the coarsest size are 100 % as a laboratory rounds it.
+/// Percents from here on at the coarsest size are 100 % rounded by a laboratory.
 const ALL_PERCENT: f64 = 99.9;
-/// A percent below a bound of so much is read as the bound: no more of the mass is uncertain.
+/// A percent below a bound of at most this much is read as the bound: no more of the mass is uncertain.
 const LEAST_BOUND: f64 = 1.0;
 
-/// The soils of a table, column by column.
+/// Soils of a table, column by column.
 ///
 /// # Errors
-/// Rows, openings or numbers that cannot be those of a table, whichever soil is read.
+/// Rows, openings or numbers that do not fit a table, whichever soil is read.
 pub(super) fn soils(grid: &Grid, layout: &Layout) -> Result<Vec<Result<Soil, TableError>>, TableError> {
     let extent = Extent::of(grid, layout)?;
     let last = last_column(grid, layout, &extent);
@@ -124,7 +124,7 @@ fn soil(grid: &Grid, layout: &Layout, extent: &Extent, column: &SoilColumn) -> R
     Ok(Soil { name, file, rows, places, kind, notes })
 }
 
-/// The rows of the table as they are written, and the lines of the openings whose cell for a value is empty.
+/// Rows of the table as written, and the lines of openings whose value cell is empty.
 fn entries(
     grid: &Grid,
     layout: &Layout,
@@ -217,7 +217,7 @@ fn entries(
     Ok((entries, missing))
 }
 
-/// What an opening may be; spreadsheets turn `3/8` into a date.
+/// Text on the allowed forms of an opening; spreadsheets turn `3/8` into a date.
 fn allowed_opening(found: &str) -> String {
     match is_date(found) {
         true => {
@@ -242,7 +242,7 @@ fn in_mm(grid: &Grid, entry: &Entry, value: f64, unit: Unit) -> Result<Opening, 
     mm.map(Opening::Mm).ok_or_else(|| grid.refused(entry.line, entry.column, FIELDS[0], &entry.text, allowed))
 }
 
-/// Rows of a column that is in percent finer, or in fractions.
+/// Rows of a column in percent finer, or in fractions.
 fn finer(
     grid: &Grid,
     column: &SoilColumn,
@@ -290,7 +290,7 @@ fn finer(
     Ok(rows)
 }
 
-/// 100 where the values are fractions of 1.
+/// Factor that brings values to percents: 100 for fractions of 1.
 fn fractions(
     grid: &Grid,
     column: &SoilColumn,

@@ -21,7 +21,7 @@ use voidwalk_core::gradation::{GradationError, TableError, letters, shortened};
 use voidwalk_core::text::plain;
 
 impl Soil {
-    /// Every soil in a file, called `file` in messages.
+    /// All soils in a file, called `file` in messages.
     ///
     /// # Errors
     /// No table, or one that cannot be understood or could be understood in two ways.
@@ -30,11 +30,11 @@ impl Soil {
         Ok(soils.into_iter().map(|(_, soil)| soil).collect::<Result<_, _>>()?)
     }
 
-    /// The only soil in a file, or the one of this name: that of a sheet, of a column, or both as
+    /// The only soil in a file, or the one of this name: the name of a sheet, of a column, or both as
     /// `sheet/column`.
     ///
     /// # Errors
-    /// As [`Soil::all`], for this soil; several soils, or none of this name.
+    /// Errors of [`Soil::all`], for this soil; several soils, or no soil of this name.
     pub fn one(file: &str, bytes: &[u8], name: Option<&str>) -> Result<Soil, GradationError> {
         let mut soils = tables(file, bytes, name)?;
         if let Some(name) = name {
@@ -57,8 +57,9 @@ impl Soil {
     }
 }
 
-/// The file that a scene's `path` names, and which of its soils: `site.xlsx#Filter A`. Files and soils may
-/// have a `#` in their names: the first before which there is a file counts, without such a file the last.
+/// Splits a scene's `path` into its file and the name of the soil in it: `site.xlsx#Filter A`. Files and
+/// soils may have a `#` in their names: the first one behind the name of an existing file counts, and without
+/// such a file the last.
 pub fn file_and_soil(path: &Path) -> (PathBuf, Option<String>) {
     let Some(text) = path.to_str().filter(|_| !path.exists()) else { return (path.to_owned(), None) };
     let is_named = |(file, soil): &(&str, &str)| !file.is_empty() && !soil.trim().is_empty();
@@ -71,15 +72,15 @@ pub fn file_and_soil(path: &Path) -> (PathBuf, Option<String>) {
     }
 }
 
-/// A name as it is shown, without what two writings of it may differ in.
+/// A name in its displayed form, without the differences that two spellings of it may have.
 fn folded(name: &str) -> String {
     plain(name).split_whitespace().collect::<Vec<_>>().join(" ").to_lowercase()
 }
 
-/// A soil's names, its full one first, and what was read.
+/// Names of a soil, the full one first, and its table.
 type Named = (Vec<String>, Result<Soil, TableError>);
 
-/// Every table that looks like a soil's.
+/// Every table that looks like a soil.
 fn tables(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, TableError> {
     if bytes.len() as u64 > FILE_LIMIT_BYTES {
         return Err(TableError::TooLarge { file: file.into(), limit: FILE_LIMIT_BYTES });
@@ -98,7 +99,7 @@ fn tables(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, 
         if grid.rows.is_empty() {
             return Err(TableError::NoRows { file: file.into(), header: false });
         }
-        // What the first separator cannot make a table of may be one by another.
+        // Text that the first separator does not turn into a table may become one with another.
         match soils_of(grid) {
             Ok(soils) if soils.iter().any(|(_, soil)| soil.is_ok()) => {
                 refuse_commented_unit(file, &text, &soils)?;
@@ -111,7 +112,7 @@ fn tables(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, 
     Err(refusal.unwrap_or(TableError::NoRows { file: file.into(), header: false }))
 }
 
-/// Refuses openings that were taken as mm where a comment names another unit.
+/// Refuses openings that were taken as mm if a comment names another unit.
 fn refuse_commented_unit(file: &str, text: &str, soils: &[Named]) -> Result<(), TableError> {
     let is_taken = |soil: &Soil| soil.notes.iter().any(|note| note == TAKEN_AS_MM);
     if !soils.iter().any(|(_, soil)| soil.as_ref().is_ok_and(is_taken)) {
@@ -136,8 +137,8 @@ fn of_ags(tables: Vec<(String, Grid, Layout)>) -> Result<Vec<Named>, TableError>
     Ok(named)
 }
 
-/// The soils of every sheet. One in which no table is found, such as a cover, is passed over where others
-/// have one, and said; asked for by its name, it says what is wrong with it.
+/// Soils of every sheet. A sheet without a table, such as a cover, is skipped with a note if others have one;
+/// if it was asked for by name, its error is returned.
 fn of_workbook(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, TableError> {
     let (mut soils, mut refusals) = (Vec::new(), Vec::new());
     let sheets = workbook::sheets(file, bytes)?;
@@ -146,7 +147,7 @@ fn of_workbook(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Nam
     }
     for grid in sheets {
         let sheet = grid.sheet.clone().unwrap_or_default();
-        // Rows that are each in one cell are those of a table, too.
+        // Rows that are each in one cell also belong to a table.
         let torn = grid.rows.iter().filter(|row| whole_row(row, false).is_some()).count();
         let (place, has_table) = (grid.place(), blocks::has_table(&grid) || torn > 1);
         let read = match ags::is_ags_sheet(&grid) {
@@ -158,7 +159,7 @@ fn of_workbook(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Nam
                 refusals.push((sheet, TableError::NoRows { file: place, header: false }));
             }
             Ok(found) => soils.extend(found),
-            // A table that is there and cannot be read is not passed over.
+            // A table that is present but cannot be read is not skipped.
             Err(error @ (TableError::Value { .. } | TableError::Header { .. })) if has_table => {
                 soils.push((vec![sheet], Err(error)));
             }
@@ -188,7 +189,7 @@ fn is_named(names: &[String], wanted: &str) -> bool {
     names.iter().any(|name| folded(name) == folded(wanted))
 }
 
-/// The soils of one grid.
+/// Soils of one grid.
 fn soils_of(grid: Grid) -> Result<Vec<Named>, TableError> {
     let mut blocks = blocks::blocks(grid)?;
     let several = blocks.len() > 1;
@@ -263,7 +264,7 @@ fn named(tables: Vec<Read>) -> Vec<Named> {
     soils
 }
 
-/// The soils of a file, or the one that `path` names after a `#`; a soil without a name is called by its
+/// Soils of a file, or the one that `path` names after a `#`; a soil without a name takes the name of its
 /// file.
 fn soils_of_file(path: &Path) -> Result<Vec<Soil>, GradationError> {
     let (path, name) = file_and_soil(path);
@@ -280,7 +281,7 @@ fn soils_of_file(path: &Path) -> Result<Vec<Soil>, GradationError> {
     Ok(soils)
 }
 
-/// The soils of a file as samples; one that is the mean of others is asked about.
+/// Soils of a file as samples; the mean of others is refused with a question.
 fn samples_of_file(path: &Path) -> Result<Vec<Soil>, GradationError> {
     let soils = soils_of_file(path)?;
     let names: Vec<&str> = soils.iter().map(Soil::name).collect();
@@ -288,33 +289,34 @@ fn samples_of_file(path: &Path) -> Result<Vec<Soil>, GradationError> {
     Ok(soils)
 }
 
-/// What there is to say of the soils of a file, or of the one that `path` names after a `#`.
+/// Summaries of the soils of a file, or of the one that `path` names after a `#`.
 ///
 /// # Errors
-/// As [`read_gradation`], for each of them.
+/// Errors of [`read_gradation`], for each soil.
 pub fn soils_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<SoilSummary>, GradationError> {
     samples_of_file(path)?.iter().map(|soil| SoilSummary::of(soil, d0_mm)).collect()
 }
 
-/// The names and sieve curves of the soils of a file, or of the one that `path` names after a `#`.
+/// Names and sieve curves of the soils of a file, or of the one that `path` names after a `#`.
 ///
 /// # Errors
-/// As [`read_gradation`], for each of them.
+/// Errors of [`read_gradation`], for each soil.
 pub fn curves_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<(String, Gradation)>, GradationError> {
     let named = |soil: &Soil| Ok((soil.name.clone(), soil.gradation(d0_mm)?));
     samples_of_file(path)?.iter().map(named).collect()
 }
 
-/// As [`curves_in_file`], with those that are no samples.
+/// Curves as in [`curves_in_file`], with those of soils that are no samples.
 pub(super) fn all_in_file(path: &Path) -> Result<Vec<(String, Gradation)>, GradationError> {
     let named = |soil: &Soil| Ok((soil.name.clone(), soil.gradation(None)?));
     soils_of_file(path)?.iter().map(named).collect()
 }
 
-/// What was assumed of the soils of a file, or of the one that `path` names after a `#`, each thing once.
+/// Assumptions about the soils of a file, or about the one that `path` names after a `#`, without
+/// repetitions.
 ///
 /// # Errors
-/// As [`read_gradation`], for each of them.
+/// Errors of [`read_gradation`], for each soil.
 pub fn notes_in_file(path: &Path) -> Result<Vec<String>, GradationError> {
     let mut seen = HashSet::new();
     let mut notes: Vec<String> = soils_of_file(path)?.into_iter().flat_map(|soil| soil.notes).collect();
@@ -324,25 +326,24 @@ pub fn notes_in_file(path: &Path) -> Result<Vec<String>, GradationError> {
 
 /// A sieve table from a file: `site.csv`, or `site.xlsx#Filter A` where it holds several soils.
 ///
-/// `docs::soils` says what is understood. Of a plain table, `opening_mm,percent_finer`, the header may be
-/// left out, the columns may stand in either order, sizes may rise or fall.
+/// `docs::soils` says which tables are understood. In a plain table, `opening_mm,percent_finer`, the header
+/// may be left out, the columns may come in either order, and sizes may rise or fall.
 ///
 /// # Errors
-/// A file that cannot be read, is a folder, is larger than [`FILE_LIMIT_BYTES`] or no table; no rows; a
-/// row that cannot be read; a value that is no finite number in range; sizes that repeat or go both ways;
-/// percent that falls as size rises; a coarsest size below 100 %; a single row without `d0_mm` (all of
-/// its mass is of unknown size); a `d0_mm` that is not below the finest opening, or that nothing is left
-/// for.
+/// A file that cannot be read, is a folder, is larger than [`FILE_LIMIT_BYTES`] or holds no table; no rows; a
+/// row that cannot be read; a value that is not a finite number in range; sizes that repeat or go both ways;
+/// percent that falls as size rises; a coarsest size below 100 %; a single row without `d0_mm` (all of its
+/// mass is of unknown size); a `d0_mm` that is not below the finest opening, or that nothing is left for.
 pub fn read_gradation(path: impl AsRef<Path>, d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
     let (path, name) = file_and_soil(path.as_ref());
     let (file, bytes) = (path.display().to_string(), bytes_of(&path)?);
     Soil::one(&file, &bytes, name.as_deref())?.gradation(d0_mm)
 }
 
-/// [`read_gradation`] on the content of a file, called `name` in messages.
+/// Reads the content of a file as [`read_gradation`] does; messages call it `name`.
 ///
 /// # Errors
-/// As [`read_gradation`].
+/// Errors of [`read_gradation`].
 pub fn parse_gradation(name: &str, content: &[u8], d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
     Soil::one(name, content, None)?.gradation(d0_mm)
 }

@@ -1,4 +1,4 @@
-//! What stays on the sieves, by mass or in percent, turned into percent finer.
+//! Conversion of retained values, by mass or in percent, to percent finer.
 
 use super::content::{is_words, percentage};
 use super::extent::Below;
@@ -15,27 +15,27 @@ const ROUNDED: f64 = 0.6;
 /// Percents retained that end below this, under a heading that does not say percent, may be grams.
 const NEARLY_ALL: f64 = 95.0;
 
-/// Whether a heading says percent.
+/// True if a heading says percent.
 pub(super) fn says_percent(heading: &str) -> bool {
     let small = heading.to_lowercase();
     ["%", "percent", "pct", "prozent"].iter().any(|word| small.contains(word))
 }
 
-/// Whether a heading says that its values are fractions of 1.
+/// True if a heading says that its values are fractions of 1.
 pub(super) fn says_fraction(heading: &str) -> bool {
     let small = heading.to_lowercase();
     small.contains("fraction") || small.contains("ratio")
 }
 
-/// A column of what is retained.
+/// A column of retained values.
 pub(super) struct Weighed<'a> {
     pub(super) grid: &'a Grid,
     pub(super) column: usize,
     pub(super) heading: &'a str,
     pub(super) retained: Retained,
-    /// The rows below the table.
+    /// Rows below the table.
     pub(super) below: &'a [Below],
-    /// The lines of openings without a value.
+    /// Lines of openings without a value.
     pub(super) missing: &'a [usize],
 }
 
@@ -44,7 +44,7 @@ impl Weighed<'_> {
         self.grid.refused(line, self.column, FIELDS[1], &value.to_string(), allowed)
     }
 
-    /// Brings fractions of 1 to percents where the heading says that they are.
+    /// Converts fractions of 1 to percents if the heading calls them fractions.
     pub(super) fn scale_fractions(
         &self,
         entries: &mut [Entry],
@@ -79,8 +79,8 @@ impl Weighed<'_> {
         Err(self.refused(line, end, allowed))
     }
 
-    /// What was washed out or lost is a part of the whole; a mass above, beside or below the table that is
-    /// another than that of all in it is refused or said.
+    /// Checks stated masses: mass washed out or lost is a part of the whole, and a mass above, beside or
+    /// below the table that differs from the mass in all rows is refused or noted.
     fn check_stated(&self, whole: f64, notes: &mut Vec<String>) -> Result<(), TableError> {
         const LOST: [&str; 12] = [
             "wash", "washed", "washing", "loss", "losses", "lost", "fines", "minus", "through", "decanted",
@@ -114,7 +114,7 @@ impl Weighed<'_> {
                                lost: it is a part of the whole";
                 return Err(self.grid.refused(row.line, row.column, FIELDS[0], &row.words, allowed));
             }
-            // A row of masses has one for each column of masses behind its words.
+            // A row of masses holds one for each column of masses behind its words.
             let is_before = row.column < self.column;
             let of_soil = self.grid.rows.iter().find(|other| is_before && other.line == row.line);
             let in_column = of_soil.and_then(|row| percentage(row.cell(self.column)));
@@ -168,17 +168,17 @@ impl Weighed<'_> {
     }
 }
 
-/// A mass with its unit or without.
+/// A mass with or without its unit.
 fn mass(cell: &str) -> Option<f64> {
     percentage(cell.trim_end_matches("kg").trim_end_matches('g').trim())
 }
 
-/// A sum of decimals as it was meant to be.
+/// A sum of decimals without its rounding error.
 fn tidy(sum: f64) -> f64 {
     (sum * 1e6).round() / 1e6
 }
 
-/// The rows in percent finer.
+/// Rows in percent finer.
 pub(super) fn percents_finer(
     weighed: &Weighed,
     entries: &[Entry],
@@ -308,7 +308,7 @@ pub(super) fn percents_finer(
     let mut rows = Vec::new();
     for (line, size, value) in sieves {
         coarser = if cumulative { value } else { coarser + value };
-        // A sum of decimals is rounded to what it was meant to be.
+        // Removes the rounding error of a sum of decimals.
         let finer = (100.0 * (1.0 - coarser / whole) * 1e9).round() / 1e9;
         rows.push(Row { line, size, percent: finer.clamp(0.0, 100.0) + 0.0 });
     }

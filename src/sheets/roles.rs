@@ -1,4 +1,4 @@
-//! What a column holds where its heading leaves it open and its rows do not: classes, and percents that rise
+//! Role of a column whose heading leaves it open and whose rows decide it: classes, and percents that rise
 //! towards the finer sieves.
 
 use super::grid::Grid;
@@ -8,7 +8,8 @@ use super::size::{Entry, Opening, Said, Unit};
 use voidwalk_core::gradation::FIELDS;
 use voidwalk_core::gradation::TableError;
 
-/// What a column holds; classes among its rows, whose bounds are in mm, become the sieves below them.
+/// Settles the role of a column. Classes among its rows, whose bounds are in mm, become the sieves below
+/// them.
 pub(super) fn settle(
     grid: &Grid,
     layout: &Layout,
@@ -55,7 +56,7 @@ fn of_classes(
     Ok(Role::Retained(Retained { percent: true, cumulative: Some(false) }))
 }
 
-/// Puts the lower sieve of each class in its place, and above the coarsest the sieve that all passes.
+/// Replaces each class by its lower sieve, and adds above the coarsest class the sieve that all mass passes.
 fn as_sieves(grid: &Grid, entries: &mut Vec<Entry>) -> Result<(), TableError> {
     let bounds = |entry: &Entry| match entry.opening {
         Opening::Class(upper, lower) => Some((upper, lower)),
@@ -101,7 +102,7 @@ fn as_sieves(grid: &Grid, entries: &mut Vec<Entry>) -> Result<(), TableError> {
     Ok(())
 }
 
-/// Whether cumulative percents of a heading that says no more are those retained: their sizes, whose unit is
+/// True if cumulative percents under a heading that says no more are retained: their sizes, whose unit is
 /// given, fall while they rise.
 fn rises_in_known_sizes(layout: &Layout, column: &SoilColumn, entries: &[Entry]) -> bool {
     let is_known = |entry: &Entry| match layout.unit {

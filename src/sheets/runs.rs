@@ -1,9 +1,9 @@
-//! The text of a cell whose parts differ in how they look: a footnote's raised number and what is struck out
-//! are no digits of the number beside them.
+//! Text of a cell whose parts differ in format: a footnote's raised number and struck-out text are no digits
+//! of the number beside them.
 
 use std::mem::take;
 
-/// How a part looks.
+/// Appearance of a part.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Kind {
     #[default]
@@ -12,7 +12,7 @@ pub(super) enum Kind {
     Struck,
 }
 
-/// The text so far, and the part that may still go on.
+/// Text so far, and the part that may still go on.
 #[derive(Default)]
 pub(super) struct Runs {
     text: String,
@@ -22,7 +22,7 @@ pub(super) struct Runs {
 }
 
 impl Runs {
-    /// Takes characters in a format.
+    /// Appends characters in a format.
     pub(super) fn push(&mut self, more: &str, kind: Kind, format: &str) {
         if (self.kind, self.format.as_str()) != (kind, format) {
             self.close();
@@ -31,7 +31,7 @@ impl Runs {
         self.part.push_str(more);
     }
 
-    /// The whole text, after which the next begins.
+    /// Returns the whole text and starts anew.
     pub(super) fn text(&mut self) -> String {
         self.close();
         take(self).text

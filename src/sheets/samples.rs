@@ -11,24 +11,24 @@ use voidwalk_core::gradation::{GradationError, TableError};
 /// One of many samples.
 #[derive(Clone, Debug)]
 pub struct SoilSample {
-    /// What it is called: its name in the file, behind the file's own where a folder has several; the file's
-    /// with its ending, where two files of a folder differ in that alone.
+    /// Name of the sample: its name in the file, preceded by the file's name if a folder has several files.
+    /// The file's name includes its ending if two files of a folder differ in that alone.
     pub name: String,
-    /// What names it on a command line: `site.ags#BH1 1.50`, or the file alone where it holds no other.
+    /// Path on a command line: `site.ags#BH1 1.50`, or the file alone if it holds no other soil.
     pub path: PathBuf,
-    /// Its sieve curve.
+    /// Sieve curve.
     pub curve: Gradation,
 }
 
 /// Endings of the files of a folder that are read.
 const ENDINGS: [&str; 5] = ["csv", "txt", "xlsx", "ods", "ags"];
 
-/// Every sample of a file, or the one that `path` names after a `#`; of a folder those of every table in it,
-/// file by file in the order of their names. Folders within it are not looked into.
+/// Every sample of a file, or the one that `path` names after a `#`. For a folder, the samples of every table
+/// in it, file by file in the order of their names; folders within it are not searched.
 ///
 /// # Errors
-/// A folder without a table; a file that cannot be read as one, as [`curves_in_file`] says; limits of a
-/// specification, or the mean of others, beside the samples.
+/// A folder without a table; a file that cannot be read as one, with the errors of [`curves_in_file`]; limits
+/// of a specification, or the mean of others, beside the samples.
 pub fn samples_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
     in_files(path, &|file| {
         let curves = curves_in_file(file, None)?;
@@ -39,15 +39,15 @@ pub fn samples_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
     })
 }
 
-/// The curves of an envelope: every soil of a file, or the one that `path` names after a `#`.
+/// Curves of an envelope: every soil of a file, or the one that `path` names after a `#`.
 ///
 /// # Errors
-/// As [`curves_in_file`].
+/// Errors of [`curves_in_file`].
 pub fn envelope_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
     in_file(path, &|file| curves_in_file(file, None))
 }
 
-/// Every soil of a file or a folder, as [`samples_in`], with those that are no samples.
+/// Every soil of a file or a folder, like [`samples_in`], together with soils that are no samples.
 ///
 /// # Errors
 /// A folder without a table; a file that cannot be read as one.
@@ -77,7 +77,7 @@ fn in_files(path: &Path, curves: Curves) -> Result<Vec<SoilSample>, GradationErr
         return Err(TableError::NoTables { folder: folder(), endings: ENDINGS.join(", .") }.into());
     }
     files.sort();
-    // What some disks and some readers take for the same counts as the same.
+    // Names that some disks and some readers take as equal count as equal.
     let lower = |stem: &str| stem.to_lowercase();
     let stem = |file: &PathBuf| file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let stems: Vec<String> = files.iter().map(stem).collect();
@@ -175,7 +175,7 @@ mod tests {
         assert_eq!(names(five), ["A", "B", "C", "D", "E"]);
         let four = "Sieve (mm),A,B,C,d\n2,100,100,100,100\n0.5,40,10,20,30\n0.1,0,0,0,0\n";
         assert_eq!(names(four), ["A", "B", "C", "d"]);
-        // A column of openings as ever.
+        // An ordinary column of openings.
         assert_eq!(names("D,A,B\n2,100,100\n0.5,40,10\n0.1,0,0\n"), ["A", "B"]);
         assert_eq!(names("D,C,E\n2,100,100\n0.5,40,10\n0.1,0,0\n"), ["C", "E"]);
     }

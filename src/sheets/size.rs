@@ -1,4 +1,4 @@
-//! A cell that says an opening: a number, a number with its unit, a US sieve, the pan.
+//! A cell that names an opening: a number, a number with its unit, a US sieve, the pan.
 
 use super::languages::{is_pan, is_total};
 use super::marks::unmarked;
@@ -66,10 +66,10 @@ const BY_INCHES: [(f64, f64); 19] = [
     (12.0, 300.0),
 ];
 
-/// Millimetres of an inch.
+/// Length of an inch in millimetres.
 const INCH_MM: f64 = 25.4;
 
-/// What numbers without a unit mean.
+/// Unit of numbers that have none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unit {
     Mm,
@@ -81,36 +81,36 @@ pub(super) enum Unit {
     SieveNumber,
 }
 
-/// What an opening's cell says.
+/// Meaning of an opening's cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Opening {
     /// An opening in mm.
     Mm(f64),
-    /// A number whose unit is the column's.
+    /// A number in the unit of its column.
     Bare(f64),
     /// Finer than this opening (mm), as in `< 0.075`: the pan below it, or the share that passes it.
     Below(f64),
     /// Between two openings, as in `9.5-4.75`: the larger, infinite for `> 9.5`, and the smaller.
     Class(f64, f64),
-    /// What passed the finest sieve.
+    /// Mass that passed the finest sieve.
     Pan,
-    /// The sum of all.
+    /// Sum of all rows.
     Total,
 }
 
 /// A row of the table, not yet in percent finer.
 pub(super) struct Entry {
     pub(super) line: usize,
-    /// The column that the opening stands in.
+    /// Column of the opening.
     pub(super) column: usize,
     pub(super) opening: Opening,
-    /// The opening as it is written.
+    /// Opening as written.
     pub(super) text: String,
     pub(super) said: Said,
     pub(super) value: f64,
 }
 
-/// What was understood of an opening beyond its number.
+/// Form in which an opening was written, beyond its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Said {
     /// A number.
@@ -123,7 +123,7 @@ pub(super) enum Said {
     Inches,
 }
 
-/// Whether a text names what was washed out of a sample before it was sieved.
+/// True if a text names mass washed out of a sample before sieving.
 pub(super) fn is_washed(text: &str) -> bool {
     const NAMES: [&str; 6] = [
         "fines washed out",
@@ -146,7 +146,7 @@ fn is_sum(text: &str) -> bool {
         && words.all(|word| MORE.contains(&word))
 }
 
-/// What a cell says of an opening; `None` for anything else.
+/// Opening that a cell names; `None` for anything else.
 pub(super) fn opening(text: &str) -> Option<(Opening, Said)> {
     if let Some(value) = number(text) {
         return Some((Opening::Bare(value), Said::Plain));
@@ -186,7 +186,7 @@ pub(super) fn opening(text: &str) -> Option<(Opening, Said)> {
     })
 }
 
-/// `9.5-4.75`, `4.75 to 2 mm`, `-No. 4 +No. 10`, `> 19`: what lies between two sieves.
+/// Particles between two sieves: `9.5-4.75`, `4.75 to 2 mm`, `-No. 4 +No. 10`, `> 19`.
 fn class(text: &str) -> Option<(Opening, Said)> {
     let sieve = |text: &str| match opening(text.trim())? {
         (Opening::Mm(size) | Opening::Bare(size), said) if size >= 0.0 => Some((size, said)),
@@ -202,7 +202,7 @@ fn class(text: &str) -> Option<(Opening, Said)> {
     });
     let (first, second) = ends?;
     let (lower, said) = sieve(second)?;
-    // The unit may stand once, at the end.
+    // The unit may appear once, at the end.
     let unit = second.trim_start_matches(|c: char| !c.is_alphabetic());
     let with_unit = || if said > Said::Plain { sieve(&format!("{first} {unit}")) } else { None };
     let is_bare = |said: Said| said == Said::Plain;
@@ -213,7 +213,7 @@ fn class(text: &str) -> Option<(Opening, Said)> {
 /// Openings of old and new standards, such as 4.76 and 4.75 mm, differ by less than this.
 const NEAR: f64 = 0.07;
 
-/// Whether two openings (mm) are those of one sieve.
+/// True if two openings (mm) belong to one sieve.
 pub(super) fn near(one: f64, other: f64) -> bool {
     (one - other).abs() <= NEAR * one.max(other)
 }
@@ -221,7 +221,7 @@ pub(super) fn near(one: f64, other: f64) -> bool {
 /// Most bytes of the other name of a sieve, as `US Standard Sieve No. 4`.
 const LONGEST_NAME: usize = 32;
 
-/// `9.5 mm`, also within `No. 4 (4.75 mm)`, where both names are those of one sieve; `75 um`.
+/// `9.5 mm`, also within `No. 4 (4.75 mm)`, if both names belong to one sieve; `75 um`.
 fn metric(text: &str) -> Option<f64> {
     const UNITS: [(&str, f64); 14] = [
         ("mm", 1.0),
@@ -338,24 +338,24 @@ pub(super) fn us_sieve_number(text: &str) -> Option<f64> {
     BY_NUMBER.iter().find(|(name, _)| *name == text).map(|(_, mm)| *mm)
 }
 
-/// Opening (mm) of a sieve named by inches: the standard one where there is one.
+/// Opening (mm) of a sieve named by inches: the standard opening if the series has one.
 fn of_inches(inches: f64) -> f64 {
     let standard = BY_INCHES.iter().find(|(named, _)| (named - inches).abs() < 1e-9);
     standard.map_or(inches * INCH_MM, |(_, mm)| *mm)
 }
 
-/// Whether an opening (mm) is that of a US sieve.
+/// True if an opening (mm) belongs to a US sieve.
 pub(super) fn is_us_sieve(mm: f64) -> bool {
     us_sieve(mm).is_some()
 }
 
-/// Whether an opening (mm) that was given in inches is that of a US sieve.
+/// True if an opening (mm) that was given in inches belongs to a US sieve.
 pub(super) fn is_us_sieve_of_inches(mm: f64) -> bool {
     BY_INCHES.iter().any(|(_, opening)| *opening == mm)
 }
 
 impl Unit {
-    /// What a number without a unit is in mm.
+    /// Size in mm of a number without a unit.
     pub(super) fn mm(self, value: f64) -> Option<f64> {
         match self {
             Unit::Mm => Some(value),

@@ -11,10 +11,10 @@ use super::size::{Entry, Opening, Said, Unit, is_us_sieve};
 use voidwalk_core::gradation::FIELDS;
 use voidwalk_core::gradation::TableError;
 
-/// Asks for the unit where none is beside the openings.
+/// Allowed text of the error for openings without a unit beside them.
 const ALLOWED: &str = "openings whose heading names their unit, as Size (mm) or Size (um)";
 
-/// The unit of bare openings that is stated beside them, in the heading or in a column of units.
+/// Unit of bare openings as stated beside them, in the heading or in a column of units.
 pub(super) fn beside(grid: &Grid, layout: &Layout, entries: &[Entry]) -> Result<Option<Unit>, TableError> {
     let bare: HashMap<usize, &Entry> =
         entries.iter().filter(|e| matches!(e.opening, Opening::Bare(_))).map(|e| (e.line, e)).collect();
@@ -23,7 +23,7 @@ pub(super) fn beside(grid: &Grid, layout: &Layout, entries: &[Entry]) -> Result<
     for row in &grid.rows[layout.first..] {
         let Some(entry) = bare.get(&row.line) else { continue };
         rows += 1;
-        // It stands near the openings, in none of the columns of soils.
+        // The unit lies near the openings, outside the columns of soils.
         let near = entry.column.saturating_sub(2)..=entry.column + 2;
         let Some((cell, unit)) = near.filter(|&c| c != entry.column).find_map(|c| unit_alone(row.cell(c)))
         else {
@@ -43,8 +43,8 @@ pub(super) fn beside(grid: &Grid, layout: &Layout, entries: &[Entry]) -> Result<
     }
 }
 
-/// Refuses bare openings whose unit a title or a row of units states, or which are those of sieves in another
-/// unit than is taken.
+/// Refuses bare openings if a title or a row of units states their unit, or if they are sieves in another
+/// unit than the one taken.
 pub(super) fn refuse_other_unit(
     grid: &Grid,
     layout: &Layout,
@@ -98,7 +98,7 @@ pub(super) fn refuse_other_unit(
     }
 }
 
-/// Refuses sieves by number where the sheet names another series than that of the United States.
+/// Refuses sieves by number if the sheet names a series other than the United States one.
 pub(super) fn refuse_other_series(grid: &Grid, layout: &Layout, entries: &[Entry]) -> Result<(), TableError> {
     let (mut numbered, mut bare, mut whole, mut largest) = (None, None, true, 0.0f64);
     for entry in entries {
@@ -118,12 +118,12 @@ pub(super) fn refuse_other_series(grid: &Grid, layout: &Layout, entries: &[Entry
     Err(grid.refused(entry.line, entry.column, FIELDS[0], &entry.text, allowed))
 }
 
-/// The headings of a table and what stands above them.
+/// The headings of a table and the rows above them.
 fn titles<'a>(grid: &'a Grid, layout: &Layout) -> impl Iterator<Item = &'a GridRow> {
     grid.rows[..layout.first.min(grid.rows.len())].iter()
 }
 
-/// The series of sieves that a text names, beside that of the United States.
+/// Series of sieves that a text names, other than the United States one.
 fn other_series(text: &str) -> Option<String> {
     const NAMES: [&str; 5] = ["TYLER", "JIS", "AFNOR", "GOST", "ГОСТ"];
     let parts: Vec<&str> =
@@ -138,7 +138,7 @@ fn other_series(text: &str) -> Option<String> {
         let is_it = NAMES.contains(&part.to_uppercase().as_str())
             || ["BS", "BSS"].contains(part)
             || *part == "B" && next == Some(&"S") && text.contains("B.S")
-            // `IS` is a word, too.
+            // `IS` is also a word.
             || *part == "IS" && (parts.len() == 1 || next.is_some_and(is_sieve));
         is_it.then(|| (*part).to_owned())
     })
@@ -154,7 +154,7 @@ fn unit_alone(cell: &str) -> Option<(&str, Unit)> {
     unit.filter(|unit| *unit != Unit::SieveNumber && role(bare) != Role::Finer).map(|unit| (cell, unit))
 }
 
-/// Whether a title or a remark names a unit of openings that is not mm; `below 63 µm` names a size.
+/// True if a title or a remark names a unit of openings other than mm; `below 63 µm` names a size.
 pub(super) fn states_unit(text: &str) -> bool {
     let all = words(text);
     let behind_number = |word: &str| {

@@ -1,4 +1,4 @@
-//! What there is to say of a soil: its sizes, its shape, its class.
+//! Summary of a soil: its sizes, its shape, its class.
 
 use serde::Serialize;
 
@@ -51,10 +51,10 @@ pub struct SoilSummary {
 }
 
 impl SoilSummary {
-    /// What there is to say of `soil`, whose open finest tail ends at `d0_mm`.
+    /// Summarises `soil`, whose open finest tail ends at `d0_mm`.
     ///
     /// # Errors
-    /// A table that is no sieve curve.
+    /// A table that is not a sieve curve.
     pub fn of(soil: &Soil, d0_mm: Option<f64>) -> Result<SoilSummary, GradationError> {
         let curve = soil.gradation(d0_mm)?;
         let d = |percent| curve.d(percent);

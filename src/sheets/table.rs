@@ -1,35 +1,35 @@
-//! A soil as it stands in a file: its table, and what was assumed to read it.
+//! A soil as given in a file: its table, and the assumptions made in reading it.
 
 use super::grid::{Grid, Place};
 use voidwalk_core::gradation::Row;
 use voidwalk_core::gradation::{Gradation, from_rows};
 use voidwalk_core::gradation::{GradationError, letters};
 
-/// A soil as it stands in a file.
+/// A soil as given in a file.
 #[derive(Clone, Debug)]
 pub struct Soil {
     pub(super) name: String,
     pub(super) file: String,
     pub(super) rows: Vec<Row>,
-    /// Where the opening and the percent of each row stand.
+    /// Places of the opening and the percent of each row.
     pub(super) places: Vec<[Place; 2]>,
     pub(super) kind: Kind,
     pub(super) notes: Vec<String>,
 }
 
-/// How a soil's table stands in its file.
+/// Arrangement of a soil's table in its file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// In lines of a text.
     Lines,
     /// In rows of a sheet.
     Rows,
-    /// Across: a column for each sieve, in a sheet or not.
+    /// Across, with a column for each sieve, in a sheet or a text.
     Across { sheet: bool },
 }
 
 impl Kind {
-    /// That of the tables of a grid.
+    /// Arrangement of the tables of a grid.
     pub(super) fn of(grid: &Grid) -> Kind {
         match (&grid.across, &grid.sheet) {
             (Some(_), sheet) => Kind::Across { sheet: sheet.is_some() },
@@ -40,22 +40,22 @@ impl Kind {
 }
 
 impl Soil {
-    /// What the sheet or the column calls it; empty where nothing does.
+    /// Name given by the sheet or the column; empty without one.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What was assumed, in words.
+    /// Assumptions, in words.
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
 
-    /// Its sieve curve; `d0_mm` is where an open finest tail ends.
+    /// Sieve curve; `d0_mm` is the size at which an open finest tail ends.
     ///
     /// # Errors
-    /// A table that is no sieve curve, as [`read_gradation`] says.
+    /// A table that is not a sieve curve, with the errors of [`read_gradation`].
     pub fn gradation(&self, d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
-        // Lines are counted anew: of two parts that stand side by side they are the same.
+        // Counts rows from 1: lines of the file repeat in parts that lie side by side.
         let counted = |(index, row): (usize, &Row)| Row { line: index + 1, ..*row };
         let rows = self.rows.iter().enumerate().map(counted).collect();
         let in_sheet = matches!(self.kind, Kind::Rows | Kind::Across { sheet: true });
@@ -69,7 +69,7 @@ impl Soil {
         })
     }
 
-    /// What a row is called, counted from 1.
+    /// Name of a row, counted from 1.
     fn said(&self, row: usize) -> String {
         let Place { line, column } = self.places[row - 1][1];
         match self.kind {

@@ -1,11 +1,11 @@
-//! Bytes to text: which encoding a file is in.
+//! Decoding of bytes to text, by the encoding of the file.
 
 use voidwalk_core::gradation::TableError;
 
-/// The text in `bytes`, and what was assumed of its encoding where that is not plain UTF-8.
+/// The text in `bytes`, and the assumed encoding if it is not plain UTF-8.
 ///
-/// Understood: UTF-8 and UTF-16 with or without a byte order mark; anything else is Windows-1252, in which
-/// spreadsheets of western countries save, unless it is no text at all.
+/// UTF-8 and UTF-16 are understood, with or without a byte order mark. Anything else is Windows-1252, in
+/// which spreadsheets of western countries save, unless it is no text at all.
 pub(super) fn decoded(file: &str, bytes: &[u8]) -> Result<(String, Option<String>), TableError> {
     refuse_other_formats(file, bytes)?;
     if let Some((is_big, skip)) = utf16(bytes) {
@@ -34,7 +34,7 @@ fn unified(text: String) -> String {
     if text.contains('\n') || !text.contains('\r') { text } else { text.replace('\r', "\n") }
 }
 
-/// Windows-1252: Latin-1, but for these from 0x80 to 0x9f.
+/// Windows-1252: Latin-1 except for these characters from 0x80 to 0x9f.
 fn windows_1252(bytes: &[u8]) -> String {
     const OTHERS: &str = "€\u{81}‚ƒ„…†‡ˆ‰Š‹Œ\u{8d}Ž\u{8f}\u{90}‘’“”•–—˜™š›œ\u{9d}žŸ";
     let others: Vec<char> = OTHERS.chars().collect();
@@ -42,8 +42,8 @@ fn windows_1252(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| character(byte).unwrap_or(char::from(*byte))).collect()
 }
 
-/// UTF-16, by its mark or by the zeros in every other byte: whether the larger byte comes first, and the
-/// length of the mark.
+/// Recognises UTF-16 by its mark or by the zeros in every other byte. Returns true if the larger byte comes
+/// first, and the length of the mark.
 fn utf16(bytes: &[u8]) -> Option<(bool, usize)> {
     match bytes {
         [0xff, 0xfe, ..] => return Some((false, 2)),
@@ -60,7 +60,7 @@ fn utf16(bytes: &[u8]) -> Option<(bool, usize)> {
     }
 }
 
-/// Formats of other programs are told by their first bytes.
+/// Refuses formats of other programs, by their first bytes.
 fn refuse_other_formats(file: &str, bytes: &[u8]) -> Result<(), TableError> {
     const KNOWN: [(&[u8], &str); 4] = [
         (&[0xd0, 0xcf, 0x11, 0xe0], "an Excel workbook of the old kind (.xls), or one with a password"),

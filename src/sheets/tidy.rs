@@ -1,4 +1,4 @@
-//! A table that names the sample in each row is a table for each of them.
+//! Splits a table that names the sample in each row into a table for each sample.
 
 use std::collections::HashMap;
 
@@ -13,16 +13,16 @@ use voidwalk_core::gradation::TableError;
 /// Most places of the headings of all parts.
 const MOST_PLACES: usize = 1_000_000;
 
-/// A sample's part of a table, and its name.
+/// Part of a table that belongs to one sample, with the sample's name.
 pub(super) struct Part {
     pub(super) name: String,
     pub(super) grid: Grid,
 }
 
-/// The parts of a table whose rows name their samples; nothing where there are not two names.
+/// Parts of a table whose rows name their samples; empty for fewer than two names.
 ///
 /// # Errors
-/// Rows of which each names another sample, as where openings stand in the headings.
+/// Rows that each name another sample, as with openings in the headings.
 pub(super) fn parts(grid: &Grid, layout: &Layout) -> Result<Vec<Part>, TableError> {
     let headings = &grid.rows[layout.at..layout.first];
     if !layout.headed || layout.soils.len() != 1 {
@@ -39,7 +39,7 @@ pub(super) fn parts(grid: &Grid, layout: &Layout) -> Result<Vec<Part>, TableErro
     let samples: Vec<usize> = (0..width).filter(|&c| is_free(c) && of_samples(c)).collect();
     let depths: Vec<usize> =
         (0..width).filter(|&c| is_free(c) && !samples.contains(&c) && of_depths(c)).collect();
-    // A name that is merged over rows stands in the first of them.
+    // A name that is merged over rows lies in the first of them.
     let mut last: Vec<String> = vec![String::new(); width];
     let mut rows: Vec<(String, String, &GridRow)> = Vec::new();
     for row in grid.rows[layout.first..].iter().filter(|row| opening(row.cell(layout.size)).is_some()) {
@@ -99,18 +99,18 @@ pub(super) fn parts(grid: &Grid, layout: &Layout) -> Result<Vec<Part>, TableErro
                 }
             }
         }
-        // What stands between the rows of samples goes with those above it.
+        // Rows between the rows of samples go with the sample above them.
         parts[last].grid.rows.push(row);
     }
     Ok(parts)
 }
 
-/// Whether a heading of names may be that of the fractions of one soil.
+/// True if a heading of names may name the fractions of one soil.
 fn may_be_of_fractions(heading: &str) -> bool {
     words(heading).iter().any(|word| ["material", "soil", "name", "source"].contains(&word.as_str()))
 }
 
-/// Whether openings rise or fall all the way, as those of one soil.
+/// True if openings only rise or only fall, like those of one soil.
 fn goes_one_way<'a>(cells: impl Iterator<Item = &'a str>) -> bool {
     let sizes: Vec<f64> = cells
         .filter_map(|cell| match opening(cell)?.0 {

@@ -1,4 +1,4 @@
-//! Rows that a slip has run together in one cell, or cut short.
+//! Rows that a mistake has run together in one cell, or cut short.
 
 use super::content::{is_text, is_value, is_words};
 use super::grid::{Grid, GridRow};
@@ -6,7 +6,7 @@ use super::size::{Opening, opening};
 use voidwalk_core::gradation::FIELDS;
 use voidwalk_core::gradation::{TableError, shortened};
 
-/// A cell without its values at the end, and how many these are: read as if other separators were spaces.
+/// A cell without the values at its end, and their number, read as if other separators were spaces.
 fn parted(cell: &str) -> [(String, usize); 2] {
     let signs: &[char] = &[';', '\t', '|', '"'];
     let spaced = cell.replace(signs, " ");
@@ -20,7 +20,7 @@ fn parted(cell: &str) -> [(String, usize); 2] {
     })
 }
 
-/// Whether a cell holds an opening and values: another separator, or quotes around the whole row.
+/// True if a cell holds an opening and values, behind another separator or in quotes around the whole row.
 pub(super) fn is_whole_row(cell: &str) -> bool {
     parted(cell).iter().any(|(rest, values)| match rest.is_empty() {
         true => *values > 1,
@@ -28,7 +28,7 @@ pub(super) fn is_whole_row(cell: &str) -> bool {
     })
 }
 
-/// Whether a cell ends in several values or holds several openings: a row of a table on its side.
+/// True if a cell ends in several values or holds several openings: a row of a table on its side.
 pub(super) fn holds_several(cell: &str) -> bool {
     let spaced = cell.replace("  ", ";");
     let parts = spaced.split([';', '\t', '|', '"', ',']).map(str::trim);
@@ -36,8 +36,7 @@ pub(super) fn holds_several(cell: &str) -> bool {
         || parts.filter(|part| opening(part).is_some()).count() > 2
 }
 
-/// The words of a cell that any sign may part, without units; a date, a reference or a standard is one
-/// word.
+/// Words of a cell, split at any sign and without units; a date, a reference or a standard is one word.
 fn split_words(cell: &str) -> Vec<String> {
     const UNITS: [&str; 6] = ["%", "g", "mm", "um", "µm", "cm"];
     const SIGNS: [char; 8] = [';', ',', '|', ':', '/', '=', '"', '\''];
@@ -71,7 +70,7 @@ fn is_date_or_standard(word: &str) -> bool {
         })
 }
 
-/// Whether two numbers follow each other in a cell: an opening and a value, with or without a name.
+/// True if two numbers follow each other in a cell: an opening and a value, with or without a name.
 fn holds_pair(cell: &str) -> bool {
     let words = split_words(cell);
     let is_number = |word: &String| is_value(word) || opening(word).is_some();
@@ -96,15 +95,15 @@ pub(super) fn row_below(row: &GridRow) -> Option<usize> {
     holds_pair(row.cell(only)).then_some(only)
 }
 
-/// Refuses such a row.
+/// Error for such a row.
 pub(super) fn refused(grid: &Grid, row: &GridRow, column: usize) -> TableError {
     let allowed = "a row of the table, its openings and percents parted as in the other rows and not quoted \
                    as a whole";
     grid.refused(row.line, column, FIELDS[0], row.cell(column), allowed)
 }
 
-/// Refuses a row of a text that ends before the column `last`: any of its values may be the one that is not
-/// there. The pan and the sum have fewer.
+/// Refuses a row of a text that ends before the column `last`: any of its values may be the missing one. The
+/// pan and the sum have fewer.
 pub(super) fn refuse_short(grid: &Grid, row: &GridRow, size: &str, last: usize) -> Result<(), TableError> {
     let Some(line) = &row.text else { return Ok(()) };
     if line.cells > grid.left + last

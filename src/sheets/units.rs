@@ -1,4 +1,4 @@
-//! What openings without a unit of their own mean.
+//! Unit of openings that have none of their own.
 
 use super::grid::Grid;
 use super::heading::{Retained, Role};
@@ -24,11 +24,11 @@ const ALSO_MM: [f64; 22] = [
     0.003, 0.01, 0.004, 0.002, 0.125,
 ];
 
-/// What is said of bare openings for which no unit is found.
+/// Note on bare openings without a known unit.
 pub(super) const TAKEN_AS_MM: &str = "openings without a unit taken as mm";
 
-/// The unit of openings that are bare numbers: the heading's; mm where nothing else has inches; else the one
-/// in which the openings go one way.
+/// Unit of openings that are bare numbers: the unit of the heading; mm if nothing else has inches; otherwise
+/// the unit in which the openings go one way.
 pub(super) fn of_bare(
     grid: &Grid,
     layout: &Layout,
@@ -47,7 +47,7 @@ pub(super) fn of_bare(
     };
     stated::refuse_other_unit(grid, layout, entries, stated)?;
     match stated {
-        // Headings say `Sieve no.` of openings in mm too.
+        // Headings also say `Sieve no.` above openings in mm.
         Some(Unit::SieveNumber) if entries.iter().any(is_no_sieve) => {}
         Some(unit) => return Ok(unit),
         None => {}
@@ -63,7 +63,7 @@ pub(super) fn of_bare(
         |allowed: &str| Err(grid.refused(first.line, first.column, FIELDS[0], &first.text, allowed));
     if let Some(entry) = first_sieve_number(entries, role) {
         if layout.unit == Some(Unit::SieveNumber) {
-            // The opening that is none is refused as such.
+            // An opening that is not a sieve number is refused on its own.
             return Ok(Unit::SieveNumber);
         }
         let text = &entry.text;
@@ -102,11 +102,11 @@ pub(super) fn of_bare(
     Ok(Unit::Mm)
 }
 
-/// No sieve is finer, and larger openings in mm are few.
+/// No sieve is finer than this, and larger openings in mm are rare.
 const LEAST_MICROMETRES: f64 = 25.0;
 
-/// Refuses openings of which the finer ones seem to be in micrometres and the coarser ones in mm: they go one
-/// way only if these are a thousandth.
+/// Refuses openings whose finer part seems to be in micrometres and whose coarser part in mm: they go one way
+/// only if the finer ones are divided by a thousand.
 fn refuse_micrometres(grid: &Grid, entries: &[Entry]) -> Result<(), TableError> {
     let sizes: Vec<(f64, &Entry)> = entries
         .iter()
@@ -125,7 +125,7 @@ fn refuse_micrometres(grid: &Grid, entries: &[Entry]) -> Result<(), TableError> 
         pairs().all(|step| step > 0.0) || pairs().all(|step| step < 0.0)
     };
     let steps: Vec<bool> = sizes.windows(2).map(|pair| pair[0].0 > pair[1].0).collect();
-    // One step against the others is where the unit changes.
+    // A single step against the others marks the change of unit.
     let alone = |falls: bool| {
         let mut places = (0..steps.len()).filter(|&at| steps[at] == falls);
         places.next().filter(|_| places.next().is_none() && steps.len() > 1)
@@ -147,7 +147,7 @@ fn refuse_micrometres(grid: &Grid, entries: &[Entry]) -> Result<(), TableError> 
     Ok(())
 }
 
-/// Whether the openings rise or fall all the way where those without a unit are in this one.
+/// True if the openings only rise or only fall once those without a unit are read in this one.
 fn goes_one_way(entries: &[Entry], unit: Unit) -> bool {
     let sizes: Vec<f64> = entries
         .iter()
@@ -160,11 +160,11 @@ fn goes_one_way(entries: &[Entry], unit: Unit) -> bool {
     sizes.windows(2).all(|w| w[0] > w[1]) || sizes.windows(2).all(|w| w[0] < w[1])
 }
 
-/// How many of the openings that are only in inches are round numbers.
+/// Number of inch-only openings that are round numbers.
 const ROUND: usize = 4;
 
-/// Whether all openings without a unit are those of US sieves in decimals of an inch, and they are those of
-/// no metric sieves. The ordinary series in mm, such as 4, 2, 1, 0.5, 0.25, 0.125, are none.
+/// True if all openings without a unit are US sieves in decimals of an inch and not metric sieves. The
+/// ordinary series in mm, such as 4, 2, 1, 0.5, 0.25, 0.125, does not count.
 fn is_series_of_inches(entries: &[Entry]) -> bool {
     let (mut only, mut round) = (false, 0);
     for entry in entries {
@@ -183,15 +183,15 @@ fn is_series_of_inches(entries: &[Entry]) -> bool {
     only || round > 1
 }
 
-/// Fewer numbers of sieves may be anything.
+/// Fewest numbers that make a series of sieves.
 const LEAST_NUMBERS: usize = 3;
 
-/// Numbers of US sieves that are the openings (mm) of no metric sieve.
+/// Numbers of US sieves that are not the opening (mm) of any metric sieve.
 const NO_METRIC_SIEVE: [f64; 12] =
     [7.0, 18.0, 30.0, 35.0, 60.0, 70.0, 120.0, 140.0, 170.0, 230.0, 270.0, 325.0];
 
-/// The first opening of a table whose bare openings are US sieves by number: whole ones, up to No. 100 or
-/// more, of which the larger is the finer sieve. Sizes in mm may be the same numbers, such as 4, 8, 20, 100.
+/// The first opening of a table whose bare openings are US sieves by number: whole numbers up to No. 100 or
+/// more, the larger number for the finer sieve. Sizes in mm may be the same numbers, such as 4, 8, 20, 100.
 fn first_sieve_number(entries: &[Entry], role: Role) -> Option<&Entry> {
     let is_number = |value: f64| value.fract() == 0.0 && Unit::SieveNumber.mm(value).is_some();
     let is_inches =
@@ -218,7 +218,7 @@ fn first_sieve_number(entries: &[Entry], role: Role) -> Option<&Entry> {
     let is_it = match role {
         Role::Retained(Retained { cumulative: Some(true), .. }) => rises,
         Role::Retained(Retained { cumulative: None, .. }) if rises => true,
-        // What is on each sieve alone goes neither way: the pan stands beside the finest.
+        // Values on each sieve alone go neither way; the pan lies beside the finest sieve.
         Role::Retained(_) => match beside_pan(entries) {
             Some(value) => value == largest,
             None => all && numbers.iter().any(|(n, _)| *n >= 200.0 || NO_METRIC_SIEVE.contains(n)),
@@ -228,7 +228,7 @@ fn first_sieve_number(entries: &[Entry], role: Role) -> Option<&Entry> {
     is_it.then_some(first)
 }
 
-/// The bare opening that stands beside the pan.
+/// The bare opening next to the pan.
 fn beside_pan(entries: &[Entry]) -> Option<f64> {
     let is_pan = |entry: &Entry| match entry.opening {
         Opening::Pan | Opening::Below(_) => true,
@@ -243,7 +243,7 @@ fn beside_pan(entries: &[Entry]) -> Option<f64> {
     })
 }
 
-/// Says which names of openings were translated.
+/// Adds a note of the names of openings that were translated.
 pub(super) fn say_names(entries: &[Entry], unit: Unit, notes: &mut Vec<String>) {
     let any = |said: Said| entries.iter().any(|entry| entry.said == said);
     let number = any(Said::UsNumber) || unit == Unit::SieveNumber;

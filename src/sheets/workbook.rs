@@ -1,16 +1,16 @@
-//! A workbook to its sheets.
+//! Conversion of a workbook to its sheets.
 
 use super::grid::Grid;
 use super::zipped::{Zipped, unreadable};
 use super::{ods, xlsx};
 use voidwalk_core::gradation::TableError;
 
-/// Whether a file is a zip, as workbooks are.
+/// True if a file is a zip, like workbooks.
 pub(super) fn is_zip(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06")
 }
 
-/// The sheets that hold anything.
+/// Sheets that are not empty.
 pub(super) fn sheets(file: &str, bytes: &[u8]) -> Result<Vec<Grid>, TableError> {
     let mut zipped = Zipped::open(file, bytes)?;
     let sheets = if zipped.has("xl/workbook.xml") {

@@ -16,7 +16,7 @@ use voidwalk_core::gradation::{Position, TableError};
 const MOST_STRINGS: usize = 200_000;
 const MOST_SHEETS: usize = 200;
 
-/// Its sheets.
+/// Reads the sheets.
 pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, TableError> {
     let book = zipped.text("xl/workbook.xml")?;
     let mut targets = HashMap::new();
@@ -48,7 +48,7 @@ pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, Table
             Some(absolute) => absolute.to_owned(),
             None => format!("xl/{target}"),
         };
-        // A chart's sheet holds no cells.
+        // The sheet of a chart holds no cells.
         if path.contains("worksheets/") {
             let context = Context { file, sheet: &name, hidden, strings: &strings, styles: &styles };
             sheets.push(context.sheet(&zipped.text(&path)?, &mut budget)?);
@@ -131,10 +131,10 @@ impl Rich {
     }
 }
 
-/// How a number is shown.
+/// Display of a number.
 #[derive(Clone, Debug, PartialEq)]
 enum Style {
-    /// With what stands before it and behind it.
+    /// With the text before it and behind it.
     Number(String, String),
     Percent,
     Date,
@@ -168,7 +168,7 @@ fn styles(file: &str, text: &str) -> Result<Vec<Style>, TableError> {
     }
 }
 
-/// The style of a format's code: quoted text and conditions in brackets say nothing of dates, an elapsed time
+/// Style of a format's code. Quoted text and conditions in brackets do not indicate a date; an elapsed time
 /// in brackets (`[h]`) does.
 fn of_format(code: &str) -> Style {
     let (before, after, plain) = parts_of(code);
@@ -180,7 +180,7 @@ fn of_format(code: &str) -> Style {
     }
 }
 
-/// Whether a format's code has hours, minutes or seconds that go on counting: `[h]`, `[mm]`, `[ss]`.
+/// True if a format's code has hours, minutes or seconds that go on counting: `[h]`, `[mm]`, `[ss]`.
 fn counts_time(code: &str) -> bool {
     let within = code.split('[').skip(1).filter_map(|rest| rest.split_once(']'));
     within.map(|(unit, _)| unit.to_lowercase()).any(|unit| {
@@ -301,10 +301,10 @@ impl Context<'_> {
         })
     }
 
-    /// A number as the sheet shows it: with its percent sign, or as a date.
+    /// A number as the sheet displays it: with its percent sign, or as a date.
     fn number(&self, value: &str, style: usize) -> String {
         let Ok(number) = value.parse::<f64>() else { return value.to_owned() };
-        // Fifteen digits are what a spreadsheet shows of a number that was summed up.
+        // Spreadsheets display fifteen digits of a number that was summed up.
         let rounded = format!("{:.14e}", number).parse::<f64>().map_or(value.to_owned(), |n| n.to_string());
         match self.styles.get(style) {
             Some(Style::Percent) => format!("{}%", (number * 100.0 * 1e9).round() / 1e9),

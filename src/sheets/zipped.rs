@@ -7,11 +7,11 @@ use zip::ZipArchive;
 
 use voidwalk_core::gradation::TableError;
 
-/// Most that all parts of a workbook may come to when they are unpacked (bytes).
+/// Limit on the unpacked size of all parts of a workbook (bytes).
 const UNPACKED_LIMIT: u64 = 64 << 20;
-/// Most of any part that is read into memory (bytes).
+/// Limit on the size of a part that is read into memory (bytes).
 const PART_LIMIT: u64 = 24 << 20;
-/// Most parts.
+/// Limit on the number of parts.
 const PARTS_LIMIT: usize = 2000;
 
 /// A workbook as a zip.
@@ -22,7 +22,7 @@ pub(super) struct Zipped<'a> {
 }
 
 impl<'a> Zipped<'a> {
-    /// Opens a zip, and refuses one that unpacks to more than a workbook of soils holds.
+    /// Opens a zip; refuses one that unpacks to more than a workbook of soils holds.
     pub(super) fn open(file: &str, bytes: &'a [u8]) -> Result<Zipped<'a>, TableError> {
         let broken = |_| unreadable(file, "its zip cannot be read");
         let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(broken)?;
@@ -48,12 +48,12 @@ impl<'a> Zipped<'a> {
         Ok(zipped)
     }
 
-    /// Whether there is such a part.
+    /// True if the workbook has this part.
     pub(super) fn has(&self, name: &str) -> bool {
         self.names.iter().any(|part| part == name)
     }
 
-    /// The text of a part. Never more is unpacked than the limit, whatever its size is said to be.
+    /// Text of a part. The limit holds for the unpacked bytes, whatever size the zip declares.
     pub(super) fn text(&mut self, name: &str) -> Result<String, TableError> {
         let file = self.file.clone();
         let part = self.archive.by_name(name);
@@ -68,12 +68,12 @@ impl<'a> Zipped<'a> {
     }
 }
 
-/// A workbook that cannot be read.
+/// Error for a workbook that cannot be read.
 pub(super) fn unreadable(file: &str, why: &str) -> TableError {
     TableError::Workbook { file: file.into(), why: why.into() }
 }
 
-/// A workbook that is larger than any of soils.
+/// Error for a workbook that is larger than any workbook of soils.
 pub(super) fn too_large(file: &str, how: &str) -> TableError {
     unreadable(file, &format!("it is too large ({how}); keep the sheet with the soils alone"))
 }
@@ -89,14 +89,14 @@ pub(super) fn attribute(element: &BytesStart, name: &str) -> Option<String> {
     Some(value.into_owned())
 }
 
-/// The characters that an event within an element stands for.
+/// Characters that an event within an element represents.
 pub(super) fn characters(event: &Event) -> Option<String> {
     match event {
         Event::Text(text) => Some((**text).to_owned()),
         Event::CData(text) => Some((**text).to_owned()),
         Event::GeneralRef(reference) => {
             let written = format!("&{};", &**reference);
-            // An unknown one stays as it is written: without it `8&b;1` would be 81.
+            // Keeps an unknown entity as written: without it `8&b;1` would be 81.
             let known = quick_xml::escape::unescape(&written).map(std::borrow::Cow::into_owned);
             Some(known.unwrap_or(written))
         }

@@ -1,5 +1,5 @@
-//! The specification of a filter by practice: its record, the rules of retention that it rests on, and
-//! standard products beside it.
+//! The specification of a filter by practice: its record, the rules of retention behind it, and standard
+//! products beside it.
 
 pub mod products;
 pub mod retention;

@@ -1,6 +1,6 @@
-//! Standard products: which of them keep what a filter is asked for with both their own sides.
+//! Standard products, each checked with both of its sides against the requirements of a filter.
 //!
-//! Only products whose limits could be read in a public source are here.
+//! The list holds only products whose limits could be read in a public source.
 
 use serde::{Deserialize, Serialize};
 
@@ -36,20 +36,20 @@ pub enum NotKept {
     GreatestSize,
 }
 
-/// Least Cu of a filter that is specified.
+/// Least Cu of a specified filter.
 pub const LEAST_CU: f64 = 2.0;
 
-/// A product as its standard limits it.
+/// A product with the limits of its standard.
 pub struct Product {
-    /// Its name.
+    /// Name of the product.
     pub name: &'static str,
     /// Sieve (mm), least and greatest percent finer; rising.
     pub limits: &'static [(f64, f64, f64)],
-    /// Where its limits were read.
+    /// Source of the limits.
     pub source: &'static str,
 }
 
-/// Products that are sold by name.
+/// Products sold by name.
 pub const PRODUCTS: [Product; 5] = [
     Product {
         name: "ASTM C33 fine aggregate",
@@ -114,16 +114,16 @@ pub const PRODUCTS: [Product; 5] = [
     },
 ];
 
-/// How the source of a product ends whose limits were read in no text of a named body.
+/// Ending of the source of a product whose limits were read in no text of a named body.
 const TO_BE_CHECKED: &str = "limits to be checked against the standard";
 
-/// Whether the source of a product says that its limits are to be checked against the standard.
+/// True if the source of a product says that its limits are to be checked against the standard.
 pub fn is_to_be_checked(source: &str) -> bool {
     source.ends_with(TO_BE_CHECKED)
 }
 
-/// The size (mm) at which a side has this percent finer, straight in percent over log size; its end where it
-/// does not reach it. Points are size (mm) and percent finer, rising.
+/// The size (mm) at which a side has this percent finer, straight in percent over log size; the end of the
+/// side if it does not reach the percent. Points are size (mm) and percent finer, rising.
 pub(super) fn size_at(side: &[[f64; 2]], percent: f64) -> f64 {
     let above = side.iter().position(|point| point[1] >= percent).unwrap_or(side.len() - 1);
     let [high, b] = side[above];
@@ -133,7 +133,7 @@ pub(super) fn size_at(side: &[[f64; 2]], percent: f64) -> f64 {
 }
 
 impl Product {
-    /// D15 (mm) of its fine and of its coarse side.
+    /// D15 (mm) of the fine and of the coarse side.
     pub fn d15_mm(&self) -> [f64; 2] {
         let side = |percent: fn(&(f64, f64, f64)) -> f64| {
             let points: Vec<[f64; 2]> = self.limits.iter().map(|row| [row.0, percent(row)]).collect();
@@ -142,7 +142,7 @@ impl Product {
         [side(|row| row.2), side(|row| row.1)]
     }
 
-    /// What its two sides do not keep of what a band is asked for beside D15F; a delivery may lie anywhere
+    /// Requirements of a band, D15F apart, that the two sides do not keep; a delivery may lie anywhere
     /// between them.
     pub fn not_kept(&self) -> Vec<NotKept> {
         let sides: [Vec<[f64; 2]>; 2] = [

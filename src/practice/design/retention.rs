@@ -1,10 +1,10 @@
-//! The limits of D15F by which the rules of practice retain a base.
+//! Limits of D15F by which the rules of practice retain a base.
 
 use crate::rules::{DESIGN, TESTS_NO_EROSION};
 use crate::{AppliedRule, RuleNote, RuleQuantity, RuleRole};
 use voidwalk_core::gradation::TIE;
 
-/// D15F by which the filter was judged, the unsafe end where its curve is flat or its sieves stand apart.
+/// D15F by which the filter was judged: the unsafe end if its curve is flat or its sieves lie far apart.
 fn judged_d15f(rules: &[AppliedRule], d15f: f64) -> f64 {
     let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies);
     design.and_then(|rule| rule.value).unwrap_or(d15f)
@@ -12,9 +12,9 @@ fn judged_d15f(rules: &[AppliedRule], d15f: f64) -> f64 {
 
 /// The limit of D15F that a rule sets for a base it was made for, in the unit of the rules.
 ///
-/// `d15f` is that of the filter that the rule judges: a limit of a ratio to a size of the base (Terzaghi) is
-/// as many times it as the limit is times the value. Which size that is, of the base as it is walked or as
-/// practice regrades it, the rule alone knows.
+/// `d15f` is the D15F of the judged filter. A limit on a ratio to a size of the base (Terzaghi) becomes
+/// `d15f` times the limit over the value. Only the rule knows this size, of the base as it is walked or as
+/// practice regrades it.
 fn limit(rule: &AppliedRule, d15f: f64) -> Option<(&AppliedRule, f64)> {
     let limit = rule.limit.filter(|limit| rule.applies && *limit > 0.0 && limit.is_finite())?;
     match rule.quantity {
@@ -27,9 +27,9 @@ fn limit(rule: &AppliedRule, d15f: f64) -> Option<(&AppliedRule, f64)> {
     }
 }
 
-/// The rules by which a filter is to retain its base. Practice goes by the limit of design: the boundary of
-/// no erosion that one author proposed from tests counts only where design is not known, and for dispersive
-/// bases, for which that author's limit is the one that is recommended.
+/// The rules by which a filter retains its base. Practice goes by the limit of design. The boundary of no
+/// erosion that one author proposed from tests counts only if design is not known, and for dispersive bases,
+/// for which that author's limit is the recommended one.
 pub fn retaining(rules: &[AppliedRule]) -> impl Iterator<Item = &AppliedRule> {
     let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies);
     let is_known = design.is_some_and(|of| of.limit.is_some() && !of.limit_at_most);
@@ -39,24 +39,24 @@ pub fn retaining(rules: &[AppliedRule]) -> impl Iterator<Item = &AppliedRule> {
     rules.iter().filter(retains).filter(move |of| of.id != TESTS_NO_EROSION || counts(of))
 }
 
-/// A rule of retention that was made for a base, and of whose limit only the most is known: with it the
-/// strictest limit of the base is not known.
+/// A rule of retention that was made for a base and whose limit is only known to be at most a number, which
+/// leaves the strictest limit of the base unknown.
 pub fn open_retention(rules: &[AppliedRule]) -> Option<&AppliedRule> {
     retaining(rules).find(|rule| rule.applies && rule.limit_at_most)
 }
 
-/// The limits of D15F by which a filter retains its base: no design goes beyond where tests saw continuing
-/// erosion, either.
+/// Limits of D15F by which a filter retains its base. They include the size beyond which tests saw continuing
+/// erosion, since no design goes beyond it.
 pub fn retaining_limits(rules: &[AppliedRule], d15f: f64) -> impl Iterator<Item = (&AppliedRule, f64)> {
     let d15f = judged_d15f(rules, d15f);
     let continues = rules.iter().filter(|of| of.role == RuleRole::Continuation && !of.limit_at_most);
     retaining(rules).chain(continues).filter_map(move |rule| limit(rule, d15f))
 }
 
-/// The strictest rule by which a filter retains a base, with its limit of D15F: no more than the most of it
-/// where [`open_retention`] finds a rule.
+/// The strictest rule by which a filter retains a base, with its limit of D15F; the true limit may be lower
+/// if [`open_retention`] returns a rule.
 pub fn retention(rules: &[AppliedRule], d15f: f64) -> Option<(&AppliedRule, f64)> {
-    // Of limits that differ by rounding alone the first counts, which is that of design.
+    // Among limits that differ by rounding alone the first counts, which is the limit of design.
     let stricter = |least: f64, limit: f64| limit < least * (1.0 - TIE);
     retaining_limits(rules, d15f).reduce(|least, next| if stricter(least.1, next.1) { next } else { least })
 }
@@ -67,7 +67,7 @@ mod tests {
     use crate::PairRules;
     use voidwalk_core::gradation::Gradation;
 
-    /// D15F of the filter that is judged.
+    /// D15F of the judged filter.
     const D15F: f64 = 1.6;
 
     fn rules_of(base: &Gradation) -> Vec<AppliedRule> {
@@ -106,8 +106,8 @@ mod tests {
         }
     }
 
-    /// Practice takes four times the D85B of the part that it regrades the base to: of a gap-graded base, and
-    /// of one with gravel, by far less than of the whole.
+    /// Practice takes four times the D85B of the part to which it regrades the base: much less than of the
+    /// whole for a gap-graded base, and for one with gravel.
     #[test]
     fn the_limit_of_a_ratio_is_of_the_base_that_its_rule_reads() {
         let gap = [(0.1, 0.0), (0.2, 20.0), (0.5, 50.0), (4.0, 55.0), (9.5, 80.0), (19.0, 100.0)];
@@ -119,7 +119,7 @@ mod tests {
             assert!(regraded.at_mm.is_some() && whole > 2.0 * part, "{whole} {part}");
             let all = rules_of(&base);
             assert!((limit_of(&all, "terzaghi").unwrap() / (4.0 * part) - 1.0).abs() < 1e-9);
-            // That of the model is for the base as it is walked.
+            // The model's limit is for the base as it is walked.
             assert!((limit_of(&all, "paper-no-erosion").unwrap() / (5.0 * whole) - 1.0).abs() < 1e-9);
             let (_, practice) = retention(&all, D15F).unwrap();
             assert!(practice <= 4.0 * part * (1.0 + 1e-9), "{practice}");

@@ -26,7 +26,7 @@ const US: [f64; 14] = [75.0, 50.0, 37.5, 25.0, 19.0, 12.5, 9.5, 4.75, 2.36, 1.18
 const ISO: [f64; 12] = [75.0, 63.0, 31.5, 16.0, 8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125, FINES_MM];
 
 impl SieveSeries {
-    /// The openings of its sieves (mm), the coarsest first.
+    /// Openings of the sieves (mm), the coarsest first.
     pub fn openings(self) -> &'static [f64] {
         match self {
             Self::Us => &US,
@@ -34,7 +34,7 @@ impl SieveSeries {
         }
     }
 
-    /// The name of its sieve with this opening (mm).
+    /// Name of the sieve with this opening (mm).
     pub fn name(self, opening_mm: f64) -> String {
         let in_mm = || format!("{opening_mm} mm");
         match self {

@@ -54,17 +54,17 @@ const SIZES: [f64; 3] = [5.0, 15.0, 60.0];
 pub const D15_OVER_D10: f64 = 1.2;
 
 impl SizeBand {
-    /// The minimum D10F (mm), by which the maximum D90F is set.
+    /// The minimum D10F (mm), which sets the maximum D90F.
     pub fn least_d10_mm(&self) -> f64 {
         (self.d15_mm()[0] / D15_OVER_D10).min(self.least_size(10.0))
     }
 
-    /// From the control points of its sides: least and maximum D15 and D60 (mm).
+    /// Band from the control points of its sides: least and maximum D15 and D60 (mm).
     ///
     /// Both sides are straight in percent over log size between their points, and end at their D60. The
-    /// coarse side goes on straight down to 0 %. The fine side begins at its D5, a fifth of that of the
-    /// coarse side but not less than 0.075 mm; at most 5 % are finer. `None` where a D60
-    /// is not below 75 mm, and where the coarse side has more than 5 % finer than 0.075 mm.
+    /// coarse side goes on straight down to 0 %. The fine side begins at its D5, a fifth of the coarse side's
+    /// but not less than 0.075 mm; at most 5 % are finer. `None` if a D60 is not below 75 mm, or if the
+    /// coarse side has more than 5 % finer than 0.075 mm.
     pub fn of(d15: [f64; 2], d60: [f64; 2]) -> Option<Self> {
         let on =
             |side: usize, percent: f64| d15[side] * libm::pow(d60[side] / d15[side], (percent - 15.0) / 45.0);
@@ -87,8 +87,8 @@ impl SizeBand {
         Some(Self { sizes: SIZES.map(size).to_vec(), fine_side, coarse_side })
     }
 
-    /// Both sides, the fine one first, taken to go on straight up to 100 %, but to no more than 75 mm: for
-    /// their internal stability alone.
+    /// Both sides, the fine one first, continued straight up to 100 %, but to no more than 75 mm: for their
+    /// internal stability alone.
     pub fn continued(&self) -> [Vec<[f64; 2]>; 2] {
         [&self.fine_side, &self.coarse_side].map(|side| {
             let [d15, d60] = [15.0, 60.0].map(|percent| size_at(side, percent));
@@ -97,14 +97,15 @@ impl SizeBand {
         })
     }
 
-    /// The fine side as it is drawn and as the limits at the sieves have it: below its D5 it runs level down
-    /// to 0.075 mm, the finest sieve of every series, where it ends. Both sides then begin at 0 %.
+    /// The fine side as drawn and as limited at the sieves: below its D5 it runs level down to 0.075 mm, the
+    /// finest sieve of every series, where it ends. Both sides then begin at 0 %.
     pub fn drawn_fine_side(&self) -> Vec<[f64; 2]> {
         let foot = [[FINES_MM, 0.0], [FINES_MM, MOST_FINES_PERCENT]];
         foot.into_iter().chain(self.fine_side.iter().copied()).collect()
     }
 
-    /// The size (mm) at which the fine side has this percent finer; its end where it does not reach it.
+    /// The size (mm) at which the fine side has this percent finer; the end of the side if it does not reach
+    /// the percent.
     pub fn least_size(&self, percent: f64) -> f64 {
         size_at(&self.fine_side, percent)
     }
@@ -122,7 +123,7 @@ impl SizeBand {
         })
     }
 
-    /// The limits at the sieves of a series, from the coarsest sieve within the D60 of the coarse side down.
+    /// Limits at the sieves of a series, from the coarsest sieve within the D60 of the coarse side down.
     pub fn limits(&self, series: SieveSeries) -> Vec<SieveLimit> {
         let limit = |&opening_mm: &f64| {
             let [min, max] = self.percent_finer(opening_mm);
@@ -139,10 +140,10 @@ impl SizeBand {
     }
 }
 
-/// Whole percents within two limits; tenths where no whole percent lies between them, hundredths where no
-/// tenth does, and the limits themselves where none does.
+/// Whole percents within two limits; tenths if no whole percent lies between them, hundredths if no tenth
+/// does, and the limits themselves if no hundredth does.
 fn whole([min, max]: [f64; 2]) -> [f64; 2] {
-    // Logarithms leave a hair, which is no percent.
+    // Logarithms leave a rounding error, which is not a percent.
     let hair = 1e-9;
     // Rounding up from below 0 gives -0, to which 0 is added.
     let inward =
@@ -151,7 +152,7 @@ fn whole([min, max]: [f64; 2]) -> [f64; 2] {
     found.unwrap_or([min, max])
 }
 
-/// The percent finer than a size (mm); below its first point a side has what it has there.
+/// Percent finer than a size (mm); below its first point a side keeps the percent of that point.
 fn percent_at(side: &[[f64; 2]], size: f64) -> f64 {
     let below = side.partition_point(|point| point[0] <= size);
     match below.checked_sub(1) {
@@ -241,7 +242,7 @@ mod tests {
         assert_eq!(band.percent_finer(0.7)[1], Some(60.0));
         assert!(band.percent_finer(0.69)[1].unwrap() < 15.0);
         assert!(SizeBand::of([4.0, 20.0], [20.0, 100.0]).is_none());
-        // It is cut off at the greatest size.
+        // The greatest size cuts it off.
         let coarse = SizeBand::of([2.0, 10.0], [10.0, 50.0]).unwrap();
         assert_eq!(coarse.continued()[1].last(), Some(&[75.0, 100.0]));
     }

@@ -208,8 +208,8 @@ pub enum StepNote {
     },
 }
 
-/// The size of a band by which a table of the maximum D90F is entered. It is rounded down: a finer D10F
-/// allows no coarser D90F.
+/// Size of a band that enters a table of the maximum D90F. It is rounded down: a finer D10F allows no coarser
+/// D90F.
 pub const ENTERED_BY: &str = "minimum D10F";
 
 /// A number of a step.
@@ -225,7 +225,8 @@ pub struct StepValue {
 }
 
 impl StepValue {
-    /// Whether it is a limit: `true` of a minimum, `false` of a maximum and of [`ENTERED_BY`].
+    /// Side of a limit: `true` for a minimum, `false` for a maximum and for [`ENTERED_BY`]; `None` for any
+    /// other value.
     pub fn role(&self) -> Option<bool> {
         match self.name.split(' ').next() {
             _ if self.name == ENTERED_BY => Some(false),
@@ -296,7 +297,7 @@ pub struct ProductMargin {
 }
 
 impl ProductMargin {
-    /// Whether both its sides keep every requirement; `None` where a limit of D15F that is not known decides.
+    /// True if both sides keep every requirement; `None` if an unknown limit of D15F decides.
     pub fn fits(&self) -> Option<bool> {
         let kept = [self.drains_by, self.holds_by].map(|margin| margin.map(|margin| margin >= 1.0));
         if kept.contains(&Some(false)) || !self.not_kept.is_empty() {
@@ -306,35 +307,35 @@ impl ProductMargin {
         }
     }
 
-    /// The smaller of its two margins.
+    /// The smaller of the two margins.
     fn margin(&self) -> f64 {
         self.drains_by.unwrap_or(f64::INFINITY).min(self.holds_by.unwrap_or(f64::INFINITY))
     }
 }
 
 impl Specification {
-    /// The product whose D15 comes closest to both limits, where none fits.
+    /// The product whose D15 comes closest to both limits, if no product fits.
     pub fn nearest_product(&self) -> Option<&ProductMargin> {
         let none_fits = self.products.iter().all(|of| of.fits() == Some(false));
         let all = self.products.iter().filter(|_| none_fits && self.d15f_max_mm.is_some());
         all.max_by(|a, b| a.margin().total_cmp(&b.margin()))
     }
 
-    /// The curve that sets the maximum D15F, and that D15F (mm); `None` where it is not known.
+    /// The curve that sets the maximum D15F, and this D15F (mm); `None` if it is not known.
     pub fn strictest(&self) -> Option<(&SpecifiedCurve, f64)> {
         self.d15f_max_mm?;
         let limits = self.curves.iter().filter_map(|curve| Some((curve, curve.d15f_max_mm?)));
         limits.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Whose rule sets the maximum D15F; `None` where it is not known.
+    /// Author of the rule that sets the maximum D15F; `None` if it is not known.
     pub fn set_by(&self) -> Option<&str> {
         self.strictest().map(|(curve, _)| &*curve.d15f_max_rule)
     }
 }
 
-/// Every standard product beside the minimum D15F (mm) with the least that it is for certain, and the
-/// greatest.
+/// Compares every standard product with the minimum D15F (mm), with the least that it certainly is, and with
+/// the maximum.
 pub fn margins((d15f_min, certain): (Option<f64>, f64), d15f_max: Option<f64>) -> Vec<ProductMargin> {
     if d15f_min.is_none() && d15f_max.is_none() {
         return Vec::new();
@@ -345,7 +346,7 @@ pub fn margins((d15f_min, certain): (Option<f64>, f64), d15f_max: Option<f64>) -
             product: product.name.into(),
             d15_fine_mm: fine,
             d15_coarse_mm: coarse,
-            // The true margin may be any greater.
+            // The true margin may be greater without limit.
             drains_by: d15f_min.map(|least| fine / least).filter(|margin| *margin >= 1.0 || fine < certain),
             holds_by: d15f_max.map(|greatest| greatest / coarse),
             not_kept: product.not_kept(),
@@ -374,11 +375,11 @@ mod tests {
         assert!(near(sand.holds_by.unwrap(), 0.7 / (0.3 * 2f64.sqrt())));
         let none = margins((Some(0.5), 0.5), Some(0.6));
         assert!(none.iter().all(|of| of.fits() == Some(false)));
-        // What drains may or may not hold where the maximum D15F is not known.
+        // A product that drains may or may not hold if the maximum D15F is not known.
         let open = margins((Some(0.2), 0.2), None);
         assert_eq!((open[0].fits(), open[2].fits()), (Some(false), None));
         assert!(margins((None, 0.0), None).is_empty());
-        // Whether it drains is not known where the least is one at most.
+        // Drainage is not known if the minimum is only known to be at most a number.
         let till = &margins((Some(0.375), 0.0), Some(0.7))[0];
         assert_eq!((till.drains_by, till.fits()), (None, None));
         assert_eq!(margins((Some(0.375), 0.0), Some(0.3))[0].fits(), Some(false));

@@ -7,10 +7,10 @@ use crate::applied::{RuleQuantity, RuleRole, RuleUnit};
 /// The rule by which new filters are specified.
 pub const DESIGN: &str = "sherard-dunnigan";
 
-/// Up to where tests saw no erosion.
+/// Boundary up to which tests saw no erosion.
 pub const TESTS_NO_EROSION: &str = "foster-fell-no-erosion";
 
-/// From where tests saw continuing erosion.
+/// Boundary from which tests saw continuing erosion.
 pub const TESTS_CONTINUING: &str = "foster-fell-continuing";
 
 /// The probability of continuing erosion into an open joint.
@@ -40,7 +40,7 @@ pub const TERZAGHI: &str = "terzaghi";
 /// Id of Kezdi's criterion of internal stability.
 pub const KEZDI: &str = "kezdi";
 
-/// Id of Kenney and Lau's.
+/// Id of Kenney and Lau's criterion of internal stability.
 pub const KENNEY_LAU: &str = "kenney-lau";
 
 /// Id of Li and Fannin's criterion of internal stability, which takes the milder of Kenney and Lau's and
@@ -51,11 +51,11 @@ pub const LI_FANNIN: &str = "li-fannin";
 const FELL: &str = "Fell, MacGregor, Stapledon & Bell, Geotechnical Engineering of Dams, Table 9.2 (after \
                     Foster 1999; Foster & Fell 2001)";
 
-/// Where the stability rules are stated.
+/// Source of the stability rules.
 const INTERNAL_STABILITY: &str = "U.S. Army Corps of Engineers, Internal Instability Toolbox manual \
                                   (RMC-CPD-2023-10), after Li and Fannin (2008)";
 
-/// Of numbers that no text confirms which a report could cite.
+/// Source of numbers that are confirmed by no text which a report could cite.
 const OURS: &str = "a check of this program, as specifications of filters commonly have it; no text that can \
                     be cited was read for its number";
 

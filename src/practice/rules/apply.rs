@@ -17,12 +17,12 @@ pub fn apply(inputs: &RuleInputs) -> Vec<AppliedRule> {
     RULES.iter().filter_map(applied).collect()
 }
 
-/// Whose rule it is, as a sentence cites it; its name where nobody is cited.
+/// Author of a rule, as a sentence cites it; the rule's name if nobody is cited.
 pub fn authority(rule: &AppliedRule) -> &str {
     if rule.authority.is_empty() { &rule.name } else { &rule.authority }
 }
 
-/// The same without the year of its source, which stands in the table of rules.
+/// Author without the year of the source, which the table of rules gives.
 pub fn authority_in_brief(rule: &AppliedRule) -> &str {
     authority(rule).split(" (").next().unwrap_or_default()
 }
@@ -30,8 +30,8 @@ pub fn authority_in_brief(rule: &AppliedRule) -> &str {
 /// A curve of a soil, with its name.
 pub type NamedCurve = (String, Gradation);
 
-/// Applies every rule to the curves of a filter and of a base, of which there is at least one each: the
-/// curves that keep it worst count, and it is named by them.
+/// Applies every rule to the curves of a filter and of a base, at least one of each. The curves that keep a
+/// rule worst count, and the result names them.
 pub fn apply_to_envelopes(
     bases: &[NamedCurve],
     filters: &[NamedCurve],
@@ -41,8 +41,8 @@ pub fn apply_to_envelopes(
     apply_and_decide(bases, filters, dispersive, joint_mm).0
 }
 
-/// The same, the places of the filter and of the base that keep the limit of design worst, and that base as
-/// practice describes it.
+/// Applies every rule to the curves. Also returns the places of the filter and of the base that keep the
+/// limit of design worst, and this base as practice describes it.
 pub fn apply_and_decide(
     bases: &[NamedCurve],
     filters: &[NamedCurve],
@@ -61,7 +61,7 @@ pub fn apply_and_decide(
         ..RuleInputs::with_soil(&bases[base].1, soils[base].clone(), &filters[filter].1)
     };
     let mut worst: Vec<Option<Worst>> = RULES.iter().map(|_| None).collect();
-    // Of equal results that of the finest base is named.
+    // Among equal results, names the finest base.
     let d85b = |base: &usize| soils[*base].gradation.d(85.0).unwrap_or(0.0);
     let mut finest_first: Vec<usize> = (0..bases.len()).collect();
     finest_first.sort_by(|a, b| d85b(a).total_cmp(&d85b(b)));
@@ -113,7 +113,7 @@ struct Worst {
 }
 
 impl Worst {
-    /// Counts one more pair; of equals the first stays.
+    /// Counts one more pair; among equal results the first remains.
     fn count(worst: &mut Option<Self>, rule: &FilterRule, judged: Judged, at: [usize; 2]) {
         let margin = margin(rule, &judged);
         let limit = judged.limit.filter(|_| judged.applies).unwrap_or(f64::INFINITY);
@@ -125,7 +125,7 @@ impl Worst {
         let both = [before.lost, lost].into_iter().flatten();
         before.least = before.least.min(limit);
         before.lost = both.max_by(|a, b| a.d15f.total_cmp(&b.d15f));
-        // Of equals the coarser base, which comes later, is the one to drain.
+        // Among equal results the coarser base, which comes later, is the one to drain.
         if margin < before.margin
             || rule.at_least && rule.pairing == Pairing::EachPair && margin == before.margin
         {
@@ -133,11 +133,11 @@ impl Worst {
         }
     }
 
-    /// What the envelope has by this rule.
+    /// Result of the envelope by this rule.
     fn into_judged(self, rule: &FilterRule) -> Judged {
         let Self { mut judged, least, lost, .. } = self;
         judged.without_finer = lost.or(judged.without_finer);
-        // Where one curve leaves the limit open, it is no more than another's.
+        // If one curve leaves the limit open, it is no higher than another curve's limit.
         let is_lower = judged.limit.is_some_and(|limit| least < limit);
         if judged.applies && judged.met.is_none() && is_lower && !rule.at_least {
             (judged.limit, judged.limit_at_most) = (Some(least), true);
@@ -146,7 +146,7 @@ impl Worst {
     }
 }
 
-/// A rule as it is recorded.
+/// Converts a rule and its result to a record.
 fn record(rule: &FilterRule, scale_free: bool, judged: Judged) -> AppliedRule {
     AppliedRule {
         id: rule.id.into(),

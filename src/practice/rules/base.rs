@@ -5,28 +5,27 @@ use voidwalk_core::gradation::{FEW_FINES, FINES_MM, Gradation, RegradeCause, Reg
 /// A base soil as practice describes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BaseSoil {
-    /// The soil after regrading; as it was where it is not regraded.
+    /// The soil after regrading, or the soil itself without regrading.
     pub gradation: Gradation,
-    /// Whether it was regraded.
+    /// True if the soil was regraded.
     pub regraded: bool,
-    /// The size on which it was regraded (mm).
+    /// Size on which the soil was regraded (mm).
     pub regraded_at_mm: Option<f64>,
-    /// Why it was regraded, or not.
+    /// Reason for regrading or not.
     pub why: RegradeReason,
-    /// The size below which practice looks at it, where no sieve tells the sizes there (mm): they are at most
+    /// Size (mm) below which practice looks at the soil, if no sieve gives the sizes there: they are at most
     /// this.
     pub hidden_below_mm: Option<f64>,
-    /// Percent finer than 0.075 mm after regrading; `None` where the finest sieve is coarser and leaves a
-    /// tail.
+    /// Percent finer than 0.075 mm after regrading; `None` if the finest sieve is coarser and leaves a tail.
     pub fines_percent: Option<f64>,
     /// Category of NRCS after regrading, 1 to 4: more than 85 %, 40 to 85 %, 15 to 40 %, less than 15 %
-    /// fines; `None` where the fines are not known closely enough.
+    /// fines; `None` if the fines are not known closely enough.
     pub category: Option<u8>,
 }
 
 impl BaseSoil {
-    /// Describes a base. Sizes that are multiples of D0F have no No. 4 and no No. 200 sieve: such a base is
-    /// left as it is, without a category. Others are regraded by [`Gradation::regraded`].
+    /// Describes a base. Sizes that are multiples of D0F have no No. 4 and no No. 200 sieve: such a base
+    /// remains as it is, without a category. Others are regraded by [`Gradation::regraded`].
     pub fn of(base: &Gradation, scale_free: bool) -> Self {
         if scale_free {
             return Self {
@@ -42,8 +41,7 @@ impl BaseSoil {
         Self::regraded(base.regraded())
     }
 
-    /// The same regraded as another curve of this base is, and where the curve is flat as it may be read
-    /// otherwise.
+    /// Describes a base regraded like another curve of it, and, for a flat curve, the other reading.
     pub(super) fn both(base: &Gradation, as_of: &Gradation) -> (Self, Option<Self>) {
         let otherwise = base.regraded_otherwise(as_of).map(Self::regraded);
         (Self::regraded(base.regraded_as(as_of)), otherwise)
@@ -79,7 +77,7 @@ impl BaseSoil {
     }
 }
 
-/// A percent without the last digits that hang on how its curve was written.
+/// A percent without last digits that depend on how its curve was written.
 fn whole(percent: f64) -> f64 {
     let whole = percent.round();
     if (percent - whole).abs() <= 100.0 * TIE { whole } else { percent }
@@ -100,7 +98,7 @@ mod tests {
         assert!(till.regraded && till.regraded_at_mm == Some(4.75));
         assert!((till.fines_percent.unwrap() - 35.0 / 0.92).abs() < 1e-9);
         assert_eq!(till.category, Some(3));
-        // 12 % of the 80 % that pass No. 4 are 15 %: too many to be sure that they are few.
+        // 12 % of the 80 % that pass No. 4 are 15 %: too many to count as few for certain.
         let tail = soil(&[(0.3, 12.0), (1.0, 40.0), (4.75, 80.0), (9.5, 100.0)]);
         assert_eq!((tail.fines_percent, tail.category), (None, None));
     }
@@ -111,7 +109,7 @@ mod tests {
             let base = soil(&[(0.001, 0.0), (0.075, fines), (0.5, 100.0)]);
             assert_eq!(base.category, Some(category), "{fines}");
         }
-        // A table that ends at 0.075 mm knows its fines; one that ends above knows at most.
+        // A table that ends at 0.075 mm gives its fines; one that ends above gives an upper bound.
         assert_eq!(soil(&[(0.075, 38.0), (0.5, 100.0)]).fines_percent, Some(38.0));
         let few = soil(&[(0.2, 10.0), (0.5, 100.0)]);
         assert_eq!((few.fines_percent, few.category), (None, Some(4)));

@@ -1,5 +1,5 @@
-//! Tests of values of which sieves tell a bound alone: none of them reads as measured, and a rule is met or
-//! broken only where the bound itself meets or breaks its limit.
+//! Tests of values that sieves only bound: no bound reads as a measurement, and a rule is met or broken only
+//! if the bound itself meets or breaks its limit.
 
 use super::*;
 use crate::RuleNote;
@@ -41,7 +41,7 @@ fn a_cu_and_a_d15f_that_sieves_bound_are_broken_by_the_bound() {
     assert_eq!((fine.value, fine.value_bound, fine.met), (Some(0.5), Some(ValueBound::AtMost), Some(false)));
 }
 
-/// With 20 % below the finest sieve no split at 17.6 % is judged: what it hides may be worse.
+/// With 20 % below the finest sieve no split at 17.6 % is judged: the hidden part may be worse.
 #[test]
 fn what_the_finest_part_hides_is_not_met() {
     let [narrow, gap] =
@@ -72,7 +72,7 @@ fn a_shape_index_says_from_where_it_was_judged() {
     assert!(matches!(whole.notes[..], [RuleNote::ShapeAt(..)]), "{whole:?}");
 }
 
-/// Of a band the curve counts whose rest is the coarsest, whichever has the worst index.
+/// In a band, the curve with the coarsest remainder counts, whichever has the worst index.
 #[test]
 fn what_is_left_of_a_band_is_that_of_its_coarsest_curve() {
     let gap = |scale: f64, fines: f64| {

@@ -1,18 +1,18 @@
-//! Rules by which a filter drains and can be placed. None of them says whether it retains its base.
+//! Rules by which a filter drains and can be placed; retention of the base is elsewhere.
 //!
-//! What is not known never hides a failure: a size in a finest tail is at most the finest sieve.
+//! An unknown never hides a failure: a size in a finest tail is at most the finest sieve.
 
 use super::rule::{Judged, RuleInputs};
 use crate::{RuleNote, ValueBound};
 use voidwalk_core::gradation::{FINES_MM, Gradation};
 
-/// Times D15B that D15F is at least, by USBR (2011) and NRCS (2017).
+/// Least ratio D15F/D15B, by USBR (2011) and NRCS (2017).
 const TIMES: f64 = 5.0;
 
-/// The same by EM 1110-2-1901, which asks for 3 to 5.
+/// Least ratio D15F/D15B by EM 1110-2-1901, which asks for 3 to 5.
 const LEAST_TIMES: f64 = 3.0;
 
-/// The minimum D15F whatever the base (mm).
+/// Minimum D15F for any base (mm).
 pub const LEAST_D15F_MM: f64 = 0.1;
 
 /// Most fines of a filter (%).
@@ -24,15 +24,15 @@ pub const GREATEST_SIZE_MM: f64 = 75.0;
 /// Greatest Cu of a side of a filter's band.
 pub const MOST_CU: f64 = 6.0;
 
-/// Greatest size of the coarse side of a band over that of its fine side.
+/// Greatest ratio of sizes of the coarse side of a band to the fine side.
 pub const WIDEST_BAND: f64 = 5.0;
 
-/// The filter is coarse enough to drain the base, as it is before regrading.
+/// Checks that the filter is coarse enough to drain the base, as it is before regrading.
 pub fn permeability(inputs: &RuleInputs) -> Judged {
     coarse_enough(inputs, TIMES)
 }
 
-/// The same by the manual that asks for least.
+/// Checks permeability by the manual with the lowest requirement.
 pub fn least_permeability(inputs: &RuleInputs) -> Judged {
     coarse_enough(inputs, LEAST_TIMES)
 }
@@ -44,7 +44,7 @@ fn coarse_enough(inputs: &RuleInputs, times: f64) -> Judged {
     let limit = of_base.max(least);
     let finest = inputs.filter.smallest_mm();
     if d15b.is_none() && of_base <= least {
-        // However fine D15B is, the least governs.
+        // The least governs, however fine D15B is.
         let judged = Judged::of(d15f, Some(limit)).noted(RuleNote::LeastGoverns(times, of_base));
         return match d15f {
             Some(_) => judged,
@@ -55,7 +55,7 @@ fn coarse_enough(inputs: &RuleInputs, times: f64) -> Judged {
             None => judged.lacking(RuleNote::NeedsD15FSieved),
         };
     }
-    // Where D15B is finer than the finest sieve, the limit lies between the least and this one.
+    // If D15B is finer than the finest sieve, the limit lies between the least and this one.
     let surely = if d15b.is_some() { limit } else { least };
     let judged = match (d15f, d15b) {
         (Some(_), Some(_)) => Judged::of(d15f, Some(limit)).noted(RuleNote::BeforeRegrading),
@@ -75,7 +75,7 @@ fn coarse_enough(inputs: &RuleInputs, times: f64) -> Judged {
     Judged { limit_at_most: d15b.is_none() && judged.limit == Some(limit), ..judged }
 }
 
-/// The filter has few fines.
+/// Checks that the filter has few fines.
 pub fn fines(inputs: &RuleInputs) -> Judged {
     const MOST: Option<f64> = Some(MOST_FINES_PERCENT);
     if inputs.scale_free || !inputs.filter_is_measured {
@@ -92,7 +92,7 @@ pub fn fines(inputs: &RuleInputs) -> Judged {
     }
 }
 
-/// The filter has no cobbles.
+/// Checks that the filter has no cobbles.
 pub fn greatest_size(inputs: &RuleInputs) -> Judged {
     const MOST: Option<f64> = Some(GREATEST_SIZE_MM);
     match inputs.scale_free || !inputs.filter_is_measured {
@@ -101,13 +101,13 @@ pub fn greatest_size(inputs: &RuleInputs) -> Judged {
     }
 }
 
-/// The filter is uniform enough: a band of wider curves leaves room for gap-graded ones.
+/// Checks that the filter is uniform enough: a band of wider curves leaves room for gap-graded ones.
 pub fn uniformity(inputs: &RuleInputs) -> Judged {
     const MOST: Option<f64> = Some(MOST_CU);
     match (inputs.filter_is_measured, inputs.filter.cu()) {
         (false, _) => Judged { limit: MOST, ..Judged::default() }.lacking(RuleNote::NeedsCurveOfFilter),
         (true, None) => {
-            // D10 is at most the finest sieve, or D60 lies in the tail as well.
+            // D10 is at most the finest sieve, or D60 also lies in the tail.
             let least = inputs.filter.d(60.0).map(|d60| d60 / inputs.filter.smallest_mm());
             match least.filter(|least| Some(*least) > MOST) {
                 Some(least) => {
@@ -120,11 +120,11 @@ pub fn uniformity(inputs: &RuleInputs) -> Judged {
     }
 }
 
-/// Percent finer over which the sides of a band are compared: D5 is the lowest size that designs state, and
+/// Percents finer over which the sides of a band are compared. D5 is the lowest size that designs state, and
 /// tails below it depend on the finest sieve; the second limit is the rule's.
 const BAND: [f64; 2] = [5.0, 60.0];
 
-/// The band of the filter is narrow: its coarse side over its fine side.
+/// Checks that the band of the filter is narrow, by its coarse side over its fine side.
 pub fn band(inputs: &RuleInputs) -> Judged {
     if inputs.filter_curves.len() < 2 {
         return Judged::left_out();

@@ -11,7 +11,7 @@ const PROBABILITY: [(f64, f64); 5] = [(0.5, 0.0001), (0.75, 0.001), (1.0, 0.1), 
 /// Below this ratio the probability is 0.
 const CLOSED: f64 = 0.4;
 
-/// The probability of continuing erosion into a joint, where one is asked about.
+/// The probability of continuing erosion into a joint, if a joint is given.
 pub fn constricted(inputs: &RuleInputs) -> Judged {
     let Some(joint) = inputs.joint_mm else { return Judged::left_out() };
     let Some(d95b) = inputs.base_soil.gradation.d(95.0) else {
@@ -24,8 +24,8 @@ pub fn constricted(inputs: &RuleInputs) -> Judged {
     if share.is_none() { judged.noted(RuleNote::LessThanSource) } else { judged }
 }
 
-/// Probability (0 to 1) of continuing erosion at this width over D95B: between the table's points straight in
-/// the ratio on the scale of a normal variate. `None` is more than 0 and less than 0.0001.
+/// Probability (0 to 1) of continuing erosion at this width over D95B: straight between the table's points in
+/// the ratio, on the scale of a normal variate. `None` means more than 0 and less than 0.0001.
 fn probability(ratio: f64) -> Option<f64> {
     let [first, .., last] = PROBABILITY;
     if ratio < CLOSED {

@@ -1,12 +1,12 @@
-//! One rule for two soils: its result, and how well it is kept.
+//! Judgement of one rule for two soils: its result, and its margin.
 
 use super::rule::{FilterRule, Judged, RuleInputs};
 use crate::applied::{RuleRole, ValueBound};
 use voidwalk_core::gradation::TIE;
 
-/// How well a rule is kept: the worst first.
+/// Margin by which a rule is kept, the worst first.
 pub(super) fn margin(rule: &FilterRule, judged: &Judged) -> (u8, f64, f64) {
-    // A boundary of erosion that tests did not find excludes less than one that is not reached.
+    // A boundary of erosion that tests did not identify excludes less than one that is not reached.
     let is_open = judged.applies || judged.needs.is_some() || rule.role == RuleRole::Continuation;
     let class = match judged.met {
         Some(false) => 0,
@@ -23,7 +23,7 @@ pub(super) fn margin(rule: &FilterRule, judged: &Judged) -> (u8, f64, f64) {
     (class, over, judged.limit.filter(|_| !rule.at_least).unwrap_or(f64::INFINITY))
 }
 
-/// What one rule finds, with its result; `None` where nobody asked for it.
+/// Judges one rule; `None` if nobody asked for it.
 pub(super) fn judged(rule: &FilterRule, inputs: &RuleInputs) -> Option<Judged> {
     let judged = (rule.judge)(inputs);
     if judged.is_left_out {
@@ -34,10 +34,10 @@ pub(super) fn judged(rule: &FilterRule, inputs: &RuleInputs) -> Option<Judged> {
         false => value <= limit * (1.0 + TIE),
     };
     let met = judged.met.or_else(|| judged.value.zip(judged.limit).map(keeps));
-    // A limit that can only be less is broken for certain, or kept for certain where it is the least allowed.
+    // A limit that can only be less is certainly broken, or certainly kept if it is the least allowed.
     let met = met.filter(|met| !judged.limit_at_most || *met == rule.at_least || judged.met.is_some());
     let value_bound = judged.value_bound.filter(|_| judged.value.is_some());
-    // So is one of whose value only a bound is known: met where the bound itself meets it, or broken by it.
+    // A value that is only a bound decides if the bound itself meets or breaks the limit.
     let is_surely = |bound: ValueBound| (bound == ValueBound::AtMost) != rule.at_least;
     let met = met.filter(|met| value_bound.is_none_or(|bound| *met == is_surely(bound)));
     let met = met.filter(|_| judged.applies);

@@ -1,7 +1,7 @@
 //! The rules of filter practice, applied to the same two curves and shown beside the verdict.
 //!
-//! One rule is one entry of [`RULES`]: what it is for, where it applies, its limit and its source. A rule
-//! that lacks an input says what it needs; one that was not made for these soils has no result.
+//! One rule is one entry of [`RULES`]: its purpose, its soils, its limit and its source. A rule that lacks an
+//! input names it; a rule that was not made for these soils has no result.
 
 mod all;
 mod apply;

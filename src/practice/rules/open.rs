@@ -1,10 +1,10 @@
-//! Rules of soils whose sieves stand far apart: each is judged for every way in which the mass between them
-//! may be spread, at its finer or at its coarser sieve.
+//! Rules for soils with sieves far apart: each rule is judged for every way in which the mass between two
+//! sieves may be spread, at the finer or at the coarser one.
 //!
-//! Up to [`WIDE_STEP`] the worst of these results counts. Beyond it a rule whose answer hangs on the step
-//! has no result. A rule of the filter's shape has none on any such step: what a filter loses is not known.
-//! Internal stability reads a straight line where next to nothing passes: sieves of ASTM D448 stones stand
-//! that far apart there.
+//! Up to [`WIDE_STEP`] the worst of these results counts. Beyond it, a rule whose answer depends on the step
+//! has no result. A rule of the filter's shape has no result on any such step: the mass that the filter loses
+//! is not known. Internal stability reads a straight line where next to nothing passes, because sieves of
+//! ASTM D448 stones lie that far apart there.
 //!
 //! [`WIDE_STEP`]: voidwalk_core::gradation::WIDE_STEP
 
@@ -20,17 +20,17 @@ use crate::RuleNote;
 use crate::applied::RuleRole;
 use voidwalk_core::gradation::{End, Gradation, Step};
 
-/// Most steps of a curve that are looked at one by one; the widest are, and the others lie all at one end.
+/// Most steps of a curve that are spread one by one: the widest. The others all go to one end.
 const MOST_STEPS: usize = 6;
 
-/// Something that a table of sieves leaves open, which has two ends.
+/// An open question of a table of sieves, with two ends.
 #[derive(Clone, Copy, Debug)]
 enum Choice {
-    /// How the mass of a step of the filter is spread.
+    /// Spread of the mass of a step of the filter.
     OfFilter(Step),
-    /// The same of the base.
+    /// Spread of the mass of a step of the base.
     OfBase(Step),
-    /// Whether a flat part of the base is a gap, on which practice regrades.
+    /// Reading of a flat part of the base as a gap, on which practice regrades, or not.
     Gap,
 }
 
@@ -51,16 +51,16 @@ impl Choice {
     }
 }
 
-/// Every curve that a base may have, with what its bits choose.
+/// Every curve that a base may have, with the choices that the bits of its place make.
 pub struct OpenBase {
     choices: Vec<Choice>,
     curves: Vec<(Gradation, BaseSoil)>,
-    /// Those whose worst is at neither end of a wide step, with that step.
+    /// Curves with the mass within a wide step instead of at its ends, with this step.
     hidden: Vec<(Gradation, BaseSoil, Step)>,
 }
 
 impl OpenBase {
-    /// Of a base; without curves where its table leaves nothing open. Only wide steps hide a gap.
+    /// Curves of a base; empty if its table leaves nothing open. Only wide steps hide a gap.
     pub fn of(base: &Gradation, scale_free: bool) -> Self {
         if scale_free {
             return Self { choices: Vec::new(), curves: Vec::new(), hidden: Vec::new() };
@@ -75,7 +75,7 @@ impl OpenBase {
             true => Vec::new(),
             false => wide.iter().map(cut).collect(),
         };
-        // What passes a cut within a step that is not wide is read on the straight line.
+        // The part that passes a cut within a step that is not wide is read on the straight line.
         let is_cut = |place: usize, step: &Step| cuts[place].iter().flatten().any(|at| step.holds(*at));
         let curves = spread(base, &steps, |place, step| step.is_wide() || !is_cut(place, step));
         let curves = curves.into_iter().zip(wide);
@@ -107,14 +107,14 @@ impl OpenBase {
 pub struct OpenFilter {
     steps: Vec<Step>,
     curves: Vec<Gradation>,
-    /// The same with straight lines where next to nothing passes.
+    /// Curves with straight lines where next to nothing passes.
     stable: Vec<Gradation>,
-    /// Those whose worst is at neither end of a wide step, with that step.
+    /// Curves with the mass within a wide step instead of at its ends, with this step.
     hidden: Vec<(Gradation, Step)>,
 }
 
 impl OpenFilter {
-    /// Of a filter; without curves where its table leaves nothing open.
+    /// Curves of a filter; empty if its table leaves nothing open.
     pub fn of(filter: &Gradation, is_measured: bool) -> Self {
         let steps = if is_measured { filter.open_steps() } else { Vec::new() };
         let curves = if steps.is_empty() { Vec::new() } else { spread(filter, &steps, |_, _| true) };
@@ -125,7 +125,7 @@ impl OpenFilter {
     }
 }
 
-/// The steps that are looked at one by one: the widest.
+/// The widest steps, which are spread one by one.
 fn chosen(steps: &[Step]) -> Vec<Step> {
     let mut widest = steps.to_vec();
     widest.sort_by(|a, b| b.ratio().total_cmp(&a.ratio()));
@@ -134,8 +134,8 @@ fn chosen(steps: &[Step]) -> Vec<Step> {
     widest
 }
 
-/// A curve with the mass of one wide step anywhere but at one of its ends, and of the others straight, at
-/// their finer and at their coarser sieves.
+/// Curves with the mass of one wide step anywhere but at its ends, and with the mass of the others straight,
+/// at their finer and at their coarser sieves.
 fn hidden(curve: &Gradation, steps: &[Step], counts: impl Fn(&Step) -> bool) -> Vec<(Gradation, Step)> {
     let others = |step: Step| {
         let at = |end| {
@@ -161,9 +161,9 @@ fn hidden(curve: &Gradation, steps: &[Step], counts: impl Fn(&Step) -> bool) -> 
     steps.iter().filter(|step| step.is_wide() && counts(step)).flat_map(filled).collect()
 }
 
-/// A curve with the mass of each step at either end: bit `i` of a place is set where step `i` has it at its
-/// coarser sieve. Steps that are not looked at one by one go with the last of those that are; of those that
-/// are not read by their ends the curve is the straight line.
+/// Curves with the mass of each step at either end: bit `i` of a place is set if step `i` has it at its
+/// coarser sieve. Steps that are not spread one by one go with the last of those that are. Steps that are not
+/// read by their ends keep the straight line.
 fn spread(curve: &Gradation, steps: &[Step], by_ends: impl Fn(usize, &Step) -> bool) -> Vec<Gradation> {
     let chosen = chosen(steps);
     let end = |place: usize, step: &Step| {
@@ -178,7 +178,7 @@ fn spread(curve: &Gradation, steps: &[Step], by_ends: impl Fn(usize, &Step) -> b
     (0..1usize << chosen.len()).map(at).collect()
 }
 
-/// What one rule finds for two soils, and what their tables leave open; `None` where nobody asked for it.
+/// Judges one rule for two soils, with the open questions of their tables; `None` if nobody asked for it.
 pub fn judged_over(
     rule: &FilterRule,
     inputs: &RuleInputs,
@@ -221,8 +221,7 @@ fn is_broken(judged: Option<Judged>) -> bool {
     judged.is_some_and(|of| of.met == Some(false))
 }
 
-/// The widest step of a filter within which mass may stand so that it breaks a rule which is kept at both of
-/// its ends.
+/// The widest step of a filter in which mass may lie so that it breaks a rule that both ends keep.
 fn breaks_in_filter(
     rule: &FilterRule,
     inputs: &RuleInputs,
@@ -238,7 +237,7 @@ fn breaks_in_filter(
     widest(filter.hidden.iter().filter(breaks).map(|(_, step)| *step))
 }
 
-/// The same of a base.
+/// The widest step of a base in which mass may lie so that it breaks a rule that both ends keep.
 fn breaks_in_base(
     rule: &FilterRule,
     inputs: &RuleInputs,
@@ -259,8 +258,8 @@ fn breaks_in_base(
     widest(base.hidden.iter().filter(breaks).map(|(.., step)| *step))
 }
 
-/// The open step in which D15F lies, and the filters with D15F at either end of it; the filter itself
-/// without one.
+/// The open step that contains D15F, and the filters with D15F at either end of it; without such a step, the
+/// filter itself.
 fn d15f_ends<'a>(filter: &'a Gradation, open: &'a OpenFilter) -> (Option<Step>, Vec<&'a Gradation>) {
     let encloses = |step: &Step| filter.d(15.0).is_some_and(|d15f| step.encloses(d15f));
     let step = widest(open.steps.iter().copied().filter(encloses));
@@ -270,7 +269,7 @@ fn d15f_ends<'a>(filter: &'a Gradation, open: &'a OpenFilter) -> (Option<Step>, 
     }
 }
 
-/// A result that hangs on a step, which is no result; what is known of a base stays.
+/// Turns a result that depends on a step into no result; the known facts about a base remain.
 fn left_open(plain: Judged, is_of_base: bool, needs: Option<RuleNote>) -> Judged {
     Judged {
         met: None,
@@ -285,7 +284,7 @@ fn left_open(plain: Judged, is_of_base: bool, needs: Option<RuleNote>) -> Judged
 
 type Over = Option<(Vec<Choice>, Vec<Judged>)>;
 
-/// Rules that read no more of the filter than D15F.
+/// Judges rules that read no more of the filter than D15F.
 fn of_pair(rule: &FilterRule, inputs: &RuleInputs, base: &OpenBase, filter: &OpenFilter) -> Over {
     let (step, filters) = d15f_ends(inputs.filter, filter);
     let choices: Vec<Choice> =
@@ -302,7 +301,7 @@ fn of_pair(rule: &FilterRule, inputs: &RuleInputs, base: &OpenBase, filter: &Ope
     Some((choices, results.collect()))
 }
 
-/// Rules of the filter alone.
+/// Judges rules of the filter alone.
 fn of_filter(rule: &FilterRule, inputs: &RuleInputs, filter: &OpenFilter) -> Over {
     let curves = match rule.role {
         RuleRole::Stability => &filter.stable,
@@ -315,7 +314,7 @@ fn of_filter(rule: &FilterRule, inputs: &RuleInputs, filter: &OpenFilter) -> Ove
     Some((filter.steps.iter().map(|step| Choice::OfFilter(*step)).collect(), results.collect()))
 }
 
-/// A rule of all filters at once: the finest of each beside the coarsest of each.
+/// Judges a rule of all filters at once: the finest of each beside the coarsest of each.
 fn of_filters(rule: &FilterRule, inputs: &RuleInputs) -> Over {
     let open: Vec<OpenFilter> =
         inputs.filter_curves.iter().map(|filter| OpenFilter::of(filter, true)).collect();
@@ -329,10 +328,10 @@ fn of_filters(rule: &FilterRule, inputs: &RuleInputs) -> Over {
     Some((vec![step], vec![judged(rule, inputs)?, apart]))
 }
 
-/// The class of a rule that is kept; one that was not made for the soils speaks as little against them.
+/// Class of a rule that is kept; a rule that was not made for the soils speaks as little against them.
 const MET: u8 = 2;
 
-/// One result of those that what is open leaves possible; bit `i` of a place is choice `i`.
+/// Combines the results that the open choices allow; bit `i` of a place is choice `i`.
 fn combined(
     rule: &FilterRule,
     inputs: &RuleInputs,
@@ -348,7 +347,7 @@ fn combined(
     let is_of_shape = matches!(rule.role, RuleRole::Stability | RuleRole::Placing);
     let wide: Vec<usize> = (0..choices.len()).filter(|i| is_of_shape || choices[*i].is_wide()).collect();
     let mask = wide.iter().fold(0, |mask, i| mask | 1 << i);
-    // Of what is not far apart the worst counts.
+    // Over steps that are not wide, the worst counts.
     let answer = |place: usize| {
         let same = places.clone().filter(|of| of & mask == place & mask);
         same.map(|of| class(&results[of])).min()
@@ -357,7 +356,7 @@ fn combined(
     let moves = |i: &usize| places.clone().any(|place| is_moved(&results[place], &results[place ^ 1 << i]));
     // The widest step is the one to be sieved first.
     let width = |a: &usize, b: &usize| choices[*a].width().total_cmp(&choices[*b].width());
-    // Every end may break what the straight line between them keeps.
+    // Every end may break a rule that the straight line between them keeps.
     let breaks = |i: &usize| {
         choices[*i].is_wide() && class(&plain) == MET && results.iter().all(|judged| class(judged) == 0)
     };
@@ -366,16 +365,16 @@ fn combined(
         return left_open(plain, is_of_base, note(rule, inputs, choices[flips], &worst, &results));
     }
     let Some(moves) = (0..choices.len()).filter(moves).max_by(width) else { return plain };
-    // Where all agree, numbers between sieves far apart are those of the straight line.
+    // If all agree, numbers between sieves far apart come from the straight line.
     let is_plain = class(&plain) == class(&worst) && (choices[moves].is_wide() || !plain.applies);
     let lost = results.iter().chain([&plain]).filter_map(|judged| judged.without_finer);
     let lost = lost.max_by(|a, b| a.d15f.total_cmp(&b.d15f));
     let judged = if is_plain { plain } else { worst };
     let note = note(rule, inputs, choices[moves], &judged, &results);
-    // Where one reading leaves the limit open, it is no more than another's.
+    // If one reading leaves the limit open, it is no higher than another reading's limit.
     let least = results.iter().filter_map(|judged| judged.limit).reduce(f64::min);
     let is_open = judged.met.is_none() && judged.limit_at_most && !rule.at_least && !is_plain;
-    // A limit that is kept whatever it is, is stated by its strict end.
+    // A limit that is kept in every reading is stated by its strict end.
     let greatest = results.iter().filter_map(|judged| judged.limit).reduce(f64::max);
     let limit = match judged.met {
         Some(true) if is_plain => if rule.at_least { greatest } else { least }.or(judged.limit),
@@ -386,7 +385,7 @@ fn combined(
     Judged { without_finer, limit, ..judged }.noted(note)
 }
 
-/// Whether two results differ in more than their last digits.
+/// True if two results differ in more than their last digits.
 fn is_moved(here: &Judged, there: &Judged) -> bool {
     let apart = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => (a - b).abs() > 1e-6 * a.abs().max(b.abs()),
@@ -395,18 +394,18 @@ fn is_moved(here: &Judged, there: &Judged) -> bool {
     apart(here.value, there.value) || apart(here.limit, there.limit) || here.met != there.met
 }
 
-/// The limit of a rule of D15F over all that the table of a base leaves open.
+/// The limit of a rule of D15F over all readings that the table of a base leaves open.
 pub struct SievedLimit {
-    /// The strictest.
+    /// The strictest limit.
     pub strictest: f64,
-    /// The mildest.
+    /// The mildest limit.
     pub mildest: f64,
-    /// The sieves far apart on which it hangs, where it does.
+    /// Sieves far apart that the limit depends on.
     pub hangs_on: Option<RuleNote>,
 }
 
-/// The limit of a rule of D15F for a base in mm, with all that its table leaves `open`; `None` where it has
-/// none.
+/// The limit of a rule of D15F for a base in mm, with all that its table leaves `open`; `None` without a
+/// limit.
 pub fn sieved_limit(id: &str, base: &Gradation, open: &OpenBase, dispersive: bool) -> Option<SievedLimit> {
     let rule = RULES.iter().find(|rule| rule.id == id)?;
     let filter = Gradation::linear_from_dx(15.0, 1.0, 1.5).ok()?;
@@ -436,7 +435,7 @@ pub fn sieved_limit(id: &str, base: &Gradation, open: &OpenBase, dispersive: boo
     Some(SievedLimit { strictest, mildest, hangs_on })
 }
 
-/// What a result says of a choice that it hangs on, among all results.
+/// Note on a choice that a result depends on, among all results.
 fn note(
     rule: &FilterRule,
     inputs: &RuleInputs,

@@ -9,12 +9,12 @@ fn between(few: f64, many: f64, fines: f64, d85b: f64) -> f64 {
     (many - fines) / (many - few) * (4.0 * d85b - 0.7) + 0.7
 }
 
-/// A limit of D15F for a base with so many percent of fines and this D85B.
+/// A limit of D15F for a base with this percent of fines and this D85B.
 #[derive(Clone, Copy)]
 enum Limit {
     /// The limit itself.
     Is(f64),
-    /// No source gives it; it is at most this.
+    /// An upper bound of a limit that no source gives.
     AtMost(f64),
 }
 
@@ -26,10 +26,10 @@ impl Limit {
     }
 }
 
-/// The D15F (mm) below which the limit of design never lies: of fine clays 9 D85B is less.
+/// Least value of the limit of design (mm): for fine clays 9 D85B is less.
 pub const DESIGN_FLOOR_MM: f64 = 0.2;
 
-/// Sherard and Dunnigan's limit of design; with the limits for dispersive soils where the base is one.
+/// Sherard and Dunnigan's limit of design; for a dispersive base, with the limits for dispersive soils.
 pub fn sherard_dunnigan(inputs: &RuleInputs) -> Judged {
     let limit = |fines: f64, d85b: f64| match (inputs.dispersive, fines) {
         (false, fines) if fines > 85.0 => Limit::Is((9.0 * d85b).max(DESIGN_FLOOR_MM)),
@@ -48,7 +48,7 @@ pub fn sherard_dunnigan(inputs: &RuleInputs) -> Judged {
     judged.noted(is_floor.then_some(RuleNote::FloorGoverns(times, of_base))).noted(formula(inputs, 1.0, 40.0))
 }
 
-/// Foster and Fell's boundary of no erosion; with their limits for dispersive soils where the base is one.
+/// Foster and Fell's boundary of no erosion; for a dispersive base, with their limits for dispersive soils.
 pub fn no_erosion(inputs: &RuleInputs) -> Judged {
     let limit = |fines: f64, d85b: f64| match (inputs.dispersive, fines) {
         (false, fines) if fines > 85.0 => Limit::Is(9.0 * d85b),
@@ -62,7 +62,7 @@ pub fn no_erosion(inputs: &RuleInputs) -> Judged {
     by_fines(inputs, limit, false).noted(formula(inputs, 1.6, 35.0))
 }
 
-/// How a limit between few fines and so many percent of them is worked out, for a reader who checks it.
+/// Note on the formula of a limit between few fines and the percent `until`, for a reader who checks it.
 fn formula(inputs: &RuleInputs, times: f64, until: f64) -> Option<RuleNote> {
     let Fines::Percent(fines) = inputs.fines() else { return None };
     let is_known = !inputs.dispersive && inputs.size_of_base(85.0).is_known;
@@ -70,9 +70,9 @@ fn formula(inputs: &RuleInputs, times: f64, until: f64) -> Option<RuleNote> {
     (is_known && is_between).then_some(RuleNote::ByFines(times, until, fines))
 }
 
-/// The range of D15F (mm) in which tests of bases with so many percent of fines, after regrading, and this
-/// D85B (mm) had their boundary of no erosion (Fell et al., Geotechnical Engineering of Dams, Table 9.2,
-/// after Foster 1999).
+/// The range of D15F (mm) in which tests of bases with this percent of fines, after regrading, and this D85B
+/// (mm) had their boundary of no erosion (Fell et al., Geotechnical Engineering of Dams, Table 9.2, after
+/// Foster 1999).
 pub fn range_of_tests(fines: f64, d85b: f64) -> [f64; 2] {
     match fines {
         fines if fines > 85.0 => [6.4, 13.5].map(|times| times * d85b),
@@ -82,8 +82,8 @@ pub fn range_of_tests(fines: f64, d85b: f64) -> [f64; 2] {
     }
 }
 
-/// That range for the base of these inputs; `None` for a dispersive base, which had other tests, and where
-/// fines, D85B or the unit of sizes are not known.
+/// The range of tests for the base of these inputs; `None` for a dispersive base, which had other tests, and
+/// if fines, D85B or the unit of sizes are not known.
 pub fn tested_range(inputs: &RuleInputs) -> Option<[f64; 2]> {
     let d85b = inputs.size_of_base(85.0);
     let fines = match inputs.fines() {
@@ -96,8 +96,8 @@ pub fn tested_range(inputs: &RuleInputs) -> Option<[f64; 2]> {
 
 /// A limit of D15F that follows from fines and D85B of the regraded base.
 ///
-/// What is not known never hides a failure: where the limit itself is not known, the most that it can be is,
-/// and a filter beyond that breaks the rule whatever a test of the soil may show.
+/// An unknown never hides a failure: if the limit itself is not known, its upper bound is used, and a filter
+/// beyond the bound breaks the rule whatever a test of the soil may show.
 fn by_fines(inputs: &RuleInputs, limit: impl Fn(f64, f64) -> Limit, says_category: bool) -> Judged {
     let (d15f, d85b) = (inputs.coarse_d15f(), inputs.size_of_base(85.0));
     let known = match inputs.fines() {
@@ -133,8 +133,8 @@ fn by_fines(inputs: &RuleInputs, limit: impl Fn(f64, f64) -> Limit, says_categor
     }
 }
 
-/// The most that a limit can be where the fines are not known. D85B of a base that is nearly all fines is a
-/// fine itself.
+/// The greatest possible limit with unknown fines. D85B of a base that is nearly all fines is itself within
+/// the fines.
 fn whatever_its_fines(limit: &impl Fn(f64, f64) -> Limit, d85b: f64) -> f64 {
     let of = |fines: u32| {
         let d85b = if fines > 85 { d85b.min(FINES_MM) } else { d85b };
@@ -143,7 +143,7 @@ fn whatever_its_fines(limit: &impl Fn(f64, f64) -> Limit, d85b: f64) -> f64 {
     (0..=100).map(of).fold(0.0, f64::max)
 }
 
-/// What the base was read as, where that is not as it is.
+/// Note on a base that was read as another than it is.
 fn base_as_read(inputs: &RuleInputs) -> Option<RuleNote> {
     match inputs.fines() {
         Fines::Assumed => Some(RuleNote::TakenAsSand),
@@ -158,7 +158,7 @@ pub fn terzaghi(inputs: &RuleInputs) -> Judged {
     let judged = Judged::of(value, Some(4.0));
     match inputs.fines() {
         Fines::Percent(percent) if percent >= FEW_FINES => judged.not_for(RuleNote::LimitsByFines(percent)),
-        // With more fines other limits stand in its place, and most of them are stricter.
+        // With more fines other limits replace it, and most of them are stricter.
         Fines::Unknown => judged.at_most().lacking(RuleNote::NeedsFinesOfBase),
         _ => judged.noted(base_as_read(inputs)),
     }
@@ -168,8 +168,8 @@ pub fn terzaghi(inputs: &RuleInputs) -> Judged {
 /// erosion.
 const CLEAR_TO_MM: f64 = 2.0;
 
-/// Foster and Fell's boundary of continuing erosion. Where their tests found no clear one it is no limit to
-/// keep, and where nobody knows whether they did it has no result; beyond it a rule is broken all the same.
+/// Foster and Fell's boundary of continuing erosion. If their tests found no clear boundary, it is no limit
+/// to keep; if nobody knows whether they did, it has no result. Beyond it, the rule is broken in both cases.
 pub fn continuing(inputs: &RuleInputs) -> Judged {
     let (d15f, d95b) = (inputs.coarse_d15f(), inputs.size_of_base(95.0));
     let judged = Judged::of(d15f, Some(9.0 * d95b.most));
@@ -195,7 +195,7 @@ pub fn continuing(inputs: &RuleInputs) -> Judged {
     judged.noted(base_as_read(inputs)).noted(is_between.then_some(RuleNote::ExcessiveNotJudged))
 }
 
-/// Whether tests of such a base are known to have shown no erosion with this filter.
+/// True if tests of such a base are known to have shown no erosion with this filter.
 fn is_without_erosion(inputs: &RuleInputs) -> bool {
     let of = no_erosion(inputs);
     !of.limit_at_most && of.value.zip(of.limit).is_some_and(|(d15f, limit)| d15f <= limit)

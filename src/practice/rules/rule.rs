@@ -1,41 +1,42 @@
-//! What a rule is, and what it reads.
+//! A rule and its inputs.
 
 use super::base::BaseSoil;
 use crate::{RuleNote, RuleQuantity, RuleRole, RuleUnit, ValueBound, WithoutFiner};
 use voidwalk_core::gradation::Gradation;
 
-/// A rule of practice, as it stands in the table of [`super::RULES`].
+/// A rule of practice, an entry of the table [`super::RULES`].
 pub struct FilterRule {
-    /// Its name in `outcome.json` and in `voidwalk rules --json`.
+    /// Name in `outcome.json` and in `voidwalk rules --json`.
     pub id: &'static str,
-    /// Whose rule it is, as sentences cite it; empty where nobody is cited.
+    /// Author as sentences cite it; empty if nobody is cited.
     pub authority: &'static str,
-    /// Authorities whose texts state it besides.
+    /// Further authorities whose texts state the rule.
     pub stated_by: &'static [&'static str],
-    /// What it says.
+    /// Statement of the rule.
     pub says: &'static str,
-    /// What it is a rule of.
+    /// Role of the rule.
     pub role: RuleRole,
-    /// What it was made for.
+    /// Soils that the rule was made for.
     pub applies_to: &'static str,
-    /// What it limits. A rule of retention also limits a design where [`RuleQuantity`] has a case for it.
+    /// Quantity that the rule limits. A rule of retention also limits a design if [`RuleQuantity`] has a case
+    /// for it.
     pub quantity: RuleQuantity,
-    /// Its limit in words.
+    /// Limit in words.
     pub formula: &'static str,
-    /// Whether the limit is the least that it allows, and not the most.
+    /// True if the limit is the least allowed, false if it is the most.
     pub at_least: bool,
-    /// The unit of value and limit; sizes in mm stand for multiples of D0F, too.
+    /// Unit of value and limit; sizes in mm also mean multiples of D0F.
     pub unit: RuleUnit,
-    /// Where it is published.
+    /// Source of the rule.
     pub source: &'static str,
-    /// Which curves it reads where a soil has several.
+    /// Curves that the rule reads if a soil has several.
     pub pairing: Pairing,
-    /// Works it out.
+    /// Function that judges the rule.
     pub judge: fn(&RuleInputs) -> Judged,
 }
 
 impl FilterRule {
-    /// Its name for a reader: whose it is, and what it says.
+    /// Name for a reader: author and statement.
     pub fn name(&self) -> String {
         match self.authority {
             "" => self.says.into(),
@@ -44,7 +45,7 @@ impl FilterRule {
     }
 }
 
-/// Which curves a rule reads where a soil is an envelope of several.
+/// Curves that a rule reads if a soil is an envelope of several.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pairing {
     /// Every curve of the filter with every curve of the base; the worst pair counts.
@@ -55,54 +56,54 @@ pub enum Pairing {
     AllFilters,
 }
 
-/// What a rule finds for two soils.
+/// Result of a rule for two soils.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Judged {
-    /// Whether the rule was made for these soils.
+    /// True if the rule was made for these soils.
     pub applies: bool,
-    /// Its value here.
+    /// Value for these soils.
     pub value: Option<f64>,
-    /// Which side of the value the true one lies on, where the value is a bound.
+    /// Side on which the true value lies, if the value is a bound.
     pub value_bound: Option<ValueBound>,
-    /// Its limit here.
+    /// Limit for these soils.
     pub limit: Option<f64>,
-    /// Whether the true limit is not known, and is at most `limit`.
+    /// True if the true limit is not known, and is at most `limit`.
     pub limit_at_most: bool,
-    /// The result where it does not follow from value and limit.
+    /// Result, if it does not follow from value and limit.
     pub met: Option<bool>,
-    /// What is missing for a result.
+    /// Input that is missing for a result.
     pub needs: Option<RuleNote>,
-    /// What else a reader must know.
+    /// Notes for a reader.
     pub notes: Vec<RuleNote>,
-    /// What is left of the filter without the greatest part that it may lose by this rule.
+    /// Remainder of the filter without the greatest part that it may lose by this rule.
     pub without_finer: Option<WithoutFiner>,
-    /// Whether nobody asked for it: it is not listed.
+    /// True if nobody asked for the rule: it is not listed.
     pub is_left_out: bool,
 }
 
 impl Judged {
-    /// A rule that applies, with its value and limit where they are known.
+    /// A rule that applies, with its value and limit if they are known.
     pub fn of(value: Option<f64>, limit: Option<f64>) -> Self {
         Self { applies: true, value, limit, ..Self::default() }
     }
 
-    /// The same where the limit is only the most that the true one can be.
+    /// Marks the limit as an upper bound of the true one.
     pub fn at_most(self) -> Self {
         Self { limit_at_most: true, ..self }
     }
 
-    /// The same where the value is only a bound of the true one.
+    /// Marks the value as a bound of the true one.
     pub fn bound(self, side: ValueBound) -> Self {
         Self { value_bound: Some(side), ..self }
     }
 
-    /// The same with one more note, if there is one.
+    /// Adds a note, if there is one.
     pub fn noted(mut self, note: impl Into<Option<RuleNote>>) -> Self {
         self.notes.extend(note.into());
         self
     }
 
-    /// The same for a rule that was not made for these soils.
+    /// Marks the rule as not made for these soils.
     pub fn not_for(self, why: RuleNote) -> Self {
         Self { applies: false, notes: vec![why], ..self }
     }
@@ -112,44 +113,44 @@ impl Judged {
         Self { is_left_out: true, ..Self::default() }
     }
 
-    /// The same for a rule that lacks an input.
+    /// Marks the rule as lacking an input.
     pub fn lacking(self, needs: RuleNote) -> Self {
         Self { needs: Some(needs), ..self }
     }
 }
 
-/// What the rules read.
+/// Inputs of the rules.
 pub struct RuleInputs<'a> {
     /// The filter.
     pub filter: &'a Gradation,
-    /// Whether the filter's curve is a sieve curve, and not a straight line that was assumed.
+    /// True for a sieve curve of the filter, false for an assumed straight line.
     pub filter_is_measured: bool,
-    /// The base as it is.
+    /// The base as sampled.
     pub base: &'a Gradation,
-    /// The base as it is walked.
+    /// The base as walked.
     pub walked_base: &'a Gradation,
     /// The base as practice describes it.
     pub base_soil: BaseSoil,
-    /// Whether sizes are multiples of D0F and not mm.
+    /// True if sizes are multiples of D0F instead of mm.
     pub scale_free: bool,
-    /// Every curve of the filter, where it is an envelope of several; empty otherwise.
+    /// Every curve of the filter if it is an envelope of several; empty otherwise.
     pub filter_curves: Vec<&'a Gradation>,
-    /// Whether the base is a dispersive clay or silt.
+    /// True if the base is a dispersive clay or silt.
     pub dispersive: bool,
-    /// Width of an open joint at the exit (mm), where one is asked about.
+    /// Width of an open joint at the exit (mm), if one is given.
     pub joint_mm: Option<f64>,
-    /// Largest particle eroded in the first run over D15F, mean over replicates; `None` where nothing eroded,
-    /// or nothing was walked.
+    /// Largest particle eroded in the first run over D15F, mean over replicates; `None` if nothing eroded, or
+    /// nothing was walked.
     pub largest_eroded_over_d15f: Option<f64>,
 }
 
 impl<'a> RuleInputs<'a> {
-    /// Two sieve curves in mm, without a walk.
+    /// Inputs of two sieve curves in mm, without a walk.
     pub fn of_soils(base: &'a Gradation, filter: &'a Gradation) -> Self {
         Self::with_soil(base, BaseSoil::of(base, false), filter)
     }
 
-    /// The same of a base that was described already.
+    /// Inputs of a base that has already been described.
     pub(crate) fn with_soil(base: &'a Gradation, base_soil: BaseSoil, filter: &'a Gradation) -> Self {
         Self {
             filter,
@@ -165,12 +166,12 @@ impl<'a> RuleInputs<'a> {
         }
     }
 
-    /// The same inputs, to be changed.
+    /// Copies the inputs, for changes.
     pub(super) fn same(&self) -> RuleInputs<'_> {
         RuleInputs { filter_curves: self.filter_curves.clone(), base_soil: self.base_soil.clone(), ..*self }
     }
 
-    /// D15 of the filter for a rule that it may not exceed: where the curve is flat, its coarse end.
+    /// D15 of the filter for a rule that it may not exceed: the coarse end of a flat curve.
     pub fn coarse_d15f(&self) -> Option<f64> {
         self.filter.coarse_d(15.0)
     }
@@ -180,8 +181,8 @@ impl<'a> RuleInputs<'a> {
         self.filter.d(15.0)
     }
 
-    /// A size of the base after regrading; where it lies in the finest tail, or what practice looks at does,
-    /// the most that it can be.
+    /// A size of the base after regrading, or the greatest that it can be if it lies in the finest tail or if
+    /// the part that practice looks at does.
     pub fn size_of_base(&self, percent: f64) -> SizeBound {
         let soil = &self.base_soil;
         match (soil.hidden_below_mm, soil.gradation.d(percent)) {
@@ -191,7 +192,7 @@ impl<'a> RuleInputs<'a> {
         }
     }
 
-    /// The category of the base; sizes without a unit are those of a sand without fines.
+    /// Fines of the base; sizes without a unit belong to a sand without fines.
     pub fn fines(&self) -> Fines {
         match (self.scale_free, self.base_soil.fines_percent) {
             (true, _) => Fines::Assumed,
@@ -202,21 +203,21 @@ impl<'a> RuleInputs<'a> {
     }
 }
 
-/// A size of a base, or the most that it can be.
+/// A size of a base, or the greatest that it can be.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SizeBound {
-    /// The size, or the most that it can be.
+    /// The size, or the greatest that it can be.
     pub most: f64,
-    /// Whether it is that size.
+    /// True if the size is known.
     pub is_known: bool,
 }
 
-/// What is known of the fines of a base.
+/// Knowledge of the fines of a base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fines {
-    /// Their share (%).
+    /// Fines (%).
     Percent(f64),
-    /// Less than 15 %, however much exactly.
+    /// Less than 15 %, the exact percent being unknown.
     Few,
     /// Sizes have no unit: a sand without fines is assumed.
     Assumed,

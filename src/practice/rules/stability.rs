@@ -22,12 +22,12 @@ pub fn kezdi(inputs: &RuleInputs) -> Judged {
         [Some(at), Some(RuleNote::KezdiSplits(from, to)), hidden].into_iter().flatten().collect()
     });
     let judged = index(inputs, KEZDI, found.map(|split| split.value), notes.unwrap_or_default());
-    // What may be lost is the greatest part that the rest does not hold, not that of the worst ratio; where
-    // none may lie loose, that of the worst ratio.
+    // The part that may be lost is the greatest part that the rest does not hold, rather than the part of the
+    // worst ratio; if no such part may lie loose, the part of the worst ratio.
     let lost = found.map(|worst| filter.greatest_split_above(KEZDI, WIDE_LOOSE_PERCENT).unwrap_or(worst));
     let left = lost.map(|split| WithoutFiner { percent: split.percent, d15f: split.coarse_d15_mm });
     let judged = Judged { without_finer: left, ..judged };
-    // What is hidden may have a greater ratio.
+    // The hidden part may have a greater ratio.
     if tail > KEZDI_RANGE[0] { judged.bound(ValueBound::AtLeast) } else { judged }
 }
 
@@ -36,7 +36,7 @@ pub fn kenney_lau(inputs: &RuleInputs) -> Judged {
     shape(inputs, Gradation::kenney_lau)
 }
 
-/// Li and Fannin: both together.
+/// Li and Fannin's criterion: Kezdi's and Kenney and Lau's together.
 pub fn li_fannin(inputs: &RuleInputs) -> Judged {
     shape(inputs, Gradation::li_fannin)
 }
@@ -56,12 +56,12 @@ fn shape(inputs: &RuleInputs, of: fn(&Gradation) -> Option<ShapeIndex>) -> Judge
     if is_hidden { judged.bound(ValueBound::AtMost) } else { judged }
 }
 
-/// What is left of a filter without its part that is finer than so many percent.
+/// Remainder of a filter without the part finer than this percent.
 fn without(filter: &Gradation, percent: f64) -> Option<WithoutFiner> {
     Some(WithoutFiner { percent, d15f: filter.d(percent + 0.15 * (100.0 - percent))? })
 }
 
-/// An index of the filter's shape, with where it is.
+/// An index of the filter's shape, and its place.
 fn index(inputs: &RuleInputs, limit: f64, value: Option<f64>, notes: Vec<RuleNote>) -> Judged {
     let lacking = |needs| Judged::of(None, Some(limit)).lacking(needs);
     if !inputs.filter_is_measured {
@@ -73,14 +73,14 @@ fn index(inputs: &RuleInputs, limit: f64, value: Option<f64>, notes: Vec<RuleNot
     }
 }
 
-/// Whether a filter is neither broadly graded nor gap-graded.
+/// True if a filter is neither broadly graded nor gap-graded.
 fn is_uniform(filter: &Gradation) -> bool {
     filter.cu().is_some_and(|cu| cu < BROAD_CU) && filter.gap(0.0).is_none()
 }
 
-/// Burenkova's range of uniformity, for soils such as Wan and Fell judged it on; they found it no clear
-/// boundary, and uniform stones lie below it that have no fines to lose. Above it her own zone III is
-/// suffusive too; Wan and Fell tested none there, and expect them to be stable.
+/// Burenkova's range of uniformity, for soils like those on which Wan and Fell judged it. They found no clear
+/// boundary, and uniform stones without fines to lose lie below it. Above it her own zone III is suffusive
+/// too; Wan and Fell tested no soil there, and expect such soils to be stable.
 pub fn burenkova(inputs: &RuleInputs) -> Judged {
     let filter = inputs.filter;
     if !inputs.filter_is_measured {

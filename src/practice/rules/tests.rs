@@ -1,4 +1,4 @@
-//! Each rule against an example worked by hand; formulas are those of the source that the table names.
+//! Each rule against an example worked by hand; formulas come from the source that the table names.
 
 use super::*;
 use crate::RuleNote;
@@ -34,7 +34,7 @@ fn close(found: Option<f64>, expected: f64) -> bool {
 #[test]
 fn sherard_and_dunnigan_by_hand_in_each_category() {
     // 9 x 0.05; 9 x 0.01 = 0.09 is less than 0.2; 0.7; the till of the first trial: (40 - 38)/25 (4 x 1.488 -
-    // 0.7) + 0.7 = 1.12016; at 15 % it is 4 D85B; below, too.
+    // 0.7) + 0.7 = 1.12016; at 15 % and below it is 4 D85B.
     for (fines, d85, limit) in [
         (90.0, 0.05, 0.45),
         (90.0, 0.01, 0.2),
@@ -65,7 +65,7 @@ fn foster_and_fell_no_erosion_by_hand_in_each_group() {
     }
 }
 
-/// With what the notes say and D85B a reader finds both limits: 1.09 and 1.69 mm of a sand with 22 % fines.
+/// A reader finds both limits from the notes and D85B: 1.09 and 1.69 mm for a sand with 22 % fines.
 #[test]
 fn limits_by_fines_say_how_they_are_worked_out() {
     let by_fines = |id: &str, fines: f64| {
@@ -104,13 +104,13 @@ fn continuing_erosion_is_nine_d95_of_the_regraded_base() {
     let rule = of("foster-fell-continuing", &filter(1.0), &gravelly);
     assert!(!rule.applies && rule.met.is_none() && rule.limit.is_none() && !rule.is_broken(), "{rule:?}");
     assert!(rule.notes.contains(&RuleNote::NoClearBoundary) && close(rule.value, 1.0), "{rule:?}");
-    // Beyond 9 D95B, 31.3 mm, it is broken all the same.
+    // Beyond 9 D95B, 31.3 mm, it is broken nonetheless.
     let rule = of("foster-fell-continuing", &filter(100.0), &gravelly);
     assert!(rule.is_broken() && close(rule.limit, 9.0 * 4.75f64.powf(0.8)), "{rule:?}");
     assert!(rule.notes.contains(&RuleNote::BeyondUnclearBoundary), "{rule:?}");
 }
 
-/// 7 D85B are 7 mm and 9 D95B 22.68 mm: what lies between them may be excessive, and nobody judges it.
+/// 7 D85B are 7 mm and 9 D95B 22.68 mm: erosion between them may be excessive, and nobody judges it.
 #[test]
 fn between_no_and_continuing_erosion_a_note_says_that_excessive_erosion_is_not_judged() {
     let soil = base(5.0, 1.0);
@@ -124,7 +124,7 @@ fn between_no_and_continuing_erosion_a_note_says_that_excessive_erosion_is_not_j
     assert!(rule.met == Some(true) && rule.notes.contains(&RuleNote::ExcessiveNotJudged), "{rule:?}");
 }
 
-/// 15 to 85 % fines and a D95B above 2 mm: beside that range, and where the fines are not known.
+/// 15 to 85 % fines and a D95B above 2 mm; also outside that range, and with unknown fines.
 #[test]
 fn continuing_erosion_is_a_limit_only_where_tests_found_a_clear_one() {
     // Straight from 85 % at `d85` to 100 % at 4.7 mm: nothing is regraded.
@@ -253,8 +253,8 @@ fn internal_stability_by_hand() {
     // From F = 25 % the next 15 % end beyond the gap: 5 mm over D25 = 0.1 x 5^(25/40).
     let rule = of("kezdi", &gap, &soil);
     assert!(close(rule.value, 50.0 / 5.0f64.powf(0.625)) && rule.met == Some(false), "{rule:?}");
-    // That is a split at 25/0.85 = 29.4 % finer: D40 above the gap over D25 below it; splits at 15/0.85 to
-    // 55/0.85 % finer are judged.
+    // The ratio belongs to a split at 25/0.85 = 29.4 % finer: D40 above the gap over D25 below it. Splits at
+    // 15/0.85 to 55/0.85 % finer are judged.
     let [RuleNote::KezdiAt(split, coarse, fine), RuleNote::KezdiSplits(from, to)] = rule.notes[..] else {
         panic!("{rule:?}")
     };
@@ -316,7 +316,7 @@ fn sizes_without_a_unit_are_those_of_a_sand() {
     assert!(close(find("paper-no-erosion").value, d15f / 0.2));
 }
 
-/// Of Kenney's tests a walk far finer than they were is no check; nor is one of a base that is all as fine.
+/// A walk far finer than Kenney's tests does not check them; nor does a walk of a base that is all as fine.
 #[test]
 fn a_walk_far_finer_than_the_tests_of_the_largest_passing_says_so() {
     let filter = filter(4.0);
@@ -335,8 +335,8 @@ fn a_walk_far_finer_than_the_tests_of_the_largest_passing_says_so() {
     }
 }
 
-/// 25 % finer than 0.3 mm, and D85B 0.3 x (1/0.3)^(60/75) = 0.786 mm: whatever its fines, the limit of design
-/// is at most 4 D85B = 3.144 mm, and tests saw no erosion up to 7 D85B = 5.502 mm at most.
+/// 25 % finer than 0.3 mm, and D85B 0.3 x (1/0.3)^(60/75) = 0.786 mm: for any fines, the limit of design is
+/// at most 4 D85B = 3.144 mm, and tests saw no erosion up to 7 D85B = 5.502 mm at most.
 #[test]
 fn fines_that_are_not_known_hide_no_failure() {
     let hidden = sieve(&[(0.3, 25.0), (1.0, 100.0)]);
@@ -349,7 +349,7 @@ fn fines_that_are_not_known_hide_no_failure() {
         assert!(coarse.met == Some(false) && coarse.needs.is_empty(), "{coarse:?}");
         assert!(coarse.notes.contains(&RuleNote::BeyondAnyLimit), "{coarse:?}");
     }
-    // With few fines Terzaghi would hold it for good: nobody knows that they are few.
+    // With few fines Terzaghi would hold it for certain, but nobody knows that they are few.
     let terzaghi = of("terzaghi", &filter(1.0), &hidden);
     assert!(terzaghi.value < Some(4.0) && terzaghi.met.is_none() && !terzaghi.needs.is_empty());
     assert_eq!(of("terzaghi", &filter(4.0), &hidden).met, Some(false));
@@ -375,7 +375,7 @@ fn a_size_in_the_finest_tail_hides_no_failure() {
     let drains = of("permeability", &silty, &coarse);
     assert!(drains.met == Some(false) && close(drains.value, 0.2), "{drains:?}");
     assert_eq!(drains.notes, [RuleNote::D15FAtMost]);
-    // Whatever D15B, it is never less than 0.1 mm.
+    // Never less than 0.1 mm, whatever D15B is.
     let drains = of("permeability", &filter(0.09), &sieve(&[(0.075, 35.0), (1.0, 100.0)]));
     assert!(drains.met == Some(false) && close(drains.limit, 0.1), "{drains:?}");
     // D60 over a D10 of at most 0.2 mm.
@@ -385,8 +385,8 @@ fn a_size_in_the_finest_tail_hides_no_failure() {
     assert_eq!(cu.notes, [RuleNote::CuAtLeast]);
 }
 
-/// 20 % finer than 0.075 mm and next to nothing up to 0.5 mm: practice looks at the fines alone, of which no
-/// sieve tells the sizes. 9 x 0.075 = 0.675 mm at most; of the whole it would be 0.8 x (4 D85B - 0.7) + 0.7.
+/// 20 % finer than 0.075 mm and next to nothing up to 0.5 mm: practice looks at the fines alone, whose sizes
+/// no sieve gives. 9 x 0.075 = 0.675 mm at most; for the whole it would be 0.8 x (4 D85B - 0.7) + 0.7.
 #[test]
 fn a_gap_above_unknown_fines_is_no_reason_to_judge_the_coarse_part() {
     let gap = sieve(&[(0.075, 20.0), (0.5, 21.0), (1.0, 85.0), (2.0, 100.0)]);
@@ -395,14 +395,14 @@ fn a_gap_above_unknown_fines_is_no_reason_to_judge_the_coarse_part() {
     assert_eq!(of("sherard-dunnigan", &filter(0.5), &gap).met, None);
     let continuing = of("foster-fell-continuing", &filter(2.0), &gap);
     assert!(continuing.met == Some(false) && close(continuing.limit, 0.675), "{continuing:?}");
-    // With a hydrometer the gap is where it was, and the limits are no wider.
+    // With a hydrometer the gap is unchanged, and the limits are no wider.
     let tested = sieve(&[(0.001, 0.0), (0.04, 17.0), (0.075, 20.0), (0.5, 21.0), (1.0, 85.0), (2.0, 100.0)]);
     let rule = of("sherard-dunnigan", &filter(2.0), &tested);
     assert!(rule.met == Some(false) && rule.limit < Some(0.675), "{rule:?}");
 }
 
-/// The notes of Table 9.2: 6.4 D85B in group 1, 0.5 mm in group 2A; no limit for fewer fines was read, and
-/// that of other soils is the most that it can be.
+/// The notes of Table 9.2: 6.4 D85B in group 1, 0.5 mm in group 2A. No limit for fewer fines was read, so the
+/// limit of other soils is an upper bound.
 #[test]
 fn dispersive_bases_have_limits_of_their_own() {
     let of = |id: &str, d15: f64, fines: f64, d85: f64| {
@@ -466,7 +466,7 @@ fn burenkova_and_wan_and_fell_by_hand() {
     let by_hand = 100.0 / (1.0 + (-3.004f64).exp());
     assert!(rule.value.is_some_and(|found| (found - by_hand).abs() < 1e-6), "{rule:?}");
     assert!(rule.met.is_none() && rule.limit.is_none() && rule.applies && rule.unit == RuleUnit::Percent);
-    // Uniform sand is not what Wan and Fell tested; nor is No. 78 stone, which Burenkova's range would blame.
+    // Wan and Fell did not test uniform sand; nor No. 78 stone, which Burenkova's range would blame.
     let uniform = sieve(&[(1.0, 0.0), (2.25, 100.0)]);
     assert!(!of("wan-fell", &uniform, &soil).applies);
     let stone = sieve(&[(1.18, 2.5), (2.36, 5.0), (4.75, 15.0), (9.5, 57.5), (12.5, 95.0), (19.0, 100.0)]);
@@ -528,13 +528,13 @@ fn envelopes_pair_the_worst_sides() {
             if joint == 0.3 && close(Some(d95), d95b) && close(Some(ratio), 0.3 / d95b)),
         "{joint:?}"
     );
-    // One curve each is what it always was, and asks for neither.
+    // A single curve each gives the ordinary result, and asks for neither.
     let one = apply_to_envelopes(&bases[..1], &filters[..1], false, None);
     assert_eq!(one, apply(&RuleInputs::of_soils(&bases[0].1, &filters[0].1)));
     assert!(!one.iter().any(|rule| ["filter-band", "constricted-exit"].contains(&rule.id.as_str())));
 }
 
-/// A rule whose numbers were read in no text cannot be signed for.
+/// A rule whose numbers no text confirms cannot be signed for.
 #[test]
 fn every_rule_has_its_numbers() {
     for rule in RULES {
@@ -574,7 +574,7 @@ fn a_step_that_may_hide_a_gap_leaves_stability_open() {
     let straight = of_rows(&line);
     let gap = sieve(&[(0.3, 12.0), (0.31, 56.0), (37.0, 56.1), (38.0, 100.0)]);
     assert_eq!([&straight, &gap].map(|filter| of("kezdi", filter, &silt).met), [Some(true), Some(false)]);
-    // Where next to nothing passes a wide step hides none.
+    // Where next to nothing passes, a wide step hides no gap.
     let stone = of_rows(&[(0.3, 0.0), (1.5, 3.0), (3.0, 30.0), (6.0, 70.0), (12.0, 100.0)]);
     assert_eq!(of("kezdi", &stone, &silt).met, Some(true));
 }

@@ -1,4 +1,4 @@
-//! What the walk itself is checked by: tests of the largest passing particle, and the paper's own network.
+//! Checks of the walk itself: tests of the largest passing particle, and the paper's own network.
 
 use super::rule::{Judged, RuleInputs};
 use crate::RuleNote;
@@ -6,14 +6,14 @@ use crate::RuleNote;
 /// Largest passing particle over D15F by Kenney et al.
 const KENNEY: f64 = 0.2;
 
-/// Below so small a share of it the walk is not that of such tests.
+/// Fraction of Kenney's ratio below which the walk does not resemble those tests.
 const FAR_FINER: f64 = 0.1;
 
-/// Kenney et al.: the largest particle that passes.
+/// Largest particle that passes, by Kenney et al.
 pub fn largest_passing(inputs: &RuleInputs) -> Judged {
     let value = inputs.largest_eroded_over_d15f;
     let judged = Judged { applies: value.is_some(), ..Judged::of(value, Some(KENNEY)) };
-    // Where all of the base is as fine, its size says nothing of the openings.
+    // If all of the base is that fine, its size says nothing about the openings.
     let is_far = |share: f64| share < FAR_FINER * KENNEY;
     let coarsest = inputs.d15f().map(|d15f| inputs.walked_base.largest_mm() / d15f);
     let is_held_back = coarsest.is_some_and(|share| !is_far(share));
@@ -26,17 +26,17 @@ pub fn largest_passing(inputs: &RuleInputs) -> Judged {
     }
 }
 
-/// The paper's network: no erosion rather than some.
+/// The paper's boundary between no erosion and some erosion.
 pub fn paper_no_erosion(inputs: &RuleInputs) -> Judged {
     ratio(inputs, 85.0, 5.0)
 }
 
-/// The paper's network: some erosion rather than continuing.
+/// The paper's boundary between some erosion and continuing erosion.
 pub fn paper_continuing(inputs: &RuleInputs) -> Judged {
     ratio(inputs, 95.0, 4.7)
 }
 
-/// D15F over a size of the base that is walked.
+/// D15F over a size of the walked base.
 fn ratio(inputs: &RuleInputs, percent: f64, limit: f64) -> Judged {
     let value = inputs.d15f().zip(inputs.walked_base.d(percent)).map(|(d15f, of)| d15f / of);
     Judged::of(value, Some(limit)).noted(RuleNote::ResultOfModel)

@@ -1,4 +1,4 @@
-//! A curve of the base as the rules of retention and drainage read it.
+//! A curve of the base as read by the rules of retention and drainage.
 
 use crate::base_cautions::broad_base;
 use crate::design::RowNote;
@@ -9,29 +9,29 @@ use crate::rules::{BaseSoil, DESIGN, NamedCurve, OpenBase, PERMEABILITY, RuleInp
 use crate::{AppliedRule, IfDispersive, Note, RuleNote};
 use voidwalk_core::gradation::{FINES_MM, GAP_PERCENT, GRAVEL_MM, Gap, Gradation};
 
-/// D15F (mm) of the filter at which the rules are read: their limits do not depend on it.
+/// D15F (mm) of the filter for which the rules are read: their limits do not depend on it.
 const ANY_D15F: f64 = 1.0;
 
-/// A curve is flat, and worth a look, where less of the mass than this (%) lies between D and 4 D: twice what
-/// counts as a gap.
+/// Percent of the mass between D and 4 D below which a curve counts as flat and is noted: twice the percent
+/// of a gap.
 const FLAT_PERCENT: f64 = 2.0 * GAP_PERCENT;
 
-/// A curve of the base as the rules read it.
+/// A curve of the base with the results of the rules.
 pub(super) struct ReadCurve {
     pub of: SpecifiedCurve,
-    /// As sampled.
+    /// Curve as sampled.
     base: Gradation,
     pub dispersive: bool,
     pub soil: BaseSoil,
     pub percent_no_4: f64,
-    /// Where it is flattest, which may be a gap.
+    /// The flattest part, which may be a gap.
     pub flattest: Option<Gap>,
     pub design: Option<AppliedRule>,
     pub retention: Option<AppliedRule>,
     pub drainage: Option<AppliedRule>,
-    /// The mildest minimum D15F (mm) that its sieves leave possible; 0 where none of them tells.
+    /// The mildest minimum D15F (mm) that the sieves leave possible; 0 if no sieve bounds it.
     drains_from: f64,
-    /// Why its maximum D15F is not known.
+    /// Reasons for an unknown maximum D15F.
     pub unknown: Option<Vec<RuleNote>>,
 }
 
@@ -77,7 +77,7 @@ impl ReadCurve {
         }
     }
 
-    /// What a reader must know of the base itself.
+    /// Notes on the base itself.
     fn notes(&self) -> Vec<Note> {
         let unstable = self.base.known_kenney_lau().filter(|of| of.value < 1.0);
         let unstable = unstable.map(|of| Note::UnstableBase { index: of.value, finer_percent: of.percent });
@@ -85,7 +85,7 @@ impl ReadCurve {
         unstable.into_iter().chain(broad).chain(self.flat()).collect()
     }
 
-    /// A gap of the base, or a flat part that may be one; not of what practice cuts off.
+    /// A gap of the base, or a flat part that may be one; parts that practice cuts off do not count.
     fn flat(&self) -> Option<Note> {
         let cut = self.of.regraded_at_mm.unwrap_or(f64::INFINITY);
         let flat = self.flattest.filter(|flat| flat.within < FLAT_PERCENT && flat.from_mm <= cut)?;
@@ -101,12 +101,12 @@ impl ReadCurve {
         self.of.d15f_max_mm.unwrap_or(f64::INFINITY)
     }
 
-    /// Whether the true minimum D15F is not known, and is at most the one that is given.
+    /// True if the true minimum D15F is not known, and is at most the one given.
     pub fn least_at_most(&self) -> bool {
         self.drainage.as_ref().is_some_and(|rule| rule.limit_at_most)
     }
 
-    /// What the minimum D15F is for certain, or more.
+    /// Certain lower bound of the minimum D15F.
     pub fn certain_least(&self) -> f64 {
         if self.least_at_most() { self.drains_from } else { self.least() }
     }
@@ -116,7 +116,7 @@ impl ReadCurve {
     }
 }
 
-/// What a reader must know of a base of these curves, with the name of the curve where there are several.
+/// Notes on a base of these curves, with the name of the curve if there are several.
 pub(super) fn notes(read: &[ReadCurve]) -> Vec<RowNote> {
     let row = |curve: &ReadCurve| (read.len() > 1).then(|| curve.of.curve.clone());
     let of = |curve: &ReadCurve| {
@@ -125,8 +125,7 @@ pub(super) fn notes(read: &[ReadCurve]) -> Vec<RowNote> {
     read.iter().flat_map(of).collect()
 }
 
-/// What practice allows if a base of these curves is dispersive: the strictest of them; `None` where all have
-/// few fines.
+/// Strictest limit of practice among these curves if the base is dispersive; `None` if all have few fines.
 pub(super) fn if_dispersive(bases: &[NamedCurve]) -> Option<IfDispersive> {
     let any = Gradation::linear_from_dx(15.0, ANY_D15F, 1.5).expect("sizes of a sand");
     IfDispersive::of_bases(bases, &any)

@@ -1,4 +1,4 @@
-//! The formula by which a rule of retention limits D15F, for the fines of one base.
+//! Formula by which a rule of retention limits D15F, for the fines of one base.
 
 use super::curve::ReadCurve;
 use crate::AppliedRule;
@@ -10,8 +10,8 @@ use voidwalk_core::gradation::FEW_FINES;
 /// Percent of fines above which a base is of category 1.
 const MANY_FINES: f64 = 85.0;
 
-/// The formula of a rule for the fines of a base, and the same with the base's numbers; the whole formula of
-/// the rule where its fines or its D85 are not known.
+/// The formula of a rule for the fines of a base, followed by the formula with the base's numbers; the whole
+/// formula of the rule if its fines or its D85 are not known.
 pub(super) fn of_base(rule: &AppliedRule, curve: &ReadCurve) -> String {
     let name = cited_rule(rule);
     let name = name.strip_prefix("the ").map_or(name.clone(), |rest| format!("The {rest}"));
@@ -23,7 +23,7 @@ pub(super) fn of_base(rule: &AppliedRule, curve: &ReadCurve) -> String {
     let category = curve.of.category.filter(|_| rule.id == DESIGN);
     let category = category.map_or_else(String::new, |category| format!("category {category}, "));
     let dispersive = if curve.dispersive && fines >= FEW_FINES { ", dispersive" } else { "" };
-    // With so many digits of A the limit is found by hand.
+    // This many digits of A are enough to find the limit by hand.
     let fines = (100.0 * fines).round() / 100.0;
     let [fines, d85b] = [format!("- {fines})"), format!("x {}", significant(d85b))];
     let worked = formula.replace("- A)", &fines).replace("D85B", &d85b);
@@ -33,19 +33,19 @@ pub(super) fn of_base(rule: &AppliedRule, curve: &ReadCurve) -> String {
     format!("{name}, {category}{condition}{dispersive}: {most}{formula}{worked}{why}")
 }
 
-/// Said of a formula for other soils, which a dispersive soil cannot exceed.
+/// Suffix to a formula for other soils, which a dispersive soil cannot exceed.
 const NO_TEXT: &str = " (no text gives a limit for dispersive soils with such fines)";
 
-/// What of a rule's formula holds for a base.
+/// Part of a rule's formula that holds for a base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Item<'a> {
     condition: &'a str,
     formula: &'a str,
-    /// Whether it is that of other soils, and the most that a dispersive one may have.
+    /// True if the part is for other soils, and only an upper bound for a dispersive one.
     is_at_most: bool,
 }
 
-/// The condition and the limit of a rule's formula that hold for a base with so many percent of fines.
+/// Condition and limit of a rule's formula that hold for a base with this percent of fines.
 fn item(rule: &AppliedRule, fines: f64, dispersive: bool) -> Option<Item<'_>> {
     let from = match rule.id.as_str() {
         DESIGN => 40.0,
@@ -53,7 +53,7 @@ fn item(rule: &AppliedRule, fines: f64, dispersive: bool) -> Option<Item<'_>> {
         _ => return None,
     };
     let (usual, of_dispersive) = rule.formula.split_once("; dispersive: ")?;
-    // Each list begins with the most fines; that of dispersive soils ends where no text has a limit.
+    // Each list begins with the most fines; the list for dispersive soils ends where no text has a limit.
     let at = match fines {
         fines if fines > MANY_FINES => 0,
         fines if fines >= from => 1,
@@ -72,7 +72,7 @@ mod tests {
     use crate::PairRules;
     use voidwalk_core::gradation::Gradation;
 
-    /// Every item of both formulas is found in their texts, which may be worded anew.
+    /// Every item of both formulas is found in their texts, whose wording may change.
     #[test]
     fn each_rule_has_the_item_of_the_fines_of_its_base() {
         let sand = Gradation::linear_from_dx(85.0, 0.3, 3.0).unwrap();

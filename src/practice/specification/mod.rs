@@ -15,20 +15,20 @@ use crate::rules::{GREATEST_SIZE_MM, MOST_CU, NamedCurve, WIDEST_BAND};
 use curve::ReadCurve;
 use steps::{Control, Found};
 
-/// What a specification is asked for.
+/// Options of a specification.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpecificationOptions {
-    /// Whether the base is dispersive; `None` where nobody has said.
+    /// True if the base is dispersive; `None` if nobody has said.
     pub dispersive: Option<bool>,
-    /// The sieves at which the limits are stated.
+    /// Sieves at which the limits are stated.
     pub sieves: SieveSeries,
-    /// Whether the band is to lie at the finer end of what is allowed, and not at the coarser.
+    /// True to place the band at the finer end of the allowed sizes instead of the coarser.
     pub finer: bool,
 }
 
 impl Specification {
-    /// For a base of one curve or of several, in mm. Every curve is to be retained and drained: the strictest
-    /// limit of each counts.
+    /// Specifies a filter for a base of one curve or of several, in mm. The filter must retain and drain
+    /// every curve: the strictest limit of each kind counts.
     ///
     /// ```
     /// use voidwalk_core::Gradation;
@@ -80,8 +80,8 @@ impl Specification {
     }
 }
 
-/// The control points of a band between a least and a maximum D15F (mm), at the finer or at the coarser end
-/// where that is wider than a band may be; `None` where the least is above.
+/// The control points of a band between a least and a maximum D15F (mm). If that range is wider than a band
+/// may be, they lie at its finer or at its coarser end; `None` if the least is above the maximum.
 fn control(min: f64, max: f64, finer: bool) -> Option<Control> {
     let d15 = match finer {
         true => [min, max.min(WIDEST_BAND * min)],
@@ -92,18 +92,18 @@ fn control(min: f64, max: f64, finer: bool) -> Option<Control> {
 }
 
 /// The D15F (mm) at which the band of a filter begins that drains from a least D15F (mm) and retains up to a
-/// maximum: raised where the band would be too wide.
+/// maximum: raised if the band would otherwise be too wide.
 pub fn least_of_band(min: f64, max: f64) -> f64 {
     control(min, max, false).map_or(min, |of| of.d15[0])
 }
 
-/// Why no filter between a least and a maximum D15F (mm) has a band; `None` where one has.
+/// Reason why no filter between a least and a maximum D15F (mm) has a band; `None` if one has.
 pub fn no_band_between((min, at_most): (f64, bool), max: f64) -> Option<NoBand> {
     let band = control(min, max, false).and_then(|of| SizeBand::of(of.d15, of.d60));
     no_band((Some(min), at_most), Some(max), None, band.is_some())
 }
 
-/// Why there is no band.
+/// Reason why there is no band.
 fn no_band(
     (min, at_most): (Option<f64>, bool),
     max: Option<f64>,

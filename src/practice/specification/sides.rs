@@ -1,4 +1,4 @@
-//! Internal stability of both sides of a band, as of a filter.
+//! Internal stability of both sides of a band, judged like filters.
 
 use crate::Note;
 use crate::design::RowNote;
@@ -20,8 +20,8 @@ pub(super) struct Side {
 }
 
 impl Side {
-    /// Both sides; an index is `None` where a side is of one size. What is drawn below D5 of the fine side is
-    /// a limit of fines, and no part of a gradation.
+    /// Both sides; an index is `None` for a side of one size. The line drawn below D5 of the fine side is a
+    /// limit of fines, and no part of a gradation.
     pub fn both(band: &SizeBand) -> [Self; 2] {
         let [fine, coarse] = band.continued();
         [("fine", fine), ("coarse", coarse)].map(|(name, points)| {
@@ -31,20 +31,20 @@ impl Side {
         })
     }
 
-    /// Whose rules it does not keep.
+    /// Authors of the rules that the side does not keep.
     pub fn authorities(&self) -> Vec<String> {
         let kezdi = self.kezdi.filter(|of| of.value > MOST_KEZDI).map(|_| "Kézdi".to_owned());
         let shape = self.kenney_lau.filter(|of| of.value < LEAST_SHAPE).map(|_| "Kenney and Lau".to_owned());
         kezdi.into_iter().chain(shape).collect()
     }
 
-    /// Whether both indices are known.
+    /// True if both indices are known.
     pub fn is_known(&self) -> bool {
         self.kezdi.is_some() && self.kenney_lau.is_some()
     }
 }
 
-/// What a reader must know of the sides of a band.
+/// Notes on the sides of a band.
 pub(super) fn notes(band: Option<&SizeBand>) -> Vec<RowNote> {
     let of = |side: &Side| {
         let authorities = side.authorities();

@@ -11,13 +11,13 @@ use crate::design::specification::{
 use crate::rules::{DESIGN, GREATEST_SIZE_MM, MOST_CU, RULES, WIDEST_BAND};
 use voidwalk_core::gradation::FINES_MM;
 
-/// The control points of a band: D15 and D60 (mm) of its fine and of its coarse side.
+/// Control points of a band: D15 and D60 (mm) of its fine and of its coarse side.
 pub(super) struct Control {
     pub d15: [f64; 2],
     pub d60: [f64; 2],
 }
 
-/// What the steps say.
+/// Facts that the steps state.
 pub(super) struct Found<'a> {
     pub read: &'a [ReadCurve],
     /// The curve that allows the minimum D15F.
@@ -27,7 +27,7 @@ pub(super) struct Found<'a> {
     pub coarsest: Option<&'a ReadCurve>,
     pub d15f_max: Option<f64>,
     pub control: Option<Control>,
-    /// Whether the band lies at the finer end of what is allowed.
+    /// True if the band lies at the finer end of the allowed sizes.
     pub finer: bool,
 }
 
@@ -53,7 +53,7 @@ impl Found<'_> {
         steps.into_iter().enumerate().map(number).collect()
     }
 
-    /// A number of every curve, which of several says whose it is.
+    /// A number of every curve; with several curves, each number names its own.
     fn each(&self, name: &str, unit: &str, value: impl Fn(&ReadCurve) -> Option<f64>) -> Vec<StepValue> {
         let of = |curve: &ReadCurve| {
             let whose = if self.read.len() > 1 { format!(" of {}", curve.of.curve) } else { String::new() };
@@ -62,7 +62,7 @@ impl Found<'_> {
         self.read.iter().map(of).collect()
     }
 
-    /// The name of a curve, where there are several.
+    /// The name of a curve, if there are several.
     fn name(&self, curve: &ReadCurve) -> Option<String> {
         (self.read.len() > 1).then(|| curve.of.curve.clone())
     }
@@ -117,7 +117,7 @@ impl Found<'_> {
     }
 
     fn retention(&self) -> SpecificationStep {
-        // Both rules, where another is stricter than the limit of design.
+        // Both rules, if another is stricter than the limit of design.
         let rules = |curve: &ReadCurve| {
             let other = curve.retention.iter().filter(|rule| rule.id != DESIGN).cloned();
             curve.design.iter().cloned().chain(other).collect::<Vec<AppliedRule>>()
@@ -152,7 +152,7 @@ impl Found<'_> {
         }
     }
 
-    /// The limit of design, where another rule is stricter.
+    /// The limit of design, if another rule is stricter.
     fn limit_of_design(&self) -> Option<f64> {
         let curve = self.strictest.filter(|_| self.d15f_max.is_some())?;
         let design = curve.design.as_ref()?;
@@ -289,11 +289,11 @@ impl Found<'_> {
     }
 }
 
-/// Where the manual of the Corps sends for segregation.
+/// Source to which the manual of the Corps refers for segregation.
 const SEGREGATION: &str = "FEMA (2011), cited by U.S. Army Corps of Engineers, Filter Evaluation manual \
                            (RMC-CPD-2023-04), chapter Filter Gradation";
 
-/// Where regrading and its sizes were read.
+/// Source of regrading and its sizes.
 const REGRADING: &str = "U.S. Army Corps of Engineers, Filter Evaluation manual (RMC-CPD-2023-04), chapter \
                          Base Gradation, after Sherard and Dunnigan (1989)";
 
@@ -312,12 +312,12 @@ fn named(name: &str, value: Option<f64>, unit: &str) -> StepValue {
     StepValue { name: name.into(), value, unit: unit.into() }
 }
 
-/// The source of a rule, and that the factor between D15F and D10F is from elsewhere.
+/// Source of a rule, with a remark that the factor between D15F and D10F is from elsewhere.
 fn with_own_factor(source: &str) -> String {
     format!("{source}. The factor {D15_OVER_D10} is worked out by this program")
 }
 
-/// Where the numbers of a rule were read.
+/// Source of the numbers of a rule.
 fn source_of(id: &str) -> String {
     RULES.iter().find(|rule| rule.id == id).map_or_else(String::new, |rule| rule.source.into())
 }

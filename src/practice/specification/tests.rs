@@ -67,11 +67,11 @@ fn a_till_is_regraded_and_its_limit_is_that_of_design() {
     let d85b = till.curves[0].d85_mm.unwrap();
     let design = (40.0 - fines) / 25.0 * (4.0 * d85b - 0.7) + 0.7;
     assert!(near(till.d15f_max_mm, design) && near(value(&till, "maximum D15F by practice"), design));
-    // D15B is finer than the finest sieve: the limit is at most five times that.
+    // D15B is finer than the finest sieve: the limit is at most five times the sieve.
     assert!(near(till.d15f_min_mm, 5.0 * 0.075));
 }
 
-/// Where the fine side is flatter than the factor says, its own D10 counts.
+/// If the fine side is flatter than the factor says, its own D10 counts.
 #[test]
 fn the_least_d10f_is_that_of_the_fine_side_where_that_is_finer() {
     // D15F of 1 to 2 mm: D5 of the fine side is a fifth of 2 x 5^(-10/45).
@@ -103,7 +103,7 @@ fn the_step_of_gravel_and_gap_answers_both() {
     // 12 % over a factor of 8.33.
     let [from, within] = flattest(&[(0.08, 10.0), (0.6, 59.0), (5.0, 71.0), (20.0, 100.0)]);
     assert!(near(Some(from), 0.6) && near(Some(within), 12.0 * 4f64.ln() / (5.0f64 / 0.6).ln()), "{within}");
-    // 5 % stands under nobody's name but ours.
+    // 5 % is cited under our name alone.
     let source = of(&[(0.1, 0.0), (0.5, 100.0)]).steps[1].source.clone();
     assert!(source.ends_with("The check for a gap is this program's own"), "{source}");
 }
@@ -123,13 +123,14 @@ fn what_is_wrong_with_the_base_itself_is_among_the_notes() {
     let gap = notes(&of(&[(0.08, 0.0), (0.3, 40.0), (2.4, 41.0), (4.0, 100.0)]));
     assert!(gap.iter().any(|note| matches!(note, Note::GapOfBase { .. })), "{gap:?}");
     assert_eq!(notes(&of(&[(0.1, 0.0), (0.5, 100.0)])), []);
-    // Of several curves each note names its own.
+    // With several curves each note names its own.
     let sand = soil(&[(0.1, 0.0), (0.5, 100.0)]);
     let both = [("sand".to_owned(), sand), ("till".to_owned(), soil(&points))];
     let both = Specification::of("site", &both, SpecificationOptions::default());
     let rows: Vec<_> = both.notes.iter().map(|of| of.row.as_deref()).collect();
     assert_eq!(rows, [Some("till"), Some("till"), Some("till"), None]);
-    // That of the band is of all: 0.636 to 0.700 mm, with a fine side that runs far out to its D5.
+    // The note of the band covers all curves: 0.636 to 0.700 mm, with a fine side that runs far out to its
+    // D5.
     assert!(matches!(notes(&both)[3], Note::UnstableSide { .. }), "{:?}", both.notes);
 }
 
@@ -165,7 +166,7 @@ fn without_a_known_limit_or_room_between_both_there_is_no_band_and_it_is_said_wh
         panic!("{uniform:?}")
     };
     assert!(uniform.band.is_none() && near(uniform.d15f_min_mm, least_mm) && least_mm > most_mm);
-    // A gravel whose filter would be of stones.
+    // A gravel whose filter would consist of stones.
     let gravel = of(&[(5.0, 0.0), (6.0, 15.0), (9.0, 85.0), (12.0, 100.0)]);
     assert!(matches!(gravel.no_band, Some(NoBand::TooCoarse { most_d60f_mm }) if most_d60f_mm > 75.0));
 }
@@ -180,7 +181,7 @@ fn a_coarse_side_with_too_many_fines_leaves_no_band() {
     assert_eq!(narrow.no_band, Some(NoBand::TooManyFines));
 }
 
-/// What is specified keeps every rule of the table: both sides of the band, against every curve of the base.
+/// A specification keeps every rule of the table: both sides of the band, against every curve of the base.
 #[test]
 fn both_sides_of_a_band_keep_every_rule_of_retention_drainage_and_placing() {
     let bases: [&[(f64, f64)]; 5] = [
@@ -195,7 +196,7 @@ fn both_sides_of_a_band_keep_every_rule_of_retention_drainage_and_placing() {
         let side = |rows: &[[f64; 2]]| Gradation::of_rows(rows).unwrap();
         let [fine, coarse] = band.continued();
         let sides = [("fine".to_owned(), side(&fine)), ("coarse".to_owned(), side(&coarse))];
-        // A hair finer, so that no rounding breaks the limit itself.
+        // Slightly finer, so that no rounding breaks the limit itself.
         let sides = sides.map(|(name, curve)| {
             let hair = if name == "coarse" { 1.0 - 1e-9 } else { 1.0 + 1e-9 };
             (name, curve.scaled(hair).unwrap())
@@ -213,7 +214,7 @@ fn both_sides_of_a_band_keep_every_rule_of_retention_drainage_and_placing() {
     }
 }
 
-/// Practice has 0.7 mm for a silt, and 0.5 mm where it is dispersive; with 25 % fines no source has a limit.
+/// Practice has 0.7 mm for a silt, and 0.5 mm if it is dispersive; with 25 % fines no source has a limit.
 #[test]
 fn a_base_of_which_nobody_has_said_whether_it_is_dispersive_has_the_limit_of_one_that_is() {
     let silt = [(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)];
@@ -225,7 +226,7 @@ fn a_base_of_which_nobody_has_said_whether_it_is_dispersive_has_the_limit_of_one
     assert_eq!((known.d15f_max_mm, known.at_most, known.lacks), (0.5, false, None));
     let open = limit(&[(0.01, 0.0), (0.075, 25.0), (0.3, 92.0), (0.6, 100.0)], None).unwrap();
     assert_eq!((open.at_most, open.lacks), (true, Some(DispersiveLack::AnyLimit)));
-    // Few fines, and what was said.
+    // Few fines, and an explicit answer.
     assert_eq!(limit(&[(0.01, 0.0), (0.075, 10.0), (0.3, 92.0), (0.6, 100.0)], None), None);
     assert_eq!([Some(true), Some(false)].map(|said| limit(&silt, said)), [None, None]);
 }
@@ -257,7 +258,7 @@ fn a_finer_band_lowers_its_maximum_and_keeps_its_minimum() {
     assert_eq!((finer.d15f_min_mm, finer.d15f_max_mm), (coarser.d15f_min_mm, coarser.d15f_max_mm));
     assert_eq!(finer.steps[6].notes, [StepNote::Lowered]);
     assert_eq!(coarser.steps[6].notes, [StepNote::Raised]);
-    // What is allowed is the same: products do not depend on where the band lies.
+    // The allowed sizes are equal: products do not depend on the place of the band.
     assert_eq!(finer.products, coarser.products);
 }
 
@@ -301,7 +302,7 @@ fn the_step_of_retention_has_the_formula_of_the_category_with_its_numbers() {
             && silty.contains(" mm (no text gives a limit for dispersive soils with such fines)"),
         "{silty}"
     );
-    // Fines that are not known leave the formula whole.
+    // Unknown fines leave the formula whole.
     let open = formula(&[(0.2, 20.0), (0.5, 85.0), (1.0, 100.0)]);
     assert!(open.contains("limit of design: A > 85 %: 9 D85B, "), "{open}");
 }
@@ -333,14 +334,14 @@ fn both_sides_of_the_band_are_checked_for_internal_stability() {
     assert_eq!(narrow.steps.last().unwrap().notes[0], stable("fine", &["Kenney and Lau"]));
 }
 
-/// A side that loses its finer part keeps the limit all the same: D60F of the fine side is no more than the
-/// maximum D15F, and the coarse side is straight, which is stable.
+/// A side that loses its finer part still keeps the limit: D60F of the fine side is no more than the maximum
+/// D15F, and the coarse side is straight, which is stable.
 #[test]
 fn no_side_of_a_band_is_too_coarse_without_its_finer_part() {
     let is_of_side = |of: &&RowNote| matches!(of.note, Note::UnstableSide { .. });
     let mut unstable = 0;
     for scale in [0.8, 1.0, 4.0] {
-        // A limit of four D85B, from less than what drains to much more.
+        // A limit of four D85B, from less than the draining size to much more.
         for retains in [0.65, 0.7005, 0.705, 0.72, 0.8, 1.0, 2.0] {
             let sand = [(0.1, 0.0), (0.14, 15.0), (retains / 4.0, 85.0), (1.0, 100.0)];
             let points = sand.map(|(size, percent)| (scale * size, percent));
