@@ -161,7 +161,7 @@ impl BatchRow {
             breaks_if_dispersive: false,
             is_refused: false,
         };
-        let is_refused = mistake.as_ref().is_some_and(|of| of.is_refused() && !options.as_given);
+        let is_refused = mistake.as_ref().is_some_and(|mistake| mistake.is_refused() && !options.as_given);
         let row = Self { notes: mistake.map(|mistake| mistake.note).into_iter().collect(), ..row };
         if is_refused {
             return Self { is_refused, ..row };
@@ -235,7 +235,7 @@ fn joint(rules: &[AppliedRule]) -> Option<JointErosion> {
 /// first.
 fn whose(rules: &[AppliedRule], strictest: &AppliedRule, limit: f64) -> String {
     let is_same = |rule: &&AppliedRule| {
-        let is_limit = rule.limit.is_some_and(|of| (of - limit).abs() <= 1e-9 * limit);
+        let is_limit = rule.limit.is_some_and(|own_limit| (own_limit - limit).abs() <= 1e-9 * limit);
         rule.role == RuleRole::Retention && rule.applies && rule.quantity == RuleQuantity::D15F && is_limit
     };
     credit(rules.iter().find(is_same).unwrap_or(strictest)).to_owned()
@@ -255,7 +255,8 @@ pub fn governing<'r>(rows: &'r [BatchRow], filter: &str, most: usize) -> Vec<&'r
 pub fn more_with_that_limit(rows: &[BatchRow], filter: &str, named: &[&BatchRow]) -> usize {
     let Some(limit) = named.last().and_then(|row| row.limit_mm) else { return 0 };
     let is_same = |row: &&BatchRow| {
-        row.filter == filter && row.limit_mm.is_some_and(|of| (of - limit).abs() <= 1e-9 * limit)
+        row.filter == filter
+            && row.limit_mm.is_some_and(|row_limit| (row_limit - limit).abs() <= 1e-9 * limit)
     };
     let of_named = named.iter().copied().filter(is_same).count();
     rows.iter().filter(is_same).count() - of_named

@@ -29,18 +29,18 @@ impl IfDispersive {
 
     /// The strictest among the curves of a base with one filter.
     pub fn of_bases(bases: &[NamedCurve], filter: &Gradation) -> Option<Self> {
-        let of = |(_, base): &NamedCurve| {
+        let limit = |(_, base): &NamedCurve| {
             Self::of(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(base, filter) })
         };
-        Self::strictest(&bases.iter().filter_map(of).collect::<Vec<_>>())
+        Self::strictest(&bases.iter().filter_map(limit).collect::<Vec<_>>())
     }
 
     /// The strictest of several curves of one base; `None` without one.
     pub fn strictest(all: &[Self]) -> Option<Self> {
         let least = all.iter().min_by(|a, b| a.d15f_max_mm.total_cmp(&b.d15f_max_mm))?;
-        let at_most = all.iter().any(|of| of.at_most);
+        let at_most = all.iter().any(|limit| limit.at_most);
         // If the strictest limit is known, it is no lower than a limit that another curve leaves open.
-        let of_another = || match all.iter().find_map(|of| of.lacks)? {
+        let of_another = || match all.iter().find_map(|limit| limit.lacks)? {
             DispersiveLack::AnyLimit => Some(DispersiveLack::LimitOfDesign),
             lack => Some(lack),
         };
@@ -140,15 +140,15 @@ mod tests {
         }
         assert!(!broken(&clay, 0.4).unwrap().0);
         // With a curve that lacks a limit of design and a finer one that lacks nothing.
-        let of =
+        let limit_of =
             |d15f_max_mm, lacks: Option<_>| IfDispersive { d15f_max_mm, at_most: lacks.is_some(), lacks };
-        let open = of(0.9, Some(DispersiveLack::LimitOfDesign));
-        let both = IfDispersive::strictest(&[of(0.5, None), open]).unwrap();
-        assert_eq!(both, of(0.5, open.lacks));
+        let open = limit_of(0.9, Some(DispersiveLack::LimitOfDesign));
+        let both = IfDispersive::strictest(&[limit_of(0.5, None), open]).unwrap();
+        assert_eq!(both, limit_of(0.5, open.lacks));
         // The known limit must not be read as an upper bound.
-        let any = of(0.9, Some(DispersiveLack::AnyLimit));
-        assert_eq!(IfDispersive::strictest(&[any, of(0.5, None)]).unwrap(), both);
-        assert_eq!(IfDispersive::strictest(&[any, of(1.0, open.lacks)]).unwrap(), any);
+        let any = limit_of(0.9, Some(DispersiveLack::AnyLimit));
+        assert_eq!(IfDispersive::strictest(&[any, limit_of(0.5, None)]).unwrap(), both);
+        assert_eq!(IfDispersive::strictest(&[any, limit_of(1.0, open.lacks)]).unwrap(), any);
     }
 
     /// A filter of 0.40 mm is within 0.500 mm as placed, and within 0.700 mm without the part that it may

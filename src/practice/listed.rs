@@ -11,8 +11,9 @@ use crate::rules::{DESIGN, PERMEABILITY, PERMEABILITY_LEAST, TESTS_NO_EROSION};
 /// under its own name.
 pub(super) fn listed(rules: &[AppliedRule]) -> Vec<Cow<'_, AppliedRule>> {
     let repeats = |rule: &&AppliedRule| {
-        let is_said =
-            |of: &AppliedRule| of.id == PERMEABILITY && of.limit.is_some() && of.limit == rule.limit;
+        let is_said = |other: &AppliedRule| {
+            other.id == PERMEABILITY && other.limit.is_some() && other.limit == rule.limit
+        };
         rule.id == PERMEABILITY_LEAST && !rule.limit_at_most && rules.iter().any(is_said)
     };
     let is_one = without_margin(rules).is_some();

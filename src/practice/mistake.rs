@@ -125,7 +125,7 @@ impl Mistake {
         for (_, base) in bases {
             all.push(Self::find(base, coarsest, false)?);
         }
-        let refused = all.iter().position(|of| !of.is_refused()).unwrap_or(0);
+        let refused = all.iter().position(|mistake| !mistake.is_refused()).unwrap_or(0);
         all.into_iter().nth(refused)
     }
 
@@ -160,17 +160,17 @@ mod tests {
 
     #[test]
     fn exchanged_tables_and_micrometres_are_recognised() {
-        let said = |base: f64, filter: f64| Mistake::find(&linear(base), &linear(filter), false);
-        assert_eq!(said(0.2, 2.0), None);
-        let exchanged = said(2.0, 0.2).unwrap();
+        let mistake = |base: f64, filter: f64| Mistake::find(&linear(base), &linear(filter), false);
+        assert_eq!(mistake(0.2, 2.0), None);
+        let exchanged = mistake(2.0, 0.2).unwrap();
         assert_eq!(exchanged.kind, MistakeKind::Exchanged);
         assert!(exchanged.refusal().contains("are the two files exchanged?"));
         assert!(exchanged.refusal().ends_with("(--as-given)"));
         // 318 um, read as mm.
-        let micrometres = said(200.0, 2.0).unwrap();
+        let micrometres = mistake(200.0, 2.0).unwrap();
         assert!(micrometres.sentence.contains("micrometres under a header in mm"));
         assert_eq!(micrometres.kind, MistakeKind::Unit);
-        let boulders = said(0.2, 400.0).unwrap();
+        let boulders = mistake(0.2, 400.0).unwrap();
         assert!(boulders.sentence.contains("the filter's D50 is 800 mm") && !boulders.is_refused());
     }
 

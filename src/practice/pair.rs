@@ -242,15 +242,15 @@ mod tests {
     fn a_limit_that_a_dispersive_base_would_have_stands_in_the_line() {
         let soil = |points: &[(f64, f64)]| vec![("soil".to_owned(), Gradation::from_lines(points).unwrap())];
         let base = soil(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)]);
-        let said = |d15f: f64, dispersive| {
+        let judged = |d15f: f64, dispersive| {
             let filter = soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)]);
             PairRules::of_envelopes(&base, &filter, PairOptions { dispersive, ..PairOptions::default() })
         };
-        let pair = said(0.61, false);
+        let pair = judged(0.61, false);
         assert_eq!(pair.headline, Some(Headline::MeetsUnlessDispersive));
         assert_eq!(pair.if_dispersive.map(|limit| limit.d15f_max_mm), Some(0.5));
-        assert_eq!(said(0.45, false).headline, Some(Headline::Meets));
-        let stated = said(0.61, true);
+        assert_eq!(judged(0.45, false).headline, Some(Headline::Meets));
+        let stated = judged(0.61, true);
         assert!(stated.headline == Some(Headline::DoesNotMeet) && stated.if_dispersive.is_none());
     }
 
@@ -316,7 +316,7 @@ mod tests {
                 })
                 .collect();
             for rule in all.iter().filter(|rule| rule.id != "filter-band") {
-                let alone = pairs.iter().flatten().filter(|of| of.id == rule.id).map(place);
+                let alone = pairs.iter().flatten().filter(|other| other.id == rule.id).map(place);
                 assert_eq!(Some(place(rule)), alone.min(), "{} of {bases:?} and {filters:?}", rule.id);
             }
             let stands = |rules: &Vec<AppliedRule>| worse(&Decision::new(rules, None, None).standing);

@@ -298,26 +298,27 @@ fn both_beside(
     let [value, limit] = numbers.map(|number| number.map(|number| significant(number).in_unit(unit)));
     let limit = limit.map(|limit| limit.role(NumberRole::of_limit(at_least)));
     let (Some(value), Some(limit)) = (value, limit) else {
-        let alone = |of: Quantity| {
-            let digits = match of.role {
-                NumberRole::Value => digits_of(of.value, DIGITS),
-                NumberRole::Least | NumberRole::Greatest => digits_within(of.value, DIGITS, at_least),
+        let alone = |number: Quantity| {
+            let digits = match number.role {
+                NumberRole::Value => digits_of(number.value, DIGITS),
+                NumberRole::Least | NumberRole::Greatest => digits_within(number.value, DIGITS, at_least),
             };
-            let inches = of.inches().map_or_else(String::new, |inches| bracket(&inches));
-            without_zeros(&digits, unit).to_owned() + &named(of) + &inches
+            let inches = number.inches().map_or_else(String::new, |inches| bracket(&inches));
+            without_zeros(&digits, unit).to_owned() + &named(number) + &inches
         };
         return [value.map(alone), limit.map(alone)];
     };
     let texts = apart(value.value, limit.value, at_least, DIGITS);
     let both = [(&texts[0], value), (&texts[1], limit)];
-    let [of_value, of_limit] = both.map(|(text, of)| text.parse().unwrap_or(of.value) / INCH_MM);
+    let [of_value, of_limit] = both.map(|(text, number)| text.parse().unwrap_or(number.value) / INCH_MM);
     let inches = match unit {
         Unit::Size(SizeUnit::MmAndInches) => {
             apart(of_value, of_limit, at_least, DIGITS).map(|inches| bracket(&inches))
         }
         _ => Default::default(),
     };
-    let [of_value, of_limit] = both.map(|(text, of)| without_zeros(text, unit).to_owned() + &named(of));
+    let [of_value, of_limit] =
+        both.map(|(text, number)| without_zeros(text, unit).to_owned() + &named(number));
     [Some(of_value + &inches[0]), Some(of_limit + &inches[1])]
 }
 
@@ -348,12 +349,13 @@ pub fn whole_within(limit: f64, at_least: bool) -> f64 {
 /// get as many digits as give both one text.
 fn apart(value: f64, limit: f64, at_least: bool, digits: i32) -> [String; 2] {
     let pair = |digits| [digits_of(value, digits), digits_within(limit, digits, at_least)];
-    let is_order = |[shown, of]: &[String; 2]| match (shown.parse::<f64>(), of.parse::<f64>()) {
-        (Ok(shown), Ok(of)) => shown != of && (shown < of) == (value < limit),
-        _ => shown != of,
-    };
+    let is_order =
+        |[shown, limit_shown]: &[String; 2]| match (shown.parse::<f64>(), limit_shown.parse::<f64>()) {
+            (Ok(shown), Ok(limit_shown)) => shown != limit_shown && (shown < limit_shown) == (value < limit),
+            _ => shown != limit_shown,
+        };
     // A limit that is just reached is kept, and the value reads as elsewhere.
-    let alike = || (digits..MOST_DIGITS).map(pair).find(|[shown, of]| shown == of);
+    let alike = || (digits..MOST_DIGITS).map(pair).find(|[shown, limit_shown]| shown == limit_shown);
     let cut = || [value, limit].map(|number| digits_within(number, digits, at_least));
     let apart = (digits..MOST_DIGITS).filter(|_| value != limit).map(pair).find(is_order);
     apart.or_else(alike).unwrap_or_else(cut)
@@ -519,12 +521,12 @@ mod tests {
         let steps = (1..4000).map(|step| 0.01 * libm::pow(1.003, f64::from(step)));
         for limit in steps.chain([0.7, 0.14, 1.6812, 2.9970, 25.4, 0.701]) {
             for (role, sign) in [(NumberRole::Greatest, 1.0), (NumberRole::Least, -1.0)] {
-                let of = length(limit, unit).role(role);
-                let inches = of.inches().unwrap().parse::<f64>().unwrap() * INCH_MM;
+                let size = length(limit, unit).role(role);
+                let inches = size.inches().unwrap().parse::<f64>().unwrap() * INCH_MM;
                 let hair = 1e-8 * limit;
-                assert!(sign * (inches - of.shown()) <= hair && sign * (inches - limit) <= hair, "{of}");
+                assert!(sign * (inches - size.shown()) <= hair && sign * (inches - limit) <= hair, "{size}");
                 // Rounding the shown mm again gives the same text.
-                assert_eq!(length(of.shown(), unit).role(role).to_string(), of.to_string());
+                assert_eq!(length(size.shown(), unit).role(role).to_string(), size.to_string());
             }
         }
         let most = length(0.7, unit).role(NumberRole::Greatest);

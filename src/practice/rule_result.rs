@@ -82,13 +82,13 @@ pub fn credit(rule: &AppliedRule) -> &str {
 
 /// Citation of a rule of retention: its author, and the rule among the author's.
 pub fn cited(id: &str, authority: &str) -> String {
-    let which = match id {
+    let kind = match id {
         DESIGN => "limit of design",
         TESTS_NO_EROSION => "boundary of no erosion",
         TESTS_CONTINUING => "boundary of continuing erosion",
         _ => "rule",
     };
-    format!("{authority}'s {which}")
+    format!("{authority}'s {kind}")
 }
 
 /// Citation of a rule that was applied.

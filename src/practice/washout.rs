@@ -63,7 +63,7 @@ fn is_beyond(left: &WithoutFiner, limit: f64) -> bool {
 
 /// Criteria of internal stability that are not met, if they make a filter unstable.
 fn unstable(rules: &[AppliedRule]) -> Vec<&AppliedRule> {
-    let is_unstable = |of: &&AppliedRule| of.is_broken() && of.role == RuleRole::Stability;
+    let is_unstable = |rule: &&AppliedRule| rule.is_broken() && rule.role == RuleRole::Stability;
     let unstable: Vec<&AppliedRule> = rules.iter().filter(is_unstable).collect();
     let is_unstable = match met_of(rules, LI_FANNIN) {
         Some(met) => !met,
@@ -98,12 +98,12 @@ mod tests {
     #[test]
     fn a_filter_that_is_too_coarse_without_its_finer_part_is_found_with_both_limits() {
         let rules = rules(&GRAVEL_0_32, &REGRADED_TILL);
-        let found = washout(&rules).unwrap();
-        assert!((found.left.percent - 19.4).abs() < 0.05 && (found.left.d15f - 2.83).abs() < 0.01);
-        assert_eq!((found.by.id.as_str(), found.continues), (KEZDI, false));
+        let washed = washout(&rules).unwrap();
+        assert!((washed.left.percent - 19.4).abs() < 0.05 && (washed.left.d15f - 2.83).abs() < 0.01);
+        assert_eq!((washed.by.id.as_str(), washed.continues), (KEZDI, false));
         // A folder that is read back gives the same remainder.
         let read: Vec<AppliedRule> = serde_json::from_str(&serde_json::to_string(&rules).unwrap()).unwrap();
-        assert_eq!(washout(&read).unwrap().left, found.left);
+        assert_eq!(washout(&read).unwrap().left, washed.left);
     }
 
     /// Without a fifth of its mass, a gap-graded filter is also beyond the boundary of continuing erosion.
@@ -131,13 +131,13 @@ mod tests {
     fn an_index_above_a_pan_is_no_veto() {
         let filter = [(2.36, 14.0), (2.6, 15.3), (16.0, 32.0), (20.0, 80.0), (31.5, 100.0)];
         let rules = rules(&filter, &[(0.3, 0.0), (0.6, 50.0), (1.2, 100.0)]);
-        let of = |id: &str| rules.iter().find(|rule| rule.id == id).unwrap();
+        let applied = |id: &str| rules.iter().find(|rule| rule.id == id).unwrap();
         for id in [LI_FANNIN, KENNEY_LAU] {
-            let rule = of(id);
+            let rule = applied(id);
             assert!(rule.met != Some(true), "{rule:?}");
             assert!(rule.value.is_none() || rule.value_bound == Some(ValueBound::AtMost), "{rule:?}");
         }
-        assert_eq!(of(KEZDI).met, Some(false), "{:?}", of(KEZDI));
+        assert_eq!(applied(KEZDI).met, Some(false), "{:?}", applied(KEZDI));
         assert!(washout(&rules).is_some());
     }
 
@@ -155,7 +155,7 @@ mod tests {
         let broad = Gradation::linear_from_d0(0.1, 60.0).unwrap();
         let base = Gradation::from_lines(&[(0.05, 0.0), (0.2, 100.0)]).unwrap();
         let rules = PairRules::of(&base, &broad).rules;
-        let unstable = rules.iter().filter(|of| of.is_broken() && of.role == RuleRole::Stability);
+        let unstable = rules.iter().filter(|rule| rule.is_broken() && rule.role == RuleRole::Stability);
         assert!(unstable.count() > 0 && met_of(&rules, LI_FANNIN) == Some(true));
         assert!(washout(&rules).is_none());
     }

@@ -102,7 +102,10 @@ fn a_dispersive_base_or_an_open_joint_never_breaks_fewer_rules() {
         for (before, after) in plain.iter().zip(&dispersive) {
             assert_eq!(before.id, after.id);
             // The limit is no wider, and no rule is kept that was not kept before.
-            assert!(before.limit.is_none_or(|limit| after.limit.is_some_and(|of| of <= limit)), "{after:?}");
+            assert!(
+                before.limit.is_none_or(|limit| after.limit.is_some_and(|narrower| narrower <= limit)),
+                "{after:?}"
+            );
             assert!(after.met != Some(true) || before.met == Some(true), "{before:?} {after:?}");
             let is_bound = after.limit_at_most && !before.limit_at_most;
             by_bound += usize::from(is_bound && after.met == Some(false));

@@ -35,12 +35,12 @@ pub(super) fn find(grid: &Grid) -> Result<Option<(Grid, Layout)>, TableError> {
     if upper.iter().any(|row| is_heading(row) && says_soil(row) && openings(row).is_none_or(|o| o.bare)) {
         return Ok(None);
     }
-    let found = upper.iter().enumerate().find_map(|(at, row)| {
+    let table = upper.iter().enumerate().find_map(|(at, row)| {
         let openings = openings(row)?;
         let soils = soils(row, &grid.rows[at + 1..], &openings.columns)?;
         Some((at, openings, soils))
     });
-    let Some((at, openings, soils)) = found else { return Ok(None) };
+    let Some((at, openings, soils)) = table else { return Ok(None) };
     if openings.bare && !are_openings(grid, at, &openings.columns) {
         return match upper.iter().any(is_heading) {
             true => Ok(None),
@@ -301,8 +301,8 @@ fn upright(grid: &Grid, at: usize, openings: &Openings, soils: &[usize]) -> (Gri
     let labels = Labels::new(&grid.rows[..=at], &rows_of_soils, columns[0]);
     let soil = |(index, row): (usize, &&GridRow)| {
         let words = (0..columns[0]).map(|c| row.cell(c)).filter(|cell| !cell.is_empty());
-        let own = words.map(role).find(|role| matches!(role, Role::Finer | Role::Retained(_)));
-        let role = own.or(*retained).or(said_retained).unwrap_or(Role::Other);
+        let stated = words.map(role).find(|role| matches!(role, Role::Finer | Role::Retained(_)));
+        let role = stated.or(*retained).or(said_retained).unwrap_or(Role::Other);
         SoilColumn { column: index + 1, heading: labels.names[index].clone(), role, end: None }
     };
     let named = |c: usize| rows_of_soils.iter().any(|row| percentage(row.cell(c)).is_some());

@@ -7,7 +7,7 @@ pub(super) use super::size::near;
 use super::size::{Opening, Unit, opening};
 
 /// True if columns `a` and `b` name the same openings in every row, and some row has both.
-pub(super) fn of(grid: &Grid, headings: &Headings, a: usize, b: usize) -> bool {
+pub(super) fn agree(grid: &Grid, headings: &Headings, a: usize, b: usize) -> bool {
     let unit_of = |c: usize| headings.heads.get(c).and_then(|head| unit(head).ok().flatten());
     let (unit_a, unit_b) = (unit_of(a), unit_of(b));
     let mut both = 0;

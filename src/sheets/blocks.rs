@@ -275,13 +275,13 @@ fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableEr
     let mut rest = &kinds[..];
     for (place, &start) in starts.iter().enumerate() {
         let end = starts.get(place + 1).copied().unwrap_or(width);
-        let (own, after) = rest.split_at(rest.partition_point(|(c, _)| *c < end));
+        let (group, after) = rest.split_at(rest.partition_point(|(c, _)| *c < end));
         rest = after;
-        let openings = own.iter().find(|(_, size)| *size).map(|(c, _)| *c);
-        let values = || own.iter().filter(|(_, size)| !size).map(|(c, _)| roles[*c]);
+        let openings = group.iter().find(|(_, size)| *size).map(|(c, _)| *c);
+        let values = || group.iter().filter(|(_, size)| !size).map(|(c, _)| roles[*c]);
         let (some, all_finer) = (values().next().is_some(), values().all(|role| role == Role::Finer));
         let agrees = || match (openings_before, openings) {
-            (Some(a), Some(b)) => agreement::of(grid, headings, a, b),
+            (Some(a), Some(b)) => agreement::agree(grid, headings, a, b),
             _ => false,
         };
         match groups.last_mut() {

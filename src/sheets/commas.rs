@@ -82,17 +82,17 @@ fn refuse_points_of_thousands(
             && is_digits(whole)
             && is_digits(rest)
     };
-    let (mut found, mut largest) = (None, 0.0f64);
+    let (mut first, mut largest) = (None, 0.0f64);
     for row in extent.rows(grid, layout) {
         let cell = row.cell(column.column);
         match percentage(cell) {
-            Some(_) if may_be_thousands(cell) => found = found.or(Some((row.line, cell))),
+            Some(_) if may_be_thousands(cell) => first = first.or(Some((row.line, cell))),
             Some(mass) if mass.fract() != 0.0 => return Ok(()),
             Some(mass) => largest = largest.max(mass),
             None => {}
         }
     }
-    match found.filter(|_| largest >= LEAST) {
+    match first.filter(|_| largest >= LEAST) {
         Some((line, cell)) => {
             let allowed = format!(
                 "{cell} or {}, as a number: here the point may be a decimal sign or separate thousands",

@@ -2,7 +2,7 @@
 
 use super::grid::GridRow;
 use super::marks::{unmarked, with_thousands};
-use super::size::{Opening, Said, opening};
+use super::size::{Form, Opening, opening};
 use voidwalk_core::gradation::number;
 
 /// A percentage as laboratories write it: `97`, `97 %`, `97,0%`, `22.7 (1)`; or a mass, such as `1,254.6`.
@@ -77,7 +77,7 @@ pub(super) fn is_words(cell: &str) -> bool {
 
 /// `No. 4`: an opening, not the heading of a column.
 pub(super) fn is_short_opening(cell: &str) -> bool {
-    matches!(opening(cell), Some((Opening::Mm(_), Said::UsNumber | Said::Inches)))
+    matches!(opening(cell), Some((Opening::Mm(_), Form::UsNumber | Form::Inches)))
 }
 
 /// True for an opening in one cell and a value in another, without words before them.

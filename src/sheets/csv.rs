@@ -18,9 +18,9 @@ pub(super) fn separators(text: &str) -> Vec<char> {
     }
     const ALL: [char; 3] = [';', '\t', ','];
     let lines = text.lines().filter(|line| !is_comment(line));
-    let found = lines.filter_map(|line| ALL.into_iter().find(|&c| line.contains(c))).next().unwrap_or(',');
-    let others = ALL.into_iter().filter(|&c| c != found && text.contains(c));
-    std::iter::once(found).chain(others).collect()
+    let first = lines.filter_map(|line| ALL.into_iter().find(|&c| line.contains(c))).next().unwrap_or(',');
+    let others = ALL.into_iter().filter(|&c| c != first && text.contains(c));
+    std::iter::once(first).chain(others).collect()
 }
 
 /// Separator that Excel states above a table, as in `sep=;`.

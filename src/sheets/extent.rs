@@ -155,20 +155,20 @@ impl Extent {
     fn said_below(&self, grid: &Grid, rows: &[GridRow]) -> Option<String> {
         const MOST: usize = 4;
         let (first, last) = (rows.first()?, rows.last()?);
-        let said = |below: &Below| match below.value {
+        let text = |below: &Below| match below.value {
             Some((_, value)) => format!("\"{}\" {value}", below.words),
             None => format!("\"{}\"", below.words),
         };
-        let mut named: Vec<String> = self.below.iter().take(MOST).map(said).collect();
+        let mut named: Vec<String> = self.below.iter().take(MOST).map(text).collect();
         if self.below.len() > MOST {
             named.push("...".into());
         }
         let word = grid.row_word();
-        let which = match first.line == last.line {
+        let lines = match first.line == last.line {
             true => format!("{word} {}", grid.row_name(first.line)),
             false => format!("{word}s {} to {}", grid.row_name(first.line), grid.row_name(last.line)),
         };
         let left = if rows.len() == 1 { "was" } else { "were" };
-        Some(format!("{which} below the table ({}) {left} left out", named.join(", ")))
+        Some(format!("{lines} below the table ({}) {left} left out", named.join(", ")))
     }
 }

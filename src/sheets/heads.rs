@@ -40,8 +40,8 @@ pub(super) struct Head {
 /// The heading without the words of percents at its edges, and the role that they name.
 fn without_words(heading: &str) -> (String, Option<Role>) {
     let small = heading.to_lowercase().replace('_', " ");
-    let (mut rest, mut said, mut retained, mut cumulative) = (small.as_str(), false, false, None);
-    let mut take = |word: &str, said: &mut bool| {
+    let (mut rest, mut stated, mut retained, mut cumulative) = (small.as_str(), false, false, None);
+    let mut take = |word: &str, stated: &mut bool| {
         let is_retained =
             RETAINED.contains(&word) || matches!(role(word), Role::Retained(Retained { percent: true, .. }));
         retained |= is_retained;
@@ -49,35 +49,35 @@ fn without_words(heading: &str) -> (String, Option<Role>) {
             cumulative = Some(true);
         }
         let is_word = is_retained || FINER.contains(&word) || says_finer(word);
-        *said |= is_word;
-        is_word || *said && BETWEEN.contains(&word)
+        *stated |= is_word;
+        is_word || *stated && BETWEEN.contains(&word)
     };
     loop {
         let bare = rest.trim_start_matches([' ', '%', '.', ':', '<', '≤', '(', '-']);
-        said |= rest[..rest.len() - bare.len()].contains(['%', '<', '≤', '-']);
+        stated |= rest[..rest.len() - bare.len()].contains(['%', '<', '≤', '-']);
         rest = bare;
         if let Some(after) = rest.strip_prefix('+') {
             rest = after;
-            take("plus", &mut said);
+            take("plus", &mut stated);
             continue;
         }
         let mut word: String = rest.chars().take_while(|c| c.is_alphabetic()).collect();
         if ["pno", "pnr"].contains(&word.as_str()) {
             word.truncate(1);
         }
-        if word.is_empty() || !take(&word, &mut said) {
+        if word.is_empty() || !take(&word, &mut stated) {
             break;
         }
         rest = &rest[word.len()..];
     }
     while opening(rest).is_none() {
         let bare = rest.trim_end_matches([' ', '%', '.', ':', ',', '(', ')']);
-        said |= rest[bare.len()..].contains('%');
+        stated |= rest[bare.len()..].contains('%');
         rest = bare;
         let from = rest
             .rfind(|c: char| !c.is_alphabetic())
             .map_or(0, |at| at + rest[at..].chars().next().map_or(1, char::len_utf8));
-        if from == rest.len() || !take(&rest[from..], &mut said) {
+        if from == rest.len() || !take(&rest[from..], &mut stated) {
             break;
         }
         rest = &rest[..from];
@@ -86,7 +86,7 @@ fn without_words(heading: &str) -> (String, Option<Role>) {
         true => Role::Retained(Retained { percent: true, cumulative }),
         false => Role::Finer,
     };
-    (rest.trim().to_owned(), said.then_some(role))
+    (rest.trim().to_owned(), stated.then_some(role))
 }
 
 fn is_size(text: &str) -> bool {

@@ -413,8 +413,8 @@ fn without_headings(grid: &Grid, data: Option<usize>) -> Result<Layout, TableErr
     {
         return Err(fields(grid, row));
     }
-    let said = role(&head(value));
-    let role = if matches!(said, Role::Retained(_)) { said } else { Role::Finer };
+    let stated = role(&head(value));
+    let role = if matches!(stated, Role::Retained(_)) { stated } else { Role::Finer };
     let unit = unit(&head(size)).map_err(|()| {
         grid.refused_heading(
             grid.rows[start - 1].line,
@@ -430,8 +430,8 @@ fn without_headings(grid: &Grid, data: Option<usize>) -> Result<Layout, TableErr
 
 /// Error for a row whose number of cells differs from the table's number of columns.
 pub(super) fn fields(grid: &Grid, row: &GridRow) -> TableError {
-    let found = row.cells.len();
-    let allowed = if found > 2 && grid.delimiter == ',' {
+    let count = row.cells.len();
+    let allowed = if count > 2 && grid.delimiter == ',' {
         "two columns (with decimal commas, a semicolon or a tab between them)"
     } else {
         "two columns, with a comma, a semicolon or a tab between them"
@@ -441,5 +441,5 @@ pub(super) fn fields(grid: &Grid, row: &GridRow) -> TableError {
         Some(line) => shortened(&line.text),
         None => shortened(&row.cells.join(&separator)),
     };
-    TableError::Fields { file: grid.place(), line: row.line, found, value, allowed }
+    TableError::Fields { file: grid.place(), line: row.line, found: count, value, allowed }
 }

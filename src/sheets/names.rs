@@ -80,7 +80,7 @@ pub(super) fn titles(blocks: &[Block]) -> Vec<String> {
         }
     }
     // With several tables side by side, a row that names only one is a title of the sheet.
-    let of = |(block, candidates): (&Block, &Vec<(usize, String)>)| {
+    let title_of = |(block, candidates): (&Block, &Vec<(usize, String)>)| {
         let all = beside[&block.line()];
         let names = |least: usize| {
             candidates
@@ -90,7 +90,7 @@ pub(super) fn titles(blocks: &[Block]) -> Vec<String> {
         };
         names(all).or_else(|| if all > 1 { names(2) } else { None }).unwrap_or_default()
     };
-    blocks.iter().zip(&candidates).map(of).collect()
+    blocks.iter().zip(&candidates).map(title_of).collect()
 }
 
 /// Names the columns of a table by a row of samples above its headings.

@@ -10,7 +10,7 @@ use super::layout::{End, Layout, SoilColumn, fields};
 use super::lines::listed;
 use super::marks::unmarked;
 use super::retained::{Weighed, percents_finer, says_fraction, says_percent};
-use super::size::{Entry, Opening, Said, Unit, opening};
+use super::size::{Entry, Form, Opening, Unit, opening};
 use super::table::{Kind, Soil};
 use super::{account, commas, contradiction, roles, torn, units};
 use voidwalk_core::gradation::FIELDS;
@@ -62,14 +62,14 @@ fn soil(grid: &Grid, layout: &Layout, extent: &Extent, column: &SoilColumn) -> R
             Opening::Bare(value) => in_mm(grid, entry, value, unit)?,
             Opening::Mm(mm) => in_mm(grid, entry, mm, Unit::Mm)?,
             Opening::Below(value) => {
-                let unit = if entry.said == Said::Plain { unit } else { Unit::Mm };
+                let unit = if entry.form == Form::Plain { unit } else { Unit::Mm };
                 match in_mm(grid, entry, value, unit)? {
                     Opening::Mm(mm) => Opening::Below(mm),
                     other => other,
                 }
             }
             Opening::Class(one, other) => {
-                let unit = if entry.said == Said::Plain { unit } else { Unit::Mm };
+                let unit = if entry.form == Form::Plain { unit } else { Unit::Mm };
                 let mm = |value: f64| match value {
                     f64::INFINITY => Ok(value),
                     value => match in_mm(grid, entry, value, unit)? {
@@ -108,9 +108,9 @@ fn soil(grid: &Grid, layout: &Layout, extent: &Extent, column: &SoilColumn) -> R
         notes.push(format!("its largest opening is {largest} mm: is the column in micrometres?"));
     }
     if let Some(end) = column.end {
-        let which = if end == End::Least { "least" } else { "most" };
+        let side = if end == End::Least { "least" } else { "most" };
         notes.push(format!(
-            "ranges such as 95-100 are two curves; this is that of the {which} that is allowed"
+            "ranges such as 95-100 are two curves; this is that of the {side} that is allowed"
         ));
     }
     let elsewhere: HashMap<usize, usize> =
@@ -167,7 +167,7 @@ fn entries(
         {
             return Err(fields(grid, row));
         }
-        let Some((opening, said)) = read else {
+        let Some((opening, form)) = read else {
             return Err(grid.refused(line, at, FIELDS[0], size, allowed_opening(size)));
         };
         if matches!(opening, Opening::Bare(value) if !value.is_finite()) {
@@ -199,7 +199,7 @@ fn entries(
             false => {}
         }
         let text = size.to_owned();
-        entries.push(Entry { line, column: at, opening, text, said, value: number + 0.0 });
+        entries.push(Entry { line, column: at, opening, text, form, value: number + 0.0 });
     }
     if let Some((line, value)) = plain.filter(|_| with_sign) {
         let allowed = "a number with %, as other cells of the column have: this may be a fraction of 1";
@@ -218,8 +218,8 @@ fn entries(
 }
 
 /// Text on the allowed forms of an opening; spreadsheets turn `3/8` into a date.
-fn allowed_opening(found: &str) -> String {
-    match is_date(found) {
+fn allowed_opening(text: &str) -> String {
+    match is_date(text) {
         true => {
             "an opening; this is a date, into which spreadsheets turn fractions such as 3/8: write 3/8 in"
                 .into()
@@ -281,7 +281,7 @@ fn finer(
     }
     let falls = |rows: &[Row]| rows.is_sorted_by(|a, b| a.size >= b.size);
     let rises = rows.is_sorted_by(|a, b| a.size <= b.size);
-    if !falls(&rows) && !rises && entries.iter().all(|entry| entry.said > Said::Plain) {
+    if !falls(&rows) && !rises && entries.iter().all(|entry| entry.form > Form::Plain) {
         notes.push(
             "rows in no order of their sizes, each with its unit or the name of its sieve, sorted".into(),
         );

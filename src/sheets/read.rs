@@ -155,10 +155,10 @@ fn of_workbook(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Nam
             false => soils_of(grid),
         };
         match read {
-            Ok(found) if !has_table && found.iter().all(|(_, soil)| soil.is_err()) => {
+            Ok(tables) if !has_table && tables.iter().all(|(_, soil)| soil.is_err()) => {
                 refusals.push((sheet, TableError::NoRows { file: place, header: false }));
             }
-            Ok(found) => soils.extend(found),
+            Ok(tables) => soils.extend(tables),
             // A table that is present but cannot be read is not skipped.
             Err(error @ (TableError::Value { .. } | TableError::Header { .. })) if has_table => {
                 soils.push((vec![sheet], Err(error)));

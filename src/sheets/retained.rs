@@ -338,9 +338,9 @@ mod tests {
             Soil::all("a.csv", text.as_bytes()).unwrap()[0].notes().join("; ")
         };
         let short = notes("9.5,0\n4.75,30\n1.18,40\n0.075,5\n");
-        let said = "the percents retained sum to 75, without the pan: the missing 25 % were taken as finer \
+        let note = "the percents retained sum to 75, without the pan: the missing 25 % were taken as finer \
                     than the finest sieve";
-        assert!(short.contains(said), "{short}");
+        assert!(short.contains(note), "{short}");
         for whole in ["9.5,0\n4.75,30\n1.18,40\n0.075,5\nPan,25\n", "9.5,0\n4.75,30\n1.18,64\n0.075,6\n"] {
             let notes = notes(whole);
             assert!(notes.contains("turned into percent finer") && !notes.contains("missing"), "{notes}");

@@ -4,7 +4,7 @@
 use super::grid::Grid;
 use super::heading::{Retained, Role, says_cumulative, says_finer};
 use super::layout::{Layout, SoilColumn};
-use super::size::{Entry, Opening, Said, Unit};
+use super::size::{Entry, Form, Opening, Unit};
 use voidwalk_core::gradation::FIELDS;
 use voidwalk_core::gradation::TableError;
 
@@ -40,7 +40,7 @@ fn of_classes(
     class: &Entry,
     notes: &mut Vec<String>,
 ) -> Result<Role, TableError> {
-    if class.said == Said::Plain && layout.unit.is_none() {
+    if class.form == Form::Plain && layout.unit.is_none() {
         let allowed = "classes with their unit, in the heading as Fraction (mm) or in each cell";
         return Err(grid.refused(class.line, class.column, FIELDS[0], &class.text, allowed));
     }
@@ -87,13 +87,13 @@ fn as_sieves(grid: &Grid, entries: &mut Vec<Entry>) -> Result<(), TableError> {
     }
     if let Some(upper) = top {
         let of_class = &entries[coarsest];
-        let Entry { line, column, said, .. } = *of_class;
+        let Entry { line, column, form, .. } = *of_class;
         let all = Entry {
             line,
             column,
             opening: Opening::Mm(upper),
             text: of_class.text.clone(),
-            said,
+            form,
             value: 0.0,
         };
         let descends = order.windows(2).all(|pair| pair[0] < pair[1]);
@@ -107,7 +107,7 @@ fn as_sieves(grid: &Grid, entries: &mut Vec<Entry>) -> Result<(), TableError> {
 fn rises_in_known_sizes(layout: &Layout, column: &SoilColumn, entries: &[Entry]) -> bool {
     let is_known = |entry: &Entry| match layout.unit {
         Some(unit) => unit != Unit::SieveNumber,
-        None => entry.said != Said::Plain,
+        None => entry.form != Form::Plain,
     };
     if column.role != Role::Finer || !says_cumulative(&column.heading) || says_finer(&column.heading) {
         return false;

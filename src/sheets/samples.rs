@@ -100,12 +100,12 @@ fn in_file(path: &Path, curves: Curves) -> Result<Vec<SoilSample>, GradationErro
     let curves = curves(path)?;
     let several = curves.len() > 1;
     let (file, _) = file_and_soil(path);
-    let of = |(name, curve): (String, Gradation)| {
+    let sample = |(name, curve): (String, Gradation)| {
         let path =
             if several { PathBuf::from(format!("{}#{name}", file.display())) } else { path.to_owned() };
         SoilSample { name, path, curve }
     };
-    Ok(curves.into_iter().map(of).collect())
+    Ok(curves.into_iter().map(sample).collect())
 }
 
 #[cfg(test)]

@@ -106,13 +106,13 @@ pub(super) struct Entry {
     pub(super) opening: Opening,
     /// Opening as written.
     pub(super) text: String,
-    pub(super) said: Said,
+    pub(super) form: Form,
     pub(super) value: f64,
 }
 
 /// Form in which an opening was written, beyond its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Said {
+pub(super) enum Form {
     /// A number.
     Plain,
     /// A number with a unit that is not inches.
@@ -147,9 +147,9 @@ fn is_sum(text: &str) -> bool {
 }
 
 /// Opening that a cell names; `None` for anything else.
-pub(super) fn opening(text: &str) -> Option<(Opening, Said)> {
+pub(super) fn opening(text: &str) -> Option<(Opening, Form)> {
     if let Some(value) = number(text) {
-        return Some((Opening::Bare(value), Said::Plain));
+        return Some((Opening::Bare(value), Form::Plain));
     }
     let text = text.to_lowercase().replace('\u{a0}', " ");
     let text = text.trim();
@@ -159,27 +159,27 @@ pub(super) fn opening(text: &str) -> Option<(Opening, Said)> {
     let plain = plain.trim_end_matches([' ', ':', '.', ',']);
     const PAN: [&str; 7] = ["pan", "the pan", "bottom", "receiver", "rest", "tray", "base pan"];
     if PAN.contains(&plain.trim_start_matches("bottom ")) || is_pan(plain) {
-        return Some((Opening::Pan, Said::Plain));
+        return Some((Opening::Pan, Form::Plain));
     }
     if is_washed(text) {
-        return Some((Opening::Pan, Said::Plain));
+        return Some((Opening::Pan, Form::Plain));
     }
     if is_sum(plain) || is_total(plain) {
-        return Some((Opening::Total, Said::Plain));
+        return Some((Opening::Total, Form::Plain));
     }
     if let Some(rest) =
         ["<", "≤", "pass ", "passing ", "finer than ", "minus "].iter().find_map(|p| text.strip_prefix(p))
     {
         return match opening(rest.trim())? {
-            (Opening::Mm(mm) | Opening::Bare(mm), said) => Some((Opening::Below(mm), said)),
+            (Opening::Mm(mm) | Opening::Bare(mm), form) => Some((Opening::Below(mm), form)),
             _ => None,
         };
     }
-    let minus = text.strip_prefix('-').and_then(us).filter(|(_, said)| *said == Said::UsNumber);
-    if let Some((Opening::Mm(mm), said)) = minus {
-        return Some((Opening::Below(mm), said));
+    let minus = text.strip_prefix('-').and_then(us).filter(|(_, form)| *form == Form::UsNumber);
+    if let Some((Opening::Mm(mm), form)) = minus {
+        return Some((Opening::Below(mm), form));
     }
-    let read = metric(text).map(|mm| (Opening::Mm(mm), Said::WithUnit)).or_else(|| us(text));
+    let read = metric(text).map(|mm| (Opening::Mm(mm), Form::WithUnit)).or_else(|| us(text));
     read.or_else(|| class(text)).or_else(|| {
         let bare = unmarked(text);
         if bare == text { None } else { opening(bare) }
@@ -187,13 +187,13 @@ pub(super) fn opening(text: &str) -> Option<(Opening, Said)> {
 }
 
 /// Particles between two sieves: `9.5-4.75`, `4.75 to 2 mm`, `-No. 4 +No. 10`, `> 19`.
-fn class(text: &str) -> Option<(Opening, Said)> {
+fn class(text: &str) -> Option<(Opening, Form)> {
     let sieve = |text: &str| match opening(text.trim())? {
-        (Opening::Mm(size) | Opening::Bare(size), said) if size >= 0.0 => Some((size, said)),
+        (Opening::Mm(size) | Opening::Bare(size), form) if size >= 0.0 => Some((size, form)),
         _ => None,
     };
     if let Some(rest) = [">=", ">", "≥", "coarser than "].iter().find_map(|sign| text.strip_prefix(sign)) {
-        return sieve(rest).map(|(lower, said)| (Opening::Class(f64::INFINITY, lower), said));
+        return sieve(rest).map(|(lower, form)| (Opening::Class(f64::INFINITY, lower), form));
     }
     let passed = text.strip_prefix('-').and_then(|rest| rest.split_once('+'));
     let ends = passed.or_else(|| {
@@ -201,13 +201,13 @@ fn class(text: &str) -> Option<(Opening, Said)> {
         SIGNS.iter().find_map(|sign| text.split_once(sign))
     });
     let (first, second) = ends?;
-    let (lower, said) = sieve(second)?;
+    let (lower, form) = sieve(second)?;
     // The unit may appear once, at the end.
     let unit = second.trim_start_matches(|c: char| !c.is_alphabetic());
-    let with_unit = || if said > Said::Plain { sieve(&format!("{first} {unit}")) } else { None };
-    let is_bare = |said: Said| said == Said::Plain;
-    let (upper, _) = sieve(first).filter(|(_, other)| is_bare(*other) == is_bare(said)).or_else(with_unit)?;
-    (upper != lower).then_some((Opening::Class(upper.max(lower), upper.min(lower)), said))
+    let with_unit = || if form > Form::Plain { sieve(&format!("{first} {unit}")) } else { None };
+    let is_bare = |form: Form| form == Form::Plain;
+    let (upper, _) = sieve(first).filter(|(_, other)| is_bare(*other) == is_bare(form)).or_else(with_unit)?;
+    (upper != lower).then_some((Opening::Class(upper.max(lower), upper.min(lower)), form))
 }
 
 /// Openings of old and new standards, such as 4.76 and 4.75 mm, differ by less than this.
@@ -261,7 +261,7 @@ fn metric(text: &str) -> Option<f64> {
 }
 
 /// `No. 4`, `#200`, `200 mesh`, `3/8"`, `1 1/2 in`.
-fn us(text: &str) -> Option<(Opening, Said)> {
+fn us(text: &str) -> Option<(Opening, Form)> {
     let mut text = text;
     let mut is_us = false;
     for lead in ["u.s. ", "us ", "uss ", "u.s.", "astm ", "sieve ", "standard ", "std ", "std. ", "sieve "] {
@@ -275,17 +275,17 @@ fn us(text: &str) -> Option<(Opening, Said)> {
         text = rest.unwrap_or(text);
     }
     if let Some(mm) = us_sieve_number(text).filter(|_| is_us) {
-        return Some((Opening::Mm(mm), Said::UsNumber));
+        return Some((Opening::Mm(mm), Form::UsNumber));
     }
     for lead in ["no.", "no ", "nº", "n°", "№", "nr.", "nr ", "num.", "number ", "#", "mesh "] {
         if let Some(mm) = text.strip_prefix(lead).and_then(|rest| us_sieve_number(rest.trim())) {
-            return Some((Opening::Mm(mm), Said::UsNumber));
+            return Some((Opening::Mm(mm), Form::UsNumber));
         }
     }
     for (lead, end) in [("no", ""), ("", "mesh"), ("", "#")] {
         let inner = text.strip_prefix(lead).and_then(|rest| rest.strip_suffix(end)).map(str::trim);
         if let Some(mm) = inner.filter(|inner| *inner != text).and_then(us_sieve_number) {
-            return Some((Opening::Mm(mm), Said::UsNumber));
+            return Some((Opening::Mm(mm), Form::UsNumber));
         }
     }
     const MARKS: [&str; 13] =
@@ -297,7 +297,7 @@ fn us(text: &str) -> Option<(Opening, Said)> {
         None if text.contains(['/', '½', '¼', '¾', '⅜', '⅝', '⅞', '⅛']) => inches_of(text)?,
         None => return None,
     };
-    Some((Opening::Mm(of_inches(inches)), Said::Inches))
+    Some((Opening::Mm(of_inches(inches)), Form::Inches))
 }
 
 /// Inches as decimals or a fraction; `11/2` may be 1 1/2 without its space.
@@ -414,22 +414,22 @@ mod tests {
         ] {
             assert_eq!(opening(text).map(|(opening, _)| opening), Some(Opening::Mm(mm)), "{text}");
         }
-        assert_eq!(opening("0,5"), Some((Opening::Bare(0.5), Said::Plain)));
+        assert_eq!(opening("0,5"), Some((Opening::Bare(0.5), Form::Plain)));
         for pan in ["Pan", "Pan (dry)", "bottom pan", "Receptáculo", "Siebpfanne:", "底盘", "受け皿"] {
-            assert_eq!(opening(pan), Some((Opening::Pan, Said::Plain)), "{pan}");
+            assert_eq!(opening(pan), Some((Opening::Pan, Form::Plain)), "{pan}");
         }
-        assert_eq!(opening("0.075*"), Some((Opening::Bare(0.075), Said::Plain)));
-        assert_eq!(opening("-#200"), Some((Opening::Below(0.075), Said::UsNumber)));
-        for (class, bounds, said) in [
-            ("9.5-4.75", (9.5, 4.75), Said::Plain),
-            ("9.5 - 4.75 mm", (9.5, 4.75), Said::WithUnit),
-            ("3/4 in - 3/8 in", (19.0, 9.5), Said::Inches),
-            ("-3/8 in +No. 4", (9.5, 4.75), Said::UsNumber),
-            ("> 9.5", (f64::INFINITY, 9.5), Said::Plain),
+        assert_eq!(opening("0.075*"), Some((Opening::Bare(0.075), Form::Plain)));
+        assert_eq!(opening("-#200"), Some((Opening::Below(0.075), Form::UsNumber)));
+        for (class, bounds, form) in [
+            ("9.5-4.75", (9.5, 4.75), Form::Plain),
+            ("9.5 - 4.75 mm", (9.5, 4.75), Form::WithUnit),
+            ("3/4 in - 3/8 in", (19.0, 9.5), Form::Inches),
+            ("-3/8 in +No. 4", (9.5, 4.75), Form::UsNumber),
+            ("> 9.5", (f64::INFINITY, 9.5), Form::Plain),
         ] {
-            assert_eq!(opening(class), Some((Opening::Class(bounds.0, bounds.1), said)), "{class}");
+            assert_eq!(opening(class), Some((Opening::Class(bounds.0, bounds.1), form)), "{class}");
         }
-        assert_eq!(opening("< 0.075 mm"), Some((Opening::Below(0.075), Said::WithUnit)));
+        assert_eq!(opening("< 0.075 mm"), Some((Opening::Below(0.075), Form::WithUnit)));
         for text in [
             "Rest (%)",
             "US 199",
@@ -455,10 +455,10 @@ mod tests {
         }
         for (inches, mm) in BY_INCHES {
             let name = us_sieve(mm).unwrap();
-            assert_eq!(opening(&name), Some((Opening::Mm(mm), Said::Inches)), "{name}: {inches}");
+            assert_eq!(opening(&name), Some((Opening::Mm(mm), Form::Inches)), "{name}: {inches}");
         }
         for (_, mm) in BY_NUMBER {
-            assert_eq!(opening(&us_sieve(mm).unwrap()), Some((Opening::Mm(mm), Said::UsNumber)), "{mm}");
+            assert_eq!(opening(&us_sieve(mm).unwrap()), Some((Opening::Mm(mm), Form::UsNumber)), "{mm}");
         }
         assert_eq!(us_sieve(7.0), None);
         assert_eq!(Unit::Phi.mm(-2.0), Some(4.0));

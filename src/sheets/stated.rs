@@ -7,7 +7,7 @@ use super::grid::{Grid, GridRow};
 use super::heading::{Role, role, unit, words};
 use super::languages::say_inches;
 use super::layout::Layout;
-use super::size::{Entry, Opening, Said, Unit, is_us_sieve};
+use super::size::{Entry, Form, Opening, Unit, is_us_sieve};
 use voidwalk_core::gradation::FIELDS;
 use voidwalk_core::gradation::TableError;
 
@@ -107,7 +107,7 @@ pub(super) fn refuse_other_series(grid: &Grid, layout: &Layout, entries: &[Entry
             whole &= value.fract() == 0.0;
             largest = largest.max(value);
         }
-        numbered = numbered.or(Some(entry).filter(|e| e.said == Said::UsNumber));
+        numbered = numbered.or(Some(entry).filter(|e| e.form == Form::UsNumber));
     }
     let may_be_numbers = matches!(layout.unit, None | Some(Unit::SieveNumber)) && whole && largest >= 100.0;
     let Some(entry) = numbered.or(bare.filter(|_| may_be_numbers)) else { return Ok(()) };
@@ -167,11 +167,11 @@ pub(super) fn states_unit(text: &str) -> bool {
         Ok(Some(Unit::Inch)) => say_inches(&all),
         _ => false,
     };
-    let found: Vec<&String> = all.iter().filter(|word| is_stated(word) && !behind_number(word)).collect();
-    let needs_size = !found.iter().any(|word| unit(word) == Ok(Some(Unit::Micrometre)));
+    let units: Vec<&String> = all.iter().filter(|word| is_stated(word) && !behind_number(word)).collect();
+    let needs_size = !units.iter().any(|word| unit(word) == Ok(Some(Unit::Micrometre)));
     let says_size =
-        role(text) == Role::Size || all.iter().any(|word| role(word) == Role::Size && !found.contains(&word));
-    !found.is_empty() && (!needs_size || says_size)
+        role(text) == Role::Size || all.iter().any(|word| role(word) == Role::Size && !units.contains(&word));
+    !units.is_empty() && (!needs_size || says_size)
 }
 
 #[cfg(test)]

@@ -88,13 +88,13 @@ mod tests {
 
     #[test]
     fn a_file_named_as_a_workbook_is_one_or_refused() {
-        let said = |file: &str, bytes: &[u8]| decoded(file, bytes).unwrap_err().to_string();
+        let error = |file: &str, bytes: &[u8]| decoded(file, bytes).unwrap_err().to_string();
         for ending in ["xlsx", "XLSX", "ods"] {
-            let said = said(&format!("site.{ending}"), b"# voidwalk\n\n4.75,100\n");
+            let message = error(&format!("site.{ending}"), b"# voidwalk\n\n4.75,100\n");
             let is = format!("site.{ending} is not a workbook, though its name ends in .");
-            assert!(said.starts_with(&is), "{said}");
+            assert!(message.starts_with(&is), "{message}");
         }
-        assert!(said("site.xlsx", &[0xd0, 0xcf, 0x11, 0xe0]).contains("one with a password"));
+        assert!(error("site.xlsx", &[0xd0, 0xcf, 0x11, 0xe0]).contains("one with a password"));
         assert!(decoded("site.csv", b"4.75,100\n").is_ok());
     }
 

@@ -3,7 +3,7 @@
 use super::grid::Grid;
 use super::heading::{Retained, Role};
 use super::layout::Layout;
-use super::size::{Entry, Opening, Said, Unit, is_us_sieve_of_inches};
+use super::size::{Entry, Form, Opening, Unit, is_us_sieve_of_inches};
 use super::stated;
 use voidwalk_core::gradation::FIELDS;
 use voidwalk_core::gradation::TableError;
@@ -58,7 +58,7 @@ pub(super) fn of_bare(
         _ => false,
     };
     let Some(first) = entries.iter().find(bare) else { return Ok(Unit::Mm) };
-    let any = |said: Said| entries.iter().any(|entry| entry.said == said);
+    let any = |form: Form| entries.iter().any(|entry| entry.form == form);
     let refused =
         |allowed: &str| Err(grid.refused(first.line, first.column, FIELDS[0], &first.text, allowed));
     if let Some(entry) = first_sieve_number(entries, role) {
@@ -73,22 +73,22 @@ pub(super) fn of_bare(
         );
         return Err(grid.refused(entry.line, entry.column, FIELDS[0], text, allowed));
     }
-    if any(Said::Inches) || any(Said::UsNumber) {
+    if any(Form::Inches) || any(Form::UsNumber) {
         match (goes_one_way(entries, Unit::Mm), goes_one_way(entries, Unit::Inch)) {
             (false, true) => {
                 notes.push("openings without a unit read as inches, as those around them are".into());
                 return Ok(Unit::Inch);
             }
             (true, false) => {
-                let is_either = |entry: &&Entry| any(Said::Inches) && is_sieve_number(entry);
+                let is_either = |entry: &&Entry| any(Form::Inches) && is_sieve_number(entry);
                 if let Some(entry) = entries.iter().find(is_either) {
                     let text = &entry.text;
                     let allowed = format!("No. {text} or {text} mm, as other rows are in inches");
                     return Err(grid.refused(entry.line, entry.column, FIELDS[0], text, allowed));
                 }
             }
-            (false, false) if !any(Said::Inches) => {}
-            (true, true) if !any(Said::Inches) && !is_series_of_inches(entries) => {}
+            (false, false) if !any(Form::Inches) => {}
+            (true, true) if !any(Form::Inches) && !is_series_of_inches(entries) => {}
             _ => return refused("an opening with its unit (mm or in), as other rows are in inches"),
         }
     } else if is_series_of_inches(entries) {
@@ -169,7 +169,7 @@ fn is_series_of_inches(entries: &[Entry]) -> bool {
     let (mut only, mut round) = (false, 0);
     for entry in entries {
         let (Opening::Bare(value) | Opening::Below(value)) = entry.opening else { continue };
-        if value == 0.0 || entry.said != Said::Plain {
+        if value == 0.0 || entry.form != Form::Plain {
             continue;
         }
         let place = |list: &[f64]| list.iter().position(|inches| (inches - value).abs() < 1e-9);
@@ -245,11 +245,11 @@ fn beside_pan(entries: &[Entry]) -> Option<f64> {
 
 /// Adds a note of the names of openings that were translated.
 pub(super) fn say_names(entries: &[Entry], unit: Unit, notes: &mut Vec<String>) {
-    let any = |said: Said| entries.iter().any(|entry| entry.said == said);
-    let number = any(Said::UsNumber) || unit == Unit::SieveNumber;
+    let any = |form: Form| entries.iter().any(|entry| entry.form == form);
+    let number = any(Form::UsNumber) || unit == Unit::SieveNumber;
     let of_inches = entries
         .iter()
-        .filter(|entry| entry.said == Said::Inches || entry.said == Said::Plain && unit == Unit::Inch);
+        .filter(|entry| entry.form == Form::Inches || entry.form == Form::Plain && unit == Unit::Inch);
     let (mut standard, mut exact) = (false, false);
     for entry in of_inches {
         if let Opening::Mm(mm) | Opening::Below(mm) = entry.opening {
@@ -262,8 +262,8 @@ pub(super) fn say_names(entries: &[Entry], unit: Unit, notes: &mut Vec<String>) 
         notes.push(format!("US sieves read as the openings of ASTM E11 ({example})"));
     }
     if exact {
-        let which = if standard { "other openings in inches" } else { "openings in inches" };
-        notes.push(format!("{which} converted exactly: 1 in = 25.4 mm"));
+        let openings = if standard { "other openings in inches" } else { "openings in inches" };
+        notes.push(format!("{openings} converted exactly: 1 in = 25.4 mm"));
     }
     match unit {
         Unit::Micrometre => notes.push("openings in micrometres".into()),
@@ -301,12 +301,12 @@ mod tests {
             ("Sieve,Cumulative % retained", &["4,0", "10,20", "40,60", "100,98"]),
         ] {
             for backwards in [false, true] {
-                let said = read(heading, rows, backwards).unwrap_err();
-                assert!(said.contains("look like US sieve numbers"), "{heading}: {said}");
-                assert!(said.contains("line ") && said.contains("sizes in mm need mm"), "{said}");
+                let message = read(heading, rows, backwards).unwrap_err();
+                assert!(message.contains("look like US sieve numbers"), "{heading}: {message}");
+                assert!(message.contains("line ") && message.contains("sizes in mm need mm"), "{message}");
                 let in_mm = heading.replace("Sieve", "Sieve (mm)");
-                let said = read(&in_mm, rows, backwards);
-                assert!(!said.is_err_and(|said| said.contains("US sieve numbers")), "{in_mm}");
+                let result = read(&in_mm, rows, backwards);
+                assert!(!result.is_err_and(|message| message.contains("US sieve numbers")), "{in_mm}");
             }
         }
         let bare = read("4,100", &["10,68", "40,17", "200,1.5"], false).unwrap_err();

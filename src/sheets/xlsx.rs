@@ -20,12 +20,12 @@ const MOST_SHEETS: usize = 200;
 pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, TableError> {
     let book = zipped.text("xl/workbook.xml")?;
     let mut targets = HashMap::new();
-    each(file, &zipped.text("xl/_rels/workbook.xml.rels")?, "Relationship", |e| {
+    visit_elements(file, &zipped.text("xl/_rels/workbook.xml.rels")?, "Relationship", |e| {
         let (id, target) = (attribute(e, "Id"), attribute(e, "Target"));
         targets.extend(id.zip(target));
     })?;
     let mut names = Vec::new();
-    each(file, &book, "sheet", |e| {
+    visit_elements(file, &book, "sheet", |e| {
         let hidden = attribute(e, "state").is_some_and(|state| state != "visible");
         let named = attribute(e, "name").zip(attribute(e, "r:id").or(attribute(e, "id")));
         names.extend(named.map(|(name, id)| (name, id, hidden)));
@@ -61,17 +61,17 @@ fn broken(file: &str) -> TableError {
     unreadable(file, "its XML is broken")
 }
 
-/// Calls `found` for each element of this name.
-fn each(
+/// Calls `visit` for each element of this name.
+fn visit_elements(
     file: &str,
     text: &str,
     name: &str,
-    mut found: impl FnMut(&quick_xml::events::BytesStart),
+    mut visit: impl FnMut(&quick_xml::events::BytesStart),
 ) -> Result<(), TableError> {
     let mut reader = Reader::from_str(text);
     loop {
         match reader.read_event().map_err(|_| broken(file))? {
-            Event::Start(e) | Event::Empty(e) if e.local_name().as_ref() == name => found(&e),
+            Event::Start(e) | Event::Empty(e) if e.local_name().as_ref() == name => visit(&e),
             Event::Eof => return Ok(()),
             _ => {}
         }
@@ -143,7 +143,7 @@ enum Style {
 /// The styles of cells, by their numbers.
 fn styles(file: &str, text: &str) -> Result<Vec<Style>, TableError> {
     let mut formats: HashMap<u32, Style> = HashMap::new();
-    each(file, text, "numFmt", |e| {
+    visit_elements(file, text, "numFmt", |e| {
         let id = attribute(e, "numFmtId").and_then(|id| id.parse().ok());
         let code = attribute(e, "formatCode").unwrap_or_default();
         formats.extend(id.map(|id| (id, of_format(&code))));

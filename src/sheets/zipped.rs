@@ -80,12 +80,12 @@ pub(super) fn too_large(file: &str, how: &str) -> TableError {
 
 /// An attribute of an element.
 pub(super) fn attribute(element: &BytesStart, name: &str) -> Option<String> {
-    let found = element
+    let attribute = element
         .attributes()
         .with_checks(false)
         .flatten()
         .find(|a| a.key.as_ref() == name || !name.contains(':') && a.key.local_name().as_ref() == name)?;
-    let value = quick_xml::escape::unescape(&found.value).ok()?;
+    let value = quick_xml::escape::unescape(&attribute.value).ok()?;
     Some(value.into_owned())
 }
 

@@ -149,24 +149,25 @@ impl Product {
             self.limits.iter().map(|row| [row.0, row.2]).collect(),
             self.limits.iter().map(|row| [row.0, row.1]).collect(),
         ];
-        let mut found = Vec::new();
+        let mut not_kept = Vec::new();
         let of_sides: [fn(f64) -> NotKept; 2] =
             [|cu| NotKept::CuOfFineSide { cu }, |cu| NotKept::CuOfCoarseSide { cu }];
         for (of_side, side) in of_sides.into_iter().zip(&sides) {
             let cu = size_at(side, 60.0) / size_at(side, 10.0);
-            found.extend((!(LEAST_CU..=MOST_CU).contains(&cu)).then(|| of_side(cu)));
+            not_kept.extend((!(LEAST_CU..=MOST_CU).contains(&cu)).then(|| of_side(cu)));
         }
         let from_5_to_60 = sides.iter().flatten().map(|row| row[1]).chain([5.0, 60.0]);
         let ratio = |percent: f64| size_at(&sides[1], percent) / size_at(&sides[0], percent);
-        let wide = from_5_to_60.filter(|of| (5.0..=60.0).contains(of)).map(ratio).fold(0.0, f64::max);
-        found.extend((wide > WIDEST_BAND).then_some(NotKept::Width { ratio: wide }));
+        let wide =
+            from_5_to_60.filter(|percent| (5.0..=60.0).contains(percent)).map(ratio).fold(0.0, f64::max);
+        not_kept.extend((wide > WIDEST_BAND).then_some(NotKept::Width { ratio: wide }));
         let at_no_200 = self.limits.iter().rev().find(|row| row.0 <= FINES_MM).or(self.limits.first());
         if let Some((_, _, percent)) = at_no_200.copied().filter(|row| row.2 > MOST_FINES_PERCENT) {
-            found.push(NotKept::Fines { percent });
+            not_kept.push(NotKept::Fines { percent });
         }
         let coarsest = self.limits.last().map(|row| row.0);
-        found.extend(coarsest.filter(|mm| *mm > GREATEST_SIZE_MM).map(|_| NotKept::GreatestSize));
-        found
+        not_kept.extend(coarsest.filter(|mm| *mm > GREATEST_SIZE_MM).map(|_| NotKept::GreatestSize));
+        not_kept
     }
 }
 
@@ -202,7 +203,7 @@ mod tests {
 
     #[test]
     fn sides_of_products_by_hand() {
-        let near = |found: f64, wanted: f64| (found / wanted - 1.0).abs() < 1e-9;
+        let near = |value: f64, wanted: f64| (value / wanted - 1.0).abs() < 1e-9;
         let [fine, coarse] = PRODUCTS[0].d15_mm();
         // 10 to 30 % between 0.15 and 0.3 mm, 5 to 25 % between 0.3 and 0.6 mm.
         assert!(near(fine, 0.15 * libm::pow(2.0, 0.25)) && near(coarse, 0.3 * libm::pow(2.0, 0.5)));

@@ -32,11 +32,11 @@ fn limit(rule: &AppliedRule, d15f: f64) -> Option<(&AppliedRule, f64)> {
 /// for which that author's limit is the recommended one.
 pub fn retaining(rules: &[AppliedRule]) -> impl Iterator<Item = &AppliedRule> {
     let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies);
-    let is_known = design.is_some_and(|of| of.limit.is_some() && !of.limit_at_most);
-    let is_dispersive = design.is_some_and(|of| of.notes.contains(&RuleNote::Dispersive));
+    let is_known = design.is_some_and(|rule| rule.limit.is_some() && !rule.limit_at_most);
+    let is_dispersive = design.is_some_and(|rule| rule.notes.contains(&RuleNote::Dispersive));
     let counts = move |tests: &AppliedRule| is_dispersive || !(is_known || tests.limit_at_most);
-    let retains = move |of: &&AppliedRule| of.role == RuleRole::Retention;
-    rules.iter().filter(retains).filter(move |of| of.id != TESTS_NO_EROSION || counts(of))
+    let retains = move |rule: &&AppliedRule| rule.role == RuleRole::Retention;
+    rules.iter().filter(retains).filter(move |rule| rule.id != TESTS_NO_EROSION || counts(rule))
 }
 
 /// A rule of retention that was made for a base and whose limit is only known to be at most a number, which
@@ -49,7 +49,7 @@ pub fn open_retention(rules: &[AppliedRule]) -> Option<&AppliedRule> {
 /// erosion, since no design goes beyond it.
 pub fn retaining_limits(rules: &[AppliedRule], d15f: f64) -> impl Iterator<Item = (&AppliedRule, f64)> {
     let d15f = judged_d15f(rules, d15f);
-    let continues = rules.iter().filter(|of| of.role == RuleRole::Continuation && !of.limit_at_most);
+    let continues = rules.iter().filter(|rule| rule.role == RuleRole::Continuation && !rule.limit_at_most);
     retaining(rules).chain(continues).filter_map(move |rule| limit(rule, d15f))
 }
 

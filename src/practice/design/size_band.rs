@@ -148,8 +148,8 @@ fn whole([min, max]: [f64; 2]) -> [f64; 2] {
     // Rounding up from below 0 gives -0, to which 0 is added.
     let inward =
         |parts: f64| [((min - hair) * parts).ceil() / parts + 0.0, ((max + hair) * parts).floor() / parts];
-    let found = [1.0, 10.0, 100.0].map(inward).into_iter().find(|[min, max]| min <= max);
-    found.unwrap_or([min, max])
+    let rounded = [1.0, 10.0, 100.0].map(inward).into_iter().find(|[min, max]| min <= max);
+    rounded.unwrap_or([min, max])
 }
 
 /// Percent finer than a size (mm); below its first point a side keeps the percent of that point.
@@ -169,8 +169,8 @@ fn percent_at(side: &[[f64; 2]], size: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn near(found: f64, wanted: f64) -> bool {
-        (found / wanted - 1.0).abs() < 1e-9
+    fn near(value: f64, wanted: f64) -> bool {
+        (value / wanted - 1.0).abs() < 1e-9
     }
 
     /// D15 0.14 to 0.7 mm, as for a base of category 2: D60 to 5 x 0.7 = 3.5 mm, and a fifth of it.
@@ -182,8 +182,8 @@ mod tests {
     fn the_sides_of_a_band_by_hand() {
         let band = band();
         let size = |percent: f64| {
-            let of = band.sizes.iter().find(|of| of.percent == percent).unwrap();
-            (of.min_mm, of.max_mm)
+            let size = band.sizes.iter().find(|size| size.percent == percent).unwrap();
+            (size.min_mm, size.max_mm)
         };
         assert_eq!((size(15.0), size(60.0)), ((0.14, 0.7), (0.7, 3.5)));
         // Both sides rise by a factor of 5 in 45 %.
@@ -199,15 +199,15 @@ mod tests {
     #[test]
     fn limits_by_hand_are_whole_percents_within_the_band() {
         let limits = band().limits(SieveSeries::Us);
-        let of = |name: &str| {
+        let limits_at = |name: &str| {
             let limit = limits.iter().find(|limit| limit.sieve == name).unwrap();
             (limit.min_percent_finer, limit.max_percent_finer)
         };
         // ln(0.6/0.14)/ln 5 x 45 + 15 = 55.7 and ln(0.6/0.7)/ln 5 x 45 + 15 = 10.7.
-        assert_eq!(of("No. 30"), (11.0, Some(55.0)));
-        assert_eq!(of("No. 200"), (0.0, Some(5.0)));
+        assert_eq!(limits_at("No. 30"), (11.0, Some(55.0)));
+        assert_eq!(limits_at("No. 200"), (0.0, Some(5.0)));
         // Above the D60 of a side, 0.7 and 3.5 mm, it has no limit: ln(2.36/0.7)/ln 5 x 45 + 15 = 48.98.
-        assert_eq!(of("No. 8"), (49.0, None));
+        assert_eq!(limits_at("No. 8"), (49.0, None));
         assert!(limits.iter().all(|limit| limit.min_percent_finer.is_sign_positive()));
         assert_eq!(limits[0].sieve, "No. 8");
         let iso = band().limits(SieveSeries::Iso);
@@ -228,7 +228,7 @@ mod tests {
                 for limit in band.limits(series) {
                     let [least, most] =
                         [&band.coarse_side, &fine].map(|side| percent_at(side, limit.opening_mm));
-                    assert!(limit.max_percent_finer.is_none_or(|of| of <= most + 1e-6));
+                    assert!(limit.max_percent_finer.is_none_or(|percent| percent <= most + 1e-6));
                     assert!(limit.min_percent_finer > least - 1e-6);
                 }
             }
@@ -260,10 +260,14 @@ mod tests {
     /// finer than 0.075 mm: 0.075 x 5^(10/45) = 0.1072 mm.
     #[test]
     fn no_band_is_inside_out() {
-        let of = |least: f64, most: f64| SizeBand::of([least, most], [most, 5.0 * most]);
-        assert!(of(0.1, 0.1).is_none() && of(0.1, 0.107).is_none() && of(0.1, 0.1073).is_some());
+        let band_from = |least: f64, most: f64| SizeBand::of([least, most], [most, 5.0 * most]);
+        assert!(
+            band_from(0.1, 0.1).is_none()
+                && band_from(0.1, 0.107).is_none()
+                && band_from(0.1, 0.1073).is_some()
+        );
         for (least, most) in [(0.1, 0.1073), (0.1, 0.12), (0.1, 0.5), (0.7, 0.7), (2.0, 10.0), (2.9, 14.9)] {
-            let band = of(least, most).unwrap();
+            let band = band_from(least, most).unwrap();
             for series in [SieveSeries::Us, SieveSeries::Iso] {
                 for limit in band.limits(series) {
                     let most_finer = limit.max_percent_finer.unwrap_or(100.0);

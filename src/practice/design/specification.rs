@@ -316,7 +316,7 @@ impl ProductMargin {
 impl Specification {
     /// The product whose D15 comes closest to both limits, if no product fits.
     pub fn nearest_product(&self) -> Option<&ProductMargin> {
-        let none_fits = self.products.iter().all(|of| of.fits() == Some(false));
+        let none_fits = self.products.iter().all(|product| product.fits() == Some(false));
         let all = self.products.iter().filter(|_| none_fits && self.d15f_max_mm.is_some());
         all.max_by(|a, b| a.margin().total_cmp(&b.margin()))
     }
@@ -360,8 +360,8 @@ pub fn margins((d15f_min, certain): (Option<f64>, f64), d15f_max: Option<f64>) -
 mod tests {
     use super::*;
 
-    fn near(found: f64, wanted: f64) -> bool {
-        (found / wanted - 1.0).abs() < 1e-9
+    fn near(value: f64, wanted: f64) -> bool {
+        (value / wanted - 1.0).abs() < 1e-9
     }
 
     #[test]
@@ -374,7 +374,7 @@ mod tests {
         );
         assert!(near(sand.holds_by.unwrap(), 0.7 / (0.3 * 2f64.sqrt())));
         let none = margins((Some(0.5), 0.5), Some(0.6));
-        assert!(none.iter().all(|of| of.fits() == Some(false)));
+        assert!(none.iter().all(|product| product.fits() == Some(false)));
         // A product that drains may or may not hold if the maximum D15F is not known.
         let open = margins((Some(0.2), 0.2), None);
         assert_eq!((open[0].fits(), open[2].fits()), (Some(false), None));

@@ -88,8 +88,8 @@ mod tests {
     #[test]
     fn between_its_points_the_variate_is_straight() {
         for (ratio, by_hand) in [(0.875, 0.01441), (1.5, 0.26083), (2.5, 0.73917)] {
-            let found = probability(ratio).unwrap();
-            assert!((found - by_hand).abs() < 1e-5, "{ratio} {found}");
+            let share = probability(ratio).unwrap();
+            assert!((share - by_hand).abs() < 1e-5, "{ratio} {share}");
         }
         let rising: Vec<f64> = (50..300).map(|n| probability(f64::from(n) / 100.0).unwrap()).collect();
         assert!(rising.windows(2).all(|pair| pair[0] < pair[1]));

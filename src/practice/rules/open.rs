@@ -167,7 +167,7 @@ fn hidden(curve: &Gradation, steps: &[Step], counts: impl Fn(&Step) -> bool) -> 
 fn spread(curve: &Gradation, steps: &[Step], by_ends: impl Fn(usize, &Step) -> bool) -> Vec<Gradation> {
     let chosen = chosen(steps);
     let end = |place: usize, step: &Step| {
-        let at = chosen.iter().position(|of| of == step).unwrap_or(chosen.len().saturating_sub(1));
+        let at = chosen.iter().position(|other| other == step).unwrap_or(chosen.len().saturating_sub(1));
         if place >> at & 1 == 1 { End::Coarse } else { End::Fine }
     };
     let at = |place: usize| {
@@ -192,20 +192,20 @@ pub fn judged_over(
         (_, Pairing::EachFilter) => of_filter(rule, inputs, filter),
         (_, Pairing::AllFilters) => of_filters(rule, inputs),
     };
-    let found = match over {
+    let result = match over {
         Some((choices, results)) => combined(rule, inputs, plain, &choices, results),
         None => plain,
     };
     let hidden = match rule.pairing {
-        Pairing::EachPair => breaks_in_base(rule, inputs, &found, base, filter).map(Choice::OfBase),
-        _ => breaks_in_filter(rule, inputs, &found, filter).map(Choice::OfFilter),
+        Pairing::EachPair => breaks_in_base(rule, inputs, &result, base, filter).map(Choice::OfBase),
+        _ => breaks_in_filter(rule, inputs, &result, filter).map(Choice::OfFilter),
     };
     Some(match hidden {
         Some(choice) => {
-            let needs = note(rule, inputs, choice, &found, &[]);
-            left_open(found, matches!(choice, Choice::OfBase(_)), needs)
+            let needs = note(rule, inputs, choice, &result, &[]);
+            left_open(result, matches!(choice, Choice::OfBase(_)), needs)
         }
-        None => found,
+        None => result,
     })
 }
 
@@ -213,23 +213,23 @@ fn widest(steps: impl Iterator<Item = Step>) -> Option<Step> {
     steps.max_by(|a, b| a.ratio().total_cmp(&b.ratio()))
 }
 
-fn is_kept(rule: &FilterRule, found: &Judged) -> bool {
-    margin(rule, found).0 >= MET
+fn is_kept(rule: &FilterRule, result: &Judged) -> bool {
+    margin(rule, result).0 >= MET
 }
 
 fn is_broken(judged: Option<Judged>) -> bool {
-    judged.is_some_and(|of| of.met == Some(false))
+    judged.is_some_and(|judged| judged.met == Some(false))
 }
 
 /// The widest step of a filter in which mass may lie so that it breaks a rule that both ends keep.
 fn breaks_in_filter(
     rule: &FilterRule,
     inputs: &RuleInputs,
-    found: &Judged,
+    result: &Judged,
     filter: &OpenFilter,
 ) -> Option<Step> {
     let is_of_shape = matches!(rule.role, RuleRole::Stability | RuleRole::Placing);
-    if !is_of_shape || rule.pairing != Pairing::EachFilter || !is_kept(rule, found) {
+    if !is_of_shape || rule.pairing != Pairing::EachFilter || !is_kept(rule, result) {
         return None;
     }
     let breaks =
@@ -241,19 +241,19 @@ fn breaks_in_filter(
 fn breaks_in_base(
     rule: &FilterRule,
     inputs: &RuleInputs,
-    found: &Judged,
+    result: &Judged,
     base: &OpenBase,
     filter: &OpenFilter,
 ) -> Option<Step> {
-    if !is_kept(rule, found) {
+    if !is_kept(rule, result) {
         return None;
     }
     let (_, filters) = d15f_ends(inputs.filter, filter);
     let breaks = |(base, soil, _): &&(Gradation, BaseSoil, Step)| {
-        let of = |filter: &&Gradation| {
+        let breaks_with = |filter: &&Gradation| {
             is_broken(judged(rule, &RuleInputs { filter, base, base_soil: soil.clone(), ..inputs.same() }))
         };
-        filters.iter().any(of)
+        filters.iter().any(breaks_with)
     };
     widest(base.hidden.iter().filter(breaks).map(|(.., step)| *step))
 }
@@ -349,8 +349,8 @@ fn combined(
     let mask = wide.iter().fold(0, |mask, i| mask | 1 << i);
     // Over steps that are not wide, the worst counts.
     let answer = |place: usize| {
-        let same = places.clone().filter(|of| of & mask == place & mask);
-        same.map(|of| class(&results[of])).min()
+        let same = places.clone().filter(|other| other & mask == place & mask);
+        same.map(|other| class(&results[other])).min()
     };
     let flips = |i: &usize| places.clone().any(|place| answer(place) != answer(place ^ 1 << i));
     let moves = |i: &usize| places.clone().any(|place| is_moved(&results[place], &results[place ^ 1 << i]));
@@ -450,18 +450,18 @@ fn note(
         Choice::OfFilter(step) => return Some(RuleNote::FilterBetween(step.from_mm, step.to_mm)),
         Choice::Gap => {
             let limits =
-                results.iter().filter_map(|of| of.limit).filter(|limit| Some(*limit) != judged.limit);
+                results.iter().filter_map(|result| result.limit).filter(|limit| Some(*limit) != judged.limit);
             return limits.reduce(f64::max).map(RuleNote::FlatBase);
         }
         Choice::OfBase(step) => step,
     };
     let encloses = |size: Option<f64>| size.is_some_and(|size| step.encloses(size));
     let regraded = |percent| encloses(inputs.base_soil.gradation.d(percent));
-    let of = match rule.role {
+    let between = match rule.role {
         RuleRole::Drainage if encloses(inputs.base.d(15.0)) => RuleNote::D15BBetween,
         RuleRole::Continuation if regraded(95.0) => RuleNote::D95BBetween,
         RuleRole::Retention if regraded(85.0) => RuleNote::D85BBetween,
         _ => RuleNote::BaseBetween,
     };
-    Some(of(step.from_mm, step.to_mm))
+    Some(between(step.from_mm, step.to_mm))
 }

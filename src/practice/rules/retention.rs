@@ -136,11 +136,11 @@ fn by_fines(inputs: &RuleInputs, limit: impl Fn(f64, f64) -> Limit, says_categor
 /// The greatest possible limit with unknown fines. D85B of a base that is nearly all fines is itself within
 /// the fines.
 fn whatever_its_fines(limit: &impl Fn(f64, f64) -> Limit, d85b: f64) -> f64 {
-    let of = |fines: u32| {
+    let most = |fines: u32| {
         let d85b = if fines > 85 { d85b.min(FINES_MM) } else { d85b };
         limit(f64::from(fines), d85b).most()
     };
-    (0..=100).map(of).fold(0.0, f64::max)
+    (0..=100).map(most).fold(0.0, f64::max)
 }
 
 /// Note on a base that was read as another than it is.
@@ -197,6 +197,6 @@ pub fn continuing(inputs: &RuleInputs) -> Judged {
 
 /// True if tests of such a base are known to have shown no erosion with this filter.
 fn is_without_erosion(inputs: &RuleInputs) -> bool {
-    let of = no_erosion(inputs);
-    !of.limit_at_most && of.value.zip(of.limit).is_some_and(|(d15f, limit)| d15f <= limit)
+    let judged = no_erosion(inputs);
+    !judged.limit_at_most && judged.value.zip(judged.limit).is_some_and(|(d15f, limit)| d15f <= limit)
 }

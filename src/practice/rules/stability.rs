@@ -15,16 +15,16 @@ pub fn kezdi(inputs: &RuleInputs) -> Judged {
     let filter = inputs.filter;
     let [from, to] = KEZDI_RANGE.map(|of_fine_d85| of_fine_d85 / 0.85);
     let tail = 100.0 * filter.pan_fraction();
-    let found = filter.kezdi();
-    let notes = found.map(|split| {
+    let worst = filter.kezdi();
+    let notes = worst.map(|split| {
         let at = RuleNote::KezdiAt(split.percent, split.coarse_d15_mm, split.fine_d85_mm);
         let hidden = (tail > KEZDI_RANGE[0]).then_some(RuleNote::KezdiHidden(tail));
         [Some(at), Some(RuleNote::KezdiSplits(from, to)), hidden].into_iter().flatten().collect()
     });
-    let judged = index(inputs, KEZDI, found.map(|split| split.value), notes.unwrap_or_default());
+    let judged = index(inputs, KEZDI, worst.map(|split| split.value), notes.unwrap_or_default());
     // The part that may be lost is the greatest part that the rest does not hold, rather than the part of the
     // worst ratio; if no such part may lie loose, the part of the worst ratio.
-    let lost = found.map(|worst| filter.greatest_split_above(KEZDI, WIDE_LOOSE_PERCENT).unwrap_or(worst));
+    let lost = worst.map(|worst| filter.greatest_split_above(KEZDI, WIDE_LOOSE_PERCENT).unwrap_or(worst));
     let left = lost.map(|split| WithoutFiner { percent: split.percent, d15f: split.coarse_d15_mm });
     let judged = Judged { without_finer: left, ..judged };
     // The hidden part may have a greater ratio.
@@ -41,15 +41,15 @@ pub fn li_fannin(inputs: &RuleInputs) -> Judged {
     shape(inputs, Gradation::li_fannin)
 }
 
-fn shape(inputs: &RuleInputs, of: fn(&Gradation) -> Option<ShapeIndex>) -> Judged {
-    let (filter, found) = (inputs.filter, of(inputs.filter));
+fn shape(inputs: &RuleInputs, index_of: fn(&Gradation) -> Option<ShapeIndex>) -> Judged {
+    let (filter, shape) = (inputs.filter, index_of(inputs.filter));
     let most = filter.loose_percent().unwrap_or(f64::NAN);
-    let at_f = |found: ShapeIndex| match 100.0 * filter.pan_fraction() {
-        0.0 => RuleNote::ShapeAt(found.percent, most),
-        pan => RuleNote::ShapeAbovePan(found.percent, pan, most),
+    let at_f = |shape: ShapeIndex| match 100.0 * filter.pan_fraction() {
+        0.0 => RuleNote::ShapeAt(shape.percent, most),
+        pan => RuleNote::ShapeAbovePan(shape.percent, pan, most),
     };
-    let judged = index(inputs, 1.0, found.map(|found| found.value), found.map(at_f).into_iter().collect());
-    let left = found.and_then(|found| without(filter, found.lost_percent?));
+    let judged = index(inputs, 1.0, shape.map(|shape| shape.value), shape.map(at_f).into_iter().collect());
+    let left = shape.and_then(|shape| without(filter, shape.lost_percent?));
     let judged = Judged { without_finer: left, ..judged };
     // Below the finest sieve the index may be less.
     let is_hidden = 100.0 * filter.pan_fraction() > MOST_HIDDEN_PERCENT;

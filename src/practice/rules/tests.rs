@@ -9,7 +9,7 @@ fn sieve(points: &[(f64, f64)]) -> Gradation {
     Gradation::from_lines(points).unwrap()
 }
 
-fn of(id: &str, filter: &Gradation, base: &Gradation) -> AppliedRule {
+fn applied(id: &str, filter: &Gradation, base: &Gradation) -> AppliedRule {
     let rules = apply(&RuleInputs::of_soils(base, filter));
     rules.into_iter().find(|rule| rule.id == id).unwrap()
 }
@@ -27,8 +27,8 @@ fn base(fines: f64, d85: f64) -> Gradation {
     }
 }
 
-fn close(found: Option<f64>, expected: f64) -> bool {
-    found.is_some_and(|found| (found - expected).abs() < 1e-9)
+fn close(value: Option<f64>, expected: f64) -> bool {
+    value.is_some_and(|value| (value - expected).abs() < 1e-9)
 }
 
 #[test]
@@ -45,10 +45,10 @@ fn sherard_and_dunnigan_by_hand_in_each_category() {
         (15.0, 0.6, 2.4),
         (5.0, 0.6, 2.4),
     ] {
-        let rule = of("sherard-dunnigan", &filter(6.3), &base(fines, d85));
+        let rule = applied("sherard-dunnigan", &filter(6.3), &base(fines, d85));
         assert!(close(rule.limit, limit) && close(rule.value, 6.3), "{fines} {d85}: {rule:?}");
         assert_eq!((rule.met, rule.applies, rule.unit), (Some(false), true, RuleUnit::Mm));
-        assert_eq!(of("sherard-dunnigan", &filter(0.999 * limit), &base(fines, d85)).met, Some(true));
+        assert_eq!(applied("sherard-dunnigan", &filter(0.999 * limit), &base(fines, d85)).met, Some(true));
     }
 }
 
@@ -58,10 +58,13 @@ fn foster_and_fell_no_erosion_by_hand_in_each_group() {
     for (fines, d85, limit) in
         [(90.0, 0.05, 0.45), (60.0, 0.5, 0.7), (35.0, 0.5, 0.7), (25.0, 0.6, 2.48), (5.0, 0.6, 4.2)]
     {
-        let rule = of("foster-fell-no-erosion", &filter(0.4), &base(fines, d85));
+        let rule = applied("foster-fell-no-erosion", &filter(0.4), &base(fines, d85));
         assert!(close(rule.limit, limit), "{fines} {d85}: {rule:?}");
         assert_eq!(rule.met, Some(true));
-        assert_eq!(of("foster-fell-no-erosion", &filter(1.001 * limit), &base(fines, d85)).met, Some(false));
+        assert_eq!(
+            applied("foster-fell-no-erosion", &filter(1.001 * limit), &base(fines, d85)).met,
+            Some(false)
+        );
     }
 }
 
@@ -69,16 +72,16 @@ fn foster_and_fell_no_erosion_by_hand_in_each_group() {
 #[test]
 fn limits_by_fines_say_how_they_are_worked_out() {
     let by_fines = |id: &str, fines: f64| {
-        let rule = of(id, &filter(0.4), &base(fines, 0.31));
-        let found = rule.notes.iter().find_map(|note| match *note {
+        let rule = applied(id, &filter(0.4), &base(fines, 0.31));
+        let by_fines = rule.notes.iter().find_map(|note| match *note {
             RuleNote::ByFines(times, until, fines) => Some((times, until, fines)),
             _ => None,
         });
-        let limit = found.map(|(times, until, fines)| {
+        let limit = by_fines.map(|(times, until, fines)| {
             times * ((until - fines) / (until - 15.0) * (4.0 * 0.31 - 0.7) + 0.7)
         });
         assert!(limit.is_none() || close(rule.limit, limit.unwrap()), "{rule:?}");
-        found.map(|(times, until, fines)| (times, until, (1e6 * fines).round() / 1e6))
+        by_fines.map(|(times, until, fines)| (times, until, (1e6 * fines).round() / 1e6))
     };
     assert_eq!(by_fines("sherard-dunnigan", 22.0), Some((1.0, 40.0, 22.0)));
     assert_eq!(by_fines("foster-fell-no-erosion", 22.125), Some((1.6, 35.0, 22.125)));
@@ -94,18 +97,18 @@ fn continuing_erosion_is_nine_d95_of_the_regraded_base() {
     let soil = base(5.0, 1.0);
     let limit = 9.0 * 4.0f64.powf(2.0 / 3.0);
     for (d15f, met) in [(22.0, true), (23.0, false)] {
-        let rule = of("foster-fell-continuing", &filter(d15f), &soil);
+        let rule = applied("foster-fell-continuing", &filter(d15f), &soil);
         assert!(close(rule.limit, limit) && rule.met == Some(met), "{rule:?}");
     }
     // With gravel the base is regraded: D95 of what passes No. 4, not of all.
     let gravelly = sieve(&[(0.01, 0.0), (0.075, 30.0), (1.0, 60.0), (4.75, 80.0), (50.0, 100.0)]);
     // D95B after regrading is 3.48 mm, with 37.5 % fines: tests found no clear boundary, so it is no limit.
     assert!((4.75f64.powf((76.0 - 60.0) / 20.0) - 3.478).abs() < 1e-3);
-    let rule = of("foster-fell-continuing", &filter(1.0), &gravelly);
+    let rule = applied("foster-fell-continuing", &filter(1.0), &gravelly);
     assert!(!rule.applies && rule.met.is_none() && rule.limit.is_none() && !rule.is_broken(), "{rule:?}");
     assert!(rule.notes.contains(&RuleNote::NoClearBoundary) && close(rule.value, 1.0), "{rule:?}");
     // Beyond 9 D95B, 31.3 mm, it is broken nonetheless.
-    let rule = of("foster-fell-continuing", &filter(100.0), &gravelly);
+    let rule = applied("foster-fell-continuing", &filter(100.0), &gravelly);
     assert!(rule.is_broken() && close(rule.limit, 9.0 * 4.75f64.powf(0.8)), "{rule:?}");
     assert!(rule.notes.contains(&RuleNote::BeyondUnclearBoundary), "{rule:?}");
 }
@@ -115,12 +118,12 @@ fn continuing_erosion_is_nine_d95_of_the_regraded_base() {
 fn between_no_and_continuing_erosion_a_note_says_that_excessive_erosion_is_not_judged() {
     let soil = base(5.0, 1.0);
     for (d15f, is_open) in [(6.9, false), (7.1, true), (22.0, true), (23.0, false)] {
-        let rule = of("foster-fell-continuing", &filter(d15f), &soil);
+        let rule = applied("foster-fell-continuing", &filter(d15f), &soil);
         assert_eq!(rule.notes.contains(&RuleNote::ExcessiveNotJudged), is_open, "{d15f}: {rule:?}");
     }
     // Fines that nobody sieved may put the boundary of no erosion below this filter.
     let hidden = sieve(&[(0.3, 25.0), (1.0, 100.0)]);
-    let rule = of("foster-fell-continuing", &filter(0.6), &hidden);
+    let rule = applied("foster-fell-continuing", &filter(0.6), &hidden);
     assert!(rule.met == Some(true) && rule.notes.contains(&RuleNote::ExcessiveNotJudged), "{rule:?}");
 }
 
@@ -130,7 +133,7 @@ fn continuing_erosion_is_a_limit_only_where_tests_found_a_clear_one() {
     // Straight from 85 % at `d85` to 100 % at 4.7 mm: nothing is regraded.
     let of_base = |fines: f64, d85: f64| {
         let soil = sieve(&[(0.001, 0.0), (0.075, fines), (d85, 85.0), (4.7, 100.0)]);
-        of("foster-fell-continuing", &filter(1.0), &soil)
+        applied("foster-fell-continuing", &filter(1.0), &soil)
     };
     for (fines, d85, is_limit) in [
         (14.9, 1.0, true),
@@ -146,14 +149,14 @@ fn continuing_erosion_is_a_limit_only_where_tests_found_a_clear_one() {
         assert_eq!(rule.met, is_limit.then_some(true), "{rule:?}");
     }
     let finer = sieve(&[(0.001, 0.0), (0.075, 86.0), (1.0, 88.0), (4.7, 100.0)]);
-    let rule = of("foster-fell-continuing", &filter(1.0), &finer);
+    let rule = applied("foster-fell-continuing", &filter(1.0), &finer);
     assert!(rule.applies && close(rule.limit, 9.0 * 4.7f64.powf(7.0 / 12.0)), "{rule:?}");
     // Nobody sieved the fines: whether 9 D95B is a limit is not known, until the filter is beyond it.
     let hidden = sieve(&[(0.3, 25.0), (1.0, 70.0), (4.7, 100.0)]);
-    let rule = of("foster-fell-continuing", &filter(1.0), &hidden);
+    let rule = applied("foster-fell-continuing", &filter(1.0), &hidden);
     assert!(rule.applies && rule.met.is_none() && rule.limit.is_none(), "{rule:?}");
     assert_eq!(rule.needs, [RuleNote::NeedsFinesOfBase], "{rule:?}");
-    assert!(of("foster-fell-continuing", &filter(100.0), &hidden).is_broken());
+    assert!(applied("foster-fell-continuing", &filter(100.0), &hidden).is_broken());
 }
 
 /// D85B 0.0174 mm: 9 times it are 0.156 mm, 6.4 times it 0.111 mm, and the limit of design is never less than
@@ -162,7 +165,7 @@ fn continuing_erosion_is_a_limit_only_where_tests_found_a_clear_one() {
 fn the_floor_of_the_limit_of_design_is_said() {
     let clay = sieve(&[(0.001, 30.0), (0.0174, 85.0), (0.075, 96.0), (2.0, 100.0)]);
     let (plain, dispersive) = (filter(2.0), filter(2.0));
-    let rule = of("sherard-dunnigan", &plain, &clay);
+    let rule = applied("sherard-dunnigan", &plain, &clay);
     assert!(close(rule.limit, 0.2), "{rule:?}");
     let floor = |rule: &AppliedRule| {
         rule.notes.iter().find_map(|note| match *note {
@@ -174,7 +177,7 @@ fn the_floor_of_the_limit_of_design_is_said() {
     let rules = apply(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(&clay, &dispersive) });
     let rule = rules.iter().find(|rule| rule.id == "sherard-dunnigan").unwrap();
     assert_eq!(floor(rule), Some((6.4, 0.11136)));
-    assert_eq!(floor(&of("sherard-dunnigan", &plain, &base(90.0, 0.05))), None);
+    assert_eq!(floor(&applied("sherard-dunnigan", &plain, &base(90.0, 0.05))), None);
 }
 
 /// 51 % finer than 0.002 mm: 5 D15B is below 0.010 mm, so that the minimum D15F is 0.1 mm, and known.
@@ -183,22 +186,22 @@ fn the_floor_of_drainage_is_known_however_fine_the_base_is() {
     let clay = sieve(&[(0.002, 51.0), (0.02, 87.0), (0.63, 100.0)]);
     for (id, times) in [("permeability", 5.0), ("permeability-em-1901", 3.0)] {
         for (d15f, met) in [(0.099, false), (0.1, true), (2.2, true)] {
-            let rule = of(id, &filter(d15f), &clay);
+            let rule = applied(id, &filter(d15f), &clay);
             assert!(close(rule.limit, 0.1) && !rule.limit_at_most && rule.met == Some(met), "{rule:?}");
             assert_eq!(rule.notes, [RuleNote::LeastGoverns(times, times * 0.002)]);
         }
     }
     // D15F is finer than 0.05 mm, or than 0.2 mm: too fine, or not known.
-    let of_pan = |finest: f64| of("permeability", &sieve(&[(finest, 20.0), (1.0, 100.0)]), &clay);
+    let of_pan = |finest: f64| applied("permeability", &sieve(&[(finest, 20.0), (1.0, 100.0)]), &clay);
     assert!(of_pan(0.05).met == Some(false) && close(of_pan(0.05).value, 0.05), "{:?}", of_pan(0.05));
     assert_eq!((of_pan(0.2).met, of_pan(0.2).needs), (None, vec![RuleNote::NeedsD15FSieved]));
 }
 
 #[test]
 fn terzaghi_is_for_few_fines_and_takes_the_regraded_base() {
-    let rule = of("terzaghi", &filter(2.1), &base(5.0, 0.5));
+    let rule = applied("terzaghi", &filter(2.1), &base(5.0, 0.5));
     assert!(close(rule.value, 4.2) && rule.met == Some(false) && rule.unit == RuleUnit::One);
-    let rule = of("terzaghi", &filter(2.1), &base(30.0, 0.5));
+    let rule = applied("terzaghi", &filter(2.1), &base(30.0, 0.5));
     assert!(!rule.applies && rule.met.is_none());
     let percent = rule.notes.iter().find_map(|note| match *note {
         RuleNote::LimitsByFines(percent) => Some(percent),
@@ -212,21 +215,21 @@ fn permeability_is_five_d15_of_the_base_as_it_is() {
     // D15B of the whole is 0.3 mm; of the part that passes No. 4 it is less.
     let soil = sieve(&[(0.1, 0.0), (0.3, 15.0), (1.0, 40.0), (4.75, 60.0), (40.0, 100.0)]);
     for (d15f, met) in [(1.49, false), (1.51, true)] {
-        let rule = of("permeability", &filter(d15f), &soil);
+        let rule = applied("permeability", &filter(d15f), &soil);
         assert!(close(rule.limit, 1.5) && rule.at_least && rule.met == Some(met), "{rule:?}");
     }
     // Never less than 0.1 mm.
     let clay = sieve(&[(0.001, 0.0), (0.002, 15.0), (0.02, 100.0)]);
-    assert!(close(of("permeability", &filter(0.09), &clay).limit, 0.1));
+    assert!(close(applied("permeability", &filter(0.09), &clay).limit, 0.1));
     // 3 x 0.3 mm is the least that any manual asks for.
-    let least = of("permeability-em-1901", &filter(0.95), &soil);
+    let least = applied("permeability-em-1901", &filter(0.95), &soil);
     assert!(close(least.limit, 0.9) && least.met == Some(true) && least.formula.contains("EM 1110-2-1901"));
     // A till whose table ends at No. 200 with 35 %: at most 5 x 0.075 mm.
     let till = sieve(&[(0.075, 35.0), (1.0, 100.0)]);
-    let rule = of("permeability", &filter(0.4), &till);
+    let rule = applied("permeability", &filter(0.4), &till);
     assert!(rule.met == Some(true) && close(rule.limit, 0.375), "{rule:?}");
     assert_eq!(rule.notes, [RuleNote::LimitAtMost]);
-    let rule = of("permeability", &filter(0.3), &till);
+    let rule = applied("permeability", &filter(0.3), &till);
     assert_eq!((rule.met, rule.needs), (None, vec![RuleNote::NeedsD15B]));
 }
 
@@ -234,14 +237,14 @@ fn permeability_is_five_d15_of_the_base_as_it_is() {
 fn fines_and_cobbles_of_the_filter() {
     let dirty = sieve(&[(0.075, 6.0), (5.0, 60.0), (80.0, 100.0)]);
     let soil = base(5.0, 0.5);
-    let fines = of("filter-fines", &dirty, &soil);
+    let fines = applied("filter-fines", &dirty, &soil);
     assert!(close(fines.value, 6.0) && fines.met == Some(false) && fines.unit == RuleUnit::Percent);
-    assert_eq!(of("filter-greatest-size", &dirty, &soil).met, Some(false));
+    assert_eq!(applied("filter-greatest-size", &dirty, &soil).met, Some(false));
     let clean = sieve(&[(0.3, 2.0), (5.0, 60.0), (75.0, 100.0)]);
-    assert_eq!(of("filter-fines", &clean, &soil).met, Some(true));
-    assert_eq!(of("filter-greatest-size", &clean, &soil).met, Some(true));
+    assert_eq!(applied("filter-fines", &clean, &soil).met, Some(true));
+    assert_eq!(applied("filter-greatest-size", &clean, &soil).met, Some(true));
     let coarse_table = sieve(&[(0.3, 8.0), (5.0, 60.0), (75.0, 100.0)]);
-    assert_eq!(of("filter-fines", &coarse_table, &soil).needs, [RuleNote::NeedsFinesOfFilter]);
+    assert_eq!(applied("filter-fines", &coarse_table, &soil).needs, [RuleNote::NeedsFinesOfFilter]);
 }
 
 /// The gap-graded filter of the first trial: 40 % below 0.5 mm, nothing to 5 mm. And one at which Kenney and
@@ -251,7 +254,7 @@ fn internal_stability_by_hand() {
     let soil = base(5.0, 0.5);
     let gap = sieve(&[(0.1, 0.0), (0.5, 40.0), (5.0, 40.0), (20.0, 100.0)]);
     // From F = 25 % the next 15 % end beyond the gap: 5 mm over D25 = 0.1 x 5^(25/40).
-    let rule = of("kezdi", &gap, &soil);
+    let rule = applied("kezdi", &gap, &soil);
     assert!(close(rule.value, 50.0 / 5.0f64.powf(0.625)) && rule.met == Some(false), "{rule:?}");
     // The ratio belongs to a split at 25/0.85 = 29.4 % finer: D40 above the gap over D25 below it. Splits at
     // 15/0.85 to 55/0.85 % finer are judged.
@@ -269,15 +272,15 @@ fn internal_stability_by_hand() {
     }
     let unstable = sieve(&[(0.1, 0.0), (0.2, 15.0), (4.0, 15.0), (20.0, 100.0)]);
     for (id, value) in [("kenney-lau", 0.0), ("li-fannin", 0.0)] {
-        let rule = of(id, &unstable, &soil);
+        let rule = applied(id, &unstable, &soil);
         assert!(close(rule.value, value) && rule.met == Some(false), "{rule:?}");
         assert!(matches!(rule.notes[..], [RuleNote::ShapeAt(at, _)] if close(Some(at), 15.0)), "{rule:?}");
     }
     // Straight with Cu 60: H = 50 ln 4 / ln 60 = 16.93 %, less than F = 20 % and more than 15 %.
     let broad = sieve(&[(0.1, 0.0), (360.0, 100.0)]);
     let h = 50.0 * 4.0f64.ln() / 60.0f64.ln();
-    assert!(close(of("kenney-lau", &broad, &soil).value, h / 20.0));
-    assert!(close(of("li-fannin", &broad, &soil).value, h / 15.0));
+    assert!(close(applied("kenney-lau", &broad, &soil).value, h / 20.0));
+    assert!(close(applied("li-fannin", &broad, &soil).value, h / 15.0));
 }
 
 #[test]
@@ -342,17 +345,17 @@ fn fines_that_are_not_known_hide_no_failure() {
     let hidden = sieve(&[(0.3, 25.0), (1.0, 100.0)]);
     let d85 = 0.3 * (1.0f64 / 0.3).powf(0.8);
     for (id, most) in [("sherard-dunnigan", 4.0 * d85), ("foster-fell-no-erosion", 7.0 * d85)] {
-        let fine = of(id, &filter(0.99 * most), &hidden);
+        let fine = applied(id, &filter(0.99 * most), &hidden);
         assert!(fine.met.is_none() && fine.limit_at_most && close(fine.limit, most), "{fine:?}");
         assert_eq!(fine.needs, [RuleNote::NeedsFinesOfBase]);
-        let coarse = of(id, &filter(1.01 * most), &hidden);
+        let coarse = applied(id, &filter(1.01 * most), &hidden);
         assert!(coarse.met == Some(false) && coarse.needs.is_empty(), "{coarse:?}");
         assert!(coarse.notes.contains(&RuleNote::BeyondAnyLimit), "{coarse:?}");
     }
     // With few fines Terzaghi would hold it for certain, but nobody knows that they are few.
-    let terzaghi = of("terzaghi", &filter(1.0), &hidden);
+    let terzaghi = applied("terzaghi", &filter(1.0), &hidden);
     assert!(terzaghi.value < Some(4.0) && terzaghi.met.is_none() && !terzaghi.needs.is_empty());
-    assert_eq!(of("terzaghi", &filter(4.0), &hidden).met, Some(false));
+    assert_eq!(applied("terzaghi", &filter(4.0), &hidden).met, Some(false));
 }
 
 /// A clay whose table ends at No. 200 with 88 %: D85B is at most 0.075 mm, and 9 D85B 0.675 mm.
@@ -360,27 +363,27 @@ fn fines_that_are_not_known_hide_no_failure() {
 fn a_size_in_the_finest_tail_hides_no_failure() {
     let clay = sieve(&[(0.075, 88.0), (2.0, 100.0)]);
     for id in ["sherard-dunnigan", "foster-fell-no-erosion"] {
-        let rule = of(id, &filter(0.7), &clay);
+        let rule = applied(id, &filter(0.7), &clay);
         assert!(rule.met == Some(false) && close(rule.limit, 0.675) && rule.limit_at_most, "{rule:?}");
-        let rule = of(id, &filter(0.6), &clay);
+        let rule = applied(id, &filter(0.6), &clay);
         assert_eq!((rule.met, &rule.needs[..]), (None, &[RuleNote::NeedsD85B][..]), "{rule:?}");
     }
     let clay = sieve(&[(0.075, 97.0), (2.0, 100.0)]);
-    let continuing = of("foster-fell-continuing", &filter(0.7), &clay);
+    let continuing = applied("foster-fell-continuing", &filter(0.7), &clay);
     assert!(continuing.met == Some(false) && close(continuing.limit, 0.675) && continuing.limit_at_most);
-    assert!(of("foster-fell-continuing", &filter(0.6), &clay).met.is_none());
+    assert!(applied("foster-fell-continuing", &filter(0.6), &clay).met.is_none());
     // D15F is finer than 0.2 mm, and the base asks for 5 x 0.3 mm.
     let silty = sieve(&[(0.2, 20.0), (4.0, 100.0)]);
     let coarse = sieve(&[(0.1, 0.0), (0.3, 15.0), (2.0, 100.0)]);
-    let drains = of("permeability", &silty, &coarse);
+    let drains = applied("permeability", &silty, &coarse);
     assert!(drains.met == Some(false) && close(drains.value, 0.2), "{drains:?}");
     assert_eq!(drains.notes, [RuleNote::D15FAtMost]);
     // Never less than 0.1 mm, whatever D15B is.
-    let drains = of("permeability", &filter(0.09), &sieve(&[(0.075, 35.0), (1.0, 100.0)]));
+    let drains = applied("permeability", &filter(0.09), &sieve(&[(0.075, 35.0), (1.0, 100.0)]));
     assert!(drains.met == Some(false) && close(drains.limit, 0.1), "{drains:?}");
     // D60 over a D10 of at most 0.2 mm.
     let broad = sieve(&[(0.2, 12.0), (2.0, 60.0), (4.0, 100.0)]);
-    let cu = of("filter-uniformity", &broad, &coarse);
+    let cu = applied("filter-uniformity", &broad, &coarse);
     assert!(cu.met == Some(false) && close(cu.value, 10.0), "{cu:?}");
     assert_eq!(cu.notes, [RuleNote::CuAtLeast]);
 }
@@ -390,14 +393,14 @@ fn a_size_in_the_finest_tail_hides_no_failure() {
 #[test]
 fn a_gap_above_unknown_fines_is_no_reason_to_judge_the_coarse_part() {
     let gap = sieve(&[(0.075, 20.0), (0.5, 21.0), (1.0, 85.0), (2.0, 100.0)]);
-    let rule = of("sherard-dunnigan", &filter(2.0), &gap);
+    let rule = applied("sherard-dunnigan", &filter(2.0), &gap);
     assert!(rule.met == Some(false) && close(rule.limit, 0.675) && rule.limit_at_most, "{rule:?}");
-    assert_eq!(of("sherard-dunnigan", &filter(0.5), &gap).met, None);
-    let continuing = of("foster-fell-continuing", &filter(2.0), &gap);
+    assert_eq!(applied("sherard-dunnigan", &filter(0.5), &gap).met, None);
+    let continuing = applied("foster-fell-continuing", &filter(2.0), &gap);
     assert!(continuing.met == Some(false) && close(continuing.limit, 0.675), "{continuing:?}");
     // With a hydrometer the gap is unchanged, and the limits are no wider.
     let tested = sieve(&[(0.001, 0.0), (0.04, 17.0), (0.075, 20.0), (0.5, 21.0), (1.0, 85.0), (2.0, 100.0)]);
-    let rule = of("sherard-dunnigan", &filter(2.0), &tested);
+    let rule = applied("sherard-dunnigan", &filter(2.0), &tested);
     assert!(rule.met == Some(false) && rule.limit < Some(0.675), "{rule:?}");
 }
 
@@ -405,7 +408,7 @@ fn a_gap_above_unknown_fines_is_no_reason_to_judge_the_coarse_part() {
 /// limit of other soils is an upper bound.
 #[test]
 fn dispersive_bases_have_limits_of_their_own() {
-    let of = |id: &str, d15: f64, fines: f64, d85: f64| {
+    let dispersive_rule = |id: &str, d15: f64, fines: f64, d85: f64| {
         let (filter, base) = (filter(d15), base(fines, d85));
         let rules = apply(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(&base, &filter) });
         rules.into_iter().find(|rule| rule.id == id).unwrap()
@@ -419,15 +422,15 @@ fn dispersive_bases_have_limits_of_their_own() {
         ("foster-fell-no-erosion", 35.0, 0.5, 0.5),
         ("foster-fell-no-erosion", 5.0, 0.6, 4.2),
     ] {
-        let rule = of(id, 0.4, fines, d85);
+        let rule = dispersive_rule(id, 0.4, fines, d85);
         assert!(close(rule.limit, limit) && rule.met == Some(0.4 <= limit), "{rule:?}");
     }
     // (40 - 25)/25 (4 x 0.6 - 0.7) + 0.7; 1.6 ((35 - 25)/20 (4 x 0.6 - 0.7) + 0.7).
     for (id, most) in [("sherard-dunnigan", 1.72), ("foster-fell-no-erosion", 2.48)] {
-        let rule = of(id, 0.99 * most, 25.0, 0.6);
+        let rule = dispersive_rule(id, 0.99 * most, 25.0, 0.6);
         assert!(close(rule.limit, most) && rule.limit_at_most && rule.met.is_none(), "{rule:?}");
         assert_eq!(rule.needs, [RuleNote::NeedsTestOfDispersive], "{rule:?}");
-        assert_eq!(of(id, 1.01 * most, 25.0, 0.6).met, Some(false));
+        assert_eq!(dispersive_rule(id, 1.01 * most, 25.0, 0.6).met, Some(false));
     }
 }
 
@@ -437,11 +440,11 @@ fn dispersive_bases_have_limits_of_their_own() {
 fn the_design_of_the_megech_dam_is_reproduced_to_its_digits() {
     let core = sieve(&[(0.001, 0.0), (0.0123, 15.0), (0.075, 60.0), (4.75, 100.0)]);
     let fine_side = sieve(&[(0.07, 0.0), (0.083, 10.0), (0.1, 15.0), (0.498, 60.0), (2.5, 100.0)]);
-    assert!(close(of("sherard-dunnigan", &fine_side, &core).limit, 0.7));
-    let drains = of("permeability", &fine_side, &core);
+    assert!(close(applied("sherard-dunnigan", &fine_side, &core).limit, 0.7));
+    let drains = applied("permeability", &fine_side, &core);
     assert!(close(drains.limit, 0.1) && close(drains.value, 0.1) && drains.met == Some(true));
     assert_eq!(format!("{:.2}", 4.0 * core.d(15.0).unwrap()), "0.05");
-    let uniform = of("filter-uniformity", &fine_side, &core);
+    let uniform = applied("filter-uniformity", &fine_side, &core);
     assert!(uniform.value.is_some_and(|cu| (cu - 6.0).abs() < 1e-9), "{uniform:?}");
     assert_eq!(format!("{:.1}", fine_side.d(60.0).unwrap()), "0.5");
 }
@@ -451,7 +454,7 @@ fn burenkova_and_wan_and_fell_by_hand() {
     // h' = 2, h'' = 100: the range begins at 2.52; the probability is 1 / (1 + exp(-3.004)).
     let soil = base(5.0, 0.5);
     let broad = sieve(&[(0.08, 0.0), (0.1, 15.0), (2.0, 30.0), (5.0, 60.0), (10.0, 90.0), (20.0, 100.0)]);
-    let rule = of("burenkova", &broad, &soil);
+    let rule = applied("burenkova", &broad, &soil);
     assert!(close(rule.value, 2.0) && close(rule.limit, 2.52) && rule.met == Some(false), "{rule:?}");
     let gap = sieve(&[
         (0.08, 0.0),
@@ -462,19 +465,19 @@ fn burenkova_and_wan_and_fell_by_hand() {
         (10.0, 90.0),
         (20.0, 100.0),
     ]);
-    let rule = of("wan-fell", &gap, &soil);
+    let rule = applied("wan-fell", &gap, &soil);
     let by_hand = 100.0 / (1.0 + (-3.004f64).exp());
-    assert!(rule.value.is_some_and(|found| (found - by_hand).abs() < 1e-6), "{rule:?}");
+    assert!(rule.value.is_some_and(|value| (value - by_hand).abs() < 1e-6), "{rule:?}");
     assert!(rule.met.is_none() && rule.limit.is_none() && rule.applies && rule.unit == RuleUnit::Percent);
     // Wan and Fell did not test uniform sand; nor No. 78 stone, which Burenkova's range would blame.
     let uniform = sieve(&[(1.0, 0.0), (2.25, 100.0)]);
-    assert!(!of("wan-fell", &uniform, &soil).applies);
+    assert!(!applied("wan-fell", &uniform, &soil).applies);
     let stone = sieve(&[(1.18, 2.5), (2.36, 5.0), (4.75, 15.0), (9.5, 57.5), (12.5, 95.0), (19.0, 100.0)]);
-    let rule = of("burenkova", &stone, &soil);
+    let rule = applied("burenkova", &stone, &soil);
     assert!(rule.value < rule.limit && !rule.applies && rule.met.is_none(), "{rule:?}");
     // A long coarse tail: her third zone has no result.
     let tailed = sieve(&[(0.05, 0.0), (0.1, 5.0), (1.0, 15.0), (2.5, 60.0), (19.0, 90.0), (30.0, 100.0)]);
-    let rule = of("burenkova", &tailed, &soil);
+    let rule = applied("burenkova", &tailed, &soil);
     assert!(!rule.applies && rule.met.is_none(), "{rule:?}");
     assert!(rule.notes.iter().any(|note| matches!(note, RuleNote::BurenkovaThirdZone(_))), "{rule:?}");
 }
@@ -490,7 +493,7 @@ fn the_ends_of_an_ordinary_filter_raise_no_alarm() {
     assert!(c33.d(100.0).unwrap() / c33.d(85.0).unwrap() > 4.0);
     for filter in [filter, c33] {
         for id in ["kezdi", "kenney-lau", "li-fannin", "burenkova"] {
-            let rule = of(id, &filter, &base(5.0, 0.5));
+            let rule = applied(id, &filter, &base(5.0, 0.5));
             assert!(rule.met != Some(false), "{rule:?}");
         }
     }
@@ -565,7 +568,7 @@ fn a_step_that_may_hide_a_gap_leaves_stability_open() {
     let of_rows = |rows: &[(f64, f64)]| Gradation::from_points(rows, None).unwrap();
     let silt = base(22.0, 0.7);
     let two_sieves = of_rows(&[(0.3, 12.0), (38.0, 100.0)]);
-    let open = of("kezdi", &two_sieves, &silt);
+    let open = applied("kezdi", &two_sieves, &silt);
     assert_eq!((open.met, open.value), (None, None), "{open:?}");
     assert_eq!(open.needs, [RuleNote::FilterBetween(0.3, 38.0)]);
     // With sieves between it is stable by Kézdi, and with a gap there it is not.
@@ -573,8 +576,11 @@ fn a_step_that_may_hide_a_gap_leaves_stability_open() {
         [(0.3, 12.0), (0.75, 28.7), (1.9, 45.5), (4.75, 62.2), (9.5, 74.8), (19.0, 87.4), (38.0, 100.0)];
     let straight = of_rows(&line);
     let gap = sieve(&[(0.3, 12.0), (0.31, 56.0), (37.0, 56.1), (38.0, 100.0)]);
-    assert_eq!([&straight, &gap].map(|filter| of("kezdi", filter, &silt).met), [Some(true), Some(false)]);
+    assert_eq!(
+        [&straight, &gap].map(|filter| applied("kezdi", filter, &silt).met),
+        [Some(true), Some(false)]
+    );
     // Where next to nothing passes, a wide step hides no gap.
     let stone = of_rows(&[(0.3, 0.0), (1.5, 3.0), (3.0, 30.0), (6.0, 70.0), (12.0, 100.0)]);
-    assert_eq!(of("kezdi", &stone, &silt).met, Some(true));
+    assert_eq!(applied("kezdi", &stone, &silt).met, Some(true));
 }

@@ -79,8 +79,9 @@ impl ReadCurve {
 
     /// Notes on the base itself.
     fn notes(&self) -> Vec<Note> {
-        let unstable = self.base.known_kenney_lau().filter(|of| of.value < 1.0);
-        let unstable = unstable.map(|of| Note::UnstableBase { index: of.value, finer_percent: of.percent });
+        let unstable = self.base.known_kenney_lau().filter(|index| index.value < 1.0);
+        let unstable =
+            unstable.map(|shape| Note::UnstableBase { index: shape.value, finer_percent: shape.percent });
         let broad = self.of.regraded_at_mm.and_then(|_| broad_base(&self.base));
         unstable.into_iter().chain(broad).chain(self.flat()).collect()
     }
@@ -119,10 +120,10 @@ impl ReadCurve {
 /// Notes on a base of these curves, with the name of the curve if there are several.
 pub(super) fn notes(read: &[ReadCurve]) -> Vec<RowNote> {
     let row = |curve: &ReadCurve| (read.len() > 1).then(|| curve.of.curve.clone());
-    let of = |curve: &ReadCurve| {
+    let row_notes = |curve: &ReadCurve| {
         curve.notes().into_iter().map(|note| RowNote { row: row(curve), note }).collect::<Vec<_>>()
     };
-    read.iter().flat_map(of).collect()
+    read.iter().flat_map(row_notes).collect()
 }
 
 /// Strictest limit of practice among these curves if the base is dispersive; `None` if all have few fines.

@@ -16,8 +16,8 @@ pub(super) fn of_base(rule: &AppliedRule, curve: &ReadCurve) -> String {
     let name = cited_rule(rule);
     let name = name.strip_prefix("the ").map_or(name.clone(), |rest| format!("The {rest}"));
     let sizes = curve.of.fines_percent.zip(curve.of.d85_mm);
-    let found = sizes.and_then(|(fines, d85b)| Some((item(rule, fines, curve.dispersive)?, fines, d85b)));
-    let Some((Item { condition, formula, is_at_most }, fines, d85b)) = found else {
+    let known = sizes.and_then(|(fines, d85b)| Some((item(rule, fines, curve.dispersive)?, fines, d85b)));
+    let Some((Item { condition, formula, is_at_most }, fines, d85b)) = known else {
         return format!("{name}: {}", rule.formula);
     };
     let category = curve.of.category.filter(|_| rule.id == DESIGN);
@@ -60,8 +60,8 @@ fn item(rule: &AppliedRule, fines: f64, dispersive: bool) -> Option<Item<'_>> {
         fines if fines >= FEW_FINES => 2,
         _ => 3,
     };
-    let of = if dispersive && fines >= from { of_dispersive } else { usual };
-    let (condition, formula) = of.split("; ").nth(at)?.split_once(": ")?;
+    let items = if dispersive && fines >= from { of_dispersive } else { usual };
+    let (condition, formula) = items.split("; ").nth(at)?.split_once(": ")?;
     let is_at_most = dispersive && (FEW_FINES..from).contains(&fines);
     Some(Item { condition, formula, is_at_most })
 }

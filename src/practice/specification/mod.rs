@@ -35,8 +35,8 @@ impl Specification {
     /// use voidwalk_practice::design::Specification;
     /// use voidwalk_practice::SpecificationOptions;
     /// let clay = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)])?;
-    /// let of = Specification::of("core", &[("core".into(), clay)], SpecificationOptions::default());
-    /// assert_eq!((of.d15f_min_mm, of.d15f_max_mm), (Some(0.1), Some(0.7)));
+    /// let filter = Specification::of("core", &[("core".into(), clay)], SpecificationOptions::default());
+    /// assert_eq!((filter.d15f_min_mm, filter.d15f_max_mm), (Some(0.1), Some(0.7)));
     /// # Ok::<(), voidwalk_core::gradation::GradationError>(())
     /// ```
     pub fn of(name: &str, bases: &[NamedCurve], options: SpecificationOptions) -> Self {
@@ -48,12 +48,12 @@ impl Specification {
         let coarsest = read.iter().max_by(|a, b| a.least().total_cmp(&b.least()));
         let d15f_min = coarsest.and_then(|curve| curve.of.d15f_min_mm);
         let control = d15f_min.zip(d15f_max).and_then(|(min, max)| control(min, max, options.finer));
-        let band = control.as_ref().and_then(|of| SizeBand::of(of.d15, of.d60));
+        let band = control.as_ref().and_then(|control| SizeBand::of(control.d15, control.d60));
         let at_most = coarsest.is_some_and(ReadCurve::least_at_most);
         let certain = read.iter().map(ReadCurve::certain_least).fold(0.0, f64::max);
         let no_band = no_band((d15f_min, at_most), d15f_max, unknown, band.is_some());
         let if_dispersive = if options.dispersive.is_none() { curve::if_dispersive(bases) } else { None };
-        let found =
+        let facts =
             Found { read: &read, strictest, unknown, coarsest, d15f_max, control, finer: options.finer };
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
@@ -64,7 +64,7 @@ impl Specification {
             cover: SheetCover::default(),
             inches: false,
             inputs: Vec::new(),
-            steps: found.steps(band.as_ref()),
+            steps: facts.steps(band.as_ref()),
             curves: read.iter().map(|curve| curve.of.clone()).collect(),
             notes: curve::notes(&read).into_iter().chain(sides::notes(band.as_ref())).collect(),
             d15f_min_mm: d15f_min,
@@ -94,12 +94,12 @@ fn control(min: f64, max: f64, finer: bool) -> Option<Control> {
 /// The D15F (mm) at which the band of a filter begins that drains from a least D15F (mm) and retains up to a
 /// maximum: raised if the band would otherwise be too wide.
 pub fn least_of_band(min: f64, max: f64) -> f64 {
-    control(min, max, false).map_or(min, |of| of.d15[0])
+    control(min, max, false).map_or(min, |control| control.d15[0])
 }
 
 /// Reason why no filter between a least and a maximum D15F (mm) has a band; `None` if one has.
 pub fn no_band_between((min, at_most): (f64, bool), max: f64) -> Option<NoBand> {
-    let band = control(min, max, false).and_then(|of| SizeBand::of(of.d15, of.d60));
+    let band = control(min, max, false).and_then(|control| SizeBand::of(control.d15, control.d60));
     no_band((Some(min), at_most), Some(max), None, band.is_some())
 }
 

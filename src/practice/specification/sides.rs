@@ -33,8 +33,9 @@ impl Side {
 
     /// Authors of the rules that the side does not keep.
     pub fn authorities(&self) -> Vec<String> {
-        let kezdi = self.kezdi.filter(|of| of.value > MOST_KEZDI).map(|_| "Kézdi".to_owned());
-        let shape = self.kenney_lau.filter(|of| of.value < LEAST_SHAPE).map(|_| "Kenney and Lau".to_owned());
+        let kezdi = self.kezdi.filter(|index| index.value > MOST_KEZDI).map(|_| "Kézdi".to_owned());
+        let shape =
+            self.kenney_lau.filter(|index| index.value < LEAST_SHAPE).map(|_| "Kenney and Lau".to_owned());
         kezdi.into_iter().chain(shape).collect()
     }
 
@@ -46,10 +47,10 @@ impl Side {
 
 /// Notes on the sides of a band.
 pub(super) fn notes(band: Option<&SizeBand>) -> Vec<RowNote> {
-    let of = |side: &Side| {
+    let row_note = |side: &Side| {
         let authorities = side.authorities();
         let note = Note::UnstableSide { side: side.name.into(), authorities: authorities.clone() };
         (!authorities.is_empty()).then_some(RowNote { row: None, note })
     };
-    band.map(|band| Side::both(band).iter().filter_map(of).collect()).unwrap_or_default()
+    band.map(|band| Side::both(band).iter().filter_map(row_note).collect()).unwrap_or_default()
 }

@@ -54,12 +54,17 @@ impl Found<'_> {
     }
 
     /// A number of every curve; with several curves, each number names its own.
-    fn each(&self, name: &str, unit: &str, value: impl Fn(&ReadCurve) -> Option<f64>) -> Vec<StepValue> {
-        let of = |curve: &ReadCurve| {
+    fn of_each_curve(
+        &self,
+        name: &str,
+        unit: &str,
+        value: impl Fn(&ReadCurve) -> Option<f64>,
+    ) -> Vec<StepValue> {
+        let value_of = |curve: &ReadCurve| {
             let whose = if self.read.len() > 1 { format!(" of {}", curve.of.curve) } else { String::new() };
             named(&format!("{name}{whose}"), value(curve), unit)
         };
-        self.read.iter().map(of).collect()
+        self.read.iter().map(value_of).collect()
     }
 
     /// The name of a curve, if there are several.
@@ -69,7 +74,7 @@ impl Found<'_> {
 
     fn gradation(&self) -> SpecificationStep {
         SpecificationStep {
-            values: self.each("D15B", "mm", |curve| curve.of.d15_mm),
+            values: self.of_each_curve("D15B", "mm", |curve| curve.of.d15_mm),
             notes: vec![StepNote::Curves { curves: self.read.len() as u64 }],
             ..step(StepName::Plot)
         }
@@ -82,7 +87,7 @@ impl Found<'_> {
             flattest: curve.flattest.map(|gap| [gap.from_mm, gap.within]),
         };
         SpecificationStep {
-            values: self.each("finer than No. 4 (4.75 mm)", "%", |curve| Some(curve.percent_no_4)),
+            values: self.of_each_curve("finer than No. 4 (4.75 mm)", "%", |curve| Some(curve.percent_no_4)),
             notes: self.read.iter().map(gravel).collect(),
             source: format!("{REGRADING}. The check for a gap is this program's own"),
             ..step(StepName::FindGravel)
@@ -93,9 +98,9 @@ impl Found<'_> {
         let any = self.read.iter().any(|curve| curve.of.regraded_at_mm.is_some());
         let mut values = Vec::new();
         if any {
-            values.extend(self.each("regraded on", "mm", |curve| curve.of.regraded_at_mm));
+            values.extend(self.of_each_curve("regraded on", "mm", |curve| curve.of.regraded_at_mm));
         }
-        values.extend(self.each("D85B", "mm", |curve| curve.of.d85_mm));
+        values.extend(self.of_each_curve("D85B", "mm", |curve| curve.of.d85_mm));
         SpecificationStep {
             formula: "percent finer / percent finer than the size on which it is regraded".into(),
             values,
@@ -106,8 +111,9 @@ impl Found<'_> {
     }
 
     fn category(&self) -> SpecificationStep {
-        let mut values = self.each("fines A, finer than 0.075 mm", "%", |curve| curve.of.fines_percent);
-        values.extend(self.each("category", "", |curve| curve.of.category.map(f64::from)));
+        let mut values =
+            self.of_each_curve("fines A, finer than 0.075 mm", "%", |curve| curve.of.fines_percent);
+        values.extend(self.of_each_curve("category", "", |curve| curve.of.category.map(f64::from)));
         SpecificationStep {
             formula: "1: A > 85 %; 2: A 40 to 85 %; 3: A 15 to 40 %; 4: A < 15 %".into(),
             values,
@@ -123,8 +129,8 @@ impl Found<'_> {
             curve.design.iter().cloned().chain(other).collect::<Vec<AppliedRule>>()
         };
         let curve = self.strictest.map(|curve| (curve, rules(curve)));
-        let each = |said: &dyn Fn(&ReadCurve, &AppliedRule) -> String, between: &str| {
-            let all = curve.iter().flat_map(|(curve, rules)| rules.iter().map(|rule| said(curve, rule)));
+        let joined = |text: &dyn Fn(&ReadCurve, &AppliedRule) -> String, between: &str| {
+            let all = curve.iter().flat_map(|(curve, rules)| rules.iter().map(|rule| text(curve, rule)));
             all.collect::<Vec<String>>().join(between)
         };
         let mut notes = Vec::new();
@@ -144,10 +150,10 @@ impl Found<'_> {
             );
         }
         SpecificationStep {
-            formula: each(&|curve, rule| formula::of_base(rule, curve), "; "),
+            formula: joined(&|curve, rule| formula::of_base(rule, curve), "; "),
             values,
             notes,
-            source: each(&|_, rule| rule.source.clone(), ". "),
+            source: joined(&|_, rule| rule.source.clone(), ". "),
             ..step(StepName::Retain)
         }
     }
@@ -181,9 +187,10 @@ impl Found<'_> {
 
     fn width(&self) -> SpecificationStep {
         let least = self.coarsest.and_then(|curve| curve.of.d15f_min_mm);
-        let raised = self.control.as_ref().zip(least).is_some_and(|(of, least)| of.d15[0] > least);
-        let lowered = self.control.as_ref().zip(self.d15f_max).is_some_and(|(of, most)| of.d15[1] < most);
-        let narrow = self.control.as_ref().map(|of| of.d15[0]);
+        let raised = self.control.as_ref().zip(least).is_some_and(|(control, least)| control.d15[0] > least);
+        let lowered =
+            self.control.as_ref().zip(self.d15f_max).is_some_and(|(control, most)| control.d15[1] < most);
+        let narrow = self.control.as_ref().map(|control| control.d15[0]);
         let moved = if self.finer { "maximum is lowered" } else { "minimum is raised" };
         SpecificationStep {
             formula: format!(
@@ -196,7 +203,7 @@ impl Found<'_> {
                     "",
                 ),
                 named("minimum D15F of the band", narrow, "mm"),
-                named("maximum D15F of the band", self.control.as_ref().map(|of| of.d15[1]), "mm"),
+                named("maximum D15F of the band", self.control.as_ref().map(|control| control.d15[1]), "mm"),
             ],
             notes: match (raised, lowered) {
                 (true, _) => vec![StepNote::Raised],
@@ -209,14 +216,18 @@ impl Found<'_> {
     }
 
     fn uniformity(&self) -> SpecificationStep {
-        let d60 = |side: usize| self.control.as_ref().map(|of| of.d60[side]);
+        let d60 = |side: usize| self.control.as_ref().map(|control| control.d60[side]);
         SpecificationStep {
             formula: format!(
                 "maximum D10F = maximum D15F / {D15_OVER_D10}; maximum D60F = {MOST_CU} x maximum D10F; \
                  minimum D60F = maximum D60F / {WIDEST_BAND}"
             ),
             values: vec![
-                named("maximum D10F", self.control.as_ref().map(|of| of.d15[1] / D15_OVER_D10), "mm"),
+                named(
+                    "maximum D10F",
+                    self.control.as_ref().map(|control| control.d15[1] / D15_OVER_D10),
+                    "mm",
+                ),
                 named("maximum D60F", d60(1), "mm"),
                 named("minimum D60F", d60(0), "mm"),
             ],
@@ -268,8 +279,10 @@ impl Found<'_> {
     fn stability(&self, band: Option<&SizeBand>) -> SpecificationStep {
         let sides: Vec<Side> = band.map(Side::both).into_iter().flatten().collect();
         let both = |side: &Side| {
-            let value = |which: &str, value| named(&format!("{which} of the {} side", side.name), value, "");
-            let [kezdi, shape] = [side.kezdi.map(|of| of.value), side.kenney_lau.map(|of| of.value)];
+            let value =
+                |quantity: &str, value| named(&format!("{quantity} of the {} side", side.name), value, "");
+            let [kezdi, shape] =
+                [side.kezdi.map(|index| index.value), side.kenney_lau.map(|index| index.value)];
             [value("greatest D'15/d'85", kezdi), value("least H/F", shape)]
         };
         let stability = |side: &Side| StepNote::Stability {

@@ -11,23 +11,23 @@ fn soil(points: &[(f64, f64)]) -> Gradation {
     Gradation::from_lines(points).unwrap()
 }
 
-fn of(points: &[(f64, f64)]) -> Specification {
+fn specified(points: &[(f64, f64)]) -> Specification {
     Specification::of("base", &[("base".into(), soil(points))], SpecificationOptions::default())
 }
 
-fn near(found: Option<f64>, wanted: f64) -> bool {
-    found.is_some_and(|found| (found / wanted - 1.0).abs() < 1e-9)
+fn near(value: Option<f64>, wanted: f64) -> bool {
+    value.is_some_and(|value| (value / wanted - 1.0).abs() < 1e-9)
 }
 
-fn value(of: &Specification, name: &str) -> Option<f64> {
-    let all = of.steps.iter().flat_map(|step| &step.values);
+fn value(specified: &Specification, name: &str) -> Option<f64> {
+    let all = specified.steps.iter().flat_map(|step| &step.values);
     all.filter(|value| value.name == name).find_map(|value| value.value)
 }
 
 /// A core of category 2: 0.7 mm and the least of 0.1 mm, whose ratio of 7 is narrowed to 5.
 #[test]
 fn a_core_with_60_percent_of_fines_by_hand() {
-    let core = of(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
+    let core = specified(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
     assert_eq!(core.curves[0].category, Some(2));
     assert!(near(core.d15f_max_mm, 0.7) && near(core.d15f_min_mm, 0.1));
     assert!(near(value(&core, "minimum D15F of the band"), 0.14));
@@ -45,13 +45,13 @@ fn a_core_with_60_percent_of_fines_by_hand() {
 #[test]
 fn the_limits_of_the_other_categories_by_hand() {
     let clay = [(0.001, 0.0), (0.02, 60.0), (0.05, 85.0), (0.075, 90.0), (0.3, 100.0)];
-    assert!(near(of(&clay).d15f_max_mm, 9.0 * 0.05));
+    assert!(near(specified(&clay).d15f_max_mm, 9.0 * 0.05));
     let options = SpecificationOptions { dispersive: Some(true), ..Default::default() };
     let dispersive = Specification::of("clay", &[("clay".into(), soil(&clay))], options);
     assert!(near(dispersive.d15f_max_mm, 6.4 * 0.05) && dispersive.dispersive);
-    let silty = of(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)]);
+    let silty = specified(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)]);
     assert!(near(silty.d15f_max_mm, (40.0 - 25.0) / 25.0 * (4.0 - 0.7) + 0.7));
-    let sand = of(&[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)]);
+    let sand = specified(&[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)]);
     assert!(near(sand.d15f_max_mm, 2.0) && near(sand.d15f_min_mm, 1.0));
     // The ratio of 2 needs no narrowing.
     assert!(near(value(&sand, "minimum D15F of the band"), 1.0));
@@ -60,7 +60,7 @@ fn the_limits_of_the_other_categories_by_hand() {
 /// The till of the first trial: D85B 1.53 mm on No. 4, 38 % of fines.
 #[test]
 fn a_till_is_regraded_and_its_limit_is_that_of_design() {
-    let till = of(&[(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)]);
+    let till = specified(&[(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)]);
     let fines: f64 = 35.0 / 0.92;
     assert!(near(value(&till, "fines A, finer than 0.075 mm"), fines));
     assert_eq!(value(&till, "regraded on"), Some(4.75));
@@ -75,7 +75,7 @@ fn a_till_is_regraded_and_its_limit_is_that_of_design() {
 #[test]
 fn the_least_d10f_is_that_of_the_fine_side_where_that_is_finer() {
     // D15F of 1 to 2 mm: D5 of the fine side is a fifth of 2 x 5^(-10/45).
-    let sand = of(&[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)]);
+    let sand = specified(&[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)]);
     let d10 = (2.0 * 5f64.powf(-10.0 / 45.0) / 5.0).sqrt();
     assert!(d10 < 1.0 / 1.2 && near(value(&sand, "minimum D10F"), d10), "{d10}");
     let sources = [7, 9, 10].map(|at| sand.steps[at].source.as_str());
@@ -84,17 +84,17 @@ fn the_least_d10f_is_that_of_the_fine_side_where_that_is_finer() {
 
 #[test]
 fn what_set_the_answer_and_that_the_band_was_narrowed_is_recorded() {
-    let core = of(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
+    let core = specified(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
     assert_eq!(core.set_by(), Some(core.curves[0].d15f_max_rule.as_str()));
     assert_eq!(core.steps[6].notes, [StepNote::Raised]);
     // The ratio of 2 needs no raising.
-    let sand = of(&[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)]);
+    let sand = specified(&[(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)]);
     assert_eq!(sand.steps[6].notes, []);
 }
 
 #[test]
 fn the_step_of_gravel_and_gap_answers_both() {
-    let flattest = |points: &[(f64, f64)]| match of(points).steps[1].notes[..] {
+    let flattest = |points: &[(f64, f64)]| match specified(points).steps[1].notes[..] {
         [StepNote::Gravel { curve: None, flattest: Some(flattest), .. }] => flattest,
         ref notes => panic!("{notes:?}"),
     };
@@ -104,30 +104,31 @@ fn the_step_of_gravel_and_gap_answers_both() {
     let [from, within] = flattest(&[(0.08, 10.0), (0.6, 59.0), (5.0, 71.0), (20.0, 100.0)]);
     assert!(near(Some(from), 0.6) && near(Some(within), 12.0 * 4f64.ln() / (5.0f64 / 0.6).ln()), "{within}");
     // 5 % is cited under our name alone.
-    let source = of(&[(0.1, 0.0), (0.5, 100.0)]).steps[1].source.clone();
+    let source = specified(&[(0.1, 0.0), (0.5, 100.0)]).steps[1].source.clone();
     assert!(source.ends_with("The check for a gap is this program's own"), "{source}");
 }
 
 /// The base of a sheet that is signed: unstable, broad, and flat between 0.6 and 5 mm.
 #[test]
 fn what_is_wrong_with_the_base_itself_is_among_the_notes() {
-    let notes = |of: &Specification| of.notes.iter().map(|of| of.note.clone()).collect::<Vec<_>>();
+    let notes =
+        |specified: &Specification| specified.notes.iter().map(|row| row.note.clone()).collect::<Vec<_>>();
     let points = [(0.002, 5.0), (0.075, 29.0), (0.6, 59.0), (5.0, 71.0), (20.0, 100.0)];
-    let broad = notes(&of(&points));
+    let broad = notes(&specified(&points));
     // Regraded on 0.6 mm: 49.2 % of fines, and so 0.7 mm, as on No. 4: no other limit is noted.
     assert!(
         matches!(broad[..], [Note::UnstableBase { index, .. }, Note::BroadBase { .. }, Note::FlatBase { .. }]
             if index < 1.0),
         "{broad:?}"
     );
-    let gap = notes(&of(&[(0.08, 0.0), (0.3, 40.0), (2.4, 41.0), (4.0, 100.0)]));
+    let gap = notes(&specified(&[(0.08, 0.0), (0.3, 40.0), (2.4, 41.0), (4.0, 100.0)]));
     assert!(gap.iter().any(|note| matches!(note, Note::GapOfBase { .. })), "{gap:?}");
-    assert_eq!(notes(&of(&[(0.1, 0.0), (0.5, 100.0)])), []);
+    assert_eq!(notes(&specified(&[(0.1, 0.0), (0.5, 100.0)])), []);
     // With several curves each note names its own.
     let sand = soil(&[(0.1, 0.0), (0.5, 100.0)]);
     let both = [("sand".to_owned(), sand), ("till".to_owned(), soil(&points))];
     let both = Specification::of("site", &both, SpecificationOptions::default());
-    let rows: Vec<_> = both.notes.iter().map(|of| of.row.as_deref()).collect();
+    let rows: Vec<_> = both.notes.iter().map(|row| row.row.as_deref()).collect();
     assert_eq!(rows, [Some("till"), Some("till"), Some("till"), None]);
     // The note of the band covers all curves: 0.636 to 0.700 mm, with a fine side that runs far out to its
     // D5.
@@ -155,19 +156,19 @@ fn of_several_curves_the_strictest_limit_of_each_counts() {
 #[test]
 fn without_a_known_limit_or_room_between_both_there_is_no_band_and_it_is_said_why() {
     // 20 % finer than 0.2 mm: fines, and so the category, are not known.
-    let open = of(&[(0.2, 20.0), (0.5, 85.0), (1.0, 100.0)]);
+    let open = specified(&[(0.2, 20.0), (0.5, 85.0), (1.0, 100.0)]);
     assert!(open.nearest_product().is_none());
     assert!(open.band.is_none() && open.d15f_max_mm.is_none() && open.limits.is_empty());
     let needs = vec![RuleNote::NeedsFinesOfBase];
     assert_eq!(open.no_band, Some(NoBand::LimitNotKnown { curve: "base".into(), needs }));
     // A sand of one size: 5 D15B is more than 4 D85B.
-    let uniform = of(&[(0.4, 0.0), (0.5, 100.0)]);
+    let uniform = specified(&[(0.4, 0.0), (0.5, 100.0)]);
     let Some(NoBand::NoneDrainsAndRetains { least_mm, most_mm }) = uniform.no_band else {
         panic!("{uniform:?}")
     };
     assert!(uniform.band.is_none() && near(uniform.d15f_min_mm, least_mm) && least_mm > most_mm);
     // A gravel whose filter would consist of stones.
-    let gravel = of(&[(5.0, 0.0), (6.0, 15.0), (9.0, 85.0), (12.0, 100.0)]);
+    let gravel = specified(&[(5.0, 0.0), (6.0, 15.0), (9.0, 85.0), (12.0, 100.0)]);
     assert!(matches!(gravel.no_band, Some(NoBand::TooCoarse { most_d60f_mm }) if most_d60f_mm > 75.0));
 }
 
@@ -192,7 +193,7 @@ fn both_sides_of_a_band_keep_every_rule_of_retention_drainage_and_placing() {
         &[(0.1, 0.0), (0.3, 15.0), (1.2, 85.0), (3.0, 100.0)],
     ];
     for points in bases {
-        let band = of(points).band.unwrap();
+        let band = specified(points).band.unwrap();
         let side = |rows: &[[f64; 2]]| Gradation::of_rows(rows).unwrap();
         let [fine, coarse] = band.continued();
         let sides = [("fine".to_owned(), side(&fine)), ("coarse".to_owned(), side(&coarse))];
@@ -228,7 +229,7 @@ fn a_base_of_which_nobody_has_said_whether_it_is_dispersive_has_the_limit_of_one
     assert_eq!((open.at_most, open.lacks), (true, Some(DispersiveLack::AnyLimit)));
     // Few fines, and an explicit answer.
     assert_eq!(limit(&[(0.01, 0.0), (0.075, 10.0), (0.3, 92.0), (0.6, 100.0)], None), None);
-    assert_eq!([Some(true), Some(false)].map(|said| limit(&silt, said)), [None, None]);
+    assert_eq!([Some(true), Some(false)].map(|dispersive| limit(&silt, dispersive)), [None, None]);
 }
 
 /// D15F of at most 6.4 D85B, here 0.064 mm, is less than any filter may have.
@@ -236,8 +237,10 @@ fn a_base_of_which_nobody_has_said_whether_it_is_dispersive_has_the_limit_of_one
 fn a_base_that_is_too_fine_has_no_filter() {
     let clay = soil(&[(0.0005, 0.0), (0.01, 85.0), (0.02, 100.0)]);
     let options = SpecificationOptions { dispersive: Some(true), ..Default::default() };
-    let of = Specification::of("clay", &[("clay".into(), clay)], options);
-    let Some(NoBand::NoneDrainsAndRetains { least_mm, most_mm }) = of.no_band else { panic!("{of:?}") };
+    let specified = Specification::of("clay", &[("clay".into(), clay)], options);
+    let Some(NoBand::NoneDrainsAndRetains { least_mm, most_mm }) = specified.no_band else {
+        panic!("{specified:?}")
+    };
     assert!(near(Some(least_mm), 0.1) && near(Some(most_mm), 0.064), "{least_mm} {most_mm}");
 }
 
@@ -250,9 +253,9 @@ fn a_finer_band_lowers_its_maximum_and_keeps_its_minimum() {
         Specification::of("core", &[("core".into(), core.clone())], options)
     };
     let [coarser, finer] = [false, true].map(specified);
-    let d15 = |of: &Specification| of.band.as_ref().unwrap().d15_mm();
-    let near = |found: [f64; 2], wanted: [f64; 2]| {
-        found.iter().zip(wanted).all(|(found, wanted)| (found / wanted - 1.0).abs() < 1e-9)
+    let d15 = |specified: &Specification| specified.band.as_ref().unwrap().d15_mm();
+    let near = |values: [f64; 2], wanted: [f64; 2]| {
+        values.iter().zip(wanted).all(|(value, wanted)| (value / wanted - 1.0).abs() < 1e-9)
     };
     assert!(near(d15(&coarser), [0.14, 0.7]) && near(d15(&finer), [0.1, 0.5]));
     assert_eq!((finer.d15f_min_mm, finer.d15f_max_mm), (coarser.d15f_min_mm, coarser.d15f_max_mm));
@@ -265,7 +268,7 @@ fn a_finer_band_lowers_its_maximum_and_keeps_its_minimum() {
 /// Each rule for the fines of this base, with its numbers: 37.8 % of fines and a D85B of 1.80 mm.
 #[test]
 fn the_step_of_retention_has_the_formula_of_the_category_with_its_numbers() {
-    let formula = |points: &[(f64, f64)]| of(points).steps[4].formula.clone();
+    let formula = |points: &[(f64, f64)]| specified(points).steps[4].formula.clone();
     let till = [(0.075, 28.0), (0.15, 37.0), (0.425, 48.0), (0.85, 55.0), (2.0, 64.0), (4.75, 74.0)];
     let till: Vec<(f64, f64)> = till.into_iter().chain([(9.5, 82.0), (19.0, 89.0), (37.5, 100.0)]).collect();
     assert_eq!(
@@ -273,7 +276,7 @@ fn the_step_of_retention_has_the_formula_of_the_category_with_its_numbers() {
         "Sherard and Dunnigan's limit of design, category 3, A 15 to 40 %: (40 - A)/25 (4 D85B - 0.7) + 0.7 \
          mm = (40 - 37.84)/25 (4 x 1.80 - 0.7) + 0.7 mm"
     );
-    assert!(of(&till).steps[4].source.starts_with("Sherard & Dunnigan (1989)"));
+    assert!(specified(&till).steps[4].source.starts_with("Sherard & Dunnigan (1989)"));
     let clay = [(0.001, 0.0), (0.02, 60.0), (0.05, 85.0), (0.075, 90.0), (0.3, 100.0)];
     assert!(
         formula(&clay).starts_with(
@@ -310,7 +313,7 @@ fn the_step_of_retention_has_the_formula_of_the_category_with_its_numbers() {
 /// Straight sides of a Cu of 6: D'15/d'85 is 6^(15/50), and 4 D is 38.7 % further up.
 #[test]
 fn both_sides_of_the_band_are_checked_for_internal_stability() {
-    let core = of(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
+    let core = specified(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
     let last = core.steps.last().unwrap();
     assert_eq!(last.does, StepName::CheckStability);
     let of_coarse = |name: &str| value(&core, &format!("{name} of the coarse side"));
@@ -326,7 +329,7 @@ fn both_sides_of_the_band_are_checked_for_internal_stability() {
     assert_eq!(last.notes, [stable("fine", &[]), stable("coarse", &[])]);
     assert!(last.source.contains("Internal Instability") && core.notes.is_empty(), "{last:?}");
     // 0.705 mm retain barely more than the 0.7 mm that drain: the fine side runs far out to its D5.
-    let narrow = of(&[(0.1, 0.0), (0.14, 15.0), (0.17625, 85.0), (0.3, 100.0)]);
+    let narrow = specified(&[(0.1, 0.0), (0.14, 15.0), (0.17625, 85.0), (0.3, 100.0)]);
     let [RowNote { row: None, note: Note::UnstableSide { side, authorities } }] = &narrow.notes[..] else {
         panic!("{:?}", narrow.notes)
     };
@@ -338,16 +341,16 @@ fn both_sides_of_the_band_are_checked_for_internal_stability() {
 /// D15F, and the coarse side is straight, which is stable.
 #[test]
 fn no_side_of_a_band_is_too_coarse_without_its_finer_part() {
-    let is_of_side = |of: &&RowNote| matches!(of.note, Note::UnstableSide { .. });
+    let is_of_side = |row: &&RowNote| matches!(row.note, Note::UnstableSide { .. });
     let mut unstable = 0;
     for scale in [0.8, 1.0, 4.0] {
         // A limit of four D85B, from less than the draining size to much more.
         for retains in [0.65, 0.7005, 0.705, 0.72, 0.8, 1.0, 2.0] {
             let sand = [(0.1, 0.0), (0.14, 15.0), (retains / 4.0, 85.0), (1.0, 100.0)];
             let points = sand.map(|(size, percent)| (scale * size, percent));
-            let (sand, of) = (soil(&points), of(&points));
-            unstable += of.notes.iter().filter(is_of_side).count();
-            for side in of.band.iter().flat_map(SizeBand::continued) {
+            let (sand, filter) = (soil(&points), specified(&points));
+            unstable += filter.notes.iter().filter(is_of_side).count();
+            for side in filter.band.iter().flat_map(SizeBand::continued) {
                 let side = Gradation::of_rows(&side).unwrap();
                 let side = side.scaled(1.0 - 1e-9).unwrap();
                 let washout = PairRules::of(&sand, &side).decision().washout.map(|washout| washout.left);
