@@ -171,13 +171,13 @@ impl BatchRow {
         let is_open = base.open_steps().into_iter().any(|step| step.is_wide());
         let open_base = is_open.then(|| OpenBase::of(base, false));
         // The strictest value of a limit that depends on sieves of the base far apart.
-        let hanging = |rule: &AppliedRule| {
+        let strictest_by_sieves = |rule: &AppliedRule| {
             let limit = sieved_limit(&rule.id, base, open_base.as_ref()?, options.dispersive)?;
-            limit.hangs_on.map(|_| limit.strictest)
+            limit.depends_on.map(|_| limit.strictest)
         };
         let of_d15f = |rule: &&AppliedRule| rule.applies && rule.quantity == RuleQuantity::D15F;
         let least = retaining(rules).filter(of_d15f);
-        let least = least.filter_map(|rule| Some((rule, hanging(rule)?, false)));
+        let least = least.filter_map(|rule| Some((rule, strictest_by_sieves(rule)?, false)));
         let strictest = strictest.into_iter().chain(least).min_by(|a, b| a.1.total_cmp(&b.1));
         let is_size = |rule: &&AppliedRule| rule.applies && rule.quantity != RuleQuantity::D15FOverD85B;
         let judged = decision.applied(DESIGN).and_then(|rule| rule.value).or(row.d15f_mm);
@@ -194,7 +194,7 @@ impl BatchRow {
             true => Some(false),
             false => drainage.and_then(|rule| rule.met),
         };
-        let greatest = drainage.and_then(hanging);
+        let greatest = drainage.and_then(strictest_by_sieves);
         Self {
             d15f_mm: judged.filter(|_| met.is_some() || !rules.iter().any(leaves_d15f_open)),
             limit_mm: strictest.map(|(_, limit, _)| limit),

@@ -11,10 +11,10 @@ use crate::rules::{DESIGN, PERMEABILITY, PERMEABILITY_LEAST, TESTS_NO_EROSION};
 /// under its own name.
 pub(super) fn listed(rules: &[AppliedRule]) -> Vec<Cow<'_, AppliedRule>> {
     let repeats = |rule: &&AppliedRule| {
-        let is_said = |other: &AppliedRule| {
+        let is_listed = |other: &AppliedRule| {
             other.id == PERMEABILITY && other.limit.is_some() && other.limit == rule.limit
         };
-        rule.id == PERMEABILITY_LEAST && !rule.limit_at_most && rules.iter().any(is_said)
+        rule.id == PERMEABILITY_LEAST && !rule.limit_at_most && rules.iter().any(is_listed)
     };
     let is_one = without_margin(rules).is_some();
     let once = rules.iter().filter(|rule| !(repeats(rule) || is_one && rule.id == TESTS_NO_EROSION));

@@ -291,18 +291,18 @@ fn upright(grid: &Grid, at: usize, openings: &Openings, soils: &[usize]) -> (Gri
         .chain(beside)
         .filter(|cell| cell.contains(char::is_alphabetic) && opening(cell).is_none())
         .collect();
-    let said_unit = |text: &&str| match (role(text), unit(text)) {
+    let stated_unit = |text: &&str| match (role(text), unit(text)) {
         (Role::Other, _) => None,
         (_, Ok(Some(unit))) if unit != Unit::SieveNumber => Some(unit),
         _ => None,
     };
-    let said_retained =
+    let stated_retained =
         words_above.iter().map(|text| role(text)).find(|role| matches!(role, Role::Retained(_)));
     let labels = Labels::new(&grid.rows[..=at], &rows_of_soils, columns[0]);
     let soil = |(index, row): (usize, &&GridRow)| {
         let words = (0..columns[0]).map(|c| row.cell(c)).filter(|cell| !cell.is_empty());
         let stated = words.map(role).find(|role| matches!(role, Role::Finer | Role::Retained(_)));
-        let role = stated.or(*retained).or(said_retained).unwrap_or(Role::Other);
+        let role = stated.or(*retained).or(stated_retained).unwrap_or(Role::Other);
         SoilColumn { column: index + 1, heading: labels.names[index].clone(), role, end: None }
     };
     let named = |c: usize| rows_of_soils.iter().any(|row| percentage(row.cell(c)).is_some());
@@ -313,7 +313,7 @@ fn upright(grid: &Grid, at: usize, openings: &Openings, soils: &[usize]) -> (Gri
         .copied()
         .chain(last + 1..heading.cells.len().max(last + 1))
         .filter(|&c| named(c))
-        .map(|c| format!("{} (\"{}\")", grid.column_said(c), shortened(heading.cell(c))))
+        .map(|c| format!("{} (\"{}\")", grid.column_label(c), shortened(heading.cell(c))))
         .collect();
     if unused.len() > MOST_NAMED {
         let more = format!("and {} more", unused.len() - MOST_NAMED);
@@ -328,14 +328,14 @@ fn upright(grid: &Grid, at: usize, openings: &Openings, soils: &[usize]) -> (Gri
         let begins = row.filled().find(|&c| is_words(row.cell(c))).map_or("", |c| row.cell(c));
         notes.push(format!(
             "what stands from {} on (\"{}\") was left out",
-            grid.said(row.line),
+            grid.row_label(row.line),
             shortened(begins)
         ));
     }
     let layout = Layout {
         size: 0,
         other_size: None,
-        unit: words_above.iter().find_map(said_unit),
+        unit: words_above.iter().find_map(stated_unit),
         soils: rows_of_soils.iter().enumerate().map(soil).collect(),
         at: 0,
         first: 0,

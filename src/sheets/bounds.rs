@@ -58,7 +58,7 @@ pub(super) fn settle(grid: &mut Grid, layout: &mut Layout) -> Result<(), TableEr
             layout.accounted.push(column);
             layout.notes.push(format!(
                 "not used: {} (\"{}\")",
-                grid.column_said(column),
+                grid.column_label(column),
                 shortened(&heading)
             ));
             layout.other_size = layout.other_size.filter(|&other| other != column);
@@ -166,7 +166,7 @@ fn read_classes(
     is_lower: bool,
 ) -> Result<(), TableError> {
     let (upper, lower) = if is_lower { (layout.size, second) } else { (second, layout.size) };
-    let names = [upper, lower].map(|c| grid.column_said(c));
+    let names = [upper, lower].map(|c| grid.column_label(c));
     if let Some(soil) = layout.soils.iter().find(|soil| !matches!(soil.role, Role::Retained(_))) {
         let allowed = format!(
             "`retained` in the heading of what is in each class, as {} and {} are bounds of classes; \

@@ -44,7 +44,7 @@ pub(super) fn check(
     if let (Some(point), Some((line, value)), None) = (point, other, &grid.sheet) {
         let allowed = format!(
             "one decimal sign in the whole file ({} has a decimal point), no thousands separators",
-            grid.said(point)
+            grid.row_label(point)
         );
         return Err(grid.refused(line, layout.size, "number", value, allowed));
     }

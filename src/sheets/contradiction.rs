@@ -53,7 +53,7 @@ pub(super) fn refuse(
             let allowed = format!(
                 "{} retained that agree with the percents in {}, or one of the two columns alone",
                 if retained.percent { "percents" } else { "masses" },
-                grid.column_said(layout.soils[0].column)
+                grid.column_label(layout.soils[0].column)
             );
             let value = values.get(line).map_or(String::new(), f64::to_string);
             return Err(grid.refused(*line, column, FIELDS[1], &value, allowed));

@@ -71,7 +71,7 @@ impl Extent {
                 listed(grid.row_word(), &remarks, |&line| grid.row_name(line))
             ));
         }
-        extent.notes.extend(extent.said_below(grid, &rows[end..]));
+        extent.notes.extend(extent.note_below(grid, &rows[end..]));
         Ok(extent)
     }
 
@@ -152,7 +152,7 @@ impl Extent {
         row.filled().take_while(|&c| c < before || of_size(c)).find(|&c| is_words(row.cell(c)))
     }
 
-    fn said_below(&self, grid: &Grid, rows: &[GridRow]) -> Option<String> {
+    fn note_below(&self, grid: &Grid, rows: &[GridRow]) -> Option<String> {
         const MOST: usize = 4;
         let (first, last) = (rows.first()?, rows.last()?);
         let text = |below: &Below| match below.value {

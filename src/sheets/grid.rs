@@ -81,7 +81,7 @@ impl Grid {
     }
 
     /// Name of a row of this grid: `line 3`, `row 3` of a sheet, `column D` if rows are columns.
-    pub(super) fn said(&self, line: usize) -> String {
+    pub(super) fn row_label(&self, line: usize) -> String {
         format!("{} {}", self.row_word(), self.row_name(line))
     }
 
@@ -103,7 +103,7 @@ impl Grid {
     }
 
     /// Name of a column of this grid: `column D` of a sheet, `column 4` of a text.
-    pub(super) fn column_said(&self, column: usize) -> String {
+    pub(super) fn column_label(&self, column: usize) -> String {
         match &self.sheet {
             Some(_) => format!("column {}", letters((self.left + column) as u32)),
             None => format!("column {}", self.left + column + 1),

@@ -149,7 +149,7 @@ fn join(sieves: &mut Read, table: Read) {
             grid.row_word(),
             grid.row_name(first.min(last)),
             grid.row_name(first.max(last)),
-            grid.column_said(table.block.layout.soils[0].column),
+            grid.column_label(table.block.layout.soils[0].column),
         );
         let new = lower.notes.iter().filter(|note| !upper.notes.contains(note)).cloned().collect::<Vec<_>>();
         upper.notes.extend(new);

@@ -292,8 +292,8 @@ fn refuse_unnamed_openings(
 fn not_used(grid: &Grid, heads: &[String], unused: &[usize]) -> Option<String> {
     const MOST: usize = 6;
     let name = |&c: &usize| match heads.get(c).map(String::as_str).unwrap_or_default() {
-        "" => format!("{} (no heading)", grid.column_said(c)),
-        head => format!("{} (\"{}\")", grid.column_said(c), shortened(head)),
+        "" => format!("{} (no heading)", grid.column_label(c)),
+        head => format!("{} (\"{}\")", grid.column_label(c), shortened(head)),
     };
     let mut named: Vec<String> = unused.iter().take(MOST).map(name).collect();
     if unused.len() > MOST {

@@ -181,7 +181,10 @@ fn entries(
             return Err(grid.refused(line, column.column, FIELDS[1], value, allowed));
         }
         if let Some(most) = bound {
-            notes.push(format!("{value} in {} read as {most} %, the most that it may be", grid.said(line)));
+            notes.push(format!(
+                "{value} in {} read as {most} %, the most that it may be",
+                grid.row_label(line)
+            ));
         }
         let value_read = percentage(value)
             .or(bound)
@@ -260,7 +263,7 @@ fn finer(
         let size = match entry.opening {
             Opening::Mm(size) | Opening::Below(size) => size,
             Opening::Total => {
-                notes.push(format!("the total in {} was left out", grid.said(entry.line)));
+                notes.push(format!("the total in {} was left out", grid.row_label(entry.line)));
                 continue;
             }
             Opening::Pan if entry.value == 0.0 => {

@@ -69,8 +69,8 @@ impl Weighed<'_> {
 
     /// Refuses values without a pan that end far below 100 under `Retained` alone: they may be grams.
     fn refuse_unsaid(&self, line: usize, end: f64) -> Result<(), TableError> {
-        let is_said = |cell: &str| says_percent(cell) || says_fraction(cell);
-        let any_cell = || self.grid.rows.iter().any(|row| is_said(row.cell(self.column)));
+        let is_stated = |cell: &str| says_percent(cell) || says_fraction(cell);
+        let any_cell = || self.grid.rows.iter().any(|row| is_stated(row.cell(self.column)));
         let is_retained = matches!(role(self.heading), Role::Retained(_));
         if !self.retained.percent || end >= NEARLY_ALL || !is_retained || any_cell() {
             return Ok(());
@@ -225,7 +225,7 @@ pub(super) fn percents_finer(
     sieves.sort_by(|a, b| b.1.total_cmp(&a.1));
     let Some(&(first_line, _, first)) = sieves.first() else { return Ok(Vec::new()) };
     if let Some(pair) = sieves.windows(2).find(|pair| pair[0].1 == pair[1].1) {
-        let allowed = format!("every size once (it is also in {})", weighed.grid.said(pair[0].0));
+        let allowed = format!("every size once (it is also in {})", weighed.grid.row_label(pair[0].0));
         return Err(weighed.grid.refused(
             pair[1].0,
             weighed.column,

@@ -64,13 +64,13 @@ impl Soil {
             (place.line, in_sheet.then_some(place.column as u32))
         };
         from_rows(&self.file, rows, d0_mm).map_err(|error| match error {
-            GradationError::Table(error) => error.placed(place, |row| self.said(row)).into(),
+            GradationError::Table(error) => error.placed(place, |row| self.row_label(row)).into(),
             error => error,
         })
     }
 
     /// Name of a row, counted from 1.
-    fn said(&self, row: usize) -> String {
+    fn row_label(&self, row: usize) -> String {
         let Place { line, column } = self.places[row - 1][1];
         match self.kind {
             Kind::Lines => format!("line {line}"),

@@ -401,7 +401,7 @@ pub struct SievedLimit {
     /// The mildest limit.
     pub mildest: f64,
     /// Sieves far apart that the limit depends on.
-    pub hangs_on: Option<RuleNote>,
+    pub depends_on: Option<RuleNote>,
 }
 
 /// The limit of a rule of D15F for a base in mm, with all that its table leaves `open`; `None` without a
@@ -431,8 +431,8 @@ pub fn sieved_limit(id: &str, base: &Gradation, open: &OpenBase, dispersive: boo
     let moves = (0..choices.len()).filter(moves).max_by(width).map(|i| choices[i]);
     let hidden = hidden.iter().filter(|(judged, _)| is_moved(judged, &plain)).map(|(_, step)| *step);
     let moves = moves.or_else(|| widest(hidden).map(Choice::OfBase));
-    let hangs_on = moves.and_then(|choice| note(rule, &inputs, choice, &plain, &results));
-    Some(SievedLimit { strictest, mildest, hangs_on })
+    let depends_on = moves.and_then(|choice| note(rule, &inputs, choice, &plain, &results));
+    Some(SievedLimit { strictest, mildest, depends_on })
 }
 
 /// Note on a choice that a result depends on, among all results.

@@ -41,14 +41,14 @@ impl ReadCurve {
         let rules = apply(&RuleInputs { dispersive, ..RuleInputs::of_soils(base, &any) });
         let soil = BaseSoil::of(base, false);
         let open = OpenBase::of(base, false);
-        let over_sieves = sieved_limit(DESIGN, base, &open, dispersive).and_then(|limit| limit.hangs_on);
+        let over_sieves = sieved_limit(DESIGN, base, &open, dispersive).and_then(|limit| limit.depends_on);
         // A limit that can only be less may be the strictest.
         let unknown = open_retention(&rules).map(|rule| rule.needs.clone());
         let unknown = over_sieves.map(|note| vec![note]).or(unknown);
         let strictest = retention(&rules, ANY_D15F);
         let drainage = rules.iter().find(|rule| rule.id == PERMEABILITY);
         let drains = sieved_limit(PERMEABILITY, base, &open, dispersive);
-        let between = drains.as_ref().filter(|limit| limit.hangs_on.is_some());
+        let between = drains.as_ref().filter(|limit| limit.depends_on.is_some());
         Self {
             base: base.clone(),
             dispersive,
