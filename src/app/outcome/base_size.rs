@@ -1,4 +1,4 @@
-//! D85 of a base, and which base it is of.
+//! D85 of a base, and the base that it belongs to: as sampled or regraded.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,7 +19,7 @@ pub struct BaseSize {
 }
 
 impl BaseRecord {
-    /// D85, and which base it is of.
+    /// D85, and the base that it belongs to.
     pub fn size(&self) -> BaseSize {
         BaseSize {
             d85_mm: self.d85_mm,
@@ -30,7 +30,7 @@ impl BaseRecord {
 }
 
 impl Inputs {
-    /// D85 of the base, and which base it is of; `None` where sizes have no unit.
+    /// D85 of the base, and the base that it belongs to; `None` where sizes have no unit.
     pub fn base_size(&self) -> Option<BaseSize> {
         (!self.scale_free).then(|| self.base.size())
     }

@@ -1,4 +1,5 @@
-//! What a run retained and blocked, by the connectivity of the void (paper, Table 3).
+//! Particles that a run retained and constrictions that it blocked, by the connectivity of the void (paper,
+//! Table 3).
 
 use std::collections::BTreeMap;
 
@@ -9,11 +10,11 @@ use voidwalk_core::walk::State;
 /// Voids, exits, blocked exits, particles in exits, particles in voids.
 type Sums = [u64; 5];
 
-/// By connectivity, rising; empty where all voids have the same. Trapped particles are in no void for good
-/// and not counted.
+/// Sums by ascending connectivity; empty if all voids have the same. Trapped particles never settle in one
+/// void and are not counted.
 pub fn of_run(network: &Network, state: &State) -> Vec<ByConnectivity> {
     let mut sums: BTreeMap<u64, Sums> = BTreeMap::new();
-    // Entrances and exits are the same there, and on the cubic lattice all voids are alike.
+    // Entrances and exits are the same there, and all voids of the cubic lattice are alike.
     if network.reservoir().is_some() || network.shape().is_some() {
         return Vec::new();
     }

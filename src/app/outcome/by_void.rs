@@ -1,13 +1,13 @@
-//! What happened in each void of a walk, and in each constriction.
+//! Events in each void of a walk, and in each constriction.
 
 use super::record::{BlockedRow, ConstrictionRow, RetainedRow};
 use voidwalk_core::network::Network;
 use voidwalk_core::walk::State;
 
-/// A number of a void that stands for the outside.
+/// Number of a void that represents the outside.
 const OUTSIDE: i64 = -1;
 
-/// Where voids lie, for pictures: no result follows from it. Water flows along z, from 0 on.
+/// Places of voids, for pictures: no result depends on them. Water flows along z, from 0 on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Places {
     /// Place (mm) by void of the filter.
@@ -19,8 +19,7 @@ pub struct Places {
 }
 
 impl Places {
-    /// The way (mm) from one void to another, to the nearest of its images; half a layer where either lies
-    /// outside.
+    /// Vector (mm) from one void to the nearest image of another; half a layer if either lies outside.
     fn way(&self, from: i64, to: i64) -> [f64; 3] {
         let point = |void: i64| usize::try_from(void).ok().and_then(|void| self.point_mm.get(void));
         let (Some(from), Some(to)) = (point(from), point(to)) else { return [0.0, 0.0, 0.5 * self.layer_mm] };
@@ -39,7 +38,7 @@ pub fn constrictions(network: &Network, places: &Places) -> Vec<ConstrictionRow>
     for void in 0..network.voids() as u32 {
         for exit in network.exits(void).filter(|&exit| network.counts(exit)) {
             let target = network.targets()[exit];
-            // The reservoir is no void of the filter, and what leads there leads in from it.
+            // The reservoir is no void of the filter; a constriction that leads there leads in from it.
             let (from, to) = match (void < filter, network.reservoir() == Some(target)) {
                 (true, true) => (OUTSIDE, i64::from(void)),
                 (true, false) if target < filter => (i64::from(void), i64::from(target)),
@@ -62,7 +61,7 @@ pub fn constrictions(network: &Network, places: &Places) -> Vec<ConstrictionRow>
     rows
 }
 
-/// The constrictions that a run blocked, in the order in which it did.
+/// The constrictions that a run blocked, in the order of blocking.
 pub fn blocked(network: &Network, state: &State) -> Vec<BlockedRow> {
     let row = |blocking: &voidwalk_core::walk::Blocking| BlockedRow {
         run: state.run,
@@ -72,7 +71,8 @@ pub fn blocked(network: &Network, state: &State) -> Vec<BlockedRow> {
     state.history.iter().map(row).collect()
 }
 
-/// The voids that hold retained particles of a run, and void 0, so that the moment is known where none does.
+/// The voids that hold retained particles of a run, and void 0, so that the moment is known even if no void
+/// holds any.
 pub fn retained(state: &State) -> Vec<RetainedRow> {
     let each = state.retained_in_constrictions.iter().zip(&state.retained_in_voids);
     (0i64..)
@@ -88,7 +88,7 @@ pub fn retained(state: &State) -> Vec<RetainedRow> {
         .collect()
 }
 
-/// The same rows, the reservoir before the filter being the outside instead of the void after the last.
+/// Rows with the reservoir before the filter as the outside instead of the void after the last.
 pub fn of_filter(network: &Network, rows: &[RetainedRow]) -> Vec<RetainedRow> {
     let filter = network.filter_voids() as i64;
     let void = |row: &RetainedRow| if row.void < filter { row.void } else { OUTSIDE };

@@ -1,16 +1,15 @@
-//! What a verdict is worth where the constriction curve is known within a range only: the same replicates are
-//! walked at the range's ends, too.
+//! The verdict where the constriction curve is known only within a range: the same replicates are walked at
+//! the range's ends, too.
 //!
-//! The ends of a guess leave the verdict undecided where they differ. Those of a filter from the library are
-//! the coarsest and the finest constrictions that it may have, loose or dense: there the worst class is the
-//! verdict, which errs on the safe side. A walk that is open leaves the verdict so where it could be of a
-//! worse class.
+//! If the ends of a guess differ, the verdict is undecided. The ends of a filter from the library are the
+//! coarsest and the finest constrictions that it may have, loose or dense: the worst class is its verdict,
+//! which errs on the safe side. A walk with an open class that could be worse leaves the verdict undecided.
 
 use super::record::{CurveEnd, CurveRange, Statistic, Verdict};
 use super::verdict::THRESHOLD;
 
 impl CurveRange {
-    /// The range of a verdict of which the curve itself gives `verdict` and `runs`; `None` without ends.
+    /// The range of a verdict whose own curve gives `verdict` and `runs`; `None` without ends.
     pub fn new(
         verdict: Verdict,
         runs: &[Statistic],
@@ -41,7 +40,7 @@ impl CurveRange {
         }
     }
 
-    /// The worst class of the range; undecided where a walk that is open could be of a worse one.
+    /// The worst class of the range; undecided if a walk with an open class could be of a worse one.
     fn worst(&self) -> Verdict {
         let all = || self.ends.iter().map(|end| end.walked.verdict).chain([self.verdict]);
         let decided = [Verdict::Continuing, Verdict::Some, Verdict::None];
@@ -68,12 +67,12 @@ impl CurveRange {
         }
     }
 
-    /// Whether the range leaves the class open that the curve itself gives.
+    /// Tells if the range leaves the class open that the curve itself gives.
     pub fn leaves_open(&self) -> bool {
         self.whole() == Verdict::Undecided && self.verdict != Verdict::Undecided
     }
 
-    /// Whether the ends have the class of the curve itself.
+    /// Tells if the ends have the class of the curve itself.
     pub fn agrees(&self) -> bool {
         self.ends.iter().all(|end| end.walked.verdict == self.verdict)
     }
@@ -120,12 +119,12 @@ mod tests {
         assert_eq!(whole(Some, Some, None), Some);
         assert_eq!(whole(None, Some, None), Some);
         assert_eq!(whole(Some, Continuing, None), Continuing);
-        // Up to 10 % erode in the first run and 5 % in the second: what is open is some erosion at most.
+        // Up to 10 % erode in the first run and 5 % in the second: the open class is some erosion at most.
         assert_eq!(whole(Undecided, Some, Undecided), Some);
         assert_eq!(whole(None, None, Undecided), Undecided);
         assert_eq!(whole(None, Undecided, None), Undecided);
         assert_eq!(whole(Continuing, Undecided, None), Continuing);
-        // At another level other intervals say what is open.
+        // At another level other intervals determine the open classes.
         let mut range = range_with(Undecided, &[(1.03, Some), (0.8, Undecided)], true);
         for (worst, found) in [(Some, Some), (Continuing, Undecided)] {
             range.could_be = std::option::Option::Some(worst);

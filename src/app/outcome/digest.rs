@@ -4,13 +4,13 @@ use serde::Serialize;
 use serde_json::Value;
 use xxhash_rust::xxh3::Xxh3;
 
-/// Fields that are no results.
+/// Fields that are not results.
 const LEFT_OUT: [&str; 2] = ["seconds", "studies_to_come"];
 
-/// Digest of every number, `true`, `false` and `null` of a record: XXH3 of a line `PLACE=VALUE` each, with
-/// 128 bits in hexadecimal. Fields are taken by their names in alphabetical order, so that their order in the
-/// file does not matter. Text is left out (names, sentences, classes that follow from the numbers, version),
-/// and so are wall times (`seconds`) and the progress of a run (`studies_to_come`).
+/// Digest of every number, `true`, `false` and `null` of a record: XXH3 of one line `PLACE=VALUE` each, 128
+/// bits in hexadecimal. Fields are sorted by name, so their order in the file does not matter. Text is left
+/// out (names, sentences, classes that follow from the numbers, version), and so are wall times (`seconds`)
+/// and the progress of a run (`studies_to_come`).
 ///
 /// ```
 /// use serde_json::json;

@@ -1,28 +1,28 @@
-//! When a point of a study is clear: another number of base particles, another thickness of the filter.
+//! Early stop of a point of a study whose class is clear: another number of base particles, another thickness
+//! of the filter.
 //!
-//! A point is walked on the networks and random numbers of the scene's first replicates. Beside them stand
-//! all the scene's own replicates, so the first one or two of the point can tell that its erosion continues
-//! where that of the scene does, far above the threshold. Such a point stops; any other is walked in full and
-//! judged by the scatter of its own replicates alone.
+//! A point is walked on the networks and random numbers of the scene's first replicates, and the scene's own
+//! replicates are all known. So the first one or two replicates of the point can show that its erosion
+//! continues, far above the threshold, where the scene's erosion does. Such a point stops; any other is
+//! walked in full and judged by the scatter of its own replicates alone.
 //!
 //! # What is asked of a point that stops
 //! - The scene's verdict is **continuing erosion**, by at least [`FEWEST_OWN`] replicates. Points of no and
 //!   some erosion, which a reader may rely on, are walked in full.
-//! - Each run lies wholly above the threshold, by an interval that takes **twice** the scatter of the
-//!   scene's replicates, or the point's own where that makes it wider, each with its own Student's factor.
-//!   The error is 5 % over both looks and all runs (Bonferroni).
-//! - In every replicate, each run lies above the threshold, as the scene's does on the same network, and
+//! - Each run lies wholly above the threshold. Its interval takes **twice** the scatter of the scene's
+//!   replicates, or the point's own scatter if that makes it wider, each with its own Student's factor. The
+//!   error is 5 % over both looks and all runs (Bonferroni).
+//! - In every replicate, each run lies above the threshold, like the scene's run on the same network, and
 //!   keeps at least a third of its distance from it. A point that moves more may scatter more.
 //!
-//! That the scatter of a point is at most twice that of the scene is an assumption; `results/precision.md`
-//! counts how often it does not hold, and how often it misled.
+//! The assumption is that a point scatters at most twice as much as the scene; `results/precision.md` counts
+//! how often it fails, and how often it misled.
 //!
 //! # The ends of the curve's range
-//! One replicate does at an end whose class is that of the curve itself, whichever that is: the end is walked
-//! to see whether it *changes* the class, and the class rests on the case's own replicates. Every run that
-//! decides the class lies wholly on its side of the threshold, by an interval as above of at least
-//! 5 % of its value as scatter, and keeps a third of its distance. An end that is of another class, or not
-//! clear, is walked in full.
+//! One replicate is enough at an end whose class equals the class of the curve itself: the end is walked to
+//! see if it *changes* the class, and the class rests on the case's own replicates. Every run that decides
+//! the class lies wholly on its side of the threshold, by an interval as above with a scatter of at least 5 %
+//! of its value, and keeps a third of its distance. An end of another class, or not clear, is walked in full.
 
 use super::record::{Statistic, Verdict};
 use super::stopping::ReplicateValues;
@@ -32,7 +32,7 @@ use super::verdict::THRESHOLD;
 /// Replicates of the scene from which its scatter is taken.
 pub const FEWEST_OWN: usize = 5;
 
-/// How many times the scatter of the scene that of a point may be.
+/// Greatest scatter of a point, as a multiple of the scene's scatter.
 const SCATTER: f64 = 2.0;
 
 /// Part of its distance from the threshold that a point keeps.
@@ -41,28 +41,28 @@ const KEPT: f64 = 1.0 / 3.0;
 /// Replicates of the case itself from which the scatter at an end of its curve's range is taken.
 pub const FEWEST_OF_RANGE: usize = 4;
 
-/// Scatter of an end that is taken at the least, by its value: replicates of the case may agree by chance.
+/// Least scatter of an end, relative to its value: replicates of the case may agree by chance.
 const LEAST_SCATTER: f64 = 0.05;
 
-/// Error probability of the class of each of the two ends of a range, where the scene asks for no other.
+/// Error probability of the class of each of the two ends of a range, unless the scene asks for another.
 pub const ERROR_OF_END: f64 = ERROR / 2.0;
 
-/// Error probability of all looks and runs together, and that of the intervals that are shown.
+/// Error probability of all looks and runs together, and of the intervals that are shown.
 const ERROR: f64 = 0.05;
 
 /// Looks at a point: after one replicate and after two.
 const LOOKS: usize = 2;
 
-/// Numbers of replicates at which to look at a point of a study of so many, the last of them all; `own` is
-/// the scene's class, by `replicates` of it.
+/// Numbers of replicates at which to look at a point of a study with `of_study` replicates, the last of them
+/// all; `own` is the scene's class, by `replicates` of it.
 pub fn looks(own: Verdict, replicates: usize, of_study: u64) -> Vec<u64> {
     let may_stop = own == Verdict::Continuing && replicates >= FEWEST_OWN;
     let fewest = if may_stop { 1 } else { of_study };
     (fewest..=LOOKS as u64).filter(|&look| look < of_study).chain([of_study]).collect()
 }
 
-/// The eroded mass of each run at a point that is clear, with wide 95 % intervals; `None` where it is not
-/// clear. `own[run]` holds the scene's replicates, `point[run]` the first of them at the point.
+/// The eroded mass of each run at a point that is clear, with wide 95 % intervals; `None` if it is not clear.
+/// `own[run]` holds the scene's replicates, `point[run]` the first of them at the point.
 pub fn clear(own: &[ReplicateValues], class: Verdict, point: &[ReplicateValues]) -> Option<Vec<Statistic>> {
     if class != Verdict::Continuing || own.first()?.len() < FEWEST_OWN {
         return None;
@@ -73,8 +73,7 @@ pub fn clear(own: &[ReplicateValues], class: Verdict, point: &[ReplicateValues])
 }
 
 /// The eroded mass of each run at an end of the curve's range after its first replicate, with wide 95 %
-/// intervals; `None` where it is not clear, with this error probability, that its class is that of the curve
-/// itself.
+/// intervals; `None` unless, with this error probability, its class is clearly the class of the curve itself.
 pub fn clear_end(
     own: &[ReplicateValues],
     class: Verdict,
@@ -94,7 +93,7 @@ pub fn clear_end(
     is_clear.then(|| own.iter().zip(end).map(|(own, end)| wide(own, end, ERROR)).collect())
 }
 
-/// Whether a run at an end lies on the side of the threshold where all replicates of the case lie.
+/// Tells if a run at an end lies on the side of the threshold where all replicates of the case lie.
 fn is_on_its_side(own: &ReplicateValues, end: &ReplicateValues, error: f64) -> bool {
     let (Some(&(_, below)), Some(&(value, _))) = (own.first(), end.first()) else { return false };
     let found = wide(own, end, error);
@@ -108,7 +107,7 @@ fn is_on_its_side(own: &ReplicateValues, end: &ReplicateValues, error: f64) -> b
     is_whole && keeps && own.iter().chain(end).all(|&(_, of)| of == below)
 }
 
-/// Whether a run of a point lies above the threshold for certain.
+/// Tells if a run of a point lies above the threshold for certain.
 fn is_above(own: &ReplicateValues, point: &ReplicateValues, error: f64) -> bool {
     let keeps = |(&(own, own_below), &(value, value_below)): (&(f64, bool), &(f64, bool))| {
         !own_below && !value_below && value - THRESHOLD >= KEPT * (own - THRESHOLD)
@@ -117,7 +116,7 @@ fn is_above(own: &ReplicateValues, point: &ReplicateValues, error: f64) -> bool 
     is_whole && own.iter().zip(point).all(keeps)
 }
 
-/// The interval of a point: by twice the scatter of the scene, or by its own where that makes it wider.
+/// The interval of a point: by twice the scatter of the scene, or by its own if that makes it wider.
 fn wide(own: &ReplicateValues, point: &ReplicateValues, error: f64) -> Statistic {
     let values = |values: &ReplicateValues| values.iter().map(|&(value, _)| value).collect::<Vec<f64>>();
     let found = Statistic::of(&values(point));
@@ -150,7 +149,7 @@ mod tests {
         let sd = Statistic::of(&scene[0].iter().map(|v| v.0).collect::<Vec<_>>()).sd.unwrap();
         assert!((found[0].low.unwrap() - (0.5 - 2.262_157 * 2.0 * sd)).abs() < 1e-6);
         assert_eq!((found[0].mean, found[0].sd), (0.5, None));
-        // Close to the threshold, or moved over two thirds of the way to it, it does not.
+        // A point close to the threshold, or moved over two thirds of the distance to it, is not clear.
         assert_eq!(clear(&scene, Verdict::Continuing, &[values(&[0.5]), values(&[0.17])]), None);
         assert_eq!(clear(&scene, Verdict::Continuing, &[values(&[0.2]), values(&[0.5])]), None);
     }
@@ -198,7 +197,7 @@ mod tests {
         let none = [four(0.0), four(0.0)];
         // The second run decides nothing where the first is below the threshold.
         assert!(clear_end(&none, Verdict::None, &one([0.002, 0.2]), ERROR_OF_END).is_some());
-        // No scatter at all is no reason to believe a value near the threshold.
+        // Zero scatter is no reason to believe a value near the threshold.
         assert_eq!(clear_end(&none, Verdict::None, &one([0.052, 0.0]), ERROR_OF_END), None);
         assert_eq!(clear_end(&none, Verdict::None, &one([0.08, 0.0]), ERROR_OF_END), None);
         assert_eq!(clear_end(&some, Verdict::Undecided, &one([0.35, 0.012]), ERROR_OF_END), None);

@@ -1,5 +1,5 @@
-//! Eq. (1) of the paper beside the walk: how far single particles come in the clean filter, and what blocking
-//! changes.
+//! Eq. (1) of the paper beside the walk: the depth that single particles reach in the clean filter, and the
+//! effect of blocking.
 
 use super::record::{Infiltration, InfiltrationSize};
 use voidwalk_core::constrictions::Curve;
@@ -9,7 +9,7 @@ use voidwalk_core::network::Passage;
 /// Percentages by mass of the base whose sizes are followed.
 const SIZES: [f64; 6] = [15.0, 50.0, 85.0, 90.0, 95.0, 100.0];
 
-/// Parts of the base's mass over which the mass that would leave without blocking is summed.
+/// Number of parts of the base's mass over which the mass that would leave without blocking is summed.
 const PARTS: u32 = 400;
 
 /// Eq. (1) for this base on a cubic lattice of `layers` layers with this constriction curve (mm).

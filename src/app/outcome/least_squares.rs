@@ -11,7 +11,7 @@ pub(crate) struct Straight {
 }
 
 impl Straight {
-    /// Through `(x, y, standard error of y)`.
+    /// Fits a line through `(x, y, standard error of y)`.
     pub(crate) fn through(rows: &[(f64, f64, f64)]) -> Self {
         let sum = |term: &dyn Fn(f64, f64) -> f64| -> f64 {
             rows.iter().map(|&(x, y, error)| term(x, y) / (error * error)).sum()

@@ -95,7 +95,7 @@ pub struct ModelledThickness {
 }
 
 impl ModelledThickness {
-    /// Of an outcome.
+    /// Takes the numbers of an outcome.
     fn of(outcome: &Outcome) -> Self {
         let network = &outcome.inputs.network;
         Self { layers: network.layers, mm: network.thickness_mm, scale_free: outcome.inputs.scale_free }
@@ -162,7 +162,7 @@ impl LedgerLine {
     }
 }
 
-/// What the model does not contain in any case of a ledger.
+/// Features that the model omits in every case of a ledger.
 pub fn leaves_out(lines: &[LedgerLine]) -> Vec<ModelLimit> {
     leaves_out_of_all(lines.iter().map(|line| Modelled {
         flow: line.with_flow,

@@ -39,7 +39,7 @@ pub enum LeftOut {
     Walk(Shortcut),
 }
 
-/// What a network consists of along the flow.
+/// Unit of which a network consists along the flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LayerKind {

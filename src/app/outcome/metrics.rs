@@ -7,7 +7,7 @@ use super::{by_connectivity, by_void};
 use voidwalk_core::network::{NO_LAYER, Network};
 use voidwalk_core::walk::{FlowRecord, SizeClasses, SizeCounts, State, Tally};
 
-/// A run of a replicate, and what its numbers are given by.
+/// A run of a replicate, and the reference sizes of its numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct RunId {
     /// Replicate, counted from 1.
@@ -16,7 +16,7 @@ pub struct RunId {
     pub run: u64,
     /// D15F (mm).
     pub d15f_mm: f64,
-    /// Pan fraction of the base by mass: what is finer than the finest sieve.
+    /// Pan fraction of the base by mass: the part finer than the finest sieve.
     pub pan_fraction: f64,
 }
 
@@ -25,7 +25,7 @@ pub struct RunId {
 pub struct RunMetrics {
     /// Its entry of `outcome.json`.
     pub run: Run,
-    /// Whether less than 7.5 % of the mass eroded.
+    /// True if less than 7.5 % of the mass eroded.
     pub below_threshold: bool,
 }
 
@@ -54,11 +54,11 @@ pub struct Recorded {
 
 /// Mass eroded over the mass that the run inserts in all.
 ///
-/// The pan fraction is passive: as much of it erodes as of the passive particles, and all of it where the
+/// The pan fraction is passive: it erodes in the same share as the passive particles, and entirely if the
 /// base has none.
 fn eroded_mass_fraction(tally: &Tally, end: &Tally, pan_fraction: f64) -> f64 {
     let sized = match end.inserted_mass > 0.0 {
-        // The same masses added in two orders may differ in their last bits.
+        // Masses added in two orders may differ in their last bits.
         true => (tally.eroded_mass / end.inserted_mass).min(1.0),
         false => 0.0,
     };
@@ -72,17 +72,17 @@ fn eroded_mass_fraction(tally: &Tally, end: &Tally, pan_fraction: f64) -> f64 {
     (1.0 - pan_fraction) * sized + pan_fraction * of_pan
 }
 
-/// What a finished run eroded.
+/// Mass that a finished run eroded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eroded {
     /// Mass eroded over the mass inserted.
     pub mass_fraction: f64,
-    /// Whether less than 7.5 % of the mass eroded.
+    /// True if less than 7.5 % of the mass eroded.
     pub below_threshold: bool,
 }
 
 impl Eroded {
-    /// Of a run that has ended, of a base with this pan fraction by mass only.
+    /// Reads a run that has ended, from a base with this pan fraction by mass.
     pub fn of(state: &State, pan_fraction: f64) -> Self {
         let tally = &state.tally;
         let mass_fraction = eroded_mass_fraction(tally, tally, pan_fraction);
@@ -175,7 +175,7 @@ impl Recorded {
             series: series.collect(),
             layers: layers(network, state, of),
             flow: flow.collect(),
-            // What no void was recorded with, nobody asked for.
+            // Without recorded voids nobody asked for the blocked constrictions.
             blocked: if recorder.voids.is_empty() { Vec::new() } else { by_void::blocked(network, state) },
             voids: by_void::of_filter(network, &recorder.voids),
             ..Self::default()
@@ -200,10 +200,10 @@ impl Recorded {
     }
 }
 
-/// A void is overfull above this part of its volume: no packing of the particles in it is denser.
+/// A void is overfull above this part of its volume: no packing of its particles is denser.
 const OVERFULL: f64 = 0.6;
 
-/// How full the voids of a network are.
+/// Fill of the voids of a network.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Fullness {
     /// Retained volume over volume of the fullest void that has a volume.
@@ -213,17 +213,17 @@ struct Fullness {
 }
 
 impl Fullness {
-    /// Of a finished run; nothing where volumes are not known.
+    /// Reads a finished run; empty if volumes are unknown.
     fn of(network: &Network, state: &State) -> Self {
         match state.passive.expected() {
-            // Of an expectation only the number by void is known.
+            // For an expectation only the number by void is known.
             Some(_) => Self::default(),
             None => Self::of_voids(network.volumes(), &state.retained_cubes),
         }
     }
 
-    /// Of voids with these volumes and sums of the diameters cubed of what rests in them. A void without a
-    /// volume has room for nothing: it is overfull with anything, and by how much cannot be said.
+    /// Reads voids with these volumes and sums of the cubed diameters of their resting particles. A void
+    /// without a volume has room for nothing: any particle makes it overfull, by an unknown amount.
     fn of_voids(volumes: &[f64], cubes: &[f64]) -> Self {
         let full = |(&volume, &cubes): (&f64, &f64)| match cubes > 0.0 {
             true if volume > 0.0 => std::f64::consts::FRAC_PI_6 * cubes / volume,
@@ -239,7 +239,7 @@ impl Fullness {
     }
 }
 
-/// Moves out of the reservoir through ways in that are no constrictions: coming in is no move.
+/// Moves out of the reservoir through entries that are no constrictions: entering is no move.
 fn free_entries(network: &Network, state: &State) -> u64 {
     match network.reservoir().filter(|_| network.entry_is_free()) {
         Some(r) => state.tally.inserted - state.retained_in_voids[r as usize],
@@ -247,8 +247,8 @@ fn free_entries(network: &Network, state: &State) -> u64 {
     }
 }
 
-/// The deepest layer with a retained particle, and the one down to which 95 % of those that a layer retains
-/// lie.
+/// The deepest layer with a retained particle, and the layer down to which 95 % of the particles retained in
+/// layers lie.
 fn retained_layers(network: &Network, state: &State) -> [Option<u64>; 2] {
     let mut by_layer = vec![0u64; network.layers()];
     for (void, &layer) in network.layer_of().iter().enumerate().filter(|&(_, &layer)| layer != NO_LAYER) {
@@ -299,7 +299,7 @@ fn layers(network: &Network, state: &State, of: RunId) -> Vec<LayerRow> {
     rows
 }
 
-/// The size curve of `counts`: one row a class bound, none where nothing is counted.
+/// The size curve of `counts`: one row per class bound; empty if nothing is counted.
 fn size_curve(
     counts: &SizeCounts,
     classes: &SizeClasses,
@@ -342,7 +342,7 @@ mod tests {
         let sphere = std::f64::consts::FRAC_PI_6;
         assert_eq!(of(&[1.0, 0.0, 0.0, 2.0], &[0.5, 3.0, 0.0, 2.0]), (Some(sphere), Some(0.25)));
         assert_eq!(of(&[1.0, 1.0], &[2.0, 0.0]), (Some(2.0 * sphere), Some(0.5)));
-        // What is next to none is as none.
+        // A volume next to zero is treated as zero.
         assert_eq!(of(&[5e-324, 1.0], &[1e300, 0.0]), (Some(0.0), Some(0.5)));
         assert_eq!(of(&[0.0], &[1.0]), (None, Some(1.0)));
         assert_eq!(of(&[], &[]), (None, None));

@@ -1,25 +1,26 @@
-//! What came of a walk: series, size curves, blocked by layer, and the verdict with its uncertainty.
+//! Results of a walk: series, size curves, blocked by layer, and the verdict with its uncertainty.
 //!
-//! - [`record`] holds the names and shapes of everything in a run folder, [`packing`] of a packing's.
-//! - [`Recorder`] records of a running walk what was asked for.
+//! - [`record`] holds the names and shapes of everything in a run folder, [`packing`] those of a packing
+//!   folder.
+//! - [`Recorder`] records the requested data of a running walk.
 //! - [`RunMetrics`] are the numbers of one run at its end.
 //! - [`by_connectivity`] splits what a run retained by the connectivity of the voids (Table 3).
-//! - `by_void` is what happened in each void and constriction, for pictures.
-//! - [`verdict`] classifies, by mass eroded, one replicate or many; [`stopping`] says how many are enough,
+//! - `by_void` holds the events in each void and constriction, for pictures.
+//! - [`verdict`] classifies one replicate or many by mass eroded; [`stopping`] decides how many are enough,
 //!   `early_stop` how many of a study.
-//! - [`leaves_out`] is what the model does not contain.
-//! - `soil_sizes` are the sizes of a soil that a sheet shows.
-//! - [`so_far`] is a look at the replicates of a run that is under way.
-//! - [`digest`] is one number of all numbers of a record, by which two runs are compared.
-//! - `paper` holds what the paper states.
+//! - [`leaves_out`] lists the features that the model omits.
+//! - `soil_sizes` holds the sizes of a soil that a sheet shows.
+//! - [`so_far`] looks at the replicates of a run that is under way.
+//! - [`digest`] reduces all numbers of a record to one, by which two runs are compared.
+//! - `paper` holds the numbers that the paper states.
 //! - [`rules`] applies the rules of filter practice to the same two curves.
-//! - [`infiltration()`] is Eq. (1) beside the walk.
-//! - [`network_walk`] is what comes of walks on given networks, without a scene.
+//! - [`infiltration()`] sets Eq. (1) beside the walk.
+//! - [`network_walk`] holds the results of walks on given networks, without a scene.
 //! - [`percolation`] fits percolation thresholds of several lattice sizes.
-//! - [`undecided`] is what leaves a verdict open.
-//! - [`design`] is the specification of a filter by practice, [`boundary`] the boundaries of the model.
-//! - [`table`] describes the tables of files and pages, [`number_rows`] those of numbers alone, and
-//!   [`quantity`] is the way from a number to text.
+//! - [`undecided`] names the cause that leaves a verdict open.
+//! - [`design`] holds the specification of a filter by practice, [`boundary`] the boundaries of the model.
+//! - [`table`] describes the tables of files and pages, [`number_rows`] the tables of numbers alone;
+//!   [`quantity`] turns a number into text.
 
 mod base_size;
 pub mod boundary;
@@ -61,21 +62,21 @@ use voidwalk_core::network::ExitRule;
 use voidwalk_practice::{Decision, Note};
 
 impl record::Outcome {
-    /// Whether water gave particles their way.
+    /// True if water directed the particles.
     pub fn is_with_flow(&self) -> bool {
         let with_flow =
             |exit: &str| ExitRule::ALL.iter().any(|rule| rule.name() == exit && rule.needs_flow());
         self.network.as_ref().is_some_and(|network| with_flow(&network.exit))
     }
 
-    /// The decision of practice on its pair: without an answer where the record has none.
+    /// The decision of practice on its pair: without an answer if the record has none.
     pub fn decision(&self) -> Decision {
         let mut decision = Decision::new(&self.rules, self.if_dispersive, Some(self.inputs.filter.d15_mm));
         decision.headline = self.headline.and(decision.headline);
         decision
     }
 
-    /// What its walk contained.
+    /// Features that its walk contained.
     pub fn modelled(&self) -> Modelled {
         Modelled {
             flow: self.is_with_flow(),

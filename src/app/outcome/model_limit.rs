@@ -1,4 +1,4 @@
-//! What the model does not contain.
+//! Features that the model omits.
 
 use serde::{Deserialize, Serialize};
 
@@ -28,7 +28,7 @@ pub enum ModelLimit {
 }
 
 impl ModelLimit {
-    /// All of them.
+    /// All limits.
     pub const ALL: [Self; 9] = [
         Self::Hydraulics,
         Self::HydraulicsElsewhere,
@@ -41,14 +41,14 @@ impl ModelLimit {
         Self::Cohesion,
     ];
 
-    /// What holds whether or not water gives particles their way.
+    /// Limits that hold with water and without.
     const ALWAYS: &[Self] = Self::ALL.split_at(4).1;
 }
 
-/// What a walk contains that others leave out.
+/// Features of a walk that other walks omit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Modelled {
-    /// Water gives particles their way.
+    /// Water directs particles.
     pub flow: bool,
     /// Particles arch.
     pub arches: bool,
@@ -57,7 +57,7 @@ pub struct Modelled {
 }
 
 impl Modelled {
-    /// Whether it is what this limit says to be left out.
+    /// Tells if the walk contains the feature that this limit names as omitted.
     fn contains(self, limit: &ModelLimit) -> bool {
         match limit {
             ModelLimit::Bridging => self.arches,
@@ -67,12 +67,12 @@ impl Modelled {
     }
 }
 
-/// What the model of such a walk does not contain; shown next to every verdict.
+/// Features that the model of such a walk omits; shown next to every verdict.
 pub fn leaves_out(modelled: Modelled) -> Vec<ModelLimit> {
     leaves_out_of_all([modelled])
 }
 
-/// What the models of several cases all leave out.
+/// Features that the models of all these cases omit.
 pub fn leaves_out_of_all(cases: impl IntoIterator<Item = Modelled>) -> Vec<ModelLimit> {
     let cases: Vec<Modelled> = cases.into_iter().collect();
     let (with, without): (Vec<Modelled>, Vec<Modelled>) = cases.iter().partition(|case| case.flow);

@@ -1,4 +1,4 @@
-//! What came of walks on given networks, without a scene: their results, and what was walked with what.
+//! Results of walks on given networks, without a scene: their verdict, base and network.
 
 use serde::{Deserialize, Serialize};
 

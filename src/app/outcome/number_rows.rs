@@ -1,13 +1,13 @@
-//! Rows of numbers, whose columns are the fields of their type: CSV, npz and Python name them alike.
+//! Rows of numbers, whose columns are the fields of their type: CSV, npz and Python use the same names.
 
 /// A column of a table of numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NumberColumn {
     /// Counts.
     Counts(Vec<u64>),
-    /// Whole numbers, of which some stand for what has no number.
+    /// Whole numbers, some of which represent things without a number.
     Whole(Vec<i64>),
-    /// NumberColumn with a point.
+    /// Numbers with a point.
     Floats(Vec<f64>),
 }
 
@@ -16,11 +16,11 @@ pub trait NumberRow: Sized {
     /// Every column with its name.
     fn columns(rows: &[Self]) -> Vec<(&'static str, NumberColumn)>;
 
-    /// The rows of columns, each asked for by its name and with an empty column of its kind; `None` where
-    /// what is given differs in length or kind.
+    /// The rows of columns, each requested by its name and with an empty column of its kind; `None` if the
+    /// given columns differ in length or kind.
     ///
     /// # Errors
-    /// What `column` says.
+    /// Returns the errors of `column`.
     fn rows<E>(
         column: impl FnMut(&'static str, NumberColumn) -> Result<NumberColumn, E>,
     ) -> Result<Option<Vec<Self>>, E>;

@@ -1,4 +1,4 @@
-//! What a packing's folder holds, as types: `packing.json` and the rows of `constrictions.csv`.
+//! Contents of a packing's folder, as types: `packing.json` and the rows of `constrictions.csv`.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +15,7 @@ pub struct CurveRow {
     pub diameter_mm: f64,
 }
 
-/// Coarse grains float in a finer part of at least this percent of the mass, and carry each other without it:
+/// Coarse grains float in a finer part of at least this percent of the mass, and carry each other below it:
 /// Skempton and Brogan (1994), Geotechnique 44(3), 449-460.
 pub const FLOATING_PERCENT: f64 = 35.0;
 

@@ -1,5 +1,5 @@
-//! What the paper states in numbers about its filters, to be set beside ours. Nothing is fitted to these at
-//! run time.
+//! Numbers that the paper states about its filters, to be set beside ours. Nothing is fitted to them at run
+//! time.
 
 /// A row of Table 2.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,5 +1,5 @@
-//! A study of the percolation threshold against the size of the lattice (paper, Fig. 6): what
-//! `percolation.json` holds, and how thresholds are put together.
+//! A study of the percolation threshold against the size of the lattice (paper, Fig. 6): the contents of
+//! `percolation.json`, and the merging of thresholds.
 //!
 //! # Finite size
 //! Two finite-size relations are fitted to the mean threshold p(L) of an L x L x L lattice, by weighted least
@@ -9,12 +9,12 @@
 //! - *Many starts*: the start layer holds of order `(L / xi_across)^2` independent starts, and each survives
 //!   L layers with a probability that falls as `exp(-L / xi_along)`; so `L / xi_along` grows with the
 //!   logarithm of their number. With `d = p - p(L)`, `xi_along = d^(-nu)` and `xi_across = d^(-nu / z)`: `L
-//!   d^nu = b + c ln(L d^(nu / z))`. The p of the least sum of squares is the threshold; its interval is
-//!   where the sum is no more than 1 above that.
+//!   d^nu = b + c ln(L d^(nu / z))`. The p with the least sum of squares is the threshold; its interval is
+//!   the range in which the sum is at most 1 above the least.
 //!
-//! Exponents are those of directed percolation in 2 + 1 dimensions, which this lattice is (two across the
-//! flow, one along it): `nu` = 1.295(6) (Hinrichsen, Adv. Phys. 49, 815, 2000) and `z` = 1.766. (1.105
-//! belongs to 3 + 1 dimensions.)
+//! The exponents belong to directed percolation in 2 + 1 dimensions, as on this lattice (two across the flow,
+//! one along it): `nu` = 1.295(6) (Hinrichsen, Adv. Phys. 49, 815, 2000) and `z` = 1.766. (1.105 belongs to 3
+//! + 1 dimensions.)
 
 use serde::{Deserialize, Serialize};
 
@@ -119,7 +119,7 @@ pub struct ManyStarts {
 }
 
 impl PercolationStudy {
-    /// Puts the thresholds of each lattice together: `(voids along x and y, and layers; one threshold per
+    /// Combines the thresholds of each lattice: `(voids along x and y, and layers; one threshold per
     /// realisation)`, cubes by ascending size.
     pub fn new(seed: u64, thresholds: &[([u32; 3], Vec<f64>)], seconds: f64) -> Self {
         let (cubes, boxes): (Vec<_>, Vec<_>) = thresholds.iter().partition(|(shape, _)| is_cube(*shape));
@@ -157,13 +157,13 @@ impl PercolationStudy {
     }
 }
 
-/// What a lattice is called by its lengths: 40, or 40x40x60.
+/// Name of a lattice by its lengths: 40, or 40x40x60.
 pub fn lattice_name(shape: [u32; 3]) -> String {
     let lengths = if is_cube(shape) { &shape[..1] } else { &shape };
     lengths.iter().map(u32::to_string).collect::<Vec<_>>().join("x")
 }
 
-/// Whether a lattice has one length along x, y and z.
+/// True if a lattice has one length along x, y and z.
 pub fn is_cube(shape: [u32; 3]) -> bool {
     shape == [shape[0]; 3]
 }
@@ -175,7 +175,7 @@ fn of_lattice(all: &[f64]) -> (Statistic, Option<f64>) {
     (threshold, sd_error)
 }
 
-/// What a fit reads of a size.
+/// A size as a fit reads it.
 struct Point {
     size: f64,
     mean: f64,
@@ -185,7 +185,7 @@ struct Point {
 }
 
 impl Point {
-    /// `None` without scatter, which leaves no weight.
+    /// `None` without scatter, as the weight would be undefined.
     fn of(size: &SizeThreshold, realisations: u64) -> Option<Self> {
         let sd = size.threshold.sd.filter(|sd| *sd > 0.0)?;
         let error = sd / (realisations as f64).sqrt();
@@ -215,8 +215,7 @@ fn starts_at(points: &[Point], threshold: f64) -> Straight {
     Straight::through(&points.iter().map(row).collect::<Vec<_>>())
 }
 
-/// Tries every threshold above the means in steps of 1e-5; `None` where the best is the last or the first
-/// tried.
+/// Tries every threshold above the means in steps of 1e-5; `None` if the best is the last or the first tried.
 fn many_starts(points: &[Point]) -> Option<ManyStarts> {
     const STEPS: u32 = 12_000;
     let highest = points.iter().map(|p| p.mean).fold(0.0, f64::max);
@@ -268,8 +267,8 @@ mod tests {
 
     #[test]
     fn many_starts_are_found_again() {
-        // d by bisection from L d^nu = 0.2 + 0.13 ln(L d^(nu / z)); below the lower bound the logarithm
-        // rules.
+        // d by bisection from L d^nu = 0.2 + 0.13 ln(L d^(nu / z)); the logarithm dominates below the lower
+        // bound.
         let d = |size: f64| {
             let off = |d: f64| {
                 let starts = libm::log(size * libm::pow(d, NU_PARALLEL / Z));
@@ -289,7 +288,7 @@ mod tests {
         assert!(fit.threshold_low < 0.382 && fit.threshold_high > 0.382 && fit.degrees == 2);
     }
 
-    /// A box has thresholds of its own, and moves no relation.
+    /// A box has thresholds of its own, and changes no relation.
     #[test]
     fn a_box_is_told_beside_the_sizes() {
         let cubes = around(|size| 0.38 - 0.3 * libm::pow(size, -1.0 / NU_PARALLEL));
@@ -301,7 +300,7 @@ mod tests {
         assert_eq!((beside.boxes.len(), beside.boxes[0].shape), (1, [40, 40, 60]));
         assert!((beside.boxes[0].threshold.mean - 0.4).abs() < 1e-12);
         assert!((beside.boxes[0].sd_error.unwrap() - 0.05).abs() < 1e-12, "0.1 / sqrt(2 (3 - 1))");
-        // A file of before, and one of cubes alone, say nothing of boxes.
+        // An older file, and one of cubes alone, do not mention boxes.
         let text = serde_json::to_string(&alone).unwrap();
         assert!(!text.contains("boxes") && serde_json::from_str::<PercolationStudy>(&text).unwrap() == alone);
     }

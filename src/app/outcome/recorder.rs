@@ -1,20 +1,20 @@
-//! Records of a running walk what was asked for.
+//! Records the requested data of a running walk.
 
 use super::by_void;
 use super::record::RetainedRow;
 use voidwalk_core::walk::{SizeCounts, State, Tally};
 
-/// What to record of a run.
+/// Data to record of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wanted {
-    /// Record the sums of every such increment, and of the last one; 0 records the last only. A run of more
-    /// than 20,000 such increments is thinned: every second of those recorded goes, and so on.
+    /// Record the sums every this many increments, and after the last; 0 records the last only. A series of
+    /// more than 20,000 records is thinned: every second record is dropped, repeatedly if needed.
     pub series_every: u64,
-    /// Increments whose size curves are recorded, besides the last one's.
+    /// Increments after which size curves are recorded, besides the last.
     pub size_curves: Vec<u64>,
     /// Number of size classes of those curves.
     pub size_classes: usize,
-    /// Increments after which it is recorded what each void holds, besides the last; `None` leaves that out.
+    /// Increments after which the contents of each void are recorded, besides the last; `None` omits them.
     pub voids: Option<Vec<u64>>,
 }
 
@@ -28,15 +28,15 @@ pub struct Recorder {
     pub series: Vec<(u64, Tally)>,
     /// Increment, retained and eroded sizes.
     pub sizes: Vec<(u64, SizeCounts, SizeCounts)>,
-    /// What each void held.
+    /// Contents of each void.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub voids: Vec<RetainedRow>,
-    /// How often the series was thinned by half.
+    /// Number of times that the series was thinned by half.
     thinned: u32,
 }
 
 impl Recorder {
-    /// Takes what is wanted of a state after a whole increment.
+    /// Records the requested data of a state after a whole increment.
     pub fn observe(&mut self, wanted: &Wanted, state: &State) {
         let t = state.increment;
         if self.series.len() >= LONGEST_SERIES {

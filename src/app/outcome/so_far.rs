@@ -1,4 +1,4 @@
-//! What the replicates of a run that is under way come to so far.
+//! Interim result of a run that is under way, from its complete replicates.
 
 use std::collections::BTreeMap;
 
@@ -8,17 +8,17 @@ use super::verdict::{below_by_interval, classify};
 /// Runs of replicates as they come, in any order.
 #[derive(Clone, Debug, Default)]
 pub struct SoFar {
-    /// Mass eroded, and whether it is below the threshold, by run and replicate.
+    /// Mass eroded, and true if it is below the threshold, by run and replicate.
     walked: BTreeMap<u64, BTreeMap<u64, (f64, bool)>>,
 }
 
-/// A look at the replicates that are whole. It is no verdict: others are to come, and whoever looks at an
-/// interval again and again sees it on the wrong side more often than its level says.
+/// A look at the complete replicates. It is not a verdict: more replicates follow, and an interval that is
+/// looked at repeatedly lies on the wrong side more often than its level states.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FirstLook {
-    /// How many are whole.
+    /// Number of complete replicates.
     pub replicates: usize,
-    /// The class that their intervals support, undecided where they support none.
+    /// The class that their intervals support; undecided if they support none.
     pub class: Verdict,
     /// Eroded mass fraction, one per run.
     pub eroded: Vec<Statistic>,
@@ -30,7 +30,7 @@ impl SoFar {
         self.walked.entry(run).or_default().insert(replicate, (eroded_mass_fraction, below_threshold));
     }
 
-    /// The replicates that have `runs` runs; `None` while no replicate is whole.
+    /// The replicates that have `runs` runs; `None` until one replicate is complete.
     pub fn look(&self, runs: u64) -> Option<FirstLook> {
         let whole = |replicate: &&u64| {
             (1..=runs).all(|run| self.walked.get(&run).is_some_and(|of| of.contains_key(replicate)))

@@ -11,7 +11,7 @@ impl Statistic {
     /// [`Statistic::of_fraction`].
     ///
     /// # Panics
-    /// Without any value.
+    /// Panics if there is no value.
     ///
     /// ```
     /// use voidwalk_app::outcome::record::Statistic;
@@ -28,7 +28,7 @@ impl Statistic {
     /// Mean, sample standard deviation and the interval of the mean at confidence level `1 - error`.
     ///
     /// # Panics
-    /// Without any value, or where `error` does not lie between 0 and 1.
+    /// Panics if there is no value, or if `error` does not lie between 0 and 1.
     pub fn with_error(values: &[f64], error: f64) -> Self {
         assert!(!values.is_empty(), "a mean of nothing");
         let n = values.len() as f64;
@@ -45,24 +45,24 @@ impl Statistic {
     /// [`Statistic::of`] for a quantity that lies between 0 and 1: the 95 % interval is cut to that range.
     ///
     /// # Panics
-    /// Without any value.
+    /// Panics if there is no value.
     pub fn of_fraction(values: &[f64]) -> Self {
         let whole = Self::of(values);
         Self { low: whole.low.map(|l| l.max(0.0)), high: whole.high.map(|h| h.min(1.0)), ..whole }
     }
 }
 
-/// The 95 % interval of a fraction, kept within 0 and 1, where there is one.
+/// The 95 % interval of a fraction, limited to 0 and 1, if there is one.
 pub fn interval(statistic: &Statistic) -> Option<(f64, f64)> {
     Some((statistic.low?.clamp(0.0, 1.0), statistic.high?.clamp(0.0, 1.0)))
 }
 
-/// The same in percent.
+/// The 95 % interval of a fraction, in percent.
 pub fn interval_in_percent(statistic: &Statistic) -> Option<(f64, f64)> {
     interval(statistic).map(|(low, high)| (100.0 * low, 100.0 * high))
 }
 
-/// The same as a text.
+/// The 95 % interval of a fraction, in percent, as text.
 pub fn percent_interval(statistic: &Statistic) -> Option<Span> {
     interval(statistic).map(|(low, high)| percent(low).to(percent(high)))
 }

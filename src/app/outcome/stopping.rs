@@ -1,19 +1,21 @@
-//! How many replicates are enough: until the error is small, or the verdict decided at a confidence level.
+//! Number of replicates that is enough: until the error is small, or the verdict is decided at a confidence
+//! level.
 //!
 //! # Looks
 //! The rule looks at the replicates when there are `n_1` of them (the scene's number, at least 8), then `n_2
 //! = 1.5 n_1`, and so on, rounded up, until it is met or there are `most_replicates`.
 //!
 //! # Confidence level of the verdict
-//! A fixed interval that is looked at again and again errs more often than it says. So look `k` takes
-//! intervals whose error probability is `1 / (k (k + 1))` of the whole, which sums to 1 over all looks; and
-//! the two runs share it. If each interval has the coverage that it claims, the verdict is wrong with no more
-//! than the error probability asked for, however often one looks (Bonferroni), at the price of intervals that
-//! are somewhat wide. The intervals are Student's, for means of independent replicates.
+//! A fixed interval that is looked at repeatedly errs more often than its level states. So look `k` takes
+//! intervals whose error probability is `1 / (k (k + 1))` of the whole, which sums to 1 over all looks; the
+//! two runs share it. If each interval has its nominal coverage, the verdict is wrong with at most the
+//! requested error probability, for any number of looks (Bonferroni), at the price of somewhat wide
+//! intervals. The intervals are Student's, for means of independent replicates.
 //!
-//! Where the constriction curve is known within a range only, the curve itself and the ends of its range
-//! share the error, `1 / curves` each. An end is looked at twice, after one replicate and after as many as
-//! the curve has, with half of its share each. At a level below the usual one it is classed at that one.
+//! If the constriction curve is known only within a range, the curve itself and the ends of its range share
+//! the error, `1 / curves` each. An end is looked at twice, after one replicate and after as many as the
+//! curve has, with half of its share each. At a level below the usual one, an end is classed at the usual
+//! level.
 //!
 //! # Target error
 //! Met when the 95 % interval of the mean reaches no further than the target to either side, in every run
@@ -24,10 +26,10 @@ use super::student;
 use super::verdict::{BelowThreshold, THRESHOLD, below_by_interval, classify};
 use voidwalk_core::schema::{only, section, whole, within};
 
-/// Error probability of the intervals that decide where no level is asked for.
+/// Error probability of the deciding intervals if no level is requested.
 const USUAL_ERROR: f64 = 0.05;
 
-/// Least number of replicates: fewer say too little of their own scatter.
+/// Least number of replicates: fewer hardly reveal their own scatter.
 const FEWEST: u64 = 8;
 
 section! {
@@ -56,7 +58,7 @@ section! {
     }
 }
 
-/// What a look at the replicates says.
+/// Result of a look at the replicates.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Look {
     /// Add replicates until there are this many.
@@ -65,16 +67,16 @@ pub enum Look {
     Stop(Stopping),
 }
 
-/// The eroded mass fraction of each replicate, and whether it is below the threshold exactly.
+/// The eroded mass fraction of each replicate, with `true` if it is below the threshold by exact comparison.
 pub type ReplicateValues = Vec<(f64, bool)>;
 
 impl StopRule {
-    /// Whether there is nothing to look at: the replicates are as many as the scene says.
+    /// True if there is nothing to look at: the number of replicates is fixed by the scene.
     pub fn is_unset(&self) -> bool {
         self.target_error_pp.is_none() && self.decide_percent.is_none()
     }
 
-    /// Whether there is something to look at.
+    /// True if there is something to look at.
     pub fn is_set(&self) -> bool {
         !self.is_unset()
     }
@@ -90,8 +92,8 @@ impl StopRule {
         self.look_at_one_of(1, first, runs)
     }
 
-    /// As [`look`](Self::look), at the replicates of one of so many constriction curves, which share the
-    /// error.
+    /// Looks like [`look`](Self::look) at the replicates of one of several constriction curves, which share
+    /// the error.
     pub fn look_at_one_of(&self, curves: usize, first: u64, runs: &[ReplicateValues]) -> Look {
         let replicates = runs.first().map_or(0, |values| values.len() as u64);
         let look = (1..)
@@ -124,7 +126,7 @@ impl StopRule {
         })
     }
 
-    /// The widest half of the 95 % intervals, and whether it is narrow enough.
+    /// The widest half of the 95 % intervals, with `true` if it is narrow enough.
     fn closeness(&self, runs: &[ReplicateValues]) -> (Option<f64>, bool) {
         let half = |values: &ReplicateValues| {
             let statistic = statistic(values, USUAL_ERROR);
@@ -136,12 +138,12 @@ impl StopRule {
         (widest, close)
     }
 
-    /// Error probability of the class of each of so many constriction curves, where a verdict is wanted.
+    /// Error probability of the class of each constriction curve out of `curves`, if a verdict is requested.
     pub fn error_of_curve(&self, curves: usize) -> Option<f64> {
         self.decide_percent.map(|percent| (1.0 - 0.01 * percent) / curves.max(1) as f64)
     }
 
-    /// Why the verdict is open.
+    /// The reason why the verdict is open.
     fn undecided(&self, error: f64, below: &[BelowThreshold], runs: &[ReplicateValues]) -> ShortOf {
         if below == [Some(false)] {
             return ShortOf::SecondRun;
@@ -160,7 +162,7 @@ impl StopRule {
         }
     }
 
-    /// Whether no replicate can decide what is open: a first run that is clear, and no second.
+    /// True if no replicate can decide the open class: a clear first run without a second.
     fn is_hopeless(&self, runs: &[ReplicateValues]) -> bool {
         let clear = |values: &ReplicateValues| {
             values.len() > 1 && statistic(values, 1e-6).low.is_some_and(|low| low >= THRESHOLD)
@@ -180,8 +182,8 @@ impl StopRule {
 }
 
 impl Stopping {
-    /// The level at which the verdict was decided, where that is lower than that of all intervals, and the
-    /// verdict is open at that one: `usual` is the verdict of the 95 % intervals.
+    /// The confidence level of a decided verdict, if it is lower than the usual level and the verdict is open
+    /// at the usual level: `usual` is the verdict of the 95 % intervals.
     pub fn less_than_usual(&self, usual: Verdict) -> Option<f64> {
         let percent = self.decide_percent.filter(|percent| *percent < 95.0)?;
         let is_decided = self.verdict.is_some_and(|verdict| verdict != Verdict::Undecided);
@@ -189,7 +191,7 @@ impl Stopping {
     }
 }
 
-/// The class of runs that are looked at once, with this error probability or the usual one of each run where
+/// The class of runs that are looked at once, with this error probability or the usual one of each run if
 /// that is less, and the worst class that their intervals allow.
 pub fn class_at(error: f64, runs: &[ReplicateValues]) -> [Verdict; 2] {
     let each = (error / runs.len().max(1) as f64).min(USUAL_ERROR);
@@ -202,7 +204,7 @@ pub fn class_at(error: f64, runs: &[ReplicateValues]) -> [Verdict; 2] {
     [classify(first, second), worst]
 }
 
-/// Where the mean of a run lies, by an interval with this error probability.
+/// The side of the threshold on which the mean of a run lies, by an interval with this error probability.
 fn lies(run: &ReplicateValues, error: f64) -> BelowThreshold {
     let each: Vec<bool> = run.iter().map(|&(_, below)| below).collect();
     below_by_interval(&statistic(run, error), &each)
@@ -213,8 +215,8 @@ fn statistic(values: &ReplicateValues, error: f64) -> Statistic {
     Statistic::with_error(&values, error)
 }
 
-/// Replicates, more than there are, whose interval is as narrow as the mean's distance, where their SD is so
-/// many times that.
+/// Number of replicates, more than were walked, whose interval is as narrow as the mean's distance from the
+/// threshold; `sd` is in units of this distance.
 fn needed(walked: f64, sd: f64, error: f64) -> f64 {
     let mut n = walked + 1.0;
     loop {
@@ -222,7 +224,7 @@ fn needed(walked: f64, sd: f64, error: f64) -> f64 {
         if wanted <= n || n > 1e9 {
             return n.max(wanted);
         }
-        // Student's factor falls with more of them, so that fewer than these may do.
+        // Student's factor falls with more replicates, so that fewer than these may be enough.
         n = (1.1 * n).ceil().min(wanted.ceil()).max(n + 1.0);
     }
 }

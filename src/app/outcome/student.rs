@@ -2,14 +2,14 @@
 
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
-/// The `t` that lies beyond no more than `error` of Student's distribution, both tails together: the factor
-/// of a two-sided interval at level `1 - error`.
+/// The `t` beyond which at most `error` of Student's distribution lies, both tails together: the factor of a
+/// two-sided interval at level `1 - error`.
 ///
-/// The finite sums of Abramowitz and Stegun 26.7.3 and 26.7.4, solved for the angle `atan(t /
+/// Uses the finite sums of Abramowitz and Stegun 26.7.3 and 26.7.4, solved for the angle `atan(t /
 /// sqrt(degrees))`. Good to about 1e-13 / `error`, relative.
 ///
 /// # Panics
-/// Without a degree of freedom, or where `error` does not lie between 0 and 1.
+/// Panics without a degree of freedom, or if `error` does not lie between 0 and 1.
 pub fn two_sided(degrees: u64, error: f64) -> f64 {
     assert!(degrees > 0 && error > 0.0 && error < 1.0, "{degrees} degrees of freedom, error {error}");
     // The false position (Illinois): the excess falls from 1 - error to -error as the angle rises.

@@ -1,9 +1,9 @@
-//! A table, described once, for its file and for a page: a column has a name in the file, a heading on the
-//! page if it stands there, and one way in which its cell is taken from a row. A table that is no file is
-//! described alike.
+//! A table, described once for its file and for a page: a column has a name in the file, a heading if the
+//! page shows it, and one function that takes its cell from a row. A table without a file is described in the
+//! same way.
 //!
-//! Rows whose fields are the columns of a file are written by [`csv_of()`]. Of others each column is
-//! described: [`Columns`].
+//! [`csv_of()`] writes rows whose fields are the columns of a file. For other rows each column is described:
+//! [`Columns`].
 //!
 //! ```
 //! use voidwalk_app::outcome::table::Columns;
@@ -26,13 +26,13 @@ use voidwalk_core::text::visible;
 pub use cell::{CellValue, Emphasis, Shown, TableCell};
 use cell::{fixed, in_percent};
 
-/// Why writing to memory does not fail.
+/// The reason why writing to memory cannot fail.
 const WRITTEN: &str = "memory takes rows of numbers and names";
 
-/// Rows as CSV, a column a field of their type; the header is there even without rows.
+/// Rows as CSV, one column per field of their type; the header is present even without rows.
 pub fn csv_of<T: Serialize + DeserializeOwned>(rows: &[T]) -> Vec<u8> {
     let mut names: &[&str] = &[];
-    // It is stopped at the names, which are all that is wanted.
+    // It stops at the names, which are all that is needed.
     let _ = T::deserialize(Names(&mut names));
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     writer.write_record(names).expect(WRITTEN);
@@ -75,20 +75,20 @@ impl<'de> Deserializer<'de> for Names<'_> {
 /// The columns of a table.
 pub struct Columns<'a, T>(Vec<Column<'a, T>>);
 
-/// What a column says of a row.
+/// Function that takes the cell of a column from a row.
 type OfRow<'a, T, C> = Box<dyn Fn(&T) -> C + 'a>;
 
-/// A column: of a file, and of a page where that shows it.
+/// A column of a file, and of a page that shows it.
 struct Column<'a, T> {
-    /// In a file; a value with its interval is three columns there, and one cell of a page.
+    /// Names in a file; a value with its interval has three columns there, and one cell on a page.
     names: Vec<String>,
     cells: OfRow<'a, T, Vec<CellValue>>,
-    /// In a workbook, where neither the page nor the name says what stands there.
+    /// Heading in a workbook, if neither the page nor the name describes the column.
     heading: Option<&'static str>,
     page: Option<PageColumn<'a, T>>,
-    /// Where on the page: before the columns of a greater number, after those of a smaller one.
+    /// Place on the page: before the columns with a greater number, after those with a smaller one.
     place: i8,
-    /// Not shown by a brief page.
+    /// Hidden on a brief page.
     is_detail: bool,
 }
 
@@ -96,22 +96,22 @@ struct Column<'a, T> {
 pub struct PageColumn<'a, T> {
     /// Its first name in a file.
     pub name: String,
-    /// What it is, and its unit.
+    /// Quantity of the column, with its unit.
     pub heading: Shown,
-    /// What stands in its cells.
+    /// Kind of its cells.
     pub kind: ColumnKind,
     /// Its cell of a row.
     pub cell: Box<dyn Fn(&T) -> Shown + 'a>,
 }
 
-/// What stands in the cells of a column.
+/// Kind of the cells of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColumnKind {
     /// The names of the rows.
     Name,
     /// Texts.
     Text,
-    /// Numbers, which stand at the right.
+    /// Numbers, aligned to the right.
     Number,
 }
 
@@ -122,23 +122,22 @@ impl<T> Default for Columns<'_, T> {
 }
 
 impl<'a, T> Columns<'a, T> {
-    /// With a column of a file, which a page shows where [`Self::page_number()`] or [`Self::page_text()`]
-    /// follows.
+    /// Adds a column of a file; a page shows it if [`Self::page_number()`] or [`Self::page_text()`] follows.
     pub fn column<C: TableCell>(self, name: impl Into<String>, cell: impl Fn(&T) -> C + 'a) -> Self {
         self.with(vec![name.into()], move |row| vec![cell(row).value()])
     }
 
-    /// With such a column, of numbers with so many decimals.
+    /// Adds such a column of numbers, with this number of decimals.
     pub fn digits(self, name: &str, decimals: usize, value: impl Fn(&T) -> Option<f64> + 'a) -> Self {
         self.column(name, move |row| fixed(value(row), decimals))
     }
 
-    /// With such a column, of fractions in percent.
+    /// Adds such a column of fractions in percent.
     pub fn percent(self, name: &str, value: impl Fn(&T) -> Option<f64> + 'a) -> Self {
         self.column(name, move |row| in_percent(value(row)))
     }
 
-    /// With such columns, of a fraction in percent and the ends of its interval; on a page they are one.
+    /// Adds such columns for a fraction in percent and the ends of its interval; on a page they are one.
     pub fn statistic(self, names: [&str; 3], of: impl Fn(&T) -> Option<Statistic> + 'a) -> Self {
         self.with(names.map(String::from).to_vec(), move |row| {
             let ends = of(row).map_or([None; 3], |of| [Some(of.mean), of.low, of.high]);
@@ -152,7 +151,7 @@ impl<'a, T> Columns<'a, T> {
         self
     }
 
-    /// With a column of the names of the rows, which a page shows under this heading.
+    /// Adds a column of the names of the rows, which a page shows under this heading.
     pub fn name<C: TableCell>(
         self,
         name: impl Into<String>,
@@ -162,7 +161,7 @@ impl<'a, T> Columns<'a, T> {
         self.column(name, cell.clone()).shown(ColumnKind::Name, heading, cell)
     }
 
-    /// With a column of texts, which a page shows under this heading.
+    /// Adds a column of texts, which a page shows under this heading.
     pub fn text<C: TableCell>(
         self,
         name: impl Into<String>,
@@ -172,7 +171,7 @@ impl<'a, T> Columns<'a, T> {
         self.column(name, cell.clone()).page_text(heading, cell)
     }
 
-    /// With a column of numbers, which a page shows under this heading.
+    /// Adds a column of numbers, which a page shows under this heading.
     pub fn number<C: TableCell>(
         self,
         name: impl Into<String>,
@@ -182,12 +181,12 @@ impl<'a, T> Columns<'a, T> {
         self.column(name, cell.clone()).page_number(heading, cell)
     }
 
-    /// A page shows this number in the place of the last column.
+    /// Shows this number on a page in the place of the last column.
     pub fn page_number<C: TableCell>(self, heading: impl TableCell, cell: impl Fn(&T) -> C + 'a) -> Self {
         self.shown(ColumnKind::Number, heading, cell)
     }
 
-    /// A page shows this text in the place of the last column.
+    /// Shows this text on a page in the place of the last column.
     pub fn page_text<C: TableCell>(self, heading: impl TableCell, cell: impl Fn(&T) -> C + 'a) -> Self {
         self.shown(ColumnKind::Text, heading, cell)
     }
@@ -204,40 +203,40 @@ impl<'a, T> Columns<'a, T> {
         self
     }
 
-    /// A workbook has the last column under this heading.
+    /// Puts this heading on the last column in a workbook.
     pub fn headed(mut self, heading: &'static str) -> Self {
         self.last().heading = Some(heading);
         self
     }
 
-    /// A page shows the last column before (below 0) or after (above 0) the others.
+    /// Shows the last column on a page before (below 0) or after (above 0) the others.
     pub fn place(mut self, place: i8) -> Self {
         self.last().place = place;
         self
     }
 
-    /// With the columns of the same rows that were described elsewhere.
+    /// Adds the columns of the same rows that were described elsewhere.
     pub fn and(mut self, more: Self) -> Self {
         self.0.extend(more.0);
         self
     }
 
-    /// The last column is a detail.
+    /// Marks the last column as a detail.
     pub fn detail(mut self) -> Self {
         self.last().is_detail = true;
         self
     }
 
-    /// A page shows no details.
+    /// Hides details on a page.
     pub fn in_brief(mut self) -> Self {
         self.0.iter_mut().filter(|column| column.is_detail).for_each(|column| column.page = None);
         self
     }
 
-    /// The columns of these names alone, in this order.
+    /// Keeps only the columns with these names, in this order.
     ///
     /// # Panics
-    /// There is no column of that name.
+    /// Panics if there is no column of that name.
     pub fn only(mut self, names: &[&str]) -> Self {
         let column = |name: &&str| {
             let place = self.0.iter().position(|column| column.names[0] == **name);
@@ -246,7 +245,7 @@ impl<'a, T> Columns<'a, T> {
         Self(names.iter().map(column).collect())
     }
 
-    /// The same columns of rows of which these are a part.
+    /// Turns the columns of a part of a row into columns of the whole row.
     pub fn of_part<W: 'a>(self, part: impl Fn(&W) -> &T + Copy + 'a) -> Columns<'a, W>
     where
         T: 'a,
@@ -287,7 +286,7 @@ impl<'a, T> Columns<'a, T> {
         written(writer)
     }
 
-    /// What a file holds of a row.
+    /// Values that a file holds of a row.
     pub fn values(&self, row: &T) -> impl Iterator<Item = CellValue> {
         self.0.iter().flat_map(|column| (column.cells)(row))
     }

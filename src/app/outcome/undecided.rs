@@ -1,4 +1,4 @@
-//! What leaves a verdict undecided.
+//! Causes that leave a verdict undecided.
 
 use serde::{Deserialize, Serialize};
 
@@ -20,12 +20,12 @@ pub enum UndecidedBy {
 }
 
 impl UndecidedBy {
-    /// All of them.
+    /// All causes.
     pub const ALL: [Self; 3] = [Self::Curve, Self::SecondRun, Self::Replicates];
 }
 
 impl Outcome {
-    /// What leaves the verdict undecided; `None` where it is decided.
+    /// The cause that leaves the verdict undecided; `None` if it is decided.
     pub fn undecided_by(&self) -> Option<UndecidedBy> {
         if self.model.class != Verdict::Undecided {
             return None;

@@ -6,16 +6,16 @@
 //! | >= 7.5 % | < 7.5 % | some erosion |
 //! | >= 7.5 % | >= 7.5 % | continuing erosion |
 //!
-//! With replicates a run is above or below where its whole 95 % interval of the mean is; an interval
-//! that straddles the threshold, or a second run that was not asked for where it would decide, makes the
-//! verdict *undecided*.
+//! With replicates a run lies above or below the threshold if its whole 95 % interval of the mean does; an
+//! interval that straddles the threshold, or a missing second run that would decide, makes the verdict
+//! *undecided*.
 
 use super::record::{Statistic, Verdict};
 
 /// Eroded mass fraction that divides the classes (paper, section 6).
 pub const THRESHOLD: f64 = 0.075;
 
-/// Where a run lies against the threshold; `None` where that is open.
+/// True for a run below the threshold, false for one above; `None` if open.
 pub type BelowThreshold = Option<bool>;
 
 /// The class of two runs, the second of which may be missing.
@@ -37,19 +37,19 @@ pub fn classify(first: BelowThreshold, second: BelowThreshold) -> Verdict {
     }
 }
 
-/// Whether less than 7.5 % eroded, by exact comparison: `eroded * 40 < inserted * 3`.
+/// Tells if less than 7.5 % eroded, by exact comparison: `eroded * 40 < inserted * 3`.
 pub fn below_by_mass(eroded: f64, inserted: f64) -> bool {
     eroded * 40.0 < inserted * 3.0
 }
 
-/// Whether less than 7.5 % eroded, for particles of one size: exact, on integers.
+/// Tells if less than 7.5 % eroded, for particles of one size: exact, on integers.
 pub fn below_by_count(eroded: u64, inserted: u64) -> bool {
     u128::from(eroded) * 40 < u128::from(inserted) * 3
 }
 
-/// Where the mean over replicates lies: where its whole interval is. `each` says where every replicate lies,
-/// exactly; it decides where there is only one, or where they do not differ, so that the rounding of a mean
-/// decides nothing.
+/// The side of the mean over replicates: the side of its whole interval. `each` holds the exact side of every
+/// replicate; it decides for a single replicate, or if the replicates agree in value, so that the rounding of
+/// a mean decides nothing.
 pub fn below_by_interval(statistic: &Statistic, each: &[bool]) -> BelowThreshold {
     let no_scatter = statistic.sd.is_none_or(|sd| sd < 1e-12);
     if no_scatter && each.iter().all(|&below| below == each[0]) {

@@ -38,8 +38,8 @@ pub fn about_page(path: &Path, scene: &str, outcome: &Outcome) -> Result<AboutPa
     Ok(AboutPage { cover, coarse_left: sizes.coarse_left, unit })
 }
 
-/// The settings of one kind in the table `about`; nothing else of the scene is looked at. Each kind is read
-/// apart, as an error within a flattened struct would have no line.
+/// The settings of one kind in the table `about`; nothing else of the scene is read. Each kind is read
+/// separately, as an error within a flattened struct would have no line.
 fn about<T: Default + DeserializeOwned>(path: &Path, scene: &str) -> Result<T, ReportError> {
     #[derive(Deserialize)]
     struct Scene<T> {

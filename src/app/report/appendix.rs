@@ -17,7 +17,7 @@ const ROWS: usize = 200;
 
 /// A gradation: what it is, its name, and its rows of size and percent finer.
 pub(super) struct TabledSoil<'a> {
-    /// What it is, as `Filter`.
+    /// Kind of the soil, as `Filter`.
     pub kind: &'a str,
     /// Its name, which may say no more.
     pub name: &'a str,
@@ -25,7 +25,7 @@ pub(super) struct TabledSoil<'a> {
     pub rows: &'a [[f64; 2]],
 }
 
-/// Filter and base as the walk read them: what a reader types in to check it.
+/// Filter and base as the walk read them: the values that a reader types in to check it.
 pub(super) fn of_run(outcome: &Outcome, unit: SizeUnit) -> Markup {
     let inputs = &outcome.inputs;
     let (filter, base) = (&inputs.filter, &inputs.base);
@@ -49,7 +49,7 @@ pub(super) fn of_run(outcome: &Outcome, unit: SizeUnit) -> Markup {
     html! { section.appendix { h2 { "Appendix: the two gradations" } (note) (gradations) } }
 }
 
-/// How a gradation is read between its rows.
+/// Interpolation between the rows of a gradation.
 pub(super) const BETWEEN: &str = "between two rows straight lines on semi-logarithmic paper.";
 
 /// Gradations side by side; the record has all of their rows.

@@ -61,7 +61,7 @@ fn name(name: &str) -> String {
     clean(&shorten(name, 60))
 }
 
-/// What a filter is called here: the soil, and its number where that is the name of another, too.
+/// Name of a filter here: its soil, with a number if another filter has the same soil name.
 fn filter_name(batch: &WalkedBatch, filter: &str) -> String {
     let alike = batch.filters.iter().filter(|of| soil_name(&of.name) == soil_name(filter));
     let alike: Vec<&str> = alike.map(|of| of.name.as_str()).collect();
@@ -72,7 +72,7 @@ fn filter_name(batch: &WalkedBatch, filter: &str) -> String {
     }
 }
 
-/// Which file each filter is that has a number; nothing where names tell them apart.
+/// The file of each filter that has a number; empty if the names tell them apart.
 fn key(batch: &WalkedBatch) -> Markup {
     let of = |filter: &BatchFilter| {
         let alike = batch.filters.iter().filter(|of| soil_name(&of.name) == soil_name(&filter.name));
@@ -126,7 +126,8 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
         .section("How this was made", &made)
 }
 
-/// What a client asks of a filter: how many samples it holds, by the rules and by the walk, and which govern.
+/// Answers to a client's question about a filter: the number of samples that it holds, by the rules and by
+/// the walk, and the samples that govern.
 fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup {
     let walks = walks(batch, &filter.name, SizeUnit::of(false, batch.inches));
     let rules: Vec<BatchRow> = batch.of_filter(&filter.name).map(|row| row.rules.clone()).collect();
@@ -164,7 +165,7 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
     }
 }
 
-/// D15F of a filter, with the digits that tell it apart from the limit nearest to it.
+/// D15F of a filter, with enough digits to tell it apart from the nearest limit.
 fn d15f(rules: &[BatchRow]) -> Option<String> {
     let beside = rules.iter().filter_map(|row| {
         let [d15f, _] = d15f_and_limit(row, SizeUnit::Mm);
@@ -222,7 +223,8 @@ fn notes(batch: &WalkedBatch) -> Markup {
     }
 }
 
-/// The curves of one base and of its filters, with the limits of D15F by practice; none of many samples.
+/// The curves of one base and of its filters, with the limits of D15F by practice; `None` for several
+/// samples.
 fn curves(batch: &WalkedBatch) -> Option<Drawn> {
     if !batch.has_one_base() {
         return None;
@@ -262,10 +264,10 @@ fn curves(batch: &WalkedBatch) -> Option<Drawn> {
     Some(Drawn::new("batch-curves", figure, caption))
 }
 
-/// The limit of every sample against its D85B, with the D15F of the filters; none without a limit, or of one
-/// base.
+/// The limit of every sample against its D85B, with the D15F of the filters; `None` without a limit, or for
+/// one base.
 fn limits(batch: &WalkedBatch) -> Option<Drawn> {
-    // A limit is the sample's: filters only differ where rules ask for more of one.
+    // A limit belongs to the sample: filters only differ if rules require more of one.
     let known = |row: &&WalkedRow| row.rules.d85b_mm.is_some() && row.rules.limit_mm.is_some();
     let rows: Vec<&WalkedRow> = batch.rows.iter().filter(known).collect();
     let d85b = |row: &WalkedRow| row.rules.d85b_mm.unwrap_or(f64::NAN);

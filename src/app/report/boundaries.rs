@@ -9,14 +9,14 @@ use voidwalk_practice::rules::{DESIGN, TESTS_CONTINUING, TESTS_NO_EROSION};
 /// Half the height of a line, in percent finer.
 const HALF: f64 = 4.0;
 
-/// The rules whose limit is a D15F: what stands beside the line, its colour, and what the caption says of it.
+/// The rules whose limit is a D15F: the name beside the line, its colour, and its words in the caption.
 const LIMITS: [(&str, &str, Colour, &str); 3] = [
     (DESIGN, "design", GREY, "design"),
     (TESTS_NO_EROSION, "NE", GREEN, "no erosion (NE)"),
     (TESTS_CONTINUING, "CE", PURPLE, "continuing erosion (CE)"),
 ];
 
-/// A boundary: its place in [`LIMITS`], and the D15F at which it is.
+/// A boundary: its index in [`LIMITS`], and its D15F.
 type Boundary = (usize, f64);
 
 /// The boundaries that are known for these soils.
@@ -30,7 +30,7 @@ pub(super) fn boundaries(decision: &Decision) -> Vec<Boundary> {
     LIMITS.iter().enumerate().filter_map(boundary).collect()
 }
 
-/// Draws the row of 15 % and the boundaries at it, whose names stand alone there: the caption names the row.
+/// Draws the row of 15 % and the boundaries at it, which are named there; the caption names the row.
 pub(super) fn draw(figure: &mut Figure, boundaries: &[Boundary]) {
     figure.add(Rule::new(Across::Y, 15.0, BLACK).dash(Dash::Dotted));
     for (place, limit) in boundaries {
@@ -40,12 +40,12 @@ pub(super) fn draw(figure: &mut Figure, boundaries: &[Boundary]) {
     }
 }
 
-/// The names of the lines, for the caption; nothing where there are none.
+/// The names of the lines, for the caption; empty without lines.
 pub(super) fn caption(decision: &Decision, boundaries: &[Boundary]) -> String {
     if boundaries.is_empty() {
         return String::new();
     }
-    // Design and no erosion are one number of a dispersive base.
+    // Design and no erosion have the same limit for a dispersive base.
     let is_one = decision.without_margin().is_some();
     let name = |(place, ..): &Boundary| match LIMITS[*place] {
         (DESIGN, ..) if is_one => "design and no erosion",

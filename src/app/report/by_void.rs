@@ -11,25 +11,25 @@ use crate::outcome::record::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
 /// A moment: run, and increments that were done.
 type Moment = (u64, u64);
 
-/// What is drawn, and when: the tables of a folder.
+/// Contents and moments of the drawing: the tables of a folder.
 pub(super) struct Tables {
     voids: Vec<[f64; 3]>,
     constrictions: Vec<ConstrictionRow>,
-    /// When each constriction was blocked, by its number.
+    /// Moment at which each constriction was blocked, by its number.
     blocked: BTreeMap<u64, Moment>,
-    /// What voids hold, by moment.
+    /// Contents of voids, by moment.
     retained: BTreeMap<Moment, Vec<RetainedRow>>,
     /// Moments that are drawn.
     moments: BTreeSet<Moment>,
 }
 
-/// Writes grids of a run that kept its voids: for each moment `voids_N.vtu`, a point for each void with what
-/// it holds, and `constrictions_N.vtu`, a line for each constriction with its diameter, its conductance and
-/// whether and when it was blocked; and `voids.pvd` and `constrictions.pvd`, which ParaView opens as moments
-/// one after the other.
+/// Writes grids of a run that kept its voids: for each moment `voids_N.vtu`, a point for each void with its
+/// contents, and `constrictions_N.vtu`, a line for each constriction with its diameter, its conductance and
+/// the time of blocking, if any; and `voids.pvd` and `constrictions.pvd`, which ParaView opens as a sequence
+/// of moments.
 ///
 /// # Errors
-/// Whatever `write` says.
+/// Returns the errors of `write`.
 pub(super) fn grids(
     tables: &Tables,
     mut write: impl FnMut(&str, &[u8]) -> Result<(), ReportError>,
@@ -54,7 +54,7 @@ pub(super) fn grids(
 /// Draws a moment: the bytes of a grid.
 type Draw = fn(&Tables, Moment) -> Vec<u8>;
 
-/// What is drawn at each moment, by the name of its files.
+/// Functions that draw each moment, by the name of its files.
 const GRIDS: [(&str, Draw); 2] = [("voids", Tables::voids_at), ("constrictions", Tables::lines_at)];
 
 impl Tables {
@@ -66,7 +66,7 @@ impl Tables {
         let path = |name: &str| folder.join(name);
         let voids = rows::<VoidRow>(&path("voids.csv"))?;
         let count = voids.len() as u64;
-        // Each void stands in the row of its number.
+        // The row number of a void is its number.
         for (index, (line, row)) in (0u64..).zip(&voids) {
             check(&path("voids.csv"), *line, row.void == index, || {
                 format!("void is {}, allowed: {index}", row.void)
@@ -99,7 +99,7 @@ impl Tables {
         Ok(Self { voids, constrictions, blocked, retained, moments })
     }
 
-    /// The time of a moment: increments, those of the second run after those of the first.
+    /// The time of a moment: increments, with the second run after the first.
     fn time_of(&self, (run, increment): Moment) -> u64 {
         let last = |run: u64| self.moments.iter().filter(|m| m.0 == run).map(|m| m.1).max().unwrap_or(0);
         let before: u64 = self.moments.iter().map(|m| m.0).filter(|&r| r < run).max().map_or(0, last);
@@ -116,7 +116,7 @@ impl Tables {
             }
         }
         let [in_constrictions, in_voids] = held;
-        // The second run counts anew.
+        // The second run counts from zero again.
         let columns = [
             ("retained_in_constrictions_in_this_run".to_owned(), in_constrictions),
             ("retained_in_voids_in_this_run".to_owned(), in_voids),
@@ -145,7 +145,7 @@ impl Tables {
             column("diameter_mm", &|row| row.diameter_mm),
             column("conductance", &|row| row.conductance),
             column("blocked", &|row| f64::from(u8::from(blocked_at(row).is_some()))),
-            // Minus one where it is open.
+            // An open constriction has -1.
             column("blocked_at", &|row| blocked_at(row).map_or(-1.0, |&at| self.time_of(at) as f64)),
         ];
         Grid { points: &points, kind: CellKind::Line, corners: &corners, columns: &columns }.file()

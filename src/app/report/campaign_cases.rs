@@ -23,7 +23,8 @@ const LISTED: usize = 2000;
 /// Different warnings that are listed.
 const WARNINGS: usize = 40;
 
-/// The table of all cases, and below it what its counts count. Cases whose folder holds a page are linked.
+/// The table of all cases, and below it an explanation of its counts. Cases whose folder holds a page are
+/// linked.
 pub(super) fn all(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Markup {
     html! {
         (table(folder, about, ledger))
@@ -39,7 +40,7 @@ pub(super) fn all(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Mar
     }
 }
 
-/// What leaves verdicts undecided, each thing once with the number of cases.
+/// Causes that leave verdicts undecided, each once with the number of cases.
 pub(super) fn undecided(ledger: &[LedgerLine]) -> Markup {
     let open = || ledger.iter().filter(|line| line.verdict == Verdict::Undecided);
     let count = |by| open().filter(|line| line.undecided_by == Some(by)).count() as u64;
@@ -61,7 +62,7 @@ fn table(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Markup {
         .render()
 }
 
-/// The class, with a link to the case's own page, and below it the replicates where they differ.
+/// The class, with a link to the case's own page, and below it the replicates if they differ.
 fn class(line: &LedgerLine, folder: &Path) -> Markup {
     let mixed = line.replicate_verdicts.iter().filter(|count| **count > 0).count() > 1;
     html! {
@@ -79,13 +80,13 @@ fn replicates_by_class(line: &LedgerLine) -> String {
         .join(", ")
 }
 
-/// The names of the rules that a case does not keep.
+/// The names of the rules that a case breaks.
 fn rules_of(line: &LedgerLine) -> Vec<String> {
     let name = |id: &String| RULES.iter().find(|rule| rule.id == id).map(|rule| rule.name());
     line.rules_not_met.iter().map(|id| name(id).unwrap_or_else(|| id.clone())).collect()
 }
 
-/// What cases say, each thing once with the number of cases that say it, the commonest first.
+/// Texts of the cases, each once with the number of cases that have it, the commonest first.
 fn tally(ledger: &[LedgerLine], of: impl Fn(&LedgerLine) -> Vec<String>) -> Vec<(String, u64)> {
     let mut counts: BTreeMap<String, u64> = BTreeMap::new();
     for said in ledger.iter().flat_map(of) {

@@ -1,4 +1,5 @@
-//! What campaigns and batches show of a case among others: its class with a link, and both runs of all.
+//! Parts of the pages of campaigns and batches for one case among others: its class with a link, and both
+//! runs of all cases.
 
 use std::path::Path;
 
@@ -13,19 +14,19 @@ use voidwalk_core::text::is_plain_part;
 /// Symbols of the classes, in the order of [`Verdict::ALL`].
 const SHAPES: [Shape; 4] = [Shape::Circle, Shape::Diamond, Shape::Square, Shape::Triangle];
 
-/// A case in a figure: where it stands along x by a ratio, and along y by a value with its interval.
+/// A case in a figure: x is a ratio, y a value with its interval.
 pub(super) struct AtRatio {
     pub ratio: f64,
     pub class: Verdict,
     pub value: f64,
     pub interval: Option<(f64, f64)>,
-    /// Whether practice speaks against a case of "no erosion".
+    /// True if practice contradicts "no erosion" of the case.
     pub is_against: bool,
-    /// Whether the ratio is known to be at least that.
+    /// True if the ratio is only a lower bound.
     pub is_bound: bool,
 }
 
-/// One symbol a case, by class, over rules; the words are title and description.
+/// One symbol per case, by class, over rules; the words are title and description.
 pub(super) fn against_ratio(
     [title, what]: [&str; 2],
     (x, y): (Axis, Axis),
@@ -39,7 +40,7 @@ pub(super) fn against_ratio(
             let point = Point::new(case.ratio, case.value, colour, shape).y_interval(case.interval);
             if case.is_bound { point.hollow() } else { point }
         };
-        // "No erosion" in green would say that the filter is a good one.
+        // "No erosion" in green would mean that the filter is a good one.
         let is_doubted = |case: &AtRatio| class == Verdict::None && case.is_against;
         let of_class = || cases.iter().filter(|case| case.class == class);
         let plain = of_class().filter(|case| !is_doubted(case));
@@ -51,15 +52,15 @@ pub(super) fn against_ratio(
     figure
 }
 
-/// The class, with a link to the case's own page, where there is one: nowhere else than in a folder inside
-/// that of all cases.
+/// The class, with a link to the case's own page if it exists; only a page inside the folder of all cases is
+/// linked.
 pub(super) fn class(verdict: Verdict, folder: &Path, case: &str) -> Markup {
     let (words, page) = (verdict.words(), format!("{case}/report.html"));
     let is_there = page.split('/').all(is_plain_part) && folder.join(&page).is_file();
     html! { @if is_there { a href=(page) { b { (words) } } } @else { b { (words) } } }
 }
 
-/// First and second run of each case, one row a case.
+/// First and second run of each case, one row per case.
 pub(super) fn both_runs(cases: &[(&str, [Option<&Statistic>; 2])], threshold: f64, height: f64) -> Figure {
     let y = Axis::rows(cases.iter().map(|(name, _)| shorten(name, 34)));
     let x = Axis::percent("Base eroded, by mass (%)");

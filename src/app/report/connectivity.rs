@@ -10,7 +10,7 @@ use crate::outcome::record::ByConnectivity;
 use crate::outcome::table::Columns;
 use voidwalk_practice::quantity::{percent, significant, whole};
 
-/// Nothing where all voids have the same connectivity.
+/// Empty if all voids have the same connectivity.
 pub(super) fn by_connectivity(walks: &Walks) -> Markup {
     let runs: Vec<(u64, Vec<ByConnectivity>)> = walks
         .runs()

@@ -1,5 +1,4 @@
-//! The cover of every sheet that can be handed in: for whom and by whom it is, of which day, and by which
-//! program.
+//! The cover of every sheet that can be handed in: client, author, date and program.
 
 use maud::{Markup, html};
 
@@ -10,10 +9,10 @@ use voidwalk_practice::SheetCover;
 /// Characters of a text of the user's that are shown.
 pub(super) const LINE: usize = 120;
 
-/// Characters that stand at the foot of a printed page.
+/// Characters that fit at the foot of a printed page.
 const FOOT: usize = 60;
 
-/// Those who sign: on paper their names stand where they do.
+/// Those who sign: on paper their names are in the signature fields.
 const SIGNED: [&str; 2] = ["Author", "Checked by"];
 
 /// Version and commit of the program, in short.
@@ -24,8 +23,8 @@ pub(super) fn program(version: &str, commit: Option<&str>) -> String {
     }
 }
 
-/// What was stated, the date, the program and, where something was walked, its seed; on paper blank lines for
-/// what was not stated, and the places of three signatures.
+/// Stated facts, the date, the program and, if something was walked, its seed; on paper blank lines for
+/// missing facts, and the fields of three signatures.
 pub(super) fn cover(of: &SheetCover, program: &str, seed: Option<u64>) -> Markup {
     let facts = [
         ("Project", of.project.clone()),
@@ -39,7 +38,7 @@ pub(super) fn cover(of: &SheetCover, program: &str, seed: Option<u64>) -> Markup
         ("Program", Some(format!("voidwalk {program}"))),
         ("Seed", seed.map(|seed| seed.to_string())),
     ];
-    // A place that nobody filled is a blank line on paper; without a seed nothing was walked.
+    // A missing fact is a blank line on paper; without a seed nothing was walked.
     let shown = facts.iter().filter(|(name, value)| *name != "Seed" || value.is_some());
     html! {
         div.title {
@@ -56,13 +55,13 @@ pub(super) fn cover(of: &SheetCover, program: &str, seed: Option<u64>) -> Markup
     }
 }
 
-/// What is printed at the foot of every page beside its number: the number of the project, or its name.
+/// Text at the foot of every page beside its number: the number of the project, or its name.
 pub(super) fn foot(of: &SheetCover) -> Option<String> {
     let said = of.number.as_ref().or(of.project.as_ref())?;
     Some(clean(&shorten(said, FOOT)))
 }
 
-/// Where those sign who prepared, checked and approved the sheet, on paper.
+/// Signature fields of those who prepared, checked and approved the sheet, on paper.
 fn signatures(of: &SheetCover) -> Markup {
     let who = [("Prepared", of.author.as_ref()), ("Checked", of.checker.as_ref()), ("Approved", None)];
     html! {
@@ -107,7 +106,7 @@ mod tests {
         for said in ["Dam &lt;1&gt;", "D-2031", "Chimney filter", "Water Board", ">A<"] {
             assert_eq!(page.matches(said).count(), 1, "{said}: {page}");
         }
-        // Where they sign, and the foot of every page.
+        // The signature fields, and the foot of every page.
         assert_eq!(foot(&of).as_deref(), Some("D-2031"));
         for said in ["Prepared</th><td><bdi>N. N.<", "Checked</th><td><bdi>M. M.<", "Approved</th><td></td>"]
         {

@@ -111,7 +111,7 @@ fn table(all: &DesignedSamples) -> Markup {
     }
 }
 
-/// The limit of practice of every sample against its D85B; none without a number.
+/// The limit of practice of every sample against its D85B; `None` without a number.
 fn limits(all: &DesignedSamples) -> Option<Drawn> {
     let of = |row: &DesignedSample| Some((row.d85b_mm?, row.d15f_max_mm?, row.governs == Some(1)));
     let practice: Vec<_> = all.rows.iter().filter_map(of).collect();

@@ -1,4 +1,4 @@
-//! Why a page could not be written.
+//! Reasons why a page could not be written.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use voidwalk_core::store::StoreError;
 
-/// Why a report could not be written.
+/// The reason why a report could not be written.
 #[derive(Debug, Error)]
 pub enum ReportError {
     /// A file of the run folder is missing or cannot be read.
@@ -18,7 +18,7 @@ pub enum ReportError {
     Read {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// Message of the system.
         source: std::io::Error,
     },
     /// A file does not have the form that it must have.
@@ -28,10 +28,10 @@ pub enum ReportError {
         path: PathBuf,
         /// Line, from 1.
         line: u64,
-        /// What is wrong, with the field where it is known.
+        /// The fault, with the field if known.
         message: String,
     },
-    /// A value that cannot be, or two files that contradict each other.
+    /// A value that is impossible, or two files that contradict each other.
     #[error("{path}: {field} is {value}, allowed: {allowed}", path = path.display())]
     Value {
         /// The file.
@@ -40,7 +40,7 @@ pub enum ReportError {
         field: String,
         /// Its value.
         value: String,
-        /// What would be right.
+        /// The values that would be right.
         allowed: String,
     },
     /// The page or a figure cannot be written.

@@ -10,7 +10,7 @@ use super::vtu::{CellKind, Grid};
 use crate::outcome::record::LayerRow;
 use voidwalk_core::store::{Array, make_folder, npz, write_whole};
 
-/// What was written, and which columns were not: those of words.
+/// The files that were written, and the columns of words that were not.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Exported {
     /// The files.
@@ -103,7 +103,7 @@ fn table(path: &Path) -> Result<Table, ReportError> {
     Ok(table)
 }
 
-/// A column as whole numbers where all are, else as numbers, what is empty being none; `None` for words.
+/// A column as whole numbers if all are whole, else as numbers with empty cells as NaN; `None` for words.
 fn numbers(fields: &[String]) -> Option<Array> {
     if let Some(whole) = fields.iter().map(|field| field.parse().ok()).collect::<Option<Vec<i64>>>() {
         return Some(Array::of_whole(whole));
@@ -143,13 +143,13 @@ fn layers(path: &Path) -> Result<Vec<u8>, ReportError> {
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let points: Vec<[f64; 3]> =
         (0..=count).flat_map(|layer| square.map(|[x, y]| [x, y, 0.0 - layer as f64])).collect();
-    // The corners below first, as VTK wants them.
+    // The corners below first, as VTK requires.
     let corners: Vec<i64> =
         (0..count as i64).flat_map(|layer| [4, 5, 6, 7, 0, 1, 2, 3].map(|c| 4 * layer + c)).collect();
     Ok(Grid { points: &points, kind: CellKind::Hexahedron, corners: &corners, columns: &columns }.file())
 }
 
-/// The grains of a packing; `None` where the table is not one of grains.
+/// The grains of a packing; `None` if the table has no grains.
 fn grains(table: &Table) -> Option<Vec<u8>> {
     let column = |name: &str| -> Option<Vec<f64>> {
         let (_, fields) = table.iter().find(|(column, _)| column == name)?;
@@ -184,7 +184,7 @@ mod tests {
         assert_eq!(npz.first(&["cases.n"]).unwrap().unwrap().1.numbers, Numbers::Whole(vec![3, 4]));
         let Numbers::Float(means) = npz.first(&["cases.mean"]).unwrap().unwrap().1.numbers else { panic!() };
         assert!(means[0] == 0.5 && means[1].is_nan());
-        // Twice is as once.
+        // A second export gives the same files.
         assert_eq!(export(root.path()).unwrap(), found);
         write("broken.csv", "a,b\n1\n");
         assert!(export(root.path()).unwrap_err().to_string().contains("broken.csv:2:"));

@@ -1,5 +1,5 @@
-//! Readers of what lies in a folder of results: JSON, JSON lines and CSV, into the types of
-//! [`crate::outcome`], which the writer of the file used too. Whatever is wrong is said with file and line.
+//! Readers of the files in a folder of results: JSON, JSON lines and CSV, into the types of
+//! [`crate::outcome`], which the writer of the file used too. Every error has the file and line.
 
 use std::path::Path;
 
@@ -9,25 +9,25 @@ use super::error::ReportError;
 use voidwalk_core::store::format::from_json;
 use voidwalk_core::store::read_whole;
 
-/// A file of text.
+/// Reads a file of text.
 pub(super) fn text(path: &Path) -> Result<String, ReportError> {
     let not_text = |_| std::io::Error::new(std::io::ErrorKind::InvalidData, "is not UTF-8 text");
     let read = read_whole(path).and_then(|bytes| String::from_utf8(bytes).map_err(not_text));
     read.map_err(|source| ReportError::Read { path: path.to_owned(), source })
 }
 
-/// What a file of JSON says.
+/// Reads a file of JSON.
 ///
 /// # Errors
-/// [`ReportError`] names the file, and the line where its form is wrong.
+/// [`ReportError`] names the file, and the line if its form is wrong.
 pub fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
     from_json(text(path)?.as_bytes()).map_err(|error| form(path, &error))
 }
 
-/// [`json()`] of a text, which `path` names in errors; it need not begin as a file does.
+/// Reads JSON like [`json()`] from a text, which `path` names in errors; it need not begin as a file does.
 ///
 /// # Errors
-/// As [`json()`].
+/// Returns the errors of [`json()`].
 pub fn json_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, ReportError> {
     serde_json::from_str(text).map_err(|error| form(path, &error))
 }
@@ -36,7 +36,7 @@ fn form(path: &Path, error: &serde_json::Error) -> ReportError {
     ReportError::Form { path: path.to_owned(), line: error.line().max(1) as u64, message: error.to_string() }
 }
 
-/// The lines of a file of JSON lines, as `ledger.jsonl`.
+/// Reads the lines of a file of JSON lines, as `ledger.jsonl`.
 ///
 /// # Errors
 /// [`ReportError`] names the file and the line.
@@ -44,7 +44,7 @@ pub fn lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ReportError> {
     lines_of(path, &text(path)?)
 }
 
-/// [`lines()`] of a file with this text.
+/// Reads [`lines()`] of a file with this text.
 pub(super) fn lines_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<Vec<T>, ReportError> {
     let one = |(index, line): (usize, &str)| {
         serde_json::from_str(line).map_err(|error| ReportError::Form {
@@ -56,7 +56,8 @@ pub(super) fn lines_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<V
     text.lines().enumerate().map(one).collect()
 }
 
-/// The rows of a CSV file, each with its line; columns go by their names in the first line of the file.
+/// Reads the rows of a CSV file, each with its line; columns are found by their names in the first line of
+/// the file.
 ///
 /// # Errors
 /// [`ReportError`] names the file, the line and the column.

@@ -1,5 +1,5 @@
-//! The first sheet, which can be handed in by itself: for whom and by whom it is, the answer in three lines,
-//! the gradations with their sizes, and the rules of practice that decide or are not met.
+//! The first sheet, which can be handed in by itself: client and author, the answer in three lines, the
+//! gradations with their sizes, and the rules of practice that decide or are not met.
 
 use maud::{Markup, html};
 
@@ -19,7 +19,7 @@ use voidwalk_practice::rule_result::{RuleResult, result_of};
 use voidwalk_practice::rules::{DESIGN, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION};
 use voidwalk_practice::{AppliedRule, Headline, PracticeClass, RuleRole};
 
-/// The two soils, and what belongs to a sheet that is handed in.
+/// The two soils, and the cover of a sheet that is handed in.
 pub(super) fn header(folder: &RunFolder) -> Markup {
     let inputs = &folder.outcome.inputs;
     let (base, filter) = (titled("Base", &inputs.base.name), titled("filter", &inputs.filter.name));
@@ -34,10 +34,10 @@ pub(super) fn header(folder: &RunFolder) -> Markup {
     }
 }
 
-/// What the page answers.
+/// Question that the page answers.
 pub(super) const QUESTION: &str = "Will this filter hold this soil?";
 
-/// What is printed at the foot of every page.
+/// Text at the foot of every printed page.
 pub(super) fn foot_of(folder: &RunFolder) -> Option<String> {
     foot(&folder.about.cover)
 }
@@ -69,7 +69,7 @@ pub(super) fn answer(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> 
     }
 }
 
-/// The colour of an answer, which is that of practice: neutral without it.
+/// The colour of an answer, by practice: neutral without it.
 pub(super) fn colour(headline: Option<Headline>) -> &'static str {
     let Some(headline) = headline else { return "neutral" };
     match (headline, headline.class()) {
@@ -85,7 +85,7 @@ pub fn colour_of(outcome: &Outcome) -> &'static str {
     colour(outcome.headline)
 }
 
-/// Sizes of both soils as a table, of the base as sampled and as regraded where it is.
+/// Sizes of both soils as a table: the base as sampled and, if it is regraded, as regraded.
 pub(super) fn sizes(outcome: &Outcome, unit: SizeUnit) -> Markup {
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
     let mut soils = vec![SizedSoil::new("Filter", &filter.gradation)];
@@ -99,7 +99,7 @@ pub(super) fn sizes(outcome: &Outcome, unit: SizeUnit) -> Markup {
     of_few(&soils, unit)
 }
 
-/// The rules of practice that decide or are not met, and how many others there are.
+/// The rules of practice that decide or are not met, and the number of the others.
 pub(super) fn in_short(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> Markup {
     let listed = decision.listed();
     let rules = listed.iter().map(AsRef::as_ref);
@@ -107,7 +107,7 @@ pub(super) fn in_short(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -
     practice.sort_by_key(|rule| place(rule));
     let mut roles: Vec<RuleRole> = Vec::new();
     let (shown, others): (Vec<&AppliedRule>, Vec<&AppliedRule>) = practice.into_iter().partition(|rule| {
-        // Of several rules of one kind that are not met the first is enough here.
+        // The first of several broken rules of one kind is enough here.
         let is_first = !roles.contains(&rule.role);
         if result_of(rule) == RuleResult::NotMet {
             roles.push(rule.role);
@@ -147,7 +147,7 @@ pub(super) fn in_short(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -
     }
 }
 
-/// How many of these rules have each result, those that are not met first.
+/// Number of these rules by result, those that are not met first.
 fn counts(rules: &[&AppliedRule]) -> Vec<(usize, RuleResult)> {
     let with = [RuleResult::NotMet, RuleResult::Met, RuleResult::NotReached, RuleResult::ExcessiveNotJudged];
     let count = |result: RuleResult| rules.iter().filter(|rule| result_of(rule) == result).count();
@@ -155,13 +155,13 @@ fn counts(rules: &[&AppliedRule]) -> Vec<(usize, RuleResult)> {
     counts.filter(|(count, _)| *count > 0).collect()
 }
 
-/// The rules that decide whether a filter retains and drains a base, in the order of a reader.
+/// The rules that decide if a filter retains and drains a base, in reading order.
 const DECIDING: [&str; 4] = [DESIGN, TESTS_NO_EROSION, TESTS_CONTINUING, PERMEABILITY];
 
 /// The place of other rules that are not met.
 const NOT_MET: usize = DECIDING.len();
 
-/// The place of a rule: those that decide first, then those that are not met, and then the others.
+/// The place of a rule: deciding rules first, then those that are not met, and then the others.
 fn place(rule: &AppliedRule) -> usize {
     let deciding = DECIDING.iter().position(|id| *id == rule.id).filter(|_| rule.applies);
     match (deciding, result_of(rule)) {
@@ -207,7 +207,7 @@ fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
         })
         .showing("limit", |rule| {
             let [_, limit] = value_and_limit(rule, unit);
-            // The name of the row says beyond which boundary.
+            // The name of the row contains the boundary.
             let begins = match rule.role {
                 RuleRole::Continuation => "beyond",
                 _ => limit_begins(rule),

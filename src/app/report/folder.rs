@@ -1,4 +1,4 @@
-//! Reads a finished run folder, and refuses what does not fit together.
+//! Reads a finished run folder, and refuses contents that do not fit together.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use crate::verdict::RunFiles;
 use voidwalk_practice::AboutPage;
 use voidwalk_practice::Decision;
 
-/// Everything that a finished run folder says.
+/// Contents of a finished run folder.
 pub(super) struct RunFolder {
     pub outcome: Outcome,
     /// The decision of practice on its pair.
@@ -43,7 +43,7 @@ impl RunFolder {
         Ok(RunFolder { packing, outcome, decision, manifest, scene, about, rows })
     }
 
-    /// That of a run whose files have this content; errors name a file of `folder`.
+    /// Makes the folder of a run whose files have this content; errors name a file of `folder`.
     pub(super) fn of(folder: &Path, files: RunFiles) -> Result<RunFolder, ReportError> {
         let RunFiles { outcome, decision, manifest, scene, about, packing, recorded } = files;
         let outcome = checked(&folder.join(OUTCOME), outcome)?;
@@ -51,13 +51,13 @@ impl RunFolder {
         Ok(RunFolder { packing, outcome, decision, manifest, scene, about, rows })
     }
 
-    /// What its figures and tables of walks show.
+    /// Results and rows for its figures and tables of walks.
     pub(super) fn walks(&self) -> Walks<'_> {
         walks(&self.outcome, &self.rows)
     }
 }
 
-/// What figures and tables show of walks that an outcome is of.
+/// Results and rows of an outcome for figures and tables of walks.
 pub(super) fn walks<'a>(outcome: &'a Outcome, rows: &'a RunRows) -> Walks<'a> {
     Walks {
         verdict: outcome.model.class,
@@ -105,7 +105,7 @@ fn packing(path: &Path, manifest: &Manifest) -> Result<Option<PackingRecord>, Re
     }
 }
 
-/// The outcome itself is the case of factor 1; it is shown among the others when it was not walked a second
+/// The outcome itself is the case of factor 1; it is shown among the others unless it was walked a second
 /// time.
 fn stand_among_its_variations(outcome: &mut Outcome) {
     if outcome.sensitivity.is_empty() || outcome.sensitivity.iter().any(|case| case.factor == 1.0) {

@@ -1,5 +1,5 @@
-//! What soils a specification is for: drawn on the form of gradations, with the band where there
-//! is one, and in an appendix with their sizes and their gradations.
+//! Soils for which a specification is made: drawn on the form of gradations, with the band if there is one,
+//! and in an appendix with their sizes and their gradations.
 
 use maud::{Markup, html};
 
@@ -15,7 +15,7 @@ use voidwalk_practice::design::specification::{SizeBand, SpecifiedCurve};
 /// The file that has every row.
 const RECORD: &str = "specification.json";
 
-/// Most curves of a base that are drawn, and of which every row is shown.
+/// Greatest number of curves of a base that are drawn with every row shown.
 const CURVES: usize = 12;
 
 /// A curve of the base.
@@ -23,7 +23,7 @@ struct GivenCurve<'a> {
     name: &'a str,
     /// Size (mm) and percent finer by mass.
     sampled: &'a [[f64; 2]],
-    /// The same after regrading; empty where it is not regraded.
+    /// Size and percent finer after regrading; empty if it is not regraded.
     regraded: &'a [[f64; 2]],
 }
 
@@ -38,7 +38,7 @@ impl<'a> GivenSoils<'a> {
         Self { curves: of.curves.iter().map(GivenCurve::of).collect(), inches: of.inches }
     }
 
-    /// What the appendix is called.
+    /// Heading of the appendix.
     pub(super) fn heading(&self) -> &'static str {
         match self.curves.len() {
             1 => "Appendix: the gradation of the base",
@@ -46,7 +46,7 @@ impl<'a> GivenSoils<'a> {
         }
     }
 
-    /// Sizes and gradations of every soil; nothing where none is known.
+    /// Sizes and gradations of every soil; empty if no soil is known.
     pub(super) fn appendix(&self) -> Markup {
         if self.curves.is_empty() {
             return html! {};
@@ -102,8 +102,8 @@ impl<'a> GivenSoils<'a> {
         soils
     }
 
-    /// The soils on the form of gradations, with both sides of a band, of which `words` say the D15F; `None`
-    /// where nothing is known to draw.
+    /// The soils on the form of gradations, with both sides of a band, whose D15F is in `words`; `None` if
+    /// there is nothing to draw.
     pub(super) fn figure(&self, band: Option<&SizeBand>, words: Option<&str>) -> Option<Drawn> {
         let drawn = &self.curves[..self.curves.len().min(CURVES)];
         let sides = band.map(|band| (band.drawn_fine_side(), &band.coarse_side));

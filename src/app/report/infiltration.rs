@@ -8,7 +8,7 @@ use crate::outcome::record::{Infiltration, InfiltrationSize, Outcome, Run};
 use crate::outcome::table::{Columns, TableCell};
 use voidwalk_practice::quantity::{SizeUnit, length, percent, whole};
 
-/// Eq. (1) for single particles, what the walk found, and where the two part.
+/// Eq. (1) for single particles, the result of the walk, and their difference.
 pub(super) fn infiltration(outcome: &Outcome, unit: SizeUnit) -> Markup {
     html! {
         h2 { "Infiltration depth without blocking" }
@@ -45,7 +45,7 @@ fn sizes(found: &Infiltration, unit: SizeUnit) -> Markup {
 }
 
 fn beside_the_walk(found: &Infiltration, outcome: &Outcome, unit: SizeUnit) -> Markup {
-    // Mean over the replicates of what some of them have.
+    // Mean over the replicates that have the quantity.
     let mean = |run: u64, of: fn(&Run) -> Option<f64>, show: &dyn Fn(f64) -> String| {
         let runs = outcome.replicates.iter().flat_map(|r| &r.runs).filter(|r| r.run == run);
         let values: Vec<f64> = runs.filter_map(of).collect();
@@ -92,7 +92,7 @@ fn beside_the_walk(found: &Infiltration, outcome: &Outcome, unit: SizeUnit) -> M
     }
 }
 
-/// What the difference between all that Eq. (1) lets through and what left says.
+/// Meaning of the difference between the mass that Eq. (1) lets through and the mass that left.
 fn what_blocking_does(held: f64) -> &'static str {
     if held > 0.01 {
         "The difference is due to blocking: coarser particles close constrictions, and finer ones that would \

@@ -1,35 +1,35 @@
 //! The report: one page and its figures, from a finished run folder alone.
 //!
-//! [`write()`] reads what a run left behind (`outcome.json`, `manifest.json`, `scene.toml`, `series.csv`,
-//! `layers.csv`, `retained.csv`, `eroded.csv`; see [`crate::outcome::record`]) and runs nothing;
-//! [`write_packing()`] reads the folder of a packing, [`write_campaign()`] that of a campaign,
-//! [`write_percolation()`] that of a percolation study, [`write_batch()`] that of many samples against
-//! filters, [`write_boundary()`] that of the model's boundaries, [`write_specification()`] that of a
-//! specification and [`write_designs()`] that of the specifications for many samples. They write
-//! `figures/*.svg`, each a file of its own, and `report.html`.
+//! [`write()`] reads the files of a run (`outcome.json`, `manifest.json`, `scene.toml`, `series.csv`,
+//! `layers.csv`, `retained.csv`, `eroded.csv`; see [`crate::outcome::record`]) and runs nothing. Other
+//! functions read other folders: [`write_packing()`] a packing, [`write_campaign()`] a campaign,
+//! [`write_percolation()`] a percolation study, [`write_batch()`] many samples against filters,
+//! [`write_boundary()`] the model's boundaries, [`write_specification()`] a specification and
+//! [`write_designs()`] the specifications for many samples. They write `figures/*.svg`, each a file of its
+//! own, and `report.html`.
 //!
 //! # Pages without a folder
-//! [`write_walked()`] writes the page of a run that was walked now, and reads nothing of its folder. What was
-//! walked in memory has the same page, as text: [`run_page()`] from what its files would say, and
-//! [`network_walk_page()`] from the record of walks on given networks; [`run_brief()`] and
-//! [`network_walk_brief()`] are the verdict alone, for a notebook.
+//! [`write_walked()`] writes the page of a run that was just walked, and reads nothing of its folder. A walk
+//! in memory has the same page, as text: [`run_page()`] makes it from the contents that its files would have,
+//! and [`network_walk_page()`] from the record of walks on given networks; [`run_brief()`] and
+//! [`network_walk_brief()`] give the verdict alone, for a notebook.
 //!
 //! # Pages of others
 //! A program with a page of its own over the same results, as `scripts/paper`, builds it from these:
-//! [`files`] reads what lies in a folder, [`figures`] draws, [`quantity`] writes a number as the other pages
-//! do, and [`shell`] is the page around it, which [`write_page()`] writes. A figure of ours that others show
+//! [`files`] reads the files of a folder, [`figures`] draws, [`quantity`] writes a number as the other pages
+//! do, and [`shell`] is the page around it, which [`write_page()`] writes. A figure that other programs show
 //! too is public by itself: [`percolation_spread()`].
 //!
 //! # What the page may do
-//! Nothing but show itself. Its content security policy forbids every script and every fetch and names its
-//! one style by hash; figures are SVG elements without a style. Names come from users and are taken for
-//! hostile: markup in them is escaped, control characters and those that turn the direction of writing are
+//! A page can only show itself. Its content security policy forbids every script and every fetch and names
+//! its one style by hash; figures are SVG elements without a style. Names come from users and are treated as
+//! hostile: markup in them is escaped, control characters and those that change the direction of writing are
 //! replaced.
 //!
 //! # Order
-//! An engineer reads the answer first, the gradations and the rules that decide, on one sheet; then notes,
-//! what the model found and leaves out, all rules. Figures and tables of research stay on the screen; paper
-//! ends with the gradations in numbers, the sources, and how to run it again.
+//! An engineer reads the answer first, the gradations and the deciding rules, on one sheet; then notes,
+//! results and limits of the model, and all rules. Figures and tables of research stay on the screen; paper
+//! ends with the gradations in numbers, the sources, and the commands to run it again.
 
 mod about;
 mod appendix;

@@ -1,5 +1,5 @@
-//! What a soil is called on a page: its own name and not that of a file, where there is one, and no name that
-//! says no more than what it is. No page tells in which folders of a machine a file lies.
+//! Name of a soil on a page: its own name rather than the name of a file, and no name that only repeats its
+//! kind. No page shows the folders in which a file lies.
 
 use std::borrow::Cow;
 
@@ -9,10 +9,10 @@ use super::cover::LINE;
 use super::figures::shorten;
 use super::shell::clean;
 
-/// Endings of the tables that soils are read from.
+/// Endings of the tables from which soils are read.
 const TABLES: [&str; 7] = ["csv", "txt", "tsv", "xlsx", "ods", "ags", "dat"];
 
-/// The soil of `soils.xlsx#Till 3` is `Till 3`, that of `csv/tillh.csv` is `tillh`; any other name stays.
+/// The name of a soil: `Till 3` for `soils.xlsx#Till 3`, `tillh` for `csv/tillh.csv`; any other name stays.
 pub(super) fn soil_name(name: &str) -> &str {
     let (file, soil) = name.split_once('#').unwrap_or((name, ""));
     let Some(stem) = ends_as_table(file) else { return name };
@@ -23,13 +23,13 @@ pub(super) fn soil_name(name: &str) -> &str {
     }
 }
 
-/// Whether a soil has a name that says more than what it is: a column of a table may be called `Base`.
+/// Tells if a soil has a name that says more than its kind: a column of a table may be called `Base`.
 pub(super) fn is_named(kind: &str, name: &str) -> bool {
     let soil = soil_name(name).trim();
     !soil.is_empty() && !soil.eq_ignore_ascii_case(kind)
 }
 
-/// What a soil is, and its name where it has one: `Base Till 3`.
+/// Kind of a soil, and its name if it has one: `Base Till 3`.
 pub(super) fn titled(kind: &str, name: &str) -> Markup {
     html! {
         (kind)
@@ -37,7 +37,7 @@ pub(super) fn titled(kind: &str, name: &str) -> Markup {
     }
 }
 
-/// The name of a file without its folders, and of what is called after a file; anything else stays.
+/// A file name, or a name that begins with one, without its folders; anything else stays.
 pub(super) fn file_name(name: &str) -> Cow<'_, str> {
     let (file, rest) = match name.find('#').or_else(|| name.find(", ")) {
         Some(at) => name.split_at(at),
@@ -49,7 +49,7 @@ pub(super) fn file_name(name: &str) -> Cow<'_, str> {
     }
 }
 
-/// The same of any file that was read.
+/// Name without folders for any file that was read.
 pub(super) fn input_name(name: &str) -> Cow<'_, str> {
     match file_name(name) {
         Cow::Borrowed(_) => Cow::Borrowed(last_part(name)),
@@ -57,8 +57,8 @@ pub(super) fn input_name(name: &str) -> Cow<'_, str> {
     }
 }
 
-/// What a soil is, in these words, and its name; the name of its file where it has none that says more than
-/// its kind: `Base base.csv`.
+/// Kind of a soil, in these words, and its name; the name of its file if its own name says no more than its
+/// kind: `Base base.csv`.
 pub(super) fn titled_by_file(kind: &str, words: &str, name: &str) -> Markup {
     let is_table = ends_as_table(name.split('#').next().unwrap_or_default()).is_some();
     let shown = match is_named(kind, name) {
@@ -72,7 +72,7 @@ pub(super) fn titled_by_file(kind: &str, words: &str, name: &str) -> Markup {
     }
 }
 
-/// The end of a path that tells it apart from others, with no more folders than that takes.
+/// The end of a path that tells it apart from others, with as few folders as possible.
 pub(super) fn told_apart(path: &str, others: &[&str]) -> String {
     let parts = |path: &str| path.split(['/', '\\']).map(str::to_owned).collect::<Vec<String>>();
     let own = parts(path);
@@ -85,7 +85,7 @@ pub(super) fn told_apart(path: &str, others: &[&str]) -> String {
     end(&own, count)
 }
 
-/// An option as a command line has it, of which the name of a file stands without its folders.
+/// An option as on a command line, with a file name without its folders.
 pub(super) fn option_words(option: &str) -> String {
     let at = option.find('=').map(|at| at + 1).or_else(|| option.strip_prefix("--filter ").map(|_| 9));
     let (said, value) = option.split_at(at.unwrap_or(0));
@@ -100,12 +100,12 @@ pub(super) fn note_words(note: &str) -> String {
     }
 }
 
-/// The end of a path, from its last separator on.
+/// The part of a path after its last separator.
 pub(super) fn last_part(path: &str) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or_default()
 }
 
-/// What stands before the ending of a table; `None` where a name has none.
+/// The name of a table without its ending; `None` for any other name.
 fn ends_as_table(file: &str) -> Option<&str> {
     let (stem, ending) = file.rsplit_once('.')?;
     TABLES.iter().any(|table| ending.eq_ignore_ascii_case(table)).then_some(stem)

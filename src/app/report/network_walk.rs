@@ -21,7 +21,7 @@ use crate::words::left_out::left_out_words;
 use crate::words::{FirstLine, sentence};
 use voidwalk_practice::quantity::{SizeUnit, length, percent, significant, whole};
 
-/// What errors call the record.
+/// Name of the record in errors.
 const RECORD: &str = "outcome";
 
 /// The page of walks on given networks: their record as JSON, and the rows of their tables.
@@ -45,8 +45,8 @@ pub fn network_walk_page(record: &str, recorded: Recorded) -> Result<String, Rep
     Ok(page(&record, &walks, &figures))
 }
 
-/// The verdict of walks on given networks, as a piece of a page: its numbers, a figure, what the model leaves
-/// out.
+/// The verdict of walks on given networks, as a piece of a page: its numbers, a figure, the omissions of the
+/// model.
 ///
 /// # Errors
 /// A record that is malformed.
@@ -98,7 +98,7 @@ fn walks<'a>(record: &'a NetworkWalkRecord, rows: &'a RunRows) -> Walks<'a> {
     }
 }
 
-/// What a replicate is: the only one, and each of several.
+/// Words for the only replicate, and for each of several.
 fn replicate(record: &NetworkWalkRecord) -> [&'static str; 2] {
     let each = match record.network.networks {
         1 => "a new walk on the same network",
@@ -160,7 +160,7 @@ fn notes(record: &NetworkWalkRecord) -> Markup {
     }
 }
 
-/// How many base particles there were, and how many Eq. (2) asks for.
+/// Number of base particles, and the number that Eq. (2) requires.
 fn amount(record: &NetworkWalkRecord) -> String {
     let walked = whole(record.n_base);
     match (record.n_base_eq2, record.grains_per_void) {
@@ -178,7 +178,7 @@ fn amount(record: &NetworkWalkRecord) -> String {
 
 fn verdict_section(record: &NetworkWalkRecord, walks: &Walks) -> Markup {
     let class = match record.verdict {
-        // Never in green where practice has not been asked.
+        // Never green unless practice was asked.
         Verdict::None => "doubted",
         Verdict::Some => "some",
         Verdict::Continuing => "continuing",

@@ -17,10 +17,10 @@ use crate::outcome::packing::{CurveRow, Measure, PackingRecord, Summary};
 use crate::outcome::paper;
 use crate::outcome::table::Columns;
 
-/// Grains of a slice are drawn in this many shades, by size.
+/// Number of shades, by size, in which the grains of a slice are drawn.
 const SHADES: usize = 6;
 
-/// Everything that a packing's folder says, but for the grains.
+/// Contents of a packing's folder, except for the grains.
 struct Packed {
     record: PackingRecord,
     summary: Summary,
@@ -205,7 +205,7 @@ fn states(record: &PackingRecord) -> Markup {
     Table::of(&rows, columns).render()
 }
 
-/// The paper's values, where its Table 2 has this filter.
+/// The paper's values, if its Table 2 has this filter.
 fn beside_the_paper(packed: &Packed) -> Markup {
     let record = &packed.record;
     let found = record.cu.filter(|_| record.linear).and_then(|cu| paper::filter(cu, record.friction));

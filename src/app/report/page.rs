@@ -41,17 +41,17 @@ const SCENE: usize = 100_000;
 /// Each file appears whole or not at all, and an older one of the same name is replaced.
 ///
 /// # Errors
-/// [`ReportError`] names the file, and where there is one the line and field, that is missing, malformed or
-/// contradicts another. Nothing is written then.
+/// [`ReportError`] names the file that is missing, malformed or contradicts another, with the line and field
+/// if there is one. Nothing is written then.
 pub fn write(folder: &Path) -> Result<Written, ReportError> {
     let (page, figures) = drawn(&RunFolder::read(folder)?);
     write_page(folder, &figures, &page)
 }
 
-/// Writes the page of a run that was walked now: [`write()`] without a look at its files.
+/// Writes the page of a run that was just walked: [`write()`] without reading its files.
 ///
 /// # Errors
-/// As [`write()`].
+/// Returns the errors of [`write()`].
 pub fn write_walked(folder: &Path, files: RunFiles) -> Result<Written, ReportError> {
     let (page, figures) = drawn(&RunFolder::of(folder, files)?);
     write_page(folder, &figures, &page)
@@ -60,13 +60,13 @@ pub fn write_walked(folder: &Path, files: RunFiles) -> Result<Written, ReportErr
 /// The page of a run whose files would have this content; writes nothing.
 ///
 /// # Errors
-/// As [`write()`], with the names that the files would have.
+/// Returns the errors of [`write()`], with the names that the files would have.
 pub fn run_page(files: RunFiles) -> Result<String, ReportError> {
     Ok(drawn(&RunFolder::of(Path::new(""), files)?).0)
 }
 
 /// The verdict of a run whose `outcome.json` holds this text, as a piece of a page: its numbers, a figure,
-/// what the model leaves out.
+/// the omissions of the model.
 ///
 /// # Errors
 /// A text that is malformed.
@@ -86,7 +86,7 @@ pub fn run_brief(outcome: &str) -> Result<String, ReportError> {
     Ok(verdict_box::brief(&walks, &said))
 }
 
-/// What a replicate of a run is: the only one, and each of several. The ends of a range of constrictions have
+/// Words for the only replicate of a run, and for each of several. The ends of a range of constrictions have
 /// replicates of their own, which are not counted.
 fn replicate(outcome: &Outcome) -> [&'static str; 2] {
     match outcome.curve_range {
@@ -117,7 +117,7 @@ fn drawn(run: &RunFolder) -> (String, Vec<Drawn>) {
     (page, [verdict, gradations].into_iter().chain(figures).collect())
 }
 
-/// The page as text. `gradations` stands on its first sheet, `verdict` and `figures` below it.
+/// The page as text. `gradations` is on its first sheet, `verdict` and `figures` below it.
 fn page(folder: &RunFolder, [verdict, gradations]: [&Drawn; 2], figures: &[Drawn]) -> String {
     let RunFolder { outcome, decision, .. } = folder;
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
@@ -141,7 +141,7 @@ fn page(folder: &RunFolder, [verdict, gradations]: [&Drawn; 2], figures: &[Drawn
             p { "The model does not replace a filter test or a designer’s judgement." }
         }))
         (rules(decision, unit))
-        // What a client is not handed in stays on the screen.
+        // Parts that are not handed to a client stay on the screen.
         section.screen {
             h2 { "Figures" }
             @for (number, drawn) in (2..).zip(figures) { (shell::figure(number, drawn)) }
@@ -161,7 +161,7 @@ fn page(folder: &RunFolder, [verdict, gradations]: [&Drawn; 2], figures: &[Drawn
     page_with_foot(foot.as_deref(), &title, [&first_page::header(folder), &main, &citation(outcome)])
 }
 
-/// The void ratio of the filter, where that was given; else what the library has.
+/// The void ratio of the filter: the given one, or else the one of the library.
 fn void_ratio(outcome: &Outcome) -> String {
     let is_given = !outcome.notes.iter().any(|note| matches!(note, Note::LibraryOfAnyDensity { .. }));
     match outcome.inputs.filter.void_ratio {
@@ -172,7 +172,7 @@ fn void_ratio(outcome: &Outcome) -> String {
     }
 }
 
-/// What the walk found: its class, the mass eroded, and what leaves it open.
+/// Result of the walk: its class, the mass eroded, and the cause that leaves it open.
 fn walk(outcome: &Outcome, walks: &Walks, verdict: &Drawn) -> Markup {
     html! {
         h2 { "What the model found" }
@@ -185,7 +185,7 @@ fn walk(outcome: &Outcome, walks: &Walks, verdict: &Drawn) -> Markup {
     }
 }
 
-/// What the rule that added replicates arrived at.
+/// Result of the rule that added replicates.
 fn stopped(stopping: &Stopping) -> String {
     let mut text = String::new();
     if let Some(percent) = stopping.decide_percent {
@@ -201,7 +201,7 @@ fn stopped(stopping: &Stopping) -> String {
     text
 }
 
-/// What the class means, in a sentence.
+/// Meaning of the class, in a sentence.
 fn in_words(outcome: &Outcome, walks: &Walks) -> String {
     match outcome.undecided_by() {
         Some(open @ UndecidedBy::Curve) => format!("Inconclusive: {}.", undecided_by(open)),
@@ -219,7 +219,7 @@ fn notes(outcome: &Outcome, unit: SizeUnit) -> Markup {
     }
 }
 
-/// Says which figures are missing, and why.
+/// Names the missing figures, with the reason.
 fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
     let has = |name: &str| figures.iter().any(|drawn| drawn.name == name);
     let reasons = [

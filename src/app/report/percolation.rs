@@ -20,7 +20,7 @@ use voidwalk_practice::quantity::{duration, significant, whole};
 /// there.
 ///
 /// # Errors
-/// What the folder says.
+/// Returns the errors of reading the folder and of writing.
 pub fn write_percolation(folder: &Path) -> Result<Written, ReportError> {
     let study: &PercolationStudy = &json(&folder.join("percolation.json"))?;
     let title = "Percolation threshold of the directed cubic lattice";
@@ -136,7 +136,7 @@ fn threshold(study: &PercolationStudy) -> Drawn {
         figure.add(Line::new(ends.to_vec(), BLUE).label("one length"));
     }
     if let Some(fit) = &study.many_starts {
-        // By d, from which L follows: y = b + c ln(L d^(nu / z)) with y = L d^nu, by repetition, which
+        // Iterates over d, from which L follows: y = b + c ln(L d^(nu / z)) with y = L d^nu; the iteration
         // contracts.
         let least = means().map(|mean| fit.threshold - mean).fold(f64::MAX, f64::min);
         let most = means().map(|mean| fit.threshold - mean).fold(0.0, f64::max);

@@ -133,7 +133,7 @@ struct Varied<'a> {
     walked: &'a Classed,
 }
 
-/// Other amounts of base and other thicknesses, with what eroded of each and its class.
+/// Other amounts of base and other thicknesses, each with its eroded mass and its class.
 pub(super) fn varied(outcome: &Outcome) -> Markup {
     let layers = outcome.inputs.network.layers;
     let amounts = outcome.sensitivity.iter().map(|row| {
@@ -167,7 +167,7 @@ pub(super) fn varied(outcome: &Outcome) -> Markup {
     }
 }
 
-/// A class, of which no word is broken.
+/// A class whose words are never broken.
 fn class(verdict: Verdict) -> Shown {
     verdict.shown().emphasised(Emphasis::Whole)
 }

@@ -13,7 +13,7 @@ use crate::words::rule_note::rule_notes;
 use voidwalk_practice::Decision;
 use voidwalk_practice::{AppliedRule, RuleRole};
 
-/// Every rule with its value, limit, result, source and what it was made for.
+/// Every rule with its value, limit, result, source and origin.
 pub(super) fn rules(decision: &Decision, unit: SizeUnit) -> Markup {
     let listed = decision.listed();
     let ([practice, walk], sources) = (of_practice_and_walk(&listed), distinct_sources(&listed));
@@ -33,7 +33,7 @@ pub(super) fn rules(decision: &Decision, unit: SizeUnit) -> Markup {
     }
 }
 
-/// Rules as a table in which numbers stand for the sources.
+/// Rules as a table in which numbers represent the sources.
 fn numbered(rules: &[&AppliedRule], unit: SizeUnit, sources: &[&str]) -> Markup {
     table_with(rules, unit, |rule| match sources.iter().position(|source| *source == rule.source) {
         Some(place) => html! { " [" (place + 1) "]" },
@@ -41,7 +41,7 @@ fn numbered(rules: &[&AppliedRule], unit: SizeUnit, sources: &[&str]) -> Markup 
     })
 }
 
-/// The sources of all rules, by the numbers that stand in the table.
+/// The sources of all rules, by their numbers in the table.
 pub(super) fn sources(decision: &Decision) -> Markup {
     let listed = decision.listed();
     let sources = distinct_sources(&listed);
@@ -79,7 +79,7 @@ fn distinct_sources<'a>(rules: &'a [Cow<AppliedRule>]) -> Vec<&'a str> {
     sources
 }
 
-/// Rules as a table, with what stands for the source behind the name of each.
+/// Rules as a table, with `source` as text behind the name of each.
 fn table_with(rules: &[&AppliedRule], unit: SizeUnit, source: impl Fn(&AppliedRule) -> Markup) -> Markup {
     let columns = columns(unit).only(&["rule", "authority", "value", "limit", "result"]);
     let value = |rule: &AppliedRule| value(rule, unit).unwrap_or_else(|| "–".into());

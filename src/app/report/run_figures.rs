@@ -46,7 +46,7 @@ pub(super) fn size_axis(unit: SizeUnit, sizes: impl Iterator<Item = f64>) -> Axi
     Axis::log(if unit == SizeUnit::D0f { "Size / D0F (–)" } else { "Size (mm)" }, low, high)
 }
 
-/// The upper end of an interval, or the mean where there is none.
+/// The upper end of an interval, or the mean without one.
 pub(super) fn upper(statistic: &Statistic) -> f64 {
     interval(statistic).map_or(statistic.mean, |(_, high)| high)
 }
@@ -117,7 +117,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
         false => kind.to_owned(),
     };
     boundaries::draw(&mut figure, &limits);
-    // Of two curves of the base each says which it is; of one, it is as sampled.
+    // With two curves of the base each has its own words; a single curve is as sampled.
     let walked = match (inputs.base_size(), sampled) {
         (Some(of), Some(_)) => format!("base, {}", grading(&of)),
         _ => name("base", &base.name),
@@ -157,7 +157,8 @@ fn eroded_at(rows: &[SeriesRow], increment: f64) -> f64 {
 /// Eroded mass against increment for each run: every replicate thin, the mean bold.
 pub(super) fn eroded(walks: &Walks) -> Option<Drawn> {
     let last = walks.rows.series.values().flatten().map(|row| row.increment).max()?;
-    // where every curve has come within a thousandth of its end; the rest of a long tail is left out
+    // the point from which every curve stays within a thousandth of its end; the rest of a long tail is left
+    // out
     let settled = walks.rows.series.values().filter_map(|rows| {
         let end = rows.last()?.eroded_mass_fraction;
         rows.iter().find(|row| end - row.eroded_mass_fraction <= 0.001).map(|row| row.increment)
@@ -277,8 +278,8 @@ pub(super) fn layers(walks: &Walks) -> Option<Drawn> {
     Some(Drawn::new("layers", figure, caption))
 }
 
-/// Size curves of what the first run of the first replicate retained, after chosen increments, beside base
-/// and eroded.
+/// Size curves of the particles that the first run of the first replicate retained, after chosen increments,
+/// beside base and eroded.
 pub(super) fn retained(walks: &Walks) -> Option<Drawn> {
     const CURVES: usize = 6;
     let (run, replicate) = (1, 1);

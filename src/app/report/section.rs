@@ -11,7 +11,7 @@ use super::shell::{Drawn, contents, figure, model, page_with_foot};
 use super::written::{Written, write_page_as};
 use voidwalk_practice::SheetCover;
 
-/// A page that is put together from above.
+/// A page that is built from the top.
 pub(super) struct Sections {
     title: String,
     foot: Option<String>,
@@ -21,32 +21,32 @@ pub(super) struct Sections {
 }
 
 impl Sections {
-    /// A page with its title for a browser, its first heading, and below that what it is about.
+    /// A page with its title for a browser, its first heading, and its subject below.
     pub(super) fn new(title: impl Into<String>, heading: &str, names: &Markup) -> Self {
         let header = html! { h1 { (heading) } @if !names.0.is_empty() { p.names { (names) } } };
         Self { title: title.into(), foot: None, header, main: String::new(), drawn: Vec::new() }
     }
 
-    /// With a line on what the model is, before anything is said by it.
+    /// Adds a line that explains the model, before its results.
     pub(super) fn model(mut self) -> Self {
         self.header = html! { (self.header) (model()) };
         self
     }
 
-    /// With the cover of a sheet below its first heading.
+    /// Adds the cover of a sheet below its first heading.
     pub(super) fn cover(mut self, of: &SheetCover, program: &str, seed: Option<u64>) -> Self {
         self.header = html! { (self.header) (cover(of, program, seed)) };
         self.foot = foot(of);
         self
     }
 
-    /// With words, or a table.
+    /// Adds words, or a table.
     pub(super) fn words(mut self, words: &Markup) -> Self {
         self.main += &words.0;
         self
     }
 
-    /// With words under a heading; where there are none, not even that.
+    /// Adds words under a heading; without words the heading is left out too.
     pub(super) fn section(self, heading: &str, words: &Markup) -> Self {
         match words.0.is_empty() {
             true => self,
@@ -54,12 +54,12 @@ impl Sections {
         }
     }
 
-    /// With the list of the headings that follow.
+    /// Adds the list of the headings that follow.
     pub(super) fn contents(self) -> Self {
         self.words(&contents())
     }
 
-    /// With figures.
+    /// Adds figures.
     pub(super) fn figures(mut self, figures: impl IntoIterator<Item = Drawn>) -> Self {
         for drawn in figures {
             self.main += &figure(self.drawn.len() + 1, &drawn).0;
@@ -77,7 +77,7 @@ impl Sections {
     /// Writes the figures and then the page, with this at its end, under its name in the folder.
     ///
     /// # Errors
-    /// What cannot be written.
+    /// Returns the error of a file that cannot be written.
     pub(super) fn write(&self, folder: &Path, name: &str, footer: &Markup) -> Result<Written, ReportError> {
         write_page_as(name, folder, &self.drawn, &self.text(footer))
     }

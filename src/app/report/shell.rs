@@ -1,7 +1,7 @@
-//! What every page is made of: one HTML file that fetches nothing, its head, its figures.
+//! Frame of every page: one HTML file that fetches nothing, its head, its figures.
 //!
-//! A page is put together from [`maud::Markup`], which escapes what it is given; texts from outside go
-//! through [`clean()`] too. [`super::write_page()`] writes it with its figures:
+//! A page is built from [`maud::Markup`], which escapes its texts; texts from outside go through [`clean()`]
+//! too. [`super::write_page()`] writes it with its figures:
 //!
 //! ```
 //! use maud::html;
@@ -30,15 +30,15 @@ use crate::words::left_out::model_limit;
 use voidwalk_core::text::visible;
 
 const STYLE: &str = include_str!("page.css");
-/// Its SHA-256 in base64, as a content policy names it. Where the style is changed, a test on Linux says the
-/// new one.
+/// SHA-256 of the style in base64, as a content policy names it. If the style changes, a test on Linux prints
+/// the new hash.
 const STYLE_HASH: &str = "mDepA0nhVqGFzpjx3fdu2udUK7V6SF3ya+Kp73qFFQA=";
 
 /// A figure of a page with its caption.
 pub struct Drawn {
     /// Name of its file, without the ending; no other figure of the page has it.
     pub name: &'static str,
-    /// What stands below it.
+    /// Caption below the figure.
     pub caption: String,
     /// The figure.
     pub figure: Figure,
@@ -51,18 +51,18 @@ impl Drawn {
     }
 }
 
-/// What every page may do: nothing but show itself.
+/// Permissions of every page: it may only show itself.
 pub fn content_policy() -> String {
     // the style is named by its hash: a style that a hostile name might bring along would not be obeyed
     format!("default-src 'none'; style-src 'sha256-{STYLE_HASH}'; base-uri 'none'; form-action 'none'")
 }
 
-/// A page as text: `title` for the browser, and what stands in each part of its body.
+/// A page as text: `title` for the browser, and the contents of each part of its body.
 pub fn whole_page(title: &str, header: &Markup, main: &Markup, footer: &Markup) -> String {
     page_with_foot(None, title, [header, main, footer])
 }
 
-/// The same with what is printed at the foot of every sheet of paper, beside its number.
+/// A page as text, with a text at the foot of every sheet of paper, beside its number.
 pub(super) fn page_with_foot(
     foot: Option<&str>,
     title: &str,
@@ -91,7 +91,7 @@ pub(super) fn page_with_foot(
     .into_string()
 }
 
-/// Where the headings below it are to be listed.
+/// Place at which the headings below are to be listed.
 const CONTENTS: &str = "<nav class=\"contents\"></nav>";
 
 /// Lists the headings that follow on the page.
@@ -99,7 +99,7 @@ pub(super) fn contents() -> Markup {
     html! { (PreEscaped(CONTENTS)) }
 }
 
-/// A page with the list of its headings, where one is wanted, each of which gets a name to be found by.
+/// A page with the list of its headings, if one is requested; each heading gets an id.
 fn with_contents(main: &str) -> String {
     let Some((before, after)) = main.split_once(CONTENTS) else { return main.to_owned() };
     let mut parts = after.split("<h2>");
@@ -137,7 +137,7 @@ pub(super) fn unbroken(text: &str) -> String {
     said
 }
 
-/// A figure as an element of the page, in all its sizes: the style shows the one that there is room for.
+/// A figure as an element of the page, in all its sizes: the style shows the size that fits.
 pub fn drawing(drawn: &Drawn) -> Markup {
     let wide = drawn.figure.inline(&format!("{}-wide", drawn.name), Size::Wide);
     let narrow = drawn.figure.inline(&format!("{}-narrow", drawn.name), Size::Narrow);
@@ -165,8 +165,8 @@ pub(super) fn figure(number: usize, drawn: &Drawn) -> Markup {
     }
 }
 
-/// What a reader can change of a figure on a screen: which curves are shown, and how large. Boxes that the
-/// style alone obeys, as no script runs on a page; in print every curve is there.
+/// Controls of a figure on a screen: the curves that are shown, and their size. The boxes work by style
+/// alone, as no script runs on a page; in print every curve is present.
 fn looks(number: usize, curves: &[String]) -> Markup {
     html! {
         div.looks role="group" aria-label=(format!("Figure {number}, as shown on a screen")) {
@@ -178,7 +178,7 @@ fn looks(number: usize, curves: &[String]) -> Markup {
     }
 }
 
-/// What the model is, before a page speaks of it.
+/// Explanation of the model, before a page speaks of it.
 pub(super) fn model() -> Markup {
     html! {
         p.model {
@@ -188,7 +188,7 @@ pub(super) fn model() -> Markup {
     }
 }
 
-/// What a page says beside its results: what the model does not contain.
+/// Limits of the model, which a page lists beside its results.
 pub(super) fn leaves_out(limits: &[ModelLimit], more: &Markup) -> Markup {
     html! {
         aside.leaves {
@@ -199,7 +199,7 @@ pub(super) fn leaves_out(limits: &[ModelLimit], more: &Markup) -> Markup {
     }
 }
 
-/// Whom to cite for the model.
+/// Citation of the model.
 pub(super) fn citation() -> Markup {
     html! {
         h2 { "How to cite" }
@@ -211,7 +211,7 @@ pub(super) fn citation() -> Markup {
     }
 }
 
-/// A row of a table of facts: what it is, and its value.
+/// A row of a table of facts: its name, and its value.
 pub(super) fn fact(name: &str, value: impl std::fmt::Display) -> Markup {
     html! { tr { th { (name) } td { (clean(&value.to_string())) } } }
 }
@@ -220,7 +220,7 @@ pub(super) fn fact(name: &str, value: impl std::fmt::Display) -> Markup {
 mod tests {
     use super::*;
 
-    /// The hash is that of `sha256sum`.
+    /// The hash equals the output of `sha256sum`.
     #[cfg(target_os = "linux")]
     #[test]
     fn the_hash_of_the_style_is_its_own() {

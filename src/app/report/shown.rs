@@ -4,7 +4,7 @@ use std::fmt::Display;
 
 use super::quantity::whole;
 
-/// A value, or that it is not given.
+/// A value, or words for a missing one.
 pub(super) fn known<T, R: Display>(value: Option<T>, words: impl FnOnce(T) -> R) -> String {
     value.map_or_else(|| "not given".to_owned(), |value| words(value).to_string())
 }

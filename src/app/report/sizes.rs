@@ -8,9 +8,9 @@ use super::table::Table;
 use crate::outcome::table::Columns;
 use voidwalk_practice::soil_sizes::sizes_of;
 
-/// A soil: what it is called in the table, and its rows of size and percent finer.
+/// A soil: its name in the table, and its rows of size and percent finer.
 pub(super) struct SizedSoil<'a> {
-    /// What it is called.
+    /// Name in the table.
     pub name: String,
     /// Size, and percent finer by mass.
     pub rows: &'a [[f64; 2]],
@@ -25,7 +25,7 @@ impl<'a> SizedSoil<'a> {
 /// The name of a soil, and its sizes by their names.
 type SoilRow<'a> = (&'a String, Vec<(&'static str, Option<String>)>);
 
-/// What stands below such a table.
+/// Note below such a table.
 fn note(unit: SizeUnit) -> Markup {
     html! { p.small {
         @if unit != SizeUnit::D0f {
@@ -35,7 +35,7 @@ fn note(unit: SizeUnit) -> Markup {
     } }
 }
 
-/// Of a few soils, a column each.
+/// Sizes of a few soils, one column each.
 pub(super) fn of_few(soils: &[SizedSoil], unit: SizeUnit) -> Markup {
     let sizes: Vec<_> = soils.iter().map(|soil| sizes_of(soil.rows, unit)).collect();
     let rows: Vec<usize> = (0..sizes.first().map_or(0, Vec::len)).collect();
@@ -46,7 +46,7 @@ pub(super) fn of_few(soils: &[SizedSoil], unit: SizeUnit) -> Markup {
     html! { div.sizes { (Table::of(&rows, columns)) (note(unit)) } }
 }
 
-/// Of many soils, a row each, in mm.
+/// Sizes of many soils, one row each, in mm.
 pub(super) fn of_many(soils: &[SizedSoil]) -> Markup {
     let sizes: Vec<_> = soils.iter().map(|soil| (&soil.name, sizes_of(soil.rows, SizeUnit::Mm))).collect();
     let Some((_, first)) = sizes.first() else { return html! {} };

@@ -4,8 +4,8 @@ use super::figures::{Axis, BLACK, BLUE, Dash, Figure, GREEN, GREY, Line, ORANGE,
 use super::figures::{positive_range, shorten};
 use crate::outcome::CurvePoint;
 
-/// Percent finer by mass against size (mm) for each soil: its name and its points, as an SVG
-/// file; with coarse sizes on the left where that is asked for, as in the United States.
+/// Percent finer by mass against size (mm) for each soil: its name and its points, as an SVG file; with
+/// coarse sizes on the left if requested, as in the United States.
 pub fn soils_figure<'a>(
     soils: impl IntoIterator<Item = (&'a str, &'a [CurvePoint])>,
     coarse_left: bool,
@@ -13,7 +13,7 @@ pub fn soils_figure<'a>(
     let soils: Vec<(&str, &[CurvePoint])> = soils.into_iter().collect();
     let (low, high) =
         positive_range(soils.iter().flat_map(|(_, points)| points.iter().map(|point| point.size)));
-    // One size alone has a range all the same.
+    // One size alone still gets a range.
     let high = if high > low { high } else { 2.0 * low };
     let names: Vec<String> = soils.iter().map(|(name, _)| shorten(name, 40)).collect();
     let what = format!("Percent finer by mass against size for {}", names.join(", "));

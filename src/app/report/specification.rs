@@ -1,5 +1,5 @@
-//! The page of a specification: what to watch, both sides of the band on the form of gradations, limits
-//! sieve by sieve, standard products, the steps with their numbers, and the base.
+//! The page of a specification: warnings, both sides of the band on the form of gradations, limits sieve by
+//! sieve, standard products, the steps with their numbers, and the base.
 
 use std::path::Path;
 
@@ -89,7 +89,7 @@ fn answer(of: &Specification) -> Markup {
     }
 }
 
-/// Warnings that stand in the answer; those of further curves stand below it.
+/// Number of warnings in the answer; those of further curves are below it.
 const WARNINGS: usize = 4;
 
 fn more_warnings(of: &Specification) -> Markup {
@@ -109,13 +109,13 @@ fn cautions(of: &Specification) -> Markup {
     }
 }
 
-/// What the specification lacks; nothing without a band.
+/// Gaps of the specification; empty without a band.
 fn still_to_set(of: &Specification) -> Markup {
     let said = still_to_set_line(of, SizeUnit::of(false, of.inches));
     html! { @if let Some(said) = said { p.caution { b { (unbroken(&said)) } } } }
 }
 
-/// Why the band begins where it does, and the sizes of its two sides; nothing without a band.
+/// The reason for the beginning of the band, and the sizes of its two sides; empty without a band.
 fn to_specify(of: &Specification) -> Markup {
     let Some(band) = &of.band else { return html! {} };
     let unit = SizeUnit::of(false, of.inches);
@@ -180,7 +180,7 @@ fn limits(of: &Specification) -> Markup {
     }
 }
 
-/// Margins of standard products, and whether they fit.
+/// Margins of standard products, with their result.
 fn products(of: &Specification) -> Markup {
     let columns = columns(SizeUnit::of(false, of.inches)).text("result", "", |product| {
         product_result(of, product).shown().emphasised(product.fits().map(Emphasis::Kept))
@@ -212,7 +212,7 @@ mod tests {
         let said = products_line(&core);
         assert_eq!(said, "Standard products that fit: ASTM C33 fine aggregate");
         assert!(limits(&core).into_string().contains("D15F of each delivery must lie within 0.140 to"));
-        // The greatest is not known, and the least alone refuses the finest product.
+        // The greatest is unknown, and the least alone refuses the finest product.
         let unknown =
             Specification { d15f_max_mm: None, products: margins((Some(0.2), 0.2), None), ..core.clone() };
         assert!(products_line(&unknown).starts_with("No other product is known to fit"));

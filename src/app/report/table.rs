@@ -1,4 +1,4 @@
-//! Tables of a page: rows as their columns are described ([`Columns`]), which a page may decorate.
+//! Tables of a page: rows with the columns that describe them ([`Columns`]), which a page may decorate.
 
 use std::collections::BTreeMap;
 
@@ -7,14 +7,14 @@ use maud::{Markup, Render, html};
 use super::shell::clean;
 use crate::outcome::table::{ColumnKind, Columns, Emphasis, PageColumn, Shown};
 
-/// What a page shows in the cells of a column instead of what is described.
+/// Markup that a page shows in the cells of a column instead of its description.
 type Decoration<'a, T> = Box<dyn Fn(&T) -> Markup + 'a>;
 
-/// A table, which scrolls by itself where the page is too narrow for it.
+/// A table, which scrolls by itself if the page is too narrow for it.
 pub(super) struct Table<'a, T> {
     rows: Vec<&'a T>,
     columns: Vec<PageColumn<'a, T>>,
-    /// By the places of their columns.
+    /// Decorations by the places of their columns.
     decorations: BTreeMap<usize, Decoration<'a, T>>,
     class: Option<&'static str>,
     more: Markup,
@@ -27,18 +27,18 @@ impl<'a, T> Table<'a, T> {
         Self { rows, columns, decorations: BTreeMap::new(), class: None, more: html! {} }
     }
 
-    /// With a class of the style.
+    /// Sets a class of the style.
     pub(super) fn class(self, class: &'static str) -> Self {
         Self { class: Some(class), ..self }
     }
 
-    /// With a further row at its end.
+    /// Adds a further row at its end.
     pub(super) fn more(self, more: Markup) -> Self {
         Self { more, ..self }
     }
 
-    /// The cells of the first column of this name show this instead: a factor of a campaign may have the name
-    /// of a column, too.
+    /// Shows this in the cells of the first column of this name: a factor of a campaign may have the name of
+    /// a column, too.
     pub(super) fn showing(mut self, name: &str, cell: impl Fn(&T) -> Markup + 'a) -> Self {
         let place = self.columns.iter().position(|column| column.name == name);
         self.decorations.insert(place.unwrap_or_else(|| panic!("{name} is no column")), Box::new(cell));
@@ -77,7 +77,7 @@ fn markup(shown: &Shown) -> Markup {
     }
 }
 
-/// The class of the style for a text that stands out, and what stands before it.
+/// The class of the style for an emphasised text, and the text before it.
 fn look(emphasis: Emphasis) -> (String, &'static str) {
     match emphasis {
         Emphasis::Doubt => ("amber".into(), ""),

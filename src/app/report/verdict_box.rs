@@ -1,4 +1,4 @@
-//! What the box with the verdict says of walks, on a page and in brief.
+//! Parts of the box with the verdict of walks, on a page and in brief.
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
@@ -22,7 +22,7 @@ pub(super) fn eroded_table(walks: &Walks) -> Markup {
     Table::of(walks.summary, eroded_columns()).render()
 }
 
-/// The columns of that table.
+/// The columns of the table of eroded mass.
 fn eroded_columns<'a>() -> Columns<'a, RunSummary> {
     Columns::default()
         .name("run", "Base eroded, by mass", |run: &RunSummary| run_heading(run.run))
@@ -33,12 +33,12 @@ fn eroded_columns<'a>() -> Columns<'a, RunSummary> {
         })
 }
 
-/// What the class means, in a sentence.
+/// Meaning of the class, in a sentence.
 pub(super) fn in_words(walks: &Walks) -> String {
     meaning(walks.verdict, walks.summary, walks.threshold)
 }
 
-/// The classes of the replicates, counted; what one replicate is, and what each of several is.
+/// The classes of the replicates, counted, with the words for one replicate and for each of several.
 pub(super) fn tally(walks: &Walks, [one, each]: [&str; 2]) -> String {
     let count = walks.replicates.len();
     if count == 1 {
@@ -53,7 +53,7 @@ pub(super) fn tally(walks: &Walks, [one, each]: [&str; 2]) -> String {
     format!("{count} replicates, each {each}: {classes}.")
 }
 
-/// What is said of replicates below the table: how many, by which threshold, and a word where there is one.
+/// Text on replicates below the table: their number, the threshold, and a warning for a single one.
 pub(super) fn replicates_in_words(walks: &Walks, what: [&str; 2]) -> Markup {
     html! {
         p {
@@ -69,22 +69,22 @@ pub(super) fn replicates_in_words(walks: &Walks, what: [&str; 2]) -> Markup {
     }
 }
 
-/// What a verdict in brief says beside its numbers.
+/// Texts of a verdict in brief beside its numbers.
 pub(super) struct Said<'a> {
-    /// The lines of practice and model; of a network the model's alone.
+    /// The lines of practice and model; for a network the model's alone.
     pub lines: &'a [(FirstLine, String)],
-    /// What the class means, in the sentence of the page.
+    /// Meaning of the class, in the sentence of the page.
     pub meaning: String,
-    /// What a reader must know besides.
+    /// Notes for the reader.
     pub notes: &'a [Note],
-    /// What one replicate is, and what each of several is.
+    /// Words for one replicate, and for each of several.
     pub replicate: [&'static str; 2],
-    /// What the model leaves out.
+    /// Features that the model omits.
     pub leaves_out: &'a [ModelLimit],
 }
 
-/// The verdict in brief, for a page of another program, as a notebook: no style is needed, and the figure is
-/// a picture, so that several stand on one page.
+/// The verdict in brief, for a page of another program, as a notebook: it needs no style, and the figure is a
+/// picture, so that several fit on one page.
 pub(super) fn brief(walks: &Walks, said: &Said) -> String {
     let drawn = run_figures::verdict(walks);
     let picture = BASE64_STANDARD.encode(drawn.figure.file());

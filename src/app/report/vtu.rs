@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-/// What each cell of a grid is, by VTK's numbers.
+/// Kind of each cell of a grid, by VTK's numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum CellKind {
     /// One point.
@@ -44,7 +44,7 @@ pub(super) struct Grid<'a> {
 }
 
 impl Grid<'_> {
-    /// The file: a head that says where each array begins, then the arrays, each after its length in bytes.
+    /// The file: a head with the beginning of each array, then the arrays, each after its length in bytes.
     pub(super) fn file(&self) -> Vec<u8> {
         let cells = self.corners.len() / self.kind.corners();
         let (mut head, mut data) = (String::new(), Vec::new());

@@ -1,4 +1,4 @@
-//! What the figures and tables of walks show, whether a scene or given networks were walked.
+//! Data for the figures and tables of walks, of a scene or of given networks.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -25,9 +25,9 @@ pub(super) struct Walks<'a> {
     pub base: &'a [[f64; 2]],
     /// The unit of sizes below the first sheet: mm alone, or D0F.
     pub unit: SizeUnit,
-    /// D15F (mm), where the filter is known.
+    /// D15F (mm), if the filter is known.
     pub d15f_mm: Option<f64>,
-    /// Modelled thickness of the filter, where it has one.
+    /// Modelled thickness of the filter, if it has one.
     pub thickness_mm: Option<f64>,
     pub rows: &'a RunRows,
 }
@@ -52,10 +52,10 @@ pub(super) struct RunRows {
     pub eroded: BTreeMap<(u64, u64, u64), Vec<SizeRow>>,
 }
 
-/// Rows with the lines that they stand on.
+/// Rows with their line numbers.
 type Numbered<T> = Vec<(u64, T)>;
 
-/// Where the rows of a run come from: its files, or what would be in them.
+/// Source of the rows of a run: its files, or the contents that they would have.
 pub(super) enum RowSource<'a> {
     Folder(&'a Path),
     Memory(Recorded),
@@ -82,7 +82,7 @@ const RETAINED: &str = "retained.csv";
 const ERODED: &str = "eroded.csv";
 
 impl RunRows {
-    /// Sorts the rows of so many replicates and runs; errors name a file of `folder`.
+    /// Sorts the rows of these numbers of replicates and runs; errors name a file of `folder`.
     ///
     /// # Errors
     /// A file that cannot be read, and rows that do not fit together.
@@ -160,7 +160,7 @@ impl RunRows {
     }
 }
 
-/// Rows by their key, each checked with its line and the row of its key before it.
+/// Rows by their key, each checked with its line and the previous row of its key.
 fn sorted<K: Ord, T>(
     rows: Numbered<T>,
     key: impl Fn(&T) -> K,
@@ -175,7 +175,7 @@ fn sorted<K: Ord, T>(
     Ok(sorted)
 }
 
-/// Refuses what is not between 0 and `most` (Rust reads "nan" and "inf" as numbers).
+/// Refuses values that are not between 0 and `most` (Rust reads "nan" and "inf" as numbers).
 fn in_range(path: &Path, line: u64, field: &str, value: f64, most: f64) -> Result<(), ReportError> {
     if value >= 0.0 && value <= most * (1.0 + 1e-9) {
         return Ok(());

@@ -10,8 +10,8 @@ use voidwalk_practice::Note;
 const ROOM: f64 = 0.6;
 
 impl Outcome {
-    /// Notes on its results: a target that was not reached, what the replicates leave open, what was
-    /// trapped, and what water and voids came to.
+    /// Notes on its results: a target that was not reached, classes that the replicates leave open, trapped
+    /// particles, and the effects of water and full voids.
     pub fn notes_of_results(&self) -> Vec<Note> {
         let trapped: u64 = self.replicates.iter().flat_map(|r| &r.runs).map(|r| r.trapped).sum();
         [
@@ -29,9 +29,9 @@ impl Outcome {
         .collect()
     }
 
-    /// What leaves a class open that the replicates do not separate, where nothing else says it.
+    /// Notes the cause of a class that the replicates do not separate, unless another note does.
     fn replicates_leave_open(&self) -> Option<Note> {
-        // A target error that was met says nothing of the class.
+        // A target error that was met says nothing about the class.
         let said = |stopping: &Stopping| stopping.short_of.is_some() || stopping.decide_percent.is_some();
         if self.stopping.as_ref().is_some_and(said) {
             return None;
@@ -43,7 +43,7 @@ impl Outcome {
         }
     }
 
-    /// That the second run may erode though the first does not.
+    /// Notes that the second run may erode though the first does not.
     fn second_run_may_erode(&self) -> Option<Note> {
         let mean = self.summary.get(1)?.eroded_mass_fraction.mean;
         let [_, most_percent] = *self.model.eroded_percent.get(1)?;
@@ -51,27 +51,28 @@ impl Outcome {
         (self.model.class == Verdict::None && may).then_some(Note::SecondRunMayErode { most_percent })
     }
 
-    /// That less of the filter is modelled than its largest grain.
+    /// Notes that the modelled part of the filter is thinner than its largest grain.
     fn thinner_than_grain(&self) -> Option<Note> {
         let modelled_mm = self.inputs.network.thickness_mm?;
         let [grain_mm, _] = *self.inputs.filter.gradation.last()?;
         (grain_mm > modelled_mm).then_some(Note::ThinnerThanGrain { modelled_mm, grain_mm })
     }
 
-    /// That no other amount of base or thickness was walked.
+    /// Notes that no other amount of base or thickness was walked.
     fn not_studied(&self) -> Option<Note> {
         let is_studied = self.studies_to_come || !(self.sensitivity.is_empty() && self.thickness.is_empty());
         (self.practice.is_some() && !is_studied).then_some(Note::NotStudied {})
     }
 
-    /// How far the permeability fell by the end: a mean over the replicates; `None` where no water flowed.
+    /// Notes the part of the permeability that is left at the end: a mean over the replicates; `None` without
+    /// water.
     fn permeability(&self) -> Option<Note> {
         let last = self.summary.len().checked_sub(1)?;
         let left_percent = 100.0 * self.mean_of(last, |run| run.k_over_k0)?;
         Some(Note::Permeability { run: last as u64 + 1, left_percent })
     }
 
-    /// That a void holds more than it has room for; `None` where none does, or volumes are not known.
+    /// Notes that a void holds more than it has room for; `None` if no void does, or volumes are unknown.
     fn overfull(&self) -> Option<Note> {
         let runs = || self.replicates.iter().flat_map(|replicate| &replicate.runs);
         let share = 100.0 * runs().filter_map(|run| run.overfull_fraction).reduce(f64::max)?;
@@ -82,14 +83,14 @@ impl Outcome {
         }
     }
 
-    /// Mean of a figure of one run over the replicates that have it.
+    /// Mean of a quantity of one run over the replicates that have it.
     fn mean_of(&self, run: usize, of: impl Fn(&Run) -> Option<f64>) -> Option<f64> {
         let values: Vec<f64> = self.replicates.iter().filter_map(|r| of(r.runs.get(run)?)).collect();
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     }
 }
 
-/// The note on a filter of which this part was packed.
+/// The note on a filter from which this part was packed.
 pub fn packed_part(part: &PackedPart) -> Note {
     let PackedPart { percent: part_percent, largest_mm, finer_by, sizes_missing_above, .. } = *part;
     let finer_percent = 100.0 * finer_by;
@@ -100,7 +101,7 @@ pub fn packed_part(part: &PackedPart) -> Note {
     }
 }
 
-/// Why replicates do not reach what was asked for.
+/// Notes the reason why replicates miss the requested target.
 fn short_of(stopping: &Stopping) -> Option<Note> {
     Some(match stopping.short_of? {
         ShortOf::SecondRun => Note::SecondRunMissing {},

@@ -4,15 +4,15 @@ use voidwalk_core::gradation::{BROAD_CU, FEW_FINES, FINES_MM, Gradation};
 use voidwalk_practice::Note;
 use voidwalk_practice::base_cautions::broad_base;
 
-/// With fewer replicates than these their number is said beside the verdict: their scatter is hardly known.
+/// With fewer replicates than these a note states their number: their scatter is hardly known.
 const FEW_REPLICATES: u64 = 5;
 
-/// Ranges of Cu that the model was checked for, of filter and base.
+/// Ranges of Cu, of filter and base, in which the model was checked.
 const FILTER_CU: [f64; 2] = [1.2, 6.0];
 const BASE_CU: [f64; 2] = [1.2, 4.5];
 
-/// A lattice narrower than this many voids has few ways beside each other: on one pair of soils one void
-/// across eroded 3.3 %, forty 13.3 %.
+/// A lattice narrower than this many voids has few parallel paths: on one pair of soils one void across
+/// eroded 3.3 %, forty 13.3 %.
 const FEWEST_ACROSS: u32 = 10;
 
 /// A base, a filter and a network that are to be walked.
@@ -20,15 +20,15 @@ const FEWEST_ACROSS: u32 = 10;
 pub struct PlannedWalk<'a> {
     /// The base, as it is walked.
     pub base: &'a Gradation,
-    /// The base as it was stated, where it is walked regraded.
+    /// The base as it was stated, if it is walked regraded.
     pub regraded_from: Option<&'a Gradation>,
     /// The finest constriction (mm): a pan fraction of the base that may be coarser counts as finer.
     pub finest_constriction_mm: f64,
-    /// The filter, where it is known.
+    /// The filter, if it is known.
     pub filter: Option<&'a Gradation>,
-    /// Whether the filter's gradation is a sieve curve, and not a straight line that was assumed.
+    /// True if the filter's gradation is a sieve curve, and not an assumed straight line.
     pub filter_is_measured: bool,
-    /// Whether sizes are multiples of D0F.
+    /// True if sizes are multiples of D0F.
     pub scale_free: bool,
     /// Voids of a network that was given, not built.
     pub given_voids: Option<u64>,
@@ -36,7 +36,7 @@ pub struct PlannedWalk<'a> {
     pub lattice: Option<[u32; 3]>,
     /// Layers of voids.
     pub layers: u64,
-    /// Whether water flows.
+    /// True if water flows.
     pub flows: bool,
     /// Increments in which the base is inserted.
     pub increments: u64,
@@ -45,7 +45,7 @@ pub struct PlannedWalk<'a> {
 }
 
 impl PlannedWalk<'_> {
-    /// What nobody has checked, or what is not known, in no order.
+    /// Notes on unchecked and unknown things, in no order.
     pub fn notes(&self) -> Vec<Note> {
         let found = [
             self.fines(),
@@ -64,7 +64,7 @@ impl PlannedWalk<'_> {
         found.into_iter().flatten().collect()
     }
 
-    /// Fines of the base that may be cohesive, or that are not known.
+    /// Notes fines of the base that may be cohesive, or that are unknown.
     fn fines(&self) -> Option<Note> {
         let fines = self.base.percent_finer_by_mass(FINES_MM);
         if self.scale_free || fines <= FEW_FINES {
@@ -77,7 +77,7 @@ impl PlannedWalk<'_> {
         })
     }
 
-    /// A base that is broadly graded, walked as practice cuts it or as it is.
+    /// Notes a broadly graded base, walked as practice cuts it or as it is.
     fn broad_base(&self) -> Option<Note> {
         if self.scale_free {
             return None;
@@ -96,8 +96,8 @@ impl PlannedWalk<'_> {
         not_as_uniform("filter", self.filter?.cu(), FILTER_CU)
     }
 
-    /// Where D10 is finer than the finest sieve, its size is never looked for: Cu is more than with all of
-    /// that part as coarse as that sieve, and how much more is not known.
+    /// Notes a Cu that is a lower bound: if D10 is finer than the finest sieve, its size is not extrapolated.
+    /// Cu is greater than if all of that part were as coarse as that sieve, by an unknown amount.
     fn cu_of_base(&self) -> Option<Note> {
         let ([low, high], sieve) = (BASE_CU, self.base.smallest_mm());
         match (self.base.cu(), self.base.d(60.0)) {
@@ -108,7 +108,7 @@ impl PlannedWalk<'_> {
         }
     }
 
-    /// A base whose own finer part its coarser part does not hold.
+    /// Notes a base whose coarser part does not hold its own finer part.
     fn unstable_base(&self) -> Option<Note> {
         let stated = self.regraded_from.unwrap_or(self.base);
         let found = stated.known_kenney_lau().filter(|found| found.value < 1.0 && !self.scale_free)?;
@@ -136,16 +136,16 @@ impl PlannedWalk<'_> {
         (nx.min(ny) < FEWEST_ACROSS).then(|| Note::NarrowLattice { nx: nx.into(), ny: ny.into() })
     }
 
-    /// Where water flows, a base that has all been inserted before any of it can be through.
+    /// Notes a base that is, with water, inserted completely before any of it can be through.
     ///
-    /// A particle makes one move an increment, and needs as many as there are layers. What is on its way when
-    /// the water stops counts as retained; here that is all of it.
+    /// A particle makes one move per increment, and needs as many as there are layers. Particles on their way
+    /// when the water stops count as retained; here this is the whole base.
     fn all_on_its_way(&self) -> Option<Note> {
         let is_late = self.flows && self.increments <= self.layers;
         is_late.then_some(Note::AllOnItsWay { increments: self.increments, layers: self.layers })
     }
 
-    /// That the replicates say little of their own scatter.
+    /// Notes that the replicates reveal little of their own scatter.
     fn few_replicates(&self) -> Option<Note> {
         match self.replicates {
             1 => Some(Note::OneReplicate {}),
@@ -159,7 +159,7 @@ fn is_within(cu: f64, [low, high]: [f64; 2]) -> bool {
     (low - 1e-9..=high + 1e-9).contains(&cu)
 }
 
-/// That a soil is more or less uniform than those for which the model was checked.
+/// Notes a soil that is more or less uniform than the soils for which the model was checked.
 fn not_as_uniform(soil: &str, cu: Option<f64>, [low, high]: [f64; 2]) -> Option<Note> {
     let soil = soil.to_owned();
     match cu {
@@ -177,7 +177,7 @@ mod tests {
         Gradation::from_lines(points).unwrap()
     }
 
-    /// A plan that nothing is found about, and what each change of it is found to be.
+    /// A plan without findings, and the finding of each change of it.
     #[test]
     fn each_finding_follows_from_its_own_change_alone() {
         let sand = soil(&[(0.2, 0.0), (0.6, 100.0)]);
@@ -208,7 +208,7 @@ mod tests {
             ids(&changed)
         };
         assert_eq!(ids(&plan), [""; 0]);
-        // Of each pair of soils: what is found in mm, and in multiples of D0F.
+        // Each pair of soils with its findings in mm, and in multiples of D0F.
         for (base, in_mm, free) in [
             (&silt, vec!["cohesive_fines"], vec![]),
             (

@@ -6,7 +6,7 @@ use crate::outcome::record::{Manifest, Outcome};
 use voidwalk_practice::AboutPage;
 use voidwalk_practice::Decision;
 
-/// The content of the files of a run folder and what follows from it, of which its page is made.
+/// The content of the files of a run folder and the derived values from which its page is made.
 pub struct RunFiles {
     /// `outcome.json`.
     pub outcome: Outcome,
@@ -18,7 +18,7 @@ pub struct RunFiles {
     pub scene: String,
     /// Its settings of the page.
     pub about: AboutPage,
-    /// `inputs/packing.json`, where the filter was packed.
+    /// `inputs/packing.json`, if the filter was packed.
     pub packing: Option<PackingRecord>,
     /// The rows of the CSV files.
     pub recorded: Recorded,

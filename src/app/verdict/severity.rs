@@ -1,12 +1,12 @@
-//! Practice beside the model where a command accepts a verdict or not (`--fail-on`).
+//! Practice beside the model for a command that accepts a verdict or not (`--fail-on`).
 
 use voidwalk_practice::decision::Standing;
 use voidwalk_practice::{Decision, TestedClass};
 
 use crate::outcome::record::Verdict;
 
-/// The class as which practice counts where verdicts are accepted or not, the worst that nobody excludes;
-/// `None` where no rule of design was applied.
+/// The class by which practice counts when verdicts are accepted or not, the worst that nobody excludes;
+/// `None` if no rule of design was applied.
 pub fn counts_as(decision: &Decision) -> Option<Verdict> {
     let coarse = match decision.tests {
         TestedClass::Continuing => Verdict::Continuing,

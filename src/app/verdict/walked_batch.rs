@@ -1,4 +1,4 @@
-//! Many samples against filters: what practice says of each pair, and beside it what its walk says.
+//! Many samples against filters: the answer of practice on each pair, and the result of its walk.
 
 use serde::{Deserialize, Serialize};
 
@@ -93,7 +93,7 @@ pub struct SampleWalk {
 }
 
 impl SampleWalk {
-    /// Of the outcome in this folder.
+    /// Takes the numbers of the outcome in this folder.
     pub fn of(outcome: &Outcome, folder: String, in_full: bool) -> Self {
         let range = outcome.curve_range.as_ref();
         Self {
@@ -131,7 +131,7 @@ impl WalkedBatch {
         }
     }
 
-    /// Whether it is of one base and several filters, not of samples.
+    /// True for one base and several filters instead of samples.
     pub fn has_one_base(&self) -> bool {
         !self.base.is_empty()
     }
@@ -150,19 +150,18 @@ impl WalkedBatch {
 }
 
 impl WalkedRow {
-    /// Whether its walk erodes.
+    /// Tells if its walk erodes.
     pub fn erodes(&self) -> bool {
         let class = self.walk.as_ref().map(|walk| walk.verdict);
         matches!(class, Some(Verdict::Some | Verdict::Continuing))
     }
 
-    /// Whether a rule that is met leaves it in doubt whether the filter holds the sample: another is not
-    /// kept, or its walk erodes.
+    /// Tells if a rule that is met is in doubt: another rule is not kept, or the walk erodes.
     pub fn is_doubted(&self) -> bool {
         self.is_against_practice() || self.erodes()
     }
 
-    /// Whether a rule of retention or of the filter's own stability is not kept.
+    /// Tells if a rule of retention or of the filter's own stability is not kept.
     pub fn is_against_practice(&self) -> bool {
         let breaks = |walk: &SampleWalk| walk.by_practice.is_some_and(|class| class != Verdict::None);
         self.walk.as_ref().is_some_and(breaks) || self.rules.met == Some(false) || self.rules.may_lose_fines

@@ -1,15 +1,15 @@
-//! What a walk itself says against its verdict: a filter that clogged, particles that circle, a second run
-//! that erodes more than the first.
+//! Doubts about a verdict from its own walk: a filter that clogged, particles that circle, a second run that
+//! erodes more than the first.
 
 use crate::outcome::record::{Replicate, Run, Verdict};
 use crate::outcome::verdict::THRESHOLD;
 use voidwalk_core::gradation::Gradation;
 use voidwalk_practice::Note;
 
-/// Less than this part of the clean filter's permeability is none: 0.0 % where it is shown.
+/// A permeability below this part of the clean filter's is treated as zero: it is shown as 0.0 %.
 const CLOGGED: f64 = 5e-4;
 
-/// A walk as its doubts see it.
+/// Data of a walk that raise doubts.
 pub struct Walked<'a> {
     /// Its replicates.
     pub replicates: Vec<&'a Replicate>,
@@ -21,17 +21,17 @@ pub struct Walked<'a> {
     pub share: f64,
     /// Layers of the network.
     pub layers: u64,
-    /// Whether blocked constrictions leave openings.
+    /// True if blocked constrictions leave openings.
     pub openings: bool,
 }
 
-/// Whether so small a part of the clean filter's permeability is none at all. What openings let pass is
-/// little, but water flows.
+/// Tells if such a small part of the clean filter's permeability is treated as zero. With openings little
+/// passes, but water flows.
 pub fn is_clogged(k_over_k0: f64, openings: bool) -> bool {
     k_over_k0 <= if openings { 0.0 } else { CLOGGED }
 }
 
-/// Why a class that does not erode for ever cannot be relied on, for what happened in its walk.
+/// Notes the reasons in its walk to distrust a class that does not erode for ever.
 pub fn notes(verdict: Verdict, walked: &Walked) -> Vec<Note> {
     // The first run tells "no erosion" from the others, the second "some" from "continuing".
     let run = match verdict {
@@ -52,10 +52,10 @@ impl Walked<'_> {
         self.replicates.iter().flat_map(|of| &of.runs).filter(move |run| run.run == number)
     }
 
-    /// That no water flowed any more at the end of the run that decides.
+    /// Notes that no water flowed at the end of the run that decides.
     ///
-    /// From then on nothing moves: all that is on its way, at least what the last increments inserted, as
-    /// many as there are layers, counts as retained.
+    /// From then on nothing moves: all particles on their way, at least those of the last increments, as many
+    /// as there are layers, count as retained.
     fn clogging(&self, run: u64) -> Option<Note> {
         let all = self.of_run(run).count();
         let is_none = |k_over_k0| is_clogged(k_over_k0, self.openings);
@@ -66,7 +66,7 @@ impl Walked<'_> {
         let [replicates, walked] = [clogged, all].map(|count| count as u64);
         let smaller_inject_share = self.share / 10.0;
         let inserted = |increment: u64| (increment as f64 * self.share).min(1.0);
-        // The second run goes on with what the first left.
+        // The second run continues from the state that the first left.
         let from_start = run == 2 && self.clogged.iter().any(|found| found[1] == 2 && found[2] == 0);
         if from_start {
             return Some(Note::CloggedBefore { replicates, walked, smaller_inject_share });
@@ -76,7 +76,7 @@ impl Walked<'_> {
         Some(Note::Clogged { run, replicates, walked, over_on_its_way_percent, smaller_inject_share })
     }
 
-    /// That the particles trapped could turn the class if they were not retained.
+    /// Notes that the trapped particles could change the class if they were not retained.
     fn trapping(&self, run: u64) -> Option<Note> {
         let could_leave = |run: &&Run| {
             let share = run.trapped as f64 / run.inserted.max(1) as f64;
@@ -88,14 +88,14 @@ impl Walked<'_> {
         Some(Note::TrappedCouldTurn { trapped: worst.trapped, inserted: worst.inserted, mass_percent })
     }
 
-    /// The most mass that such a share of the particles, by number, can have: that of the coarsest.
+    /// The greatest mass of such a share of the particles, by number: the mass of the coarsest.
     fn mass_of(&self, share: f64) -> f64 {
         let coarser_than = self.base.d_by_number(100.0 * (1.0 - share));
         let mass = coarser_than.map_or(1.0, |d| 1.0 - self.base.percent_finer_by_mass(d) / 100.0);
         mass.clamp(share, 1.0)
     }
 
-    /// That the second run erodes what the first did not.
+    /// Notes that the second run erodes what the first did not.
     fn more_in_the_second(&self) -> Option<Note> {
         let eroded: Vec<f64> = self.of_run(2).map(|run| run.eroded_mass_fraction).collect();
         let mean = eroded.iter().sum::<f64>() / eroded.len().max(1) as f64;
@@ -149,7 +149,7 @@ mod tests {
             other => panic!("{other:?}"),
         };
         assert_eq!(over_on_its_way(&[[1, 1, 41], [1, 2, 0]]), 30.0);
-        // Less than has been inserted cannot be on its way.
+        // The mass on its way cannot exceed the mass inserted.
         assert_eq!(over_on_its_way(&[[1, 1, 10], [1, 2, 0]]), 10.0);
         assert_eq!(over_on_its_way(&[[1, 1, 24], [2, 1, 32], [1, 2, 0]]), 24.0);
         let before = of(Verdict::Some, &closed, &[[1, 1, 41], [1, 2, 0]]);
@@ -160,7 +160,7 @@ mod tests {
         }
     }
 
-    /// Where openings are left a little water always flows.
+    /// Openings always let a little water flow.
     #[test]
     fn what_openings_still_let_pass_is_not_clogged() {
         let clogs = |k: f64, openings: bool| {

@@ -1,4 +1,4 @@
-//! The lines that every face begins with: practice, the model, and what to do next.
+//! The lines at the top of every face: practice, the model, and the next step.
 
 use super::next::next;
 use super::practice::practice_line;
@@ -7,10 +7,10 @@ use voidwalk_practice::Decision;
 use voidwalk_practice::Note;
 use voidwalk_practice::quantity::{SizeUnit, percent};
 
-/// The most notes in a brief verdict of a run, and in the answer on boundaries, which counts the others.
+/// Most notes in a brief verdict of a run, and in the answer on boundaries, which counts the others.
 pub const FOREMOST: usize = 3;
 
-/// A line that every face begins with.
+/// A line at the top of every face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FirstLine {
     /// The answer of practice.
@@ -22,7 +22,7 @@ pub enum FirstLine {
 }
 
 impl FirstLine {
-    /// The name under which it stands.
+    /// The name before the line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Practice => "Practice",
@@ -32,7 +32,7 @@ impl FirstLine {
     }
 }
 
-/// The lines that every face begins with: without two sieve curves in mm the model's alone.
+/// The lines at the top of every face: without two sieve curves in mm the model's alone.
 pub fn first_lines(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> Vec<(FirstLine, String)> {
     let line = (FirstLine::Model, model(&outcome.model));
     match decision.headline {
@@ -51,7 +51,7 @@ pub fn foremost(outcome: &Outcome) -> (&[Note], usize) {
     (first, rest.len())
 }
 
-/// The class of a walk, and what eroded in each run.
+/// The class of a walk, and the mass eroded in each run.
 pub fn model(model: &Model) -> String {
     let part = |of: f64| percent((of / 100.0).max(0.0));
     let run = |(run, [low, high]): (usize, &[f64; 2])| {

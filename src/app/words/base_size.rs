@@ -1,16 +1,16 @@
-//! D85 of a base, and which base it is of: every face says both in the same words.
+//! D85 of a base, and the base that it belongs to: every face uses the same words.
 
 use crate::outcome::BaseSize;
 use voidwalk_practice::quantity::{SizeUnit, length, significant};
 use voidwalk_sheets::us_sieve;
 
-/// Whether a base is regraded, and on what.
+/// Grading of a base: as sampled, or the sieve on which it is regraded.
 pub fn grading(of: &BaseSize) -> String {
     of.regraded_at_mm.map_or_else(|| "as sampled".into(), |at| format!("regraded on {} mm", significant(at)))
 }
 
-/// All of it, as `D85B 1.80 mm, regraded on 4.75 mm (as sampled 12.8 mm)`; with inches behind each D85 and
-/// the name of a US sieve where those are shown.
+/// The whole text, as `D85B 1.80 mm, regraded on 4.75 mm (as sampled 12.8 mm)`; if inches are shown, with
+/// inches behind each D85 and the name of a US sieve.
 pub fn base_size(of: &BaseSize, unit: SizeUnit) -> String {
     let size = |mm: f64| length(mm, unit).to_string();
     let before = of.as_sampled_mm.filter(|_| of.regraded_at_mm.is_some());

@@ -14,14 +14,14 @@ use voidwalk_practice::quantity::{
 };
 use voidwalk_practice::{BatchFilter, BatchRow};
 
-/// Said of a sample whose limit is open.
+/// Words for a sample whose limit is open.
 pub const MAY_GOVERN: &str = "may govern, as its limit is not known or may be lower";
 
-/// Why nothing is applied to a pair, nor walked.
+/// The reason why a pair is neither judged nor walked.
 pub const EXCHANGED: &str = "base and filter look exchanged";
 
-/// The columns of a batch: its file, and under their headings what a terminal and a page show, sizes in this
-/// unit. Details are those that the table of walks leaves out.
+/// The columns of a batch: its file, and under their headings the columns of a terminal and a page, sizes in
+/// this unit. Details are the columns that the table of walks leaves out.
 pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, BatchRow> {
     let size = move |mm: Option<f64>| mm.map(|mm| length(mm, unit).in_cell());
     let limit = move |row: &BatchRow| {
@@ -59,7 +59,7 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, BatchRow> {
         .place(9)
 }
 
-/// The columns of `batch.csv`, and under their headings what a terminal and a page show, sizes in this
+/// The columns of `batch.csv`, and under their headings the columns of a terminal and a page, sizes in this
 /// unit.
 pub fn walked_columns<'a>(unit: SizeUnit) -> Columns<'a, WalkedRow> {
     let walk = |row: &WalkedRow| row.walk.clone();
@@ -92,12 +92,12 @@ fn why_not(row: &WalkedRow) -> Option<String> {
     row.walk.is_none().then(|| row.not_walked.clone()).filter(|why| !why.is_empty())
 }
 
-/// D15F of the filter and its limit: with as many digits as tell them apart.
+/// D15F of the filter and its limit, with enough digits to tell them apart.
 pub fn d15f_and_limit(row: &BatchRow, unit: SizeUnit) -> [Option<String>; 2] {
     beside_limit([row.d15f_mm, row.limit_mm], false, Unit::Size(unit))
 }
 
-/// The same in the cells of a table that names the unit at its head.
+/// D15F and its limit in the cells of a table that has the unit at its head.
 fn d15f_and_limit_in_cells(row: &BatchRow, unit: SizeUnit) -> [Option<String>; 2] {
     beside_limit_in_cells([row.d15f_mm, row.limit_mm], false, Unit::Size(unit))
 }
@@ -112,7 +112,7 @@ fn result(row: &BatchRow) -> &'static str {
     }
 }
 
-/// What else to know of a row, in the cell of a table.
+/// Remarks on a row, in the cell of a table.
 fn besides(row: &BatchRow, unit: SizeUnit) -> String {
     let mut all: Vec<String> = row.notes.iter().map(|note| sentence(note, unit)).collect();
     all.extend(row.open_sieves.map(|sieves| rule_note(sieves, unit)));
@@ -141,10 +141,11 @@ fn besides(row: &BatchRow, unit: SizeUnit) -> String {
     all.join("; ")
 }
 
-/// Said where drainage has no result.
+/// Words for drainage without a result.
 const DRAINAGE_UNKNOWN: &str = "drainage not known";
 
-/// How many samples it retains, and which govern, a sentence each; of an envelope the curves are named.
+/// Number of samples that it retains, and the samples that govern, one sentence each; the curves of an
+/// envelope are named.
 pub fn of_filter(filter: &BatchFilter, rows: &[BatchRow], unit: SizeUnit) -> Vec<String> {
     let BatchFilter { name, curves, .. } = filter;
     let mut lines = vec![format!("{name}: {}", counts(rows, name))];
@@ -172,8 +173,8 @@ pub fn of_filter(filter: &BatchFilter, rows: &[BatchRow], unit: SizeUnit) -> Vec
     lines
 }
 
-/// How many samples a filter retains; how many it may not drain, and of how many that is not known, where it
-/// does not drain all.
+/// Number of samples that a filter retains; unless it drains all, the number that it may not drain, and the
+/// number for which drainage is unknown.
 pub fn counts(rows: &[BatchRow], filter: &str) -> String {
     let in_filter = || rows.iter().filter(|row| row.filter == filter);
     let samples = in_filter().count();
@@ -193,7 +194,7 @@ pub fn counts(rows: &[BatchRow], filter: &str) -> String {
     format!("of {samples} {one_or_more} {met} met{on_condition}, {others}")
 }
 
-/// The sample that asks a filter for the maximum D15F to drain, in words; `None` where it drains all, or
+/// The sample with the greatest minimum D15F that drains, in words; `None` if the filter drains all, or
 /// without a limit.
 pub fn governs_drainage(rows: &[BatchRow], filter: &str, unit: SizeUnit) -> Option<String> {
     let undrained = rows.iter().filter(|row| row.filter == filter && row.drains != Some(true));
@@ -209,7 +210,7 @@ pub fn governs_drainage(rows: &[BatchRow], filter: &str, unit: SizeUnit) -> Opti
     Some(format!("drainage is governed by {}: {limit}", row.sample))
 }
 
-/// The samples of a filter that may govern, and those to which nothing was applied, a sentence each without
+/// The samples of a filter that may govern, and those to which nothing was applied, one sentence each without
 /// its end.
 pub fn open_limits(rows: &[BatchRow], filter: &str) -> Vec<String> {
     let names = |rows: Vec<&BatchRow>| {
@@ -222,8 +223,8 @@ pub fn open_limits(rows: &[BatchRow], filter: &str) -> Vec<String> {
     open.into_iter().chain(refused).collect()
 }
 
-/// What was walked of a filter, sentences without their ends: how many samples, how, and to which
-/// classes; then those for which the walk is stricter than practice.
+/// Walks of a filter, as sentences without their ends: the number of samples, the kinds of walks and their
+/// classes; then the samples for which the walk is stricter than practice.
 pub fn walks(batch: &WalkedBatch, filter: &str, unit: SizeUnit) -> Vec<String> {
     let rows: Vec<&WalkedRow> = batch.of_filter(filter).collect();
     let walks: Vec<&SampleWalk> = rows.iter().filter_map(|row| row.walk.as_ref()).collect();
@@ -248,14 +249,14 @@ pub fn walks(batch: &WalkedBatch, filter: &str, unit: SizeUnit) -> Vec<String> {
     all
 }
 
-/// Whether the filter holds the sample by practice and walk; or why it was not walked.
+/// Answer of practice and walk on the sample; or the reason why it was not walked.
 pub fn answer(row: &WalkedRow) -> String {
     let Some(walk) = &row.walk else { return format!("not walked: {}", row.not_walked) };
     let practice = walk.headline.map(|headline| format!("{}; ", headline.words()));
     format!("{}{} in the model", practice.unwrap_or_default(), walk.verdict.words())
 }
 
-/// The number of samples that may be dispersive, and those of which practice is not met then.
+/// The number of samples that may be dispersive, and the samples that then break practice.
 fn dispersive_samples(rows: &[&WalkedRow], unit: SizeUnit) -> Option<String> {
     let limit = |row: &&WalkedRow| Some((row.rules.clone(), row.walk.as_ref().and(row.rules.if_dispersive)?));
     let open: Vec<(BatchRow, IfDispersive)> = rows.iter().filter_map(limit).collect();
@@ -277,7 +278,7 @@ fn dispersive_samples(rows: &[&WalkedRow], unit: SizeUnit) -> Option<String> {
     (!open.is_empty()).then_some(said)
 }
 
-/// How many walks came to each class.
+/// Number of walks in each class.
 fn classes(walks: &[&SampleWalk]) -> String {
     let count = |class| walks.iter().filter(|walk| walk.verdict == class).count();
     let counted = Verdict::ALL.into_iter().filter(|class| count(*class) > 0);

@@ -42,7 +42,7 @@ fn a_row_is_what_the_rules_say_of_the_pair_alone() {
     assert_eq!(rows[0].limit_mm, retention(&pair.rules, d15f).map(|(_, limit)| limit));
     assert_eq!((rows[0].met, rows[0].tests), (Some(true), TestedClass::None));
     assert_eq!((rows[1].met, rows[2].limit_mm, rows[2].category), (Some(false), Some(0.7), Some(2)));
-    // Fines that nobody sieved: a limit at most, and no result for a filter within it.
+    // Fines that nobody sieved: an upper bound of the limit, and no result for a filter within it.
     assert!(rows[3].limit_at_most && rows[3].met != Some(true), "{:?}", rows[3]);
     assert!(rows[4].met.is_none() && rows[4].is_refused, "{:?}", rows[4]);
     let csv = String::from_utf8(columns(SizeUnit::Mm).csv(&rows)).unwrap();
@@ -92,7 +92,7 @@ fn the_strictest_governs_and_open_limits_are_named() {
     let rows = rows();
     let names = |rows: Vec<&BatchRow>| rows.iter().map(|row| row.sample.clone()).collect::<Vec<_>>();
     assert_eq!(names(governing(&rows, "F", 2)), ["fine sand", "silty"]);
-    // Of four limits the one that is a limit at most governs itself, or may.
+    // The upper bound among four limits governs, or may govern.
     let named = names(governing(&rows, "F", NAMED));
     let open: &[&str] = if named.contains(&"open".to_owned()) { &[] } else { &["open"] };
     assert_eq!(names(may_govern(&rows, "F")), open);
@@ -115,8 +115,9 @@ fn a_row_that_a_dispersive_base_would_break_is_met_on_that_condition_alone() {
     assert!(said.contains("1 met (1 of them unless the base is dispersive), 0 not met"), "{said}");
 }
 
-/// What is too coarse without its finer part is not met in the table either. What is left of one
-/// of a tenth of its sizes keeps the limit of a dispersive till too, and has no result: it may lose more.
+/// A filter that is too coarse without its finer part is not met in the table either. A filter with a tenth
+/// of its sizes keeps, without its finer part, the limit of a dispersive till too, and has no result: it may
+/// lose more.
 #[test]
 fn a_filter_that_is_too_coarse_without_its_finer_part_is_not_met() {
     use super::test_soils::{GRAVEL_0_32, REGRADED_TILL};
@@ -147,7 +148,7 @@ fn doubtful_tables_and_joints_stand_in_the_note() {
     assert_eq!(joint(0.45 * d95b).joint, Some(JointErosion { percent: None, is_below_source: true }));
 }
 
-/// Limits of fines are the same for many samples: 0.7 mm. The finer one comes first.
+/// Limits of fines are the same for many samples: 0.7 mm. The finer sample comes first.
 #[test]
 fn of_equal_limits_the_finer_base_governs_and_the_others_are_counted() {
     let filter = vec![("F".to_owned(), soil(&[(0.5, 0.0), (2.0, 100.0)]))];
@@ -161,7 +162,7 @@ fn of_equal_limits_the_finer_base_governs_and_the_others_are_counted() {
     assert_eq!(more_with_that_limit(&rows, "G", &[]), 0);
 }
 
-/// The limit of a base whose fines nobody sieved is one at most, whether D15F is known or not.
+/// The limit of a base whose fines nobody sieved is an upper bound, with a known D15F and without.
 #[test]
 fn a_d15f_in_the_pan_hides_no_limit_that_is_one_at_most() {
     let filter = vec![("F".to_owned(), soil(&[(0.5, 30.0), (2.0, 100.0)]))];

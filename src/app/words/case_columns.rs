@@ -6,20 +6,21 @@ use crate::outcome::record::{Ratios, Statistic};
 use crate::outcome::table::{Columns, Emphasis, TableCell};
 use voidwalk_practice::quantity::{SizeUnit, length, percent, significant, whole};
 
-/// Mass eroded in a run, and its range where the constriction curve is a range.
+/// Mass eroded in a run, and its range if the constriction curve is a range.
 type Eroded = (Option<Statistic>, Option<[f64; 2]>);
 
-/// A thickness, whether it is a multiple of D0F instead of mm, and layers.
+/// A thickness, true if it is a multiple of D0F instead of mm, and layers.
 type Thickness = (Option<f64>, bool, Option<u64>);
 
 impl<'a, T: 'a> Columns<'a, T> {
-    /// How many rules of practice are not kept.
+    /// Number of rules of practice that are broken.
     pub(super) fn broken_rules(self, name: &str, heading: &str, of: fn(&T) -> Option<usize>) -> Self {
         let doubt = move |row: &T| of(row).filter(|count| *count > 0).map(|_| Emphasis::Doubt);
         self.column(name, of).page_number(heading, move |row| of(row).shown().emphasised(doubt(row)))
     }
 
-    /// D15F over D85B, whose base a page names below it, and over D95B; a page shows them after what eroded.
+    /// Adds D15F over D85B, whose base a page names below it, and over D95B; a page shows them after the
+    /// eroded mass.
     pub(crate) fn ratios(
         self,
         decimals: usize,
@@ -38,8 +39,8 @@ impl<'a, T: 'a> Columns<'a, T> {
             .column("d85b_of", move |row| of(row).1.map(|base| grading(&base)))
     }
 
-    /// Mass eroded in the first run and in the second, with its interval and, on a page, its range where the
-    /// constriction curve is a range.
+    /// Adds the mass eroded in the first run and in the second, with its interval and, on a page, its range
+    /// if the constriction curve is a range.
     pub(crate) fn eroded(self, of: fn(&T, usize) -> Eroded) -> Self {
         let cell = move |row: &T, run| {
             let (statistic, range) = of(row, run);
@@ -52,7 +53,8 @@ impl<'a, T: 'a> Columns<'a, T> {
             .page_number("second run", move |row| cell(row, 1))
     }
 
-    /// The thickness of the filter: in a file in mm alone, on a page with its unit and, where given, layers.
+    /// Adds the thickness of the filter: in a file in mm alone, on a page with its unit and, if given,
+    /// layers.
     pub(super) fn thickness(self, decimals: usize, unit: SizeUnit, of: fn(&T) -> Thickness) -> Self {
         let in_mm = move |row: &T| of(row).0.filter(|_| !of(row).1);
         self.digits("thickness_mm", decimals, in_mm).page_number("Thickness", move |row| {

@@ -3,7 +3,7 @@
 use crate::outcome::record::{RunSummary, Verdict};
 use crate::outcome::undecided::UndecidedBy;
 
-/// Why a class is undecided, in a sentence without its end.
+/// The reason why a class is undecided, in a sentence without its end.
 pub fn undecided_by(cause: UndecidedBy) -> &'static str {
     match cause {
         UndecidedBy::Curve => {
@@ -24,7 +24,7 @@ pub fn capital(text: &str) -> String {
     chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
 }
 
-/// What a class means, in a sentence, of runs whose means these are.
+/// Meaning of a class, in a sentence, for runs with these means.
 pub fn meaning(verdict: Verdict, summary: &[RunSummary], threshold: f64) -> String {
     let limit = format!("{}\u{202f}%", (1e4 * threshold).round() / 1e2);
     match verdict {

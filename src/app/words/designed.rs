@@ -1,4 +1,4 @@
-//! How coarse a filter for many samples may be, in sentences.
+//! Limits of a filter for many samples, in sentences.
 
 use super::dispersion::{beside_dispersive, dispersive_limit, test};
 use super::specification::no_band;
@@ -9,10 +9,10 @@ use voidwalk_practice::quantity::{NumberRole, SizeUnit, length, limits};
 use voidwalk_practice::rules::WIDEST_BAND;
 use voidwalk_practice::{DesignedSample, DesignedSamples, least_of_band, no_band_between};
 
-/// Whether a note is of a kind.
+/// Tells if a note is of a kind.
 type IsKind = fn(&Note) -> bool;
 
-/// What a specification warns of a base, and how it begins where it is said of several.
+/// Warnings of a specification on a base, and their beginnings for several samples.
 const CAUTIONS: [(IsKind, &str); 5] = [
     (|note| matches!(note, Note::UnstableBase { .. }), "Not internally stable by Kenney and Lau"),
     (
@@ -30,24 +30,23 @@ const CAUTIONS: [(IsKind, &str); 5] = [
     ),
 ];
 
-/// So many samples.
 fn counted(samples: usize) -> String {
     format!("{samples} sample{}", if samples == 1 { "" } else { "s" })
 }
 
-/// The sample with the greatest minimum D15F to drain, and that D15F (mm); `None` where none has any.
+/// The sample with the greatest minimum D15F to drain, and that D15F (mm); `None` if no sample has one.
 fn drainage<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<(&'a DesignedSample, f64)> {
     let limits = rows.into_iter().filter_map(|row| Some((row, row.d15f_min_mm?)));
     limits.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// The sample with the least maximum D15F, and that D15F (mm); `None` where none has any.
+/// The sample with the least maximum D15F, and that D15F (mm); `None` if no sample has one.
 fn strictest<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<(&'a DesignedSample, f64)> {
     let limits = rows.into_iter().filter_map(|row| Some((row, row.d15f_max_mm?)));
     limits.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// The maximum D15F of a sample, and whose rule sets it.
+/// The maximum D15F of a sample, and the origin of its rule.
 fn greatest(row: &DesignedSample, unit: SizeUnit) -> String {
     row.d15f_max_mm.map_or_else(
         || "no maximum D15F is known".into(),
@@ -55,14 +54,14 @@ fn greatest(row: &DesignedSample, unit: SizeUnit) -> String {
     )
 }
 
-/// Why a sample has no band of its own, without the last full stop; empty where it has one.
+/// The reason why a sample has no band of its own, without the last full stop; empty if it has one.
 fn without_band(row: &DesignedSample, unit: SizeUnit) -> String {
     row.no_band.as_ref().map_or_else(String::new, |why| no_band(why, unit).trim_end_matches('.').to_owned())
 }
 
 /// The D15F of a filter for all samples, in a sentence without its end.
 ///
-/// Both ends are of the samples that are settled, and the greatest is never above what any other allows.
+/// Both ends belong to settled samples, and the greatest is never above the limit of any other sample.
 pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
     let [most, least_of] = [false, true]
         .map(|at_least| move |mm: f64| length(mm, unit).role(NumberRole::of_limit(at_least)).to_string());
@@ -132,9 +131,8 @@ pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
     }
 }
 
-/// Samples that govern, whose limits they have, and those that are open: sentences without their ends;
-/// `again` is what to do where a sample is dispersive, as
-/// [`DESIGN_EACH_AGAIN`](super::specification::DESIGN_EACH_AGAIN).
+/// The governing samples with their limits, and the open samples: sentences without their ends; `again` is
+/// the advice for a dispersive sample, as [`DESIGN_EACH_AGAIN`](super::specification::DESIGN_EACH_AGAIN).
 pub fn lines(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Vec<String> {
     let mut said = vec![for_all(all, unit)];
     for (at, row) in all.governing().into_iter().enumerate() {
@@ -159,8 +157,8 @@ pub fn lines(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Vec<String> 
     said
 }
 
-/// How many samples may be dispersive, and what practice allows the strictest of those for which it then
-/// allows less.
+/// Number of samples that may be dispersive, and the limit by practice of the strictest sample whose limit is
+/// then lower.
 fn dispersion(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Option<String> {
     let open: Vec<_> = all.rows.iter().filter_map(|row| Some((row, row.if_dispersive?))).collect();
     let is_less = |(row, of): &&(&DesignedSample, IfDispersive)| {
@@ -182,7 +180,7 @@ fn dispersion(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Option<Stri
     ))
 }
 
-/// What no band has here, of one sample or of all; `None` where no sample has a band.
+/// Items that no band has, for one sample or for all; `None` if no sample has a band.
 fn still_to_set(all: &DesignedSamples) -> Option<String> {
     let has_band = all.rows.iter().any(|row| row.d15f_max_mm.is_some() && row.no_band.is_none());
     has_band.then(|| {
@@ -192,7 +190,7 @@ fn still_to_set(all: &DesignedSamples) -> Option<String> {
     })
 }
 
-/// What is to be known of the samples themselves, with their names.
+/// Warnings on the samples themselves, with their names.
 fn cautions(all: &DesignedSamples) -> Vec<String> {
     let named = |(is_it, what): &(fn(&Note) -> bool, &str)| {
         let is_so = |row: &&DesignedSample| row.notes.iter().any(is_it);
@@ -202,7 +200,7 @@ fn cautions(all: &DesignedSamples) -> Vec<String> {
     CAUTIONS.iter().filter_map(named).collect()
 }
 
-/// The limit of a dispersive base, and the test that tells one that is not known.
+/// The limit of a dispersive base, and the test for an unknown one.
 fn clause(limit: IfDispersive, unit: SizeUnit) -> String {
     let words = format!("D15F is to be {}", dispersive_limit(limit, unit));
     if limit.at_most {
@@ -212,7 +210,7 @@ fn clause(limit: IfDispersive, unit: SizeUnit) -> String {
     }
 }
 
-/// The columns of `designs.csv`, and under their headings what a terminal and a page show, sizes in this
+/// The columns of `designs.csv`, and under their headings the columns of a terminal and a page, sizes in this
 /// unit.
 pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
     let drains = move |row: &DesignedSample| {
@@ -289,7 +287,7 @@ mod tests {
         assert_eq!(csv.lines().count(), 3);
     }
 
-    /// The table of many samples warns as the specification of each.
+    /// The table of many samples has the warnings of each specification.
     #[test]
     fn samples_that_are_not_stable_themselves_are_named() {
         let gap = [(0.01, 0.0), (0.075, 20.0), (0.425, 29.0), (2.0, 30.0), (4.75, 50.0), (19.0, 100.0)];
@@ -332,7 +330,7 @@ mod tests {
 
     #[test]
     fn both_ends_are_of_the_samples_that_are_settled_and_a_bound_on_drainage_refuses_nothing() {
-        // The open sample drains from far more than the settled one allows.
+        // The open sample drains only from a D15F far above the limit of the settled one.
         let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
         let gravel = DesignedSample { d15f_max_mm: None, ..row("g", &[(1.0, 0.0), (9.0, 100.0)]) };
         assert!(gravel.d15f_min_mm.unwrap() > 1.0);

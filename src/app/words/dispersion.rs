@@ -1,4 +1,4 @@
-//! The limit of a base of which nobody has said whether it is dispersive.
+//! The limit of a base that may be dispersive or not.
 
 use voidwalk_practice::dispersion::BeyondDispersive;
 use voidwalk_practice::quantity::{NumberRole, SizeUnit, Unit, beside_limit, length, significant};
@@ -17,7 +17,7 @@ pub(super) fn beyond_dispersive(beyond: &BeyondDispersive, unit: SizeUnit) -> St
     format!("dispersive base: limit {at_most}{most}, not kept{without}")
 }
 
-/// The limit behind a D15F (mm) that is recommended; `None` where that holds for a dispersive base too.
+/// The limit behind a recommended D15F (mm); `None` if that holds for a dispersive base too.
 pub fn beside_dispersive(limit: IfDispersive, d15f_mm: f64, unit: SizeUnit) -> Option<String> {
     if !limit.at_most && limit.d15f_max_mm >= d15f_mm {
         return None;
@@ -30,7 +30,7 @@ pub fn beside_dispersive(limit: IfDispersive, d15f_mm: f64, unit: SizeUnit) -> O
     Some(format!("dispersive base: {bound} {most}"))
 }
 
-/// The limit of D15F. One that no source gives is never called that of other bases.
+/// The limit of D15F. A limit that no source gives is never stated as the limit of other bases.
 pub fn dispersive_limit(limit: IfDispersive, unit: SizeUnit) -> String {
     let most = length(limit.d15f_max_mm, unit).role(NumberRole::Greatest).to_string();
     match limit.lacks.filter(|_| limit.at_most) {
@@ -42,7 +42,7 @@ pub fn dispersive_limit(limit: IfDispersive, unit: SizeUnit) -> String {
     }
 }
 
-/// The test that tells a limit which is not known: this one, where no text has the limit.
+/// The test that determines an unknown limit: this one, if no text has the limit.
 pub fn test(limit: IfDispersive, of_the_pair: &'static str) -> &'static str {
     match limit.lacks {
         Some(DispersiveLack::D85B) => "have the base tested with a hydrometer",

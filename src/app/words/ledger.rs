@@ -14,7 +14,7 @@ pub fn thickness(of: &ModelledThickness) -> String {
 
 /// The columns of `cases.csv` and of the page's table.
 pub fn columns(factors: &[String]) -> Columns<'_, LedgerLine> {
-    // The levels say which case it is, where there are any.
+    // The levels identify the case, if there are any.
     let case = |line: &LedgerLine| if line.levels.is_empty() { shorten(&line.case, 60) } else { "".into() };
     let columns = Columns::default().column("case", |line: &LedgerLine| line.case.clone());
     let mut columns = columns.page_text("Case", case);

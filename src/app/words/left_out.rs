@@ -1,11 +1,11 @@
-//! The words of what an answer leaves out: what the model does not contain, and what a scene does not need.
+//! Words for the parts that an answer leaves out: limits of the model, and parts that a scene does not need.
 
 use crate::outcome::left_out::{LayerKind, LeftOut};
 use crate::outcome::record::ModelLimit;
 use voidwalk_core::walk::{Engine, Finest, Shortcut};
 use voidwalk_practice::quantity::{given, significant};
 
-/// A limit of the model in brief, and the rest of what it means.
+/// A limit of the model in brief, and the rest of its meaning.
 fn parts(limit: ModelLimit) -> (&'static str, &'static str) {
     const HYDRAULICS: &str = "no flow, no gradient, no time; an increment is not an interval of time";
     const GRADIENT: &str = "no gradient, no time; an increment is not an interval of time";
@@ -45,7 +45,7 @@ pub fn model_limit(limit: ModelLimit) -> String {
     }
 }
 
-/// What no rule covers, as no text was read that gives its numbers.
+/// Checks that no rule covers, as no text was read that gives their numbers.
 pub const NOT_COVERED: &str = "Not checked: segregation by D90F and D10F, excessive erosion.";
 
 /// The limits of the model that matter most to a designer, in a line; the page lists all.
@@ -62,7 +62,7 @@ pub fn left_out_line(limits: &[ModelLimit]) -> String {
     format!("The model is no proof; it leaves out {}.", names.join(", "))
 }
 
-/// What the model does not contain and what no rule covers, in two sentences.
+/// Limits of the model and checks that no rule covers, in two sentences.
 pub fn left_out_in_brief(limits: &[ModelLimit]) -> String {
     let brief: Vec<&str> = limits.iter().map(|limit| parts(*limit).0).collect();
     format!("The model leaves out: {}. {NOT_COVERED}", brief.join("; "))
@@ -71,7 +71,7 @@ pub fn left_out_in_brief(limits: &[ModelLimit]) -> String {
 /// The study of the number of base particles.
 const AMOUNTS: &str = "sensitivity to the number of base particles";
 
-/// A part of the program that a scene does not need, in a part of a sentence; sizes have this unit.
+/// A part of the program that a scene does not need, as part of a sentence; sizes have this unit.
 pub fn left_out(part: &LeftOut, unit: &str) -> String {
     let times = |factors: &[f64]| {
         factors.iter().map(|factor| format!("x{}", given(*factor))).collect::<Vec<_>>().join(", ")
@@ -128,7 +128,7 @@ pub fn left_out(part: &LeftOut, unit: &str) -> String {
     text.into()
 }
 
-/// The same of several.
+/// Several parts that a scene does not need.
 pub fn left_out_words(parts: &[LeftOut], unit: &str) -> String {
     parts.iter().map(|part| left_out(part, unit)).collect::<Vec<_>>().join("; ")
 }
@@ -183,7 +183,7 @@ fn shortcut_words(shortcut: Shortcut, unit: &str) -> String {
     }
 }
 
-/// A number of percent with four digits that mean something: `19.65`, `0.002500`, `3.000e-7`.
+/// A number of percent with four significant digits: `19.65`, `0.002500`, `3.000e-7`.
 fn digits(percent: f64) -> String {
     match percent {
         few if few < 1e-3 && few.is_finite() => format!("{few:.3e}"),

@@ -1,9 +1,10 @@
-//! English: the sentences in which faces say what records hold.
+//! English: the sentences in which faces express records.
 //!
-//! - [`first_lines()`] are the lines of practice and model that every face begins with.
-//! - [`sentence()`] fills a note's sentence with its numbers, [`setting()`] says which setting changes it.
-//! - `rule`, `rule_note`: rules of practice; [`meaning()`]: a class of the model; `left_out`: what an answer
-//!   leaves out.
+//! - [`first_lines()`] are the lines of practice and model at the top of every face.
+//! - [`sentence()`] fills a note's sentence with its numbers, [`setting()`] names the setting that changes
+//!   it.
+//! - `rule`, `rule_note`: rules of practice; [`meaning()`]: a class of the model; `left_out`: parts that an
+//!   answer leaves out.
 
 mod answer;
 mod base_size;

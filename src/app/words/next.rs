@@ -1,4 +1,4 @@
-//! The next step by practice: which D15F a filter is to have, what to test, what to find out.
+//! The next step by practice: the D15F of a better filter, a test, or missing data.
 
 use super::dispersion::beside_dispersive;
 use super::rule_note::missing;
@@ -10,7 +10,7 @@ use voidwalk_practice::quantity::{NumberRole, SizeUnit, length, limits, signific
 use voidwalk_practice::rules::{FILTER_FINES, FILTER_GREATEST_SIZE, PERMEABILITY};
 use voidwalk_practice::{AppliedRule, RuleQuantity, RuleRole, TestedClass};
 
-/// Above this D15F (mm) a filter is a drain, bedding or rockfill, and coarse grains are no fault of it.
+/// Above this D15F (mm) a filter is a drain, bedding or rockfill, and coarse grains are no fault.
 const DRAIN_D15F_MM: f64 = 5.0;
 
 /// The next step by practice for a pair in mm, in a sentence without its end.
@@ -31,7 +31,7 @@ impl Pair<'_> {
     fn step(&self) -> String {
         match self.decision.standing {
             Standing::Fails | Standing::NoMargin => self.retention(),
-            // As placed it is too coarse already.
+            // The filter as placed is too coarse already.
             Standing::WashedOut if self.decision.breaks(RuleRole::Retention) => {
                 self.retention() + "; it must be internally stable"
             }
@@ -50,7 +50,7 @@ impl Pair<'_> {
         }
     }
 
-    /// Where the rules ask for nothing more.
+    /// The step after the model, if the rules require nothing more.
     fn of_model(&self) -> &'static str {
         match self.class {
             Verdict::None => "nothing by these rules",
@@ -58,13 +58,13 @@ impl Pair<'_> {
         }
     }
 
-    /// A test of the base, where the filter is too coarse for a dispersive one alone.
+    /// A test of the base, if the filter is too coarse for a dispersive one alone.
     fn dispersion(&self) -> Option<String> {
         self.decision.beyond_dispersive?;
         Some("have the base tested for dispersion by a pinhole or crumb test".into())
     }
 
-    /// The filter to take in the place of one that may lose its finer part.
+    /// The filter to take instead of one that may lose its finer part.
     fn stability(&self) -> String {
         let filter = match self.greatest() {
             Some((limit, false)) => self.sized("an internally stable filter", limit),
@@ -75,7 +75,7 @@ impl Pair<'_> {
         if is_open { filter } else { format!("{filter}, or have its internal stability tested") }
     }
 
-    /// The D15F that retains the base, and what to do with a filter that exists.
+    /// The D15F that retains the base, and the advice for an existing filter.
     fn retention(&self) -> String {
         let exists = self.existing_filter();
         match self.greatest() {
@@ -88,7 +88,7 @@ impl Pair<'_> {
         }
     }
 
-    /// Beyond the boundary of continuing erosion no test of the pair is to be waited for.
+    /// Beyond the boundary of continuing erosion no test of the pair is worth waiting for.
     fn existing_filter(&self) -> &'static str {
         match self.decision.tests {
             TestedClass::Continuing => "for an existing filter, assume continuing erosion",
@@ -96,14 +96,14 @@ impl Pair<'_> {
         }
     }
 
-    /// A filter with a D15F of at most this (mm), and of at least what drains the base.
+    /// A filter with a D15F of at most this (mm), and at least the D15F that drains the base.
     fn sized(&self, filter: &str, most: f64) -> String {
         let drainage = self.drainage_rule().filter(|rule| !rule.limit_at_most);
         let (drains, dry) = match self.drainage_rule().and_then(|rule| rule.limit) {
             Some(least) if least <= most => {
                 (format!(" and at least {}", length(least, self.unit).role(NumberRole::Least)), None)
             }
-            // A limit that is at most a number asks for less, and perhaps for no more than is allowed.
+            // A limit with an upper bound may be lower, and perhaps requires no more than is allowed.
             Some(least) if drainage.is_some() => {
                 let least = length(least, self.unit).role(NumberRole::Least).to_string();
                 (String::new(), Some(format!("drainage asks for at least {least}: compare permeabilities")))
@@ -123,8 +123,8 @@ impl Pair<'_> {
         beside_dispersive(self.decision.if_dispersive?, most, self.unit)
     }
 
-    /// The maximum D15F (mm) that every rule of retention allows, and whether the limit itself is lower and
-    /// not known.
+    /// The maximum D15F (mm) that every rule of retention allows, and true if the limit itself is lower and
+    /// unknown.
     fn greatest(&self) -> Option<(f64, bool)> {
         self.decision.strictest().map(|(_, limit)| (limit, self.decision.is_strictest_open))
     }
@@ -153,13 +153,13 @@ impl Pair<'_> {
         }
     }
 
-    /// What to ask of a filter whose fines nobody sieved.
+    /// Advice on a filter whose fines nobody sieved.
     fn fines(&self) -> Option<String> {
         let most = self.decision.applied(FILTER_FINES).filter(|rule| rule.met.is_none())?.limit?;
         Some(format!("have the fines of the filter tested, and wash it where needed: {}", few_fines(most)))
     }
 
-    /// What to do about a filter that may segregate.
+    /// Advice on a filter that may segregate.
     fn placing(&self) -> Option<String> {
         let step = |rule: &AppliedRule| {
             if rule.id != FILTER_GREATEST_SIZE {
@@ -171,14 +171,14 @@ impl Pair<'_> {
         self.decision.broken(RuleRole::Placing).find_map(step)
     }
 
-    /// What is missing to judge drainage.
+    /// Missing data for judging drainage.
     fn missing_drainage(&self) -> Option<String> {
         let need = self.drainage_rule().filter(|rule| rule.met.is_none())?.needs.first()?;
         missing(*need).map(|need| format!("get {need}: drainage is not known"))
     }
 }
 
-/// How few fines a filter is to have once it is placed.
+/// Fines that a filter may have once it is placed.
 fn few_fines(most: f64) -> String {
     format!("at most {most} % finer than {FINES_MM} mm in place")
 }

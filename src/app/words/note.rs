@@ -18,7 +18,7 @@ pub fn sentence(note: &Note, unit: SizeUnit) -> String {
     filled(note, note.entry().sentence, unit)
 }
 
-/// The setting that changes what a note is about; empty without one.
+/// The setting that changes the subject of a note; empty without one.
 pub fn setting(note: &Note) -> String {
     filled(note, note.entry().setting, SizeUnit::Mm)
 }
@@ -29,7 +29,7 @@ pub fn row_note(row: &RowNote, unit: SizeUnit) -> String {
     row.row.as_ref().map_or(words.clone(), |name| format!("{name}: {words}"))
 }
 
-/// A template with the numbers of a note in the place of their names: `{name}`, or `{name:noun}` of a count.
+/// A template with the numbers of a note in place of their names: `{name}`, or `{name:noun}` of a count.
 fn filled(note: &Note, template: &str, unit: SizeUnit) -> String {
     let record = serde_json::to_value(note).unwrap_or_default();
     let mut text = String::new();
@@ -44,7 +44,7 @@ fn filled(note: &Note, template: &str, unit: SizeUnit) -> String {
     text + rest
 }
 
-/// A number by the unit and the side that its name states.
+/// A number by the unit and the side in its name.
 fn shown(name: &str, noun: Option<&str>, value: &Value, unit: SizeUnit) -> String {
     match value {
         Value::String(text) => one_line(text),
@@ -72,7 +72,7 @@ fn measured(name: &str, value: f64, unit: SizeUnit) -> String {
     }
 }
 
-/// A count with what is counted, as `replicate` or `copy|copies`.
+/// A count with its noun, as `replicate` or `copy|copies`.
 fn counted(number: u64, noun: Option<&str>) -> String {
     let Some(noun) = noun else { return whole(number).to_string() };
     let (one, many) = noun.split_once('|').unwrap_or((noun, ""));
@@ -83,7 +83,7 @@ fn counted(number: u64, noun: Option<&str>) -> String {
     }
 }
 
-/// A text on one line, whatever a name holds.
+/// A text on one line, for any name.
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
@@ -110,7 +110,7 @@ mod tests {
         Note::all_with(&Sample { number, count, name: name.into() })
     }
 
-    /// A client reads each alone, and in one breath.
+    /// A client reads each sentence alone, and in one breath.
     #[test]
     fn every_sentence_has_at_most_25_words() {
         for note in all(12.5, 3, "some") {
@@ -124,7 +124,7 @@ mod tests {
         }
     }
 
-    /// Nothing that a number can be spoils a sentence, and a file gives back what it holds.
+    /// No number spoils a sentence, and a file returns the values that it holds.
     #[test]
     fn every_note_reads_well_with_any_numbers_and_is_read_back() {
         let long = "a name ".repeat(200);
@@ -161,7 +161,7 @@ mod tests {
                 };
                 assert!(is_used(entry.sentence) || is_used(entry.setting), "{id} does not say {name}");
             }
-            // No words of the program where a client reads.
+            // No words of the program in sentences for a client.
             for word in ["base.", "filter.", "network.", "walk.", "inject_share", "--", "rattler"] {
                 let is_key =
                     |(at, _)| entry.sentence[at + word.len()..].starts_with(|c: char| c.is_ascii_lowercase());

@@ -12,7 +12,7 @@ use voidwalk_practice::rules::{DESIGN, TESTS_NO_EROSION, authority, authority_in
 use voidwalk_practice::washout::Washout;
 use voidwalk_practice::{AppliedRule, Headline, Note, RuleNote, RuleRole, RuleUnit, TestedClass};
 
-/// That rules which are met were judged for one curve of each soil alone; nothing of envelopes.
+/// Notes that the rules that are met were judged for one curve of each soil alone; `None` for envelopes.
 pub fn judged_alone(outcome: &Outcome, decision: &Decision) -> Option<&'static str> {
     let is_envelope = outcome.notes.iter().any(|note| matches!(note, Note::Envelope { .. }));
     (decision.standing == Standing::Met && !is_envelope).then_some(
@@ -43,7 +43,7 @@ fn of_design(rule: &AppliedRule, standing: Standing, unit: SizeUnit) -> String {
     let [value, limit] = value_and_limit(rule, unit);
     let known = format!("D15F {}", value.as_deref().unwrap_or("unknown"));
     let d15f = match standing {
-        // D15F itself is what the sieves leave open.
+        // The sieves leave D15F itself open.
         Standing::Open(sieves @ (RuleNote::D15FBetween(..) | RuleNote::FilterBetween(..))) => {
             rule_note(sieves, unit)
         }
@@ -79,7 +79,7 @@ fn of_tests(decision: &Decision, unit: SizeUnit) -> Option<String> {
         return None;
     }
     let class = match decision.tests {
-        // What is met as placed says nothing of what is left.
+        // Rules that are met as placed say nothing about the filter without its finer part.
         TestedClass::None if decision.washout.is_some() => return None,
         TestedClass::None => "no-erosion criterion met",
         TestedClass::Unknown if !decision.is_beyond_tests => return None,
@@ -100,8 +100,8 @@ fn of_tests(decision: &Decision, unit: SizeUnit) -> Option<String> {
     Some(format!("Foster and Fell: {class}{}", boundary.unwrap_or_default()))
 }
 
-/// A class by the boundaries that Foster and Fell saw in tests. Beyond that of no erosion (`is_beyond`) a
-/// base erodes, also where tests identified no boundary of the classes beyond.
+/// A class by the boundaries that Foster and Fell saw in tests. Beyond the boundary of no erosion
+/// (`is_beyond`) a base erodes, even if tests identified no boundary of the classes beyond.
 pub fn tested_in_brief(class: TestedClass, is_beyond: bool) -> &'static str {
     match class {
         TestedClass::None => "no erosion",
@@ -260,7 +260,7 @@ mod tests {
     const SILTY: [(f64, f64); 6] =
         [(0.005, 13.0), (0.075, 37.0), (0.25, 60.0), (0.85, 78.0), (2.0, 90.0), (4.75, 100.0)];
 
-    /// The inches behind the last mm of a text, in mm; without inches there are none.
+    /// The inches behind the last mm of a text, in mm; `None` without inches.
     fn back_in_mm(behind: &str) -> Option<f64> {
         let bracket = behind.strip_prefix(" (")?.split_once("\u{202f}in)")?.0;
         bracket.rsplit(' ').next()?.parse::<f64>().ok().map(|inches| 25.4 * inches)

@@ -1,4 +1,4 @@
-//! Which standard products fit, in the same words on every face.
+//! Standard products that fit, in the same words on every face.
 
 use crate::outcome::table::{Columns, TableCell};
 use voidwalk_core::gradation::FINES_MM;
@@ -7,16 +7,16 @@ use voidwalk_practice::design::specification::{ProductMargin, Specification};
 use voidwalk_practice::quantity::{SizeUnit, length, significant};
 use voidwalk_practice::rules::{GREATEST_SIZE_MM, MOST_CU, WIDEST_BAND};
 
-/// Said of a product both whose sides keep every requirement.
+/// Words for a product whose two sides keep every requirement.
 pub const FITS: &str = "fits";
 
-/// Said of a product of which D15B would tell whether it drains.
+/// Words for a product whose drainage depends on D15B.
 const MAY_DRAIN: &str = "may drain: D15B must be tested";
 
-/// Said where no product fits.
+/// Words for the case that no product fits.
 const NONE_FITS: &str = "None of the standard products fits";
 
-/// What the sides of a product do not keep beside D15F.
+/// Requirements that the sides of a product break beside D15F.
 pub fn not_kept(all: &[NotKept]) -> String {
     let one = |found: &NotKept| match found {
         NotKept::CuOfFineSide { cu } => cu_of("fine", *cu),
@@ -34,20 +34,20 @@ fn cu_of(side: &str, cu: f64) -> String {
     format!("Cu of its {side} side is {}, and {LEAST_CU} to {MOST_CU} is asked for", significant(cu))
 }
 
-/// Said of a product that does not fit, with what its sides do not keep beside D15F.
+/// Words for a product that does not fit, with the requirements that its sides break beside D15F.
 fn does_not_fit(found: &[NotKept]) -> String {
     if found.is_empty() { "does not fit".into() } else { format!("does not fit: {}", not_kept(found)) }
 }
 
-/// That the limits of some products are to be checked; `None` where none are.
+/// Names the products whose limits are to be checked; `None` without any.
 pub fn to_be_checked(products: &[ProductMargin]) -> Option<String> {
     let checked = products.iter().filter(|of| is_to_be_checked(&of.source));
     let named: Vec<&str> = checked.map(|of| of.product.as_str()).collect();
     (!named.is_empty()).then(|| format!("Limits to be checked against the standard: {}.", named.join(", ")))
 }
 
-/// The columns of `specification_products.csv` and of a workbook, and under their headings what a page shows,
-/// sizes in this unit.
+/// The columns of `specification_products.csv` and of a workbook, and under their headings the columns of a
+/// page, sizes in this unit.
 pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, ProductMargin> {
     let margin = |by: Option<f64>| by.map_or("not given".shown(), |by| significant(by).shown());
     Columns::default()
@@ -81,7 +81,7 @@ pub fn product(specification: &Specification, product: &ProductMargin) -> String
     }
 }
 
-/// The standard products that fit, or the one that comes closest: sentences without the last end.
+/// The standard products that fit, or the closest one: sentences without the last end.
 pub fn products(specification: &Specification) -> String {
     let fitting = specification.products.iter().filter(|of| of.fits() == Some(true));
     let fitting: Vec<&str> = fitting.map(|of| of.product.as_str()).collect();

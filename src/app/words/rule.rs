@@ -1,5 +1,5 @@
-//! Rules of practice in words: their table, of which every face shows some columns, their results, and values
-//! beside limits.
+//! Rules of practice in words: their table, from which every face shows some columns, their results, and
+//! values beside limits.
 
 use super::rule_note::rule_notes;
 use crate::outcome::table::{Columns, Emphasis, Shown, TableCell};
@@ -8,7 +8,7 @@ use voidwalk_practice::rule_result::{RuleResult, result_of};
 use voidwalk_practice::rules::PERMEABILITY_LEAST;
 use voidwalk_practice::{AppliedRule, RuleRole, RuleUnit, ValueBound};
 
-/// Stands once where limits are listed: a reader finds the digits that are not shown a little larger.
+/// Note beside lists of limits: a reader finds the digits that are not shown a little larger.
 pub const LIMITS_ROUNDED: &str = "Limits are rounded to the safe side.";
 
 /// The parts in which rules of practice are listed, with their headings.
@@ -20,8 +20,8 @@ pub const PARTS: [(RuleRole, &str); 5] = [
     (RuleRole::Stability, "Internal stability of the filter"),
 ];
 
-/// The columns of rules: those of a workbook, and under their headings what other faces choose from, sizes in
-/// this unit.
+/// The columns of rules: the columns of a workbook, and under their headings the columns from which other
+/// faces choose, sizes in this unit.
 pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, AppliedRule> {
     Columns::default()
         .name("rule", "Rule", |rule: &AppliedRule| rule.name.clone())
@@ -55,7 +55,7 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, AppliedRule> {
         .column("Id", |rule| rule.id.clone())
 }
 
-/// The value of a rule where sieves give only a bound.
+/// The value of a rule if sieves give only a bound.
 fn value_is(bound: ValueBound) -> &'static str {
     match bound {
         ValueBound::AtMost => "the most that it can be",
@@ -74,12 +74,12 @@ fn limit_is(rule: &AppliedRule) -> &'static str {
     }
 }
 
-/// What a rule says beside its result, and what it needs.
+/// Notes of a rule beside its result, and its missing data.
 fn notes(rule: &AppliedRule, unit: SizeUnit) -> String {
     rule_notes(&[&rule.notes[..], &rule.needs].concat(), unit)
 }
 
-/// The result in a cell: of a comparison of the walk with tests whether it lies within them.
+/// The result in a cell; a comparison of the walk with tests lies within them or not.
 fn shown_result(rule: &AppliedRule) -> Shown {
     let found = result_of(rule);
     match (rule.role, rule.met) {
@@ -93,7 +93,7 @@ fn shown_result(rule: &AppliedRule) -> Shown {
     }
 }
 
-/// The value of a rule as `= 0.8`, and as `at most 0.8` where sieves tell no more.
+/// The value of a rule as `= 0.8`, or as `at most 0.8` if sieves give only a bound.
 pub fn value(rule: &AppliedRule, unit: SizeUnit) -> Option<String> {
     let [value, _] = value_and_limit(rule, unit);
     value.map(|value| format!("{} {value}", value_begins(rule)))
@@ -123,7 +123,7 @@ pub fn result(result: RuleResult) -> &'static str {
 pub fn limit_begins(rule: &AppliedRule) -> &'static str {
     match (rule.role, rule.at_least, rule.limit_at_most) {
         (RuleRole::Continuation, ..) => "continuing beyond",
-        // The least follows from a size in the base's finest part, and what is enough for it is known.
+        // The least follows from a size in the base's finest part, and a sufficient value is known.
         (_, true, true) if rule.id == PERMEABILITY_LEAST => "≥ 3 D15B;",
         (_, true, true) => "≥ 5 D15B;",
         (_, true, false) => "≥",
@@ -131,7 +131,7 @@ pub fn limit_begins(rule: &AppliedRule) -> &'static str {
     }
 }
 
-/// The words behind a limit that is not known itself.
+/// The words behind a limit that is itself unknown.
 pub fn limit_ends(rule: &AppliedRule) -> &'static str {
     match (rule.limit_at_most, rule.at_least) {
         (true, true) => " is enough",
@@ -140,7 +140,7 @@ pub fn limit_ends(rule: &AppliedRule) -> &'static str {
     }
 }
 
-/// The words before a value: a bound of it, where sieves tell no more.
+/// The words before a value: a bound, if sieves give no more.
 pub fn value_begins(rule: &AppliedRule) -> &'static str {
     match rule.value_bound {
         None => "=",
@@ -149,8 +149,8 @@ pub fn value_begins(rule: &AppliedRule) -> &'static str {
     }
 }
 
-/// Value and limit of a rule with their unit, as far as they are known, and in inches, too, where those are
-/// shown: with as many digits as tell the two apart, so that what exceeds its limit never reads as within it.
+/// Value and limit of a rule with their unit, as far as they are known, and in inches if these are shown:
+/// with enough digits to tell the two apart, so that a value beyond its limit never reads as within it.
 pub fn value_and_limit(rule: &AppliedRule, unit: SizeUnit) -> [Option<String>; 2] {
     let unit = match rule.unit {
         RuleUnit::One => Unit::None,

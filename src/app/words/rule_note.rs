@@ -1,15 +1,16 @@
-//! The words of what rules of practice say beside their results, and of why practice regrades a base.
+//! Words for the notes of rules of practice beside their results, and for the reasons why practice regrades a
+//! base.
 
 use voidwalk_core::gradation::{FEW_FINES, RegradeCause, RegradeReason};
 use voidwalk_practice::RuleNote;
 use voidwalk_practice::quantity::{NumberRole, SizeUnit, given, length, significant};
 
-/// What rules say beside their results, in a part of a sentence.
+/// Notes of rules beside their results, as part of a sentence.
 pub fn rule_notes(notes: &[RuleNote], unit: SizeUnit) -> String {
     notes.iter().map(|note| rule_note(*note, unit)).collect::<Vec<_>>().join("; ")
 }
 
-/// One of them.
+/// A note of a rule, as part of a sentence.
 pub fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
     let text = match note {
         RuleNote::D15FBetween(from, to) => return between(unit, "D15F lies", from, to),
@@ -147,7 +148,7 @@ pub fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
     text.into()
 }
 
-/// What is missing for a result, without a word before it; `None` where nothing is.
+/// Missing data for a result, without a word before it; `None` if nothing is missing.
 pub fn missing(note: RuleNote) -> Option<&'static str> {
     Some(match note {
         RuleNote::NeedsFinesOfBase => "finer sieves of the base, to tell whether it has 15 % fines or more",
@@ -176,7 +177,7 @@ fn between(unit: SizeUnit, what: &str, from: f64, to: f64) -> String {
     format!("{what} between {} and {}: test the sieves between", low.in_cell(), high)
 }
 
-/// Why practice regrades a base or does not, as a part of a sentence.
+/// The reason why practice regrades a base or does not, as part of a sentence.
 pub fn regrade_reason(reason: RegradeReason) -> String {
     let cause = match reason.cause {
         RegradeCause::Gap(from) => &*format!(

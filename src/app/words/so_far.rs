@@ -1,10 +1,10 @@
-//! What the replicates that are whole come to, while others are walked.
+//! Interim result of the complete replicates, while others are walked.
 
 use crate::outcome::record::Statistic;
 use crate::outcome::so_far::FirstLook;
 
-/// A look in a line, of so many replicates that the verdict is to have; `None` of one replicate, which says
-/// nothing of the scatter.
+/// A look in one line, for a verdict with `of` replicates; `None` for one replicate, which says nothing about
+/// the scatter.
 ///
 /// ```
 /// use voidwalk_app::outcome::so_far::SoFar;

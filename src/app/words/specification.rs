@@ -17,10 +17,10 @@ use voidwalk_practice::rules::{
     range_of_tests,
 };
 
-/// What to do where a base is found to be dispersive.
+/// Advice for a base that is found to be dispersive.
 pub const DESIGN_AGAIN: &str = "design again for a dispersive base";
 
-/// The same of many samples.
+/// Advice for many samples that are found to be dispersive.
 pub const DESIGN_EACH_AGAIN: &str = "design again for dispersive soils";
 
 /// The band to specify: D15F of both sides, and Cu. `None` without a band.
@@ -43,8 +43,8 @@ pub fn band(specification: &Specification, unit: SizeUnit) -> Option<String> {
     Some(format!("D15F from {}{open}, Cu from {LEAST_CU} to {MOST_CU}", limits(least, most, unit)))
 }
 
-/// Why the band begins above the minimum D15F that drains the base, or ends below the maximum that retains
-/// it, in a sentence without its end; `None` where it does neither.
+/// The reason why the band begins above the minimum D15F that drains the base, or ends below the maximum that
+/// retains it, in a sentence without its end; `None` if it does neither.
 pub fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let [least, most] = specification.band.as_ref()?.d15_mm();
     if let Some(retains) = specification.d15f_max_mm.filter(|max| most < max * (1.0 - 1e-9)) {
@@ -64,20 +64,20 @@ pub fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
     ))
 }
 
-/// What a specification lacks that no text with its numbers could be read for: the maximum D90F, which keeps
-/// a filter from segregating. `None` without a band.
+/// Gap of a specification for which no text with its numbers could be read: the maximum D90F, which keeps a
+/// filter from segregating. `None` without a band.
 pub fn still_to_set(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let least = specification.band.as_ref().map(SizeBand::least_d10_mm)?;
     Some(format!(
         "Not a complete specification: there is no limit above D60F, and the maximum D90F is still to be set \
          from the table of FEMA (2011) or NRCS (National Engineering Handbook, Part 633, Chapter 26), for a \
          minimum D10F of {}.",
-        // Where a table is entered: a finer D10F allows no coarser D90F.
+        // Entry of the table: a finer D10F allows no coarser D90F.
         length(least, unit).role(NumberRole::Greatest)
     ))
 }
 
-/// What a delivery must keep beside the limits at the sieves: between two sieves it may leave the band or
+/// Requirements of a delivery beside the limits at the sieves: between two sieves it may leave the band or
 /// have a gap. `None` without a band.
 pub fn beside_limits(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let [least, most] = specification.band.as_ref()?.d15_mm();
@@ -89,7 +89,7 @@ pub fn beside_limits(specification: &Specification, unit: SizeUnit) -> Option<St
     ))
 }
 
-/// That the maximum D15F has no margin, where it is the boundary of no erosion of tests itself: a sentence
+/// Warns that the maximum D15F has no margin, if it is the boundary of no erosion of tests itself: a sentence
 /// without its end.
 pub fn without_margin(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let (curve, limit) = specification.strictest()?;
@@ -119,7 +119,7 @@ pub fn without_margin(specification: &Specification, unit: SizeUnit) -> Option<S
     Some(format!("This limit has no margin: {why}"))
 }
 
-/// The maximum D15F and whose rule sets it.
+/// The maximum D15F and the origin of its rule.
 pub fn limit(specification: &Specification, unit: SizeUnit) -> String {
     match specification.strictest() {
         Some((curve, limit)) => {
@@ -129,8 +129,8 @@ pub fn limit(specification: &Specification, unit: SizeUnit) -> String {
     }
 }
 
-/// The maximum D15F if the base is dispersive, and what to do, as [`DESIGN_AGAIN`]: sentences, the last
-/// without its end; `None` where all holds for such a base too, or somebody has said whether it is one.
+/// The maximum D15F if the base is dispersive, and the advice, as [`DESIGN_AGAIN`]: sentences, the last
+/// without its end; `None` if all holds for such a base too, or if it was stated to be dispersive or not.
 pub fn if_dispersive(specification: &Specification, again: &str, unit: SizeUnit) -> Option<String> {
     let most = specification.d15f_max_mm.unwrap_or(f64::INFINITY);
     let limit =
@@ -149,7 +149,7 @@ pub fn if_dispersive(specification: &Specification, again: &str, unit: SizeUnit)
     ))
 }
 
-/// Why there is no band, in sentences.
+/// The reason why there is no band, in sentences.
 pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
     match why {
         NoBand::DrainageNotKnown { most_drains_mm, most_mm } => format!(
@@ -164,7 +164,7 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
              to retain it. {}",
             length(*least_mm, unit).role(NumberRole::Least),
             length(*most_mm, unit).role(NumberRole::Greatest),
-            // So fine a base is not broad: the least D15F of any filter is beyond its limit.
+            // Such a fine base is not broad: the least D15F of any filter is beyond its limit.
             if *least_mm <= LEAST_D15F_MM {
                 "Have the base tested in the laboratory with the filter, or take a filter in two stages."
             } else {
@@ -187,8 +187,8 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
     }
 }
 
-/// A number of a step with its unit: a minimum rounded up, a maximum and the size by which a table is entered
-/// rounded down; `None` where it is not known.
+/// A number of a step with its unit: a minimum rounded up, a maximum and the size that enters a table rounded
+/// down; `None` if unknown.
 pub fn step_value(value: &StepValue, unit: SizeUnit) -> Option<String> {
     let number = value.value?;
     Some(match (value.unit.as_str(), value.role()) {
@@ -217,7 +217,7 @@ pub fn step_name(step: StepName) -> &'static str {
     }
 }
 
-/// What else to know of a step, in sentences.
+/// Remarks on a step, in sentences.
 pub fn step_notes(step: &SpecificationStep, unit: SizeUnit) -> String {
     let own = match step.does {
         StepName::KeepUniform => format!(
@@ -318,9 +318,9 @@ pub fn limit_columns<'a>() -> Columns<'a, SieveLimit> {
 pub struct StepRow {
     /// Number of the step.
     pub step: u64,
-    /// What is done.
+    /// Name of the step.
     pub does: String,
-    /// What the number is; empty where the step has none.
+    /// Name of the number; empty if the step has no number.
     pub quantity: String,
     /// The number.
     pub value: Option<f64>,
@@ -328,13 +328,13 @@ pub struct StepRow {
     pub unit: String,
     /// The formula.
     pub formula: String,
-    /// What else a reader must know.
+    /// Remarks for the reader.
     pub note: String,
-    /// Where formula and numbers were read.
+    /// Source of formula and numbers.
     pub source: String,
 }
 
-/// The numbers of a step as rows; one without a number where it has none.
+/// The numbers of a step as rows; one row without a number if it has no number.
 pub fn step_rows(step: &SpecificationStep) -> Vec<StepRow> {
     let row = |value: Option<&StepValue>| StepRow {
         step: step.step,
@@ -374,7 +374,7 @@ mod tests {
             step_value(&StepValue { name: name.into(), value, unit: unit.into() }, SizeUnit::Mm)
         };
         assert_eq!(of("minimum D15F", Some(0.11661), "mm").unwrap(), "0.117\u{202f}mm");
-        // As the sentence has it that asks for D90F.
+        // The words agree with the sentence that asks for D90F.
         assert_eq!(of(ENTERED_BY, Some(0.19158), "mm").unwrap(), "0.191\u{202f}mm");
         assert_eq!(of("maximum D10F", Some(0.58389), "mm").unwrap(), "0.583\u{202f}mm");
         assert_eq!(of("maximum D15F / minimum D15F, as found", Some(6.999), "").unwrap(), "7.00");
@@ -382,7 +382,7 @@ mod tests {
         assert_eq!(of("minimum D15F", None, "mm"), None);
     }
 
-    /// Of all lengths of all steps, over sizes of many digits.
+    /// All lengths of all steps, over sizes of many digits.
     #[test]
     fn inches_of_a_step_lie_within_the_limit_beside_them() {
         let mut checked = 0;
@@ -411,7 +411,7 @@ mod tests {
         assert!(checked > 500, "{checked}");
     }
 
-    /// One band on every page: what is said first is what is drawn.
+    /// One band on every page: the band in words is the band that is drawn.
     #[test]
     fn the_band_that_is_said_is_the_one_that_is_drawn() {
         for of in [of(&CORE, None), of(&SAND, None)] {
@@ -429,7 +429,7 @@ mod tests {
         assert_eq!([band(&none, SizeUnit::Mm), beside_limits(&none, SizeUnit::Mm)], [None, None]);
     }
 
-    /// A ratio of 7 is narrowed to 5, at either end; one of 2 is not.
+    /// A ratio of 7 is narrowed to 5, at either end; a ratio of 2 is not.
     #[test]
     fn a_band_that_was_narrowed_is_said_with_both_sizes() {
         let base = [("core".into(), Gradation::from_lines(&CORE).unwrap())];
@@ -446,7 +446,7 @@ mod tests {
         assert_eq!(raised(&of(&SAND, None), SizeUnit::Mm), None);
     }
 
-    /// One size on the first sheet and in its step: that by which the table of D90F is entered.
+    /// One size on the first sheet and in its step: the size that enters the table of D90F.
     #[test]
     fn the_minimum_d10f_is_one_number() {
         let till = [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
@@ -468,15 +468,15 @@ mod tests {
         assert!(has(said(&CLAY, None), "it lies in the range in which tests put"));
         assert!(has(said(&CLAY, None), "0.320 to 0.675\u{202f}mm"));
         assert!(has(said(&CLAY, Some(true)), "give it for no erosion in tests"));
-        // Of a dispersive clay this fine 6.4 D85B is less than the 0.2 mm below which design never lies.
+        // For a dispersive clay this fine 6.4 D85B is less than the 0.2 mm below which design never lies.
         let fine = [(0.0005, 0.0), (0.02, 85.0), (0.04, 100.0)];
         assert!(has(said(&fine, Some(true)), "it is the boundary of no erosion in tests"));
         assert_eq!(said(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)], None), None);
         assert_eq!(said(&SAND, Some(true)), None);
     }
 
-    /// 0.5 mm where a silt is dispersive; with 25 % fines no source has a limit, and that of other bases is
-    /// never called one.
+    /// 0.5 mm if a silt is dispersive; with 25 % fines no source has a limit, and it is never stated as the
+    /// limit of other bases.
     #[test]
     fn a_limit_of_dispersive_bases_that_no_source_gives_is_less_than_that_of_others() {
         let silt = |fines| [(0.01, 0.0), (0.075, fines), (0.3, 92.0), (0.6, 100.0)];
@@ -489,7 +489,7 @@ mod tests {
         let open = said(25.0, None).unwrap();
         assert!(open.contains("less than ") && !open.contains("at most"), "{open}");
         assert!(open.ends_with("have the base tested with the filter"), "{open}");
-        // Few fines, and what was said.
+        // Few fines, and bases of known dispersion.
         assert_eq!([said(10.0, None), said(45.0, Some(true)), said(45.0, Some(false))], [None, None, None]);
     }
 

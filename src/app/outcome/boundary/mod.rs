@@ -1,8 +1,8 @@
-//! Boundaries of the model: what `boundary.json` and `boundary.csv` hold, and how networks are put together.
+//! Boundaries of the model: the contents of `boundary.json` and `boundary.csv`, and the merging of networks.
 //!
 //! A boundary is the D15F/D85B from which a network erodes 7.5 % of the base: in the first run (no erosion
-//! turns into some), or in the second as well (some turns into continuing). One packing a shape and density;
-//! the filter is scaled, which repacks nothing.
+//! turns into some), or in the second as well (some turns into continuing). Each shape and density has one
+//! packing; the filter is scaled, which needs no new packing.
 
 mod record;
 mod spread;

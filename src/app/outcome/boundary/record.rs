@@ -1,4 +1,4 @@
-//! The shapes of `boundary.json` and `boundary.csv`, shared by who writes and who reads them.
+//! Shapes of `boundary.json` and `boundary.csv`, shared by the writer and the readers.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +9,7 @@ use voidwalk_core::walk::Engine;
 use voidwalk_practice::design::RowNote;
 use voidwalk_practice::{InputFile, Note, SheetCover};
 
-/// Steps of the scale of ratios on which boundaries are found: half a percent, in ln(D15F/D85B).
+/// Step of the scale of ratios on which boundaries are found: half a percent, in ln(D15F/D85B).
 pub const BETWEEN_STEPS: f64 = 0.005;
 
 /// The whole of `boundary.json`.
@@ -136,7 +136,7 @@ pub struct BoundaryRow {
 }
 
 impl BoundaryRow {
-    /// The density, in words, and what it is an end of, or which end it is as.
+    /// The density in words, with the range that it is an end of, or with its worse end.
     pub fn name(&self) -> String {
         match (&self.end_of, &self.as_end) {
             (Some(of), _) => format!("{} (an end of the range of {of})", self.density),
@@ -150,13 +150,13 @@ impl BoundaryRow {
         self.as_end.as_ref().unwrap_or(&self.density)
     }
 
-    /// The ratio that nearly all networks hold; `None` where none is known.
+    /// The ratio that nearly all networks hold; `None` where it is unknown.
     pub fn held(&self) -> Option<f64> {
         self.no_erosion.as_ref().map_or(self.holds_to, Boundary::cautious)
     }
 
-    /// Its boundaries of no and of continuing erosion with the ends that are shown of them: of few networks
-    /// the least and the most, as their percentiles lie between two of them.
+    /// Boundaries of no and of continuing erosion with the ends that are shown. For few networks the ends are
+    /// the least and the most, because the percentiles lie between two networks.
     pub fn shown(&self) -> [Option<Boundary>; 2] {
         let each =
             |of: fn(&NetworkBoundaries) -> Option<f64>| self.networks.iter().map(of).collect::<Vec<_>>();
@@ -165,7 +165,7 @@ impl BoundaryRow {
         both.map(|(boundary, networks)| Some(boundary.as_ref()?.with_shown_ends(&networks)))
     }
 
-    /// Networks that were found to erode at some ratio of the search.
+    /// Number of networks that were found to erode at some ratio of the search.
     pub fn eroding_networks(&self) -> usize {
         self.networks.iter().filter(|of| of.no_erosion.is_some()).count()
     }
@@ -234,7 +234,7 @@ pub struct WalkRow {
 }
 
 impl BaseStated {
-    /// D85 and which base it is of; `None` without a size of its own.
+    /// D85 and the base that it belongs to; `None` without a size of its own.
     pub fn size(&self) -> Option<BaseSize> {
         let (regraded_at_mm, as_sampled_mm) = (self.regraded_at_mm, self.d85_as_sampled_mm);
         Some(BaseSize { d85_mm: self.d85_mm?, regraded_at_mm, as_sampled_mm })
@@ -242,13 +242,13 @@ impl BaseStated {
 }
 
 impl Boundaries {
-    /// Whether the base particles that can block nothing moved as their expectation.
+    /// True if the base particles that can block nothing moved as their expectation.
     pub fn moves_expectation(&self) -> bool {
         self.engine == Engine::Expected.name()
     }
 
-    /// The row that holds least, and the ratio that nearly all of its networks hold; `None` where no ratio is
-    /// known that some row holds.
+    /// The row that holds least, and the ratio that nearly all of its networks hold; `None` if no row has a
+    /// known ratio that it holds.
     pub fn least_held(&self) -> Option<(&BoundaryRow, f64)> {
         let held = |row| Some((row, BoundaryRow::held(row)?));
         let all: Vec<_> = self.boundaries.iter().map(held).collect::<Option<_>>()?;
@@ -257,8 +257,8 @@ impl Boundaries {
 }
 
 impl Boundary {
-    /// Puts networks together; `None` where their median lies beyond the search. `d85b_mm` is the base's
-    /// size, where the filter is scaled.
+    /// Combines networks; `None` if their median lies beyond the search. `d85b_mm` is the base's size, if the
+    /// filter is scaled.
     pub fn of(networks: &[Result<f64, Beyond>], d85b_mm: Option<f64>) -> Option<Self> {
         let [low, median, high] = spread(networks);
         let median = median.ok()?;
@@ -269,7 +269,7 @@ impl Boundary {
         Some(Self { median, low, high, low_beyond, d15f_mm: d85b_mm.map(mm) })
     }
 
-    /// The same with the least and the most of these networks, where they are few. An end that hangs on
+    /// Takes the least and the most of these networks as ends if they are few. An end that depends on
     /// networks beyond the search stays unknown.
     fn with_shown_ends(&self, networks: &[Option<f64>]) -> Self {
         if !are_few(networks.len() as u64) {
@@ -286,8 +286,8 @@ impl Boundary {
         Self { low, high, d15f_mm, ..self.clone() }
     }
 
-    /// The ratio that all but a few networks hold: the 5 percentile, or the median where there is one network
-    /// only; `None` where more than a few erode at every ratio that was searched, so that none is known.
+    /// The ratio that all but a few networks hold: the 5 percentile, or the median of a single network;
+    /// `None` if more than a few erode at every ratio that was searched, so that the ratio is unknown.
     pub fn cautious(&self) -> Option<f64> {
         let median = (self.low_beyond != Some(Beyond::Below)).then_some(self.median);
         self.low.or(median)
@@ -306,7 +306,7 @@ mod tests {
         assert_eq!((eroding.low, eroding.low_beyond), (None, Some(Beyond::Below)));
         assert_eq!((eroding.median, eroding.cautious()), (2.2, None));
         assert_eq!(eroding.d15f_mm.unwrap().low, None);
-        // What holds up to the end of the search does not take the lower end away.
+        // Networks that hold to the end of the search keep the lower end.
         let holding = of(&[Ok(2.0), Ok(2.2), Err(Beyond::Above)]);
         assert!((holding.cautious().unwrap() - 2.02).abs() < 1e-12 && holding.high.is_none());
     }
@@ -332,7 +332,7 @@ mod tests {
         let mm = shown.d15f_mm.unwrap();
         let is = |value: Option<f64>, by_hand: f64| (value.unwrap() - by_hand).abs() < 1e-12;
         assert!(is(mm.low, 2.0) && is(mm.high, 3.0), "{mm:?}");
-        // What the walk holds is still read from the percentile.
+        // The ratio that the walk holds is still read from the percentile.
         assert!(boundary.cautious().unwrap() > 4.0);
         let many = Boundary::of(&over(20), Some(0.5)).unwrap();
         assert_eq!(many.with_shown_ends(&known(&over(20))), many);

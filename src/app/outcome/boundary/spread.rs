@@ -1,4 +1,4 @@
-//! Median and 5 to 95 % band of the networks' boundaries, where some lie beyond what was searched.
+//! Median and 5 to 95 % band of the networks' boundaries, where some lie beyond the search.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,21 +16,22 @@ pub enum Beyond {
 /// Percentiles of a boundary over networks (percent).
 const PERCENTILES: [f64; 3] = [5.0, 50.0, 95.0];
 
-/// From so many networks on a percentile is not read between the last two of them.
+/// From this number of networks on, a percentile is not read between the last two of them.
 const ENOUGH: u64 = 20;
 
-/// Whether of so many networks least and most are shown: a percentile would be read between the last two.
+/// Tells if the least and the most of this number of networks are shown: a percentile would be read between
+/// the last two.
 pub fn are_few(networks: u64) -> bool {
     networks < ENOUGH
 }
 
-/// The 5, 50 and 95 percentile of values of which some are only known to lie above or below all that was
-/// searched: where a percentile hangs on one of those, on which side it lies (below where it hangs on both:
-/// the cautious one). Between two values a percentile is straight in
-/// its rank, from the least at 0 to the greatest at 100 (Hyndman and Fan's seventh definition).
+/// The 5, 50 and 95 percentile of values, some of which are only known to lie above or below the whole
+/// search. A percentile that depends on such values gives their side instead (below if it depends on both
+/// sides: the cautious one). Between two values a percentile is linear in its rank, from the least at 0 to
+/// the greatest at 100 (Hyndman and Fan's seventh definition).
 ///
 /// # Panics
-/// Without any value.
+/// Panics if there is no value.
 pub fn spread(values: &[Result<f64, Beyond>]) -> [Result<f64, Beyond>; 3] {
     let place = |value: &Result<f64, Beyond>| match value {
         Ok(value) => *value,
@@ -64,7 +65,7 @@ mod tests {
         let eleven: Vec<_> = (0..=10).rev().map(|k| Ok(f64::from(k))).collect();
         assert_eq!(spread(&eleven), [Ok(0.5), Ok(5.0), Ok(9.5)]);
         assert_eq!(spread(&[Ok(3.0)]), [Ok(3.0); 3]);
-        // Of five networks the ends of the band are not the least and the most.
+        // The ends of the band of five networks are not the least and the most.
         let five: Vec<_> = (0..5).map(|k| Ok(f64::from(k))).collect();
         let [low, _, high] = spread(&five).map(Result::unwrap);
         assert!(low > 0.0 && low < 1.0 && high > 3.0 && high < 4.0, "{low} {high}");

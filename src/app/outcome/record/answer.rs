@@ -1,4 +1,4 @@
-//! What replicates say together: their class, their mean, and why no more of them were walked.
+//! Joint answer of the replicates: their class, their mean, and the reason why no more were walked.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! What went into a run, as `outcome.json` has it.
+//! Inputs of a run, as `outcome.json` has them.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,9 +1,9 @@
-//! What made a run folder: `manifest.json`.
+//! Origin of a run folder: `manifest.json`.
 
 use serde::{Deserialize, Serialize};
 use voidwalk_practice::InputFile;
 
-/// The commit that this program was built from, where it is known.
+/// The commit from which this program was built, if known.
 pub fn commit() -> Option<String> {
     option_env!("VOIDWALK_COMMIT").map(String::from)
 }

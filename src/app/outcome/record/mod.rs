@@ -1,4 +1,4 @@
-//! What a run folder holds, as types: `outcome.json`, `manifest.json` and the rows of the CSV files.
+//! Contents of a run folder, as types: `outcome.json`, `manifest.json` and the rows of the CSV files.
 //!
 //! The writer and the reader of a run folder share these types, so a name is spelt in one place.
 //! Nothing here computes.
@@ -6,12 +6,12 @@
 //! # Conventions
 //! - Sizes are diameters, in mm. When [`Inputs::scale_free`] is set they are multiples of D0F, the smallest
 //!   filter grain; the names keep their `_mm`.
-//! - A fraction is of 1, a percentage is of 100 and says `percent`. Fractions of base material are of what
-//!   the run inserts in all (`N_base` particles), not of what has been inserted so far.
+//! - A fraction is of 1, a percentage is of 100 and says `percent`. Fractions of base material refer to the
+//!   total that the run inserts (`N_base` particles), not to the part inserted so far.
 //! - Replicates and runs count from 1, increments from 1, layers from 0 (the layer of the start nodes).
-//! - What a run *blocked* is a state: the constrictions blocked at that moment, so the second run's number
-//!   contains the first's. What a run *retained* is its own: particles of the first run are gone when the
-//!   second begins.
+//! - The *blocked* constrictions of a run are a state: those blocked at that moment, so the second run's
+//!   number contains the first's. The *retained* particles belong to one run: particles of the first run are
+//!   gone when the second begins.
 
 mod answer;
 mod inputs;

@@ -92,7 +92,8 @@ mod tests {
     use crate::outcome::record::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
     use crate::outcome::table::csv_of;
 
-    /// What the name of a column of numbers with a point ends in: its unit, or what it is a share of.
+    /// Endings of the names of columns of numbers with a point: the unit, or the total that the number is a
+    /// share of.
     const UNITS: [&str; 6] = ["_mm", "_fraction", "_by_mass", "_by_number", "_over_k0", "conductance"];
 
     /// The columns of a type, which its CSV file has in this order, and from which its rows come back.
@@ -108,7 +109,7 @@ mod tests {
         }
         let given = |name: &str| columns.iter().find(|(of, _)| *of == name).unwrap().1.clone();
         assert_eq!(R::rows::<()>(|name, _| Ok(given(name))), Ok(Some(rows.into())));
-        // A column that is cut short, or of another kind, makes no rows.
+        // A column that is too short, or of another kind, makes no rows.
         let short = |name: &str, like| Ok(if name == names[1] { like } else { given(name) });
         assert_eq!(R::rows::<()>(short), Ok(None));
         let truth = NumberColumn::Floats(vec![1.0]);

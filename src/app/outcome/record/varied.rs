@@ -1,4 +1,4 @@
-//! The same case with one thing changed: base particles, thickness, constriction curve.
+//! A case with one thing changed: base particles, thickness, constriction curve.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! The rows of the CSV files of a run folder that say what happened in each void of the first replicate.
+//! Rows of the CSV files of a run folder that describe each void of the first replicate.
 
 use crate::outcome::number_rows::rows;
 

@@ -6,7 +6,7 @@ use crate::outcome::record::{Statistic, Verdict};
 use crate::outcome::statistic::percent_interval;
 use voidwalk_practice::quantity::{Quantity, percent, significant, whole};
 
-/// What a cell of a file holds.
+/// Content of a cell of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CellValue {
     /// Nothing.
@@ -36,46 +36,46 @@ impl Display for CellValue {
 /// A cell or a heading of a page.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shown {
-    /// What stands in it.
+    /// Text of the cell.
     pub text: String,
-    /// Smaller lines below that.
+    /// Smaller lines below the text.
     pub below: Vec<String>,
-    /// How the first of that stands out.
+    /// Emphasis of the text.
     pub emphasis: Option<Emphasis>,
 }
 
-/// How the text of a cell stands out from others.
+/// Emphasis of the text of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Emphasis {
-    /// In the colour of a doubt.
+    /// Colour of a doubt.
     Doubt,
-    /// With a tick as what is kept, or with a cross as what is not.
+    /// A tick if kept, or a cross if not.
     Kept(bool),
-    /// In the colour of a run, by its number.
+    /// Colour of a run, by its number.
     Run(u64),
-    /// With no word of it broken.
+    /// No word is broken.
     Whole,
 }
 
 impl Shown {
-    /// With a smaller line at its end, where there is one.
+    /// Adds a smaller line at its end, if there is one.
     pub fn below(mut self, line: impl Into<Option<String>>) -> Self {
         self.below.extend(line.into());
         self
     }
 
-    /// In one line.
+    /// Puts the cell into one line.
     pub fn line(self) -> String {
         [&[self.text], &self.below[..]].concat().join("; ")
     }
 
-    /// With a text that stands out, where there is a way.
+    /// Emphasises the text, if an emphasis is given.
     pub fn emphasised(self, emphasis: impl Into<Option<Emphasis>>) -> Self {
         Self { emphasis: emphasis.into(), ..self }
     }
 }
 
-/// What stands in a cell: nothing in a file and a dash on a page where there is no value.
+/// Content of a cell: without a value empty in a file and a dash on a page.
 pub trait TableCell {
     /// In a file.
     fn value(self) -> CellValue;
@@ -159,7 +159,7 @@ cells! {
     f64: CellValue::Number, significant;
 }
 
-/// A number with so many decimals; nothing where there is none.
+/// A number with this number of decimals; empty without a number.
 pub(super) fn fixed(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(String::new, |value| format!("{value:.decimals$}"))
 }

@@ -1,4 +1,4 @@
-//! Erosion against D15F in the model: what every network eroded, and the three zones.
+//! Erosion against D15F in the model: the erosion of every network, and the three zones.
 
 use super::words::size_unit;
 use crate::outcome::boundary::{Boundaries, Boundary, BoundaryRow, WalkRow};
@@ -9,8 +9,8 @@ use crate::report::shell::Drawn;
 use crate::words::base_size;
 use crate::words::boundary::drawn_of_networks;
 
-/// The figure, of the row that holds least. Where none is known to hold, of the first that has a boundary or
-/// was walked at all.
+/// Draws the row that holds least; if no row is known to hold, the first that has a boundary or was walked at
+/// all.
 pub(super) fn erosion(all: &Boundaries, walks: &[WalkRow]) -> Option<Drawn> {
     let is_of = |row: &BoundaryRow, walk: &&WalkRow| {
         walk.density == row.searched() && walk.thickness == row.thickness
@@ -21,7 +21,7 @@ pub(super) fn erosion(all: &Boundaries, walks: &[WalkRow]) -> Option<Drawn> {
     let least = all.least_held().map(|(row, _)| row).filter(has_walks);
     let row = least.or_else(|| rows().find(with_boundary)).or_else(|| rows().next())?;
     let walks: Vec<&WalkRow> = walks.iter().filter(|walk| is_of(row, walk)).collect();
-    // In mm where the base has a size.
+    // Sizes are in mm if the base has a size.
     let (d85, axis) = match all.base.d85_mm {
         Some(d85) => (d85, "D15F (mm)"),
         None => (1.0, "D15F/D85B (–)"),
@@ -65,14 +65,15 @@ pub(super) fn erosion(all: &Boundaries, walks: &[WalkRow]) -> Option<Drawn> {
     Some(Drawn::new("boundary", figure, caption))
 }
 
-/// The zones of the model, as wide as the figure is. None is green, which is a colour of practice.
+/// The zones of the model, over the whole width of the figure. No zone is green, which is a colour of
+/// practice.
 fn zones(figure: &mut Figure, row: &BoundaryRow, d85: f64, (left, right): (f64, f64)) {
     let of = |boundary: &Boundary| {
         let at = |ratio: f64| (ratio * d85).clamp(left, right);
-        // Where no ratio is known that nearly all networks hold, some erosion begins at the left.
+        // Some erosion begins at the left edge if no ratio is known that nearly all networks hold.
         [at(boundary.cautious().unwrap_or(0.0)), at(boundary.high.unwrap_or(boundary.median))]
     };
-    // What holds all that was searched is drawn as far as that.
+    // A row that holds to the end of the search is drawn to that end.
     let [from, to] = match (&row.no_erosion, row.holds_to) {
         (Some(first), _) => of(first),
         (None, Some(ratio)) => [right, (ratio * d85).clamp(left, right)],

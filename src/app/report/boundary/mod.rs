@@ -63,7 +63,7 @@ pub fn write_boundary(folder: &Path) -> Result<Written, ReportError> {
         .write(folder, "boundary.html", &footer)
 }
 
-/// The soil of the filter with its sizes as they were given, and its curve.
+/// The soil of the filter with its given sizes, and its curve.
 fn filter_words(all: &Boundaries) -> Markup {
     html! {
         (titled_by_file("filter", "filter of the shape", &all.filter))
@@ -72,7 +72,7 @@ fn filter_words(all: &Boundaries) -> Markup {
     }
 }
 
-/// D15F and Cu of the filter as it was given; nothing where neither is known.
+/// D15F and Cu of the given filter; `None` if neither is known.
 fn as_given(all: &Boundaries) -> Option<String> {
     let d15 = all.filter_d15_mm.map(|mm| format!("D15F {}", length(mm, size_unit(all))));
     let cu = all.filter_cu.map(|cu| format!("Cu {}", significant(cu)));
@@ -81,7 +81,7 @@ fn as_given(all: &Boundaries) -> Option<String> {
     (!said.is_empty()).then(|| said.join(", "))
 }
 
-/// The notes that do not stand on the first sheet: folded on a screen, and open in print.
+/// The notes that are not on the first sheet: folded on a screen, and open in print.
 fn others(rest: &[String]) -> Markup {
     html! { @if !rest.is_empty() {
         details { summary { (rest.len()) " more" } ul { @for said in rest { li { (clean(said)) } } } }

@@ -88,12 +88,12 @@ pub(super) fn boundaries(all: &Boundaries) -> Markup {
     }
 }
 
-/// A coefficient of uniformity, or that it is not known.
+/// A coefficient of uniformity, or words for an unknown one.
 fn cu(of: Option<f64>) -> String {
     of.map_or_else(|| "not known".to_owned(), |cu| significant(cu).in_digits(4).to_string())
 }
 
-/// What was walked, and from what.
+/// Walks and inputs of the boundaries.
 pub(super) fn made(all: &Boundaries, walks: &[WalkRow]) -> Markup {
     let [low, high] = all.bracket;
     let size = |value: Option<f64>| value.map_or_else(|| "not known".to_owned(), |mm| format!("{mm:.4} mm"));

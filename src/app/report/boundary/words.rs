@@ -3,7 +3,7 @@
 use crate::outcome::boundary::Boundaries;
 use crate::report::quantity::SizeUnit;
 
-/// What sizes in mm are shown in.
+/// Unit in which sizes in mm are shown.
 pub(super) fn size_unit(all: &Boundaries) -> SizeUnit {
     SizeUnit::of(false, all.inches)
 }
@@ -17,7 +17,7 @@ pub(super) fn between(low: Option<f64>, high: Option<f64>, words: impl Fn(f64) -
     format!("{} to {}", end(low), end(high))
 }
 
-/// The same in brackets, where there are networks enough for a band.
+/// The band in brackets, if there are enough networks for one.
 pub(super) fn in_band(low: Option<f64>, high: Option<f64>, words: impl Fn(f64) -> String) -> String {
     let is_known = low.is_some() || high.is_some();
     if is_known { format!(" ({})", between(low, high, words)) } else { String::new() }

@@ -1,22 +1,22 @@
-//! Axes: a range, a scale, and where its ticks and grid lines stand.
+//! Axes: a range, a scale, and the places of its ticks and grid lines.
 
-/// How values are spread along an axis.
+/// Spacing of values along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// Evenly.
+    /// Even spacing.
     Linear,
-    /// Evenly in the logarithm.
+    /// Even spacing in the logarithm.
     Log,
 }
 
 /// A grid line, and the lines of text beside it; without text it is a minor one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
-    /// Where it stands.
+    /// Value at which it is drawn.
     pub at: f64,
-    /// What stands beside it, one entry per line of text.
+    /// Text beside it, one entry per line.
     pub text: Vec<String>,
-    /// How much it matters: of two labels that overlap, the one with the smaller rank is kept.
+    /// Importance of the label: if two labels overlap, the one with the smaller rank is kept.
     pub rank: u8,
 }
 
@@ -30,9 +30,9 @@ impl Tick {
 /// One axis of a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// What it measures, with the unit.
+    /// Measured quantity, with the unit.
     pub label: String,
-    /// How values are spread.
+    /// Spacing of values.
     pub scale: Scale,
     /// Smallest value drawn.
     pub low: f64,
@@ -40,7 +40,8 @@ pub struct Axis {
     pub high: f64,
     /// Grid lines, minor ones included.
     pub ticks: Vec<Tick>,
-    /// Whether values grow downward (depth); of an axis below the frame, to the left (coarse sizes first).
+    /// True if values grow downward (depth), or, for an axis below the frame, to the left (coarse sizes
+    /// first).
     pub downward: bool,
 }
 
@@ -106,19 +107,19 @@ impl Axis {
         Axis { label: label.to_owned(), scale: Scale::Log, low, high, ticks, downward: false }
     }
 
-    /// With these labelled ticks alone.
+    /// Keeps only these labelled ticks.
     pub fn with_ticks(mut self, ticks: Vec<Tick>) -> Axis {
         self.ticks = ticks;
         self
     }
 
-    /// With values that grow downward, or to the left.
+    /// Makes values grow downward, or to the left.
     pub fn downward(mut self) -> Axis {
         self.downward = true;
         self
     }
 
-    /// From `low` to `high` exactly; ticks beyond them go.
+    /// Limits the axis to `low` and `high` exactly; ticks beyond them are removed.
     pub fn within(mut self, low: f64, high: f64) -> Axis {
         (self.low, self.high) = (low, high);
         self.ticks.retain(|tick| (low..=high).contains(&tick.at));
@@ -133,7 +134,7 @@ impl Axis {
         Axis::linear("", 0.0, 1.0).with_ticks(ticks).downward().within(0.3, high)
     }
 
-    /// Where a value stands: 0 at `low`, 1 at `high`; `None` for a value that the scale cannot show.
+    /// Position of a value: 0 at `low`, 1 at `high`; `None` if the scale cannot show the value.
     pub fn position(&self, value: f64) -> Option<f64> {
         let position = match self.scale {
             Scale::Linear => (value - self.low) / (self.high - self.low),
@@ -144,7 +145,7 @@ impl Axis {
     }
 }
 
-/// Least and most of the positive values; 0.1 and 1 where there is none.
+/// Least and greatest of the positive values; 0.1 and 1 if there is no positive value.
 pub fn positive_range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let positive = values.filter(|v| *v > 0.0 && v.is_finite());
     let (low, high) =
@@ -170,7 +171,7 @@ fn tidy_log(value: f64, above: bool) -> f64 {
     found.unwrap_or(value)
 }
 
-/// `digit * 10^exponent`, exact where a decimal text would be.
+/// `digit * 10^exponent`, exact if a decimal text would be.
 fn power_of_ten(digit: f64, exponent: i32) -> f64 {
     if exponent < 0 {
         digit / libm::exp10(f64::from(-exponent))

@@ -21,7 +21,7 @@ pub const ORANGE: Colour = Colour { line: "#E69F00", text: "#855C00" };
 pub const VERMILLION: Colour = Colour { line: "#D55E00", text: "#A34700" };
 /// Reddish purple of Okabe and Ito.
 pub const PURPLE: Colour = Colour { line: "#CC79A7", text: "#8E3F6C" };
-/// Grey, for what stands behind.
+/// Grey, for the background.
 pub const GREY: Colour = Colour { line: "#767676", text: "#555555" };
 
 /// A ramp from light to dark blue, for curves in an order.

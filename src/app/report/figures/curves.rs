@@ -1,16 +1,16 @@
-//! Which marks make a curve that a reader can hide: a named line or kind of symbol, and what is drawn in its
-//! colour alone. Rules, lines that stand for a limit and named areas stay: a threshold, and where a verdict
-//! holds, is never hidden.
+//! Curves that a reader can hide: a named line or kind of symbol, and the marks in its colour alone. Rules,
+//! lines that represent a limit and named areas stay: a threshold, and the range in which a verdict holds,
+//! are never hidden.
 
 use super::colour::Colour;
 use super::figure::Figure;
 use super::marks::Mark;
 
-/// Curves that the style of a page can hide, at most; a figure with more hides none.
+/// Greatest number of curves that the style of a page can hide; a figure with more hides no curve.
 const MOST: usize = 16;
 
 impl Figure {
-    /// Names of the curves that a reader can hide, in the order of their classes `curve-1` ...; none where
+    /// Names of the curves that a reader can hide, in the order of their classes `curve-1` ...; empty if
     /// there are fewer than two.
     pub fn curves(&self) -> Vec<String> {
         let names = names(self);
@@ -18,7 +18,7 @@ impl Figure {
     }
 }
 
-/// The class of each mark, as it stands in an element; empty of marks that stay.
+/// The class of each mark, as an element has it; empty for marks that stay.
 pub(super) fn classes(figure: &Figure) -> Vec<String> {
     let names = figure.curves();
     let class = |mark: &Mark| {
@@ -29,7 +29,7 @@ pub(super) fn classes(figure: &Figure) -> Vec<String> {
     figure.marks.iter().map(|mark| class(mark).unwrap_or_default()).collect()
 }
 
-/// The name of every curve, once, in the order in which they are drawn.
+/// The name of every curve, once, in the order of drawing.
 fn names(figure: &Figure) -> Vec<String> {
     let mut names = Vec::new();
     for mark in &figure.marks {
@@ -41,14 +41,14 @@ fn names(figure: &Figure) -> Vec<String> {
     names
 }
 
-/// The curve that a mark is a part of.
+/// The curve to which a mark belongs.
 fn curve_of(figure: &Figure, mark: &Mark) -> Option<String> {
     let (own, colour) = look(mark)?;
     let alone = |names: Vec<String>| if names.len() == 1 { names.into_iter().next() } else { None };
     let line = || alone(of_colour(figure, colour, |mark| matches!(mark, Mark::Line(_))));
     let any = || alone(of_colour(figure, colour, |_| true));
     match (mark, own) {
-        // A value that is marked on a line goes with it.
+        // A value that is marked on a line is hidden with it.
         (Mark::Point(_), Some(name)) => line().or(Some(name)),
         (_, Some(name)) => Some(name),
         (Mark::Area(_), None) => line(),
@@ -56,7 +56,7 @@ fn curve_of(figure: &Figure, mark: &Mark) -> Option<String> {
     }
 }
 
-/// Names that stand for a colour, each once.
+/// Names that represent a colour, each once.
 fn of_colour(figure: &Figure, colour: Colour, is_meant: impl Fn(&Mark) -> bool) -> Vec<String> {
     let mut names = Vec::new();
     for mark in figure.marks.iter().filter(|mark| is_meant(mark)) {
@@ -70,7 +70,7 @@ fn of_colour(figure: &Figure, colour: Colour, is_meant: impl Fn(&Mark) -> bool) 
     names
 }
 
-/// Name and colour of what may be hidden.
+/// Name and colour of a mark that may be hidden.
 fn look(mark: &Mark) -> Option<(Option<String>, Colour)> {
     let (label, colour) = match mark {
         Mark::Line(line) if !line.stays => (&line.label, line.colour),
@@ -110,7 +110,7 @@ mod tests {
         assert_eq!(figure.curves(), ["first run", "second run"]);
         let (one, two) = (r#" class="curve-1""#, r#" class="curve-2""#);
         assert_eq!(classes(&figure), [one, two, "", one, two, two, "", "", ""]);
-        // Lines, their names, what a pointer shows and the symbol: of each curve all, of the rule nothing.
+        // Lines, their names, pointer titles and the symbol: all parts of each curve, no part of the rule.
         let drawn = figure.inline("one", Size::Wide);
         let of = |class: &str| -> Vec<String> {
             let begin = format!("<g{class}>");

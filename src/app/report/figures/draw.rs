@@ -1,4 +1,4 @@
-//! From a [`Figure`] to SVG: marks, and their names where there is room.
+//! Turns a [`Figure`] into SVG: marks, and their names if there is room.
 
 use super::colour::Colour;
 use super::curves;
@@ -15,13 +15,13 @@ use super::svg::{Anchor, FONT, Svg, escape, short, width_of, wrap};
 const SYMBOL: f64 = 4.5;
 
 impl Figure {
-    /// A file of its own.
+    /// Draws the figure as a file of its own.
     pub fn file(&self) -> String {
         let body = draw(self, Size::Wide, "figure", r#" xmlns="http://www.w3.org/2000/svg""#);
         format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{body}")
     }
 
-    /// An element of a page; `id` must be unlike that of any other element there.
+    /// Draws the figure as an element of a page; `id` must differ from the id of any other element there.
     pub fn inline(&self, id: &str, size: Size) -> String {
         draw(self, size, id, "")
     }
@@ -37,7 +37,7 @@ fn draw(figure: &Figure, size: Size, id: &str, namespace: &str) -> String {
         Naming::Above => named(figure),
         Naming::Direct => Vec::new(),
     };
-    // Marks whose names find no room are named above the frame; that moves the frame, so all is drawn again.
+    // Marks without room for a name are named above the frame; this moves the frame, so all is drawn again.
     let (body, height) = loop {
         let (body, height, homeless) = body(figure, width, height, id, &above);
         if homeless.is_empty() {
@@ -77,8 +77,8 @@ fn label_of(mark: &Mark) -> Option<(&str, Colour)> {
     label.as_deref().map(|label| (label, colour))
 }
 
-/// Everything inside the element, how high it is, and the marks whose names found no room. `above` are named
-/// above the frame.
+/// Everything inside the element, its height, and the marks without room for a name. `above` are named above
+/// the frame.
 fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> (String, f64, Vec<usize>) {
     let mut svg = Svg::default();
     let mut top = 12.0;
@@ -151,7 +151,7 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
                 homeless.push(index);
                 continue;
             }
-            // the first choice is right of the anchor: that is then in the middle of the area
+            // the first choice is right of the anchor: here the middle of the area
             anchors.iter_mut().for_each(|anchor| anchor.0 -= GAP + wide / 2.0);
         }
         match canvas.place(&anchors, wide, LINE_HEIGHT * lines.len() as f64 - 2.0, index) {
@@ -165,7 +165,7 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
     (svg.finish(), height, homeless)
 }
 
-/// Draws what belongs to a curve, so that a page can hide it.
+/// Draws the parts of a curve in a group, so that a page can hide it.
 fn in_group(svg: &mut Svg, class: &str, draw: impl FnOnce(&mut Svg)) {
     if class.is_empty() {
         return draw(svg);
@@ -175,7 +175,7 @@ fn in_group(svg: &mut Svg, class: &str, draw: impl FnOnce(&mut Svg)) {
     svg.raw("</g>\n");
 }
 
-/// Writes a name beside its mark, on a light ground that keeps it apart from what lies below.
+/// Writes a name beside its mark, on a light ground that separates it from the drawing below.
 fn name(svg: &mut Svg, lines: &[&str], found: &Rect, (at, anchor): (f64, Anchor), colour: Colour) {
     let halo = r##"stroke="#ffffff" stroke-width="3" stroke-linejoin="round" paint-order="stroke""##;
     let paint = format!("fill=\"{}\" {halo}", colour.text);
@@ -184,7 +184,7 @@ fn name(svg: &mut Svg, lines: &[&str], found: &Rect, (at, anchor): (f64, Anchor)
     }
 }
 
-/// Text that stands left of its curve ends there, so that a narrower font leaves no gap.
+/// Text left of its curve ends at the curve, so that a narrower font leaves no gap.
 fn side(found: &Rect, anchors: &[(f64, f64)]) -> (f64, Anchor) {
     let nearest = anchors.iter().min_by(|a, b| distance(found, **a).total_cmp(&distance(found, **b)));
     match nearest {
@@ -204,7 +204,7 @@ fn inset(area: &Rect) -> Rect {
     Rect { left: area.left + 3.0, top: area.top + 3.0, right: area.right - 3.0, bottom: area.bottom - 3.0 }
 }
 
-/// The names above the frame, in as many rows as they need. Returns where the frame may begin.
+/// Draws the names above the frame, in as many rows as they need. Returns the top of the frame.
 fn key(svg: &mut Svg, figure: &Figure, above: &[usize], width: f64, top: f64) -> f64 {
     const SAMPLE: f64 = 26.0;
     let (mut left, mut row) = (14.0, top);
@@ -279,7 +279,7 @@ fn draw_mark(svg: &mut Svg, canvas: &mut Canvas, frame: &Frame<'_>, mark: &Mark,
     }
 }
 
-/// A symbol and its bars, drawn over everything else and not clipped: half a circle on the frame reads badly.
+/// Draws a symbol and its bars over everything else without clipping: half a circle on the frame reads badly.
 fn draw_point(
     svg: &mut Svg,
     canvas: &mut Canvas,
@@ -347,7 +347,7 @@ fn stroke(line: &Line) -> String {
     format!("stroke=\"{}\" stroke-width=\"{}\"{dashes}{opacity}", line.colour.line, short(line.width))
 }
 
-/// Where the name of a mark may hang, in the order of preference.
+/// Places for the name of a mark, in the order of preference.
 fn anchors(frame: &Frame<'_>, mark: &Mark) -> Vec<(f64, f64)> {
     let Rect { left, top, right, bottom } = frame.area;
     match mark {

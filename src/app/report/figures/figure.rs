@@ -1,4 +1,4 @@
-//! A figure: axes, and what stands between them.
+//! A figure: axes, and the marks between them.
 
 use super::axis::Axis;
 use super::marks::{Mark, Point};
@@ -14,16 +14,16 @@ pub enum Size {
     Sheet,
 }
 
-/// How curves get their names.
+/// Placement of the names of curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Naming {
-    /// Each beside its curve; names that find no room go above the frame.
+    /// Each name beside its curve; names without room go above the frame.
     Direct,
-    /// All above the frame.
+    /// All names above the frame.
     Above,
 }
 
-/// Axes and what stands between them.
+/// Axes and the marks between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     pub(super) title: String,
@@ -60,54 +60,54 @@ impl Figure {
         }
     }
 
-    /// Other widths and heights in pixels.
+    /// Sets other widths and heights in pixels.
     pub fn sizes(mut self, wide: (f64, f64), narrow: (f64, f64)) -> Figure {
         (self.wide, self.narrow) = (wide, narrow);
         self
     }
 
-    /// Width and height in pixels on the first printed sheet, where it stands beside a table.
+    /// Sets width and height in pixels on the first printed sheet, beside a table.
     pub fn sheet(mut self, size: (f64, f64)) -> Figure {
         self.sheet = Some(size);
         self
     }
 
-    /// Whether it has a size of its own on the first printed sheet.
+    /// Tells if it has a size of its own on the first printed sheet.
     pub fn has_sheet(&self) -> bool {
         self.sheet.is_some()
     }
 
-    /// A square frame, as large as there is room for: equal axes then have equal scales.
+    /// Makes the frame a square, as large as there is room for: equal axes then have equal scales.
     pub fn square(mut self) -> Figure {
         self.square = true;
         self
     }
 
-    /// With US sieve numbers and the limits of fines, sand and gravel above the frame: x is a size in mm.
+    /// Adds US sieve numbers and the limits of fines, sand and gravel above the frame: x is a size in mm.
     pub fn sieves(mut self) -> Figure {
         self.sieves = true;
         self
     }
 
-    /// All names above the frame.
+    /// Puts all names above the frame.
     pub fn names_above(mut self) -> Figure {
         self.naming = Naming::Above;
         self
     }
 
-    /// Draws something over what is there.
+    /// Draws a mark over those that are there.
     pub fn add(&mut self, mark: impl Into<Mark>) {
         self.marks.push(mark.into());
     }
 
-    /// Draws symbols of one kind; the first of them carries the name of all.
+    /// Draws symbols of one kind; the first carries the name of all.
     pub fn add_points(&mut self, name: &str, points: impl IntoIterator<Item = Point>) {
         for (index, point) in points.into_iter().enumerate() {
             self.add(if index == 0 { point.label(name) } else { point });
         }
     }
 
-    /// Whether it is higher than wide, so that it needs a printed page for itself.
+    /// Tells if it is higher than wide, so that it needs a printed page for itself.
     pub fn is_tall(&self) -> bool {
         self.wide.1 > 1.1 * self.wide.0
     }

@@ -1,4 +1,4 @@
-//! The frame of a figure: where values fall in pixels, its grid, and the labels of its axes.
+//! The frame of a figure: the pixel of a value, its grid, and the labels of its axes.
 
 use super::axis::{Axis, Tick};
 use super::figure::Figure;
@@ -9,10 +9,10 @@ use super::svg::{Anchor, Svg, short, width_of, wrap};
 pub(super) const TICK_TEXT: f64 = 13.0;
 pub(super) const LABEL_TEXT: f64 = 14.0;
 pub(super) const LINE_HEIGHT: f64 = 17.0;
-/// The narrowest and lowest frame.
+/// Least width and height of the frame.
 const LEAST: f64 = 60.0;
 
-/// Where values fall in pixels.
+/// Conversion of values to pixels.
 pub(super) struct Frame<'a> {
     x: &'a Axis,
     y: &'a Axis,
@@ -40,21 +40,21 @@ impl Frame<'_> {
         simplify(points.iter().filter_map(|point| self.at(*point)))
     }
 
-    /// A path kept inside the frame, for finding room: what the clip hides needs none.
+    /// A path limited to the frame, for finding room: hidden parts need no room.
     pub(super) fn seen(&self, path: &[(f64, f64)]) -> Vec<(f64, f64)> {
         let area = &self.area;
         path.iter().map(|(x, y)| (x.clamp(area.left, area.right), y.clamp(area.top, area.bottom))).collect()
     }
 }
 
-/// A frame that is not too low for anything to be seen, whatever stands above and below it: the figure grows.
+/// Makes a frame that is high enough to be seen, for any text above and below it: the figure grows.
 pub(super) fn roomy(figure: &Figure, width: f64, height: f64, top: f64) -> (Frame<'_>, f64) {
     let first = frame(figure, width, height, top);
     let high = first.area.bottom - first.area.top;
     if high >= LEAST {
         return (first, height);
     }
-    // The label beside the frame breaks into fewer lines where the frame is higher, which makes it wider: at
+    // The label beside the frame breaks into fewer lines if the frame is higher, which makes it wider: at
     // most the labels below then need fewer lines.
     let height = height + LEAST - high;
     (frame(figure, width, height, top), height)
@@ -72,7 +72,7 @@ fn frame(figure: &Figure, width: f64, height: f64, top: f64) -> Frame<'_> {
     } else {
         wrap(&figure.y.label, LABEL_TEXT, height - top - 90.0).len()
     };
-    // What is too long to stand beside the frame is cut off at the figure's edge.
+    // Text that is too long for the space beside the frame is cut off at the figure's edge.
     let left = (12.0 + y_lines as f64 * LINE_HEIGHT + widest(&figure.y) + 12.0).min(right - LEAST);
     let x_lines = wrap(&figure.x.label, LABEL_TEXT, right - left).len() as f64;
     let bottom = height - 10.0 - (x_lines + rows) * LINE_HEIGHT - 6.0;
@@ -126,7 +126,7 @@ fn labelled(axis: &Axis, room: impl Fn(&Tick) -> Option<(f64, f64)>) -> Vec<(&Ti
             .filter(|tick| tick.rank == rank && !tick.text.is_empty())
             .filter_map(|tick| room(tick).map(|(at, half)| (tick, at, half)))
             .collect();
-        // the first rank is thinned evenly until it fits; a lower one comes whole or not at all
+        // the first rank is thinned evenly until it fits; a lower one is kept whole or dropped
         let fits = |stride: usize| {
             let mut all = kept.clone();
             all.extend(group.iter().step_by(stride));

@@ -11,11 +11,11 @@ use crate::report::quantity::significant;
 const SPOTS: usize = 24;
 const APART: f64 = 14.0;
 
-/// What is said of a point.
+/// Title that a pointer shows at a point.
 pub(super) fn title(figure: &Figure, label: Option<&str>, (x, y): (f64, f64)) -> String {
     let name = label.map_or(String::new(), |label| format!("{}: ", label.replace('\n', " ")));
-    // An axis of rows has no label: its value is a place. What follows a label's first clause is said of the
-    // marks along the axis, not of a value.
+    // An axis of rows has no label: its value is a place. The text after a label's first clause describes the
+    // marks along the axis, not a value.
     let value = |label: &str, value: f64| match label.split([';', '\n']).next().unwrap_or_default() {
         "" => String::new(),
         label => format!("{label} {}", significant(value)),
@@ -25,7 +25,7 @@ pub(super) fn title(figure: &Figure, label: Option<&str>, (x, y): (f64, f64)) ->
     format!("<title>{}</title>", escape(&format!("{name}{}", values.join("; "))))
 }
 
-/// Draws the spots, those of a mark in a group of its class; `at` gives the pixel of a point.
+/// Draws the spots, each mark's in a group of its class; `at` gives the pixel of a point.
 pub(super) fn draw(
     svg: &mut Svg,
     figure: &Figure,
@@ -66,7 +66,7 @@ mod tests {
     use super::super::{Axis, BLUE, Line, Point, Shape, Size};
     use super::*;
 
-    /// In the words of the first line of the axis.
+    /// The words are the first line of the axis label.
     #[test]
     fn a_pointer_shows_the_place_of_a_mark() {
         let x = Axis::log("Times the grains; below, grains per void", 0.5, 2.0);

@@ -1,15 +1,15 @@
-//! What is drawn between the axes of a figure.
+//! Marks that are drawn between the axes of a figure.
 
 use super::colour::Colour;
 
-/// How a line is broken.
+/// Dashes of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dash {
-    /// Not at all.
+    /// Unbroken.
     Solid,
-    /// In dashes.
+    /// Broken into dashes.
     Dashed,
-    /// In dots.
+    /// Broken into dots.
     Dotted,
 }
 
@@ -32,36 +32,36 @@ impl Line {
         Line { points, colour, width, dash, opacity, stays: false, label: None }
     }
 
-    /// The same through rows as records hold them: x, y.
+    /// A solid line through rows as records hold them: x, y.
     pub fn of_rows(rows: &[[f64; 2]], colour: Colour) -> Line {
         Line::new(rows.iter().map(|&[x, y]| (x, y)).collect(), colour)
     }
 
-    /// Another width in pixels.
+    /// Sets the width in pixels.
     pub fn width(mut self, width: f64) -> Line {
         self.width = width;
         self
     }
 
-    /// Broken.
+    /// Sets the dashes.
     pub fn dash(mut self, dash: Dash) -> Line {
         self.dash = dash;
         self
     }
 
-    /// See-through: 1 is opaque.
+    /// Sets the opacity: 1 is opaque.
     pub fn opacity(mut self, opacity: f64) -> Line {
         self.opacity = opacity;
         self
     }
 
-    /// Standing for a limit, which no reader of a page can hide.
+    /// Marks the line as a limit, which no reader of a page can hide.
     pub fn stays(mut self) -> Line {
         self.stays = true;
         self
     }
 
-    /// With a name.
+    /// Sets the name.
     pub fn label(mut self, label: &str) -> Line {
         self.label = Some(label.to_owned());
         self
@@ -83,7 +83,7 @@ impl Area {
         Area { outline, colour, opacity, label: None }
     }
 
-    /// With a name, at its upper edge.
+    /// Sets the name, at the upper edge.
     pub fn label(mut self, label: &str) -> Area {
         self.label = Some(label.to_owned());
         self
@@ -123,38 +123,38 @@ impl Point {
         Point { at: (x, y), colour, shape, filled: true, x_interval, y_interval, drop: false, label: None }
     }
 
-    /// Hollow.
+    /// Makes the symbol hollow.
     pub fn hollow(mut self) -> Point {
         self.filled = false;
         self
     }
 
-    /// With a bar along x from low to high.
+    /// Adds a bar along x from low to high.
     pub fn x_interval(mut self, interval: Option<(f64, f64)>) -> Point {
         self.x_interval = interval;
         self
     }
 
-    /// With a bar along y from low to high.
+    /// Adds a bar along y from low to high.
     pub fn y_interval(mut self, interval: Option<(f64, f64)>) -> Point {
         self.y_interval = interval;
         self
     }
 
-    /// With a dotted line down to the x axis, where its value is read.
+    /// Adds a dotted line down to the x axis, where its value is read.
     pub fn dropped(mut self) -> Point {
         self.drop = true;
         self
     }
 
-    /// With a name.
+    /// Sets the name.
     pub fn label(mut self, label: &str) -> Point {
         self.label = Some(label.to_owned());
         self
     }
 }
 
-/// Across which axis a [`Rule`] stands.
+/// The axis that a [`Rule`] crosses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Across {
     /// At one x, vertical.
@@ -179,13 +179,13 @@ impl Rule {
         Rule { across, at, colour, dash: Dash::Solid, label: None }
     }
 
-    /// Broken.
+    /// Sets the dashes.
     pub fn dash(mut self, dash: Dash) -> Rule {
         self.dash = dash;
         self
     }
 
-    /// With a name.
+    /// Sets the name.
     pub fn label(mut self, label: &str) -> Rule {
         self.label = Some(label.to_owned());
         self

@@ -1,11 +1,10 @@
 //! Figures: axes, lines, areas, points and rules, drawn as SVG.
 //!
-//! A [`Figure`] says what is shown; [`Figure::file`] and [`Figure::inline`] draw it. It is written for what a
-//! geotechnical engineer expects (semi-logarithmic paper with its minor lines, depth downward, a name beside
-//! each curve) and for pages that forbid everything but themselves: only presentation attributes, no script,
-//! no style element, no font or image from elsewhere. Colours are those of Okabe and Ito, which colour-blind
-//! readers tell apart, and never the only difference between two curves: dashes, widths and symbols differ as
-//! well.
+//! A [`Figure`] holds the content; [`Figure::file`] and [`Figure::inline`] draw it. It suits the habits of
+//! geotechnical engineers (semi-logarithmic paper with its minor lines, depth downward, a name beside each
+//! curve) and pages that forbid everything but themselves: only presentation attributes, no script, no style
+//! element, no font or image from elsewhere. Colours are from Okabe and Ito, which colour-blind readers tell
+//! apart, and never the only difference between two curves: dashes, widths and symbols differ as well.
 //!
 //! ```
 //! use voidwalk_app::report::figures::{Axis, BLUE, Figure, Line, Size};

@@ -19,7 +19,7 @@ pub(super) fn along(path: &[(f64, f64)], share: f64) -> Option<(f64, f64)> {
 }
 
 /// The path with as few points as keep it within a third of a pixel (Douglas and Peucker), after points that
-/// fall on their predecessor are left out.
+/// coincide with their predecessor are left out.
 pub(super) fn simplify(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
     const NEAR: f64 = 0.3;
     let mut path: Vec<(f64, f64)> = Vec::new();
@@ -55,7 +55,7 @@ pub(super) fn simplify(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f6
     path.into_iter().zip(keep).filter_map(|(point, kept)| kept.then_some(point)).collect()
 }
 
-/// Distance of a point from the stretch between two others.
+/// Distance of a point from the segment between two others.
 fn off_chord(point: (f64, f64), from: (f64, f64), to: (f64, f64)) -> f64 {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let (px, py) = (point.0 - from.0, point.1 - from.1);

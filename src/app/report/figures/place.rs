@@ -1,4 +1,4 @@
-//! Where a direct label stands: beside its own curve, and on nothing else.
+//! Placement of direct labels: beside their own curve, and on nothing else.
 
 /// Pixels between an anchor and its label.
 pub(super) const GAP: f64 = 9.0;
@@ -36,17 +36,17 @@ impl Rect {
     }
 }
 
-/// What is already drawn, and where a label may stand.
+/// The drawn points, and the free space for labels.
 pub(super) struct Canvas {
     pub frame: Rect,
-    /// Points on what was drawn, a few pixels apart, each with the mark that it belongs to.
+    /// Points on the drawn marks, a few pixels apart, each with the index of its mark.
     pub ink: Vec<((f64, f64), usize)>,
     /// Labels and symbols that were placed.
     pub taken: Vec<Rect>,
 }
 
 impl Canvas {
-    /// Points every 3 pixels along a path, so that no label can slip between two of them.
+    /// Adds points every 3 pixels along a path, so that no label can slip between two of them.
     pub(super) fn draw(&mut self, path: &[(f64, f64)], mark: usize) {
         for pair in path.windows(2) {
             let (dx, dy) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
@@ -59,9 +59,8 @@ impl Canvas {
         self.ink.extend(path.last().map(|end| (*end, mark)));
     }
 
-    /// A free box of this size near one of the anchors (tried in order), or `None`. The box is taken. What
-    /// belongs to other marks is kept at a greater distance, so that a name stands on its own curve's side of
-    /// a neighbour.
+    /// Takes and returns a free box of this size near one of the anchors (tried in order), or `None`. Other
+    /// marks are kept at a greater distance, so that a name is on its own curve's side of a neighbour.
     pub(super) fn place(
         &mut self,
         anchors: &[(f64, f64)],

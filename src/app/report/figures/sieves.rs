@@ -1,10 +1,9 @@
-//! What stands above the frame of a figure of sizes in mm: fines, sand and gravel, and US sieve numbers.
+//! Scales above the frame of a figure of sizes in mm: fines, sand and gravel, and US sieve numbers.
 
 use super::place::Rect;
 use super::svg::{Anchor, Svg, width_of};
 
-/// Openings (mm, ASTM E11) and names of sieves, in the order in which they are kept where there is little
-/// room.
+/// Openings (mm, ASTM E11) and names of sieves, in the order in which they are kept if there is little room.
 const SIEVES: [(f64, &str); 11] = [
     (0.075, "200"),
     (4.75, "4"),
@@ -23,12 +22,12 @@ const SIEVES: [(f64, &str); 11] = [
 const PARTS: [(&str, f64, f64); 4] =
     [("fines", 0.0, 0.075), ("sand", 0.075, 4.75), ("gravel", 4.75, 75.0), ("cobbles", 75.0, f64::INFINITY)];
 
-/// Room that they take above the frame (pixels).
+/// Height of the scales above the frame (pixels).
 pub(super) const HEIGHT: f64 = 36.0;
 
 const TEXT: f64 = 11.0;
 
-/// Draws them above a frame; `at` gives the pixel of a size.
+/// Draws the scales above a frame; `at` gives the pixel of a size.
 pub(super) fn draw(svg: &mut Svg, area: &Rect, at: impl Fn(f64) -> Option<f64>) {
     let Rect { left, top, right, bottom } = *area;
     let size = format!("font-size=\"{TEXT}\"");
@@ -72,7 +71,7 @@ pub(super) fn draw(svg: &mut Svg, area: &Rect, at: impl Fn(f64) -> Option<f64>) 
 mod tests {
     use super::super::{Axis, BLUE, Figure, Line, Size};
 
-    /// Where a text stands.
+    /// Place of a text along x.
     fn x_of(svg: &str, text: &str) -> Option<f64> {
         let (before, _) = svg.split_once(&format!(">{text}</text>"))?;
         let (_, element) = before.rsplit_once("<text x=\"")?;

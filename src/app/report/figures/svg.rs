@@ -1,13 +1,13 @@
-//! SVG text: elements, numbers, escaping, and how wide a text will be.
+//! SVG text: elements, numbers, escaping, and the estimated width of a text.
 
 use std::fmt::Write;
 
 use voidwalk_core::text::visible;
 
-/// Generic families only: a figure looks alike as a file and in a page, and fetches nothing.
+/// Generic families only: a figure looks the same as a file and in a page, and fetches nothing.
 pub(super) const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 
-/// A text in the middle of, before or behind its anchor.
+/// Placement of a text: in the middle of, before or behind its anchor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Anchor {
     Start,

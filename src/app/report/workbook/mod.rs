@@ -21,30 +21,30 @@ pub(super) const VERDICT: &str = "verdict.xlsx";
 /// The workbook of a specification.
 const SPECIFICATION: &str = "specification.xlsx";
 
-/// Writes `verdict.xlsx` into `into`, from the files of a finished run folder: the answer, what went in,
-/// every rule with its formula and source, every run, both gradations, and what made it.
+/// Writes `verdict.xlsx` into `into`, from the files of a finished run folder: the answer, the inputs, every
+/// rule with its formula and source, every run, both gradations, and the program that made it.
 ///
 /// # Errors
-/// As [`super::write()`].
+/// Returns the errors of [`super::write()`].
 pub fn write_verdict_workbook(folder: &Path, into: &Path) -> Result<PathBuf, ReportError> {
     let path = into.join(VERDICT);
     write_whole(&path, &verdict_workbook(folder)?)?;
     Ok(path)
 }
 
-/// The same as bytes.
+/// The workbook of a run, as bytes.
 ///
 /// # Errors
-/// As [`super::write()`].
+/// Returns the errors of [`super::write()`].
 pub(super) fn verdict_workbook(folder: &Path) -> Result<Vec<u8>, ReportError> {
     bytes(&folder.join(VERDICT), "voidwalk: verdict", &verdict::sheets(&RunFolder::read(folder)?))
 }
 
 /// Writes `specification.xlsx` into a folder: steps, limits, band, products, and the base. With a clock
-/// before 1970 there is none.
+/// before 1970 there is no workbook.
 ///
 /// # Errors
-/// What cannot be written.
+/// Returns the error of a file that cannot be written.
 pub(super) fn write_specification_workbook(
     folder: &Path,
     specification: &Specification,
@@ -56,7 +56,7 @@ pub(super) fn write_specification_workbook(
     Ok(write_whole(&path, &bytes(&path, "voidwalk: specification of a filter", &sheets)?)?)
 }
 
-/// A workbook to fill in, which [`voidwalk_sheets::soils_in_file`] reads: a soil a column, as bytes.
+/// A workbook to fill in, which [`voidwalk_sheets::soils_in_file`] reads: one column per soil, as bytes.
 ///
 /// ```
 /// let bytes = voidwalk_app::report::soil_template()?;

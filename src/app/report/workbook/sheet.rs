@@ -1,6 +1,6 @@
 //! Sheets of a workbook as rows of numbers and words, and the workbook as bytes.
 //!
-//! The same sheets give the same bytes: nothing of the day or of the machine goes in.
+//! Equal sheets give equal bytes: nothing of the day or of the machine is included.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -10,13 +10,13 @@ use crate::outcome::table::{CellValue, Columns, TableCell};
 use crate::report::shell::clean;
 use voidwalk_core::text::shorten;
 
-/// Most characters of a cell, as Excel has them.
+/// Most characters of a cell that Excel allows.
 const CELL: usize = 32_000;
 
-/// The greatest whole number that a cell holds as it is.
+/// The greatest whole number that a cell holds exactly.
 const WHOLE: u64 = 1 << 53;
 
-/// The day that every workbook says it was made on, whatever day that was.
+/// The creation day of every workbook, on any day.
 const DAY: (u16, u8, u8) = (2000, 1, 1);
 
 /// Widths of columns (characters).
@@ -93,7 +93,7 @@ fn held(value: CellValue) -> CellValue {
     }
 }
 
-/// Whether the clock says a year in which the writer of workbooks takes no time, and panics.
+/// Tells if the clock shows a year that makes the writer of workbooks panic.
 pub(super) fn is_before_1970() -> bool {
     SystemTime::now() < UNIX_EPOCH
 }
@@ -101,7 +101,8 @@ pub(super) fn is_before_1970() -> bool {
 const NO_THREADS: &str =
     "the system gives no more threads, and a workbook needs one a sheet: allow more (ulimit -u)";
 
-/// Whether the system gives so many threads at once: the writer of workbooks takes one a sheet, or panics.
+/// Tells if the system can start this number of threads at once: the writer of workbooks takes one per sheet,
+/// or panics.
 fn has_threads(count: usize) -> bool {
     let threads: Vec<_> = (0..count).map(|_| std::thread::Builder::new().spawn(std::thread::park)).collect();
     let all = threads.iter().all(Result::is_ok);

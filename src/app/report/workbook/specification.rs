@@ -11,14 +11,14 @@ use voidwalk_practice::design::Specification;
 use voidwalk_practice::design::size_band::BandSize;
 use voidwalk_practice::quantity::SizeUnit;
 
-/// What the page says too.
+/// Cautions that the page has too.
 const CAUTIONS: [(&str, &str); 3] = [
     ("Fines", "At most 5 % may be finer than 0.075 mm, and these fines must not be plastic."),
     ("Segregation", "Segregation is not checked: the maximum D90F is still to be set (see its step)."),
     ("Use", "It does not replace a filter test or a designer’s judgement."),
 ];
 
-/// Its sheets.
+/// Sheets of the workbook.
 pub(super) fn sheets(of: &Specification) -> Vec<Sheet> {
     vec![summary(of), limits(of), band(of), products(of), steps(of), base(of)]
 }

@@ -1,10 +1,10 @@
-//! A workbook to fill in: a base and a filter as sieve tables, and how to fill them in.
+//! A workbook to fill in: a base and a filter as sieve tables, with instructions.
 
 use super::sheet::Sheet;
 use crate::outcome::table::Columns;
 use voidwalk_practice::design::SieveSeries;
 
-/// Its sheets: the soils first.
+/// Sheets of the workbook: the soils first.
 pub(super) fn sheets() -> Vec<Sheet> {
     vec![soil("Base", &BASE), soil("Filter", &FILTER), how()]
 }
@@ -31,7 +31,7 @@ fn rows(example: &Example) -> Vec<(f64, f64)> {
     SieveSeries::Us.openings().iter().copied().zip(*example).collect()
 }
 
-/// What to do, in words that no reader takes for a sieve table.
+/// Instructions, in words that no reader takes for a sieve table.
 fn how() -> Sheet {
     let columns = Columns::default().column("How to fill in", |line: &&str| line.to_string());
     let lines = [
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
     use voidwalk_sheets::soils_in_file;
 
-    /// As the last sheet says: a further sample is a further column.
+    /// The last sheet asks for one column per further sample.
     #[test]
     fn a_template_with_a_further_sample_is_read_as_it_says() {
         let columns = columns().column("Sample 2 (% finer)", |row| row.1);
@@ -63,7 +63,7 @@ mod tests {
         let names: Vec<&str> = soils.iter().map(|soil| soil.name.as_str()).collect();
         assert_eq!(names, ["Base/Sample 1 (% finer)", "Base/Sample 2 (% finer)", "Filter"]);
         assert_eq!(soils[0].points, soils[1].points);
-        // What all pass is one row: the finest of them.
+        // Sieves that everything passes are one row: the finest of them.
         assert_eq!((soils[0].points.len(), soils[0].points[0].row()), (8, [0.075, 38.0]));
     }
 }

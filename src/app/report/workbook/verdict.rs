@@ -11,7 +11,7 @@ use voidwalk_practice::Decision;
 use voidwalk_practice::quantity::SizeUnit;
 use voidwalk_practice::{Headline, RuleRole};
 
-/// Its sheets.
+/// Sheets of the workbook.
 pub(super) fn sheets(of: &RunFolder) -> Vec<Sheet> {
     let (outcome, decision) = (&of.outcome, &of.decision);
     vec![
