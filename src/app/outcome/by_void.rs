@@ -20,14 +20,14 @@ pub struct Places {
 
 impl Places {
     /// Vector (mm) from one void to the nearest image of another; half a layer if either lies outside.
-    fn way(&self, from: i64, to: i64) -> [f64; 3] {
+    fn vector(&self, from: i64, to: i64) -> [f64; 3] {
         let point = |void: i64| usize::try_from(void).ok().and_then(|void| self.point_mm.get(void));
         let (Some(from), Some(to)) = (point(from), point(to)) else { return [0.0, 0.0, 0.5 * self.layer_mm] };
-        let mut way = [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
-        for (length, period) in way.iter_mut().zip(self.period_mm) {
+        let mut vector = [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
+        for (length, period) in vector.iter_mut().zip(self.period_mm) {
             *length -= period * (*length / period).round();
         }
-        way
+        vector
     }
 }
 
@@ -45,7 +45,7 @@ pub fn constrictions(network: &Network, places: &Places) -> Vec<ConstrictionRow>
                 (true, false) => (i64::from(void), OUTSIDE),
                 (false, _) => (OUTSIDE, i64::from(target)),
             };
-            let [dx_mm, dy_mm, dz_mm] = places.way(from, to);
+            let [dx_mm, dy_mm, dz_mm] = places.vector(from, to);
             rows.push(ConstrictionRow {
                 constriction: network.either_way(exit) as u64,
                 from,
@@ -74,9 +74,9 @@ pub fn blocked(network: &Network, state: &State) -> Vec<BlockedRow> {
 /// The voids that hold retained particles of a run, and void 0, so that the moment is known even if no void
 /// holds any.
 pub fn retained(state: &State) -> Vec<RetainedRow> {
-    let each = state.retained_in_constrictions.iter().zip(&state.retained_in_voids);
+    let counts = state.retained_in_constrictions.iter().zip(&state.retained_in_voids);
     (0i64..)
-        .zip(each)
+        .zip(counts)
         .filter(|(void, (in_constrictions, in_void))| *void == 0 || **in_constrictions + **in_void > 0)
         .map(|(void, (&retained_in_constrictions, &retained_in_voids))| RetainedRow {
             run: state.run,

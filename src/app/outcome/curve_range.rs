@@ -44,8 +44,8 @@ impl CurveRange {
     fn worst(&self) -> Verdict {
         let all = || self.ends.iter().map(|end| end.walked.verdict).chain([self.verdict]);
         let decided = [Verdict::Continuing, Verdict::Some, Verdict::None];
-        let worst = decided.into_iter().find(|class| all().any(|of| of == *class));
-        let is_open = all().any(|of| of == Verdict::Undecided);
+        let worst = decided.into_iter().find(|class| all().any(|verdict| verdict == *class));
+        let is_open = all().any(|verdict| verdict == Verdict::Undecided);
         match worst {
             Some(Verdict::Continuing) => Verdict::Continuing,
             Some(worst) if !is_open || worst == self.could_be() => worst,
@@ -89,22 +89,22 @@ mod tests {
 
     fn range_with(verdict: Verdict, ends: &[(f64, Verdict)], worst_counts: bool) -> CurveRange {
         let (sd, low, high) = (Some(0.01), |mean: f64| Some(mean - 0.01), |mean: f64| Some(mean + 0.01));
-        let of = |mean: f64| Statistic { mean, sd, low: low(mean), high: high(mean) };
+        let statistic = |mean: f64| Statistic { mean, sd, low: low(mean), high: high(mean) };
         let end = |&(dc50_factor, verdict): &(f64, Verdict)| {
-            let runs = vec![of(0.09), of(0.02)];
+            let runs = vec![statistic(0.09), statistic(0.02)];
             let walked = Classed { replicates: 5, stopped_when_clear: false, verdict, runs };
             CurveEnd { curve: format!("times {dc50_factor}"), dc50_factor, walked }
         };
         let ends = ends.iter().map(end).collect();
-        CurveRange::new(verdict, &[of(0.05), of(0.04)], ends, worst_counts, None).unwrap()
+        CurveRange::new(verdict, &[statistic(0.05), statistic(0.04)], ends, worst_counts, None).unwrap()
     }
 
     #[test]
     fn a_range_supports_what_its_curves_agree_on() {
         let agreed = range(Verdict::None, Verdict::None);
         assert_eq!(agreed.whole(), Verdict::None);
-        for (found, wanted) in agreed.eroded_mass_fraction.iter().flatten().zip([0.04, 0.10, 0.01, 0.05]) {
-            assert!((found - wanted).abs() < 1e-12, "{agreed:?}");
+        for (actual, wanted) in agreed.eroded_mass_fraction.iter().flatten().zip([0.04, 0.10, 0.01, 0.05]) {
+            assert!((actual - wanted).abs() < 1e-12, "{agreed:?}");
         }
         let open = range(Verdict::None, Verdict::Some);
         assert_eq!(open.whole(), Verdict::Undecided);
@@ -114,7 +114,7 @@ mod tests {
     #[test]
     fn of_a_filter_from_the_library_the_worst_class_counts() {
         use Verdict::{Continuing, None, Some, Undecided};
-        let whole = |own, coarse, fine| range_with(own, &[(1.03, coarse), (0.8, fine)], true).whole();
+        let whole = |curve, coarse, fine| range_with(curve, &[(1.03, coarse), (0.8, fine)], true).whole();
         assert_eq!(whole(None, None, None), None);
         assert_eq!(whole(Some, Some, None), Some);
         assert_eq!(whole(None, Some, None), Some);
@@ -126,9 +126,9 @@ mod tests {
         assert_eq!(whole(Continuing, Undecided, None), Continuing);
         // At another level other intervals determine the open classes.
         let mut range = range_with(Undecided, &[(1.03, Some), (0.8, Undecided)], true);
-        for (worst, found) in [(Some, Some), (Continuing, Undecided)] {
+        for (worst, expected) in [(Some, Some), (Continuing, Undecided)] {
             range.could_be = std::option::Option::Some(worst);
-            assert_eq!(range.whole(), found);
+            assert_eq!(range.whole(), expected);
         }
     }
 }

@@ -54,28 +54,28 @@ const ERROR: f64 = 0.05;
 const LOOKS: usize = 2;
 
 /// Numbers of replicates at which to look at a point of a study with `of_study` replicates, the last of them
-/// all; `own` is the scene's class, by `replicates` of it.
-pub fn looks(own: Verdict, replicates: usize, of_study: u64) -> Vec<u64> {
-    let may_stop = own == Verdict::Continuing && replicates >= FEWEST_OWN;
+/// all; `class` is the scene's, by `replicates` of it.
+pub fn looks(class: Verdict, replicates: usize, of_study: u64) -> Vec<u64> {
+    let may_stop = class == Verdict::Continuing && replicates >= FEWEST_OWN;
     let fewest = if may_stop { 1 } else { of_study };
     (fewest..=LOOKS as u64).filter(|&look| look < of_study).chain([of_study]).collect()
 }
 
 /// The eroded mass of each run at a point that is clear, with wide 95 % intervals; `None` if it is not clear.
-/// `own[run]` holds the scene's replicates, `point[run]` the first of them at the point.
-pub fn clear(own: &[ReplicateValues], class: Verdict, point: &[ReplicateValues]) -> Option<Vec<Statistic>> {
-    if class != Verdict::Continuing || own.first()?.len() < FEWEST_OWN {
+/// `scene[run]` holds the scene's replicates, `point[run]` the first of them at the point.
+pub fn clear(scene: &[ReplicateValues], class: Verdict, point: &[ReplicateValues]) -> Option<Vec<Statistic>> {
+    if class != Verdict::Continuing || scene.first()?.len() < FEWEST_OWN {
         return None;
     }
-    let each = ERROR / (LOOKS * own.len()) as f64;
-    let is_clear = own.iter().zip(point).all(|(own, point)| is_above(own, point, each));
-    is_clear.then(|| own.iter().zip(point).map(|(own, point)| wide(own, point, ERROR)).collect())
+    let error_of_run = ERROR / (LOOKS * scene.len()) as f64;
+    let is_clear = scene.iter().zip(point).all(|(scene, point)| is_above(scene, point, error_of_run));
+    is_clear.then(|| scene.iter().zip(point).map(|(scene, point)| wide(scene, point, ERROR)).collect())
 }
 
 /// The eroded mass of each run at an end of the curve's range after its first replicate, with wide 95 %
 /// intervals; `None` unless, with this error probability, its class is clearly the class of the curve itself.
 pub fn clear_end(
-    own: &[ReplicateValues],
+    case: &[ReplicateValues],
     class: Verdict,
     end: &[ReplicateValues],
     error: f64,
@@ -83,48 +83,55 @@ pub fn clear_end(
     let deciding = match class {
         Verdict::Undecided => return None,
         Verdict::None => 1,
-        Verdict::Some | Verdict::Continuing => own.len(),
+        Verdict::Some | Verdict::Continuing => case.len(),
     };
-    if own.first()?.len() < FEWEST_OF_RANGE {
+    if case.first()?.len() < FEWEST_OF_RANGE {
         return None;
     }
-    let each = error / deciding as f64;
-    let is_clear = own.iter().zip(end).take(deciding).all(|(own, end)| is_on_its_side(own, end, each));
-    is_clear.then(|| own.iter().zip(end).map(|(own, end)| wide(own, end, ERROR)).collect())
+    let error_of_run = error / deciding as f64;
+    let is_clear =
+        case.iter().zip(end).take(deciding).all(|(case, end)| is_on_its_side(case, end, error_of_run));
+    is_clear.then(|| case.iter().zip(end).map(|(case, end)| wide(case, end, ERROR)).collect())
 }
 
 /// Tells if a run at an end lies on the side of the threshold where all replicates of the case lie.
-fn is_on_its_side(own: &ReplicateValues, end: &ReplicateValues, error: f64) -> bool {
-    let (Some(&(_, below)), Some(&(value, _))) = (own.first(), end.first()) else { return false };
-    let found = wide(own, end, error);
-    let of_value = student::two_sided((own.len() - 1) as u64, error) * SCATTER * LEAST_SCATTER * value;
+fn is_on_its_side(case: &ReplicateValues, end: &ReplicateValues, error: f64) -> bool {
+    let (Some(&(_, below)), Some(&(value, _))) = (case.first(), end.first()) else { return false };
+    let interval = wide(case, end, error);
+    let of_value = student::two_sided((case.len() - 1) as u64, error) * SCATTER * LEAST_SCATTER * value;
     let is_whole = match below {
-        true => found.high.is_some_and(|high| high.max(value + of_value) < THRESHOLD),
-        false => found.low.is_some_and(|low| low.min(value - of_value) >= THRESHOLD),
+        true => interval.high.is_some_and(|high| high.max(value + of_value) < THRESHOLD),
+        false => interval.low.is_some_and(|low| low.min(value - of_value) >= THRESHOLD),
     };
-    let mean = Statistic::of(&own.iter().map(|&(value, _)| value).collect::<Vec<f64>>()).mean;
+    let mean = Statistic::of(&case.iter().map(|&(value, _)| value).collect::<Vec<f64>>()).mean;
     let keeps = (value - THRESHOLD) / (mean - THRESHOLD) >= KEPT;
-    is_whole && keeps && own.iter().chain(end).all(|&(_, of)| of == below)
+    is_whole && keeps && case.iter().chain(end).all(|&(_, side)| side == below)
 }
 
 /// Tells if a run of a point lies above the threshold for certain.
-fn is_above(own: &ReplicateValues, point: &ReplicateValues, error: f64) -> bool {
-    let keeps = |(&(own, own_below), &(value, value_below)): (&(f64, bool), &(f64, bool))| {
-        !own_below && !value_below && value - THRESHOLD >= KEPT * (own - THRESHOLD)
+fn is_above(scene: &ReplicateValues, point: &ReplicateValues, error: f64) -> bool {
+    let keeps = |(&(scene, scene_below), &(value, value_below)): (&(f64, bool), &(f64, bool))| {
+        !scene_below && !value_below && value - THRESHOLD >= KEPT * (scene - THRESHOLD)
     };
-    let is_whole = wide(own, point, error).low.is_some_and(|low| low >= THRESHOLD);
-    is_whole && own.iter().zip(point).all(keeps)
+    let is_whole = wide(scene, point, error).low.is_some_and(|low| low >= THRESHOLD);
+    is_whole && scene.iter().zip(point).all(keeps)
 }
 
 /// The interval of a point: by twice the scatter of the scene, or by its own if that makes it wider.
-fn wide(own: &ReplicateValues, point: &ReplicateValues, error: f64) -> Statistic {
+fn wide(scene: &ReplicateValues, point: &ReplicateValues, error: f64) -> Statistic {
     let values = |values: &ReplicateValues| values.iter().map(|&(value, _)| value).collect::<Vec<f64>>();
-    let found = Statistic::of(&values(point));
-    let reach = |scatter: f64, of: usize| student::two_sided((of as u64).saturating_sub(1), error) * scatter;
-    let of_scene = reach(SCATTER * Statistic::of(&values(own)).sd.unwrap_or(0.0), own.len());
-    let of_itself = found.sd.map_or(0.0, |sd| reach(sd, point.len()));
+    let statistic = Statistic::of(&values(point));
+    let reach = |scatter: f64, replicates: usize| {
+        student::two_sided((replicates as u64).saturating_sub(1), error) * scatter
+    };
+    let of_scene = reach(SCATTER * Statistic::of(&values(scene)).sd.unwrap_or(0.0), scene.len());
+    let of_itself = statistic.sd.map_or(0.0, |sd| reach(sd, point.len()));
     let half = of_scene.max(of_itself) / (point.len() as f64).sqrt();
-    Statistic { low: Some((found.mean - half).max(0.0)), high: Some((found.mean + half).min(1.0)), ..found }
+    Statistic {
+        low: Some((statistic.mean - half).max(0.0)),
+        high: Some((statistic.mean + half).min(1.0)),
+        ..statistic
+    }
 }
 
 #[cfg(test)]
@@ -136,19 +143,19 @@ mod tests {
     }
 
     /// Ten replicates of a run about this mean, with a standard deviation of 0.02.
-    fn own(mean: f64) -> ReplicateValues {
+    fn ten_values(mean: f64) -> ReplicateValues {
         let steps = [-1.5, -1.2, -0.8, -0.4, -0.1, 0.1, 0.4, 0.8, 1.2, 1.5];
         values(&steps.map(|step| mean + 0.02 * step))
     }
 
     #[test]
     fn one_replicate_does_for_continuing_erosion_far_from_the_threshold() {
-        let scene = [own(0.6), own(0.55)];
-        let found = clear(&scene, Verdict::Continuing, &[values(&[0.5]), values(&[0.4])]).unwrap();
+        let scene = [ten_values(0.6), ten_values(0.55)];
+        let cleared = clear(&scene, Verdict::Continuing, &[values(&[0.5]), values(&[0.4])]).unwrap();
         // Student's t for 9 degrees of freedom is 2.262; twice the scatter of the scene.
         let sd = Statistic::of(&scene[0].iter().map(|v| v.0).collect::<Vec<_>>()).sd.unwrap();
-        assert!((found[0].low.unwrap() - (0.5 - 2.262_157 * 2.0 * sd)).abs() < 1e-6);
-        assert_eq!((found[0].mean, found[0].sd), (0.5, None));
+        assert!((cleared[0].low.unwrap() - (0.5 - 2.262_157 * 2.0 * sd)).abs() < 1e-6);
+        assert_eq!((cleared[0].mean, cleared[0].sd), (0.5, None));
         // A point close to the threshold, or moved over two thirds of the distance to it, is not clear.
         assert_eq!(clear(&scene, Verdict::Continuing, &[values(&[0.5]), values(&[0.17])]), None);
         assert_eq!(clear(&scene, Verdict::Continuing, &[values(&[0.2]), values(&[0.5])]), None);
@@ -156,7 +163,7 @@ mod tests {
 
     #[test]
     fn what_a_reader_may_rely_on_is_walked_in_full() {
-        let some = [own(0.6), values(&[0.01; 10])];
+        let some = [ten_values(0.6), values(&[0.01; 10])];
         assert_eq!(clear(&some, Verdict::Some, &[values(&[0.5, 0.52]), values(&[0.01, 0.011])]), None);
         let none = [values(&[0.001; 10]), values(&[0.001; 10])];
         assert_eq!(clear(&none, Verdict::None, &[values(&[0.002, 0.003]), values(&[0.0, 0.0])]), None);
@@ -164,17 +171,19 @@ mod tests {
 
     #[test]
     fn its_own_scatter_counts_with_its_own_degrees_of_freedom() {
-        let scene = [own(0.6), own(0.55)];
+        let scene = [ten_values(0.6), ten_values(0.55)];
         // Two values 0.02 apart: 63.657 for 1 degree of freedom at 1 %, 0.0141 / sqrt(2) each.
-        let found = |of: [f64; 2]| clear(&scene, Verdict::Continuing, &[values(&of), values(&[0.5, 0.5])]);
-        assert!(found([0.5, 0.5]).is_some());
-        assert!(found([0.49, 0.51]).is_none(), "0.5 less 0.64 is below the threshold");
-        assert!(found([0.4999, 0.5001]).is_some());
+        let cleared = |replicates: [f64; 2]| {
+            clear(&scene, Verdict::Continuing, &[values(&replicates), values(&[0.5, 0.5])])
+        };
+        assert!(cleared([0.5, 0.5]).is_some());
+        assert!(cleared([0.49, 0.51]).is_none(), "0.5 less 0.64 is below the threshold");
+        assert!(cleared([0.4999, 0.5001]).is_some());
     }
 
     #[test]
     fn another_class_is_never_clear() {
-        let scene = [own(0.6), own(0.55)];
+        let scene = [ten_values(0.6), ten_values(0.55)];
         for point in [[0.001, 0.001], [0.6, 0.001]] {
             let point = point.map(|value| values(&[value, value]));
             assert_eq!(clear(&scene, Verdict::Continuing, &point), None);
@@ -184,12 +193,12 @@ mod tests {
 
     #[test]
     fn an_end_of_the_same_class_needs_one_replicate_and_any_other_all() {
-        let one = |of: [f64; 2]| of.map(|value| values(&[value])).to_vec();
-        let four = |of: f64| values(&[0.99 * of, of, of, 1.01 * of]);
+        let one = |means: [f64; 2]| means.map(|value| values(&[value])).to_vec();
+        let four = |mean: f64| values(&[0.99 * mean, mean, mean, 1.01 * mean]);
         let some = [four(0.3), four(0.01)];
-        let found = clear_end(&some, Verdict::Some, &one([0.35, 0.012]), ERROR_OF_END).unwrap();
+        let cleared = clear_end(&some, Verdict::Some, &one([0.35, 0.012]), ERROR_OF_END).unwrap();
         // Student's t for 3 degrees of freedom is 3.182; twice the scatter of 0.3 times 0.00816.
-        assert!((found[0].low.unwrap() - (0.35 - 3.182_446 * 2.0 * 0.3 * 0.008_165)).abs() < 1e-5);
+        assert!((cleared[0].low.unwrap() - (0.35 - 3.182_446 * 2.0 * 0.3 * 0.008_165)).abs() < 1e-5);
         // Another class of either run, or close to it.
         for other in [[0.05, 0.01], [0.35, 0.2], [0.35, 0.06], [0.12, 0.01]] {
             assert_eq!(clear_end(&some, Verdict::Some, &one(other), ERROR_OF_END), None, "{other:?}");
@@ -201,7 +210,7 @@ mod tests {
         assert_eq!(clear_end(&none, Verdict::None, &one([0.052, 0.0]), ERROR_OF_END), None);
         assert_eq!(clear_end(&none, Verdict::None, &one([0.08, 0.0]), ERROR_OF_END), None);
         assert_eq!(clear_end(&some, Verdict::Undecided, &one([0.35, 0.012]), ERROR_OF_END), None);
-        let three = some.clone().map(|of| of[..3].to_vec());
+        let three = some.clone().map(|replicates| replicates[..3].to_vec());
         assert_eq!(clear_end(&three, Verdict::Some, &one([0.35, 0.012]), ERROR_OF_END), None);
     }
 

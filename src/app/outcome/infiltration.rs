@@ -50,12 +50,12 @@ mod tests {
     #[test]
     fn all_or_nothing_passes_a_filter_of_one_constriction_size() {
         let curve = Curve::from_points(&[(100.0, 0.2)], CurveUnit::Mm).unwrap();
-        let of = |d0: f64| infiltration(&curve, &Gradation::linear_from_d0(d0, 1.5).unwrap(), 60);
-        assert_eq!(of(0.05).eroded_without_blocking, 1.0);
-        assert_eq!(of(0.3).eroded_without_blocking, 0.0);
+        let of_base = |d0: f64| infiltration(&curve, &Gradation::linear_from_d0(d0, 1.5).unwrap(), 60);
+        assert_eq!(of_base(0.05).eroded_without_blocking, 1.0);
+        assert_eq!(of_base(0.3).eroded_without_blocking, 0.0);
         // Straight from 0.15 to 0.3375 on semi-log paper: ln(0.2 / 0.15) / ln(2.25) of the mass is fine
         // enough.
-        let some = of(0.15);
+        let some = of_base(0.15);
         let expected = libm::log(0.2 / 0.15) / libm::log(2.25);
         assert!((some.eroded_without_blocking - expected).abs() < 0.5 / 400.0 + 1e-9);
         assert_eq!((some.sizes[0].layers_95, some.sizes[5].layers_95), (None, Some(0.0)));
@@ -66,8 +66,8 @@ mod tests {
     fn the_pan_fraction_would_leave() {
         let curve = Curve::from_points(&[(100.0, 0.2)], CurveUnit::Mm).unwrap();
         let base = Gradation::from_lines(&[(0.3, 40.0), (0.6, 100.0)]).unwrap();
-        let found = infiltration(&curve, &base, 60);
-        assert!((found.eroded_without_blocking - 0.4).abs() < 1e-12);
-        assert_eq!(found.sizes[0].name, "D50B");
+        let result = infiltration(&curve, &base, 60);
+        assert!((result.eroded_without_blocking - 0.4).abs() < 1e-12);
+        assert_eq!(result.sizes[0].name, "D50B");
     }
 }

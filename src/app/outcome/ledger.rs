@@ -129,7 +129,7 @@ impl LedgerLine {
         outcome: &Outcome,
         made: Made,
     ) -> Self {
-        let of = |verdict| outcome.replicates.iter().filter(|r| r.verdict == verdict).count() as u64;
+        let count = |verdict| outcome.replicates.iter().filter(|r| r.verdict == verdict).count() as u64;
         let modelled = outcome.modelled();
         let broken = outcome.rules.iter().filter(|rule| rule.is_broken());
         Self {
@@ -147,7 +147,7 @@ impl LedgerLine {
             with_arches: modelled.arches,
             with_openings: modelled.openings,
             rules_not_met: broken.map(|rule| rule.id.clone()).collect(),
-            replicate_verdicts: Verdict::ALL.map(of),
+            replicate_verdicts: Verdict::ALL.map(count),
             replicates: outcome.replicates.len() as u64,
             n_base: outcome.n_base,
             n_base_eq2: outcome.n_base_eq2,

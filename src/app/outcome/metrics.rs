@@ -98,20 +98,20 @@ impl Eroded {
 
 impl RunMetrics {
     /// The numbers of a finished run, which took `seconds` of wall time, on the network as it was at its end.
-    pub fn new(network: &Network, state: &State, flow: Option<&FlowRecord>, of: RunId, seconds: f64) -> Self {
+    pub fn new(network: &Network, state: &State, flow: Option<&FlowRecord>, id: RunId, seconds: f64) -> Self {
         let tally = &state.tally;
         let Eroded { mass_fraction: eroded_mass_fraction, below_threshold } =
-            Eroded::of(state, of.pan_fraction);
+            Eroded::of(state, id.pan_fraction);
         let largest_mm = (tally.eroded > 0).then(|| f64::from(tally.largest_eroded) * network.unit_mm());
         let retained = tally.retained_in_constrictions + tally.retained_in_voids + tally.trapped;
         let [deepest, most] = retained_layers(network, state);
         let fullness = Fullness::of(network, state);
         let run = Run {
-            run: of.run,
+            run: id.run,
             eroded_mass_fraction,
             eroded_number_fraction: tally.eroded as f64 / tally.inserted.max(1) as f64,
             largest_eroded_mm: largest_mm,
-            largest_eroded_over_d15f: largest_mm.map(|d| d / of.d15f_mm),
+            largest_eroded_over_d15f: largest_mm.map(|d| d / id.d15f_mm),
             blocked: tally.blocked,
             blocked_fraction: tally.blocked as f64 / network.passages().max(1) as f64,
             blocked_first_three_layers_fraction: blocked_first_layers(network, state, 3),
@@ -131,7 +131,8 @@ impl RunMetrics {
             particle_moves: tally.particle_moves - free_entries(network, state),
             k_over_k0: flow.and_then(|flow| flow.solutions.last()).map(|solution| solution.k_over_k0),
             flow_solutions: flow.map(|flow| flow.solutions.len() as u64),
-            flow_closed_most: flow.map(|flow| flow.solutions.iter().map(|of| of.closed).fold(0.0, f64::max)),
+            flow_closed_most: flow
+                .map(|flow| flow.solutions.iter().map(|solution| solution.closed).fold(0.0, f64::max)),
             k0_mm2: flow.and_then(|flow| flow.k0_mm2),
             fullness_max: fullness.max,
             overfull_fraction: fullness.overfull_fraction,
@@ -149,11 +150,11 @@ impl Recorded {
         state: &State,
         flow: Option<&FlowRecord>,
         recorder: &Recorder,
-        of: RunId,
+        id: RunId,
     ) -> Self {
         let series = recorder.series.iter().map(|(increment, tally)| SeriesRow {
-            replicate: of.replicate,
-            run: of.run,
+            replicate: id.replicate,
+            run: id.run,
             increment: *increment,
             inserted: tally.inserted,
             moving: tally.moving,
@@ -162,18 +163,18 @@ impl Recorded {
             retained_in_voids: tally.retained_in_voids,
             trapped: tally.trapped,
             blocked: tally.blocked,
-            eroded_mass_fraction: eroded_mass_fraction(tally, &state.tally, of.pan_fraction),
+            eroded_mass_fraction: eroded_mass_fraction(tally, &state.tally, id.pan_fraction),
         });
         let flow = flow.iter().flat_map(|flow| &flow.solutions).map(|solution| FlowRow {
-            replicate: of.replicate,
-            run: of.run,
+            replicate: id.replicate,
+            run: id.run,
             increment: solution.increment,
             k_over_k0: solution.k_over_k0,
             closed_flow_fraction: solution.closed,
         });
         let mut recorded = Self {
             series: series.collect(),
-            layers: layers(network, state, of),
+            layers: layers(network, state, id),
             flow: flow.collect(),
             // Without recorded voids nobody asked for the blocked constrictions.
             blocked: if recorder.voids.is_empty() { Vec::new() } else { by_void::blocked(network, state) },
@@ -181,7 +182,7 @@ impl Recorded {
             ..Self::default()
         };
         for (increment, retained, eroded) in &recorder.sizes {
-            let row = |counts| size_curve(counts, &state.classes, network.unit_mm(), of, *increment);
+            let row = |counts| size_curve(counts, &state.classes, network.unit_mm(), id, *increment);
             recorded.retained.extend(row(retained));
             recorded.eroded.extend(row(eroded));
         }
@@ -273,10 +274,10 @@ fn blocked_first_layers(network: &Network, state: &State, layers: u32) -> f64 {
     blocked as f64 / all.max(1) as f64
 }
 
-fn layers(network: &Network, state: &State, of: RunId) -> Vec<LayerRow> {
+fn layers(network: &Network, state: &State, id: RunId) -> Vec<LayerRow> {
     let row = |layer| LayerRow {
-        replicate: of.replicate,
-        run: of.run,
+        replicate: id.replicate,
+        run: id.run,
         layer,
         constrictions: 0,
         blocked: 0,
@@ -304,7 +305,7 @@ fn size_curve(
     counts: &SizeCounts,
     classes: &SizeClasses,
     unit_mm: f64,
-    of: RunId,
+    id: RunId,
     increment: u64,
 ) -> Vec<SizeRow> {
     let number: u64 = counts.number.iter().sum();
@@ -318,8 +319,8 @@ fn size_curve(
         finer_number += counts.number[class];
         finer_mass += counts.mass[class];
         rows.push(SizeRow {
-            replicate: of.replicate,
-            run: of.run,
+            replicate: id.replicate,
+            run: id.run,
             increment,
             diameter_mm: f64::from(upper) * unit_mm,
             percent_finer_by_mass: 100.0 * finer_mass / mass,
@@ -335,16 +336,16 @@ mod tests {
 
     #[test]
     fn a_void_without_volume_is_overfull_with_anything_and_leaves_the_fullest_finite() {
-        let of = |volumes: &[f64], cubes: &[f64]| {
+        let fullness_of = |volumes: &[f64], cubes: &[f64]| {
             let Fullness { max, overfull_fraction } = Fullness::of_voids(volumes, cubes);
             (max, overfull_fraction)
         };
         let sphere = std::f64::consts::FRAC_PI_6;
-        assert_eq!(of(&[1.0, 0.0, 0.0, 2.0], &[0.5, 3.0, 0.0, 2.0]), (Some(sphere), Some(0.25)));
-        assert_eq!(of(&[1.0, 1.0], &[2.0, 0.0]), (Some(2.0 * sphere), Some(0.5)));
+        assert_eq!(fullness_of(&[1.0, 0.0, 0.0, 2.0], &[0.5, 3.0, 0.0, 2.0]), (Some(sphere), Some(0.25)));
+        assert_eq!(fullness_of(&[1.0, 1.0], &[2.0, 0.0]), (Some(2.0 * sphere), Some(0.5)));
         // A volume next to zero is treated as zero.
-        assert_eq!(of(&[5e-324, 1.0], &[1e300, 0.0]), (Some(0.0), Some(0.5)));
-        assert_eq!(of(&[0.0], &[1.0]), (None, Some(1.0)));
-        assert_eq!(of(&[], &[]), (None, None));
+        assert_eq!(fullness_of(&[5e-324, 1.0], &[1e300, 0.0]), (Some(0.0), Some(0.5)));
+        assert_eq!(fullness_of(&[0.0], &[1.0]), (None, Some(1.0)));
+        assert_eq!(fullness_of(&[], &[]), (None, None));
     }
 }

@@ -4,7 +4,7 @@
 //!   folder.
 //! - [`Recorder`] records the requested data of a running walk.
 //! - [`RunMetrics`] are the numbers of one run at its end.
-//! - [`by_connectivity`] splits what a run retained by the connectivity of the voids (Table 3).
+//! - [`by_connectivity`] splits the retained particles of a run by the connectivity of the voids (Table 3).
 //! - `by_void` holds the events in each void and constriction, for pictures.
 //! - [`verdict`] classifies one replicate or many by mass eroded; [`stopping`] decides how many are enough,
 //!   `early_stop` how many of a study.

@@ -152,8 +152,12 @@ impl PercolationStudy {
 
     /// Every lattice, cubes first: its name, its threshold, and the standard error of the standard deviation.
     pub fn lattices(&self) -> impl Iterator<Item = (String, &Statistic, Option<f64>)> {
-        let cubes = self.sizes.iter().map(|of| (of.size.to_string(), &of.threshold, of.sd_error));
-        cubes.chain(self.boxes.iter().map(|of| (lattice_name(of.shape), &of.threshold, of.sd_error)))
+        let cubes = self.sizes.iter().map(|cube| (cube.size.to_string(), &cube.threshold, cube.sd_error));
+        cubes.chain(
+            self.boxes
+                .iter()
+                .map(|lattice| (lattice_name(lattice.shape), &lattice.threshold, lattice.sd_error)),
+        )
     }
 }
 
@@ -248,11 +252,11 @@ mod tests {
 
     /// Thresholds with these means, all with one small standard deviation.
     fn around(mean: impl Fn(f64) -> f64) -> Vec<([u32; 3], Vec<f64>)> {
-        let of = |size: u32| {
+        let thresholds = |size: u32| {
             let (mean, off) = (mean(f64::from(size)), 0.01 / f64::from(size));
             ([size; 3], vec![mean - off, mean, mean + off])
         };
-        [10, 20, 40, 80, 160].map(of).to_vec()
+        [10, 20, 40, 80, 160].map(thresholds).to_vec()
     }
 
     #[test]

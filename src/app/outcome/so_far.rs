@@ -33,7 +33,8 @@ impl SoFar {
     /// The replicates that have `runs` runs; `None` until one replicate is complete.
     pub fn look(&self, runs: u64) -> Option<FirstLook> {
         let whole = |replicate: &&u64| {
-            (1..=runs).all(|run| self.walked.get(&run).is_some_and(|of| of.contains_key(replicate)))
+            (1..=runs)
+                .all(|run| self.walked.get(&run).is_some_and(|replicates| replicates.contains_key(replicate)))
         };
         let replicates: Vec<u64> = self.walked.get(&1)?.keys().filter(whole).copied().collect();
         if replicates.is_empty() {
@@ -41,10 +42,10 @@ impl SoFar {
         }
         let (mut below, mut eroded) = (Vec::new(), Vec::new());
         for run in 1..=runs {
-            let of = &self.walked[&run];
-            let (values, each): (Vec<f64>, Vec<bool>) = replicates.iter().map(|r| of[r]).unzip();
+            let results = &self.walked[&run];
+            let (values, is_below): (Vec<f64>, Vec<bool>) = replicates.iter().map(|r| results[r]).unzip();
             let statistic = Statistic::of_fraction(&values);
-            below.push(below_by_interval(&statistic, &each));
+            below.push(below_by_interval(&statistic, &is_below));
             eroded.push(statistic);
         }
         let class = classify(below.first().copied().flatten(), below.get(1).copied().flatten());

@@ -101,7 +101,7 @@ impl StopRule {
             .unwrap_or(1);
         let (half_width, close) = self.closeness(runs);
         let of_curve = self.error_of_curve(curves);
-        let error = of_curve.map(|of| of / (look * (look + 1)) as f64 / runs.len().max(1) as f64);
+        let error = of_curve.map(|error| error / (look * (look + 1)) as f64 / runs.len().max(1) as f64);
         let below: Vec<BelowThreshold> =
             error.map_or(vec![], |error| runs.iter().map(|run| lies(run, error)).collect());
         let verdict =
@@ -194,8 +194,8 @@ impl Stopping {
 /// The class of runs that are looked at once, with this error probability or the usual one of each run if
 /// that is less, and the worst class that their intervals allow.
 pub fn class_at(error: f64, runs: &[ReplicateValues]) -> [Verdict; 2] {
-    let each = (error / runs.len().max(1) as f64).min(USUAL_ERROR);
-    let [first, second] = [0, 1].map(|run| runs.get(run).and_then(|run| lies(run, each)));
+    let error_of_run = (error / runs.len().max(1) as f64).min(USUAL_ERROR);
+    let [first, second] = [0, 1].map(|run| runs.get(run).and_then(|run| lies(run, error_of_run)));
     let worst = match (first, second) {
         (Some(true), _) => Verdict::None,
         (_, Some(true)) => Verdict::Some,
@@ -206,8 +206,8 @@ pub fn class_at(error: f64, runs: &[ReplicateValues]) -> [Verdict; 2] {
 
 /// The side of the threshold on which the mean of a run lies, by an interval with this error probability.
 fn lies(run: &ReplicateValues, error: f64) -> BelowThreshold {
-    let each: Vec<bool> = run.iter().map(|&(_, below)| below).collect();
-    below_by_interval(&statistic(run, error), &each)
+    let is_below: Vec<bool> = run.iter().map(|&(_, below)| below).collect();
+    below_by_interval(&statistic(run, error), &is_below)
 }
 
 fn statistic(values: &ReplicateValues, error: f64) -> Statistic {

@@ -68,8 +68,8 @@ mod tests {
             (100_000, 0.05, 1.959_987_7),
         ];
         for (degrees, error, t) in tables {
-            let found = two_sided(degrees, error);
-            assert!((found / t - 1.0).abs() < 2e-8, "{degrees}, {error}: {found}, expected {t}");
+            let actual = two_sided(degrees, error);
+            assert!((actual / t - 1.0).abs() < 2e-8, "{degrees}, {error}: {actual}, expected {t}");
         }
     }
 

@@ -7,10 +7,10 @@
 //!
 //! ```
 //! use voidwalk_app::outcome::table::Columns;
-//! let of = Columns::default().name("case", "Case", |row: &(&str, f64)| row.0.to_owned());
-//! let of = of.digits("ratio", 2, |row| Some(row.1)).page_number("D15F/D85B", |row| row.1);
-//! assert_eq!(of.csv(&[("=1", 0.125), ("b", 3.0)]), b"case,ratio\n'=1,0.12\nb,3.00\n");
-//! let shown: Vec<String> = of.of_page().map(|column| (column.cell)(&("b", 3.0)).text).collect();
+//! let columns = Columns::default().name("case", "Case", |row: &(&str, f64)| row.0.to_owned());
+//! let columns = columns.digits("ratio", 2, |row| Some(row.1)).page_number("D15F/D85B", |row| row.1);
+//! assert_eq!(columns.csv(&[("=1", 0.125), ("b", 3.0)]), b"case,ratio\n'=1,0.12\nb,3.00\n");
+//! let shown: Vec<String> = columns.of_page().map(|column| (column.cell)(&("b", 3.0)).text).collect();
 //! assert_eq!(shown, ["b", "3.00"]);
 //! ```
 
@@ -138,9 +138,10 @@ impl<'a, T> Columns<'a, T> {
     }
 
     /// Adds such columns for a fraction in percent and the ends of its interval; on a page they are one.
-    pub fn statistic(self, names: [&str; 3], of: impl Fn(&T) -> Option<Statistic> + 'a) -> Self {
+    pub fn statistic(self, names: [&str; 3], value: impl Fn(&T) -> Option<Statistic> + 'a) -> Self {
         self.with(names.map(String::from).to_vec(), move |row| {
-            let ends = of(row).map_or([None; 3], |of| [Some(of.mean), of.low, of.high]);
+            let ends = value(row)
+                .map_or([None; 3], |statistic| [Some(statistic.mean), statistic.low, statistic.high]);
             ends.map(|end| in_percent(end).value()).to_vec()
         })
     }
@@ -278,7 +279,7 @@ impl<'a, T> Columns<'a, T> {
         T: 'r,
     {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(self.0.iter().flat_map(|of| of.names.clone()).map(inert)).expect(WRITTEN);
+        writer.write_record(self.0.iter().flat_map(|column| column.names.clone()).map(inert)).expect(WRITTEN);
         for row in rows {
             let cells = self.values(row).map(|value| inert(value.to_string()));
             writer.write_record(cells).expect(WRITTEN);
@@ -323,8 +324,8 @@ mod tests {
 
     #[test]
     fn no_name_in_a_table_is_hidden() {
-        let of = Columns::default().column("name", |row: &String| row.clone());
-        let table = of.csv(&["a\u{1b}]0;b\u{7}\u{202e}\u{200b}\u{feff}c".to_owned()]);
+        let columns = Columns::default().column("name", |row: &String| row.clone());
+        let table = columns.csv(&["a\u{1b}]0;b\u{7}\u{202e}\u{200b}\u{feff}c".to_owned()]);
         assert_eq!(
             String::from_utf8(table).unwrap(),
             "name\na\u{fffd}]0;b\u{fffd}\u{fffd}\u{fffd}\u{fffd}c\n"
@@ -345,11 +346,11 @@ mod tests {
 
     #[test]
     fn a_value_with_its_interval_is_three_columns_of_a_file_and_one_cell_of_a_page() {
-        let of = Columns::default().statistic(["mass", "low", "high"], |row: &Option<Statistic>| *row);
-        let of = of.page_number("Eroded", |row| *row);
+        let columns = Columns::default().statistic(["mass", "low", "high"], |row: &Option<Statistic>| *row);
+        let columns = columns.page_number("Eroded", |row| *row);
         let rows = [Some(Statistic { mean: 0.25, sd: None, low: Some(0.2), high: Some(0.3) }), None];
-        assert_eq!(of.csv(&rows), b"mass,low,high\n25.0000,20.0000,30.0000\n,,\n");
-        let cell = of.of_page().next().unwrap().cell;
+        assert_eq!(columns.csv(&rows), b"mass,low,high\n25.0000,20.0000,30.0000\n,,\n");
+        let cell = columns.of_page().next().unwrap().cell;
         let [known, unknown] = rows.map(|row| cell(&row));
         assert_eq!((&*known.text, &*known.below[0]), ("25.0\u{202f}%", "20.0 to 30.0\u{202f}%"));
         assert_eq!(unknown, "–".shown());

@@ -18,7 +18,7 @@ pub const THRESHOLD: f64 = 0.075;
 /// True for a run below the threshold, false for one above; `None` if open.
 pub type BelowThreshold = Option<bool>;
 
-/// The class of two runs, the second of which may be missing.
+/// The class of two runs; the second may be missing.
 ///
 /// ```
 /// use voidwalk_app::outcome::record::Verdict;
@@ -50,10 +50,10 @@ pub fn below_by_count(eroded: u64, inserted: u64) -> bool {
 /// The side of the mean over replicates: the side of its whole interval. `each` holds the exact side of every
 /// replicate; it decides for a single replicate, or if the replicates agree in value, so that the rounding of
 /// a mean decides nothing.
-pub fn below_by_interval(statistic: &Statistic, each: &[bool]) -> BelowThreshold {
+pub fn below_by_interval(statistic: &Statistic, is_below: &[bool]) -> BelowThreshold {
     let no_scatter = statistic.sd.is_none_or(|sd| sd < 1e-12);
-    if no_scatter && each.iter().all(|&below| below == each[0]) {
-        return each.first().copied();
+    if no_scatter && is_below.iter().all(|&below| below == is_below[0]) {
+        return is_below.first().copied();
     }
     match (statistic.low, statistic.high) {
         (_, Some(high)) if high < THRESHOLD => Some(true),

@@ -15,7 +15,7 @@ use voidwalk_practice::soil_sizes::us_sieve;
 /// Rows shown of each gradation; all are in the record.
 const ROWS: usize = 200;
 
-/// A gradation: what it is, its name, and its rows of size and percent finer.
+/// A gradation: its kind, its name, and its rows of size and percent finer.
 pub(super) struct TabledSoil<'a> {
     /// Kind of the soil, as `Filter`.
     pub kind: &'a str,
@@ -64,8 +64,8 @@ pub(super) fn input_files(files: &[InputFile]) -> Markup {
     } }
 }
 
-fn gradation(of: &TabledSoil, unit: SizeUnit, record: &str) -> Markup {
-    let TabledSoil { kind, name, rows } = of;
+fn gradation(soil: &TabledSoil, unit: SizeUnit, record: &str) -> Markup {
+    let TabledSoil { kind, name, rows } = soil;
     let finest = rows.iter().map(|row| row[1]).fold(100.0, f64::min);
     // The coarsest first, as a laboratory writes it.
     let shown: Vec<&[f64; 2]> = rows.iter().rev().take(ROWS).collect();

@@ -63,10 +63,10 @@ fn name(name: &str) -> String {
 
 /// Name of a filter here: its soil, with a number if another filter has the same soil name.
 fn filter_name(batch: &WalkedBatch, filter: &str) -> String {
-    let alike = batch.filters.iter().filter(|of| soil_name(&of.name) == soil_name(filter));
-    let alike: Vec<&str> = alike.map(|of| of.name.as_str()).collect();
+    let alike = batch.filters.iter().filter(|other| soil_name(&other.name) == soil_name(filter));
+    let alike: Vec<&str> = alike.map(|other| other.name.as_str()).collect();
     let soil = soil_name(filter);
-    match alike.iter().position(|of| *of == filter) {
+    match alike.iter().position(|other| *other == filter) {
         Some(at) if alike.len() > 1 => name(&format!("{soil} ({})", at + 1)),
         _ => name(soil),
     }
@@ -74,13 +74,13 @@ fn filter_name(batch: &WalkedBatch, filter: &str) -> String {
 
 /// The file of each filter that has a number; empty if the names tell them apart.
 fn key(batch: &WalkedBatch) -> Markup {
-    let of = |filter: &BatchFilter| {
-        let alike = batch.filters.iter().filter(|of| soil_name(&of.name) == soil_name(&filter.name));
-        let alike: Vec<&str> = alike.map(|of| of.name.as_str()).collect();
+    let line = |filter: &BatchFilter| {
+        let alike = batch.filters.iter().filter(|other| soil_name(&other.name) == soil_name(&filter.name));
+        let alike: Vec<&str> = alike.map(|other| other.name.as_str()).collect();
         let shown = filter_name(batch, &filter.name);
         (alike.len() > 1).then(|| format!("{shown}: {}", name(&told_apart(&filter.name, &alike))))
     };
-    let all: Vec<String> = batch.filters.iter().filter_map(of).collect();
+    let all: Vec<String> = batch.filters.iter().filter_map(line).collect();
     html! { @if !all.is_empty() { p.small { "The filters: " (all.join("; ")) "." } } }
 }
 
@@ -141,12 +141,12 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
                 @for row in batch.of_filter(&filter.name) {
                     li { (limit_and_answer(folder, row, batch.inches)) }
                 }
-                @for said in walks.iter().skip(1) { li { (clean(&capital(said))) "." } }
+                @for walk in walks.iter().skip(1) { li { (clean(&capital(walk))) "." } }
             } @else {
                 li { b { "Practice" } ": " (counts(&rules, &filter.name)) "." }
-                @for (at, said) in walks.iter().enumerate() {
+                @for (at, walk) in walks.iter().enumerate() {
                     li {
-                        @if at == 0 { b { "Walk" } ": " (clean(said)) } @else { (clean(&capital(said))) } "."
+                        @if at == 0 { b { "Walk" } ": " (clean(walk)) } @else { (clean(&capital(walk))) } "."
                     }
                 }
                 @for row in batch.governing(&filter.name) {
@@ -156,7 +156,7 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
                     }
                 }
             }
-            @for said in besides { li { (clean(&capital(&said))) "." } }
+            @for remark in besides { li { (clean(&capital(&remark))) "." } }
             @if filter.curves.len() > 1 {
                 li { "An envelope of " (filter.curves.len()) " curves: the worst of them counts for each \
                     rule." }
@@ -293,9 +293,10 @@ fn limits(batch: &WalkedBatch) -> Option<Drawn> {
         let point = Point::new(d85b(row), limit(row), BLUE, shape);
         if row.rules.limit_at_most { point.hollow() } else { point }
     };
-    let of = |governs: bool| rows.iter().filter(move |row| (row.governs == Some(1)) == governs).map(point);
-    figure.add_points("sample", of(false));
-    figure.add_points("governs a filter", of(true));
+    let points =
+        |governs: bool| rows.iter().filter(move |row| (row.governs == Some(1)) == governs).map(point);
+    figure.add_points("sample", points(false));
+    figure.add_points("governs a filter", points(true));
     let caption = "Strictest limit of D15F of each sample. The D15F of a filter is within the limit of \
                    the samples that lie on or above its line. Hollow: the limit is at most this.";
     Some(Drawn::new("batch-limits", figure, caption))
@@ -303,7 +304,7 @@ fn limits(batch: &WalkedBatch) -> Option<Drawn> {
 
 /// Mass eroded in the first run against D15F by the limit: the rule and the walk, side by side.
 fn eroded(batch: &WalkedBatch) -> Option<Drawn> {
-    let of = |row: &WalkedRow| {
+    let case = |row: &WalkedRow| {
         let walk: &SampleWalk = row.walk.as_ref()?;
         let first = walk.runs.first()?;
         Some(cases::AtRatio {
@@ -315,7 +316,7 @@ fn eroded(batch: &WalkedBatch) -> Option<Drawn> {
             is_bound: row.rules.limit_at_most,
         })
     };
-    let symbols: Vec<cases::AtRatio> = batch.rows.iter().filter_map(of).collect();
+    let symbols: Vec<cases::AtRatio> = batch.rows.iter().filter_map(case).collect();
     if symbols.is_empty() {
         return None;
     }
@@ -350,14 +351,14 @@ mod tests {
             d15f_mm: None,
             gradations: Vec::new(),
         };
-        let of = |names: &[&str]| {
+        let key_of = |names: &[&str]| {
             let filters = names.iter().map(|name| filter(name)).collect();
             key(&WalkedBatch::new("s.csv".into(), filters, Vec::new())).into_string()
         };
         assert_eq!(
-            of(&["/lab/5/filter.csv", "/lab/7/filter.csv", "c33.csv"]),
+            key_of(&["/lab/5/filter.csv", "/lab/7/filter.csv", "c33.csv"]),
             "<p class=\"small\">The filters: filter (1): 5/filter.csv; filter (2): 7/filter.csv.</p>"
         );
-        assert_eq!(of(&["/lab/5/filter.csv", "c33.csv"]), "");
+        assert_eq!(key_of(&["/lab/5/filter.csv", "c33.csv"]), "");
     }
 }

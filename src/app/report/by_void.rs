@@ -127,8 +127,8 @@ impl Tables {
 
     fn lines_at(&self, moment: Moment) -> Vec<u8> {
         let ends = |row: &ConstrictionRow| {
-            let way = [row.dx_mm, row.dy_mm, row.dz_mm];
-            let by = |p: [f64; 3], sign: f64| [0, 1, 2].map(|axis| p[axis] + sign * way[axis]);
+            let vector = [row.dx_mm, row.dy_mm, row.dz_mm];
+            let by = |p: [f64; 3], sign: f64| [0, 1, 2].map(|axis| p[axis] + sign * vector[axis]);
             match usize::try_from(row.from) {
                 Ok(from) => [self.voids[from], by(self.voids[from], 1.0)],
                 Err(_) => [by(self.voids[row.to as usize], -1.0), self.voids[row.to as usize]],
@@ -136,8 +136,8 @@ impl Tables {
         };
         let points: Vec<[f64; 3]> = self.constrictions.iter().flat_map(ends).collect();
         let corners: Vec<i64> = (0..points.len() as i64).collect();
-        let column = |name: &str, of: &dyn Fn(&ConstrictionRow) -> f64| {
-            (name.to_owned(), self.constrictions.iter().map(of).collect::<Vec<f64>>())
+        let column = |name: &str, value: &dyn Fn(&ConstrictionRow) -> f64| {
+            (name.to_owned(), self.constrictions.iter().map(value).collect::<Vec<f64>>())
         };
         let blocked_at =
             |row: &ConstrictionRow| self.blocked.get(&row.constriction).filter(|&&at| at <= moment);

@@ -69,14 +69,14 @@ fn against_ratio(
     y: Axis,
     rules: Vec<Rule>,
     ledger: &[LedgerLine],
-    of: impl Fn(&LedgerLine) -> Option<(f64, Option<(f64, f64)>)>,
+    quantity: impl Fn(&LedgerLine) -> Option<(f64, Option<(f64, f64)>)>,
 ) -> Figure {
     let ratios = ledger.iter().map(|line| line.ratios.d15f_over_d85b);
     let (low, high) = ratios.fold((f64::MAX, 0.0_f64), |(low, high), r| (low.min(r), high.max(r)));
     let margin = 0.05 * (high - low).max(0.2 * high);
     let x = Axis::linear("D15F / D85B (–)", low - margin, high + margin);
     let symbol = |line: &LedgerLine| {
-        let (value, interval) = of(line)?;
+        let (value, interval) = quantity(line)?;
         Some(AtRatio {
             ratio: line.ratios.d15f_over_d85b,
             class: line.verdict,
@@ -123,12 +123,12 @@ fn both_runs(ledger: &[LedgerLine]) -> Drawn {
 
 /// Largest particle that left, over D15F.
 fn largest(ledger: &[LedgerLine]) -> Drawn {
-    let of = |line: &LedgerLine| largest_eroded(line).map(|s| (s.mean, interval(&s)));
+    let quantity = |line: &LedgerLine| largest_eroded(line).map(|s| (s.mean, interval(&s)));
     let highest =
         ledger.iter().filter_map(largest_eroded).map(|s| s.high.unwrap_or(s.mean)).fold(0.2, f64::max);
     let y = Axis::linear("Largest eroded particle / D15F, first run (–)", 0.0, 1.05 * highest);
     let what = "Largest eroded particle over D15F against D15F/D85B, one symbol a case";
-    let figure = against_ratio(["Largest eroded particle", what], y, Vec::new(), ledger, of);
+    let figure = against_ratio(["Largest eroded particle", what], y, Vec::new(), ledger, quantity);
     let caption = "Largest particle that left the filter in the first run, over D15F.";
     Drawn::new("largest-eroded", figure.sizes((720.0, 340.0), (358.0, 320.0)), caption)
 }

@@ -87,10 +87,10 @@ fn rules_of(line: &LedgerLine) -> Vec<String> {
 }
 
 /// Texts of the cases, each once with the number of cases that have it, the commonest first.
-fn tally(ledger: &[LedgerLine], of: impl Fn(&LedgerLine) -> Vec<String>) -> Vec<(String, u64)> {
+fn tally(ledger: &[LedgerLine], texts: impl Fn(&LedgerLine) -> Vec<String>) -> Vec<(String, u64)> {
     let mut counts: BTreeMap<String, u64> = BTreeMap::new();
-    for said in ledger.iter().flat_map(of) {
-        *counts.entry(said).or_default() += 1;
+    for text in ledger.iter().flat_map(texts) {
+        *counts.entry(text).or_default() += 1;
     }
     let mut counts: Vec<_> = counts.into_iter().collect();
     counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
@@ -102,8 +102,8 @@ fn listed(heading: &str, counts: &[(String, u64)]) -> Markup {
         @if !counts.is_empty() {
             h3 { (heading) }
             ul {
-                @for (said, count) in counts.iter().take(WARNINGS) {
-                    li { (clean(&shorten(said, 400))) " (" (whole(*count))
+                @for (text, count) in counts.iter().take(WARNINGS) {
+                    li { (clean(&shorten(text, 400))) " (" (whole(*count))
                         @if *count == 1 { " case)" } @else { " cases)" } }
                 }
                 @if counts.len() > WARNINGS {

@@ -32,7 +32,7 @@ pub(super) fn by_connectivity(walks: &Walks) -> Markup {
 }
 
 fn of_run(run: u64, rows: &[ByConnectivity]) -> Markup {
-    let sum = |of: fn(&ByConnectivity) -> u64| rows.iter().map(of).sum::<u64>();
+    let sum = |count: fn(&ByConnectivity) -> u64| rows.iter().map(count).sum::<u64>();
     let retained = sum(|r| r.retained_in_constrictions + r.retained_in_voids);
     let blocked = |blocked: u64, all: u64| percent(blocked as f64 / all.max(1) as f64);
     let columns = Columns::default()

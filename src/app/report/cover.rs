@@ -25,16 +25,16 @@ pub(super) fn program(version: &str, commit: Option<&str>) -> String {
 
 /// Stated facts, the date, the program and, if something was walked, its seed; on paper blank lines for
 /// missing facts, and the fields of three signatures.
-pub(super) fn cover(of: &SheetCover, program: &str, seed: Option<u64>) -> Markup {
+pub(super) fn cover(sheet: &SheetCover, program: &str, seed: Option<u64>) -> Markup {
     let facts = [
-        ("Project", of.project.clone()),
-        ("Number", of.number.clone()),
-        ("Purpose", of.purpose.clone()),
-        ("Client", of.client.clone()),
-        ("Author", of.author.clone()),
-        ("Checked by", of.checker.clone()),
-        ("Revision", of.revision.clone()),
-        ("Date", of.date.clone()),
+        ("Project", sheet.project.clone()),
+        ("Number", sheet.number.clone()),
+        ("Purpose", sheet.purpose.clone()),
+        ("Client", sheet.client.clone()),
+        ("Author", sheet.author.clone()),
+        ("Checked by", sheet.checker.clone()),
+        ("Revision", sheet.revision.clone()),
+        ("Date", sheet.date.clone()),
         ("Program", Some(format!("voidwalk {program}"))),
         ("Seed", seed.map(|seed| seed.to_string())),
     ];
@@ -50,20 +50,20 @@ pub(super) fn cover(of: &SheetCover, program: &str, seed: Option<u64>) -> Markup
                     dt { (name) } " " dd {}
                 },
             } } }
-            (signatures(of))
+            (signatures(sheet))
         }
     }
 }
 
 /// Text at the foot of every page beside its number: the number of the project, or its name.
-pub(super) fn foot(of: &SheetCover) -> Option<String> {
-    let said = of.number.as_ref().or(of.project.as_ref())?;
-    Some(clean(&shorten(said, FOOT)))
+pub(super) fn foot(sheet: &SheetCover) -> Option<String> {
+    let text = sheet.number.as_ref().or(sheet.project.as_ref())?;
+    Some(clean(&shorten(text, FOOT)))
 }
 
 /// Signature fields of those who prepared, checked and approved the sheet, on paper.
-fn signatures(of: &SheetCover) -> Markup {
-    let who = [("Prepared", of.author.as_ref()), ("Checked", of.checker.as_ref()), ("Approved", None)];
+fn signatures(sheet: &SheetCover) -> Markup {
+    let who = [("Prepared", sheet.author.as_ref()), ("Checked", sheet.checker.as_ref()), ("Approved", None)];
     html! {
         table.sign aria-hidden="true" {
             thead { tr { th {} th { "Name" } th { "Date" } th { "Signature" } } }
@@ -92,7 +92,7 @@ mod tests {
     #[test]
     fn every_field_stands_once_and_what_is_not_said_is_a_blank_line() {
         let text = |text: &str| Some(text.to_owned());
-        let of = SheetCover {
+        let sheet = SheetCover {
             project: text("Dam <1>"),
             number: text("D-2031"),
             purpose: text("Chimney filter"),
@@ -102,15 +102,15 @@ mod tests {
             revision: text("A"),
             date: text("2026-11-25"),
         };
-        let page = cover(&of, "1.0", Some(7)).into_string();
-        for said in ["Dam &lt;1&gt;", "D-2031", "Chimney filter", "Water Board", ">A<"] {
-            assert_eq!(page.matches(said).count(), 1, "{said}: {page}");
+        let page = cover(&sheet, "1.0", Some(7)).into_string();
+        for fact in ["Dam &lt;1&gt;", "D-2031", "Chimney filter", "Water Board", ">A<"] {
+            assert_eq!(page.matches(fact).count(), 1, "{fact}: {page}");
         }
         // The signature fields, and the foot of every page.
-        assert_eq!(foot(&of).as_deref(), Some("D-2031"));
-        for said in ["Prepared</th><td><bdi>N. N.<", "Checked</th><td><bdi>M. M.<", "Approved</th><td></td>"]
+        assert_eq!(foot(&sheet).as_deref(), Some("D-2031"));
+        for fact in ["Prepared</th><td><bdi>N. N.<", "Checked</th><td><bdi>M. M.<", "Approved</th><td></td>"]
         {
-            assert!(page.contains(said), "{said}: {page}");
+            assert!(page.contains(fact), "{fact}: {page}");
         }
         assert!(!page.contains("class=\"blank"), "{page}");
         assert!(

@@ -41,10 +41,10 @@ pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
         @if all.dispersive { ", dispersive" }
         ", by the rules of practice alone"
     };
-    let said = lines(&all, DESIGN_EACH_AGAIN, SizeUnit::of(false, all.inches));
+    let lines = lines(&all, DESIGN_EACH_AGAIN, SizeUnit::of(false, all.inches));
     let first = html! { section.verdict {
-        p.word.long { (clean(&said[0])) "." }
-        ul { @for said in &said[1..] { li { (clean(said)) "." } } }
+        p.word.long { (clean(&lines[0])) "." }
+        ul { @for line in &lines[1..] { li { (clean(line)) "." } } }
     } };
     let made = html! { table.facts { tbody { (input_files(&all.inputs)) } } p {
         "voidwalk " (clean(&all.version)) ". "
@@ -113,8 +113,8 @@ fn table(all: &DesignedSamples) -> Markup {
 
 /// The limit of practice of every sample against its D85B; `None` without a number.
 fn limits(all: &DesignedSamples) -> Option<Drawn> {
-    let of = |row: &DesignedSample| Some((row.d85b_mm?, row.d15f_max_mm?, row.governs == Some(1)));
-    let practice: Vec<_> = all.rows.iter().filter_map(of).collect();
+    let limit = |row: &DesignedSample| Some((row.d85b_mm?, row.d15f_max_mm?, row.governs == Some(1)));
+    let practice: Vec<_> = all.rows.iter().filter_map(limit).collect();
     practice.first()?;
     let (low, high) = positive_range(practice.iter().map(|(d85, ..)| *d85));
     let x = Axis::log("D85B after regrading (mm)", low / 1.2, high * 1.2);

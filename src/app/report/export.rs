@@ -174,18 +174,18 @@ mod tests {
         write("cases.csv", "case,n,mean\n\"a, b\",3,0.5\nc,4,\n");
         write("grains.csv", "# cell_mm = 1, 1, 1\nx_mm,y_mm,z_mm,diameter_mm\n0,1,2,0.5\n");
         write("notes.txt", "no table");
-        let found = export(root.path()).unwrap();
-        assert_eq!(found.words, ["cases.case"]);
+        let exported = export(root.path()).unwrap();
+        assert_eq!(exported.words, ["cases.case"]);
         let names: Vec<_> =
-            found.files.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
+            exported.files.iter().map(|path| path.file_name().unwrap().to_str().unwrap()).collect();
         assert_eq!(names, ["arrays.npz", "grains.vtu"]);
-        let bytes = std::fs::read(&found.files[0]).unwrap();
+        let bytes = std::fs::read(&exported.files[0]).unwrap();
         let mut npz = Npz::open(&bytes).unwrap();
         assert_eq!(npz.first(&["cases.n"]).unwrap().unwrap().1.numbers, Numbers::Whole(vec![3, 4]));
         let Numbers::Float(means) = npz.first(&["cases.mean"]).unwrap().unwrap().1.numbers else { panic!() };
         assert!(means[0] == 0.5 && means[1].is_nan());
         // A second export gives the same files.
-        assert_eq!(export(root.path()).unwrap(), found);
+        assert_eq!(export(root.path()).unwrap(), exported);
         write("broken.csv", "a,b\n1\n");
         assert!(export(root.path()).unwrap_err().to_string().contains("broken.csv:2:"));
     }

@@ -75,15 +75,15 @@ pub fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<(u64, T)>, ReportErr
         ReportError::Form { path: path.to_owned(), line, message }
     };
     let headers = reader.headers().map_err(|error| form(1, error))?.clone();
-    let mut found = Vec::new();
+    let mut rows = Vec::new();
     let mut record = csv::StringRecord::new();
     loop {
         let line = reader.position().line();
         match reader.read_record(&mut record) {
-            Ok(false) => return Ok(found),
+            Ok(false) => return Ok(rows),
             Ok(true) => {
                 let row = record.deserialize(Some(&headers)).map_err(|error| form(line, error))?;
-                found.push((line, row));
+                rows.push((line, row));
             }
             Err(error) => return Err(form(line, error)),
         }

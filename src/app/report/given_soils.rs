@@ -34,8 +34,11 @@ pub(super) struct GivenSoils<'a> {
 }
 
 impl<'a> GivenSoils<'a> {
-    pub(super) fn of_specification(of: &'a Specification) -> Self {
-        Self { curves: of.curves.iter().map(GivenCurve::of).collect(), inches: of.inches }
+    pub(super) fn of_specification(specification: &'a Specification) -> Self {
+        Self {
+            curves: specification.curves.iter().map(GivenCurve::of).collect(),
+            inches: specification.inches,
+        }
     }
 
     /// Heading of the appendix.
@@ -136,20 +139,20 @@ impl<'a> GivenSoils<'a> {
     }
 
     fn caption(&self, has_band: bool, words: Option<&str>, drawn: usize) -> String {
-        let mut said = match has_band {
+        let mut text = match has_band {
             true => format!(
                 "The band of the filter for this base, as its limits at the sieves have it{}. Its control \
                  points are joined by straight lines; above 60 % finer both sides go on straight, and below \
                  its D5 the fine side runs level: no more than 5 % may be finer.",
-                words.map_or(String::new(), |said| format!(": {said}"))
+                words.map_or(String::new(), |words| format!(": {words}"))
             ),
             false => "Gradations by mass. There is no band to draw.".to_owned(),
         };
         let left_out = self.curves.len() - drawn;
         if left_out > 0 {
-            said += &format!(" {left_out} more curves of the base are not drawn.");
+            text += &format!(" {left_out} more curves of the base are not drawn.");
         }
-        said
+        text
     }
 }
 

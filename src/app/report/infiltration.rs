@@ -17,7 +17,7 @@ pub(super) fn infiltration(outcome: &Outcome, unit: SizeUnit) -> Markup {
                 "Not given: the closed form holds for a regular cubic lattice whose exits are chosen by \
                  area, and this network is another."
             },
-            Some(found) => details {
+            Some(result) => details {
                 summary { "Eq. (1) for single particles, beside the walk" }
                 p {
                     "How far a single particle gets in the clean filter: with a confidence P of \
@@ -25,14 +25,14 @@ pub(super) fn infiltration(outcome: &Outcome, unit: SizeUnit) -> Markup {
                      is its chance to move one layer downstream in the directed lattice that is walked. \
                      Nothing is blocked here."
                 }
-                (sizes(found, unit))
-                (beside_the_walk(found, outcome, unit))
+                (sizes(result, unit))
+                (beside_the_walk(result, outcome, unit))
             },
         }
     }
 }
 
-fn sizes(found: &Infiltration, unit: SizeUnit) -> Markup {
+fn sizes(result: &Infiltration, unit: SizeUnit) -> Markup {
     let layers = |layers: Option<f64>| layers.map_or("no end".shown(), TableCell::shown);
     let columns = Columns::default()
         .name("particle", "Particle", |row: &InfiltrationSize| row.name.clone())
@@ -40,15 +40,15 @@ fn sizes(found: &Infiltration, unit: SizeUnit) -> Markup {
         .number("downstream", "Chance to move one layer on", |row| format!("{:.4}", row.downstream))
         .number("layers_95", "Layers, 95 %", |row| layers(row.layers_95))
         .number("layers_99", "Layers, 99 %", |row| layers(row.layers_99))
-        .number("through", format!("Passes all {}", whole(found.layers)), |row| percent(row.through));
-    Table::of(&found.sizes, columns).render()
+        .number("through", format!("Passes all {}", whole(result.layers)), |row| percent(row.through));
+    Table::of(&result.sizes, columns).render()
 }
 
-fn beside_the_walk(found: &Infiltration, outcome: &Outcome, unit: SizeUnit) -> Markup {
+fn beside_the_walk(result: &Infiltration, outcome: &Outcome, unit: SizeUnit) -> Markup {
     // Mean over the replicates that have the quantity.
-    let mean = |run: u64, of: fn(&Run) -> Option<f64>, show: &dyn Fn(f64) -> String| {
+    let mean = |run: u64, quantity: fn(&Run) -> Option<f64>, show: &dyn Fn(f64) -> String| {
         let runs = outcome.replicates.iter().flat_map(|r| &r.runs).filter(|r| r.run == run);
-        let values: Vec<f64> = runs.filter_map(of).collect();
+        let values: Vec<f64> = runs.filter_map(quantity).collect();
         match values.len() {
             0 => "none".to_owned(),
             n => show(values.iter().sum::<f64>() / n as f64),
@@ -61,7 +61,7 @@ fn beside_the_walk(found: &Infiltration, outcome: &Outcome, unit: SizeUnit) -> M
         ul {
             li {
                 "By the closed form particles up to "
-                (length(found.coarsest_through_mm, unit))
+                (length(result.coarsest_through_mm, unit))
                 " pass all layers with a probability of 5 % or more. The largest that left in the walk: "
                 @for (index, run) in outcome.summary.iter().enumerate() {
                     @if index > 0 { ", " }
@@ -81,12 +81,12 @@ fn beside_the_walk(found: &Infiltration, outcome: &Outcome, unit: SizeUnit) -> M
                 ", means over the replicates."
             }
             @if let Some(first) = eroded(0) { li {
-                "If nothing were ever blocked, " b { (percent(found.eroded_without_blocking)) }
+                "If nothing were ever blocked, " b { (percent(result.eroded_without_blocking)) }
                 " of the base’s mass would leave; in the walk " b { (percent(first)) }
                 " left in the first run"
                 @if let Some(second) = eroded(1) { " and " b { (percent(second)) } " in the second" }
                 ". "
-                (what_blocking_does(found.eroded_without_blocking - first))
+                (what_blocking_does(result.eroded_without_blocking - first))
             } }
         }
     }

@@ -75,27 +75,27 @@ pub(super) fn titled_by_file(kind: &str, words: &str, name: &str) -> Markup {
 /// The end of a path that tells it apart from others, with as few folders as possible.
 pub(super) fn told_apart(path: &str, others: &[&str]) -> String {
     let parts = |path: &str| path.split(['/', '\\']).map(str::to_owned).collect::<Vec<String>>();
-    let own = parts(path);
-    let end = |of: &[String], count: usize| of[of.len().saturating_sub(count)..].join("/");
+    let path_parts = parts(path);
+    let end = |parts: &[String], count: usize| parts[parts.len().saturating_sub(count)..].join("/");
     let is_alone = |count: &usize| {
-        let like = others.iter().filter(|other| end(&parts(other), *count) == end(&own, *count));
+        let like = others.iter().filter(|other| end(&parts(other), *count) == end(&path_parts, *count));
         like.count() <= 1
     };
-    let count = (1..own.len()).find(is_alone).unwrap_or(own.len());
-    end(&own, count)
+    let count = (1..path_parts.len()).find(is_alone).unwrap_or(path_parts.len());
+    end(&path_parts, count)
 }
 
 /// An option as on a command line, with a file name without its folders.
 pub(super) fn option_words(option: &str) -> String {
     let at = option.find('=').map(|at| at + 1).or_else(|| option.strip_prefix("--filter ").map(|_| 9));
-    let (said, value) = option.split_at(at.unwrap_or(0));
-    format!("{said}{}", file_name(value))
+    let (name, value) = option.split_at(at.unwrap_or(0));
+    format!("{name}{}", file_name(value))
 }
 
 /// A note that begins with the name of its file.
 pub(super) fn note_words(note: &str) -> String {
     match note.split_once(": ") {
-        Some((file, said)) => format!("{}: {said}", file_name(file)),
+        Some((file, note)) => format!("{}: {note}", file_name(file)),
         None => note.to_owned(),
     }
 }
@@ -117,11 +117,11 @@ mod tests {
 
     #[test]
     fn a_name_that_says_no_more_than_its_kind_is_left_out() {
-        let said = |kind, name| titled(kind, name).into_string();
-        assert_eq!(said("Base", "/lab/base.csv"), "Base");
-        assert_eq!(said("Base", "soils.xlsx#BASE"), "Base");
-        assert_eq!(said("filter", "C33 <sand>.csv"), "filter <b><bdi>C33 &lt;sand&gt;</bdi></b>");
-        assert_eq!(said("Base", "lab/soils.xlsx#Till 3"), "Base <b><bdi>Till 3</bdi></b>");
+        let title = |kind, name| titled(kind, name).into_string();
+        assert_eq!(title("Base", "/lab/base.csv"), "Base");
+        assert_eq!(title("Base", "soils.xlsx#BASE"), "Base");
+        assert_eq!(title("filter", "C33 <sand>.csv"), "filter <b><bdi>C33 &lt;sand&gt;</bdi></b>");
+        assert_eq!(title("Base", "lab/soils.xlsx#Till 3"), "Base <b><bdi>Till 3</bdi></b>");
         assert!(
             is_named("Base", "filter.csv") && !is_named("filter", "a/Filter.CSV") && !is_named("base", "")
         );
@@ -129,11 +129,11 @@ mod tests {
 
     #[test]
     fn a_name_that_says_no_more_than_its_kind_is_that_of_its_file_where_a_sheet_needs_one() {
-        let said = |name| titled_by_file("Base", "Base", name).into_string();
-        assert_eq!(said("/lab/base.csv"), "Base <b><bdi>base.csv</bdi></b>");
-        assert_eq!(said("lab/soils.xlsx#base"), "Base <b><bdi>soils.xlsx#base</bdi></b>");
-        assert_eq!(said("/lab/till.csv"), "Base <b><bdi>till</bdi></b>");
-        assert_eq!([said("base"), said("")], ["Base", "Base"]);
+        let title = |name| titled_by_file("Base", "Base", name).into_string();
+        assert_eq!(title("/lab/base.csv"), "Base <b><bdi>base.csv</bdi></b>");
+        assert_eq!(title("lab/soils.xlsx#base"), "Base <b><bdi>soils.xlsx#base</bdi></b>");
+        assert_eq!(title("/lab/till.csv"), "Base <b><bdi>till</bdi></b>");
+        assert_eq!([title("base"), title("")], ["Base", "Base"]);
         let filter = |name| titled_by_file("filter", "filter of the shape", name).into_string();
         assert_eq!(filter("/lab/filter.csv"), "filter of the shape <b><bdi>filter.csv</bdi></b>");
         assert_eq!(filter("C33.csv"), "filter of the shape <b><bdi>C33</bdi></b>");
@@ -161,8 +161,8 @@ mod tests {
     #[test]
     fn files_of_one_name_are_told_apart_by_their_nearest_folders_alone() {
         let all = ["/lab/5/filter.csv", "/lab/7/filter.csv", "C:\\soils\\c33.csv"];
-        let said = |path| told_apart(path, &all);
-        assert_eq!(all.map(said), ["5/filter.csv", "7/filter.csv", "c33.csv"]);
+        let told = |path| told_apart(path, &all);
+        assert_eq!(all.map(told), ["5/filter.csv", "7/filter.csv", "c33.csv"]);
         let deep = ["/a/x/filter.csv", "/b/x/filter.csv", "x/filter.csv"];
         assert_eq!(told_apart(deep[0], &deep), "a/x/filter.csv");
         assert_eq!(told_apart(deep[2], &deep), "x/filter.csv");

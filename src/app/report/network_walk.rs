@@ -100,11 +100,11 @@ fn walks<'a>(record: &'a NetworkWalkRecord, rows: &'a RunRows) -> Walks<'a> {
 
 /// Words for the only replicate, and for each of several.
 fn replicate(record: &NetworkWalkRecord) -> [&'static str; 2] {
-    let each = match record.network.networks {
+    let of_several = match record.network.networks {
         1 => "a new walk on the same network",
         _ => "a walk on a network of its own",
     };
-    ["one network, one walk", each]
+    ["one network, one walk", of_several]
 }
 
 /// The base, and the diameters of the constrictions.
@@ -165,11 +165,11 @@ fn amount(record: &NetworkWalkRecord) -> String {
     let walked = whole(record.n_base);
     match (record.n_base_eq2, record.grains_per_void) {
         (Some(eq2), Some(grains)) => {
-            let of =
+            let assumptions =
                 format!("{} grains per void and a mass ratio of {}", significant(grains), record.mass_ratio);
             match eq2 == record.n_base {
-                true => format!("{walked}, as the model requires with {of}"),
-                false => format!("{walked}; the model requires {} with {of}", whole(eq2)),
+                true => format!("{walked}, as the model requires with {assumptions}"),
+                false => format!("{walked}; the model requires {} with {assumptions}", whole(eq2)),
             }
         }
         _ => format!("{walked}, as given"),

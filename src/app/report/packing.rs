@@ -208,8 +208,8 @@ fn states(record: &PackingRecord) -> Markup {
 /// The paper's values, if its Table 2 has this filter.
 fn beside_the_paper(packed: &Packed) -> Markup {
     let record = &packed.record;
-    let found = record.cu.filter(|_| record.linear).and_then(|cu| paper::filter(cu, record.friction));
-    let Some(paper) = found else { return html! {} };
+    let paper_filter = record.cu.filter(|_| record.linear).and_then(|cu| paper::filter(cu, record.friction));
+    let Some(paper) = paper_filter else { return html! {} };
     let mut rows = vec![("Void ratio", record.after.void_ratio, paper.void_ratio)];
     if record.friction != record.final_friction {
         rows.push(("Void ratio before the final friction", record.before.void_ratio, paper.void_ratio));

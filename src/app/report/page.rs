@@ -76,14 +76,14 @@ pub fn run_brief(outcome: &str) -> Result<String, ReportError> {
     let rows = RunRows::default();
     let walks = walks(&outcome, &rows);
     let lines = first_lines(&outcome, &outcome.decision(), SizeUnit::Mm);
-    let said = Said {
+    let texts = Said {
         lines: &lines,
         meaning: in_words(&outcome, &walks),
         notes: foremost(&outcome).0,
         replicate: replicate(&outcome),
         leaves_out: &outcome.model_leaves_out,
     };
-    Ok(verdict_box::brief(&walks, &said))
+    Ok(verdict_box::brief(&walks, &texts))
 }
 
 /// Words for the only replicate of a run, and for each of several. The ends of a range of constrictions have

@@ -44,7 +44,7 @@ pub fn write_percolation(folder: &Path) -> Result<Written, ReportError> {
 
 fn sizes(study: &PercolationStudy) -> Markup {
     let digits = |value: Option<f64>| value.map_or_else(|| "–".to_owned(), |v| format!("{v:.5}"));
-    let ends = |of: &Statistic| format!("{} to {}", digits(of.low), digits(of.high));
+    let ends = |statistic: &Statistic| format!("{} to {}", digits(statistic.low), digits(statistic.high));
     let rows: Vec<(String, &Statistic, Option<f64>)> = study.lattices().collect();
     let columns = Columns::default()
         .number("size", "L", |row: &(String, &Statistic, _)| row.0.replace('x', " × "))
@@ -88,23 +88,23 @@ fn fits(study: &PercolationStudy) -> Markup {
 
 /// Standard deviation of the threshold against the size of the lattice: Fig. 6 of the paper.
 pub fn percolation_spread(study: &PercolationStudy) -> Drawn {
-    let sd = |of: &SizeThreshold| of.threshold.sd.unwrap_or(0.0);
-    let ends = |of: &SizeThreshold| {
-        let half = 1.96 * of.sd_error.unwrap_or(0.0);
-        (sd(of) - half, sd(of) + half)
+    let sd = |size: &SizeThreshold| size.threshold.sd.unwrap_or(0.0);
+    let ends = |size: &SizeThreshold| {
+        let half = 1.96 * size.sd_error.unwrap_or(0.0);
+        (sd(size) - half, sd(size) + half)
     };
-    let rows: Vec<&SizeThreshold> = study.sizes.iter().filter(|of| of.threshold.sd.is_some()).collect();
-    let widest = rows.iter().map(|of| of.size as f64).fold(1.0, f64::max);
-    let lowest = rows.iter().map(|of| ends(of).0).fold(0.0, f64::min);
-    let highest = rows.iter().map(|of| ends(of).1).fold(0.001, f64::max);
+    let rows: Vec<&SizeThreshold> = study.sizes.iter().filter(|size| size.threshold.sd.is_some()).collect();
+    let widest = rows.iter().map(|size| size.size as f64).fold(1.0, f64::max);
+    let lowest = rows.iter().map(|size| ends(size).0).fold(0.0, f64::min);
+    let highest = rows.iter().map(|size| ends(size).1).fold(0.001, f64::max);
     let x = Axis::linear("Size of the lattice, L (voids along each side)", 0.0, widest);
     let y = Axis::linear("Standard deviation of the threshold (–)", lowest, highest);
     let what = "Standard deviation of the percolation threshold against the size of the lattice";
     let mut figure = Figure::new("Scatter of the percolation threshold", what, "", x, y);
-    figure.add(Line::new(rows.iter().map(|of| (of.size as f64, sd(of))).collect(), BLUE).width(1.5));
-    for of in rows {
-        let point = Point::new(of.size as f64, sd(of), BLUE, Shape::Circle);
-        figure.add(point.y_interval(Some(ends(of))));
+    figure.add(Line::new(rows.iter().map(|size| (size.size as f64, sd(size))).collect(), BLUE).width(1.5));
+    for size in rows {
+        let point = Point::new(size.size as f64, sd(size), BLUE, Shape::Circle);
+        figure.add(point.y_interval(Some(ends(size))));
     }
     let caption = "Standard deviation of the percolation threshold over the realisations, as in Fig. 6 of \
                    the paper. Bars: 95 % intervals, for normal thresholds.";

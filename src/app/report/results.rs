@@ -23,16 +23,16 @@ pub(super) fn results(walks: &Walks) -> Markup {
     type Row<'a> = (&'static str, &'a dyn Fn(&RunSummary) -> Shown);
     let eroded = |mm: Option<f64>| mm.map_or("nothing eroded".shown(), |mm| length(mm, walks.unit).shown());
     let largest_ratio = |run: &RunSummary| match &run.largest_eroded_over_d15f {
-        Some(of) => {
-            let ends = of.low.zip(of.high);
+        Some(statistic) => {
+            let ends = statistic.low.zip(statistic.high);
             let ends = ends.map(|(low, high)| significant(low).to(significant(high)).to_string());
-            of.mean.shown().below(ends)
+            statistic.mean.shown().below(ends)
         }
         None => eroded(None),
     };
     let largest = |run: &RunSummary| {
         let ratio = run.largest_eroded_over_d15f.as_ref();
-        eroded(ratio.zip(walks.d15f_mm).map(|(of, d15f_mm)| of.mean * d15f_mm))
+        eroded(ratio.zip(walks.d15f_mm).map(|(ratio, d15f_mm)| ratio.mean * d15f_mm))
     };
     let largest_of_all = |run: &RunSummary| {
         let of_run = |replicate: &Replicate| replicate.runs.get(run.run as usize - 1)?.largest_eroded_mm;

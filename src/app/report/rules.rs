@@ -113,8 +113,8 @@ mod tests {
     use voidwalk_practice::rules::{DESIGN, TERZAGHI};
 
     fn rule(id: &str, value: f64, limit: f64) -> AppliedRule {
-        let of = |d15, size| Gradation::linear_from_dx(d15, size, 1.5).unwrap();
-        let rules = PairRules::of(&of(85.0, 0.2), &of(15.0, 0.8)).rules;
+        let soil = |d15, size| Gradation::linear_from_dx(d15, size, 1.5).unwrap();
+        let rules = PairRules::of(&soil(85.0, 0.2), &soil(15.0, 0.8)).rules;
         let rule = rules.into_iter().find(|rule| rule.id == id).unwrap();
         AppliedRule { value: Some(value), limit: Some(limit), met: Some(value <= limit), ..rule }
     }
@@ -135,9 +135,9 @@ mod tests {
         let page = table_with(&[&listed[0]], SizeUnit::Mm, |_| html! {}).into_string();
         assert!(page.contains("= 4.0003") && page.contains("≤ 4<") && page.contains("✗ not met"), "{page}");
         // 0.70003 mm and 0.7 mm are 0.027561 and 0.027559 inches.
-        let of = shown(&rule(DESIGN, 0.70003, 0.7), SizeUnit::MmAndInches);
-        assert_eq!(of[0], "0.70003\u{202f}mm (0.0276\u{202f}in)");
-        assert_eq!(of[1], "0.70000\u{202f}mm (0.0275\u{202f}in)");
+        let texts = shown(&rule(DESIGN, 0.70003, 0.7), SizeUnit::MmAndInches);
+        assert_eq!(texts[0], "0.70003\u{202f}mm (0.0276\u{202f}in)");
+        assert_eq!(texts[1], "0.70000\u{202f}mm (0.0275\u{202f}in)");
         let within = shown(&rule(DESIGN, 0.699, 0.7), SizeUnit::MmAndInches);
         assert_eq!(within, ["0.699\u{202f}mm (0.02752\u{202f}in)", "0.700\u{202f}mm (0.02755\u{202f}in)"]);
     }

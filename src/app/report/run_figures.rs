@@ -97,7 +97,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     let x = if folder.about.coarse_left { x.downward() } else { x };
     let y = Axis::percent("Percent finer (%)");
     let d85b = match inputs.base_size() {
-        Some(of) => base_size(&of, SizeUnit::Mm),
+        Some(size) => base_size(&size, SizeUnit::Mm),
         None => format!("D85B is {}", length(base.d85_mm, SizeUnit::D0f)),
     };
     let what = format!(
@@ -119,7 +119,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     boundaries::draw(&mut figure, &limits);
     // With two curves of the base each has its own words; a single curve is as sampled.
     let walked = match (inputs.base_size(), sampled) {
-        (Some(of), Some(_)) => format!("base, {}", grading(&of)),
+        (Some(size), Some(_)) => format!("base, {}", grading(&size)),
         _ => name("base", &base.name),
     };
     if let Some(before) = sampled {
@@ -317,11 +317,11 @@ pub(super) fn retained(walks: &Walks) -> Option<Drawn> {
     if let Some(rows) = gone {
         figure.add(Line::new(curve(rows), BLACK).dash(Dash::Dashed).label("eroded, the end"));
     }
-    let of = if walks.replicates.len() > 1 { " of the first replicate" } else { "" };
+    let replicate = if walks.replicates.len() > 1 { " of the first replicate" } else { "" };
     let mut caption = format!(
-        "What the filter has retained after chosen increments of the first run{of}, what has left it, and \
-         the base as inserted. Retained curves that move to the left show self-filtering: what coarse \
-         particles blocked holds finer ones."
+        "What the filter has retained after chosen increments of the first run{replicate}, what has left \
+         it, and the base as inserted. Retained curves that move to the left show self-filtering: what \
+         coarse particles blocked holds finer ones."
     );
     if gone.is_none() {
         caption.push_str(" Nothing left the filter.");

@@ -34,9 +34,9 @@ impl Sections {
     }
 
     /// Adds the cover of a sheet below its first heading.
-    pub(super) fn cover(mut self, of: &SheetCover, program: &str, seed: Option<u64>) -> Self {
-        self.header = html! { (self.header) (cover(of, program, seed)) };
-        self.foot = foot(of);
+    pub(super) fn cover(mut self, sheet: &SheetCover, program: &str, seed: Option<u64>) -> Self {
+        self.header = html! { (self.header) (cover(sheet, program, seed)) };
+        self.foot = foot(sheet);
         self
     }
 

@@ -128,13 +128,14 @@ pub fn clean(text: &str) -> String {
 
 /// A sentence, cleaned, in which no line breaks between a number and its unit.
 pub(super) fn unbroken(text: &str) -> String {
-    let mut said = clean(text);
+    let mut sentence = clean(text);
     for unit in ["%", "mm"] {
         let (broken, joined) = (format!(" {unit}"), format!("\u{202f}{unit}"));
-        said = (0..10)
-            .fold(said, |said, digit| said.replace(&format!("{digit}{broken}"), &format!("{digit}{joined}")));
+        sentence = (0..10).fold(sentence, |sentence, digit| {
+            sentence.replace(&format!("{digit}{broken}"), &format!("{digit}{joined}"))
+        });
     }
-    said
+    sentence
 }
 
 /// A figure as an element of the page, in all its sizes: the style shows the size that fits.
@@ -227,9 +228,9 @@ mod tests {
         use base64::Engine as _;
         use base64::prelude::BASE64_STANDARD;
         let style = concat!(env!("CARGO_MANIFEST_DIR"), "/report/page.css");
-        let said = std::process::Command::new("sha256sum").arg(style).output().unwrap();
-        let said = String::from_utf8(said.stdout).unwrap();
-        let byte = |at: usize| u8::from_str_radix(&said[at..at + 2], 16).unwrap();
+        let output = std::process::Command::new("sha256sum").arg(style).output().unwrap();
+        let output = String::from_utf8(output.stdout).unwrap();
+        let byte = |at: usize| u8::from_str_radix(&output[at..at + 2], 16).unwrap();
         let hash = BASE64_STANDARD.encode((0..64).step_by(2).map(byte).collect::<Vec<_>>());
         assert_eq!(STYLE_HASH, hash, "page.css has changed: STYLE_HASH is {hash} now");
     }
@@ -244,10 +245,10 @@ mod tests {
 
     #[test]
     fn every_printed_page_has_a_foot() {
-        let of = |foot| page_with_foot(foot, "A page", [&html! {}; 3]);
-        let page = of(Some("D-114 \"<b>"));
+        let page_with = |foot| page_with_foot(foot, "A page", [&html! {}; 3]);
+        let page = page_with(Some("D-114 \"<b>"));
         assert!(page.contains("<html lang=\"en\" data-foot=\"D-114 &quot;&lt;b&gt;\">"), "{page}");
-        assert!(of(None).contains("<html lang=\"en\"><head>"));
+        assert!(page_with(None).contains("<html lang=\"en\"><head>"));
         for part in ["--foot:attr(data-foot)", "content:var(--foot)", "counter(page) \" of \" counter(pages)"]
         {
             assert!(STYLE.contains(part), "{part}");

@@ -33,33 +33,35 @@ use voidwalk_practice::quantity::{NumberRole, SizeUnit, length};
 /// # Errors
 /// The file is missing or malformed, or something cannot be written.
 pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
-    let of: Specification = json(&folder.join("specification.json"))?;
+    let design: Specification = json(&folder.join("specification.json"))?;
     let names = html! {
-        (titled_by_file("Base", "Base", &of.base)) @if of.dispersive { ", dispersive" }
+        (titled_by_file("Base", "Base", &design.base)) @if design.dispersive { ", dispersive" }
         ", by the rules of practice alone"
     };
     let footer = html! {
         p { "By the rules of practice, without a walk. It does not replace a filter test or a designer’s \
              judgement." }
-        p.small { "voidwalk " (of.version) "." }
+        p.small { "voidwalk " (design.version) "." }
     };
     #[cfg(feature = "xlsx")]
-    super::workbook::write_specification_workbook(folder, &of)?;
-    let soils = GivenSoils::of_specification(&of);
-    let made = html! { table.facts { tbody { (input_files(&of.inputs)) } } };
+    super::workbook::write_specification_workbook(folder, &design)?;
+    let soils = GivenSoils::of_specification(&design);
+    let made = html! { table.facts { tbody { (input_files(&design.inputs)) } } };
     let title = "Specification of a filter";
     let page = Sections::new(title, title, &names)
-        .cover(&of.cover, &program(&of.version, of.commit.as_deref()), None)
-        .words(&html! { section.sheet { (answer(&of)) } })
-        .figures(soils.figure(of.band.as_ref(), band(&of, SizeUnit::of(false, of.inches)).as_deref()));
-    page.section("More warnings", &more_warnings(&of))
-        .section("Limits sieve by sieve", &limits(&of))
-        .section("Standard products", &products(&of))
-        .section("Step by step", &steps(&of))
+        .cover(&design.cover, &program(&design.version, design.commit.as_deref()), None)
+        .words(&html! { section.sheet { (answer(&design)) } })
+        .figures(
+            soils.figure(design.band.as_ref(), band(&design, SizeUnit::of(false, design.inches)).as_deref()),
+        );
+    page.section("More warnings", &more_warnings(&design))
+        .section("Limits sieve by sieve", &limits(&design))
+        .section("Standard products", &products(&design))
+        .section("Step by step", &steps(&design))
         .section(soils.heading(), &soils.appendix())
         .section(
             "How this was made",
-            &if of.inputs.is_empty() {
+            &if design.inputs.is_empty() {
                 html! {}
             } else {
                 made
@@ -69,22 +71,25 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
 }
 
 /// The answer of practice.
-fn answer(of: &Specification) -> Markup {
-    let unit = SizeUnit::of(false, of.inches);
+fn answer(design: &Specification) -> Markup {
+    let unit = SizeUnit::of(false, design.inches);
     html! {
         section.verdict {
-            @if let Some(band) = band(of, unit) { p.word.long { (clean(&band)) ", by practice." } }
-            p { "Limit: " (clean(&limit(of, unit))) "." }
-            (to_specify(of))
-            @if let Some(said) = without_margin(of, unit) { p { (unbroken(&said)) "." } }
-            @if let Some(said) = if_dispersive(of, DESIGN_AGAIN, unit) {
-                p { (clean(&said)) "." }
+            @if let Some(band) = band(design, unit) { p.word.long { (clean(&band)) ", by practice." } }
+            p { "Limit: " (clean(&limit(design, unit))) "." }
+            (to_specify(design))
+            @if let Some(sentence) = without_margin(design, unit) { p { (unbroken(&sentence)) "." } }
+            @if let Some(sentence) = if_dispersive(design, DESIGN_AGAIN, unit) {
+                p { (clean(&sentence)) "." }
             }
-            @if let Some(why) = &of.no_band { p.word.long { "No band." } p { (clean(&no_band(why, unit))) } }
-            (cautions(of))
-            @if of.notes.len() > WARNINGS { p.small { "More warnings stand below." } }
-            (still_to_set(of))
-            p { (clean(&products_line(of))) "." }
+            @if let Some(why) = &design.no_band {
+                p.word.long { "No band." }
+                p { (clean(&no_band(why, unit))) }
+            }
+            (cautions(design))
+            @if design.notes.len() > WARNINGS { p.small { "More warnings stand below." } }
+            (still_to_set(design))
+            p { (clean(&products_line(design))) "." }
         }
     }
 }
@@ -92,50 +97,50 @@ fn answer(of: &Specification) -> Markup {
 /// Number of warnings in the answer; those of further curves are below it.
 const WARNINGS: usize = 4;
 
-fn more_warnings(of: &Specification) -> Markup {
-    let (more, unit) = (of.notes.iter().skip(WARNINGS), SizeUnit::of(false, of.inches));
+fn more_warnings(design: &Specification) -> Markup {
+    let (more, unit) = (design.notes.iter().skip(WARNINGS), SizeUnit::of(false, design.inches));
     html! {
-        @if of.notes.len() > WARNINGS { ul { @for row in more { li { (clean(&row_note(row, unit))) } } } }
+        @if design.notes.len() > WARNINGS { ul { @for row in more { li { (clean(&row_note(row, unit))) } } } }
     }
 }
 
 /// The first warnings of the base itself.
-fn cautions(of: &Specification) -> Markup {
-    let unit = SizeUnit::of(false, of.inches);
+fn cautions(design: &Specification) -> Markup {
+    let unit = SizeUnit::of(false, design.inches);
     html! {
-        @for row in of.notes.iter().take(WARNINGS) {
+        @for row in design.notes.iter().take(WARNINGS) {
             p.caution { b { "Warning" } ": " (unbroken(&row_note(row, unit))) }
         }
     }
 }
 
 /// Gaps of the specification; empty without a band.
-fn still_to_set(of: &Specification) -> Markup {
-    let said = still_to_set_line(of, SizeUnit::of(false, of.inches));
-    html! { @if let Some(said) = said { p.caution { b { (unbroken(&said)) } } } }
+fn still_to_set(design: &Specification) -> Markup {
+    let gaps = still_to_set_line(design, SizeUnit::of(false, design.inches));
+    html! { @if let Some(gaps) = gaps { p.caution { b { (unbroken(&gaps)) } } } }
 }
 
 /// The reason for the beginning of the band, and the sizes of its two sides; empty without a band.
-fn to_specify(of: &Specification) -> Markup {
-    let Some(band) = &of.band else { return html! {} };
-    let unit = SizeUnit::of(false, of.inches);
+fn to_specify(design: &Specification) -> Markup {
+    let Some(band) = &design.band else { return html! {} };
+    let unit = SizeUnit::of(false, design.inches);
     let sides = [("Fine side", true), ("Coarse side", false)];
     let columns = Columns::default().name("side", unit.name(), |side: &(&'static str, bool)| side.0);
-    let columns = band.sizes.iter().fold(columns, |columns, of| {
-        let [name, heading] = [format!("d{}f_mm", of.percent), format!("D{}F", of.percent)];
+    let columns = band.sizes.iter().fold(columns, |columns, size| {
+        let [name, heading] = [format!("d{}f_mm", size.percent), format!("D{}F", size.percent)];
         columns.number(name, heading, move |side| match side.1 {
-            true => length(of.min_mm, unit).role(NumberRole::Least).in_cell(),
-            false => length(of.max_mm, unit).role(NumberRole::Greatest).in_cell(),
+            true => length(size.min_mm, unit).role(NumberRole::Least).in_cell(),
+            false => length(size.max_mm, unit).role(NumberRole::Greatest).in_cell(),
         })
     });
     html! {
-        @if let Some(raised) = raised(of, unit) { p { (clean(&raised)) "." } }
+        @if let Some(raised) = raised(design, unit) { p { (clean(&raised)) "." } }
         (Table::of(&sides, columns).class("band"))
     }
 }
 
-fn steps(of: &Specification) -> Markup {
-    let unit = SizeUnit::of(false, of.inches);
+fn steps(design: &Specification) -> Markup {
+    let unit = SizeUnit::of(false, design.inches);
     let number = |value: &StepValue| known(step_value(value, unit), |words| words);
     let columns = Columns::default()
         .name("step", "What is done, formula, source", |step: &SpecificationStep| {
@@ -154,21 +159,23 @@ fn steps(of: &Specification) -> Markup {
              handbook (National Engineering Handbook, Part 633, Chapter 26). Each step names the text that \
              its numbers come from, or says that they are this program’s own."
         }
-        (Table::of(&of.steps, columns).class("study steps").showing("values", |step| html! {
+        (Table::of(&design.steps, columns).class("study steps").showing("values", |step| html! {
             @for value in &step.values { (clean(&value.name)) " = " b { (number(value)) } br; }
         }))
     }
 }
 
-fn limits(of: &Specification) -> Markup {
-    if of.band.is_none() {
-        let unit = SizeUnit::of(false, of.inches);
-        return html! { @if let Some(why) = &of.no_band { p { (clean(&no_band(why, unit))) } } };
+fn limits(design: &Specification) -> Markup {
+    if design.band.is_none() {
+        let unit = SizeUnit::of(false, design.inches);
+        return html! { @if let Some(why) = &design.no_band { p { (clean(&no_band(why, unit))) } } };
     }
     html! {
-        (Table::of(&of.limits, limit_columns()))
-        @if let Some(beside) = beside_limits(of, SizeUnit::of(false, of.inches)) { p { (clean(&beside)) } }
-        @if if_dispersive(of, DESIGN_AGAIN, SizeUnit::of(false, of.inches)).is_some() {
+        (Table::of(&design.limits, limit_columns()))
+        @if let Some(beside) = beside_limits(design, SizeUnit::of(false, design.inches)) {
+            p { (clean(&beside)) }
+        }
+        @if if_dispersive(design, DESIGN_AGAIN, SizeUnit::of(false, design.inches)).is_some() {
             p { b { "Valid only for a base that tests show not to be dispersive." } }
         }
         p.small {
@@ -181,18 +188,18 @@ fn limits(of: &Specification) -> Markup {
 }
 
 /// Margins of standard products, with their result.
-fn products(of: &Specification) -> Markup {
-    let columns = columns(SizeUnit::of(false, of.inches)).text("result", "", |product| {
-        product_result(of, product).shown().emphasised(product.fits().map(Emphasis::Kept))
+fn products(design: &Specification) -> Markup {
+    let columns = columns(SizeUnit::of(false, design.inches)).text("result", "", |product| {
+        product_result(design, product).shown().emphasised(product.fits().map(Emphasis::Kept))
     });
-    let to_check = to_be_checked(&of.products);
+    let to_check = to_be_checked(&design.products);
     html! {
-        @if !of.products.is_empty() {
-            (Table::of(&of.products, columns).class("study"))
+        @if !design.products.is_empty() {
+            (Table::of(&design.products, columns).class("study"))
             p.small {
                 "A margin of 1 and more is kept. Each product is tested with its own two sides; its \
                  supplier’s gradation decides."
-                @if let Some(said) = to_check { " " (clean(&said)) }
+                @if let Some(sentence) = to_check { " " (clean(&sentence)) }
             }
         }
     }
@@ -209,8 +216,8 @@ mod tests {
     fn products_are_said_to_fit_as_far_as_is_known() {
         let base = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]).unwrap();
         let core = Specification::of("core", &[("core".into(), base)], SpecificationOptions::default());
-        let said = products_line(&core);
-        assert_eq!(said, "Standard products that fit: ASTM C33 fine aggregate");
+        let line = products_line(&core);
+        assert_eq!(line, "Standard products that fit: ASTM C33 fine aggregate");
         assert!(limits(&core).into_string().contains("D15F of each delivery must lie within 0.140 to"));
         // The greatest is unknown, and the least alone refuses the finest product.
         let unknown =

@@ -39,18 +39,18 @@ pub(super) fn in_words(walks: &Walks) -> String {
 }
 
 /// The classes of the replicates, counted, with the words for one replicate and for each of several.
-pub(super) fn tally(walks: &Walks, [one, each]: [&str; 2]) -> String {
+pub(super) fn tally(walks: &Walks, [single, several]: [&str; 2]) -> String {
     let count = walks.replicates.len();
     if count == 1 {
-        return format!("1 replicate ({one}).");
+        return format!("1 replicate ({single}).");
     }
     let classes = Verdict::ALL.into_iter().filter_map(|class| {
-        let found = walks.replicates.iter().filter(|replicate| replicate.verdict == class).count();
-        let of = if found == count { "all".to_owned() } else { found.to_string() };
-        (found > 0).then(|| format!("{} in {of}", class.words()))
+        let number = walks.replicates.iter().filter(|replicate| replicate.verdict == class).count();
+        let share = if number == count { "all".to_owned() } else { number.to_string() };
+        (number > 0).then(|| format!("{} in {share}", class.words()))
     });
     let classes = classes.collect::<Vec<_>>().join(", ");
-    format!("{count} replicates, each {each}: {classes}.")
+    format!("{count} replicates, each {several}: {classes}.")
 }
 
 /// Text on replicates below the table: their number, the threshold, and a warning for a single one.
@@ -85,20 +85,20 @@ pub(super) struct Said<'a> {
 
 /// The verdict in brief, for a page of another program, as a notebook: it needs no style, and the figure is a
 /// picture, so that several fit on one page.
-pub(super) fn brief(walks: &Walks, said: &Said) -> String {
+pub(super) fn brief(walks: &Walks, texts: &Said) -> String {
     let drawn = run_figures::verdict(walks);
     let picture = BASE64_STANDARD.encode(drawn.figure.file());
     let columns = eroded_columns().number("blocked", "constrictions blocked", |run| run.blocked_fraction);
     html! {
         div {
-            @for (line, words) in said.lines { p { b { (line.name()) } ": " (clean(words)) "." } }
-            p { (clean(&said.meaning)) }
-            ul { @for note in said.notes { li { (clean(&sentence(note, SizeUnit::Mm))) } } }
+            @for (line, words) in texts.lines { p { b { (line.name()) } ": " (clean(words)) "." } }
+            p { (clean(&texts.meaning)) }
+            ul { @for note in texts.notes { li { (clean(&sentence(note, SizeUnit::Mm))) } } }
             img src={ "data:image/svg+xml;base64," (picture) }
                 alt="Mean and 95 % interval of the eroded mass in each run, against the threshold";
             (Table::of(walks.summary, columns))
-            (replicates_in_words(walks, said.replicate))
-            p { (clean(&left_out_in_brief(said.leaves_out))) }
+            (replicates_in_words(walks, texts.replicate))
+            p { (clean(&left_out_in_brief(texts.leaves_out))) }
         }
     }
     .into_string()

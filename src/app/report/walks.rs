@@ -66,12 +66,12 @@ impl RowSource<'_> {
     fn rows<T: DeserializeOwned>(
         &mut self,
         name: &str,
-        of: fn(&mut Recorded) -> &mut Vec<T>,
+        table: fn(&mut Recorded) -> &mut Vec<T>,
     ) -> Result<Numbered<T>, ReportError> {
         match self {
             RowSource::Folder(folder) => rows(&folder.join(name)),
             // The first line of a file is its header.
-            RowSource::Memory(recorded) => Ok((2..).zip(std::mem::take(of(recorded))).collect()),
+            RowSource::Memory(recorded) => Ok((2..).zip(std::mem::take(table(recorded))).collect()),
         }
     }
 }

@@ -25,7 +25,7 @@ pub fn write_page(folder: &Path, figures: &[Drawn], page: &str) -> Result<Writte
     write_page_as("report.html", folder, figures, page)
 }
 
-/// Writes like [`write_page()`] a page of another name.
+/// Writes a page under another name, like [`write_page()`].
 pub(super) fn write_page_as(
     name: &str,
     folder: &Path,

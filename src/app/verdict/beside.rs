@@ -32,8 +32,8 @@ impl Outcome {
     /// Notes the cause of a class that the replicates do not separate, unless another note does.
     fn replicates_leave_open(&self) -> Option<Note> {
         // A target error that was met says nothing about the class.
-        let said = |stopping: &Stopping| stopping.short_of.is_some() || stopping.decide_percent.is_some();
-        if self.stopping.as_ref().is_some_and(said) {
+        let is_told = |stopping: &Stopping| stopping.short_of.is_some() || stopping.decide_percent.is_some();
+        if self.stopping.as_ref().is_some_and(is_told) {
             return None;
         }
         match self.undecided_by()? {
@@ -84,8 +84,8 @@ impl Outcome {
     }
 
     /// Mean of a quantity of one run over the replicates that have it.
-    fn mean_of(&self, run: usize, of: impl Fn(&Run) -> Option<f64>) -> Option<f64> {
-        let values: Vec<f64> = self.replicates.iter().filter_map(|r| of(r.runs.get(run)?)).collect();
+    fn mean_of(&self, run: usize, quantity: impl Fn(&Run) -> Option<f64>) -> Option<f64> {
+        let values: Vec<f64> = self.replicates.iter().filter_map(|r| quantity(r.runs.get(run)?)).collect();
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     }
 }

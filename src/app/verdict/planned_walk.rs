@@ -47,7 +47,7 @@ pub struct PlannedWalk<'a> {
 impl PlannedWalk<'_> {
     /// Notes on unchecked and unknown things, in no order.
     pub fn notes(&self) -> Vec<Note> {
-        let found = [
+        let notes = [
             self.fines(),
             self.broad_base(),
             self.cu_of_filter(),
@@ -61,7 +61,7 @@ impl PlannedWalk<'_> {
             self.all_on_its_way(),
             self.few_replicates(),
         ];
-        found.into_iter().flatten().collect()
+        notes.into_iter().flatten().collect()
     }
 
     /// Notes fines of the base that may be cohesive, or that are unknown.
@@ -111,8 +111,8 @@ impl PlannedWalk<'_> {
     /// Notes a base whose coarser part does not hold its own finer part.
     fn unstable_base(&self) -> Option<Note> {
         let stated = self.regraded_from.unwrap_or(self.base);
-        let found = stated.known_kenney_lau().filter(|found| found.value < 1.0 && !self.scale_free)?;
-        Some(Note::UnstableBase { index: found.value, finer_percent: found.percent })
+        let index = stated.known_kenney_lau().filter(|index| index.value < 1.0 && !self.scale_free)?;
+        Some(Note::UnstableBase { index: index.value, finer_percent: index.percent })
     }
 
     fn pan(&self) -> Option<Note> {
@@ -202,7 +202,7 @@ mod tests {
             replicates: 5,
         };
         let ids = |plan: &PlannedWalk| plan.notes().iter().map(Note::id).collect::<Vec<_>>();
-        let of = |change: &dyn Fn(&mut PlannedWalk)| {
+        let notes_after = |change: &dyn Fn(&mut PlannedWalk)| {
             let mut changed = plan.clone();
             change(&mut changed);
             ids(&changed)
@@ -230,7 +230,7 @@ mod tests {
         let gap_graded = PlannedWalk { filter: Some(&gap), ..plan.clone() };
         assert_eq!(ids(&gap_graded), ["cu_unchecked", "gap_graded"]);
         assert_eq!(ids(&PlannedWalk { filter_is_measured: false, ..gap_graded }), ["cu_unchecked"]);
-        assert_eq!(of(&|plan| plan.filter = None), ["no_filter"]);
+        assert_eq!(notes_after(&|plan| plan.filter = None), ["no_filter"]);
         let wide = Gradation::linear_from_dx(85.0, 0.4, 4.6).unwrap();
         assert_eq!(ids(&PlannedWalk { base: &wide, scale_free: true, ..plan.clone() }), ["cu_unchecked"]);
         let mostly_hidden = soil(&[(0.3, 65.0), (1.0, 100.0)]);
@@ -249,12 +249,12 @@ mod tests {
         let narrow = soil(&[(0.1, 14.0), (0.3, 60.0), (0.4, 100.0)]);
         let within = PlannedWalk { base: &narrow, ..plan.clone() };
         assert!(ids(&within).contains(&"cu_at_least".to_owned()), "{:?}", ids(&within));
-        assert_eq!(of(&|plan| plan.given_voids = Some(7)), ["given_network"]);
-        assert_eq!(of(&|plan| plan.lattice = Some([9, 10, 12])), ["narrow_lattice"]);
-        assert_eq!(of(&|plan| plan.flows = true), ["all_on_its_way"]);
-        assert_eq!(of(&|plan| (plan.flows, plan.increments) = (true, 13)), [""; 0]);
-        assert_eq!(of(&|plan| plan.replicates = 4), ["few_replicates"]);
-        assert_eq!(of(&|plan| plan.replicates = 1), ["one_replicate"]);
+        assert_eq!(notes_after(&|plan| plan.given_voids = Some(7)), ["given_network"]);
+        assert_eq!(notes_after(&|plan| plan.lattice = Some([9, 10, 12])), ["narrow_lattice"]);
+        assert_eq!(notes_after(&|plan| plan.flows = true), ["all_on_its_way"]);
+        assert_eq!(notes_after(&|plan| (plan.flows, plan.increments) = (true, 13)), [""; 0]);
+        assert_eq!(notes_after(&|plan| plan.replicates = 4), ["few_replicates"]);
+        assert_eq!(notes_after(&|plan| plan.replicates = 1), ["one_replicate"]);
         let fine = PlannedWalk { base: &hidden, finest_constriction_mm: 0.2, ..plan.clone() };
         assert_eq!(ids(&fine), ["fines_not_sieved", "cu_at_least", "pan_counts_as_passing"]);
     }

@@ -49,7 +49,7 @@ impl Walked<'_> {
     }
 
     fn of_run(&self, number: u64) -> impl Iterator<Item = &Run> {
-        self.replicates.iter().flat_map(|of| &of.runs).filter(move |run| run.run == number)
+        self.replicates.iter().flat_map(|replicate| &replicate.runs).filter(move |run| run.run == number)
     }
 
     /// Notes that no water flowed at the end of the run that decides.
@@ -67,11 +67,12 @@ impl Walked<'_> {
         let smaller_inject_share = self.share / 10.0;
         let inserted = |increment: u64| (increment as f64 * self.share).min(1.0);
         // The second run continues from the state that the first left.
-        let from_start = run == 2 && self.clogged.iter().any(|found| found[1] == 2 && found[2] == 0);
+        let from_start = run == 2 && self.clogged.iter().any(|clogged| clogged[1] == 2 && clogged[2] == 0);
         if from_start {
             return Some(Note::CloggedBefore { replicates, walked, smaller_inject_share });
         }
-        let after = self.clogged.iter().filter(|found| found[1] == run).map(|found| inserted(found[2]));
+        let after =
+            self.clogged.iter().filter(|clogged| clogged[1] == run).map(|clogged| inserted(clogged[2]));
         let over_on_its_way_percent = 100.0 * after.fold(inserted(self.layers), f64::min);
         Some(Note::Clogged { run, replicates, walked, over_on_its_way_percent, smaller_inject_share })
     }
@@ -107,7 +108,7 @@ impl Walked<'_> {
 mod tests {
     use super::*;
 
-    fn replicate(of: &[(f64, u64, Option<f64>)]) -> Replicate {
+    fn replicate(runs: &[(f64, u64, Option<f64>)]) -> Replicate {
         let run = |(number, &(eroded, trapped, k)): (u64, &(f64, u64, Option<f64>))| {
             serde_json::json!({
                 "run": number, "eroded_mass_fraction": eroded, "eroded_number_fraction": eroded,
@@ -118,12 +119,12 @@ mod tests {
                 "particle_moves": 0, "k_over_k0": k, "seconds": 0.0
             })
         };
-        let runs: Vec<_> = (1..).zip(of).map(run).collect();
+        let runs: Vec<_> = (1..).zip(runs).map(run).collect();
         let replicate = serde_json::json!({ "seed": 1, "verdict": "no erosion", "runs": runs });
         serde_json::from_value(replicate).unwrap()
     }
 
-    fn of(verdict: Verdict, runs: &[(f64, u64, Option<f64>)], clogged: &[[u64; 3]]) -> Vec<Note> {
+    fn doubts(verdict: Verdict, runs: &[(f64, u64, Option<f64>)], clogged: &[[u64; 3]]) -> Vec<Note> {
         with_openings(verdict, runs, clogged, false)
     }
 
@@ -142,7 +143,7 @@ mod tests {
     #[test]
     fn a_filter_that_clogs_before_its_base_is_through_is_a_doubt() {
         let closed = [(0.021, 0, Some(0.0)), (0.0, 0, Some(0.0))];
-        let over_on_its_way = |clogged: &[[u64; 3]]| match &of(Verdict::None, &closed, clogged)[..] {
+        let over_on_its_way = |clogged: &[[u64; 3]]| match &doubts(Verdict::None, &closed, clogged)[..] {
             [Note::Clogged { run: 1, replicates: 1, walked: 1, over_on_its_way_percent, .. }] => {
                 over_on_its_way_percent.round()
             }
@@ -152,11 +153,11 @@ mod tests {
         // The mass on its way cannot exceed the mass inserted.
         assert_eq!(over_on_its_way(&[[1, 1, 10], [1, 2, 0]]), 10.0);
         assert_eq!(over_on_its_way(&[[1, 1, 24], [2, 1, 32], [1, 2, 0]]), 24.0);
-        let before = of(Verdict::Some, &closed, &[[1, 1, 41], [1, 2, 0]]);
+        let before = doubts(Verdict::Some, &closed, &[[1, 1, 41], [1, 2, 0]]);
         assert!(matches!(before[..], [Note::CloggedBefore { .. }]), "{before:?}");
-        assert_eq!(of(Verdict::Continuing, &closed, &[[1, 1, 41]]), []);
+        assert_eq!(doubts(Verdict::Continuing, &closed, &[[1, 1, 41]]), []);
         for open in [Some(0.01), None] {
-            assert_eq!(of(Verdict::None, &[(0.02, 0, open), (0.0, 0, open)], &[]), []);
+            assert_eq!(doubts(Verdict::None, &[(0.02, 0, open), (0.0, 0, open)], &[]), []);
         }
     }
 
@@ -172,17 +173,17 @@ mod tests {
 
     #[test]
     fn trapped_particles_that_could_turn_the_class_are_a_doubt() {
-        let found = of(Verdict::None, &[(0.0, 9985, None), (0.0, 0, None)], &[]);
-        assert!(matches!(found[..], [Note::TrappedCouldTurn { trapped: 9985, inserted: 10_000, .. }]));
+        let notes = doubts(Verdict::None, &[(0.0, 9985, None), (0.0, 0, None)], &[]);
+        assert!(matches!(notes[..], [Note::TrappedCouldTurn { trapped: 9985, inserted: 10_000, .. }]));
         // A few, but perhaps the coarsest.
-        assert_eq!(of(Verdict::None, &[(0.06, 30, None)], &[]).len(), 1);
-        assert_eq!(of(Verdict::None, &[(0.0, 1, None)], &[]), []);
+        assert_eq!(doubts(Verdict::None, &[(0.06, 30, None)], &[]).len(), 1);
+        assert_eq!(doubts(Verdict::None, &[(0.0, 1, None)], &[]), []);
     }
 
     #[test]
     fn no_erosion_whose_second_run_erodes_is_a_doubt() {
-        let found = of(Verdict::None, &[(0.07, 0, None), (0.2, 0, None)], &[]);
-        assert_eq!(found, [Note::SecondRunErodes { eroded_percent: 20.0 }]);
-        assert_eq!(of(Verdict::None, &[(0.05, 0, None), (0.07, 0, None)], &[]), []);
+        let notes = doubts(Verdict::None, &[(0.07, 0, None), (0.2, 0, None)], &[]);
+        assert_eq!(notes, [Note::SecondRunErodes { eroded_percent: 20.0 }]);
+        assert_eq!(doubts(Verdict::None, &[(0.05, 0, None), (0.07, 0, None)], &[]), []);
     }
 }

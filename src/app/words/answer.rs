@@ -53,7 +53,7 @@ pub fn foremost(outcome: &Outcome) -> (&[Note], usize) {
 
 /// The class of a walk, and the mass eroded in each run.
 pub fn model(model: &Model) -> String {
-    let part = |of: f64| percent((of / 100.0).max(0.0));
+    let part = |percentage: f64| percent((percentage / 100.0).max(0.0));
     let run = |(run, [low, high]): (usize, &[f64; 2])| {
         let eroded = part(*low).to(part(*high));
         match run {

@@ -229,19 +229,19 @@ pub fn walks(batch: &WalkedBatch, filter: &str, unit: SizeUnit) -> Vec<String> {
     let rows: Vec<&WalkedRow> = batch.of_filter(filter).collect();
     let walks: Vec<&SampleWalk> = rows.iter().filter_map(|row| row.walk.as_ref()).collect();
     let not_walked = rows.len() - walks.len();
-    let mut said = format!("{} walked", walks.len());
+    let mut sentence = format!("{} walked", walks.len());
     if !walks.is_empty() {
         let in_full = walks.iter().filter(|walk| walk.in_full).count();
         let looks = walks.len() - in_full;
         let one_or_more = if looks == 1 { "first look" } else { "first looks" };
-        said += &format!(" ({in_full} in full, {looks} {one_or_more}): {}", classes(&walks));
+        sentence += &format!(" ({in_full} in full, {looks} {one_or_more}): {}", classes(&walks));
     }
     if not_walked > 0 {
-        said += &format!("; {not_walked} not walked");
+        sentence += &format!("; {not_walked} not walked");
     }
     let erodes = |row: &&&WalkedRow| row.rules.met == Some(true) && row.erodes();
     let stricter: Vec<&str> = rows.iter().filter(erodes).map(|row| row.rules.sample.as_str()).collect();
-    let mut all = vec![said];
+    let mut all = vec![sentence];
     if !stricter.is_empty() {
         all.push(format!("met by practice, and the walk erodes: {}", stricter.join(", ")));
     }
@@ -273,9 +273,9 @@ fn dispersive_samples(rows: &[&WalkedRow], unit: SizeUnit) -> Option<String> {
         true => String::new(),
         false => format!("; if it is, practice allows less for {}", broken.join(", ")),
     };
-    let said =
+    let sentence =
         format!("not known whether dispersive: {} {samples} with 15 % fines or more{then}", open.len());
-    (!open.is_empty()).then_some(said)
+    (!open.is_empty()).then_some(sentence)
 }
 
 /// Number of walks in each class.
@@ -296,10 +296,12 @@ mod tests {
     fn walked(sample: &str, met: bool, walk: Option<(Verdict, Verdict, bool)>) -> WalkedRow {
         let soil = |points: &[(f64, f64)]| Gradation::from_lines(points).unwrap();
         let curve = soil(&[(0.08, 0.0), (0.3, 100.0)]);
-        let of = SoilSample { name: sample.into(), path: sample.into(), curve };
+        let soil_sample = SoilSample { name: sample.into(), path: sample.into(), curve };
         let filter = vec![("F".to_owned(), soil(&[(0.5, 0.0), (2.0, 100.0)]))];
-        let rules =
-            BatchRow { if_dispersive: None, ..BatchRow::of(&of, ("F", &filter), PairOptions::default()) };
+        let rules = BatchRow {
+            if_dispersive: None,
+            ..BatchRow::of(&soil_sample, ("F", &filter), PairOptions::default())
+        };
         let walk = walk.map(|(verdict, by_practice, in_full)| SampleWalk {
             folder: String::new(),
             in_full,
@@ -338,7 +340,7 @@ mod tests {
     /// The filter has a D15F of 0.725 mm.
     #[test]
     fn a_sample_that_may_be_dispersive_is_said_with_its_limit() {
-        let of = |name: &str, verdict, d15f_max_mm| {
+        let sample = |name: &str, verdict, d15f_max_mm| {
             let mut row = walked(name, true, Some((verdict, Verdict::None, true)));
             row.rules.if_dispersive = Some(IfDispersive { d15f_max_mm, at_most: false, lacks: None });
             row.rules.breaks_if_dispersive = d15f_max_mm < 0.725;
@@ -346,9 +348,9 @@ mod tests {
         };
         let sand = walked("D", true, Some((Verdict::None, Verdict::None, true)));
         let rows = [
-            of("A", Verdict::None, 0.5),
-            of("B", Verdict::None, 0.9),
-            of("C", Verdict::Some, 0.5),
+            sample("A", Verdict::None, 0.5),
+            sample("B", Verdict::None, 0.9),
+            sample("C", Verdict::Some, 0.5),
             sand.clone(),
         ];
         let words = dispersive_samples(&rows.each_ref(), SizeUnit::Mm).unwrap();

@@ -28,8 +28,8 @@ fn rows() -> Vec<BatchRow> {
         ("open", soil(&[(0.4, 30.0), (1.0, 100.0)])),
         ("gravel", soil(&[(10.0, 0.0), (30.0, 100.0)])),
     ];
-    let of = |(name, base): &(&str, Gradation)| row(name, base, &filter, PairOptions::default());
-    samples.iter().map(of).collect()
+    let row_of = |(name, base): &(&str, Gradation)| row(name, base, &filter, PairOptions::default());
+    samples.iter().map(row_of).collect()
 }
 
 #[test]
@@ -53,7 +53,7 @@ fn a_row_is_what_the_rules_say_of_the_pair_alone() {
 /// A limit that is kept reads as kept, and one that is exceeded as exceeded; inches as well.
 #[test]
 fn a_d15f_stands_on_its_side_of_the_limit() {
-    let of = |d15f: f64, limit: f64| {
+    let texts = |d15f: f64, limit: f64| {
         let row = BatchRow { d15f_mm: Some(d15f), limit_mm: Some(limit), ..rows().remove(0) };
         let shown = |unit| {
             let columns = columns(unit);
@@ -76,15 +76,15 @@ fn a_d15f_stands_on_its_side_of_the_limit() {
             of_filter(&filter, std::slice::from_ref(&row), SizeUnit::Mm),
         )
     };
-    let (mm, inches, said) = of(2.376, 2.3784);
+    let (mm, inches, lines) = texts(2.376, 2.3784);
     assert_eq!(mm, ["2.376", "2.378"]);
     assert_eq!(inches, ["2.376 (0.0935\u{202f}in)", "2.378 (0.0936\u{202f}in)"]);
-    assert!(said[1].contains("D15F up to 2.378\u{202f}mm"), "{said:?}");
-    let (mm, inches, said) = of(1.683, 1.6818);
+    assert!(lines[1].contains("D15F up to 2.378\u{202f}mm"), "{lines:?}");
+    let (mm, inches, lines) = texts(1.683, 1.6818);
     assert_eq!(mm, ["1.683", "1.681"]);
     assert_eq!(inches, ["1.683 (0.0663\u{202f}in)", "1.681 (0.0661\u{202f}in)"]);
-    assert!(said[1].contains("D15F up to 1.681\u{202f}mm"), "{said:?}");
-    assert_eq!(of(1.196, 1.196).0, ["1.196", "1.196"]);
+    assert!(lines[1].contains("D15F up to 1.681\u{202f}mm"), "{lines:?}");
+    assert_eq!(texts(1.196, 1.196).0, ["1.196", "1.196"]);
 }
 
 #[test]
@@ -96,23 +96,23 @@ fn the_strictest_governs_and_open_limits_are_named() {
     let named = names(governing(&rows, "F", NAMED));
     let open: &[&str] = if named.contains(&"open".to_owned()) { &[] } else { &["open"] };
     assert_eq!(names(may_govern(&rows, "F")), open);
-    let said = open_limits(&rows, "F").join("\n");
-    assert!(said.ends_with("nothing applied, as base and filter look exchanged: gravel"), "{said}");
+    let lines = open_limits(&rows, "F").join("\n");
+    assert!(lines.ends_with("nothing applied, as base and filter look exchanged: gravel"), "{lines}");
     assert!(governing(&rows, "G", 3).is_empty());
 }
 
 #[test]
 fn a_row_that_a_dispersive_base_would_break_is_met_on_that_condition_alone() {
     let silt = soil(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)]);
-    let of = |d15f: f64| {
+    let row_with = |d15f: f64| {
         let filter = soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)]);
         row("silt", &silt, &[("F".to_owned(), filter)], PairOptions::default())
     };
-    let (beyond, within) = (of(0.61), of(0.45));
+    let (beyond, within) = (row_with(0.61), row_with(0.45));
     assert_eq!((beyond.met, beyond.breaks_if_dispersive), (Some(true), true));
     assert_eq!((within.met, within.breaks_if_dispersive), (Some(true), false));
-    let said = counts(&[beyond], "F");
-    assert!(said.contains("1 met (1 of them unless the base is dispersive), 0 not met"), "{said}");
+    let sentence = counts(&[beyond], "F");
+    assert!(sentence.contains("1 met (1 of them unless the base is dispersive), 0 not met"), "{sentence}");
 }
 
 /// A filter that is too coarse without its finer part is not met in the table either. A filter with a tenth
@@ -122,11 +122,11 @@ fn a_row_that_a_dispersive_base_would_break_is_met_on_that_condition_alone() {
 fn a_filter_that_is_too_coarse_without_its_finer_part_is_not_met() {
     use super::test_soils::{GRAVEL_0_32, REGRADED_TILL};
     let filter = |scale: f64| soil(&GRAVEL_0_32.map(|(size, percent)| (scale * size, percent)));
-    let of = |scale| {
+    let scaled = |scale| {
         let filter = vec![("F".to_owned(), filter(scale))];
         row("till", &soil(&REGRADED_TILL), &filter, PairOptions::default())
     };
-    let (coarse, fine) = (of(1.0), of(0.1));
+    let (coarse, fine) = (scaled(1.0), scaled(0.1));
     assert_eq!((coarse.met, coarse.may_lose_fines), (Some(false), true));
     assert!((coarse.too_coarse_without_percent.unwrap() - 19.4).abs() < 0.05, "{coarse:?}");
     assert_eq!((fine.met, fine.may_lose_fines), (None, true));
@@ -153,8 +153,8 @@ fn doubtful_tables_and_joints_stand_in_the_note() {
 fn of_equal_limits_the_finer_base_governs_and_the_others_are_counted() {
     let filter = vec![("F".to_owned(), soil(&[(0.5, 0.0), (2.0, 100.0)]))];
     let coarsest = |at: usize| soil(&[(0.01, 0.0), (0.075, 60.0), (0.8 - 0.1 * at as f64, 100.0)]);
-    let of = |at| row(&format!("S{at}"), &coarsest(at), &filter, PairOptions::default());
-    let rows: Vec<BatchRow> = (0..5).map(of).collect();
+    let numbered = |at| row(&format!("S{at}"), &coarsest(at), &filter, PairOptions::default());
+    let rows: Vec<BatchRow> = (0..5).map(numbered).collect();
     let named = governing(&rows, "F", 3);
     assert!(named.iter().all(|row| row.limit_mm == Some(0.7)), "{named:?}");
     assert_eq!(named.iter().map(|row| row.sample.as_str()).collect::<Vec<_>>(), ["S4", "S3", "S2"]);

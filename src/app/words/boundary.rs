@@ -45,7 +45,7 @@ mod tests {
     use crate::outcome::boundary::Boundary;
 
     /// A record whose networks erode from these D15F/D85B on; no network erodes without ratios.
-    fn found(ratios: &[f64], d85_mm: Option<f64>) -> Boundaries {
+    fn record(ratios: &[f64], d85_mm: Option<f64>) -> Boundaries {
         let networks: Vec<_> = ratios.iter().map(|ratio| Ok(*ratio)).collect();
         let no_erosion = if networks.is_empty() { None } else { Boundary::of(&networks, d85_mm) };
         let text = serde_json::json!({
@@ -63,15 +63,15 @@ mod tests {
 
     #[test]
     fn a_ratio_that_is_held_is_rounded_down_as_is_its_size() {
-        let said = held(&found(&[4.034, 4.034], Some(0.2)), SizeUnit::Mm);
-        assert_eq!(said, "nearly all networks hold D15F/D85B 4.03, D15F 0.806\u{202f}mm");
+        let sentence = held(&record(&[4.034, 4.034], Some(0.2)), SizeUnit::Mm);
+        assert_eq!(sentence, "nearly all networks hold D15F/D85B 4.03, D15F 0.806\u{202f}mm");
     }
 
     #[test]
     fn a_row_that_holds_nothing_leaves_no_ratio_known() {
-        let mut two = found(&[3.0, 3.0], None);
+        let mut two = record(&[3.0, 3.0], None);
         assert_eq!(two.least_held().map(|(_, ratio)| ratio), Some(3.0));
-        two.boundaries.extend(found(&[], None).boundaries);
+        two.boundaries.extend(record(&[], None).boundaries);
         assert!(two.least_held().is_none());
         // A row that holds to the end of the search counts to that end, and the words say so.
         two.boundaries[1].holds_to = Some(1.08);

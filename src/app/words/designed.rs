@@ -67,7 +67,7 @@ pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
         .map(|at_least| move |mm: f64| length(mm, unit).role(NumberRole::of_limit(at_least)).to_string());
     let (settled, others): (Vec<_>, Vec<_>) = all.rows.iter().partition(|row| row.is_settled());
     let cap = strictest(others.iter().copied());
-    let Some((first, own)) = strictest(settled.iter().copied()) else {
+    let Some((first, most_of_settled)) = strictest(settled.iter().copied()) else {
         return match cap {
             Some((row, mm)) => format!(
                 "No filter is known that serves {}: none is settled, and {} allows D15F up to {} at most",
@@ -82,9 +82,9 @@ pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
             None => "No maximum D15F is known for any sample".into(),
         };
     };
-    let cap = cap.filter(|(_, mm)| *mm < own);
-    let (first, greatest) = cap.unwrap_or((first, own));
-    let of = match (settled.len(), others.len()) {
+    let cap = cap.filter(|(_, mm)| *mm < most_of_settled);
+    let (first, greatest) = cap.unwrap_or((first, most_of_settled));
+    let samples = match (settled.len(), others.len()) {
         (1, 0) => "the sample".to_owned(),
         (all, 0) => format!("all {}", counted(all)),
         (some, open) => {
@@ -95,23 +95,23 @@ pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
     let within = cap.map_or_else(String::new, |(row, _)| format!(" within the limit of {}", row.sample));
     let mm = most(greatest);
     let Some((row, least)) = drainage(settled.iter().copied()) else {
-        return format!("A filter for {of}{within}: D15F up to {mm}; no minimum D15F is known");
+        return format!("A filter for {samples}{within}: D15F up to {mm}; no minimum D15F is known");
     };
     let (at_most, from) = (row.d15f_min_at_most, least_of(least));
     let and = if row.path == first.path { " and".into() } else { format!(", and {}", first.sample) };
     match no_band_between((least, at_most), greatest) {
         Some(_) if least > greatest && at_most => format!(
-            "It is not known whether one filter serves {of}{within}: {} drains from D15F {from} or \
+            "It is not known whether one filter serves {samples}{within}: {} drains from D15F {from} or \
              less, as its fines are not known{and} allows {mm} at most",
             row.sample
         ),
         Some(_) if least > greatest => format!(
-            "No one filter serves {of}{within}: {} needs D15F {from} or more to drain{and} allows \
+            "No one filter serves {samples}{within}: {} needs D15F {from} or more to drain{and} allows \
              {mm} at most",
             row.sample
         ),
         Some(why) => format!(
-            "No one filter is specified for {of}{within}, with D15F from {}: {}",
+            "No one filter is specified for {samples}{within}, with D15F from {}: {}",
             limits(least, greatest, unit),
             no_band(&why, unit).trim_end_matches('.')
         ),
@@ -126,7 +126,7 @@ pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
                 ),
             };
             let both = limits(least_of_band(least, greatest), greatest, unit);
-            format!("A filter for {of}{within}: D15F from {both}{raised}")
+            format!("A filter for {samples}{within}: D15F from {both}{raised}")
         }
     }
 }
@@ -134,44 +134,45 @@ pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
 /// The governing samples with their limits, and the open samples: sentences without their ends; `again` is
 /// the advice for a dispersive sample, as [`DESIGN_EACH_AGAIN`](super::specification::DESIGN_EACH_AGAIN).
 pub fn lines(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Vec<String> {
-    let mut said = vec![for_all(all, unit)];
+    let mut sentences = vec![for_all(all, unit)];
     for (at, row) in all.governing().into_iter().enumerate() {
         let what = if at == 0 { "Governing sample" } else { "Then" };
-        said.push(format!("{what} {}: {}", row.sample, greatest(row, unit)));
+        sentences.push(format!("{what} {}: {}", row.sample, greatest(row, unit)));
     }
     if let Some((row, least)) = drainage(&all.rows) {
         let at_most = if row.d15f_min_at_most { "at most " } else { "" };
         let open = if row.is_settled() { "" } else { " (this sample is not settled)" };
         let limit = length(least, unit).role(NumberRole::Least).to_string();
-        said.push(format!("Drainage is governed by {}: minimum D15F {at_most}{limit}{open}", row.sample));
+        sentences
+            .push(format!("Drainage is governed by {}: minimum D15F {at_most}{limit}{open}", row.sample));
     }
-    said.extend(still_to_set(all));
-    said.extend(cautions(all));
-    said.extend(dispersion(all, again, unit));
+    sentences.extend(still_to_set(all));
+    sentences.extend(cautions(all));
+    sentences.extend(dispersion(all, again, unit));
     let (open, known): (Vec<_>, Vec<_>) = all.rows.iter().partition(|row| row.d15f_max_mm.is_none());
     let unserved = known.iter().filter(|row| row.no_band.is_some());
-    said.extend(unserved.map(|row| format!("No band for {}: {}", row.sample, without_band(row, unit))));
-    said.extend(open.into_iter().map(|row| {
+    sentences.extend(unserved.map(|row| format!("No band for {}: {}", row.sample, without_band(row, unit))));
+    sentences.extend(open.into_iter().map(|row| {
         format!("May govern, as no maximum D15F is known: {}: {}", row.sample, without_band(row, unit))
     }));
-    said
+    sentences
 }
 
 /// Number of samples that may be dispersive, and the limit by practice of the strictest sample whose limit is
 /// then lower.
 fn dispersion(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Option<String> {
     let open: Vec<_> = all.rows.iter().filter_map(|row| Some((row, row.if_dispersive?))).collect();
-    let is_less = |(row, of): &&(&DesignedSample, IfDispersive)| {
-        beside_dispersive(*of, row.d15f_max_mm.unwrap_or(f64::INFINITY), unit).is_some()
+    let is_less = |(row, limit): &&(&DesignedSample, IfDispersive)| {
+        beside_dispersive(*limit, row.d15f_max_mm.unwrap_or(f64::INFINITY), unit).is_some()
     };
     let strictest = open.iter().filter(is_less).min_by(|a, b| a.1.d15f_max_mm.total_cmp(&b.1.d15f_max_mm));
-    let (row, of) = strictest?;
+    let (row, limit) = strictest?;
     Some(format!(
         "{} with 15 % fines or more may be dispersive, which is not stated. If {} is, {}. {} then not \
          valid: {again}",
         counted(open.len()),
         row.sample,
-        clause(*of, unit),
+        clause(*limit, unit),
         match (open.len(), all.rows.len()) {
             (_, 1) => "Its band is",
             (1, _) => "Its band, and the filter for all, are",
@@ -258,8 +259,8 @@ mod tests {
     fn row(name: &str, points: &[(f64, f64)]) -> DesignedSample {
         let curve = Gradation::from_lines(points).unwrap();
         let sample = SoilSample { name: name.into(), path: name.into(), curve: curve.clone() };
-        let of = Specification::of(name, &[(name.into(), curve)], SpecificationOptions::default());
-        DesignedSample::of(&sample, &of)
+        let specification = Specification::of(name, &[(name.into(), curve)], SpecificationOptions::default());
+        DesignedSample::of(&sample, &specification)
     }
 
     #[test]
@@ -270,14 +271,14 @@ mod tests {
         let limit = sand.d15f_max_mm.unwrap();
         assert!(core.d15f_max_mm == Some(0.7) && (limit - 4.0 * sand.d85b_mm.unwrap()).abs() < 1e-9);
         let by_practice = DesignedSamples::new("s".into(), vec![sand.clone(), core.clone()]);
-        let said = lines(&by_practice, DESIGN_EACH_AGAIN, SizeUnit::Mm);
+        let sentences = lines(&by_practice, DESIGN_EACH_AGAIN, SizeUnit::Mm);
         assert_eq!(
-            said[1],
+            sentences[1],
             format!("Governing sample core: D15F up to 0.700\u{202f}mm (practice: {})", core.rule)
         );
         assert!(
-            said[0].starts_with("A filter for all 2 samples: D15F from ")
-                && said[0].ends_with("0.700\u{202f}mm")
+            sentences[0].starts_with("A filter for all 2 samples: D15F from ")
+                && sentences[0].ends_with("0.700\u{202f}mm")
         );
         assert_eq!(by_practice.rows.iter().map(|row| row.governs).collect::<Vec<_>>(), [Some(2), Some(1)]);
         let csv = String::from_utf8(columns(SizeUnit::Mm).csv(&by_practice.rows)).unwrap();
@@ -293,14 +294,14 @@ mod tests {
         let gap = [(0.01, 0.0), (0.075, 20.0), (0.425, 29.0), (2.0, 30.0), (4.75, 50.0), (19.0, 100.0)];
         let sand = row("sand", &[(0.1, 0.0), (0.5, 100.0)]);
         let all = DesignedSamples::new("s".into(), vec![row("A", &gap), sand.clone(), row("B", &gap)]);
-        let said = lines(&all, DESIGN_EACH_AGAIN, SizeUnit::Mm).join("\n");
+        let text = lines(&all, DESIGN_EACH_AGAIN, SizeUnit::Mm).join("\n");
         for words in ["Not internally stable by Kenney and Lau", "Gap-graded by this program's own check"] {
-            assert!(said.contains(&format!("\n{words}: A, B\n")), "{words}: {said}");
+            assert!(text.contains(&format!("\n{words}: A, B\n")), "{words}: {text}");
         }
-        assert!(said.contains("are then not valid: design again for dispersive soils"), "{said}");
-        let said =
+        assert!(text.contains("are then not valid: design again for dispersive soils"), "{text}");
+        let text =
             lines(&DesignedSamples::new("s".into(), vec![sand]), DESIGN_EACH_AGAIN, SizeUnit::Mm).join("\n");
-        assert!(!said.contains("Kenney") && said.contains("the maximum D90F is still to be set"), "{said}");
+        assert!(!text.contains("Kenney") && text.contains("the maximum D90F is still to be set"), "{text}");
     }
 
     #[test]
@@ -308,8 +309,8 @@ mod tests {
         let fine = row("fine", &[(0.01, 0.0), (0.05, 100.0)]);
         let coarse = row("coarse", &[(0.5, 0.0), (4.0, 100.0)]);
         let all = DesignedSamples::new("s".into(), vec![fine, coarse]);
-        let said = for_all(&all, SizeUnit::Mm);
-        assert!(said.starts_with("No one filter serves all 2 samples: coarse needs D15F "), "{said}");
+        let sentence = for_all(&all, SizeUnit::Mm);
+        assert!(sentence.starts_with("No one filter serves all 2 samples: coarse needs D15F "), "{sentence}");
         let none = DesignedSamples::new("s".into(), Vec::new());
         assert_eq!(for_all(&none, SizeUnit::Mm), "No maximum D15F is known for any sample");
     }
@@ -323,9 +324,13 @@ mod tests {
             row("T2", &[(37.5, 100.0), (19.0, 95.0), (9.5, 75.0), (4.75, 50.0), (2.0, 20.0), (1.0, 0.0)]);
         assert!(t1.no_band.is_some() && t1.d15f_max_mm.is_some(), "{t1:?}");
         let why = no_band(t1.no_band.as_ref().unwrap(), SizeUnit::Mm);
-        let said = lines(&DesignedSamples::new("s".into(), vec![t1, t2]), DESIGN_EACH_AGAIN, SizeUnit::Mm);
-        assert!(said[0].starts_with("No filter is known that serves all 2 samples"), "{}", said[0]);
-        assert!(said.contains(&format!("No band for T1: {}", why.trim_end_matches('.'))), "{said:?}");
+        let sentences =
+            lines(&DesignedSamples::new("s".into(), vec![t1, t2]), DESIGN_EACH_AGAIN, SizeUnit::Mm);
+        assert!(sentences[0].starts_with("No filter is known that serves all 2 samples"), "{}", sentences[0]);
+        assert!(
+            sentences.contains(&format!("No band for T1: {}", why.trim_end_matches('.'))),
+            "{sentences:?}"
+        );
     }
 
     #[test]
@@ -334,22 +339,25 @@ mod tests {
         let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
         let gravel = DesignedSample { d15f_max_mm: None, ..row("g", &[(1.0, 0.0), (9.0, 100.0)]) };
         assert!(gravel.d15f_min_mm.unwrap() > 1.0);
-        let said = lines(
+        let sentences = lines(
             &DesignedSamples::new("s".into(), vec![core.clone(), gravel]),
             DESIGN_EACH_AGAIN,
             SizeUnit::Mm,
         );
         assert_eq!(
-            said[0],
+            sentences[0],
             "A filter for the 1 sample that is settled (1 is not): D15F from 0.140 to 0.700\u{202f}mm (the \
              minimum that drains is 0.100\u{202f}mm; it is raised so that the band is no wider than 5 to 1)"
         );
-        assert!(said.iter().any(|line| line.ends_with("mm (this sample is not settled)")), "{said:?}");
-        let one = DesignedSamples::new("s".into(), vec![core.clone()]);
-        let said = for_all(&one, SizeUnit::Mm);
         assert!(
-            said.starts_with("A filter for the sample: D15F from 0.140 to 0.700\u{202f}mm (the"),
-            "{said}"
+            sentences.iter().any(|line| line.ends_with("mm (this sample is not settled)")),
+            "{sentences:?}"
+        );
+        let one = DesignedSamples::new("s".into(), vec![core.clone()]);
+        let sentence = for_all(&one, SizeUnit::Mm);
+        assert!(
+            sentence.starts_with("A filter for the sample: D15F from 0.140 to 0.700\u{202f}mm (the"),
+            "{sentence}"
         );
         let open = DesignedSample {
             path: "other".into(),
@@ -357,10 +365,10 @@ mod tests {
             d15f_min_at_most: true,
             ..core.clone()
         };
-        let said = for_all(&DesignedSamples::new("s".into(), vec![core, open]), SizeUnit::Mm);
+        let sentence = for_all(&DesignedSamples::new("s".into(), vec![core, open]), SizeUnit::Mm);
         assert!(
-            said.starts_with("It is not known whether one filter serves all 2 samples: core drains"),
-            "{said}"
+            sentence.starts_with("It is not known whether one filter serves all 2 samples: core drains"),
+            "{sentence}"
         );
     }
 }

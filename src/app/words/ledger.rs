@@ -6,10 +6,10 @@ use voidwalk_core::text::shorten;
 use voidwalk_practice::quantity::{SizeUnit, whole};
 
 /// The thickness of a modelled filter, as `60 layers, 93.1 mm`.
-pub fn thickness(of: &ModelledThickness) -> String {
-    let unit = if of.scale_free { "D0F" } else { "mm" };
-    let size = of.mm.map_or("no size in particular".into(), |mm| format!("{mm:.1} {unit}"));
-    format!("{} {}, {size}", whole(of.layers), if of.layers == 1 { "layer" } else { "layers" })
+pub fn thickness(filter: &ModelledThickness) -> String {
+    let unit = if filter.scale_free { "D0F" } else { "mm" };
+    let size = filter.mm.map_or("no size in particular".into(), |mm| format!("{mm:.1} {unit}"));
+    format!("{} {}, {size}", whole(filter.layers), if filter.layers == 1 { "layer" } else { "layers" })
 }
 
 /// The columns of `cases.csv` and of the page's table.
@@ -24,8 +24,9 @@ pub fn columns(factors: &[String]) -> Columns<'_, LedgerLine> {
         columns = columns.column(factor, level).page_text(factor.as_str(), shown);
     }
     let run = |line: &LedgerLine, run: usize| line.runs.get(run).cloned();
-    let largest = move |line: &LedgerLine, of: usize| Some(run(line, of)?.largest_eroded_over_d15f?.mean);
-    let blocked = move |line: &LedgerLine, of: usize| Some(run(line, of)?.blocked_fraction.mean);
+    let largest =
+        move |line: &LedgerLine, number: usize| Some(run(line, number)?.largest_eroded_over_d15f?.mean);
+    let blocked = move |line: &LedgerLine, number: usize| Some(run(line, number)?.blocked_fraction.mean);
     columns
         .name("verdict", "Class", |line| line.verdict)
         .place(-1)

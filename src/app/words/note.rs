@@ -172,16 +172,16 @@ mod tests {
 
     #[test]
     fn numbers_have_the_unit_and_the_side_of_their_names() {
-        let of = |name: &str, value: f64| measured(name, value, SizeUnit::Mm);
+        let text = |name: &str, value: f64| measured(name, value, SizeUnit::Mm);
         assert_eq!(
-            [of("fines_percent", 35.24), of("fines_percent", 100.0)],
+            [text("fines_percent", 35.24), text("fines_percent", 100.0)],
             ["35.2\u{202f}%", "100\u{202f}%"]
         );
         assert_eq!(
-            [of("sieve_mm", 0.075), of("most_d15f_mm", 0.2859)],
+            [text("sieve_mm", 0.075), text("most_d15f_mm", 0.2859)],
             ["0.075\u{202f}mm", "0.285\u{202f}mm"]
         );
-        assert_eq!([of("least_d15f_mm", 0.2851), of("least_cu", 8.7655)], ["0.286\u{202f}mm", "8.77"]);
+        assert_eq!([text("least_d15f_mm", 0.2851), text("least_cu", 8.7655)], ["0.286\u{202f}mm", "8.77"]);
         assert_eq!(counted(1, Some("copy|copies")), "1 copy");
         assert_eq!(counted(12_000, Some("replicate")), "12\u{202f}000 replicates");
     }

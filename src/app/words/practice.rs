@@ -285,32 +285,32 @@ mod tests {
         for step in 0..60 {
             let by = libm::pow(1.01, f64::from(step));
             for base in bases {
-                let of = Specification::of("b", &soil(base, by), SpecificationOptions::default());
+                let design = Specification::of("b", &soil(base, by), SpecificationOptions::default());
                 let of_band = [
-                    specification::band(&of, UNIT),
-                    specification::raised(&of, UNIT),
-                    specification::beside_limits(&of, UNIT),
-                    of.no_band.as_ref().map(|why| specification::no_band(why, UNIT)),
-                    specification::if_dispersive(&of, "again", UNIT),
+                    specification::band(&design, UNIT),
+                    specification::raised(&design, UNIT),
+                    specification::beside_limits(&design, UNIT),
+                    design.no_band.as_ref().map(|why| specification::no_band(why, UNIT)),
+                    specification::if_dispersive(&design, "again", UNIT),
                 ];
                 for d15f in [0.05, 0.16, 0.6, 0.9, 2.5, 6.0, 40.0] {
                     let filter = soil(&[(0.9, 0.0), (1.0, 15.0), (2.0, 100.0)], d15f * by);
                     let pair = PairRules::of_envelopes(&soil(base, by), &filter, PairOptions::default());
                     let decision = pair.decision();
-                    let mut said = vec![practice_line(&decision, UNIT)];
-                    said.extend(decision.notes().map(|note| sentence(&note, UNIT)));
-                    said.extend(pair.if_dispersive.map(|limit| dispersive_limit(limit, UNIT)));
-                    said.extend(of_band.iter().flatten().cloned());
-                    for rule in pair.rules.iter().filter(|of| of.quantity == RuleQuantity::D15F) {
+                    let mut sentences = vec![practice_line(&decision, UNIT)];
+                    sentences.extend(decision.notes().map(|note| sentence(&note, UNIT)));
+                    sentences.extend(pair.if_dispersive.map(|limit| dispersive_limit(limit, UNIT)));
+                    sentences.extend(of_band.iter().flatten().cloned());
+                    for rule in pair.rules.iter().filter(|rule| rule.quantity == RuleQuantity::D15F) {
                         let [value, limit] = value_and_limit(rule, SizeUnit::Mm);
                         let Some(limit) = limit.filter(|limit| value.as_ref() != Some(limit)) else {
                             continue;
                         };
                         let mm: f64 = limit.trim_end_matches("\u{202f}mm").parse().unwrap();
-                        for text in &said {
-                            for (at, found) in text.match_indices(&format!(" {limit}")) {
+                        for text in &sentences {
+                            for (at, words) in text.match_indices(&format!(" {limit}")) {
                                 checked += 1;
-                                let back = back_in_mm(&text[at + found.len()..]);
+                                let back = back_in_mm(&text[at + words.len()..]);
                                 let is_within = back.is_some_and(|back| match rule.at_least {
                                     true => back >= mm * (1.0 - 1e-9),
                                     false => back <= mm * (1.0 + 1e-9),

@@ -18,7 +18,7 @@ const NONE_FITS: &str = "None of the standard products fits";
 
 /// Requirements that the sides of a product break beside D15F.
 pub fn not_kept(all: &[NotKept]) -> String {
-    let one = |found: &NotKept| match found {
+    let one = |breach: &NotKept| match breach {
         NotKept::CuOfFineSide { cu } => cu_of("fine", *cu),
         NotKept::CuOfCoarseSide { cu } => cu_of("coarse", *cu),
         NotKept::Width { ratio } => {
@@ -35,14 +35,14 @@ fn cu_of(side: &str, cu: f64) -> String {
 }
 
 /// Words for a product that does not fit, with the requirements that its sides break beside D15F.
-fn does_not_fit(found: &[NotKept]) -> String {
-    if found.is_empty() { "does not fit".into() } else { format!("does not fit: {}", not_kept(found)) }
+fn does_not_fit(breaches: &[NotKept]) -> String {
+    if breaches.is_empty() { "does not fit".into() } else { format!("does not fit: {}", not_kept(breaches)) }
 }
 
 /// Names the products whose limits are to be checked; `None` without any.
 pub fn to_be_checked(products: &[ProductMargin]) -> Option<String> {
-    let checked = products.iter().filter(|of| is_to_be_checked(&of.source));
-    let named: Vec<&str> = checked.map(|of| of.product.as_str()).collect();
+    let checked = products.iter().filter(|product| is_to_be_checked(&product.source));
+    let named: Vec<&str> = checked.map(|product| product.product.as_str()).collect();
     (!named.is_empty()).then(|| format!("Limits to be checked against the standard: {}.", named.join(", ")))
 }
 
@@ -51,23 +51,23 @@ pub fn to_be_checked(products: &[ProductMargin]) -> Option<String> {
 pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, ProductMargin> {
     let margin = |by: Option<f64>| by.map_or("not given".shown(), |by| significant(by).shown());
     Columns::default()
-        .name("product", "Product", |of: &ProductMargin| of.product.clone())
-        .column("d15_fine_mm", |of| of.d15_fine_mm)
+        .name("product", "Product", |product: &ProductMargin| product.product.clone())
+        .column("d15_fine_mm", |product| product.d15_fine_mm)
         .headed("D15 of the fine side (mm)")
-        .page_number("D15, fine to coarse side (mm)", move |of| {
-            length(of.d15_fine_mm, unit).to(length(of.d15_coarse_mm, unit)).in_cell()
+        .page_number("D15, fine to coarse side (mm)", move |product| {
+            length(product.d15_fine_mm, unit).to(length(product.d15_coarse_mm, unit)).in_cell()
         })
-        .column("d15_coarse_mm", |of| of.d15_coarse_mm)
+        .column("d15_coarse_mm", |product| product.d15_coarse_mm)
         .headed("D15 of the coarse side (mm)")
-        .column("drains_by", |of| of.drains_by)
-        .page_number("Drains: finest D15 / minimum D15F", move |of| margin(of.drains_by))
-        .column("holds_by", |of| of.holds_by)
-        .page_number("Retains: maximum D15F / coarsest D15", move |of| margin(of.holds_by))
-        .column("not_kept", |of| not_kept(&of.not_kept))
-        .page_text("What else its sides do not keep", |of| {
-            Some(not_kept(&of.not_kept)).filter(|words| !words.is_empty())
+        .column("drains_by", |product| product.drains_by)
+        .page_number("Drains: finest D15 / minimum D15F", move |product| margin(product.drains_by))
+        .column("holds_by", |product| product.holds_by)
+        .page_number("Retains: maximum D15F / coarsest D15", move |product| margin(product.holds_by))
+        .column("not_kept", |product| not_kept(&product.not_kept))
+        .page_text("What else its sides do not keep", |product| {
+            Some(not_kept(&product.not_kept)).filter(|words| !words.is_empty())
         })
-        .column("source", |of| of.source.clone())
+        .column("source", |product| product.source.clone())
         .headed("Source of its limits")
 }
 
@@ -83,13 +83,16 @@ pub fn product(specification: &Specification, product: &ProductMargin) -> String
 
 /// The standard products that fit, or the closest one: sentences without the last end.
 pub fn products(specification: &Specification) -> String {
-    let fitting = specification.products.iter().filter(|of| of.fits() == Some(true));
-    let fitting: Vec<&str> = fitting.map(|of| of.product.as_str()).collect();
+    let fitting = specification.products.iter().filter(|product| product.fits() == Some(true));
+    let fitting: Vec<&str> = fitting.map(|product| product.product.as_str()).collect();
     if !fitting.is_empty() {
         return format!("Standard products that fit: {}", fitting.join(", "));
     }
-    let other =
-        if specification.products.iter().any(|of| of.fits() == Some(false)) { "other" } else { "standard" };
+    let other = if specification.products.iter().any(|product| product.fits() == Some(false)) {
+        "other"
+    } else {
+        "standard"
+    };
     match specification.nearest_product() {
         Some(nearest) => format!("{NONE_FITS}. {} comes closest by its D15", nearest.product),
         None if specification.d15f_min_at_most => {
@@ -111,11 +114,14 @@ mod tests {
     fn a_product_is_tested_with_its_own_sides_and_not_by_the_band_that_was_drawn() {
         let base = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]).unwrap();
         let core = Specification::of("core", &[("core".into(), base)], SpecificationOptions::default());
-        let fits: Vec<_> = core.products.iter().filter(|of| of.fits() == Some(true)).collect();
-        assert_eq!(fits.iter().map(|of| &*of.product).collect::<Vec<_>>(), ["ASTM C33 fine aggregate"]);
+        let fits: Vec<_> = core.products.iter().filter(|product| product.fits() == Some(true)).collect();
+        assert_eq!(
+            fits.iter().map(|product| &*product.product).collect::<Vec<_>>(),
+            ["ASTM C33 fine aggregate"]
+        );
         assert_eq!(product(&core, fits[0]), FITS);
         // No. 8 stone may be delivered with a Cu of 1.6.
-        let stone = core.products.iter().find(|of| of.product.contains("No. 8 ")).unwrap();
+        let stone = core.products.iter().find(|product| product.product.contains("No. 8 ")).unwrap();
         let [NotKept::CuOfCoarseSide { cu }, ..] = stone.not_kept[..] else { panic!("{stone:?}") };
         assert!((cu - 1.59).abs() < 0.005, "{cu}");
     }

@@ -81,14 +81,14 @@ fn notes(rule: &AppliedRule, unit: SizeUnit) -> String {
 
 /// The result in a cell; a comparison of the walk with tests lies within them or not.
 fn shown_result(rule: &AppliedRule) -> Shown {
-    let found = result_of(rule);
+    let rule_result = result_of(rule);
     match (rule.role, rule.met) {
         (RuleRole::Walk, Some(true)) => "within".shown(),
         (RuleRole::Walk, Some(false)) => "beyond".shown(),
         _ => {
-            let is_decided = [RuleResult::Met, RuleResult::NotMet].contains(&found);
-            let emphasis = is_decided.then_some(Emphasis::Kept(found == RuleResult::Met));
-            result(found).shown().emphasised(emphasis)
+            let is_decided = [RuleResult::Met, RuleResult::NotMet].contains(&rule_result);
+            let emphasis = is_decided.then_some(Emphasis::Kept(rule_result == RuleResult::Met));
+            result(rule_result).shown().emphasised(emphasis)
         }
     }
 }

@@ -3,8 +3,8 @@
 use crate::outcome::record::Statistic;
 use crate::outcome::so_far::FirstLook;
 
-/// A look in one line, for a verdict with `of` replicates; `None` for one replicate, which says nothing about
-/// the scatter.
+/// A look in one line, for a verdict with `wanted` replicates; `None` for one replicate, which says nothing
+/// about the scatter.
 ///
 /// ```
 /// use voidwalk_app::outcome::so_far::SoFar;
@@ -16,7 +16,7 @@ use crate::outcome::so_far::FirstLook;
 /// let words = walked.look(1).and_then(|look| so_far(&look, 10)).unwrap();
 /// assert!(words.starts_with("after 3 of 10 replicates, not yet final: undecided; first run 29.5"));
 /// ```
-pub fn so_far(look: &FirstLook, of: u64) -> Option<String> {
+pub fn so_far(look: &FirstLook, wanted: u64) -> Option<String> {
     let interval = |statistic: &Statistic| Some((statistic.low?, statistic.high?));
     let runs = look.eroded.iter().zip(["first run", "second run"]).map(|(statistic, run)| {
         let (low, high) = interval(statistic)?;
@@ -24,5 +24,7 @@ pub fn so_far(look: &FirstLook, of: u64) -> Option<String> {
     });
     let runs = runs.collect::<Option<Vec<String>>>()?.join(", ");
     let (replicates, class) = (look.replicates, look.class.words());
-    Some(format!("after {replicates} of {of} replicates, not yet final: {class}; {runs} of the mass eroded"))
+    Some(format!(
+        "after {replicates} of {wanted} replicates, not yet final: {class}; {runs} of the mass eroded"
+    ))
 }

@@ -219,7 +219,7 @@ pub fn step_name(step: StepName) -> &'static str {
 
 /// Remarks on a step, in sentences.
 pub fn step_notes(step: &SpecificationStep, unit: SizeUnit) -> String {
-    let own = match step.does {
+    let remark = match step.does {
         StepName::KeepUniform => format!(
             "Cu of each delivery lies between {LEAST_CU} and {MOST_CU}. {D15_OVER_D10} is D15/D10 of a side \
              that is straight on the form and has a Cu of {MOST_CU}."
@@ -242,7 +242,7 @@ pub fn step_notes(step: &SpecificationStep, unit: SizeUnit) -> String {
         _ => String::new(),
     };
     let notes = step.notes.iter().map(|note| step_note(note, unit));
-    notes.chain([own]).filter(|words| !words.is_empty()).collect::<Vec<_>>().join(" ")
+    notes.chain([remark]).filter(|words| !words.is_empty()).collect::<Vec<_>>().join(" ")
 }
 
 fn step_note(note: &StepNote, unit: SizeUnit) -> String {
@@ -290,9 +290,9 @@ fn gap(flattest: Option<[f64; 2]>, unit: SizeUnit) -> String {
     let Some([from_mm, within]) = flattest else {
         return format!("No gap by this program's own check. {EYE}");
     };
-    let found = if within < GAP_PERCENT { "A gap" } else { "No gap" };
+    let answer = if within < GAP_PERCENT { "A gap" } else { "No gap" };
     format!(
-        "{found} by this program's own check: the least mass within a factor of 4 in size is {} %, from {}, \
+        "{answer} by this program's own check: the least mass within a factor of 4 in size is {} %, from {}, \
          and below {GAP_PERCENT} % counts as a gap. {EYE}",
         significant(within),
         length(from_mm, unit).to(length(4.0 * from_mm, unit))
@@ -363,23 +363,23 @@ mod tests {
     const CLAY: [(f64, f64); 5] = [(0.001, 0.0), (0.02, 60.0), (0.05, 85.0), (0.075, 90.0), (0.3, 100.0)];
     const SAND: [(f64, f64); 4] = [(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)];
 
-    fn of(points: &[(f64, f64)], dispersive: Option<bool>) -> Specification {
+    fn specified(points: &[(f64, f64)], dispersive: Option<bool>) -> Specification {
         let base = [("base".into(), Gradation::from_lines(points).unwrap())];
         Specification::of("base", &base, SpecificationOptions { dispersive, ..Default::default() })
     }
 
     #[test]
     fn a_minimum_is_rounded_up_and_a_maximum_down() {
-        let of = |name: &str, value, unit: &str| {
+        let rounded = |name: &str, value, unit: &str| {
             step_value(&StepValue { name: name.into(), value, unit: unit.into() }, SizeUnit::Mm)
         };
-        assert_eq!(of("minimum D15F", Some(0.11661), "mm").unwrap(), "0.117\u{202f}mm");
+        assert_eq!(rounded("minimum D15F", Some(0.11661), "mm").unwrap(), "0.117\u{202f}mm");
         // The words agree with the sentence that asks for D90F.
-        assert_eq!(of(ENTERED_BY, Some(0.19158), "mm").unwrap(), "0.191\u{202f}mm");
-        assert_eq!(of("maximum D10F", Some(0.58389), "mm").unwrap(), "0.583\u{202f}mm");
-        assert_eq!(of("maximum D15F / minimum D15F, as found", Some(6.999), "").unwrap(), "7.00");
-        assert_eq!(of("category", Some(2.0), "").unwrap(), "2");
-        assert_eq!(of("minimum D15F", None, "mm"), None);
+        assert_eq!(rounded(ENTERED_BY, Some(0.19158), "mm").unwrap(), "0.191\u{202f}mm");
+        assert_eq!(rounded("maximum D10F", Some(0.58389), "mm").unwrap(), "0.583\u{202f}mm");
+        assert_eq!(rounded("maximum D15F / minimum D15F, as found", Some(6.999), "").unwrap(), "7.00");
+        assert_eq!(rounded("category", Some(2.0), "").unwrap(), "2");
+        assert_eq!(rounded("minimum D15F", None, "mm"), None);
     }
 
     /// All lengths of all steps, over sizes of many digits.
@@ -390,8 +390,12 @@ mod tests {
             let by = libm::pow(1.01, f64::from(step));
             for points in [&CORE[..], &CLAY, &SAND] {
                 let points: Vec<(f64, f64)> = points.iter().map(|(size, p)| (by * size, *p)).collect();
-                let of = of(&points, None);
-                for value in of.steps.iter().flat_map(|step| &step.values).filter(|value| value.unit == "mm")
+                let specification = specified(&points, None);
+                for value in specification
+                    .steps
+                    .iter()
+                    .flat_map(|step| &step.values)
+                    .filter(|value| value.unit == "mm")
                 {
                     let (Some(at_least), Some(number)) = (value.role(), value.value) else { continue };
                     let words = step_value(value, SizeUnit::MmAndInches).unwrap();
@@ -414,18 +418,18 @@ mod tests {
     /// One band on every page: the band in words is the band that is drawn.
     #[test]
     fn the_band_that_is_said_is_the_one_that_is_drawn() {
-        for of in [of(&CORE, None), of(&SAND, None)] {
-            let sides = &of.steps[10];
-            let said = |name: &str| {
-                let value = sides.values.iter().find(|of| of.name == name).unwrap();
+        for specification in [specified(&CORE, None), specified(&SAND, None)] {
+            let sides = &specification.steps[10];
+            let words_of = |name: &str| {
+                let value = sides.values.iter().find(|value| value.name == name).unwrap();
                 step_value(value, SizeUnit::Mm).unwrap()
             };
-            let [least, greatest] = ["minimum D15F", "maximum D15F"].map(said);
+            let [least, greatest] = ["minimum D15F", "maximum D15F"].map(words_of);
             let limits = format!("{} to {greatest}", least.trim_end_matches("\u{202f}mm"));
-            assert!(band(&of, SizeUnit::Mm).unwrap().contains(&limits), "{limits}");
-            assert!(beside_limits(&of, SizeUnit::Mm).unwrap().contains(&limits), "{limits}");
+            assert!(band(&specification, SizeUnit::Mm).unwrap().contains(&limits), "{limits}");
+            assert!(beside_limits(&specification, SizeUnit::Mm).unwrap().contains(&limits), "{limits}");
         }
-        let none = of(&[(0.4, 0.0), (0.5, 100.0)], None);
+        let none = specified(&[(0.4, 0.0), (0.5, 100.0)], None);
         assert_eq!([band(&none, SizeUnit::Mm), beside_limits(&none, SizeUnit::Mm)], [None, None]);
     }
 
@@ -440,39 +444,43 @@ mod tests {
         for (finer, sizes) in
             [(false, ["0.100\u{202f}mm", "0.140\u{202f}mm"]), (true, ["0.700\u{202f}mm", "0.500\u{202f}mm"])]
         {
-            let said = of_end(finer);
-            assert!(sizes.iter().all(|size| said.contains(size)), "{said}");
+            let sentence = of_end(finer);
+            assert!(sizes.iter().all(|size| sentence.contains(size)), "{sentence}");
         }
-        assert_eq!(raised(&of(&SAND, None), SizeUnit::Mm), None);
+        assert_eq!(raised(&specified(&SAND, None), SizeUnit::Mm), None);
     }
 
     /// One size on the first sheet and in its step: the size that enters the table of D90F.
     #[test]
     fn the_minimum_d10f_is_one_number() {
         let till = [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
-        for of in [of(&till, None), of(&CORE, None)] {
-            let d10 = step_value(&of.steps[9].values[0], SizeUnit::Mm).unwrap();
-            assert!(still_to_set(&of, SizeUnit::Mm).unwrap().ends_with(&format!(" {d10}.")), "{d10}");
+        for specification in [specified(&till, None), specified(&CORE, None)] {
+            let d10 = step_value(&specification.steps[9].values[0], SizeUnit::Mm).unwrap();
+            assert!(
+                still_to_set(&specification, SizeUnit::Mm).unwrap().ends_with(&format!(" {d10}.")),
+                "{d10}"
+            );
         }
-        let none = of(&[(0.4, 0.0), (0.5, 100.0)], None);
+        let none = specified(&[(0.4, 0.0), (0.5, 100.0)], None);
         assert_eq!(still_to_set(&none, SizeUnit::Mm), None);
     }
 
     /// A limit within what tests showed, one at its lower end, one below it, and those of dispersive soils.
     #[test]
     fn a_limit_without_a_margin_is_said_to_have_none() {
-        let said = |points: &[(f64, f64)], dispersive| without_margin(&of(points, dispersive), SizeUnit::Mm);
-        let has = |said: Option<String>, words: &str| said.is_some_and(|said| said.contains(words));
-        assert!(has(said(&CORE, None), "it is the lower end of the range"));
+        let sentence =
+            |points: &[(f64, f64)], dispersive| without_margin(&specified(points, dispersive), SizeUnit::Mm);
+        let has = |text: Option<String>, words: &str| text.is_some_and(|text| text.contains(words));
+        assert!(has(sentence(&CORE, None), "it is the lower end of the range"));
         // 6.4 to 13.5 D85B, and a limit of 9 D85B.
-        assert!(has(said(&CLAY, None), "it lies in the range in which tests put"));
-        assert!(has(said(&CLAY, None), "0.320 to 0.675\u{202f}mm"));
-        assert!(has(said(&CLAY, Some(true)), "give it for no erosion in tests"));
+        assert!(has(sentence(&CLAY, None), "it lies in the range in which tests put"));
+        assert!(has(sentence(&CLAY, None), "0.320 to 0.675\u{202f}mm"));
+        assert!(has(sentence(&CLAY, Some(true)), "give it for no erosion in tests"));
         // For a dispersive clay this fine 6.4 D85B is less than the 0.2 mm below which design never lies.
         let fine = [(0.0005, 0.0), (0.02, 85.0), (0.04, 100.0)];
-        assert!(has(said(&fine, Some(true)), "it is the boundary of no erosion in tests"));
-        assert_eq!(said(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)], None), None);
-        assert_eq!(said(&SAND, Some(true)), None);
+        assert!(has(sentence(&fine, Some(true)), "it is the boundary of no erosion in tests"));
+        assert_eq!(sentence(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)], None), None);
+        assert_eq!(sentence(&SAND, Some(true)), None);
     }
 
     /// 0.5 mm if a silt is dispersive; with 25 % fines no source has a limit, and it is never stated as the
@@ -480,17 +488,21 @@ mod tests {
     #[test]
     fn a_limit_of_dispersive_bases_that_no_source_gives_is_less_than_that_of_others() {
         let silt = |fines| [(0.01, 0.0), (0.075, fines), (0.3, 92.0), (0.6, 100.0)];
-        let said = |fines, dispersive| if_dispersive(&of(&silt(fines), dispersive), "again", SizeUnit::Mm);
-        let known = said(45.0, None).unwrap();
+        let sentence =
+            |fines, dispersive| if_dispersive(&specified(&silt(fines), dispersive), "again", SizeUnit::Mm);
+        let known = sentence(45.0, None).unwrap();
         assert!(
             known.contains("at most 0.500\u{202f}mm") && known.contains("this band is not valid"),
             "{known}"
         );
-        let open = said(25.0, None).unwrap();
+        let open = sentence(25.0, None).unwrap();
         assert!(open.contains("less than ") && !open.contains("at most"), "{open}");
         assert!(open.ends_with("have the base tested with the filter"), "{open}");
         // Few fines, and bases of known dispersion.
-        assert_eq!([said(10.0, None), said(45.0, Some(true)), said(45.0, Some(false))], [None, None, None]);
+        assert_eq!(
+            [sentence(10.0, None), sentence(45.0, Some(true)), sentence(45.0, Some(false))],
+            [None, None, None]
+        );
     }
 
     /// D15F of at most 6.4 D85B, here 0.064 mm, is less than any filter may have.

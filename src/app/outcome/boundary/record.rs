@@ -139,7 +139,7 @@ impl BoundaryRow {
     /// The density in words, with the range that it is an end of, or with its worse end.
     pub fn name(&self) -> String {
         match (&self.end_of, &self.as_end) {
-            (Some(of), _) => format!("{} (an end of the range of {of})", self.density),
+            (Some(range), _) => format!("{} (an end of the range of {range})", self.density),
             (None, Some(end)) => format!("density {} (its worse end: {end})", self.density),
             (None, None) => self.density.clone(),
         }
@@ -158,16 +158,18 @@ impl BoundaryRow {
     /// Boundaries of no and of continuing erosion with the ends that are shown. For few networks the ends are
     /// the least and the most, because the percentiles lie between two networks.
     pub fn shown(&self) -> [Option<Boundary>; 2] {
-        let each =
-            |of: fn(&NetworkBoundaries) -> Option<f64>| self.networks.iter().map(of).collect::<Vec<_>>();
-        let both =
-            [(&self.no_erosion, each(|of| of.no_erosion)), (&self.continuing, each(|of| of.continuing))];
+        let by_network =
+            |read: fn(&NetworkBoundaries) -> Option<f64>| self.networks.iter().map(read).collect::<Vec<_>>();
+        let both = [
+            (&self.no_erosion, by_network(|network| network.no_erosion)),
+            (&self.continuing, by_network(|network| network.continuing)),
+        ];
         both.map(|(boundary, networks)| Some(boundary.as_ref()?.with_shown_ends(&networks)))
     }
 
     /// Number of networks that were found to erode at some ratio of the search.
     pub fn eroding_networks(&self) -> usize {
-        self.networks.iter().filter(|of| of.no_erosion.is_some()).count()
+        self.networks.iter().filter(|network| network.no_erosion.is_some()).count()
     }
 }
 
@@ -279,9 +281,9 @@ impl Boundary {
             end.map(|end| networks.iter().flatten().copied().fold(end, outer))
         };
         let (low, high) = (end(self.low, f64::min), end(self.high, f64::max));
-        let d15f_mm = self.d15f_mm.map(|of| {
-            let d85 = of.median / self.median;
-            Range { low: low.map(|ratio| ratio * d85), high: high.map(|ratio| ratio * d85), ..of }
+        let d15f_mm = self.d15f_mm.map(|range| {
+            let d85 = range.median / self.median;
+            Range { low: low.map(|ratio| ratio * d85), high: high.map(|ratio| ratio * d85), ..range }
         });
         Self { low, high, d15f_mm, ..self.clone() }
     }
@@ -300,14 +302,21 @@ mod tests {
 
     #[test]
     fn networks_that_erode_at_every_ratio_leave_no_ratio_that_nearly_all_hold() {
-        let of = |networks: &[Result<f64, Beyond>]| Boundary::of(networks, Some(0.2)).unwrap();
-        let eroding =
-            of(&[Err(Beyond::Below), Ok(2.1), Ok(2.2), Err(Beyond::Below), Ok(2.3), Ok(2.4), Ok(2.5)]);
+        let boundary_of = |networks: &[Result<f64, Beyond>]| Boundary::of(networks, Some(0.2)).unwrap();
+        let eroding = boundary_of(&[
+            Err(Beyond::Below),
+            Ok(2.1),
+            Ok(2.2),
+            Err(Beyond::Below),
+            Ok(2.3),
+            Ok(2.4),
+            Ok(2.5),
+        ]);
         assert_eq!((eroding.low, eroding.low_beyond), (None, Some(Beyond::Below)));
         assert_eq!((eroding.median, eroding.cautious()), (2.2, None));
         assert_eq!(eroding.d15f_mm.unwrap().low, None);
         // Networks that hold to the end of the search keep the lower end.
-        let holding = of(&[Ok(2.0), Ok(2.2), Err(Beyond::Above)]);
+        let holding = boundary_of(&[Ok(2.0), Ok(2.2), Err(Beyond::Above)]);
         assert!((holding.cautious().unwrap() - 2.02).abs() < 1e-12 && holding.high.is_none());
     }
 
@@ -323,7 +332,9 @@ mod tests {
         let ratios = [4.0, 4.4, 4.8, 5.0, 6.0];
         let over =
             |n: usize| -> Vec<Result<f64, Beyond>> { ratios.into_iter().cycle().take(n).map(Ok).collect() };
-        let known = |of: &[Result<f64, Beyond>]| of.iter().map(|one| one.ok()).collect::<Vec<_>>();
+        let known = |networks: &[Result<f64, Beyond>]| {
+            networks.iter().map(|network| network.ok()).collect::<Vec<_>>()
+        };
         let few = over(5);
         let boundary = Boundary::of(&few, Some(0.5)).unwrap();
         assert!(boundary.low.unwrap() > 4.0 && boundary.high.unwrap() < 6.0);

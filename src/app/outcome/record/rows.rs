@@ -107,7 +107,7 @@ mod tests {
             let has_unit = UNITS.iter().any(|unit| name.ends_with(unit));
             assert_eq!(matches!(numbers, NumberColumn::Floats(_)), has_unit, "{name}");
         }
-        let given = |name: &str| columns.iter().find(|(of, _)| *of == name).unwrap().1.clone();
+        let given = |name: &str| columns.iter().find(|(column, _)| *column == name).unwrap().1.clone();
         assert_eq!(R::rows::<()>(|name, _| Ok(given(name))), Ok(Some(rows.into())));
         // A column that is too short, or of another kind, makes no rows.
         let short = |name: &str, like| Ok(if name == names[1] { like } else { given(name) });

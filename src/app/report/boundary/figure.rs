@@ -68,18 +68,18 @@ pub(super) fn erosion(all: &Boundaries, walks: &[WalkRow]) -> Option<Drawn> {
 /// The zones of the model, over the whole width of the figure. No zone is green, which is a colour of
 /// practice.
 fn zones(figure: &mut Figure, row: &BoundaryRow, d85: f64, (left, right): (f64, f64)) {
-    let of = |boundary: &Boundary| {
+    let edges = |boundary: &Boundary| {
         let at = |ratio: f64| (ratio * d85).clamp(left, right);
         // Some erosion begins at the left edge if no ratio is known that nearly all networks hold.
         [at(boundary.cautious().unwrap_or(0.0)), at(boundary.high.unwrap_or(boundary.median))]
     };
     // A row that holds to the end of the search is drawn to that end.
     let [from, to] = match (&row.no_erosion, row.holds_to) {
-        (Some(first), _) => of(first),
+        (Some(first), _) => edges(first),
         (None, Some(ratio)) => [right, (ratio * d85).clamp(left, right)],
         (None, None) => return,
     };
-    let continuing = row.continuing.as_ref().map(of);
+    let continuing = row.continuing.as_ref().map(edges);
     let mut zone = |low: f64, high: f64, colour: Colour, opacity: f64, name: &str| {
         if high > low {
             let area = Area::new(vec![(low, 0.0), (high, 0.0), (high, 100.0), (low, 100.0)], colour, opacity);

@@ -67,7 +67,7 @@ pub fn write_boundary(folder: &Path) -> Result<Written, ReportError> {
 fn filter_words(all: &Boundaries) -> Markup {
     html! {
         (titled_by_file("filter", "filter of the shape", &all.filter))
-        @if let Some(said) = as_given(all) { " (" (said) ")" }
+        @if let Some(facts) = as_given(all) { " (" (facts) ")" }
         ", constrictions " (clean(&file_name(&all.curve_name)))
     }
 }
@@ -77,25 +77,25 @@ fn as_given(all: &Boundaries) -> Option<String> {
     let d15 = all.filter_d15_mm.map(|mm| format!("D15F {}", length(mm, size_unit(all))));
     let cu = all.filter_cu.map(|cu| format!("Cu {}", significant(cu)));
     let given = all.filter_d15_mm.map(|_| "as given".to_owned());
-    let said: Vec<String> = d15.into_iter().chain(cu).chain(given).collect();
-    (!said.is_empty()).then(|| said.join(", "))
+    let facts: Vec<String> = d15.into_iter().chain(cu).chain(given).collect();
+    (!facts.is_empty()).then(|| facts.join(", "))
 }
 
 /// The notes that are not on the first sheet: folded on a screen, and open in print.
 fn others(rest: &[String]) -> Markup {
     html! { @if !rest.is_empty() {
-        details { summary { (rest.len()) " more" } ul { @for said in rest { li { (clean(said)) } } } }
+        details { summary { (rest.len()) " more" } ul { @for note in rest { li { (clean(note)) } } } }
     } }
 }
 
 /// The line of the model, and the notes that matter most.
 fn model(all: &Boundaries, foremost: &[String], more: usize) -> Markup {
-    let said = unbroken(&held(all, size_unit(all)));
+    let sentence = unbroken(&held(all, size_unit(all)));
     html! {
         section.verdict {
-            p.practice { b { "Model (research)" } ": " (said) "." }
+            p.practice { b { "Model (research)" } ": " (sentence) "." }
             @if let Some(base) = all.base.size() { p { (base_size(&base, size_unit(all))) "." } }
-            @if !foremost.is_empty() { ul { @for said in foremost { li { (unbroken(said)) } } } }
+            @if !foremost.is_empty() { ul { @for note in foremost { li { (unbroken(note)) } } } }
             @if more > 0 { p.small { "and " (more) " more below, under “Other notes”" } }
         }
     }

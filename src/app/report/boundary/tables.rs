@@ -42,7 +42,7 @@ pub(super) fn boundaries(all: &Boundaries) -> Markup {
     // A boundary of no erosion is stated as a limit.
     let unit = size_unit(all);
     let limit = |mm: f64| length(mm, unit).role(NumberRole::Greatest).to_string();
-    let found = |mm: f64| length(mm, unit).to_string();
+    let rounded = |mm: f64| length(mm, unit).to_string();
     let cell = |boundary: Option<&Boundary>, notes: &[Note], is_limit: bool| {
         let end = move |value| {
             significant(value).role(if is_limit { NumberRole::Greatest } else { NumberRole::Value }).number()
@@ -53,7 +53,7 @@ pub(super) fn boundaries(all: &Boundaries) -> Markup {
                     (ratio(boundary.median))
                     (in_band(boundary.low, boundary.high, ratio))
                     @if let Some(range) = &boundary.d15f_mm {
-                        br; (if is_limit { limit(range.median) } else { found(range.median) })
+                        br; (if is_limit { limit(range.median) } else { rounded(range.median) })
                         (in_band(range.low, range.high, end))
                     }
                 },
@@ -89,8 +89,8 @@ pub(super) fn boundaries(all: &Boundaries) -> Markup {
 }
 
 /// A coefficient of uniformity, or words for an unknown one.
-fn cu(of: Option<f64>) -> String {
-    of.map_or_else(|| "not known".to_owned(), |cu| significant(cu).in_digits(4).to_string())
+fn cu(value: Option<f64>) -> String {
+    value.map_or_else(|| "not known".to_owned(), |cu| significant(cu).in_digits(4).to_string())
 }
 
 /// Walks and inputs of the boundaries.
@@ -98,7 +98,7 @@ pub(super) fn made(all: &Boundaries, walks: &[WalkRow]) -> Markup {
     let [low, high] = all.bracket;
     let size = |value: Option<f64>| value.map_or_else(|| "not known".to_owned(), |mm| format!("{mm:.4} mm"));
     let grains = all.boundaries.iter().find_map(|row| row.grains_per_void);
-    let asked = all.settings.iter().map(|said| option_words(said)).collect::<Vec<_>>().join(" ");
+    let asked = all.settings.iter().map(|setting| option_words(setting)).collect::<Vec<_>>().join(" ");
     html! {
         table.facts { tbody {
             (fact("Base", file_name(&all.base.name)))

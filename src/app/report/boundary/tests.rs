@@ -72,7 +72,7 @@ const CSV: &str = "density,thickness,network,d15f_over_d85b,eroded_first,eroded_
 #[test]
 fn of_few_networks_the_page_has_least_and_most() {
     use crate::outcome::boundary::NetworkBoundaries;
-    let of = |ratios: &[f64]| {
+    let page_of = |ratios: &[f64]| {
         let networks: Vec<_> = ratios.iter().map(|ratio| Ok(*ratio)).collect();
         let mut all = all(Boundary::of(&networks, Some(0.2)));
         all.base.d85_mm = Some(0.2);
@@ -82,14 +82,14 @@ fn of_few_networks_the_page_has_least_and_most() {
         all.boundaries[0].networks = ratios.iter().map(network).collect();
         written(&all, CSV)
     };
-    let few = of(&[4.0, 4.4, 6.0]);
+    let few = page_of(&[4.0, 4.4, 6.0]);
     assert!(few.contains("(4.00 to 6.00)"), "{few}");
     assert!(few.contains("median of 3 networks (in brackets least and most); below it the D15F"), "{few}");
     assert!(few.contains("blend over the interpolated 5 to 95 % range of the networks."), "{few}");
-    let one = of(&[4.4]);
+    let one = page_of(&[4.4]);
     assert!(one.contains(", of one network; below it the D15F"), "{one}");
     assert!(!one.contains("least and most") && !one.contains("5 to 95 %"), "{one}");
-    let many = of(&[4.0, 4.4, 4.8, 5.2].repeat(5));
+    let many = page_of(&[4.0, 4.4, 4.8, 5.2].repeat(5));
     assert!(
         many.contains("median of 20 networks (in brackets 5 to 95 % range); below it the D15F"),
         "{many}"
@@ -116,9 +116,10 @@ fn nothing_of_the_model_is_green_and_names_are_inert() {
 
 #[test]
 fn the_figure_is_of_the_row_that_holds_least() {
-    let of = |ratio: f64| Boundary::of(&[Ok(ratio), Ok(ratio)], Some(0.2));
-    let mut all = all(of(5.0));
-    let loose = BoundaryRow { density: "loosest".into(), no_erosion: of(3.0), ..all.boundaries[0].clone() };
+    let boundary = |ratio: f64| Boundary::of(&[Ok(ratio), Ok(ratio)], Some(0.2));
+    let mut all = all(boundary(5.0));
+    let loose =
+        BoundaryRow { density: "loosest".into(), no_erosion: boundary(3.0), ..all.boundaries[0].clone() };
     all.boundaries.push(loose);
     all.base.d85_mm = Some(0.2);
     let page = written(&all, &format!("{CSV}loosest,60 layers,1,3.0,0.01,,\n"));

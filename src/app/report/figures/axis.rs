@@ -167,8 +167,8 @@ fn tidy_step(rough: f64) -> f64 {
 fn tidy_log(value: f64, above: bool) -> f64 {
     let exponent = libm::floor(libm::log10(value)) as i32;
     let mut digits = (1..=10u8).map(|digit| power_of_ten(f64::from(digit), exponent));
-    let found = if above { digits.find(|at| *at >= value) } else { digits.rfind(|at| *at <= value) };
-    found.unwrap_or(value)
+    let next = if above { digits.find(|at| *at >= value) } else { digits.rfind(|at| *at <= value) };
+    next.unwrap_or(value)
 }
 
 /// `digit * 10^exponent`, exact if a decimal text would be.

@@ -43,11 +43,11 @@ fn names(figure: &Figure) -> Vec<String> {
 
 /// The curve to which a mark belongs.
 fn curve_of(figure: &Figure, mark: &Mark) -> Option<String> {
-    let (own, colour) = look(mark)?;
+    let (label, colour) = look(mark)?;
     let alone = |names: Vec<String>| if names.len() == 1 { names.into_iter().next() } else { None };
     let line = || alone(of_colour(figure, colour, |mark| matches!(mark, Mark::Line(_))));
     let any = || alone(of_colour(figure, colour, |_| true));
-    match (mark, own) {
+    match (mark, label) {
         // A value that is marked on a line is hidden with it.
         (Mark::Point(_), Some(name)) => line().or(Some(name)),
         (_, Some(name)) => Some(name),
@@ -112,12 +112,12 @@ mod tests {
         assert_eq!(classes(&figure), [one, two, "", one, two, two, "", "", ""]);
         // Lines, their names, pointer titles and the symbol: all parts of each curve, no part of the rule.
         let drawn = figure.inline("one", Size::Wide);
-        let of = |class: &str| -> Vec<String> {
+        let group = |class: &str| -> Vec<String> {
             let begin = format!("<g{class}>");
             let parts = drawn.split(&begin).skip(1);
             parts.map(|part| part.split("</g>").next().unwrap().to_owned()).collect()
         };
-        let (one, two) = (of(one), of(two));
+        let (one, two) = (group(one), group(two));
         assert!(one.iter().all(|part| !part.contains("7.5")) && two.len() > 3, "{drawn}");
         assert!(one.iter().any(|part| part.contains(">first</text>")));
         assert!(two.iter().any(|part| part.contains("<title>second run: ")));

@@ -156,9 +156,9 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
         }
         match canvas.place(&anchors, wide, LINE_HEIGHT * lines.len() as f64 - 2.0, index) {
             None => homeless.push(index),
-            Some(found) => {
-                let place = side(&found, &anchors);
-                in_group(&mut svg, &classes[index], |svg| name(svg, &lines, &found, place, colour));
+            Some(area) => {
+                let place = side(&area, &anchors);
+                in_group(&mut svg, &classes[index], |svg| name(svg, &lines, &area, place, colour));
             }
         }
     }
@@ -176,21 +176,21 @@ fn in_group(svg: &mut Svg, class: &str, draw: impl FnOnce(&mut Svg)) {
 }
 
 /// Writes a name beside its mark, on a light ground that separates it from the drawing below.
-fn name(svg: &mut Svg, lines: &[&str], found: &Rect, (at, anchor): (f64, Anchor), colour: Colour) {
+fn name(svg: &mut Svg, lines: &[&str], area: &Rect, (at, anchor): (f64, Anchor), colour: Colour) {
     let halo = r##"stroke="#ffffff" stroke-width="3" stroke-linejoin="round" paint-order="stroke""##;
     let paint = format!("fill=\"{}\" {halo}", colour.text);
     for (row, line) in lines.iter().enumerate() {
-        svg.text((at, found.top + 12.0 + row as f64 * LINE_HEIGHT), anchor, line, &paint);
+        svg.text((at, area.top + 12.0 + row as f64 * LINE_HEIGHT), anchor, line, &paint);
     }
 }
 
 /// Text left of its curve ends at the curve, so that a narrower font leaves no gap.
-fn side(found: &Rect, anchors: &[(f64, f64)]) -> (f64, Anchor) {
-    let nearest = anchors.iter().min_by(|a, b| distance(found, **a).total_cmp(&distance(found, **b)));
+fn side(area: &Rect, anchors: &[(f64, f64)]) -> (f64, Anchor) {
+    let nearest = anchors.iter().min_by(|a, b| distance(area, **a).total_cmp(&distance(area, **b)));
     match nearest {
-        Some((x, _)) if *x >= found.right => (found.right, Anchor::End),
-        Some((x, _)) if *x > found.left => ((found.left + found.right) / 2.0, Anchor::Middle),
-        _ => (found.left, Anchor::Start),
+        Some((x, _)) if *x >= area.right => (area.right, Anchor::End),
+        Some((x, _)) if *x > area.left => ((area.left + area.right) / 2.0, Anchor::Middle),
+        _ => (area.left, Anchor::Start),
     }
 }
 

@@ -169,8 +169,8 @@ mod tests {
     fn crowded_tick_labels_are_thinned_and_the_important_kept() {
         let axis = Axis::log("x", 0.11, 8.5);
         let kept = |half: f64| {
-            let found = labelled(&axis, |tick| axis.position(tick.at).map(|share| (share * 300.0, half)));
-            let mut texts: Vec<_> = found.into_iter().map(|(tick, _)| tick.text[0].clone()).collect();
+            let ticks = labelled(&axis, |tick| axis.position(tick.at).map(|share| (share * 300.0, half)));
+            let mut texts: Vec<_> = ticks.into_iter().map(|(tick, _)| tick.text[0].clone()).collect();
             texts.sort();
             texts
         };

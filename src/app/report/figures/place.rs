@@ -88,16 +88,16 @@ impl Canvas {
                 }
                 let near = candidate.grown(12.0);
                 let crowd = self.ink.iter().filter(|(point, _)| near.holds(*point));
-                let crowd: f64 = crowd.map(|(_, of)| if *of == mark { 0.5 } else { 2.0 }).sum();
+                let crowd: f64 = crowd.map(|(_, other)| if *other == mark { 0.5 } else { 2.0 }).sum();
                 let cost = crowd + 1.5 * order as f64 + 0.5 * rank as f64;
                 if best.is_none_or(|(least, _)| cost < least) {
                     best = Some((cost, candidate));
                 }
             }
         }
-        let (_, found) = best?;
-        self.taken.push(found);
-        Some(found)
+        let (_, free) = best?;
+        self.taken.push(free);
+        Some(free)
     }
 
     fn covers(&self, candidate: &Rect) -> bool {
@@ -123,9 +123,9 @@ mod tests {
         let first = canvas.place(&anchors, 30.0, 12.0, 0).unwrap();
         let second = canvas.place(&anchors, 30.0, 12.0, 0).unwrap();
         assert!(!first.meets(&second));
-        for found in [first, second] {
-            assert!(found.within(&canvas.frame));
-            assert!(!canvas.ink.iter().any(|(point, _)| found.holds(*point)), "{found:?} covers the curve");
+        for label in [first, second] {
+            assert!(label.within(&canvas.frame));
+            assert!(!canvas.ink.iter().any(|(point, _)| label.holds(*point)), "{label:?} covers the curve");
         }
     }
 

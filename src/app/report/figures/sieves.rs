@@ -92,11 +92,11 @@ mod tests {
         for coarse_left in [false, true] {
             for size in [Size::Wide, Size::Narrow] {
                 let svg = figure(0.01, 40.0, coarse_left).inline("s", size);
-                let mut found: Vec<f64> = order.iter().map(|text| x_of(&svg, text).expect(text)).collect();
+                let mut places: Vec<f64> = order.iter().map(|text| x_of(&svg, text).expect(text)).collect();
                 if coarse_left {
-                    found.reverse();
+                    places.reverse();
                 }
-                assert!(found.windows(2).all(|pair| pair[0] < pair[1]), "{coarse_left}: {found:?}");
+                assert!(places.windows(2).all(|pair| pair[0] < pair[1]), "{coarse_left}: {places:?}");
             }
         }
         // A soil of sand alone, and one beyond every sieve.

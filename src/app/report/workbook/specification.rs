@@ -19,55 +19,55 @@ const CAUTIONS: [(&str, &str); 3] = [
 ];
 
 /// Sheets of the workbook.
-pub(super) fn sheets(of: &Specification) -> Vec<Sheet> {
-    vec![summary(of), limits(of), band(of), products(of), steps(of), base(of)]
+pub(super) fn sheets(design: &Specification) -> Vec<Sheet> {
+    vec![summary(design), limits(design), band(design), products(design), steps(design), base(design)]
 }
 
-fn summary(of: &Specification) -> Sheet {
-    let d15 = of.band.as_ref().map(|band| band.d15_mm());
+fn summary(design: &Specification) -> Sheet {
+    let d15 = design.band.as_ref().map(|band| band.d15_mm());
     let mut sheet = Sheet::items("Specification");
-    sheet.item("Base", &of.base, "");
-    sheet.item("Dispersive", of.dispersive, "");
-    sheet.item("Minimum D15F, which drains the base", of.d15f_min_mm, "mm");
-    sheet.item("Maximum D15F, which retains the base", of.d15f_max_mm, "mm");
+    sheet.item("Base", &design.base, "");
+    sheet.item("Dispersive", design.dispersive, "");
+    sheet.item("Minimum D15F, which drains the base", design.d15f_min_mm, "mm");
+    sheet.item("Maximum D15F, which retains the base", design.d15f_max_mm, "mm");
     let mm = SizeUnit::Mm;
-    let dispersive = of.if_dispersive.map(|limit| format!("D15F {}", dispersive_limit(limit, mm)));
+    let dispersive = design.if_dispersive.map(|limit| format!("D15F {}", dispersive_limit(limit, mm)));
     sheet.item("Maximum D15F if the base is dispersive (not stated)", dispersive, "");
-    sheet.item("Maximum D15F set by", of.set_by(), "");
-    sheet.item("Margin", without_margin(of, mm), "");
+    sheet.item("Maximum D15F set by", design.set_by(), "");
+    sheet.item("Margin", without_margin(design, mm), "");
     sheet.item("D15F of the band, fine side", d15.map(|d15| d15[0]), "mm");
     sheet.item("D15F of the band, coarse side", d15.map(|d15| d15[1]), "mm");
-    sheet.item("No band, because", of.no_band.as_ref().map(|why| no_band(why, mm)), "");
-    of.notes.iter().for_each(|row| sheet.item("Warning", row_note(row, SizeUnit::Mm), ""));
-    sheet.item("Still to be set", still_to_set(of, mm), "");
+    sheet.item("No band, because", design.no_band.as_ref().map(|why| no_band(why, mm)), "");
+    design.notes.iter().for_each(|row| sheet.item("Warning", row_note(row, SizeUnit::Mm), ""));
+    sheet.item("Still to be set", still_to_set(design, mm), "");
     sheet.item("Basis", "By the rules of practice alone, without a walk.", "");
     CAUTIONS.iter().for_each(|(item, caution)| sheet.item(item, *caution, ""));
-    sheet.item("voidwalk", &of.version, "");
+    sheet.item("voidwalk", &design.version, "");
     sheet
 }
 
-fn limits(of: &Specification) -> Sheet {
-    let (note, first) = (beside_limits(of, SizeUnit::Mm), of.limits.first());
+fn limits(design: &Specification) -> Sheet {
+    let (note, first) = (beside_limits(design, SizeUnit::Mm), design.limits.first());
     let columns = limit_columns().column("Note", |limit| note.clone().filter(|_| Some(limit) == first));
-    Sheet::of("Limits", &columns, &of.limits)
+    Sheet::of("Limits", &columns, &design.limits)
 }
 
-fn band(of: &Specification) -> Sheet {
+fn band(design: &Specification) -> Sheet {
     let columns = Columns::default()
         .column("Finer by mass (%)", |size: &BandSize| size.percent)
         .column("Least size (mm)", |size| size.min_mm)
         .column("Greatest size (mm)", |size| size.max_mm);
-    Sheet::of("Band", &columns, of.band.iter().flat_map(|band| &band.sizes))
+    Sheet::of("Band", &columns, design.band.iter().flat_map(|band| &band.sizes))
 }
 
-fn products(of: &Specification) -> Sheet {
+fn products(design: &Specification) -> Sheet {
     let columns = product_columns(SizeUnit::Mm)
         .column("Fits", |product| product.fits())
-        .column("Result", |product| product_result(of, product));
-    Sheet::of("Products", &columns, &of.products)
+        .column("Result", |product| product_result(design, product));
+    Sheet::of("Products", &columns, &design.products)
 }
 
-fn steps(of: &Specification) -> Sheet {
+fn steps(design: &Specification) -> Sheet {
     let columns = Columns::default()
         .column("Step", |row: &StepRow| row.step)
         .column("What is done", |row| row.does.clone())
@@ -77,16 +77,16 @@ fn steps(of: &Specification) -> Sheet {
         .column("Formula", |row| row.formula.clone())
         .column("Note", |row| row.note.clone())
         .column("Source", |row| row.source.clone());
-    Sheet::of("Steps", &columns, &of.steps.iter().flat_map(step_rows).collect::<Vec<_>>())
+    Sheet::of("Steps", &columns, &design.steps.iter().flat_map(step_rows).collect::<Vec<_>>())
 }
 
-fn base(of: &Specification) -> Sheet {
+fn base(design: &Specification) -> Sheet {
     let columns = Columns::default()
         .column("Curve", |row: &(String, &str, [f64; 2])| row.0.clone())
         .column("Grading", |row| row.1.to_owned())
         .column("Size (mm)", |row| row.2[0])
         .column("Finer by mass (%)", |row| row.2[1]);
-    let gradings = of.curves.iter().flat_map(|curve| {
+    let gradings = design.curves.iter().flat_map(|curve| {
         [(&curve.curve, "as sampled", &curve.gradation), (&curve.curve, "regraded", &curve.regraded)]
     });
     let rows = gradings

@@ -12,15 +12,15 @@ use voidwalk_practice::quantity::SizeUnit;
 use voidwalk_practice::{Headline, RuleRole};
 
 /// Sheets of the workbook.
-pub(super) fn sheets(of: &RunFolder) -> Vec<Sheet> {
-    let (outcome, decision) = (&of.outcome, &of.decision);
+pub(super) fn sheets(run: &RunFolder) -> Vec<Sheet> {
+    let (outcome, decision) = (&run.outcome, &run.decision);
     vec![
         verdict(outcome, decision),
         inputs(outcome),
         rules(decision),
         runs(outcome),
         gradations(outcome),
-        provenance(of),
+        provenance(run),
     ]
 }
 
@@ -31,8 +31,8 @@ fn unit(outcome: &Outcome) -> &'static str {
 
 fn verdict(outcome: &Outcome, decision: &Decision) -> Sheet {
     let mut sheet = Sheet::items("Verdict");
-    for (line, said) in first_lines(outcome, decision, SizeUnit::Mm) {
-        sheet.item(line.name(), said, "");
+    for (line, words) in first_lines(outcome, decision, SizeUnit::Mm) {
+        sheet.item(line.name(), words, "");
     }
     let practice = outcome.practice.as_ref();
     sheet.item("Practice", decision.headline.map(Headline::words), "");
@@ -45,8 +45,8 @@ fn verdict(outcome: &Outcome, decision: &Decision) -> Sheet {
     sheet.item("D15F/D95B", outcome.ratios.d15f_over_d95b, "-");
     sheet.item("Mass eroded from which a run erodes", outcome.threshold, "fraction of the base");
     for run in &outcome.summary {
-        let of = |what: &str| format!("Mass eroded, run {}, {what}", run.run);
-        statistic(&mut sheet, &of, &run.eroded_mass_fraction);
+        let name = |what: &str| format!("Mass eroded, run {}, {what}", run.run);
+        statistic(&mut sheet, &name, &run.eroded_mass_fraction);
     }
     for (index, note) in outcome.notes.iter().enumerate() {
         sheet.item(&format!("Note {}", index + 1), sentence(note, SizeUnit::Mm), "");
@@ -54,12 +54,12 @@ fn verdict(outcome: &Outcome, decision: &Decision) -> Sheet {
     sheet
 }
 
-fn statistic(sheet: &mut Sheet, name: &dyn Fn(&str) -> String, of: &Statistic) {
+fn statistic(sheet: &mut Sheet, name: &dyn Fn(&str) -> String, statistic: &Statistic) {
     let unit = "fraction of the base";
-    sheet.item(&name("mean"), of.mean, unit);
-    sheet.item(&name("standard deviation"), of.sd, unit);
-    sheet.item(&name("lower end of the 95 % interval"), of.low, unit);
-    sheet.item(&name("upper end of the 95 % interval"), of.high, unit);
+    sheet.item(&name("mean"), statistic.mean, unit);
+    sheet.item(&name("standard deviation"), statistic.sd, unit);
+    sheet.item(&name("lower end of the 95 % interval"), statistic.low, unit);
+    sheet.item(&name("upper end of the 95 % interval"), statistic.high, unit);
 }
 
 fn inputs(outcome: &Outcome) -> Sheet {
@@ -153,14 +153,14 @@ fn gradations(outcome: &Outcome) -> Sheet {
     Sheet::of("Gradations", &columns, &rows.collect::<Vec<_>>())
 }
 
-fn provenance(of: &RunFolder) -> Sheet {
+fn provenance(run: &RunFolder) -> Sheet {
     let mut sheet = Sheet::items("Provenance");
-    let manifest = &of.manifest;
+    let manifest = &run.manifest;
     for (name, value) in [
         ("voidwalk", Some(&manifest.version)),
         ("Commit", manifest.commit.as_ref()),
         ("Command", Some(&manifest.command)),
-        ("Engine", Some(&of.outcome.engine)),
+        ("Engine", Some(&run.outcome.engine)),
         ("Machine", Some(&manifest.machine)),
         ("Host", Some(&manifest.host)),
         ("Started", Some(&manifest.started)),
@@ -168,8 +168,8 @@ fn provenance(of: &RunFolder) -> Sheet {
     ] {
         sheet.item(name, value, "");
     }
-    sheet.item("Seed", of.outcome.seed, "");
-    sheet.item("Replicates", of.outcome.replicates.len() as u64, "");
+    sheet.item("Seed", run.outcome.seed, "");
+    sheet.item("Replicates", run.outcome.replicates.len() as u64, "");
     for input in &manifest.inputs {
         sheet.item(&format!("XXH3 of {}", input.name), &input.xxh3, "");
     }
