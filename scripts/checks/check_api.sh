@@ -16,4 +16,6 @@ if ! command -v cargo-semver-checks >/dev/null 2>&1; then
         cargo install --quiet --locked --root target/semver-checks cargo-semver-checks
     PATH=$PWD/target/semver-checks/bin:$PATH
 fi
-cargo semver-checks --package voidwalk --baseline-rev "$since"
+for crate in voidwalk-core voidwalk-sheets voidwalk-practice voidwalk-app voidwalk; do
+    cargo semver-checks --package "$crate" --baseline-rev "$since"
+done

@@ -75,7 +75,7 @@ chmod +x "/voidwalk-$target"
 "/voidwalk-$target" --version
 case $target in *-windows-*) python3 scripts/checks/try_windows.py --binary "/voidwalk-$target" ;; esac
 python3 scripts/checks/same_bits.py --binary "/voidwalk-$target" check results/same-bits.json
-cargo test --locked --quiet --target "$target" $std --lib -- walk:: store:: stream::
+cargo test --locked --quiet --target "$target" $std -p voidwalk-core --lib -- walk:: store:: stream::
 SH
 status=0
 for target in $targets; do

@@ -18,5 +18,5 @@ for set in "$@"; do
     esac
     echo "== $set"
     RUSTFLAGS=$features MIRIFLAGS="-Zmiri-disable-isolation -Zmiri-disable-stacked-borrows -Zmiri-permissive-provenance -Zmiri-ignore-leaks" CARGO_TARGET_DIR="target/miri-$set" \
-        cargo +nightly miri test --lib -- walk::kernel store::column
+        cargo +nightly miri test -p voidwalk-core --lib -- walk::kernel store::column
 done

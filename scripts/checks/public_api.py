@@ -26,13 +26,16 @@ TARGET = ROOT / "target" / "public-api"
 CALLERS = ["src/main.rs", "scripts/python/src", "scripts/examples", "benches", "tests"]
 
 
-def told():
-    """What rustdoc says."""
-    command = ["cargo", "rustdoc", "--locked", "--quiet", "-p", "voidwalk", "--lib", "--", "-Z", "unstable-options",
+CRATES = ["voidwalk-core", "voidwalk-sheets", "voidwalk-practice", "voidwalk-app"]
+
+
+def told(crate):
+    """The JSON that rustdoc writes of a crate."""
+    command = ["cargo", "rustdoc", "--locked", "--quiet", "-p", crate, "--lib", "--", "-Z", "unstable-options",
                "--output-format", "json", "--cap-lints", "allow"]
     own = {"RUSTC_BOOTSTRAP": "1", "CARGO_TARGET_DIR": str(TARGET)}
     subprocess.run(command, cwd=ROOT, check=True, env={**os.environ, **own})
-    return json.loads((TARGET / "doc" / "voidwalk.json").read_text(encoding="utf-8"))
+    return json.loads((TARGET / "doc" / f"{crate.replace('-', '_')}.json").read_text(encoding="utf-8"))
 
 
 def items(said):
@@ -85,12 +88,12 @@ def main():
     parser.add_argument("--unused", action="store_true", help="items that no caller names")
     parser.add_argument("--count", action="store_true", help="how many there are in each module of the top")
     args = parser.parse_args()
-    found = sorted(set(items(told())), key=lambda item: item[1])
+    found = sorted({item for crate in CRATES for item in items(told(crate))}, key=lambda item: item[1])
     if args.unused:
         words = called()
         found = [(kind, path) for kind, path in found if path.rsplit("::", 1)[-1] not in words]
     if args.count:
-        top = collections.Counter(path.split("::")[1] if kind != "module" and "::" in path else "" for kind, path in found)
+        top = collections.Counter("::".join(path.split("::")[:2]) for _, path in found)
         for name, count in sorted(top.items()):
             print(f"{count:5}  {name or 'modules'}")
         print(f"{len(found):5}  in all")

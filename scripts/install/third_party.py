@@ -22,8 +22,8 @@ TARGETS = [
     "aarch64-apple-darwin",
     "x86_64-pc-windows-msvc",
 ]
-#: The program and the Python module.
-OURS = {"voidwalk", "voidwalk-python"}
+#: The program, its crates and the Python module.
+OURS = {"voidwalk", "voidwalk-app", "voidwalk-core", "voidwalk-practice", "voidwalk-python", "voidwalk-sheets"}
 TEXT_FILE = re.compile(r"(licen[cs]e|copying|notice|unlicense|copyright)", re.IGNORECASE)
 RULE = "=" * 100 + "\n"
 

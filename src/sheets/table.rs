@@ -53,7 +53,7 @@ impl Soil {
     /// Sieve curve; `d0_mm` is the size at which an open finest tail ends.
     ///
     /// # Errors
-    /// A table that is not a sieve curve, with the errors of [`read_gradation`].
+    /// A table that is not a sieve curve, with the errors of [`read_gradation`](crate::read_gradation).
     pub fn gradation(&self, d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
         // Counts rows from 1: lines of the file repeat in parts that lie side by side.
         let counted = |(index, row): (usize, &Row)| Row { line: index + 1, ..*row };

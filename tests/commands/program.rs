@@ -35,7 +35,7 @@ pub fn figures_are_listed(kind: FolderKind, folder: &Path) {
         figures.map(|entry| entry.unwrap().file_name().into_string().unwrap().replace(".svg", "")).collect();
     assert!(!names.is_empty());
     for name in names {
-        assert!(kind.figures().contains(&name.as_str()), "{name} is missing in src/run/folder.rs");
+        assert!(kind.figures().contains(&name.as_str()), "{name} is missing in src/app/run/folder.rs");
     }
 }
 

@@ -3,8 +3,8 @@
 use voidwalk::Gradation;
 use voidwalk::outcome::record::{Outcome, Verdict};
 use voidwalk::practice::Note;
-use voidwalk::practice::quantity::SizeUnit;
 use voidwalk::practice::PairRules;
+use voidwalk::practice::quantity::SizeUnit;
 
 use super::folder::Plan;
 use super::{made, words};

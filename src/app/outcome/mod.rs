@@ -9,18 +9,15 @@
 //! - [`verdict`] classifies one replicate or many by mass eroded; [`stopping`] decides how many are enough,
 //!   `early_stop` how many of a study.
 //! - [`leaves_out`] lists the features that the model omits.
-//! - `soil_sizes` holds the sizes of a soil that a sheet shows.
 //! - [`so_far`] looks at the replicates of a run that is under way.
 //! - [`digest`] reduces all numbers of a record to one, by which two runs are compared.
 //! - `paper` holds the numbers that the paper states.
-//! - [`rules`] applies the rules of filter practice to the same two curves.
 //! - [`infiltration()`] sets Eq. (1) beside the walk.
 //! - [`network_walk`] holds the results of walks on given networks, without a scene.
 //! - [`percolation`] fits percolation thresholds of several lattice sizes.
 //! - [`undecided`] names the cause that leaves a verdict open.
-//! - [`design`] holds the specification of a filter by practice, [`boundary`] the boundaries of the model.
-//! - [`table`] describes the tables of files and pages, [`number_rows`] the tables of numbers alone;
-//!   [`quantity`] turns a number into text.
+//! - [`boundary`] holds the boundaries of the model.
+//! - [`table`] describes the tables of files and pages, [`number_rows`] the tables of numbers alone.
 
 mod base_size;
 pub mod boundary;

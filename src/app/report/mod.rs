@@ -15,7 +15,7 @@
 //! [`network_walk_brief()`] give the verdict alone, for a notebook.
 //!
 //! # Pages of others
-//! A program with a page of its own over the same results, as `scripts/paper`, builds it from these:
+//! A program with a page of its own over the same results builds it from these:
 //! [`files`] reads the files of a folder, [`figures`] draws, [`quantity`] writes a number as the other pages
 //! do, and [`shell`] is the page around it, which [`write_page()`] writes. A figure that other programs show
 //! too is public by itself: [`percolation_spread()`].

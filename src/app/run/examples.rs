@@ -18,7 +18,7 @@ pub struct ExampleFile {
     pub text: &'static str,
 }
 
-/// The example in `src/data/examples` of this name.
+/// The example in `src/app/data/examples` of this name.
 macro_rules! example {
     ($name:literal, $what:literal) => {
         ExampleFile { name: $name, what: $what, text: include_str!(concat!("../data/examples/", $name)) }

@@ -144,6 +144,9 @@ mod tests {
         }
     }
 
+    /// The folder of all crates.
+    const SOURCES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+
     #[test]
     fn every_row_is_whole_and_every_number_is_used() {
         let mut ids = BTreeSet::new();
@@ -152,7 +155,10 @@ mod tests {
             let id = record["id"].as_str().unwrap().to_owned();
             assert_eq!(note.place(), place);
             assert!(ids.insert(id.clone()), "{id} is there twice");
-            assert!(!entry.label.is_empty() && Path::new("src/docs").join(entry.page).exists(), "{id}");
+            assert!(
+                !entry.label.is_empty() && Path::new(SOURCES).join("docs").join(entry.page).exists(),
+                "{id}"
+            );
             let begin = entry.sentence.chars().next().unwrap();
             assert!((begin.is_uppercase() || begin == '{') && entry.sentence.ends_with(['.', '?']), "{id}");
             for name in record["numbers"].as_object().into_iter().flat_map(|numbers| numbers.keys()) {
@@ -190,7 +196,7 @@ mod tests {
     #[test]
     fn every_note_is_reported_somewhere() {
         let mut code = String::new();
-        let mut folders = vec![Path::new("src").to_owned()];
+        let mut folders = vec![Path::new(SOURCES).to_owned()];
         while let Some(folder) = folders.pop() {
             for entry in fs::read_dir(folder).unwrap() {
                 let path = entry.unwrap().path();

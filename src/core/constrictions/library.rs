@@ -1,7 +1,7 @@
 //! Finds a filter's constrictions in a library of packings: a gradation's curve lies between those of similar
 //! gradations.
 //!
-//! `src/data/library.csv` holds packings of many shapes of gradation, each dense (friction 0), medium (0.1)
+//! `src/core/data/library.csv` holds packings of many shapes of gradation, each dense (friction 0), medium (0.1)
 //! and loose (0.3), made by `scripts/studies/library_of_packings.py`. It holds no lengths: sizes are in units
 //! of the size that halves the surface of the grains, `S50`.
 //!

@@ -3,7 +3,6 @@
 //! - [`Gradation`] is a sieve curve, percent finer by mass, straight in percent against ln(size) between its
 //!   points. "Linear" in the paper is one such straight line: `D_x = D_0 Cu^(x / 50)`, so `D_60 / D_10 = Cu`
 //!   and `D_100 / D_0 = Cu^2`.
-//! - [`Soil`] is a table in the form of its file: CSV, workbook or AGS4, as laboratories write them.
 //! - [`SizeSampler`] draws diameters from it by number.
 //! - [`Gradation::kenney_lau`] and [`Gradation::kezdi`] tell if a soil holds its own fines, with
 //!   [`Gradation::li_fannin`] and [`Gradation::uniformity_factors`]; [`Gradation::gap`] finds missing sizes;

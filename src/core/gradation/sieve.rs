@@ -81,7 +81,7 @@ impl Gradation {
     /// without it the pan fraction is counted by mass only.
     ///
     /// # Errors
-    /// Errors of [`read_gradation`] on a table's rows, with the point's place in the list as the line.
+    /// Rows that are no sieve curve, with the point's place in the list as the line.
     pub fn from_points(points: &[(f64, f64)], d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
         let rows = points.iter().enumerate().map(|(i, &(size, percent))| Row { line: i + 1, size, percent });
         from_rows("points", Row::checked("points", rows.collect(), FIELDS)?, d0_mm)

@@ -1,4 +1,4 @@
-//! The scripts of a campaign's jobs, filled into the templates of `src/data/slurm`.
+//! The scripts of a campaign's jobs, filled into the templates of `src/app/data/slurm`.
 //!
 //! Paths and other words of the user's stand in single quotes, names of cases in none of them: a task's
 //! number is all that a script hands on.

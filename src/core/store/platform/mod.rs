@@ -2,7 +2,7 @@
 //! returns, processors, clocks, memory and signals.
 //!
 //! No other file of the program names a system or a crate of one (`tests/house.rs` checks it). Each file here
-//! offers the same calls; the [page of long runs](crate::docs) lists what a system cannot promise.
+//! offers the same calls; the page of long runs (`voidwalk::docs`) lists what a system cannot promise.
 //!
 //! | file | systems |
 //! |---|---|
