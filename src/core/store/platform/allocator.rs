@@ -11,7 +11,7 @@ const KEPT: i32 = 256 << 20;
 /// Keeps the memory freed by walks for the next ones. Each run needs some 10 MB of columns; with glibc's own
 /// settings they go back to the system at its end, which clears every page again for the next: a tenth of the
 /// time of a first look. The kept memory is at most what each thread once had in blocks of up to
-/// [`KEPT_BLOCK`]; larger ones go back at once. Only for a process that is the program's own: the setting
+/// `KEPT_BLOCK`; larger ones go back at once. Only for a process that is the program's own: the setting
 /// holds for all of it.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 pub fn keep_memory() {
