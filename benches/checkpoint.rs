@@ -1,4 +1,4 @@
-//! What a checkpoint of a long run costs, against writing and syncing the same bytes, and what resuming costs
+//! Cost of a checkpoint of a long run, against writing and syncing the same bytes, and cost of resuming,
 //! against reading them.
 //!
 //! `cargo bench --bench checkpoint -- FOLDER [N]` walks N particles (2e8 unless said otherwise; 8 bytes each

@@ -51,7 +51,8 @@ fn main() {
             _ => panic!("{key} is not a setting"),
         }
     }
-    // As the program does: a step that is asked for from outside the pool waits for it to wake.
+    // Runs inside the pool like the program: a step that is asked for from outside the pool waits for it to
+    // wake.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
     let gradation = Gradation::linear_from_d0(1.0, cu).expect("cu above 1");
     let start = random_start(&draw(&gradation, settings.grains, settings.seed), &settings).expect("a start");

@@ -1,10 +1,10 @@
-//! How far each kernel is from what this machine could do: `cargo bench --bench roofline`, one thread. Words
-//! behind `--` name kernels: of these alone, without the limits, so that a profiler sees one.
+//! Distance of each kernel from the limits of this machine: `cargo bench --bench roofline`, one thread. Words
+//! after `--` name kernels: runs these alone, without the limits, so that a profiler sees one.
 //!
-//! First the machine's limits: what it copies a second by size of what it copies, a random read,
-//! multiplications and additions a second. Then the kernels, all of them in each of seven turns. Prints a line
-//! of JSON for each, with nanoseconds of processor time an item in every turn; `scripts/peers/roofline.py` puts
-//! bytes and operations beside them.
+//! First the machine's limits: bytes copied a second by size of the copy, a random read, multiplications and
+//! additions a second. Then the kernels, all of them in each of seven turns. Prints a line of JSON for each,
+//! with nanoseconds of processor time an item in every turn; `scripts/peers/roofline.py` puts bytes and
+//! operations beside them.
 
 use std::hint::black_box;
 use std::rc::Rc;
@@ -64,7 +64,7 @@ fn all() {
     }
 }
 
-/// What the machine does at best.
+/// Limits of the machine.
 fn limits() {
     for (kib, name) in
         [(16, "first cache"), (512, "second cache"), (12 << 10, "third cache"), (1 << 20, "memory")]
@@ -114,7 +114,7 @@ fn limit(name: &str, of: &str, work: &mut dyn FnMut() -> Box<dyn FnMut() -> u64>
     print("limit", name, of, &found);
 }
 
-/// Bytes read and written by copying one half of so many bytes onto the other.
+/// Bytes read and written by copying one half of this many bytes onto the other.
 fn copy(bytes: usize) -> Box<dyn FnMut() -> u64> {
     let (from, mut to) = (vec![1.0f64; bytes / 16], vec![0.0f64; bytes / 16]);
     Box::new(move || {
@@ -124,7 +124,7 @@ fn copy(bytes: usize) -> Box<dyn FnMut() -> u64> {
     })
 }
 
-/// Reads of single words in no order, none of which waits for another.
+/// Reads of single words in random order, each independent of the others.
 fn gather(words: usize) -> Box<dyn FnMut() -> u64> {
     let table: Vec<u32> = (0..words as u32).collect();
     let place = |i: u64| (i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 20) % words as u64;
@@ -170,7 +170,7 @@ fn many<const SIDE_BY_SIDE: usize>(operation: Operation) -> u64 {
             rounds.for_each(|_| a.iter_mut().for_each(|a| *a = by / *a));
             1
         }
-        // What is added keeps it from a root that is the number itself.
+        // The addend keeps the number from being its own root.
         Operation::Root => {
             rounds.for_each(|_| a.iter_mut().for_each(|a| *a = (*a + by).sqrt()));
             1
@@ -192,7 +192,7 @@ fn many_avx512(operation: Operation) -> u64 {
     many::<128>(operation)
 }
 
-/// Additions each of which waits for the one before it, as sums in a fixed order do.
+/// Additions that each wait for the one before, like sums in a fixed order.
 fn in_order() -> Box<dyn FnMut() -> u64> {
     let numbers = vec![1e-6f64; 2048];
     Box::new(move || {
@@ -265,7 +265,8 @@ impl Timed<'_> {
         (time, items)
     }
 
-    /// What times a turn: one by one of a fresh walk; by void of one that goes on as it does, turn by turn.
+    /// Work that is timed in a turn: one by one, of a fresh walk; by void, of one that continues from turn to
+    /// turn.
     fn turn<'a>(self: Rc<Self>, isa: Isa) -> Box<dyn FnMut() -> (Duration, u64) + 'a>
     where
         Self: 'a,

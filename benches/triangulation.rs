@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
-            // What cargo itself passes on.
+            // Argument that cargo itself passes on.
             "--bench" => {}
             "--grains" => grains = arguments.next(),
             "--tetrahedra" => output = arguments.next(),

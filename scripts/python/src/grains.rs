@@ -15,7 +15,7 @@ use crate::problem::{of_constrictions, refused};
 use crate::soil::{Gradation, density_named};
 use crate::work::at_work;
 
-/// Steps of a compression between two looks whether it is to stop.
+/// Steps of a compression between two checks for a stop.
 const STEPS: u64 = 50;
 
 type Arrays<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Option<[f64; 3]>);
@@ -120,7 +120,7 @@ pub fn measure<'py>(
     arrays.set_item("pore.coords", of_rows(py, found.void_centre_mm)?)?;
     arrays.set_item("pore.diameter", found.void_diameter_mm.into_pyarray(py))?;
     if let Some(graph) = graph {
-        // The same constrictions, with the cell in which the other void stands.
+        // Each constriction as a pair of cells, with the periodic cell that holds the other void.
         arrays.set_item("throat.conns", of_rows(py, pairs(&graph.from, &graph.to))?)?;
         arrays.set_item("pore.volume", graph.volume_mm3.into_pyarray(py))?;
         arrays.set_item("throat.shift", of_rows(py, graph.shift)?)?;

@@ -1,8 +1,8 @@
 //! The Python face of voidwalk: arrays and dicts in, calls of the library, arrays and dicts out.
 //!
-//! Nothing of the model is here. `work` lets a call run without the interpreter and hears Ctrl-C; the other files
-//! each turn the arguments of one stage into those of the library, and what comes back into arrays. The classes that
-//! a user sees are written in Python (`python/voidwalk`), over these.
+//! Nothing of the model is here. `work` lets a call run without the interpreter and hears Ctrl-C; each other
+//! file turns the arguments of one stage into arguments of the library, and its results into arrays. The
+//! classes that a user sees are written in Python (`python/voidwalk`), over these.
 
 mod arrays;
 mod command;
@@ -22,8 +22,8 @@ mod work;
 
 use pyo3::prelude::*;
 
-/// What voidwalk's Python classes call. It keeps no state that threads could share, so an interpreter without a
-/// global lock needs none for it.
+/// Functions that voidwalk's Python classes call. The module keeps no state that threads could share, so an
+/// interpreter without a global lock needs no lock for it.
 #[pymodule(gil_used = false)]
 mod _voidwalk {
     #[pymodule_export]

@@ -20,7 +20,7 @@ use crate::problem::{failed, of_constrictions, of_network, refused};
 use crate::soil::Curve;
 use crate::work::at_work;
 
-/// A network of the library, and which of its exits stands for each throat.
+/// A network of the library, and the exit of each throat.
 #[pyclass(frozen, module = "voidwalk._voidwalk")]
 pub struct Network {
     pub inner: Arc<network::Network>,
@@ -34,7 +34,7 @@ fn rule(name: &str) -> PyResult<ExitRule> {
 }
 
 impl From<network::Network> for Network {
-    /// Every constriction is a throat, each once; ways in and out that nothing can block are none.
+    /// Makes every constriction a throat, each once; entrances and exits that nothing can block are left out.
     fn from(inner: network::Network) -> Self {
         let is_throat = |c: &usize| inner.diameters()[*c] != WIDE && inner.counts(*c);
         let exit = (0..inner.constrictions()).filter(is_throat).map(|c| c as u32).collect();

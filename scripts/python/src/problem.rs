@@ -1,4 +1,4 @@
-//! What went wrong, as Python says it: `ValueError` for what is refused, `VoidwalkError` for what fails.
+//! Problems as Python errors: `ValueError` for refused input, `VoidwalkError` for failed work.
 
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyValueError};
@@ -47,12 +47,12 @@ fn in_python(text: &str) -> String {
     said + rest
 }
 
-/// What is refused before any work.
+/// Error of input that is refused before any work.
 pub fn refused(problem: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(plain(&problem.to_string()))
 }
 
-/// What failed.
+/// Error of failed work.
 pub fn failed(problem: impl std::fmt::Display) -> PyErr {
     VoidwalkError::new_err(plain(&problem.to_string()))
 }
@@ -66,7 +66,7 @@ pub fn of_run(error: &RunError) -> PyErr {
     }
 }
 
-/// What is wrong with a network: what is given is refused, what cannot be computed fails.
+/// Error of a network: bad input is refused, an impossible computation fails.
 pub fn of_network(error: &NetworkError) -> PyErr {
     match error {
         NetworkError::NarrowWayOut { .. } => failed(error),
@@ -74,7 +74,7 @@ pub fn of_network(error: &NetworkError) -> PyErr {
     }
 }
 
-/// What is wrong with a packing whose constrictions are wanted.
+/// Error of a packing whose constrictions are wanted.
 pub fn of_constrictions(error: &ConstrictionsError) -> RunError {
     RunError::refused(error)
 }

@@ -1,4 +1,4 @@
-//! What filter practice says of two soils.
+//! Answer of filter practice on two soils.
 
 use pyo3::prelude::*;
 use voidwalk::practice::rules::NamedCurve;

@@ -19,11 +19,11 @@ use crate::tables::of_recorded;
 use crate::two_tables::Tables;
 use crate::work::at_work;
 
-/// What errors call settings that come from a dict.
+/// Name in errors of settings that come from a dict.
 const DICT: &str = "scene";
 
-/// How a long call is done, which changes no result: memory (bytes), threads, how often progress is saved, and
-/// what the manifest says that it was started with.
+/// Options of a long call, which change no result: memory (bytes), threads, interval between saves of
+/// progress, and the command for the manifest.
 #[derive(FromPyObject)]
 pub struct Manner(Option<u64>, Option<usize>, Option<String>, String);
 
@@ -106,7 +106,7 @@ impl Scene {
         Self::of(voidwalk::Scene::parse(text.as_bytes(), name, &settings))
     }
 
-    /// What errors call it.
+    /// Name in errors.
     #[getter]
     fn name(&self) -> &str {
         &self.inner.name
@@ -144,7 +144,7 @@ pub fn run(
     Ok(done.folder)
 }
 
-/// What a page shows of a run besides outcome and tables: manifest, scene, the record of the packing.
+/// Texts of a run's page besides outcome and tables: manifest, scene, the record of the packing.
 type Texts = (String, String, Option<String>);
 
 /// Walks a scene in memory: the outcome as JSON, the tables, and what its page shows besides.

@@ -10,7 +10,7 @@ use voidwalk::sheets::curves_in_file;
 use crate::arrays::column;
 use crate::problem::refused;
 
-/// What is wrong with points that come as columns: the library counts rows of a table from 1.
+/// Error of points that come as columns: the library counts rows of a table from 1.
 fn of_points(error: impl std::fmt::Display) -> PyErr {
     let text = error.to_string().replace("points, line", "line");
     let mut said = String::new();

@@ -29,7 +29,7 @@ pub fn soils(path: PathBuf, d0_mm: Option<f64>) -> PyResult<String> {
     serde_json::to_string(&soils).map_err(failed)
 }
 
-/// Of which filters boundaries are searched: densities, whether it is packed, and thicknesses.
+/// Filters whose boundaries are searched: densities, true if the filter is packed, and thicknesses.
 #[derive(FromPyObject)]
 pub struct Search(Vec<String>, bool, Vec<String>);
 
@@ -96,8 +96,8 @@ pub fn specification(
     format::SPECIFICATION.json(&found).map_err(failed)
 }
 
-/// D15F of the band, why there is no band, what a delivery must keep beside the limits, whose rule sets the
-/// maximum D15F, and whether each product fits.
+/// D15F of the band, the reason why there is no band, conditions on a delivery beside the limits, the source
+/// of the maximum D15F, and true for each product that fits.
 type Words = (Option<String>, Option<String>, Option<String>, Option<String>, Vec<Option<bool>>);
 
 /// The words for a specification, from its record.

@@ -22,7 +22,7 @@ fn of_rows<'py, R: NumberRow>(py: Python<'py>, rows: &[R]) -> PyResult<Bound<'py
     Ok(table)
 }
 
-/// The rows of the table of this name; none where there is no such table and none is needed.
+/// The rows of the table of this name; empty if there is no such table and it is not needed.
 fn to_rows<R: NumberRow>(tables: &Bound<'_, PyDict>, name: &str, is_needed: bool) -> PyResult<Vec<R>> {
     let table: Bound<'_, PyDict> = match tables.get_item(name)? {
         Some(table) => table.cast_into()?,
@@ -49,8 +49,7 @@ fn column_of<T: Element + Copy>(name: &str, table: &Bound<'_, PyDict>, field: &s
     }
 }
 
-/// The tables of a run, each a dict of columns; those of flow, voids and blocked constrictions where they
-/// were kept.
+/// The tables of a run, each a dict of columns; flow, voids and blocked constrictions if they were kept.
 pub fn of_recorded<'py>(py: Python<'py>, recorded: &Recorded) -> PyResult<Bound<'py, PyDict>> {
     let Recorded { series, layers, retained, eroded, flow, voids, blocked } = recorded;
     let tables = PyDict::new(py);
@@ -70,7 +69,7 @@ pub fn of_recorded<'py>(py: Python<'py>, recorded: &Recorded) -> PyResult<Bound<
     Ok(tables)
 }
 
-/// The rows of the tables of a run; those of flow, voids and blocked constrictions where they were kept.
+/// The rows of the tables of a run; flow, voids and blocked constrictions if they were kept.
 pub fn to_recorded(tables: &Bound<'_, PyDict>) -> PyResult<Recorded> {
     Ok(Recorded {
         series: to_rows(tables, "series", true)?,

@@ -1,11 +1,11 @@
-//! What goes with two tables of sieves.
+//! Options of two tables of sieves.
 
 use pyo3::prelude::*;
 use voidwalk::scene::TableOptions;
 
 use crate::soil::density_named;
 
-/// What a scene of two tables is given besides them: density, whether it is packed, is quick, is as sampled, is as
+/// Options of a scene of two tables: density, then true if it is packed, is quick, is as sampled, is as
 /// given, and settings as `name=value`.
 #[derive(FromPyObject)]
 pub struct Tables(Option<String>, bool, bool, bool, bool, Vec<String>);

@@ -22,11 +22,11 @@ use crate::problem::of_run;
 /// Between two looks for signals and news.
 const TICK: Duration = Duration::from_millis(50);
 
-/// How far a call is, as a progress callback is told: some twenty times a second at most, and once at the end.
+/// Progress of a call, for a progress callback: some twenty times a second at most, and once at the end.
 #[pyclass(frozen, get_all, module = "voidwalk")]
 #[derive(Clone, Debug, Default)]
 pub struct Progress {
-    /// What is done: "packing", "walking" or "cases".
+    /// Kind of work: "packing", "walking" or "cases".
     stage: String,
     /// Runs, or cases, that are done.
     done: u64,
@@ -40,7 +40,7 @@ pub struct Progress {
     increment: u64,
     /// Base particles that were moving after it.
     moving: u64,
-    /// Whether the work has ended.
+    /// True if the work has ended.
     finished: bool,
 }
 
@@ -55,7 +55,7 @@ impl Progress {
     }
 }
 
-/// What the worker and the waiting thread share.
+/// State that the worker and the waiting thread share.
 struct Shared<T> {
     progress: Progress,
     /// There is news that a callback has not been told.
@@ -183,7 +183,7 @@ pub fn at_work<T: Send>(
     });
     let ended = ended.unwrap_or_else(|panic| resume_unwind(panic));
     match (raised, ended) {
-        // What was saved, and how to go on, where nothing else is said.
+        // Saved work, and the way to continue, unless the exception has a message of its own.
         (Some(raised), Err(error)) if error.exit() == Exit::Stopped && is_bare_interrupt(py, &raised) => {
             Err(PyKeyboardInterrupt::new_err(error.to_string()))
         }

@@ -1,4 +1,4 @@
-//! How the base of a case arches, and what blocked constrictions are to it.
+//! Arching of the base of a case, and the effect of blocked constrictions on it.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ impl Case {
         self.scene.law().map(|law| Arc::new(Arching::new(law, concentration)))
     }
 
-    /// What is written of its arches.
+    /// Record of its arches.
     pub fn arching_record(&self) -> Option<ArchingRecord> {
         let law = self.scene.law()?;
         Some(ArchingRecord {
@@ -27,7 +27,7 @@ impl Case {
         })
     }
 
-    /// What its walks contain that others leave out.
+    /// Mechanisms in its walks that others leave out.
     pub fn modelled(&self) -> Modelled {
         Modelled {
             flow: self.scene.exit_rule().needs_flow(),
@@ -36,7 +36,7 @@ impl Case {
         }
     }
 
-    /// What arches and openings, which no test has checked, say against a verdict.
+    /// Doubts about a verdict from arches and openings, which no test has checked.
     pub fn unchecked_clogging(&self) -> impl Iterator<Item = Note> {
         let arches = self.scene.law().map(|law| Note::Arches { law: law.name.into() });
         arches.into_iter().chain(self.scene.leaves_openings().then_some(Note::Openings {}))

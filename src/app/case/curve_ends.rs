@@ -1,4 +1,4 @@
-//! How far a case's constriction curve may be off, as curves that are walked besides.
+//! Uncertainty of a case's constriction curve, as further curves that are walked.
 
 use crate::outcome::packing::PackedPart;
 use voidwalk_core::constrictions::{Curve, inscribed};
@@ -11,14 +11,15 @@ pub struct OtherCurve {
     pub name: String,
     /// The curve (mm).
     pub curve: Curve,
-    /// Grains per void of such a filter by those of the case's own curve: so many times the base is offered.
+    /// Grains per void of such a filter over the grains per void of the case's own curve: the base is
+    /// multiplied by it.
     pub times_grains: f64,
 }
 
 /// The ends of a guess, by relative density.
 const END_GUESSES: [(f64, &str); 2] = [(1.0, "densest guess"), (0.0, "loosest guess")];
 
-/// What the guess at this relative density is called where it is an end.
+/// Name of the guess at this relative density if it is an end.
 pub fn end_of_guess(relative_density: f64) -> Option<&'static str> {
     END_GUESSES.iter().find(|(density, _)| *density == relative_density).map(|(_, name)| *name)
 }

@@ -11,7 +11,7 @@ use voidwalk_core::gradation::Gradation;
 
 /// A cell is this many times as wide as the largest grain that is packed, where the program chooses it.
 const CELLS_WIDTH: f64 = 2.5;
-/// Constrictions are finer than those of the whole by this part of the surface share that is left out.
+/// Relative error of the constrictions, which come out finer than in the whole, per surface share left out.
 const ERROR_BY_SURFACE: f64 = 0.6;
 /// A part that leaves more in doubt than this is not chosen.
 const LARGEST_ERROR: f64 = 0.05;
@@ -31,8 +31,8 @@ pub(super) fn finer_part(whole: &Gradation, percent: f64) -> Option<(Gradation, 
     Some((part, packed))
 }
 
-/// The largest finer part of which so many grains make a wide enough cell; `None` where it leaves too much in
-/// doubt.
+/// The largest finer part of which this many grains make a wide enough cell; `None` if it leaves out so much
+/// that the result is in doubt.
 pub(super) fn that_can_be_packed(
     whole: &Gradation,
     width: impl Fn(&Gradation) -> f64,

@@ -39,9 +39,9 @@ pub enum CaseError {
     NarrowCell {
         /// The scene.
         file: String,
-        /// What is wrong.
+        /// Description of the problem.
         problem: String,
-        /// The same plan with grains enough.
+        /// The plan with enough grains.
         would_do: Box<PackingPlan>,
     },
     /// More memory, or more disk, than there is.
@@ -60,7 +60,7 @@ pub enum CaseError {
         needed: String,
         /// Bytes available, in words.
         available: String,
-        /// What there is to say of the disk.
+        /// State of the disk, in words.
         disk: String,
     },
 }

@@ -23,7 +23,7 @@ const LARGEST_NETWORK: u64 = 1 << 36;
 /// Folder of the files that went in, inside a run's.
 const INPUTS: &str = "inputs";
 
-/// What the user called the files in that folder, by their names there.
+/// File of the user's names for the files in that folder, by their names there.
 pub const INPUT_NAMES: &str = "inputs/names.json";
 
 /// Name under which a run keeps the grains whose voids it walks.
@@ -51,10 +51,10 @@ pub const INPUT_FILES: [&str; 15] = [
     "names.json",
 ];
 
-/// What the user called a file: what is written beside it in a run's folder, or else its path.
+/// The user's name for a file: from the list beside it in a run's folder, else its path.
 ///
 /// # Errors
-/// What is written there is not as the program writes it.
+/// The list is not as the program writes it.
 fn first_name(path: &Path, soil: Option<&str>) -> Result<String, CaseError> {
     let part = soil.map(|soil| format!("#{soil}")).unwrap_or_default();
     let own = format!("{}{part}", path.display());
@@ -82,8 +82,8 @@ fn kept_name(kept_as: &str, path: &Path) -> String {
     }
 }
 
-/// What there is to say of a path in which a backslash stands for a folder where the system takes none, or
-/// in which stands what one and the letter after it become in double quotes.
+/// A hint for a path with a backslash as separator on a system that takes none, or with a character that a
+/// backslash and the letter after it become in double quotes.
 fn of_windows(path: &Path) -> &'static str {
     let text = path.to_string_lossy();
     let escaped = text.contains(['\t', '\n', '\r', '\u{8}', '\u{c}', '\u{1b}']);

@@ -30,14 +30,14 @@ pub struct CaseFilter {
     pub shipped: Option<&'static ShippedFilter>,
     /// The packing that the curve was measured on, if the program made it.
     pub packed: Option<PackedFilter>,
-    /// What the library of packings says of it, where its curve is taken from there.
+    /// Entry of the library of packings, if the curve comes from there.
     pub library: Option<LibraryFilter>,
     /// Relative density, 0 loose to 1 dense, of a curve that is guessed from the gradation.
     pub guessed_density: Option<f64>,
 }
 
 impl CaseFilter {
-    /// Of a filter as it is stated; `fixed` is its network, where all replicates walk the same.
+    /// Takes a filter as it is stated; `fixed` is its network if all replicates walk one network.
     pub(super) fn new(
         scene: &Scene,
         stated: StatedFilter,
@@ -61,7 +61,7 @@ impl CaseFilter {
         let curve_ends = match (fixed, &library) {
             (Some(_), _) => Vec::new(),
             (None, Some(library)) => {
-                // What a user states of it holds for every curve.
+                // A value stated by the user holds for every curve.
                 let is_stated = scene.filter.grains_per_void.is_some();
                 let times = |end: &OtherCurve| if is_stated { 1.0 } else { end.times_grains };
                 library
@@ -101,7 +101,7 @@ impl CaseFilter {
             )
     }
 
-    /// The same filter with all sizes `factor` times as large, and its own curve alone.
+    /// Enlarges all sizes of the filter by `factor`, and keeps its own curve alone.
     ///
     /// # Errors
     /// Sizes out of range.
@@ -118,7 +118,7 @@ impl CaseFilter {
     }
 }
 
-/// Whether Eq. (2) needs grains per void that nobody gives: where the constrictions are a guess.
+/// True if Eq. (2) needs grains per void that are not given: if the constrictions are a guess.
 pub(super) fn needs_grains_per_void(scene: &Scene, guessed_density: Option<f64>) -> bool {
     guessed_density.is_some()
         && scene.filter.grains_per_void.is_none()

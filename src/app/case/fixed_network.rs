@@ -21,14 +21,14 @@ pub struct FixedNetwork {
     pub packing: Option<CopiedPacking>,
 }
 
-/// A packing whose voids are a network, so many times along the flow.
+/// A packing whose voids are a network, repeated along the flow.
 #[derive(Clone)]
 pub struct CopiedPacking {
     /// Copies.
     pub copies: u32,
     /// Their thickness together (mm).
     pub thickness_mm: f64,
-    /// What was measured on it.
+    /// Measurements on the packing.
     pub(super) graph: Arc<GraphPacking>,
 }
 

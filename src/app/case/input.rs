@@ -18,7 +18,7 @@ pub struct Input {
     pub bytes: Arc<Vec<u8>>,
     /// Which of its soils is meant, where it holds several.
     pub soil: Option<String>,
-    /// What was assumed to understand it.
+    /// Assumptions made to understand it.
     pub notes: Vec<String>,
 }
 

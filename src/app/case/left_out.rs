@@ -1,4 +1,4 @@
-//! What a case does not need.
+//! Parts of a scene that a case does not need.
 
 use super::Case;
 use crate::outcome::left_out::LeftOut;

@@ -15,7 +15,7 @@ const GRAINS_ERROR_OF_PART: f64 = 0.25;
 /// A filter as the library knows it.
 #[derive(Clone)]
 pub struct LibraryFilter {
-    /// Its constrictions; those of the loose filter where its density is unknown.
+    /// Its constrictions; the loose filter's if its density is unknown.
     pub found: FromLibrary,
     /// The finer part that was looked up, where the whole is too broad.
     pub part: Option<PackedPart>,
@@ -24,10 +24,10 @@ pub struct LibraryFilter {
 }
 
 impl LibraryFilter {
-    /// Looks a filter up; `None` where it is like none of the library.
+    /// Looks a filter up; `None` if no filter of the library is like it.
     ///
     /// # Errors
-    /// None for a gradation with a known size.
+    /// Cannot fail for a gradation with a known size.
     pub fn find(filter: &Gradation, density: LibraryDensity) -> Result<Option<Self>, CurveError> {
         // The finer part that would be packed, where the whole could not be.
         let width = |gradation: &Gradation| width_by_largest(gradation, GRAINS_OF_PART, 1.0);
@@ -63,9 +63,9 @@ impl LibraryFilter {
             };
             let name = format!("{}, constrictions {by} % {way}", density.name());
             let of = of?;
-            // Of less base a larger share erodes: the coarsest curve goes with the fewest grains. The fine
-            // end offers no more base than the library says, so that no amount that may not be there seals
-            // it.
+            // With less base a larger fraction erodes: the coarsest curve goes with the fewest grains. The
+            // fine end offers no more base than the library states, so that base that may be absent does not
+            // seal it.
             let error = if factor > 1.0 { of.grains_error } else { 0.0 };
             let times_grains = of.grains_per_void / (1.0 + error) / found.grains_per_void;
             Some(OtherCurve { name, curve: of.curve.scaled(factor).ok()?, times_grains })

@@ -1,4 +1,4 @@
-//! How much memory a case takes, and where the columns of its particles live.
+//! Memory that a case takes, and the place of the columns of its particles.
 
 use std::path::Path;
 
@@ -11,10 +11,10 @@ use voidwalk_core::walk::{CHUNK, Engine};
 /// with the number of threads.
 const SIDE_BY_SIDE_BYTES: u64 = 1 << 30;
 
-/// What happens to the particles of a chunk in an increment, and their size classes (measured).
+/// Bytes of the events of a chunk's particles in an increment, and of their size classes (measured).
 const EVENT_BYTES: u64 = 16 << 10;
 
-/// What a worker keeps to move counts: for a void, its particles there; and a batch of voids (bytes).
+/// Bytes that a worker keeps to move counts: for a void, its particles there; and for a batch of voids.
 const COUNTS_A_WORKER: (u64, u64) = (8, 32 << 10);
 
 /// Bytes for a constriction where water flows: two exits of 28 in the network and in its copy, 12 of the
@@ -29,16 +29,16 @@ const OPENING_BYTES: u64 = 3 * 4 + 8;
 /// Bytes of a narrowing, and of its columns while they are saved.
 const NARROWING_BYTES: u64 = 2 * 24;
 
-/// How many narrowings of an exit in a run there is room for, on average: the finest particle so far is a
-/// rarer event each time.
+/// Narrowings of an exit in a run for which there is room, on average: the finest particle so far is a rarer
+/// event each time.
 const NARROWINGS: u64 = 8;
 
-/// What `record.voids` keeps, while it is written (bytes): for a void that holds particles at a moment its
-/// row in two copies, in room that grows, and its line (measured: up to 184); for a void its place, row and
-/// line; for a constriction its row, its line, and when it was blocked.
+/// Bytes that `record.voids` keeps while it is written: for a void that holds particles at a moment its row
+/// in two copies, in room that grows, and its line (measured: up to 184); for a void its place, row and line;
+/// for a constriction its row, its line, and the time when it was blocked.
 const KEPT_BYTES: [u64; 3] = [200, 240, 420];
 
-/// What the walks of a case may take.
+/// Limits on memory and disk for the walks of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ResourceLimits {
     /// Memory (bytes).
@@ -48,8 +48,8 @@ pub struct ResourceLimits {
 }
 
 impl ResourceLimits {
-    /// As much memory as was asked for, else 80 % of what is available, and never more than that; the disk
-    /// that is free where `folder` is or will be.
+    /// Takes the memory that was asked for, else 80 % of the available memory, and never more than that; and
+    /// the disk that is free at `folder`.
     pub fn new(asked: Option<u64>, available: u64, folder: &Path) -> Self {
         let share = available / 5 * 4;
         let there = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
@@ -174,7 +174,7 @@ impl Case {
         if all <= SIDE_BY_SIDE_BYTES.min(self.memory) { threads.max(1) } else { 1 }
     }
 
-    /// Whether there is room for the particles of the scene itself, in memory or on the disk.
+    /// True if the particles of the scene itself fit, in memory or on the disk.
     fn has_room(&self, room: &ResourceLimits, threads: u64) -> bool {
         let columns = self.column_bytes(self.supply.n_base);
         let besides = self.other_bytes(self.supply.n_base, threads).saturating_add(self.kept_bytes());
@@ -189,7 +189,7 @@ impl Case {
     pub fn place(&mut self, room: &ResourceLimits, threads: u64, folder: &Path) -> Result<(), CaseError> {
         self.memory = room.memory;
         let has_room = self.has_room(room, threads);
-        // Where the scene itself has none, no study is to blame.
+        // If the scene itself does not fit, the studies are not to blame.
         let thickest = if has_room { self.place_thickest(room, threads, folder)? } else { None };
         let n_base = if has_room { self.most_particles() } else { self.supply.n_base };
         let kept = self.kept_bytes();
@@ -299,7 +299,7 @@ mod tests {
         Case::new(Scene::built_in(&all).unwrap()).unwrap()
     }
 
-    /// As at the ends of a guessed curve's range.
+    /// Holds at the ends of a guessed curve's range.
     #[test]
     fn another_curve_has_another_finest_constriction() {
         let coarse = case(&["base.n_base=1e9"]);
@@ -317,7 +317,7 @@ mod tests {
         let auto = case(&["base.single_mm=0.1", "base.n_base=1e11"]);
         assert_eq!(of(&auto, 64), of(&counts, 64));
         for set in [
-            // Each by itself, as asked for, or because they are few; an expectation; none that is passive.
+            // One by one by engine, or because they are few; an expectation; without passive particles.
             vec!["engine=particles", "base.n_base=1e6"],
             vec!["base.n_base=1e6"],
             vec!["engine=expected", "base.single_mm=0.1", "base.n_base=1e11"],

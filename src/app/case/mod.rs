@@ -104,10 +104,10 @@ impl Case {
         Self::with_graph(scene, None, None, Vec::new())
     }
 
-    /// The case of a scene whose filter has been packed, and of which these files were read before.
+    /// The case of a scene whose filter has been packed, with these files read before.
     ///
     /// # Errors
-    /// As [`Case::new`]; the scene's filter is to be packed and has not been.
+    /// See [`Case::new`]; also if the scene's filter is to be packed and has not been.
     pub fn with_packed(
         scene: Scene,
         packed: Option<PackedFilter>,
@@ -116,7 +116,7 @@ impl Case {
         Self::with_graph(scene, packed, None, known)
     }
 
-    /// The same with the voids of its packing, where they have been measured.
+    /// Builds the case with the voids of its packing, if they have been measured.
     fn with_graph(
         mut scene: Scene,
         packed: Option<PackedFilter>,

@@ -1,4 +1,4 @@
-//! The network of a case: how large it is, and whether all replicates walk the same.
+//! The network of a case: its size, and if all replicates walk the same one.
 
 use std::collections::BTreeMap;
 
@@ -12,8 +12,8 @@ use voidwalk_core::gradation::Gradation;
 use voidwalk_core::network::{Connectivity, Network, NetworkError};
 use voidwalk_core::stream::{Key, Purpose};
 
-/// A lattice with more voids than this is not made for its counts alone: those of a smaller one are scaled
-/// up.
+/// A lattice with more voids than this is not built only to be counted: the counts of a smaller one are
+/// scaled up.
 const MADE_FOR_COUNTS: u64 = 4_000_000;
 
 /// Voids along each side of that smaller one, at most.
@@ -24,7 +24,7 @@ pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
     Key { seed, purpose: Purpose::Replicate, run: 0, increment: 0, chunk: replicate }.generator().next_u64()
 }
 
-/// How large a network is.
+/// Size of a network.
 #[derive(Clone)]
 pub struct CaseNetwork {
     /// Voids.
@@ -118,7 +118,7 @@ fn connectivity(network: &Network) -> Vec<[f64; 2]> {
     counts.into_iter().map(|(k, count)| [f64::from(k), percent(count)]).collect()
 }
 
-/// Gives a lattice as many layers as its scene's thickness makes of this filter.
+/// Sets the number of layers of a lattice from the scene's thickness and this filter.
 pub(super) fn set_layers_of_thickness(scene: &mut Scene, filter: &Gradation) -> Result<(), CaseError> {
     let (NetworkSource::Cubic(_), extent) = (scene.network.source(), scene.network.extent()) else {
         return Ok(());

@@ -1,4 +1,4 @@
-//! What makes a case's networks.
+//! Key of everything that decides a case's networks.
 
 use super::{Case, CaseNetwork};
 use crate::scene::NetworkSource;
@@ -7,7 +7,7 @@ use voidwalk_core::walk::Engine;
 /// Bytes of a network: for a void, and for a constriction (its target and diameter).
 const BYTES: [u64; 2] = [8, 8];
 
-/// The same of the exits that its first runs begin with: words and ways; shares, and the void that a
+/// Bytes of the exits with which its first runs begin: words and exits; shares, and the void that a
 /// constriction leaves.
 const EXIT_BYTES: [u64; 2] = [16, 16];
 
@@ -37,7 +37,7 @@ impl Case {
         [bytes(BYTES), bytes(exits)]
     }
 
-    /// Whether its first runs begin with exits that depend on the network alone, and passive particles take
+    /// True if its first runs begin with exits that depend on the network alone, and passive particles take
     /// them.
     pub fn begins_with_plain_exits(&self) -> bool {
         let scene = &self.scene;

@@ -77,7 +77,7 @@ impl Case {
             layers: self.network.layers,
             flows: self.scene.exit_rule().needs_flow(),
             increments: self.increments(),
-            // Where a rule adds replicates, it says itself whether they are enough, unless it may add none.
+            // A rule that adds replicates reports itself if they suffice, unless it may add no replicate.
             replicates: match self.scene.stop.is_set() {
                 true => self.scene.stop.replicates_at(replicates, 1),
                 false => replicates,
@@ -92,7 +92,7 @@ impl Case {
         Some(Note::OtherCurve { cu, curve: shipped.name.clone(), curve_cu: shipped.cu })
     }
 
-    /// What is not measured where nobody packed the filter.
+    /// Values that are guessed because the filter was not packed.
     fn guesses(&self) -> Vec<Note> {
         if let Some(library) = &self.filter.library {
             let density = self.scene.filter.library.unwrap_or(LibraryDensity::Unknown);
@@ -149,7 +149,7 @@ impl Case {
             (Some((given, at)), _) => {
                 Some(Note::Regraded { part_percent: given.percent_finer_by_mass(*at), sieve_mm: *at })
             }
-            // Of a base without gravel nobody expects it.
+            // Regrading of a base without gravel is not expected.
             (None, Some(Regrade::Practice)) if self.base.gradation.largest_mm() > GRAVEL_MM => {
                 Some(Note::RegradingNotNeeded {})
             }

@@ -1,4 +1,4 @@
-//! How many particles of a case are walked one by one: both its memory and its time follow from that.
+//! Number of particles of a case that are walked one by one: it decides both memory and time.
 
 use super::Case;
 use voidwalk_core::walk::Engine;
@@ -14,7 +14,7 @@ impl Case {
         (n_base as f64 * (1.0 - passive)).ceil() as u64
     }
 
-    /// Whether all of `n_base` particles are walked one by one, whatever their sizes: on a network that has
+    /// True if all of `n_base` particles are walked one by one, whatever their sizes, on a network that has
     /// its finest constriction.
     pub fn takes_each(&self, n_base: u64) -> bool {
         let passive = Engine::passive_share(n_base / self.increments(), self.passive_words());
@@ -26,7 +26,7 @@ impl Case {
         if self.takes_each(n_base) { 0 } else { self.passive_words() }
     }
 
-    /// How many of all 2^64 words draw a particle that is passive on the open network.
+    /// Number of the 2^64 words that draw a particle that is passive on the open network.
     fn passive_words(&self) -> u128 {
         if self.scene.leaves_openings() {
             return 0;

@@ -20,15 +20,16 @@ pub const RECORD: &str = "packing.json";
 /// The grains.
 pub const GRAINS: &str = "grains.csv";
 
-/// Filter grains per void where the constrictions are a guess and the user gives none: that of loose packings
-/// (`results/packing.md`).
+/// Filter grains per void if the constrictions are a guess and the user gives no number: the value of loose
+/// packings (`results/packing.md`).
 pub(super) const GUESSED_GRAINS_PER_VOID: f64 = 0.6;
 
 /// Grains per void of packings without friction: 0.49.
 const SLIDING_GRAINS_PER_VOID: f64 = 0.49;
-/// The same at friction 0.3: 0.63 to 0.69 in linear gradations of Cu 1.5 to 6 (`results/packing.md`).
+/// Filter grains per void at friction 0.3: 0.63 to 0.69 in linear gradations of Cu 1.5 to 6
+/// (`results/packing.md`).
 const ROUGH_GRAINS_PER_VOID: f64 = 0.65;
-/// How far the constrictions of a packing with friction lie between circles of three and of four touching
+/// Position of the constrictions of a packing with friction between circles of three and of four touching
 /// grains, from the 25th percentile on: 0.19 to 0.22 there in linear gradations and parts of C33 sand, 0.16
 /// to 0.36 in gap-graded ones; 0.19 to 0.37 at the median; 0.04 to 0.14 at the first percentile. About half
 /// as far without friction.
@@ -41,15 +42,15 @@ pub struct PackedFilter {
     pub files: Option<[PathBuf; 2]>,
     /// Its constriction curve (mm).
     pub curve: Curve,
-    /// The same as CSV.
+    /// The constriction curve as CSV.
     pub curve_csv: String,
     /// Filter grains per void.
     pub grains_per_void: f64,
     /// `packing.json`, as it is.
     pub record: Vec<u8>,
-    /// Volume of the voids by that of the grains of the filter: known where the whole was packed.
+    /// Volume of the voids over the volume of the grains of the filter: known if the whole was packed.
     pub void_ratio: Option<f64>,
-    /// What part of the filter was packed, where it is not the whole.
+    /// Part of the filter that was packed, if not the whole.
     pub part: Option<PackedPart>,
     /// Where the packing was taken from, where it was made for another filter of the same shape.
     pub same_shape: Option<SameShape>,
@@ -70,7 +71,7 @@ pub enum PackedError {
     Record {
         /// The file.
         file: String,
-        /// What is wrong.
+        /// Description of the problem.
         problem: String,
     },
     /// A file that the system fails to read.
@@ -113,8 +114,9 @@ impl PackedFilter {
         }
     }
 
-    /// Takes a filter from a packing of the same shape, all of whose sizes are those wanted times one factor,
-    /// in a folder that holds packings; `None` where there is none. Of several the first by name is taken.
+    /// Takes a filter from a packing of the same shape, with all sizes larger or smaller by one factor, in a
+    /// folder that holds packings; `None` if the folder has no such packing. If there are several, takes the
+    /// first by name.
     ///
     /// # Errors
     /// A packing of the same shape that is damaged.
@@ -125,7 +127,7 @@ impl PackedFilter {
         folders.retain(|folder| *folder != own);
         folders.sort();
         for folder in folders {
-            // What is no packing, or not whole, is none of the same shape.
+            // Skips folders that hold no packing, or an unfinished one.
             let Ok(Some((_, read))) = read_record(&folder) else { continue };
             let points: Vec<(f64, f64)> = read.gradation.iter().map(|[d, percent]| (*d, *percent)).collect();
             if read.fingerprint != order.fingerprint_of(&points) {
@@ -243,7 +245,7 @@ impl PackedFilter {
     }
 }
 
-/// A packing's record, as it is and read; `None` where there is none.
+/// A packing's record, as bytes and parsed; `None` if it is missing.
 fn read_record(folder: &Path) -> Result<Option<(Vec<u8>, PackingRecord)>, PackedError> {
     let path = folder.join(RECORD);
     let record = match read_whole(&path) {

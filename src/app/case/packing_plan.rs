@@ -1,4 +1,4 @@
-//! What is to be packed, and its fingerprint.
+//! Plan of a packing, and its fingerprint.
 
 use super::input::Input;
 use crate::outcome::packing::PackedPart;
@@ -12,23 +12,23 @@ const SAME_PERCENT: f64 = 1e-2;
 
 /// Part of the definition of a packing: another number gives other grains from the same recipe.
 const PROTOCOL: u32 = 2;
-/// The same of gradations so wide that their most crowded grains are moved as heavier ones.
+/// Protocol of gradations so wide that their most crowded grains are moved as heavier ones.
 const WIDE_PROTOCOL: u32 = 3;
 
-/// What is to be packed.
+/// Plan of a packing.
 #[derive(Clone, Debug)]
 pub struct PackingPlan {
     /// The gradation that is packed: the filter's, or its finer part's.
     pub gradation: Gradation,
     /// The gradation in words.
     pub name: String,
-    /// Whether it is linear.
+    /// True if it is linear.
     pub linear: bool,
-    /// What part of the filter it is, where the whole is not packed.
+    /// Part of the filter that it is, if the whole is not packed.
     pub part: Option<PackedPart>,
     /// Height of the cell by its width.
     pub aspect: f64,
-    /// How it is compressed.
+    /// Settings of the compression.
     pub compression: Compression,
     /// Overlap of two inscribed spheres from which their tetrahedra are one void.
     pub merge_overlap: f64,
@@ -42,7 +42,7 @@ impl PackingPlan {
         self.fingerprint_of(&pairs(&self.gradation))
     }
 
-    /// The same of a gradation with these points, compressed likewise.
+    /// Fingerprint of a gradation with these points, compressed likewise.
     pub(super) fn fingerprint_of(&self, points: &[(f64, f64)]) -> String {
         let protocol = if packing::is_wide(&self.gradation) { WIDE_PROTOCOL } else { PROTOCOL };
         let mut text = format!("{protocol} {points:?} {:?}", self.compression);
@@ -64,7 +64,7 @@ impl PackingPlan {
         (own.len() == points.len() && own.iter().zip(points).all(fits)).then_some(factor)
     }
 
-    /// Whether one packing, scaled, does for both plans.
+    /// True if one packing, scaled, serves both plans.
     pub fn has_shape_of(&self, other: &Self) -> bool {
         let points = pairs(&other.gradation);
         self.scale_from(&points).is_some() && self.fingerprint_of(&points) == other.fingerprint()
@@ -108,7 +108,7 @@ mod tests {
         };
         assert_eq!(of(3.0, 20_000), (true, false));
         assert_eq!(of(4.4, 20_000), (true, false));
-        // 4.5^2 is 20.25, whether or not so few grains reach it.
+        // 4.5^2 is 20.25, even if too few grains reach it.
         assert_eq!(of(4.5, 20_000), (false, true));
         assert_eq!(of(6.0, 60_000), (false, true));
     }

@@ -13,7 +13,7 @@ use voidwalk_core::gradation::{Gradation, GradationError};
 /// as much: what is passive is never stopped by a constriction, so that its size matters to nothing else.
 const FINER: f64 = 0.99;
 
-/// Whether a pan fraction need not be passive.
+/// True if a pan fraction may hold particles that are not passive.
 pub(super) fn may_block(base: &Gradation, finest_mm: f64) -> bool {
     base.pan_fraction() > 0.0 && base.smallest_mm() > finest_mm
 }

@@ -20,10 +20,10 @@ pub(super) const LEAST_WIDTH: f64 = 2.2;
 const FRACTION: f64 = 0.65;
 
 impl PackingPlan {
-    /// What is to be packed for a scene, where its filter is to be packed and was not measured before.
+    /// Plan of the packing for a scene, if its filter is to be packed and was not measured before.
     ///
     /// # Errors
-    /// As [`PackingPlan::new`].
+    /// See [`PackingPlan::new`].
     pub fn of(scene: &Scene) -> Result<Option<Self>, CaseError> {
         let spec = scene.packing_spec()?.filter(|_| scene.filter.measured.is_none());
         spec.as_ref().map(Self::new).transpose()
@@ -103,7 +103,7 @@ impl PackingPlan {
         Err(CaseError::NarrowCell { file: recipe.file.clone(), problem, would_do: Box::new(self.clone()) })
     }
 
-    /// Grains of a cell as wide as a cube of so many, as tall as this one.
+    /// Number of grains of a cell of this one's height, as wide as a cube of this many grains.
     fn tall(&self, grains: usize) -> usize {
         (grains as f64 * self.aspect).round() as usize
     }
@@ -114,8 +114,8 @@ impl PackingPlan {
         grains_for(gradation)
     }
 
-    /// How many times as wide as the largest grain a tall cell is about, and how many times is usual, where
-    /// it is narrower than that, by a number of grains that was given or by the most that the program takes.
+    /// Width of a tall cell as a multiple of the largest grain, about, and the usual multiple, if it is
+    /// narrower than usual because of a given number of grains or the most that the program takes.
     pub fn narrow_and_tall(&self) -> Option<(f64, f64)> {
         let width = width_by_largest(&self.gradation, self.compression.grains, self.aspect);
         (self.aspect > 1.0 && width < 0.99 * CELLS_WIDTH).then_some((width, CELLS_WIDTH))

@@ -1,4 +1,4 @@
-//! What went in, as a run folder records it.
+//! Inputs, as a run folder records them.
 
 use super::{Case, CaseFilter, CaseNetwork, Input, RECORD};
 use crate::outcome::record;
@@ -24,7 +24,7 @@ impl Case {
         self.inputs.iter().find(|input| input.kept_as.ends_with(RECORD))
     }
 
-    /// What the user called the file of a setting.
+    /// The user's name for the file of a setting.
     fn name_of(&self, setting: &str) -> String {
         self.inputs
             .iter()
@@ -32,13 +32,13 @@ impl Case {
             .map_or(String::new(), |input| input.name.clone())
     }
 
-    /// What the user called each file, by its name in the folder of inputs.
+    /// The user's name for each file, by its name in the folder of inputs.
     pub fn input_names(&self) -> std::collections::BTreeMap<String, String> {
         let kept = |input: &Input| input.kept_as.rsplit('/').next().unwrap_or_default().to_owned();
         self.inputs.iter().map(|input| (kept(input), input.name.clone())).collect()
     }
 
-    /// What went in, as a run folder records it.
+    /// Inputs, as a run folder records them.
     pub fn record(&self) -> record::Inputs {
         record::Inputs {
             filter: self.filter_record(),
@@ -83,7 +83,7 @@ impl Case {
         }
     }
 
-    /// Volume of the voids of the filter by that of its grains, where it is known.
+    /// Volume of the voids of the filter over the volume of its grains, if known.
     fn void_ratio(&self) -> Option<f64> {
         match (&self.filter.packed, &self.filter.library) {
             (Some(packed), _) => packed.void_ratio,
@@ -92,7 +92,7 @@ impl Case {
         }
     }
 
-    /// What the constriction curve is, or what the user called it.
+    /// Name or description of the constriction curve.
     fn curve_name(&self) -> String {
         let filter = &self.filter;
         match (&self.network.fixed, &self.scene.filter.curve) {
@@ -133,7 +133,7 @@ impl Case {
         }
     }
 
-    /// What the network is, in words too.
+    /// Kind of the network, with a description in words.
     fn network_name(&self) -> (record::NetworkKind, String) {
         let cubic = |n: &[u32; 3]| format!("cubic {} x {} x {}", n[0], n[1], n[2]);
         match &self.scene.network.source() {
@@ -157,7 +157,7 @@ impl Case {
         }
     }
 
-    /// What the user called the base, or what it is.
+    /// Name or description of the base.
     fn base_name(&self) -> String {
         match &self.scene.base.gradation() {
             BaseGradation::Sieve(..) => self.name_of("base.sieve"),
@@ -212,7 +212,7 @@ impl Case {
         }
     }
 
-    /// Whether the filter's gradation is a sieve curve, and not a straight line.
+    /// True if the filter's gradation is a sieve curve, not a straight line.
     pub fn filter_is_measured(&self) -> bool {
         matches!(self.scene.filter.gradation(), FilterGradation::Sieve(..))
     }
@@ -232,7 +232,7 @@ impl Case {
         self.filter.shipped.filter(|_| self.network.fixed.is_none())
     }
 
-    /// Whether lengths are in units of the smallest filter grain: a scale-free curve with d0_mm = 1.
+    /// True if lengths are in units of the smallest filter grain: a scale-free curve with d0_mm = 1.
     pub fn is_scale_free(&self) -> bool {
         self.network.fixed.is_none() && self.filter.is_scale_free(&self.scene)
     }

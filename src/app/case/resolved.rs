@@ -1,4 +1,4 @@
-//! What a case is known by: its scene with every number given and its files beside it, and the fingerprint of
+//! Identity of a case: its scene with every number given and its files beside it, and the fingerprint of
 //! both.
 
 use std::path::PathBuf;
@@ -10,10 +10,10 @@ use crate::scene::{About, CurveSource, Scene};
 /// Part of the fingerprint of every case: raised whenever the program gives other results for the same scene.
 const PROTOCOL: u32 = 1;
 
-/// The same of cases in which water flows.
+/// Protocol of cases in which water flows.
 const WATER_PROTOCOL: u32 = 2;
 
-/// What is added where particles arch: raised whenever the program gives other results for these alone.
+/// Number added if particles arch: raised whenever the program gives other results for these alone.
 const ARCHING_PROTOCOL: u32 = 20_000;
 
 impl Case {

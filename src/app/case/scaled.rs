@@ -3,7 +3,7 @@
 //!
 //! A walk knows sizes as multiples of the finest filter grain alone. So a filter that is s times as large is
 //! walked as a base 1/s times as large: its network stays the same to the bit, and with it every random
-//! number that does not hang on the base.
+//! number that does not depend on the base.
 
 use super::files::Files;
 use super::supply::Against;
@@ -25,7 +25,7 @@ pub struct StatedBase {
 }
 
 impl Case {
-    /// The same case with another constriction curve, and that alone: the same base, as much of it.
+    /// Replaces the constriction curve alone: base and amount of base stay.
     pub fn with_curve(&self, curve: Curve) -> Self {
         let mut case = self.clone();
         case.filter.finest_mm = self.filter.finest_mm.min(curve.smallest());
@@ -47,8 +47,8 @@ impl Case {
         Ok(StatedBase { scene: scene.clone(), base, inputs: files.inputs })
     }
 
-    /// The same filter and network against a base of this gradation, which is in this filter's own unit;
-    /// `layers` says how many layers a lattice has instead.
+    /// Replaces the base by one of this gradation, in this filter's own unit; filter and network stay, but a
+    /// lattice gets the number of layers in `layers`.
     ///
     /// # Errors
     /// A base that cannot be walked: Eq. (2) gives too few or too many particles, or sizes are out of range;
@@ -87,8 +87,8 @@ impl Case {
         Ok(case)
     }
 
-    /// Whether a network of another base on the same filter has as many layers as this case's, so that it is
-    /// its own.
+    /// True if a network of another base on the same filter has as many layers as this case's, so that both
+    /// share it.
     pub fn has_layers_of(&self, network: &Network) -> bool {
         network.layers() as u64 == self.network.layers
     }

@@ -5,8 +5,8 @@ use crate::outcome::left_out::LeftOut;
 use crate::scene::Amount;
 
 impl Case {
-    /// Multiples of N_base that the sensitivity study walks: those asked for, none above a cap that the user
-    /// set, none that gives the number of the case itself, and no number twice.
+    /// Multiples of N_base that the sensitivity study walks: those asked for, except those above a cap that
+    /// the user set, those that give the number of the case itself, and repeated numbers.
     pub fn sensitivity_factors(&self) -> Vec<f64> {
         let cap = self.cap();
         let mut numbers = vec![self.supply.n_base];
@@ -32,13 +32,13 @@ impl Case {
         is_above.into_iter().chain(is_same).collect()
     }
 
-    /// So many times the base particles, one at the least.
+    /// The number of base particles times this factor, at least one.
     pub fn times_base(&self, factor: f64) -> u64 {
         ((self.supply.n_base as f64 * factor).round() as u64).max(1)
     }
 
-    /// Base particles with so many times the grains per void, none above a cap that the user set; those of
-    /// the case where the user states their number.
+    /// Base particles with this many times the grains per void, up to a cap that the user set; unchanged if
+    /// the user states their number.
     pub fn base_by_grains(&self, times_grains: f64) -> u64 {
         let is_by_mass = matches!(self.scene.base.amount(), Amount::MassRatio(..));
         let of_eq2 = self.supply.n_base_eq2.filter(|_| is_by_mass);
@@ -71,7 +71,7 @@ mod tests {
         };
         let (of_end, n_base) = of(&[]);
         assert_eq!(of_end, (n_base as f64 / 1.06).round() as u64);
-        // Between the base of the end and that of the case, and below both.
+        // Caps between the base of the end and the base of the case, and below both.
         for (cap, expected) in [(n_base - 1, of_end), (of_end / 2, of_end / 2)] {
             assert_eq!(of(&[&format!("base.cap={cap}")]), (expected, cap));
         }

@@ -21,11 +21,11 @@ pub(super) struct StatedFilter {
     pub shipped: Option<&'static ShippedFilter>,
     /// The packing that the curve was measured on, if the program made it.
     pub packed: Option<PackedFilter>,
-    /// What the library of packings says of it, where the scene asks that.
+    /// Entry of the library of packings, if the scene asks for it.
     pub library: Option<LibraryFilter>,
     /// Relative density of a curve that is guessed from the gradation.
     pub guessed_density: Option<f64>,
-    /// What was measured on the packing whose voids are the network.
+    /// Measurements on the packing whose voids are the network.
     pub graph: Option<Arc<GraphPacking>>,
 }
 
@@ -54,7 +54,7 @@ impl StatedFilter {
             Some(density) => LibraryFilter::find(&gradation, density)?,
             None => None,
         };
-        // A filter that is like none of the library is guessed.
+        // The constrictions of a filter are guessed if no library filter is like it.
         let of_library = scene.filter.library.filter(|_| library.is_none());
         let guessed_density = scene.filter.estimate.or(of_library.map(LibraryDensity::relative));
         let curve = match (&library, guessed_density) {
@@ -86,7 +86,7 @@ fn curve(
     })
 }
 
-/// The gradation: that of the packing or of the shipped filter, where the scene does not say it.
+/// The gradation: of the packing or of the shipped filter if the scene does not state it.
 fn gradation(
     scene: &Scene,
     shipped: Option<&ShippedFilter>,

@@ -21,19 +21,18 @@ pub struct CaseSupply {
     pub n_base: u64,
     /// Base particles by Eq. (2); `None` where the grains per void are not given.
     pub n_base_eq2: Option<u64>,
-    /// Whether a cap made `n_base` smaller than Eq. (2).
+    /// True if a cap made `n_base` smaller than Eq. (2).
     pub capped: bool,
-    /// Mass of base over mass of filter that `n_base` stands for; `None` where the grains per void are not
-    /// given.
+    /// Mass of base over mass of filter for `n_base` particles; `None` if the grains per void are not given.
     pub mass_ratio: Option<f64>,
 }
 
-/// What a base is walked against.
+/// The filter against which a base is walked.
 pub(super) struct Against<'a> {
     pub scene: &'a Scene,
     pub filter: &'a CaseFilter,
     pub voids: u64,
-    /// Whether the filter has been packed, so that nothing may be refused any more.
+    /// True if the filter has been packed, so that the case can no longer be refused.
     pub is_packed: bool,
 }
 
@@ -74,7 +73,7 @@ impl Against<'_> {
         Ok(CaseSupply { pan_is_walked, sampler, n_base, n_base_eq2, capped, mass_ratio })
     }
 
-    /// Those of a base of which the user gives the number of particles.
+    /// Supply of a base whose number of particles the user gives.
     fn number(&self, taken: &Gradation, pan_is_walked: bool, n_base: u64) -> Result<CaseSupply, CaseError> {
         let sampler = SizeSampler::new(taken, self.filter.unit_mm)?;
         let (mut n_base_eq2, mut mass_ratio) = (None, None);

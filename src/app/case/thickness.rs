@@ -1,4 +1,4 @@
-//! The same case with a filter of another thickness.
+//! A case with a filter of another thickness.
 
 use super::{Case, CaseError};
 use crate::outcome::left_out::{LayerKind, LeftOut};
@@ -8,9 +8,9 @@ use crate::scene::NetworkSource;
 const HALF_AND_TWICE: [f64; 2] = [0.5, 2.0];
 
 impl Case {
-    /// Multiples of the thickness that the study walks: those asked for, else half and twice where the study
-    /// of the number of base particles is walked. None of a network from a file, which is as thick as it is,
-    /// none that is to the nearest layer or copy the thickness of the case itself, and no thickness twice.
+    /// Multiples of the thickness that the study walks: those asked for, else half and twice if the study of
+    /// the number of base particles is walked. Leaves out all for a network from a file, whose thickness is
+    /// fixed, those that round to the layers or copies of the case itself, and repeated thicknesses.
     pub fn thickness_factors(&self) -> Vec<f64> {
         let mut known = vec![self.thickness_parts()];
         let mut is_other = |factor: &f64| {
@@ -22,7 +22,7 @@ impl Case {
         self.thickness_wanted().into_iter().filter(|factor| is_other(factor)).collect()
     }
 
-    /// Multiples that are asked for, but of which nothing is walked, each with the reason.
+    /// Multiples that are asked for but not walked, each with the reason.
     pub(super) fn thickness_not_walked(&self) -> Vec<LeftOut> {
         if matches!(self.scene.network.source(), NetworkSource::File(_)) {
             let asked = self.scene.record.thickness.as_ref().is_some_and(|factors| !factors.is_empty());
@@ -45,13 +45,13 @@ impl Case {
         }
     }
 
-    /// What its network is made of along the flow: copies of a packing, or layers.
+    /// Number of parts of its network along the flow: copies of a packing, or layers.
     fn thickness_parts(&self) -> u64 {
         self.network.copies().map_or(self.network.layers, u64::from)
     }
 
-    /// The same case with a filter so many times as thick, to the nearest layer (of a lattice) or copy (of a
-    /// packing); by Eq. (2) it gets as many times the base, up to its cap, and a number that was given stays.
+    /// Multiplies the thickness of the filter, to the nearest layer (of a lattice) or copy (of a packing);
+    /// Eq. (2) multiplies the base likewise, up to its cap, and a number that was given stays.
     ///
     /// # Errors
     /// More constrictions than 32 bits can number, less than one base particle by Eq. (2).

@@ -14,7 +14,7 @@ use voidwalk_core::packing::Packing;
 /// Points of the gradation that is read off the grains.
 const GRADATION_POINTS: usize = 200;
 
-/// What is measured on the grains of a graph's packing.
+/// Measurements on the grains of a graph's packing.
 pub(super) struct GraphPacking {
     /// Its voids.
     pub graph: VoidGraph,
@@ -25,8 +25,8 @@ pub(super) struct GraphPacking {
 }
 
 impl GraphPacking {
-    /// Of the file that the scene names, or of the filter's own packing; `None` where that is still to be
-    /// made.
+    /// Reads the file that the scene names, or measures the filter's own packing; `None` if that is still to
+    /// be made.
     pub fn read(
         scene: &Scene,
         file: Option<&PathBuf>,
@@ -63,7 +63,7 @@ impl GraphPacking {
         libm::ceil(thickness / cell - 1e-9).clamp(1.0, 1e6) as u32
     }
 
-    /// The network that a scene makes of so many copies, with lengths in units of `unit_mm`.
+    /// The network of this many copies for a scene, with lengths in units of `unit_mm`.
     pub fn network(&self, scene: &Scene, copies: u32, unit_mm: f64) -> Result<Network, CaseError> {
         let shape =
             GraphShape { copies, rule: scene.exit_rule(), rho: scene.exits.rho.unwrap_or(0.0), unit_mm };

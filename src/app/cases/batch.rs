@@ -34,7 +34,7 @@ const WALKS: &str = "pairs";
 /// One row a sample and filter.
 const TABLE: &str = "batch.csv";
 
-/// What the folder of a batch is.
+/// Kind of the folder of a batch.
 const KIND: FolderKind = FolderKind::Batch;
 
 /// Walks every pair that is not done, in a campaign inside the folder that the options name, and writes
@@ -58,7 +58,7 @@ pub fn run(
         _ => error,
     };
     let folder = claim(&options.out, KIND, overwrite)?;
-    // What is there stays until every case is known to have what it needs.
+    // Earlier files stay until every case is known to have its inputs.
     let study = |cases: ReadyCases, walk: Walk| {
         let work = plan.work(cases?)?;
         kept::study((&folder, KIND, overwrite), work.clone(), &callbacks.run, |_, _: Option<()>| {
@@ -128,8 +128,8 @@ impl BatchPlan {
         Some((at, WalkedRow { walk: Some(walk), ..self.rows[at].clone() }))
     }
 
-    /// How many of its walks in this folder were kept from an earlier call with another cover, which their
-    /// own pages have.
+    /// Number of its walks in this folder that were kept from an earlier call with another cover; their own
+    /// pages have that cover.
     pub fn with_other_cover(&self, folder: &Path) -> usize {
         let is_other = |planned: &&PlannedCase| {
             let scene = folder.join(WALKS).join(CASES).join(planned.folder_name()).join("scene.toml");
@@ -151,7 +151,7 @@ impl BatchPlan {
         Ok(hash_of(&serde_json::to_string(&work).map_err(RunError::failed)?))
     }
 
-    /// Compares a work with that of the batch with these cases.
+    /// Compares this work with the work of the batch with these cases.
     fn has_work(&self, cases: &[PreparedCase], work: &str) -> bool {
         self.work(cases).is_ok_and(|all| all == work)
     }

@@ -1,4 +1,4 @@
-//! What a plan that was changed does to the finished cases of its folder: said before it is done.
+//! Consequences of a changed plan for the finished cases of its folder, reported before any change.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -13,8 +13,8 @@ use voidwalk_core::store::{files_in, read_whole};
 /// A sentence names no more cases than this.
 const NAMED: usize = 3;
 
-/// What happens to finished cases that are not of this plan as it is now, in sentences. What cannot be read
-/// is passed over: it is found out where it matters.
+/// Consequences for finished cases that do not belong to the present plan, in sentences. Unreadable cases are
+/// skipped: they are reported at a later step.
 pub(super) fn sentences(plan: &CasePlan, cases: &[PreparedCase], out: &Path) -> Vec<String> {
     let finished = |folder: &Path| folder.join(LINE).symlink_metadata().is_ok();
     let again: Vec<&str> = cases

@@ -1,4 +1,4 @@
-//! What the cases of a plan would take, and what is wrong in them, before any of it is done.
+//! Forecast of the cases of a plan, and their mistakes, before any work.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! The day on a sheet: that of the last walk that it rests on, or of its making where nothing was walked.
+//! The day on a sheet: the day of the last walk behind it, or of its making if nothing was walked.
 
 use std::path::Path;
 use std::time::SystemTime;

@@ -7,10 +7,10 @@ use crate::run::error::RunError;
 use crate::run::folder::shown;
 use voidwalk_sheets::file_and_soil;
 
-/// Refuses tables of which one is named twice.
+/// Refuses a table that is named twice.
 ///
 /// # Errors
-/// The one.
+/// The table that is named twice.
 pub(crate) fn refuse_twice(files: &[PathBuf]) -> Result<(), RunError> {
     let mut seen = HashSet::new();
     match files.iter().find(|file| !seen.insert(real(file))) {
@@ -63,7 +63,7 @@ pub(crate) fn numbered(mut names: Vec<String>) -> Vec<String> {
     }
 }
 
-/// Where names stand that are not alone; large and small letters are the same to some disks.
+/// Positions of names that occur more than once; some disks do not tell upper from lower case.
 pub(super) fn shared(names: &[String]) -> Vec<usize> {
     let lower: Vec<String> = names.iter().map(|name| name.to_lowercase()).collect();
     (0..names.len()).filter(|&at| lower.iter().filter(|name| **name == lower[at]).count() > 1).collect()

@@ -17,7 +17,7 @@ type ReadSoils = fn(&Path) -> Result<Vec<SoilSample>, GradationError>;
 pub(crate) struct InputSoils {
     /// The soils, file by file.
     pub soils: Vec<SoilSample>,
-    /// The tables, as they were named; those of a folder in its place.
+    /// The tables by their names; a folder is replaced by its tables.
     files: Vec<PathBuf>,
     /// Short names of what was named.
     pub name: String,

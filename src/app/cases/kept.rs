@@ -1,9 +1,9 @@
-//! What a study that is stopped or killed has found, from which the same command continues.
+//! Results so far of a study that is stopped or killed, from which the same command continues.
 //!
 //! It is a checkpoint of the folder ([`voidwalk_core::store::checkpoint`]): section `found`, a record, under
-//! a hash of everything that the study follows from. What was under way is begun again; what it says follows
-//! from its seed alone, so the whole is that of a study that nobody stopped. A batch keeps no such file: its
-//! cases are run folders, each of which continues by itself.
+//! a hash of all inputs of the study. Parts under way are started again; their results follow from the seed
+//! alone, so the whole equals an uninterrupted study. A batch keeps no such file: its cases are run folders,
+//! each of which continues by itself.
 
 use std::path::Path;
 
@@ -20,7 +20,7 @@ use voidwalk_core::store::checkpoint::{CheckpointError, Identity, Label, Section
 use voidwalk_core::store::format::from_json;
 use voidwalk_core::store::{Folder, read_whole};
 
-/// What stands for all that a study follows from.
+/// Hash of all inputs of a study.
 pub(crate) fn hash_of(work: &str) -> String {
     format!("{:032x}", xxh3_128(work.as_bytes()))
 }
@@ -39,12 +39,13 @@ pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
 ) -> Result<R, RunError> {
     let mark = Unfinished { kind: kind.name().into(), work, ..Unfinished::default() };
     let kept = Kept::new(kind, folder, &mark.work);
-    // Of a batch the cases are looked at again: each has files of its own.
+    // The cases of a batch are checked again: each has files of its own.
     let whole = mark.whole(folder, kind.record())?.filter(|_| !overwrite && !kind.has_cases());
     let record = match whole {
         Some(record) => record,
         None => {
-            // What is to be replaced is other work: this very work that was stopped is gone on with.
+            // Files that would be replaced belong to other work; a stopped start of this very work is
+            // continued.
             let begun = Unfinished::read(folder)?;
             let is_begun = begun.as_ref() == Some(&mark);
             let found = match overwrite {
@@ -53,7 +54,7 @@ pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
                 false => kept.newest(callbacks)?,
             };
             let has_cases = kind.has_cases();
-            // Of a corrupt mark nothing is known.
+            // A corrupt mark tells nothing.
             if has_cases && !overwrite && !is_begun && begun.is_some_and(|begun| !begun.work.is_empty()) {
                 return Err(RunError::Refused(format!(
                     "{}: holds another {} that is unfinished, or was begun by another version of voidwalk; \
@@ -98,7 +99,7 @@ pub(crate) struct Kept<'a> {
     /// The checkpoint.
     name: &'static str,
     files: &'static [&'static str],
-    /// What the study does one after the other, and keeps when done.
+    /// Name of the parts that the study does one after the other and keeps when done.
     parts: &'static str,
 }
 
@@ -113,10 +114,10 @@ impl<'a> Kept<'a> {
         Self { kind, folder, identity: Identity { scene, ..Identity::default() }, name, files, parts }
     }
 
-    /// What an earlier start of this very study found.
+    /// Results of an earlier start of this very study.
     ///
     /// # Errors
-    /// What is there is of another study, or cannot be read.
+    /// The file belongs to another study, or cannot be read.
     fn newest<T: DeserializeOwned>(&self, callbacks: &Callbacks) -> Result<Option<T>, RunError> {
         let refused = |error: CheckpointError| match error.is_unreadable() {
             true => RunError::Checkpoint(error),
@@ -134,10 +135,10 @@ impl<'a> Kept<'a> {
         saved.map(|saved| saved.read_record("found").map_err(refused)).transpose()
     }
 
-    /// Keeps what has been found, so many parts; the checkpoint before stays until this one is whole.
+    /// Keeps the results of this many parts; the previous checkpoint stays until this one is whole.
     ///
     /// # Errors
-    /// What the folder says.
+    /// Errors of the folder.
     pub fn keep(&self, parts: usize, found: &impl Serialize) -> Result<(), RunError> {
         let label = Label { identity: self.identity.clone(), generation: parts as u64, ..Label::default() };
         let record = serde_json::to_vec(found)?;
@@ -145,7 +146,7 @@ impl<'a> Kept<'a> {
         save(self.folder.path(), self.name, &label, &sections).map_err(RunError::Save)
     }
 
-    /// That the study was stopped with so many of its parts done.
+    /// Reports that the study was stopped with this many of its parts done.
     pub fn stopped(&self, done: usize, all: usize) -> RunError {
         let (folder, parts) = (shown(self.folder.path()), self.parts);
         RunError::Stopped(format!(

@@ -3,11 +3,11 @@
 //!
 //! - [`plan`] is a list of cases, each with a name and a seed: from a file that crosses factors. `pairs`
 //!   makes one of samples and filters. `prepared` are its cases, worked out.
-//! - [`run()`] walks those that are not done, by `walk`; [`collect`] writes what came of them, the `ledger`.
+//! - [`run()`] walks the unfinished cases, by `walk`; [`collect`] writes their results, the `ledger`.
 //! - [`batch`] makes one table of the pairs, by practice and walk.
-//! - `cluster` hands a plan to a cluster's scheduler, by what `crate::run::cost` says that its cases
-//!   take; [`check_plan`] says the same of this machine.
-//! - `kept` is what a study that is stopped has found.
+//! - `cluster` hands a plan to a cluster's scheduler, with the cost of its cases from `crate::run::cost`;
+//!   [`check_plan`] reports the cost on this machine.
+//! - `kept` holds the results so far of a study that is stopped.
 
 pub mod batch;
 mod changed;

@@ -1,4 +1,4 @@
-//! What a batch walks: the pairs of samples and filters as the cases of a campaign that share one seed.
+//! Walks of a batch: the pairs of samples and filters as the cases of a campaign that share one seed.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -48,13 +48,13 @@ pub struct BatchPlan {
     pub(super) filters: Vec<BatchFilter>,
     /// The curve of the one base as sampled; empty where each soil is a sample.
     pub(super) base: Vec<[f64; 2]>,
-    /// What practice says of each pair; nothing is walked yet.
+    /// Answer of practice on each pair, before any walk.
     pub(super) rows: Vec<WalkedRow>,
-    /// The name of each row's case, whether it is walked or not.
+    /// Name of the case of each row, walked or not.
     pub(super) cases: Vec<String>,
     /// Cases that are walked in full.
     pub(super) in_full: HashSet<String>,
-    /// What was assumed of the files.
+    /// Assumptions about the files.
     pub(super) notes: Vec<String>,
     /// The cases that are walked.
     pub(super) campaign: CasePlan,
@@ -162,17 +162,17 @@ impl BatchPlan {
         Ok(())
     }
 
-    /// What the scenes of the walks say of the sheet: all the same.
+    /// Cover of the sheet: all scenes of the walks agree on it.
     pub(super) fn cover(&self) -> SheetCover {
         self.campaign.cases.first().map(|case| case.scene.about.cover()).unwrap_or_default()
     }
 
-    /// Whether page and terminal show inches beside mm.
+    /// True if page and terminal show inches beside mm.
     pub fn shows_inches(&self) -> bool {
         self.campaign.cases.first().is_some_and(|case| case.scene.about.shows_inches())
     }
 
-    /// What the constrictions of the walks come from, in a sentence.
+    /// Source of the constrictions of the walks, in a sentence.
     pub fn constrictions_in_words(&self) -> String {
         self.campaign.cases.first().map_or(String::new(), |case| case.scene.constrictions_in_words())
     }
@@ -234,7 +234,7 @@ fn case_names(table: &BatchTable, filters: &[PathBuf]) -> Vec<String> {
     of_filters.iter().flat_map(pair).collect()
 }
 
-/// The scene of a pair, or why there is none.
+/// The scene of a pair, or the reason why it has none.
 fn scene(row: &WalkedRow, filters: &[BatchFilter], tables: &TableOptions) -> Result<Scene, String> {
     let filter = filters.iter().find(|filter| filter.name == row.rules.filter);
     if filter.is_some_and(|filter| filter.curves.len() > 1) {
@@ -243,7 +243,7 @@ fn scene(row: &WalkedRow, filters: &[BatchFilter], tables: &TableOptions) -> Res
     if row.rules.is_refused {
         return Err(EXCHANGED.into());
     }
-    // Whether they are exchanged is known.
+    // An exchange of base and filter is already known.
     let tables = TableOptions { as_given: true, ..tables.clone() };
     let filter = PathBuf::from(&row.rules.filter);
     Scene::of_tables(&row.rules.path, &filter, &tables).map_err(|problem| {

@@ -43,7 +43,7 @@ const MOST_CASES: usize = 100_000;
 /// A larger plan is refused (bytes).
 const LARGEST_FILE: u64 = 1 << 20;
 
-/// What a scene has at its top, and a plan only inside `set`.
+/// Top-level keys of a scene that a plan takes only inside `set`.
 const OF_A_SCENE: [&str; 10] =
     ["filter", "base", "network", "packing", "record", "stop", "about", "replicates", "runs", "engine"];
 
@@ -152,9 +152,9 @@ pub struct PlannedCase {
 /// A plan, its cases worked out.
 #[derive(Clone, Debug)]
 pub struct CasePlan {
-    /// What errors call it.
+    /// Name in errors.
     pub file: String,
-    /// What it is about, in a line.
+    /// Title of the plan, in a line.
     pub title: String,
     /// Factors in the order of the plan.
     pub factors: Vec<String>,
@@ -169,7 +169,7 @@ impl CasePlan {
     /// A plan to start from: every key with its meaning, as `voidwalk init --plan` prints it.
     pub const INIT_TEXT: &str = include_str!("../data/plan.toml");
 
-    /// Whether a file has what a plan alone has, whatever else is wrong with it.
+    /// True if a file has keys that only a plan has, whatever else is wrong with it.
     pub fn is_plan(path: &Path) -> bool {
         let bytes = read_regular(path, LARGEST_FILE).ok().flatten().unwrap_or_default();
         hints::as_text(&bytes).is_ok_and(|text| match DeTable::parse(text) {
@@ -334,7 +334,7 @@ pub(crate) fn crossed<'a, T>(factors: &[&'a [T]]) -> Vec<Vec<&'a T>> {
     })
 }
 
-/// A name that can stand in a file name, a table and a page.
+/// Checks that a name can be part of a file name, a table and a page.
 fn check_name(what: &str, name: &str) -> Result<(), String> {
     let bad = |c: char| is_hidden(c) || "=,/\\\"'".contains(c);
     if name.is_empty() || name.len() > 100 || name.starts_with('.') || name.chars().any(bad) {

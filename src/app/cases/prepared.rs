@@ -25,7 +25,7 @@ pub(crate) const CASES: &str = "cases";
 /// Why a case could not be walked, where it was tried last.
 pub(super) const PROBLEM: &str = "problem.txt";
 
-/// A larger list of tasks is none (bytes).
+/// Size of the largest list of tasks that is accepted (bytes).
 const LARGEST_LIST: u64 = 1 << 26;
 
 /// A message names no more cases than this.
@@ -61,7 +61,7 @@ impl CasePart {
 pub struct FailedCase {
     /// The case.
     pub case: String,
-    /// What went wrong.
+    /// Description of the problem.
     pub problem: String,
 }
 
@@ -165,7 +165,7 @@ impl<'a> Drafts<'a> {
     }
 }
 
-/// What tells filters apart: their grains, and the overlap of voids.
+/// Key of a filter: its grains, and the overlap of voids.
 fn key(plan: &PackingPlan) -> String {
     format!("{} {}", plan.fingerprint(), plan.merge_overlap)
 }
@@ -174,7 +174,7 @@ fn key(plan: &PackingPlan) -> String {
 pub struct PreparedCase<'a> {
     /// The case as planned.
     pub planned: &'a PlannedCase,
-    /// The same with its files read.
+    /// The case with its files read.
     pub case: Case,
     /// Fingerprint of everything that its results follow from.
     pub fingerprint: String,
@@ -189,7 +189,7 @@ impl<'a> PreparedCase<'a> {
 
     /// Folder of the results, inside the campaign's.
     pub fn folder(&self) -> PathBuf {
-        // As it is written into ledger and table, on every system.
+        // Written into ledger and table in one form on every system.
         PathBuf::from(format!("{CASES}/{}", self.planned.folder_name()))
     }
 
@@ -198,10 +198,11 @@ impl<'a> PreparedCase<'a> {
         self.read_line(out).ok().flatten()
     }
 
-    /// The same; a file that is there and cannot be read is no case that is not done.
+    /// Reads the line of the ledger; a file that exists but cannot be read is an error, not an unfinished
+    /// case.
     ///
     /// # Errors
-    /// What the system says.
+    /// Errors of the system.
     pub fn read_line(&self, out: &Path) -> Result<Option<LedgerLine>, StoreError> {
         let path = out.join(self.folder()).join(LINE);
         let bytes = match read_whole(&path) {
@@ -216,7 +217,7 @@ impl<'a> PreparedCase<'a> {
     }
 }
 
-/// What is known of a case that is not done.
+/// State of a case that is not done.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum CaseState {
     /// Nobody has begun it.

@@ -23,7 +23,7 @@ use crate::run::prepare::{Draft, PrepareOptions};
 use crate::run::replicates::have_networks;
 use crate::run::shared_networks::SharedNetworks;
 
-/// How a campaign is walked; no setting changes a result.
+/// Options of walking a campaign; no setting changes a result.
 #[derive(Clone, Debug)]
 pub struct CaseOptions {
     /// Folder for the results, which several processes may share.
@@ -34,11 +34,11 @@ pub struct CaseOptions {
     pub packings: Option<PathBuf>,
     /// Memory that the walks may take (bytes); 80 % of what is available without it.
     pub memory: Option<u64>,
-    /// Worker threads; without a number as many as a cluster's job has, else one per core.
+    /// Worker threads; by default the number that a cluster's job has, else one per core.
     pub threads: Option<usize>,
-    /// How often a case that is being walked is saved.
+    /// Interval between saves of a case that is being walked.
     pub checkpoint_interval: CheckpointInterval,
-    /// What a case's `manifest.json` says that it was started with.
+    /// Command in a case's `manifest.json` that started it.
     pub command: String,
 }
 
@@ -79,31 +79,31 @@ impl CaseOptions {
     }
 }
 
-/// Whether any two cases have one seed, and so may have networks in common.
+/// True if any two cases have one seed, and so may share networks.
 pub(super) fn have_common_seeds(cases: &[&PlannedCase]) -> bool {
     let seeds: BTreeSet<u64> = cases.iter().map(|case| case.scene.walk.seed).collect();
     seeds.len() < cases.len()
 }
 
-/// Of what there is, what a case may take; and what the networks may that cases have in common.
+/// Limits of a case within the available resources, and the room for networks that cases share.
 pub(super) fn rooms(mut limits: ResourceLimits, share_networks: bool) -> (ResourceLimits, Option<u64>) {
     let shared = share_networks.then(|| SharedNetworks::bytes(limits.memory));
     limits.memory -= shared.unwrap_or(0);
     (limits, shared)
 }
 
-/// A campaign of which this process has done what it can.
+/// A campaign of which this process has done its part.
 pub struct FinishedCases {
-    /// Finished cases in the order of the plan; none where only a part of it was seen to.
+    /// Finished cases in the order of the plan; `None` if this process handled only a part of it.
     pub lines: Option<Vec<LedgerLine>>,
     /// Cases that could not be walked.
     pub failed: Vec<FailedCase>,
-    /// How many cases were seen to.
+    /// Number of cases that were handled.
     pub cases: usize,
 }
 
 impl FinishedCases {
-    /// What a user must know if cases could not be walked.
+    /// Error that tells the user of cases that could not be walked.
     pub fn problem(&self) -> Option<RunError> {
         let (failed, of) = (self.failed.len(), self.cases);
         if failed == 0 {
@@ -161,7 +161,7 @@ pub fn unsound(plan: &CasePlan, options: &CaseOptions) -> Result<Vec<FailedCase>
     let (limits, _) = rooms(prepare.limits(&options.out), have_common_seeds(&wanted));
     let pool = threads(options.threads)?;
     let workers = pool.current_num_threads() as u64;
-    // What is wrong with a case, and whether it is that it has no room.
+    // Problem of a case; true if it is lack of room.
     let wrong = |planned: &PlannedCase| -> Option<(bool, FailedCase)> {
         let failed = |has_no_room: bool, problem: RunError| {
             (has_no_room, FailedCase { case: planned.name.clone(), problem: problem.to_string() })
@@ -207,7 +207,7 @@ pub(crate) type ReadyCases<'a, 'b> = Result<&'b [PreparedCase<'a>], RunError>;
 /// Walks the cases that are ready.
 pub(crate) type Walk<'a> = Box<dyn FnOnce() -> Result<FinishedCases, RunError> + 'a>;
 
-/// As [`run()`], but for what is done around the walk of the cases when all are ready.
+/// Walks a campaign like [`run()`], with the caller's work around the walk of the cases once all are ready.
 pub(crate) fn run_around<R>(
     plan: &CasePlan,
     options: &CaseOptions,

@@ -1,9 +1,8 @@
-//! Walks the cases of a plan that are not done, each in a folder of its own, by as many processes as are at
-//! it.
+//! Walks the unfinished cases of a plan, each in a folder of its own, by any number of processes.
 //!
 //! A case is claimed by the lock of its folder, which dies with its owner, and is done when the folder holds
-//! `case.json` with the case's fingerprint. Nothing else is shared: what a process that is killed has not
-//! saved in checkpoints is lost, and whoever comes next continues from those.
+//! `case.json` with the case's fingerprint. Nothing else is shared: if a process is killed, the work since
+//! its last checkpoint is lost, and the next process continues from there.
 //!
 //! A case that cannot be walked stops no other: its folder says why in `problem.txt`, and the caller is told
 //! at the end.
@@ -36,25 +35,25 @@ use crate::run::studies::Studies;
 use voidwalk_core::store::format;
 use voidwalk_core::store::{Folder, StoreError, make_folder};
 
-/// What is said of a case whose results are gone.
+/// Problem of a case whose results are gone.
 pub(super) const LOST: &str = "its results were overwritten by another process; is another plan, or this \
     one changed, at work on the folder?";
 
-/// How often a process looks whether others are done: at first, and after some waiting.
+/// Interval between looks for finished cases of other processes: at first, and after some waiting.
 const LOOK: (Duration, Duration) = (Duration::from_millis(300), Duration::from_secs(10));
 
-/// How long another process may take to replace the files of a case with the same ones.
+/// Time that another process may take to replace the files of a case with the same ones.
 const REPLACING: Duration = Duration::from_secs(5);
 
-/// How often results that could not be written are tried again.
+/// Number of attempts to write results.
 const TRIES: u32 = 3;
 
-/// What a process says of a case.
+/// Event of a case in a process.
 #[derive(Clone, Copy, Debug)]
 pub enum CaseEvent<'a> {
     /// It begins to walk it, or continues from its checkpoints.
     Begun {
-        /// Whether there are checkpoints.
+        /// True if there are checkpoints.
         resumes: bool,
     },
     /// A run of it is done.
@@ -72,11 +71,11 @@ pub enum CaseEvent<'a> {
     Waiting,
 }
 
-/// How a caller follows a campaign, and stops it.
+/// Callbacks of a caller that follow a campaign and stop it.
 #[derive(Clone, Copy)]
 pub struct CaseCallbacks<'a> {
-    /// How the caller follows packings, stops the campaign and takes finished results; of walks
-    /// of single cases `on_case` is told.
+    /// Callbacks of the caller that follow packings, stop the campaign and take finished results; walks of
+    /// single cases are reported to `on_case`.
     pub run: Callbacks<'a>,
     /// Told how many cases there are before the first is walked, and how many of them are done already.
     pub on_cases: &'a (dyn Fn(usize, usize) + Sync),
@@ -90,7 +89,7 @@ impl Default for CaseCallbacks<'_> {
     }
 }
 
-/// How the cases of a campaign are walked.
+/// Runner of the cases of a campaign.
 pub(super) struct CaseRunner<'a> {
     /// The campaign's folder.
     pub out: &'a Path,
@@ -98,13 +97,13 @@ pub(super) struct CaseRunner<'a> {
     pub threads: usize,
     /// Who follows the campaign.
     pub callbacks: &'a CaseCallbacks<'a>,
-    /// How often a case that is being walked is saved.
+    /// Interval between saves of a case that is being walked.
     pub checkpoint_interval: CheckpointInterval,
     /// Networks, where cases with one seed may have them in common.
     pub networks: Option<SharedNetworks>,
     /// Job and task of a cluster.
     pub job: Option<String>,
-    /// What a case's `manifest.json` says that it was started with.
+    /// Command in a case's `manifest.json` that started it.
     pub command: String,
 }
 
@@ -153,8 +152,8 @@ impl CaseRunner<'_> {
         Ok(tally.failed.into_inner().unwrap_or_default())
     }
 
-    /// Whether a case that was finished stays gone: where locks reach one machine only, another process may
-    /// be replacing its files with the same ones at this moment.
+    /// True if a finished case stays gone: if locks reach one machine only, another process may be replacing
+    /// its files with the same ones at this moment.
     pub(super) fn is_lost(&self, case: &PreparedCase) -> bool {
         let until = Instant::now() + REPLACING;
         while !self.is_done(case) {
@@ -206,11 +205,11 @@ impl CaseRunner<'_> {
         on_each(at_once as usize, work)
     }
 
-    /// Claims one case and walks it into its folder; says whether it was this process that finished it.
+    /// Claims one case and walks it into its folder; true if this process finished it.
     fn one(&self, case: &PreparedCase) -> Result<bool, RunError> {
         let folder = Folder::open(&self.out.join(case.folder()))?;
-        // Opening the list of its files asks a server anew, which an open of one file that was missing before
-        // may not.
+        // Opening the folder's list of files makes the client ask the server again; opening one file that was
+        // missing before may not.
         drop(std::fs::read_dir(folder.path()));
         folder.remove(PROBLEM)?;
         // Another process may have finished it since the list was made.
@@ -225,7 +224,7 @@ impl CaseRunner<'_> {
                 Ok(false)
             }
             Err(problem) => {
-                // What cannot be written here is told all the same.
+                // A problem that cannot be written here is reported all the same.
                 let _ = folder.write(PROBLEM, format!("{problem}\n").as_bytes());
                 Err(problem)
             }
@@ -266,7 +265,7 @@ impl CaseRunner<'_> {
                 checkpoints.flush()?;
                 return Ok(false);
             }
-            // Of what the case was before the plan was changed, or corrupt: it is walked from its start.
+            // The checkpoint is corrupt, or older than a change of the plan: walk from the start.
             Err(error @ RunError::Checkpoint(_)) if error.exit() == Exit::Refused => {
                 self.warn(name, &format!("{error}; the case is walked from its start"));
                 checkpoints.clear()?;
@@ -304,14 +303,14 @@ impl CaseRunner<'_> {
     }
 }
 
-/// What a panic says.
+/// Message of a panic.
 fn fault(panic: &(dyn std::any::Any + Send)) -> RunError {
     let text = panic.downcast_ref::<String>().map(String::as_str);
     let text = text.or(panic.downcast_ref::<&str>().copied()).unwrap_or("it does not say which");
     RunError::failed(format!("a fault of the program: {text}"))
 }
 
-/// What this process has done so far.
+/// Progress of this process so far.
 #[derive(Default)]
 struct Tally {
     finished: Mutex<BTreeSet<String>>,
@@ -341,8 +340,8 @@ impl Tally {
         }
     }
 
-    /// Whether results that could not be written may be tried again: where locks reach one machine only,
-    /// another process may have been replacing the same files. What was walked is not walked again.
+    /// True if the writing of results may be tried again: if locks reach one machine only, another process
+    /// may have been replacing the same files. Finished walks are not repeated.
     fn may_try_again(&self, name: &str) -> bool {
         self.waits.fetch_add(1, Ordering::Relaxed);
         let Ok(mut tries) = self.tries.lock() else { return false };

@@ -1,4 +1,4 @@
-//! Arguments and what they mean to a user: the commands, and those of one pair or several.
+//! Arguments and their meaning for a user: the commands, and options of one pair or several.
 
 use std::path::PathBuf;
 

@@ -41,7 +41,7 @@ pub fn each(args: &RulesArgs, options: PairOptions) -> Result<(), RunError> {
     Ok(())
 }
 
-/// What was assumed of the files, a line each.
+/// Assumptions about the files, a line each.
 pub(super) fn in_notes(notes: &[String]) -> String {
     let lines = notes.iter().map(|note| format!("note  {}\n", plain(note))).collect::<String>();
     if lines.is_empty() { lines } else { format!("\n{lines}") }
@@ -74,7 +74,7 @@ pub(super) fn aligned<T>(columns: Columns<T>, rows: &[T]) -> String {
     text
 }
 
-/// How many samples a filter retains, and which govern.
+/// Number of samples that a filter retains, and the governing ones.
 pub(super) fn of_filter(rows: &[BatchRow], filter: &BatchFilter, inches: bool) -> String {
     let lines = filter_lines(filter, rows, SizeUnit::of(false, inches));
     lines.iter().map(|line| plain(line)).collect::<Vec<_>>().join("\n  ") + "\n"

@@ -1,4 +1,4 @@
-//! `voidwalk campaign`: the cases of a plan, by as many processes as are started on its folder.
+//! `voidwalk campaign`: the cases of a plan, by any number of processes on its folder.
 
 use std::fmt::Write;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What is said while a campaign is walked: a bar on a terminal, plain lines elsewhere.
+//! Messages while a campaign is walked: a bar on a terminal, plain lines elsewhere.
 
 use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
@@ -19,7 +19,7 @@ const BETWEEN_RUNS: Duration = Duration::from_secs(5);
 /// Progress over cases.
 pub struct CaseProgress {
     quiet: bool,
-    /// Whether everything that happens to a case has a line, as the log of a job should have it.
+    /// True if every event of a case has a line, as in the log of a job.
     each: bool,
     /// Known as soon as the cases are counted.
     shown: OnceLock<(Option<ProgressBar>, Mutex<Lines>)>,
@@ -59,7 +59,7 @@ impl CaseProgress {
         })
     }
 
-    /// So many cases there are, and so many of them are done.
+    /// Begins the display with `total` cases, of which `done` are done.
     pub fn begin(&self, total: usize, done: usize) {
         if self.quiet {
             return;

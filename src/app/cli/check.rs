@@ -17,7 +17,7 @@ use voidwalk_core::store::format;
 use voidwalk_practice::quantity::{SizeUnit, whole};
 
 impl SettingArgs {
-    /// How the scene is prepared.
+    /// Options of preparing the scene.
     pub fn prepare(&self, threads: Option<usize>) -> PrepareOptions {
         PrepareOptions { packings: self.packings.clone(), memory: self.memory, threads }
     }

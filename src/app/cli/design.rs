@@ -21,7 +21,7 @@ use voidwalk_practice::quantity::SizeUnit;
 /// The folder of the results, where nobody names one.
 const FOLDER: &str = "voidwalk-specification";
 
-/// The same for many samples.
+/// Default folder of designs for many samples.
 const EACH_FOLDER: &str = "voidwalk-designs";
 
 /// Makes the specification for a base, or for each of many samples, and writes it into a folder.
@@ -59,7 +59,7 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
     Ok(())
 }
 
-/// The band and its limit, what to watch, and the products that fit; steps and limits stand on the page.
+/// The band and its limit, points to watch, and the products that fit; the page has steps and limits.
 fn words(of: &Specification) -> String {
     let unit = SizeUnit::of(false, of.inches);
     let band = band(of, unit).unwrap_or_else(|| match &of.no_band {

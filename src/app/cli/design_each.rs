@@ -26,7 +26,7 @@ pub(super) fn design_each(args: &DesignArgs, options: &SpecifyOptions) -> Result
     Ok(())
 }
 
-/// What to do where a base is found to be dispersive, with the option that does it.
+/// Advice for a base that is found to be dispersive, with the option to add.
 pub(super) fn by_option(again: &str) -> String {
     format!("{again} (--dispersive)")
 }

@@ -1,5 +1,5 @@
-//! What to type: two examples in the help of every command, a short `-h` beside the whole `--help`, and the
-//! first words for who types `voidwalk` alone.
+//! Commands to type: two examples in the help of every command, a short `-h` beside the whole `--help`, and
+//! the first words for a user who types `voidwalk` alone.
 
 use std::sync::LazyLock;
 
@@ -155,7 +155,7 @@ const EXAMPLES: [(&str, [Example; 2]); 19] = [
     ),
 ];
 
-/// What who types `voidwalk` alone is told.
+/// Text for a user who types `voidwalk` alone.
 pub const FIRST_WORDS: &str = "\
 Will this filter hold this soil? Type first, with two sieve tables (CSV, .xlsx, .ods, AGS4), the base before
 the filter:
@@ -223,7 +223,7 @@ mod tests {
         for name in &shown {
             let (_, examples) = EXAMPLES.iter().find(|(of, _)| of == name).expect(name);
             for [line, _] in examples {
-                // As a shell splits it.
+                // Line as a shell splits it.
                 let line = line.split(" > ").next().unwrap_or_default();
                 let words = line.split('"').enumerate().flat_map(|(at, part)| match at % 2 {
                     0 => part.split_whitespace().collect::<Vec<_>>(),

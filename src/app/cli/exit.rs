@@ -1,4 +1,4 @@
-//! How the program ends: its exit codes, and the verdicts that a caller does not accept.
+//! Ends of the program: its exit codes, and the verdicts that a caller does not accept.
 
 use clap::ValueEnum;
 
@@ -32,7 +32,7 @@ pub enum FailOn {
     Continuing,
 }
 
-/// What model and practice say of a case.
+/// Answer of model and practice for a case.
 #[derive(Clone, Copy)]
 pub struct JudgedAnswer {
     /// The class of the model.
@@ -78,7 +78,7 @@ pub fn accept<'a>(
     accept_walked(fail_on, cases.into_iter().map(|(name, answer)| (name, Ok(answer))))
 }
 
-/// As [`accept`], of cases of which some were not walked: why. Those are not accepted.
+/// Checks cases like [`accept`]; those that were not walked carry a reason, and are not accepted.
 ///
 /// # Errors
 /// The cases whose verdict is not accepted, or not known.

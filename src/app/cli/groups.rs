@@ -35,7 +35,7 @@ fn in_words(command: &Command) -> String {
         for name in names.iter().filter(is_there) {
             let about = command.find_subcommand(name).and_then(Command::get_about);
             let about = about.map(ToString::to_string).unwrap_or_default();
-            // What it does; the rest is in its own help.
+            // First part of the description; the rest is in the command's own help.
             let first = about.split(": ").next().unwrap_or_default();
             let _ = writeln!(text, "  {name:<width$}  {first}");
         }

@@ -8,7 +8,7 @@ use crate::run::{self, RunError};
 use crate::scene::{Scene, TableOptions};
 
 impl TableArgs {
-    /// What a scene of two tables is given besides them.
+    /// Options of a scene of two tables.
     pub fn options(&self) -> TableOptions {
         TableOptions {
             density: self.density,

@@ -65,7 +65,7 @@ pub fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
     accept_walked(results.accept.fail_on, pairs)
 }
 
-/// How cases are walked that options of the command line describe.
+/// Options of walking cases from the options of the command line.
 fn campaign_options(out: &Path, set: &SettingArgs, walk: &WalkArgs) -> CaseOptions {
     CaseOptions {
         out: out.to_owned(),
@@ -78,7 +78,7 @@ fn campaign_options(out: &Path, set: &SettingArgs, walk: &WalkArgs) -> CaseOptio
     }
 }
 
-/// That so many walks were kept with the cover of an earlier call, in a line; nothing where none was.
+/// Number of walks that were kept with the cover of an earlier call, in a line; empty if it is 0.
 fn of_earlier_cover(walks: usize) -> String {
     match walks {
         0 => String::new(),

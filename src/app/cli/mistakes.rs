@@ -40,7 +40,7 @@ pub fn explained(mut error: clap::Error, command: &Command, words: &[OsString]) 
     error
 }
 
-/// What a first word that is no command may have been meant to be.
+/// Guess at the command meant by a first word that is not a command.
 fn instead_of_command(name: &str, command: &Command) -> Option<String> {
     if is_table(name) {
         return Some(JUDGE.into());
@@ -119,7 +119,7 @@ fn two_tables(words: &[String]) -> Option<String> {
     }
 }
 
-/// Whether a word names a table by its ending.
+/// True if a word names a table by its ending.
 fn is_table(word: &str) -> bool {
     let path = word.split('#').next().unwrap_or_default().to_lowercase();
     [".csv", ".xlsx", ".ods", ".ags"].iter().any(|ending| path.ends_with(ending))

@@ -84,7 +84,7 @@ pub fn grains_per_void(grains: Option<f64>) -> String {
 /// Widest line (characters).
 const WIDTH: usize = 100;
 
-/// A text in lines that begin with so many spaces.
+/// A text in lines that begin with this many spaces.
 pub fn wrapped(text: &str, indent: usize) -> Vec<String> {
     let indent = " ".repeat(indent);
     let mut lines = vec![indent.clone()];

@@ -36,7 +36,7 @@ pub fn followed<T>(quiet: bool, work: impl FnOnce(&Callbacks) -> Result<T, RunEr
     done
 }
 
-/// What short work is told: its results get their pages, and a signal ends it as it ends any program.
+/// Callbacks of short work: its results get their pages, and a signal ends it like any program.
 pub fn unfollowed() -> Callbacks<'static> {
     Callbacks {
         warn: &|warning| to_stderr(&format!("warning: {}\n", plain(warning))),
@@ -53,7 +53,7 @@ pub fn stop_on_signals() -> Result<Arc<AtomicBool>, RunError> {
     stop_on_request().map_err(RunError::failed)
 }
 
-/// A bar of this length on a terminal; none elsewhere.
+/// A bar of this length on a terminal, and no bar elsewhere.
 pub fn bar_on_terminal(length: u64, style: &str) -> Option<ProgressBar> {
     if !std::io::stderr().is_terminal() {
         return None;
@@ -69,7 +69,7 @@ pub fn bar_on_terminal(length: u64, style: &str) -> Option<ProgressBar> {
 /// Looks at the replicates so far come at most this often as plain lines.
 const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
 
-/// What is shown of the work.
+/// Display of the work.
 struct Display {
     quiet: bool,
     begun: Instant,
@@ -104,7 +104,7 @@ struct Walk {
     so_far: SoFar,
     /// Replicates that the verdict is to have, and runs of each.
     needs: [u64; 2],
-    /// Whether the verdict also waits for other readings of the inputs.
+    /// True if the verdict also waits for other readings of the inputs.
     readings: bool,
     /// Replicates at the last look, and when that was said.
     looked_at: usize,
@@ -275,7 +275,7 @@ fn packing_begun(plan: &PackingPlan) -> String {
     )
 }
 
-/// How far a packing is, `here` of its steps done by this start of the program.
+/// Progress of a packing, with `here` of its steps done by this start of the program.
 fn packing_line(progress: &CompressionProgress, usual: u64, here: u64, seconds: f64) -> String {
     let stage = match progress.stage {
         Stage::Squeeze => "squeeze",

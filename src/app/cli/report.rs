@@ -25,8 +25,8 @@ pub fn report(folder: &Path) -> Result<(), RunError> {
     Ok(())
 }
 
-/// Writes the page of results that are whole, of a run from the content of its files where that is at hand; a
-/// set of constrictions has none, and neither has a server's folder.
+/// Writes the page of finished results, of a run from the content of its files if that is at hand; a set of
+/// constrictions has no page, nor has a server's folder.
 pub fn page(kind: FolderKind, folder: &Path, run: Option<RunFiles>) -> Result<PathBuf, ReportError> {
     let written = match kind {
         FolderKind::Run => match run {

@@ -133,7 +133,7 @@ fn words(
 
 /// Result, name, value and limit of a rule.
 fn row(rule: &AppliedRule) -> String {
-    // Short words, as in a column: what is not judged stands in the note below.
+    // Short words for a column: the note below explains rules that are not judged.
     let word = match result_of(rule) {
         RuleResult::NotMet => "NOT MET",
         RuleResult::DoesNotApply => "not for it",

@@ -39,7 +39,7 @@ impl AcceptArgs {
 }
 
 impl ResultArgs {
-    /// How the run is done that a command asks for.
+    /// Options of the run that a command asks for.
     pub fn options(&self, set: &SettingArgs) -> RunOptions {
         RunOptions {
             out: self.out.clone(),
@@ -103,7 +103,7 @@ fn show(run: &FinishedRun, as_json: bool, quiet: bool) -> Result<(), RunError> {
 /// Subjects of notes that the last line names, those that matter most.
 const LABELS: usize = 4;
 
-/// What a user wants to know first.
+/// Lines that a user wants to read first.
 fn summary(run: &FinishedRun) -> String {
     let FinishedRun { outcome, decision, .. } = run;
     let mut text = String::new();

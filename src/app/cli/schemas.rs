@@ -25,7 +25,7 @@ use voidwalk_sheets::SoilSummary;
 /// Makes the schema of a type.
 type Made = fn() -> Schema;
 
-/// What each form holds beside its beginning.
+/// Contents of each form after its beginning.
 const CONTENTS: &[(Format, Made)] = &[
     (format::OUTCOME, of::<Outcome>),
     (format::MANIFEST, of::<Manifest>),
@@ -45,7 +45,7 @@ const CONTENTS: &[(Format, Made)] = &[
     (format::SOILS, of::<Soils>),
     (format::SETTINGS, of::<SceneReference>),
 ];
-/// What Python gives that is no file: its types are made from their schemas.
+/// Types that Python gives but no file holds: they are made from their schemas.
 const OF_PYTHON: &[(&str, Made)] = &[("network-walk", of::<NetworkWalkRecord>), ("columns", of::<Tables>)];
 
 /// The JSON Schema of a file, by the name of its form, as `outcome`: indented, with a newline at its end.
@@ -122,7 +122,7 @@ mod tests {
 
     use super::*;
 
-    /// Writes the lines anew where this variable is set.
+    /// Variable that makes the test write the lines again.
     const UPDATE: &str = "VOIDWALK_UPDATE_SCHEMAS";
     /// A line a record: its form, and a hash of its schema.
     const KEPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/cli/schemas.txt");

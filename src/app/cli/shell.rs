@@ -46,9 +46,9 @@ fn script(shell: Shell) -> String {
 /// completes files, and quotes them.
 const BASH_FILES: &str = r#"COMPREPLY=($(compgen -f "${cur}"))"#;
 
-/// In bash the soils of a file stand behind `FILE#`, and nothing behind `base.cu=`, where its value is still
-/// to come. What bash inserts within quotes is not quoted: names are offered there that no quotes give a
-/// meaning to.
+/// In bash the soils of a file follow `FILE#`, and nothing follows `base.cu=`, whose value is still to come.
+/// Bash does not quote text that it inserts within quotes: it offers there only names to which quotes give no
+/// meaning.
 const BASH_MORE: &str = r##"
 _voidwalk_and_values() {
     local word="${COMP_WORDS[COMP_CWORD]}" quoted="" name
@@ -89,7 +89,7 @@ _voidwalk_and_soils() {
 compdef _voidwalk_and_soils voidwalk
 "#;
 
-/// The same in fish.
+/// Additions for fish.
 const FISH_MORE: &str = r#"
 function __voidwalk_soils
     set -l word (string unescape -- (commandline -ct))
@@ -101,8 +101,8 @@ end
 complete -c voidwalk -a '(__voidwalk_soils)'
 "#;
 
-/// The program's arguments with the values that each may have. What may be a file as well has them in bash
-/// alone, which goes on to files where none of them fits.
+/// The program's arguments with the values that each may have. Arguments that may also be a file have values
+/// in bash alone, which goes on to files if no value fits.
 fn with_values(shell: Shell) -> Command {
     let names = command().get_subcommands().map(|sub| sub.get_name().to_owned()).collect::<Vec<_>>();
     names.iter().fold(command(), |whole, name| {
@@ -200,7 +200,7 @@ mod tests {
         assert!(
             every.iter().all(|script| script.contains("loose") && script.contains("filter.density=dense"))
         );
-        // What may be a file is no list of words there.
+        // Arguments that may be a file have no list of words there.
         let of_filter =
             |line: &&str| line.contains("using_subcommand boundary") && line.contains(" -l filter ");
         let lines: Vec<&str> = every[1].lines().filter(of_filter).collect();

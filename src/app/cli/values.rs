@@ -16,7 +16,7 @@ pub(super) fn assignment(text: &str) -> Result<String, String> {
     }
 }
 
-/// How densely a filter lies. A number could be a void ratio, a relative density or a friction.
+/// Density of a filter. A number could be a void ratio, a relative density or a friction.
 pub(super) fn density(text: &str) -> Result<Density, String> {
     Density::named(text).ok_or_else(|| {
         "write loose, medium (or intermediate) or dense; the friction between grains while they are \

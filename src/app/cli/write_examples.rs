@@ -6,7 +6,7 @@ use std::path::Path;
 use super::print::{to_copy, to_stdout};
 use crate::run::{EXAMPLE_FILES, RunError, write_examples};
 
-/// What to try with the files, from within their folder: a command line, and what it does.
+/// Commands to try with the files, from within their folder: a command line, and its effect.
 const TO_TRY: [[&str; 2]; 9] = [
     ["voidwalk soil us-sieves.csv", "what is read from a sheet"],
     ["voidwalk rules base.csv filter.csv", "every rule of practice"],

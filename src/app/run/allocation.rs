@@ -1,11 +1,11 @@
-//! What Slurm says of the job that the program runs in.
+//! Slurm's description of the job in which the program runs.
 
 /// The job, and what it may use.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Allocation {
     /// Job, and task where it is one of an array, as Slurm writes it: `12_3`.
     pub job: String,
-    /// How often Slurm has begun it again.
+    /// Number of restarts by Slurm.
     pub restarts: u64,
     /// Processors of a task.
     pub processors: Option<usize>,
@@ -27,7 +27,7 @@ impl Allocation {
         };
         let on_node = number("SLURM_CPUS_ON_NODE");
         let processors = number("SLURM_CPUS_PER_TASK").or(on_node).filter(|n| *n > 0);
-        // Megabytes of 2^20 bytes; 0 stands for all that the node has.
+        // Megabytes of 2^20 bytes; 0 means all memory of the node.
         let per_processor = || number("SLURM_MEM_PER_CPU")?.checked_mul(on_node.or(processors)?);
         let memory = number("SLURM_MEM_PER_NODE").or_else(per_processor).filter(|megabytes| *megabytes > 0);
         Some(Self {
@@ -38,7 +38,7 @@ impl Allocation {
         })
     }
 
-    /// Worker threads: as many as the job has processors, and no more than this process may run on.
+    /// Worker threads: the number of processors of the job, and no more than this process may run on.
     pub fn threads(&self) -> Option<usize> {
         let here = std::thread::available_parallelism().map_or(usize::MAX, usize::from);
         self.processors.map(|processors| processors.min(here))

@@ -1,11 +1,11 @@
-//! How many cases a process walks at the same time, and what memory that takes: one answer for the process
+//! Number of cases that a process walks at the same time, and their memory: one answer for the process
 //! itself, for `check`, and for the job scripts that ask for its memory.
 
 use super::allocation::Allocation;
 use super::machine::Machine;
 use crate::case::Case;
 
-/// A job script asks for so many times the memory that is estimated.
+/// Factor on the estimated memory in the request of a job script.
 pub const MEMORY_MARGIN: f64 = 1.5;
 
 /// A job takes little that takes no more than this for each of its threads (bytes).
@@ -14,16 +14,16 @@ const LITTLE_BYTES: u64 = 1 << 30;
 /// Cases that are walked at the same time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CasesAtOnce {
-    /// How many.
+    /// Number of cases.
     pub cases: u64,
     /// Bytes that the process takes then.
     pub bytes: u64,
 }
 
 impl CasesAtOnce {
-    /// Of these cases, in a job whose script asks for their memory. A case beside those that keep the threads
-    /// busy is one of them where the job takes little with it: none asks for twice the memory to fill what
-    /// idles at the end of a case.
+    /// Counts these cases in a job whose script asks for their memory. A case beside those that keep the
+    /// threads busy is added if the job takes little memory with it: no job asks for twice the memory to fill
+    /// threads that idle at the end of a case.
     pub fn of_job(cases: &[&Case], threads: u64) -> Self {
         let with_spare = Self::where_there_is_room(cases, threads, 1, u64::MAX);
         match with_spare.bytes <= threads.saturating_mul(LITTLE_BYTES) {
@@ -32,14 +32,14 @@ impl CasesAtOnce {
         }
     }
 
-    /// Of these cases, in this process.
+    /// Counts these cases in this process.
     pub fn here(cases: &[&Case], threads: u64) -> Self {
         let in_job = Allocation::here().is_some_and(|job| job.memory.is_some());
         Self::within(cases, threads, Machine::here().available, in_job)
     }
 
-    /// The same where so many bytes are available: to a job alone, or to whatever else runs on the machine,
-    /// too.
+    /// Counts these cases if this many bytes are available: to a job alone, or to all that runs on the
+    /// machine.
     fn within(cases: &[&Case], threads: u64, available: u64, in_job: bool) -> Self {
         if !in_job {
             return Self::where_there_is_room(cases, threads, 1, available / 2);
@@ -54,22 +54,21 @@ impl CasesAtOnce {
         Self::at_most(wanted(threads, fewest, spare, cases.len()), cases, threads, room)
     }
 
-    /// No more than so many of the cases, where their walks have so much room, and no more than each case is
-    /// allowed.
+    /// Limits the number of cases by `most`, by the room for their walks, and by the limit of each case.
     fn at_most(most: u64, cases: &[&Case], threads: u64, room: u64) -> Self {
         let allowed = cases.iter().map(|case| case.memory).min().unwrap_or(u64::MAX);
         let largest = largest(cases, threads);
         let count = most.min(allowed.min(room) / largest.max(1)).max(1);
-        // What has no room in memory lies in files.
+        // Particles that do not fit into memory go into files.
         let walks = largest.saturating_mul(count).min(allowed);
         let bytes = cases.iter().map(|case| case.program_bytes(walks)).max().unwrap_or(walks);
         Self { cases: count, bytes }
     }
 }
 
-/// Of so many cases, how many are to be walked at the same time, memory aside, where each has at
-/// least so many replicates: as many as give each thread a replicate, and so many more for the threads that
-/// wait for the last replicate or the page of another.
+/// Number of these cases to walk at the same time, memory aside, if each has at least this many replicates:
+/// enough to give each thread a replicate, and `spare` more for the threads that wait for the last replicate
+/// or the page of another.
 fn wanted(threads: u64, replicates: u64, spare: u64, cases: usize) -> u64 {
     let spare = if threads > 1 { spare } else { 0 };
     (threads.div_ceil(replicates.max(1)) + spare).clamp(1, cases.max(1) as u64)
@@ -100,7 +99,7 @@ mod tests {
         assert_eq!([wanted(4, 10, 0, 9), wanted(64, 10, 0, 99)], [1, 7]);
     }
 
-    /// The memory that a job asks for is that of the cases that it then walks, however large they are.
+    /// A job asks for the memory of the cases that it then walks, however large they are.
     #[test]
     fn a_job_walks_as_many_cases_as_its_script_asked_for() {
         let mut found = Vec::new();

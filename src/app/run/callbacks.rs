@@ -1,4 +1,4 @@
-//! How a caller follows the work, and stops it.
+//! Callbacks of a caller, to follow the work and to stop it.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,7 +15,7 @@ use voidwalk_practice::Decision;
 use voidwalk_practice::Note;
 use voidwalk_practice::quantity::SizeUnit;
 
-/// What happens while a filter is packed and a case is walked.
+/// Event while a filter is packed and a case is walked.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a> {
     /// Another process makes the packing that is needed; it is waited for.
@@ -27,20 +27,20 @@ pub enum Event<'a> {
     },
     /// A filter is packed, from the start or from where it was stopped.
     PackingBegun(&'a PackingPlan),
-    /// How far the packing is.
+    /// Progress of the packing.
     Packing(&'a CompressionProgress),
     /// The packing has ended, well or not.
     PackingEnded,
-    /// What is to be known of a case before its walk.
+    /// Notes on a case before its walk.
     Noted {
         /// The most important first.
         notes: &'a [Note],
         /// In what the case gives sizes.
         unit: SizeUnit,
     },
-    /// Replicates are walked: so many runs, as far as is known.
+    /// Replicates are walked: this many runs, as far as is known.
     WalkBegun {
-        /// How many.
+        /// Number of runs.
         runs: u64,
     },
     /// An increment of some run is done.
@@ -56,7 +56,7 @@ pub enum Event<'a> {
     },
     /// A run is done.
     RunDone,
-    /// What came of a run of the case itself, with its own curve and amount of base.
+    /// Result of a run of the case itself, with its own curve and amount of base.
     RunWalked {
         /// Replicate, counted from 1.
         replicate: u64,
@@ -64,19 +64,19 @@ pub enum Event<'a> {
         run: u64,
         /// Mass eroded over mass inserted.
         eroded_mass_fraction: f64,
-        /// Whether that is below the threshold, exactly.
+        /// True if the fraction is below the threshold, exactly.
         below_threshold: bool,
     },
-    /// What the verdict follows from, as far as is known; said again where more replicates are needed.
+    /// Number of walks that decide the verdict, as far as is known; repeated if more replicates are needed.
     VerdictNeeds {
         /// Replicates of the case itself.
         replicates: u64,
         /// Runs of each.
         runs: u64,
-        /// Whether the ends of the range of its curve are walked beside these.
+        /// True if the ends of the range of its curve are walked as well.
         readings: bool,
     },
-    /// The verdict stands, and what else is walked are studies beside it.
+    /// The verdict is final; all further walks are studies.
     VerdictStands {
         /// The outcome, its studies to come.
         outcome: &'a Outcome,
@@ -87,14 +87,15 @@ pub enum Event<'a> {
     },
     /// More runs are needed than was known.
     MoreRuns {
-        /// How many.
+        /// Number of runs.
         runs: u64,
     },
-    /// What a study is at, in words.
+    /// Current step of a study, in words.
     Studying(&'a str),
 }
 
-/// How a caller follows the work, from any thread, and stops it; the default follows nothing and never stops.
+/// Callbacks of a caller that follow the work, from any thread, and stop it; the default follows nothing and
+/// never stops.
 ///
 /// ```
 /// use std::sync::atomic::{AtomicU64, Ordering};
@@ -138,7 +139,7 @@ impl Default for Callbacks<'_> {
 }
 
 impl Callbacks<'_> {
-    /// Whether the work is to stop.
+    /// True if the work must stop.
     pub fn is_stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }

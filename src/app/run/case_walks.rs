@@ -14,7 +14,7 @@ pub struct CaseWalks {
     pub replicates: Vec<ReplicateResult>,
     /// Their statistics by run.
     pub summary: Vec<RunSummary>,
-    /// What a rule that adds replicates came to.
+    /// Result of a rule that adds replicates.
     pub stopping: Option<Stopping>,
     /// The ends of the range of the curve; `None` where the curve is no range.
     pub range: Option<CurveRange>,

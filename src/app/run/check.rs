@@ -1,4 +1,4 @@
-//! What a run would do, before any of it is done.
+//! Forecast of a run, before any of its work.
 
 use std::path::{Path, PathBuf};
 

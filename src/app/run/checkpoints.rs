@@ -24,26 +24,26 @@ use voidwalk_core::walk::{SavedState, State};
 /// Folder of the checkpoints, inside the run's.
 pub const FOLDER: &str = "checkpoint";
 
-/// What of a replicate is done.
+/// Finished part of a replicate.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Done {
-    /// Whether all of it is.
+    /// True if the replicate is finished.
     pub complete: bool,
     /// Figures of the runs that are done.
     pub runs: Vec<Run>,
-    /// Whether each of them eroded less than the threshold.
+    /// True, by run, if it eroded less than the threshold.
     pub below: Vec<bool>,
     /// Their rows of the CSV files.
     pub recorded: Recorded,
-    /// What has been watched of the run that is under way.
+    /// Records of the run that is under way.
     pub recorder: Recorder,
 }
 
 /// Which walk of a case: a checkpoint of one is never taken for another's.
 #[derive(Clone, Copy, Debug)]
 pub struct WalkId {
-    /// 0: the walks of the scene itself; from 1: those of the sensitivity study, then those at the ends of
-    /// the constriction curve's range, and those of other thicknesses; from 2^32: those of the margin.
+    /// 0: the walks of the scene itself; from 1: the walks of the sensitivity study, then those at the ends
+    /// of the constriction curve's range, and those of other thicknesses; from 2^32: those of the margin.
     pub part: u64,
     /// Replicate, counted from 1.
     pub replicate: u64,
@@ -60,12 +60,12 @@ impl WalkId {
     }
 }
 
-/// How often a walk is saved.
+/// Interval between saves of a walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckpointInterval {
     /// When this much time has passed since the last time.
     Time(Duration),
-    /// After every so many increments.
+    /// A save after this many increments.
     Increments(u64),
 }
 
@@ -131,8 +131,7 @@ impl Checkpoints {
         })
     }
 
-    /// What the checkpoints in a run's folder are of, by fingerprint; `None` where there are none that are
-    /// whole.
+    /// Fingerprint of the scene of the checkpoints in a run's folder; `None` if no checkpoint is whole.
     ///
     /// # Errors
     /// The system fails to read one.
@@ -150,7 +149,7 @@ impl Checkpoints {
         Ok(None)
     }
 
-    /// Whether a run's folder holds checkpoints.
+    /// True if a run's folder holds checkpoints.
     ///
     /// # Errors
     /// The system fails to look.
@@ -158,7 +157,7 @@ impl Checkpoints {
         Ok(!files_in(&folder.join(FOLDER))?.is_empty())
     }
 
-    /// Whether it is time to save a walk that was saved `last` and has done this increment.
+    /// True if it is time to save a walk that was saved `last` and has done this increment.
     pub fn is_due(&self, last: Instant, increment: u64, stop: bool) -> bool {
         stop || match self.every {
             CheckpointInterval::Time(time) => last.elapsed() >= time,
@@ -166,11 +165,10 @@ impl Checkpoints {
         }
     }
 
-    /// What was saved of a replicate: what is done, and the checkpoint of the state of the run that is under
-    /// way.
+    /// Loads a replicate: its finished part, and the checkpoint of the run that is under way.
     ///
     /// # Errors
-    /// There are checkpoints of it, but none is whole and of this very walk.
+    /// It has checkpoints, but no checkpoint is whole and belongs to this very walk.
     pub fn load(&self, walk: WalkId) -> Result<Option<(Done, Checkpoint)>, CheckpointError> {
         let name = walk.name();
         let (saved, refused) = newest(&self.folder, &name, &self.identity(walk))?;

@@ -13,18 +13,18 @@ use voidwalk_core::constrictions::{
 use voidwalk_core::network::permeability_mm2;
 use voidwalk_core::packing::{Packing, ReadOptions};
 
-/// How constrictions are measured.
+/// Options of measuring constrictions.
 #[derive(Clone, Debug)]
 pub struct ConstrictionsOptions {
     /// Overlap of two inscribed spheres from which their tetrahedra are one void.
     pub merge_overlap: f64,
     /// Which facets between voids are constrictions of the curve.
     pub facets: Facets,
-    /// What the file of grains does not say.
+    /// Options that complete the file of grains.
     pub read: ReadOptions,
     /// Folder for the results.
     pub out: PathBuf,
-    /// Whether earlier results there are replaced.
+    /// True if earlier results there are replaced.
     pub overwrite: bool,
 }
 

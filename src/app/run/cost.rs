@@ -1,9 +1,9 @@
 //! The one cost model: seconds, steps and memory of walks and packings.
 //!
-//! It is asked before any work, to tell a user minutes from hours and a cluster what to give, and after a
-//! first run, whose counted work says what more of them will take. Its figures are those of one thread of a
-//! processor of 2024 that is shared with other work; only what ends in `_here` asks how fast the machine is
-//! on which it runs. `results/speed.md` holds estimates against measured times
+//! It is used before any work, to tell a user minutes from hours and to size a cluster's jobs, and after a
+//! first run, whose counted work predicts the cost of further runs. Its figures hold for one thread of a
+//! processor of 2024 that is shared with other work; only functions whose names end in `_here` measure the
+//! speed of the machine on which they run. `results/speed.md` holds estimates against measured times
 //! (`scripts/checks/check_times.py`).
 
 use super::pilot::{WorkByVoid, pilot, small_packing_seconds};
@@ -23,16 +23,16 @@ struct Rates {
     inserted_s: f64,
     /// Splitting the counts of a void in an increment.
     void_s: f64,
-    /// Finding out, in an increment, whether a void of a layer that holds counts holds any.
+    /// Seconds to test, in an increment, if a void holds counts, in a layer that holds any.
     looked_at_s: f64,
 }
 
-/// Of a walk whose occupied voids are counted.
+/// Rates of a walk whose occupied voids are counted.
 const WALK: Rates = Rates { moved_s: 2.05e-9, inserted_s: 6.5e-8, void_s: 1.65e-8, looked_at_s: 8e-9 };
-/// With engine `expected` the counts of a void take so many times as long: on a lattice by area, whose rows
-/// move at once, and on other networks.
+/// Factors on the time of a void's counts with engine `expected`: on a lattice by area, whose rows move at
+/// once, and on other networks.
 const EXPECTED: [f64; 2] = [0.06, 0.55];
-/// Of a walk of which only the number of voids is known, empty ones included.
+/// Rates of a walk whose number of voids alone is known, empty ones included.
 const COUNTED: Rates = Rates { moved_s: 2.5e-9, inserted_s: 1.5e-8, void_s: 1.7e-8, looked_at_s: 0.0 };
 /// On a network of any other kind, whose voids have any number of exits, the counts of a void take this many
 /// times as long.
@@ -49,7 +49,7 @@ const PARTS: usize = 64;
 const NETWORK_S: f64 = 1e-7;
 /// Seconds to write a case's files and page ...
 const FILES_S: f64 = 0.12;
-/// ... and those of a packing besides.
+/// ... and further seconds for the files of a packing.
 const PACKED_FILES_S: f64 = 0.1;
 /// The most that a pilot walk of a case may take.
 const PILOT_S: f64 = 0.25;
@@ -80,8 +80,8 @@ const DENSE_STEPS: f64 = 45_000.0;
 /// Part of those steps that packings take whose sizes differ so much that crowded grains are moved as heavier
 /// ones (Cu 6: 17,800 to 22,500 of 30,900 to 51,100; without friction 20,200 to 36,300 of 30,400 to 50,300).
 const WIDE_STEPS: f64 = 0.55;
-/// How many times as many steps packings took whose friction is lowered at the end, where they settle again
-/// (from 0.7 to 0.3: 1.5 at Cu 1.5, 2.1 and 1.9 at Cu 6).
+/// Factor on the steps of packings whose friction is lowered at the end, so that they settle again (from 0.7
+/// to 0.3: 1.5 at Cu 1.5, 2.1 and 1.9 at Cu 6).
 const GIVING_WAY: f64 = 1.8;
 /// Seconds to measure the constrictions around a grain, and to write it.
 const MEASURED_GRAIN_S: f64 = 5e-5;
@@ -110,7 +110,7 @@ impl Case {
         self.foreseen().seconds
     }
 
-    /// The same for this machine, whose pace the pilot walks of the case tell.
+    /// Core seconds on this machine, from the pace of the case's pilot walks.
     pub fn core_seconds_here(&self) -> f64 {
         let Foreseen { seconds, besides, pilots, .. } = self.foreseen();
         (seconds - besides) * pace(pilots.took, pilots.said) + besides
@@ -127,7 +127,7 @@ impl Case {
             None => {
                 self.of_thickness(factor).ok().map(|other| other.of_replicate(other.supply.n_base, most_s))
             }
-            // As many times the base on as many times the copies; no pilot walks it.
+            // Base and copies grow by one factor; no pilot walks this case.
             Some(_) => {
                 let times = factor * factor.max(1.0);
                 let (seconds, besides) = (times * own.seconds, times * own.besides);
@@ -137,7 +137,7 @@ impl Case {
         let points = factors.into_iter().map(of_base);
         let points = points.chain(thicknesses.into_iter().filter_map(of_thickness));
         let studies = points.map(|point| {
-            // What is not walked by a pilot is taken to erode as the case does.
+            // Points that no pilot walks are taken to erode as the case does.
             let own = own.eroded.as_deref();
             let eroded = own.map(|own| (own, point.eroded.as_deref().unwrap_or(own)));
             (likely_replicates(self, eroded), point)
@@ -150,8 +150,8 @@ impl Case {
         studies.chain(ends).fold(first, |all, (replicates, point)| all.and(replicates as f64, &point))
     }
 
-    /// All runs of a replicate with so many base particles, its network included: by a pilot walk, else by a
-    /// guess.
+    /// All runs of a replicate with this many base particles, its network included: by a pilot walk, else by
+    /// a guess.
     fn of_replicate(&self, n_base: u64, most_s: f64) -> Foreseen {
         let runs = self.scene.walk.runs as f64;
         let guess = self.guessed(n_base);
@@ -187,7 +187,7 @@ impl Case {
         Guess { seconds, solved }
     }
 
-    /// How many times as long as on a cubic lattice by engine `counts` the counts of a void take.
+    /// Time of a void's counts relative to a cubic lattice by engine `counts`.
     fn slower(&self) -> f64 {
         let of_network = match self.scene.network.source() {
             NetworkSource::Cubic(_) => 1.0,
@@ -196,7 +196,7 @@ impl Case {
         of_network * self.of_engine(self.scene.is_lattice_by_area())
     }
 
-    /// The same of the case's own engine, on a lattice by area or on another network.
+    /// Time of a void's counts by the case's own engine, on a lattice by area or on another network.
     fn of_engine(&self, is_lattice_by_area: bool) -> f64 {
         let [of_rows, of_voids] = EXPECTED;
         match self.scene.walk.engine {
@@ -225,7 +225,7 @@ impl Case {
         shares().filter_map(|share| walked.d_by_number(share)).map(moves).sum::<f64>() / PARTS as f64
     }
 
-    /// Bytes that the program takes where its walks take so many.
+    /// Bytes of the whole program if its walks take this many.
     pub fn program_bytes(&self, walks: u64) -> u64 {
         let CaseNetwork { voids, constrictions, .. } = self.network;
         // A network is being built, and a page is being written.
@@ -245,15 +245,15 @@ impl Rates {
 }
 
 impl WorkByVoid {
-    /// Seconds that so much work takes on so many voids, whose counts take so many times as long as on a
-    /// lattice by engine `counts`.
+    /// Seconds of this work on this many voids, whose counts take `slower` times as long as on a lattice by
+    /// engine `counts`.
     fn of_voids(&self, voids: f64, slower: f64) -> f64 {
         let [occupied, looked_at] = [self.occupied, self.looked_at].map(|each| voids * each * slower);
         WALK.seconds(occupied, looked_at, voids * self.one_by_one, voids * self.moves)
     }
 }
 
-/// What is foreseen of walks.
+/// Forecast of walks.
 #[derive(Default)]
 struct Foreseen {
     seconds: f64,
@@ -266,7 +266,7 @@ struct Foreseen {
 }
 
 impl Foreseen {
-    /// This, and so many times `other`, whose pilot walks were walked once.
+    /// Sum of this and a multiple of `other`, whose pilot walks were walked once.
     fn and(self, times: f64, other: &Self) -> Self {
         let Pilots { took, said } = self.pilots;
         Self {
@@ -278,7 +278,7 @@ impl Foreseen {
     }
 }
 
-/// How many times as long as was said something took; 1 where a clock cannot tell.
+/// Measured time over predicted time; 1 if both are too short for a clock.
 fn pace(took: f64, said: f64) -> f64 {
     let least = LEAST_TIMED_S.max(LEAST_STEPS * THREAD_SECONDS_STEP);
     if took >= least && said > 0.0 { took / said } else { 1.0 }
@@ -309,7 +309,7 @@ impl PackingPlan {
         grains * (self.usual_steps() as f64 * stiffness * step_s + MEASURED_GRAIN_S)
     }
 
-    /// The same for this machine, whose pace a small packing tells.
+    /// Core seconds on this machine, from the pace of a small packing.
     pub fn core_seconds_here(&self) -> f64 {
         self.core_seconds() * pace(small_packing_seconds(), SMALL_PACKING_S)
     }
@@ -337,12 +337,12 @@ impl PackingPlan {
     }
 }
 
-/// Seconds that a case takes on so many threads of its own.
+/// Seconds of a case on this many threads of its own.
 pub fn seconds_on(case: &Case, threads: u64) -> f64 {
     case.core_seconds() / (threads as f64 * BUSY)
 }
 
-/// Seconds and bytes that collecting so many cases takes, `measuring_s` for the packing of each.
+/// Seconds and bytes of collecting this many cases, with `measuring_s` for the packing of each.
 pub fn collecting(cases: usize, measuring_s: f64) -> (f64, u64) {
     let bytes = COLLECTING_BYTES.0 + cases as u64 * COLLECTING_BYTES.1;
     (cases as f64 * (COLLECTING_S + measuring_s), bytes)

@@ -10,7 +10,7 @@ use crate::outcome::early_stop::{ERROR_OF_END, clear_end};
 use crate::outcome::record::{Classed, CurveEnd, CurveRange, RunSummary, Verdict};
 use crate::outcome::stopping::class_at;
 
-/// An end of the range of the curve, and those of its replicates that were walked.
+/// An end of the range of the curve, and its replicates that were walked.
 pub struct BegunEnd<'a> {
     end: &'a OtherCurve,
     /// The case with that curve.
@@ -38,17 +38,16 @@ pub fn begin_ends<'a>(case: &'a Case, context: &ReplicateContext) -> Result<Vec<
     each((before..).zip(&case.filter.curve_ends).collect(), fit, one)
 }
 
-/// Whether walks of the case fit into the memory side by side.
+/// True if walks of the case fit into the memory side by side.
 fn fit(case: &Case) -> bool {
     case.side_by_side(case.supply.n_base, rayon::current_num_threads() as u64) > 1
 }
 
-/// Walks each end of the range of the curve: one replicate where it is clear that the class stays, else as
-/// many as were walked with the curve itself, of which class and statistics by run are known. `None` where
-/// the curve is no range.
+/// Walks each end of the range of the curve: one replicate if the class clearly stays, else as many as with
+/// the curve itself, whose class and statistics by run are known. `None` if the curve has no range.
 ///
 /// # Errors
-/// As [`super::replicates::replicates`].
+/// See [`super::replicates::replicates`].
 pub fn curve_range(
     case: &Case,
     walked: &[ReplicateResult],
@@ -80,7 +79,7 @@ fn of_end(
     let (first, all) = (replicates_of_end(walked.len() as u64), walked.len() as u64);
     let BegunEnd { end, case: other, part, n_base, walked: mut of_end } = begun;
     of_end.extend(some_replicates(&other, part, of_end.len() as u64 + 1..=first, n_base, context)?);
-    // Of either look.
+    // Error of each of the two looks.
     let error = case.scene.stop.error_of_curve(case.curves()).map(|error| 0.5 * error);
     let of_first = error.unwrap_or(ERROR_OF_END).min(ERROR_OF_END);
     let clear = clear_end(&values_by_run(walked), class, &values_by_run(&of_end), of_first);

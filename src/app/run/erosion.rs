@@ -1,4 +1,4 @@
-//! What one run of a case erodes on one network, and nothing else of it: for studies that walk many cases.
+//! Erosion in one run of a case on one network, and nothing else: for studies that walk many cases.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use crate::outcome::Eroded;
 use voidwalk_core::network::Network;
 use voidwalk_core::walk::{Clogged, PlainExits, SizeClasses, State, Walk, WalkControl};
 
-/// A run whose record is not wanted: one class of sizes, or as many as two.
+/// Number of size classes of a run whose record is not wanted: one class or two serve as well.
 const SIZE_CLASSES: usize = 2;
 
 /// Walks run `run` (1 or 2) of a case on the network of the replicate with this seed, from constrictions

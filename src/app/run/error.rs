@@ -10,7 +10,7 @@ use voidwalk_core::store::StoreError;
 use voidwalk_core::store::checkpoint::CheckpointError;
 use voidwalk_core::walk::WalkError;
 
-/// What ends a command that does not succeed.
+/// Reason why a command does not succeed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
     /// The input is refused before any work, and nothing was written.
@@ -38,8 +38,8 @@ impl Exit {
 /// An error of any kind, on its way to a user.
 pub type AnyError = Box<dyn std::error::Error + Send + Sync>;
 
-/// Why a command of the program ended early; [`RunError::exit`] says whether it was refused, stopped or
-/// failed.
+/// Reason why a command of the program ended early; [`RunError::exit`] tells refused, stopped and failed
+/// commands apart.
 ///
 /// ```
 /// use voidwalk_app::run::{Exit, RunError};
@@ -90,7 +90,7 @@ pub enum RunError {
     Room {
         /// Base particles that are walked one by one.
         particles: u64,
-        /// What the system says.
+        /// Error of the system.
         source: std::io::Error,
     },
     /// Results that cannot be put into words.
@@ -98,10 +98,10 @@ pub enum RunError {
     Format {
         /// The file.
         file: &'static str,
-        /// What is wrong.
+        /// Cause of the problem.
         source: AnyError,
     },
-    /// What the caller does with results that are written failed.
+    /// The caller's work on finished results failed.
     #[error("{0}")]
     Results(AnyError),
     /// Anything else that failed.
@@ -126,7 +126,7 @@ impl RunError {
         Self::failed(format!("no thread can be started: {problem}; {limits}"))
     }
 
-    /// Whether it was refused, stopped, failed or not accepted.
+    /// Kind of the end: refused, stopped, failed or not accepted.
     pub fn exit(&self) -> Exit {
         let refused_if = |refused| if refused { Exit::Refused } else { Exit::Failed };
         match self {
@@ -135,7 +135,7 @@ impl RunError {
             Self::Checkpoint(error) => refused_if(!error.is_unreadable()),
             Self::Stopped(_) | Self::Walk(WalkError::Stopped { .. }) => Exit::Stopped,
             Self::NotAccepted(_) => Exit::NotAccepted,
-            // What a packing is asked for is checked before its first step.
+            // The request for a packing is checked before its first step.
             Self::Packing(error) => refused_if(matches!(
                 error,
                 PackingError::Setting { .. }
@@ -146,7 +146,7 @@ impl RunError {
         }
     }
 
-    /// What is kept of the work, and what to do next, where the disk is what is wrong.
+    /// Advice on a full or failing disk: the work that is kept, and the next step.
     pub fn advice(&self) -> Option<&'static str> {
         use std::io::ErrorKind::{
             FileTooLarge, InvalidFilename, NotADirectory, PermissionDenied, QuotaExceeded,
@@ -190,7 +190,7 @@ impl RunError {
         })
     }
 
-    /// Whether the same work may succeed a little later: another process was replacing the same files.
+    /// True if a retry may succeed a little later: another process was replacing the same files.
     pub(crate) fn is_of_files(&self) -> bool {
         matches!(self, Self::Store(_) | Self::Claim(_) | Self::Format { .. } | Self::Results(_))
     }

@@ -12,7 +12,7 @@ use voidwalk_core::store::StoreError;
 pub struct ExampleFile {
     /// Its name.
     pub name: &'static str,
-    /// What is in it, in some words.
+    /// Description of its contents.
     pub what: &'static str,
     /// All that is in it.
     pub text: &'static str,

@@ -19,14 +19,14 @@ pub(crate) const NETWORKS: [&str; 2] = ["networks.0", "networks.1"];
 /// The files of the checkpoint of a percolation study that is not finished.
 pub(crate) const LATTICES: [&str; 2] = ["lattices.0", "lattices.1"];
 
-/// What `voidwalk export` writes into a folder of that name ...
+/// Files that `voidwalk export` writes into a folder of that name ...
 const EXPORTED: [&str; 6] =
     ["arrays.npz", "layers.vtu", "grains.vtu", "voids.pvd", "constrictions.pvd", "verdict.xlsx"];
 
 /// ... and how the names of the moments of a walk begin, before their numbers.
 const EXPORTED_MOMENTS: [&str; 2] = ["voids_", "constrictions_"];
 
-/// What a folder holds.
+/// Kind of the contents of a folder.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FolderKind {
     /// A scene that was walked.
@@ -66,7 +66,7 @@ impl FolderKind {
         Self::Constrictions,
     ];
 
-    /// What a user calls it.
+    /// Name for users.
     pub fn name(self) -> &'static str {
         match self {
             Self::Run => "run",
@@ -103,17 +103,17 @@ impl FolderKind {
         self.format().file
     }
 
-    /// Whether a page is made of its record.
+    /// True if a page is made of its record.
     pub fn has_page(self) -> bool {
         !matches!(self, Self::Constrictions | Self::Serve)
     }
 
-    /// Whether it holds cases that continue by themselves, each in a folder of its own.
+    /// True if it holds cases that continue by themselves, each in a folder of its own.
     pub(crate) fn has_cases(self) -> bool {
         self == Self::Batch
     }
 
-    /// What else marks such a folder, finished or not.
+    /// Further marks of such a folder, finished or not.
     fn marks(self) -> &'static [&'static str] {
         match self {
             Self::Run => &["scene.toml", "series.csv", super::checkpoints::FOLDER],
@@ -181,7 +181,7 @@ impl FolderKind {
         }
     }
 
-    /// The figures of its page, in `figures`; those of a campaign stay, as all that it holds.
+    /// The figures of its page, in `figures`; a campaign's figures stay, like everything that it holds.
     pub fn figures(self) -> &'static [&'static str] {
         match self {
             Self::Run => &["verdict", "gradations", "eroded", "layers", "retained", "slice"],
@@ -200,11 +200,11 @@ impl FolderKind {
         Self::ALL.into_iter().find(|kind| folder.join(kind.record()).is_file())
     }
 
-    /// Whether the work in a folder is finished, its page included; that of a campaign or a server can always
-    /// be added to.
+    /// True if the work in a folder is finished, its page included; the work of a campaign or a server can
+    /// always be extended.
     ///
     /// # Errors
-    /// What the system says.
+    /// Errors of the system.
     pub fn is_finished(self, folder: &Path) -> Result<bool, RunError> {
         let has = |name: &str| folder.join(name).symlink_metadata().is_ok();
         Ok(!has(unfinished::FILE)
@@ -231,13 +231,13 @@ pub fn claim(path: &Path, kind: FolderKind, overwrite: bool) -> Result<Folder, R
         _ => Folder::open(path).map_err(RunError::Claim)?,
     };
     let refuse = |problem: String| Err(RunError::Refused(format!("{}: {problem}", shown(path))));
-    // Work that has begun says what it is; that of a corrupt mark is told by its files.
+    // Work that has begun names its kind; if the mark is corrupt, its files tell the kind.
     let begun = Unfinished::read(&folder)?.map(|begun| begun.kind);
     let of_begun = |other: &FolderKind| begun.as_deref() == Some(other.name());
     if let Some(other) = FolderKind::ALL.into_iter().find(|other| *other != kind && of_begun(other)) {
         return refuse(format!("holds a {}; name another folder", other.name()));
     }
-    // A packing has constrictions of its own, which are no other work; those of somebody's own grains are.
+    // The constrictions of a packing belong to it; those of a user's own grains are other work.
     let packed = folder.has(RECORD) || STATES.iter().any(|state| folder.has(state));
     let packed = kind == FolderKind::Packing && (packed || of_begun(&kind));
     let is_part = |other| packed && other == FolderKind::Constrictions;
@@ -261,7 +261,8 @@ pub fn claim(path: &Path, kind: FolderKind, overwrite: bool) -> Result<Folder, R
 pub fn clear(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
     let files = kind.files();
     if kind == FolderKind::Packing && folder.has(RECORD) {
-        // Or its constrictions would be taken for those of somebody's own grains when the record is gone.
+        // Otherwise its constrictions would be taken for those of a user's own grains once the record is
+        // gone.
         Unfinished { kind: kind.name().into(), ..Unfinished::default() }.begin(folder)?;
     }
     folder.remove_all(&files[..files.len().min(1)])?;

@@ -1,4 +1,4 @@
-//! What machine a case runs on, on how many threads, and how much memory it may use.
+//! The machine of a case: number of threads, and memory that it may use.
 
 use std::panic::resume_unwind;
 
@@ -40,8 +40,8 @@ impl Machine {
     }
 }
 
-/// Worker threads: as many as are asked for, else as a cluster's job has, else one per core that this process
-/// may run on.
+/// Worker threads: the number that is asked for, else the number that a cluster's job has, else one per core
+/// on which this process may run.
 ///
 /// # Errors
 /// The system gives no threads.
@@ -49,7 +49,7 @@ pub fn threads(asked: Option<usize>) -> Result<rayon::ThreadPool, RunError> {
     Ok(rayon::ThreadPoolBuilder::new().num_threads(number_of_threads(asked)).build()?)
 }
 
-/// How many these are.
+/// Number of worker threads.
 pub fn number_of_threads(asked: Option<usize>) -> usize {
     let allocated = || Allocation::here().and_then(|job| job.threads());
     let cores = || std::thread::available_parallelism().map_or(1, usize::from);
@@ -64,10 +64,10 @@ pub(crate) fn on_threads<T: Send>(
     threads(asked)?.install(work)
 }
 
-/// Does the same work on so many threads, this one included; where the system gives fewer, on those.
+/// Does the same work on this many threads, this one included; on fewer if the system gives no more.
 ///
 /// # Errors
-/// The first of the work.
+/// The first error of the work.
 pub(crate) fn on_each(count: usize, work: impl Fn() -> Result<(), RunError> + Sync) -> Result<(), RunError> {
     std::thread::scope(|scope| {
         let start = |_| std::thread::Builder::new().spawn_scoped(scope, &work).ok();

@@ -1,4 +1,4 @@
-//! What is found about walks on given networks: what nobody has checked, and what the caller left open.
+//! Notes on walks on given networks: unchecked assumptions, and values that the caller left open.
 
 use std::cmp::Ordering;
 
@@ -13,7 +13,7 @@ use voidwalk_practice::rules::{self, RuleInputs};
 use voidwalk_practice::{Decision, Mistake, ordered};
 
 impl NetworkOutcome {
-    /// Notes on the class, on so many networks of which this is the first.
+    /// Notes on the class; `network` is the first of this many networks.
     pub fn notes(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> Vec<Note> {
         let walked = || self.replicates.iter().map(|walked| &walked.result);
         let layers = network.layers() as u64;
@@ -36,7 +36,7 @@ impl NetworkOutcome {
 }
 
 impl NetworkWalk {
-    /// What was not checked, or is not known, whatever comes of the walk.
+    /// Notes on unchecked or unknown inputs, whatever the result of the walk.
     fn notes(&self, network: &Network, replicates: u64) -> Vec<Note> {
         let filter = self.filter.as_ref();
         let planned = PlannedWalk {
@@ -103,8 +103,8 @@ mod tests {
         (plan.n_base, outcome.notes(&plan, &network, 1))
     }
 
-    /// What nobody can compare with Eq. (2), what falls short of it, and what exceeds it are doubts; its own
-    /// number is none.
+    /// Numbers that cannot be compared with Eq. (2), fall short of it or exceed it are doubts; its own number
+    /// is not.
     #[test]
     fn a_number_of_particles_that_is_not_that_of_equation_two_is_a_doubt() {
         let filter = || Gradation::linear_from_d0(1.0, 1.5).ok();
@@ -147,7 +147,7 @@ mod tests {
     /// (2) asks for the base.
     const OF_A_SCENE: [&str; 2] = ["read_as", "pan_of_filter"];
 
-    /// What is found of a scene, and of its soils on its network without it: all but the list above.
+    /// Notes on a scene, and on its soils on its network without it: all but the list above.
     fn of_both(case: &Case, network: &Network) -> [BTreeSet<(String, String)>; 2] {
         let filter = GivenFilter {
             gradation: case.filter.gradation.clone(),
@@ -210,8 +210,8 @@ mod tests {
         (FILTER, SAND),
     ];
 
-    /// The same soils on the same network, with a scene and without: each note that follows from them is
-    /// reported by both with the same numbers, or stands in the list above.
+    /// Walks the soils on one network, with a scene and without: each note that follows from them is reported
+    /// by both with equal numbers, or is in the list above.
     #[test]
     fn a_walk_without_a_scene_finds_what_a_scene_of_the_same_soils_finds() {
         let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! What is kept of walks on given networks.
+//! Record of walks on given networks.
 
 use rayon::slice::ParallelSliceMut;
 
@@ -14,7 +14,7 @@ use voidwalk_core::network::Network;
 const STEP: usize = 2;
 
 impl NetworkOutcome {
-    /// The record of these walks by a plan, on so many networks of which this is the first.
+    /// The record of these walks by a plan; `network` is the first of this many networks.
     pub fn record(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> NetworkWalkRecord {
         let first = self.replicates.first().map(|walked| &walked.result);
         NetworkWalkRecord {
@@ -44,7 +44,7 @@ impl NetworkOutcome {
     }
 }
 
-/// What a base is, that nobody has named.
+/// Description of a base without a name.
 fn in_words(base: &Gradation) -> String {
     match base.cu().filter(|_| base.smallest_mm() < base.largest_mm()) {
         Some(cu) => format!("Cu {}", (cu * 1e3).round() / 1e3),
@@ -58,7 +58,7 @@ fn given(network: &Network, networks: usize) -> GivenNetwork {
     let constrictions = diameters.len() as u64;
     diameters.retain(|&diameter| diameter > 0.0);
     diameters.par_sort_unstable_by(f32::total_cmp);
-    // The least and the most, and between them the size that so many are no larger than.
+    // The least, the greatest, and between them the size at this percentile.
     let size = |percent: usize| {
         let at = (percent * diameters.len()).div_ceil(100).max(1) - 1;
         Some([f64::from(*diameters.get(at)?) * network.unit_mm(), percent as f64])

@@ -21,12 +21,12 @@ use voidwalk_core::gradation::{Gradation, GradationError, SizeSampler, base_part
 use voidwalk_core::network::Network;
 use voidwalk_core::walk::{Engine, RunPlan, Sampling, SizeClasses, State, Walk, WalkControl};
 
-/// What one void takes while it is walked, with its constrictions (bytes, generously).
+/// Bytes of one void while it is walked, with its constrictions (a generous estimate).
 const BYTES_A_VOID: u64 = 600;
-/// What one base particle takes.
+/// Bytes of one base particle.
 const BYTES_A_PARTICLE: u64 = 8;
 
-/// How given networks are walked.
+/// Plan of walks on given networks.
 #[derive(Clone, Debug)]
 pub struct NetworkWalk {
     /// The base.
@@ -35,9 +35,9 @@ pub struct NetworkWalk {
     pub n_base: u64,
     /// Equal parts in which they are inserted.
     pub increments: u64,
-    /// How passive particles are walked.
+    /// Engine of passive particles.
     pub engine: Engine,
-    /// How sizes and start nodes are drawn.
+    /// Sampling of sizes and start nodes.
     pub sampling: Sampling,
     /// Seed; replicate `r` has [`replicate_seed`] of it.
     pub seed: u64,
@@ -45,26 +45,26 @@ pub struct NetworkWalk {
     pub runs: u64,
     /// Replicates, each with random numbers of its own.
     pub replicates: u64,
-    /// What to record.
+    /// Records to keep.
     pub wanted: Wanted,
     /// The filter, where it is known.
     pub filter: Option<GivenFilter>,
-    /// Mass of the base over that of the filter, of Eq. (2).
+    /// Mass of the base over mass of the filter, for Eq. (2).
     pub mass_ratio: f64,
 }
 
-/// What is known of the filter that a given network is of.
+/// Known properties of the filter of a given network.
 #[derive(Clone, Debug)]
 pub struct GivenFilter {
     /// Its gradation.
     pub gradation: Gradation,
-    /// Whether that is a sieve curve, and not a straight line that was assumed.
+    /// True if it is a sieve curve, not a straight line that was assumed.
     pub is_measured: bool,
     /// Its grains per void, without which Eq. (2) is not known.
     pub grains_per_void: Option<f64>,
 }
 
-/// What came of the walks.
+/// Results of the walks.
 pub struct NetworkOutcome {
     /// The class that the replicates together support.
     pub verdict: Verdict,
@@ -220,7 +220,7 @@ impl NetworkWalk {
         Ok(samplers)
     }
 
-    /// What one walk on the largest of these networks takes (bytes).
+    /// Bytes of one walk on the largest of these networks.
     fn bytes(&self, networks: &[Arc<Network>]) -> u64 {
         let of = |network: &Arc<Network>| {
             let coarse = self.coarse_particles(network);
@@ -243,7 +243,7 @@ impl NetworkWalk {
         (self.n_base as f64 * coarser) as u64
     }
 
-    /// How a run with these constrictions blocked is walked.
+    /// Plan of a run with these constrictions blocked.
     fn plan(&self, network: &Network, sampler: &SizeSampler, blocked: &BitSlice) -> RunPlan {
         RunPlan::new(self.engine, network, sampler, blocked, self.n_base / self.increments)
             .sampled(self.sampling)

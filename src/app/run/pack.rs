@@ -28,24 +28,24 @@ use voidwalk_core::store::{Folder, StoreError};
 /// The checkpoint of a compression that is not finished; its files are [`STATES`].
 const STATE: &str = "compression";
 
-/// How often a compression is saved, where the user does not say.
+/// Default interval between saves of a compression.
 const SAVE_EVERY: Duration = Duration::from_secs(60);
 
-/// How often a packing that another process makes is looked for.
+/// Interval between looks for a packing that another process makes.
 const LOOK: Duration = Duration::from_millis(500);
 
-/// How a filter is packed; only `overwrite` changes what is there afterwards.
+/// Options of packing a filter; only `overwrite` changes the files that are there afterwards.
 #[derive(Clone, Debug)]
 pub struct PackOptions {
     /// Folder for the packing; without one, one of its own in `packings`.
     pub out: Option<PathBuf>,
     /// Folder in which packings are kept.
     pub packings: PathBuf,
-    /// Whether a packing that is there is made anew.
+    /// True if an existing packing is made again.
     pub overwrite: bool,
-    /// Worker threads; without a number as many as a cluster's job has, else one per core.
+    /// Worker threads; by default the number that a cluster's job has, else one per core.
     pub threads: Option<usize>,
-    /// How often the compression is saved.
+    /// Interval between saves of the compression.
     pub checkpoint_interval: Duration,
 }
 
@@ -65,11 +65,11 @@ impl Default for PackOptions {
 pub struct FinishedPacking {
     /// Its folder.
     pub folder: PathBuf,
-    /// What `packing.json` says, as it is.
+    /// Text of `packing.json`, unchanged.
     pub json: String,
-    /// The same, read.
+    /// Contents of `packing.json`.
     pub record: PackingRecord,
-    /// What a walk needs of it.
+    /// Results that a walk needs.
     pub filter: PackedFilter,
 }
 
@@ -272,7 +272,7 @@ fn saved(
     Ok(Some((compression, seconds.first().copied().unwrap_or(0.0), saved.label.generation)))
 }
 
-/// What its checkpoints are of.
+/// Identity of its checkpoints.
 fn identity(plan: &PackingPlan) -> Identity {
     Identity { scene: plan.fingerprint(), seed: plan.compression.seed, ..Identity::default() }
 }

@@ -1,4 +1,4 @@
-//! What `packing.json` says of a packing.
+//! Contents of `packing.json`.
 
 use crate::case::PackingPlan;
 use crate::outcome::packing::PackingRecord;
@@ -6,7 +6,7 @@ use voidwalk_core::constrictions::{CurveError, inscribed};
 use voidwalk_core::gradation::CurvePoint;
 use voidwalk_core::packing::{Cell, PackReport, Packing};
 
-/// The record of a packing whose grains were written as `grains_csv`, after so many seconds of compression.
+/// The record of a packing whose grains were written as `grains_csv`, after this many seconds of compression.
 pub(super) fn record(
     plan: &PackingPlan,
     packing: &Packing,

@@ -23,7 +23,7 @@ use super::replicates::plan;
 pub(super) struct WorkByVoid {
     /// Voids that held counts, summed over the increments.
     pub occupied: f64,
-    /// Voids in layers of which any held counts, summed likewise: they are looked at.
+    /// Voids that are looked at, in layers of which any held counts, summed likewise.
     pub looked_at: f64,
     /// Moves that were attempted by particles that are walked by themselves.
     pub moves: f64,
@@ -59,12 +59,12 @@ pub(super) fn pilot(case: &Case, n_base: u64, whole_s: f64, most_s: f64) -> Opti
     alone(|| walked(case, n_base, width, depth))
 }
 
-/// What `work` gives on one thread, whose time is that of no other work.
+/// Result of `work` on one thread, so that its time includes no other work.
 fn alone<T: Send>(work: impl Fn() -> T + Send + Sync) -> T {
     on_threads(Some(1), || Ok(work())).unwrap_or_else(|_| work())
 }
 
-/// The same, for a lattice so many voids wide and deep.
+/// Pilot walk on a lattice this many voids wide and deep.
 fn walked(case: &Case, n_base: u64, width: u32, depth: u32) -> Option<WorkByVoid> {
     let seed = replicate_seed(case.scene.walk.seed, 1);
     let network =
@@ -125,7 +125,7 @@ pub(super) fn small_packing_seconds() -> f64 {
     *SECONDS
 }
 
-/// How many of these voids hold counts.
+/// Number of these voids that hold counts.
 fn occupied(passive: &Passive, voids: Range<usize>) -> usize {
     match passive {
         Passive::OneByOne => 0,

@@ -1,11 +1,11 @@
-//! How many replicates and runs are walked, as far as it is known before.
+//! Number of replicates and runs that are walked, as far as it is known before.
 
 use crate::case::Case;
 use crate::outcome::early_stop::{FEWEST_OF_RANGE, FEWEST_OWN, clear, looks};
 use crate::outcome::stopping::ReplicateValues;
 use crate::outcome::verdict::{THRESHOLD, classify};
 
-/// Number of runs that are walked for a case: of itself, of the ends of its curve's range, and of its
+/// Number of runs that are walked for a case: its own, and those of the ends of its curve's range and of its
 /// studies, as far as it is known before.
 pub fn runs_to_walk(case: &Case) -> u64 {
     let first = first_replicates(case);
@@ -20,7 +20,7 @@ pub(super) fn first_replicates(case: &Case) -> u64 {
     if rule.is_set() { rule.replicates_at(replicates, 1) } else { replicates }
 }
 
-/// Replicates of an end of the curve's range that are walked at the least, beside so many of the case.
+/// Least number of replicates of an end of the curve's range, for this many of the case.
 pub(super) fn replicates_of_end(own: u64) -> u64 {
     if own >= FEWEST_OF_RANGE as u64 { 1 } else { own }
 }
@@ -31,8 +31,7 @@ pub(super) fn replicates_at_least(case: &Case) -> u64 {
     if first_replicates(case) >= FEWEST_OWN as u64 { each.min(1) } else { each }
 }
 
-/// Scatter of replicates over their mean that is taken where nothing is walked yet: that of the built-in
-/// scene.
+/// Scatter of replicates over their mean before any walk: the value of the built-in scene.
 const LIKELY_SCATTER: f64 = 0.05;
 
 /// Replicates of a point that are likely to be walked, where a replicate of the case and one of the point

@@ -16,14 +16,14 @@ use crate::case::{Case, CaseError, PackedFilter, PackingPlan, ResourceLimits};
 use crate::scene::Scene;
 use voidwalk_core::store::write_whole;
 
-/// How a scene is prepared; no setting changes a result.
+/// Options of preparing a scene; no setting changes a result.
 #[derive(Clone, Debug)]
 pub struct PrepareOptions {
     /// Folder in which packings are kept, so that each is made once.
     pub packings: PathBuf,
     /// Memory that the walks may take (bytes); 80 % of what is available without it.
     pub memory: Option<u64>,
-    /// Worker threads; without a number as many as a cluster's job has, else one per core.
+    /// Worker threads; by default the number that a cluster's job has, else one per core.
     pub threads: Option<usize>,
 }
 
@@ -34,7 +34,7 @@ impl Default for PrepareOptions {
 }
 
 impl PrepareOptions {
-    /// What the walks may take, with their particles in memory or in `folder`.
+    /// Limits of the walks, with their particles in memory or in `folder`.
     pub(crate) fn limits(&self, folder: &Path) -> ResourceLimits {
         ResourceLimits::new(self.memory, Machine::here().available, folder)
     }
@@ -46,7 +46,7 @@ pub struct Draft {
     scene: Scene,
     /// The case, with a guess at a filter that is to be packed.
     pub case: Case,
-    /// What is to be packed for it.
+    /// Packing that is still to be made for it.
     pub packing: Option<PackingPlan>,
 }
 

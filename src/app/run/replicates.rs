@@ -31,7 +31,7 @@ use voidwalk_core::walk::{
 };
 use voidwalk_practice::Note;
 
-/// How replicates are walked: who follows them, and what saves them.
+/// Context of walking replicates: callbacks and checkpoints.
 #[derive(Clone, Copy)]
 pub struct ReplicateContext<'a> {
     /// Who follows the walks and stops them.
@@ -57,19 +57,19 @@ impl ReplicateContext<'_> {
 
 /// One replicate: its figures, and its rows of the CSV files.
 pub struct ReplicateResult {
-    /// What `outcome.json` keeps.
+    /// Entry of `outcome.json`.
     pub replicate: Replicate,
     /// Rows of the CSV files.
     pub recorded: Recorded,
     /// The engine that walked the first run.
     pub engine: Engine,
-    /// What the first run did not need.
+    /// Parts that the first run did not need.
     pub left_out: Vec<Shortcut>,
-    /// Whether less than 7.5 % of the mass eroded, by run.
+    /// True, by run, if less than 7.5 % of the mass eroded.
     pub(super) below: Vec<bool>,
 }
 
-/// Walks every replicate of the case: as many as the scene says, or until its rule stops.
+/// Walks every replicate of the case: the number of the scene, or until its rule stops.
 ///
 /// # Errors
 /// A walk that loses particles, or that was stopped.
@@ -78,7 +78,7 @@ pub fn replicates(case: &Case, context: &ReplicateContext) -> Result<Vec<Replica
     all_replicates(case, 0, context)
 }
 
-/// Says that the verdict needs so many replicates, as far as is known.
+/// Reports the number of replicates that the verdict needs, as far as is known.
 fn tell_needs(case: &Case, replicates: u64, context: &ReplicateContext) {
     let readings = !case.filter.curve_ends.is_empty();
     context.tell(Event::VerdictNeeds { replicates, runs: case.scene.walk.runs, readings });
@@ -106,7 +106,7 @@ fn all_replicates(
     }
 }
 
-/// What the scene's rule came to, where it has one.
+/// Result of the scene's stopping rule, if it has one.
 pub fn stopping(case: &Case, walked: &[ReplicateResult]) -> Option<Stopping> {
     match look(case, walked)? {
         Look::Stop(stopping) => Some(stopping),
@@ -120,7 +120,7 @@ fn look(case: &Case, walked: &[ReplicateResult]) -> Option<Look> {
     Some(rule.look_at_one_of(case.curves(), case.scene.walk.replicates, &values_by_run(walked)))
 }
 
-/// The eroded mass of each run, replicate by replicate, and whether it is below the threshold.
+/// Eroded mass of each run by replicate, and true if it is below the threshold.
 pub(super) fn values_by_run(walked: &[ReplicateResult]) -> Vec<ReplicateValues> {
     let runs = walked.first().map_or(0, |w| w.below.len());
     let of_run = |run: usize| {
@@ -129,8 +129,8 @@ pub(super) fn values_by_run(walked: &[ReplicateResult]) -> Vec<ReplicateValues> 
     (0..runs).map(of_run).collect()
 }
 
-/// Replicates with `n_base` particles each; part 0 are those of the case itself, the only ones that are
-/// recorded.
+/// Replicates with `n_base` particles each; part 0 are the replicates of the case itself, the only ones that
+/// are recorded.
 pub(super) fn some_replicates(
     case: &Case,
     part: u64,
@@ -179,7 +179,7 @@ pub(super) fn walk_replicate(
         let begun = Instant::now();
         let end = run.walk(clogged, exits.take(), &mut done, saved.take(), context)?;
         run.record(&end, begun.elapsed().as_secs_f64(), &mut done, context);
-        // What the run leaves open is what the next begins with.
+        // The next run begins with the constrictions that this run leaves open.
         (clogged, exits) = (end.state.into_clogged(), end.exits.map(Cow::Owned));
     }
     let verdict = classify(done.below.first().copied(), done.below.get(1).copied());
@@ -192,7 +192,7 @@ pub(super) fn walk_replicate(
     })
 }
 
-/// What is done of a replicate, and where a run of it was saved; a replicate that is whole is told.
+/// Finished runs of a replicate, and the checkpoint of the run under way; a finished replicate is reported.
 fn load(id: WalkId, context: &ReplicateContext) -> Result<(Done, Option<Checkpoint>), RunError> {
     let loaded = context.checkpoints.map(|checkpoints| checkpoints.load(id));
     let Some(Some((done, saved))) = loaded.transpose().map_err(RunError::Checkpoint)? else {
@@ -218,7 +218,7 @@ fn tell_walked(id: WalkId, run: &Run, below_threshold: bool, context: &Replicate
     }
 }
 
-/// How a run with these constrictions blocked is walked.
+/// Plan of a run with these constrictions blocked.
 pub(super) fn plan(case: &Case, network: &Network, blocked: &BitSlice, n_base: u64) -> RunPlan {
     let (engine, share) = (case.scene.walk.engine, n_base / case.increments());
     let clogging = (case.arching(), case.scene.leaves_openings());
@@ -226,21 +226,21 @@ pub(super) fn plan(case: &Case, network: &Network, blocked: &BitSlice, n_base: u
         .sampled(case.scene.walk.sampling)
 }
 
-/// What the first run of the first replicate does not need.
+/// Parts that the first run of the first replicate does not need.
 ///
 /// # Errors
-/// As [`Case::network`].
+/// See [`Case::network`].
 pub fn left_out_of_first_run(case: &Case) -> Result<Vec<Shortcut>, RunError> {
     let network = case.network(replicate_seed(case.scene.walk.seed, 1))?;
     let open: BitVec = BitVec::repeat(false, network.constrictions());
     Ok(plan(case, &network, &open, case.supply.n_base).left_out().to_vec())
 }
 
-/// Finds out whether every replicate that is known to be walked has a network: one with a distribution of
-/// connectivity is searched for at random, and another replicate's search may fail.
+/// Checks that every replicate that is known to be walked has a network: a network with a distribution of
+/// connectivity is searched for at random, and the search of another replicate may fail.
 ///
 /// # Errors
-/// A replicate that has none; a stop.
+/// A replicate without a network; a stop.
 pub fn have_networks(case: &Case, callbacks: &Callbacks) -> Result<(), RunError> {
     if !matches!(case.scene.network.source(), NetworkSource::Connected(..)) {
         return Ok(());
@@ -255,7 +255,7 @@ pub fn have_networks(case: &Case, callbacks: &Callbacks) -> Result<(), RunError>
     each(replicates.collect(), fit, one).map(drop)
 }
 
-/// What is left of a run.
+/// Result of a run.
 struct RunEnd<'a> {
     state: State,
     network: Cow<'a, Network>,
@@ -321,11 +321,11 @@ impl RunContext<'_> {
         Ok(RunEnd { state, network, flow, exits })
     }
 
-    /// What the run is fed from, and its state at the start or where it was saved.
+    /// Supply of the run, and its state at the start or in the checkpoint.
     fn begin(&self, clogged: Clogged, saved: Option<Checkpoint>) -> Result<(Supply, State), RunError> {
         let Self { case, network, id: WalkId { seed, n_base, .. }, of } = *self;
         let clogged = match &saved {
-            // What is left of constrictions now comes with the state.
+            // The state holds the open constrictions from here on.
             Some(saved) if of.run > 1 => blocked_at_start(network, saved)?.into(),
             _ => clogged,
         };
@@ -377,8 +377,8 @@ fn blocked_at_start(network: &Network, saved: &Checkpoint) -> Result<BitVec, Run
     Ok(blocked)
 }
 
-/// What walks say themselves against their verdict: of a base, in so many increments, through so many layers,
-/// with openings or without.
+/// Notes of walks against their verdict: for a base in this many increments through this many layers, with
+/// openings or without.
 pub fn said_by_walks<'a>(
     verdict: Verdict,
     walked: impl IntoIterator<Item = &'a ReplicateResult, IntoIter: Clone>,

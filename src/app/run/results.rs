@@ -28,8 +28,8 @@ use voidwalk_practice::rules::{BaseSoil, RuleInputs};
 use voidwalk_practice::{Decision, ordered};
 use voidwalk_practice::{dispersion, rules};
 
-/// The outcome of a case that has been walked, of which these notes were made before, and the decision of
-/// practice on its pair; with its studies, none so far where they are to come.
+/// The outcome of a walked case with these earlier notes, and the decision of practice on its pair; with its
+/// studies, left empty if they follow later.
 pub fn outcome(
     case: &Case,
     noted: &[Note],
@@ -107,7 +107,7 @@ fn concluded_from_results(mut outcome: Outcome, case: &Case, inputs: RuleInputs)
     (outcome, decision)
 }
 
-/// What the walks, the case, the rule that stopped them and the range of its curve say of the verdict.
+/// Notes on the verdict from the walks, the case, the rule that stopped them and the range of its curve.
 fn notes_before_results(case: &Case, noted: &[Note], walks: &CaseWalks) -> Vec<Note> {
     let CaseWalks { replicates: walked, range, verdict, low_level_percent, .. } = walks;
     let of_network = (case.network.layers, case.scene.leaves_openings());
@@ -149,7 +149,7 @@ pub fn write_scene(folder: &Folder, case: &Case) -> Result<(), StoreError> {
     files.finish()
 }
 
-/// What is said of a run besides its results.
+/// Manifest of a run: everything besides its results.
 pub fn manifest(case: &Case, threads: u64, started: SystemTime, command: String) -> Manifest {
     let machine = Machine::here();
     Manifest {
@@ -166,7 +166,7 @@ pub fn manifest(case: &Case, threads: u64, started: SystemTime, command: String)
     }
 }
 
-/// What the filter rules read of a case that has been walked.
+/// Inputs of the filter rules from a case that has been walked.
 fn rule_inputs<'a>(case: &'a Case, walked: &[ReplicateResult]) -> RuleInputs<'a> {
     let first = |w: &ReplicateResult| w.replicate.runs.first()?.largest_eroded_over_d15f;
     let largest: Vec<f64> = walked.iter().filter_map(first).collect();
@@ -270,12 +270,12 @@ mod tests {
     use voidwalk_practice::Headline;
     use voidwalk_practice::quantity::SizeUnit;
 
-    /// What comes of a soil with so many percent of fines and a uniform filter of this D15F.
+    /// Outcome for a soil with this percentage of fines and a uniform filter of this D15F.
     fn walked(fines: f64, d15f: f64, set: &[&str]) -> Outcome {
         walked_base(&format!("0.01,0\n0.075,{fines}\n0.3,92\n0.6,100\n"), d15f, set)
     }
 
-    /// What comes of a soil with these rows and a uniform filter of this D15F.
+    /// Outcome for a soil with these rows and a uniform filter of this D15F.
     fn walked_base(rows: &str, d15f: f64, set: &[&str]) -> Outcome {
         let folder = tempfile::tempdir().unwrap();
         let sheet = folder.path().join("base.csv");

@@ -1,8 +1,8 @@
 //! Networks that several cases of a campaign walk, built once.
 //!
-//! Cases with one seed draw their networks from the same random numbers; where nothing that makes a network
-//! differs, it is the same network, and one of them is enough. The bits are those of networks that each case
-//! builds for itself. With a network stay the exits that first runs begin with, as far as there is room.
+//! Cases with one seed draw their networks from the same random numbers; if all inputs of a network agree, it
+//! is the same network, and one copy is enough. Each case would build the same bits for itself. The exits
+//! with which first runs begin are kept with a network, as far as there is room.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock};
@@ -11,12 +11,12 @@ use crate::case::Case;
 use voidwalk_core::network::{Network, NetworkError};
 use voidwalk_core::walk::PlainExits;
 
-/// Networks that are kept take no more than this (bytes), and no more than one part in so many of what the
-/// walks may take.
+/// Largest memory of the networks that are kept (bytes), and the largest fraction, as a divisor, of the
+/// memory for walks.
 const MOST_BYTES: u64 = 1 << 27;
 const PART: u64 = 16;
 
-/// Which exits draws pick on a network of which nothing is blocked, once a case has worked them out.
+/// Exits that draws pick on a network without blocked constrictions, once a case has computed them.
 type KeptExits = Arc<OnceLock<PlainExits>>;
 
 /// A network to walk, and its exits as far as somebody keeps them.
@@ -71,13 +71,13 @@ pub struct SharedNetworks {
 }
 
 impl SharedNetworks {
-    /// What is kept, where walks and networks together may take so much memory (bytes).
+    /// Bytes of the networks that are kept, if walks and networks together may take this much memory (bytes).
     pub fn bytes(memory: u64) -> u64 {
         MOST_BYTES.min(memory / PART)
     }
 
-    /// Keeps none yet, and never more than so many bytes. Exits go before networks, and what was kept first
-    /// goes first.
+    /// Creates an empty store of at most this many bytes. Exits are dropped before networks, and the oldest
+    /// entries first.
     pub fn new(most_bytes: u64) -> Self {
         Self { kept: Mutex::default(), most_bytes }
     }
@@ -204,7 +204,7 @@ mod tests {
         assert_eq!(kept(7 * network, 7).0, "-------");
         let (shown, keys) = kept(7 * network, 9);
         assert_eq!((shown.as_str(), keys[0]), ("-------", case.network_key(2).unwrap()));
-        // None where none has room, and no exits are worked out for nobody.
+        // Keeps nothing if nothing fits, and computes no exits without need.
         assert_eq!(kept(network - 1, 2).0, "");
         let none = SharedNetworks::new(0).get(&case, 1).unwrap();
         assert!(none.exits(&case).is_none());

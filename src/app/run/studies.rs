@@ -1,10 +1,10 @@
-//! Walks the studies of a case: how its verdict moves with the number of base particles and with the
+//! Walks the studies of a case: the change of its verdict with the number of base particles and with the
 //! thickness of the filter.
 //!
 //! A point of a study, one other number or thickness, is walked on the random numbers of the first
-//! replicates: the same networks, of which a lattice of another thickness has the first layers in common. It
-//! stops when it is clear ([`crate::outcome::early_stop`]). All points are walked side by side, so that one
-//! replicate of each keeps all threads busy.
+//! replicates: the same networks; a lattice of another thickness has the first layers in common with them.
+//! The walk of a point stops when its class is clear ([`crate::outcome::early_stop`]). All points are walked
+//! side by side, so that one replicate of each keeps all threads busy.
 
 use std::borrow::Cow;
 use std::cmp::Reverse;
@@ -21,7 +21,7 @@ use crate::case::Case;
 use crate::outcome::early_stop::{clear, looks};
 use crate::outcome::record::{Classed, OfThickness, Sensitivity, Statistic, Verdict};
 
-/// What came of the studies; empty where they are left out.
+/// Results of the studies; empty if they are left out.
 #[derive(Clone, Default)]
 pub struct Studies {
     /// Other numbers of base particles, and the case's own.
@@ -36,11 +36,11 @@ struct Point<'a> {
     /// Names its checkpoints.
     part: u64,
     n_base: u64,
-    /// So many times the base particles; none where it is the thickness that is another.
+    /// Factor on the base particles; `None` if the point changes the thickness.
     base_factor: Option<f64>,
 }
 
-/// What was walked of a point.
+/// Walked replicates of a point.
 #[derive(Default)]
 struct Walked {
     replicates: Vec<ReplicateResult>,
@@ -51,7 +51,7 @@ struct Walked {
 /// The points of both studies of a case.
 fn points(case: &Case) -> Vec<Point<'_>> {
     let factors = case.sensitivity_factors();
-    // The parts between are those of the ends of the curve's range.
+    // The parts between belong to the ends of the curve's range.
     let thicknesses = (factors.len() + case.filter.curve_ends.len()) as u64 + 1..;
     let of_base = |(part, factor): (u64, f64)| Point {
         case: Cow::Borrowed(case),
@@ -59,7 +59,7 @@ fn points(case: &Case) -> Vec<Point<'_>> {
         n_base: case.times_base(factor),
         base_factor: Some(factor),
     };
-    // What cannot be is said among what is left out.
+    // Impossible thicknesses are reported among the parts that are left out.
     let of_thickness = |(part, factor): (u64, f64)| {
         let other = case.of_thickness(factor).ok()?;
         Some(Point { part, n_base: other.supply.n_base, case: Cow::Owned(other), base_factor: None })
@@ -104,7 +104,7 @@ impl Studies {
         Ok(studies)
     }
 
-    /// Whether these are all that the case has.
+    /// True if these are all studies of the case.
     pub(super) fn are_whole(case: &Case, sensitivity: &[Sensitivity], thickness: &[OfThickness]) -> bool {
         points(case).iter().all(|point| match point.base_factor {
             Some(_) => !sensitivity.is_empty(),
@@ -112,7 +112,7 @@ impl Studies {
         })
     }
 
-    /// Whether a case has none.
+    /// True if a case has no study.
     pub(super) fn are_none(case: &Case) -> bool {
         points(case).is_empty()
     }
@@ -143,8 +143,8 @@ impl Studies {
     }
 }
 
-/// Walks replicates of points, those of which several fit into the memory side by side; in the order of the
-/// points and replicates.
+/// Walks replicates of points, several side by side if they fit into the memory; in the order of the points
+/// and replicates.
 fn walk_all(
     points: &[Point],
     jobs: Vec<(usize, u64)>,

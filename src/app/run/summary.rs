@@ -1,4 +1,4 @@
-//! What the replicates of a case are worth together.
+//! Summary of the replicates of a case.
 
 use super::replicates::ReplicateResult;
 use crate::outcome::record::{Classed, RunSummary, Statistic, Verdict};
@@ -16,7 +16,7 @@ pub fn summarise(walked: &[ReplicateResult]) -> (Verdict, Vec<RunSummary>) {
     (classify(below(0), below(1)), summaries)
 }
 
-/// What the replicates are worth together, as a point of a study holds it.
+/// Class and statistics of the replicates, as a point of a study holds them.
 pub fn classed(walked: &[ReplicateResult]) -> Classed {
     let (verdict, summaries) = summarise(walked);
     let runs = summaries.iter().map(|run| run.eroded_mass_fraction).collect();

@@ -13,23 +13,23 @@ use voidwalk_core::store::{Folder, StoreError};
 /// The file.
 pub const FILE: &str = ".voidwalk.unfinished";
 
-/// What work in a folder is not whole yet.
+/// Mark of unfinished work in a folder.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Unfinished {
     /// Kind of the folder, as a user calls it.
     pub kind: String,
     /// Fingerprint of everything that the results follow from.
     pub work: String,
-    /// How often a run was told to be saved.
+    /// Interval between saves of a run, as it was given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub checkpoint_every: Option<String>,
 }
 
 impl Unfinished {
-    /// What a folder says; `None` where no work is under way, and nothing known where the file is corrupt.
+    /// Reads the mark in a folder; `None` if no work is under way, and an empty mark if the file is corrupt.
     ///
     /// # Errors
-    /// What the system says.
+    /// Errors of the system.
     pub fn read(folder: &Folder) -> Result<Option<Self>, StoreError> {
         let bytes = folder.read(FILE)?;
         Ok(bytes.map(|bytes| serde_json::from_slice(&bytes).unwrap_or_default()))

@@ -29,7 +29,7 @@ use voidwalk_practice::quantity::SizeUnit;
 use voidwalk_practice::{Decision, ordered};
 use voidwalk_sheets::file_and_soil;
 
-/// How a scene is walked; no setting changes a result. [`walk_scene`] has an example.
+/// Options of walking a scene; no setting changes a result. [`walk_scene`] has an example.
 ///
 /// ```
 /// use voidwalk_app::RunOptions;
@@ -40,14 +40,14 @@ use voidwalk_sheets::file_and_soil;
 pub struct RunOptions {
     /// Folder for the results; the first free of `voidwalk-run`, `voidwalk-run-2`, ... without one.
     pub out: Option<PathBuf>,
-    /// Whether the results of an earlier run in `out` are replaced.
+    /// True if the results of an earlier run in `out` are replaced.
     pub overwrite: bool,
     /// Threads, memory and the folder of packings.
     pub prepare: PrepareOptions,
-    /// How often the walks are saved, so that a run which is killed can be continued; without it as often as
-    /// the run that is continued was told, else every ten minutes.
+    /// Interval between saves of the walks, so that a run which is killed can be continued; by default the
+    /// interval of the run that is continued, else ten minutes.
     pub checkpoint_interval: Option<CheckpointInterval>,
-    /// What `manifest.json` says that the run was started with.
+    /// Command in `manifest.json` that started the run.
     pub command: String,
 }
 
@@ -55,7 +55,7 @@ pub struct RunOptions {
 pub struct FinishedRun {
     /// Its folder.
     pub folder: PathBuf,
-    /// What came of it, as `outcome.json` says.
+    /// Result of the walk, as in `outcome.json`.
     pub outcome: Outcome,
     /// The decision of practice on its pair.
     pub decision: Decision,
@@ -156,10 +156,10 @@ pub fn walk_case(case: &Case, callbacks: &Callbacks) -> Result<Outcome, RunError
     Ok(walk_case_recorded(case, callbacks)?.0)
 }
 
-/// The same, and the rows of the CSV files of a run folder.
+/// Walks a case, and records the rows of the CSV files of a run folder.
 ///
 /// # Errors
-/// As [`walk_case`].
+/// See [`walk_case`].
 pub fn walk_case_recorded(case: &Case, callbacks: &Callbacks) -> Result<(Outcome, Recorded), RunError> {
     let walk = || {
         let (begun, notes) = (Instant::now(), case.notes());
@@ -245,7 +245,7 @@ fn claim_for(options: &RunOptions, files: &[PathBuf]) -> Result<Folder, RunError
     Ok(folder)
 }
 
-/// Clears the folder of a run that begins anew.
+/// Clears the folder of a run that starts again.
 fn clear_for(folder: &Folder, files: &[PathBuf], resumed: bool) -> Result<(), RunError> {
     if resumed {
         // Its own scene and files are all that there is of it.
@@ -273,7 +273,7 @@ fn files_of(scene: &Scene) -> Vec<PathBuf> {
 /// Refuses a run to be continued that is no longer the one that was begun.
 fn unchanged(folder: &Folder, fingerprint: &str) -> Result<(), RunError> {
     match Unfinished::read(folder)? {
-        // Of a corrupt mark nothing is known.
+        // A corrupt mark tells nothing.
         Some(begun) if !begun.work.is_empty() && begun.work != fingerprint => {
             Err(RunError::Refused(format!(
                 "{}: scene.toml or a file in inputs is not what this run was begun with, or another version \
@@ -286,8 +286,8 @@ fn unchanged(folder: &Folder, fingerprint: &str) -> Result<(), RunError> {
     }
 }
 
-/// What is known of an earlier start of this very run in its folder; `None` where there was none, or where
-/// its results are to be replaced, and all that is there is to be cleared.
+/// Mark of an earlier start of this very run in its folder; `None` if there was no start, or if its results
+/// are replaced and the folder is cleared.
 fn begun(folder: &Folder, fingerprint: &str, overwrite: bool) -> Result<Option<Unfinished>, RunError> {
     if overwrite {
         return Ok(None);

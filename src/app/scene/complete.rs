@@ -1,4 +1,4 @@
-//! Whether a scene says all that it needs to, and nothing that does not go with the rest.
+//! Checks that a scene states all that it needs, and nothing that conflicts with the rest.
 
 use super::keys::concentrations;
 use super::{NetworkMadeOf, Scene, SceneError};

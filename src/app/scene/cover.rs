@@ -1,4 +1,4 @@
-//! What a scene says of the sheet that is handed in.
+//! Cover of the sheet that is handed in, from a scene.
 
 use super::About;
 use voidwalk_practice::quantity::SizeUnit;
@@ -20,7 +20,7 @@ impl About {
         AboutPage { cover: self.cover(), coarse_left: self.coarse_left == Some(true), unit }
     }
 
-    /// The cover of the sheet, without a date where none is stated.
+    /// The cover of the sheet; it has no date if the scene states no date.
     pub fn cover(&self) -> SheetCover {
         SheetCover {
             project: self.project.clone(),

@@ -4,7 +4,7 @@ use voidwalk_core::schema::{Alternative, Group};
 
 /// Settings that say the same thing in different ways.
 pub(super) const GROUPS: &[Group] = &[
-    // What was measured on a packing says nothing of another one.
+    // Measurements on one packing do not apply to another.
     Group {
         says: "say what is packed",
         alternatives: &[Alternative {
@@ -22,7 +22,7 @@ pub(super) const GROUPS: &[Group] = &[
             Alternative::by(&["filter.estimate"]),
         ],
     },
-    // A network from a file brings its constrictions along; a curve may still say where D85B lies.
+    // A network from a file brings its constrictions along; a curve may still define D85B.
     Group {
         says: "say what the filter's constrictions are",
         alternatives: &[

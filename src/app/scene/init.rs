@@ -1,4 +1,4 @@
-//! The built-in scene as commented TOML, made from what each section says of itself.
+//! The built-in scene as commented TOML, made from the descriptions of its sections.
 
 use std::fmt::Write;
 
@@ -10,7 +10,7 @@ use voidwalk_core::schema::KeyInfo;
 /// Columns of a comment.
 const WIDTH: usize = 96;
 
-/// What is said of each section, with its settings.
+/// Description of each section, with its settings.
 pub(super) fn sections() -> Vec<(&'static [&'static str], Vec<KeyInfo>)> {
     let packing_keys = [FilterPacking::keys(), packing::Settings::keys()].concat();
     vec![
@@ -26,8 +26,8 @@ pub(super) fn sections() -> Vec<(&'static [&'static str], Vec<KeyInfo>)> {
     ]
 }
 
-/// The text: words stand after `# `, settings that are off after `#`; a section whose settings are all off is
-/// off too.
+/// The text: words follow `# `, settings that are off follow `#`; a section whose settings are all off is off
+/// too.
 pub(super) fn text() -> String {
     let mut text = String::new();
     for (about, keys) in sections() {

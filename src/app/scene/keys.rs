@@ -39,7 +39,7 @@ section! {
     }
 }
 
-/// Whether a share goes into 1 a whole number of times, within a thousandth.
+/// True if a share goes into 1 a whole number of times, within a thousandth.
 fn is_whole_part(share: f64) -> bool {
     let parts = 1.0 / share;
     (1e-6..=1.0).contains(&share) && (parts - parts.round()).abs() < 1e-3 * parts
@@ -288,7 +288,7 @@ fn shipped_names() -> Vec<&'static str> {
 /// Characters of a line.
 const LINE: usize = 120;
 
-/// Texts that stand in one line of a page.
+/// Texts that fit into one line of a page.
 fn line() -> Allowed<String> {
     let fits =
         |text: &String| (1..=LINE).contains(&text.trim().chars().count()) && !text.chars().any(is_hidden);
@@ -296,19 +296,19 @@ fn line() -> Allowed<String> {
 }
 
 impl About {
-    /// Whether nothing is said.
+    /// True if no field is given.
     pub fn is_unset(&self) -> bool {
         *self == Self::default()
     }
 
-    /// Whether inches stand beside mm.
+    /// True if inches are shown beside mm.
     pub fn shows_inches(&self) -> bool {
         self.units == Some(SheetUnits::Us)
     }
 }
 
 impl ExitKeys {
-    /// Whether none is given.
+    /// True if no field is given.
     pub fn is_unset(&self) -> bool {
         *self == Self::default()
     }

@@ -1,5 +1,4 @@
-//! What the settings of a scene mean together: settings that exclude each other, as one value that is one of
-//! several.
+//! Combined meaning of the settings of a scene: settings that exclude each other become one enum.
 
 use std::path::PathBuf;
 
@@ -31,7 +30,7 @@ pub enum BaseGradation {
     Linear {
         /// D60 / D10.
         cu: f64,
-        /// What sets D85B.
+        /// The setting that defines D85B.
         d85: D85,
     },
     /// A sieve table, and where its open tail ends (mm).
@@ -40,7 +39,7 @@ pub enum BaseGradation {
     Single(f64),
 }
 
-/// What sets D85B.
+/// The setting that defines D85B.
 #[derive(Clone, Debug, PartialEq)]
 pub enum D85 {
     /// A length (mm).
@@ -51,7 +50,7 @@ pub enum D85 {
     Ratio(f64),
 }
 
-/// How many base particles.
+/// Number of base particles.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Amount {
     /// Mass of base over mass of filter, Eq. (2), and a cap.
@@ -73,10 +72,10 @@ pub enum NetworkSource {
     Graph(Option<PathBuf>, Extent),
 }
 
-/// How far a filter reaches along the flow.
+/// Thickness of a filter along the flow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Extent {
-    /// As many layers of voids as the paper's lattice.
+    /// Usual number of layers of voids, as in the lattice of the paper.
     Usual,
     /// Copies of a packing.
     Copies(u32),
@@ -144,13 +143,13 @@ impl Base {
         }
     }
 
-    /// What sets D85B of a linear gradation.
+    /// The setting that defines D85B of a linear gradation.
     pub fn d85(&self) -> Option<D85> {
         let at_dc = self.d85_at_dc.map(|percent| D85::AtDc(percent, self.dc_curve.clone()));
         self.d85_mm.map(D85::Mm).or(at_dc).or(self.d15f_over_d85b.map(D85::Ratio))
     }
 
-    /// How much of it.
+    /// Amount of base.
     pub fn amount(&self) -> Amount {
         match self.n_base {
             Some(n) => Amount::Number(n),
@@ -160,13 +159,13 @@ impl Base {
 }
 
 impl NetworkKeys {
-    /// Whether it is a file of arrays, whose constrictions can be passed both ways.
+    /// True if it is a file of arrays, whose constrictions can be passed both ways.
     pub fn is_of_arrays(&self) -> bool {
         let ending = |path: &PathBuf| path.extension().map(|ending| ending.to_ascii_lowercase());
         self.file.as_ref().and_then(ending).is_some_and(|ending| ending == "npz")
     }
 
-    /// What the scene says of its packing that the packing's file does not.
+    /// Options of the scene for reading its packing that the packing's file does not state.
     pub fn read_options(&self) -> ReadOptions {
         ReadOptions { unit: self.unit, cell: self.cell }
     }
@@ -184,7 +183,7 @@ impl NetworkKeys {
         }
     }
 
-    /// How far it reaches along the flow.
+    /// Its thickness along the flow.
     pub fn extent(&self) -> Extent {
         match (self.copies, self.thickness_mm, self.thickness_d50f) {
             (Some(copies), ..) => Extent::Copies(copies as u32),
@@ -200,7 +199,7 @@ impl NetworkKeys {
         (self.thickness_mm, self.thickness_d50f) = (None, None);
     }
 
-    /// Makes a lattice at most so many voids wide, both ways.
+    /// Limits a lattice to this many voids across, both ways.
     pub fn narrow_to(&mut self, across: u64) {
         let narrow = |width: Option<u64>, usual: u64| Some(width.unwrap_or(usual).min(across));
         (self.nx, self.ny) = (narrow(self.nx, VOIDS[0]), narrow(self.ny, VOIDS[1]));
@@ -240,7 +239,7 @@ impl NetworkSource {
 }
 
 impl Record {
-    /// What is kept of a run.
+    /// Records that are kept of a run.
     pub fn wanted(&self) -> Wanted {
         Wanted {
             series_every: self.series_every,
@@ -251,7 +250,7 @@ impl Record {
     }
 }
 
-/// How a filter is to be packed.
+/// Specification of the packing of a filter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PackingSpec {
     /// Its gradation; `cu` is given where it is linear.
@@ -262,16 +261,16 @@ pub struct PackingSpec {
     pub aspect: f64,
     /// Percent of the mass, from the finest grain on, that is packed, where the user says it.
     pub coarsest: Option<f64>,
-    /// How the grains are compressed; its number of grains counts only where the user gave one.
+    /// Compression of the grains; its number of grains counts only if the user gave one.
     pub compression: packing::Settings,
     /// Overlap of two inscribed spheres from which their tetrahedra are one void.
     pub merge_overlap: f64,
-    /// What errors call the file.
+    /// Name of the file in errors.
     pub file: String,
 }
 
 impl PackingSpec {
-    /// What the settings of a filter and its packing state; `file` names them in errors.
+    /// Collects the settings of a filter and its packing; errors call them `file`.
     ///
     /// # Errors
     /// The gradation is missing, or the settings of the compression cannot be used together.

@@ -3,7 +3,7 @@
 //! Every setting is declared once, in `keys` or by the stage that it belongs to ([`StopRule`], packing's
 //! [`Settings`](voidwalk_core::packing::Settings)); a [`Scene`] holds them all. From those declarations
 //! follow the commented text of [`Scene::init_text`], what may be set, what is refused, and the resolved
-//! scene that a run writes and is known by. Which settings exclude each other stands in `groups`. The names
+//! scene that a run writes and is known by. `groups` lists the settings that exclude each other. The names
 //! are a contract.
 
 mod complete;
@@ -38,7 +38,7 @@ use voidwalk_core::network::ExitRule;
 use voidwalk_core::schema::{GivenSettings, KeyInfo, Names};
 use voidwalk_core::walk::{BlockedAs, Law};
 
-/// What errors call the built-in scene.
+/// Name of the built-in scene in errors.
 pub(crate) const BUILT_IN_NAME: &str = "built-in scene";
 
 /// A scene: every setting with its value, given or by default, each checked by itself and against the others.
@@ -51,7 +51,7 @@ pub(crate) const BUILT_IN_NAME: &str = "built-in scene";
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Scene {
-    /// What errors call it.
+    /// Name in errors.
     #[serde(skip)]
     pub name: String,
     /// Base and filter were named as a pair, and are refused where they look exchanged.
@@ -65,19 +65,19 @@ pub struct Scene {
     pub stop: StopRule,
     /// The filter.
     pub filter: Filter,
-    /// How the filter is packed, where it is.
+    /// Packing of the filter, if it is packed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub packing: Option<PackingKeys>,
     /// The base soil.
     pub base: Base,
-    /// How particles choose their way.
+    /// Choice of exits by particles.
     #[serde(rename = "walk", skip_serializing_if = "ExitKeys::is_unset")]
     pub exits: ExitKeys,
     /// The network.
     pub network: NetworkKeys,
-    /// What to keep.
+    /// Results to keep.
     pub record: Record,
-    /// What the first page of the report says besides.
+    /// Further entries on the first page of the report.
     #[serde(skip_serializing_if = "About::is_unset")]
     pub about: About,
 }
@@ -100,7 +100,7 @@ impl Scene {
         init::text()
     }
 
-    /// The same for programs: every setting with its type, default and what is allowed.
+    /// Reference for programs: every setting with its type, default and allowed values.
     pub fn reference() -> SceneReference {
         reference::reference()
     }
@@ -121,10 +121,10 @@ impl Scene {
         Self::assigned(GivenSettings::read(path, &NAMES)?, assignments)
     }
 
-    /// A scene from TOML text; `name` stands for the file in errors, and paths are taken as they are.
+    /// A scene from TOML text; errors call the file `name`, and paths are taken as they are.
     ///
     /// # Errors
-    /// As [`Scene::read`].
+    /// See [`Scene::read`].
     pub fn parse(bytes: &[u8], name: &str, assignments: &[String]) -> Result<Self, SceneError> {
         Self::assigned(GivenSettings::parse(bytes, name, PathBuf::new(), &NAMES)?, assignments)
     }
@@ -174,10 +174,10 @@ impl Scene {
         Ok(scene)
     }
 
-    /// How the filter of a file is to be packed; a scene will do, of which nothing else is looked at.
+    /// Reads the packing of a filter from a file; in a scene the other settings are ignored.
     ///
     /// # Errors
-    /// As [`Scene::read`], or neither density nor friction is given.
+    /// See [`Scene::read`]; also if neither density nor friction is given.
     pub fn read_packing(path: &Path, assignments: &[String]) -> Result<PackingSpec, SceneError> {
         let mut s = GivenSettings::read(path, &NAMES)?;
         s.set_together(assignments, &NAMES, &Origin::CommandLine)?;
@@ -191,7 +191,7 @@ impl Scene {
         PackingSpec::new(&filter, &packing, s.file())
     }
 
-    /// How the filter is to be packed, where it is.
+    /// Packing of the filter, if it is to be packed.
     ///
     /// # Errors
     /// Its gradation is missing.
@@ -210,7 +210,7 @@ impl Scene {
         SceneError::Clash { file: self.name.clone(), problem: problem.into() }
     }
 
-    /// Whether blocked constrictions leave openings.
+    /// True if blocked constrictions leave openings.
     pub fn leaves_openings(&self) -> bool {
         self.exits.blocked == Some(BlockedAs::Open)
     }
@@ -220,7 +220,7 @@ impl Scene {
         self.exits.arching?.law()
     }
 
-    /// How particles choose among the exits of a void.
+    /// Rule by which particles choose among the exits of a void.
     pub fn exit_rule(&self) -> ExitRule {
         self.exits.exit.unwrap_or(match self.network.kind {
             Some(NetworkMadeOf::Graph) => ExitRule::Flux,
@@ -229,7 +229,7 @@ impl Scene {
         })
     }
 
-    /// Whether particles walk the directed cubic lattice, and choose among its exits by area.
+    /// True if particles walk the directed cubic lattice and choose among its exits by area.
     pub fn is_lattice_by_area(&self) -> bool {
         matches!(self.network.source(), NetworkSource::Cubic(_)) && self.exit_rule() == ExitRule::Area
     }

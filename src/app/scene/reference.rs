@@ -69,14 +69,14 @@ pub struct WayReference {
     pub with: &'static [&'static str],
 }
 
-/// What there is to say of a scene's settings.
+/// Reference of a scene's settings.
 pub(super) fn reference() -> SceneReference {
     let section = |(about, keys): (&[&str], Vec<KeyInfo>)| SectionReference {
         name: keys.first().map_or("", |key| key.section),
         about: for_users(about),
         settings: keys.into_iter().map(setting).collect(),
     };
-    // Of a group with one way the others only give way on the command line.
+    // In a group with one alternative the others give way on the command line only.
     let exclusive = GROUPS.iter().filter(|group| group.alternatives.len() > 1).map(exclusive);
     SceneReference { sections: sections().into_iter().map(section).collect(), exclusive: exclusive.collect() }
 }
@@ -110,7 +110,7 @@ mod tests {
         reference().sections.into_iter().flat_map(|section| section.settings).collect()
     }
 
-    /// The setting beside which alone this one may stand.
+    /// The only setting beside which this one is allowed.
     fn beside(name: &str) -> Option<&'static str> {
         let exclusive = reference().exclusive;
         let way = exclusive.iter().flat_map(|group| &group.alternatives).find(|way| way.with.contains(&name));

@@ -7,11 +7,11 @@ use super::{Origin, Scene, SceneError};
 use voidwalk_core::schema::setting_name;
 use voidwalk_practice::PairOptions;
 
-/// What a scene of two tables is given besides them.
+/// Options of a scene of two tables.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TableOptions {
-    /// How densely the filter lies. Its constrictions come from the library of packings; without a density,
-    /// and where `changes` do not say what the constrictions are, loose and dense are both walked.
+    /// Density of the filter. Its constrictions come from the library of packings; without a density, and if
+    /// `changes` do not define the constrictions, loose and dense are both walked.
     pub density: Option<Density>,
     /// This very filter is packed, loose where no density is given.
     pub pack: bool,
@@ -88,8 +88,8 @@ impl TableOptions {
         Ok(settings)
     }
 
-    /// The setting of the density: that of the filter's own packing, which is loose where nothing else is
-    /// stated, or that of the library, which is unknown where nothing states the constrictions.
+    /// The setting of the density: of the filter's own packing, which is loose if nothing else is stated, or
+    /// of the library, where it is unknown if no setting defines the constrictions.
     pub(crate) fn density_setting(&self) -> Option<String> {
         let (name, density, stated): (_, _, &[&str]) = match self.pack {
             true => ("density", self.density.unwrap_or(Density::Loose).name(), &PACKED),
@@ -123,11 +123,11 @@ impl TableOptions {
 }
 
 impl Scene {
-    /// The scene of a base and a filter that are sieve tables (`FILE#NAME` for one of several soils); the
-    /// rest is that of the built-in scene. It reads no file.
+    /// The scene of a base and a filter that are sieve tables (`FILE#NAME` for one of several soils); all
+    /// else comes from the built-in scene. It reads no file.
     ///
     /// # Errors
-    /// As [`Scene::built_in`]; a change would replace one of the two; a name is not UTF-8.
+    /// See [`Scene::built_in`]; also if a change would replace one of the two, or if a name is not UTF-8.
     pub fn of_tables(base: &Path, filter: &Path, options: &TableOptions) -> Result<Self, SceneError> {
         let [named_base, named_filter] = [base, filter].map(|path| path.display().to_string());
         keep_soils(&options.changes, Some(&named_base), Some(&named_filter))?;
@@ -139,8 +139,8 @@ impl Scene {
         settings.push("record.sensitivity=[]".into());
         let changes = options.settings()?;
         let mut scene = Self::built_in(&[&settings[..], &changes].concat())?;
-        // Passive particles by the million scatter by less than anyone reads, and their expectation is quick;
-        // where blocked constrictions leave openings there are none.
+        // Millions of passive particles scatter by less than anyone reads, and their expectation is quick;
+        // there is no expectation if blocked constrictions leave openings.
         if !scene.leaves_openings() {
             settings.push("engine=\"expected\"".into());
             scene = Self::built_in(&[settings, changes].concat())?;
@@ -149,7 +149,7 @@ impl Scene {
         Ok(scene)
     }
 
-    /// What the filter's constrictions come from, in a sentence.
+    /// Source of the filter's constrictions, in a sentence.
     pub fn constrictions_in_words(&self) -> String {
         let filter = &self.filter;
         if let Some(friction) = filter.friction {

@@ -52,7 +52,7 @@ fn one_alternative_replaces_the_others() {
     assert_eq!(network(&["network.connectivity=table3", "network.nx=8"]), table_3);
 }
 
-/// What is said in one breath does not replace itself.
+/// Settings that are stated together do not replace each other.
 #[test]
 fn alternatives_that_are_set_together_are_refused() {
     for (set, message) in [

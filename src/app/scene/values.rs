@@ -1,4 +1,4 @@
-//! What a setting may be worth beside a number or a text: words, files and tables as a scene writes them.
+//! Values of settings beside numbers and texts: words, files and tables as a scene writes them.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -48,7 +48,7 @@ impl Leaf for CurveSource {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Density {
-    /// As dense as it gets: no friction.
+    /// The densest packing: no friction.
     Dense,
     /// Between the two: friction 0.1. "medium" is read as this too.
     #[serde(alias = "medium")]
@@ -91,11 +91,11 @@ impl Density {
     }
 }
 
-/// How densely a filter lies whose constrictions come from the library of packings.
+/// Density of a filter whose constrictions come from the library of packings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LibraryDensity {
-    /// As dense as it gets.
+    /// The densest packing.
     Dense,
     /// Between the two. "medium" is read as this too.
     #[serde(alias = "medium")]
@@ -140,7 +140,7 @@ impl From<Density> for LibraryDensity {
     }
 }
 
-/// What a network is made of.
+/// Structure of a network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum NetworkMadeOf {
@@ -189,13 +189,13 @@ impl SheetUnits {
 impl Leaf for SheetUnits {}
 impl Leaf for NetworkMadeOf {}
 
-/// Whether a base is walked regraded.
+/// Regrading of a base before its walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Regrade {
-    /// As filter practice regrades it.
+    /// Regraded by filter practice.
     Practice,
-    /// As it is.
+    /// Left unchanged.
     No,
 }
 

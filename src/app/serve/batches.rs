@@ -16,7 +16,7 @@ use crate::words::left_out::left_out_in_brief;
 use voidwalk_practice::quantity::SizeUnit;
 use voidwalk_practice::{BatchFilter, BatchRow};
 
-/// What the page asks for.
+/// Request of the page for a batch.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AskedBatch {
@@ -30,11 +30,11 @@ pub struct AskedBatch {
     pub tables: AskedTables,
 }
 
-/// What goes with two sheets.
+/// Options that accompany two sheets.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub struct AskedTables {
-    /// A word, or none.
+    /// A word, or empty.
     pub density: String,
     /// This very filter is packed.
     pub pack: bool,
@@ -60,16 +60,16 @@ pub fn filter_paths(sheets: &Sheets, named: &[impl AsRef<str>]) -> Result<Vec<Pa
     }
 }
 
-/// What the page calls these filters: by their own names, numbered where two have the same.
+/// Names of these filters on the page: their own names, numbered if two agree.
 pub fn filter_names(sheets: &Sheets, paths: &[PathBuf]) -> Vec<String> {
     numbered(paths.iter().map(|path| sheets.as_named(&path.display().to_string())).collect())
 }
 
 impl AskedBatch {
-    /// Which pairs are walked.
+    /// Pairs that are walked.
     ///
     /// # Errors
-    /// A word that is none.
+    /// An unknown word.
     pub fn walks(&self) -> Result<BatchWalks, String> {
         match self.walks.as_str() {
             "governing" => Ok(BatchWalks::GoverningInFull),
@@ -94,7 +94,7 @@ impl AskedBatch {
         self.walks == "filters"
     }
 
-    /// What its job is called, of samples and filters with these names.
+    /// Title of its job, with the names of samples and filters.
     pub fn title(&self, samples: &str, filters: &[String]) -> String {
         let every = if self.has_one_base() { "" } else { "Every sample of " };
         format!("{every}{samples} on {}", filters.join(", "))
@@ -106,7 +106,7 @@ pub fn whole_sheet(soil: &str) -> &str {
     soil.split_once('#').map_or(soil, |(sheet, _)| sheet)
 }
 
-/// A table as the page shows it: headings, what stands under each, cells, and the class of each row's result.
+/// JSON of a table for the page: headings, a text below each, cells, and the class of each row's result.
 pub fn table<'r, T: 'r>(
     columns: Columns<T>,
     rows: impl IntoIterator<Item = &'r T>,
@@ -130,7 +130,7 @@ pub fn table<'r, T: 'r>(
     })
 }
 
-/// The class of the result of a sample: what is met and in doubt does not stand in green.
+/// The class of the result of a sample: a result that is met but in doubt is not green.
 pub fn class_of(row: &BatchRow, is_doubted: bool) -> Option<&'static str> {
     match row.met {
         Some(true) if !is_doubted && !row.breaks_if_dispersive => Some("keeps"),
@@ -145,7 +145,7 @@ pub fn so_far(rows: &[WalkedRow], inches: bool) -> Value {
     table(columns, rows, |row| class_of(&row.rules, row.is_doubted()))
 }
 
-/// What the page shows of a batch that is done: its table, and what a client asks of each filter.
+/// JSON of a finished batch for the page: its table, and the answers for a client about each filter.
 pub fn of_batch(batch: &WalkedBatch) -> Value {
     let rules: Vec<BatchRow> = batch.rows.iter().map(|row| row.rules.clone()).collect();
     let unit = SizeUnit::of(false, batch.inches);

@@ -1,5 +1,5 @@
-//! How many connections are answered at a time, and which goes where there are too many: whoever has shown no
-//! secret keeps nobody waiting for long.
+//! Limit of connections that are answered at a time, and the choice of the one to end if there are too many:
+//! a client that has not shown the secret keeps others waiting only briefly.
 
 use std::io;
 use std::net::{Shutdown, TcpStream};
@@ -10,10 +10,10 @@ use std::time::{Duration, Instant};
 /// Connections that are answered at the same time; others wait.
 const MOST: usize = 64;
 
-/// How long a connection that has not shown the secret is left alone, however many wait.
+/// Time for which a connection that has not shown the secret is left alone, however many wait.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// How often it is looked whether one of them has had its time.
+/// Interval between checks for connections past that time.
 const LOOK: Duration = Duration::from_millis(50);
 
 /// The connections that are answered now.
@@ -21,7 +21,7 @@ const LOOK: Duration = Duration::from_millis(50);
 pub struct Connections {
     /// In the order in which they came.
     open: Mutex<Vec<Connection>>,
-    /// How many have come: each has a number of its own, also after the last was ended.
+    /// Number of connections so far: each has a number of its own, even after the last was ended.
     came: AtomicU64,
     freed: Condvar,
 }

@@ -9,7 +9,7 @@ use std::io;
 
 use super::http::Request;
 
-/// What a request must be.
+/// Conditions on a request.
 #[derive(Clone, Debug)]
 pub struct Guard {
     token: String,
@@ -42,7 +42,7 @@ impl Guard {
             let host = request.field("origin").and_then(|origin| origin.strip_prefix("http://"));
             host.filter(|host| self.is_host(host))?;
         }
-        // Browsers say where a request comes from; `none` is an address that the user has typed.
+        // Browsers state the origin of a request; `none` is an address that the user has typed.
         if request.has("sec-fetch-site") {
             request.field("sec-fetch-site").filter(|site| ["same-origin", "none"].contains(site))?;
         }
@@ -51,7 +51,7 @@ impl Guard {
         self.is_token(token).then_some(rest)
     }
 
-    /// Whether this is the name of this machine and port; port 80 is not said by a browser.
+    /// True if this is the name of this machine and port; browsers leave out port 80.
     fn is_host(&self, name: &str) -> bool {
         ["127.0.0.1", "localhost"].iter().any(|own| match name.strip_prefix(own) {
             Some("") => self.port == 80,

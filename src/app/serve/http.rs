@@ -21,14 +21,14 @@ const FIELDS: usize = 64;
 /// The largest body of a request (bytes): a workbook.
 pub const BODY: u64 = 32 << 20;
 
-/// How long the head of a request may take to arrive, and then its body, in all.
+/// Time within which the head of a request must arrive, and then its body, in all.
 const ARRIVAL: (Duration, Duration) = (Duration::from_secs(10), Duration::from_secs(60));
 
-/// How long an answer may take to leave: from one piece of it to the next, and in all with so many bytes more
-/// a second.
+/// Time within which an answer must leave: from one piece of it to the next, and in all, with this many
+/// further bytes a second.
 const DEPARTURE: (Duration, Duration, u64) = (Duration::from_secs(20), Duration::from_secs(60), 1 << 20);
 
-/// How long, and how much of, what is sent after a refusal is thrown away, so that the refusal is read.
+/// Time and bytes for which input after a refusal is discarded, so that the refusal is read.
 const DRAIN: (Duration, u64) = (Duration::from_secs(1), 2 * BODY);
 
 /// A request whose body has not been read.
@@ -36,12 +36,12 @@ const DRAIN: (Duration, u64) = (Duration::from_secs(1), 2 * BODY);
 pub struct Request {
     /// `GET`, `POST`.
     pub method: String,
-    /// What stands before the `?`.
+    /// Path before the `?`.
     pub path: String,
-    /// What stands after it.
+    /// Query after the `?`.
     pub query: String,
     fields: Vec<(String, String)>,
-    /// What of the body came with the head.
+    /// Part of the body that came with the head.
     begun: Vec<u8>,
     length: u64,
 }
@@ -56,7 +56,7 @@ impl Request {
         }
     }
 
-    /// Whether a header field is given at all.
+    /// True if a header field is given at all.
     pub fn has(&self, name: &str) -> bool {
         self.fields.iter().any(|(field, _)| field.eq_ignore_ascii_case(name))
     }
@@ -92,9 +92,9 @@ fn decoded(text: &str) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// What is answered.
+/// Answer to a request.
 pub struct Answer {
-    /// As 200.
+    /// Status, such as 200.
     pub status: u16,
     /// Type of the body.
     pub kind: &'static str,
@@ -106,7 +106,7 @@ pub struct Answer {
     pub download: Option<String>,
 }
 
-/// What an answer holds.
+/// Body of an answer.
 pub enum Body {
     /// In memory.
     Bytes(Vec<u8>),
@@ -132,7 +132,7 @@ impl Answer {
         Self::new(status, "application/json; charset=utf-8", value.to_string())
     }
 
-    /// What is wrong, in words.
+    /// Answer with a problem in words.
     pub fn problem(status: u16, words: &str) -> Self {
         Self::json(status, serde_json::json!({ "problem": words }))
     }
@@ -152,7 +152,7 @@ fn show(value: &mut Value) {
 struct Until<'a> {
     stream: &'a mut TcpStream,
     end: Instant,
-    /// How long one piece may take.
+    /// Time for one piece.
     piece: Duration,
 }
 
@@ -187,7 +187,7 @@ impl Write for Until<'_> {
     }
 }
 
-/// The head of a request, or the answer to one that is none.
+/// The head of a request, or the answer to a bad one.
 pub fn read_head(stream: &mut TcpStream) -> io::Result<Result<Request, Answer>> {
     let mut stream = Until::new(stream, ARRIVAL.0, ARRIVAL.0);
     let mut bytes = Vec::new();
@@ -244,7 +244,7 @@ fn request(parsed: &httparse::Request, begun: Vec<u8>) -> Result<Request, Answer
     Ok(request)
 }
 
-/// The body of a request; the answer to one that is too large, of which nothing is read.
+/// The body of a request; the answer to one that is too large, which is not read.
 pub fn read_body(request: &mut Request, stream: &mut TcpStream) -> io::Result<Result<Vec<u8>, Answer>> {
     if request.length > BODY {
         let words = format!("too large: at most {} MB", BODY >> 20);

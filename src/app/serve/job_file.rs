@@ -1,5 +1,5 @@
-//! What a job was asked for, kept in its folder: a later server on the same folder begins it again by the
-//! same call, and the work itself finds what of it is done.
+//! Request of a job, kept in its folder: a later server on the same folder begins it again by the same call,
+//! and the work itself finds the parts that are done.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ const FILE: &str = "job.json";
 /// The largest that is written, and read (bytes).
 const LARGEST: u64 = 4 << 20;
 
-/// What a job was asked for, and how it ended where it can go no further.
+/// Request of a job, and its end if it cannot continue.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JobFile {
     /// Its kind, by the name of the request.
@@ -43,7 +43,7 @@ impl JobFile {
         Ok(Folder::open(folder)?.write(FILE, &bytes)?)
     }
 
-    /// What a folder keeps, if it is a job's.
+    /// Reads the file of a job's folder; `None` in other folders.
     pub fn read(folder: &Path) -> Option<Self> {
         let bytes = read_regular(&folder.join(FILE), LARGEST).ok()??;
         serde_json::from_slice(&bytes).ok()

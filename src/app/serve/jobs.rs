@@ -1,9 +1,9 @@
-//! What the page has asked for: one job is walked at a time, the others wait.
+//! Jobs that the page has asked for: one is walked at a time, the others wait.
 //!
-//! A job is a call of the library into a folder of its own, which is that of a run or a batch
-//! as of the command line. What it was asked for is kept there before any work (`job_file.rs`), so that a
-//! later server on the same folder can do it. A kind of job more is a variant of [`Work`], what it does in
-//! `WorkContext::work`, and how its request is read (`Routes::planned`).
+//! A job is a call of the library into a folder of its own, the same folder of a run or a batch as by the
+//! command line. The request is kept there before any work (`job_file.rs`), so that a later server on the
+//! same folder can do it. A new kind of job needs a variant of [`Work`], its work in `WorkContext::work`, and
+//! the reading of its request (`Routes::planned`).
 
 mod earlier;
 mod job;
@@ -47,7 +47,7 @@ pub struct JobQueue {
 }
 
 impl JobQueue {
-    /// The jobs in `root`: those of an earlier server there, and none else yet.
+    /// The jobs in `root`: those of an earlier server there, and no others yet.
     pub fn new(root: &Path, prepare: PrepareOptions, command: String, on_results: OnResults) -> Self {
         let all = earlier(root, LISTED);
         let last = AtomicUsize::new(all.iter().map(|job| job.id).max().unwrap_or(0));
@@ -60,7 +60,7 @@ impl JobQueue {
         self.all.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Whether one job more may wait.
+    /// Refuses one more job if too many wait, or if the server ends.
     fn has_room(&self, all: &[Job]) -> Result<(), String> {
         if self.ends.load(Ordering::Relaxed) {
             return Err("the server ends".into());
@@ -88,7 +88,7 @@ impl JobQueue {
         // Meanwhile others may have been added, or the server told to end.
         if let Err(error) = written.and_then(|()| has_room(&all)) {
             drop(all);
-            // It was free, so what is there is of this job, which is none.
+            // The folder was free, so that its contents belong to this job, which does not start.
             let _ = remove_folder(&path(&id));
             let _ = self.last.compare_exchange(id, id - 1, Ordering::Relaxed, Ordering::Relaxed);
             return Err(error);
@@ -102,10 +102,10 @@ impl JobQueue {
         Ok(id)
     }
 
-    /// Stops a job, or takes it out of those that wait.
+    /// Stops a job, or removes it from the queue.
     ///
     /// # Errors
-    /// There is none of this number that could be stopped.
+    /// No job of this number can be stopped.
     pub fn stop(&self, id: usize) -> Result<(), String> {
         let mut all = self.locked();
         let job = all.iter_mut().find(|job| job.id == id).ok_or("there is no such job")?;
@@ -119,10 +119,10 @@ impl JobQueue {
         Ok(())
     }
 
-    /// What a job that can continue was asked for; `None` where that is to resume the run in its folder.
+    /// Request of a job that can continue; `None` if it is to resume the run in its folder.
     ///
     /// # Errors
-    /// There is none of this number that could continue.
+    /// No job of this number can continue.
     pub fn kept(&self, id: usize) -> Result<Option<JobFile>, String> {
         let (folder, resumes) = {
             let mut all = self.locked();
@@ -143,16 +143,16 @@ impl JobQueue {
         if job.can_continue(&self.context.root) { Ok(job) } else { Err("this job cannot continue".into()) }
     }
 
-    /// Whether the folder of a job holds the scene of a run that has begun, from which it can be resumed.
+    /// True if the folder of a job holds the scene of a run that has begun, from which it can be resumed.
     pub fn has_scene(&self, id: usize) -> bool {
         let all = self.locked();
         all.iter().any(|job| job.id == id && has_scene(&self.context.root.join(&job.folder)))
     }
 
-    /// Lets a job that was stopped or has failed continue, with its work planned anew.
+    /// Lets a job that was stopped or has failed continue, with its work planned again.
     ///
     /// # Errors
-    /// There is none of this number that could continue; too many wait.
+    /// No job of this number can continue; too many wait.
     pub fn resume(&self, id: usize, work: Work) -> Result<(), String> {
         let folder = {
             let mut all = self.locked();
@@ -164,7 +164,7 @@ impl JobQueue {
             *job.live.lock().unwrap_or_else(PoisonError::into_inner) = Live::default();
             self.context.root.join(&job.folder)
         };
-        // How it ended before is no longer so.
+        // Its earlier end is no longer true.
         if let Some(file) = JobFile::read(&folder).filter(|file| file.ended.is_some()) {
             let _ = JobFile { ended: None, ..file }.write(&folder);
         }
@@ -189,10 +189,10 @@ impl JobQueue {
         .collect()
     }
 
-    /// What became of these jobs, now that nothing is walked any more.
+    /// End of these jobs, once nothing is walked any more.
     ///
     /// # Errors
-    /// One failed, with its message; else some are not done.
+    /// The message of a job that failed; else the jobs that are not done.
     pub fn ended(&self, ids: &[usize]) -> Result<(), RunError> {
         let all = self.locked();
         let of = |state: JobState| all.iter().filter(move |job| ids.contains(&job.id) && job.state == state);

@@ -1,4 +1,4 @@
-//! What is known of a job while it is walked.
+//! Progress of a job while it is walked.
 
 use std::collections::BTreeMap;
 
@@ -20,7 +20,7 @@ const WARNINGS: usize = 50;
 /// Lines of a study that are kept: the newest.
 const LINES: usize = 12;
 
-/// What is known of a job while it is walked.
+/// Progress of a job while it is walked.
 #[derive(Clone, Debug, Default)]
 pub struct Live {
     /// Grains of the packing, its steps, and how many it usually takes.
@@ -28,7 +28,7 @@ pub struct Live {
     waits_for_packing: bool,
     /// Runs that are done, and that are to be walked, as far as it is known.
     runs: [u64; 2],
-    /// What the runs came to.
+    /// Results of the runs.
     walked: SoFar,
     /// Cases that are done, and all.
     cases: [usize; 2],
@@ -37,11 +37,11 @@ pub struct Live {
     /// Cases that are walked, with their runs that are done and that are to be walked.
     walking: BTreeMap<String, [u64; 2]>,
     case: String,
-    /// The rows of a batch, as far as they are walked, and whether inches stand in them.
+    /// The rows of a batch, as far as they are walked; true if they show inches.
     batch: Option<(Vec<WalkedRow>, bool)>,
-    /// What a study has said, the newest last.
+    /// Messages of a study, the newest last.
     lines: Vec<String>,
-    /// What a user must know.
+    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
@@ -122,7 +122,7 @@ impl Live {
         }
     }
 
-    /// What a user must know.
+    /// Adds a warning for the user.
     pub fn warn(&mut self, warning: &str) {
         if self.warnings.len() < WARNINGS && !self.warnings.iter().any(|said| said == warning) {
             self.warnings.push(warning.to_owned());
@@ -154,7 +154,7 @@ impl Live {
         })
     }
 
-    /// What the replicates that are whole come to; few of them have no class.
+    /// Results of the finished replicates; a few of them have no class.
     fn so_far(&self, runs: u64) -> Value {
         let Some(look) = self.walked.look(runs) else { return Value::Null };
         let class = Some(look.class.words()).filter(|_| look.replicates >= FEW);

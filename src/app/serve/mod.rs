@@ -41,10 +41,10 @@ use sheets::Sheets;
 use voidwalk_core::store::Folder;
 use voidwalk_core::store::format;
 
-/// How long nothing is accepted after that has failed: there may be no more file handles for a while.
+/// Pause after an accept that failed: there may be no more file handles for a while.
 const PAUSE: Duration = Duration::from_millis(100);
 
-/// How a server is started.
+/// Options of a server.
 pub struct ServeOptions {
     /// Port of the loopback address; 0 takes a free one.
     pub port: u16,
@@ -52,9 +52,9 @@ pub struct ServeOptions {
     pub folder: Option<PathBuf>,
     /// Threads, memory and the folder of packings.
     pub prepare: PrepareOptions,
-    /// What is done with results that are whole: their pages are written.
+    /// Action on finished results: writes their pages.
     pub on_results: OnResults,
-    /// What `manifest.json` says that a run was started with.
+    /// Command in `manifest.json` that started a run.
     pub command: String,
 }
 
@@ -134,7 +134,7 @@ fn first_new(name: &str) -> Result<Folder, RunError> {
     claim(Path::new(&names.next().expect("there is no last name")), FolderKind::Serve, false)
 }
 
-/// Answers every connection, so many at a time.
+/// Answers every connection, a limited number at a time.
 fn accept(listener: &TcpListener, routes: &Arc<Routes>) {
     let connections = Arc::new(Connections::default());
     for stream in listener.incoming() {

@@ -1,4 +1,4 @@
-//! What is answered to which request: each answer is a call of the library.
+//! Answers to requests: each answer is a call of the library.
 
 use std::io;
 use std::net::TcpStream;
@@ -39,17 +39,18 @@ const SCRIPT: &str = include_str!("page.js");
 const STYLE: &str = include_str!("page.css");
 const ICON: &str = include_str!("icon.svg");
 
-/// What the page may do: its own script and style, its own pictures and requests, and nothing else.
+/// Content security policy of the page: its own script and style, its own pictures and requests, and nothing
+/// else.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; \
     connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/// What a drawing may do.
+/// Content security policy of a drawing.
 const POLICY_OF_DRAWING: &str = "default-src 'none'; style-src 'unsafe-inline'; sandbox";
 
 /// Longest list of settings, and longest setting.
 const SETTINGS: (usize, usize) = (200, 2000);
 
-/// What the page asks to be walked.
+/// Request of the page for a walk.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Asked {
@@ -92,8 +93,8 @@ pub struct Routes {
 /// An answer that is no success: its status and words.
 type Problem = (u16, String);
 
-/// The constriction curves of a filter, loose and dense, by their names; none where the library has none like
-/// it.
+/// The constriction curves of a filter, loose and dense, by their names; empty if the library has no filter
+/// like it.
 fn constrictions(filter: &Gradation) -> Vec<(String, Vec<CurvePoint>)> {
     let curve = |density: LibraryDensity| {
         let found = LibraryFilter::find(filter, density).ok()??.found;
@@ -102,12 +103,12 @@ fn constrictions(filter: &Gradation) -> Vec<(String, Vec<CurvePoint>)> {
     [LibraryDensity::Loose, LibraryDensity::Dense].into_iter().filter_map(curve).collect()
 }
 
-/// What the input says is wrong with it.
+/// Problem of an input.
 fn wrong(error: impl std::fmt::Display) -> Problem {
     (422, on_page(&error.to_string()))
 }
 
-/// What the command line says, in the words of the page: its ticks and fields stand for options.
+/// Message of the command line in the words of the page, whose ticks and fields replace options.
 fn on_page(said: &str) -> String {
     let said = said.strip_prefix("--set: ").or_else(|| said.strip_prefix("--set, ")).unwrap_or(said);
     said.replace("(--as-given)", "(the tick \"base and filter are as given\")")
@@ -215,7 +216,7 @@ impl Routes {
         }
     }
 
-    /// What a request of this kind asks to be done, now or when it continues.
+    /// Work of a request of this kind, now or when it continues.
     fn planned(&self, kind: &str, request: &Value) -> Result<Planned, Problem> {
         match kind {
             "judge" => {
@@ -241,7 +242,7 @@ impl Routes {
         }
     }
 
-    /// All that changes; the sheets only where the page has not as many of them.
+    /// All state that changes; the sheets only if the page has another number of them.
     fn state(&self, request: &Request) -> Value {
         let sheets = self.sheets.all();
         let folder = std::path::absolute(&self.root).unwrap_or_else(|_| self.root.clone());
@@ -364,7 +365,7 @@ impl Routes {
     }
 }
 
-/// What is said of two soils besides their sheets.
+/// Options of two soils beside their sheets.
 fn pair_options(request: &Request) -> Result<PairOptions, Problem> {
     let changes: Vec<String> =
         request.parameter("changes").iter().flat_map(|all| all.lines().map(String::from)).collect();
@@ -373,7 +374,7 @@ fn pair_options(request: &Request) -> Result<PairOptions, Problem> {
     TableOptions { as_given, changes, ..TableOptions::default() }.of_rules().map_err(wrong)
 }
 
-/// Whether a job's folder is there itself, and no link to one elsewhere.
+/// True if a job's folder is a folder, not a link to one elsewhere.
 fn is_own(folder: &Path) -> bool {
     folder.symlink_metadata().is_ok_and(|meta| meta.is_dir())
 }

@@ -24,7 +24,7 @@ impl SampleTable {
         let paths = filter_paths(sheets, filters)?;
         let table = pairs_of(&sheets.path(whole_sheet(base))?, &paths, options, true);
         let mut table = table.map_err(|problem| sheets.as_named(&problem.to_string()))?;
-        // Sheets have their own names here, of which two can be the same, and no folder.
+        // Sheets have their own names here, which may repeat, and no folder.
         let names = filter_names(sheets, &paths);
         let of_filter = (table.rows.len() / table.filters.len()).max(1);
         for (at, row) in table.rows.iter_mut().enumerate() {
@@ -35,7 +35,7 @@ impl SampleTable {
         Ok(Self(table))
     }
 
-    /// As the page shows it, with sentences on each filter.
+    /// JSON for the page, with sentences on each filter.
     pub fn json(&self) -> Value {
         let rows = &self.0.rows[..self.0.rows.len().min(MOST_SHOWN)];
         let cut = (rows.len() < self.0.rows.len())
@@ -48,7 +48,7 @@ impl SampleTable {
         value
     }
 
-    /// As a file.
+    /// CSV file.
     pub fn csv(&self) -> Vec<u8> {
         columns(SizeUnit::Mm).csv(&self.0.rows)
     }

@@ -65,11 +65,11 @@ struct Kept {
 }
 
 impl Sheets {
-    /// The sheets below `root`: those of an earlier server, and none else yet.
+    /// The sheets below `root`: those of an earlier server, and no others yet.
     pub fn new(root: &Path) -> Self {
         let folder = root.join(FOLDER);
         let mut kept = Kept::default();
-        // A folder of sheets that is a link, or cannot be read, has none.
+        // A folder of sheets that is a link, or cannot be read, counts as empty.
         let is_own = folder.symlink_metadata().is_ok_and(|meta| meta.is_dir());
         let entries = std::fs::read_dir(&folder).into_iter().flatten().flatten().filter(|_| is_own);
         let ids = entries.filter_map(|entry| entry.file_name().to_str()?.parse().ok());
@@ -178,8 +178,8 @@ impl Sheets {
     }
 }
 
-/// A sheet that an earlier server kept, with its bytes; `None` where there is none of this number that is a
-/// file of its own and still holds soils.
+/// A sheet that an earlier server kept, with its bytes; `None` if no file of this number is the program's own
+/// and still holds soils.
 fn earlier(folder: &Path, id: usize) -> Option<(Arc<Sheet>, u64)> {
     let folder = folder.join(id.to_string());
     folder.symlink_metadata().ok().filter(|meta| meta.is_dir())?;
@@ -194,7 +194,7 @@ fn earlier(folder: &Path, id: usize) -> Option<(Arc<Sheet>, u64)> {
     Some((Sheet::of(id, &folder.join(name)).ok()?, bytes))
 }
 
-/// Whether no terminal, page or file system takes a letter for more.
+/// True if no terminal, page or file system gives a letter a special meaning.
 fn is_plain(letter: char) -> bool {
     !is_hidden(letter) && (letter.is_alphanumeric() || "._- ()+,".contains(letter))
 }
@@ -214,7 +214,7 @@ fn harmless(name: &str) -> String {
     }
 }
 
-/// The first letters of a text, at most so many and so many bytes.
+/// The first letters of a text, up to these numbers of letters and bytes.
 fn cut(text: &str, (letters, bytes): (usize, usize)) -> &str {
     let ends = text.char_indices().map(|(at, letter)| at + letter.len_utf8()).take(letters);
     &text[..ends.take_while(|end| *end <= bytes).last().unwrap_or(0)]
@@ -264,7 +264,7 @@ mod tests {
         }
         let hidden = "size_mm,a\u{1b}\u{202e}b,c\n1,0,0\n2,100,100\n";
         sheets.add("hidden.csv", hidden.as_bytes()).unwrap();
-        // As the page shows it.
+        // Name on the page.
         let path = sheets.path("2#a\u{fffd}\u{fffd}b").unwrap();
         assert_eq!(voidwalk_sheets::curves_in_file(&path, None).unwrap().len(), 1);
     }
@@ -305,7 +305,7 @@ mod tests {
         std::fs::write(folder.join("2/b.csv"), "no soil").unwrap();
         std::fs::create_dir(folder.join("18446744073709551615")).unwrap();
         assert_eq!(of(root.path()), before[2..]);
-        // What is not listed is not written over.
+        // Files that are not listed are not overwritten.
         let next = Sheets::new(root.path()).add("c.csv", b"size_mm,percent\n1,0\n2,100\n").unwrap();
         assert_eq!(next.id, 4);
     }

@@ -18,13 +18,13 @@ use voidwalk_core::network::{Network, NetworkError, percolation_threshold};
 /// Where a percolation study goes, and what it is asked for.
 #[derive(Clone, Debug)]
 pub struct PercolationOptions {
-    /// What it is asked for.
+    /// Plan of the study.
     pub plan: PercolationPlan,
     /// Folder for the results.
     pub out: PathBuf,
-    /// Whether earlier results there are replaced.
+    /// True if earlier results there are replaced.
     pub overwrite: bool,
-    /// Worker threads; without a number as many as a cluster's job has, else one per core.
+    /// Worker threads; by default the number that a cluster's job has, else one per core.
     pub threads: Option<usize>,
 }
 
@@ -35,7 +35,7 @@ impl Default for PercolationOptions {
     }
 }
 
-/// What a study is asked for; the same seed gives the same bits.
+/// Plan of a study; one seed always gives the same bits.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PercolationPlan {
     /// Voids along x and y, and layers, of one lattice after another.
@@ -52,7 +52,7 @@ impl Default for PercolationPlan {
     }
 }
 
-/// What has been found so far.
+/// Results so far.
 #[derive(Default, Serialize, Deserialize)]
 struct Found {
     /// The lengths of a lattice, and the threshold of each of its realisations in order.
@@ -96,7 +96,7 @@ impl PercolationPlan {
     /// soon as it is done; the same bits for any number of threads.
     ///
     /// # Errors
-    /// What the folder says; else none that [`PercolationPlan::checked`] has not found.
+    /// Errors of the folder; [`PercolationPlan::checked`] has already found all others.
     fn run(&self, mut found: Found, kept: Option<&Kept>) -> Result<Found, RunError> {
         let (begun, seconds_before) = (Instant::now(), found.seconds);
         for &shape in &self.shapes[found.thresholds.len()..] {
@@ -149,7 +149,7 @@ mod tests {
         assert_eq!(one.lines().count(), 81);
     }
 
-    /// As a kill leaves it, or a folder whose lattices are all done.
+    /// Continues after a kill, and in a folder whose lattices are all done.
     #[test]
     fn a_study_continues_with_the_lattices_that_are_left() {
         let plan = plan(vec![[6; 3], [8; 3], [4, 5, 6]], 10, 3).unwrap();

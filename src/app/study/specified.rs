@@ -23,28 +23,28 @@ use voidwalk_practice::quantity::SizeUnit;
 use voidwalk_practice::{DesignedSample, DesignedSamples, SpecificationOptions};
 use voidwalk_sheets::{SoilSample, file_and_soil};
 
-/// A base coarser than this (D85, mm) is none: its sizes are in another unit.
+/// A coarser base (D85, mm) is refused: its sizes are in another unit.
 pub(super) const NO_BASE_MM: f64 = 100.0;
 
-/// What a specification is asked for, and where it goes.
+/// Options of a specification, and the place of its results.
 #[derive(Clone, Debug)]
 pub struct SpecifyOptions {
     /// Sieve tables of the base, whose soils are the curves of an envelope; or of samples, also folders of
     /// tables.
     pub bases: Vec<PathBuf>,
-    /// Whether the base is dispersive.
+    /// True if the base is dispersive.
     pub dispersive: bool,
-    /// Whether the band is to lie at the finer end of what is allowed.
+    /// True if the band is to lie at the finer end of the allowed range.
     pub finer: bool,
     /// The sieves at which the limits are stated.
     pub sieves: SieveSeries,
-    /// What its page says of itself, besides the day.
+    /// Cover of its page, without the day.
     pub cover: SheetCover,
-    /// Whether its page shows inches beside mm.
+    /// True if its page shows inches beside mm.
     pub inches: bool,
     /// Folder for the results.
     pub out: PathBuf,
-    /// Whether earlier results there are replaced.
+    /// True if earlier results there are replaced.
     pub overwrite: bool,
 }
 
@@ -73,8 +73,8 @@ impl SpecifyOptions {
 /// `specification.json`.
 ///
 /// # Errors
-/// A base that cannot be read or is none, and a folder that cannot be claimed, are refused before anything
-/// is written.
+/// A base that cannot be read or is not a base, and a folder that cannot be claimed, are refused before
+/// anything is written.
 pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specification, RunError> {
     let base = InputSoils::envelope(&options.bases)?;
     no_filter_within(&base)?;
@@ -94,8 +94,8 @@ pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specif
 /// `designs.csv`, a row a sample, and, last, `designs.json`.
 ///
 /// # Errors
-/// Samples that cannot be read, or one that is none, and a folder that cannot be claimed, are refused before
-/// anything is written.
+/// Samples that cannot be read, or one that is not a base, and a folder that cannot be claimed, are refused
+/// before anything is written.
 pub fn specify_each(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<DesignedSamples, RunError> {
     let input = InputSoils::samples(&options.bases)?;
     input.soils.iter().try_for_each(is_a_base)?;
@@ -122,7 +122,7 @@ pub fn specify_each(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<D
 /// Refuses a base and a filter together: the filter is no curve of the base.
 fn no_filter_within(base: &InputSoils) -> Result<(), RunError> {
     let called = |wanted: &str| {
-        // Of several samples on a sheet each is named `Base/Sample 1`.
+        // Several samples on a sheet are each named like `Base/Sample 1`.
         let sheet = |name: &str| name.split('/').next().unwrap_or_default().trim().to_lowercase();
         let in_file = |soil: &SoilSample| file_and_soil(&soil.path).1.unwrap_or_else(|| soil.name.clone());
         base.soils.iter().find(|soil| sheet(&in_file(soil)) == wanted)
@@ -149,7 +149,7 @@ fn is_a_base(soil: &SoilSample) -> Result<(), RunError> {
     }
 }
 
-/// What is wrong with so coarse a base.
+/// Problem of a base that is too coarse.
 pub(super) fn no_base(d85: f64) -> String {
     format!(
         "the base's D85 is {d85:.0} mm, and no filter holds such stones: are its sizes micrometres under a \

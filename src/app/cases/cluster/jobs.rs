@@ -22,7 +22,7 @@ const PROCESSORS: u64 = 4;
 /// A task is estimated to take this long, where the user does not say how many there are (s).
 const TASK_S: f64 = 600.0;
 
-/// What the scripts start.
+/// Options of the job scripts.
 #[derive(Clone, Debug)]
 pub struct JobOptions {
     /// The program.
@@ -31,7 +31,7 @@ pub struct JobOptions {
     pub words: Vec<String>,
     /// The plan's file.
     pub plan: PathBuf,
-    /// Tasks of the array; so many that one takes some ten minutes without a number.
+    /// Tasks of the array; by default enough that one takes about ten minutes.
     pub tasks: Option<usize>,
 }
 
@@ -46,7 +46,7 @@ pub struct WrittenJobs {
     pub tasks: usize,
     /// Packings that are made first, and what the largest takes.
     pub packings: (usize, TaskNeeds),
-    /// What the largest task takes.
+    /// Needs of the largest task.
     pub walk: TaskNeeds,
     /// Processors of a task.
     pub processors: u64,

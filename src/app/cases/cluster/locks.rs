@@ -1,4 +1,4 @@
-//! What is known of the locks of the file system that a folder lies on.
+//! Reliability of the locks of a folder's file system.
 //!
 //! Cases are claimed by locks. On most file systems that clusters share, a lock that one node holds keeps the
 //! others out; on some, or mounted in some ways, every node sees its own locks only, and nothing tells. Then
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use voidwalk_core::store::platform;
 
-/// How a folder is mounted.
+/// Mount of a folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Mount {
     point: PathBuf,
@@ -17,7 +17,7 @@ struct Mount {
     options: Vec<String>,
 }
 
-/// What a user should know of the locks in this folder; `None` where they hold on every node.
+/// Warning about the locks in this folder; `None` if they hold on every node.
 pub fn warning(folder: &Path) -> Option<String> {
     let folder = folder.canonicalize().ok()?;
     mount_of(&folder, &platform::mounts()?)?.doubt()
@@ -68,7 +68,7 @@ impl Mount {
     }
 }
 
-/// Spaces and the like stand as three octal digits.
+/// Spaces and the like are written as three octal digits.
 fn unescaped(field: &str) -> String {
     let mut parts = field.split('\\');
     let mut text = parts.next().unwrap_or_default().to_owned();

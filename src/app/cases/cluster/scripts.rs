@@ -1,7 +1,7 @@
 //! The scripts of a campaign's jobs, filled into the templates of `src/app/data/slurm`.
 //!
-//! Paths and other words of the user's stand in single quotes, names of cases in none of them: a task's
-//! number is all that a script hands on.
+//! Paths and other words of the user are in single quotes. No script contains names of cases: it passes on
+//! only the number of a task.
 
 use std::path::{Path, PathBuf};
 
@@ -23,7 +23,7 @@ const LONGEST_MIN: u64 = 24 * 60;
 /// Time for what no estimate holds: a busy file system, the start of the program (minutes).
 const SLACK_MIN: u64 = 10;
 
-/// What one task of a job takes.
+/// Needs of one task of a job.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TaskNeeds {
     /// Seconds of the longest task, on its threads.
@@ -62,7 +62,7 @@ impl TaskNeeds {
     }
 }
 
-/// What is to be submitted.
+/// Jobs to be submitted.
 pub struct Jobs<'a> {
     /// The program.
     pub program: &'a Path,
@@ -74,7 +74,7 @@ pub struct Jobs<'a> {
     pub out: &'a Path,
     /// Further words of the program's command line, where it walks or packs.
     pub options: Vec<String>,
-    /// The same where it collects.
+    /// Options of the command that collects.
     pub collecting: Vec<String>,
     /// Processors of a task.
     pub processors: u64,
@@ -82,9 +82,9 @@ pub struct Jobs<'a> {
     pub packings: (usize, TaskNeeds),
     /// Names of the cases of each task.
     pub tasks: Vec<Vec<&'a str>>,
-    /// What the largest task takes.
+    /// Needs of the largest task.
     pub walk: TaskNeeds,
-    /// What collecting takes.
+    /// Needs of collecting.
     pub collect: TaskNeeds,
 }
 

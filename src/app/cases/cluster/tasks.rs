@@ -18,7 +18,7 @@ pub enum TaskError {
         file: String,
         /// The number.
         number: u64,
-        /// How many there are.
+        /// Number of tasks.
         tasks: u64,
     },
     /// A line that was not written by this program.

@@ -21,7 +21,7 @@ fn factors_are_crossed_with_the_last_running_fastest() {
     assert_eq!(seeds.len(), 4);
 }
 
-/// As it is printed, and with every key that stands behind a "#".
+/// Checks the printed plan, and the plan with every key that is commented out.
 #[test]
 fn the_plan_to_start_from_is_one_and_names_every_key() {
     let text = CasePlan::INIT_TEXT;

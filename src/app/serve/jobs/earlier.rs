@@ -39,7 +39,7 @@ pub fn earlier(root: &Path, most: usize) -> Vec<Job> {
     jobs
 }
 
-/// Whether there is nothing in a folder but marks of the program: a job that was never taken.
+/// True if a folder holds nothing but marks of the program: a job that was never accepted.
 fn holds_nothing(folder: &Path) -> bool {
     let entries = std::fs::read_dir(folder);
     entries.is_ok_and(|mut entries| {
@@ -47,7 +47,7 @@ fn holds_nothing(folder: &Path) -> bool {
     })
 }
 
-/// A job that an earlier server left; `None` where a folder of this name is none.
+/// A job that an earlier server left; `None` if the folder of this name holds no job.
 fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
     let path = root.join(&name);
     let file = JobFile::read(&path);

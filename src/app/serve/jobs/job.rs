@@ -10,7 +10,7 @@ use super::work::Work;
 use crate::serve::live::Live;
 use voidwalk_core::text::shell_word;
 
-/// How far a job is.
+/// State of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JobState {
     Waiting,
@@ -45,15 +45,15 @@ pub struct Job {
     pub asked: Value,
     /// Name of its folder inside the server's.
     pub folder: String,
-    /// What it does.
+    /// Work of the job.
     pub work: Work,
-    /// How far it is.
+    /// State of the job.
     pub state: JobState,
     /// Why it ended without a result.
     pub message: String,
-    /// What the page shows of its result.
+    /// JSON of its result for the page.
     pub result: Value,
-    /// What is known of it while it is walked.
+    /// Progress while it is walked.
     pub live: Arc<Mutex<Live>>,
     /// Set to stop it.
     pub stop: Arc<AtomicBool>,
@@ -67,13 +67,13 @@ impl Job {
         Self { id, title, asked, folder, work, state, message, result, live, stop }
     }
 
-    /// Whether it waits, and its work is known.
+    /// True if it waits and its work is known.
     pub fn can_begin(&self) -> bool {
         self.state == JobState::Waiting && !matches!(self.work, Work::Nothing)
     }
 
-    /// Whether it can go on: wherever it ended early, as far as the command line would take its folder. What
-    /// was refused before any work would be refused again.
+    /// True if it can continue: if it ended early in a folder that the command line would resume. A request
+    /// that was refused before any work would be refused again.
     pub fn can_continue(&self, root: &Path) -> bool {
         let ended_early = match self.state {
             JobState::Stopped | JobState::Failed => true,
@@ -83,7 +83,7 @@ impl Job {
         ended_early && !matches!(self.work, Work::Nothing)
     }
 
-    /// What the page is told of it; messages pass through `said`.
+    /// JSON of the job for the page; messages pass through `said`.
     pub fn snapshot(&self, all: &[Job], root: &Path, said: &impl Fn(&str) -> String) -> Value {
         let waits = |job: &&Job| job.state == JobState::Waiting && job.id < self.id;
         let page = ["report.html", "batch.html"]
@@ -125,12 +125,12 @@ fn all_said(value: &Value, said: &impl Fn(&str) -> String) -> Value {
     }
 }
 
-/// Whether a folder holds the scene of a run that has begun: what the command line resumes.
+/// True if a folder holds the scene of a run that has begun, which the command line resumes.
 pub fn has_scene(folder: &Path) -> bool {
     folder.join("scene.toml").is_file()
 }
 
-/// How a job goes on that was stopped.
+/// Hint for continuing a job that was stopped.
 pub fn how_to_continue(folder: &Path) -> String {
     let resume = match has_scene(folder) {
         true => format!(", or `voidwalk resume {}`,", shell_word(&folder.display().to_string())),

@@ -64,7 +64,7 @@ fn jobs_that_come_at_once_are_numbered_and_listed_in_order() {
     });
     let ids: Vec<usize> = queue.locked().iter().map(|job| job.id).collect();
     assert_eq!(ids, (1..=WAITING).collect::<Vec<_>>());
-    // What cannot be kept is no job, and leaves its number to the next.
+    // A request that cannot be kept makes no job, and the next job takes its number.
     queue.stop(1).unwrap();
     let large = JobFile { request: "x".repeat(5 << 20).into(), ..file() };
     assert!(queue.add(large, Work::Kept).is_err() && !root.path().join("run-21").exists());
@@ -92,7 +92,7 @@ fn every_job_of_an_earlier_server_is_listed_and_no_number_is_too_large() {
     ] {
         std::fs::create_dir(root.path().join(folder)).unwrap();
     }
-    // Of one nobody knows what was asked; another, of which there is only the mark, was never taken.
+    // The request of one job is unknown; another, which left only the mark, was never accepted.
     std::fs::write(root.path().join("batch-7/cases.jsonl"), "").unwrap();
     std::fs::create_dir(root.path().join("run-5")).unwrap();
     std::fs::write(root.path().join("run-5/.voidwalk.lock"), "").unwrap();
@@ -123,8 +123,8 @@ fn of_very_many_jobs_the_first_to_end_are_left_out() {
     assert_eq!((all.len(), &ids[..3]), (LISTED, &[1, 3, 6][..]));
 }
 
-/// What a full disk ends goes on once there is room: where the command line resumes a folder, so does the
-/// page, on this server and the next.
+/// A job that a full disk ended continues once there is room: if the command line resumes a folder, so does
+/// the page, on this server and the next.
 #[test]
 fn what_has_failed_can_continue() {
     let root = tempfile::tempdir().unwrap();
@@ -142,7 +142,7 @@ fn what_has_failed_can_continue() {
         let can = ids.map(|id| queue.kept(id).is_ok());
         assert_eq!(can, [true, true, false], "the last was refused before it began");
     }
-    // What was asked is lost, and the scene is not.
+    // The request is lost, but the scene is not.
     std::fs::write(folder(ids[1]).join("job.json"), "{").unwrap();
     assert_eq!(after.kept(ids[1]), Ok(None));
     // While it goes on, nothing says that it has failed.

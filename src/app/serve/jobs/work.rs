@@ -1,4 +1,4 @@
-//! What a job does: a call of the library into a folder of its own.
+//! Work of a job: a call of the library into a folder of its own.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -22,17 +22,17 @@ use crate::words::{first_lines, sentence};
 use voidwalk_practice::Decision;
 use voidwalk_practice::quantity::SizeUnit;
 
-/// What is done with results that are whole.
+/// Action on finished results.
 pub type OnResults = fn(FolderKind, &Path, Option<RunFiles>) -> Result<(), AnyError>;
 
-/// What a job does.
+/// Work of a job.
 #[derive(Clone)]
 pub enum Work {
     /// Walks a scene.
     Judge(Box<Scene>),
     /// Walks every sample against filters.
     Batch(Box<BatchPlan>),
-    /// What its folder keeps: it is planned again when the job continues.
+    /// Work that its folder describes: it is planned again when the job continues.
     Kept,
     /// Continues a run whose folder does not keep what was asked.
     Resume,
@@ -50,15 +50,15 @@ impl Work {
     }
 }
 
-/// What is the same for all jobs of a server.
+/// Settings that all jobs of a server share.
 pub struct WorkContext {
     /// The server's folder.
     pub root: PathBuf,
     /// Threads, memory and the folder of packings.
     pub prepare: PrepareOptions,
-    /// What a folder says that it was started with.
+    /// Command in a folder that started it.
     pub command: String,
-    /// What is done with results that are whole.
+    /// Action on finished results.
     pub on_results: OnResults,
 }
 
@@ -123,7 +123,7 @@ impl WorkContext {
     }
 }
 
-/// How the cases of a study in this folder are walked.
+/// Options of walking the cases of a study in this folder.
 pub fn of_cases(folder: &Path, prepare: &PrepareOptions, command: &str) -> CaseOptions {
     CaseOptions {
         out: folder.to_owned(),
@@ -141,7 +141,7 @@ fn often() -> CheckpointInterval {
     "1min".parse().unwrap_or_default()
 }
 
-/// What the page shows of an outcome.
+/// JSON of an outcome for the page.
 pub fn of_run(outcome: &Outcome, decision: &Decision) -> Value {
     let unit = SizeUnit::of(outcome.inputs.scale_free, false);
     let lines = first_lines(outcome, decision, unit);

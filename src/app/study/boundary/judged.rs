@@ -13,8 +13,8 @@ const FEW_NETWORKS: u64 = 5;
 /// A base coarser than this (D85, mm) is worth a word.
 const COARSE_BASE_MM: f64 = 10.0;
 
-/// What the search itself finds of a row: a band over so few networks says little, and a number of base
-/// particles may not be that of Eq. (2) at every ratio.
+/// Notes on the search itself: a band over so few networks says little, and a number of base particles may
+/// differ from Eq. (2) at some ratios.
 fn of_search(row: &Row) -> Vec<Note> {
     let networks = row.case.scene.walk.replicates;
     let few = (networks < FEW_NETWORKS).then_some(Note::FewNetworks { networks });
@@ -30,7 +30,7 @@ fn of_amount(row: &Row) -> Option<Note> {
 
 /// A row at one ratio with the sizes that it has there.
 pub(super) struct Judged {
-    /// The case with the sizes that filter and base have there; without a unit, that of D85B = 1.
+    /// The case with the sizes that filter and base have there; without a unit, sizes in units of D85B.
     pub case: Case,
     /// D85B (mm).
     d85_mm: Option<f64>,
@@ -66,7 +66,7 @@ impl Judged {
         let mut real_thickness = None;
         if !has_size {
             real_thickness = case.scene.filter.thickness_mm.take();
-            // As multiples of a size that is not known, neither soil has fines.
+            // In multiples of an unknown size, neither soil has fines.
             (case.scene.filter.d0_mm, case.scene.base) = (Some(1.0), row.case.scene.base.clone());
         } else if let BaseGradation::Linear { d85: D85::AtDc(..) | D85::Ratio(_), .. } =
             case.scene.base.gradation()
@@ -80,7 +80,7 @@ impl Judged {
         Ok(Self { case, d85_mm: row.d85_mm, base_name, real_thickness })
     }
 
-    /// What a reader must know of the model, with what else was found.
+    /// Notes on the model for a reader, with `others`.
     pub fn notes(&self, row: &Row, others: Vec<Note>) -> Vec<Note> {
         // Said of every ratio below.
         let of_one = self.case.too_little_base().filter(|_| of_amount(row).is_some());

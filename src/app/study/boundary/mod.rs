@@ -2,12 +2,12 @@
 //! and some into continuing.
 //!
 //! # Method
-//! One packing a shape and density. Packings are free of scale: a filter s times as large holds a base as it
-//! would hold one 1/s times as large itself, so nothing is packed again. Each network of a boundary is a
-//! replicate of a run, with its own streams of random numbers; they are the same at every ratio, and the
-//! network is the same to the bit. What is searched, and how, stands in `search`; median and band over
-//! networks in [`crate::outcome::boundary`]. A thickness in mm is another number of layers at every ratio,
-//! whose first layers are always the same.
+//! Each shape and density takes one packing. Packings are free of scale: a filter s times as large holds a
+//! base as the filter itself would hold one 1/s times as large, so nothing is packed again. Each network of a
+//! boundary is a replicate of a run, with its own streams of random numbers; they are the same at every
+//! ratio, and the network is the same to the bit. `search` describes the search; [`crate::outcome::boundary`]
+//! has median and band over networks. A thickness in mm is another number of layers at every ratio, but the
+//! first layers are always the same.
 //!
 //! A base that is twice as large takes a filter twice as large, to the bit, for a thickness in layers or
 //! multiples of D50F.
@@ -71,7 +71,7 @@ pub fn check(options: &BoundaryOptions) -> Result<(), RunError> {
     on_threads(options.prepare.threads, || drafts(options, BRACKET).map(drop))
 }
 
-/// The same between these D15F/D85B.
+/// Runs a search between these D15F/D85B.
 fn run_within(
     options: &BoundaryOptions,
     bracket: [f64; 2],
@@ -155,7 +155,7 @@ impl DraftedRow {
             ends: Vec::new(),
         };
         row.check_room(bracket)?;
-        // Of a filter that is still to be packed the curve itself is not known yet.
+        // The curve of a filter that is still to be packed is not known yet.
         if row.case.filter.packed.is_none() {
             row.at_curve_ends().iter().try_for_each(|end| end.check_room(bracket))?;
         }
@@ -172,9 +172,9 @@ impl DraftedRow {
     }
 }
 
-/// Every row, and after it those of the ends of the range in which its constriction curve is known, as a run
-/// walks them: of a guess the densest and the loosest, of a filter whose finer part was packed the coarser
-/// curve. What was asked for as a row of its own is none again.
+/// Every row, each followed by the ends of the range in which its constriction curve is known, as a run walks
+/// them: for a guess the densest and the loosest, for a filter whose finer part was packed the coarser curve.
+/// An end that was asked for as a row of its own is not repeated.
 fn with_curve_ends(rows: Vec<Row>) -> Vec<Row> {
     let same = |a: &Row, b: &Row| a.density == b.density && a.thickness == b.thickness;
     let mut all: Vec<Row> = Vec::new();
@@ -300,7 +300,7 @@ impl Searching<'_> {
         begun.and(whole)
     }
 
-    /// Whether the first network of an end holds clearly more than these rows, so that it cannot set the
+    /// True if the first network of an end holds clearly more than these rows, so that it cannot set the
     /// answer.
     fn holds_clearly_more(&self, row: usize, less: &[usize]) -> Result<bool, RunError> {
         let less: Vec<(usize, u64)> = less.iter().map(|&less| (less, self.rows[less].networks())).collect();

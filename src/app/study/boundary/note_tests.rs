@@ -39,7 +39,7 @@ fn an_end_that_holds_all_that_was_searched_limits_nothing() {
     assert!(narrow.boundaries[1].no_erosion.is_none(), "{:?}", narrow.boundaries[1]);
     assert!(least(&wide).is_some() && least(&narrow) == least(&wide));
     assert!(!has(&narrow, "holds_everywhere"));
-    // Where even the loosest holds all, or the loosest none, that is said.
+    // A note reports that even the loosest holds everything, or holds nothing.
     let short = of("short", [0.5, 0.9 * end(2).fold(f64::MAX, f64::min)]);
     assert!(least(&short).is_some() && has(&short, "holds_everywhere"));
     let high = of("high", [1.1 * end(2).fold(0.0, f64::max), 30.0]);
@@ -58,7 +58,7 @@ fn a_real_thickness_is_compared_in_mm_alone() {
     };
     assert_eq!(of("no-size", &[]), [true, false]);
     assert_eq!(of("sized", &["base.d85_mm=0.2"]), [false, true]);
-    // What was asked for is rounded to layers.
+    // The requested thickness is rounded to layers.
     let base = Some(of_base(folder.path(), "base.csv", &[(0.1, 0.0), (0.2, 100.0)]));
     for mm in [10.0, 10.3, 10.6, 10.9] {
         let name = format!("of-{mm}");

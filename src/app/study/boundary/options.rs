@@ -1,4 +1,4 @@
-//! What boundaries are asked for, and where it goes.
+//! Options of a search of boundaries, and the place of its results.
 
 use std::path::PathBuf;
 
@@ -6,29 +6,29 @@ use crate::run::prepare::PrepareOptions;
 use crate::scene::{Extent, NetworkKeys, USUAL_LAYERS};
 use voidwalk_core::schema::length::{LENGTHS, millimetres};
 
-/// What boundaries are asked for, and where it goes.
+/// Options of a search of boundaries, and the place of its results.
 #[derive(Clone, Debug)]
 pub struct BoundaryOptions {
-    /// Sieve table of the base; the settings say it where there is none.
+    /// Sieve table of the base; without it the settings define the base.
     pub base: Option<PathBuf>,
     /// The filter's shape: a sieve table, a Cu, or a shipped curve's name; the settings say it without one.
     pub filter: Option<String>,
     /// Densities: a word, `friction=F` or `estimate=D`.
     pub densities: Vec<String>,
-    /// Whether this very filter is packed; the library of packings knows its constrictions otherwise.
+    /// True if this very filter is packed; otherwise the library of packings gives its constrictions.
     pub pack: bool,
     /// Thicknesses.
     pub thicknesses: Vec<Thickness>,
     /// Settings of the built-in scene, as `base.cu=3`.
     pub settings: Vec<String>,
-    /// Whether the base is walked as it was sampled. Without it a base with a size of its own is walked as
-    /// filter practice regrades it, where `settings` do not say `base.regrade`.
+    /// True if the base is walked as it was sampled. Otherwise a base with a size of its own is walked as
+    /// filter practice regrades it, unless `settings` contain `base.regrade`.
     pub as_sampled: bool,
-    /// Whether base and filter are taken as they are given, though their sizes look exchanged.
+    /// True if base and filter are taken as they are given, though their sizes look exchanged.
     pub as_given: bool,
     /// Folder for the results.
     pub out: PathBuf,
-    /// Whether earlier results there are replaced.
+    /// True if earlier results there are replaced.
     pub overwrite: bool,
     /// Threads, memory and the folder of packings.
     pub prepare: PrepareOptions,
@@ -52,7 +52,7 @@ impl Default for BoundaryOptions {
     }
 }
 
-/// What a filter's thickness is stated in.
+/// Unit of a filter's thickness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Thickness {
     /// Layers of voids.
@@ -113,7 +113,7 @@ pub struct ThicknessList(pub Vec<Thickness>);
 impl std::str::FromStr for ThicknessList {
     type Err = String;
 
-    /// `1,5m` may be one thickness with a decimal comma: a number without a unit stands in no list in which
+    /// Reads a list. `1,5m` may be one thickness with a decimal comma: a list has no number without a unit if
     /// another has one.
     fn from_str(text: &str) -> Result<Self, String> {
         let items: Vec<&str> = text.split(',').collect();

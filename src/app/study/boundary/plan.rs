@@ -216,7 +216,7 @@ fn refuse(scene: &Scene) -> Result<(), RunError> {
     Ok(())
 }
 
-/// How densely a scene's filter is packed, in words.
+/// Density of the packing of a scene's filter, in words.
 fn density_words(scene: &Scene) -> String {
     let filter = &scene.filter;
     if let Some(density) = filter.library {
@@ -311,7 +311,7 @@ mod tests {
             let twice = plan(&options(&same, &[])).unwrap_err();
             assert!(twice.to_string().contains("asked for twice") && twice.exit().code() == 2);
         }
-        // As a scene reads it.
+        // Reads the options like a scene.
         let first = |options: &BoundaryOptions| plan(options).unwrap().cases.remove(0);
         let medium = first(&options(&["medium"], &[]));
         let scene = Scene::built_in(&["filter.cu=3".into(), "filter.library=medium".into()]).unwrap();

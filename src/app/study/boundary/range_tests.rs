@@ -66,8 +66,8 @@ fn a_filter_of_unknown_density_is_as_the_worse_of_its_ends() {
     assert!(table.lines().skip(1).any(|line| density(line) == 1), "{table}");
 }
 
-/// Where the first network of an end holds clearly more than those of the worse end, its boundary is not
-/// searched; the worse end is searched as ever.
+/// If the first network of an end holds clearly more than those of the worse end, its boundary is not
+/// searched; the worse end is searched as usual.
 #[test]
 fn an_end_that_holds_clearly_more_is_asked_for_one_ratio() {
     let folder = tempfile::tempdir().unwrap();

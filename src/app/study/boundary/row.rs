@@ -35,18 +35,18 @@ pub(super) struct Row {
     pub base: Gradation,
     /// D85B (mm), where the base has a size of its own.
     pub d85_mm: Option<f64>,
-    /// Whether the filter has a size of its own.
+    /// True if the filter has a size of its own.
     pub filter_has_size: bool,
-    /// What the walks may take.
+    /// Limits of the walks.
     pub limits: ResourceLimits,
-    /// The density of which this is an end of the range in which its constriction curve is known.
+    /// The density whose constriction curve is known only within a range with this row as an end.
     pub end_of: Option<String>,
     /// The densities of the ends of its own range.
     pub ends: Vec<String>,
 }
 
 impl Row {
-    /// The same at the ends of the range in which the constriction curve is known.
+    /// This row at the ends of the range in which the constriction curve is known.
     pub fn at_curve_ends(&self) -> Vec<Self> {
         let case = &self.case;
         let names_itself = case.filter.guessed_density.is_some() || case.filter.library.is_some();
@@ -68,38 +68,39 @@ impl Row {
         self.case.filter.gradation.d(15.0).unwrap_or(f64::NAN)
     }
 
-    /// Networks that are searched: none with a density that nobody knows, whose ends are searched instead.
+    /// Number of networks that are searched: 0 with an unknown density, whose ends are searched instead.
     pub fn networks(&self) -> u64 {
         let is_unknown = self.case.scene.filter.library == Some(LibraryDensity::Unknown);
         let is_between_ends = is_unknown && self.end_of.is_none() && !self.ends.is_empty();
         if is_between_ends { 0 } else { self.case.scene.walk.replicates }
     }
 
-    /// How much larger the filter is than the case has it at a ratio, where the base has a size.
+    /// Size of the filter at a ratio as a multiple of its size in the case, if the base has a size.
     pub fn factor(&self, ratio: f64) -> Option<f64> {
         Some(ratio * self.d85_mm? / self.d15f())
     }
 
-    /// Layers at a ratio, where they hang on it.
+    /// Layers at a ratio, if they depend on it.
     pub fn layers(&self, ratio: f64) -> Option<u64> {
         let (mm, layer) = self.thickness_and_layer(ratio)?;
         Some((mm / layer).round().clamp(1.0, f64::from(u32::MAX)) as u64)
     }
 
-    /// The thickness that was asked for and that of one layer (mm), where the layers hang on the ratio.
+    /// The thickness that was asked for and the thickness of one layer (mm), if the layers depend on the
+    /// ratio.
     fn thickness_and_layer(&self, ratio: f64) -> Option<(f64, f64)> {
         let Thickness::Mm(mm) = self.thickness else { return None };
         let layer = self.case.filter.gradation.d_by_number(50.0).unwrap_or(self.case.filter.unit_mm);
         Some((mm, layer * self.factor(ratio)?))
     }
 
-    /// How thick (mm) the one layer is that is walked at a ratio where less than half of one was asked for.
+    /// Thickness (mm) of the one layer that is walked at a ratio if less than half of one was asked for.
     pub fn thicker_than_asked(&self, ratio: f64) -> Option<f64> {
         let (mm, layer) = self.thickness_and_layer(ratio)?;
         ((mm / layer).round() < 1.0).then_some(layer)
     }
 
-    /// The same as a note.
+    /// Note on a layer that is thicker than the thickness asked for.
     pub fn thicker(&self, ratio: f64) -> Option<Note> {
         let layer_mm = self.thicker_than_asked(ratio)?;
         Some(Note::LayerThicker { ratio, layer_mm, thickness: self.thickness.to_string() })
@@ -131,7 +132,7 @@ impl Row {
         }
     }
 
-    /// On which side a ratio lies that cannot be walked.
+    /// Side of the search of a ratio that cannot be walked.
     fn side(&self, ratio: f64) -> Beyond {
         let too_few = || -> Option<bool> {
             let Amount::MassRatio(mass_ratio, _) = self.case.scene.base.amount() else { return None };
@@ -207,7 +208,7 @@ impl Row {
     }
 }
 
-/// Whether the base itself cannot be walked: Eq. (2) gives too few particles or too many, or sizes are out of
+/// True if the base itself cannot be walked: Eq. (2) gives too few particles or too many, or sizes are out of
 /// range.
 fn is_of_base(error: &CaseError) -> bool {
     matches!(error, CaseError::Scene(_) | CaseError::Gradation(_) | CaseError::Number(_))
@@ -219,7 +220,7 @@ pub(super) struct OneNetwork<'a> {
     seed: u64,
     /// The network that was walked last, and its exits.
     network: Option<(Arc<Network>, PlainExits)>,
-    /// What the first run left of the constrictions, by step.
+    /// Constrictions after the first run, by step.
     clogged: BTreeMap<i64, Clogged>,
     callbacks: &'a Callbacks<'a>,
 }
@@ -232,7 +233,7 @@ impl OneNetwork<'_> {
             Err(error) if is_of_base(&error) => {
                 return Ok(Trial::CannotBe(self.row.side(ratio), error.to_string()));
             }
-            // What this machine cannot walk says nothing of the filter.
+            // A limit of this machine says nothing about the filter.
             Err(error) => {
                 let text = format!(
                     "at D15F/D85B {ratio:.2}: {error}; networks that are done are kept: repeat the command \

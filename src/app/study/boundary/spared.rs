@@ -1,13 +1,14 @@
-//! Ends of a range that cannot set its answer: their first network holds more than all of the end that holds
-//! least, and the others are not searched.
+//! Ends of a range that cannot set its answer: their first network holds more than all networks of the end
+//! that holds least, and their other networks are not searched.
 
 use super::row::Row;
 use super::search::{Done, Found};
 use crate::outcome::boundary::Beyond;
 
-/// The first network of an end has to hold so many times as much as the greatest of the networks of the end
-/// that holds least, or as the square of what lies between those, where that is more. So even one of its
-/// networks that lies twice as far below its first as those lie apart holds more than the least of them.
+/// The first network of an end must hold at least this multiple of the greatest ratio among the networks of
+/// the end that holds least, or the square of the spread of those networks, if that is more. So even a
+/// network of the end that lies twice as far below its first as that spread holds more than the least of
+/// them.
 const CLEAR: f64 = 1.1;
 
 /// The ends of the same ranges that hold less than row `at` by the closed form for a lone particle: one for
@@ -32,8 +33,8 @@ pub(super) fn holding_less(rows: &[Row], at: usize) -> Vec<usize> {
     if least.contains(&at) { Vec::new() } else { least }
 }
 
-/// The ratio that the first network of an end has to hold, so that it cannot set the answer beside rows that
-/// hold less, of which all networks are done; `None` where it is searched whatever it holds.
+/// The ratio that the first network of an end must hold, so that it cannot set the answer beside rows that
+/// hold less, once all networks of those rows are done; `None` if the end is searched in any case.
 pub(super) fn clear_of(done: &[Done], holding_less: &[(usize, u64)]) -> Option<f64> {
     let ratio = |&(row, networks): &(usize, u64)| {
         let of_row = done.iter().filter(|done| done.row == row);

@@ -1,18 +1,18 @@
-//! What the walks of a row say against its no-erosion boundary: that a few particles decide.
+//! Doubts about a row's no-erosion boundary: a few particles decide.
 
 use crate::outcome::verdict::THRESHOLD;
 
 use super::search::Done;
 
-/// Of networks whose no-erosion boundary is in doubt: how many hold a ratio above one at which they erode,
-/// half or more of them, and how many erode.
+/// Networks whose no-erosion boundary is in doubt: the number that hold a ratio above an eroding one, if that
+/// is half or more of the networks that erode, and the number that erode.
 pub(super) fn doubt(done: &[&Done]) -> Option<[u64; 2]> {
     let eroding: Vec<&&Done> = done.iter().filter(|of| of.found.no_erosion.is_some()).collect();
     let unsteady = eroding.iter().filter(|of| comes_and_goes(&of.found.walks)).count();
     (unsteady > 0 && 2 * unsteady >= eroding.len()).then_some([unsteady as u64, eroding.len() as u64])
 }
 
-/// Whether some ratio holds in the first run above one that erodes, of walks in the order of their ratios.
+/// True if some ratio holds in the first run above one that erodes, for walks in the order of their ratios.
 fn comes_and_goes(walks: &[(f64, f64, Option<f64>)]) -> bool {
     let mut of_first = walks.iter().map(|walk| walk.1);
     of_first.any(|eroded| eroded >= THRESHOLD) && of_first.any(|eroded| eroded < THRESHOLD)
@@ -24,7 +24,8 @@ mod tests {
     use crate::outcome::boundary::Beyond;
     use crate::study::boundary::search::{Ended, Found};
 
-    /// A network of which the first run erodes so much (%) at ratios 1, 2 and on, and the second at 4.
+    /// A network whose first run erodes these percentages at ratios 1, 2 and on, and whose second run does at
+    /// 4.
     fn network(first: &[f64]) -> Done {
         let walks: Vec<_> = (1u32..).zip(first).map(|(s, e)| (f64::from(s), e / 100.0, Some(0.0))).collect();
         let no_erosion = walks.iter().find(|walk| walk.1 >= THRESHOLD).map(|walk| walk.0);

@@ -104,18 +104,18 @@ pub(super) fn boundaries(
 #[derive(Clone)]
 struct FoundRow {
     of: BoundaryRow,
-    /// How many of how many networks that erode put its boundary in doubt.
+    /// Number of networks that put its boundary in doubt, and number that erode.
     unsteady: Option<[u64; 2]>,
     /// Networks that erode at every ratio of the search.
     eroding: u64,
-    /// What is to be said of its boundary of no erosion.
+    /// Notes on its boundary of no erosion.
     of_boundary: Vec<Note>,
-    /// Of an end that cannot set the answer: the ratio that its first network holds, and no more is known.
+    /// For an end that cannot set the answer: the ratio that its first network holds; nothing more is known.
     spared_at: Option<f64>,
 }
 
 impl FoundRow {
-    /// Whether it is an end that cannot set the answer.
+    /// True if it is an end that cannot set the answer.
     fn is_spared(&self) -> bool {
         self.spared_at.is_some()
     }
@@ -129,7 +129,7 @@ impl FoundRow {
         })
     }
 
-    /// The same of a row of which this is the end that holds least.
+    /// Result under the name of a row, for which this is the end that holds least.
     fn named(&self, row: &Row) -> Self {
         let as_end = Some(self.of.density.clone());
         let of = BoundaryRow { density: row.density.clone(), as_end, end_of: None, ..self.of.clone() };
@@ -143,7 +143,7 @@ fn holds_less(a: &FoundRow, b: &FoundRow) -> Ordering {
     a.total_cmp(&b)
 }
 
-/// Whether another row is this one, where it was searched, or an end of its range.
+/// True if another row is this one, if it was searched, or an end of its range.
 fn is_in_range(row: &Row, other: &Row) -> bool {
     let density = &other.density;
     other.networks() > 0
@@ -151,7 +151,7 @@ fn is_in_range(row: &Row, other: &Row) -> bool {
         && (*density == row.density || row.ends.contains(density))
 }
 
-/// What was found of the row itself, where it was searched, and of the ends of its range.
+/// Results of the row itself, if it was searched, and of the ends of its range.
 fn range<'a>(row: &'a Row, rows: &'a [Row], found: &'a [FoundRow]) -> impl Iterator<Item = &'a FoundRow> {
     let in_range = rows.iter().zip(found).filter(move |(other, _)| is_in_range(row, other));
     in_range.map(|(_, found)| found).filter(|found| !found.is_spared())
@@ -166,15 +166,15 @@ fn spared_ends(row: &Row, rows: &[Row], found: &[FoundRow]) -> Vec<Note> {
     in_range.filter_map(spared).collect()
 }
 
-/// The ratio that nearly all networks hold, of every curve of the range; `None` where that of one is not
-/// known. A curve whose networks hold all that was searched counts as holding to its end.
+/// The ratio that nearly all networks hold with every curve of the range; `None` if it is unknown for one of
+/// them. A curve whose networks hold all ratios of the search counts as holding to its end.
 fn held_over_range(row: &Row, rows: &[Row], found: &[FoundRow]) -> Option<f64> {
     let each = range(row, rows, found).map(|found| found.of.held());
     each.reduce(|a, b| Some(a?.min(b?))).flatten()
 }
 
-/// Why the model has no boundary: networks erode at every ratio that was searched, with some curve of the
-/// range, or they hold every one, and the end of the search is none.
+/// Reason why the model has no boundary: networks erode at every ratio of the search, with some curve of the
+/// range, or they hold every one, and the end of the search is not a boundary.
 fn unbounded(row: &Row, rows: &[Row], found: &[FoundRow]) -> Option<Note> {
     if let Some(unheld) = range(row, rows, found).find_map(FoundRow::unheld) {
         return Some(unheld);
@@ -208,8 +208,7 @@ fn all_notes(rows: Vec<(String, Vec<Note>)>, boundaries: &[BoundaryRow]) -> Vec<
     all
 }
 
-/// What "no erosion" of a row is worth, at the ratio that nearly all networks hold over the range of its
-/// curve.
+/// Notes on "no erosion" for a row, at the ratio that nearly all networks hold over the range of its curve.
 fn judged(
     row: &Row,
     (own, rows, found): (&FoundRow, &[Row], &[FoundRow]),
@@ -278,7 +277,7 @@ fn inputs(row: &Row) -> Vec<InputFile> {
 
 fn base(row: &Row, name: &str) -> BaseStated {
     let (walked, given) = (&row.stated.base.gradation, row.stated.base.as_given());
-    // Of a base without a size nothing in mm is known.
+    // Nothing in mm is known about a base without a size.
     let cut = row.stated.base.regraded_from.as_ref().filter(|_| row.d85_mm.is_some());
     BaseStated {
         name: name.into(),
@@ -306,7 +305,7 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
         |done| done.found.continuing,
         |done| done.found.continuing_beyond.as_ref().map(|(beyond, _)| *beyond),
     );
-    // Why some networks have none, as the first of them has it.
+    // Reason why some networks have no boundary, taken from the first of them.
     let ended = |of: fn(&Done) -> Option<&Beside>| {
         let all: Vec<&Ended> = done.iter().filter_map(|done| Some(&of(done)?.1)).collect();
         all.first().map(|why| why.note(all.len() as u64))
@@ -316,11 +315,12 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
     let ratio = no_erosion.as_ref().map_or(holds_to.unwrap_or(USUAL_RATIO), |boundary| boundary.median);
     let layers = row.layers(ratio).unwrap_or(row.case.network.layers);
     let of_layers = || {
-        // Of a thickness in layers the case's own thickness, as large as the filter is at the boundary.
+        // For a thickness in layers: the case's own thickness, with the filter as large as it is at the
+        // boundary.
         no_erosion.as_ref()?;
         Some(row.case.thickness()? * row.factor(ratio)?)
     };
-    // Of a filter that is as thin as one layer, or thinner, the layer itself.
+    // For a filter that is as thin as one layer, or thinner: the layer itself.
     let thicker = |boundary: &Option<Boundary>| {
         let greatest = boundary.as_ref().map(|of| of.high.unwrap_or(of.median));
         row.thicker(greatest.or(holds_to)?)
@@ -363,8 +363,8 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
     FoundRow { of, unsteady, eroding, of_boundary, spared_at }
 }
 
-/// The ratio that nearly all networks hold where their median lies above all that was searched: one that
-/// erodes nowhere counts as holding to the greatest ratio that was walked on it.
+/// The ratio that nearly all networks hold if their median lies above all ratios of the search: a network
+/// that erodes nowhere counts as holding to the greatest ratio that was walked on it.
 fn holds_to(done: &[&Done]) -> Option<f64> {
     let one = |done: &&Done| match (done.found.no_erosion, &done.found.no_erosion_beyond) {
         (Some(ratio), _) => Ok(ratio),
@@ -375,7 +375,7 @@ fn holds_to(done: &[&Done]) -> Option<f64> {
     low.ok()
 }
 
-/// What is to be said where the base's pan fraction alone is enough to erode.
+/// Note on a base whose pan fraction alone is enough to erode.
 fn of_pan(row: &Row) -> Option<Note> {
     let pan = row.stated.base.gradation.pan_fraction();
     (pan >= THRESHOLD).then_some(Note::PanErodes { finest_percent: 100.0 * pan })

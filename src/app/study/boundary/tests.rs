@@ -29,7 +29,7 @@ pub(super) fn options(out: &Path, more: &[&str]) -> BoundaryOptions {
     BoundaryOptions { out, settings, ..BoundaryOptions::default() }
 }
 
-/// With a smaller lattice still, of which the later of two settings counts.
+/// Options with a smaller lattice still; the later of two settings counts.
 pub(super) fn tiny(out: &Path, more: &[&str]) -> BoundaryOptions {
     let mut all: Vec<&str> = Vec::new();
     let key = |setting: &str| setting.split('=').next().unwrap_or_default().to_owned();
@@ -44,7 +44,7 @@ pub(super) fn found(options: &BoundaryOptions) -> Boundaries {
     found_within(options, SHORT)
 }
 
-/// The same between other D15F/D85B.
+/// Boundaries between other D15F/D85B.
 pub(super) fn found_within(options: &BoundaryOptions, bracket: [f64; 2]) -> Boundaries {
     run_within(options, bracket, &Callbacks::default()).unwrap()
 }
@@ -56,7 +56,7 @@ pub(super) fn of_base(folder: &Path, name: &str, points: &[(f64, f64)]) -> PathB
     path
 }
 
-/// What does not hang on the clock.
+/// Results that do not depend on the clock.
 pub(super) fn timeless(all: &Boundaries) -> String {
     serde_json::to_string(&Boundaries { seconds: 0.0, ..all.clone() }).unwrap()
 }
@@ -122,9 +122,9 @@ fn boundaries_hang_neither_on_a_wide_bracket_nor_on_threads() {
     assert!(beside.notes.iter().any(|row| row.note.id() == "holds_everywhere"), "{:?}", beside.notes);
 }
 
-/// Scans with whole runs of scenes, in steps of 0.5 %: another way to make the base, to walk and to look. Of
-/// uniform bases, whose erosion rises steeply: on so few voids that of broad ones rises so slowly that a
-/// walk's own scatter moves the boundary by a tenth.
+/// Scans with whole runs of scenes, in steps of 0.5 %: another way to make the base, to walk and to look. The
+/// bases are uniform, so that their erosion rises steeply: on so few voids the erosion of broad bases rises
+/// so slowly that a walk's own scatter moves the boundary by a tenth.
 #[test]
 fn three_boundaries_are_those_of_scans_by_hand() {
     let folder = tempfile::tempdir().unwrap();
@@ -164,7 +164,7 @@ fn three_boundaries_are_those_of_scans_by_hand() {
     }
 }
 
-/// Bits of the walk itself, and those of another engine.
+/// Compares bits of the walk itself with those of another engine.
 #[test]
 fn a_search_moves_the_expectation_of_what_blocks_nothing_unless_another_engine_is_named() {
     let folder = tempfile::tempdir().unwrap();

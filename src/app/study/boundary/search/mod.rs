@@ -3,28 +3,28 @@
 //! # Method
 //! Ratios are tried on one fixed scale, steps of 0.5 %, whatever the bracket; every sixteenth step (8 %) is a
 //! *stop*. From a stop near the closed form for a lone particle the search goes by stops to one that holds
-//! and below which another holds too, and up to the first that erodes; between these two neighbours it
-//! halves the steps until two neighbouring ones are left. The second run goes by every other stop. So the
-//! result hangs neither on a bracket that is wider than what is tried nor on where the search began, unless
-//! what erodes does not rise with the ratio: then the smallest ratio that was seen to erode counts, and that
-//! is said.
+//! and below which another holds too, and up to the first that erodes; between these two neighbours it halves
+//! the steps until two neighbouring ones are left. The second run goes by every other stop. So the result
+//! depends neither on a bracket that is wider than the ratios tried nor on the start of the search, unless
+//! the eroded mass does not rise with the ratio: then the smallest ratio that was seen to erode counts, and a
+//! note reports it.
 //!
 //! A walk scatters: on small networks of broad bases single ratios up to 8.7 % below this boundary were found
 //! to erode. So single steps down to 10 % below are tried besides, in either run, closer ones more often, and
-//! again below each that erodes. On lattices of less than 40 x 40 voids across what erodes scatters more,
-//! and a walk by area takes less: there more steps are tried, and farther down, on ten across every one to
-//! 26 % below. The tries end early where what erodes falls steadily with the ratio: five of them or more, a
-//! straight line through them that lies 15 % of the threshold below it, and by eight times what scatters
-//! about the line. Of 711 searches whose tries went all the way that rule halved the tries, and the boundary
-//! of two rose, by 4 and 8 % (`results/boundary.md`).
+//! again below each that erodes. On lattices of less than 40 x 40 voids across the eroded mass scatters more,
+//! and a walk by area takes less time: more steps are tried there, and farther down, on ten across every step
+//! to 26 % below. The tries end early if the eroded mass falls steadily with the ratio: after five tries or
+//! more, if a straight line through them lies below the threshold by 15 % of it, and by eight times the
+//! scatter about the line. In 711 searches whose tries went all the way this rule halved the tries, and two
+//! boundaries rose, by 4 and 8 % (`results/boundary.md`).
 //!
 //! Networks of one filter and base lie close together: with the boundaries of the first of them as a hint,
 //! the search of another steps away from there, 2 % and then ever more, until it has one that holds and one
-//! that erodes; two stops below are tried all the same. Where that finds nothing, it goes by stops.
+//! that erodes; two stops below are tried as well. If this finds nothing, the search goes by stops.
 //!
-//! The boundary of the second run is searched when that of the first is known, so that other networks can
-//! begin meanwhile. The second run is walked only at ratios whose first run erodes, and only near where it
-//! begins to erode itself: what holds in the first holds in the second.
+//! The boundary of the second run is searched once the boundary of the first is known, so that other networks
+//! can begin meanwhile. The second run is walked only at ratios whose first run erodes, and only near the
+//! ratio from which it erodes itself: a ratio that holds in the first run holds in the second.
 
 mod first;
 mod second;
@@ -59,12 +59,12 @@ pub(super) enum Ended {
     ErodesTo(f64, String),
     /// The largest ratio of the search holds, in this run.
     Holds(u64, f64),
-    /// What keeps further ratios from being walked.
+    /// Reason why further ratios are not walked.
     NotWalked(String),
 }
 
 impl Ended {
-    /// The same as a note on this many networks.
+    /// The note for this many networks.
     pub fn note(&self, networks: u64) -> Note {
         match self {
             Self::Erodes(ratio) => Note::ErodesToEnd { ratio: *ratio, networks },
@@ -77,25 +77,25 @@ impl Ended {
     }
 }
 
-/// On which side of the search a boundary lies, and why.
+/// Side of the search on which a boundary lies, and the reason.
 pub(super) type Beside = (Beyond, Ended);
 
-/// What one network was found to be.
+/// Results of one network.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Found {
     /// D15F/D85B from which the first run erodes 7.5 %.
     pub no_erosion: Option<f64>,
-    /// Why there is none.
+    /// Reason why there is no such ratio.
     pub no_erosion_beyond: Option<Beside>,
     /// D15F/D85B from which the second run does too.
     pub continuing: Option<f64>,
-    /// Why there is none.
+    /// Reason why there is no such ratio.
     pub continuing_beyond: Option<Beside>,
-    /// Whether some larger ratio was seen to hold.
+    /// True if some larger ratio was seen to hold.
     pub is_not_monotone: bool,
     /// Every ratio that was walked, rising, with what eroded in the first run and in the second.
     pub walks: Vec<(f64, f64, Option<f64>)>,
-    /// Of an end of a range that cannot set its answer: a ratio that it holds, and all that was asked of it.
+    /// For an end of a range that cannot set its answer: a ratio that it holds, the only one that was tried.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spared_at: Option<f64>,
 }
@@ -107,7 +107,7 @@ pub(super) struct Done {
     pub row: usize,
     /// Network, counted from 1.
     pub network: u64,
-    /// What it says.
+    /// Results of the network.
     pub found: Found,
 }
 
@@ -121,12 +121,12 @@ fn erodes_down_to(step: i64) -> Beside {
     (Beyond::Below, Ended::Erodes(ratio_at(step)))
 }
 
-/// What another network of the same filter was found to be: where to look on this one.
+/// Boundaries of another network of the same filter, as a start for this one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Hint {
     /// Both boundaries, where it has them.
     pub boundaries: [Option<f64>; 2],
-    /// Whether the smallest ratio of the search erodes.
+    /// True if the smallest ratio of the search erodes.
     pub erodes_to_end: bool,
 }
 
@@ -144,14 +144,14 @@ impl Hint {
 pub(super) struct Start {
     /// A ratio to begin at where there is no hint.
     pub ratio: f64,
-    /// What another network of the filter was found to be.
+    /// Boundaries of another network of the filter.
     pub hint: Hint,
-    /// Start nodes of a lattice that is walked by area; of another network, as many as the usual lattice has.
+    /// Start nodes of a lattice that is walked by area; for another network, the number of the usual lattice.
     pub across: u64,
 }
 
-/// A network of which the boundary of the first run has been searched, between the ratios of a bracket, and
-/// that of the second is to be.
+/// A network whose first boundary has been searched, between the ratios of a bracket, and whose second is
+/// still to be searched.
 pub(super) struct Begun<W> {
     search: Search<W>,
     /// The last step that holds and the first that erodes, as they were found first.
@@ -233,7 +233,7 @@ impl<W: Walker> Begun<W> {
                 None => search.continuing(pair)?,
             };
             match second {
-                // What does not erode in the first run does not continue.
+                // A ratio that holds in the first run does not continue to erode.
                 Ok(pair) => {
                     let least = search.smallest_that_erodes(pair.1, Search::try_second)?;
                     let least = smallest_seen(&search.second).unwrap_or(least);
@@ -266,8 +266,8 @@ fn step_near(ratio: Option<f64>) -> Option<i64> {
     ratio.map(|ratio| (libm::log(ratio) / BETWEEN_STEPS).round() as i64)
 }
 
-/// Whether the first run holds a ratio: the next step above it, and those below that a search tries besides.
-/// `None` where it does not, or is beyond the search.
+/// Checks that the first run holds a ratio: at the next step above it, and at the steps below that a search
+/// tries as well. `None` if it erodes, or if the ratio is beyond the search.
 ///
 /// # Errors
 /// A walk that goes wrong, or was stopped.

@@ -5,7 +5,7 @@ use crate::outcome::verdict::below_by_mass;
 use voidwalk_core::constrictions::find;
 use voidwalk_core::network::Passage;
 
-/// What erodes as two formulas say.
+/// Erosion by two formulas.
 struct Formula<F, G> {
     first: F,
     second: G,
@@ -189,7 +189,7 @@ fn the_ends_of_a_bracket_are_walked() {
 }
 
 /// The single size of which 7.5 % of lone particles pass 60 layers of the published loose Cu 1.5 curve is
-/// .19928 D0F = .17646 D15F: a closed form, worked out by others. It would miss what blocking does.
+/// .19928 D0F = .17646 D15F: a closed form, worked out by others. It does not include blocking.
 #[test]
 fn lone_particles_of_one_size_have_the_boundary_of_the_closed_form() {
     let curve = find("shire2016-cu1.5-loose").unwrap().curve().unwrap();
@@ -238,7 +238,7 @@ fn a_fall_is_steady_only_where_it_is_clear_of_the_threshold_by_what_scatters() {
     // A straight line is clear by 15 % of the threshold; five steps are the fewest.
     assert_eq!(after(&|at| 0.075 - 0.001 * at as f64), Some(12));
     assert_eq!(after(&|at| 0.075 - 0.01 * at as f64), Some(5));
-    // What scatters is clear later, and what does not fall never.
+    // Scattered erosion becomes clear later; erosion that does not fall never does.
     let scattered = after(&|at| 0.075 - 0.001 * at as f64 + if at % 2 == 0 { 0.003 } else { -0.003 });
     assert!(scattered.is_some_and(|at| (24..=32).contains(&at)), "{scattered:?}");
     assert_eq!(after(&|at| if at % 2 == 0 { 0.01 } else { 0.07 }), None);

@@ -16,16 +16,16 @@ const NEAR: i64 = 4;
 /// Start nodes of the usual lattice, 40 x 40.
 pub(in crate::study::boundary) const USUAL_ACROSS: u64 = 1600;
 
-/// How far below the smallest ratio that erodes a run is tried besides on that lattice: at every step, and
-/// then ever more seldom.
+/// Steps below the smallest eroding ratio at which further runs are tried on that lattice: every step down to
+/// the first number, then at growing distances down to the second.
 const USUAL_REACH: [f64; 2] = [4.0, 21.0];
 
 /// The most of either on a small one: 26 %.
 const FARTHEST: f64 = 60.0;
 
-/// Steps below the smallest ratio that erodes, at which a run is tried besides, on a lattice of so many
-/// start nodes. What erodes scatters with one over their root, and a walk takes as long as there are of them.
-/// The first is known after halving, but not below a single ratio that erodes.
+/// Steps below the smallest eroding ratio at which further runs are tried, on a lattice with this many start
+/// nodes. The scatter of the eroded mass falls with the root of their number, and the time of a walk grows
+/// with it. The first step is known after halving, but not below a single ratio that erodes.
 pub(super) fn tried_below(across: u64) -> Vec<i64> {
     let spread = (USUAL_ACROSS as f64 / across.max(1) as f64).sqrt().max(1.0);
     let every = (USUAL_REACH[0] * spread * spread).min(FARTHEST) as i64;
@@ -35,7 +35,7 @@ pub(super) fn tried_below(across: u64) -> Vec<i64> {
     (1..=every).chain(seldom).collect()
 }
 
-/// What a trial of one ratio comes to.
+/// Result of a trial at one ratio.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Trial {
     /// So much eroded.
@@ -45,7 +45,7 @@ pub enum Trial {
 }
 
 impl Trial {
-    /// Whether 7.5 % or more eroded; `None` where the base cannot be walked.
+    /// True if 7.5 % or more eroded; `None` if the base cannot be walked.
     pub(super) fn erodes(&self) -> Option<bool> {
         match self {
             Self::Eroded(eroded) => Some(!eroded.below_threshold),
@@ -54,7 +54,7 @@ impl Trial {
     }
 }
 
-/// What walks at a ratio; asked once for each.
+/// Walks of a search at a ratio; called once for each ratio.
 pub trait Walker {
     /// The first run at D15F/D85B `ratio`.
     fn first(&mut self, step: i64, ratio: f64) -> Result<Trial, RunError>;
@@ -80,23 +80,23 @@ pub(super) fn ratio_at(step: i64) -> f64 {
 /// Two neighbouring steps: the last that holds and the first that erodes; `None` where nothing holds below.
 pub(super) type Pair = (i64, i64);
 
-/// What eroded at steps below a boundary, tried one after another, each below the one before.
+/// Eroded mass at steps below a boundary, tried one after another, each below the one before.
 #[derive(Default)]
 pub(super) struct Fall(Vec<(f64, f64, f64)>);
 
 impl Fall {
     /// Steps from which a line is told from what scatters about it.
     const FEWEST: usize = 5;
-    /// Part of the threshold by which the last step lies below it.
+    /// Least distance of the last step below the threshold, as a fraction of the threshold.
     const CLEAR: f64 = 0.15;
-    /// As many deviations from the line lie between the last step and the threshold.
+    /// Least distance between the last step and the threshold, in deviations from the line.
     const DEVIATIONS: f64 = 8.0;
 
     pub(super) fn add(&mut self, step: i64, eroded: f64) {
         self.0.push((step as f64, eroded, 1.0));
     }
 
-    /// Whether what erodes falls away from the threshold so steadily that no step farther down erodes by
+    /// True if the eroded mass falls away from the threshold so steadily that no step farther down erodes by
     /// scatter: the last step is clear of it, and so is the straight line through all, by many deviations.
     pub(super) fn is_steady(&self) -> bool {
         let Some(&(step, eroded, _)) = self.0.last() else { return false };
@@ -137,12 +137,12 @@ impl<W: Walker> Search<W> {
         Ok(self.first[&step].clone())
     }
 
-    /// Whether the first run erodes at a step.
+    /// True if the first run erodes at a step.
     pub(super) fn erodes(&mut self, step: i64) -> Result<bool, RunError> {
         Ok(self.try_first(step)?.erodes() == Some(true))
     }
 
-    /// Whether erosion continues at a step: both runs erode.
+    /// Tries the second run at a step: erosion continues if both runs erode.
     pub(super) fn try_second(&mut self, step: i64) -> Result<Trial, RunError> {
         let first = self.try_first(step)?;
         if first.erodes() != Some(true) {
@@ -198,14 +198,14 @@ impl<W: Walker> Search<W> {
         Ok((low, high))
     }
 
-    /// Whether a step holds, and those below it that are tried besides.
+    /// True if a step holds, and so do the steps below it that are tried as well.
     pub(super) fn surely_holds(&mut self, step: i64) -> Result<bool, RunError> {
         let holds = self.try_first(step)?.erodes() == Some(false);
         Ok(holds && self.smallest_that_erodes(step + 1, Self::try_first)? == step + 1)
     }
 
-    /// The smallest step that is seen to erode, from one that does on, after single steps below it have been
-    /// tried: all of them, or as many as it takes to see that what erodes falls steadily.
+    /// The smallest eroding step that is seen, starting from one that erodes, after trials of single steps
+    /// below it: all of them, or enough to show that the eroded mass falls steadily.
     pub(super) fn smallest_that_erodes(
         &mut self,
         boundary: i64,
@@ -237,7 +237,7 @@ impl<W: Walker> Search<W> {
         }
     }
 
-    /// Whether a ratio holds above one that erodes, in either run.
+    /// True if a ratio holds above one that erodes, in either run.
     pub(super) fn is_not_monotone(&self) -> bool {
         [&self.first, &self.second].into_iter().any(|trials| {
             let mut eroded = false;
