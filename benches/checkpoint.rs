@@ -73,7 +73,7 @@ fn main() {
     }
 }
 
-/// Wall and processor time (s), and what the work gives.
+/// Wall and processor time (s), and the result of the work.
 fn timed<T>(work: impl FnOnce() -> T) -> ([f64; 2], T) {
     let cpu = || {
         let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);

@@ -1,8 +1,8 @@
 //! The library's walk on the scene of `benches/baseline`, timed as the plain walks there time themselves.
 //!
 //! `cargo bench --bench compare_walk -- N SCENE SEED UNTIL THREADS ISA` prints one line of name and value
-//! pairs: those of `benches/baseline/README.md` (processor time of all threads, per attempted move), and wall
-//! times (`wall_step_all`, `wall_step_after`).
+//! pairs: the pairs of `benches/baseline/README.md` (processor time of all threads, per attempted move), and
+//! wall times (`wall_step_all`, `wall_step_after`).
 
 use std::sync::OnceLock;
 use std::time::Instant;

@@ -1,9 +1,9 @@
 //! Whole first runs of engines `counts` and `expected` on the paper's lattice, and of `particles` beside
 //! them.
 //!
-//! `cargo bench --bench counts`; on one core with `RAYON_NUM_THREADS=1`. The base is that of Fig. 13 with Cu
-//! 4.5, D85B = Dc5 of the loose Cu 1.5 filter; for 1e12 particles it is graded so widely (Cu 24, same D85B)
-//! that its number of coarse particles is about the number in 2e8 of it. Throughput is in moves that
+//! `cargo bench --bench counts`; on one core with `RAYON_NUM_THREADS=1`. The base is the one of Fig. 13 with
+//! Cu 4.5, D85B = Dc5 of the loose Cu 1.5 filter; for 1e12 particles it is graded so widely (Cu 24, same
+//! D85B) that its number of coarse particles is about the number in 2e8 of it. Throughput is in moves that
 //! particles complete. Goals, on one core: 2e8 in 0.5 s with AVX-512; 1e9 within 1.3 times that, 1e12 within
 //! 2 times; less than 100 MB resident, which is printed at the end.
 

@@ -31,7 +31,7 @@ const SMALL: [u32; 3] = [20, 20, 30];
 /// Least time of one measurement of a limit.
 const LONG_ENOUGH: Duration = Duration::from_millis(40);
 
-/// A kernel that is measured: its name, the instructions, and what gives time and items of one turn.
+/// A kernel to measure: its name, the instructions, and a function that returns time and items of one turn.
 type Kernel<'a> = (String, &'static str, Box<dyn FnMut() -> (Duration, u64) + 'a>);
 
 fn main() {
@@ -52,15 +52,15 @@ fn all() {
             named.iter().any(|word| word == name || *word == format!("{name} {isa}"))
         });
     }
-    let mut found: Vec<Vec<f64>> = vec![Vec::new(); kernels.len()];
+    let mut times: Vec<Vec<f64>> = vec![Vec::new(); kernels.len()];
     for _ in 0..TURNS {
-        for ((_, _, kernel), found) in kernels.iter_mut().zip(&mut found) {
+        for ((_, _, kernel), times) in kernels.iter_mut().zip(&mut times) {
             let (time, items) = kernel();
-            found.push(time.as_nanos() as f64 / items as f64);
+            times.push(time.as_nanos() as f64 / items as f64);
         }
     }
-    for ((name, isa, _), found) in kernels.iter().zip(&found) {
-        print("kernel", name, isa, found);
+    for ((name, isa, _), times) in kernels.iter().zip(&times) {
+        print("kernel", name, isa, times);
     }
 }
 
@@ -82,8 +82,8 @@ fn limits() {
     limit("random word", "portable", &mut words);
 }
 
-fn print(kind: &str, name: &str, of: &str, ns: &[f64]) {
-    let line = serde_json::json!({"kind": kind, "name": name, "of": of, "ns": ns});
+fn print(kind: &str, name: &str, isa: &str, ns: &[f64]) {
+    let line = serde_json::json!({"kind": kind, "name": name, "of": isa, "ns": ns});
     println!("{line}");
 }
 
@@ -91,15 +91,15 @@ fn isas() -> impl Iterator<Item = Isa> {
     Isa::ALL.into_iter().filter(|isa| isa.is_available())
 }
 
-/// Processor time that this thread, the only one, has spent: what others take of the machine is not in it, but
-/// what they take of caches is.
+/// Processor time of this thread, the only one: without the time of other processes, but with their effect on
+/// caches.
 fn spent() -> Duration {
     let time = clock_gettime(ClockId::ThreadCPUTime);
     Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
 }
 
-/// Repeats what gives its items until that takes long enough, in every turn.
-fn limit(name: &str, of: &str, work: &mut dyn FnMut() -> Box<dyn FnMut() -> u64>) {
+/// Repeats a function that returns its number of items until it takes long enough, in every turn.
+fn limit(name: &str, isa: &str, work: &mut dyn FnMut() -> Box<dyn FnMut() -> u64>) {
     let mut work = work();
     work();
     let mut turn = || {
@@ -110,8 +110,8 @@ fn limit(name: &str, of: &str, work: &mut dyn FnMut() -> Box<dyn FnMut() -> u64>
         }
         (spent() - begun).as_nanos() as f64 / items as f64
     };
-    let found: Vec<f64> = (0..TURNS).map(|_| turn()).collect();
-    print("limit", name, of, &found);
+    let times: Vec<f64> = (0..TURNS).map(|_| turn()).collect();
+    print("limit", name, isa, &times);
 }
 
 /// Bytes read and written by copying one half of this many bytes onto the other.
@@ -161,7 +161,7 @@ fn many<const SIDE_BY_SIDE: usize>(operation: Operation) -> u64 {
     const ROUNDS: u64 = 4096;
     let (mut a, by, more) = ([1.0f64; SIDE_BY_SIDE], black_box(0.999_999), black_box(1e-6));
     let rounds = 0..ROUNDS;
-    let each = match operation {
+    let operations = match operation {
         Operation::MultiplyOrAdd => {
             rounds.for_each(|_| a.iter_mut().for_each(|a| *a = *a * by + more));
             2
@@ -177,7 +177,7 @@ fn many<const SIDE_BY_SIDE: usize>(operation: Operation) -> u64 {
         }
     };
     black_box(a);
-    each * ROUNDS * SIDE_BY_SIDE as u64
+    operations * ROUNDS * SIDE_BY_SIDE as u64
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -238,7 +238,7 @@ impl Timed<'_> {
         plan.supply(self.sampler.clone(), self.n, self.increments, 1, 1)
     }
 
-    /// A fresh walk, up to where the time is taken.
+    /// A fresh walk, up to the start of the timing.
     fn begun(&self, supply: &Supply, isa: Isa) -> State {
         let open = BitVec::repeat(false, self.network.constrictions());
         let classes = SizeClasses::logarithmic(self.sampler.smallest(), self.sampler.largest(), 2);
@@ -289,15 +289,15 @@ fn walks<'a>([network, small]: [&'a Network; 2], curve: &Curve) -> Vec<Kernel<'a
         span,
         by_void,
     };
-    let of = |percent, cu, engine, n, increments, span, by_void| {
+    let turns = |percent, cu, engine, n, increments, span, by_void| {
         on(network, percent, cu, engine, n, increments, span, by_void)
     };
     let all = [
-        ("insert and step", of(5.0, 4.5, Engine::Particles, 1 << 20, 1, [0, 1], false)),
-        ("step", of(5.0, 4.5, Engine::Particles, 1 << 20, 1, [1, 60], false)),
-        ("insert, step and block", of(50.0, 4.5, Engine::Particles, 1 << 17, 1, [0, 1], false)),
-        ("counts", of(0.0, 1.2, Engine::Counts, 4_000_000_000, 4000, [200, 220], true)),
-        ("expected", of(0.0, 1.2, Engine::Expected, 4_000_000_000, 4000, [200, 220], true)),
+        ("insert and step", turns(5.0, 4.5, Engine::Particles, 1 << 20, 1, [0, 1], false)),
+        ("step", turns(5.0, 4.5, Engine::Particles, 1 << 20, 1, [1, 60], false)),
+        ("insert, step and block", turns(50.0, 4.5, Engine::Particles, 1 << 17, 1, [0, 1], false)),
+        ("counts", turns(0.0, 1.2, Engine::Counts, 4_000_000_000, 4000, [200, 220], true)),
+        ("expected", turns(0.0, 1.2, Engine::Expected, 4_000_000_000, 4000, [200, 220], true)),
         ("expected, small", on(small, 0.0, 1.2, Engine::Expected, 500_000_000, 4000, [200, 220], true)),
     ];
     let mut kernels: Vec<Kernel> = Vec::new();

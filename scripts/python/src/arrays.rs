@@ -6,12 +6,12 @@ use voidwalk::packing::{Cell, Packing};
 
 use crate::problem::refused;
 
-/// A column as a slice, where it is one piece of memory.
+/// A column as a slice, if it is one piece of memory.
 pub fn column<'a, T: Element>(name: &str, array: &'a PyReadonlyArray1<'_, T>) -> PyResult<&'a [T]> {
     array.as_slice().map_err(|_| refused(format!("{name} is not one piece of memory")))
 }
 
-/// Rows of `N` as a slice, where they are one piece of memory.
+/// Rows of `N` as a slice, if they are one piece of memory.
 pub fn rows<'a, T: Element, const N: usize>(
     name: &str,
     array: &'a PyReadonlyArray2<'_, T>,

@@ -20,7 +20,7 @@ const STEPS: u64 = 50;
 
 type Arrays<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Option<[f64; 3]>);
 
-/// Draws grains from a gradation and compresses them; grains, and what was reached.
+/// Draws grains from a gradation and compresses them; returns the grains, and the state that was reached.
 #[pyfunction]
 #[pyo3(signature = (gradation, density, grains, seed, threads, progress))]
 pub fn pack<'py>(
@@ -42,7 +42,7 @@ pub fn pack<'py>(
     };
     let grains = grains.unwrap_or_else(|| PackingPlan::usual_grains(gradation));
     let settings = Settings { grains, friction, seed, ..Settings::default() };
-    let (found, report) = at_work(py, progress, |callbacks| {
+    let (packing, report) = at_work(py, progress, |callbacks| {
         let on = |callbacks: &CaseCallbacks| {
             settings.check()?;
             let start = random_start(&draw(gradation, settings.grains, settings.seed), &settings)?;
@@ -67,7 +67,7 @@ pub fn pack<'py>(
     reached.set_item("friction", friction)?;
     reached.set_item("seed", seed)?;
     reached.set_item("steps", report.steps)?;
-    Ok((of_packing(py, found)?, reached))
+    Ok((of_packing(py, packing)?, reached))
 }
 
 /// Grains from a file of any format that is read, and how the file was understood.
@@ -83,8 +83,8 @@ pub fn read_packing<'py>(
         unit: unit.map(str::parse).transpose().map_err(|e: String| refused(format!("unit: {e}")))?,
         cell: cell.map(str::parse).transpose().map_err(|e: String| refused(format!("cell: {e}")))?,
     };
-    let (found, notes) = py.detach(|| Packing::read_as(path, &options)).map_err(refused)?;
-    Ok((of_packing(py, found)?, notes))
+    let (packing, notes) = py.detach(|| Packing::read_as(path, &options)).map_err(refused)?;
+    Ok((of_packing(py, packing)?, notes))
 }
 
 /// Voids and constrictions between grains, as a dict of arrays, and a summary as JSON.
@@ -99,26 +99,27 @@ pub fn measure<'py>(
 ) -> PyResult<(Bound<'py, PyDict>, String)> {
     let grains = grains.packing()?;
     let facets = if on_both_hulls { Facets::OnBothHulls } else { Facets::All };
-    let (found, graph, curve, summary) = at_work(py, None, |_| {
+    let (constrictions, graph, curve, summary) = at_work(py, None, |_| {
         pool(threads)?.install(|| {
             let refused = |error: ConstrictionsError| of_constrictions(&error);
             let t = Triangulation::new(&grains).map_err(|error| refused(error.into()))?;
-            let found = Constrictions::from_triangulation(&t, merge_overlap, facets).map_err(refused)?;
-            found.check().map_err(refused)?;
+            let constrictions =
+                Constrictions::from_triangulation(&t, merge_overlap, facets).map_err(refused)?;
+            constrictions.check().map_err(refused)?;
             // Grains without a cell, and voids that run through it, have no graph; nor do only some facets.
             let graph = VoidGraph::of(&t, merge_overlap).ok().filter(|_| facets == Facets::All);
-            let curve = found.curve().map_err(RunError::refused)?;
-            let summary = serde_json::to_string(&found.summary().map_err(RunError::refused)?)?;
-            Ok((found, graph, curve, summary))
+            let curve = constrictions.curve().map_err(RunError::refused)?;
+            let summary = serde_json::to_string(&constrictions.summary().map_err(RunError::refused)?)?;
+            Ok((constrictions, graph, curve, summary))
         })
     })?;
     let arrays = PyDict::new(py);
     let pairs = |a: &[u32], b: &[u32]| -> Vec<[i64; 2]> {
         a.iter().zip(b).map(|(&a, &b)| [i64::from(a), i64::from(b)]).collect()
     };
-    let Constrictions { diameter_mm, centre_mm, upstream, downstream, .. } = found;
-    arrays.set_item("pore.coords", of_rows(py, found.void_centre_mm)?)?;
-    arrays.set_item("pore.diameter", found.void_diameter_mm.into_pyarray(py))?;
+    let Constrictions { diameter_mm, centre_mm, upstream, downstream, .. } = constrictions;
+    arrays.set_item("pore.coords", of_rows(py, constrictions.void_centre_mm)?)?;
+    arrays.set_item("pore.diameter", constrictions.void_diameter_mm.into_pyarray(py))?;
     if let Some(graph) = graph {
         // Each constriction as a pair of cells, with the periodic cell that holds the other void.
         arrays.set_item("throat.conns", of_rows(py, pairs(&graph.from, &graph.to))?)?;

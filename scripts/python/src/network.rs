@@ -29,8 +29,8 @@ pub struct Network {
 
 fn rule(name: &str) -> PyResult<ExitRule> {
     let words = ExitRule::ALL.map(ExitRule::name).join(", ");
-    let found = ExitRule::ALL.into_iter().find(|rule| rule.name() == name);
-    found.ok_or_else(|| refused(format!("exit = {name} is not allowed; one of {words}")))
+    let rule = ExitRule::ALL.into_iter().find(|rule| rule.name() == name);
+    rule.ok_or_else(|| refused(format!("exit = {name} is not allowed; one of {words}")))
 }
 
 impl From<network::Network> for Network {
@@ -56,7 +56,7 @@ impl Network {
         BitVec::repeat(false, self.inner.constrictions())
     }
 
-    /// The network with the directions that water gives its constrictions, and the flow, where it does.
+    /// The network with the directions that water gives its constrictions, and the flow, if water flows.
     fn with_directions(&self) -> PyResult<(network::Network, Option<Flow>)> {
         let mut inner = (*self.inner).clone();
         if !inner.exit_rule().needs_flow() {
@@ -164,7 +164,7 @@ impl Network {
                 "the voids of a packing have no direction of their own, so that area alone leads nowhere";
             return Err(refused(format!("exit = area is not allowed: {problem}")));
         }
-        let found = at_work(py, None, |_| {
+        let network = at_work(py, None, |_| {
             pool(None)?.install(|| {
                 let measured = VoidGraph::measure(&grains, merge_overlap);
                 let (_, graph) = measured.map_err(|error| of_constrictions(&error))?;
@@ -172,7 +172,7 @@ impl Network {
                 network::Network::of_graph(&graph, shape).map_err(RunError::refused)
             })
         });
-        Ok(found?.into())
+        Ok(network?.into())
     }
 
     #[staticmethod]
@@ -257,20 +257,20 @@ impl Network {
         self.exit.iter().map(mm).collect::<Vec<f64>>().into_pyarray(py).into_any()
     }
 
-    /// Conductance times viscosity of each throat, in the unit that it was given in; 0 where constrictions have a
+    /// Conductance times viscosity of each throat, in the unit of the input; 0 if constrictions have a
     /// direction.
     fn conductance<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        let of = |&exit: &u32| if exit == NO_EXIT { 0.0 } else { self.inner.conductance(exit as usize) };
-        self.exit.iter().map(of).collect::<Vec<f64>>().into_pyarray(py).into_any()
+        let value = |&exit: &u32| if exit == NO_EXIT { 0.0 } else { self.inner.conductance(exit as usize) };
+        self.exit.iter().map(value).collect::<Vec<f64>>().into_pyarray(py).into_any()
     }
 
     /// Pores that particles come into by ways that nothing can block.
     fn inlets<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
-        let found = match self.inner.reservoir() {
+        let inlets = match self.inner.reservoir() {
             Some(_) => self.wide_ends(true),
             None => self.inner.start().iter().map(|&void| i64::from(void)).collect(),
         };
-        found.into_pyarray(py).into_any()
+        inlets.into_pyarray(py).into_any()
     }
 
     /// Pores that particles leave by ways that nothing can block.
@@ -278,7 +278,7 @@ impl Network {
         self.wide_ends(false).into_pyarray(py).into_any()
     }
 
-    /// Layer of each pore; -1 where nothing leads to it.
+    /// Layer of each pore; -1 if nothing leads to it.
     fn layer<'py>(&self, py: Python<'py>) -> Bound<'py, PyAny> {
         let layer = |&layer: &u32| if layer == NO_LAYER { -1 } else { i64::from(layer) };
         let layers: Vec<i64> = self.inner.layer_of().iter().take(self.pores()).map(layer).collect();
@@ -299,8 +299,8 @@ impl Network {
         })
     }
 
-    /// Pressure by pore (1 before the filter, 0 behind it) and flow times viscosity through each throat, from its
-    /// first pore to its second, where water gives particles their way.
+    /// Pressure by pore (1 before the filter, 0 behind it) and flow times viscosity through each throat, from
+    /// its first pore to its second, if water decides the exits of particles.
     #[allow(clippy::type_complexity)]
     fn flow<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let (pressure, flux) = py.detach(|| {

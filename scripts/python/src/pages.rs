@@ -1,4 +1,4 @@
-//! Pages and verdicts of what was walked, by the library's reports.
+//! Pages and verdicts of walks, by the library's reports.
 
 use std::path::{Path, PathBuf};
 
@@ -29,12 +29,12 @@ pub fn report(py: Python<'_>, folder: PathBuf) -> PyResult<PathBuf> {
     py.detach(|| write(&folder)).map_err(|error| of_run(&error))
 }
 
-/// A page as text; what a user has changed in a result is refused where it does not fit together.
+/// A page as text; changes of a user in a result are refused if they do not fit together.
 fn text(py: Python<'_>, page: impl FnOnce() -> Result<String, ReportError> + Send) -> PyResult<String> {
     py.detach(page).map_err(refused)
 }
 
-/// The page of a run in memory, from what its files would say.
+/// The page of a run in memory, from the contents of its files.
 #[pyfunction]
 pub fn run_page(
     py: Python<'_>,

@@ -27,24 +27,24 @@ fn plain(text: &str) -> String {
 /// Python's names in the place of the command line's: `settings` for `--set`, `as_given=True` for `--as-given`.
 fn in_python(text: &str) -> String {
     let text = text.replace("the same command", "the same call").replace("`voidwalk ", "`voidwalk.");
-    let (mut said, mut rest) = (String::with_capacity(text.len()), text.as_str());
+    let (mut message, mut rest) = (String::with_capacity(text.len()), text.as_str());
     while let Some(at) = rest.find("--") {
         let (before, option) = (&rest[..at], &rest[at + 2..]);
         let is_name = |c: char| c.is_ascii_lowercase() || c == '-';
         let name = &option[..option.find(|c| !is_name(c)).unwrap_or(option.len())];
         let begins_word = before.chars().last().is_none_or(|c| c.is_whitespace() || "`(".contains(c));
-        said += before;
+        message += before;
         match name {
             _ if !begins_word || !name.starts_with(|c: char| c.is_ascii_lowercase()) => {
-                said = said + "--" + name;
+                message = message + "--" + name;
             }
-            "set" => said += "settings",
-            _ if SWITCHES.contains(&name) => said = said + &name.replace('-', "_") + "=True",
-            _ => said += &name.replace('-', "_"),
+            "set" => message += "settings",
+            _ if SWITCHES.contains(&name) => message = message + &name.replace('-', "_") + "=True",
+            _ => message += &name.replace('-', "_"),
         }
         rest = &option[name.len()..];
     }
-    said + rest
+    message + rest
 }
 
 /// Error of input that is refused before any work.

@@ -1,4 +1,4 @@
-//! Scenes and campaigns: what the command line does, by the same calls.
+//! Scenes and campaigns: the work of the command line, by the same calls.
 
 use std::path::PathBuf;
 use std::time::SystemTime;
@@ -147,7 +147,7 @@ pub fn run(
 /// Texts of a run's page besides outcome and tables: manifest, scene, the record of the packing.
 type Texts = (String, String, Option<String>);
 
-/// Walks a scene in memory: the outcome as JSON, the tables, and what its page shows besides.
+/// Walks a scene in memory: the outcome as JSON, the tables, and the further texts of its page.
 #[pyfunction]
 #[pyo3(signature = (scene, packings, manner, progress))]
 pub fn run_in_memory<'py>(

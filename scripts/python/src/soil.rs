@@ -13,16 +13,16 @@ use crate::problem::refused;
 /// Error of points that come as columns: the library counts rows of a table from 1.
 fn of_points(error: impl std::fmt::Display) -> PyErr {
     let text = error.to_string().replace("points, line", "line");
-    let mut said = String::new();
+    let mut message = String::new();
     for (at, part) in text.split("line ").enumerate() {
         let digits = part.find(|c: char| !c.is_ascii_digit()).unwrap_or(part.len());
         match part[..digits].parse::<u64>() {
-            Ok(line) if at > 0 => said += &format!("entry {}{}", line.saturating_sub(1), &part[digits..]),
-            _ if at > 0 => said = said + "line " + part,
-            _ => said += part,
+            Ok(line) if at > 0 => message += &format!("entry {}{}", line.saturating_sub(1), &part[digits..]),
+            _ if at > 0 => message = message + "line " + part,
+            _ => message += part,
         }
     }
-    refused(if said == text { said } else { said + " (entries are counted from 0)" })
+    refused(if message == text { message } else { message + " (entries are counted from 0)" })
 }
 
 /// A density by its word.

@@ -68,8 +68,8 @@ pub fn boundary(
         overwrite,
         prepare: manner.prepare(packings),
     };
-    let found = at_work(py, progress, |callbacks| boundaries::run(&options, &callbacks.run))?;
-    format::BOUNDARY.json(&found).map_err(failed)
+    let boundaries = at_work(py, progress, |callbacks| boundaries::run(&options, &callbacks.run))?;
+    format::BOUNDARY.json(&boundaries).map_err(failed)
 }
 
 /// Makes the specification of a filter for a base by practice alone, into a folder: the JSON of
@@ -92,8 +92,8 @@ pub fn specification(
     let cover = SheetCover::default();
     let bases = vec![base];
     let options = SpecifyOptions { bases, dispersive, finer, sieves, cover, inches: false, out, overwrite };
-    let found = at_work(py, progress, |callbacks| specify(&options, &callbacks.run))?;
-    format::SPECIFICATION.json(&found).map_err(failed)
+    let specification = at_work(py, progress, |callbacks| specify(&options, &callbacks.run))?;
+    format::SPECIFICATION.json(&specification).map_err(failed)
 }
 
 /// D15F of the band, the reason why there is no band, conditions on a delivery beside the limits, the source
@@ -131,8 +131,8 @@ pub fn percolation(
 ) -> PyResult<String> {
     let plan = PercolationPlan { shapes, realisations, seed };
     let options = PercolationOptions { plan, out, overwrite, threads };
-    let found = at_work(py, progress, |callbacks| percolations::run(&options, &callbacks.run))?;
-    format::PERCOLATION.json(&found).map_err(failed)
+    let study = at_work(py, progress, |callbacks| percolations::run(&options, &callbacks.run))?;
+    format::PERCOLATION.json(&study).map_err(failed)
 }
 
 /// The JSON Schema of a form, by its name.

@@ -1,8 +1,9 @@
 //! Long calls: without the interpreter's lock, on threads of their own, stopped by Ctrl-C.
 //!
-//! A call works on a thread of its own, and the thread that called waits for it: every twentieth of a second it looks
-//! for signals and tells the progress callback how far the work is. So no worker ever waits for the interpreter, a
-//! callback may do what it likes, and nothing of a call outlives it: a process may fork between two calls.
+//! A call works on a thread of its own, and the thread that called waits for it: every twentieth of a second
+//! it looks for signals and tells the progress callback how far the work is. So no worker ever waits for the
+//! interpreter, a callback may do anything, and nothing of a call outlives it: a process may fork between two
+//! calls.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};

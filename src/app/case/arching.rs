@@ -9,7 +9,7 @@ use voidwalk_core::walk::{Arching, DENSEST};
 use voidwalk_practice::Note;
 
 impl Case {
-    /// The law of its arches at the concentration that the scene states; `None` where particles do not arch.
+    /// The law of its arches at the concentration that the scene states; `None` if particles do not arch.
     pub fn arching(&self) -> Option<Arc<Arching>> {
         let concentration = self.scene.exits.concentration.unwrap_or(DENSEST);
         self.scene.law().map(|law| Arc::new(Arching::new(law, concentration)))

@@ -1,5 +1,4 @@
-//! The base of a case: as it is given, and as it is walked: regraded as filter practice does, where the scene
-//! asks for that.
+//! The base of a case, as given and as walked: regraded by filter practice, if the scene asks for it.
 
 use super::error::CaseError;
 use super::files::Files;
@@ -13,7 +12,7 @@ use voidwalk_practice::{Mistake, MistakeKind};
 pub struct CaseBase {
     /// Its gradation, as it is walked.
     pub gradation: Gradation,
-    /// The base as it was given, and the size (mm) that it was regraded on, where it is walked regraded.
+    /// The base as it was given, and the size (mm) on which it was regraded, if it is walked regraded.
     pub regraded_from: Option<(Gradation, f64)>,
 }
 
@@ -21,7 +20,7 @@ impl CaseBase {
     /// The base that a scene states, beside this filter.
     ///
     /// # Errors
-    /// A file that is refused; regrading is asked for where sizes are multiples of D0F.
+    /// A file that is refused; a request to regrade sizes that are multiples of D0F.
     pub(super) fn read(scene: &Scene, filter: &CaseFilter, files: &mut Files) -> Result<Self, CaseError> {
         let given = given(scene, filter, files)?;
         if scene.base.regrade != Some(Regrade::Practice) {
@@ -59,8 +58,8 @@ impl CaseBase {
         filter: &Gradation,
         scale_free: bool,
     ) -> Result<Option<Mistake>, CaseError> {
-        let found = Mistake::find(self.as_given(), filter, scale_free);
-        match (found, &scene.base.sieve, &scene.filter.sieve) {
+        let mistake = Mistake::find(self.as_given(), filter, scale_free);
+        match (mistake, &scene.base.sieve, &scene.filter.sieve) {
             (Some(mistake), Some(base), Some(filter)) if scene.is_guarded && mistake.is_refused() => {
                 let file = format!("base {}, filter {}", base.display(), filter.display());
                 Err(SceneError::Clash { file, problem: mistake.refusal() }.into())
@@ -68,7 +67,7 @@ impl CaseBase {
             (Some(mistake), Some(_), _) if mistake.kind == MistakeKind::Unit => {
                 Err(scene.clash(mistake.sentence).into())
             }
-            (found, ..) => Ok(found),
+            (mistake, ..) => Ok(mistake),
         }
     }
 }
@@ -125,10 +124,10 @@ mod tests {
         };
         assert_eq!(mistake(&base, &filter, false), Ok(None));
         assert_eq!(mistake(&filter, &base, true), Ok(Some("files_exchanged".into())));
-        let said = mistake(&filter, &base, false).unwrap_err();
+        let message = mistake(&filter, &base, false).unwrap_err();
         for words in ["filter.csv, filter ", "are the two files exchanged?", "exchange the two", "--as-given"]
         {
-            assert!(said.contains(words), "{said}");
+            assert!(message.contains(words), "{message}");
         }
     }
 }

@@ -24,9 +24,9 @@ pub fn end_of_guess(relative_density: f64) -> Option<&'static str> {
     END_GUESSES.iter().find(|(density, _)| *density == relative_density).map(|(_, name)| *name)
 }
 
-/// The ends of the range in which a constriction curve is known: of a filter whose finer part was packed, the
-/// constrictions as much coarser as leaving the others out made them finer at most; of a guess, the densest
-/// and the loosest. None for a curve that was given, or measured on the whole.
+/// The ends of the range in which a constriction curve is known: for a filter whose finer part was packed,
+/// the constrictions made coarser by the greatest error of leaving the others out; for a guess, the densest
+/// and the loosest. Empty for a curve that was given, or measured on the whole.
 pub(super) fn of(
     curve: &Curve,
     filter: &Gradation,

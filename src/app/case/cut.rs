@@ -1,22 +1,22 @@
-//! The finer part of a filter that is packed where the whole cannot be.
+//! The finer part of a filter, which is packed if the whole cannot be.
 //!
 //! A cell must be wider than two of its largest grains, so that a broad gradation asks for millions of
 //! grains, most of them of the finest sizes. The constrictions are those between the finer grains; coarser
-//! ones are walls to them. What leaving the coarser ones out does was measured on filters that can be packed
-//! whole (`results/packing.md`): all constrictions become finer, from Dc5 to Dc90 by no more than 0.6
-//! of the share of the grains' surface that is left out.
+//! ones are walls to them. The effect of leaving the coarser ones out was measured on filters that can be
+//! packed whole (`results/packing.md`): all constrictions become finer, from Dc5 to Dc90 by at most 0.6 times
+//! the share of the grains' surface that is left out.
 
 use crate::outcome::packing::{FLOATING_PERCENT, PackedPart};
 use voidwalk_core::gradation::Gradation;
 
-/// A cell is this many times as wide as the largest grain that is packed, where the program chooses it.
+/// Width of a cell over the largest grain that is packed, if the program chooses it.
 const CELLS_WIDTH: f64 = 2.5;
 /// Relative error of the constrictions, which come out finer than in the whole, per surface share left out.
 const ERROR_BY_SURFACE: f64 = 0.6;
 /// A part that leaves more in doubt than this is not chosen.
 const LARGEST_ERROR: f64 = 0.05;
 
-/// The finer part of a filter, as a gradation of its own, and what there is to say of it.
+/// The finer part of a filter, as a gradation of its own, with its description.
 pub(super) fn finer_part(whole: &Gradation, percent: f64) -> Option<(Gradation, PackedPart)> {
     let largest_mm = whole.d(percent)?;
     let part = whole.passing(largest_mm)?;
@@ -87,7 +87,7 @@ mod tests {
         let width = |part: &Gradation| 8.0 / part.largest_mm();
         let (part, packed) = that_can_be_packed(&c33(), width).unwrap();
         assert!((width(&part) - CELLS_WIDTH).abs() < 0.02, "{packed:?}");
-        // In a gap the part ends where the sizes do.
+        // In a gap the part ends with the sizes below it.
         let gap_at = |percent| {
             let table = [(0.2, 0.0), (0.5, percent), (5.0, percent), (10.0, 100.0)];
             Gradation::from_lines(&table).unwrap()

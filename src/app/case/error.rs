@@ -52,7 +52,7 @@ pub enum CaseError {
     Memory {
         /// Base particles.
         n_base: u64,
-        /// The study that asks for them, where it is not the scene itself.
+        /// The study that asks for them, unless it is the scene itself.
         study: String,
         /// Voids.
         voids: u64,

@@ -1,4 +1,4 @@
-//! The files of a scene: each is read once, and what was read is kept for the run folder.
+//! The files of a scene: each is read once, and its contents are kept for the run folder.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -57,10 +57,10 @@ pub const INPUT_FILES: [&str; 15] = [
 /// The list is not as the program writes it.
 fn first_name(path: &Path, soil: Option<&str>) -> Result<String, CaseError> {
     let part = soil.map(|soil| format!("#{soil}")).unwrap_or_default();
-    let own = format!("{}{part}", path.display());
+    let path_name = format!("{}{part}", path.display());
     let folder = path.parent().filter(|folder| folder.ends_with(INPUTS)).and_then(Path::parent);
-    let Some(file) = folder.map(|folder| folder.join(INPUT_NAMES)) else { return Ok(own) };
-    let Ok(Some(text)) = read_regular(&file, LARGEST_TABLE) else { return Ok(own) };
+    let Some(file) = folder.map(|folder| folder.join(INPUT_NAMES)) else { return Ok(path_name) };
+    let Ok(Some(text)) = read_regular(&file, LARGEST_TABLE) else { return Ok(path_name) };
     let names = serde_json::from_slice(&text).map_err(|error| SceneError::Syntax {
         file: file.display().to_string(),
         at: String::new(),
@@ -70,10 +70,10 @@ fn first_name(path: &Path, soil: Option<&str>) -> Result<String, CaseError> {
         ),
     });
     let mut names: BTreeMap<String, String> = names?;
-    Ok(path.file_name().and_then(|name| names.remove(name.to_str()?)).unwrap_or(own))
+    Ok(path.file_name().and_then(|name| names.remove(name.to_str()?)).unwrap_or(path_name))
 }
 
-/// The name under which a run keeps a table: with the ending of a workbook where it is one.
+/// The name under which a run keeps a table: a workbook keeps its ending.
 fn kept_name(kept_as: &str, path: &Path) -> String {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     match (["xlsx", "ods", "ags"].contains(&ending.as_str()), kept_as.rsplit_once('.')) {
@@ -106,7 +106,7 @@ pub struct Files {
 }
 
 impl Files {
-    /// Reads a regular file once, and keeps what was read.
+    /// Reads a regular file once, and keeps its contents.
     fn read(
         &mut self,
         setting: &'static str,
@@ -206,7 +206,7 @@ impl Files {
         Ok(gradation)
     }
 
-    /// The grains of a file, and what to call it.
+    /// The grains of a file, and its name for users.
     pub fn packing(
         &mut self,
         path: &Path,

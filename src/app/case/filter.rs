@@ -19,12 +19,12 @@ pub struct CaseFilter {
     pub unit_mm: f64,
     /// Its constriction curve (mm).
     pub curve: Curve,
-    /// The other curves that are walked besides its own: the ends of the range in which it is known.
+    /// Further curves that are walked: the ends of the range in which its own is known.
     pub curve_ends: Vec<OtherCurve>,
-    /// The finest constriction (mm) of every curve that is walked, the ends of its range included: what is
-    /// finer blocks nothing in any of them.
+    /// The finest constriction (mm) of every curve that is walked, the ends of its range included: finer
+    /// particles block nothing in any of them.
     pub finest_mm: f64,
-    /// Filter grains per void, where they are known or guessed.
+    /// Filter grains per void, if they are known or guessed.
     pub grains_per_void: Option<f64>,
     /// The shipped filter that the curve is, if it is one.
     pub shipped: Option<&'static ShippedFilter>,
@@ -90,7 +90,7 @@ impl CaseFilter {
         })
     }
 
-    /// True where lengths of a scene are in units of the smallest filter grain, if no network has a size.
+    /// True if lengths of a scene are in units of the smallest filter grain, unless a network has a size.
     pub(super) fn is_scale_free(&self, scene: &Scene) -> bool {
         let is_without_packing = self.library.is_some() || self.guessed_density.is_some();
         matches!(scene.filter.gradation(), FilterGradation::Linear { d0_mm, .. } if d0_mm == 1.0)
@@ -125,9 +125,9 @@ pub(super) fn needs_grains_per_void(scene: &Scene, guessed_density: Option<f64>)
         && matches!(scene.base.amount(), Amount::MassRatio(..))
 }
 
-/// Filter grains per void: as given, as measured on what the voids or the constrictions are from, or a guess.
+/// Filter grains per void: as given, as measured on the packing of the voids or constrictions, or a guess.
 fn grains_per_void(scene: &Scene, stated: &StatedFilter, fixed: Option<&FixedNetwork>) -> Option<f64> {
-    // Those of a shipped packing say nothing of a network from elsewhere.
+    // The grains per void of a shipped packing do not apply to a network from elsewhere.
     let of_shipped = stated.shipped.filter(|_| fixed.is_none()).map(|shipped| shipped.grains_per_void);
     let of_graph = stated.graph.as_ref().map(|graph| graph.grains_per_void(&stated.gradation));
     let of_packing = stated.packed.as_ref().map(|packed| packed.grains_per_void).or(of_shipped);

@@ -17,7 +17,7 @@ pub struct FixedNetwork {
     pub network: Network,
     /// Its finest constriction, in units of the reference length.
     pub(super) finest: f32,
-    /// The packing whose voids it is; `None` of a network from a file.
+    /// The packing whose voids it is; `None` for a network from a file.
     pub packing: Option<CopiedPacking>,
 }
 
@@ -33,7 +33,8 @@ pub struct CopiedPacking {
 }
 
 impl FixedNetwork {
-    /// That of a scene; `None` where each replicate builds its own, or the packing is still to be made.
+    /// Reads the network of a scene; `None` if each replicate builds its own, or if the packing is still to
+    /// be made.
     pub(super) fn read(
         scene: &Scene,
         filter: &StatedFilter,

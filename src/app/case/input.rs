@@ -9,14 +9,13 @@ use voidwalk_practice::InputFile;
 pub struct Input {
     /// The setting that names it.
     pub setting: &'static str,
-    /// Its path as the user gave it first: a run that continues from the files in its folder says what the
-    /// user called them.
+    /// Its path as the user gave it first: a run that continues from the files in its folder reads it there.
     pub name: String,
     /// Name inside the run folder.
     pub kept_as: String,
     /// Its bytes, which copies of a case share.
     pub bytes: Arc<Vec<u8>>,
-    /// Which of its soils is meant, where it holds several.
+    /// Soil to use, if the file holds several.
     pub soil: Option<String>,
     /// Assumptions made to understand it.
     pub notes: Vec<String>,

@@ -8,8 +8,8 @@ use crate::scene::LibraryDensity;
 use voidwalk_core::constrictions::{CurveError, FromLibrary, from_library};
 use voidwalk_core::gradation::Gradation;
 
-/// Least error of the grains per void where only the finer part of a filter was looked up: of C33 sand, which
-/// lacks the coarsest 4.3 % then, they were 12.6 % off (`results/library.md`).
+/// Least error of the grains per void if only the finer part of a filter was looked up: for C33 sand, which
+/// then lacks the coarsest 4.3 %, they were 12.6 % off (`results/library.md`).
 const GRAINS_ERROR_OF_PART: f64 = 0.25;
 
 /// A filter as the library knows it.
@@ -17,7 +17,7 @@ const GRAINS_ERROR_OF_PART: f64 = 0.25;
 pub struct LibraryFilter {
     /// Its constrictions; the loose filter's if its density is unknown.
     pub found: FromLibrary,
-    /// The finer part that was looked up, where the whole is too broad.
+    /// The finer part that was looked up, if the whole is too broad.
     pub part: Option<PackedPart>,
     /// The ends of the range in which its curve is known.
     pub ends: Vec<OtherCurve>,
@@ -29,7 +29,7 @@ impl LibraryFilter {
     /// # Errors
     /// Cannot fail for a gradation with a known size.
     pub fn find(filter: &Gradation, density: LibraryDensity) -> Result<Option<Self>, CurveError> {
-        // The finer part that would be packed, where the whole could not be.
+        // The finer part that would be packed, if the whole could not be.
         let width = |gradation: &Gradation| width_by_largest(gradation, GRAINS_OF_PART, 1.0);
         let (looked_up, part) = match width(filter) < LEAST_WIDTH {
             false => (filter.clone(), None),
@@ -43,36 +43,36 @@ impl LibraryFilter {
             known => [known; 2],
         };
         let find = |density: LibraryDensity| -> Result<Option<FromLibrary>, CurveError> {
-            let found = from_library(&looked_up, density.relative())?;
-            Ok(found.map(|found| match &part {
+            let entry = from_library(&looked_up, density.relative())?;
+            Ok(entry.map(|entry| match &part {
                 Some(_) => {
-                    FromLibrary { grains_error: found.grains_error.max(GRAINS_ERROR_OF_PART), ..found }
+                    FromLibrary { grains_error: entry.grains_error.max(GRAINS_ERROR_OF_PART), ..entry }
                 }
-                None => found,
+                None => entry,
             }))
         };
-        let Some(found) = find(loose)? else { return Ok(None) };
-        let at_dense = if loose == dense { Some(found.clone()) } else { find(dense)? };
+        let Some(first) = find(loose)? else { return Ok(None) };
+        let at_dense = if loose == dense { Some(first.clone()) } else { find(dense)? };
         // Leaving the coarser grains out makes all constrictions finer.
         let finer_by = part.as_ref().map_or(0.0, |part| part.finer_by);
-        let coarsest = 1.0 / ((1.0 - found.curve_error) * (1.0 - finer_by));
-        let end = |density: LibraryDensity, of: Option<&FromLibrary>, factor: f64| {
-            let [way, by] = match factor > 1.0 {
+        let coarsest = 1.0 / ((1.0 - first.curve_error) * (1.0 - finer_by));
+        let end = |density: LibraryDensity, at_density: Option<&FromLibrary>, factor: f64| {
+            let [direction, by] = match factor > 1.0 {
                 true => ["coarser", &format!("{:.0}", 100.0 * (factor - 1.0))],
                 false => ["finer", &format!("{:.0}", 100.0 * (1.0 - factor))],
             };
-            let name = format!("{}, constrictions {by} % {way}", density.name());
-            let of = of?;
+            let name = format!("{}, constrictions {by} % {direction}", density.name());
+            let at_density = at_density?;
             // With less base a larger fraction erodes: the coarsest curve goes with the fewest grains. The
             // fine end offers no more base than the library states, so that base that may be absent does not
             // seal it.
-            let error = if factor > 1.0 { of.grains_error } else { 0.0 };
-            let times_grains = of.grains_per_void / (1.0 + error) / found.grains_per_void;
-            Some(OtherCurve { name, curve: of.curve.scaled(factor).ok()?, times_grains })
+            let error = if factor > 1.0 { at_density.grains_error } else { 0.0 };
+            let times_grains = at_density.grains_per_void / (1.0 + error) / first.grains_per_void;
+            Some(OtherCurve { name, curve: at_density.curve.scaled(factor).ok()?, times_grains })
         };
         let ends =
-            [end(loose, Some(&found), coarsest), end(dense, at_dense.as_ref(), 1.0 - found.curve_error)];
-        Ok(Some(Self { found, part, ends: ends.into_iter().flatten().collect() }))
+            [end(loose, Some(&first), coarsest), end(dense, at_dense.as_ref(), 1.0 - first.curve_error)];
+        Ok(Some(Self { found: first, part, ends: ends.into_iter().flatten().collect() }))
     }
 }
 
@@ -83,10 +83,10 @@ mod tests {
     #[test]
     fn a_filter_of_unknown_density_has_loose_and_dense_as_its_ends() {
         let filter = Gradation::linear_from_d0(1.0, 3.0).unwrap();
-        let of = |density| LibraryFilter::find(&filter, density).unwrap().unwrap();
-        let unknown = of(LibraryDensity::Unknown);
+        let at = |density| LibraryFilter::find(&filter, density).unwrap().unwrap();
+        let unknown = at(LibraryDensity::Unknown);
         let dc50 = |curve: &voidwalk_core::constrictions::Curve| curve.dc(50.0).unwrap();
-        let [loose, dense] = [of(LibraryDensity::Loose), of(LibraryDensity::Dense)];
+        let [loose, dense] = [at(LibraryDensity::Loose), at(LibraryDensity::Dense)];
         let [coarse, fine] = [&unknown.ends[0], &unknown.ends[1]].map(|end| dc50(&end.curve));
         assert!(coarse > dc50(&loose.found.curve) && fine < dc50(&dense.found.curve));
         assert_eq!(unknown.found, loose.found);
@@ -105,7 +105,7 @@ mod tests {
         let points =
             [(0.15, 6.0), (0.3, 20.0), (0.6, 42.5), (1.18, 67.5), (2.36, 90.0), (4.75, 97.5), (9.5, 100.0)];
         let filter = Gradation::from_lines(&points).unwrap();
-        let found = LibraryFilter::find(&filter, LibraryDensity::Loose).unwrap();
-        assert!(found.is_some_and(|of| of.part.is_some() && of.found.grains_error == GRAINS_ERROR_OF_PART));
+        let entry = LibraryFilter::find(&filter, LibraryDensity::Loose).unwrap().unwrap();
+        assert!(entry.part.is_some() && entry.found.grains_error == GRAINS_ERROR_OF_PART);
     }
 }

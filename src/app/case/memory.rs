@@ -17,12 +17,12 @@ const EVENT_BYTES: u64 = 16 << 10;
 /// Bytes that a worker keeps to move counts: for a void, its particles there; and for a batch of voids.
 const COUNTS_A_WORKER: (u64, u64) = (8, 32 << 10);
 
-/// Bytes for a constriction where water flows: two exits of 28 in the network and in its copy, 12 of the
-/// flow and 34 of tables each; 24 of the flow; and links, a factor, and what reading a file leaves (measured:
+/// Bytes for a constriction if water flows: two exits of 28 in the network and in its copy, 12 of the flow
+/// and 34 of tables each; 24 of the flow; and links, a factor, and the remains of reading a file (measured:
 /// at most 523 in all, a million throats of a file).
 const FLOW_BYTES: u64 = 2 * (2 * 28 + 12 + 34) + 24 + 300;
 
-/// Bytes for an exit where blocked constrictions leave openings: its width now, when the flow was solved last
+/// Bytes for an exit if blocked constrictions leave openings: its width now, at the last solution of the flow
 /// and before the next run, and the part that it conducts.
 const OPENING_BYTES: u64 = 3 * 4 + 8;
 
@@ -43,7 +43,7 @@ const KEPT_BYTES: [u64; 3] = [200, 240, 420];
 pub struct ResourceLimits {
     /// Memory (bytes).
     pub memory: u64,
-    /// Disk where the results go (bytes).
+    /// Free disk for the results (bytes).
     pub disk: u64,
 }
 
@@ -68,8 +68,7 @@ impl Case {
         self.one_by_one(n_base).div_ceil(CHUNK as u64).saturating_mul(bytes * CHUNK as u64)
     }
 
-    /// Bytes that walking `n_base` particles on this many threads takes besides: network, tallies,
-    /// book-keeping.
+    /// Further bytes of walking `n_base` particles on this many threads: network, tallies, book-keeping.
     fn other_bytes(&self, n_base: u64, threads: u64) -> u64 {
         let CaseNetwork { voids, constrictions, .. } = self.network;
         let chunks = self.one_by_one(n_base).div_ceil(CHUNK as u64);
@@ -96,7 +95,7 @@ impl Case {
         exits.saturating_mul(OPENING_BYTES).saturating_add(narrowings.saturating_mul(NARROWING_BYTES))
     }
 
-    /// Bytes that a network without directions of its own takes besides: each constriction is two exits with
+    /// Further bytes of a network without directions of its own: each constriction is two exits with
     /// conductance, weight and flow, in the network, in a copy of it that the walk directs, and in the
     /// system.
     fn flow_bytes(&self) -> u64 {
@@ -107,7 +106,7 @@ impl Case {
     }
 
     /// Bytes that each thread of a walk keeps for itself: with counts a column of the whole network, into
-    /// which it moves particles; the expectation is moved by one thread alone, and particles where they are.
+    /// which it moves particles; one thread alone moves the expectation, and particles move in place.
     fn worker_bytes(&self, n_base: u64) -> u64 {
         let engine = self.scene.walk.engine;
         let counts = matches!(engine, Engine::Auto | Engine::Counts)
@@ -120,7 +119,7 @@ impl Case {
         }
     }
 
-    /// Bytes of what each void of the first replicate comes to, where `record.voids` keeps it: at most a row
+    /// Bytes of the records of each void of the first replicate, if `record.voids` keeps them: at most a row
     /// for each void, or for each particle so far, after each increment of the list and at the end of each
     /// run.
     pub fn kept_bytes(&self) -> u64 {
@@ -148,8 +147,8 @@ impl Case {
         (self.supply.n_base as f64 * largest) as u64
     }
 
-    /// The case with the thickest lattice of the study of its thickness, where that is thicker than its own.
-    /// A graph's packing is not measured again for this.
+    /// The case with the thickest lattice of the study of its thickness, if that is thicker than its own. A
+    /// graph's packing is not measured again for this.
     fn thickest(&self) -> Option<Case> {
         let factor = self.thickness_factors().into_iter().fold(1.0, f64::max);
         let is_lattice = self.network.copies().is_none();
@@ -158,13 +157,13 @@ impl Case {
 
     /// The most bytes that the whole case takes at once on this many threads, all columns in memory.
     pub fn peak_bytes(&self, threads: u64) -> u64 {
-        let of = |case: &Case| {
+        let peak = |case: &Case| {
             let n_base = case.most_particles();
             let walks = case.bytes(n_base, threads).saturating_mul(case.side_by_side(n_base, threads));
             walks.saturating_add(case.kept_bytes())
         };
         // The thickest filter is walked after the others.
-        of(self).max(self.thickest().as_ref().map_or(0, of))
+        peak(self).max(self.thickest().as_ref().map_or(0, peak))
     }
 
     /// Replicates of `n_base` particles that walk at the same time on this many threads: one, unless they are
@@ -208,7 +207,7 @@ impl Case {
         }
     }
 
-    /// Where the columns of the thickest filter of its study go, where there is one.
+    /// Place of the columns of the thickest filter of its study, if there is one.
     fn place_thickest(
         &self,
         room: &ResourceLimits,
@@ -227,7 +226,7 @@ impl Case {
         }
     }
 
-    /// That `n_base` particles need more than there is, and what asks for them.
+    /// Error of `n_base` particles that need more memory than there is, with the study that asks for them.
     fn no_room(&self, room: &ResourceLimits, n_base: u64, needed: u64, without_columns: u64) -> CaseError {
         let disk = match without_columns <= room.memory {
             true => format!(" and the disk has {} for the particles", in_words(room.disk)),
@@ -255,7 +254,7 @@ impl Case {
         }
     }
 
-    /// Where the particles of a walk on this many threads live, for a reader.
+    /// Place of the particles of a walk on this many threads, for a reader.
     pub fn memory_in_words(&self, threads: u64) -> String {
         let bytes = in_words(self.bytes(self.supply.n_base, threads));
         let limit = in_words(self.memory);
@@ -311,11 +310,11 @@ mod tests {
     #[test]
     fn counts_take_a_column_of_the_network_for_each_thread() {
         let counts = case(&["engine=counts", "base.single_mm=0.1", "base.n_base=1e11"]);
-        let of = |case: &Case, threads| case.bytes(case.supply.n_base, threads);
-        let a_thread = (of(&counts, 257) - of(&counts, 1)) / 256;
+        let bytes = |case: &Case, threads| case.bytes(case.supply.n_base, threads);
+        let a_thread = (bytes(&counts, 257) - bytes(&counts, 1)) / 256;
         assert!((5_100_000..5_300_000).contains(&a_thread), "{a_thread}");
         let auto = case(&["base.single_mm=0.1", "base.n_base=1e11"]);
-        assert_eq!(of(&auto, 64), of(&counts, 64));
+        assert_eq!(bytes(&auto, 64), bytes(&counts, 64));
         for set in [
             // One by one by engine, or because they are few; an expectation; without passive particles.
             vec!["engine=particles", "base.n_base=1e6"],
@@ -324,7 +323,7 @@ mod tests {
             vec!["engine=counts", "base.single_mm=9", "base.n_base=1e6"],
         ] {
             let other = case(&set);
-            assert_eq!(of(&other, 256), of(&other, 1), "{set:?}");
+            assert_eq!(bytes(&other, 256), bytes(&other, 1), "{set:?}");
         }
         // Replicates side by side have columns each, so that there are fewer of them.
         let small =
@@ -337,25 +336,25 @@ mod tests {
 
     #[test]
     fn openings_take_memory_for_several_narrowings_of_each_exit() {
-        let of = |n_base: &str, set: &[&str]| {
+        let bytes_and_constrictions = |n_base: &str, set: &[&str]| {
             let case = case(&[&["engine=particles", n_base], set].concat());
             (case.other_bytes(case.supply.n_base, 1), case.network.constrictions)
         };
         for (n_base, flux, of_each) in [("1e9", "exit=area", 1), ("1e9", "exit=flux", 2)] {
             let set = [format!("base.n_base={n_base}"), format!("walk.{flux}")];
-            let [(closed, exits), (open, _)] =
-                [vec![&set[1][..]], vec![&set[1][..], "walk.blocked=open"]].map(|more| of(&set[0], &more));
+            let [(closed, exits), (open, _)] = [vec![&set[1][..]], vec![&set[1][..], "walk.blocked=open"]]
+                .map(|more| bytes_and_constrictions(&set[0], &more));
             assert_eq!(open - closed, exits * of_each * (20 + 8 * 48), "{flux}");
         }
         let [(closed, exits), (open, _)] =
-            [&[][..], &["walk.blocked=open"]].map(|more| of("base.n_base=1000", more));
+            [&[][..], &["walk.blocked=open"]].map(|more| bytes_and_constrictions("base.n_base=1000", more));
         assert_eq!(open - closed, exits * 20 + 1000 * 48);
     }
 
     #[test]
     fn what_each_void_comes_to_is_counted() {
-        let of = |base: &str, set: &[&str]| case(&[&[base], set].concat());
-        let many = |set: &[&str]| of("base.n_base=1e9", set);
+        let with_base = |base: &str, set: &[&str]| case(&[&[base], set].concat());
+        let many = |set: &[&str]| with_base("base.n_base=1e9", set);
         let (none, more) = (many(&["record.voids=[]"]), many(&["record.voids=[1, 5, 10]"]));
         assert_eq!(many(&[]).kept_bytes(), 0);
         // Three more moments of two runs, of a row in two copies at least.
@@ -365,10 +364,10 @@ mod tests {
         let one_run = |list| many(&[list, "runs=1"]).kept_bytes();
         assert_eq!(rows, 2 * (one_run("record.voids=[1, 5, 10]") - one_run("record.voids=[]")));
         // Few particles are in few voids.
-        let few = |list| of("base.n_base=1000", &[list]).kept_bytes();
+        let few = |list| with_base("base.n_base=1000", &[list]).kept_bytes();
         let bytes = few("record.voids=[1, 5, 10]") - few("record.voids=[]");
         assert!(bytes > 0 && bytes < rows / 100, "{bytes}");
-        // Where there is memory for the one only.
+        // Case of memory for the one only.
         assert_eq!(more.peak_bytes(1) - none.peak_bytes(1), rows);
         let room = ResourceLimits { memory: none.peak_bytes(1) + rows / 2, disk: 0 };
         let place = |mut case: Case| case.place(&room, 1, Path::new("."));
@@ -393,7 +392,7 @@ mod tests {
         );
         let error = refused("record.thickness=[10000]");
         assert!(error.contains("(record.thickness: the thickest"), "{error}");
-        // No study is to blame where the scene itself has no room.
+        // No study is to blame if the scene itself does not fit.
         let error = refused("base.n_base=1e12");
         assert!(error.starts_with("1000000000000 base particles") && !error.contains("record."), "{error}");
     }

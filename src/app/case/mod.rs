@@ -91,7 +91,7 @@ pub struct Case {
     pub inputs: Vec<Input>,
     /// Memory that the walks may take (bytes): no limit until [`Case::place`] sets one.
     pub memory: u64,
-    /// Where the columns of the particles live.
+    /// Place of the columns of the particles.
     pub placement: Placement,
 }
 
@@ -171,7 +171,8 @@ impl Case {
     /// The network of the replicate with this seed.
     ///
     /// # Errors
-    /// None that [`Case::new`] has not found.
+    /// No network with the scene's distribution of connectivity is found for this seed; [`Case::new`] has
+    /// found all other errors.
     pub fn network(&self, seed: u64) -> Result<Network, NetworkError> {
         let network = self.clean_network(seed)?;
         Ok(match self.scene.exits.flow_tolerance {
@@ -192,7 +193,7 @@ impl Case {
         }
     }
 
-    /// A lattice as its exit rule wants it: without directions where water gives them.
+    /// A lattice as its exit rule needs it: without directions if water gives them.
     fn with_directions(&self, lattice: Network) -> Result<Network, NetworkError> {
         let (rule, exits) = (self.scene.exit_rule(), &self.scene.exits);
         if rule == ExitRule::Area {

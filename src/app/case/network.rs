@@ -35,14 +35,14 @@ pub struct CaseNetwork {
     pub start_nodes: u64,
     /// Layers.
     pub layers: u64,
-    /// Connectivity and percent of the voids, where not all voids have the same.
+    /// Connectivity and percent of the voids, if the voids differ.
     pub connectivity: Vec<[f64; 2]>,
-    /// The network itself, where all replicates walk the same.
+    /// The network itself, if all replicates walk the same.
     pub fixed: Option<FixedNetwork>,
 }
 
 impl CaseNetwork {
-    /// That of a scene with this filter.
+    /// Size of the network of a scene with this filter.
     pub(super) fn new(
         scene: &Scene,
         filter: &CaseFilter,
@@ -72,7 +72,7 @@ impl CaseNetwork {
         })
     }
 
-    /// That of the cubic lattice, which is not made for it.
+    /// Size of the cubic lattice, without building it.
     pub(super) fn of_lattice(shape: [u32; 3]) -> Result<Self, NetworkError> {
         let [nx, ny, layers] = shape.map(u64::from);
         let constrictions = Network::lattice_constrictions(shape)? as u64;
@@ -80,7 +80,7 @@ impl CaseNetwork {
         Ok(Self { voids, constrictions, start_nodes, layers, connectivity: Vec::new(), fixed: None })
     }
 
-    /// That of a lattice with this distribution of connectivity, and that distribution as it is met; so a
+    /// Size of a lattice with this distribution of connectivity, and the distribution that is reached; so a
     /// distribution that no network has is refused before any work.
     fn of_connected(
         shape: [u32; 3],
@@ -107,7 +107,7 @@ impl CaseNetwork {
     }
 }
 
-/// Connectivity and percent of the voids, rising; empty where all have the same.
+/// Connectivity and percent of the voids, rising; empty if all voids agree.
 fn connectivity(network: &Network) -> Vec<[f64; 2]> {
     let mut counts = BTreeMap::new();
     network.connectivity().iter().for_each(|&k| *counts.entry(k).or_insert(0u64) += 1);

@@ -12,8 +12,8 @@ const BYTES: [u64; 2] = [8, 8];
 const EXIT_BYTES: [u64; 2] = [16, 16];
 
 impl Case {
-    /// A number that two cases share only where [`Case::network`] builds the same network of this seed;
-    /// `None` where a case has one network, which is there already.
+    /// A number that two cases share only if [`Case::network`] builds the same network for this seed; `None`
+    /// if a case has one network, which exists already.
     pub fn network_key(&self, seed: u64) -> Option<u128> {
         let source = self.scene.network.source();
         if self.network.fixed.is_some() || matches!(source, NetworkSource::File(_)) {

@@ -1,5 +1,5 @@
-//! Notes on a case before it is walked: where it leaves the range in which the model was checked, and what
-//! else a reader must know.
+//! Notes on a case before it is walked: where it leaves the range in which the model was checked, and other
+//! facts for a reader.
 
 use super::filter::needs_grains_per_void;
 use super::packed_filter::GUESSED_GRAINS_PER_VOID;
@@ -17,15 +17,15 @@ const MANY_MOVES: f64 = 1e5;
 
 /// A larger share of grains without load is worth a word ...
 const MANY_LOOSE: f64 = 0.5;
-/// ... and where it is as large as this, coarse grains carry each other: of two sizes far apart 98 % were
-/// without load with 30 % of the mass in the finer one, 19 % with 40 % (`results/packing.md`).
+/// ... and from this share on, coarse grains carry each other: with two sizes far apart 98 % were without
+/// load with 30 % of the mass in the finer one, 19 % with 40 % (`results/packing.md`).
 const SKELETON: f64 = 0.9;
 
 /// Constrictions that are looked at to find that out, each as often as it is looked at.
 const LOOKED_AT: u64 = 50_000_000;
 
 impl Case {
-    /// Notes before the walk, but for what the walk itself will find.
+    /// Notes before the walk, without those that the walk itself adds.
     pub fn notes(&self) -> Vec<Note> {
         let mut all = self.planned_walk().notes();
         all.extend(self.mistake.clone());
@@ -165,8 +165,8 @@ impl Case {
         Some(Note::NarrowCell { grains, aspect: plan.aspect, width, usual })
     }
 
-    /// About how many moves a particle makes that nothing stops, where loops may hold it for long: on a given
-    /// network, or where one constriction is very much wider than another.
+    /// Approximate number of moves of a particle that nothing stops, if loops may hold it for long: on a
+    /// given network, or if one constriction is very much wider than another.
     fn moves_to_an_end(&self) -> Option<f64> {
         let widest = self.filter.curve.largest() / self.filter.curve.smallest();
         match self.network.fixed.as_ref().map(|fixed| &fixed.network) {
@@ -258,11 +258,11 @@ mod tests {
 
     #[test]
     fn a_capped_base_has_the_mass_ratio_of_its_particles() {
-        let of = |set: &str| {
+        let mass_ratio = |set: &str| {
             let all = ["network.nx=10", "network.ny=10", "network.nz=12", set].map(String::from);
             Case::new(Scene::built_in(&all).unwrap()).unwrap().supply.mass_ratio.unwrap()
         };
-        let (capped, given) = (of("base.cap=1000"), of("base.n_base=1000"));
+        let (capped, given) = (mass_ratio("base.cap=1000"), mass_ratio("base.n_base=1000"));
         assert!((capped / given - 1.0).abs() < 0.01 && capped < 0.04, "{capped} {given}");
     }
 }

@@ -1,4 +1,4 @@
-//! A filter that has been packed: what a walk needs of it, read from the folder that it was packed into.
+//! A filter that has been packed: the data for a walk, read from the folder of the packing.
 //!
 //! The grains follow from the packing plan alone, so a packing is made once and kept under the fingerprint of
 //! its plan. Its constrictions are measured again for each use: that takes a second, and the overlap of voids
@@ -35,7 +35,7 @@ const ROUGH_GRAINS_PER_VOID: f64 = 0.65;
 /// as far without friction.
 const OF_FOUR: f64 = 0.2;
 
-/// A filter that has been packed: what a walk needs of it.
+/// A filter that has been packed: the data for a walk.
 #[derive(Clone, Debug)]
 pub struct PackedFilter {
     /// Its files: the curve, and the record; `None` for a placeholder.
@@ -52,11 +52,11 @@ pub struct PackedFilter {
     pub void_ratio: Option<f64>,
     /// Part of the filter that was packed, if not the whole.
     pub part: Option<PackedPart>,
-    /// Where the packing was taken from, where it was made for another filter of the same shape.
+    /// Source of the packing, if it was made for another filter of the same shape.
     pub same_shape: Option<SameShape>,
     /// Share of the grains, by number, that carry no load; `None` for a placeholder.
     pub rattlers: Option<f64>,
-    /// The grains, as CSV; `None` for a placeholder, or where a run kept the curve alone.
+    /// The grains, as CSV; `None` for a placeholder, or if a run kept the curve alone.
     pub grains: Option<Vec<u8>>,
 }
 
@@ -86,7 +86,7 @@ pub enum PackedError {
 }
 
 impl PackedFilter {
-    /// Takes a filter from the folder that it was packed into; `None` where it has not been packed yet.
+    /// Takes a filter from the folder that it was packed into; `None` if it has not been packed yet.
     ///
     /// # Errors
     /// A folder that is damaged, or that holds another filter.
@@ -102,14 +102,14 @@ impl PackedFilter {
         Self::measured(folder, order, read, 1.0, is_of_it.then_some(record)).map(Some)
     }
 
-    /// Takes a filter from a folder that holds packings: its own, or else one of the same shape; `None` where
+    /// Takes a filter from a folder that holds packings: its own, or else one of the same shape; `None` if
     /// there is neither.
     ///
     /// # Errors
     /// A packing of it that is damaged.
     pub fn find(packings: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
         match Self::read(&packings.join(order.folder_name()), order)? {
-            Some(own) => Ok(Some(own)),
+            Some(filter) => Ok(Some(filter)),
             None => Self::of_same_shape(packings, order),
         }
     }
@@ -122,9 +122,9 @@ impl PackedFilter {
     /// A packing of the same shape that is damaged.
     pub fn of_same_shape(packings: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
         let Ok(entries) = std::fs::read_dir(packings) else { return Ok(None) };
-        let own = packings.join(order.folder_name());
+        let usual_folder = packings.join(order.folder_name());
         let mut folders: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
-        folders.retain(|folder| *folder != own);
+        folders.retain(|folder| *folder != usual_folder);
         folders.sort();
         for folder in folders {
             // Skips folders that hold no packing, or an unfinished one.
@@ -141,8 +141,8 @@ impl PackedFilter {
         Ok(None)
     }
 
-    /// Measures the constrictions of the grains of a folder, times `factor`; `record` is that file as it is,
-    /// where it says the same as `read`.
+    /// Measures the constrictions of the grains of a folder, times `factor`; `record` is the record's own
+    /// bytes, if they agree with `read`.
     fn measured(
         folder: &Path,
         order: &PackingPlan,
@@ -165,16 +165,16 @@ impl PackedFilter {
         }
         let packing = Packing::parse(&grains.display().to_string(), &bytes)?;
         let packing = if factor == 1.0 { packing } else { packing.scaled(factor) };
-        let found = Constrictions::measure(&packing, order.merge_overlap)?;
+        let constrictions = Constrictions::measure(&packing, order.merge_overlap)?;
         let record = match record {
             Some(record) => record,
             None => format::PACKING.json(&read).map_err(|e| problem(e.to_string()))?.into_bytes(),
         };
         Ok(Self {
             files: Some([folder.join("constrictions.csv"), path]),
-            curve: found.curve()?,
-            curve_csv: found.curve_csv()?,
-            grains_per_void: found.grains_per_void(),
+            curve: constrictions.curve()?,
+            curve_csv: constrictions.curve_csv()?,
+            grains_per_void: constrictions.grains_per_void(),
             void_ratio: read.part.is_none().then_some(read.after.void_ratio),
             part: read.part,
             same_shape: read.same_shape,
@@ -196,17 +196,17 @@ impl PackedFilter {
         };
         let (curve_bytes, record_bytes) = (read(curve)?, read(&record)?);
         let problem = |problem: String| PackedError::Record { file: record.display().to_string(), problem };
-        let of: PackingRecord = from_json(&record_bytes).map_err(|e| problem(e.to_string()))?;
+        let packing: PackingRecord = from_json(&record_bytes).map_err(|e| problem(e.to_string()))?;
         Ok(Self {
             curve: Curve::from_csv_text(&curve.display().to_string(), &curve_bytes)?,
             curve_csv: String::from_utf8_lossy(&curve_bytes).into_owned(),
             files: Some([curve.to_owned(), record]),
             grains_per_void,
             record: record_bytes,
-            void_ratio: of.part.is_none().then_some(of.after.void_ratio),
-            part: of.part,
-            same_shape: of.same_shape,
-            rattlers: Some(of.after.rattlers),
+            void_ratio: packing.part.is_none().then_some(packing.after.void_ratio),
+            part: packing.part,
+            same_shape: packing.same_shape,
+            rattlers: Some(packing.after.rattlers),
             grains: None,
         })
     }
@@ -215,7 +215,7 @@ impl PackedFilter {
     /// scene early.
     ///
     /// # Errors
-    /// None for a gradation that can be packed.
+    /// Cannot fail for a gradation that can be packed.
     pub fn placeholder(order: &PackingPlan) -> Result<Self, CurveError> {
         // Grains that slide settle closer.
         let loose = (order.compression.friction / 0.3).min(1.0);

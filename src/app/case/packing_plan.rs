@@ -5,7 +5,7 @@ use crate::outcome::packing::PackedPart;
 use voidwalk_core::gradation::Gradation;
 use voidwalk_core::packing::{self, Settings as Compression};
 
-/// Two gradations have one shape where their sizes, scaled, are as near as this ...
+/// Two gradations have one shape if their sizes, scaled, agree to within this ...
 const SAME_SIZE: f64 = 1e-3;
 /// ... and their percentages as near as this.
 const SAME_PERCENT: f64 = 1e-2;
@@ -52,16 +52,17 @@ impl PackingPlan {
         format!("{:016x}", xxhash_rust::xxh3::xxh3_64(text.as_bytes()))
     }
 
-    /// The factor that takes a gradation with these points to the plan's: `None` where one factor does not
-    /// take every size to within a thousandth of its own.
+    /// The factor from a gradation with these points to the plan's: `None` if no factor takes every size to
+    /// within a thousandth of its target.
     pub(super) fn scale_from(&self, points: &[(f64, f64)]) -> Option<f64> {
-        let own = pairs(&self.gradation);
-        let (coarsest, its) = (own.last()?, points.last()?);
+        let planned = pairs(&self.gradation);
+        let (coarsest, its) = (planned.last()?, points.last()?);
         let factor = coarsest.0 / its.0;
-        let fits = |(own, other): (&(f64, f64), &(f64, f64))| {
-            (factor * other.0 / own.0 - 1.0).abs() < SAME_SIZE && (other.1 - own.1).abs() < SAME_PERCENT
+        let fits = |(planned, other): (&(f64, f64), &(f64, f64))| {
+            (factor * other.0 / planned.0 - 1.0).abs() < SAME_SIZE
+                && (other.1 - planned.1).abs() < SAME_PERCENT
         };
-        (own.len() == points.len() && own.iter().zip(points).all(fits)).then_some(factor)
+        (planned.len() == points.len() && planned.iter().zip(points).all(fits)).then_some(factor)
     }
 
     /// True if one packing, scaled, serves both plans.
@@ -98,7 +99,7 @@ mod tests {
 
     #[test]
     fn the_fingerprint_names_the_protocol() {
-        let of = |cu: f64, grains: usize| {
+        let protocols = |cu: f64, grains: usize| {
             let plan = plan(cu, grains);
             let points = pairs(&plan.gradation);
             let text = |protocol: u32| format!("{protocol} {points:?} {:?}", plan.compression);
@@ -106,10 +107,10 @@ mod tests {
                 .map(|protocol| format!("{:016x}", xxhash_rust::xxh3::xxh3_64(text(protocol).as_bytes())));
             (plan.fingerprint() == earlier, plan.fingerprint() == wide)
         };
-        assert_eq!(of(3.0, 20_000), (true, false));
-        assert_eq!(of(4.4, 20_000), (true, false));
+        assert_eq!(protocols(3.0, 20_000), (true, false));
+        assert_eq!(protocols(4.4, 20_000), (true, false));
         // 4.5^2 is 20.25, even if too few grains reach it.
-        assert_eq!(of(4.5, 20_000), (false, true));
-        assert_eq!(of(6.0, 60_000), (false, true));
+        assert_eq!(protocols(4.5, 20_000), (false, true));
+        assert_eq!(protocols(6.0, 60_000), (false, true));
     }
 }

@@ -1,16 +1,17 @@
-//! The pan fraction of a base, what is finer than its finest sieve, where it need not be passive.
+//! The pan fraction of a base, the part finer than its finest sieve, if it may not be passive.
 //!
-//! Where the finest sieve is no coarser than the finest constriction, a pan fraction is passive, and is
-//! counted by mass only. Where it is coarser, some of it may block constrictions, and nobody knows how much:
-//! all of it is then walked as passive particles of the same mass, just finer than every constriction, or
-//! than every size that arches in one. What blocks nothing leaves most, and of all sizes that the part may
-//! have these erode most.
+//! If the finest sieve is no coarser than the finest constriction, a pan fraction is passive, and is counted
+//! by mass only. If it is coarser, an unknown part of the fraction may block constrictions: all of it is then
+//! walked as passive particles of the same mass, just finer than every constriction, or than every size that
+//! arches in one. Particles that block nothing leave most, so of all sizes that the part may have these erode
+//! most.
 
 use crate::scene::Scene;
 use voidwalk_core::gradation::{Gradation, GradationError};
 
-/// Passive particles are walked this much finer than the finest size that is stopped, and of sizes that span
-/// as much: what is passive is never stopped by a constriction, so that its size matters to nothing else.
+/// Passive particles are walked this much finer than the finest size that is stopped, and with sizes that
+/// span as much: a passive particle is never stopped by a constriction, so that its size matters to nothing
+/// else.
 const FINER: f64 = 0.99;
 
 /// True if a pan fraction may hold particles that are not passive.

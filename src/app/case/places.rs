@@ -1,12 +1,12 @@
-//! Where the voids of a case's network lie.
+//! Positions of the voids of a case's network.
 
 use super::Case;
 use crate::outcome::by_void::Places;
 use crate::scene::NetworkSource;
 
 impl Case {
-    /// Where the voids of its network lie; `None` of a network from a file, which does not say, and of a
-    /// packing that is still to be made.
+    /// Positions of the voids of its network; `None` for a network from a file, which has no positions, and
+    /// for a packing that is still to be made.
     pub fn places(&self) -> Option<Places> {
         match (self.scene.network.source(), self.network.packing()) {
             (NetworkSource::File(_), ..) => None,

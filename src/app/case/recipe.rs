@@ -7,14 +7,13 @@ use super::packing_plan::PackingPlan;
 use crate::scene::{FilterGradation, PackingSpec, Scene, SceneError};
 use voidwalk_core::gradation::Gradation;
 
-/// A cell is made this many times as wide as the largest grain, where the user does not say how many grains
-/// ...
+/// Default width of a cell over the largest grain, if the user gives no number of grains ...
 const CELLS_WIDTH: f64 = 5.4;
 /// ... within these numbers of grains: fewer scatter, more cost a wide gradation hours.
 const GRAINS: (usize, usize) = (9_000, 60_000);
 /// Grains for the finer part of a filter that cannot be packed whole, at most.
 pub(super) const GRAINS_OF_PART: usize = 30_000;
-/// A cell is at least this many times as wide as the largest grain: twice, and some for what a guess is off.
+/// Least width of a cell over the largest grain: two, and a margin for the error of a guess.
 pub(super) const LEAST_WIDTH: f64 = 2.2;
 /// Packing fraction by which the width of a cell is guessed.
 const FRACTION: f64 = 0.65;
@@ -62,8 +61,8 @@ impl PackingPlan {
         Ok(plan)
     }
 
-    /// Takes the part that is asked for, or, where the cell of the whole would be too narrow, the part that
-    /// can be packed; and decides on the number of grains.
+    /// Takes the part that is asked for, or the part that can be packed if the cell of the whole would be too
+    /// narrow; and decides on the number of grains.
     fn take_part(&mut self, recipe: &PackingSpec) -> Result<(), CaseError> {
         let (whole, grains) = (self.gradation.clone(), recipe.grains);
         let aspect = self.aspect;
@@ -108,8 +107,8 @@ impl PackingPlan {
         (grains as f64 * self.aspect).round() as usize
     }
 
-    /// Grains that are packed of a gradation where nobody says how many: enough for a cell 5.4 times as wide
-    /// as the largest, 9,000 to 60,000.
+    /// Default number of grains of a gradation: enough for a cell 5.4 times as wide as the largest, 9,000 to
+    /// 60,000.
     pub fn usual_grains(gradation: &Gradation) -> usize {
         grains_for(gradation)
     }

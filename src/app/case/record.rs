@@ -19,7 +19,7 @@ impl Case {
         self.inputs.iter().map(Input::file).collect()
     }
 
-    /// The record of the filter's packing, where it was packed.
+    /// The record of the filter's packing, if it was packed.
     pub fn packing_record(&self) -> Option<&Input> {
         self.inputs.iter().find(|input| input.kept_as.ends_with(RECORD))
     }
@@ -166,8 +166,8 @@ impl Case {
         }
     }
 
-    /// The network that was walked, where its constrictions have no direction of their own.
-    /// `k0_mm2` is the permeability of the clean filter, where it is known.
+    /// The network that was walked, if its constrictions have no direction of their own. `k0_mm2` is the
+    /// permeability of the clean filter, if known.
     pub fn network_summary(&self, k0_mm2: Option<f64>) -> Option<record::NetworkSummary> {
         let rule = self.scene.exit_rule();
         if rule == ExitRule::Area {
@@ -200,8 +200,8 @@ impl Case {
         })
     }
 
-    /// Modelled filter thickness: layers times D50F by number, or copies of a packing; `None` where a layer
-    /// has no thickness.
+    /// Modelled filter thickness: layers times D50F by number, or copies of a packing; `None` if a layer has
+    /// no thickness.
     pub fn thickness(&self) -> Option<f64> {
         match &self.network.fixed {
             Some(fixed) => Some(fixed.packing.as_ref()?.thickness_mm),
@@ -217,7 +217,7 @@ impl Case {
         matches!(self.scene.filter.gradation(), FilterGradation::Sieve(..))
     }
 
-    /// Where the constrictions come from.
+    /// Source of the constrictions.
     pub fn curve_origin(&self) -> record::CurveOrigin {
         match (&self.filter.library, self.filter.guessed_density) {
             _ if self.filter.packed.is_some() => record::CurveOrigin::Packed,
@@ -256,7 +256,7 @@ pub fn base_record(name: String, base: &Gradation) -> record::BaseRecord {
     }
 }
 
-/// A characteristic size (mm), where the gradation reaches down to it.
+/// A characteristic size (mm), if the gradation reaches down to it.
 fn d(gradation: &Gradation, percent: f64) -> f64 {
     gradation.d(percent).unwrap_or(f64::NAN)
 }

@@ -17,8 +17,8 @@ const WATER_PROTOCOL: u32 = 2;
 const ARCHING_PROTOCOL: u32 = 20_000;
 
 impl Case {
-    /// The scene with what its files and its filter's packing say of it, and with its files' names in a run
-    /// folder: run again from there, it gives the same bits.
+    /// The scene completed from its files and its filter's packing, with its files' names in a run folder:
+    /// run again from there, it gives the same bits.
     pub fn resolved(&self) -> Scene {
         let mut scene = self.scene.clone();
         let kept = |setting: &str| {
@@ -52,7 +52,7 @@ impl Case {
 
     /// Fingerprint of everything that the results follow from: the resolved scene and its files.
     pub fn fingerprint(&self) -> String {
-        // Nothing follows from what is only said of it.
+        // No result depends on the cover.
         let scene = Scene { about: About::default(), ..self.resolved() };
         let mut protocol = if scene.exit_rule().needs_flow() { WATER_PROTOCOL } else { PROTOCOL };
         if scene.law().is_some() {
@@ -101,9 +101,9 @@ mod tests {
             let set: Vec<String> = set.iter().map(ToString::to_string).collect();
             Case::new(Scene::built_in(&set).unwrap()).unwrap()
         };
-        let said = case(&["about.client=Water Board", "about.project=Dam"]);
-        assert_eq!(said.fingerprint(), case(&[]).fingerprint());
-        assert_ne!(said.fingerprint(), case(&["base.cu=1.6"]).fingerprint());
-        assert_eq!(said.resolved().about.client.as_deref(), Some("Water Board"));
+        let with_cover = case(&["about.client=Water Board", "about.project=Dam"]);
+        assert_eq!(with_cover.fingerprint(), case(&[]).fingerprint());
+        assert_ne!(with_cover.fingerprint(), case(&["base.cu=1.6"]).fingerprint());
+        assert_eq!(with_cover.resolved().about.client.as_deref(), Some("Water Board"));
     }
 }

@@ -70,8 +70,8 @@ impl Case {
         Ok(case)
     }
 
-    /// This case with its filter `factor` times as large against a stated base as it is: not to be walked,
-    /// but to be judged by what knows millimetres.
+    /// Enlarges the filter of this case by `factor`, against a stated base at its own size: not to be walked,
+    /// but to be judged by rules in millimetres.
     ///
     /// # Errors
     /// Sizes out of range.

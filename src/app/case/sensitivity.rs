@@ -63,26 +63,26 @@ mod tests {
     /// The coarse end of the library has 6 % fewer grains per void near one of its shapes.
     #[test]
     fn the_base_of_an_end_follows_its_grains_unless_they_are_stated_and_keeps_the_cap() {
-        let of = |set: &[&str]| {
+        let numbers = |set: &[&str]| {
             let set = [&["filter.library=loose", "filter.cu=1.5", "filter.d0_mm=1"], set].concat();
             let set: Vec<String> = set.into_iter().map(str::to_owned).collect();
             let case = Case::new(Scene::built_in(&set).unwrap()).unwrap();
             (case.base_by_grains(case.filter.curve_ends[0].times_grains), case.supply.n_base)
         };
-        let (of_end, n_base) = of(&[]);
+        let (of_end, n_base) = numbers(&[]);
         assert_eq!(of_end, (n_base as f64 / 1.06).round() as u64);
         // Caps between the base of the end and the base of the case, and below both.
         for (cap, expected) in [(n_base - 1, of_end), (of_end / 2, of_end / 2)] {
-            assert_eq!(of(&[&format!("base.cap={cap}")]), (expected, cap));
+            assert_eq!(numbers(&[&format!("base.cap={cap}")]), (expected, cap));
         }
-        let (of_end, n_base) = of(&["filter.grains_per_void=0.5"]);
+        let (of_end, n_base) = numbers(&["filter.grains_per_void=0.5"]);
         assert_eq!(of_end, n_base);
-        assert_eq!(of(&["base.n_base=1000"]), (1000, 1000));
+        assert_eq!(numbers(&["base.n_base=1000"]), (1000, 1000));
     }
 
     #[test]
     fn what_is_not_walked_is_said_with_its_reason() {
-        let of = |set: &[&str]| {
+        let studies = |set: &[&str]| {
             let all: Vec<String> = set.iter().map(ToString::to_string).collect();
             let case = Case::new(Scene::built_in(&all).unwrap()).unwrap();
             (
@@ -90,14 +90,15 @@ mod tests {
                 case.left_out().iter().map(|part| left_out(part, "mm")).collect::<Vec<_>>(),
             )
         };
-        let (factors, left_out) = of(&["base.cap=1000"]);
+        let (factors, left_out) = studies(&["base.cap=1000"]);
         assert_eq!(factors, [0.25, 0.5]);
-        let said = "sensitivity to the number of base particles, x2, x4: more than base.cap, 1000, allows";
-        assert!(left_out.iter().any(|line| line == said), "{left_out:?}");
-        let (factors, left_out) = of(&["record.sensitivity=[1, 2, 2.0, 0.5]", "base.n_base=1000"]);
+        let expected =
+            "sensitivity to the number of base particles, x2, x4: more than base.cap, 1000, allows";
+        assert!(left_out.iter().any(|line| line == expected), "{left_out:?}");
+        let (factors, left_out) = studies(&["record.sensitivity=[1, 2, 2.0, 0.5]", "base.n_base=1000"]);
         assert_eq!(factors, [2.0, 0.5]);
         assert!(left_out.iter().any(|line| line.contains("particles, x1: the same number")), "{left_out:?}");
-        let (factors, left_out) = of(&["base.n_base=1000"]);
+        let (factors, left_out) = studies(&["base.n_base=1000"]);
         assert_eq!(factors.len(), 4);
         assert!(
             !left_out.iter().any(|line| line.starts_with("sensitivity to the number of base particles")),

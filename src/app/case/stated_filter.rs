@@ -15,7 +15,7 @@ use voidwalk_core::gradation::Gradation;
 pub(super) struct StatedFilter {
     /// Its gradation.
     pub gradation: Gradation,
-    /// Its constriction curve, in the unit that it is stated in; `None` where the network is to say it.
+    /// Its constriction curve, in the unit in which it is stated; `None` if the network defines it.
     pub curve: Option<Curve>,
     /// The shipped filter that the curve is, if it is one.
     pub shipped: Option<&'static ShippedFilter>,
@@ -30,8 +30,8 @@ pub(super) struct StatedFilter {
 }
 
 impl StatedFilter {
-    /// Reads the files of a filter; `packed` and `measured` are its packing and that packing's voids, where
-    /// they are there already.
+    /// Reads the files of a filter; `packed` and `measured` are its packing and that packing's voids, if they
+    /// exist already.
     pub fn read(
         scene: &Scene,
         packed: Option<PackedFilter>,

@@ -6,7 +6,7 @@ use super::pan;
 use crate::scene::{Amount, Scene};
 use voidwalk_core::gradation::{BaseSupply, Gradation, SizeSampler, base_particles};
 
-/// The mass ratio that Eq. (2) speaks of where the scene gives a number: the paper's 5 %.
+/// The mass ratio for Eq. (2) if the scene gives a number of particles: the paper's 5 %.
 pub const PAPER_MASS_RATIO: f64 = 0.05;
 
 /// The particles that a base is walked as.
@@ -19,7 +19,7 @@ pub struct CaseSupply {
     pub sampler: SizeSampler,
     /// Base particles of a run, by Eq. (2) or as given.
     pub n_base: u64,
-    /// Base particles by Eq. (2); `None` where the grains per void are not given.
+    /// Base particles by Eq. (2); `None` if the grains per void are not given.
     pub n_base_eq2: Option<u64>,
     /// True if a cap made `n_base` smaller than Eq. (2).
     pub capped: bool,

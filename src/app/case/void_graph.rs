@@ -1,4 +1,4 @@
-//! The voids of a packing as a case's network: what is measured on the grains, and how far it reaches.
+//! The voids of a packing as a case's network: measurements on the grains, and number of copies.
 
 use std::path::PathBuf;
 

@@ -1,9 +1,9 @@
-//! Many samples against one or several filters: what practice says of each pair, each pair walked, and one
-//! table of both.
+//! Many samples against one or several filters: the answer of practice on each pair, each pair walked, and
+//! one table of both.
 //!
-//! The walks are the cases of a campaign inside the batch's folder, all with one seed: each has a run
-//! folder of its own, those that are done are kept, and what was stopped or killed continues. The table
-//! follows from samples, filters and settings alone.
+//! The walks are the cases of a campaign inside the batch's folder, all with one seed: each has a run folder
+//! of its own, finished ones are kept, and stopped or killed ones continue. The table follows from samples,
+//! filters and settings alone.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -73,8 +73,8 @@ pub fn run(
     run_around(&plan.campaign, &of_walks, callbacks, study).map_err(stopped)
 }
 
-/// The batch that the folder holds already, where it is this very one; `None` where [`run`] without
-/// `overwrite` begins there or goes on. Writes no result.
+/// The batch that the folder holds already, if it is this very one; `None` if [`run`] without `overwrite`
+/// begins or continues there. Writes no result.
 ///
 /// # Errors
 /// A folder that holds anything else, another batch too.
@@ -92,14 +92,14 @@ pub fn found(plan: &BatchPlan, options: &CaseOptions) -> Result<Option<WalkedBat
         let bytes = folder.read(KIND.record())?;
         let there = bytes.and_then(|bytes| from_json::<WalkedBatch>(&bytes).ok());
         let is_walked = |cases: Option<&[PreparedCase]>| {
-            let cases = cases.filter(|all| all.iter().all(|of| of.line(&of_walks.out).is_some()));
+            let cases = cases.filter(|all| all.iter().all(|case| case.line(&of_walks.out).is_some()));
             there.filter(|there| cases.is_some_and(|cases| plan.has_work(cases, &there.work)))
         };
         let there = look(&plan.campaign, &of_walks, is_walked)?;
         return there.map_or_else(other, |there| Ok(Some(there)));
     }
     let Some(begun) = Unfinished::read(&folder)? else { return Ok(None) };
-    // Where a packing was taken away it is made again, and other work is refused then.
+    // A packing that was removed is made again, and other work is refused then.
     let is_this = |cases: Option<&[PreparedCase]>| cases.is_none_or(|all| plan.has_work(all, &begun.work));
     if look(&plan.campaign, &of_walks, is_this)? { Ok(None) } else { other() }
 }
@@ -156,7 +156,7 @@ impl BatchPlan {
         self.work(cases).is_ok_and(|all| all == work)
     }
 
-    /// The rows with what was walked of them.
+    /// The rows with their walks.
     fn walked(&self, folder: &Folder, work: &str, walked: &FinishedCases) -> Result<WalkedBatch, RunError> {
         let mut modelled = Vec::new();
         let mut walks = HashMap::new();

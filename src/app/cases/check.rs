@@ -70,13 +70,13 @@ impl PlanCheck {
     /// Why the plan would be refused all the same: its cases that are wrong.
     pub fn refusal(&self) -> Option<RunError> {
         let wrong = self.cases.iter().filter(|case| !case.problem.is_empty());
-        let wrong = wrong.map(|of| FailedCase { case: of.case.clone(), problem: of.problem.clone() });
+        let wrong = wrong.map(|case| FailedCase { case: case.case.clone(), problem: case.problem.clone() });
         let wrong: Vec<FailedCase> = wrong.collect();
         (!wrong.is_empty()).then(|| RunError::Refused(named(&wrong)))
     }
 }
 
-/// Says what the cases of a plan would take, here and with these options, and what is wrong in each; packs
+/// Forecasts the cases of a plan, here and with these options, and reports the mistakes in each; packs
 /// nothing, claims nothing and writes nothing.
 ///
 /// # Errors
@@ -96,7 +96,7 @@ pub fn check_plan(plan: &CasePlan, options: &CaseOptions) -> Result<PlanCheck, R
         have_networks(&case, &Callbacks::default())?;
         Ok((case, packing))
     };
-    let of = |planned: &PlannedCase| {
+    let check = |planned: &PlannedCase| {
         let looked = look(planned);
         let none = CaseCheck {
             case: planned.name.clone(),
@@ -120,14 +120,14 @@ pub fn check_plan(plan: &CasePlan, options: &CaseOptions) -> Result<PlanCheck, R
             }
         }
     };
-    let looked: Vec<_> = pool.install(|| wanted.into_par_iter().map(of).collect());
+    let looked: Vec<_> = pool.install(|| wanted.into_par_iter().map(check).collect());
     let mut packings: BTreeMap<String, PackingPlan> = BTreeMap::new();
-    for packing in looked.iter().filter_map(|(_, of)| of.as_ref()?.1.as_ref()) {
+    for packing in looked.iter().filter_map(|(_, sound)| sound.as_ref()?.1.as_ref()) {
         packings.entry(packing.fingerprint()).or_insert_with(|| packing.clone());
     }
     let is_missing = |packing: &&PackingPlan| matches!(options.packed(packing), Ok(None));
     let missing: Vec<&PackingPlan> = packings.values().filter(is_missing).collect();
-    let sound: Vec<&Case> = looked.iter().filter_map(|(_, of)| Some(&of.as_ref()?.0)).collect();
+    let sound: Vec<&Case> = looked.iter().filter_map(|(_, sound)| Some(&sound.as_ref()?.0)).collect();
     let at_once = CasesAtOnce::here(&sound, workers);
     let cases: Vec<CaseCheck> = looked.into_iter().map(|(case, _)| case).collect();
     Ok(PlanCheck {

@@ -13,7 +13,7 @@ pub(crate) fn today() -> Option<String> {
     day(&moment(SystemTime::now()))
 }
 
-/// The last day on which one of these cases was done; `None` where no folder says it.
+/// The last day on which one of these cases was done; `None` if no folder has a date.
 pub(crate) fn last_day<'a>(cases: impl IntoIterator<Item = &'a Path>) -> Option<String> {
     let finished = |case: &Path| {
         let bytes = read_whole(&case.join("manifest.json")).ok()?;

@@ -30,8 +30,8 @@ fn real(file: &Path) -> PathBuf {
     }
 }
 
-/// Short names, no two the same: the file's without its ending, with the soil's where it is one of several;
-/// the whole path where two would be the same, and in front of that its number where even those are.
+/// Short names, all different: the file's name without its ending, with the soil's if it is one of several;
+/// the whole path if two would agree, with its number in front if even the paths agree.
 pub(super) fn names(files: &[PathBuf]) -> Vec<String> {
     let mut names: Vec<String> = files.iter().map(|file| short_name(file)).collect();
     // A longer name can be another's short one.
@@ -93,17 +93,17 @@ mod tests {
         assert_eq!(named(&["f.csv", "f.tsv", "f.csv.csv"]), ["f.csv", "f.tsv", "f.csv.csv"]);
         assert_eq!(named(&["a/F.csv", "b/f.csv"]), ["a/F.csv", "b/f.csv"]);
         assert_eq!(named(&["a/2 .f.csv", ".f"]), ["1 2 .f", "2 2 .f"]);
-        // None is the name of a folder that is there already.
+        // No name may be a folder that exists already.
         assert_eq!(named(&["...csv", ".f"]), ["1 ..", "2 .f"]);
     }
 
     /// A name with a number in front can be another's own.
     #[test]
     fn numbered_names_are_all_different() {
-        let of = |names: &[&str]| as_folders(names.iter().map(ToString::to_string).collect());
-        assert_eq!(of(&["A", "a", "B"]), ["1 A", "2 a", "B"]);
-        assert_eq!(of(&["A", "A", "1 A"]), ["1 1 A", "2 A", "3 1 A"]);
-        assert_eq!(of(&[".A", "B", ""]), ["1 .A", "B", "3 "]);
+        let folders = |names: &[&str]| as_folders(names.iter().map(ToString::to_string).collect());
+        assert_eq!(folders(&["A", "a", "B"]), ["1 A", "2 a", "B"]);
+        assert_eq!(folders(&["A", "A", "1 A"]), ["1 1 A", "2 A", "3 1 A"]);
+        assert_eq!(folders(&[".A", "B", ""]), ["1 .A", "B", "3 "]);
     }
 
     #[test]

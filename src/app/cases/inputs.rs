@@ -19,7 +19,7 @@ pub(crate) struct InputSoils {
     pub soils: Vec<SoilSample>,
     /// The tables by their names; a folder is replaced by its tables.
     files: Vec<PathBuf>,
-    /// Short names of what was named.
+    /// Short names of the inputs.
     pub name: String,
 }
 
@@ -35,7 +35,7 @@ impl InputSoils {
     /// Reads every curve of files, as [`envelope_in`].
     ///
     /// # Errors
-    /// As [`Self::samples`]; a folder.
+    /// See [`Self::samples`]; also if a path is a folder.
     pub fn envelope(paths: &[PathBuf]) -> Result<Self, RunError> {
         Self::read(paths, envelope_in)
     }

@@ -25,12 +25,12 @@ pub(crate) fn hash_of(work: &str) -> String {
     format!("{:032x}", xxh3_128(work.as_bytes()))
 }
 
-/// Makes a study of this kind, which all these words describe, in its claimed folder: from what an earlier
-/// start of it found, and not at all where all but the page of a study without cases is there. `study` writes
-/// its tables; then come its record and its page, and nothing is left to continue.
+/// Makes a study of this kind, identified by `work`, in its claimed folder: continues from the results of an
+/// earlier start, and reads the record instead if a study without cases lacks only its page. `study` writes
+/// its tables; then its record and its page are written, and the checkpoint is removed.
 ///
 /// # Errors
-/// What is there is of another study; what the study and the folder say.
+/// The folder holds another study; errors of the study and of the folder.
 pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
     (folder, kind, overwrite): (&Folder, FolderKind, bool),
     work: String,
@@ -48,7 +48,7 @@ pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
             // continued.
             let begun = Unfinished::read(folder)?;
             let is_begun = begun.as_ref() == Some(&mark);
-            let found = match overwrite {
+            let earlier = match overwrite {
                 true if is_begun => kept.newest(callbacks).ok().flatten(),
                 true => None,
                 false => kept.newest(callbacks)?,
@@ -64,11 +64,11 @@ pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
                 )));
             }
             // At no moment is one that goes on without its mark.
-            if found.is_none() && !(has_cases && is_begun) {
+            if earlier.is_none() && !(has_cases && is_begun) {
                 clear(folder, kind)?;
             }
             mark.begin(folder)?;
-            let record = study(&kept, found)?;
+            let record = study(&kept, earlier)?;
             // The page is made of it.
             folder.write(kind.record(), &json(kind.format(), &record)?)?;
             record
@@ -91,7 +91,7 @@ pub(crate) fn record<R: DeserializeOwned>(folder: &Path, kind: FolderKind) -> Re
     from_json(&bytes).map_err(|error| failed(&error))
 }
 
-/// Keeps what is found in a folder.
+/// Keeper of a study's results in a folder.
 pub(crate) struct Kept<'a> {
     kind: FolderKind,
     folder: &'a Folder,
@@ -139,9 +139,9 @@ impl<'a> Kept<'a> {
     ///
     /// # Errors
     /// Errors of the folder.
-    pub fn keep(&self, parts: usize, found: &impl Serialize) -> Result<(), RunError> {
+    pub fn keep(&self, parts: usize, results: &impl Serialize) -> Result<(), RunError> {
         let label = Label { identity: self.identity.clone(), generation: parts as u64, ..Label::default() };
-        let record = serde_json::to_vec(found)?;
+        let record = serde_json::to_vec(results)?;
         let sections = [Section::new("found", &record)];
         save(self.folder.path(), self.name, &label, &sections).map_err(RunError::Save)
     }

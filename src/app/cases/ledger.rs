@@ -25,7 +25,7 @@ pub(super) fn of_other_plans(plan: &CasePlan, out: &Path) -> Vec<String> {
 /// `cases.csv` into the campaign's folder.
 ///
 /// # Errors
-/// A finished case that cannot be read, for a ledger without it would be wrong; what the system says.
+/// A finished case that cannot be read, for a ledger without it would be wrong; errors of the system.
 pub(super) fn collect(
     plan: &CasePlan,
     cases: &[PreparedCase],

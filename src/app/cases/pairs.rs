@@ -22,7 +22,7 @@ use voidwalk_sheets::curves_in_file;
 /// Voids across the lattice of a first look, as `voidwalk boundary` searches.
 const ACROSS: u64 = 20;
 
-/// Settings with which the size of the lattice is somebody's own.
+/// Settings that give the lattice a size of the user's own.
 const OWN_LATTICE: [&str; 4] = ["network.nx", "network.ny", "network.file", "network.packing"];
 
 /// Which pairs are walked, and how.
@@ -46,7 +46,7 @@ pub struct BatchPlan {
     pub(super) samples: PathBuf,
     /// The filters.
     pub(super) filters: Vec<BatchFilter>,
-    /// The curve of the one base as sampled; empty where each soil is a sample.
+    /// The curve of the one base as sampled; empty if each soil is a sample.
     pub(super) base: Vec<[f64; 2]>,
     /// Answer of practice on each pair, before any walk.
     pub(super) rows: Vec<WalkedRow>,
@@ -61,8 +61,8 @@ pub struct BatchPlan {
 }
 
 impl BatchPlan {
-    /// The pairs of the samples of a file or a folder with filters. `tables` is what each scene is given
-    /// besides its two soils. A pair that cannot be walked stays in the table, with the reason.
+    /// The pairs of the samples of a file or a folder with filters. `tables` holds the further options of
+    /// each scene. A pair that cannot be walked stays in the table, with the reason.
     ///
     /// # Errors
     /// A file that cannot be read; a filter that is named twice; several soils in place of one base; cases
@@ -122,27 +122,27 @@ impl BatchPlan {
         Ok(plan)
     }
 
-    /// With these names of the samples and of each filter in the place of their paths, and with what `said`
-    /// makes of notes that may hold paths.
+    /// Replaces the paths of the samples and of each filter by these names, and notes that may hold paths by
+    /// the result of `reworded`.
     #[must_use]
-    pub fn named(mut self, samples: &str, filters: &[String], said: impl Fn(&str) -> String) -> Self {
+    pub fn named(mut self, samples: &str, filters: &[String], reworded: impl Fn(&str) -> String) -> Self {
         let of_filter = (self.rows.len() / self.filters.len().max(1)).max(1);
         for (at, row) in self.rows.iter_mut().enumerate() {
             row.rules.filter.clone_from(&filters[at / of_filter]);
-            row.not_walked = said(&row.not_walked);
+            row.not_walked = reworded(&row.not_walked);
             let case = self.campaign.cases.iter_mut().find(|case| case.name == self.cases[at]);
             let levels = case.into_iter().flat_map(|case| &mut case.levels);
             let level = levels.filter(|(factor, _)| factor == "filter");
             level.for_each(|(_, level)| level.clone_from(&filters[at / of_filter]));
         }
-        self.filters.iter_mut().zip(filters).for_each(|(of, name)| of.name.clone_from(name));
-        self.notes.iter_mut().for_each(|note| *note = said(note));
+        self.filters.iter_mut().zip(filters).for_each(|(filter, name)| filter.name.clone_from(name));
+        self.notes.iter_mut().for_each(|note| *note = reworded(note));
         self.campaign.title = format!("samples of {samples}");
         self.samples = samples.into();
         self
     }
 
-    /// Leaves out of the walks what is wrong in itself.
+    /// Removes unsound cases from the walks.
     fn leave_out_unsound(&mut self, options: &CaseOptions) -> Result<(), RunError> {
         if !self.campaign.cases.is_empty() {
             for failed in unsound(&self.campaign, options)? {

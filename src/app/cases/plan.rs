@@ -119,7 +119,7 @@ impl Range {
         }
         let value = |index: usize| {
             let exact = from + (to - from) * index as f64 / (count - 1) as f64;
-            // Thirds and tenths without what rounding adds.
+            // Thirds and tenths without rounding errors.
             let value: f64 = format!("{exact:.11e}").parse().unwrap_or(exact);
             match value.fract() == 0.0 && value.abs() < 1e15 {
                 true => toml::Value::Integer(value as i64),
@@ -197,7 +197,7 @@ impl CasePlan {
     /// `path`.
     ///
     /// # Errors
-    /// As [`CasePlan::read`].
+    /// See [`CasePlan::read`].
     pub fn parse(bytes: &[u8], path: &Path) -> Result<Self, SceneError> {
         let file = path.display().to_string();
         let syntax = |at: String, problem: String| SceneError::Syntax { file: file.clone(), at, problem };
@@ -249,8 +249,10 @@ impl CasePlan {
             let names = plan.factors.iter().zip(&chosen);
             let levels: Vec<(String, String)> =
                 names.map(|(factor, (level, _))| (factor.clone(), level.clone())).collect();
-            let is_left_out = |which: &BTreeMap<String, String>| {
-                which.iter().all(|(factor, level)| levels.iter().any(|(f, l)| f == factor && l == level))
+            let is_left_out = |combination: &BTreeMap<String, String>| {
+                combination
+                    .iter()
+                    .all(|(factor, level)| levels.iter().any(|(f, l)| f == factor && l == level))
             };
             if written.leave_out.iter().any(is_left_out) {
                 continue;
@@ -263,8 +265,14 @@ impl CasePlan {
         }
         for single in &written.case {
             check_name("case", &single.name).map_err(clash)?;
-            let own = assignments(&single.set).map_err(clash)?;
-            plan.add(&written, base.as_deref(), single.name.clone(), Vec::new(), &[common.clone(), own])?;
+            let settings = assignments(&single.set).map_err(clash)?;
+            plan.add(
+                &written,
+                base.as_deref(),
+                single.name.clone(),
+                Vec::new(),
+                &[common.clone(), settings],
+            )?;
         }
         if plan.cases.is_empty() {
             return Err(clash("there is no case: add [[factor]] or [[case]]".into()));

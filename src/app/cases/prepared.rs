@@ -1,4 +1,4 @@
-//! The cases of a plan, worked out: which are wanted, which packings they need, and what is known of each.
+//! The cases of a plan, worked out: the wanted ones, the packings that they need, and the state of each.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -22,7 +22,7 @@ pub(super) const LINE: &str = "case.json";
 /// Folder of the cases, inside the campaign's.
 pub(crate) const CASES: &str = "cases";
 
-/// Why a case could not be walked, where it was tried last.
+/// Reason why a case could not be walked at the last attempt.
 pub(super) const PROBLEM: &str = "problem.txt";
 
 /// Size of the largest list of tasks that is accepted (bytes).
@@ -39,8 +39,8 @@ pub enum CasePart {
     All,
     /// The one of this name.
     Named(String),
-    /// Those of a task of a list that [`write_job_scripts`](super::write_job_scripts) wrote: the file, and
-    /// the task's number.
+    /// The cases of a task of a list that [`write_job_scripts`](super::write_job_scripts) wrote: the file,
+    /// and the task's number.
     Task(PathBuf, u64),
 }
 
@@ -48,7 +48,7 @@ impl CasePart {
     /// The cases of a task as a user writes it, a file and a number: `tasks.tsv:3`.
     ///
     /// # Errors
-    /// What is to be written instead.
+    /// The form that is expected.
     pub fn task(text: &str) -> Result<Self, String> {
         let parts = text.rsplit_once(':').filter(|(file, _)| !file.is_empty());
         let read = parts.and_then(|(file, number)| Some(Self::Task(file.into(), number.parse().ok()?)));
@@ -220,7 +220,7 @@ impl<'a> PreparedCase<'a> {
 /// State of a case that is not done.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum CaseState {
-    /// Nobody has begun it.
+    /// Not begun yet.
     NotBegun,
     /// A process is at it.
     Walking(String),

@@ -32,7 +32,7 @@ pub struct CaseOptions {
     pub part: CasePart,
     /// Folder in which the packings of filters are kept; `packings` in `out` without one.
     pub packings: Option<PathBuf>,
-    /// Memory that the walks may take (bytes); 80 % of what is available without it.
+    /// Memory that the walks may take (bytes); 80 % of the available memory without it.
     pub memory: Option<u64>,
     /// Worker threads; by default the number that a cluster's job has, else one per core.
     pub threads: Option<usize>,
@@ -105,13 +105,13 @@ pub struct FinishedCases {
 impl FinishedCases {
     /// Error that tells the user of cases that could not be walked.
     pub fn problem(&self) -> Option<RunError> {
-        let (failed, of) = (self.failed.len(), self.cases);
+        let (failed, all) = (self.failed.len(), self.cases);
         if failed == 0 {
             return None;
         }
         let counted =
-            format!("{failed} of {of} {} could not be walked", if of == 1 { "case" } else { "cases" });
-        let others = if failed < of { "; the others are done" } else { "" };
+            format!("{failed} of {all} {} could not be walked", if all == 1 { "case" } else { "cases" });
+        let others = if failed < all { "; the others are done" } else { "" };
         Some(RunError::failed(format!("{counted}{others}\n{}", named(&self.failed))))
     }
 }
@@ -127,12 +127,12 @@ pub fn names(plan: &CasePlan, part: &CasePart) -> Result<Vec<String>, RunError> 
 }
 
 /// Walks the cases of a plan that are not done, packing their filters first, and collects the whole plan.
-/// Several processes may be at it; each waits for what others have begun.
+/// Several processes may work at once; each waits for cases that others have begun.
 ///
 /// # Errors
-/// A plan or case that is wrong and a folder that cannot be claimed are refused before any work; then what
-/// concerns all cases. What concerns one is in [`FinishedCases::failed`]. After a stop, the same call
-/// continues.
+/// A plan or case that is wrong and a folder that cannot be claimed are refused before any work; then errors
+/// that concern all cases. Errors of single cases are in [`FinishedCases::failed`]. After a stop, the same
+/// call continues.
 pub fn run(
     plan: &CasePlan,
     options: &CaseOptions,
@@ -177,14 +177,15 @@ pub fn unsound(plan: &CasePlan, options: &CaseOptions) -> Result<Vec<FailedCase>
     };
     let all: Vec<(bool, FailedCase)> = pool.install(|| wanted.into_par_iter().filter_map(wrong).collect());
     let (no_room, wrong): (Vec<_>, Vec<_>) = all.into_iter().partition(|(has_no_room, _)| *has_no_room);
-    let cases = |of: Vec<(bool, FailedCase)>| of.into_iter().map(|(_, case)| case).collect::<Vec<_>>();
+    let cases =
+        |problems: Vec<(bool, FailedCase)>| problems.into_iter().map(|(_, case)| case).collect::<Vec<_>>();
     match no_room.is_empty() {
         true => Ok(cases(wrong)),
         false => Err(RunError::Refused(named(&cases(no_room)))),
     }
 }
 
-/// Looks at the cases of a plan as far as they can be worked out without packing a filter: `None` where one
+/// Looks at the cases of a plan as far as they can be worked out without packing a filter: `None` if a filter
 /// is still to be packed. Claims and writes nothing.
 ///
 /// # Errors
@@ -316,7 +317,7 @@ fn write_ledger(
 /// Collects a campaign whose cases are all done.
 ///
 /// # Errors
-/// A folder without cases; cases that are missing, each with what is known of it. Nothing is written then.
+/// A folder without cases; cases that are missing, each with its state. Nothing is written then.
 pub fn collect(
     plan: &CasePlan,
     options: &CaseOptions,
@@ -366,8 +367,8 @@ pub fn make_packing(
     let drafts = Drafts::new(wanted(plan, &CasePart::All)?)?;
     let _folder = claim(&options.out, FolderKind::Campaign, false)?;
     let all = drafts.packings();
-    let found = usize::try_from(number).ok().and_then(|number| all.get(number.checked_sub(1)?).copied());
-    let packing = found.ok_or_else(|| {
+    let packing = usize::try_from(number).ok().and_then(|number| all.get(number.checked_sub(1)?).copied());
+    let packing = packing.ok_or_else(|| {
         RunError::refused(format!("there is no packing {number}: the plan needs {}", all.len()))
     })?;
     let packings = options.packings()?;

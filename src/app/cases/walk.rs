@@ -99,7 +99,7 @@ pub(super) struct CaseRunner<'a> {
     pub callbacks: &'a CaseCallbacks<'a>,
     /// Interval between saves of a case that is being walked.
     pub checkpoint_interval: CheckpointInterval,
-    /// Networks, where cases with one seed may have them in common.
+    /// Networks, if cases with one seed may share them.
     pub networks: Option<SharedNetworks>,
     /// Job and task of a cluster.
     pub job: Option<String>,
@@ -108,11 +108,11 @@ pub(super) struct CaseRunner<'a> {
 }
 
 impl CaseRunner<'_> {
-    /// Walks every case that is not done, and waits for those that other processes are at; gives those that
-    /// cannot be walked.
+    /// Walks every unfinished case, and waits for those of other processes; returns those that cannot be
+    /// walked.
     ///
     /// # Errors
-    /// What concerns all cases; those that are done stay done.
+    /// Errors that concern all cases; finished cases stay finished.
     pub fn run(&self, cases: &[PreparedCase]) -> Result<Vec<FailedCase>, RunError> {
         make_folder(&self.out.join(CASES))?;
         let (done, mut open): (Vec<&PreparedCase>, Vec<&PreparedCase>) =
@@ -180,9 +180,9 @@ impl CaseRunner<'_> {
     /// Tries each case once.
     fn pass(&self, open: &[&PreparedCase], tally: &Tally) -> Result<(), RunError> {
         let next = AtomicUsize::new(0);
-        // One pool for all: where a case leaves a thread idle, another case has work for it.
-        // A thread that waits in a call of rayon may take up a whole other case meanwhile: across such a call
-        // nobody holds a mutex, waits for the lock of a file or borrows what is local to a thread.
+        // One pool for all: if a case leaves a thread idle, another case has work for it. A thread blocked in
+        // rayon may start another whole case meanwhile: never hold a mutex, wait for the lock of a file or
+        // borrow a thread's local data across a rayon call.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads).build()?;
         let work = || -> Result<(), RunError> {
             while !self.is_stopped() {
@@ -217,8 +217,8 @@ impl CaseRunner<'_> {
             return Ok(false);
         }
         match self.walk(case, &folder) {
-            // Where locks reach one machine only, another may have finished it and taken the checkpoints
-            // away.
+            // If locks reach one machine only, another process may have finished it and removed the
+            // checkpoints.
             Err(_) if self.is_done(case) => {
                 checkpoints::discard(folder.path())?;
                 Ok(false)
@@ -288,8 +288,8 @@ impl CaseRunner<'_> {
         let line = LedgerLine::new(name, &prepared.planned.levels, place, fingerprint, &answer.0, made);
         let files = results::files(case, answer, &walks.replicates, manifest)?;
         folder.remove(LINE)?;
-        // Results of what the case was before the plan was changed; another process that walks this very case
-        // has written this very scene, and its files stay.
+        // Results of the case before the plan was changed; another process that walks this very case has
+        // written this very scene, and its files stay.
         if folder.read("scene.toml")?.as_deref() != Some(files.scene.as_bytes()) {
             clear(folder, FolderKind::Run)?;
         }

@@ -71,10 +71,10 @@ fn of_row(row: &BoundaryRow, unit: SizeUnit) -> Vec<String> {
     let sizes: [fn(f64) -> String; 2] =
         [|mm| significant(mm).role(NumberRole::Greatest).number(), |mm| format!("{mm:.3}")];
     for ((what, size), (boundary, note)) in what.into_iter().zip(sizes).zip(boundaries) {
-        let said = boundary.map(|boundary| ratio(&boundary, networks, size));
-        lines.push(match (said, &*note) {
-            (Some(said), "") => format!("  {what} {said}"),
-            (Some(said), note) => format!("  {what} {said}. {note}"),
+        let text = boundary.map(|boundary| ratio(&boundary, networks, size));
+        lines.push(match (text, &*note) {
+            (Some(text), "") => format!("  {what} {text}"),
+            (Some(text), note) => format!("  {what} {text}. {note}"),
             (None, "") => format!("  {what}: no number. It lies beyond the search."),
             (None, note) => format!("  {what}: no number. {note}"),
         });

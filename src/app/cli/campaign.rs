@@ -38,7 +38,7 @@ impl CampaignArgs {
     }
 }
 
-/// Walks a plan's cases and collects what came of them, or does the part of it that is asked for.
+/// Walks a plan's cases and collects their results, or does the part of it that is asked for.
 pub fn campaign(args: &CampaignArgs) -> Result<(), RunError> {
     let (plan, options, quiet) = (CasePlan::read(&args.plan)?, args.options(), args.walk.quiet);
     if args.list {
@@ -89,9 +89,9 @@ fn words(lines: &[LedgerLine], out: &Path) -> String {
     }
     if lines.len() > SHOWN {
         let same = lines.iter().all(|line| line.thickness == lines[0].thickness);
-        let said =
+        let line =
             if same { thickness(&lines[0]) } else { "modelled filter thickness: see cases.csv".into() };
-        let _ = writeln!(text, "{said}");
+        let _ = writeln!(text, "{line}");
     }
     let _ = writeln!(text, "{}", left_out_line(&ledger::leaves_out(lines)));
     let seconds: f64 = lines.iter().map(|line| line.made.seconds).sum();

@@ -13,7 +13,7 @@ use crate::run::RunError;
 /// Plain lines come at most this often, outside of a cluster's job.
 const BETWEEN_LINES: Duration = Duration::from_secs(2);
 
-/// Where nothing else was said for this long, it is said how far a case is.
+/// After this long without a message, the progress of a case is reported.
 const BETWEEN_RUNS: Duration = Duration::from_secs(5);
 
 /// Progress over cases.
@@ -42,7 +42,7 @@ impl CaseProgress {
     /// Follows the work on cases, until it ends.
     ///
     /// # Errors
-    /// Those of the work.
+    /// Errors of the work.
     pub fn followed<R>(
         &self,
         work: impl FnOnce(&CaseCallbacks) -> Result<R, RunError>,

@@ -1,4 +1,4 @@
-//! `voidwalk check`: what a run would do.
+//! `voidwalk check`: a forecast of a run.
 
 use std::fmt::Write;
 
@@ -34,7 +34,7 @@ impl SceneArgs {
     }
 }
 
-/// Says what a run would do, or the cases of a plan.
+/// Prints a forecast of a run, or of the cases of a plan.
 pub fn check(args: &SceneArgs) -> Result<(), RunError> {
     if let Some(plan) = args.scene.as_deref().filter(|file| CasePlan::is_plan(file)) {
         return check_plan(plan, &args.set);

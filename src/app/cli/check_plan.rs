@@ -1,4 +1,4 @@
-//! `voidwalk check` on the plan of a campaign: what its cases would take.
+//! `voidwalk check` on the plan of a campaign: a forecast of its cases.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -14,7 +14,7 @@ use voidwalk_core::store::format;
 /// No more cases are listed.
 const LISTED: usize = 20;
 
-/// Says what the cases of a plan would take, and what is wrong in each.
+/// Prints a forecast of the cases of a plan, and the mistakes in each.
 ///
 /// # Errors
 /// A plan that cannot be read, settings beside it, and its cases that are wrong.
@@ -25,7 +25,7 @@ pub(super) fn check_plan(path: &Path, set: &SettingArgs) -> Result<(), RunError>
         ));
     }
     let plan = CasePlan::read(path)?;
-    // Where nobody names a folder of packings, a campaign keeps them in its own.
+    // If no folder of packings is named, a campaign keeps them in its own.
     let is_named = set.packings != PrepareOptions::default().packings;
     let packings = is_named.then(|| set.packings.clone());
     let options = CaseOptions { packings, memory: set.memory, ..CaseOptions::default() };
@@ -52,7 +52,7 @@ fn words(check: &PlanCheck) -> String {
     };
     line("cases", format!("{}{factors}", check.cases.len()));
     for case in check.cases.iter().take(LISTED) {
-        let said = match case.problem.is_empty() {
+        let forecast = match case.problem.is_empty() {
             true => format!(
                 "{} base particles a run, {} runs, {}, about {}",
                 whole(case.n_base),
@@ -62,7 +62,7 @@ fn words(check: &PlanCheck) -> String {
             ),
             false => format!("cannot be walked: {}", case.problem.replace('\n', " ")),
         };
-        line(&format!("  {}", case.case), format!(" {said}"));
+        line(&format!("  {}", case.case), format!(" {forecast}"));
     }
     if check.cases.len() > LISTED {
         line("", format!("and {} more: --json has all", check.cases.len() - LISTED));
@@ -81,8 +81,8 @@ fn words(check: &PlanCheck) -> String {
     );
     if check.packings > 0 {
         let made = check.packings - check.packings_to_make;
-        let said = counted(check.packings, "packing", "packings");
-        line("packings", format!("{said} of filters, {made} made already"));
+        let packings = counted(check.packings, "packing", "packings");
+        line("packings", format!("{packings} of filters, {made} made already"));
         line(
             "time to pack",
             format!("about {} of one core, a rough guess", duration(check.packing_core_seconds)),

@@ -18,7 +18,7 @@ use voidwalk_core::store::format;
 use voidwalk_practice::design::Specification;
 use voidwalk_practice::quantity::SizeUnit;
 
-/// The folder of the results, where nobody names one.
+/// Default folder of the results.
 const FOLDER: &str = "voidwalk-specification";
 
 /// Default folder of designs for many samples.
@@ -50,31 +50,40 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
     if args.each {
         return design_each(args, &options);
     }
-    let of = followed(args.quiet, |callbacks| specify(&options, callbacks))?;
+    let specification = followed(args.quiet, |callbacks| specify(&options, callbacks))?;
     if args.json {
-        as_it_is(&json(format::SPECIFICATION, &of)?);
+        as_it_is(&json(format::SPECIFICATION, &specification)?);
     } else if !args.quiet {
-        to_stdout(&format!("{}report: {}\n", words(&of), shown(&options.out.join("specification.html"))));
+        to_stdout(&format!(
+            "{}report: {}\n",
+            words(&specification),
+            shown(&options.out.join("specification.html"))
+        ));
     }
     Ok(())
 }
 
 /// The band and its limit, points to watch, and the products that fit; the page has steps and limits.
-fn words(of: &Specification) -> String {
-    let unit = SizeUnit::of(false, of.inches);
-    let band = band(of, unit).unwrap_or_else(|| match &of.no_band {
+fn words(specification: &Specification) -> String {
+    let unit = SizeUnit::of(false, specification.inches);
+    let band = band(specification, unit).unwrap_or_else(|| match &specification.no_band {
         Some(why) => format!("no band. {}", no_band(why, unit).trim_end_matches('.')),
         None => "no band".into(),
     });
     let mut lines =
-        vec![format!("Specification of a filter for {}, by the rules of practice alone", of.base)];
-    lines.extend([format!("Practice: {band}"), format!("Limit: {}", limit(of, unit))]);
-    lines.extend(raised(of, unit).map(|raised| format!("  {raised}")));
-    let dispersive = if_dispersive(of, &by_option(DESIGN_AGAIN), unit);
-    lines.extend(without_margin(of, unit).into_iter().chain(dispersive).map(|beside| format!("  {beside}.")));
-    lines.extend(of.notes.iter().map(|row| format!("warning: {}", row_note(row, unit))));
-    lines.extend(still_to_set(of, unit));
-    lines.push(products(of));
-    lines.extend(to_be_checked(&of.products));
+        vec![format!("Specification of a filter for {}, by the rules of practice alone", specification.base)];
+    lines.extend([format!("Practice: {band}"), format!("Limit: {}", limit(specification, unit))]);
+    lines.extend(raised(specification, unit).map(|raised| format!("  {raised}")));
+    let dispersive = if_dispersive(specification, &by_option(DESIGN_AGAIN), unit);
+    lines.extend(
+        without_margin(specification, unit)
+            .into_iter()
+            .chain(dispersive)
+            .map(|beside| format!("  {beside}.")),
+    );
+    lines.extend(specification.notes.iter().map(|row| format!("warning: {}", row_note(row, unit))));
+    lines.extend(still_to_set(specification, unit));
+    lines.push(products(specification));
+    lines.extend(to_be_checked(&specification.products));
     lines.iter().map(|line| plain(line) + "\n").collect()
 }

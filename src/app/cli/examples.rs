@@ -9,7 +9,7 @@ use super::args::Arguments;
 use super::exit;
 use super::groups::with_groups;
 
-/// A command line, and what it does.
+/// A command line, and its effect.
 type Example = [&'static str; 2];
 
 /// Every command and its examples.
@@ -199,7 +199,7 @@ fn in_words(examples: &[Example; 2]) -> String {
 /// Longest line of `-h` on an argument (characters), unless its first clause is longer.
 const SHORT: usize = 90;
 
-/// The first clause of what is said of an argument for `-h`, all of it for `--help`.
+/// The first clause of an argument's description for `-h`, all of it for `--help`.
 fn short_and_long(arg: Arg) -> Arg {
     let Some(whole) = arg.get_help().map(ToString::to_string) else { return arg };
     let first = [": ", "; ", ". ", " [", ", so that"].iter().filter_map(|end| whole.find(end)).min();
@@ -221,7 +221,7 @@ mod tests {
         let commands = command();
         let shown: Vec<&str> = commands.get_subcommands().map(Command::get_name).collect();
         for name in &shown {
-            let (_, examples) = EXAMPLES.iter().find(|(of, _)| of == name).expect(name);
+            let (_, examples) = EXAMPLES.iter().find(|(command, _)| command == name).expect(name);
             for [line, _] in examples {
                 // Line as a shell splits it.
                 let line = line.split(" > ").next().unwrap_or_default();

@@ -5,7 +5,7 @@ use clap::ValueEnum;
 use crate::outcome::record::Verdict;
 use crate::run::{Exit, RunError};
 
-/// Every exit code and what it means: help, manual pages and guide show this table.
+/// Every exit code and its meaning: help, manual pages and guide show this table.
 pub const EXIT_CODES: [(u8, &str); 5] = [
     (0, "done"),
     (Exit::Failed.code(), "failed"),
@@ -37,12 +37,12 @@ pub enum FailOn {
 pub struct JudgedAnswer {
     /// The class of the model.
     pub model: Verdict,
-    /// The class as which practice counts; `None` where no rule was applied.
+    /// The class that practice counts as; `None` if no rule was applied.
     pub practice: Option<Verdict>,
 }
 
 impl FailOn {
-    /// Why an answer is not accepted, by the worse of practice and model; `None` where it is.
+    /// Reason why an answer is not accepted, by the worse of practice and model; `None` if it is.
     fn refused(self, answer: JudgedAnswer) -> Option<String> {
         match answer.practice.filter(|class| self.refuses(*class)) {
             Some(Verdict::Undecided) => Some("practice is not known".into()),
@@ -91,11 +91,11 @@ pub fn accept_walked<'a>(
         Ok(answer) => fail_on.refused(answer),
         Err(why) => Some(format!("not walked ({why})")),
     };
-    let said = |name: &str, why: String| {
+    let line = |name: &str, why: String| {
         if name.is_empty() { why } else { format!("{name}: {why}") }
     };
     let not_accepted: Vec<String> =
-        cases.into_iter().filter_map(|(name, walked)| Some(said(name, refused(walked)?))).collect();
+        cases.into_iter().filter_map(|(name, walked)| Some(line(name, refused(walked)?))).collect();
     match not_accepted.is_empty() {
         true => Ok(()),
         false => Err(RunError::NotAccepted(format!(
@@ -132,9 +132,9 @@ mod tests {
     #[test]
     fn a_case_that_was_not_walked_is_not_accepted() {
         let within = Ok(JudgedAnswer { model: Verdict::None, practice: Some(Verdict::None) });
-        for of in FailOn::value_variants() {
-            assert!(accept_walked(Some(*of), [("a", within)]).is_ok());
-            let problem = accept_walked(Some(*of), [("a", within), ("b", Err("no table"))]).unwrap_err();
+        for choice in FailOn::value_variants() {
+            assert!(accept_walked(Some(*choice), [("a", within)]).is_ok());
+            let problem = accept_walked(Some(*choice), [("a", within), ("b", Err("no table"))]).unwrap_err();
             assert!(problem.to_string().starts_with("b: not walked (no table), with"), "{problem}");
         }
         assert!(accept_walked(None, [("b", Err("no table"))]).is_ok());
@@ -152,8 +152,8 @@ mod tests {
 
     #[test]
     fn the_words_are_those_of_the_command_line() {
-        for of in FailOn::value_variants() {
-            assert_eq!(of.to_possible_value().unwrap().get_name(), of.word());
+        for choice in FailOn::value_variants() {
+            assert_eq!(choice.to_possible_value().unwrap().get_name(), choice.word());
         }
     }
 }

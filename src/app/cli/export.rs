@@ -16,7 +16,7 @@ pub fn export(folder: &Path) -> Result<(), RunError> {
     };
     let claimed = claim(folder, kind, true)?;
     let into = claimed.path().join("export");
-    if into.symlink_metadata().is_ok_and(|found| !found.is_dir()) {
+    if into.symlink_metadata().is_ok_and(|meta| !meta.is_dir()) {
         let what = if into.is_symlink() { "a symbolic link" } else { "a file" };
         return Err(RunError::Refused(format!(
             "{}: is {what}, and the tables go into a folder of that name; move it away or give it another \
@@ -24,10 +24,10 @@ pub fn export(folder: &Path) -> Result<(), RunError> {
             shown(&into)
         )));
     }
-    let found = write(claimed.path()).map_err(RunError::failed)?;
-    let mut text: String = found.files.iter().map(|path| shown(path) + "\n").collect();
-    if !found.words.is_empty() {
-        text += &format!("columns of words are left out: {}\n", plain(&found.words.join(", ")));
+    let tables = write(claimed.path()).map_err(RunError::failed)?;
+    let mut text: String = tables.files.iter().map(|path| shown(path) + "\n").collect();
+    if !tables.words.is_empty() {
+        text += &format!("columns of words are left out: {}\n", plain(&tables.words.join(", ")));
     }
     to_stdout(&text);
     Ok(())

@@ -1,11 +1,11 @@
-//! The commands in groups, as `voidwalk help` lists them: what most users need with some words each, and the
-//! names of the others.
+//! The commands in groups, as `voidwalk help` lists them: those that most users need with some words each,
+//! and the names of the others.
 
 use std::fmt::Write;
 
 use clap::Command;
 
-/// The commands that are listed, by what one has at hand.
+/// The commands that are listed, by the user's data at hand.
 const GROUPS: [(&str, &[&str]); 4] = [
     ("To begin", &["examples", "serve", "soil"]),
     ("Two sieve tables", &["rules", "judge", "design"]),

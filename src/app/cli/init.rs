@@ -8,7 +8,7 @@ use crate::run::{RunError, write_built_in, write_new};
 use crate::scene::Scene;
 use voidwalk_core::store::format;
 
-/// Writes the built-in scene or a plan, or says what may be set, or what a file holds.
+/// Writes the built-in scene or a plan, or lists the settings, or the contents of a file.
 pub fn init(path: Option<&Path>, plan: bool, as_json: bool, schema: Option<String>) -> Result<(), RunError> {
     if let Some(schema) = schema {
         to_stdout(&schema);

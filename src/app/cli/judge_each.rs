@@ -39,9 +39,9 @@ pub fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
         (true, false, false) => BatchWalks::GoverningInFull,
     };
     let plan = BatchPlan::new(&args.base, &args.filters, &tables.options(), walks, &options)?;
-    let found = if results.overwrite { None } else { batch::found(&plan, &options)? };
-    let batch = match found {
-        Some(found) => found,
+    let earlier = if results.overwrite { None } else { batch::found(&plan, &options)? };
+    let batch = match earlier {
+        Some(earlier) => earlier,
         None => {
             let progress = CaseProgress::new(quiet, false);
             progress.followed(|callbacks| batch::run(&plan, &options, results.overwrite, callbacks))?
@@ -54,7 +54,7 @@ pub fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
         to_stdout(&of_earlier_cover(plan.with_other_cover(out)));
     }
     let names: Vec<String> = batch.rows.iter().map(name).collect();
-    // Nobody knows the class of a pair that could not be walked; others were left out on purpose.
+    // The class of a pair that could not be walked is unknown; others were left out on purpose.
     let is_asked = |row: &WalkedRow| !args.governing || row.governs.is_some() || row.rules.is_refused;
     let asked = batch.rows.iter().zip(&names).filter(|(row, _)| row.walk.is_some() || is_asked(row));
     let pairs = asked.map(|(row, name)| {
@@ -106,12 +106,12 @@ fn words(batch: &WalkedBatch, constrictions: &str, out: &Path) -> String {
     for filter in &batch.filters {
         // Writing to a string cannot fail.
         let _ = write!(text, "\n{}", of_filter(&rules, filter, batch.inches));
-        for said in walks(batch, &filter.name, unit) {
-            let _ = writeln!(text, "  {}", plain(&said));
+        for line in walks(batch, &filter.name, unit) {
+            let _ = writeln!(text, "  {}", plain(&line));
         }
         for row in batch.governing(&filter.name).iter().filter(|_| !batch.has_one_base()) {
-            let said = format!("{}: {}", row.rules.sample, answer(row));
-            let _ = writeln!(text, "  {}", plain(&said));
+            let line = format!("{}: {}", row.rules.sample, answer(row));
+            let _ = writeln!(text, "  {}", plain(&line));
         }
     }
     if batch.rows.iter().any(|row| row.rules.is_refused) {

@@ -1,4 +1,4 @@
-//! Command lines that are not understood: what they may have been meant to be.
+//! Command lines that are not understood: guesses at their meaning.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use voidwalk_core::schema::KeyInfo;
 /// No more files of a folder are looked at for one with a name like that which is missing.
 const FILES: usize = 1000;
 
-/// Adds what to type instead to an error of the command line.
+/// Adds the command to type instead to an error of the command line.
 pub fn explained(mut error: clap::Error, command: &Command, words: &[OsString]) -> clap::Error {
     let words: Vec<String> = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let text = |kind| match error.get(kind) {
@@ -66,7 +66,7 @@ fn instead_of_argument(name: &str, command: &Command, words: &[String]) -> Optio
         if walks && ["base", "filter"].contains(&flag) {
             return Some(JUDGE.into());
         }
-        // Those of a specification are of its page alone.
+        // The settings of a specification affect its page alone.
         let is_walked = used.get_name() != "design";
         let takes_settings = is_walked && used.get_arguments().any(|arg| arg.get_long() == Some("set"));
         return takes_settings.then(|| as_setting(name, words)).flatten();
@@ -106,7 +106,7 @@ fn as_setting(flag: &str, words: &[String]) -> Option<String> {
     Some(format!("a setting of the scene: {}", set.join(" or ")))
 }
 
-/// Two tables where a scene is wanted.
+/// Hint for two tables in the place of a scene.
 fn two_tables(words: &[String]) -> Option<String> {
     let tables: Vec<&String> = words.iter().skip(2).filter(|word| is_table(word)).collect();
     match tables[..] {
@@ -125,8 +125,8 @@ fn is_table(word: &str) -> bool {
     [".csv", ".xlsx", ".ods", ".ags"].iter().any(|ending| path.ends_with(ending))
 }
 
-/// Which files may be meant where something is refused: one whose name has a space that the shell took for
-/// two words; or, where one is missing, one whose name is written a little differently.
+/// Hint at the files that may be meant if something is refused: one whose name has a space, so that the shell
+/// took it for two words; or, if one is missing, one whose name differs a little.
 pub fn instead_of_files(words: &[OsString], is_missing: bool) -> Option<String> {
     let words: Vec<String> = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     unquoted(&words).or_else(|| if is_missing { misspelt_file(&words) } else { None })
@@ -206,13 +206,13 @@ mod tests {
     #[test]
     fn commands_and_tables_are_known() {
         let command = super::super::examples::command();
-        let of = |name: &str| instead_of_command(name, &command).unwrap();
-        assert_eq!(of("rnu"), "did you mean `voidwalk run`?");
-        assert_eq!(of("jugde"), "did you mean `voidwalk judge`?");
-        assert_eq!(of("dam.toml"), "to walk a scene: voidwalk run dam.toml");
+        let hint = |name: &str| instead_of_command(name, &command).unwrap();
+        assert_eq!(hint("rnu"), "did you mean `voidwalk run`?");
+        assert_eq!(hint("jugde"), "did you mean `voidwalk judge`?");
+        assert_eq!(hint("dam.toml"), "to walk a scene: voidwalk run dam.toml");
         assert!(
-            of("sand.csv").contains("voidwalk judge BASE FILTER")
-                && of("frobnicate").contains("voidwalk help")
+            hint("sand.csv").contains("voidwalk judge BASE FILTER")
+                && hint("frobnicate").contains("voidwalk help")
         );
         assert!(
             two_tables(&words("voidwalk run a.csv b.xlsx#One")).unwrap().contains("judge a.csv 'b.xlsx#One'")

@@ -1,6 +1,6 @@
 //! The command line: it parses, calls the library and prints, and is the only place that does.
 //!
-//! How it ends is said in one table, `EXIT_CODES` (`exit.rs`).
+//! One table, `EXIT_CODES` (`exit.rs`), lists its ends.
 
 mod args;
 mod batch;
@@ -54,7 +54,8 @@ pub use start::Start;
 /// The system's number of the error that a file is not there: the same on Unix and Windows.
 const NO_FILE: i32 = 2;
 
-/// Reads the arguments; else says what is wrong and what to type instead, or what was asked for by `--help`.
+/// Reads the arguments; otherwise prints the mistake and the command to type instead, or the text that
+/// `--help` asked for.
 fn arguments(words: &[OsString]) -> Result<Arguments, u8> {
     if words.len() < 2 {
         print::to_stderr(examples::FIRST_WORDS);
@@ -78,7 +79,8 @@ pub fn main() -> ExitCode {
     ExitCode::from(main_with(Start { words: std::env::args_os().collect(), again: None }))
 }
 
-/// Runs the program, once a process: its exit code. For whoever holds the command line in a library.
+/// Runs the program, once a process, and returns its exit code. For programs that hold the command line in a
+/// library.
 pub fn main_with(start: Start) -> u8 {
     voidwalk_core::store::platform::signals::outlive_large_files();
     voidwalk_core::store::platform::allocator::keep_memory();

@@ -1,4 +1,4 @@
-//! Printing that outlives a closed pipe, and remembers what else was lost.
+//! Printing that outlives a closed pipe, and remembers other losses.
 
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
@@ -48,7 +48,7 @@ pub fn whole_stdout() -> Result<(), RunError> {
     LOST.get().map_or(Ok(()), |error| Err(RunError::failed(format!("cannot write to stdout: {error}"))))
 }
 
-/// Prints to stderr, where nothing can tell of a failure.
+/// Prints to stderr, where a failure cannot be reported.
 pub fn to_stderr(text: &str) {
     let _ = std::io::stderr().lock().write_all(on_a_terminal(text).as_bytes());
 }
@@ -68,7 +68,7 @@ pub fn json(format: Format, record: &impl Serialize) -> Result<String, RunError>
     Ok(format.json(record)?)
 }
 
-/// A count and what is counted, one or many: `1 replicate`.
+/// A count and its noun, one or many: `1 replicate`.
 pub fn counted(n: u64, one: &str, many: &str) -> String {
     format!("{} {}", whole(n), if n == 1 { one } else { many })
 }

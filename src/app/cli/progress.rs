@@ -48,7 +48,7 @@ pub fn unfollowed() -> Callbacks<'static> {
 /// A flag that the first request to end sets.
 ///
 /// # Errors
-/// What the system says.
+/// Errors of the system.
 pub fn stop_on_signals() -> Result<Arc<AtomicBool>, RunError> {
     stop_on_request().map_err(RunError::failed)
 }
@@ -81,10 +81,10 @@ struct Shown {
     bar: Option<ProgressBar>,
     begun: Instant,
     last: Instant,
-    of: Work,
+    work: Work,
 }
 
-/// Where runs take longer than this, it is said how far one is.
+/// Runs that take longer than this report their progress.
 const BETWEEN_INCREMENTS: Duration = Duration::from_secs(30);
 
 enum Work {
@@ -96,7 +96,7 @@ enum Work {
     Walk(Walk),
 }
 
-/// Runs done, of how many, and what the replicates came to so far.
+/// Finished runs, number of runs, and results of the replicates so far.
 #[derive(Default)]
 struct Walk {
     done: u64,
@@ -108,11 +108,11 @@ struct Walk {
     readings: bool,
     /// Replicates at the last look, and when that was said.
     looked_at: usize,
-    said: Option<Instant>,
+    last_line: Option<Instant>,
 }
 
 impl Walk {
-    /// A look that has not been said yet, where two or more replicates are whole and others are to come.
+    /// A look that has not been reported yet, if two or more replicates are finished and others are to come.
     fn new_look(&mut self) -> Option<String> {
         let [replicates, runs] = self.needs;
         let look = self.so_far.look(runs)?;
@@ -176,7 +176,7 @@ impl Display {
         self.line(&format!("warning: {}\n", plain(warning)));
     }
 
-    /// Says a line, above the bar where there is one.
+    /// Prints a line, above the bar if there is one.
     fn line(&self, text: &str) {
         let shown = self.shown.lock().ok();
         match shown.as_ref().and_then(|shown| shown.as_ref()?.bar.as_ref()) {
@@ -185,10 +185,10 @@ impl Display {
         }
     }
 
-    fn begin(&self, length: u64, style: &str, of: Work) {
+    fn begin(&self, length: u64, style: &str, work: Work) {
         let now = Instant::now();
         if let Ok(mut shown) = self.shown.lock() {
-            *shown = Some(Shown { bar: bar_on_terminal(length, style), begun: now, last: now, of });
+            *shown = Some(Shown { bar: bar_on_terminal(length, style), begun: now, last: now, work });
         }
     }
 
@@ -203,7 +203,7 @@ impl Display {
 impl Shown {
     fn tell(&mut self, event: Event) {
         let seconds = self.begun.elapsed().as_secs_f64();
-        match (&mut self.of, event) {
+        match (&mut self.work, event) {
             (Work::Packing { usual, first }, Event::Packing(progress)) => {
                 let here = progress.steps - *first.get_or_insert(progress.steps);
                 if let Some(bar) = &self.bar {
@@ -225,14 +225,14 @@ impl Shown {
                 let Some(words) = walk.new_look() else { return };
                 if let Some(bar) = &self.bar {
                     bar.set_message(words);
-                } else if walk.said.is_none_or(|said| said.elapsed() >= BETWEEN_LOOKS) {
-                    walk.said = Some(Instant::now());
+                } else if walk.last_line.is_none_or(|last_line| last_line.elapsed() >= BETWEEN_LOOKS) {
+                    walk.last_line = Some(Instant::now());
                     to_stderr(&(words + "\n"));
                 }
             }
             (Work::Walk(walk), Event::Increment { replicate, run, increment, moving }) => {
                 if walk.looked_at > 0 {
-                    // The bar shows what the replicates come to.
+                    // The bar shows the results of the replicates.
                 } else if let Some(bar) = &self.bar {
                     bar.set_message(increment_line(replicate, run, increment, moving));
                 } else if self.last.elapsed() >= BETWEEN_INCREMENTS {

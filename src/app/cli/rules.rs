@@ -1,4 +1,4 @@
-//! `voidwalk rules`: what filter practice says of two soils, without a walk.
+//! `voidwalk rules`: the answer of filter practice on two soils, without a walk.
 
 use super::args::RulesArgs;
 use super::batch::each;
@@ -18,7 +18,7 @@ use voidwalk_practice::rule_result::{RuleResult, result_of};
 use voidwalk_practice::{AppliedRule, RuleNote};
 use voidwalk_sheets::{curves_in_file, notes_in_file};
 
-/// Spaces before what is said below a row.
+/// Spaces before the text below a row.
 const INDENT: usize = 14;
 
 /// Applies every rule to two sieve tables, or to the curves of two envelopes.
@@ -79,8 +79,10 @@ fn words(
         sizes(&[("D15", base.d15_mm)]),
         number(base.cu)
     ));
-    let category = base.category.map_or("category not known".into(), |of| format!("category {of}"));
-    let fines = base.fines_percent.map_or("fines not known".into(), |of| format!("{of:.1} % fines"));
+    let category =
+        base.category.map_or("category not known".into(), |category| format!("category {category}"));
+    let fines =
+        base.fines_percent.map_or("fines not known".into(), |percent| format!("{percent:.1} % fines"));
     let regraded = match base.regraded_at_mm {
         Some(at) => {
             format!("D85, D95 and fines after regrading on {at:.3} mm ({})", regrade_reason(base.why))
@@ -116,7 +118,7 @@ fn words(
             let named = curves.iter().filter(|(_, curve)| !curve.is_empty());
             let curves: Vec<String> = named.map(|(whose, curve)| format!("{whose} curve {curve}")).collect();
             let curves = curves.join(", ");
-            // Its name says whose it is where no manual states it besides.
+            // The rule's name gives its authority if no manual states it as well.
             let is_stated = !rule.stated_by.is_empty();
             let authorities = is_stated.then(|| format!("authority: {}", rule.authorities().join(", ")));
             let more = [curves, notes(&rule.notes), notes(&rule.needs), authorities.unwrap_or_default()];
@@ -138,7 +140,7 @@ fn row(rule: &AppliedRule) -> String {
         RuleResult::NotMet => "NOT MET",
         RuleResult::DoesNotApply => "not for it",
         RuleResult::ExcessiveNotJudged => result(RuleResult::NotReached),
-        found => result(found),
+        other => result(other),
     };
     let value = value(rule, SizeUnit::Mm).unwrap_or_else(|| "= not known".into());
     let limit = limit(rule, SizeUnit::Mm).map_or(String::new(), |limit| format!(", {limit}"));
@@ -146,15 +148,15 @@ fn row(rule: &AppliedRule) -> String {
     format!("  {word:<12}{}: {} {value}{limit}", rule.name, rule.quantity)
 }
 
-/// Sizes by their names, the unit once where all of them are known.
-fn sizes(of: &[(&str, Option<f64>)]) -> String {
-    let all_known = of.iter().all(|(_, size)| size.is_some());
-    let said = |(name, size): &(&str, Option<f64>)| {
+/// Sizes by their names, with the unit once if all of them are known.
+fn sizes(sizes: &[(&str, Option<f64>)]) -> String {
+    let all_known = sizes.iter().all(|(_, size)| size.is_some());
+    let words = |(name, size): &(&str, Option<f64>)| {
         let unit = if size.is_some() && !all_known { " mm" } else { "" };
         format!("{name} {}{unit}", number(*size))
     };
-    let said: Vec<String> = of.iter().map(said).collect();
-    format!("{}{}", said.join(", "), if all_known { " mm" } else { "" })
+    let words: Vec<String> = sizes.iter().map(words).collect();
+    format!("{}{}", words.join(", "), if all_known { " mm" } else { "" })
 }
 
 /// Three digits that mean something.

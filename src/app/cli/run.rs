@@ -50,14 +50,14 @@ impl ResultArgs {
         }
     }
 
-    /// Prints what came of a run, writes its workbook where it is asked for, and ends by its verdict.
+    /// Prints the results of a run, writes its workbook if it is asked for, and ends by its verdict.
     pub fn finish(&self, run: &FinishedRun, as_json: bool) -> Result<(), RunError> {
         show(run, as_json, self.walk.quiet)?;
         self.workbook(run)?;
         self.accept.judged(run)
     }
 
-    /// Writes the workbook of a finished run, where it is asked for.
+    /// Writes the workbook of a finished run, if it is asked for.
     fn workbook(&self, run: &FinishedRun) -> Result<(), RunError> {
         #[cfg(feature = "xlsx")]
         if self.xlsx {
@@ -90,7 +90,7 @@ pub fn command_line() -> String {
     words.iter().map(|word| shell_word(&word.to_string_lossy())).collect::<Vec<_>>().join(" ")
 }
 
-/// Prints what came of a run.
+/// Prints the results of a run.
 fn show(run: &FinishedRun, as_json: bool, quiet: bool) -> Result<(), RunError> {
     if as_json {
         as_it_is(&json(format::OUTCOME, &run.outcome)?);
@@ -111,8 +111,8 @@ fn summary(run: &FinishedRun) -> String {
     let mut line = |s: String| {
         let _ = writeln!(text, "{s}");
     };
-    for (first, said) in first_lines(outcome, decision, run.unit) {
-        line(format!("{}: {}", first.name(), plain(&said)));
+    for (first, text) in first_lines(outcome, decision, run.unit) {
+        line(format!("{}: {}", first.name(), plain(&text)));
     }
     line(left_out_line(&outcome.model_leaves_out));
     if decision.headline.is_some() {

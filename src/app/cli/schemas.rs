@@ -1,4 +1,4 @@
-//! The JSON Schemas of what is written, made from the types that write it.
+//! The JSON Schemas of the files that are written, made from the types that write them.
 
 use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};

@@ -27,7 +27,7 @@ pub fn serve(args: &ServeArgs) -> Result<(), RunError> {
         "open {address}\nfor this machine alone; whoever has the address can use it. Sheets and results are \
          in {folder}; Ctrl-C ends it\n"
     ));
-    // Nobody else is told the address.
+    // No other program is given the address.
     whole_stdout()?;
     server.run(&stop)
 }

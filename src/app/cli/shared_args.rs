@@ -1,4 +1,4 @@
-//! Arguments that several commands share: which scene, how it is walked, and where its results go.
+//! Arguments that several commands share: the scene, options of its walk, and the folder of its results.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! `voidwalk completions` and `voidwalk man`: what a shell and `man` want to know of the program.
+//! `voidwalk completions` and `voidwalk man`: descriptions of the program for a shell and for `man`.
 
 use std::path::Path;
 
@@ -217,25 +217,25 @@ mod tests {
         let mut settings = BTreeSet::new();
         for sub in parsers.get_subcommands() {
             for arg in sub.get_arguments().filter(|arg| arg.get_num_args().is_none_or(|n| n.takes_values())) {
-                let own = command();
-                let own = own.find_subcommand(sub.get_name()).unwrap().clone();
+                let parser = command();
+                let parser = parser.find_subcommand(sub.get_name()).unwrap().clone();
                 for value in arg.get_possible_values() {
                     let Some(long) = arg.get_long() else { continue };
                     if arg.get_id() == SET && !value.get_name().ends_with('=') {
                         settings.insert(value.get_name().to_owned());
                     }
                     let value = match value.get_name() {
-                        of if of.ends_with('=') => format!("{of}1"),
-                        of => of.to_owned(),
+                        name if name.ends_with('=') => format!("{name}1"),
+                        name => name.to_owned(),
                     };
                     let words = ["voidwalk".to_owned(), format!("--{long}={value}")];
-                    let read = own.clone().ignore_errors(false).try_get_matches_from(words.clone());
+                    let read = parser.clone().ignore_errors(false).try_get_matches_from(words.clone());
                     let wrong = read.err().filter(|error| error.kind() == ErrorKind::ValueValidation);
                     assert!(wrong.is_none(), "{words:?}: {wrong:?}");
                 }
             }
         }
-        // A word that is offered for a setting is read, in a scene that has what it goes with.
+        // A word that is offered for a setting is read, in a scene that has the settings that it needs.
         assert!(settings.len() > 30, "{settings:?}");
         let packed = ["filter.cu=1.5", "filter.density=loose"];
         let file = ["network.kind=graph", "network.packing=\"grains.csv\""];

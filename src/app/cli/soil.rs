@@ -1,4 +1,4 @@
-//! `voidwalk soil`: what is understood of a file of soils.
+//! `voidwalk soil`: the contents of a file of soils, as the program understands it.
 
 use std::fmt::Write;
 #[cfg(feature = "xlsx")]
@@ -115,9 +115,9 @@ fn far_apart(soil: &SoilSummary) -> Vec<[String; 2]> {
     steps.iter().map(|step| [step.from_mm, step.to_mm].map(digits)).collect()
 }
 
-/// A percentage and what it is of.
-fn percent(value: Option<f64>, of: &str) -> String {
-    value.map_or("not known".to_owned(), |value| format!("{value:.1} % {of}"))
+/// A percentage and its reference.
+fn percent(value: Option<f64>, part: &str) -> String {
+    value.map_or("not known".to_owned(), |value| format!("{value:.1} % {part}"))
 }
 
 /// A number with four digits that mean something.

@@ -1,4 +1,4 @@
-//! Values of options, as a user writes them, with what to write instead where they are not understood.
+//! Values of options, as a user writes them, with the expected form if they are not understood.
 
 use std::time::Duration;
 

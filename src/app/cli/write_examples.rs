@@ -1,4 +1,4 @@
-//! `voidwalk examples`: files to try the program with, and what to type.
+//! `voidwalk examples`: files to try the program with, and commands to type.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -19,7 +19,7 @@ const TO_TRY: [[&str; 2]; 9] = [
     ["jupyter notebook notebook.ipynb", "with the Python packages voidwalk and matplotlib"],
 ];
 
-/// Writes the examples and says what to try.
+/// Writes the examples and prints commands to try.
 pub fn examples(folder: &Path) -> Result<(), RunError> {
     write_examples(folder)?;
     let mut text = String::new();

@@ -1,9 +1,9 @@
 //! Slurm's description of the job in which the program runs.
 
-/// The job, and what it may use.
+/// The job, and its resources.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Allocation {
-    /// Job, and task where it is one of an array, as Slurm writes it: `12_3`.
+    /// Job, and task if it is one of an array, as Slurm writes it: `12_3`.
     pub job: String,
     /// Number of restarts by Slurm.
     pub restarts: u64,
@@ -14,7 +14,7 @@ pub struct Allocation {
 }
 
 impl Allocation {
-    /// The job of this process; `None` outside of one.
+    /// The job of this process; `None` outside a job.
     pub fn here() -> Option<Self> {
         Self::of(|name| std::env::var(name).ok())
     }
@@ -49,15 +49,15 @@ impl Allocation {
 mod tests {
     use super::Allocation;
 
-    fn of(variables: &[(&str, &str)]) -> Option<Allocation> {
+    fn allocation(variables: &[(&str, &str)]) -> Option<Allocation> {
         let find = |name: &str| variables.iter().find(|(key, _)| *key == name);
         Allocation::of(|name| find(name).map(|(_, value)| (*value).to_string()))
     }
 
     #[test]
     fn what_slurm_says_is_understood() {
-        assert_eq!(of(&[("HOME", "/root")]), None);
-        let task = of(&[
+        assert_eq!(allocation(&[("HOME", "/root")]), None);
+        let task = allocation(&[
             ("SLURM_JOB_ID", "14"),
             ("SLURM_ARRAY_JOB_ID", "12"),
             ("SLURM_ARRAY_TASK_ID", "3"),
@@ -70,10 +70,11 @@ mod tests {
             Allocation { job: "12_3".into(), restarts: 2, processors: Some(4), memory: Some(600 << 20) };
         assert_eq!(task, Some(wanted));
         let by_processor =
-            of(&[("SLURM_JOB_ID", "14"), ("SLURM_CPUS_ON_NODE", "8"), ("SLURM_MEM_PER_CPU", "100")]).unwrap();
+            allocation(&[("SLURM_JOB_ID", "14"), ("SLURM_CPUS_ON_NODE", "8"), ("SLURM_MEM_PER_CPU", "100")])
+                .unwrap();
         assert_eq!(by_processor.memory, Some(800 << 20));
         assert_eq!((by_processor.processors, by_processor.job.as_str()), (Some(8), "14"));
-        let all = of(&[("SLURM_JOB_ID", "14"), ("SLURM_MEM_PER_NODE", "0")]).unwrap();
+        let all = allocation(&[("SLURM_JOB_ID", "14"), ("SLURM_MEM_PER_NODE", "0")]).unwrap();
         assert_eq!((all.memory, all.processors), (None, None));
     }
 }

@@ -93,16 +93,16 @@ mod tests {
 
     #[test]
     fn one_thread_walks_one_case_and_several_have_one_to_spare() {
-        let of = |threads, replicates, cases| wanted(threads, replicates, 1, cases);
-        assert_eq!([of(1, 5, 9), of(2, 5, 9), of(2, 1, 9), of(64, 10, 99)], [1, 2, 3, 8]);
-        assert_eq!([of(2, 5, 1), of(64, 1, 7), of(2, 0, 0)], [1, 7, 1]);
+        let number = |threads, replicates, cases| wanted(threads, replicates, 1, cases);
+        assert_eq!([number(1, 5, 9), number(2, 5, 9), number(2, 1, 9), number(64, 10, 99)], [1, 2, 3, 8]);
+        assert_eq!([number(2, 5, 1), number(64, 1, 7), number(2, 0, 0)], [1, 7, 1]);
         assert_eq!([wanted(4, 10, 0, 9), wanted(64, 10, 0, 99)], [1, 7]);
     }
 
     /// A job asks for the memory of the cases that it then walks, however large they are.
     #[test]
     fn a_job_walks_as_many_cases_as_its_script_asked_for() {
-        let mut found = Vec::new();
+        let mut numbers = Vec::new();
         for (n_base, replicates, threads) in
             [(300_000_000, 10, 4), (300_000_000, 10, 64), (50_000_000, 3, 8), (20_000, 10, 4), (20_000, 1, 2)]
         {
@@ -119,17 +119,17 @@ mod tests {
                 assert_eq!(walked.cases, job.cases, "{n_base} {replicates} {threads}");
                 assert!(walked.bytes <= available, "{walked:?} of {available}");
             }
-            found.push(job.cases);
+            numbers.push(job.cases);
         }
-        assert_eq!(found, [1, 8, 4, 2, 3]);
+        assert_eq!(numbers, [1, 8, 4, 2, 3]);
     }
 
     #[test]
     fn half_of_a_machine_that_others_use_too_has_room_for_the_walks() {
         let case = case(300_000_000, 10);
         let (cases, largest) = ([&case, &case], case.peak_bytes(4));
-        let of = |available| CasesAtOnce::within(&cases, 4, available, false).cases;
-        assert_eq!([of(0), of(4 * largest - 2), of(4 * largest)], [1, 1, 2]);
+        let number = |available| CasesAtOnce::within(&cases, 4, available, false).cases;
+        assert_eq!([number(0), number(4 * largest - 2), number(4 * largest)], [1, 1, 2]);
         let mut little = case.clone();
         little.memory = 2 * largest - 1;
         assert_eq!(CasesAtOnce::within(&[&little, &little], 4, u64::MAX, false).cases, 1);

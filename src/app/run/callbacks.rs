@@ -25,7 +25,7 @@ pub enum Event<'a> {
         /// Who makes it.
         holder: &'a str,
     },
-    /// A filter is packed, from the start or from where it was stopped.
+    /// A filter is packed, from the start or from a checkpoint.
     PackingBegun(&'a PackingPlan),
     /// Progress of the packing.
     Packing(&'a CompressionProgress),
@@ -35,7 +35,7 @@ pub enum Event<'a> {
     Noted {
         /// The most important first.
         notes: &'a [Note],
-        /// In what the case gives sizes.
+        /// Unit of sizes in the case.
         unit: SizeUnit,
     },
     /// Replicates are walked: this many runs, as far as is known.
@@ -82,7 +82,7 @@ pub enum Event<'a> {
         outcome: &'a Outcome,
         /// The decision of practice.
         decision: &'a Decision,
-        /// In what the case gives sizes.
+        /// Unit of sizes in the case.
         unit: SizeUnit,
     },
     /// More runs are needed than was known.
@@ -119,7 +119,7 @@ pub struct Callbacks<'a> {
     pub on_event: &'a (dyn Fn(Event) + Sync),
     /// Set to stop: the work ends after the current increment or step, with its progress saved.
     pub stop: &'a AtomicBool,
-    /// Told what a user must know.
+    /// Receives warnings for the user.
     pub warn: &'a (dyn Fn(&str) + Sync),
     /// Called when results of this kind are whole in this folder, before the work counts as done; of a run
     /// that was walked now with the content of its files.

@@ -16,11 +16,11 @@ pub struct CaseWalks {
     pub summary: Vec<RunSummary>,
     /// Result of a rule that adds replicates.
     pub stopping: Option<Stopping>,
-    /// The ends of the range of the curve; `None` where the curve is no range.
+    /// The ends of the range of the curve; `None` if the curve has no range.
     pub range: Option<CurveRange>,
     /// The class that all of them support.
     pub verdict: Verdict,
-    /// The confidence level (%) at which the rule decided, where it is less than the usual one.
+    /// The confidence level (%) at which the rule decided, if it is less than the usual one.
     pub low_level_percent: Option<f64>,
 }
 
@@ -29,7 +29,7 @@ impl CaseWalks {
     /// from.
     ///
     /// # Errors
-    /// As [`super::replicates::replicates`].
+    /// See [`super::replicates::replicates`].
     pub fn walk(case: &Case, context: &ReplicateContext) -> Result<Self, RunError> {
         // Ends do not wait for the last replicate.
         let (walked, begun) = rayon::join(|| replicates(case, context), || begin_ends(case, context));

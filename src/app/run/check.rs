@@ -87,10 +87,10 @@ impl PackingCheck {
     }
 }
 
-/// Says what a run of a scene would do, here and with these options; makes no packing and writes nothing.
+/// Forecasts a run of a scene, here and with these options; makes no packing and writes nothing.
 ///
 /// # Errors
-/// Everything that is wrong with the scene, memory apart: see [`Check::refusal`].
+/// All mistakes of the scene, memory apart: see [`Check::refusal`].
 pub fn check(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> {
     on_threads(options.threads, || check_here(scene, options))
 }

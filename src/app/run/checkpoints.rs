@@ -1,8 +1,8 @@
 //! Saves the replicates of a case in checkpoints, so that a run which is stopped or killed continues where it
 //! was.
 //!
-//! Of a replicate that is being walked its state is saved, and what was recorded of it so far; of one that is
-//! done its figures and rows. Each is a checkpoint of its own in the folder `checkpoint` of the run
+//! For a replicate that is being walked its state and its records so far are saved; for a finished one its
+//! figures and rows. Each is a checkpoint of its own in the folder `checkpoint` of the run
 //! ([`voidwalk_core::store::checkpoint`]), written as often as [`CheckpointInterval`] says, and on a stop.
 
 use std::collections::BTreeMap;
@@ -190,7 +190,7 @@ impl Checkpoints {
     /// Saves a walk after a whole increment.
     ///
     /// # Errors
-    /// What the system says; the checkpoint before stays then.
+    /// Errors of the system; the previous checkpoint stays then.
     pub fn save_walk(
         &self,
         walk: WalkId,
@@ -221,10 +221,10 @@ impl Checkpoints {
         }
     }
 
-    /// Writes the replicates that are done and not on the disk yet.
+    /// Writes the finished replicates that are not on the disk yet.
     ///
     /// # Errors
-    /// What the system says.
+    /// Errors of the system.
     pub fn flush(&self) -> Result<(), StoreError> {
         let waiting = self.waiting.lock().map(|mut w| std::mem::take(&mut *w)).unwrap_or_default();
         for (name, (label, text)) in &waiting {
@@ -233,10 +233,10 @@ impl Checkpoints {
         Ok(())
     }
 
-    /// Removes every checkpoint: the results are whole.
+    /// Removes every checkpoint: the results are complete.
     ///
     /// # Errors
-    /// What the system says.
+    /// Errors of the system.
     pub fn clear(&self) -> Result<(), StoreError> {
         remove_folder(&self.folder)
     }
@@ -257,10 +257,10 @@ impl Checkpoints {
     }
 }
 
-/// Removes the checkpoints in a run's folder, whatever they are of.
+/// Removes the checkpoints in a run's folder, whatever they belong to.
 ///
 /// # Errors
-/// What the system says.
+/// Errors of the system.
 pub fn discard(folder: &Path) -> Result<(), StoreError> {
     remove_folder(&folder.join(FOLDER))
 }

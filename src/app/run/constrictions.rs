@@ -41,8 +41,8 @@ impl Default for ConstrictionsOptions {
 }
 
 /// Measures the constrictions of the grains in a file and writes `grains.vtp`, `constrictions.csv`,
-/// `constrictions.vtp`, for grains in a periodic cell `graph.csv` and, last, `constrictions.json`; gives what
-/// that file says.
+/// `constrictions.vtp`, for grains in a periodic cell `graph.csv` and, last, `constrictions.json`; returns
+/// the contents of that file.
 ///
 /// # Errors
 /// Grains that are refused, or do not fit their cell; a folder that cannot be claimed or written.
@@ -63,15 +63,15 @@ fn measure_here(
     let (packing, notes) = Packing::read_as(packing, &options.read)?;
     let refused = |error: String| RunError::Refused(format!("{file}: {error}"));
     let t = Triangulation::new(&packing).map_err(|error| refused(error.to_string()))?;
-    let found = Constrictions::from_triangulation(&t, options.merge_overlap, options.facets)
+    let constrictions = Constrictions::from_triangulation(&t, options.merge_overlap, options.facets)
         .map_err(|error| refused(error.to_string()))?;
-    found.check().map_err(|error| refused(error.to_string()))?;
+    constrictions.check().map_err(|error| refused(error.to_string()))?;
     // Grains without a cell, and voids that run through it, have no graph.
     let graph = VoidGraph::of(&t, options.merge_overlap).ok();
     // Those near the outside of grains without a cell are no part of the curve.
     let whole =
         |summary: &Summary| summary.grains_per_void.is_finite() && summary.mean_connectivity.is_finite();
-    let mut summary = found.summary().ok().filter(whole).ok_or_else(|| {
+    let mut summary = constrictions.summary().ok().filter(whole).ok_or_else(|| {
         RunError::Refused(format!(
             "{file}: {} grains are too few: no constriction lies between two voids inside the packing. At \
              least 5 grains that do not lie in one plane are needed for one, some thousands for a curve",
@@ -91,7 +91,7 @@ fn measure_here(
     if let Some(graph) = &graph {
         folder.write("graph.csv", graph.to_csv().as_bytes())?;
     }
-    for (name, text) in found.files(&summary)? {
+    for (name, text) in constrictions.files(&summary)? {
         folder.write(name, text.as_bytes())?;
     }
     unfinished::end(&folder)?;

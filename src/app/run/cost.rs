@@ -69,7 +69,7 @@ const WIDTH_POWER: f64 = -0.4;
 const LEAST_TIMED_S: f64 = 0.002;
 /// ... and steps of the clock.
 const LEAST_STEPS: f64 = 6.0;
-/// Seconds of the small packing that tells a machine's pace, where a grain and step take `GRAIN_STEP_S`.
+/// Seconds of the small packing that measures a machine's pace, if a grain and step take `GRAIN_STEP_S`.
 const SMALL_PACKING_S: f64 = 0.105;
 /// Steps that packings with friction took at Cu 1.5 (11,200 to 14,100), the power of Cu with which they grow
 /// (15,300 to 19,400 at Cu 2, 22,400 to 33,100 at Cu 3), and the number at which they stay (30,500 to 43,300
@@ -77,7 +77,7 @@ const SMALL_PACKING_S: f64 = 0.105;
 const STEPS: (f64, f64, f64) = (12_000.0, 1.1, 40_000.0);
 /// Steps that packings without friction took at the least (38,700 to 52,500).
 const DENSE_STEPS: f64 = 45_000.0;
-/// Part of those steps that packings take whose sizes differ so much that crowded grains are moved as heavier
+/// Fraction of those steps for packings whose sizes differ so much that crowded grains are moved as heavier
 /// ones (Cu 6: 17,800 to 22,500 of 30,900 to 51,100; without friction 20,200 to 36,300 of 30,400 to 50,300).
 const WIDE_STEPS: f64 = 0.55;
 /// Factor on the steps of packings whose friction is lowered at the end, so that they settle again (from 0.7
@@ -104,8 +104,7 @@ const SOLVE_S: f64 = 6.5e-7;
 
 impl Case {
     /// Seconds that one thread of a machine of 2024 takes for the whole case, its packing apart: a rough
-    /// guess, the same wherever it is asked for. What a rule that adds replicates may ask for besides is not
-    /// foreseen.
+    /// guess, equal on every machine. It leaves out the replicates that a rule may add.
     pub fn core_seconds(&self) -> f64 {
         self.foreseen().seconds
     }
@@ -113,7 +112,7 @@ impl Case {
     /// Core seconds on this machine, from the pace of the case's pilot walks.
     pub fn core_seconds_here(&self) -> f64 {
         let Foreseen { seconds, besides, pilots, .. } = self.foreseen();
-        (seconds - besides) * pace(pilots.took, pilots.said) + besides
+        (seconds - besides) * pace(pilots.took, pilots.predicted) + besides
     }
 
     fn foreseen(&self) -> Foreseen {
@@ -121,7 +120,7 @@ impl Case {
         let (factors, thicknesses) = (self.sensitivity_factors(), self.thickness_factors());
         let ends = &self.filter.curve_ends;
         let most_s = PILOT_S / (1 + factors.len() + thicknesses.len() + ends.len()) as f64;
-        let own = self.of_replicate(self.supply.n_base, most_s);
+        let of_case = self.of_replicate(self.supply.n_base, most_s);
         let of_base = |f: f64| self.of_replicate((self.supply.n_base as f64 * f) as u64, most_s);
         let of_thickness = |factor: f64| match self.network.copies() {
             None => {
@@ -130,7 +129,7 @@ impl Case {
             // Base and copies grow by one factor; no pilot walks this case.
             Some(_) => {
                 let times = factor * factor.max(1.0);
-                let (seconds, besides) = (times * own.seconds, times * own.besides);
+                let (seconds, besides) = (times * of_case.seconds, times * of_case.besides);
                 Some(Foreseen { seconds, besides, ..Foreseen::default() })
             }
         };
@@ -138,15 +137,15 @@ impl Case {
         let points = points.chain(thicknesses.into_iter().filter_map(of_thickness));
         let studies = points.map(|point| {
             // Points that no pilot walks are taken to erode as the case does.
-            let own = own.eroded.as_deref();
-            let eroded = own.map(|own| (own, point.eroded.as_deref().unwrap_or(own)));
+            let of_case = of_case.eroded.as_deref();
+            let eroded = of_case.map(|of_case| (of_case, point.eroded.as_deref().unwrap_or(of_case)));
             (likely_replicates(self, eroded), point)
         });
         let replicates = first_replicates(self);
         let of_end = |curve: &Curve| self.with_curve(curve.clone()).of_replicate(self.supply.n_base, most_s);
         let ends = ends.iter().map(|end| (replicates_of_end(replicates), of_end(&end.curve)));
         let begun = Foreseen { seconds: files, besides: files, ..Foreseen::default() };
-        let first = begun.and(replicates as f64, &own);
+        let first = begun.and(replicates as f64, &of_case);
         studies.chain(ends).fold(first, |all, (replicates, point)| all.and(replicates as f64, &point))
     }
 
@@ -160,11 +159,11 @@ impl Case {
         match pilot(self, n_base, runs * guess.seconds, most_s) {
             Some(work) => {
                 // A pilot walks on a lattice by area, whatever the case's own network is.
-                let said = work.of_voids(work.voids, self.of_engine(true));
+                let predicted = work.of_voids(work.voids, self.of_engine(true));
                 Foreseen {
                     seconds: work.of_voids(voids, self.slower()) + besides,
                     besides,
-                    pilots: Pilots { took: work.took, said },
+                    pilots: Pilots { took: work.took, predicted },
                     eroded: Some(work.eroded),
                 }
             }
@@ -175,10 +174,10 @@ impl Case {
     /// Seconds of one run that meets a clean network all the way.
     fn guessed(&self, n_base: u64) -> Guess {
         let CaseNetwork { voids, constrictions, layers, .. } = self.network;
-        let each = self.takes_each(n_base);
+        let is_one_by_one = self.takes_each(n_base);
         let one_by_one = self.one_by_one(n_base) as f64;
         let increments = self.increments() as f64 + SPREAD * (layers as f64).sqrt();
-        let occupied = if each { 0.0 } else { self.slower() * voids as f64 * increments };
+        let occupied = if is_one_by_one { 0.0 } else { self.slower() * voids as f64 * increments };
         let solved = match self.scene.exit_rule().needs_flow() {
             true => (increments / SOLVED_EVERY + 2.0) * constrictions as f64 * SOLVE_S,
             false => 0.0,
@@ -248,7 +247,7 @@ impl WorkByVoid {
     /// Seconds of this work on this many voids, whose counts take `slower` times as long as on a lattice by
     /// engine `counts`.
     fn of_voids(&self, voids: f64, slower: f64) -> f64 {
-        let [occupied, looked_at] = [self.occupied, self.looked_at].map(|each| voids * each * slower);
+        let [occupied, looked_at] = [self.occupied, self.looked_at].map(|seconds| voids * seconds * slower);
         WALK.seconds(occupied, looked_at, voids * self.one_by_one, voids * self.moves)
     }
 }
@@ -257,38 +256,38 @@ impl WorkByVoid {
 #[derive(Default)]
 struct Foreseen {
     seconds: f64,
-    /// Those of them in which nothing is walked: networks are built, the flow is solved, files are written.
+    /// Part of those seconds without walks: networks are built, the flow is solved, files are written.
     besides: f64,
     /// The pilot walks by which it was.
     pilots: Pilots,
-    /// Eroded mass fraction by run, where a pilot walk says.
+    /// Eroded mass fraction by run, if a pilot walk gives it.
     eroded: Option<Vec<f64>>,
 }
 
 impl Foreseen {
     /// Sum of this and a multiple of `other`, whose pilot walks were walked once.
     fn and(self, times: f64, other: &Self) -> Self {
-        let Pilots { took, said } = self.pilots;
+        let Pilots { took, predicted } = self.pilots;
         Self {
             seconds: self.seconds + times * other.seconds,
             besides: self.besides + times * other.besides,
-            pilots: Pilots { took: took + other.pilots.took, said: said + other.pilots.said },
+            pilots: Pilots { took: took + other.pilots.took, predicted: predicted + other.pilots.predicted },
             eroded: self.eroded,
         }
     }
 }
 
 /// Measured time over predicted time; 1 if both are too short for a clock.
-fn pace(took: f64, said: f64) -> f64 {
+fn pace(took: f64, predicted: f64) -> f64 {
     let least = LEAST_TIMED_S.max(LEAST_STEPS * THREAD_SECONDS_STEP);
-    if took >= least && said > 0.0 { took / said } else { 1.0 }
+    if took >= least && predicted > 0.0 { took / predicted } else { 1.0 }
 }
 
-/// Seconds of pilot walks: what they took here, and what the rates of this module say.
+/// Seconds of pilot walks: measured here, and predicted by the rates of this module.
 #[derive(Clone, Copy, Default)]
 struct Pilots {
     took: f64,
-    said: f64,
+    predicted: f64,
 }
 
 /// Seconds of a run, those in which the flow is solved apart.
@@ -385,7 +384,7 @@ mod tests {
 
     #[test]
     fn a_duration_has_the_unit_that_one_would_say() {
-        let said = [0.2, 89.0, 90.0, 5399.0, 5400.0].map(duration);
-        assert_eq!(said, ["1 s", "89 s", "2 min", "90 min", "1.5 h"]);
+        let words = [0.2, 89.0, 90.0, 5399.0, 5400.0].map(duration);
+        assert_eq!(words, ["1 s", "89 s", "2 min", "90 min", "1.5 h"]);
     }
 }

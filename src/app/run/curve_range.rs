@@ -3,7 +3,9 @@
 use super::callbacks::Event;
 use super::error::RunError;
 use super::planned::replicates_of_end;
-use super::replicates::{ReplicateContext, ReplicateResult, each, some_replicates, values_by_run};
+use super::replicates::{
+    ReplicateContext, ReplicateResult, map_side_by_side, some_replicates, values_by_run,
+};
 use super::summary::classed;
 use crate::case::{Case, OtherCurve};
 use crate::outcome::early_stop::{ERROR_OF_END, clear_end};
@@ -20,11 +22,11 @@ pub struct BegunEnd<'a> {
     walked: Vec<ReplicateResult>,
 }
 
-/// Begins the ends of the range of the curve, on the random numbers of the case's first replicate: the one
-/// that is walked whatever comes of the case, where walks fit into the memory side by side.
+/// Begins the ends of the range of the curve. If walks fit into the memory side by side, walks a first
+/// replicate of each, which is needed in any case, on the random numbers of the case's first replicate.
 ///
 /// # Errors
-/// As [`super::replicates::replicates`].
+/// See [`super::replicates::replicates`].
 pub fn begin_ends<'a>(case: &'a Case, context: &ReplicateContext) -> Result<Vec<BegunEnd<'a>>, RunError> {
     // The parts before these are the sensitivity study's.
     let before = case.sensitivity_factors().len() as u64 + 1;
@@ -35,7 +37,7 @@ pub fn begin_ends<'a>(case: &'a Case, context: &ReplicateContext) -> Result<Vec<
         let walked = some_replicates(&other, part, 1..=u64::from(fit), n_base, context)?;
         Ok(BegunEnd { end, case: other, part, n_base, walked })
     };
-    each((before..).zip(&case.filter.curve_ends).collect(), fit, one)
+    map_side_by_side((before..).zip(&case.filter.curve_ends).collect(), fit, one)
 }
 
 /// True if walks of the case fit into the memory side by side.
@@ -56,7 +58,7 @@ pub fn curve_range(
     context: &ReplicateContext,
 ) -> Result<Option<CurveRange>, RunError> {
     let one = |begun: BegunEnd| of_end(case, begun, walked, verdict, context);
-    let ends: Vec<(CurveEnd, Verdict)> = each(begun, fit(case), one)?;
+    let ends: Vec<(CurveEnd, Verdict)> = map_side_by_side(begun, fit(case), one)?;
     let (ends, mut allowed): (Vec<CurveEnd>, Vec<Verdict>) = ends.into_iter().unzip();
     allowed.push(match (verdict, case.scene.stop.error_of_curve(case.curves())) {
         (Verdict::Undecided, Some(error)) => class_at(error, &values_by_run(walked))[1],
@@ -68,7 +70,7 @@ pub fn curve_range(
     Ok(CurveRange::new(verdict, &runs, ends, case.filter.library.is_some(), could_be))
 }
 
-/// Walks one end; beside it the worst class that its walks allow where a confidence level was asked for.
+/// Walks one end; also gives the worst class that its walks allow, if a confidence level was asked for.
 fn of_end(
     case: &Case,
     begun: BegunEnd,

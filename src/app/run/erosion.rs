@@ -14,9 +14,9 @@ use voidwalk_core::walk::{Clogged, PlainExits, SizeClasses, State, Walk, WalkCon
 /// Number of size classes of a run whose record is not wanted: one class or two serve as well.
 const SIZE_CLASSES: usize = 2;
 
-/// Walks run `run` (1 or 2) of a case on the network of the replicate with this seed, from constrictions
-/// that are `clogged` at its start: the same bits as [`super::walk_case`] gives. `open` are the network's
-/// exits where they are known. Returns what eroded and what the constrictions are at the end.
+/// Walks run `run` (1 or 2) of a case on the network of the replicate with this seed, from constrictions that
+/// are `clogged` at its start: the same bits as [`super::walk_case`] gives. `open` are the network's exits,
+/// if they are known. Returns the eroded mass and the constrictions at the end.
 ///
 /// # Errors
 /// A walk that goes wrong, or that was stopped; particles that do not fit.
@@ -63,15 +63,15 @@ mod tests {
             for run in &outcome.replicates[0].runs {
                 let open = PlainExits::unblocked(&network);
                 let known = (&network, (base != "base.cu=3").then_some(&open));
-                let found = eroded(&case, known, (seed, run.run), clogged, &Callbacks::default()).unwrap();
-                assert_eq!(found.0.mass_fraction.to_bits(), run.eroded_mass_fraction.to_bits(), "{base}");
+                let result = eroded(&case, known, (seed, run.run), clogged, &Callbacks::default()).unwrap();
+                assert_eq!(result.0.mass_fraction.to_bits(), run.eroded_mass_fraction.to_bits(), "{base}");
                 assert!(run.eroded_mass_fraction > 0.0);
-                clogged = found.1;
+                clogged = result.1;
             }
         }
     }
 
-    /// Where particles arch, or leave openings, who goes where depends on more than the network.
+    /// If particles arch, or leave openings, their moves depend on more than the network.
     #[test]
     fn known_exits_are_left_alone_where_others_are_needed() {
         for (other, engines) in [

@@ -7,7 +7,7 @@ use super::folder::shown;
 use super::prepare::write_new;
 use voidwalk_core::store::StoreError;
 
-/// An example: its file name, what is in it, and its text.
+/// An example: its file name, a description, and its text.
 #[derive(Clone, Copy, Debug)]
 pub struct ExampleFile {
     /// Its name.
@@ -105,10 +105,10 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let taken = root.path().join("plan.toml");
         std::fs::write(&taken, "mine").unwrap();
-        let said = write_examples(root.path()).unwrap_err().to_string();
-        assert!(said.contains("plan.toml: is there already; nothing was written"), "{said}");
+        let message = write_examples(root.path()).unwrap_err().to_string();
+        assert!(message.contains("plan.toml: is there already; nothing was written"), "{message}");
         assert_eq!(std::fs::read_dir(root.path()).unwrap().count(), 1);
-        let said = write_examples(&taken.join("below")).unwrap_err().to_string();
-        assert!(said.contains("plan.toml: is a file"), "{said}");
+        let message = write_examples(&taken.join("below")).unwrap_err().to_string();
+        assert!(message.contains("plan.toml: is a file"), "{message}");
     }
 }

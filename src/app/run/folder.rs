@@ -211,7 +211,7 @@ impl FolderKind {
             && match self {
                 // With checkpoints, its studies are still to come.
                 Self::Run => has("scene.toml") && has("manifest.json") && !Checkpoints::is_in(folder)?,
-                // With a state beside it, whoever wrote the record was killed before all was done.
+                // With a state beside it, the process that wrote the record was killed before all was done.
                 Self::Packing => has(RECORD) && !STATES.iter().any(|state| has(state)),
                 Self::Campaign | Self::Serve => false,
                 other => has(other.record()),
@@ -219,8 +219,8 @@ impl FolderKind {
     }
 }
 
-/// Claims a folder for work of this kind: makes it where it is missing, and locks it. That of a campaign may
-/// be shared.
+/// Claims a folder for work of this kind: makes it if it is missing, and locks it. The folder of a campaign
+/// may be shared.
 ///
 /// # Errors
 /// A folder that is not the program's own, that another process holds, that holds work of another kind or,
@@ -252,12 +252,12 @@ pub fn claim(path: &Path, kind: FolderKind, overwrite: bool) -> Result<Folder, R
     Ok(folder)
 }
 
-/// Clears a claimed folder of what earlier work of this kind left there, but for the checkpoints of a run,
-/// before the first file of other work is written. The first file that goes makes the folder one that is not
-/// finished; what the program does not know to be its own stays.
+/// Clears a claimed folder of the files of earlier work of this kind, except the checkpoints of a run, before
+/// the first file of other work is written. The removal of the first file makes the folder unfinished; files
+/// that the program does not know to be its own stay.
 ///
 /// # Errors
-/// What the system says.
+/// Errors of the system.
 pub fn clear(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
     let files = kind.files();
     if kind == FolderKind::Packing && folder.has(RECORD) {
@@ -273,19 +273,19 @@ pub fn clear(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
     folder.remove_all(&[unfinished::FILE])
 }
 
-/// Clears a claimed folder, and marks it as one whose work of this kind is not whole yet.
+/// Clears a claimed folder, and marks it as unfinished work of this kind.
 ///
 /// # Errors
-/// What the system says.
+/// Errors of the system.
 pub fn begin(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
     clear(folder, kind)?;
     Unfinished { kind: kind.name().into(), ..Unfinished::default() }.begin(folder)
 }
 
-/// Clears a claimed folder as [`clear`], but for the scene of a run and its input files.
+/// Clears a claimed folder like [`clear`], except the scene of a run and its input files.
 ///
 /// # Errors
-/// What the system says.
+/// Errors of the system.
 pub(super) fn clear_but_scene(folder: &Folder) -> Result<(), StoreError> {
     clear_results(folder, FolderKind::Run)?;
     folder.remove_all(&[unfinished::FILE])
@@ -307,14 +307,14 @@ fn clear_results(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
 /// # Errors
 /// The file.
 pub(super) fn outlive_clear(folder: &Folder, kind: FolderKind, files: &[PathBuf]) -> Result<(), RunError> {
-    let Ok(own) = folder.path().canonicalize() else { return Ok(()) };
+    let Ok(real) = folder.path().canonicalize() else { return Ok(()) };
     let goes = |name: &Path| match (name.parent(), name.file_name().and_then(|name| name.to_str())) {
         (Some(parent), Some(name)) if parent == Path::new("") => kind.files().contains(&name),
         (Some(parent), Some(name)) => parent == Path::new("inputs") && INPUT_FILES.contains(&name),
         _ => false,
     };
     let is_cleared =
-        |file: &&PathBuf| file.canonicalize().is_ok_and(|file| file.strip_prefix(&own).is_ok_and(&goes));
+        |file: &&PathBuf| file.canonicalize().is_ok_and(|file| file.strip_prefix(&real).is_ok_and(&goes));
     match files.iter().find(is_cleared) {
         Some(file) => Err(RunError::Refused(format!(
             "{}: lies in {}, and goes before new results are written there: a kill would lose it; name \
@@ -326,7 +326,7 @@ pub(super) fn outlive_clear(folder: &Folder, kind: FolderKind, files: &[PathBuf]
     }
 }
 
-/// Names of what `voidwalk export` wrote in a folder.
+/// Names of the files that `voidwalk export` wrote in a folder.
 fn exported(folder: &Path) -> Vec<String> {
     let is_moment = |name: &str| {
         let number = EXPORTED_MOMENTS.iter().find_map(|begin| name.strip_prefix(begin)?.strip_suffix(".vtu"));
@@ -341,7 +341,7 @@ fn exported(folder: &Path) -> Vec<String> {
 /// results.
 ///
 /// # Errors
-/// What the system says.
+/// Errors of the system.
 pub(super) fn claim_first_free(name: &str) -> Result<Folder, RunError> {
     let names = std::iter::once(name.to_owned()).chain((2..).map(|n| format!("{name}-{n}")));
     for name in names {
@@ -369,7 +369,7 @@ pub(crate) fn own_packings(packings: &Path) -> Result<(), RunError> {
     }
 }
 
-/// A file system without locks, where cases cannot be claimed, in words.
+/// Message on a file system without locks, where cases cannot be claimed.
 fn no_locks(error: StoreError) -> RunError {
     match &error {
         StoreError::Io { action: "lock the folder", .. } => RunError::refused(format!(
@@ -395,10 +395,10 @@ mod tests {
             let path = root.path().join(held.name());
             claim(&path, held, false).unwrap().write(held.record(), b"{}").unwrap();
             for kind in FolderKind::ALL {
-                let own = kind == held;
+                let is_same = kind == held;
                 for overwrite in [false, true] {
                     let claimed = claim(&path, kind, overwrite);
-                    if own {
+                    if is_same {
                         continue;
                     }
                     let error = claimed.unwrap_err();

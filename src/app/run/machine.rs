@@ -82,7 +82,7 @@ pub(crate) fn on_each(count: usize, work: impl Fn() -> Result<(), RunError> + Sy
 /// A size in bytes as a user writes it: `4GB`, `500 MB`, `1.5GiB`.
 ///
 /// # Errors
-/// What is to be written instead.
+/// The form that is expected.
 pub fn bytes_from_words(text: &str) -> Result<u64, String> {
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let unit = match text[digits.len()..].to_lowercase().as_str() {

@@ -1,11 +1,11 @@
-//! The application: what every face of the program calls, the command line as much as any other.
+//! The application: the functions that every face of the program calls, the command line like any other.
 //!
 //! - [`walk_scene`] and [`resume`] walk a scene into a folder, [`walk_case`] walks a case in memory,
 //!   [`walk_networks`] networks from elsewhere.
 //! - [`pack`](pack::pack) packs a filter, [`measure_constrictions`] measures a packing from elsewhere.
-//! - [`check`](check::check) says what a run would do, by the one model of `cost`.
-//! - [`Callbacks`] follow the work and stop it, [`RunError`] says how it ended, [`folder::claim`] guards
-//!   every folder, and `unfinished` marks those whose work is not whole.
+//! - [`check`](check::check) forecasts a run, by the one model of `cost`.
+//! - [`Callbacks`] follow the work and stop it, [`RunError`] gives the reason of an early end,
+//!   [`folder::claim`] guards every folder, and `unfinished` marks those with unfinished work.
 //!
 //! A case is [prepared](prepare::prepare), its `replicates` are walked under `checkpoints`, and
 //! [`results`] are written. Pages are no part of it: they are made from the files that are written here.

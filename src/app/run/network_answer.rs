@@ -17,10 +17,10 @@ impl NetworkOutcome {
     pub fn notes(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> Vec<Note> {
         let walked = || self.replicates.iter().map(|walked| &walked.result);
         let layers = network.layers() as u64;
-        let mut found = said_by_walks(self.verdict, walked(), &plan.base, plan.increments, (layers, false));
-        found.extend(plan.notes(network, self.replicates.len() as u64));
+        let mut notes = said_by_walks(self.verdict, walked(), &plan.base, plan.increments, (layers, false));
+        notes.extend(plan.notes(network, self.replicates.len() as u64));
         if networks == 1 && self.replicates.len() > 1 {
-            found.push(Note::OneNetwork {});
+            notes.push(Note::OneNetwork {});
         }
         let rules = plan.filter.as_ref().map_or(Vec::new(), |filter| {
             let largest: Vec<f64> =
@@ -31,7 +31,7 @@ impl NetworkOutcome {
                 ..RuleInputs::of_soils(&plan.base, &filter.gradation)
             })
         });
-        ordered(Decision::new(&rules, None, None).notes().chain(found))
+        ordered(Decision::new(&rules, None, None).notes().chain(notes))
     }
 }
 
@@ -58,8 +58,8 @@ impl NetworkWalk {
         planned.notes().into_iter().chain(mistake).chain(self.amount(network)).collect()
     }
 
-    /// That the class follows from a number of base particles that is not the one of Eq. (2), or that nobody
-    /// can compare with it.
+    /// Note on a class that depends on a number of base particles which differs from Eq. (2), or cannot be
+    /// compared with it.
     fn amount(&self, network: &Network) -> Option<Note> {
         let particles = self.n_base;
         let Some(needed) = self.eq2(network, PAPER_MASS_RATIO).ok().flatten() else {
@@ -87,7 +87,7 @@ mod tests {
     use voidwalk_core::gradation::Gradation;
     use voidwalk_core::network::{ExitRule, NetworkColumns};
 
-    fn said(
+    fn number_and_notes(
         n_base: Option<u64>,
         filter: Option<Gradation>,
         grains_per_void: Option<f64>,
@@ -108,18 +108,18 @@ mod tests {
     #[test]
     fn a_number_of_particles_that_is_not_that_of_equation_two_is_a_doubt() {
         let filter = || Gradation::linear_from_d0(1.0, 1.5).ok();
-        let has = |found: &[Note], id: &str| found.iter().any(|note| note.id() == id);
-        let (n, of_eq2) = said(None, filter(), Some(0.6));
+        let has = |notes: &[Note], id: &str| notes.iter().any(|note| note.id() == id);
+        let (n, of_eq2) = number_and_notes(None, filter(), Some(0.6));
         assert!(
             n > 1000
                 && !["few_particles", "more_particles", "amount_unknown"].iter().any(|id| has(&of_eq2, id))
         );
-        assert!(has(&said(Some(1000), filter(), Some(0.6)).1, "few_particles"));
-        assert!(has(&said(Some(n + 1), filter(), Some(0.6)).1, "more_particles"));
+        assert!(has(&number_and_notes(Some(1000), filter(), Some(0.6)).1, "few_particles"));
+        assert!(has(&number_and_notes(Some(n + 1), filter(), Some(0.6)).1, "more_particles"));
         for filter in [None, filter()] {
-            assert!(has(&said(Some(n), filter, None).1, "amount_unknown"));
+            assert!(has(&number_and_notes(Some(n), filter, None).1, "amount_unknown"));
         }
-        assert!(has(&said(Some(n), None, None).1, "no_filter"));
+        assert!(has(&number_and_notes(Some(n), None, None).1, "no_filter"));
     }
 
     /// The one constriction is closed by the first particle.
@@ -139,12 +139,12 @@ mod tests {
         let network = Arc::new(Network::from_columns(&columns).unwrap().0);
         let plan = NetworkWalk { replicates: 2, ..NetworkWalk::new(Gradation::single(0.2).unwrap(), 1000) };
         let outcome = walk_networks(&[Arc::clone(&network)], &plan, &Callbacks::default()).unwrap();
-        let found = outcome.notes(&plan, &network, 1);
-        assert!(found.iter().any(|note| note.id() == "clogged"), "{found:?}");
+        let notes = outcome.notes(&plan, &network, 1);
+        assert!(notes.iter().any(|note| note.id() == "clogged"), "{notes:?}");
     }
 
-    /// Notes that a scene alone has: of its files, and of a filter's finest part, which matters where Eq.
-    /// (2) asks for the base.
+    /// Notes that only a scene has: on its files, and on a filter's finest part, which matters if Eq. (2)
+    /// gives the base.
     const OF_A_SCENE: [&str; 2] = ["read_as", "pan_of_filter"];
 
     /// Notes on a scene, and on its soils on its network without it: all but the list above.
@@ -159,8 +159,8 @@ mod tests {
             filter: Some(filter),
             ..NetworkWalk::new(case.base.gradation.clone(), case.supply.n_base)
         };
-        let shared = |notes: Vec<Note>, own: &[&str]| {
-            let shared = notes.into_iter().filter(|note| !own.contains(&&*note.id()));
+        let shared = |notes: Vec<Note>, allowed: &[&str]| {
+            let shared = notes.into_iter().filter(|note| !allowed.contains(&&*note.id()));
             shared.map(|note| (note.id(), format!("{note:?}"))).collect()
         };
         let of_scene = case.notes();

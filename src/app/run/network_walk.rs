@@ -1,4 +1,4 @@
-//! Walks networks that are given, without a scene: what other programs built, or one that was built by hand.
+//! Walks given networks, without a scene: networks that other programs built, or that were built by hand.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -47,7 +47,7 @@ pub struct NetworkWalk {
     pub replicates: u64,
     /// Records to keep.
     pub wanted: Wanted,
-    /// The filter, where it is known.
+    /// The filter, if known.
     pub filter: Option<GivenFilter>,
     /// Mass of the base over mass of the filter, for Eq. (2).
     pub mass_ratio: f64,
@@ -113,17 +113,17 @@ pub fn walk_networks(
     let samplers = plan.check(networks)?;
     (callbacks.on_event)(Event::WalkBegun { runs: plan.runs * plan.replicates });
     let one = |replicate: u64| {
-        let which = (replicate - 1) as usize % networks.len();
-        plan.replicate(&networks[which], &samplers[which], replicate, callbacks)
+        let index = (replicate - 1) as usize % networks.len();
+        plan.replicate(&networks[index], &samplers[index], replicate, callbacks)
     };
-    let each = 1..=plan.replicates;
+    let replicates = 1..=plan.replicates;
     let walked: Result<Vec<Walked>, RunError> = match plan
         .bytes(networks)
         .saturating_mul(rayon::current_num_threads() as u64)
         <= SIDE_BY_SIDE_BYTES
     {
-        true => each.into_par_iter().map(one).collect(),
-        false => each.map(one).collect(),
+        true => replicates.into_par_iter().map(one).collect(),
+        false => replicates.map(one).collect(),
     };
     let (results, blocked): (Vec<ReplicateResult>, Vec<_>) = walked?.into_iter().unzip();
     let (verdict, summary) = summarise(&results);
@@ -156,13 +156,13 @@ impl NetworkWalk {
         }
     }
 
-    /// 15 % of the filter are finer by mass (mm), where that is known.
+    /// Size (mm) with 15 % of the filter finer by mass, if known.
     pub fn d15f_mm(&self) -> Option<f64> {
         self.filter.as_ref()?.gradation.d(15.0)
     }
 
-    /// Base particles that Eq. (2) gives on a network for this mass ratio, where filter and grains per void
-    /// are known.
+    /// Base particles that Eq. (2) gives on a network for this mass ratio, if filter and grains per void are
+    /// known.
     ///
     /// # Errors
     /// Numbers that Eq. (2) does not take.
@@ -175,7 +175,7 @@ impl NetworkWalk {
         Ok(Some(supply.n_base_eq2))
     }
 
-    /// Refuses what cannot be walked; draws sizes for each network.
+    /// Refuses plans that cannot be walked; draws sizes for each network.
     fn check(&self, networks: &[Arc<Network>]) -> Result<Vec<SizeSampler>, RunError> {
         let within = |name, value: u64, most: u64| match (1..=most).contains(&value) {
             true => Ok(()),
@@ -222,7 +222,7 @@ impl NetworkWalk {
 
     /// Bytes of one walk on the largest of these networks.
     fn bytes(&self, networks: &[Arc<Network>]) -> u64 {
-        let of = |network: &Arc<Network>| {
+        let bytes = |network: &Arc<Network>| {
             let coarse = self.coarse_particles(network);
             let passive_share = (self.n_base - coarse) / self.increments;
             let one_by_one = match self.engine.takes_each(passive_share, network.entries() as u64) {
@@ -232,7 +232,7 @@ impl NetworkWalk {
             let voids = (network.voids() as u64).saturating_mul(BYTES_A_VOID);
             one_by_one.saturating_mul(BYTES_A_PARTICLE).saturating_add(voids)
         };
-        networks.iter().map(of).max().unwrap_or(0)
+        networks.iter().map(bytes).max().unwrap_or(0)
     }
 
     /// About how many base particles are coarser than the finest constriction, so that each is walked by
@@ -282,13 +282,13 @@ impl NetworkWalk {
             })?;
             let (end, flow, left) = walk.end_with_exits(&state)?;
             exits = left;
-            let of = self.run_id(replicate, run);
+            let run_id = self.run_id(replicate, run);
             let seconds = begun.elapsed().as_secs_f64();
-            let mut metrics = RunMetrics::new(&end, &state, flow.as_ref(), of, seconds);
+            let mut metrics = RunMetrics::new(&end, &state, flow.as_ref(), run_id, seconds);
             if self.d15f_mm().is_none() {
                 metrics.run.largest_eroded_over_d15f = None;
             }
-            recorded.append(Recorded::new(&end, &state, flow.as_ref(), &recorder, of));
+            recorded.append(Recorded::new(&end, &state, flow.as_ref(), &recorder, run_id));
             below.push(metrics.below_threshold);
             runs.push(metrics.run);
             at_ends.push(state.blocked.clone());
@@ -354,9 +354,9 @@ mod tests {
                 }),
                 ..NetworkWalk::new(case.base.gradation.clone(), 30_000)
             };
-            let mut found = walk_networks(&[Arc::new(lattice())], &plan, &Callbacks::default()).unwrap();
-            assert_eq!((found.verdict, &found.summary), (expected.model.class, &expected.summary));
-            for (walked, expected) in found.replicates.iter_mut().zip(&mut expected.replicates) {
+            let mut outcome = walk_networks(&[Arc::new(lattice())], &plan, &Callbacks::default()).unwrap();
+            assert_eq!((outcome.verdict, &outcome.summary), (expected.model.class, &expected.summary));
+            for (walked, expected) in outcome.replicates.iter_mut().zip(&mut expected.replicates) {
                 let replicate = &mut walked.result.replicate;
                 let runs = replicate.runs.iter_mut().chain(&mut expected.runs);
                 runs.for_each(|run| run.seconds = 0.0);

@@ -109,11 +109,11 @@ pub(super) fn with_time(error: CaseError) -> RunError {
     ))
 }
 
-/// The packing of a scene's filter: taken from where packings are kept, its own or else one of the same shape
-/// in another size, or made and kept there; one that another process makes is waited for.
+/// Provides the packing of a scene's filter: taken from the folder of packings, its own or else one of the
+/// same shape in another size, or made and kept there; waits for a packing that another process makes.
 ///
 /// # Errors
-/// As [`pack`].
+/// See [`pack`].
 pub fn provide(plan: &PackingPlan, packings: &Path, callbacks: &Callbacks) -> Result<PackedFilter, RunError> {
     let path = packings.join(plan.folder_name());
     let has_page = || path.join(unfinished::FILE).symlink_metadata().is_err();
@@ -154,7 +154,7 @@ fn wait_for(path: &Path, callbacks: &Callbacks) -> Result<Folder, RunError> {
     }
 }
 
-/// Makes the packing in a folder that was claimed, continuing where an earlier start stopped.
+/// Makes the packing in a folder that was claimed, and continues an earlier start.
 fn make(
     folder: &Folder,
     plan: &PackingPlan,
@@ -177,11 +177,11 @@ fn make(
     (callbacks.on_event)(Event::PackingEnded);
     let (compression, report, seconds_before) = compressed?;
     let packing = compression.packing();
-    let found = Constrictions::measure(&packing, plan.merge_overlap)?;
+    let constrictions = Constrictions::measure(&packing, plan.merge_overlap)?;
     let grains = packing.to_csv();
     folder.write(GRAINS, grains.as_bytes())?;
     folder.write("grains.vtp", packing.to_vtp().as_bytes())?;
-    for (name, text) in found.files(&found.summary()?)? {
+    for (name, text) in constrictions.files(&constrictions.summary()?)? {
         folder.write(name, text.as_bytes())?;
     }
     let seconds = seconds_before + begun.elapsed().as_secs_f64();

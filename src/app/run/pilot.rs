@@ -1,8 +1,8 @@
 //! A pilot walk: the runs of a case on a slim lattice as deep as its own, which counts their work.
 //!
-//! How long a run takes depends on what its base does: a filter that seals leaves the voids below empty, a
-//! base of one size blocks what would stop it and then walks to the end. A lattice a few voids wide meets
-//! the same base per void and so does the same work per void, in a fraction of the time.
+//! The time of a run depends on its base: a filter that seals leaves the voids below empty, a base of one
+//! size blocks the constrictions that would stop it and then walks to the end. A lattice a few voids wide
+//! meets the same base per void and so does the same work per void, in a fraction of the time.
 
 use std::ops::Range;
 use std::sync::LazyLock;
@@ -33,7 +33,7 @@ pub(super) struct WorkByVoid {
     pub eroded: Vec<f64>,
     /// Voids that were walked.
     pub voids: f64,
-    /// Processor time that the walk of all of them took here (s); 0 where the system does not tell.
+    /// Processor time of their walk here (s); 0 if the system does not give it.
     pub took: f64,
 }
 
@@ -42,12 +42,12 @@ const WIDEST: u32 = 10;
 /// Least width: narrower ones meet themselves.
 const NARROWEST: u32 = 4;
 
-/// Size classes of its records, which nobody reads.
+/// Size classes of its records, which are not used.
 const CLASSES: usize = 2;
 
 /// Work of the runs of the case's first replicate, with `n_base` particles in all, on a slim lattice; `None`
-/// where its own is as slim, where even the narrowest takes more than `most_s`, or where it cannot be walked.
-/// On its own lattice these runs are guessed to take `whole_s`.
+/// if its own is as slim, if even the narrowest takes more than `most_s`, or if it cannot be walked. On its
+/// own lattice these runs are guessed to take `whole_s`.
 pub(super) fn pilot(case: &Case, n_base: u64, whole_s: f64, most_s: f64) -> Option<WorkByVoid> {
     let CaseNetwork { voids, start_nodes, layers, .. } = case.network;
     let depth = u32::try_from(layers).ok()?;
@@ -99,20 +99,20 @@ fn walked(case: &Case, n_base: u64, width: u32, depth: u32) -> Option<WorkByVoid
         work.eroded.push(Eroded::of(&state, case.pan_by_mass_only()).mass_fraction);
         clogged = state.into_clogged();
     }
-    let each = network.voids() as f64;
+    let voids = network.voids() as f64;
     Some(WorkByVoid {
-        occupied: work.occupied / each,
-        looked_at: work.looked_at / each,
-        moves: work.moves / each,
-        one_by_one: work.one_by_one / each,
+        occupied: work.occupied / voids,
+        looked_at: work.looked_at / voids,
+        moves: work.moves / voids,
+        one_by_one: work.one_by_one / voids,
         eroded: work.eroded,
-        voids: each,
+        voids,
         took: thread_seconds() - begun - counting,
     })
 }
 
-/// Processor time that a small packing takes here, on one thread (s): the same grains and steps everywhere.
-/// Packed once; 0 where the system does not tell.
+/// Processor time of a small packing here, on one thread (s): the same grains and steps everywhere. Packed
+/// once; 0 if the system does not give it.
 pub(super) fn small_packing_seconds() -> f64 {
     static SECONDS: LazyLock<f64> = LazyLock::new(|| {
         let Ok(gradation) = Gradation::linear_from_d0(1.0, 1.5) else { return 0.0 };

@@ -1,8 +1,8 @@
 //! From a scene to a case that can be walked: the one sequence for every command.
 //!
-//! A scene is drafted first, with a guess at a filter that is still to be packed: whatever is wrong with it,
-//! and memory that does not suffice, is refused then. The caller claims the folder for the results next. Only
-//! then is the draft finished, and its filter packed where nobody has packed it yet, which may take hours.
+//! A scene is drafted first, with a guess at a filter that is still to be packed: its mistakes, and a lack of
+//! memory, are refused then. The caller claims the folder for the results next. Only then is the draft
+//! finished, and its filter packed unless it has been packed before, which may take hours.
 
 use std::path::{Path, PathBuf};
 
@@ -21,7 +21,7 @@ use voidwalk_core::store::write_whole;
 pub struct PrepareOptions {
     /// Folder in which packings are kept, so that each is made once.
     pub packings: PathBuf,
-    /// Memory that the walks may take (bytes); 80 % of what is available without it.
+    /// Memory that the walks may take (bytes); 80 % of the available memory without it.
     pub memory: Option<u64>,
     /// Worker threads; by default the number that a cluster's job has, else one per core.
     pub threads: Option<usize>,
@@ -63,10 +63,10 @@ impl Draft {
         Ok(Self { scene, case, packing })
     }
 
-    /// The case, with the filter that its packing has become, where it needs one; no file is read again.
+    /// Finishes the case, with the packed filter if it needs one; no file is read again.
     ///
     /// # Errors
-    /// What the packing brought to light.
+    /// A filter that turns out unsuitable once it is packed.
     pub fn finished(self, filter: Option<PackedFilter>) -> Result<Case, RunError> {
         match filter {
             Some(_) => Ok(Case::with_packed(self.scene, filter, self.case.inputs)?),
@@ -75,20 +75,19 @@ impl Draft {
     }
 }
 
-/// Prepares a scene: it is found sound, its memory found sufficient, its filter packed or taken from where
-/// packings are kept, its numbers worked out, and its particles placed in memory or, where they do not fit,
-/// in files in the current folder.
+/// Prepares a scene: checks it and its memory, packs its filter or takes it from the folder of packings,
+/// works its numbers out, and places its particles in memory or, if they do not fit, in files in the current
+/// folder.
 ///
 /// # Errors
-/// What is wrong with the scene, before any work; later what happens to the packing.
+/// Mistakes of the scene, before any work; later errors of the packing.
 pub fn prepare(scene: Scene, options: &PrepareOptions, callbacks: &Callbacks) -> Result<Case, RunError> {
     let here = Path::new(".");
     on_threads(options.threads, || Ok(prepare_into(scene, options, here, || Ok(here), callbacks)?.0))
 }
 
-/// Prepares a scene for a folder that is claimed as soon as the scene is found sound, before any work:
-/// `claim` does it, and `wanted` is where the folder is going to be. To be called on the threads that are to
-/// walk.
+/// Prepares a scene for a folder that is claimed once the scene is found sound, before any work: `claim`
+/// claims it, and `wanted` is its future path. To be called on the threads that will walk.
 pub(crate) fn prepare_into<F: AsRef<Path>>(
     scene: Scene,
     options: &PrepareOptions,

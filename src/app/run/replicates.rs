@@ -36,7 +36,7 @@ use voidwalk_practice::Note;
 pub struct ReplicateContext<'a> {
     /// Who follows the walks and stops them.
     pub callbacks: &'a Callbacks<'a>,
-    /// Saves what is done, so that the next start continues from there; nothing is saved without it.
+    /// Saves finished work, so that the next start continues from there; without it nothing is saved.
     pub checkpoints: Option<&'a Checkpoints>,
     /// Networks that other cases walk, too; each replicate builds its own without them.
     pub networks: Option<&'a SharedNetworks>,
@@ -114,7 +114,7 @@ pub fn stopping(case: &Case, walked: &[ReplicateResult]) -> Option<Stopping> {
     }
 }
 
-/// A look of the scene's rule at what is walked.
+/// A look of the scene's rule at the walked replicates.
 fn look(case: &Case, walked: &[ReplicateResult]) -> Option<Look> {
     let rule = Some(&case.scene.stop).filter(|rule| rule.is_set())?;
     Some(rule.look_at_one_of(case.curves(), case.scene.walk.replicates, &values_by_run(walked)))
@@ -134,16 +134,20 @@ pub(super) fn values_by_run(walked: &[ReplicateResult]) -> Vec<ReplicateValues> 
 pub(super) fn some_replicates(
     case: &Case,
     part: u64,
-    which: RangeInclusive<u64>,
+    replicates: RangeInclusive<u64>,
     n_base: u64,
     context: &ReplicateContext,
 ) -> Result<Vec<ReplicateResult>, RunError> {
     let one = |replicate| walk_replicate(case, part, replicate, n_base, context);
-    each(which.collect(), case.side_by_side(n_base, rayon::current_num_threads() as u64) > 1, one)
+    map_side_by_side(
+        replicates.collect(),
+        case.side_by_side(n_base, rayon::current_num_threads() as u64) > 1,
+        one,
+    )
 }
 
-/// Does the same for each of several, side by side where their walks fit into the memory together.
-pub(super) fn each<T: Send, R: Send>(
+/// Applies `one` to each item, side by side if their walks fit into the memory together.
+pub(super) fn map_side_by_side<T: Send, R: Send>(
     all: Vec<T>,
     fit: bool,
     one: impl Fn(T) -> Result<R, RunError> + Sync + Send,
@@ -169,13 +173,13 @@ pub(super) fn walk_replicate(
     let (mut done, mut saved) = load(id, context)?;
     let mut exits = if done.complete { None } else { to_walk.exits(case).map(Cow::Borrowed) };
     while !done.complete {
-        let of = RunId {
+        let run_id = RunId {
             replicate,
             run: done.runs.len() as u64 + 1,
             d15f_mm: case.filter.gradation.d(15.0).unwrap_or(f64::NAN),
             pan_fraction: case.pan_by_mass_only(),
         };
-        let run = RunContext { case, network, id, of };
+        let run = RunContext { case, network, id, run_id };
         let begun = Instant::now();
         let end = run.walk(clogged, exits.take(), &mut done, saved.take(), context)?;
         run.record(&end, begun.elapsed().as_secs_f64(), &mut done, context);
@@ -205,12 +209,12 @@ fn load(id: WalkId, context: &ReplicateContext) -> Result<(Done, Option<Checkpoi
     Ok((done, Some(saved)))
 }
 
-/// Ends a replicate that has not begun, where the caller asked to stop.
+/// Ends a replicate that has not begun, if the caller asked to stop.
 fn go_on(callbacks: &Callbacks) -> Result<(), RunError> {
     if callbacks.is_stopped() { Err(WalkError::Stopped { increment: 0 }.into()) } else { Ok(()) }
 }
 
-/// Says what came of a run, if it is one of the case itself.
+/// Reports the result of a run, if it is one of the case itself.
 fn tell_walked(id: WalkId, run: &Run, below_threshold: bool, context: &ReplicateContext) {
     let (replicate, run, eroded_mass_fraction) = (id.replicate, run.run, run.eroded_mass_fraction);
     if id.part == 0 {
@@ -252,7 +256,7 @@ pub fn have_networks(case: &Case, callbacks: &Callbacks) -> Result<(), RunError>
     };
     let replicates = 1..=first_replicates(case).max(case.scene.record.sensitivity_replicates);
     let fit = case.side_by_side(case.supply.n_base, rayon::current_num_threads() as u64) > 1;
-    each(replicates.collect(), fit, one).map(drop)
+    map_side_by_side(replicates.collect(), fit, one).map(drop)
 }
 
 /// Result of a run.
@@ -268,11 +272,11 @@ struct RunContext<'a> {
     case: &'a Case,
     network: &'a Arc<Network>,
     id: WalkId,
-    of: RunId,
+    run_id: RunId,
 }
 
 impl RunContext<'_> {
-    /// Walks from the start, with the network's exits where they are known, or from where it was saved.
+    /// Walks from the start, with the network's exits if they are known, or from the checkpoint.
     fn walk(
         &self,
         clogged: Clogged,
@@ -281,19 +285,24 @@ impl RunContext<'_> {
         saved: Option<Checkpoint>,
         context: &ReplicateContext,
     ) -> Result<RunEnd<'_>, RunError> {
-        let Self { case, network, id, of } = *self;
+        let Self { case, network, id, run_id } = *self;
         let (supply, mut state) = self.begin(clogged, saved)?;
         let mut walk = Walk::with_exits(network, &supply, &state, exits);
         let (mut last, mut failed) = (Instant::now(), None);
         let mut wanted = case.scene.record.wanted();
         // One replicate is picture enough.
-        wanted.voids = wanted.voids.filter(|_| of.replicate == 1);
+        wanted.voids = wanted.voids.filter(|_| run_id.replicate == 1);
         let walked = walk.run(&mut state, &mut |state| {
             if id.part == 0 {
                 done.recorder.observe(&wanted, state);
             }
             let (increment, moving) = (state.increment, state.tally.moving);
-            context.tell(Event::Increment { replicate: of.replicate, run: of.run, increment, moving });
+            context.tell(Event::Increment {
+                replicate: run_id.replicate,
+                run: run_id.run,
+                increment,
+                moving,
+            });
             let stop = context.callbacks.is_stopped();
             let due = |checkpoints: &&Checkpoints| checkpoints.is_due(last, increment, stop);
             if let Some(checkpoints) = context.checkpoints.filter(due) {
@@ -313,7 +322,7 @@ impl RunContext<'_> {
         }
         walked?;
         let (end, flow, exits) = walk.end_with_exits(&state)?;
-        // The network outlives what the run was fed from.
+        // The network outlives the supply of the run.
         let network = match end {
             Cow::Borrowed(_) => Cow::Borrowed(&**network),
             Cow::Owned(directed) => Cow::Owned(directed),
@@ -323,17 +332,17 @@ impl RunContext<'_> {
 
     /// Supply of the run, and its state at the start or in the checkpoint.
     fn begin(&self, clogged: Clogged, saved: Option<Checkpoint>) -> Result<(Supply, State), RunError> {
-        let Self { case, network, id: WalkId { seed, n_base, .. }, of } = *self;
+        let Self { case, network, id: WalkId { seed, n_base, .. }, run_id } = *self;
         let clogged = match &saved {
             // The state holds the open constrictions from here on.
-            Some(saved) if of.run > 1 => blocked_at_start(network, saved)?.into(),
+            Some(saved) if run_id.run > 1 => blocked_at_start(network, saved)?.into(),
             _ => clogged,
         };
         let (plan, sampler) = (plan(case, network, &clogged.blocked, n_base), &case.supply.sampler);
-        let supply = plan.supply(sampler.clone(), n_base, case.increments(), seed, of.run);
+        let supply = plan.supply(sampler.clone(), n_base, case.increments(), seed, run_id.run);
         let classes = case.scene.record.wanted().size_classes;
         let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), classes);
-        let state = State::placed(&case.placement, network, &supply, classes, clogged, seed, of.run);
+        let state = State::placed(&case.placement, network, &supply, classes, clogged, seed, run_id.run);
         let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
         if let Some(saved) = saved {
             if saved.label.network != network.fingerprint() {
@@ -346,13 +355,13 @@ impl RunContext<'_> {
         Ok((supply, state))
     }
 
-    /// Adds the run to what is done of its replicate, tells of it, and saves the replicate where it is whole.
+    /// Adds the run to the finished part of its replicate, reports it, and saves a finished replicate.
     fn record(&self, end: &RunEnd, seconds: f64, done: &mut Done, context: &ReplicateContext) {
         let RunEnd { state, network, flow, .. } = end;
-        let metrics = RunMetrics::new(network, state, flow.as_ref(), self.of, seconds);
+        let metrics = RunMetrics::new(network, state, flow.as_ref(), self.run_id, seconds);
         let recorder = std::mem::take(&mut done.recorder);
         if self.id.part == 0 {
-            done.recorded.append(Recorded::new(network, state, flow.as_ref(), &recorder, self.of));
+            done.recorded.append(Recorded::new(network, state, flow.as_ref(), &recorder, self.run_id));
         }
         context.tell(Event::RunDone);
         tell_walked(self.id, &metrics.run, metrics.below_threshold, context);
@@ -425,19 +434,19 @@ mod tests {
                     small.iter().chain(&[engine]).chain(more).map(ToString::to_string).collect();
                 Case::new(Scene::built_in(&settings).unwrap()).unwrap()
             };
-            let (before, of) = (case(&["base.cu=3", "replicates=1"]), case(&["base.n_base=30000"]));
-            let (shared, seed) = (SharedNetworks::new(1 << 27), replicate_seed(of.scene.walk.seed, 1));
+            let (before, other) = (case(&["base.cu=3", "replicates=1"]), case(&["base.n_base=30000"]));
+            let (shared, seed) = (SharedNetworks::new(1 << 27), replicate_seed(other.scene.walk.seed, 1));
             let exits_of = |case: &Case| {
-                let found = shared.get(case, seed).unwrap();
-                found.exits(case).map(|exits| std::ptr::from_ref(exits) as usize).unwrap()
+                let network = shared.get(case, seed).unwrap();
+                network.exits(case).map(|exits| std::ptr::from_ref(exits) as usize).unwrap()
             };
             walked(&before, Some(&shared));
             let left = exits_of(&before);
-            let alone = walked(&of, None);
-            assert_eq!(walked(&of, Some(&shared)), alone, "{engine}: left by another");
-            assert_eq!(exits_of(&of), left);
-            assert_eq!(walked(&of, Some(&SharedNetworks::new(1 << 27))), alone, "{engine}: its own");
-            assert_eq!(walked(&of, Some(&SharedNetworks::new(0))), alone, "{engine}: no room");
+            let alone = walked(&other, None);
+            assert_eq!(walked(&other, Some(&shared)), alone, "{engine}: left by another");
+            assert_eq!(exits_of(&other), left);
+            assert_eq!(walked(&other, Some(&SharedNetworks::new(1 << 27))), alone, "{engine}: its own");
+            assert_eq!(walked(&other, Some(&SharedNetworks::new(0))), alone, "{engine}: no room");
         }
     }
 }

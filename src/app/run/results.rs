@@ -1,4 +1,4 @@
-//! Writes what came of a case into a run folder.
+//! Writes the results of a case into a run folder.
 
 use std::time::SystemTime;
 
@@ -84,7 +84,7 @@ pub fn outcome(
     concluded_from_results(outcome, case, inputs)
 }
 
-/// The outcome with what follows from its results: what practice decides, notes, the digest.
+/// Completes the outcome from its results: the decision of practice, notes, the digest.
 fn concluded_from_results(mut outcome: Outcome, case: &Case, inputs: RuleInputs) -> (Outcome, Decision) {
     let range_of_tests_mm = rules::tested_range(&inputs);
     if case.scene.base.dispersive.is_none() {
@@ -132,10 +132,10 @@ fn eroded_percent(summary: &[RunSummary], range: Option<&CurveRange>) -> Vec<[f6
     summary.iter().enumerate().map(of_run).collect()
 }
 
-/// Writes what a run can be started again from: the resolved scene and its input files.
+/// Writes the files from which a run can be started again: the resolved scene and its input files.
 ///
 /// # Errors
-/// What the folder says.
+/// Errors of the folder.
 pub fn write_scene(folder: &Folder, case: &Case) -> Result<(), StoreError> {
     let mut files = Together::in_folder(folder.path());
     for input in &case.inputs {
@@ -208,10 +208,10 @@ pub fn files(
     Ok(RunFiles { outcome, decision, manifest, scene, about, packing, recorded })
 }
 
-/// Writes what came of a run beside its scene: the CSV files, the outcome, the manifest.
+/// Writes the results of a run beside its scene: the CSV files, the outcome, the manifest.
 ///
 /// # Errors
-/// What the folder says; no file is half written.
+/// Errors of the folder; no file is half written.
 pub fn write(folder: &Folder, case: &Case, run: &RunFiles) -> Result<(), RunError> {
     // First, so that a folder is not taken for whole while its files are being replaced.
     for name in ["manifest.json", "outcome.json"] {
@@ -236,7 +236,7 @@ pub fn write(folder: &Folder, case: &Case, run: &RunFiles) -> Result<(), RunErro
     Ok(())
 }
 
-/// Adds the first replicate's voids and constrictions, and what became of them.
+/// Adds the first replicate's voids and constrictions, and their final states.
 fn add_voids(files: &mut Together, case: &Case, recorded: &Recorded) -> Result<(), RunError> {
     let Some(places) = case.places() else { return Ok(()) };
     let network = case.network(replicate_seed(case.scene.walk.seed, 1))?;
@@ -254,7 +254,7 @@ fn add_voids(files: &mut Together, case: &Case, recorded: &Recorded) -> Result<(
 /// A file of JSON in its form.
 ///
 /// # Errors
-/// What cannot be put into words.
+/// A record that cannot be written as JSON.
 pub fn json(format: Format, record: &impl Serialize) -> Result<Vec<u8>, RunError> {
     let text = format.json(record).map_err(|e| RunError::Format { file: format.file, source: e.into() })?;
     Ok(text.into_bytes())
@@ -288,7 +288,7 @@ mod tests {
         ];
         let small = ["network.nx=6", "network.ny=6", "network.nz=8", "replicates=2", "record.sensitivity=[]"];
         let all: Vec<String> =
-            soils.into_iter().chain(small.iter().chain(set).map(|of| (*of).into())).collect();
+            soils.into_iter().chain(small.iter().chain(set).map(|setting| (*setting).into())).collect();
         walk_case(&Case::new(Scene::built_in(&all).unwrap()).unwrap(), &Callbacks::default()).unwrap()
     }
 
@@ -300,7 +300,7 @@ mod tests {
         words::next(outcome, &outcome.decision(), SizeUnit::Mm)
     }
 
-    /// Practice has 0.7 mm for a silt, and 0.5 mm where it is dispersive.
+    /// Practice has 0.7 mm for a silt, and 0.5 mm if it is dispersive.
     #[test]
     fn a_d15f_that_is_recommended_is_said_for_a_dispersive_base_too() {
         let coarse = walked(45.0, 1.2, &[]);
@@ -313,8 +313,8 @@ mod tests {
         let open = next_step(&walked(25.0, 9.0, &[]));
         assert!(open.contains(" (dispersive base: less than "), "{open}");
         for set in ["base.dispersive=true", "base.dispersive=false"] {
-            let said = walked(45.0, 1.2, &[set]);
-            assert!(said.if_dispersive.is_none() && !next_step(&said).contains("dispersive"), "{set}");
+            let outcome = walked(45.0, 1.2, &[set]);
+            assert!(outcome.if_dispersive.is_none() && !next_step(&outcome).contains("dispersive"), "{set}");
         }
     }
 
@@ -363,23 +363,23 @@ mod tests {
         const CLAY: &str = "0.002,51\n0.006,70\n0.012,79.79\n0.02,87\n0.063,95\n0.63,100\n";
         let most = |rows, d15f, set: &[&str]| {
             let next = next_step(&walked_base(rows, d15f, set));
-            next.split("at most ").nth(1).map(|of| of.split('\u{202f}').next().unwrap().to_owned())
+            next.split("at most ").nth(1).map(|limit| limit.split('\u{202f}').next().unwrap().to_owned())
         };
         assert_eq!(most(CLAY, 2.2, &["base.dispersive=false"]).as_deref(), Some("0.200"));
         assert_eq!(most(CLAY, 2.2, &["base.dispersive=true"]).as_deref(), Some("0.111"));
         // Within the floor practice asks for nothing, and the model is undecided.
-        let of = |d15f| walked_base(CLAY, d15f, &["base.dispersive=false"]);
-        let fine = of(0.18);
+        let outcome_at = |d15f| walked_base(CLAY, d15f, &["base.dispersive=false"]);
+        let fine = outcome_at(0.18);
         assert_ne!(fine.model.class, Verdict::None);
         assert_eq!(next_step(&fine), "have this pair tested");
         assert_eq!(fine.headline, Some(Headline::Meets));
-        let fine = of(0.08);
+        let fine = outcome_at(0.08);
         assert_eq!(next_step(&fine), "take a coarser filter, D15F 0.100 to 0.200\u{202f}mm");
         // A fat clay: D85B 0.005 mm, and continuing erosion from 9 D95B, 0.072 mm, on: no design goes beyond.
         const FAT: &str = "0.001,60\n0.005,85\n0.008,95\n0.02,100\n";
         for d15f in [0.18, 1.8] {
-            let said = walked_base(FAT, d15f, &["base.dispersive=false"]);
-            assert_eq!(said.headline, Some(Headline::DoesNotMeet));
+            let outcome = walked_base(FAT, d15f, &["base.dispersive=false"]);
+            assert_eq!(outcome.headline, Some(Headline::DoesNotMeet));
             assert_eq!(most(FAT, d15f, &["base.dispersive=false"]).as_deref(), Some("0.0720"));
         }
     }

@@ -19,7 +19,7 @@ const PART: u64 = 16;
 /// Exits that draws pick on a network without blocked constrictions, once a case has computed them.
 type KeptExits = Arc<OnceLock<PlainExits>>;
 
-/// A network to walk, and its exits as far as somebody keeps them.
+/// A network to walk, and its exits if they are kept.
 pub struct NetworkToWalk {
     /// The network.
     pub network: Arc<Network>,
@@ -27,17 +27,17 @@ pub struct NetworkToWalk {
 }
 
 impl NetworkToWalk {
-    /// A network that nobody keeps.
+    /// A network that is not kept.
     pub fn own(network: Network) -> Self {
         Self { network: Arc::new(network), exits: None }
     }
 
-    /// The exits that the first run of a case begins with: worked out by the first case that asks. `None`
-    /// where nobody keeps them, or the case begins with others.
+    /// The exits with which the first run of a case begins: computed by the first case that asks. `None` if
+    /// they are not kept, or if the case begins with others.
     pub fn exits(&self, case: &Case) -> Option<&PlainExits> {
         let kept = self.exits.as_ref().filter(|_| case.begins_with_plain_exits())?;
         if kept.get().is_none() {
-            // Nobody waits here: two that work them out find the same bits.
+            // No case waits here: two that compute them find the same bits.
             let _ = kept.set(PlainExits::unblocked(&self.network));
         }
         kept.get()
@@ -64,7 +64,7 @@ impl KeptNetwork {
     }
 }
 
-/// Networks by what makes them.
+/// Networks by the key of their inputs.
 pub struct SharedNetworks {
     kept: Mutex<VecDeque<KeptNetwork>>,
     most_bytes: u64,
@@ -85,13 +85,13 @@ impl SharedNetworks {
     /// The network of the replicate of a case with this seed, as [`Case::network`] builds it.
     ///
     /// # Errors
-    /// As [`Case::network`].
+    /// See [`Case::network`].
     pub fn get(&self, case: &Case, seed: u64) -> Result<NetworkToWalk, NetworkError> {
         let Some(key) = case.network_key(seed) else {
             return Ok(NetworkToWalk::own(case.network(seed)?));
         };
-        if let Some(found) = self.find(key) {
-            return Ok(found);
+        if let Some(network) = self.find(key) {
+            return Ok(network);
         }
         // Others are found meanwhile; two that build the same one build the same bits.
         let network = Arc::new(case.network(seed)?);
@@ -108,9 +108,9 @@ impl SharedNetworks {
         }
         kept.push_back(new);
         let mut bytes = kept.iter().map(KeptNetwork::bytes).fold(0, u64::saturating_add);
-        for of in kept.iter_mut() {
-            if bytes > self.most_bytes && of.exits.take().is_some() {
-                bytes -= of.bytes[1];
+        for entry in kept.iter_mut() {
+            if bytes > self.most_bytes && entry.exits.take().is_some() {
+                bytes -= entry.bytes[1];
             }
         }
         while bytes > self.most_bytes
@@ -140,9 +140,9 @@ mod tests {
     #[test]
     fn what_makes_no_network_shares_it_and_what_makes_one_does_not() {
         let shared = SharedNetworks::new(MOST_BYTES);
-        let own = case(&[]);
-        let network = shared.get(&own, 5).unwrap().network;
-        assert_eq!(network.fingerprint(), own.network(5).unwrap().fingerprint());
+        let case_itself = case(&[]);
+        let network = shared.get(&case_itself, 5).unwrap().network;
+        assert_eq!(network.fingerprint(), case_itself.network(5).unwrap().fingerprint());
         for same in [vec!["base.cu=3"], vec!["base.n_base=1000"], vec!["replicates=3"], vec!["engine=counts"]]
         {
             assert!(Arc::ptr_eq(&network, &shared.get(&case(&same), 5).unwrap().network), "{same:?}");
@@ -155,21 +155,22 @@ mod tests {
             vec!["filter.d0_mm=2"],
         ] {
             let (other, name) = (case(&other), other);
-            let found = shared.get(&other, 5).unwrap().network;
-            assert!(!Arc::ptr_eq(&network, &found), "{name:?}");
-            assert_eq!(found.fingerprint(), other.network(5).unwrap().fingerprint(), "{name:?}");
+            let other_network = shared.get(&other, 5).unwrap().network;
+            assert!(!Arc::ptr_eq(&network, &other_network), "{name:?}");
+            assert_eq!(other_network.fingerprint(), other.network(5).unwrap().fingerprint(), "{name:?}");
         }
-        assert!(!Arc::ptr_eq(&network, &shared.get(&own, 6).unwrap().network));
+        assert!(!Arc::ptr_eq(&network, &shared.get(&case_itself, 6).unwrap().network));
     }
 
-    /// Exits are worked out only where first runs begin with them, whichever case the network was built for.
+    /// Exits are computed only if first runs begin with them, whichever case the network was built for.
     #[test]
     fn exits_stay_with_the_networks_whose_walks_take_them() {
         let shared = SharedNetworks::new(MOST_BYTES);
         let exits_of = |set: &[&str]| {
             let (case, mut at) = (case(set), None);
-            let found = shared.get(&case, 5).unwrap();
-            let has_some = found.exits(&case).inspect(|exits| at = Some(std::ptr::from_ref(*exits) as usize));
+            let shared_network = shared.get(&case, 5).unwrap();
+            let has_some =
+                shared_network.exits(&case).inspect(|exits| at = Some(std::ptr::from_ref(*exits) as usize));
             assert_eq!(has_some.is_some(), case.begins_with_plain_exits(), "{set:?}");
             at
         };
@@ -190,14 +191,15 @@ mod tests {
             let shared = SharedNetworks::new(most);
             for seed in 0..seeds {
                 let has_room = network + exits <= most && most >= seeds * network + exits;
-                let of = shared.get(&case, seed).unwrap();
-                assert!(!has_room || of.exits(&case).is_some());
+                let network = shared.get(&case, seed).unwrap();
+                assert!(!has_room || network.exits(&case).is_some());
             }
             let kept = shared.kept.lock().unwrap();
             let bytes: u64 = kept.iter().map(KeptNetwork::bytes).sum();
             assert!(bytes <= most);
-            let shown: String = kept.iter().map(|of| if of.exits.is_some() { '+' } else { '-' }).collect();
-            (shown, kept.iter().map(|of| of.key).collect::<Vec<_>>())
+            let shown: String =
+                kept.iter().map(|entry| if entry.exits.is_some() { '+' } else { '-' }).collect();
+            (shown, kept.iter().map(|entry| entry.key).collect::<Vec<_>>())
         };
         assert_eq!(kept(3 * (network + exits), 3).0, "+++");
         assert_eq!(kept(3 * (network + exits), 4).0, "--++");

@@ -44,7 +44,7 @@ struct Point<'a> {
 #[derive(Default)]
 struct Walked {
     replicates: Vec<ReplicateResult>,
-    /// Eroded mass by run, where it stopped because it was clear.
+    /// Eroded mass by run, if it stopped because it was clear.
     clear: Option<Vec<Statistic>>,
 }
 
@@ -72,14 +72,14 @@ impl Studies {
     /// Walks the studies of a case whose verdict has been walked for.
     ///
     /// # Errors
-    /// As [`super::replicates::replicates`].
+    /// See [`super::replicates::replicates`].
     pub fn walk(case: &Case, walks: &CaseWalks, context: &ReplicateContext) -> Result<Self, RunError> {
-        let (own, class, points) = (&walks.replicates, walks.verdict, points(case));
-        let own_values = values_by_run(own);
-        let each = case.scene.record.sensitivity_replicates;
+        let (of_case, class, points) = (&walks.replicates, walks.verdict, points(case));
+        let own_values = values_by_run(of_case);
+        let most = case.scene.record.sensitivity_replicates;
         let mut walked: Vec<Walked> = points.iter().map(|_| Walked::default()).collect();
         let mut known = replicates_at_least(case);
-        for until in looks(class, own.len(), each) {
+        for until in looks(class, of_case.len(), most) {
             let open: Vec<usize> = (0..points.len()).filter(|&point| walked[point].clear.is_none()).collect();
             let more = until.saturating_sub(known) * open.len() as u64 * case.scene.walk.runs;
             if more > 0 {
@@ -91,16 +91,16 @@ impl Studies {
             for (point, _, replicate) in walk_all(&points, jobs.collect(), context)? {
                 walked[point].replicates.push(replicate);
             }
-            for &point in open.iter().filter(|_| until < each) {
-                let found = &mut walked[point];
-                found.clear = clear(&own_values, class, &values_by_run(&found.replicates));
+            for &point in open.iter().filter(|_| until < most) {
+                let walked_point = &mut walked[point];
+                walked_point.clear = clear(&own_values, class, &values_by_run(&walked_point.replicates));
             }
         }
         let mut studies = Self::default();
-        for (point, found) in points.iter().zip(&walked) {
-            studies.add(case, point, found, class);
+        for (point, walked_point) in points.iter().zip(&walked) {
+            studies.add(case, point, walked_point, class);
         }
-        studies.add_own(case, own, class);
+        studies.add_own(case, of_case, class);
         Ok(studies)
     }
 
@@ -118,10 +118,10 @@ impl Studies {
     }
 
     fn add(&mut self, case: &Case, point: &Point, walked: &Walked, class: Verdict) {
-        let found = classed(&walked.replicates);
+        let usual = classed(&walked.replicates);
         let judged = match &walked.clear {
-            Some(runs) => Classed { stopped_when_clear: true, verdict: class, runs: runs.clone(), ..found },
-            None => found,
+            Some(runs) => Classed { stopped_when_clear: true, verdict: class, runs: runs.clone(), ..usual },
+            None => usual,
         };
         match point.base_factor {
             Some(factor) => self.sensitivity.push(of_base(judged, case, factor, point.n_base)),
@@ -130,8 +130,8 @@ impl Studies {
     }
 
     /// The case itself, with its verdict, is a point of each of its studies.
-    fn add_own(&mut self, case: &Case, own: &[ReplicateResult], verdict: Verdict) {
-        let judged = || Classed { verdict, ..classed(own) };
+    fn add_own(&mut self, case: &Case, replicates: &[ReplicateResult], verdict: Verdict) {
+        let judged = || Classed { verdict, ..classed(replicates) };
         if !self.sensitivity.is_empty() {
             self.sensitivity.push(of_base(judged(), case, 1.0, case.supply.n_base));
             self.sensitivity.sort_by(|a, b| a.factor.total_cmp(&b.factor));
@@ -175,7 +175,7 @@ fn walk_all(
 
 fn of_base(walked: Classed, case: &Case, factor: f64, n_base: u64) -> Sensitivity {
     let [grains_per_void, mass_ratio] =
-        [case.filter.grains_per_void, case.supply.mass_ratio].map(|of| Some(of? * factor));
+        [case.filter.grains_per_void, case.supply.mass_ratio].map(|amount| Some(amount? * factor));
     Sensitivity { factor, n_base, grains_per_void, mass_ratio, walked }
 }
 

@@ -10,8 +10,8 @@ pub fn summarise(walked: &[ReplicateResult]) -> (Verdict, Vec<RunSummary>) {
     let summaries: Vec<RunSummary> = (0..runs).map(|run| run_summary(walked, run)).collect();
     let below = |run: usize| {
         let summary = summaries.get(run)?;
-        let each: Vec<bool> = walked.iter().map(|w| w.below[run]).collect();
-        below_by_interval(&summary.eroded_mass_fraction, &each)
+        let below_by_replicate: Vec<bool> = walked.iter().map(|w| w.below[run]).collect();
+        below_by_interval(&summary.eroded_mass_fraction, &below_by_replicate)
     };
     (classify(below(0), below(1)), summaries)
 }
@@ -24,7 +24,7 @@ pub fn classed(walked: &[ReplicateResult]) -> Classed {
 }
 
 fn run_summary(walked: &[ReplicateResult], run: usize) -> RunSummary {
-    let of = |figure: fn(&crate::outcome::record::Run) -> f64| {
+    let statistic = |figure: fn(&crate::outcome::record::Run) -> f64| {
         let values: Vec<f64> = walked.iter().map(|w| figure(&w.replicate.runs[run])).collect();
         Statistic::of_fraction(&values)
     };
@@ -32,11 +32,11 @@ fn run_summary(walked: &[ReplicateResult], run: usize) -> RunSummary {
         walked.iter().filter_map(|w| w.replicate.runs[run].largest_eroded_over_d15f).collect();
     RunSummary {
         run: run as u64 + 1,
-        eroded_mass_fraction: of(|r| r.eroded_mass_fraction),
-        eroded_number_fraction: of(|r| r.eroded_number_fraction),
+        eroded_mass_fraction: statistic(|r| r.eroded_mass_fraction),
+        eroded_number_fraction: statistic(|r| r.eroded_number_fraction),
         largest_eroded_over_d15f: (!largest.is_empty()).then(|| Statistic::of(&largest)),
-        blocked_fraction: of(|r| r.blocked_fraction),
-        blocked_first_three_layers_fraction: of(|r| r.blocked_first_three_layers_fraction),
-        backbone_fraction: of(|r| r.backbone_fraction),
+        blocked_fraction: statistic(|r| r.blocked_fraction),
+        blocked_first_three_layers_fraction: statistic(|r| r.blocked_first_three_layers_fraction),
+        backbone_fraction: statistic(|r| r.backbone_fraction),
     }
 }

@@ -1,8 +1,8 @@
 //! The mark of a folder whose work has begun and is not whole yet, its page included.
 //!
 //! It is written before the first file of the work and removed after the last, so a folder that holds it is
-//! not finished, whatever else it holds. It says what the work is, so that the same command continues it, and
-//! what a run was told that changes no result.
+//! not finished, whatever else it holds. It describes the work, so that the same command continues it, and
+//! holds the options of a run that change no result.
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -35,10 +35,10 @@ impl Unfinished {
         Ok(bytes.map(|bytes| serde_json::from_slice(&bytes).unwrap_or_default()))
     }
 
-    /// The record of this very work, where all but the page that is made of it was written.
+    /// The record of this very work, if everything except its page was written.
     ///
     /// # Errors
-    /// What the system says.
+    /// Errors of the system.
     pub fn whole<T: DeserializeOwned>(&self, folder: &Folder, record: &str) -> Result<Option<T>, StoreError> {
         if Self::read(folder)?.as_ref() != Some(self) {
             return Ok(None);
@@ -46,10 +46,10 @@ impl Unfinished {
         Ok(folder.read(record)?.and_then(|bytes| from_json(&bytes).ok()))
     }
 
-    /// Marks a folder, unless it says the same already.
+    /// Marks a folder, unless it has this mark already.
     ///
     /// # Errors
-    /// What the system says.
+    /// Errors of the system.
     pub fn begin(&self, folder: &Folder) -> Result<(), StoreError> {
         if Self::read(folder)?.as_ref() == Some(self) {
             return Ok(());
@@ -58,10 +58,10 @@ impl Unfinished {
     }
 }
 
-/// Takes the mark away: the work is whole.
+/// Removes the mark: the work is finished.
 ///
 /// # Errors
-/// What the system says.
+/// Errors of the system.
 pub fn end(folder: &Folder) -> Result<(), StoreError> {
     folder.remove(FILE)
 }

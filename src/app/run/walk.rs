@@ -63,11 +63,11 @@ pub struct FinishedRun {
     pub unit: SizeUnit,
 }
 
-/// Walks a scene and writes its folder; what a stopped run of this very scene has saved there is continued.
+/// Walks a scene and writes its folder; continues from checkpoints of a stopped run of this very scene.
 ///
 /// # Errors
 /// A scene that is wrong, memory that does not suffice and a folder that cannot be claimed are refused before
-/// any work; then whatever the packing, the walk or the folder brings. After a stop, [`resume`] continues.
+/// any work; then errors of the packing, the walk or the folder. After a stop, [`resume`] continues.
 ///
 /// # Example
 /// ```
@@ -235,7 +235,7 @@ fn walk_here(
     Ok(FinishedRun { folder: folder.path().to_owned(), outcome, decision, unit })
 }
 
-/// Claims the folder of a run of a scene of these files, which must not go with what it replaces.
+/// Claims the folder of a run of a scene of these files, none of which may be removed with the old results.
 fn claim_for(options: &RunOptions, files: &[PathBuf]) -> Result<Folder, RunError> {
     let Some(path) = &options.out else { return claim_first_free("voidwalk-run") };
     let folder = claim(path, FolderKind::Run, options.overwrite)?;
@@ -257,7 +257,7 @@ fn clear_for(folder: &Folder, files: &[PathBuf], resumed: bool) -> Result<(), Ru
     Ok(checkpoints::discard(folder.path())?)
 }
 
-/// The files that a scene is made of, itself included where it is one.
+/// The files of a scene, including the scene's own file if it has one.
 fn files_of(scene: &Scene) -> Vec<PathBuf> {
     let curve = |source: &Option<CurveSource>| match source {
         Some(CurveSource::File(path)) => Some(path.clone()),
@@ -295,7 +295,8 @@ fn begun(folder: &Folder, fingerprint: &str, overwrite: bool) -> Result<Option<U
     let begun = Unfinished::read(folder)?.filter(|begun| begun.work == fingerprint);
     match Checkpoints::scene_in(folder.path()).map_err(RunError::Checkpoint)? {
         Some(scene) if scene == fingerprint => Ok(Some(begun.unwrap_or_default())),
-        // Without a scene they are what was left when a run was to be replaced: nothing continues from them.
+        // Without a scene the checkpoints remain from a run that was to be replaced: nothing continues from
+        // them.
         Some(_) if folder.has("scene.toml") => Err(RunError::Refused(format!(
             "{}: holds checkpoints of another scene, or of another version of voidwalk; continue with that \
              one by `voidwalk resume`, or add --overwrite",
@@ -330,8 +331,8 @@ struct CaseRun<'a> {
 }
 
 impl CaseRun<'_> {
-    /// Walks what the verdict follows from, the replicates and what is walked besides, writes what came of
-    /// them, then adds the studies and writes the whole.
+    /// Walks the replicates and the other walks that decide the verdict, writes their results, then adds the
+    /// studies and writes the whole.
     fn walk(
         &self,
         write: impl Fn(&(Outcome, Decision), &[ReplicateResult]) -> Result<(), RunError>,
@@ -363,7 +364,8 @@ impl CaseRun<'_> {
         Ok(whole)
     }
 
-    /// Saves what is done and not on the disk yet, whatever ended the walk, and says how to continue.
+    /// Saves finished work that is not on the disk yet, for any end of the walk, and explains how to
+    /// continue.
     fn ended(&self, error: RunError) -> RunError {
         let flushed = self.checkpoints.flush();
         match (error.exit(), flushed) {

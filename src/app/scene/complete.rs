@@ -61,11 +61,11 @@ impl Scene {
             )?;
             wrong(&["walk.conductance_exponent"], "is for a lattice: a packing's voids conduct as they do")?;
             if self.network.packing.is_some() {
-                let own = "says what the constrictions are, but network.packing brings its own: keep one";
-                wrong(&["filter.curve", "filter.library", "filter.estimate"], own)?;
+                let problem = "says what the constrictions are, but network.packing brings its own: keep one";
+                wrong(&["filter.curve", "filter.library", "filter.estimate"], problem)?;
                 // A run keeps the grains of the filter that it packed, and says both.
                 if self.filter.measured.is_none() {
-                    wrong(&["filter.density", "filter.friction"], own)?;
+                    wrong(&["filter.density", "filter.friction"], problem)?;
                 }
             }
             if self.network.packing.is_none() && self.packing.is_none() {

@@ -34,7 +34,7 @@ pub(super) const GROUPS: &[Group] = &[
         says: "give the filter's gradation",
         alternatives: &[
             Alternative::by(&["filter.cu"]),
-            // With a sieve table, d0_mm is where its tail ends, not where the gradation begins.
+            // With a sieve table, d0_mm is the end of its tail, not the start of the gradation.
             Alternative { resets: &["filter.d0_mm"], ..Alternative::by(&["filter.sieve"]) },
         ],
     },

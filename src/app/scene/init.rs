@@ -52,7 +52,7 @@ pub(super) fn text() -> String {
     text
 }
 
-/// The first paragraph of what is said of a section; what follows is for programmers.
+/// First paragraph of a section's description; the paragraphs after it are for programmers.
 pub(super) fn for_users(about: &[&str]) -> String {
     about.iter().take_while(|line| !line.trim().is_empty()).copied().collect::<String>().trim().to_owned()
 }

@@ -1,4 +1,4 @@
-//! The settings of a scene, section by section: each declared once, with what it means and what is allowed.
+//! The settings of a scene, section by section: each declared once, with its meaning and its allowed values.
 
 use std::path::PathBuf;
 
@@ -319,5 +319,5 @@ pub(super) fn concentrations() -> String {
     format!("a number above 0 and up to {DENSEST}")
 }
 
-/// Increments after which it may be kept what each void holds.
+/// Largest number of increments after which the contents of each void are kept.
 const MOST_MOMENTS: usize = 100;

@@ -12,14 +12,14 @@ use voidwalk_core::packing::{self, ReadOptions};
 /// The filter's gradation by mass.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FilterGradation {
-    /// Linear on semi-log paper from `d0_mm`; `cu` from the shipped curve where it is not given.
+    /// Linear on semi-log paper from `d0_mm`; without `cu`, the value of the shipped curve.
     Linear {
         /// Smallest grain (mm).
         d0_mm: f64,
         /// D60 / D10.
         cu: Option<f64>,
     },
-    /// A sieve table, and where its open tail ends (mm).
+    /// A sieve table, and the end of its open tail (mm).
     Sieve(PathBuf, Option<f64>),
 }
 
@@ -33,7 +33,7 @@ pub enum BaseGradation {
         /// The setting that defines D85B.
         d85: D85,
     },
-    /// A sieve table, and where its open tail ends (mm).
+    /// A sieve table, and the end of its open tail (mm).
     Sieve(PathBuf, Option<f64>),
     /// One size (mm).
     Single(f64),
@@ -59,7 +59,7 @@ pub enum Amount {
     Number(u64),
 }
 
-/// Where a scene's network comes from.
+/// Source of a scene's network.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NetworkSource {
     /// The directed cubic lattice with this many voids along x, y, z.
@@ -86,7 +86,7 @@ pub enum Extent {
 }
 
 impl Extent {
-    /// Thickness (mm) of the filter, where it is given as such.
+    /// Thickness (mm) of the filter, if the scene states one.
     pub fn thickness_mm(self, d50f_mm: f64) -> Option<f64> {
         match self {
             Self::Mm(mm) => Some(mm),
@@ -96,13 +96,13 @@ impl Extent {
     }
 }
 
-/// Mass of base over mass of filter where a scene does not say: the paper's.
+/// Default mass of base over mass of filter: the paper's value.
 const MASS_RATIO: f64 = 0.05;
 
-/// Voids along x, y, z where a scene does not say: the paper's.
+/// Default number of voids along x, y, z: the paper's values.
 const VOIDS: [u64; 3] = [40, 40, USUAL_LAYERS];
 
-/// Layers of voids where a scene does not say: the paper's.
+/// Default number of layers of voids: the paper's value.
 pub const USUAL_LAYERS: u64 = 60;
 
 impl Filter {
@@ -211,7 +211,7 @@ impl NetworkKeys {
         (self.thickness_mm, self.thickness_d50f) = (None, None);
     }
 
-    /// Where it comes from.
+    /// Source of the network.
     pub fn source(&self) -> NetworkSource {
         if self.kind == Some(NetworkMadeOf::Graph) {
             return NetworkSource::Graph(self.packing.clone(), self.extent());
@@ -229,7 +229,7 @@ impl NetworkKeys {
 }
 
 impl NetworkSource {
-    /// Voids along x, y, z, where the network is a lattice.
+    /// Voids along x, y, z, if the network is a lattice.
     pub fn shape(&self) -> Option<[u32; 3]> {
         match self {
             Self::Cubic(shape) | Self::Connected(shape, _) => Some(*shape),
@@ -253,13 +253,13 @@ impl Record {
 /// Specification of the packing of a filter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PackingSpec {
-    /// Its gradation; `cu` is given where it is linear.
+    /// Its gradation; a linear one has a `cu`.
     pub gradation: FilterGradation,
-    /// Grains, where the user says how many.
+    /// Number of grains, if the user gives it.
     pub grains: Option<usize>,
     /// Height of the cell by its width.
     pub aspect: f64,
-    /// Percent of the mass, from the finest grain on, that is packed, where the user says it.
+    /// Percent of the mass, from the finest grain on, that is packed, if the user gives it.
     pub coarsest: Option<f64>,
     /// Compression of the grains; its number of grains counts only if the user gave one.
     pub compression: packing::Settings,

@@ -1,10 +1,10 @@
-//! A scene: one base-filter combination and how it is to be walked, as the user states it.
+//! A scene: one base-filter combination and the plan of its walk, as the user states them.
 //!
 //! Every setting is declared once, in `keys` or by the stage that it belongs to ([`StopRule`], packing's
-//! [`Settings`](voidwalk_core::packing::Settings)); a [`Scene`] holds them all. From those declarations
-//! follow the commented text of [`Scene::init_text`], what may be set, what is refused, and the resolved
-//! scene that a run writes and is known by. `groups` lists the settings that exclude each other. The names
-//! are a contract.
+//! [`Settings`](voidwalk_core::packing::Settings)); a [`Scene`] holds them all. Those declarations decide the
+//! commented text of [`Scene::init_text`], the allowed and refused settings, and the resolved scene that a
+//! run writes and that identifies it. `groups` lists the settings that exclude each other. The names are a
+//! contract.
 
 mod complete;
 mod cover;
@@ -54,13 +54,13 @@ pub struct Scene {
     /// Name in errors.
     #[serde(skip)]
     pub name: String,
-    /// Base and filter were named as a pair, and are refused where they look exchanged.
+    /// True if base and filter were named as a pair: they are refused if they look exchanged.
     #[serde(skip)]
     pub is_guarded: bool,
     /// Seed, engine, replicates and the like: the settings without a section.
     #[serde(flatten)]
     pub walk: WalkKeys,
-    /// When to stop adding replicates, where more than those may be needed.
+    /// Rule that stops the addition of replicates, if more than those may be needed.
     #[serde(skip_serializing_if = "StopRule::is_unset")]
     pub stop: StopRule,
     /// The filter.
@@ -95,7 +95,7 @@ impl Scene {
         init::sections().into_iter().flat_map(|(_, keys)| keys).collect()
     }
 
-    /// The built-in scene as commented TOML: what `voidwalk init` writes, with every setting there is.
+    /// The built-in scene as commented TOML, as `voidwalk init` writes it, with every setting.
     pub fn init_text() -> String {
         init::text()
     }
@@ -133,7 +133,7 @@ impl Scene {
     /// stated together in one list each.
     ///
     /// # Errors
-    /// As [`Scene::read`].
+    /// See [`Scene::read`].
     pub fn planned(
         base: Option<&Path>,
         assignments: &[Vec<String>],
@@ -215,7 +215,7 @@ impl Scene {
         self.exits.blocked == Some(BlockedAs::Open)
     }
 
-    /// The law by which particles arch, where they do.
+    /// The law of arching, if particles arch.
     pub fn law(&self) -> Option<&'static Law> {
         self.exits.arching?.law()
     }

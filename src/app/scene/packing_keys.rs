@@ -1,4 +1,4 @@
-//! The section `packing`, which is there where a filter is packed.
+//! The section `packing`, for a filter that is packed.
 
 use serde::Serialize;
 
@@ -6,7 +6,7 @@ use super::keys::FilterPacking;
 use voidwalk_core::packing;
 use voidwalk_core::schema::{GivenSettings, SceneError};
 
-/// The section `packing`: what belongs to the measured packing, and how its grains are compressed.
+/// The section `packing`: settings of the measured packing, and of the compression of its grains.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PackingKeys {
     /// Grains and voids.
@@ -17,7 +17,7 @@ pub struct PackingKeys {
     pub compression: packing::Settings,
 }
 
-/// The section `packing`, where density or friction asks for a packing.
+/// The section `packing`, if density or friction asks for a packing.
 pub(super) fn packing_keys(s: &GivenSettings) -> Result<Option<PackingKeys>, SceneError> {
     let stated = s.has("filter.density") || s.has("filter.friction");
     match s.first_in("packing.") {

@@ -1,4 +1,4 @@
-//! Every setting for programs: what `voidwalk init --json` prints, and the book's reference is made from.
+//! Every setting for programs: printed by `voidwalk init --json`, and the source of the book's reference.
 
 use serde::Serialize;
 
@@ -94,8 +94,8 @@ fn setting(key: KeyInfo) -> SettingReference {
 }
 
 fn exclusive(group: &Group) -> ExclusiveSettings {
-    let way = |way: &Alternative| WayReference { by: way.by, with: way.with };
-    ExclusiveSettings { says: group.says, alternatives: group.alternatives.iter().map(way).collect() }
+    let reference = |alternative: &Alternative| WayReference { by: alternative.by, with: alternative.with };
+    ExclusiveSettings { says: group.says, alternatives: group.alternatives.iter().map(reference).collect() }
 }
 
 #[cfg(test)]
@@ -113,8 +113,13 @@ mod tests {
     /// The only setting beside which this one is allowed.
     fn beside(name: &str) -> Option<&'static str> {
         let exclusive = reference().exclusive;
-        let way = exclusive.iter().flat_map(|group| &group.alternatives).find(|way| way.with.contains(&name));
-        way.map(|way| way.by[0]).or(name.starts_with("packing.").then_some("filter.density"))
+        let alternative = exclusive
+            .iter()
+            .flat_map(|group| &group.alternatives)
+            .find(|alternative| alternative.with.contains(&name));
+        alternative
+            .map(|alternative| alternative.by[0])
+            .or(name.starts_with("packing.").then_some("filter.density"))
     }
 
     #[test]

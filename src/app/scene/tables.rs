@@ -1,4 +1,4 @@
-//! The scene of two sieve tables: what a user means who names a base and a filter and nothing else.
+//! The scene of two sieve tables, for a user who names only a base and a filter.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ pub struct TableOptions {
     /// Density of the filter. Its constrictions come from the library of packings; without a density, and if
     /// `changes` do not define the constrictions, loose and dense are both walked.
     pub density: Option<Density>,
-    /// This very filter is packed, loose where no density is given.
+    /// True if this very filter is packed, loose unless a density is given.
     pub pack: bool,
     /// A first look: fewer replicates.
     pub quick: bool,
@@ -29,7 +29,7 @@ pub struct TableOptions {
 /// Replicates of a first look.
 const QUICK: u64 = 5;
 
-/// Settings that say what the filter's constrictions are.
+/// Settings that define the filter's constrictions.
 const CONSTRICTIONS: [&str; 7] = [
     "filter.curve",
     "filter.density",
@@ -46,10 +46,10 @@ const REPLICATES: [&str; 3] = ["replicates", "stop.target_error_pp", "stop.decid
 /// Settings that say how the filter's own packing is made.
 const PACKED: [&str; 2] = ["filter.density", "filter.friction"];
 
-/// Settings that say what the base is.
+/// Settings that define the base.
 const BASE: [&str; 3] = ["base.sieve", "base.cu", "base.single_mm"];
 
-/// Settings that say what the filter is.
+/// Settings that define the filter.
 const FILTER: [&str; 2] = ["filter.sieve", "filter.cu"];
 
 /// Settings that no sieve table states and that rules of practice depend on.
@@ -102,7 +102,7 @@ impl TableOptions {
         is_needed.then(|| format!("filter.{name}=\"{density}\""))
     }
 
-    /// The facts that the rules of practice are told besides the two tables.
+    /// Facts for the rules of practice beside the two tables.
     ///
     /// # Errors
     /// A value that is not allowed.
@@ -179,8 +179,8 @@ impl Scene {
     }
 }
 
-/// Refuses settings that would put another soil in the place of one that is named besides them: what is said
-/// of the named soil would be said of the other.
+/// Refuses settings that would replace a soil that is also named: results for the named soil would belong to
+/// the other.
 ///
 /// # Errors
 /// [`SceneError::Clash`], with the setting and the soil.
@@ -239,26 +239,26 @@ mod tests {
         assert_eq!((scene.base.cu, scene.walk.replicates), (None, 10));
     }
 
-    /// However it is written; and what was asked for goes before.
+    /// The notation does not matter; an engine that was asked for goes first.
     #[test]
     fn the_engine_follows_from_what_blocked_constrictions_are() {
-        let of = |changes: &[&str]| scene(&with(changes)).unwrap().walk.engine;
-        assert_eq!([of(&[]), of(&["walk.blocked=closed"])], [Engine::Expected; 2]);
+        let engine = |changes: &[&str]| scene(&with(changes)).unwrap().walk.engine;
+        assert_eq!([engine(&[]), engine(&["walk.blocked=closed"])], [Engine::Expected; 2]);
         for open in ["walk.blocked=open", "walk.blocked='open'", " walk.blocked = \"open\" "] {
-            assert_eq!(of(&[open]), Engine::Auto, "{open}");
+            assert_eq!(engine(&[open]), Engine::Auto, "{open}");
         }
-        assert_eq!(of(&["engine=auto"]), Engine::Auto);
+        assert_eq!(engine(&["engine=auto"]), Engine::Auto);
         assert!(scene(&with(&["walk.blocked='open'", "engine=expected"])).is_err());
     }
 
     #[test]
     fn a_base_in_a_table_is_walked_as_practice_regrades_it_unless_it_is_said_otherwise() {
-        let of = |options: &TableOptions| scene(options).unwrap().base.regrade;
-        assert_eq!(of(&with(&[])), Some(Regrade::Practice));
-        assert_eq!(of(&TableOptions { as_sampled: true, ..with(&[]) }), Some(Regrade::No));
+        let regrade = |options: &TableOptions| scene(options).unwrap().base.regrade;
+        assert_eq!(regrade(&with(&[])), Some(Regrade::Practice));
+        assert_eq!(regrade(&TableOptions { as_sampled: true, ..with(&[]) }), Some(Regrade::No));
         for (set, wanted) in [("base.regrade=no", Regrade::No), ("base.regrade=practice", Regrade::Practice)]
         {
-            assert_eq!(of(&with(&[set])), Some(wanted), "{set}");
+            assert_eq!(regrade(&with(&[set])), Some(wanted), "{set}");
             let twice = TableOptions { as_sampled: true, ..with(&[set]) };
             assert!(scene(&twice).unwrap_err().to_string().contains("say the same thing twice"));
         }
@@ -305,24 +305,27 @@ mod tests {
             "base.single_mm=0.2",
             "filter.cu=3",
         ] {
-            let said = scene(&with(&[change])).unwrap_err().to_string();
-            assert!(said.contains("would put another soil in the place of the"), "{change}: {said}");
+            let message = scene(&with(&[change])).unwrap_err().to_string();
+            assert!(message.contains("would put another soil in the place of the"), "{change}: {message}");
         }
-        let said = scene(&with(&["filter.sieve=b.csv"])).unwrap_err().to_string();
-        assert!(said.contains("in the place of the filter, a \"b\".xlsx#Filter A: name the other"), "{said}");
+        let message = scene(&with(&["filter.sieve=b.csv"])).unwrap_err().to_string();
+        assert!(
+            message.contains("in the place of the filter, a \"b\".xlsx#Filter A: name the other"),
+            "{message}"
+        );
         assert!(scene(&with(&["base.d0_mm=0.01", "filter.d0_mm=0.1", "base.mass_ratio=0.1"])).is_ok());
         assert!(keep_soils(&["base.cu=2".into()], None, Some("f")).is_ok());
     }
 
     #[test]
     fn a_pair_is_walked_with_another_amount_or_thickness_where_that_is_set_alone() {
-        let of = |sets: &[&str]| {
+        let studies = |sets: &[&str]| {
             let record = scene(&with(sets)).unwrap().record;
             (record.sensitivity, record.thickness)
         };
-        assert_eq!(of(&[]), (Vec::new(), None));
-        assert_eq!(of(&["record.sensitivity=[2]"]), (vec![2.0], None));
-        assert_eq!(of(&["record.thickness=[0.5]"]), (Vec::new(), Some(vec![0.5])));
+        assert_eq!(studies(&[]), (Vec::new(), None));
+        assert_eq!(studies(&["record.sensitivity=[2]"]), (vec![2.0], None));
+        assert_eq!(studies(&["record.thickness=[0.5]"]), (Vec::new(), Some(vec![0.5])));
     }
 
     #[test]

@@ -25,9 +25,9 @@ fn a_length_may_have_a_unit_and_is_kept_in_mm() {
         ("network.thickness_mm", "0.5m", "500"),
         ("base.d85_mm", "75um", "0.075"),
     ] {
-        let [said, plain] = [text, mm].map(|value| built_in(&[&format!("{name}={value}")]).unwrap());
-        assert_eq!(said, plain, "{name}");
-        assert!(said.to_toml().contains(mm), "{}", said.to_toml());
+        let [with_unit, plain] = [text, mm].map(|value| built_in(&[&format!("{name}={value}")]).unwrap());
+        assert_eq!(with_unit, plain, "{name}");
+        assert!(with_unit.to_toml().contains(mm), "{}", with_unit.to_toml());
     }
     let wrong = built_in(&["network.thickness_mm=24 apples"]).unwrap_err().to_string();
     assert!(
@@ -103,13 +103,13 @@ fn what_is_written_is_the_whole_scene() {
     }
 }
 
-/// A shell removes the quotes of what looks like a number or a date.
+/// A shell removes the quotes around text like a number or a date.
 #[test]
 fn what_a_cover_says_is_a_text_on_the_command_line_and_in_quotes_in_a_file() {
     let cover = |set: &[&str]| built_in(set).unwrap().about.cover();
     let stated = cover(&["about.date=2020-01-01", "about.revision=1", "about.number=true"]);
-    let said = [stated.date, stated.revision, stated.number];
-    assert_eq!(said.map(Option::unwrap), ["2020-01-01", "1", "true"]);
+    let entries = [stated.date, stated.revision, stated.number];
+    assert_eq!(entries.map(Option::unwrap), ["2020-01-01", "1", "true"]);
     assert_eq!(cover(&["about.revision=\"1\""]).revision.as_deref(), Some("1"));
     let of_file = Scene::parse(b"[about]\nrevision = 1\n", "s.toml", &[]).unwrap_err().to_string();
     assert!(of_file.contains("a text in quotes"), "{of_file}");
@@ -117,18 +117,18 @@ fn what_a_cover_says_is_a_text_on_the_command_line_and_in_quotes_in_a_file() {
 
 #[test]
 fn a_distribution_of_connectivity_is_given_by_name_or_as_a_table() {
-    let of = |network: &str| {
+    let source = |network: &str| {
         let text = format!("[filter]\ncurve = \"a.csv\"\n[base]\nsingle_mm = 1\n{network}");
         Scene::parse(text.as_bytes(), "s.toml", &[]).map(|scene| scene.network.source())
     };
     let table_3 = NetworkSource::Connected([40, 40, 60], Connectivity::table_3());
-    assert_eq!(of("[network]\nconnectivity = \"table3\"").unwrap(), table_3);
+    assert_eq!(source("[network]\nconnectivity = \"table3\"").unwrap(), table_3);
     for text in [
         "[network]\nnx = 5\nconnectivity = { 5 = 50, 7 = 50.0 }",
         "[network]\nnx = 5\n[network.connectivity]\n7 = 50\n5 = 50",
     ] {
         let expected = Connectivity::new(&[(5, 50.0), (7, 50.0)]).unwrap();
-        assert_eq!(of(text).unwrap(), NetworkSource::Connected([5, 40, 60], expected));
+        assert_eq!(source(text).unwrap(), NetworkSource::Connected([5, 40, 60], expected));
     }
     for (text, message) in [
         (
@@ -145,7 +145,7 @@ fn a_distribution_of_connectivity_is_given_by_name_or_as_a_table() {
         ("connectivity = [6, 100]", "is not allowed"),
         ("connectivity = \"table3\"\nfile = \"n.csv\"", "keep one"),
     ] {
-        let error = of(&format!("[network]\n{text}")).unwrap_err().to_string();
+        let error = source(&format!("[network]\n{text}")).unwrap_err().to_string();
         assert!(error.starts_with("s.toml") && error.contains(message), "{text}: {error}");
     }
 }

@@ -110,7 +110,7 @@ impl LibraryDensity {
     /// From the densest, and the unknown one last.
     pub const ALL: [Self; 4] = [Self::Dense, Self::Intermediate, Self::Loose, Self::Unknown];
 
-    /// From 0, loose, to 1, dense; the middle where it is unknown.
+    /// From 0, loose, to 1, dense; the middle if it is unknown.
     pub fn relative(self) -> f64 {
         match self {
             Self::Loose => 0.0,

@@ -10,11 +10,11 @@ use zip::write::SimpleFileOptions;
 use crate::run::checkpoints;
 use voidwalk_core::store::open_regular;
 
-/// Packs the results in `folder`, below `name`, into a file without a name in `beside`. What begins with a
-/// dot and checkpoints are left out, and no link is followed.
+/// Packs the results in `folder`, below `name`, into a file without a name in `beside`. Names that begin with
+/// a dot and checkpoints are left out, and no link is followed.
 ///
 /// # Errors
-/// What the system says.
+/// Errors of the system.
 pub fn archive(folder: &Path, name: &str, beside: &Path) -> io::Result<File> {
     let mut writer = ZipWriter::new(tempfile::tempfile_in(beside)?);
     add(&mut writer, folder, name)?;

@@ -1,4 +1,4 @@
-//! Every sample of a sheet walked against filters: what the page may ask, and the table that it is shown,
+//! Every sample of a sheet walked against filters: the requests of the page, and the table that it shows,
 //! which grows as the walks are done.
 
 use std::path::PathBuf;

@@ -28,7 +28,7 @@ pub struct Connections {
 
 struct Connection {
     id: u64,
-    /// The way to end it; `None` where it has shown the secret.
+    /// The stream by which to end it; `None` once it has shown the secret.
     shed: Option<TcpStream>,
     since: Instant,
 }

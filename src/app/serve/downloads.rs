@@ -5,8 +5,8 @@ use crate::run::EXAMPLE_FILES;
 
 /// A sheet to try the page with.
 pub(super) fn example(name: &str) -> Result<Answer, (u16, String)> {
-    let found = EXAMPLE_FILES.iter().find(|file| file.name == name);
-    let file = found.ok_or_else(|| (404, "there is no such example".to_owned()))?;
+    let example = EXAMPLE_FILES.iter().find(|file| file.name == name);
+    let file = example.ok_or_else(|| (404, "there is no such example".to_owned()))?;
     Ok(Answer::new(200, "text/plain; charset=utf-8", file.text))
 }
 

@@ -33,7 +33,7 @@ impl Guard {
         format!("http://127.0.0.1:{}/{}/", self.port, self.token)
     }
 
-    /// The path below the secret; `None` where the request is not allowed.
+    /// The path below the secret; `None` if the request is not allowed.
     pub fn path<'a>(&self, request: &'a Request) -> Option<&'a str> {
         if !request.field("host").is_some_and(|name| self.is_host(name)) {
             return None;
@@ -53,7 +53,7 @@ impl Guard {
 
     /// True if this is the name of this machine and port; browsers leave out port 80.
     fn is_host(&self, name: &str) -> bool {
-        ["127.0.0.1", "localhost"].iter().any(|own| match name.strip_prefix(own) {
+        ["127.0.0.1", "localhost"].iter().any(|host| match name.strip_prefix(host) {
             Some("") => self.port == 80,
             Some(port) => port == format!(":{}", self.port),
             None => false,
@@ -76,10 +76,10 @@ mod tests {
     fn only_port_80_goes_without_saying() {
         let names =
             ["localhost", "127.0.0.1", "localhost:80", "127.0.0.1:80", "localhost:8080", "localhost:"];
-        for (port, own) in [(80, &names[..4]), (8080, &names[4..5]), (1, &[])] {
+        for (port, allowed) in [(80, &names[..4]), (8080, &names[4..5]), (1, &[])] {
             let guard = Guard::new(port).unwrap();
             for name in names.iter().chain(&["evil.example", "localhost.evil.example", ""]) {
-                assert_eq!(guard.is_host(name), own.contains(name), "{name} at {port}");
+                assert_eq!(guard.is_host(name), allowed.contains(name), "{name} at {port}");
             }
         }
     }

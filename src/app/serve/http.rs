@@ -1,8 +1,8 @@
 //! One HTTP/1.1 request a connection, read within limits, and its answer.
 //!
-//! Heads are parsed by `httparse`; whatever is larger or slower than the limits below is refused before it is
-//! kept. A body has a length that is said before it; there are no chunks, no second request on a connection,
-//! and so nothing that two readers could divide differently.
+//! Heads are parsed by `httparse`; input that is larger or slower than the limits below is refused before it
+//! is kept. A body has a length that is stated before it; there are no chunks, no second request on a
+//! connection, and so nothing that two readers could divide differently.
 
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream};
@@ -47,7 +47,7 @@ pub struct Request {
 }
 
 impl Request {
-    /// The only value of a header field; `None` where it is not given, or given twice.
+    /// The only value of a header field; `None` if it is not given, or given twice.
     pub fn field(&self, name: &str) -> Option<&str> {
         let mut values = self.fields.iter().filter(|(field, _)| field.eq_ignore_ascii_case(name));
         match (values.next(), values.next()) {
@@ -68,7 +68,7 @@ impl Request {
     }
 }
 
-/// Text without its `%41`; what is no UTF-8 is replaced.
+/// Text without its `%41`; bytes that are not UTF-8 are replaced.
 fn decoded(text: &str) -> String {
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.as_bytes();
@@ -304,7 +304,7 @@ pub fn send(stream: &mut TcpStream, answer: Answer) -> io::Result<()> {
     Ok(())
 }
 
-/// Throws away what is still sent: an end with bytes unread would take the answer with it.
+/// Discards further input: an end with bytes unread would lose the answer.
 fn drain(stream: &mut TcpStream) -> io::Result<()> {
     let (mut stream, mut drained) = (Until::new(stream, DRAIN.0, DRAIN.0), 0);
     let mut piece = vec![0; 64 << 10];

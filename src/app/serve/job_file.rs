@@ -32,11 +32,11 @@ pub struct JobFile {
 }
 
 impl JobFile {
-    /// Keeps this in the job's folder, which is made where it is missing.
+    /// Keeps this in the job's folder, which is made if it is missing.
     ///
     /// # Errors
-    /// The folder is a link, not the program's own, or at work; the request is too large; or what the system
-    /// says.
+    /// The folder is a link, not the program's own, or at work; the request is too large; or errors of the
+    /// system.
     pub fn write(&self, folder: &Path) -> Result<(), RunError> {
         let bytes = self.bytes()?;
         // Its lock marks the folder as the program's own, so that the work may take it.

@@ -71,7 +71,7 @@ impl JobQueue {
         }
     }
 
-    /// Adds a job, keeps what it was asked for in its folder, and gives its number.
+    /// Adds a job, keeps its request in its folder, and returns its number.
     ///
     /// # Errors
     /// Too many wait, which is a refusal; its folder cannot be written.
@@ -174,7 +174,8 @@ impl JobQueue {
         Ok(())
     }
 
-    /// Stops everything, and lets nothing more begin; gives the numbers of what was under way or waited.
+    /// Stops everything, and lets nothing more begin; returns the numbers of jobs that were under way or
+    /// waited.
     pub fn stop_all(&self) -> Vec<usize> {
         let mut all = self.locked();
         self.ends.store(true, Ordering::Relaxed);
@@ -195,12 +196,13 @@ impl JobQueue {
     /// The message of a job that failed; else the jobs that are not done.
     pub fn ended(&self, ids: &[usize]) -> Result<(), RunError> {
         let all = self.locked();
-        let of = |state: JobState| all.iter().filter(move |job| ids.contains(&job.id) && job.state == state);
+        let in_state =
+            |state: JobState| all.iter().filter(move |job| ids.contains(&job.id) && job.state == state);
         let path = |job: &Job| self.context.root.join(&job.folder).display().to_string();
-        if let Some(failed) = of(JobState::Failed).next() {
+        if let Some(failed) = in_state(JobState::Failed).next() {
             return Err(RunError::failed(format!("{}: {}", path(failed), failed.message)));
         }
-        let stopped: Vec<String> = of(JobState::Stopped).map(path).collect();
+        let stopped: Vec<String> = in_state(JobState::Stopped).map(path).collect();
         match stopped.is_empty() {
             true => Ok(()),
             false => Err(RunError::Stopped(format!(
@@ -218,9 +220,9 @@ impl JobQueue {
     }
 
     /// All jobs, the newest first; messages pass through `said`.
-    pub fn snapshot(&self, said: impl Fn(&str) -> String) -> Value {
+    pub fn snapshot(&self, named: impl Fn(&str) -> String) -> Value {
         let all = self.locked();
-        all.iter().rev().map(|job| job.snapshot(&all, &self.context.root, &said)).collect()
+        all.iter().rev().map(|job| job.snapshot(&all, &self.context.root, &named)).collect()
     }
 
     /// Walks one job after another, until `over`.
@@ -244,7 +246,7 @@ impl JobQueue {
             let ended = matches!(state, JobState::Refused | JobState::Failed);
             let file = JobFile::read(&folder);
             if let Some(file) = file.clone().filter(|_| ended) {
-                // Where this cannot be written, the next server has it continue, which it can.
+                // If this cannot be written, the next server lets the job continue, which does no harm.
                 let ended = Some((state.words().to_owned(), message.clone()));
                 let _ = JobFile { ended, ..file }.write(&folder);
             }
@@ -276,7 +278,7 @@ impl JobQueue {
     }
 }
 
-/// Leaves out the jobs that ended first, where there are too many.
+/// Removes the jobs that ended first, if there are too many.
 fn shorten(all: &mut Vec<Job>) {
     let mut more = all.len().saturating_sub(LISTED);
     all.retain(|job| {

@@ -32,7 +32,7 @@ pub struct Live {
     walked: SoFar,
     /// Cases that are done, and all.
     cases: [usize; 2],
-    /// Cases with what came of them.
+    /// Finished cases with their results.
     done: Vec<Value>,
     /// Cases that are walked, with their runs that are done and that are to be walked.
     walking: BTreeMap<String, [u64; 2]>,
@@ -124,7 +124,7 @@ impl Live {
 
     /// Adds a warning for the user.
     pub fn warn(&mut self, warning: &str) {
-        if self.warnings.len() < WARNINGS && !self.warnings.iter().any(|said| said == warning) {
+        if self.warnings.len() < WARNINGS && !self.warnings.iter().any(|earlier| earlier == warning) {
             self.warnings.push(warning.to_owned());
         }
     }
@@ -180,10 +180,10 @@ mod tests {
         for (replicate, eroded) in [(1, 0.50), (2, 0.52), (3, 0.51), (4, 0.49)] {
             walked(&mut live, replicate, 1, eroded);
             walked(&mut live, replicate, 2, 0.01);
-            let said = live.snapshot(2)["so_far"].clone();
-            assert_eq!(said["replicates"], replicate);
-            assert_eq!(said["runs"][0]["low"].is_null(), replicate == 1);
-            assert_eq!(said["class"].as_str(), (replicate == 4).then_some("some erosion"));
+            let so_far = live.snapshot(2)["so_far"].clone();
+            assert_eq!(so_far["replicates"], replicate);
+            assert_eq!(so_far["runs"][0]["low"].is_null(), replicate == 1);
+            assert_eq!(so_far["class"].as_str(), (replicate == 4).then_some("some erosion"));
         }
         // An interval that straddles the threshold is no class either.
         walked(&mut live, 5, 1, 0.0);

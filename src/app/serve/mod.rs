@@ -1,13 +1,13 @@
 //! A page on this machine alone: sheets in, curves, rules, walks and their verdicts out.
 //!
-//! Nobody else can reach it: it listens on the loopback address, answers only who knows the secret in the
-//! address, by this machine's own name, and no page of another origin (`guard.rs`). Requests are bounded
-//! (`http.rs`), the page fetches nothing from outside and runs its own script only.
+//! Only the user can reach it: it listens on the loopback address, answers only clients that know the secret
+//! in the address, by this machine's own name, and no page of another origin (`guard.rs`). Requests are
+//! bounded (`http.rs`), the page fetches nothing from outside and runs its own script only.
 //!
-//! Every answer is a call of the library (`routes.rs`); what is walked is a folder of a run or a batch
-//! in the server's folder (`jobs.rs`), as the command line makes them. What was asked is kept there
-//! too, so that a later server on the folder lists every job and continues it; `voidwalk resume` continues a
-//! run that has begun to walk.
+//! Every answer is a call of the library (`routes.rs`); each walk is a folder of a run or a batch in the
+//! server's folder (`jobs.rs`), as the command line makes them. Requests are kept there too, so that a later
+//! server on the folder lists every job and continues it; `voidwalk resume` continues a run that has begun to
+//! walk.
 
 mod archive;
 mod batches;
@@ -98,18 +98,18 @@ impl Server {
         self.routes.guard.address()
     }
 
-    /// Where sheets and results are.
+    /// Folder of sheets and results.
     pub fn folder(&self) -> &Path {
         self.folder.path()
     }
 
-    /// Answers requests and walks jobs, until `stop`; then saves what is under way.
+    /// Answers requests and walks jobs, until `stop`; then saves the work under way.
     ///
     /// # Errors
     /// A job that was under way or waited then is not done, and can be continued; or it failed.
     pub fn run(self, stop: &AtomicBool) -> Result<(), RunError> {
         let (routes, listener) = (Arc::clone(&self.routes), self.listener);
-        // It ends with the process: what it waits for may never come.
+        // It ends with the process: its next connection may never come.
         let answering = std::thread::Builder::new().spawn(move || accept(&listener, &routes));
         answering.map_err(RunError::no_thread)?;
         std::thread::scope(|scope| {
@@ -120,7 +120,7 @@ impl Server {
                 std::thread::sleep(Duration::from_millis(100));
             }
             let open = self.routes.jobs.stop_all();
-            // The worker has saved what it was at when it is over.
+            // The worker has saved its work when it ends.
             worker.join().map_err(|_| RunError::failed("a fault of the program, while a job was done"))?;
             self.routes.jobs.ended(&open)
         })
@@ -144,7 +144,7 @@ fn accept(listener: &TcpListener, routes: &Arc<Routes>) {
             continue;
         };
         let routes = Arc::clone(routes);
-        // Where there is no thread for it, the connection ends and its place is free again.
+        // If there is no thread for it, the connection ends and its place is free again.
         let _ = std::thread::Builder::new().name("answer".into()).spawn(move || {
             answer(stream, &place, &routes);
         });

@@ -97,8 +97,8 @@ type Problem = (u16, String);
 /// like it.
 fn constrictions(filter: &Gradation) -> Vec<(String, Vec<CurvePoint>)> {
     let curve = |density: LibraryDensity| {
-        let found = LibraryFilter::find(filter, density).ok()??.found;
-        Some((format!("constrictions, {}, by number", density.name()), found.curve.points()))
+        let entry = LibraryFilter::find(filter, density).ok()??.found;
+        Some((format!("constrictions, {}, by number", density.name()), entry.curve.points()))
     };
     [LibraryDensity::Loose, LibraryDensity::Dense].into_iter().filter_map(curve).collect()
 }
@@ -109,9 +109,11 @@ fn wrong(error: impl std::fmt::Display) -> Problem {
 }
 
 /// Message of the command line in the words of the page, whose ticks and fields replace options.
-fn on_page(said: &str) -> String {
-    let said = said.strip_prefix("--set: ").or_else(|| said.strip_prefix("--set, ")).unwrap_or(said);
-    said.replace("(--as-given)", "(the tick \"base and filter are as given\")")
+fn on_page(message: &str) -> String {
+    let message =
+        message.strip_prefix("--set: ").or_else(|| message.strip_prefix("--set, ")).unwrap_or(message);
+    message
+        .replace("(--as-given)", "(the tick \"base and filter are as given\")")
         .replace("--as-sampled", "the tick \"walk the base as it was sampled\"")
 }
 
@@ -234,7 +236,7 @@ impl Routes {
                 let names = batches::filter_names(&self.sheets, &filters);
                 let of_samples = self.sheets.as_named(&samples.display().to_string());
                 let plan = self.batch(&asked, &samples, &filters)?;
-                let plan = plan.named(&of_samples, &names, |said| self.sheets.as_named(said));
+                let plan = plan.named(&of_samples, &names, |message| self.sheets.as_named(message));
                 let title = asked.title(&of_samples, &names);
                 Ok(Planned { title, asked: sheets, work: Work::Batch(Box::new(plan)) })
             }
@@ -297,8 +299,8 @@ impl Routes {
         SampleTable::new(&self.sheets, &base, &filters, pair_options(request)?).map_err(wrong)
     }
 
-    /// The sieve curves of the sheets that are named, in one drawing, and what the library knows of the
-    /// filter's constrictions.
+    /// The sieve curves of the sheets that are named, in one drawing, with the library's constrictions of the
+    /// filter.
     fn curves(&self, request: &Request) -> Result<Answer, Problem> {
         let (mut soils, mut passages) = (Vec::new(), Vec::new());
         for (name, role) in [("base", "base"), ("filter", "filter"), ("more", "")] {
@@ -406,7 +408,7 @@ fn bounded(changes: &[String]) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Every setting of a scene with what it means, and what ships with the program.
+/// Every setting of a scene with its meaning, and the curves and filters that ship with the program.
 fn form() -> Value {
     let keys: Vec<Value> = Scene::keys()
         .iter()

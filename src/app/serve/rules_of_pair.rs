@@ -13,7 +13,7 @@ use voidwalk_practice::rule_result::{RuleResult, result_of};
 /// The columns that the page shows.
 const SHOWN: [&str; 7] = ["result", "rule", "authority", "quantity", "value", "limit", "note"];
 
-/// The rules part by part with what they say of the pair: the page works nothing out.
+/// The rules part by part with their results for the pair: the page computes nothing.
 pub fn rules_of_pair(pair: &PairRules) -> Value {
     let decision = pair.decision();
     let listed = decision.listed();

@@ -86,7 +86,7 @@ impl Sheets {
     /// Keeps a sheet, if soils can be read from it.
     ///
     /// # Errors
-    /// What `voidwalk soil` says of it; there is no more room.
+    /// The errors of `voidwalk soil`; there is no more room.
     pub fn add(&self, name: &str, bytes: &[u8]) -> Result<Arc<Sheet>, String> {
         let size = bytes.len() as u64;
         {
@@ -115,7 +115,7 @@ impl Sheets {
         let path = folder.join(harmless(name));
         let written = write_whole(&path, bytes).map_err(|error| error.to_string());
         written.and_then(|()| Sheet::of(id, &path)).map_err(|problem| {
-            // Nothing is left of what is no sheet; where that fails it stays, and harms nobody.
+            // Removes a file that is not a sheet; if that fails it stays, and does no harm.
             let _ = std::fs::remove_file(&path).and_then(|()| std::fs::remove_dir(&folder));
             self.as_named(&problem)
         })
@@ -259,8 +259,8 @@ mod tests {
         assert_eq!(sheet.name, "good.csv");
         assert!(sheets.path(&format!("{}#good", sheet.id)).unwrap().starts_with(root.path()));
         for wrong in ["7", "1#../x", "x", "1#"] {
-            let found = sheets.path(wrong);
-            assert_eq!(found.is_ok(), wrong == "1#", "{wrong}: {found:?}");
+            let path = sheets.path(wrong);
+            assert_eq!(path.is_ok(), wrong == "1#", "{wrong}: {path:?}");
         }
         let hidden = "size_mm,a\u{1b}\u{202e}b,c\n1,0,0\n2,100,100\n";
         sheets.add("hidden.csv", hidden.as_bytes()).unwrap();
@@ -293,10 +293,10 @@ mod tests {
         for name in ["a.csv", "b.csv", wide.as_str()] {
             sheets.add(name, b"size_mm,percent\n1,0\n2,100\n").unwrap();
         }
-        let of =
+        let listed =
             |root: &Path| Sheets::new(root).all().iter().map(|s| (s.id, s.name.clone())).collect::<Vec<_>>();
         let before: Vec<_> = sheets.all().iter().map(|s| (s.id, s.name.clone())).collect();
-        assert_eq!((of(root.path()), before.len()), (before.clone(), 3));
+        assert_eq!((listed(root.path()), before.len()), (before.clone(), 3));
         let folder = root.path().join(FOLDER);
         let outside = root.path().join("outside.csv");
         std::fs::rename(folder.join("1/a.csv"), &outside).unwrap();
@@ -304,7 +304,7 @@ mod tests {
         std::os::unix::fs::symlink(&outside, folder.join("1/a.csv")).unwrap();
         std::fs::write(folder.join("2/b.csv"), "no soil").unwrap();
         std::fs::create_dir(folder.join("18446744073709551615")).unwrap();
-        assert_eq!(of(root.path()), before[2..]);
+        assert_eq!(listed(root.path()), before[2..]);
         // Files that are not listed are not overwritten.
         let next = Sheets::new(root.path()).add("c.csv", b"size_mm,percent\n1,0\n2,100\n").unwrap();
         assert_eq!(next.id, 4);

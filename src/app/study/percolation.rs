@@ -15,7 +15,7 @@ use crate::run::folder::{FolderKind, claim};
 use crate::run::machine::on_threads;
 use voidwalk_core::network::{Network, NetworkError, percolation_threshold};
 
-/// Where a percolation study goes, and what it is asked for.
+/// Options of a percolation study, and the folder of its results.
 #[derive(Clone, Debug)]
 pub struct PercolationOptions {
     /// Plan of the study.
@@ -64,15 +64,15 @@ struct Found {
 /// Finds the thresholds and writes `percolation.csv` and, last, `percolation.json`.
 ///
 /// # Errors
-/// Sizes that no lattice can have and a folder that cannot be claimed are refused before any work; what the
-/// folder says. After a kill the same command continues with the lattice that was under way.
+/// Sizes that no lattice can have and a folder that cannot be claimed are refused before any work; errors of
+/// the folder. After a kill the same command continues with the lattice that was under way.
 pub fn run(options: &PercolationOptions, callbacks: &Callbacks) -> Result<PercolationStudy, RunError> {
     let plan = options.plan.clone().checked().map_err(RunError::refused)?;
     let kind = FolderKind::Percolation;
     let folder = claim(&options.out, kind, options.overwrite)?;
     let work = serde_json::to_string(&plan)?;
-    kept::study((&folder, kind, options.overwrite), work, callbacks, |kept, found| {
-        let found = on_threads(options.threads, || plan.run(found.unwrap_or_default(), Some(kept)))?;
+    kept::study((&folder, kind, options.overwrite), work, callbacks, |kept, earlier| {
+        let found = on_threads(options.threads, || plan.run(earlier.unwrap_or_default(), Some(kept)))?;
         folder.write("percolation.csv", &csv(&found))?;
         Ok(PercolationStudy::new(plan.seed, &found.thresholds, found.seconds))
     })

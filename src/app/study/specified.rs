@@ -160,7 +160,7 @@ pub(super) fn no_base(d85: f64) -> String {
 /// Writes limits, steps and products as CSV.
 ///
 /// # Errors
-/// What the system says.
+/// Errors of the system.
 fn write_tables(folder: &Folder, specification: &Specification) -> Result<(), StoreError> {
     let steps: Vec<_> = specification.steps.iter().flat_map(step_rows).collect();
     let products = products::columns(SizeUnit::Mm).csv(&specification.products);

@@ -16,10 +16,10 @@ use crate::run::error::RunError;
 use crate::run::folder::{FolderKind, claim};
 use voidwalk_core::store::{make_folder, write_whole};
 
-/// Processors of a task, where the user does not say.
+/// Default number of processors of a task.
 const PROCESSORS: u64 = 4;
 
-/// A task is estimated to take this long, where the user does not say how many there are (s).
+/// Target time of a task, if the user gives no number of tasks (s).
 const TASK_S: f64 = 600.0;
 
 /// Options of the job scripts.
@@ -27,7 +27,7 @@ const TASK_S: f64 = 600.0;
 pub struct JobOptions {
     /// The program.
     pub program: PathBuf,
-    /// The words between it and its command: `-m voidwalk` where the program is Python.
+    /// The words between it and its command: `-m voidwalk` if the program is Python.
     pub words: Vec<String>,
     /// The plan's file.
     pub plan: PathBuf,
@@ -38,13 +38,13 @@ pub struct JobOptions {
 /// The scripts that were written.
 #[derive(Clone, Debug)]
 pub struct WrittenJobs {
-    /// Cases of the plan that are done already; nothing is written where all are.
+    /// Cases of the plan that are done already; nothing is written if all are.
     pub done: usize,
     /// Cases that the array walks.
     pub cases: usize,
     /// Tasks of the array.
     pub tasks: usize,
-    /// Packings that are made first, and what the largest takes.
+    /// Packings that are made first, and the needs of the largest.
     pub packings: (usize, TaskNeeds),
     /// Needs of the largest task.
     pub walk: TaskNeeds,
@@ -122,7 +122,7 @@ pub fn write_job_scripts(
     Ok(written)
 }
 
-/// The packings to be made first, all of the plan where one is missing, and what the largest takes.
+/// The packings to be made first, all of the plan if one is missing, and the needs of the largest.
 fn packings(drafts: &Drafts, options: &CaseOptions) -> Result<(usize, TaskNeeds), RunError> {
     let all = drafts.packings();
     let (mut missing, mut needs) = (false, TaskNeeds { seconds: 0.0, bytes: 0 });
@@ -156,7 +156,7 @@ fn open_cases<'a>(
     Ok(cases)
 }
 
-/// Further words of the program's command line: where it walks, and where it collects.
+/// Further words of the program's command lines that walk and that collect.
 fn command_words(options: &CaseOptions) -> (Vec<String>, Vec<String>) {
     let mut words = Vec::new();
     if let Some(packings) = &options.packings {

@@ -1,9 +1,9 @@
 //! Reliability of the locks of a folder's file system.
 //!
 //! Cases are claimed by locks. On most file systems that clusters share, a lock that one node holds keeps the
-//! others out; on some, or mounted in some ways, every node sees its own locks only, and nothing tells. Then
-//! several tasks may walk one case: the same results, at more cost. This reads how the folder is mounted and
-//! says where that may be so.
+//! others out; on some, or mounted in some ways, every node sees its own locks only, without any sign of it.
+//! Then several tasks may walk one case: the same results, at more cost. This module reads the mount of the
+//! folder and warns if that may happen.
 
 use std::path::{Path, PathBuf};
 
@@ -48,19 +48,21 @@ impl Mount {
     }
 
     fn doubt(&self) -> Option<String> {
-        let each = "locks hold on one node only";
+        let one_node = "locks hold on one node only";
         let why = match self.kind.as_str() {
-            "nfs" | "nfs4" if self.has("nolock") => format!("it is mounted with `nolock`: {each}"),
+            "nfs" | "nfs4" if self.has("nolock") => format!("it is mounted with `nolock`: {one_node}"),
             "nfs" | "nfs4" if self.has("local_lock=all") || self.has("local_lock=flock") => {
-                format!("it is mounted with `local_lock`: {each}")
+                format!("it is mounted with `local_lock`: {one_node}")
             }
-            "lustre" if self.has("localflock") => format!("it is mounted with `localflock`: {each}"),
+            "lustre" if self.has("localflock") => format!("it is mounted with `localflock`: {one_node}"),
             "lustre" if !self.has("flock") => "it is mounted without `flock`: there are no locks".to_owned(),
             "beegfs" => {
-                format!("unless `tuneUseGlobalFileLocks = true` stands in its client's configuration, {each}")
+                format!(
+                    "unless `tuneUseGlobalFileLocks = true` stands in its client's configuration, {one_node}"
+                )
             }
-            "cifs" | "smb3" if self.has("nobrl") => format!("it is mounted with `nobrl`: {each}"),
-            "fuse.sshfs" | "9p" => each.to_owned(),
+            "cifs" | "smb3" if self.has("nobrl") => format!("it is mounted with `nobrl`: {one_node}"),
+            "fuse.sshfs" | "9p" => one_node.to_owned(),
             "tmpfs" | "overlay" | "ramfs" => "it is this machine's own: other nodes do not see it".to_owned(),
             _ => return None,
         };
@@ -114,8 +116,8 @@ mod tests {
             ("/bee/x", "tuneUseGlobalFileLocks"),
             ("/tmp/x", "other nodes do not see it"),
         ] {
-            let said = doubt(path).unwrap();
-            assert!(said.contains(words), "{path}: {said}");
+            let warning = doubt(path).unwrap();
+            assert!(warning.contains(words), "{path}: {warning}");
         }
     }
 

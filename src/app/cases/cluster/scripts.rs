@@ -20,7 +20,7 @@ const TIME_MARGIN: f64 = 4.0;
 /// (minutes).
 const LONGEST_MIN: u64 = 24 * 60;
 
-/// Time for what no estimate holds: a busy file system, the start of the program (minutes).
+/// Time for delays that no estimate includes: a busy file system, the start of the program (minutes).
 const SLACK_MIN: u64 = 10;
 
 /// Needs of one task of a job.
@@ -72,13 +72,13 @@ pub struct Jobs<'a> {
     pub plan: &'a Path,
     /// The campaign's folder.
     pub out: &'a Path,
-    /// Further words of the program's command line, where it walks or packs.
+    /// Further words of the program's command line that walks or packs.
     pub options: Vec<String>,
     /// Options of the command that collects.
     pub collecting: Vec<String>,
     /// Processors of a task.
     pub processors: u64,
-    /// Filters to pack, and what the largest takes.
+    /// Filters to pack, and the needs of the largest.
     pub packings: (usize, TaskNeeds),
     /// Names of the cases of each task.
     pub tasks: Vec<Vec<&'a str>>,
@@ -118,7 +118,7 @@ impl Jobs<'_> {
             ("CASES", cases.to_string()),
         ];
         let job = |template: &str, options: &[String], tasks: usize, need: &TaskNeeds| {
-            let own = [
+            let of_job = [
                 ("OPTIONS", words(options)),
                 ("TASKS", tasks.to_string()),
                 ("PROCESSORS", self.processors.to_string()),
@@ -126,7 +126,7 @@ impl Jobs<'_> {
                 ("MINUTES", need.minutes().to_string()),
                 ("ESTIMATE", need.in_words()),
             ];
-            fill(template, &[&common[..], &own[..]].concat())
+            fill(template, &[&common[..], &of_job[..]].concat())
         };
         let walks = format!("{cases} cases in {} tasks, then the ledger and the page", self.tasks.len());
         let (packings, pack) = &self.packings;
@@ -166,7 +166,7 @@ impl Jobs<'_> {
     }
 }
 
-/// Replaces `@NAME@`, once over: what is filled in is not looked through again.
+/// Replaces `@NAME@`, once: inserted text is not searched again.
 fn fill(template: &str, values: &[(&str, String)]) -> String {
     let mut text = String::new();
     let mut rest = template;

@@ -39,7 +39,7 @@ fn the_plan_to_start_from_is_one_and_names_every_key() {
     assert!(whole.cases.iter().all(|case| case.scene.walk.seed == 1), "common seeds");
     let known = plan("no = 1").unwrap_err().to_string();
     for key in ["title", "seed", "seeds", "scene", "set", "factor", "leave_out", "case"] {
-        let is_there = [format!("{key} = "), format!("[{key}]")].iter().any(|of| text.contains(of));
+        let is_there = [format!("{key} = "), format!("[{key}]")].iter().any(|form| text.contains(form));
         assert!(is_there && known.contains(key), "{key}: {known}");
     }
 }
@@ -56,13 +56,13 @@ fn a_level_may_be_a_length_with_its_unit() {
 
 #[test]
 fn a_range_is_even_and_has_both_ends() {
-    let of = |range: &str| {
+    let levels = |range: &str| {
         let text = format!("[[factor]]\nname = \"cu\"\nsetting = \"base.cu\"\nrange = {range}\n");
         plan(&text).map(|plan| plan.cases.into_iter().map(|case| case.name).collect::<Vec<_>>())
     };
-    let names = of("{ from = 2.1, to = 3, count = 4 }").unwrap();
+    let names = levels("{ from = 2.1, to = 3, count = 4 }").unwrap();
     assert_eq!(names, ["cu=2.1", "cu=2.4", "cu=2.7", "cu=3"]);
-    assert_eq!(of("{ from = 6, to = 2, count = 3 }").unwrap(), ["cu=6", "cu=4", "cu=2"]);
+    assert_eq!(levels("{ from = 6, to = 2, count = 3 }").unwrap(), ["cu=6", "cu=4", "cu=2"]);
     for (range, message) in [
         ("{ from = 2, to = 3, count = 1 }", "a `count` from 2 to 1000"),
         ("{ from = 2, to = inf, count = 3 }", "has two numbers"),
@@ -70,7 +70,7 @@ fn a_range_is_even_and_has_both_ends() {
         ("{ from = 2, to = 2, count = 3 }", "level `2` twice"),
         ("{ from = 2, to = 3, count = 2 }\nvalues = [4]", "either `values` or `range`"),
     ] {
-        let error = of(range).unwrap_err().to_string();
+        let error = levels(range).unwrap_err().to_string();
         assert!(error.contains(message), "{range}: {error}");
     }
 }

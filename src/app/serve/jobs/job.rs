@@ -1,4 +1,4 @@
-//! One job of the page: what it was asked for, how far it is, and what the page is told of it.
+//! One job of the page: its request, its state, and its description for the page.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -83,8 +83,8 @@ impl Job {
         ended_early && !matches!(self.work, Work::Nothing)
     }
 
-    /// JSON of the job for the page; messages pass through `said`.
-    pub fn snapshot(&self, all: &[Job], root: &Path, said: &impl Fn(&str) -> String) -> Value {
+    /// JSON of the job for the page; messages pass through `named`.
+    pub fn snapshot(&self, all: &[Job], root: &Path, named: &impl Fn(&str) -> String) -> Value {
         let waits = |job: &&Job| job.state == JobState::Waiting && job.id < self.id;
         let page = ["report.html", "batch.html"]
             .into_iter()
@@ -98,7 +98,7 @@ impl Job {
         json!({
             "id": self.id,
             "kind": kind,
-            "title": said(&self.title),
+            "title": named(&self.title),
             "asked": self.asked,
             "folder": self.folder,
             "path": root.join(&self.folder).display().to_string(),
@@ -106,21 +106,21 @@ impl Job {
             "stopping": self.state == JobState::Running && self.stop.load(Ordering::Relaxed),
             "can_continue": self.can_continue(root),
             "before": all.iter().filter(waits).count(),
-            "message": said(&self.message),
+            "message": named(&self.message),
             "page": page.map(|page| format!("files/{}/{page}", self.folder)),
             "replicates": replicates,
-            "live": all_said(&live.snapshot(runs), said),
-            "result": all_said(&self.result, said),
+            "live": all_said(&live.snapshot(runs), named),
+            "result": all_said(&self.result, named),
         })
     }
 }
 
 /// A result whose every text has passed through `said`.
-fn all_said(value: &Value, said: &impl Fn(&str) -> String) -> Value {
+fn all_said(value: &Value, named: &impl Fn(&str) -> String) -> Value {
     match value {
-        Value::String(text) => Value::String(said(text)),
-        Value::Array(all) => all.iter().map(|one| all_said(one, said)).collect(),
-        Value::Object(all) => all.iter().map(|(key, one)| (key.clone(), all_said(one, said))).collect(),
+        Value::String(text) => Value::String(named(text)),
+        Value::Array(all) => all.iter().map(|one| all_said(one, named)).collect(),
+        Value::Object(all) => all.iter().map(|(key, one)| (key.clone(), all_said(one, named))).collect(),
         other => other.clone(),
     }
 }

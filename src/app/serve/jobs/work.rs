@@ -34,14 +34,14 @@ pub enum Work {
     Batch(Box<BatchPlan>),
     /// Work that its folder describes: it is planned again when the job continues.
     Kept,
-    /// Continues a run whose folder does not keep what was asked.
+    /// Continues a run whose folder does not keep the request.
     Resume,
-    /// Nothing: nobody knows what was asked.
+    /// Nothing: the request is unknown.
     Nothing,
 }
 
 impl Work {
-    /// With what the name of its folder begins.
+    /// Beginning of the name of its folder.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Batch(_) => "batch",
@@ -63,10 +63,10 @@ pub struct WorkContext {
 }
 
 impl WorkContext {
-    /// Does a job, and gives what the page shows of its result.
+    /// Does a job, and returns the JSON of its result for the page.
     ///
     /// # Errors
-    /// Those of the call.
+    /// Errors of the call.
     pub fn work(
         &self,
         folder: &Path,

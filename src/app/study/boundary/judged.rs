@@ -1,4 +1,4 @@
-//! A row at one ratio with its sizes, and what a reader must know of the model there.
+//! A row at one ratio with its sizes, and notes on the model there for a reader.
 
 use super::row::Row;
 use crate::case::{Case, CaseBase, CaseSupply, StatedBase};
@@ -36,7 +36,7 @@ pub(super) struct Judged {
     d85_mm: Option<f64>,
     /// The base that was stated.
     pub base_name: String,
-    /// Thickness of the real filter (mm), where nothing here has a size to compare it with.
+    /// Thickness of the real filter (mm), if nothing here has a size to compare it with.
     real_thickness: Option<f64>,
 }
 
@@ -72,8 +72,8 @@ impl Judged {
             case.scene.base.gradation()
         {
             // The filter's size says the base's.
-            let of = &mut case.scene.base;
-            (of.d85_mm, of.d85_at_dc, of.dc_curve, of.d15f_over_d85b) = (Some(d85), None, None, None);
+            let keys = &mut case.scene.base;
+            (keys.d85_mm, keys.d85_at_dc, keys.dc_curve, keys.d15f_over_d85b) = (Some(d85), None, None, None);
         }
         let (base, filter) = (case.base.as_given(), &case.filter.gradation);
         case.mistake = Mistake::find(base, filter, case.is_scale_free()).map(|mistake| mistake.note);
@@ -89,13 +89,13 @@ impl Judged {
         let not_compared =
             self.real_thickness.map(|real_mm| Note::ThicknessWithoutUnit { real_mm, unit: "D85B".into() });
         let of_case = self.case.notes().into_iter();
-        let found = of_case.filter(|note| Some(note) != of_one.as_ref());
-        let found = found
+        let notes = of_case.filter(|note| Some(note) != of_one.as_ref());
+        let notes = notes
             .chain(self.case.unchecked_clogging())
             .chain(coarse)
             .chain(not_compared)
             .chain(of_search(row))
             .chain(others);
-        ordered(found)
+        ordered(notes)
     }
 }

@@ -56,9 +56,8 @@ use voidwalk_core::schema::setting_name;
 /// Finds the boundaries and writes `boundary.csv` and, last, `boundary.json`.
 ///
 /// # Errors
-/// Settings that are wrong and a folder that cannot be claimed are refused before any work; then what a
-/// packing or a walk brings. After a stop or a kill the same command continues with the networks that are
-/// left.
+/// Settings that are wrong and a folder that cannot be claimed are refused before any work; then errors of a
+/// packing or a walk. After a stop or a kill the same command continues with the networks that are left.
 pub fn run(options: &BoundaryOptions, callbacks: &Callbacks) -> Result<Boundaries, RunError> {
     on_threads(options.prepare.threads, || run_within(options, BRACKET, callbacks))
 }
@@ -66,7 +65,7 @@ pub fn run(options: &BoundaryOptions, callbacks: &Callbacks) -> Result<Boundarie
 /// Finds whatever is wrong, as [`run`] would before any work; claims and writes nothing.
 ///
 /// # Errors
-/// The same.
+/// See [`run`].
 pub fn check(options: &BoundaryOptions) -> Result<(), RunError> {
     on_threads(options.prepare.threads, || drafts(options, BRACKET).map(drop))
 }
@@ -122,7 +121,7 @@ impl DraftedRow {
                     .into(),
             );
         };
-        // One millimetre where it is stated, else the unit.
+        // One millimetre if it is stated, else the unit.
         let states_d0 = options.settings.iter().any(|setting| setting_name(setting) == "filter.d0_mm");
         let filter_has_size = states_d0 || !case.is_scale_free();
         let has_size = match scene.base.gradation() {
@@ -227,7 +226,7 @@ fn searched(
     let (done, writing) = (Mutex::new(done), Mutex::new(()));
     let searching = Searching { rows, bracket, done, writing, kept, callbacks, begun_at_once };
     let ended = others.into_par_iter().try_for_each(|row| searching.row(row)).and_then(|()| {
-        // Those that hold more by the look of them are searched where they may set the answer all the same.
+        // Ends that seem to hold more are searched if they may still set the answer.
         let row_or_less = |row: usize| match searching.holds_clearly_more(row, &less[row])? {
             true => Ok(()),
             false => searching.row(row),
@@ -250,7 +249,7 @@ struct Searching<'a> {
     rows: &'a [Row],
     bracket: [f64; 2],
     done: Mutex<Vec<Done>>,
-    /// Held by the one thread that writes what is done.
+    /// Held by the one thread that writes finished work.
     writing: Mutex<()>,
     kept: &'a Kept<'a>,
     callbacks: &'a Callbacks<'a>,
@@ -259,22 +258,23 @@ struct Searching<'a> {
 }
 
 impl Searching<'_> {
-    /// Searches every network of a row that is not done. The first says where to look on the others; while
-    /// its second run is searched, some of them begin.
+    /// Searches every network of a row that is not done. The first gives hints for the others; while its
+    /// second run is searched, some of them begin.
     fn row(&self, row: usize) -> Result<(), RunError> {
-        let of = &self.rows[row];
-        let found = |network: u64| {
+        let settings = &self.rows[row];
+        let result = |network: u64| {
             let done = self.done();
             done.iter().find(|done| (done.row, done.network) == (row, network)).map(|done| done.found.clone())
         };
-        let left: Vec<u64> = (1..=of.networks()).filter(|network| found(*network).is_none()).collect();
+        let left: Vec<u64> = (1..=settings.networks()).filter(|network| result(*network).is_none()).collect();
         let with = |hint: Hint| (self.bracket, hint);
         let (others, mut soon) = match left.split_first() {
             Some((1, others)) => {
-                let first = of.begun(1, with(Hint::default()), self.callbacks)?;
+                let first = settings.begun(1, with(Hint::default()), self.callbacks)?;
                 let hint = first.hint();
                 let (soon, others) = others.split_at(others.len().min(self.begun_at_once));
-                let begin = |&network: &u64| Ok((network, of.begun(network, with(hint), self.callbacks)?));
+                let begin =
+                    |&network: &u64| Ok((network, settings.begun(network, with(hint), self.callbacks)?));
                 let (first, soon) = rayon::join(
                     || self.keep(row, 1, first.ended(None)?),
                     || soon.par_iter().map(begin).collect::<Result<Vec<_>, RunError>>(),
@@ -284,7 +284,7 @@ impl Searching<'_> {
             }
             _ => (&left[..], Vec::new()),
         };
-        let hint = found(1).map(|first| Hint::of(&first)).unwrap_or_default();
+        let hint = result(1).map(|first| Hint::of(&first)).unwrap_or_default();
         let (begun, whole) = rayon::join(
             || {
                 soon.par_drain(..).try_for_each(|(network, begun)| {
@@ -293,7 +293,7 @@ impl Searching<'_> {
             },
             || {
                 others.par_iter().try_for_each(|&network| {
-                    self.keep(row, network, of.search(network, with(hint), self.callbacks)?)
+                    self.keep(row, network, settings.search(network, with(hint), self.callbacks)?)
                 })
             },
         );
@@ -304,7 +304,8 @@ impl Searching<'_> {
     /// answer.
     fn holds_clearly_more(&self, row: usize, less: &[usize]) -> Result<bool, RunError> {
         let less: Vec<(usize, u64)> = less.iter().map(|&less| (less, self.rows[less].networks())).collect();
-        let first = |done: &Vec<Done>| done.iter().find(|done| done.row == row).map(|of| of.found.spared_at);
+        let first =
+            |done: &Vec<Done>| done.iter().find(|done| done.row == row).map(|done| done.found.spared_at);
         let (known, ratio) = {
             let done = self.done();
             (first(&done), clear_of(&done, &less))
@@ -321,7 +322,7 @@ impl Searching<'_> {
 
     /// Keeps a network that is done.
     fn keep(&self, row: usize, network: u64, found: Found) -> Result<(), RunError> {
-        let of = &self.rows[row];
+        let settings = &self.rows[row];
         let words = |ratio: Option<f64>| ratio.map_or("beyond the search".into(), |r| format!("{r:.3}"));
         let holds = match found.spared_at {
             Some(ratio) => format!("D15F/D85B {ratio:.3} holds"),
@@ -333,9 +334,9 @@ impl Searching<'_> {
         };
         let text = format!(
             "{}, {}, network {network} of {}: {holds} ({} ratios walked)",
-            of.density,
-            of.thickness,
-            of.networks(),
+            settings.density,
+            settings.thickness,
+            settings.networks(),
             found.walks.len()
         );
         (self.callbacks.on_event)(Event::Studying(&text));
@@ -343,8 +344,8 @@ impl Searching<'_> {
         self.write()
     }
 
-    /// Writes what is done, unless another thread writes: that one goes on until nothing is left, so that no
-    /// search waits for a disk.
+    /// Writes finished work, unless another thread writes: that thread continues until nothing is left, so
+    /// that no search waits for a disk.
     fn write(&self) -> Result<(), RunError> {
         loop {
             let Ok(writing) = self.writing.try_lock() else { return Ok(()) };

@@ -1,6 +1,6 @@
 //! Notes on boundaries: of thin filters, and of searches that end too soon.
 
-use super::tests::{found, found_within, of_base, options, tiny};
+use super::tests::{found_within, of_base, options, searched, tiny};
 use super::*;
 use voidwalk_practice::Note;
 use voidwalk_practice::design::RowNote;
@@ -11,7 +11,7 @@ fn a_thickness_of_less_than_a_layer_is_not_passed_off_as_one() {
     let base = of_base(folder.path(), "base.csv", &[(0.1, 0.0), (0.2, 100.0)]);
     let thicknesses = vec![Thickness::Mm(0.05), Thickness::Mm(0.9)];
     let options = options(&folder.path().join("out"), &["no layers"]);
-    let all = found(&BoundaryOptions { base: Some(base), thicknesses, ..options });
+    let all = searched(&BoundaryOptions { base: Some(base), thicknesses, ..options });
     let (thin, row) = (&all.boundaries[0], &all.boundaries[1]);
     assert!(thin.layers == 1 && thin.thickness_mm.unwrap() > 0.1, "{thin:?}");
     let is_thicker =
@@ -26,23 +26,24 @@ fn a_thickness_of_less_than_a_layer_is_not_passed_off_as_one() {
 #[test]
 fn an_end_that_holds_all_that_was_searched_limits_nothing() {
     let folder = tempfile::tempdir().unwrap();
-    let of = |name: &str, bracket: [f64; 2]| {
+    let result = |name: &str, bracket: [f64; 2]| {
         let (densities, filter) = (vec!["estimate=0.5".into()], Some("1.5".into()));
         let options = tiny(&folder.path().join(name), &["network.nz=6"]);
         found_within(&BoundaryOptions { densities, filter, ..options }, bracket)
     };
-    let least = |of: &Boundaries| of.least_held().map(|(_, ratio)| ratio);
-    let has = |of: &Boundaries, id: &str| of.notes.iter().any(|row| row.note.id() == id);
-    let wide = of("wide", [0.8, 30.0]);
-    let end = |number: usize| wide.boundaries[number].networks.iter().filter_map(|of| of.no_erosion);
-    let narrow = of("narrow", [0.8, 1.01 * end(0).fold(0.0, f64::max)]);
+    let least = |all: &Boundaries| all.least_held().map(|(_, ratio)| ratio);
+    let has = |all: &Boundaries, id: &str| all.notes.iter().any(|row| row.note.id() == id);
+    let wide = result("wide", [0.8, 30.0]);
+    let end =
+        |number: usize| wide.boundaries[number].networks.iter().filter_map(|network| network.no_erosion);
+    let narrow = result("narrow", [0.8, 1.01 * end(0).fold(0.0, f64::max)]);
     assert!(narrow.boundaries[1].no_erosion.is_none(), "{:?}", narrow.boundaries[1]);
     assert!(least(&wide).is_some() && least(&narrow) == least(&wide));
     assert!(!has(&narrow, "holds_everywhere"));
     // A note reports that even the loosest holds everything, or holds nothing.
-    let short = of("short", [0.5, 0.9 * end(2).fold(f64::MAX, f64::min)]);
+    let short = result("short", [0.5, 0.9 * end(2).fold(f64::MAX, f64::min)]);
     assert!(least(&short).is_some() && has(&short, "holds_everywhere"));
-    let high = of("high", [1.1 * end(2).fold(0.0, f64::max), 30.0]);
+    let high = result("high", [1.1 * end(2).fold(0.0, f64::max), 30.0]);
     assert_eq!(least(&high), None);
     assert!(has(&high, "erodes_everywhere"), "{:?}", high.notes);
 }
@@ -50,21 +51,21 @@ fn an_end_that_holds_all_that_was_searched_limits_nothing() {
 #[test]
 fn a_real_thickness_is_compared_in_mm_alone() {
     let folder = tempfile::tempdir().unwrap();
-    let of = |name: &str, more: &[&str]| {
+    let notes = |name: &str, more: &[&str]| {
         let all = [&["network.nz=20", "filter.thickness_mm=1"], more].concat();
-        let all = found(&tiny(&folder.path().join(name), &all));
+        let all = searched(&tiny(&folder.path().join(name), &all));
         let has = |id: &str| all.notes.iter().any(|row| row.note.id() == id);
         [has("thickness_without_unit"), has("layers_thicker")]
     };
-    assert_eq!(of("no-size", &[]), [true, false]);
-    assert_eq!(of("sized", &["base.d85_mm=0.2"]), [false, true]);
+    assert_eq!(notes("no-size", &[]), [true, false]);
+    assert_eq!(notes("sized", &["base.d85_mm=0.2"]), [false, true]);
     // The requested thickness is rounded to layers.
     let base = Some(of_base(folder.path(), "base.csv", &[(0.1, 0.0), (0.2, 100.0)]));
     for mm in [10.0, 10.3, 10.6, 10.9] {
         let name = format!("of-{mm}");
         let plain = options(&folder.path().join(&name), &["no layers", &format!("filter.thickness_mm={mm}")]);
         let all =
-            found(&BoundaryOptions { base: base.clone(), thicknesses: vec![Thickness::Mm(mm)], ..plain });
+            searched(&BoundaryOptions { base: base.clone(), thicknesses: vec![Thickness::Mm(mm)], ..plain });
         let is_thicker = |row: &RowNote| row.note.id() == "layers_thicker";
         assert!(!all.notes.iter().any(is_thicker), "{:?}", all.notes);
     }

@@ -151,25 +151,25 @@ mod tests {
 
     #[test]
     fn a_thickness_says_what_it_is_in() {
-        let of = |text: &str| text.parse::<Thickness>();
-        assert_eq!(of("60layers"), Ok(Thickness::Layers(60)));
-        assert_eq!((of("500mm"), of("500")), (Ok(Thickness::Mm(500.0)), Ok(Thickness::Mm(500.0))));
-        assert_eq!((of("2ft"), of("24in")), (Ok(Thickness::Mm(609.6)), Ok(Thickness::Mm(609.6))));
-        assert_eq!(of("75 D50F"), Ok(Thickness::D50F(75.0)));
+        let read = |text: &str| text.parse::<Thickness>();
+        assert_eq!(read("60layers"), Ok(Thickness::Layers(60)));
+        assert_eq!((read("500mm"), read("500")), (Ok(Thickness::Mm(500.0)), Ok(Thickness::Mm(500.0))));
+        assert_eq!((read("2ft"), read("24in")), (Ok(Thickness::Mm(609.6)), Ok(Thickness::Mm(609.6))));
+        assert_eq!(read("75 D50F"), Ok(Thickness::D50F(75.0)));
         for wrong in ["0", "0mm", "-3mm", "0layers", "2.5layers", "nanmm", "inf", "thick", ""] {
-            assert!(of(wrong).unwrap_err().contains("or a length above 0"), "{wrong}");
+            assert!(read(wrong).unwrap_err().contains("or a length above 0"), "{wrong}");
         }
     }
 
     #[test]
     fn a_decimal_comma_is_no_list_of_two_thicknesses() {
-        let of = |text: &str| text.parse::<ThicknessList>();
+        let read = |text: &str| text.parse::<ThicknessList>();
         let two = ThicknessList(vec![Thickness::Layers(12), Thickness::Mm(15.0)]);
-        assert_eq!(of("12layers,15mm"), Ok(two.clone()));
-        assert_eq!(of("12layers, 1.5cm"), Ok(two));
-        assert_eq!(of("100,200"), Ok(ThicknessList(vec![Thickness::Mm(100.0), Thickness::Mm(200.0)])));
-        assert!(of("1,5m").unwrap_err().contains("; or a decimal point, not a comma: 1.5m"));
-        assert!(of("60layers,500").unwrap_err().ends_with("allowed: 500mm or 500layers"));
-        assert!(of("12layers,thick").unwrap_err().contains("--thickness thick: allowed: "));
+        assert_eq!(read("12layers,15mm"), Ok(two.clone()));
+        assert_eq!(read("12layers, 1.5cm"), Ok(two));
+        assert_eq!(read("100,200"), Ok(ThicknessList(vec![Thickness::Mm(100.0), Thickness::Mm(200.0)])));
+        assert!(read("1,5m").unwrap_err().contains("; or a decimal point, not a comma: 1.5m"));
+        assert!(read("60layers,500").unwrap_err().ends_with("allowed: 500mm or 500layers"));
+        assert!(read("12layers,thick").unwrap_err().contains("--thickness thick: allowed: "));
     }
 }

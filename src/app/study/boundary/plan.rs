@@ -14,10 +14,10 @@ use crate::scene::{
 use voidwalk_core::schema::setting_name;
 use voidwalk_core::walk::Engine;
 
-/// Voids across of a lattice whose width nobody states: as in the study of real soils.
+/// Default number of voids across a lattice: the same as in the study of real soils.
 const ACROSS: u64 = 20;
 
-/// Networks where nobody states how many replicates there are: the fewest that give percentiles.
+/// Default number of networks: the fewest that give percentiles.
 const NETWORKS: u64 = 5;
 
 /// Settings that state how thick a filter is.
@@ -168,14 +168,15 @@ fn scene(settings: &[String], as_given: bool) -> Result<Scene, RunError> {
         scene.walk.replicates = NETWORKS;
     }
     if scene.walk.engine == Engine::Auto && !scene.leaves_openings() {
-        // Rows that move at once take less time, and a boundary is where the expectation crosses 7.5 %.
+        // Rows that move at once take less time, and a boundary is the ratio at which the expectation crosses
+        // 7.5 %.
         scene.walk.engine = Engine::Expected;
     }
     scene.record.sensitivity.clear();
     Ok(scene)
 }
 
-/// A scene with a base that any filter can be drafted with, and with layers where a ratio decides them.
+/// A scene with a base that any filter can be drafted with, and with layers if a ratio decides them.
 pub(super) fn with_any_base(scene: &Scene) -> Scene {
     let mut drafted = scene.clone();
     if matches!(scene.network.extent(), Extent::Mm(_)) {
@@ -196,7 +197,7 @@ pub(super) fn with_any_base(scene: &Scene) -> Scene {
     drafted
 }
 
-/// Refuses what a scene may say and a search of boundaries cannot do.
+/// Refuses settings of a scene that a search of boundaries cannot use.
 fn refuse(scene: &Scene) -> Result<(), RunError> {
     if scene.stop != StopRule::default() {
         let problem = "stop.target_error_pp and stop.decide_percent do not go with `boundary`: replicates \

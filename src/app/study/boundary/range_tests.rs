@@ -1,34 +1,34 @@
-//! Filters whose constriction curve is known within a range only: which of its ends are searched, and shown.
+//! Filters whose constriction curve is known within a range only: the ends that are searched, and shown.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::tests::{SHORT, found, of_base, timeless, tiny};
+use super::tests::{SHORT, of_base, searched, timeless, tiny};
 use super::*;
 use crate::outcome::boundary::BoundaryRow;
 use crate::run::prepare::PrepareOptions;
 use voidwalk_practice::Note;
 
-/// A guess at the constrictions is known over a range only, whose ends a run walks besides: so does a search
-/// of boundaries.
+/// A guess at the constrictions is known over a range only. A run walks its ends as well, and so does a
+/// search of boundaries.
 #[test]
 fn a_guess_at_the_constrictions_is_found_at_both_ends_of_its_range() {
     let folder = tempfile::tempdir().unwrap();
-    let of = |name: &str, densities: &[&str]| {
+    let result = |name: &str, densities: &[&str]| {
         let densities = densities.iter().map(ToString::to_string).collect();
         let filter = Some("1.5".into());
         let options = tiny(&folder.path().join(name), &["network.nz=6"]);
-        found(&BoundaryOptions { densities, filter, ..options })
+        searched(&BoundaryOptions { densities, filter, ..options })
     };
     let rows = |all: &Boundaries| -> Vec<(String, f64)> {
         let median = |row: &BoundaryRow| row.no_erosion.as_ref().unwrap().median;
         all.boundaries.iter().map(|row| (row.density.clone(), median(row))).collect()
     };
-    let guess = of("one", &["estimate=0.5"]);
-    let found = rows(&guess);
-    let names: Vec<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
+    let guess = result("one", &["estimate=0.5"]);
+    let guessed = rows(&guess);
+    let names: Vec<&str> = guessed.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["estimate 0.5", "densest guess", "loosest guess"]);
     // The denser, the finer its constrictions, and the coarser it may be.
-    assert!(found[1].1 > 1.2 * found[0].1 && found[0].1 > 1.2 * found[2].1, "{found:?}");
+    assert!(guessed[1].1 > 1.2 * guessed[0].1 && guessed[0].1 > 1.2 * guessed[2].1, "{guessed:?}");
     let end_of: Vec<Option<&str>> = guess.boundaries.iter().map(|row| row.end_of.as_deref()).collect();
     assert_eq!(end_of, [None, Some("estimate 0.5"), Some("estimate 0.5")]);
     let least = guess.boundaries.iter().map(|row| row.no_erosion.as_ref().unwrap().cautious().unwrap());
@@ -37,14 +37,17 @@ fn a_guess_at_the_constrictions_is_found_at_both_ends_of_its_range() {
     let is_guess = |id: &str| guess.notes.iter().any(|row| row.note.id() == id);
     assert!(is_guess("guessed_constrictions") || is_guess("guessed_grains"), "{:?}", guess.notes);
     // An end that is asked for itself is found once, with the same bits.
-    let asked = rows(&of("all", &["estimate=0", "estimate=1"]));
+    let asked = rows(&result("all", &["estimate=0", "estimate=1"]));
     let names: Vec<&str> = asked.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["loosest guess", "densest guess"]);
-    assert_eq!((asked[0].1.to_bits(), asked[1].1.to_bits()), (found[2].1.to_bits(), found[1].1.to_bits()));
+    assert_eq!(
+        (asked[0].1.to_bits(), asked[1].1.to_bits()),
+        (guessed[2].1.to_bits(), guessed[1].1.to_bits())
+    );
 }
 
 /// A filter of unknown density is loose, dense or between: its ends are searched, and the worse one counts.
-/// What networks hold scatters here by so much that either end may be that.
+/// The ratios that networks hold scatter so much here that either end may be the worse.
 #[test]
 fn a_filter_of_unknown_density_is_as_the_worse_of_its_ends() {
     let folder = tempfile::tempdir().unwrap();
@@ -52,7 +55,7 @@ fn a_filter_of_unknown_density_is_as_the_worse_of_its_ends() {
         filter: Some("1.5".into()),
         ..tiny(&folder.path().join("out"), &["network.nz=5", "replicates=2", "base.cu=3"])
     };
-    let all = found(&options);
+    let all = searched(&options);
     let [unknown, dense] = &all.boundaries[..] else { panic!("{:?}", all.boundaries) };
     assert_eq!((unknown.density.as_str(), unknown.end_of.as_deref()), ("unknown", None));
     assert_eq!(dense.end_of.as_deref(), Some("unknown"));
@@ -77,7 +80,7 @@ fn an_end_that_holds_clearly_more_is_asked_for_one_ratio() {
         filter: Some(filter.display().to_string()),
         ..tiny(&folder.path().join("out"), &["network.nz=6", "replicates=2"])
     };
-    let all = found(&options);
+    let all = searched(&options);
     // The end that cannot set the answer is no row, and the row of the range says so.
     let [unknown] = &all.boundaries[..] else { panic!("{:?}", all.boundaries) };
     assert_eq!(unknown.networks.len(), 2);
@@ -93,13 +96,13 @@ fn an_end_that_holds_clearly_more_is_asked_for_one_ratio() {
 #[test]
 fn a_search_goes_on_from_an_end_that_was_not_searched() {
     let folder = tempfile::tempdir().unwrap();
-    let of = |name: &str, threads: usize| BoundaryOptions {
+    let plan = |name: &str, threads: usize| BoundaryOptions {
         filter: Some("1.5".into()),
         thicknesses: vec!["4layers".parse().unwrap(), "6layers".parse().unwrap()],
         prepare: PrepareOptions { threads: Some(threads), ..PrepareOptions::default() },
         ..tiny(&folder.path().join(name), &["replicates=2"])
     };
-    let whole = found(&of("whole", 2));
+    let whole = searched(&plan("whole", 2));
     let spared = |row: &BoundaryRow| row.no_erosion_notes.iter().any(|note| note.id() == "spared_end");
     assert_eq!(whole.boundaries.iter().filter(|row| spared(row)).count(), 2, "{:?}", whole.boundaries);
     let stop = AtomicBool::new(false);
@@ -112,10 +115,10 @@ fn a_search_goes_on_from_an_end_that_was_not_searched() {
         stop: &stop,
         ..Callbacks::default()
     };
-    let error = run_within(&of("stopped", 1), SHORT, &callbacks).unwrap_err();
+    let error = run_within(&plan("stopped", 1), SHORT, &callbacks).unwrap_err();
     // Two networks of either thickness, and one end.
     assert!(error.to_string().starts_with("after 5 of 8 networks"), "{error}");
-    assert_eq!(timeless(&found(&of("stopped", 3))), timeless(&whole));
+    assert_eq!(timeless(&searched(&plan("stopped", 3))), timeless(&whole));
 }
 
 /// An end that another row has, too, stays a row of its own, and is searched once.
@@ -128,8 +131,8 @@ fn the_worse_end_of_an_unknown_density_stays_where_another_row_needs_it() {
         thicknesses: vec!["4layers".parse().unwrap(), "5layers".parse().unwrap()],
         ..tiny(&folder.path().join("out"), &["replicates=2", "base.cu=3"])
     };
-    let all = found(&options);
-    let of = |thickness: &str| -> Vec<(String, Option<String>)> {
+    let all = searched(&options);
+    let densities = |thickness: &str| -> Vec<(String, Option<String>)> {
         let rows = all.boundaries.iter().filter(|row| row.thickness == thickness);
         let word =
             |text: &str| text.split(" %").next().unwrap().trim_end_matches(char::is_numeric).to_owned();
@@ -145,9 +148,9 @@ fn the_worse_end_of_an_unknown_density_stays_where_another_row_needs_it() {
     ];
     let expected = expected.map(|(density, end_of)| (density.to_owned(), end_of));
     for thickness in ["4 layers", "5 layers"] {
-        let mut found = of(thickness);
-        found.sort_by_key(|row| expected.iter().position(|of| of == row));
-        assert_eq!(found, expected, "{thickness}");
+        let mut shown = densities(thickness);
+        shown.sort_by_key(|row| expected.iter().position(|other| other == row));
+        assert_eq!(shown, expected, "{thickness}");
     }
     // A dense filter has fewer grains per void than the loose one.
     let grains = |row: usize| all.boundaries[row].grains_per_void.unwrap();

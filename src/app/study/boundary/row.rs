@@ -33,7 +33,7 @@ pub(super) struct Row {
     pub stated: StatedBase,
     /// The base in units of its D85.
     pub base: Gradation,
-    /// D85B (mm), where the base has a size of its own.
+    /// D85B (mm), if the base has a size of its own.
     pub d85_mm: Option<f64>,
     /// True if the filter has a size of its own.
     pub filter_has_size: bool,
@@ -50,7 +50,7 @@ impl Row {
     pub fn at_curve_ends(&self) -> Vec<Self> {
         let case = &self.case;
         let names_itself = case.filter.guessed_density.is_some() || case.filter.library.is_some();
-        let of = |end: &OtherCurve| {
+        let at_end = |end: &OtherCurve| {
             let density = match names_itself {
                 true => end.name.replace(" = ", " "),
                 false => format!("{}, {}", self.density, end.name),
@@ -60,7 +60,7 @@ impl Row {
             case.filter.grains_per_void = case.filter.grains_per_void.map(|grains| grains * end.times_grains);
             Self { case, density, end_of, ..self.clone() }
         };
-        self.case.filter.curve_ends.iter().map(of).collect()
+        self.case.filter.curve_ends.iter().map(at_end).collect()
     }
 
     /// D15F in the case's own unit.
@@ -120,7 +120,7 @@ impl Row {
     /// Refuses more layers, or more memory, than there is, at a ratio near which the search begins.
     ///
     /// # Errors
-    /// What is too large.
+    /// The number that is too large.
     pub fn check_room(&self, bracket: [f64; 2]) -> Result<(), RunError> {
         let ratio = self.start().clamp(bracket[0], bracket[1]);
         match self.at(ratio) {
@@ -147,14 +147,14 @@ impl Row {
         if too_few() == Some(true) { Beyond::Below } else { Beyond::Above }
     }
 
-    /// Where a lone particle of one size has its boundary, by the closed form: a start for the search.
+    /// Boundary of a lone particle of one size, by the closed form: a start for the search.
     pub fn start(&self) -> f64 {
         let layers = self.layers(USUAL_RATIO).unwrap_or(self.case.network.layers).max(1);
         self.d15f() / Passage::new(&self.case.filter.curve).coarsest_through(layers, 1.0 - THRESHOLD)
     }
 
-    /// Start nodes, by which the search knows how many ratios to try: more where walks take little. As
-    /// many as the usual lattice has where water flows, or of another network than a lattice.
+    /// Start nodes, which decide the number of ratios to try: more if walks are quick. The number of the
+    /// usual lattice if water flows, or for a network that is not a lattice.
     pub fn across(&self) -> u64 {
         if self.case.scene.is_lattice_by_area() { self.case.network.start_nodes } else { USUAL_ACROSS }
     }
@@ -185,7 +185,7 @@ impl Row {
         Begun::new(self.network(number, callbacks), bracket, self.from(hint))
     }
 
-    /// The first network, where it holds this ratio.
+    /// The first network, if it holds this ratio.
     ///
     /// # Errors
     /// A walk that goes wrong, or was stopped.

@@ -12,8 +12,8 @@ use crate::outcome::boundary::Beyond;
 const CLEAR: f64 = 1.1;
 
 /// The ends of the same ranges that hold less than row `at` by the closed form for a lone particle: one for
-/// each row that it is an end of. Empty where it holds least itself, or was asked for, or is an end of a row
-/// that is searched itself.
+/// each row that it is an end of. Empty if it holds least itself, was asked for, or is an end of a row that
+/// is searched itself.
 pub(super) fn holding_less(rows: &[Row], at: usize) -> Vec<usize> {
     let row = &rows[at];
     if row.end_of.is_none() {
@@ -44,12 +44,12 @@ pub(super) fn clear_of(done: &[Done], holding_less: &[(usize, u64)]) -> Option<f
         let apart = greatest / held.into_iter().reduce(f64::min)?;
         Some(greatest * CLEAR.max(apart * apart))
     };
-    let each: Option<Vec<f64>> = holding_less.iter().map(ratio).collect();
-    each?.into_iter().reduce(f64::max).filter(|ratio| ratio.is_finite() && *ratio > 0.0)
+    let ratios: Option<Vec<f64>> = holding_less.iter().map(ratio).collect();
+    ratios?.into_iter().reduce(f64::max).filter(|ratio| ratio.is_finite() && *ratio > 0.0)
 }
 
-/// The ratio up to which a network holds; 0 where it erodes at every ratio of the search, `None` where it is
-/// not known.
+/// The ratio up to which a network holds; 0 if it erodes at every ratio of the search, `None` if it is
+/// unknown.
 fn holds_to(found: &Found) -> Option<f64> {
     match (found.no_erosion, &found.no_erosion_beyond) {
         (Some(ratio), _) => Some(ratio),
@@ -78,7 +78,8 @@ mod tests {
     #[test]
     fn an_end_has_to_hold_clearly_more() {
         let wanted = |less: &[Found]| {
-            let done: Vec<Done> = (1..).zip(less).map(|(network, of)| done(1, network, of.clone())).collect();
+            let done: Vec<Done> =
+                (1..).zip(less).map(|(network, result)| done(1, network, result.clone())).collect();
             clear_of(&done, &[(1, less.len() as u64)])
         };
         let near =

@@ -7,8 +7,8 @@ use super::search::Done;
 /// Networks whose no-erosion boundary is in doubt: the number that hold a ratio above an eroding one, if that
 /// is half or more of the networks that erode, and the number that erode.
 pub(super) fn doubt(done: &[&Done]) -> Option<[u64; 2]> {
-    let eroding: Vec<&&Done> = done.iter().filter(|of| of.found.no_erosion.is_some()).collect();
-    let unsteady = eroding.iter().filter(|of| comes_and_goes(&of.found.walks)).count();
+    let eroding: Vec<&&Done> = done.iter().filter(|network| network.found.no_erosion.is_some()).collect();
+    let unsteady = eroding.iter().filter(|network| comes_and_goes(&network.found.walks)).count();
     (unsteady > 0 && 2 * unsteady >= eroding.len()).then_some([unsteady as u64, eroding.len() as u64])
 }
 
@@ -34,7 +34,7 @@ mod tests {
         Done { row: 0, network: 1, found }
     }
 
-    fn found(networks: &[&[f64]]) -> Option<[u64; 2]> {
+    fn doubt_of(networks: &[&[f64]]) -> Option<[u64; 2]> {
         let done: Vec<Done> = networks.iter().map(|first| network(first)).collect();
         doubt(&done.iter().collect::<Vec<_>>())
     }
@@ -45,11 +45,11 @@ mod tests {
 
     #[test]
     fn half_of_the_networks_that_erode_are_enough() {
-        assert_eq!(found(&[STEADY, STEADY, UNSTEADY]), None);
-        assert_eq!(found(&[STEADY, UNSTEADY]), Some([1, 2]));
-        assert_eq!(found(&[STEADY, UNSTEADY, HOLDING]), Some([1, 2]));
-        assert_eq!(found(&[UNSTEADY]), Some([1, 1]));
-        assert_eq!(found(&[STEADY]), None);
+        assert_eq!(doubt_of(&[STEADY, STEADY, UNSTEADY]), None);
+        assert_eq!(doubt_of(&[STEADY, UNSTEADY]), Some([1, 2]));
+        assert_eq!(doubt_of(&[STEADY, UNSTEADY, HOLDING]), Some([1, 2]));
+        assert_eq!(doubt_of(&[UNSTEADY]), Some([1, 1]));
+        assert_eq!(doubt_of(&[STEADY]), None);
     }
 
     #[test]

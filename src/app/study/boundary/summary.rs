@@ -1,4 +1,4 @@
-//! Puts what the networks say together: the record and the table of the boundaries.
+//! Combines the results of the networks: the record and the table of the boundaries.
 
 use std::cmp::Ordering;
 
@@ -21,7 +21,7 @@ use crate::words::grading;
 use voidwalk_practice::design::RowNote;
 use voidwalk_practice::{InputFile, Note};
 
-/// Ratio at which a row is judged where no boundary is known.
+/// Ratio at which a row is judged if no boundary is known.
 const USUAL_RATIO: f64 = 4.0;
 
 /// The record.
@@ -37,40 +37,41 @@ pub(super) fn boundaries(
     let searched: Vec<Option<FoundRow>> = (0..rows.len())
         .map(|at| {
             let of_row: Vec<&Done> = done.iter().filter(|done| done.row == at).collect();
-            (!of_row.is_empty()).then(|| of(&rows[at], &of_row))
+            (!of_row.is_empty()).then(|| found_row(&rows[at], &of_row))
         })
         .collect();
     // A row without networks is as the worst of its ends.
     let as_end = |row: &Row| {
         let ends = rows.iter().zip(&searched).filter(|(end, _)| is_in_range(row, end));
-        let worst = ends.filter_map(|(_, found)| found.as_ref()).filter(|found| !found.is_spared());
+        let worst = ends.filter_map(|(_, result)| result.as_ref()).filter(|result| !result.is_spared());
         let worst = worst.min_by(|a, b| holds_less(a, b));
         worst.expect("a row without networks has ends").named(row)
     };
-    let found = rows.iter().zip(&searched).map(|(row, found)| found.clone().unwrap_or_else(|| as_end(row)));
-    let mut found: Vec<FoundRow> = found.collect();
-    let held: Vec<Option<f64>> = rows.iter().map(|row| held_over_range(row, rows, &found)).collect();
+    let results =
+        rows.iter().zip(&searched).map(|(row, result)| result.clone().unwrap_or_else(|| as_end(row)));
+    let mut results: Vec<FoundRow> = results.collect();
+    let held: Vec<Option<f64>> = rows.iter().map(|row| held_over_range(row, rows, &results)).collect();
     // An end of a range is no filter that anybody offers: it is judged with the row that it is an end of.
     let asked = || (0..rows.len()).filter(|&at| rows[at].end_of.is_none());
     let mut judgements = Vec::new();
     for at in asked() {
         let row = &rows[at];
-        let unbounded = unbounded(row, rows, &found);
-        let spared = spared_ends(row, rows, &found);
-        found[at].of.no_erosion_notes.extend(spared);
+        let unbounded = unbounded(row, rows, &results);
+        let spared = spared_ends(row, rows, &results);
+        results[at].record.no_erosion_notes.extend(spared);
         let name = format!("{}, {}", row.density, row.thickness);
-        judgements.push((name, judged(row, (&found[at], rows, &found), held[at], unbounded)?));
+        judgements.push((name, judged(row, (&results[at], rows, &results), held[at], unbounded)?));
     }
     // The worst end of a row without networks is that row, unless another row has it as an end, too.
-    let is_shown = |(of, row): &(&FoundRow, &Row)| {
+    let is_shown = |(result, row): &(&FoundRow, &Row)| {
         let density = &row.density;
         let has_it = |other: &Row| other.thickness == row.thickness && other.ends.contains(density);
-        let all: Vec<_> = found.iter().zip(rows).filter(|(_, other)| has_it(other)).collect();
-        let only = if let [(only, _)] = all[..] { only.of.as_end.as_ref() } else { None };
-        !of.is_spared() && (of.of.end_of.is_none() || only != Some(density))
+        let all: Vec<_> = results.iter().zip(rows).filter(|(_, other)| has_it(other)).collect();
+        let only = if let [(only, _)] = all[..] { only.record.as_end.as_ref() } else { None };
+        !result.is_spared() && (result.record.end_of.is_none() || only != Some(density))
     };
-    let shown = found.iter().zip(rows).filter(is_shown);
-    let boundaries: Vec<BoundaryRow> = shown.map(|(found, _)| found.of.clone()).collect();
+    let shown = results.iter().zip(rows).filter(is_shown);
+    let boundaries: Vec<BoundaryRow> = shown.map(|(result, _)| result.record.clone()).collect();
     let (first, stated) = (&rows[0], &rows[0].stated.scene.about);
     let judged = Judged::new(first, USUAL_RATIO)?;
     let notes = all_notes(judgements, &boundaries);
@@ -100,10 +101,10 @@ pub(super) fn boundaries(
     })
 }
 
-/// A row as its networks have it, and what they say against it.
+/// A row from its networks, with the doubts about it.
 #[derive(Clone)]
 struct FoundRow {
-    of: BoundaryRow,
+    record: BoundaryRow,
     /// Number of networks that put its boundary in doubt, and number that erode.
     unsteady: Option<[u64; 2]>,
     /// Networks that erode at every ratio of the search.
@@ -122,8 +123,8 @@ impl FoundRow {
 
     /// Why no ratio is known that holds.
     fn unheld(&self) -> Option<Note> {
-        let networks = self.of.networks.len() as u64;
-        self.of.held().is_none().then_some(match self.eroding {
+        let networks = self.record.networks.len() as u64;
+        self.record.held().is_none().then_some(match self.eroding {
             0 => Note::NothingWalked {},
             networks_eroding => Note::ErodesEverywhere { networks_eroding, networks },
         })
@@ -131,15 +132,16 @@ impl FoundRow {
 
     /// Result under the name of a row, for which this is the end that holds least.
     fn named(&self, row: &Row) -> Self {
-        let as_end = Some(self.of.density.clone());
-        let of = BoundaryRow { density: row.density.clone(), as_end, end_of: None, ..self.of.clone() };
-        Self { of, ..self.clone() }
+        let as_end = Some(self.record.density.clone());
+        let record =
+            BoundaryRow { density: row.density.clone(), as_end, end_of: None, ..self.record.clone() };
+        Self { record, ..self.clone() }
     }
 }
 
-/// Which of two curves of a range holds less; one without a ratio that holds is the least.
+/// Order of two curves of a range by the ratio that they hold; one without such a ratio is the least.
 fn holds_less(a: &FoundRow, b: &FoundRow) -> Ordering {
-    let [a, b] = [a, b].map(|found| found.of.held().unwrap_or(0.0));
+    let [a, b] = [a, b].map(|result| result.record.held().unwrap_or(0.0));
     a.total_cmp(&b)
 }
 
@@ -152,39 +154,39 @@ fn is_in_range(row: &Row, other: &Row) -> bool {
 }
 
 /// Results of the row itself, if it was searched, and of the ends of its range.
-fn range<'a>(row: &'a Row, rows: &'a [Row], found: &'a [FoundRow]) -> impl Iterator<Item = &'a FoundRow> {
-    let in_range = rows.iter().zip(found).filter(move |(other, _)| is_in_range(row, other));
-    in_range.map(|(_, found)| found).filter(|found| !found.is_spared())
+fn range<'a>(row: &'a Row, rows: &'a [Row], results: &'a [FoundRow]) -> impl Iterator<Item = &'a FoundRow> {
+    let in_range = rows.iter().zip(results).filter(move |(other, _)| is_in_range(row, other));
+    in_range.map(|(_, result)| result).filter(|result| !result.is_spared())
 }
 
 /// That an end of a row's range was not searched.
-fn spared_ends(row: &Row, rows: &[Row], found: &[FoundRow]) -> Vec<Note> {
-    let in_range = rows.iter().zip(found).filter(|(other, _)| is_in_range(row, other));
+fn spared_ends(row: &Row, rows: &[Row], results: &[FoundRow]) -> Vec<Note> {
+    let in_range = rows.iter().zip(results).filter(|(other, _)| is_in_range(row, other));
     let spared = |(_, end): (&Row, &FoundRow)| {
-        Some(Note::SparedEnd { density: end.of.density.clone(), ratio: end.spared_at? })
+        Some(Note::SparedEnd { density: end.record.density.clone(), ratio: end.spared_at? })
     };
     in_range.filter_map(spared).collect()
 }
 
 /// The ratio that nearly all networks hold with every curve of the range; `None` if it is unknown for one of
 /// them. A curve whose networks hold all ratios of the search counts as holding to its end.
-fn held_over_range(row: &Row, rows: &[Row], found: &[FoundRow]) -> Option<f64> {
-    let each = range(row, rows, found).map(|found| found.of.held());
-    each.reduce(|a, b| Some(a?.min(b?))).flatten()
+fn held_over_range(row: &Row, rows: &[Row], results: &[FoundRow]) -> Option<f64> {
+    let held = range(row, rows, results).map(|result| result.record.held());
+    held.reduce(|a, b| Some(a?.min(b?))).flatten()
 }
 
 /// Reason why the model has no boundary: networks erode at every ratio of the search, with some curve of the
 /// range, or they hold every one, and the end of the search is not a boundary.
-fn unbounded(row: &Row, rows: &[Row], found: &[FoundRow]) -> Option<Note> {
-    if let Some(unheld) = range(row, rows, found).find_map(FoundRow::unheld) {
+fn unbounded(row: &Row, rows: &[Row], results: &[FoundRow]) -> Option<Note> {
+    if let Some(unheld) = range(row, rows, results).find_map(FoundRow::unheld) {
         return Some(unheld);
     }
-    let least = range(row, rows, found).filter_map(|found| Some((found, found.of.held()?)));
+    let least = range(row, rows, results).filter_map(|result| Some((result, result.record.held()?)));
     let (least, ratio) = least.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    least.of.no_erosion.is_none().then(|| match least.of.eroding_networks() as u64 {
+    least.record.no_erosion.is_none().then(|| match least.record.eroding_networks() as u64 {
         0 => Note::HoldsEverywhere { ratio },
         networks_eroding => {
-            Note::MedianBeyond { ratio, networks_eroding, networks: least.of.networks.len() as u64 }
+            Note::MedianBeyond { ratio, networks_eroding, networks: least.record.networks.len() as u64 }
         }
     })
 }
@@ -211,23 +213,23 @@ fn all_notes(rows: Vec<(String, Vec<Note>)>, boundaries: &[BoundaryRow]) -> Vec<
 /// Notes on "no erosion" for a row, at the ratio that nearly all networks hold over the range of its curve.
 fn judged(
     row: &Row,
-    (own, rows, found): (&FoundRow, &[Row], &[FoundRow]),
+    (result, rows, results): (&FoundRow, &[Row], &[FoundRow]),
     held: Option<f64>,
     unbounded: Option<Note>,
 ) -> Result<Vec<Note>, RunError> {
-    let of = &own.of;
+    let record = &result.record;
     let Some(held) = held else {
-        let why = unbounded.into_iter().chain(own.of_boundary.iter().cloned());
+        let why = unbounded.into_iter().chain(result.of_boundary.iter().cloned());
         return Ok(Judged::new(row, USUAL_RATIO)?.notes(row, why.collect()));
     };
     let judged = Judged::new(row, held)?;
-    let least = range(row, rows, found).min_by(|a, b| holds_less(a, b));
-    let unsteady = least.and_then(|of| of.unsteady);
+    let least = range(row, rows, results).min_by(|a, b| holds_less(a, b));
+    let unsteady = least.and_then(|end| end.unsteady);
     let unsteady =
         unsteady.map(|[networks_held, networks_eroding]| Note::Unsteady { networks_held, networks_eroding });
-    let of_boundary = match &of.no_erosion {
+    let of_boundary = match &record.no_erosion {
         Some(boundary) => Vec::from_iter(row.thicker(boundary.high.unwrap_or(boundary.median).max(held))),
-        None => own.of_boundary.clone(),
+        None => result.of_boundary.clone(),
     };
     let why = [unsteady, unbounded].into_iter().flatten();
     Ok(judged.notes(row, why.chain(of_boundary).collect()))
@@ -292,7 +294,7 @@ fn base(row: &Row, name: &str) -> BaseStated {
 }
 
 /// One row of the record.
-fn of(row: &Row, done: &[&Done]) -> FoundRow {
+fn found_row(row: &Row, done: &[&Done]) -> FoundRow {
     let networks = |value: fn(&Done) -> Option<f64>, beyond: fn(&Done) -> Option<Beyond>| {
         let one = |done: &&Done| value(done).ok_or(beyond(done).unwrap_or(Beyond::Above));
         done.iter().map(one).collect::<Vec<_>>()
@@ -306,8 +308,8 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
         |done| done.found.continuing_beyond.as_ref().map(|(beyond, _)| *beyond),
     );
     // Reason why some networks have no boundary, taken from the first of them.
-    let ended = |of: fn(&Done) -> Option<&Beside>| {
-        let all: Vec<&Ended> = done.iter().filter_map(|done| Some(&of(done)?.1)).collect();
+    let ended = |beside: fn(&Done) -> Option<&Beside>| {
+        let all: Vec<&Ended> = done.iter().filter_map(|done| Some(&beside(done)?.1)).collect();
         all.first().map(|why| why.note(all.len() as u64))
     };
     let [no_erosion, continuing] = [&first, &second].map(|networks| Boundary::of(networks, row.d85_mm));
@@ -322,7 +324,7 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
     };
     // For a filter that is as thin as one layer, or thinner: the layer itself.
     let thicker = |boundary: &Option<Boundary>| {
-        let greatest = boundary.as_ref().map(|of| of.high.unwrap_or(of.median));
+        let greatest = boundary.as_ref().map(|boundary| boundary.high.unwrap_or(boundary.median));
         row.thicker(greatest.or(holds_to)?)
     };
     let of_first = ended(|done| done.found.no_erosion_beyond.as_ref());
@@ -330,7 +332,7 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
     let of_boundary: Vec<Note> = [of_first, of_pan, thicker(&no_erosion)].into_iter().flatten().collect();
     let of_second = [ended(|done| done.found.continuing_beyond.as_ref()), thicker(&continuing)];
     let unsteady = no_erosion.as_ref().and_then(|_| steadiness::doubt(done));
-    let of = BoundaryRow {
+    let record = BoundaryRow {
         density: row.density.clone(),
         thickness: row.thickness.to_string(),
         layers,
@@ -358,9 +360,9 @@ fn of(row: &Row, done: &[&Done]) -> FoundRow {
         as_end: None,
         end_of: row.end_of.clone(),
     };
-    let eroding = first.iter().filter(|of| **of == Err(Beyond::Below)).count() as u64;
+    let eroding = first.iter().filter(|end| **end == Err(Beyond::Below)).count() as u64;
     let spared_at = done.iter().find_map(|done| done.found.spared_at);
-    FoundRow { of, unsteady, eroding, of_boundary, spared_at }
+    FoundRow { record, unsteady, eroding, of_boundary, spared_at }
 }
 
 /// The ratio that nearly all networks hold if their median lies above all ratios of the search: a network

@@ -40,7 +40,7 @@ pub(super) fn tiny(out: &Path, more: &[&str]) -> BoundaryOptions {
     BoundaryOptions { settings: all.iter().map(ToString::to_string).collect(), ..options(out, &[]) }
 }
 
-pub(super) fn found(options: &BoundaryOptions) -> Boundaries {
+pub(super) fn searched(options: &BoundaryOptions) -> Boundaries {
     found_within(options, SHORT)
 }
 
@@ -65,12 +65,12 @@ pub(super) fn timeless(all: &Boundaries) -> String {
 fn a_base_twice_as_large_takes_a_filter_twice_as_large_to_the_bit() {
     let folder = tempfile::tempdir().unwrap();
     let points = [(0.063, 0.0), (0.125, 30.0), (0.25, 80.0), (0.5, 100.0)];
-    let of = |name: &str, factor: f64| {
+    let row = |name: &str, factor: f64| {
         let base = of_base(folder.path(), name, &points.map(|(d, percent)| (factor * d, percent)));
         let options = options(&folder.path().join(name.replace('.', "-")), &[]);
-        found(&BoundaryOptions { base: Some(base), ..options }).boundaries.remove(0)
+        searched(&BoundaryOptions { base: Some(base), ..options }).boundaries.remove(0)
     };
-    let (one, two) = (of("one.csv", 1.0), of("two.csv", 2.0));
+    let (one, two) = (row("one.csv", 1.0), row("two.csv", 2.0));
     assert_eq!(one.networks, two.networks);
     for (a, b) in [(&one.no_erosion, &two.no_erosion), (&one.continuing, &two.continuing)] {
         let (a, b) = (a.as_ref().unwrap(), b.as_ref().unwrap());
@@ -86,12 +86,12 @@ fn a_base_twice_as_large_takes_a_filter_twice_as_large_to_the_bit() {
 #[test]
 fn a_boundary_on_which_few_particles_decide_is_a_doubt() {
     let folder = tempfile::tempdir().unwrap();
-    let of = |cu: &str, across: u64| {
+    let result = |cu: &str, across: u64| {
         let [nx, ny] = ["nx", "ny"].map(|axis| format!("network.{axis}={across}"));
-        found(&tiny(&folder.path().join(cu), &[cu, &nx, &ny, "replicates=5", "network.nz=12"]))
+        searched(&tiny(&folder.path().join(cu), &[cu, &nx, &ny, "replicates=5", "network.nz=12"]))
     };
     for (cu, across, in_doubt) in [("base.cu=3", 10, true), ("base.cu=1.5", 40, false)] {
-        let all = of(cu, across);
+        let all = result(cu, across);
         let is_doubt = all.notes.iter().any(|row| row.note.id() == "unsteady");
         assert_eq!(is_doubt, in_doubt, "{:?}", all.notes);
     }
@@ -100,21 +100,21 @@ fn a_boundary_on_which_few_particles_decide_is_a_doubt() {
 #[test]
 fn boundaries_hang_neither_on_a_wide_bracket_nor_on_threads() {
     let folder = tempfile::tempdir().unwrap();
-    let of = |name: &str, bracket: [f64; 2], threads: usize| {
+    let result = |name: &str, bracket: [f64; 2], threads: usize| {
         let options = options(&folder.path().join(name), &["base.cu=2"]);
         let prepare = PrepareOptions { threads: Some(threads), ..PrepareOptions::default() };
         let all = found_within(&BoundaryOptions { prepare, ..options }, bracket);
         let csv = std::fs::read_to_string(folder.path().join(name).join("boundary.csv")).unwrap();
         (all, csv)
     };
-    let (one, walks) = of("one", [0.8, 30.0], 1);
-    let (other, same_walks) = of("threads", [0.8, 30.0], 3);
+    let (one, walks) = result("one", [0.8, 30.0], 1);
+    let (other, same_walks) = result("threads", [0.8, 30.0], 3);
     assert_eq!((timeless(&one), walks), (timeless(&other), same_walks));
-    let (narrow, _) = of("narrow", [1.01, 12.3], 2);
+    let (narrow, _) = result("narrow", [1.01, 12.3], 2);
     assert_eq!(one.boundaries[0].networks, narrow.boundaries[0].networks);
     assert_eq!(one.boundaries[0].no_erosion, narrow.boundaries[0].no_erosion);
     // A bracket beside the boundary gives no number.
-    let (beside, _) = of("beside", [0.8, 1.2], 2);
+    let (beside, _) = result("beside", [0.8, 1.2], 2);
     let row = &beside.boundaries[0];
     assert!(row.no_erosion.is_none() && row.continuing.is_none());
     assert_eq!(row.no_erosion_notes[0].id(), "holds_to_end");
@@ -131,7 +131,7 @@ fn three_boundaries_are_those_of_scans_by_hand() {
     for (cu, run) in [("base.cu=1.2", 0), ("base.cu=1.5", 0), ("base.cu=1.5", 1)] {
         let name = format!("{cu}-{run}");
         let wide = ["network.nx=16", "network.ny=16", "network.nz=10", "replicates=3", cu];
-        let row: BoundaryRow = found(&tiny(&folder.path().join(name), &wide)).boundaries.remove(0);
+        let row: BoundaryRow = searched(&tiny(&folder.path().join(name), &wide)).boundaries.remove(0);
         let boundary = if run == 0 { row.no_erosion } else { row.continuing }.unwrap();
         let mut by_hand: Vec<Option<f64>> = vec![None; 3];
         for step in 0..160 {
@@ -144,7 +144,7 @@ fn three_boundaries_are_those_of_scans_by_hand() {
                     .unwrap();
             let outcome = walk_case(&Case::new(scene).unwrap(), &Callbacks::default()).unwrap();
             for (network, replicate) in outcome.replicates.iter().enumerate() {
-                let erodes = replicate.runs[..=run].iter().all(|of| of.eroded_mass_fraction >= 0.075);
+                let erodes = replicate.runs[..=run].iter().all(|record| record.eroded_mass_fraction >= 0.075);
                 if erodes && by_hand[network].is_none() {
                     by_hand[network] = Some(ratio);
                 }
@@ -153,13 +153,13 @@ fn three_boundaries_are_those_of_scans_by_hand() {
                 break;
             }
         }
-        for (of, by_hand) in row.networks.iter().zip(by_hand) {
-            let found = if run == 0 { of.no_erosion } else { of.continuing }.unwrap();
-            let off = by_hand.unwrap() / found;
-            // A step of the scan, and what other roundings of the base do to single particles: an error below
-            // 3 % is not seen.
+        for (network, by_hand) in row.networks.iter().zip(by_hand) {
+            let boundary = if run == 0 { network.no_erosion } else { network.continuing }.unwrap();
+            let off = by_hand.unwrap() / boundary;
+            // A step of the scan, and the effect of other roundings of the base on single particles: an error
+            // below 3 % is not seen.
             let allowed = 0.97..1.03;
-            assert!(allowed.contains(&off), "{cu} run {run}: {found} {by_hand:?}");
+            assert!(allowed.contains(&off), "{cu} run {run}: {boundary} {by_hand:?}");
         }
     }
 }
@@ -168,16 +168,16 @@ fn three_boundaries_are_those_of_scans_by_hand() {
 #[test]
 fn a_search_moves_the_expectation_of_what_blocks_nothing_unless_another_engine_is_named() {
     let folder = tempfile::tempdir().unwrap();
-    let of = |engine: &[&str]| {
+    let result = |engine: &[&str]| {
         let out = folder.path().join(engine.concat());
-        let all = found(&tiny(&out, &[&["base.cu=2.5", "replicates=2"], engine].concat()));
+        let all = searched(&tiny(&out, &[&["base.cu=2.5", "replicates=2"], engine].concat()));
         (all.engine, std::fs::read(out.join("boundary.csv")).unwrap())
     };
-    let unsaid = of(&[]);
+    let unsaid = result(&[]);
     assert_eq!(unsaid.0, "expected");
-    assert_eq!(unsaid, of(&["engine=expected"]));
-    assert_eq!(unsaid, of(&["engine=auto"]));
-    let counted = of(&["engine=counts"]);
+    assert_eq!(unsaid, result(&["engine=expected"]));
+    assert_eq!(unsaid, result(&["engine=auto"]));
+    let counted = result(&["engine=counts"]);
     assert_eq!(counted.0, "counts");
     assert_ne!(unsaid.1, counted.1);
 }
@@ -188,7 +188,7 @@ fn a_thickness_in_mm_takes_as_many_layers_as_the_filter_has_there() {
     let base = of_base(folder.path(), "base.csv", &[(0.1, 0.0), (0.2, 100.0)]);
     let thicknesses = ["10mm", "20mm", "9layers"].map(|text| text.parse().unwrap()).to_vec();
     let options = options(&folder.path().join("out"), &["no layers"]);
-    let all = found(&BoundaryOptions { base: Some(base), thicknesses, ..options });
+    let all = searched(&BoundaryOptions { base: Some(base), thicknesses, ..options });
     let [thin, thick, layers] = &all.boundaries[..] else { panic!() };
     for (row, mm) in [(thin, 10.0), (thick, 20.0)] {
         // Each layer is as thick as D50F by number: for the built-in curve, 1.13 of D15F over D0F 1.129.
@@ -210,10 +210,10 @@ fn a_thickness_in_mm_takes_as_many_layers_as_the_filter_has_there() {
 #[test]
 fn a_search_that_is_stopped_keeps_its_networks_and_goes_on_with_the_same_bits() {
     let folder = tempfile::tempdir().unwrap();
-    let whole = found(&options(&folder.path().join("whole"), &[]));
+    let whole = searched(&options(&folder.path().join("whole"), &[]));
     let (stop, path) = (AtomicBool::new(false), folder.path().join("stopped"));
     let prepare = PrepareOptions { threads: Some(1), ..PrepareOptions::default() };
-    // It replaces what others left, and not what it left itself.
+    // It replaces the work of others, but not its own.
     let options = BoundaryOptions { prepare, overwrite: true, ..options(&path, &[]) };
     let callbacks = Callbacks {
         on_event: &|event| {
@@ -229,17 +229,17 @@ fn a_search_that_is_stopped_keeps_its_networks_and_goes_on_with_the_same_bits() 
     assert_eq!(error.exit().code(), 3, "{error}");
     assert!(error.to_string().starts_with("after 1 of 3 networks"), "{error}");
     assert!(!path.join("boundary.json").exists() && !path.join("boundary.csv").exists());
-    let said = Mutex::new(Vec::new());
+    let messages = Mutex::new(Vec::new());
     let callbacks = Callbacks {
         on_event: &|event| {
             if let Event::Studying(text) = event {
-                said.lock().unwrap().push(text.to_owned());
+                messages.lock().unwrap().push(text.to_owned());
             }
         },
         ..Callbacks::default()
     };
     let resumed = run_within(&options, SHORT, &callbacks).unwrap();
-    assert!(said.lock().unwrap()[0].starts_with("1 of 3 networks are done already"));
+    assert!(messages.lock().unwrap()[0].starts_with("1 of 3 networks are done already"));
     assert_eq!(timeless(&resumed), timeless(&whole));
     let names: Vec<_> = std::fs::read_dir(&path).unwrap().map(|e| e.unwrap().file_name()).collect();
     assert!(!names.iter().any(|name| name.to_string_lossy().starts_with("networks.")), "{names:?}");
@@ -259,8 +259,8 @@ fn what_cannot_be_is_refused_before_any_work() {
     let out = folder.path().join("out");
     let plain = || options(&out, &[]);
     let thick = || options(&out, &["no layers"]);
-    let own = folder.path().join("own.csv");
-    std::fs::write(&own, "percent_smaller,diameter_over_d0f\n0,0.15\n50,0.3\n100,0.6\n").unwrap();
+    let curve_file = folder.path().join("own.csv");
+    std::fs::write(&curve_file, "percent_smaller,diameter_over_d0f\n0,0.15\n50,0.3\n100,0.6\n").unwrap();
     let mm = |mm: f64| vec![Thickness::Mm(mm)];
     let cases: [(BoundaryOptions, &str); 17] = [
         (BoundaryOptions { base: Some(folder.path().join("none.csv")), ..plain() }, "none.csv"),
@@ -304,7 +304,10 @@ fn what_cannot_be_is_refused_before_any_work() {
             },
             "--filter and --set filter.curve=cu1.5-loose",
         ),
-        (BoundaryOptions { filter: Some(own.display().to_string()), ..plain() }, "--set filter.curve=FILE"),
+        (
+            BoundaryOptions { filter: Some(curve_file.display().to_string()), ..plain() },
+            "--set filter.curve=FILE",
+        ),
         // More than this machine or 32 bits can hold is no boundary beyond the search.
         (
             BoundaryOptions { thicknesses: mm(1e9), base: base("a.csv", &sand), ..thick() },
@@ -331,13 +334,13 @@ fn what_cannot_be_is_refused_before_any_work() {
 #[test]
 fn what_is_found_of_one_row_alone_is_said_with_its_name() {
     let folder = tempfile::tempdir().unwrap();
-    let of = |name: &str, layers: &[&str]| {
+    let result = |name: &str, layers: &[&str]| {
         let thicknesses = layers.iter().map(|text| text.parse().unwrap()).collect();
-        found(&BoundaryOptions { thicknesses, ..tiny(&folder.path().join(name), &[]) })
+        searched(&BoundaryOptions { thicknesses, ..tiny(&folder.path().join(name), &[]) })
     };
-    let (thin, thick) = (of("thin", &["3layers"]), of("thick", &["16layers"]));
+    let (thin, thick) = (result("thin", &["3layers"]), result("thick", &["16layers"]));
     for order in [["3layers", "16layers"], ["16layers", "3layers"]] {
-        let both = of(&order.concat(), &order);
+        let both = result(&order.concat(), &order);
         for (row, alone) in [("3 layers", &thin), ("16 layers", &thick)] {
             let row = format!("loose, {row}");
             for RowNote { note, .. } in alone.notes.iter().filter(|row| row.note.id() != "not_monotone") {
@@ -354,7 +357,7 @@ fn what_is_found_of_one_row_alone_is_said_with_its_name() {
 fn the_base_is_named_as_it_is_stated() {
     let folder = tempfile::tempdir().unwrap();
     let out = |name: &str| folder.path().join(name);
-    assert_eq!(found(&options(&out("linear"), &["base.cu=3"])).base.name, "linear, Cu 3");
+    assert_eq!(searched(&options(&out("linear"), &["base.cu=3"])).base.name, "linear, Cu 3");
     // A millimetre that is stated is a size.
     let base = of_base(folder.path(), "sand.csv", &[(0.1, 0.0), (0.2, 100.0)]);
     let sized = BoundaryOptions {
@@ -362,7 +365,7 @@ fn the_base_is_named_as_it_is_stated() {
         thicknesses: vec![Thickness::Mm(12.0)],
         ..options(&out("sized"), &["no layers", "filter.d0_mm=1"])
     };
-    let sized = found(&sized);
+    let sized = searched(&sized);
     assert!(sized.base.name.ends_with("sand.csv"), "{}", sized.base.name);
     assert!(sized.boundaries[0].no_erosion.as_ref().unwrap().d15f_mm.is_some());
 }
@@ -376,16 +379,17 @@ fn a_boundary_below_the_bracket_leaves_no_ratio_that_holds() {
         found_within(&options, bracket)
     };
     let wide = all("wide", [0.5, 30.0]);
-    let least = wide.boundaries[0].networks.iter().filter_map(|of| of.no_erosion).fold(f64::MAX, f64::min);
+    let least =
+        wide.boundaries[0].networks.iter().filter_map(|network| network.no_erosion).fold(f64::MAX, f64::min);
     // The first bracket that begins above the least of the networks and below their median.
     let is_between = |all: &Boundaries| {
-        all.boundaries[0].no_erosion.as_ref().is_some_and(|of| of.low.is_none() && of.high.is_some())
+        all.boundaries[0].no_erosion.as_ref().is_some_and(|end| end.low.is_none() && end.high.is_some())
     };
     let mut brackets = (1..5).map(|step| [least * libm::exp(0.04 * f64::from(step)), 30.0]);
     let beside = brackets.find_map(|bracket| Some(all(&format!("{bracket:?}"), bracket)).filter(is_between));
     let beside = beside.expect("the networks lie apart");
     let row = &beside.boundaries[0];
-    assert!(row.networks.iter().any(|of| of.no_erosion.is_none()), "{row:?}");
+    assert!(row.networks.iter().any(|network| network.no_erosion.is_none()), "{row:?}");
     assert!(row.no_erosion.as_ref().unwrap().cautious().is_none(), "{row:?}");
     assert!(beside.least_held().is_none(), "{beside:?}");
     assert!(beside.notes.iter().any(|row| row.note.id() == "erodes_everywhere"), "{:?}", beside.notes);

@@ -6,8 +6,8 @@ use crate::outcome::boundary::Beyond;
 use crate::run::error::RunError;
 
 impl<W: Walker> Search<W> {
-    /// The boundary of the first run near a hint, below which two stops hold as well; `None` where that is
-    /// not so.
+    /// The boundary of the first run near a hint, below which two stops hold as well; `None` if there is no
+    /// such boundary.
     pub(super) fn near_hint(&mut self, hint: Option<i64>) -> Result<Option<Pair>, RunError> {
         let Some(pair) = self.away_from(hint, Self::try_first)? else { return Ok(None) };
         let below = (pair.0 - 1).div_euclid(STOP) * STOP;
@@ -48,8 +48,8 @@ impl<W: Walker> Search<W> {
         self.halved((least - STOP, least), Self::try_first).map(Ok)
     }
 
-    /// The first stop from `start` on upwards that erodes; where the base is too fine for any of them, the
-    /// first downwards that can be walked.
+    /// The first stop from `start` on upwards that erodes; if the base is too fine for any of them, the first
+    /// downwards that can be walked.
     fn stop_that_erodes(&mut self, start: i64) -> Result<Result<i64, Beside>, RunError> {
         let [lowest, highest] = self.stops;
         let (mut at, mut too_fine) = (start, None);

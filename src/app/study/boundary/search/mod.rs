@@ -55,7 +55,7 @@ const BRACKETS: [f64; 2] = [0.1, 1000.0];
 pub(super) enum Ended {
     /// The smallest ratio of the search erodes.
     Erodes(f64),
-    /// All ratios down to this one erode, and what keeps smaller ones from being walked.
+    /// All ratios down to this one erode; with the reason why smaller ones cannot be walked.
     ErodesTo(f64, String),
     /// The largest ratio of the search holds, in this run.
     Holds(u64, f64),
@@ -93,7 +93,7 @@ pub(super) struct Found {
     pub continuing_beyond: Option<Beside>,
     /// True if some larger ratio was seen to hold.
     pub is_not_monotone: bool,
-    /// Every ratio that was walked, rising, with what eroded in the first run and in the second.
+    /// Every ratio that was walked, rising, with the eroded mass fraction in the first run and in the second.
     pub walks: Vec<(f64, f64, Option<f64>)>,
     /// For an end of a range that cannot set its answer: a ratio that it holds, the only one that was tried.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -124,25 +124,25 @@ fn erodes_down_to(step: i64) -> Beside {
 /// Boundaries of another network of the same filter, as a start for this one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Hint {
-    /// Both boundaries, where it has them.
+    /// Both boundaries, if it has them.
     pub boundaries: [Option<f64>; 2],
     /// True if the smallest ratio of the search erodes.
     pub erodes_to_end: bool,
 }
 
 impl Hint {
-    pub fn of(found: &Found) -> Self {
+    pub fn of(result: &Found) -> Self {
         let is_beyond = |side: &Option<Beside>| matches!(side, Some((_, Ended::Erodes(_))));
-        let all_erode = found.walks.iter().all(|(_, eroded, _)| *eroded >= THRESHOLD);
-        let erodes_to_end = is_beyond(&found.no_erosion_beyond) && all_erode;
-        Self { boundaries: [found.no_erosion, found.continuing], erodes_to_end }
+        let all_erode = result.walks.iter().all(|(_, eroded, _)| *eroded >= THRESHOLD);
+        let erodes_to_end = is_beyond(&result.no_erosion_beyond) && all_erode;
+        Self { boundaries: [result.no_erosion, result.continuing], erodes_to_end }
     }
 }
 
-/// Where a search begins.
+/// Start of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Start {
-    /// A ratio to begin at where there is no hint.
+    /// Ratio at which a search without a hint begins.
     pub ratio: f64,
     /// Boundaries of another network of the filter.
     pub hint: Hint,
@@ -163,13 +163,13 @@ impl<W: Walker> Search<W> {
     fn new(walker: W, bracket: [f64; 2], across: u64) -> Self {
         let up = |ratio: f64| (libm::log(ratio) / BETWEEN_STEPS / STOP as f64 - 1e-9).ceil() as i64 * STOP;
         let down = |ratio: f64| (libm::log(ratio) / BETWEEN_STEPS / STOP as f64 + 1e-9).floor() as i64 * STOP;
-        // Outwards, within what is allowed.
+        // Outwards, within the allowed range.
         let stops = [down(bracket[0]).max(up(BRACKETS[0])), up(bracket[1]).min(down(BRACKETS[1]))];
         let (first, second) = (BTreeMap::new(), BTreeMap::new());
         Self { walker, stops, below: tried_below(across), first, second }
     }
 
-    /// Every ratio that was walked, rising, with what eroded in the first run and in the second.
+    /// Every ratio that was walked, rising, with the eroded mass fraction in the first run and in the second.
     fn walks(&self) -> Vec<(f64, f64, Option<f64>)> {
         let walk = |step: &i64| Some((ratio_at(*step), self.eroded(1, *step)?, self.eroded(2, *step)));
         self.first.keys().filter_map(walk).collect()
@@ -183,7 +183,7 @@ impl<W: Walker> Begun<W> {
     /// A walk that goes wrong, or was stopped.
     pub fn new(walker: W, bracket: [f64; 2], start: Start) -> Result<Self, RunError> {
         let mut search = Search::new(walker, bracket, start.across);
-        let mut found = Found::default();
+        let mut result = Found::default();
         let stops = search.stops;
         let erodes_to_end = start.hint.erodes_to_end && search.erodes(stops[0])?;
         let hint = step_near(start.hint.boundaries[0]);
@@ -200,33 +200,33 @@ impl<W: Walker> Begun<W> {
                 let least = search.smallest_that_erodes(pair.1, Search::try_first)?;
                 let least = smallest_seen(&search.first).unwrap_or(least);
                 if least > stops[0] {
-                    found.no_erosion = Some(between((least - 1, least), |step| search.eroded(1, step)));
+                    result.no_erosion = Some(between((least - 1, least), |step| search.eroded(1, step)));
                 } else {
-                    found.no_erosion_beyond = Some(erodes_down_to(least));
+                    result.no_erosion_beyond = Some(erodes_down_to(least));
                 }
                 Some(pair)
             }
             Err(beyond) => {
-                found.no_erosion_beyond = Some(beyond.clone());
-                found.continuing_beyond = Some(beyond);
+                result.no_erosion_beyond = Some(beyond.clone());
+                result.continuing_beyond = Some(beyond);
                 None
             }
         };
-        found.walks = search.walks();
-        Ok(Self { search, pair, found })
+        result.walks = search.walks();
+        Ok(Self { search, pair, found: result })
     }
 
-    /// Where to look on other networks for the boundary of the first run.
+    /// Hint for the boundary of the first run on other networks.
     pub fn hint(&self) -> Hint {
         Hint { boundaries: [self.found.no_erosion, None], ..Hint::of(&self.found) }
     }
 
-    /// Searches the boundary of the second run, near `hint` where there is one.
+    /// Searches the boundary of the second run, near `hint` if it is given.
     ///
     /// # Errors
     /// A walk that goes wrong, or was stopped.
     pub fn ended(self, hint: Option<f64>) -> Result<Found, RunError> {
-        let Self { mut search, pair, mut found } = self;
+        let Self { mut search, pair, found: mut result } = self;
         if let Some(pair) = pair {
             let second = match search.away_from(step_near(hint), Search::try_second)? {
                 Some(pair) => Ok(pair),
@@ -239,17 +239,17 @@ impl<W: Walker> Begun<W> {
                     let least = smallest_seen(&search.second).unwrap_or(least);
                     if least > search.stops[0] {
                         let second = between((least - 1, least), |step| search.eroded(2, step));
-                        found.continuing = Some(found.no_erosion.map_or(second, |first| second.max(first)));
+                        result.continuing = Some(result.no_erosion.map_or(second, |first| second.max(first)));
                     } else {
-                        found.continuing_beyond = Some(erodes_down_to(least));
+                        result.continuing_beyond = Some(erodes_down_to(least));
                     }
                 }
-                Err(beyond) => found.continuing_beyond = Some(beyond),
+                Err(beyond) => result.continuing_beyond = Some(beyond),
             }
         }
-        found.is_not_monotone = search.is_not_monotone();
-        found.walks = search.walks();
-        Ok(found)
+        result.is_not_monotone = search.is_not_monotone();
+        result.walks = search.walks();
+        Ok(result)
     }
 }
 

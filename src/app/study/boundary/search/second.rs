@@ -5,8 +5,7 @@ use super::{Beside, Ended};
 use crate::outcome::boundary::Beyond;
 use crate::run::error::RunError;
 
-/// Steps from stop to stop in the search of the second run, which is far from the first's where bases are
-/// broad.
+/// Steps from stop to stop in the search of the second run, which is far from the first's if bases are broad.
 const SECOND_STOP: i64 = 32;
 
 impl<W: Walker> Search<W> {
@@ -24,7 +23,7 @@ impl<W: Walker> Search<W> {
                 _ => (below, at) = (at, (at + SECOND_STOP).min(self.stops[1])),
             }
         }
-        // Where the first run held, nothing continues.
+        // If the first run held, nothing continues.
         self.halved((below, at), Self::try_second).map(Ok)
     }
 }

@@ -56,16 +56,20 @@ fn a_hint_changes_no_boundary_and_saves_walks() {
     for hint in [[4.4, 7.3], [4.3, 7.5], [4.5, 7.1], [3.0, 12.0], [9.0, 5.0], [0.2, 300.0]] {
         let mut hinted = line();
         let start = Start { ratio: 5.67, hint: near(hint.map(Some)), across: USUAL_ACROSS };
-        let found = search(&mut hinted, [0.5, 100.0], start).unwrap();
-        assert_eq!((found.no_erosion, found.continuing), (wanted.no_erosion, wanted.continuing), "{hint:?}");
+        let result = search(&mut hinted, [0.5, 100.0], start).unwrap();
+        assert_eq!(
+            (result.no_erosion, result.continuing),
+            (wanted.no_erosion, wanted.continuing),
+            "{hint:?}"
+        );
         let near = (hint[0] / 4.4 - 1.0).abs() < 0.03;
         assert!(!near || hinted.walks < plain.walks, "{} {}", hinted.walks, plain.walks);
     }
     // Below a hint that is the upper one of two crossings the lower one is found.
     let dip = |s: f64| 0.075 + 0.02 * (s - 3.0) * (s - 4.0) * (s - 4.4);
     let start = Start { ratio: 7.0, hint: near([Some(4.4), None]), across: USUAL_ACROSS };
-    let found = search(&mut formula(dip, |_| 1.0), [0.5, 100.0], start).unwrap();
-    assert!(found.is_not_monotone && (found.no_erosion.unwrap() / 3.0 - 1.0).abs() < 0.005, "{found:?}");
+    let result = search(&mut formula(dip, |_| 1.0), [0.5, 100.0], start).unwrap();
+    assert!(result.is_not_monotone && (result.no_erosion.unwrap() / 3.0 - 1.0).abs() < 0.005, "{result:?}");
 }
 
 #[test]
@@ -74,10 +78,10 @@ fn two_straight_lines_are_found_to_half_a_percent_from_any_start_and_bracket() {
     for bracket in [[0.5, 100.0], [1.0, 20.0], [3.05, 11.3]] {
         for start in [0.1, 2.0, 4.4, 6.0, 9.0, 15.0] {
             let mut line = formula(|s| 0.075 + 0.1 * (s - 4.4), |s| 0.075 + 0.05 * (s - 7.3));
-            let found = search(&mut line, bracket, from(start)).unwrap();
-            let (first, second) = (found.no_erosion.unwrap(), found.continuing.unwrap());
-            assert!((first / 4.4 - 1.0).abs() < 1e-4 && (second / 7.3 - 1.0).abs() < 1e-4, "{found:?}");
-            assert!(!found.is_not_monotone && line.walks < 75);
+            let result = search(&mut line, bracket, from(start)).unwrap();
+            let (first, second) = (result.no_erosion.unwrap(), result.continuing.unwrap());
+            assert!((first / 4.4 - 1.0).abs() < 1e-4 && (second / 7.3 - 1.0).abs() < 1e-4, "{result:?}");
+            assert!(!result.is_not_monotone && line.walks < 75);
             all.push((first.to_bits(), second.to_bits()));
         }
     }
@@ -87,43 +91,43 @@ fn two_straight_lines_are_found_to_half_a_percent_from_any_start_and_bracket() {
 
 #[test]
 fn a_second_run_that_erodes_wherever_the_first_does_has_the_same_boundary() {
-    let found = search(&mut formula(|s| s - 4.4, |_| 1.0), [0.5, 100.0], from(5.0)).unwrap();
-    let (first, second) = (found.no_erosion.unwrap(), found.continuing.unwrap());
+    let result = search(&mut formula(|s| s - 4.4, |_| 1.0), [0.5, 100.0], from(5.0)).unwrap();
+    let (first, second) = (result.no_erosion.unwrap(), result.continuing.unwrap());
     assert!((second / first - 1.0).abs() < 0.005, "{first} {second}");
-    assert!(found.walks.iter().all(|(_, first, second)| second.is_none() || *first >= 0.075));
+    assert!(result.walks.iter().all(|(_, first, second)| second.is_none() || *first >= 0.075));
 }
 
 #[test]
 fn what_lies_beyond_has_words_and_no_number() {
-    let of = |formula: &mut dyn Walker, bracket: [f64; 2]| search(formula, bracket, from(5.0)).unwrap();
-    let none = of(&mut formula(|_| 0.01, |_| 0.0), [0.5, 20.0]);
+    let result = |formula: &mut dyn Walker, bracket: [f64; 2]| search(formula, bracket, from(5.0)).unwrap();
+    let none = result(&mut formula(|_| 0.01, |_| 0.0), [0.5, 20.0]);
     assert_eq!((none.no_erosion, none.continuing), (None, None));
     let (beyond, why) = none.no_erosion_beyond.unwrap();
     assert!(beyond == Beyond::Above && matches!(why, Ended::Holds(1, _)), "{why:?}");
-    let all = of(&mut formula(|_| 0.5, |_| 0.5), [0.5, 20.0]).no_erosion_beyond.unwrap();
+    let all = result(&mut formula(|_| 0.5, |_| 0.5), [0.5, 20.0]).no_erosion_beyond.unwrap();
     let Ended::Erodes(ratio) = all.1 else { panic!("{all:?}") };
     assert!(all.0 == Beyond::Below && (ratio - 0.487).abs() < 1e-3, "{ratio}");
     // The boundary is beside the bracket: no number from its edge.
-    let beside = |bracket| of(&mut formula(|s| 0.075 + s - 4.4, |_| 1.0), bracket).no_erosion_beyond;
+    let beside = |bracket| result(&mut formula(|s| 0.075 + s - 4.4, |_| 1.0), bracket).no_erosion_beyond;
     assert_eq!(beside([5.0, 20.0]).unwrap().0, Beyond::Below);
     assert_eq!(beside([0.5, 4.0]).unwrap().0, Beyond::Above);
     // Only the second run ends.
-    let some = of(&mut formula(|s| 0.075 + s - 4.4, |_| 0.01), [0.5, 20.0]);
+    let some = result(&mut formula(|s| 0.075 + s - 4.4, |_| 0.01), [0.5, 20.0]);
     assert!(some.no_erosion.is_some() && some.continuing.is_none());
     assert!(matches!(some.continuing_beyond.unwrap().1, Ended::Holds(2, _)));
 }
 
 #[test]
 fn ratios_that_cannot_be_walked_give_no_number() {
-    let of = |possible, start| {
+    let result = |possible, start| {
         let mut formula = Formula { possible, ..formula(|s| 0.075 + 0.1 * (s - 4.4), |_| 1.0) };
         search(&mut formula, [0.5, 100.0], from(start)).unwrap()
     };
-    let between = |possible| of(possible, 3.0);
+    let between = |possible| result(possible, 3.0);
     for start in [0.7, 3.0, 20.0] {
-        assert!(of([2.0, 7.0], start).no_erosion.is_some(), "{start}");
+        assert!(result([2.0, 7.0], start).no_erosion.is_some(), "{start}");
     }
-    assert_eq!(of([0.5, 4.0], 20.0).no_erosion_beyond.unwrap().0, Beyond::Above);
+    assert_eq!(result([0.5, 4.0], 20.0).no_erosion_beyond.unwrap().0, Beyond::Above);
     let too_many = between([0.5, 4.0]).no_erosion_beyond.unwrap();
     assert!(too_many.0 == Beyond::Above && too_many.1 == Ended::NotWalked("Eq. (2) says no".into()));
     let too_few = between([5.0, 100.0]).no_erosion_beyond.unwrap();
@@ -134,9 +138,9 @@ fn ratios_that_cannot_be_walked_give_no_number() {
 fn of_several_crossings_the_smallest_counts_and_that_is_said() {
     // Above 0.075 from 3 to 4, below to 4.4, above from there.
     let dip = |s: f64| 0.075 + 0.02 * (s - 3.0) * (s - 4.0) * (s - 4.4);
-    let found = search(&mut formula(dip, |_| 1.0), [0.5, 100.0], from(7.0)).unwrap();
-    assert!(found.is_not_monotone, "{found:?}");
-    assert!((found.no_erosion.unwrap() / 3.0 - 1.0).abs() < 0.005, "{found:?}");
+    let result = search(&mut formula(dip, |_| 1.0), [0.5, 100.0], from(7.0)).unwrap();
+    assert!(result.is_not_monotone, "{result:?}");
+    assert!((result.no_erosion.unwrap() / 3.0 - 1.0).abs() < 0.005, "{result:?}");
 }
 
 /// Single ratios below the boundary of either run erode that lie between the stops: walks scatter.
@@ -147,13 +151,13 @@ fn a_single_ratio_that_erodes_below_the_boundary_counts() {
         let spike = ratio_at((libm::log(at * (1.0 - spike)) / BETWEEN_STEPS).round() as i64);
         let spiky = move |s: f64| if (s / spike - 1.0).abs() < 1e-3 { 0.09 } else { 0.075 + 0.05 * (s - at) };
         let early = |s: f64| 0.075 + 0.05 * (s - 2.0);
-        let found = match run {
+        let result = match run {
             1 => search(&mut formula(spiky, |_| 1.0), [0.5, 100.0], from(5.0)),
             _ => search(&mut formula(early, spiky), [0.5, 100.0], from(5.0)),
         };
-        let found = found.unwrap();
-        let ratio = if run == 1 { found.no_erosion } else { found.continuing };
-        (ratio.unwrap(), found.is_not_monotone)
+        let result = result.unwrap();
+        let ratio = if run == 1 { result.no_erosion } else { result.continuing };
+        (ratio.unwrap(), result.is_not_monotone)
     };
     for run in [1, 2] {
         let (plain, is_not_monotone) = boundary(run, 0.5);
@@ -163,7 +167,7 @@ fn a_single_ratio_that_erodes_below_the_boundary_counts() {
             let part = f64::from(percent) / 100.0;
             let (ratio, is_not_monotone) = boundary(run, part);
             let is_seen = ratio < (1.0 - 0.9 * part) * at;
-            // Where halving itself hits upon it, nothing above it is walked.
+            // If halving itself hits upon it, nothing above it is walked.
             assert!(is_seen || !is_not_monotone, "run {run}, {percent} % below: {ratio}");
             seen += u32::from(is_seen);
         }
@@ -176,14 +180,14 @@ fn a_single_ratio_that_erodes_below_the_boundary_counts() {
 fn the_ends_of_a_bracket_are_walked() {
     // A boundary just within the bracket, whose ends lie on no stop of the search.
     for at in [3.95, 4.05] {
-        let of = |bracket| {
+        let result = |bracket| {
             let mut line = formula(|s: f64| 0.075 + 0.1 * (s - at), |s: f64| 0.075 + 0.1 * (s - at - 0.05));
             search(&mut line, bracket, from(3.0)).unwrap()
         };
-        let (below, above) = (of([3.0, 1.04 * at]), of([0.96 * at, 20.0]));
-        for found in [&below, &above] {
-            assert!((found.no_erosion.unwrap() / at - 1.0).abs() < 1e-3, "{at} {found:?}");
-            assert!((found.continuing.unwrap() / (at + 0.05) - 1.0).abs() < 1e-3, "{at} {found:?}");
+        let (below, above) = (result([3.0, 1.04 * at]), result([0.96 * at, 20.0]));
+        for result in [&below, &above] {
+            assert!((result.no_erosion.unwrap() / at - 1.0).abs() < 1e-3, "{at} {result:?}");
+            assert!((result.continuing.unwrap() / (at + 0.05) - 1.0).abs() < 1e-3, "{at} {result:?}");
         }
     }
 }
@@ -222,7 +226,7 @@ fn small_networks_are_tried_at_more_ratios() {
     };
     assert!(lowest(100, 0.003) < 3.6, "{}", lowest(100, 0.003));
     assert!(lowest(USUAL_ACROSS, 0.003) > 4.1, "{}", lowest(USUAL_ACROSS, 0.003));
-    // Where erosion falls without scatter, the search stops before it comes so far down.
+    // If erosion falls without scatter, the search stops before it comes so far down.
     assert!(lowest(100, 0.0) > 4.38, "{}", lowest(100, 0.0));
 }
 
@@ -249,7 +253,7 @@ fn a_fall_is_steady_only_where_it_is_clear_of_the_threshold_by_what_scatters() {
 fn a_ratio_that_holds_is_known_by_few_walks() {
     let line = || formula(|s| 0.075 + 0.1 * (s - 4.4), |_| panic!("the first run is enough"));
     let holds = |formula: &mut dyn Walker, ratio: f64| {
-        holding(formula, [0.5, 100.0], (ratio, USUAL_ACROSS)).unwrap().map(|found| found.spared_at.unwrap())
+        holding(formula, [0.5, 100.0], (ratio, USUAL_ACROSS)).unwrap().map(|result| result.spared_at.unwrap())
     };
     let mut steady = line();
     let at = holds(&mut steady, 4.0).unwrap();
@@ -257,7 +261,7 @@ fn a_ratio_that_holds_is_known_by_few_walks() {
     // It falls steadily, which five walks below it show.
     assert!((2..=7).contains(&steady.walks), "{}", steady.walks);
     assert_eq!(holds(&mut line(), 4.5), None);
-    // Beyond the search, or where the base cannot be walked.
+    // Beyond the search, or with a base that cannot be walked.
     assert_eq!(holds(&mut line(), 101.0), None);
     assert_eq!(holds(&mut line(), 0.3), None);
     assert_eq!(holds(&mut Formula { possible: [5.0, 10.0], ..line() }, 4.0), None);

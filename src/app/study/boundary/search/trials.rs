@@ -38,7 +38,7 @@ pub(super) fn tried_below(across: u64) -> Vec<i64> {
 /// Result of a trial at one ratio.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Trial {
-    /// So much eroded.
+    /// Eroded mass.
     Eroded(Eroded),
     /// The base cannot be walked at this ratio: it is too coarse (below) or too fine (above), and why.
     CannotBe(Beyond, String),
@@ -58,7 +58,7 @@ impl Trial {
 pub trait Walker {
     /// The first run at D15F/D85B `ratio`.
     fn first(&mut self, step: i64, ratio: f64) -> Result<Trial, RunError>;
-    /// The second run, where the first has been walked.
+    /// The second run, after a walk of the first.
     fn second(&mut self, step: i64, ratio: f64) -> Result<Trial, RunError>;
 }
 
@@ -77,7 +77,7 @@ pub(super) fn ratio_at(step: i64) -> f64 {
     libm::exp(BETWEEN_STEPS * step as f64)
 }
 
-/// Two neighbouring steps: the last that holds and the first that erodes; `None` where nothing holds below.
+/// Two neighbouring steps: the last that holds and the first that erodes; `None` if nothing holds below.
 pub(super) type Pair = (i64, i64);
 
 /// Eroded mass at steps below a boundary, tried one after another, each below the one before.
@@ -85,7 +85,7 @@ pub(super) type Pair = (i64, i64);
 pub(super) struct Fall(Vec<(f64, f64, f64)>);
 
 impl Fall {
-    /// Steps from which a line is told from what scatters about it.
+    /// Least number of steps that tell a line from the scatter about it.
     const FEWEST: usize = 5;
     /// Least distance of the last step below the threshold, as a fraction of the threshold.
     const CLEAR: f64 = 0.15;
@@ -115,7 +115,7 @@ pub(super) struct Search<W> {
     pub(super) walker: W,
     /// The first stop and the last.
     pub(super) stops: [i64; 2],
-    /// Steps below the smallest ratio that erodes, at which a run is tried besides.
+    /// Steps below the smallest ratio that erodes, at which further runs are tried.
     pub(super) below: Vec<i64>,
     pub(super) first: BTreeMap<i64, Trial>,
     pub(super) second: BTreeMap<i64, Trial>,
@@ -156,7 +156,7 @@ impl<W: Walker> Search<W> {
     }
 
     /// Steps away from a hint, ever farther, to one that holds and one that erodes, and halves the steps
-    /// between; `None` where there is no hint, or a base that cannot be walked.
+    /// between; `None` without a hint, or with a base that cannot be walked.
     pub(super) fn away_from(
         &mut self,
         hint: Option<i64>,
@@ -242,9 +242,9 @@ impl<W: Walker> Search<W> {
         [&self.first, &self.second].into_iter().any(|trials| {
             let mut eroded = false;
             trials.values().any(|trial| match trial {
-                Trial::Eroded(found) => {
-                    eroded |= !found.below_threshold;
-                    eroded && found.below_threshold
+                Trial::Eroded(result) => {
+                    eroded |= !result.below_threshold;
+                    eroded && result.below_threshold
                 }
                 Trial::CannotBe(..) => false,
             })
@@ -257,8 +257,8 @@ pub(super) fn smallest_seen(trials: &BTreeMap<i64, Trial>) -> Option<i64> {
     trials.iter().find(|(_, trial)| trial.erodes() == Some(true)).map(|(step, _)| *step)
 }
 
-/// The ratio at which 7.5 % erode, straight between two neighbouring steps; halfway where the lower one was
-/// not walked.
+/// The ratio at which 7.5 % erode, straight between two neighbouring steps; halfway if the lower one was not
+/// walked.
 pub(super) fn between((low, high): Pair, eroded: impl Fn(i64) -> Option<f64>) -> f64 {
     let part = match (eroded(low), eroded(high)) {
         (Some(a), Some(b)) if b > a && a <= THRESHOLD => ((THRESHOLD - a) / (b - a)).clamp(0.0, 1.0),
