@@ -1,9 +1,11 @@
-//! One first run of any engine on a lattice of any shape, timed: how the cost grows with particles, voids and threads.
+//! One first run of any engine on a lattice of any shape, timed: the growth of the cost with particles, voids
+//! and threads.
 //!
-//! `cargo bench --bench scale_walk -- ENGINE N NX NY NZ THREADS ISA [CU]` prints one line of name and value pairs. The filter
-//! is the loose Cu 1.5 one, the base linear with D85B = Dc5 and Cu 4.5 unless CU says otherwise. `cpu` is the processor time
-//! of all threads, which are pinned unless the environment says PIN=0; both times are of the run alone, without the network.
-//! `scripts/studies/scale_walk.sh` collects such lines in a table, and `-- draw TABLE.csv FIGURES` draws it.
+//! `cargo bench --bench scale_walk -- ENGINE N NX NY NZ THREADS ISA [CU]` prints one line of name and value
+//! pairs. The filter is the loose Cu 1.5 one, the base linear with D85B = Dc5 and Cu 4.5 unless CU says
+//! otherwise. `cpu` is the processor time of all threads, which are pinned unless the environment says PIN=0;
+//! both times are of the run alone, without the network. `scripts/studies/scale_walk.sh` collects such lines
+//! in a table, and `-- draw TABLE.csv FIGURES` draws it.
 
 use std::sync::OnceLock;
 use std::time::Instant;

@@ -69,7 +69,7 @@ impl Network {
         Ok((inner, Some(flow)))
     }
 
-    /// Voids of the filter that are one end of an exit which is no constriction.
+    /// Voids of the filter at one end of an exit which is not a constriction.
     fn wide_ends(&self, leads_in: bool) -> Vec<i64> {
         let (n, upstream) = (&self.inner, self.inner.upstream());
         let reservoir = n.reservoir();

@@ -75,7 +75,7 @@ pub fn walk<'py>(
         mass_ratio,
     };
     let given: Vec<Arc<voidwalk::Network>> = networks.iter().map(|network| network.inner.clone()).collect();
-    // A filter that the network knows by itself is no table that could be exchanged.
+    // A filter that the network itself knows is not a table that could be exchanged.
     let exchanged = |filter: &GivenFilter| {
         Mistake::find(&plan.base, &filter.gradation, false).filter(|_| filter.is_measured && !as_given)
     };

@@ -59,7 +59,7 @@ impl Progress {
 /// State that the worker and the waiting thread share.
 struct Shared<T> {
     progress: Progress,
-    /// There is news that a callback has not been told.
+    /// True if there is news for the callback.
     is_new: bool,
     /// The waiting thread is to look at once.
     wake: bool,

@@ -45,7 +45,7 @@ pub(super) fn that_can_be_packed(
             _ => fits = percent,
         }
     }
-    // A percent that can be said.
+    // Percent rounded down to a tenth.
     let percent = libm::floor(10.0 * fits + 1e-6) / 10.0;
     finer_part(whole, percent)
         .filter(|(_, packed)| packed.finer_by <= LARGEST_ERROR && packed.percent >= FLOATING_PERCENT)
@@ -97,8 +97,7 @@ mod tests {
         assert!(part.largest_mm() <= 0.5 && packed.percent > 39.8, "{packed:?}");
         assert!(packed.sizes_missing_above);
         assert!(matches!(packed_part(&packed), Note::FloatingPartPacked { .. }));
-        // Too few grains for a part that says anything of the whole, and fines that coarse grains do not
-        // float in.
+        // Too few grains for a part that represents the whole, and fines that coarse grains do not float in.
         assert_eq!(that_can_be_packed(&c33(), |part| 1.0 / part.largest_mm()), None);
         assert_eq!(that_can_be_packed(&gap_at(20.0), width), None);
     }

@@ -223,7 +223,7 @@ impl Files {
         Ok((name, packing))
     }
 
-    /// Says more of the file that was read last.
+    /// Adds a note to the file that was read last.
     pub fn note(&mut self, note: String) {
         if let Some(input) = self.inputs.last_mut() {
             input.notes.push(note);

@@ -180,11 +180,11 @@ impl Case {
         besides <= room.memory && (columns <= room.memory - besides || columns <= room.disk)
     }
 
-    /// Says where the columns of the particles go: into memory where they fit, else into files in `folder`
+    /// Decides the place of the columns of the particles: in memory if they fit, else in files in `folder`
     /// that are mapped into memory.
     ///
     /// # Errors
-    /// [`CaseError::Memory`]: they fit neither.
+    /// [`CaseError::Memory`]: they fit into neither.
     pub fn place(&mut self, room: &ResourceLimits, threads: u64, folder: &Path) -> Result<(), CaseError> {
         self.memory = room.memory;
         let has_room = self.has_room(room, threads);

@@ -1,7 +1,8 @@
 //! A case: a scene with its files read and every number worked out, before any work is done.
 //!
-//! It is worked out in stages, each whole when it is there and made from those before it: the filter as it is
-//! stated, a network that all replicates walk, the filter, the base, the network, the particles of the base.
+//! It is worked out in stages, each complete once it exists and made from those before it: the filter as it
+//! is stated, a network that all replicates walk, the filter, the base, the network, the particles of the
+//! base.
 
 mod arching;
 mod base;

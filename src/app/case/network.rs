@@ -50,7 +50,7 @@ impl CaseNetwork {
     ) -> Result<Self, CaseError> {
         if let Some(fixed) = fixed {
             let network = &fixed.network;
-            // Exits that are passed both ways are no connectivity of the paper's kind.
+            // Exits that are passed both ways are not a connectivity of the paper's kind.
             let passes_both_ways = fixed.packing.is_some() || network.reservoir().is_some();
             return Ok(Self {
                 voids: network.filter_voids() as u64,

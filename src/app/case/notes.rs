@@ -12,10 +12,10 @@ use voidwalk_core::gradation::GRAVEL_MM;
 use voidwalk_core::network::ExitRule;
 use voidwalk_practice::Note;
 
-/// More moves than these of a particle that nothing stops are worth a word.
+/// Number of moves of a particle that nothing stops above which a note is given.
 const MANY_MOVES: f64 = 1e5;
 
-/// A larger share of grains without load is worth a word ...
+/// Share of grains without load above which a note is given ...
 const MANY_LOOSE: f64 = 0.5;
 /// ... and from this share on, coarse grains carry each other: with two sizes far apart 98 % were without
 /// load with 30 % of the mass in the finer one, 19 % with 40 % (`results/packing.md`).
@@ -113,7 +113,7 @@ impl Case {
         like_none.into_iter().chain([Note::GuessedConstrictions {}]).chain(grains).collect()
     }
 
-    /// That less base is offered than the paper's Eq. (2) and mass ratio ask for.
+    /// Note on a base that offers less than the paper's Eq. (2) and mass ratio ask for.
     pub fn too_little_base(&self) -> Option<Note> {
         let ratio = self.scene.base.mass_ratio.unwrap_or(PAPER_MASS_RATIO);
         let particles = self.supply.n_base;

@@ -44,7 +44,7 @@ mod tests {
     use super::*;
     use crate::scene::Scene;
 
-    /// By the layer that the network itself says, and by its constrictions, which lead to a neighbour.
+    /// By the layer in the network itself, and by its constrictions, which lead to a neighbour.
     #[test]
     fn the_voids_of_a_lattice_lie_in_their_layers_beside_their_neighbours() {
         let settings = ["network.nx=3", "network.ny=4", "network.nz=5"].map(String::from);

@@ -44,8 +44,8 @@ impl Against<'_> {
             true => &pan::as_passive(base, self.filter.finest_mm, self.scene)?,
             false => base,
         };
-        // A number that the user gives is of particles whose sizes are known; the mass stays the same. A cap
-        // is there for the work, which passive particles hardly add to.
+        // A number that the user gives counts particles whose sizes are known; the mass stays the same. A cap
+        // limits the work, to which passive particles add little.
         let more = taken.particles_per_unit_volume() / base.particles_per_unit_volume();
         let (ratio, cap) = match self.scene.base.amount() {
             Amount::MassRatio(ratio, Some(cap)) => (ratio, Some(self.times(cap, more)?)),

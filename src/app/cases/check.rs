@@ -67,7 +67,7 @@ pub struct CaseCheck {
 }
 
 impl PlanCheck {
-    /// Why the plan would be refused all the same: its cases that are wrong.
+    /// Reason to refuse the plan, even if it can be forecast: its unsound cases.
     pub fn refusal(&self) -> Option<RunError> {
         let wrong = self.cases.iter().filter(|case| !case.problem.is_empty());
         let wrong = wrong.map(|case| FailedCase { case: case.case.clone(), problem: case.problem.clone() });

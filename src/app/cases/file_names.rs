@@ -19,8 +19,8 @@ pub(crate) fn refuse_twice(files: &[PathBuf]) -> Result<(), RunError> {
     }
 }
 
-/// A table's file as the disk knows it, with the soil's name where one is given; a file that is not there is
-/// told apart by its name alone.
+/// A table's file as the disk knows it, with the soil's name if it is given; missing files are told apart by
+/// their names alone.
 fn real(file: &Path) -> PathBuf {
     let (path, soil) = file_and_soil(file);
     let path = path.canonicalize().unwrap_or(path);

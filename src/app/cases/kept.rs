@@ -63,7 +63,7 @@ pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
                     kind.name()
                 )));
             }
-            // At no moment is one that goes on without its mark.
+            // A study that continues always has its mark.
             if earlier.is_none() && !(has_cases && is_begun) {
                 clear(folder, kind)?;
             }

@@ -141,7 +141,7 @@ struct Single {
 /// A case of a plan.
 #[derive(Clone, Debug)]
 pub struct PlannedCase {
-    /// Its name, as a user says it.
+    /// Its name in messages.
     pub name: String,
     /// Level by factor, in the order of the plan; empty for a case outside the cross.
     pub levels: Vec<(String, String)>,
@@ -182,7 +182,7 @@ impl CasePlan {
     /// Reads a plan and every scene in it.
     ///
     /// # Errors
-    /// A file that cannot be read or is no plan, two cases of one name, a case whose settings are refused.
+    /// A file that cannot be read or is not a plan, two cases of one name, a case whose settings are refused.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let file = path.display().to_string();
         let io = |source| SceneError::File { file: file.clone(), source };

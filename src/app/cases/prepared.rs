@@ -75,7 +75,7 @@ pub(super) fn named(failed: &[FailedCase]) -> String {
     lines.join("\n")
 }
 
-/// The cases of a plan that a process is to see to.
+/// The cases of a plan that a process has to walk.
 ///
 /// # Errors
 /// There is no such case, or no such task.

@@ -57,8 +57,8 @@ impl Default for CaseOptions {
 }
 
 impl CaseOptions {
-    /// Folder of the packings; the campaign's own is no link to one elsewhere, which then would be written
-    /// to.
+    /// Folder of the packings; the campaign's own must not be a link to one elsewhere, which would then be
+    /// written to.
     pub(super) fn packings(&self) -> Result<PathBuf, RunError> {
         if let Some(packings) = &self.packings {
             return Ok(packings.clone());
@@ -73,7 +73,7 @@ impl CaseOptions {
         }
     }
 
-    /// The filter of a packing that is there.
+    /// The filter of a packing that exists.
     pub(super) fn packed(&self, plan: &PackingPlan) -> Result<Option<PackedFilter>, RunError> {
         Ok(PackedFilter::find(&self.packings()?, plan)?)
     }
@@ -116,7 +116,7 @@ impl FinishedCases {
     }
 }
 
-/// The names of the cases that a process would see to, each found sound.
+/// The names of the cases that a process would walk, each found sound.
 ///
 /// # Errors
 /// There is no such part of the plan; a case that is wrong.
@@ -357,7 +357,7 @@ pub fn collect(
 /// Makes one of the packings that a plan needs, counted from 1 in the order of its cases.
 ///
 /// # Errors
-/// There is no such packing; then as `provide`.
+/// There is no such packing; then see `provide`.
 pub fn make_packing(
     plan: &CasePlan,
     number: u64,

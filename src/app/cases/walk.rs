@@ -77,9 +77,9 @@ pub struct CaseCallbacks<'a> {
     /// Callbacks of the caller that follow packings, stop the campaign and take finished results; walks of
     /// single cases are reported to `on_case`.
     pub run: Callbacks<'a>,
-    /// Told how many cases there are before the first is walked, and how many of them are done already.
+    /// Receives the number of cases before the first is walked, and the number of those done already.
     pub on_cases: &'a (dyn Fn(usize, usize) + Sync),
-    /// Told of every case that this process begins, walks a run of, has finished or waits for.
+    /// Receives every case that this process begins, walks a run of, has finished or waits for.
     pub on_case: &'a (dyn Fn(&str, CaseEvent) + Sync),
 }
 
@@ -188,7 +188,7 @@ impl CaseRunner<'_> {
             while !self.is_stopped() {
                 let Some(case) = open.get(next.fetch_add(1, Ordering::Relaxed)) else { return Ok(()) };
                 let name = &case.planned.name;
-                // A fault in one case is no fault of the others.
+                // A fault in one case must not stop the others.
                 let walked = catch_unwind(AssertUnwindSafe(|| pool.install(|| self.one(case))));
                 match walked.unwrap_or_else(|panic| Err(fault(&*panic))) {
                     Err(RunError::Store(StoreError::Held { .. })) => tally.wait(self.callbacks, name),
@@ -350,7 +350,7 @@ impl Tally {
         *tries <= TRIES
     }
 
-    /// Another process is at the case; said once.
+    /// Another process works on the case; reported once.
     fn wait(&self, callbacks: &CaseCallbacks, name: &str) {
         self.waits.fetch_add(1, Ordering::Relaxed);
         if self.waiting.lock().is_ok_and(|mut names| names.insert(name.to_owned())) {

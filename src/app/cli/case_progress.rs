@@ -20,7 +20,7 @@ const BETWEEN_RUNS: Duration = Duration::from_secs(5);
 pub struct CaseProgress {
     quiet: bool,
     /// True if every event of a case has a line, as in the log of a job.
-    each: bool,
+    every_event: bool,
     /// Known as soon as the cases are counted.
     shown: OnceLock<(Option<ProgressBar>, Mutex<Lines>)>,
 }
@@ -35,8 +35,8 @@ struct Lines {
 }
 
 impl CaseProgress {
-    pub fn new(quiet: bool, each: bool) -> Self {
-        Self { quiet, each, shown: OnceLock::new() }
+    pub fn new(quiet: bool, every_event: bool) -> Self {
+        Self { quiet, every_event, shown: OnceLock::new() }
     }
 
     /// Follows the work on cases, until it ends.
@@ -94,13 +94,13 @@ impl CaseProgress {
             (None, CaseEvent::Failed(problem)) => {
                 to_stderr(&format!("failed: {case}: {}\n", plain(problem)));
             }
-            (None, CaseEvent::Begun { resumes }) if self.each => {
+            (None, CaseEvent::Begun { resumes }) if self.every_event => {
                 to_stderr(&format!("{}: {case}\n", if resumes { "continues" } else { "begins" }));
             }
-            (None, CaseEvent::Waiting) if self.each => {
+            (None, CaseEvent::Waiting) if self.every_event => {
                 to_stderr(&format!("waits: {case}: another process is at it\n"));
             }
-            (None, CaseEvent::Walked { done, runs }) if !self.each => {
+            (None, CaseEvent::Walked { done, runs }) if !self.every_event => {
                 let Ok(mut lines) = lines.lock() else { return };
                 if lines.last.elapsed() >= BETWEEN_RUNS {
                     lines.last = Instant::now();
@@ -111,7 +111,7 @@ impl CaseProgress {
             (None, CaseEvent::Done(line)) => {
                 let Ok(mut lines) = lines.lock() else { return };
                 lines.done += 1;
-                if !self.each && lines.done < lines.total && lines.last.elapsed() < BETWEEN_LINES {
+                if !self.every_event && lines.done < lines.total && lines.last.elapsed() < BETWEEN_LINES {
                     return;
                 }
                 lines.last = Instant::now();

@@ -34,7 +34,7 @@ fn on_a_terminal(text: &str) -> String {
 /// Prints to stdout by a function, likewise.
 pub fn by_stdout(print: impl FnOnce() -> io::Result<()>) {
     let printed = print().and_then(|()| io::stdout().flush());
-    // A reader that has left is no fault of ours.
+    // A reader that has left is not an error of the program.
     if let Some(error) = printed.err().filter(|error| error.kind() != ErrorKind::BrokenPipe) {
         LOST.get_or_init(|| error.to_string());
     }
@@ -63,7 +63,7 @@ pub fn shown(path: &Path) -> String {
     plain(&path.display().to_string())
 }
 
-/// A record in its form, as its file says it.
+/// A record in its form, as in its file.
 pub fn json(format: Format, record: &impl Serialize) -> Result<String, RunError> {
     Ok(format.json(record)?)
 }

@@ -106,7 +106,7 @@ struct Walk {
     needs: [u64; 2],
     /// True if the verdict also waits for other readings of the inputs.
     readings: bool,
-    /// Replicates at the last look, and when that was said.
+    /// Replicates at the last look, and the time of the last line.
     looked_at: usize,
     last_line: Option<Instant>,
 }

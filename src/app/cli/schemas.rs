@@ -27,26 +27,27 @@ type Made = fn() -> Schema;
 
 /// Contents of each form after its beginning.
 const CONTENTS: &[(Format, Made)] = &[
-    (format::OUTCOME, of::<Outcome>),
-    (format::MANIFEST, of::<Manifest>),
-    (format::BOUNDARY, of::<Boundaries>),
-    (format::DESIGNS, of::<DesignedSamples>),
-    (format::SPECIFICATION, of::<Specification>),
-    (format::BATCH, of::<WalkedBatch>),
-    (format::CAMPAIGN, of::<Campaign>),
-    (format::CASE, of::<LedgerLine>),
-    (format::PACKING, of::<PackingRecord>),
-    (format::CONSTRICTIONS, of::<Summary>),
-    (format::PERCOLATION, of::<PercolationStudy>),
-    (format::SERVE, of::<Nothing>),
-    (format::CHECK, of::<Check>),
-    (format::PLAN_CHECK, of::<PlanCheck>),
-    (format::RULES, of::<PairRules>),
-    (format::SOILS, of::<Soils>),
-    (format::SETTINGS, of::<SceneReference>),
+    (format::OUTCOME, schema_of::<Outcome>),
+    (format::MANIFEST, schema_of::<Manifest>),
+    (format::BOUNDARY, schema_of::<Boundaries>),
+    (format::DESIGNS, schema_of::<DesignedSamples>),
+    (format::SPECIFICATION, schema_of::<Specification>),
+    (format::BATCH, schema_of::<WalkedBatch>),
+    (format::CAMPAIGN, schema_of::<Campaign>),
+    (format::CASE, schema_of::<LedgerLine>),
+    (format::PACKING, schema_of::<PackingRecord>),
+    (format::CONSTRICTIONS, schema_of::<Summary>),
+    (format::PERCOLATION, schema_of::<PercolationStudy>),
+    (format::SERVE, schema_of::<Nothing>),
+    (format::CHECK, schema_of::<Check>),
+    (format::PLAN_CHECK, schema_of::<PlanCheck>),
+    (format::RULES, schema_of::<PairRules>),
+    (format::SOILS, schema_of::<Soils>),
+    (format::SETTINGS, schema_of::<SceneReference>),
 ];
 /// Types that Python gives but no file holds: they are made from their schemas.
-const OF_PYTHON: &[(&str, Made)] = &[("network-walk", of::<NetworkWalkRecord>), ("columns", of::<Tables>)];
+const OF_PYTHON: &[(&str, Made)] =
+    &[("network-walk", schema_of::<NetworkWalkRecord>), ("columns", schema_of::<Tables>)];
 
 /// The JSON Schema of a file, by the name of its form, as `outcome`: indented, with a newline at its end.
 pub fn schema(name: &str) -> Option<String> {
@@ -76,14 +77,14 @@ struct Tables {
 struct Nothing {}
 
 /// The schema of a type as it is written.
-fn of<T: JsonSchema>() -> Schema {
+fn schema_of<T: JsonSchema>() -> Schema {
     let schema = SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<T>();
     let mut schema = schema.to_value();
     without_examples(&mut schema);
     schema.try_into().expect("still a schema")
 }
 
-/// Takes the examples in Rust, which say nothing of a file, out of all descriptions.
+/// Removes the examples in Rust, which do not describe a file, from all descriptions.
 fn without_examples(schema: &mut Value) {
     match schema {
         Value::Object(fields) => {

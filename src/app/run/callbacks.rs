@@ -115,7 +115,7 @@ pub enum Event<'a> {
 /// ```
 #[derive(Clone, Copy)]
 pub struct Callbacks<'a> {
-    /// Told of every event.
+    /// Receives every event.
     pub on_event: &'a (dyn Fn(Event) + Sync),
     /// Set to stop: the work ends after the current increment or step, with its progress saved.
     pub stop: &'a AtomicBool,
@@ -144,7 +144,7 @@ impl Callbacks<'_> {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// Says that results are written.
+    /// Reports that results are written.
     pub(crate) fn results(
         &self,
         kind: FolderKind,
@@ -154,7 +154,7 @@ impl Callbacks<'_> {
         (self.on_results)(kind, folder, run).map_err(RunError::Results)
     }
 
-    /// Says that results are written, and takes the mark of unfinished work away.
+    /// Reports that results are written, and removes the mark of unfinished work.
     pub(crate) fn finish(&self, kind: FolderKind, folder: &Folder) -> Result<(), RunError> {
         self.results(kind, folder.path(), None)?;
         Ok(unfinished::end(folder)?)

@@ -68,7 +68,7 @@ fn measure_here(
     constrictions.check().map_err(|error| refused(error.to_string()))?;
     // Grains without a cell, and voids that run through it, have no graph.
     let graph = VoidGraph::of(&t, options.merge_overlap).ok();
-    // Those near the outside of grains without a cell are no part of the curve.
+    // Constrictions near the outside of grains without a cell do not count for the curve.
     let whole =
         |summary: &Summary| summary.grains_per_void.is_finite() && summary.mean_connectivity.is_finite();
     let mut summary = constrictions.summary().ok().filter(whole).ok_or_else(|| {

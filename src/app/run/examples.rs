@@ -37,7 +37,7 @@ pub const EXAMPLE_FILES: [ExampleFile; 8] = [
     example!("notebook.ipynb", "the same from Python"),
 ];
 
-/// Writes every example into a folder, which is made if it is not there. Other files in it stay.
+/// Writes every example into a folder, which is made if it is missing. Other files in it stay.
 ///
 /// ```
 /// use voidwalk_app::run::{EXAMPLE_FILES, write_examples};

@@ -235,7 +235,7 @@ impl NetworkWalk {
         networks.iter().map(bytes).max().unwrap_or(0)
     }
 
-    /// About how many base particles are coarser than the finest constriction, so that each is walked by
+    /// Approximate number of base particles coarser than the finest constriction, each of which is walked by
     /// itself.
     fn coarse_particles(&self, network: &Network) -> u64 {
         let finest_mm = f64::from(network.finest_open(|_| false)) * network.unit_mm();

@@ -114,15 +114,15 @@ pub(crate) fn prepare_into<F: AsRef<Path>>(
 /// Writes the built-in scene, commented, as a start for another.
 ///
 /// # Errors
-/// A file that is there already is refused.
+/// A file that exists already is refused.
 pub fn write_built_in(path: &Path) -> Result<(), RunError> {
     write_new(path, Scene::init_text().as_bytes())
 }
 
-/// Writes a file that is not there yet.
+/// Writes a file that does not exist yet.
 ///
 /// # Errors
-/// A file that is there already is refused.
+/// A file that exists already is refused.
 pub fn write_new(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     if path.symlink_metadata().is_ok() {
         let problem = "is there already; name a file that is not";

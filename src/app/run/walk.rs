@@ -91,10 +91,10 @@ pub fn walk_scene(
 }
 
 /// Continues a run that was stopped or killed, with the same bits: its scene is the one that its folder
-/// holds, and [`RunOptions::out`] and [`RunOptions::overwrite`] say nothing.
+/// holds, and [`RunOptions::out`] and [`RunOptions::overwrite`] are ignored.
 ///
 /// # Errors
-/// A folder that holds no run, or a finished one, is refused; then as [`walk_scene`].
+/// A folder that holds no run, or a finished one, is refused; then see [`walk_scene`].
 ///
 /// # Example
 /// A walk is stopped after its first run, and continued.

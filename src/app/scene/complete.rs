@@ -63,7 +63,7 @@ impl Scene {
             if self.network.packing.is_some() {
                 let problem = "says what the constrictions are, but network.packing brings its own: keep one";
                 wrong(&["filter.curve", "filter.library", "filter.estimate"], problem)?;
-                // A run keeps the grains of the filter that it packed, and says both.
+                // A run keeps the grains of the filter that it packed, and states both.
                 if self.filter.measured.is_none() {
                     wrong(&["filter.density", "filter.friction"], problem)?;
                 }

@@ -2,7 +2,7 @@
 
 use voidwalk_core::schema::{Alternative, Group};
 
-/// Settings that say the same thing in different ways.
+/// Settings that state one fact in different ways.
 pub(super) const GROUPS: &[Group] = &[
     // Measurements on one packing do not apply to another.
     Group {

@@ -193,7 +193,7 @@ impl NetworkKeys {
         }
     }
 
-    /// Says how many layers a lattice of this thickness has.
+    /// Sets the number of layers of a lattice of this thickness.
     pub fn set_layers(&mut self, layers: u64) {
         self.nz = Some(layers);
         (self.thickness_mm, self.thickness_d50f) = (None, None);
@@ -205,7 +205,7 @@ impl NetworkKeys {
         (self.nx, self.ny) = (narrow(self.nx, VOIDS[0]), narrow(self.ny, VOIDS[1]));
     }
 
-    /// Says how many copies of a packing its graph is made of.
+    /// Sets the number of copies of a packing in its graph.
     pub fn set_copies(&mut self, copies: u64) {
         self.copies = Some(copies);
         (self.thickness_mm, self.thickness_d50f) = (None, None);

@@ -234,7 +234,7 @@ impl Scene {
         matches!(self.network.source(), NetworkSource::Cubic(_)) && self.exit_rule() == ExitRule::Area
     }
 
-    /// Gives the settings that follow from others their values, so that the scene says all that it means.
+    /// Gives the settings that follow from others their values, so that the scene is complete.
     fn fill_in(&mut self) {
         self.filter.fill_in();
         self.base.fill_in();

@@ -17,12 +17,12 @@ pub struct TableOptions {
     pub pack: bool,
     /// A first look: fewer replicates.
     pub quick: bool,
-    /// The base is walked as it was sampled. Without it a base in a table is walked as filter practice
-    /// regrades it, where `changes` do not say `base.regrade`.
+    /// True if the base is walked as it was sampled. Otherwise a base in a table is walked as filter practice
+    /// regrades it, unless `changes` contain `base.regrade`.
     pub as_sampled: bool,
     /// Base and filter are taken as they are given, though their sizes look exchanged.
     pub as_given: bool,
-    /// Further settings, as `name=value`; they go before all of these.
+    /// Further settings, as `name=value`; they override all of these.
     pub changes: Vec<String>,
 }
 
@@ -40,10 +40,10 @@ const CONSTRICTIONS: [&str; 7] = [
     "network.packing",
 ];
 
-/// Settings that say how many replicates are walked.
+/// Settings that decide the number of replicates.
 const REPLICATES: [&str; 3] = ["replicates", "stop.target_error_pp", "stop.decide_percent"];
 
-/// Settings that say how the filter's own packing is made.
+/// Settings that describe the filter's own packing.
 const PACKED: [&str; 2] = ["filter.density", "filter.friction"];
 
 /// Settings that define the base.
@@ -62,7 +62,7 @@ impl TableOptions {
     /// The settings that state all of this.
     ///
     /// # Errors
-    /// [`SceneError::Clash`]: a change says the density, or how the base is walked, too.
+    /// [`SceneError::Clash`]: a change also sets the density, or the regrading of the base.
     fn settings(&self) -> Result<Vec<String>, SceneError> {
         let clash = |problem: String| SceneError::Clash { file: Origin::CommandLine.to_string(), problem };
         if let (Some(density), true) = (self.density, self.is_set(&["filter.density", "filter.library"])) {
@@ -199,7 +199,7 @@ pub fn keep_soils(changes: &[String], base: Option<&str>, filter: Option<&str>) 
     Ok(())
 }
 
-/// The first of these settings that is among the changes.
+/// The first of these settings among the changes.
 fn set_among<'a>(changes: &[String], names: &[&'a str]) -> Option<&'a str> {
     let is_set = |name: &str| changes.iter().any(|change| setting_name(change) == name);
     names.iter().copied().find(|name| is_set(name))

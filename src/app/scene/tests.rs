@@ -75,7 +75,7 @@ fn alternatives_that_are_set_together_are_refused() {
     ] {
         assert!(built_in(&set).unwrap_err().to_string().contains(message), "{set:?}: {:?}", built_in(&set));
     }
-    // The file's are replaced all the same, and the same setting twice is as on any command line.
+    // The file's settings are still replaced, and a setting given twice counts as on any command line.
     let text = b"[filter]\ncurve = \"a.csv\"\nd0_mm = 2\n[base]\ncu = 2\nd85_mm = 1\n";
     let set = ["base.d15f_over_d85b=3", "filter.sieve=f.csv", "base.d15f_over_d85b=4"].map(String::from);
     let scene = Scene::parse(text, "s.toml", &set).unwrap();

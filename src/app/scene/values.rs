@@ -61,7 +61,7 @@ impl Density {
     /// From the densest.
     pub const ALL: [Self; 3] = [Self::Dense, Self::Intermediate, Self::Loose];
 
-    /// The word that a scene says.
+    /// The word in a scene.
     pub fn name(self) -> &'static str {
         match self {
             Self::Dense => "dense",
@@ -119,7 +119,7 @@ impl LibraryDensity {
         }
     }
 
-    /// The word that a scene says.
+    /// The word in a scene.
     pub fn name(self) -> &'static str {
         match self {
             Self::Dense => Density::Dense.name(),
@@ -177,7 +177,7 @@ impl SheetUnits {
     /// Both.
     pub const ALL: [Self; 2] = [Self::Metric, Self::Us];
 
-    /// The word that a scene says.
+    /// The word in a scene.
     pub fn name(self) -> &'static str {
         match self {
             Self::Metric => "metric",
@@ -203,7 +203,7 @@ impl Leaf for Regrade {}
 impl Leaf for Density {}
 impl Leaf for LibraryDensity {}
 
-/// Percent of the voids by connectivity, as a scene says it.
+/// Percent of the voids by connectivity, as written in a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VoidConnectivity(pub Connectivity);
 

@@ -44,8 +44,8 @@ impl Connections {
         self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A place for a connection, as soon as there is one: where all are taken, the oldest connection without
-    /// the secret is ended.
+    /// A place for a connection, as soon as there is one: if all are taken, the oldest connection without the
+    /// secret is ended.
     ///
     /// # Errors
     /// There are no more file handles.

@@ -1,4 +1,5 @@
-//! Who may ask: the browser of the user who was told the address, and no page of anybody else.
+//! Guard of requests: it admits the browser of the user who was given the address, and no page of another
+//! origin.
 //!
 //! - The address holds a secret of 128 bits.
 //! - The name that was asked for is this machine's own, so that no foreign name that is made to point here
@@ -22,7 +23,7 @@ impl Guard {
     /// # Errors
     /// The system gives no random bytes.
     pub fn new(port: u16) -> io::Result<Self> {
-        // A secret must not follow from any seed, so it is no number of `voidwalk_core::stream`.
+        // A secret must not follow from any seed, so it is not a number of `voidwalk_core::stream`.
         let mut bytes = [0u8; 16];
         getrandom::fill(&mut bytes)?;
         Ok(Self { token: bytes.iter().map(|byte| format!("{byte:02x}")).collect(), port })

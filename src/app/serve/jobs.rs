@@ -85,7 +85,7 @@ impl JobQueue {
         let id = id.ok_or_else(|| RunError::Refused("this folder is full: start on another".into()))?;
         let written = file.write(&path(&id)).map_err(|error| RunError::failed(error.to_string()));
         let mut all = self.locked();
-        // Meanwhile others may have been added, or the server told to end.
+        // Meanwhile others may have been added, or the server stopped.
         if let Err(error) = written.and_then(|()| has_room(&all)) {
             drop(all);
             // The folder was free, so that its contents belong to this job, which does not start.
@@ -219,7 +219,7 @@ impl JobQueue {
         self.locked().iter().any(|job| job.folder == name).then(|| self.context.root.join(name))
     }
 
-    /// All jobs, the newest first; messages pass through `said`.
+    /// All jobs, the newest first; messages pass through `named`.
     pub fn snapshot(&self, named: impl Fn(&str) -> String) -> Value {
         let all = self.locked();
         all.iter().rev().map(|job| job.snapshot(&all, &self.context.root, &named)).collect()

@@ -103,7 +103,7 @@ impl Live {
         }
     }
 
-    /// A batch begins, or goes on.
+    /// A batch begins, or continues.
     pub fn batch(&mut self, rows: Vec<WalkedRow>, inches: bool) {
         self.batch = Some((rows, inches));
     }
@@ -145,7 +145,7 @@ impl Live {
             "walking": self.walking.iter().map(|(case, [done, runs])| json!({
                 "case": case, "done": done, "runs": runs
             })).collect::<Vec<_>>(),
-            // The table of a batch says it.
+            // The table of a batch shows it.
             "done": if self.batch.is_some() { json!([]) } else { json!(self.done) },
             "table": table.map(|(rows, inches)| so_far(rows, *inches)),
             "lines": self.lines,
@@ -185,7 +185,7 @@ mod tests {
             assert_eq!(so_far["runs"][0]["low"].is_null(), replicate == 1);
             assert_eq!(so_far["class"].as_str(), (replicate == 4).then_some("some erosion"));
         }
-        // An interval that straddles the threshold is no class either.
+        // An interval that straddles the threshold has no class either.
         walked(&mut live, 5, 1, 0.0);
         walked(&mut live, 5, 2, 0.9);
         assert_eq!(live.snapshot(2)["so_far"]["class"], "undecided");

@@ -151,7 +151,7 @@ fn accept(listener: &TcpListener, routes: &Arc<Routes>) {
     }
 }
 
-/// Answers one connection; a browser that has left is no fault of ours.
+/// Answers one connection; a browser that has left is not an error of the server.
 fn answer(mut stream: TcpStream, place: &Place, routes: &Routes) {
     let answered = http::read_head(&mut stream).and_then(|head| {
         let answer = match head {

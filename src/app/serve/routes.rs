@@ -90,7 +90,7 @@ pub struct Routes {
     pub root: PathBuf,
 }
 
-/// An answer that is no success: its status and words.
+/// An answer to a failed request: its status and words.
 type Problem = (u16, String);
 
 /// The constriction curves of a filter, loose and dense, by their names; empty if the library has no filter

@@ -72,9 +72,9 @@ pub fn run(options: &PercolationOptions, callbacks: &Callbacks) -> Result<Percol
     let folder = claim(&options.out, kind, options.overwrite)?;
     let work = serde_json::to_string(&plan)?;
     kept::study((&folder, kind, options.overwrite), work, callbacks, |kept, earlier| {
-        let found = on_threads(options.threads, || plan.run(earlier.unwrap_or_default(), Some(kept)))?;
-        folder.write("percolation.csv", &csv(&found))?;
-        Ok(PercolationStudy::new(plan.seed, &found.thresholds, found.seconds))
+        let results = on_threads(options.threads, || plan.run(earlier.unwrap_or_default(), Some(kept)))?;
+        folder.write("percolation.csv", &csv(&results))?;
+        Ok(PercolationStudy::new(plan.seed, &results.thresholds, results.seconds))
     })
 }
 
@@ -111,7 +111,7 @@ impl PercolationPlan {
     }
 }
 
-/// `percolation.csv`: one row a realisation; the size of a lattice that is no cube is written as 40x40x60.
+/// `percolation.csv`: one row a realisation; the size of a lattice that is not a cube is written as 40x40x60.
 fn csv(found: &Found) -> Vec<u8> {
     let of_lattice = |(shape, all): &'_ ([u32; 3], Vec<f64>)| {
         let shape = *shape;

@@ -119,7 +119,7 @@ pub fn specify_each(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<D
     Ok(table)
 }
 
-/// Refuses a base and a filter together: the filter is no curve of the base.
+/// Refuses soils of which one is called base and another filter: the filter is not a curve of the base.
 fn no_filter_within(base: &InputSoils) -> Result<(), RunError> {
     let called = |wanted: &str| {
         // Several samples on a sheet are each named like `Base/Sample 1`.

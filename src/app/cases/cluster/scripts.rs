@@ -16,8 +16,8 @@ pub const FOLDER: &str = "slurm";
 /// Asked for by this factor more than estimated: time.
 const TIME_MARGIN: f64 = 4.0;
 
-/// No more time is asked for: a task that is not done by then is stopped, and goes on in another attempt
-/// (minutes).
+/// Greatest time that is asked for (minutes): a task that is not done by then is stopped, and continues in
+/// another attempt.
 const LONGEST_MIN: u64 = 24 * 60;
 
 /// Time for delays that no estimate includes: a busy file system, the start of the program (minutes).
@@ -88,7 +88,7 @@ pub struct Jobs<'a> {
     pub collect: TaskNeeds,
 }
 
-/// Why there are no scripts.
+/// Reason why there are no scripts.
 #[derive(Debug, thiserror::Error)]
 pub enum ScriptError {
     /// A path that no script can hold.
@@ -135,7 +135,7 @@ impl Jobs<'_> {
             _ => (
                 format!("{packings} packings, then {walks}"),
                 "submit \"$@\" slurm/pack.sh\n",
-                // After any end of it: cases of the packings that are there are walked.
+                // After any end of the packing job: cases whose packings exist are walked.
                 "--dependency=\"afterany:$number\" ",
             ),
         };

@@ -1,4 +1,4 @@
-//! Which cases each task of a job array walks.
+//! Cases of each task of a job array.
 //!
 //! The file has one line a case: the task's number, a tab, the case's name. Names hold neither tabs nor line
 //! ends (the plan refuses them) and are read by the program alone, never by a shell.

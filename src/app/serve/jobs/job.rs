@@ -115,7 +115,7 @@ impl Job {
     }
 }
 
-/// A result whose every text has passed through `said`.
+/// A result whose every text has passed through `named`.
 fn all_said(value: &Value, named: &impl Fn(&str) -> String) -> Value {
     match value {
         Value::String(text) => Value::String(named(text)),

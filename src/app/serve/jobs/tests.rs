@@ -145,7 +145,7 @@ fn what_has_failed_can_continue() {
     // The request is lost, but the scene is not.
     std::fs::write(folder(ids[1]).join("job.json"), "{").unwrap();
     assert_eq!(after.kept(ids[1]), Ok(None));
-    // While it goes on, nothing says that it has failed.
+    // While it continues, no message reports a failure.
     after.resume(ids[0], Work::Kept).unwrap();
     assert_eq!(JobFile::read(&folder(ids[0])).unwrap().ended, None);
     assert!(after.resume(ids[0], Work::Kept).is_err(), "it waits already");

@@ -136,7 +136,7 @@ pub fn of_cases(folder: &Path, prepare: &PrepareOptions, command: &str) -> CaseO
     }
 }
 
-/// A server that is killed loses no more than this.
+/// Greatest loss if a server is killed.
 fn often() -> CheckpointInterval {
     "1min".parse().unwrap_or_default()
 }

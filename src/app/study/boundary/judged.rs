@@ -10,7 +10,7 @@ use voidwalk_practice::{Mistake, ordered};
 /// Fewer networks than these give no percentiles.
 const FEW_NETWORKS: u64 = 5;
 
-/// A base coarser than this (D85, mm) is worth a word.
+/// A base coarser than this (D85, mm) gets a note.
 const COARSE_BASE_MM: f64 = 10.0;
 
 /// Notes on the search itself: a band over so few networks says little, and a number of base particles may
@@ -71,7 +71,7 @@ impl Judged {
         } else if let BaseGradation::Linear { d85: D85::AtDc(..) | D85::Ratio(_), .. } =
             case.scene.base.gradation()
         {
-            // The filter's size says the base's.
+            // The filter's size decides the base's.
             let keys = &mut case.scene.base;
             (keys.d85_mm, keys.d85_at_dc, keys.dc_curve, keys.d15f_over_d85b) = (Some(d85), None, None, None);
         }
@@ -82,7 +82,7 @@ impl Judged {
 
     /// Notes on the model for a reader, with `others`.
     pub fn notes(&self, row: &Row, others: Vec<Note>) -> Vec<Note> {
-        // Said of every ratio below.
+        // Repeated for every ratio below.
         let of_one = self.case.too_little_base().filter(|_| of_amount(row).is_some());
         let coarse =
             self.d85_mm.filter(|d85| *d85 > COARSE_BASE_MM).map(|d85_mm| Note::CoarseBase { d85_mm });

@@ -11,7 +11,7 @@ use voidwalk_core::schema::length::{LENGTHS, millimetres};
 pub struct BoundaryOptions {
     /// Sieve table of the base; without it the settings define the base.
     pub base: Option<PathBuf>,
-    /// The filter's shape: a sieve table, a Cu, or a shipped curve's name; the settings say it without one.
+    /// The filter's shape: a sieve table, a Cu, or a shipped curve's name; without it the settings define it.
     pub filter: Option<String>,
     /// Densities: a word, `friction=F` or `estimate=D`.
     pub densities: Vec<String>,

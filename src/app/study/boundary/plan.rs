@@ -108,7 +108,7 @@ fn stated(settings: &[String], option: &str, setting: String) -> Result<String, 
 
 /// The setting that states a shape: a Cu, a sieve table or a shipped name.
 fn shape_setting(shape: &str) -> String {
-    // Or a name that reads as a number, or as anything else that is no text, would not stay one.
+    // Otherwise a name that reads as a number, or as anything else but text, would not stay text.
     let text = |name: &str| toml::Value::String(name.to_owned()).to_string();
     let file = shape.split('#').next().unwrap_or(shape);
     let is_file = shape.contains(['/', '\\', '#']) || Path::new(file).is_file();

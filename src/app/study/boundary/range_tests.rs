@@ -81,7 +81,8 @@ fn an_end_that_holds_clearly_more_is_asked_for_one_ratio() {
         ..tiny(&folder.path().join("out"), &["network.nz=6", "replicates=2"])
     };
     let all = searched(&options);
-    // The end that cannot set the answer is no row, and the row of the range says so.
+    // The end that cannot set the answer has no row of its own, and a note on the row of the range reports
+    // it.
     let [unknown] = &all.boundaries[..] else { panic!("{:?}", all.boundaries) };
     assert_eq!(unknown.networks.len(), 2);
     let end = "dense, constrictions";
@@ -121,7 +122,7 @@ fn a_search_goes_on_from_an_end_that_was_not_searched() {
     assert_eq!(timeless(&searched(&plan("stopped", 3))), timeless(&whole));
 }
 
-/// An end that another row has, too, stays a row of its own, and is searched once.
+/// An end that another row shares stays a row of its own, and is searched once.
 #[test]
 fn the_worse_end_of_an_unknown_density_stays_where_another_row_needs_it() {
     let folder = tempfile::tempdir().unwrap();

@@ -30,8 +30,8 @@ mod tests {
         let walks: Vec<_> = (1u32..).zip(first).map(|(s, e)| (f64::from(s), e / 100.0, Some(0.0))).collect();
         let no_erosion = walks.iter().find(|walk| walk.1 >= THRESHOLD).map(|walk| walk.0);
         let beyond = no_erosion.is_none().then_some((Beyond::Above, Ended::Holds(1, 4.0)));
-        let found = Found { no_erosion, no_erosion_beyond: beyond, walks, ..Found::default() };
-        Done { row: 0, network: 1, found }
+        let result = Found { no_erosion, no_erosion_beyond: beyond, walks, ..Found::default() };
+        Done { row: 0, network: 1, found: result }
     }
 
     fn doubt_of(networks: &[&[f64]]) -> Option<[u64; 2]> {

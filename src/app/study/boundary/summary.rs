@@ -51,7 +51,7 @@ pub(super) fn boundaries(
         rows.iter().zip(&searched).map(|(row, result)| result.clone().unwrap_or_else(|| as_end(row)));
     let mut results: Vec<FoundRow> = results.collect();
     let held: Vec<Option<f64>> = rows.iter().map(|row| held_over_range(row, rows, &results)).collect();
-    // An end of a range is no filter that anybody offers: it is judged with the row that it is an end of.
+    // An end of a range is not a filter on offer: it is judged with the row that it is an end of.
     let asked = || (0..rows.len()).filter(|&at| rows[at].end_of.is_none());
     let mut judgements = Vec::new();
     for at in asked() {
@@ -62,7 +62,7 @@ pub(super) fn boundaries(
         let name = format!("{}, {}", row.density, row.thickness);
         judgements.push((name, judged(row, (&results[at], rows, &results), held[at], unbounded)?));
     }
-    // The worst end of a row without networks is that row, unless another row has it as an end, too.
+    // The worst end of a row without networks replaces that row, unless another row shares it as an end.
     let is_shown = |(result, row): &(&FoundRow, &Row)| {
         let density = &row.density;
         let has_it = |other: &Row| other.thickness == row.thickness && other.ends.contains(density);
@@ -159,7 +159,7 @@ fn range<'a>(row: &'a Row, rows: &'a [Row], results: &'a [FoundRow]) -> impl Ite
     in_range.map(|(_, result)| result).filter(|result| !result.is_spared())
 }
 
-/// That an end of a row's range was not searched.
+/// Notes on ends of a row's range that were not searched.
 fn spared_ends(row: &Row, rows: &[Row], results: &[FoundRow]) -> Vec<Note> {
     let in_range = rows.iter().zip(results).filter(|(other, _)| is_in_range(row, other));
     let spared = |(_, end): (&Row, &FoundRow)| {

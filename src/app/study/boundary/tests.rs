@@ -308,7 +308,7 @@ fn what_cannot_be_is_refused_before_any_work() {
             BoundaryOptions { filter: Some(curve_file.display().to_string()), ..plain() },
             "--set filter.curve=FILE",
         ),
-        // More than this machine or 32 bits can hold is no boundary beyond the search.
+        // A size beyond this machine or 32 bits does not mean a boundary beyond the search.
         (
             BoundaryOptions { thicknesses: mm(1e9), base: base("a.csv", &sand), ..thick() },
             "every length must be",

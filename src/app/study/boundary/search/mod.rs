@@ -116,7 +116,7 @@ fn stop_near(ratio: f64) -> i64 {
     (libm::log(ratio) / BETWEEN_STEPS / STOP as f64).round() as i64 * STOP
 }
 
-/// That the smallest ratio of the search erodes.
+/// Reports that the smallest ratio of the search erodes.
 fn erodes_down_to(step: i64) -> Beside {
     (Beyond::Below, Ended::Erodes(ratio_at(step)))
 }
