@@ -146,8 +146,8 @@ mod tests {
         assert!(
             changed.is_empty() && lines.len() == kept.len(),
             "the schemas of these are not those that {KEPT} notes: {changed:?}. A field that goes or means \
-             something else raises the number of its form (src/core/store/format.rs); a new one raises nothing. \
-             Then: {UPDATE}=1 cargo test --workspace --lib schemas"
+             something else raises the number of its form (src/core/store/format.rs); a new one \
+             raises nothing. Then: {UPDATE}=1 cargo test --workspace --lib schemas"
         );
     }
 }

@@ -1,9 +1,9 @@
 //! Finds a filter's constrictions in a library of packings: a gradation's curve lies between those of similar
 //! gradations.
 //!
-//! `src/core/data/library.csv` holds packings of many shapes of gradation, each dense (friction 0), medium (0.1)
-//! and loose (0.3), made by `scripts/studies/library_of_packings.py`. It holds no lengths: sizes are in units
-//! of the size that halves the surface of the grains, `S50`.
+//! `src/core/data/library.csv` holds packings of many shapes of gradation, each dense (friction 0), medium
+//! (0.1) and loose (0.3), made by `scripts/studies/library_of_packings.py`. It holds no lengths: sizes are in
+//! units of the size that halves the surface of the grains, `S50`.
 //!
 //! Grains that touch form the constrictions, and grains meet by surface. So six numbers describe a shape,
 //! `ln(S/S50)` of the sizes below which 5, 20, 30, 70, 80 and 95 % of the surface lie; these and the relative

@@ -1,7 +1,7 @@
 //! The filters shipped with the program: each has a constriction curve, so that no packing is needed.
 //!
-//! They are in `src/core/data/filters`: one CSV file per filter, and `filters.toml` with their descriptions. A new
-//! one takes a file, an entry there and a line in `TEXTS` here.
+//! They are in `src/core/data/filters`: one CSV file per filter, and `filters.toml` with their descriptions.
+//! A new one takes a file, an entry there and a line in `TEXTS` here.
 
 use super::curve::{Curve, CurveError, nearest};
 use std::sync::OnceLock;
