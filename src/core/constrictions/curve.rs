@@ -42,6 +42,17 @@ pub enum CurveError {
     /// A number from outside a table.
     #[error(transparent)]
     Number(#[from] NumberError),
+    /// A packing has no constriction to measure.
+    #[error(
+        "the packing has no constriction: its {tetrahedra} tetrahedra form {voids} voids, with no open facet between two; \
+         more grains of the sizes that carry the filter are needed"
+    )]
+    NoConstriction {
+        /// Tetrahedra of the triangulation.
+        tetrahedra: usize,
+        /// Voids that they form.
+        voids: usize,
+    },
     /// No shipped filter has this name.
     #[error("no shipped filter is called \"{name}\"; the nearest is \"{nearest}\" (shipped: {all})")]
     UnknownFilter {

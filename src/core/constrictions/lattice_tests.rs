@@ -322,3 +322,16 @@ fn on_lattices_every_facet_is_on_both_hulls() {
         }
     }
 }
+
+/// A packing of few coarse grains may be a single void.
+#[test]
+fn a_packing_without_a_constriction_says_so() {
+    let along = |stride: usize| (0..27).map(|i| (i / stride % 3) as f64).collect();
+    let (x, y, z) = (along(1), along(3), along(9));
+    let packing = Packing { cell: Cell::Periodic([3.0; 3]), x, y, z, diameter: vec![1.0; 27] };
+    let mut measured = Constrictions::measure(&packing, 0.1).unwrap();
+    measured.diameter_mm.clear();
+    measured.centre_mm.clear();
+    let message = measured.curve().unwrap_err().to_string();
+    assert!(message.starts_with("the packing has no constriction: its "), "{message}");
+}

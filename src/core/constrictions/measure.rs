@@ -433,6 +433,9 @@ impl Constrictions {
             .filter(|(_, centre)| self.region.holds(centre))
             .map(|(&diameter, _)| diameter)
             .collect();
+        if sizes.is_empty() {
+            return Err(CurveError::NoConstriction { tetrahedra: self.tetrahedra, voids: self.voids() });
+        }
         sizes.sort_unstable_by(f64::total_cmp);
         let last = (sizes.len().max(2) - 1) as f64;
         let mut points: Vec<(f64, f64)> =
