@@ -113,8 +113,9 @@ impl BatchRow {
     /// `options` say that it is as given.
     ///
     /// ```
-    /// use voidwalk_core::gradation::{Gradation, SoilSample};
-    /// use voidwalk_app::verdict::{BatchRow, PairOptions};
+    /// use voidwalk_core::Gradation;
+    /// use voidwalk_sheets::SoilSample;
+    /// use voidwalk_practice::{BatchRow, PairOptions};
     /// let filter = Gradation::from_lines(&[(0.5, 0.0), (2.0, 100.0)])?;
     /// let curve = Gradation::from_lines(&[(0.08, 0.0), (0.3, 100.0)])?;
     /// let sample = SoilSample { name: "S".into(), path: "site.csv#S".into(), curve };

@@ -57,7 +57,8 @@ impl Mistake {
     /// multiples of D0F (`scale_free`) have no unit that could be wrong.
     ///
     /// ```
-    /// use voidwalk_app::{Gradation, verdict::Mistake};
+    /// use voidwalk_core::Gradation;
+    /// use voidwalk_practice::Mistake;
     /// let base = Gradation::from_lines(&[(0.08, 0.0), (0.3, 100.0)])?;
     /// let filter = Gradation::from_lines(&[(0.5, 0.0), (2.0, 100.0)])?;
     /// assert_eq!(Mistake::find(&base, &filter, false), None);

@@ -102,7 +102,8 @@ impl PairRules {
     /// Every rule on a base and a filter of one curve each, both in mm.
     ///
     /// ```
-    /// use voidwalk_app::{Gradation, verdict::PairRules};
+    /// use voidwalk_core::Gradation;
+    /// use voidwalk_practice::PairRules;
     /// let filter = Gradation::from_lines(&[(0.5, 0.0), (2.0, 100.0)])?;
     /// let base = Gradation::from_lines(&[(0.08, 0.0), (0.3, 100.0)])?;
     /// let pair = PairRules::of(&base, &filter);

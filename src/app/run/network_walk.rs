@@ -96,7 +96,7 @@ pub struct WalkedNetwork {
 /// use std::sync::Arc;
 /// use voidwalk_core::constrictions::find;
 /// use voidwalk_app::run::{Callbacks, NetworkWalk, walk_networks};
-/// use voidwalk_app::{Gradation, Network};
+/// use voidwalk_core::{Gradation, Network};
 ///
 /// let curve = find("cu1.5-loose")?.curve()?.in_mm(1.0)?;
 /// let network = Arc::new(Network::cubic([8, 8, 12], &curve, 1.0, 7)?);

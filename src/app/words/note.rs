@@ -9,7 +9,7 @@ use voidwalk_practice::quantity::{NumberRole, SizeUnit, Unit, significant, whole
 /// The sentence of a note; lengths are shown in this unit.
 ///
 /// ```
-/// use voidwalk_app::outcome::{note::Note, quantity::SizeUnit};
+/// use voidwalk_practice::{Note, quantity::SizeUnit};
 /// let note = Note::CoarseBase { d85_mm: 19.0 };
 /// let words = voidwalk_app::words::sentence(&note, SizeUnit::Mm);
 /// assert_eq!(words, "The D85 of the base is 19\u{202f}mm: are its sizes micrometres under a header in mm?");

@@ -27,7 +27,7 @@ pub const DESIGN_EACH_AGAIN: &str = "design again for dispersive soils";
 ///
 /// ```
 /// use voidwalk_core::Gradation;
-/// use voidwalk_app::outcome::{design::Specification, quantity::SizeUnit};
+/// use voidwalk_practice::{design::Specification, quantity::SizeUnit};
 /// use voidwalk_practice::SpecificationOptions;
 /// let clay = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)])?;
 /// let core = Specification::of("core", &[("core".into(), clay)], SpecificationOptions::default());

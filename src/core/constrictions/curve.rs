@@ -44,8 +44,8 @@ pub enum CurveError {
     Number(#[from] NumberError),
     /// A packing has no constriction to measure.
     #[error(
-        "the packing has no constriction: its {tetrahedra} tetrahedra form {voids} voids, with no open facet between two; \
-         more grains of the sizes that carry the filter are needed"
+        "the packing has no constriction: its {tetrahedra} tetrahedra form {voids} voids, with no open facet \
+         between two; more grains of the sizes that carry the filter are needed"
     )]
     NoConstriction {
         /// Tetrahedra of the triangulation.

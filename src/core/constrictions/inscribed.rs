@@ -34,7 +34,7 @@ const STEPS: usize = 34;
 /// from 0, loose, to 1, dense. A pan fraction is left out.
 ///
 /// ```
-/// use voidwalk_app::{constrictions::inscribed, gradation::Gradation};
+/// use voidwalk_core::{constrictions::inscribed, gradation::Gradation};
 /// let equal = Gradation::single(2.0).unwrap();
 /// let dc = |density| inscribed(&equal, density).unwrap().dc(50.0).unwrap();
 /// assert!((dc(1.0) - 2.0 * 0.154_701).abs() < 1e-5, "three grains");

@@ -70,7 +70,7 @@ pub struct FromLibrary {
 /// A pan fraction is left out. `None` for a shape that resembles no shape of the library.
 ///
 /// ```
-/// use voidwalk_app::{constrictions::from_library, gradation::Gradation};
+/// use voidwalk_core::{constrictions::from_library, gradation::Gradation};
 /// let filter = Gradation::linear_from_d0(1.0, 1.5)?;
 /// let [loose, dense] = [0.0, 1.0].map(|density| from_library(&filter, density).unwrap().unwrap());
 /// assert!(loose.curve.dc(50.0) > dense.curve.dc(50.0));

@@ -51,7 +51,7 @@ pub const NO_LAYER: u32 = u32::MAX;
 /// Voids, constrictions and start nodes, as columns.
 ///
 /// ```
-/// use voidwalk_app::{Network, constrictions::find};
+/// use voidwalk_core::{Network, constrictions::find};
 /// let curve = find("cu1.5-loose")?.curve()?.in_mm(1.0)?;
 /// // Three constrictions lead on from each void of the lattice.
 /// let network = Network::cubic([10, 10, 20], &curve, 1.0, 7)?;

@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 /// A pan fraction is left out: its grains are too fine to form the skeleton, and their number is not known.
 ///
 /// ```
-/// use voidwalk_app::{gradation::Gradation, packing::draw};
+/// use voidwalk_core::{gradation::Gradation, packing::draw};
 /// let filter = Gradation::linear_from_d0(1.0, 1.5).unwrap();
 /// let diameter_mm = draw(&filter, 1000, 1);
 /// assert!(diameter_mm[0] <= 2.25 && diameter_mm[999] >= 1.0);

@@ -69,7 +69,7 @@ pub struct PackReport {
 /// stop.
 ///
 /// ```
-/// use voidwalk_app::{gradation::Gradation, packing::{Settings, compress}};
+/// use voidwalk_core::{gradation::Gradation, packing::{Settings, compress}};
 /// let filter = Gradation::linear_from_d0(1.0, 1.2).unwrap();
 /// let settings = Settings { grains: 200, stiffness_ratio: 0.01, ..Settings::default() };
 /// let (packing, report) = compress(&filter, &settings, |_| true).unwrap();
