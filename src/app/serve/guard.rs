@@ -61,7 +61,7 @@ impl Guard {
         })
     }
 
-    /// Compares in a time that does not tell how much of it is right.
+    /// Compares in constant time.
     fn is_token(&self, text: &str) -> bool {
         let differ = |(a, b): (u8, u8)| a ^ b;
         let differences = text.bytes().zip(self.token.bytes()).map(differ).fold(0, |all, one| all | one);

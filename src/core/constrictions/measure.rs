@@ -388,7 +388,7 @@ impl Constrictions {
         self.void_centre_mm.iter().filter(|centre| self.region.holds(centre)).count()
     }
 
-    /// Number of constrictions that statistics are taken over.
+    /// Number of constrictions used for statistics.
     pub fn constrictions(&self) -> usize {
         self.centre_mm.iter().filter(|centre| self.region.holds(centre)).count()
     }
