@@ -102,8 +102,8 @@ fn a_specification_has_every_curve_of_its_base() {
     let least = step["values"][0]["value"].as_f64().unwrap();
     let said = format!(
         "minimum D10F of {}\u{202f}mm",
-        voidwalk::report::quantity::significant(least)
-            .role(voidwalk::report::quantity::NumberRole::Greatest)
+        voidwalk::practice::quantity::significant(least)
+            .role(voidwalk::practice::quantity::NumberRole::Greatest)
             .number()
     );
     assert!(page.contains(&said), "{said}");

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
-use voidwalk::report::quantity::{NumberRole, significant};
+use voidwalk::practice::quantity::{NumberRole, significant};
 use voidwalk::run::FolderKind;
 
 use crate::program::{call, done, figures_are_listed, refused};

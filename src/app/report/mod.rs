@@ -14,12 +14,6 @@
 //! and [`network_walk_page()`] from the record of walks on given networks; [`run_brief()`] and
 //! [`network_walk_brief()`] give the verdict alone, for a notebook.
 //!
-//! # Pages of others
-//! A program with a page of its own over the same results builds it from these:
-//! [`files`] reads the files of a folder, [`figures`] draws, [`quantity`] writes a number as the other pages
-//! do, and [`shell`] is the page around it, which [`write_page()`] writes. A figure that other programs show
-//! too is public by itself: [`percolation_spread()`].
-//!
 //! # What the page may do
 //! A page can only show itself. Its content security policy forbids every script and every fetch and names
 //! its one style by hash; figures are SVG elements without a style. Names come from users and are treated as
@@ -60,7 +54,7 @@ mod results;
 mod rules;
 mod run_figures;
 mod section;
-pub mod shell;
+pub(crate) mod shell;
 mod shown;
 mod sizes;
 mod soils;
@@ -84,10 +78,10 @@ pub use first_page::colour_of;
 pub use network_walk::{network_walk_brief, network_walk_page};
 pub use packing::write_packing;
 pub use page::{run_brief, run_page, write, write_walked};
-pub use percolation::{percolation_spread, write_percolation};
+pub use percolation::write_percolation;
 pub use soils::soils_figure;
 pub use specification::write_specification;
-pub use voidwalk_practice::quantity;
+use voidwalk_practice::quantity;
 #[cfg(feature = "xlsx")]
 pub use workbook::{soil_template, write_verdict_workbook};
-pub use written::{Written, write_page};
+pub use written::Written;

@@ -87,7 +87,7 @@ fn fits(study: &PercolationStudy) -> Markup {
 }
 
 /// Standard deviation of the threshold against the size of the lattice: Fig. 6 of the paper.
-pub fn percolation_spread(study: &PercolationStudy) -> Drawn {
+fn percolation_spread(study: &PercolationStudy) -> Drawn {
     let sd = |size: &SizeThreshold| size.threshold.sd.unwrap_or(0.0);
     let ends = |size: &SizeThreshold| {
         let half = 1.96 * size.sd_error.unwrap_or(0.0);

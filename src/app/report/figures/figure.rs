@@ -111,9 +111,4 @@ impl Figure {
     pub fn is_tall(&self) -> bool {
         self.wide.1 > 1.1 * self.wide.0
     }
-
-    /// Its title.
-    pub fn title(&self) -> &str {
-        &self.title
-    }
 }
