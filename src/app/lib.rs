@@ -31,6 +31,10 @@ pub mod words;
 
 pub mod scene;
 
+#[cfg(test)]
+#[path = "../practice/test_soils.rs"]
+mod test_soils;
+
 pub mod case;
 
 pub mod run;

@@ -240,17 +240,8 @@ fn open_sieves(rules: &[AppliedRule]) -> Option<RuleNote> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rules::NamedCurve;
+    use crate::test_soils::{filter, soil};
     use crate::{BatchRow, PairOptions, PairRules};
-    use voidwalk_core::gradation::Gradation;
-
-    fn soil(points: &[(f64, f64)]) -> Vec<NamedCurve> {
-        vec![("soil".to_owned(), Gradation::from_lines(points).unwrap())]
-    }
-
-    fn filter(d15f: f64) -> Vec<NamedCurve> {
-        soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)])
-    }
 
     /// A fat clay with a D85B of 0.0185 mm, and 37 % fines with a D85B of 1.40 mm.
     const CLAY: [(f64, f64); 6] =

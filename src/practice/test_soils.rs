@@ -1,4 +1,16 @@
-//! Soils for tests, here and in the faces.
+//! Soils for tests, here and in the program.
+
+use voidwalk_core::Gradation;
+
+/// A soil of these points, as one curve.
+pub fn soil(points: &[(f64, f64)]) -> Vec<(String, Gradation)> {
+    vec![("soil".to_owned(), Gradation::from_lines(points).unwrap())]
+}
+
+/// A uniform filter with this D15F (mm).
+pub fn filter(d15f: f64) -> Vec<(String, Gradation)> {
+    soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)])
+}
 
 /// A till with 28 % fines (37.8 % regraded on No. 4): limits 1.26 mm (design) and 0.700 mm (no erosion).
 pub const REGRADED_TILL: [(f64, f64); 9] = [

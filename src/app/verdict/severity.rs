@@ -28,17 +28,8 @@ pub fn counts_as(decision: &Decision) -> Option<Verdict> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use voidwalk_core::Gradation;
-    use voidwalk_practice::rules::NamedCurve;
+    use crate::test_soils::{filter, soil};
     use voidwalk_practice::{PairOptions, PairRules, PracticeClass};
-
-    fn soil(points: &[(f64, f64)]) -> Vec<NamedCurve> {
-        vec![("soil".to_owned(), Gradation::from_lines(points).unwrap())]
-    }
-
-    fn filter(d15f: f64) -> Vec<NamedCurve> {
-        soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)])
-    }
 
     #[test]
     fn what_is_accepted_follows_where_the_filter_stands() {

@@ -120,7 +120,7 @@ fn a_row_that_a_dispersive_base_would_break_is_met_on_that_condition_alone() {
 /// lose more.
 #[test]
 fn a_filter_that_is_too_coarse_without_its_finer_part_is_not_met() {
-    use super::test_soils::{GRAVEL_0_32, REGRADED_TILL};
+    use crate::test_soils::{GRAVEL_0_32, REGRADED_TILL};
     let filter = |scale: f64| soil(&GRAVEL_0_32.map(|(size, percent)| (scale * size, percent)));
     let scaled = |scale| {
         let filter = vec![("F".to_owned(), filter(scale))];

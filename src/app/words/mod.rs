@@ -26,9 +26,6 @@ pub mod rule;
 pub mod rule_note;
 mod so_far;
 pub mod specification;
-#[cfg(test)]
-#[path = "../../practice/test_soils.rs"]
-mod test_soils;
 
 pub use answer::{FOREMOST, FirstLine, first_lines, foremost, model};
 pub use base_size::{base_size, grading};

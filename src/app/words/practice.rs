@@ -150,7 +150,7 @@ fn besides(decision: &Decision, headline: Headline) -> Vec<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::words::test_soils::{GRAVEL_0_32, REGRADED_TILL, SAND_OF_1_MM, STEPPED};
+    use crate::test_soils::{GRAVEL_0_32, REGRADED_TILL, SAND_OF_1_MM, STEPPED};
     use crate::words::{dispersive_limit, sentence, specification};
     use voidwalk_core::gradation::Gradation;
     use voidwalk_practice::design::Specification;
