@@ -1,26 +1,7 @@
 //! Frame of every page: one HTML file that fetches nothing, its head, its figures.
 //!
 //! A page is built from [`maud::Markup`], which escapes its texts; texts from outside go through [`clean()`]
-//! too. [`super::write_page()`] writes it with its figures:
-//!
-//! ```
-//! use maud::html;
-//! use voidwalk_app::report::figures::{Axis, BLUE, Figure, Line};
-//! use voidwalk_app::report::shell::{Drawn, clean, drawing, whole_page};
-//! use voidwalk_app::report::write_page;
-//!
-//! let x = Axis::linear("Increment (–)", 0.0, 10.0);
-//! let mut figure = Figure::new("Eroded", "Base eroded by increment", "", x, Axis::percent("Eroded (%)"));
-//! figure.add(Line::new(vec![(0.0, 0.0), (10.0, 8.0)], BLUE));
-//! let drawn = Drawn { name: "eroded", caption: "One walk.".into(), figure };
-//!
-//! let main = html! { p { (clean("a name\u{202e} from outside")) } figure { (drawing(&drawn)) } };
-//! let page = whole_page("Erosion", &html! { h1 { "Erosion" } }, &main, &html! {});
-//! let folder = tempfile::tempdir()?;
-//! let written = write_page(folder.path(), &[drawn], &page)?;
-//! assert!(written.page.ends_with("report.html") && written.figures[0].ends_with("figures/eroded.svg"));
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
+//! too. `written` writes it with its figures.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -233,6 +214,22 @@ mod tests {
         let byte = |at: usize| u8::from_str_radix(&output[at..at + 2], 16).unwrap();
         let hash = BASE64_STANDARD.encode((0..64).step_by(2).map(byte).collect::<Vec<_>>());
         assert_eq!(STYLE_HASH, hash, "page.css has changed: STYLE_HASH is {hash} now");
+    }
+
+    #[test]
+    fn a_page_is_written_with_its_figures() {
+        use super::super::figures::{Axis, BLUE, Line};
+        use super::super::written::write_page;
+        let x = Axis::linear("Increment (–)", 0.0, 10.0);
+        let mut figure =
+            Figure::new("Eroded", "Base eroded by increment", "", x, Axis::percent("Eroded (%)"));
+        figure.add(Line::new(vec![(0.0, 0.0), (10.0, 8.0)], BLUE));
+        let drawn = Drawn::new("eroded", figure, "One walk.");
+        let main = html! { p { (clean("a name\u{202e} from outside")) } figure { (drawing(&drawn)) } };
+        let page = whole_page("Erosion", &html! { h1 { "Erosion" } }, &main, &html! {});
+        let folder = tempfile::tempdir().unwrap();
+        let written = write_page(folder.path(), &[drawn], &page).unwrap();
+        assert!(written.page.ends_with("report.html") && written.figures[0].ends_with("figures/eroded.svg"));
     }
 
     #[test]
