@@ -40,8 +40,6 @@ from pathlib import Path
 import matplotlib
 from matplotlib import pyplot
 
-from study_stops import student
-
 ROOT = Path(__file__).resolve().parents[2]
 TIERS = ["exact", "sampling", "bias"]
 ENGINES = ["particles", "counts", "expected"]
@@ -94,6 +92,26 @@ class Program:
         outcome, seconds, _ = self.run([*settings, f"replicates={count}", f"seed={seed}"])
         values = [replicate["runs"][0]["eroded_mass_fraction"] for replicate in outcome["replicates"]]
         return {"values": values, "seconds": seconds / count, "n_base": outcome["n_base"]}
+
+
+def within(degrees, angle):
+    """The share of Student's distribution between -t and t, t = sqrt(degrees) tan(angle)."""
+    cosine, odd = math.cos(angle), degrees % 2
+    term, k = (cosine, 2) if odd else (1.0, 1)
+    total = 0.0 if degrees == 1 else term
+    while k + 1 < degrees:
+        term *= k / (k + 1) * cosine * cosine
+        total += term
+        k += 2
+    return 2 / math.pi * (angle + math.sin(angle) * total) if odd else math.sin(angle) * total
+
+
+def student(degrees, error):
+    low, high = 0.0, math.pi / 2
+    for _ in range(200):
+        middle = (low + high) / 2
+        low, high = (middle, high) if within(degrees, middle) < 1 - error else (low, middle)
+    return math.sqrt(degrees) * math.tan(low)
 
 
 def sd_interval(values, known_mean=None):
