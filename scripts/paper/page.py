@@ -142,7 +142,7 @@ def provenance(study):
         minutes = sum(case.line["made"]["seconds"] for case in cases) / 60
         replicates = min((case.line["replicates"] for case in cases), default=0)
         title = VARIANT[name].title if name in VARIANT else ""
-        body.append([f"<code>scripts/campaigns/{name}.toml</code>", title, f"#{len(cases)}", f"#{replicates}", f"#{minutes:.1f}"])
+        body.append([f"<code>{name}.toml</code>", title, f"#{len(cases)}", f"#{replicates}", f"#{minutes:.1f}"])
     plans = rows(["Plan", "Campaign", "#cases", "#replicates", "#minutes"], body)
     return f"{plans}<p>voidwalk {every('version')}, commit {every('commit')}. Seeds are in the plans; a case’s seed is in its ledger.</p>"
 

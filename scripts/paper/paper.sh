@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Regenerates every figure and number of the paper's reproduction:
 #     scripts/paper/paper.sh [FOLDER]
-# Walks the plans of scripts/campaigns into FOLDER (default target/paper; what is done there is not walked again), writes
-# FOLDER/report.html, figures/*.svg and statements.csv, and copies what lasts to results/paper; results/paper.md is written by hand.
+# Walks the plans of scripts/campaigns, and those that plans.py makes of them, into FOLDER (default target/paper; what is done there is not
+# walked again), writes FOLDER/report.html, figures/*.svg and statements.csv, and copies what lasts to results/paper; results/paper.md is written by hand.
 # PAGE_ONLY=1 walks nothing and takes what FOLDER holds; NO_COPY=1 leaves results/paper alone.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -12,10 +12,12 @@ plans="$plans paper-published-2.5 overlap-0.5"
 cargo build --release --workspace --bins --quiet
 voidwalk=target/release/voidwalk
 mkdir -p "$out"
+scripts/paper/plans.py "$out/plans"
+cp scripts/campaigns/*.toml "$out/plans/"
 if [ -z "${PAGE_ONLY:-}" ]; then
     for plan in $plans; do
         echo "$plan" >&2
-        "$voidwalk" campaign "scripts/campaigns/$plan.toml" --out "$out/$plan" --packings "$out/packings" >/dev/null
+        "$voidwalk" campaign "$out/plans/$plan.toml" --out "$out/$plan" --packings "$out/packings" >/dev/null
     done
     if ! grep -q 40x40x60 "$out/percolation/percolation.csv" 2>/dev/null; then
         # the paper's sizes, the lattice that the paper walks, and 100 realisations of each
@@ -39,7 +41,7 @@ cp "$out"/figures/*.svg "$results/figures/"
     for plan in $plans; do
         [ -f "$out/$plan/ledger.jsonl" ] || continue
         cp "$out/$plan/cases.csv" "$results/cases/$plan.csv"
-        python3 - "$plan" "$out/$plan/ledger.jsonl" "$("$voidwalk" campaign "scripts/campaigns/$plan.toml" --list | wc -l)" <<'PY'
+        python3 - "$plan" "$out/$plan/ledger.jsonl" "$("$voidwalk" campaign "$out/plans/$plan.toml" --list | wc -l)" <<'PY'
 import csv, json, sys
 lines = [json.loads(line) for line in open(sys.argv[2])]
 minutes = sum(line["made"]["seconds"] for line in lines) / 60

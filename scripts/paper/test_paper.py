@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 
+import plans
 from measures import Measures, best_boundary, exceptions, fraction_within, height, rank_correlation, ranks, takes
 from statements import AGREES, COUNTED, DIFFERS, FITTED, INCONCLUSIVE, SET, THEIRS, Ours, statements
 from study import MAIN, VARIANT, Value, known, size_at, student
@@ -74,9 +75,10 @@ def page(folder):
 
 def a_small_reproduction(folder):
     small = "replicates = 2\nnetwork.nx = 6\nnetwork.ny = 6\nnetwork.nz = 8"
-    for plan in ("paper", "paper-capped", "kenney", "table3", "progress"):
+    texts = {plan: (ROOT / f"scripts/campaigns/{plan}.toml").read_text(encoding="utf-8") for plan in ("paper", "kenney", "table3", "progress")}
+    for plan, text in (texts | {"paper-capped": plans.plan("paper-capped")}).items():
         # Of Kenney's bases, those with one or two digits are enough.
-        text = re.sub(r'^"0\.\d{3}" .*\n', "", (ROOT / f"scripts/campaigns/{plan}.toml").read_text(encoding="utf-8"), flags=re.M)
+        text = re.sub(r'^"0\.\d{3}" .*\n', "", text, flags=re.M)
         (folder / f"{plan}.toml").write_text(text.replace("replicates = 10", small), encoding="utf-8")
         subprocess.run([PROGRAM, "campaign", folder / f"{plan}.toml", "--out", folder / plan, "--quiet"], check=True)
     (folder / "constrictions").mkdir()
