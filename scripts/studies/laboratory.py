@@ -5,7 +5,7 @@
         [--experiment results/laboratory-experiment.csv] [--binary target/release/voidwalk] [--minutes 40]
 
 Walks the cells of `plan` in their order into OUT.csv until so many minutes of processor time are used; cells that are there already are not walked
-again. `laboratory_page.py` writes OUT.md and OUT.svg from it. FOLDER keeps the packings of the graphs.
+again. `laboratory_page.py` draws OUT.svg from it and prints what OUT.md says. FOLDER keeps the packings of the graphs.
 
 Filters from the library of packings, bases linear on semi-log paper (Cu 1: one size), two runs, five replicates. Lattice: 10 x 10 x 60 voids.
 Graph: the voids of five packings, one a replicate, as thick as 60 layers, rounded up to whole copies of the packing. A constriction of a graph has
