@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Dict, List
 
 import pytest
+from conftest import LONG
 
 import voidwalk as vw
 
@@ -82,9 +83,9 @@ def test_a_reader_may_leave(tmp_path: Path) -> None:
 @pytest.mark.skipif(os.name == "nt", reason="a signal is sent")
 @pytest.mark.parametrize("asked", [signal.SIGINT, signal.SIGTERM])
 def test_a_run_that_is_interrupted_ends_with_the_code_of_a_saved_run(
-    asked: "signal.Signals", long: Dict[str, Any], tmp_path: Path
+    asked: "signal.Signals", tmp_path: Path
 ) -> None:
-    (tmp_path / "long.toml").write_text(vw.scene_text(long))
+    (tmp_path / "long.toml").write_text(vw.scene_text(LONG))
     walking = subprocess.Popen(
         [*MODULE, "run", "long.toml", "--out", "long"], cwd=tmp_path, stderr=subprocess.PIPE, text=True
     )

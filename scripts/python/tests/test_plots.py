@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from typing import Any, List
 
 import numpy as np
 import pytest
+from conftest import ACROSS, BASE, FILTER, SMALL
 
 import voidwalk as vw
 
 matplotlib: Any = pytest.importorskip("matplotlib")
 matplotlib.use("Agg")
-
-BASE, FILTER = ([0.06, 0.12, 0.3], [0.0, 50.0, 100.0]), ([0.5, 1.0, 2.0], [0.0, 50.0, 100.0])
-SMALL = {"network.nx": 8, "network.ny": 8, "network.nz": 12}
 
 
 def words(ax: Any) -> List[str]:
@@ -85,10 +85,7 @@ def test_a_result_is_drawn_in_four_ways() -> None:
 
 
 def test_studies_are_drawn() -> None:
-    small = {"network.nx": 8, "network.ny": 8}
-    found = vw.boundary(
-        BASE, FILTER, density="dense", thickness="10layers", replicates=2, settings=small
-    )
+    found = vw.boundary(BASE, FILTER, density="dense", thickness="10layers", replicates=2, settings=ACROSS)
     assert words(found.plot())[:2] == ["D15F/D85B", "Eroded mass of the first run (%)"]
     matplotlib.pyplot.close("all")
 
@@ -110,8 +107,5 @@ def test_a_specification_is_drawn_with_its_band() -> None:
 
 
 def test_matplotlib_is_imported_when_a_figure_is_asked_for() -> None:
-    import subprocess
-    import sys
-
     code = "import sys, voidwalk; assert not {'matplotlib', 'pandas', 'xarray'} & set(sys.modules)"
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import table
 
 import voidwalk as vw
 
@@ -25,9 +26,7 @@ def test_a_linear_gradation_is_its_formula() -> None:
 
 def test_arrays_a_file_and_a_data_frame_make_one_gradation(tmp_path: Path) -> None:
     soil = vw.Gradation(SIZES, PERCENTS)
-    file = tmp_path / "soil.csv"
-    file.write_text("opening_mm,percent_finer\n" + "".join(f"{d},{p}\n" for d, p in zip(SIZES, PERCENTS)))
-    assert vw.Gradation.from_file(file) == soil
+    assert vw.Gradation.from_file(table(tmp_path, "soil", (SIZES, PERCENTS))) == soil
     assert vw.Gradation(SIZES[::-1], PERCENTS[::-1]) == soil
     pandas = pytest.importorskip("pandas")
     frame = pandas.DataFrame({"mm": SIZES, "finer": PERCENTS}).sample(frac=1, random_state=1)
@@ -68,9 +67,7 @@ def test_a_shipped_curve_is_scaled_with_its_filter() -> None:
 def test_a_walk_takes_a_soil_as_the_other_calls_do(tmp_path: Path) -> None:
     network = vw.Network.cubic([6, 6, 9])
     sizes, percents = [0.1, 0.3], [0.0, 100.0]
-    file = tmp_path / "base.csv"
-    file.write_text("opening_mm,percent_finer\n0.1,0\n0.3,100\n")
-    soils = [vw.Gradation(sizes, percents), (sizes, percents), file]
+    soils = [vw.Gradation(sizes, percents), (sizes, percents), table(tmp_path, "base", (sizes, percents))]
     eroded = [vw.walk(network, soil, n_base=500, replicates=1).eroded_mass_fraction()[0] for soil in soils]
     assert eroded[0] == eroded[1] == eroded[2]
 

@@ -10,23 +10,17 @@ from typing import Any, Dict, List
 
 import numpy as np
 import pytest
+from conftest import ACROSS, BASE, FILTER, SMALL, table
 
 import voidwalk as vw
 
-BASE = ([0.06, 0.12, 0.2, 0.3], [0.0, 30.0, 70.0, 100.0])
-FILTER = ([0.5, 1.0, 2.0], [0.0, 50.0, 100.0])
 COARSE = ([3.0, 5.0, 9.0], [0.0, 50.0, 100.0])
-SMALL = {"network.nx": 8, "network.ny": 8, "network.nz": 12}
+#: A broadly graded base that practice regrades, and a sand beside it.
+TILL = ([0.075, 0.425, 2.0, 4.75, 19.0], [35, 60, 82, 92, 100])
+SAND = ([0.15, 0.3, 0.6, 1.18, 4.75], [4, 18, 42, 68, 100])
 
 #: What is not of the answer: times, places, and what was called.
 TIMES = ("seconds", "core_seconds", "started", "finished", "folder")
-
-
-def table(folder: Path, name: str, soil: Any) -> Path:
-    rows = "".join(f"{size},{percent}\n" for size, percent in zip(*soil))
-    path = folder / f"{name}.csv"
-    path.write_text("opening_mm,percent_finer\n" + rows)
-    return path
 
 
 def answer(record: Any) -> Any:
@@ -40,9 +34,8 @@ def answer(record: Any) -> Any:
 
 def said(program: str, folder: Path, *words: str) -> Any:
     """What the command line prints as JSON for the same."""
-    settings = [word for key, value in SMALL.items() for word in ("--set", f"{key}={value}")]
-    settings = settings[:4] if words[0] == "boundary" else settings
-    small = settings if words[0] in ("judge", "boundary") else []
+    smaller = {"judge": SMALL, "boundary": ACROSS}.get(words[0], {})
+    small = [word for key, value in smaller.items() for word in ("--set", f"{key}={value}")]
     done = subprocess.run([program, *words, *small, "--json"], capture_output=True, text=True, cwd=folder)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
@@ -71,17 +64,13 @@ def test_a_specification_is_that_of_the_command_line(program: str, tmp_path: Pat
     sizes = [0.002, 0.005, 0.012, 0.03, 0.075, 0.18, 0.425, 0.85, 2.0, 4.75, 9.5, 19.0]
     core = (sizes, [0.0, 13.0, 28.0, 43.0, 60.0, 68.0, 75.0, 82.0, 90.0, 94.0, 97.0, 100.0])
     table(tmp_path, "base", core)
-    words = ["base.csv", "--dispersive", "--sieves", "iso", "--quiet", "--json", "--out", "o"]
-    done = subprocess.run([program, "design", *words], capture_output=True, text=True, cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    wanted = json.loads(done.stdout)
+    wanted = said(program, tmp_path, "design", "base.csv", "--dispersive", "--sieves", "iso", "--quiet", "--out", "o")
     found = vw.specification(core, dispersive=True, sieves="iso")
     kept = vw.specification(tmp_path / "base.csv", tmp_path / "kept", dispersive=True, sieves="iso")
     for of in (found, kept, vw.read(tmp_path / "kept"), vw.read(tmp_path / "o")):
         assert isinstance(of, vw.Specification)
-        record, other = answer(of.outcome), answer(wanted)
         # The name of the one curve is that of its file, or the argument's.
-        assert record == other
+        assert answer(of.outcome) == answer(wanted)
         assert list(of.tables["limits"]["sieve"]) == [limit["sieve"] for limit in wanted["limits"]]
         shown = of.tables["limits"]["max_percent_finer"].tolist()
         # Sieves that have no limit are NaN in a column of numbers.
@@ -111,8 +100,7 @@ def test_boundaries_are_those_of_the_command_line(program: str, tmp_path: Path) 
     more = ["--set", "replicates=2", "--seed", "3", "--quiet", "--out", "o"]
     wanted = said(program, tmp_path, "boundary", "base.csv", *words, *more)
     options: Dict[str, Any] = dict(density="dense", thickness="10layers", replicates=2, seed=3)
-    across = {"network.nx": 8, "network.ny": 8}
-    found = vw.boundary(BASE, FILTER, tmp_path / "d", settings=across, **options)
+    found = vw.boundary(BASE, FILTER, tmp_path / "d", settings=ACROSS, **options)
     # The settings say in their own order and form what was given.
     assert answer({**found.outcome, "settings": []}) == answer({**wanted, "settings": []})
     assert len(found.walks["d15f_over_d85b"]) == len(found.walks["eroded_first"]) > 2
@@ -130,11 +118,20 @@ def test_percolation_and_soil_are_those_of_the_command_line(program: str, tmp_pa
     assert vw.soil(BASE) == vw.soil(vw.Gradation(*BASE)) == vw.soil(path)
 
 
+def test_rules_are_those_of_the_command_line(program: str, tmp_path: Path) -> None:
+    files = table(tmp_path, "base", TILL), table(tmp_path, "filter", SAND)
+    of_files = vw.rules(*files, joint_mm=2.0)
+    assert vw.rules(vw.Gradation(*TILL), vw.Gradation(*SAND), joint_mm=2.0) == of_files
+    assert of_files["base"]["category"] == 3
+    assert said(program, tmp_path, "rules", "base.csv", "filter.csv", "--joint-mm", "2") == of_files
+    assert vw.rules(SAND, TILL, as_given=True)["notes"][0]["id"] == "files_exchanged"
+
+
 def test_exchanged_tables_are_refused_everywhere(tmp_path: Path) -> None:
     calls: List[Any] = [
         lambda: vw.judge(FILTER, BASE),
         lambda: vw.judge(table(tmp_path, "f", FILTER), table(tmp_path, "b", BASE)),
-        lambda: vw.rules(FILTER, BASE),
+        lambda: vw.rules(SAND, TILL),
     ]
     for call in calls:
         with pytest.raises(ValueError, match="exchanged.*as_given=True") as refused:
@@ -149,6 +146,7 @@ def test_errors_name_what_python_calls_it() -> None:
         (lambda: vw.judge(BASE, FILTER, seed=1, settings={"seed": 2}), "seed and settings\\['seed'\\] say the same"),
         (lambda: vw.judge(BASE, FILTER, as_sampled=True, settings={"base.regrade": "no"}), "as_sampled=True and"),
         (lambda: vw.judge(BASE, vw.Gradation.single(1.0)), "filter has a single size"),
+        (lambda: vw.rules(BASE, FILTER, joint_mm=-1), "joint_mm = -1"),
         (lambda: vw.judge(3, FILTER), "base = int is not allowed"),  # type: ignore[arg-type]
         (lambda: vw.boundary(BASE, density="thick"), "density thick: allowed"),
         (lambda: vw.boundary(BASE, thickness="thick"), "thickness thick: allowed"),
