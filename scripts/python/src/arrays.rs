@@ -60,7 +60,6 @@ pub fn of_rows<'py, T: Element + Copy, const N: usize>(
 }
 
 /// Grains as arrays: coords, diameter and the lengths of the cell.
-#[allow(clippy::type_complexity)]
 pub fn of_packing<'py>(
     py: Python<'py>,
     packing: Packing,

@@ -22,7 +22,6 @@ type Arrays<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, Option<[f64; 3]>);
 
 /// Draws grains from a gradation and compresses them; returns the grains, and the state that was reached.
 #[pyfunction]
-#[pyo3(signature = (gradation, density, grains, seed, threads, progress))]
 pub fn pack<'py>(
     py: Python<'py>,
     gradation: &Gradation,
@@ -72,7 +71,6 @@ pub fn pack<'py>(
 
 /// Grains from a file of any format that is read, and how the file was understood.
 #[pyfunction]
-#[pyo3(signature = (path, unit, cell))]
 pub fn read_packing<'py>(
     py: Python<'py>,
     path: std::path::PathBuf,
@@ -89,7 +87,6 @@ pub fn read_packing<'py>(
 
 /// Voids and constrictions between grains, as a dict of arrays, and a summary as JSON.
 #[pyfunction]
-#[pyo3(signature = (grains, merge_overlap, on_both_hulls, threads))]
 pub fn measure<'py>(
     py: Python<'py>,
     grains: Grains<'py>,

@@ -86,8 +86,6 @@ impl Network {
 #[pymethods]
 impl Network {
     #[staticmethod]
-    #[pyo3(signature = (pores, conns, diameter, conductance, inlets, outlets, exit, rho, unit_mm))]
-    #[allow(clippy::too_many_arguments)]
     fn from_columns(
         py: Python<'_>,
         pores: usize,
@@ -119,8 +117,6 @@ impl Network {
     }
 
     #[staticmethod]
-    #[pyo3(signature = (shape, curve, unit_mm, seed, exit, rho, exponent))]
-    #[allow(clippy::too_many_arguments)]
     fn cubic(
         py: Python<'_>,
         shape: [u32; 3],
@@ -129,17 +125,15 @@ impl Network {
         seed: u64,
         exit: &str,
         rho: f64,
-        exponent: Option<f64>,
     ) -> PyResult<Self> {
         let (rule, curve) = (rule(exit)?, &curve.inner);
-        let exponent = exponent.unwrap_or(CONDUCTANCE_EXPONENT);
         network::Network::lattice_constrictions(shape).map_err(|error| of_network(&error))?;
         let lattice = at_work(py, None, |_| {
             pool(None)?.install(|| {
                 let lattice = network::Network::cubic(shape, curve, unit_mm, seed);
                 let turned = lattice.and_then(|lattice| match rule {
                     ExitRule::Area => Ok(lattice),
-                    rule => lattice.undirected_lattice(rule, rho, exponent),
+                    rule => lattice.undirected_lattice(rule, rho, CONDUCTANCE_EXPONENT),
                 });
                 turned.map_err(RunError::refused)
             })
@@ -148,7 +142,6 @@ impl Network {
     }
 
     #[staticmethod]
-    #[pyo3(signature = (grains, merge_overlap, copies, exit, rho, unit_mm))]
     fn of_packing(
         py: Python<'_>,
         grains: Grains<'_>,
@@ -156,7 +149,6 @@ impl Network {
         copies: u32,
         exit: &str,
         rho: f64,
-        unit_mm: Option<f64>,
     ) -> PyResult<Self> {
         let (grains, rule) = (grains.packing()?, rule(exit)?);
         if rule == ExitRule::Area {
@@ -168,7 +160,7 @@ impl Network {
             pool(None)?.install(|| {
                 let measured = VoidGraph::measure(&grains, merge_overlap);
                 let (_, graph) = measured.map_err(|error| of_constrictions(&error))?;
-                let shape = GraphShape { copies, rule, rho, unit_mm: unit_mm.unwrap_or(graph.d0_mm) };
+                let shape = GraphShape { copies, rule, rho, unit_mm: graph.d0_mm };
                 network::Network::of_graph(&graph, shape).map_err(RunError::refused)
             })
         });
@@ -301,7 +293,6 @@ impl Network {
 
     /// Pressure by pore (1 before the filter, 0 behind it) and flow times viscosity through each throat, from
     /// its first pore to its second, if water decides the exits of particles.
-    #[allow(clippy::type_complexity)]
     fn flow<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
         let (pressure, flux) = py.detach(|| {
             let (inner, Some(flow)) = self.with_directions()? else {

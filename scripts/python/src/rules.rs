@@ -10,7 +10,6 @@ use crate::soil::Gradation;
 
 /// Every rule of practice on the curves of a base and of a filter: the JSON of `voidwalk rules --json`.
 #[pyfunction]
-#[pyo3(signature = (bases, filters, dispersive, joint_mm, as_given))]
 pub fn rules(
     bases: Vec<(String, Py<Gradation>)>,
     filters: Vec<(String, Py<Gradation>)>,

@@ -129,7 +129,6 @@ pub fn init_text() -> String {
 
 /// Walks a scene into a folder: the folder.
 #[pyfunction]
-#[pyo3(signature = (scene, out, overwrite, packings, manner, progress))]
 pub fn run(
     py: Python<'_>,
     scene: &Scene,
@@ -149,7 +148,6 @@ type Texts = (String, String, Option<String>);
 
 /// Walks a scene in memory: the outcome as JSON, the tables, and the further texts of its page.
 #[pyfunction]
-#[pyo3(signature = (scene, packings, manner, progress))]
 pub fn run_in_memory<'py>(
     py: Python<'py>,
     scene: &Scene,
@@ -176,7 +174,6 @@ pub fn run_in_memory<'py>(
 
 /// Continues a run that was stopped.
 #[pyfunction]
-#[pyo3(signature = (folder, manner, progress))]
 pub fn resume(
     py: Python<'_>,
     folder: PathBuf,
@@ -190,7 +187,6 @@ pub fn resume(
 
 /// Walks the cases of a plan and collects them into a folder.
 #[pyfunction]
-#[pyo3(signature = (path, json, out, packings, manner, progress))]
 pub fn campaign(
     py: Python<'_>,
     path: PathBuf,

@@ -39,6 +39,18 @@ pub struct Gradation {
 
 type Points<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
 
+/// A column with its name.
+type Column<'a, 'py> = (&'a str, &'a PyReadonlyArray1<'py, f64>);
+
+/// Points of two columns of one length.
+fn paired((x, xs): Column<'_, '_>, (y, ys): Column<'_, '_>) -> PyResult<Vec<(f64, f64)>> {
+    let (xs, ys) = (column(x, xs)?, column(y, ys)?);
+    if xs.len() != ys.len() {
+        return Err(refused(format!("{x} has {} entries, but {y} has {}", xs.len(), ys.len())));
+    }
+    Ok(xs.iter().copied().zip(ys.iter().copied()).collect())
+}
+
 /// Sizes and percents.
 fn arrays(py: Python<'_>, points: Vec<CurvePoint>) -> Points<'_> {
     let (sizes, percents): (Vec<f64>, Vec<f64>) = points.into_iter().map(|p| (p.size, p.percent)).unzip();
@@ -68,12 +80,7 @@ impl Gradation {
         percent_finer: PyReadonlyArray1<'_, f64>,
         d0_mm: Option<f64>,
     ) -> PyResult<Self> {
-        let (sizes, percent) = (column("size_mm", &size_mm)?, column("percent_finer", &percent_finer)?);
-        if sizes.len() != percent.len() {
-            let (sizes, percents) = (sizes.len(), percent.len());
-            return Err(refused(format!("size_mm has {sizes} entries, but percent_finer has {percents}")));
-        }
-        let points: Vec<(f64, f64)> = sizes.iter().copied().zip(percent.iter().copied()).collect();
+        let points = paired(("size_mm", &size_mm), ("percent_finer", &percent_finer))?;
         Ok(Self { inner: gradation::Gradation::from_points(&points, d0_mm).map_err(of_points)? })
     }
 
@@ -138,15 +145,7 @@ impl Curve {
         percent_smaller: PyReadonlyArray1<'_, f64>,
         diameter_mm: PyReadonlyArray1<'_, f64>,
     ) -> PyResult<Self> {
-        let (percent, size) =
-            (column("percent_smaller", &percent_smaller)?, column("diameter_mm", &diameter_mm)?);
-        if percent.len() != size.len() {
-            let (percents, sizes) = (percent.len(), size.len());
-            return Err(refused(format!(
-                "percent_smaller has {percents} entries, but diameter_mm has {sizes}"
-            )));
-        }
-        let points: Vec<(f64, f64)> = percent.iter().copied().zip(size.iter().copied()).collect();
+        let points = paired(("percent_smaller", &percent_smaller), ("diameter_mm", &diameter_mm))?;
         let inner = constrictions::Curve::from_points(&points, CurveUnit::Mm).map_err(of_points)?;
         Ok(Self { inner })
     }

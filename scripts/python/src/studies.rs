@@ -23,7 +23,6 @@ use crate::work::at_work;
 
 /// The soils of a file: a JSON list.
 #[pyfunction]
-#[pyo3(signature = (path, d0_mm))]
 pub fn soils(path: PathBuf, d0_mm: Option<f64>) -> PyResult<String> {
     let soils = soils_in_file(&path, d0_mm).map_err(|error| of_run(&CaseError::from(error).into()))?;
     serde_json::to_string(&soils).map_err(failed)
@@ -35,10 +34,6 @@ pub struct Search(Vec<String>, bool, Vec<String>);
 
 /// Finds the boundaries of the model, into a folder: the JSON of `boundary.json`.
 #[pyfunction]
-#[pyo3(signature = (
-    base, filter, search, settings, as_sampled, as_given, out, overwrite, packings, manner, progress
-))]
-#[allow(clippy::too_many_arguments)]
 pub fn boundary(
     py: Python<'_>,
     base: Option<PathBuf>,
@@ -75,8 +70,6 @@ pub fn boundary(
 /// Makes the specification of a filter for a base by practice alone, into a folder: the JSON of
 /// `specification.json`.
 #[pyfunction]
-#[pyo3(signature = (base, dispersive, finer, sieves, out, overwrite, progress))]
-#[allow(clippy::too_many_arguments)]
 pub fn specification(
     py: Python<'_>,
     base: PathBuf,
@@ -117,8 +110,6 @@ pub fn specification_words(record: &str) -> PyResult<Words> {
 
 /// Finds percolation thresholds, into a folder: the JSON of `percolation.json`.
 #[pyfunction]
-#[pyo3(signature = (shapes, realisations, seed, out, overwrite, threads, progress))]
-#[allow(clippy::too_many_arguments)]
 pub fn percolation(
     py: Python<'_>,
     shapes: Vec<[u32; 3]>,

@@ -9,8 +9,12 @@ use voidwalk::outcome::number_rows::{NumberColumn, NumberRow};
 use crate::arrays::column;
 use crate::problem::refused;
 
-/// Rows as a dict of arrays.
-fn of_rows<'py, R: NumberRow>(py: Python<'py>, rows: &[R]) -> PyResult<Bound<'py, PyDict>> {
+/// Puts rows into `tables` as a dict of arrays; where there are none, only if it is needed.
+fn put<R: NumberRow>(tables: &Bound<'_, PyDict>, name: &str, rows: &[R], is_needed: bool) -> PyResult<()> {
+    if rows.is_empty() && !is_needed {
+        return Ok(());
+    }
+    let py = tables.py();
     let table = PyDict::new(py);
     for (name, numbers) in R::columns(rows) {
         match numbers {
@@ -19,7 +23,7 @@ fn of_rows<'py, R: NumberRow>(py: Python<'py>, rows: &[R]) -> PyResult<Bound<'py
             NumberColumn::Floats(column) => table.set_item(name, column.into_pyarray(py))?,
         }
     }
-    Ok(table)
+    tables.set_item(name, table)
 }
 
 /// The rows of the table of this name; empty if there is no such table and it is not needed.
@@ -53,19 +57,13 @@ fn column_of<T: Element + Copy>(name: &str, table: &Bound<'_, PyDict>, field: &s
 pub fn of_recorded<'py>(py: Python<'py>, recorded: &Recorded) -> PyResult<Bound<'py, PyDict>> {
     let Recorded { series, layers, retained, eroded, flow, voids, blocked } = recorded;
     let tables = PyDict::new(py);
-    tables.set_item("series", of_rows(py, series)?)?;
-    tables.set_item("layers", of_rows(py, layers)?)?;
-    tables.set_item("retained", of_rows(py, retained)?)?;
-    tables.set_item("eroded", of_rows(py, eroded)?)?;
-    if !flow.is_empty() {
-        tables.set_item("flow", of_rows(py, flow)?)?;
-    }
-    if !voids.is_empty() {
-        tables.set_item("retained_by_void", of_rows(py, voids)?)?;
-    }
-    if !blocked.is_empty() {
-        tables.set_item("blockings", of_rows(py, blocked)?)?;
-    }
+    put(&tables, "series", series, true)?;
+    put(&tables, "layers", layers, true)?;
+    put(&tables, "retained", retained, true)?;
+    put(&tables, "eroded", eroded, true)?;
+    put(&tables, "flow", flow, false)?;
+    put(&tables, "retained_by_void", voids, false)?;
+    put(&tables, "blockings", blocked, false)?;
     Ok(tables)
 }
 

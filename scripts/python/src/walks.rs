@@ -26,11 +26,6 @@ pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
 
 /// Walks networks; their record as JSON, the tables of a run, and which throats were blocked by replicate and run.
 #[pyfunction]
-#[pyo3(signature = (
-    networks, base, n_base, increments, engine, sampling, seed, runs, replicates, series_every, size_curves,
-    size_classes, filter, grains_per_void, mass_ratio, as_given, threads, progress
-))]
-#[allow(clippy::too_many_arguments)]
 pub fn walk<'py>(
     py: Python<'py>,
     networks: Vec<PyRef<'py, Network>>,

@@ -213,14 +213,8 @@ WholeKey = Literal["throat.conns", "throat.shift"]
 
 #: Keys of those whose arrays are of numbers with a point.
 FloatKey = Literal[
-    "pore.coords",
-    "pore.diameter",
-    "pore.volume",
-    "throat.coords",
-    "throat.diameter",
-    "throat.conductance",
-    "csd.percent_smaller",
-    "csd.diameter",
+    "pore.coords", "pore.diameter", "pore.volume", "throat.coords", "throat.diameter", "throat.conductance",
+    "csd.percent_smaller", "csd.diameter",
 ]
 
 

@@ -124,29 +124,14 @@ class Network:
         self.rho = float(rho)
         self.filter, self.grains_per_void = None, None
         self._native = _voidwalk.Network.from_columns(
-            whole("count", count),
-            self.conns,
-            self.diameter,
-            self.conductance,
-            self.inlets,
-            self.outlets,
-            exit,
-            self.rho,
-            float(reference_mm),
+            whole("count", count), self.conns, self.diameter, self.conductance, self.inlets, self.outlets, exit,
+            self.rho, float(reference_mm),
         )
         self._made = (
             "",
             dict(
-                conns=self.conns,
-                diameter=self.diameter,
-                inlets=self.inlets,
-                outlets=self.outlets,
-                exit=exit,
-                conductance=self.conductance,
-                rho=self.rho,
-                count=count,
-                coords=self.coords,
-                reference_mm=reference_mm,
+                conns=self.conns, diameter=self.diameter, inlets=self.inlets, outlets=self.outlets, exit=exit,
+                conductance=self.conductance, rho=self.rho, count=count, coords=self.coords, reference_mm=reference_mm,
             ),
         )
 
@@ -211,7 +196,7 @@ class Network:
         if max(sizes) >= 2**32:
             raise ValueError(f"shape = {sizes} is not allowed; three whole numbers below {2**32}")
         native = _voidwalk.Network.cubic(
-            (sizes[0], sizes[1], sizes[2]), sizes_curve._native, unit, whole("seed", seed), exit, rho, None
+            (sizes[0], sizes[1], sizes[2]), sizes_curve._native, unit, whole("seed", seed), exit, rho
         )
         made = dict(shape=sizes, curve=sizes_curve, seed=seed, exit=exit, rho=rho, reference_mm=unit)
         z, y, x = np.meshgrid(*[np.arange(float(n)) for n in sizes[::-1]], indexing="ij")
@@ -252,7 +237,7 @@ class Network:
         number = whole("copies", copies, 1)
         if number >= 2**32:
             raise ValueError(f"copies = {number} is not allowed; a whole number below {2**32}")
-        native = _voidwalk.Network.of_packing(packing._columns, merge_overlap, number, exit, rho, None)
+        native = _voidwalk.Network.of_packing(packing._columns, merge_overlap, number, exit, rho)
         made = dict(packing=packing, copies=number, exit=exit, rho=rho, merge_overlap=merge_overlap)
         new = cls._of(native, "from_packing", made, None, rho)
         # Copies have as many grains a void as the cell.
@@ -265,12 +250,7 @@ class Network:
         native = _voidwalk.Network.from_csv(os.fspath(path), reference_mm)
         conns, diameter = native.conns(), native.diameter()
         return cls(
-            conns,
-            diameter,
-            native.inlets(),
-            native.outlets(),
-            exit="area",
-            count=native.pores,
+            conns, diameter, native.inlets(), native.outlets(), exit="area", count=native.pores,
             reference_mm=reference_mm,
         )
 
@@ -329,16 +309,10 @@ class Network:
                 raise ValueError(f"the network has no {key!r}; it is needed")
         coords = np.asarray(pn["pore.coords"]) * unit_mm if "pore.coords" in pn else None
         return cls(
-            np.asarray(pn["throat.conns"]),
-            floats(diameter, pn[diameter], None) * unit_mm,
-            _side(pn, inlets, "inlets", _IN),
-            _side(pn, outlets, "outlets", _OUT),
-            conductance=None if conductance is None else np.asarray(pn[conductance]),
-            coords=coords,
-            exit=exit,
-            rho=rho,
-            count=count,
-            reference_mm=reference_mm,
+            np.asarray(pn["throat.conns"]), floats(diameter, pn[diameter], None) * unit_mm,
+            _side(pn, inlets, "inlets", _IN), _side(pn, outlets, "outlets", _OUT),
+            conductance=None if conductance is None else np.asarray(pn[conductance]), coords=coords, exit=exit,
+            rho=rho, count=count, reference_mm=reference_mm,
         )
 
     @classmethod
@@ -362,16 +336,8 @@ class Network:
         ``voxel_size``.
         """
         return cls.from_openpnm(
-            net,
-            inlets,
-            outlets,
-            diameter=diameter,
-            conductance=conductance,
-            unit_mm=unit_mm,
-            exit=exit,
-            rho=rho,
-            count=count,
-            reference_mm=reference_mm,
+            net, inlets, outlets, diameter=diameter, conductance=conductance, unit_mm=unit_mm, exit=exit, rho=rho,
+            count=count, reference_mm=reference_mm,
         )
 
     @property
@@ -480,16 +446,9 @@ class Network:
         if self.exit not in ("flux", "area-along-flow", "area"):
             raise ValueError(f"a network whose particles choose by {self.exit} cannot be made without constrictions")
         new = Network(
-            self.conns,
-            np.where(closed, 0.0, self.diameter),
-            self.inlets,
-            self.outlets,
-            exit=self.exit,
+            self.conns, np.where(closed, 0.0, self.diameter), self.inlets, self.outlets, exit=self.exit,
             conductance=None if self.exit == "area" else np.where(closed, self.rho, 1.0) * self._native.conductance(),
-            rho=self.rho,
-            count=self.count,
-            coords=self.coords,
-            reference_mm=self._native.unit_mm,
+            rho=self.rho, count=self.count, coords=self.coords, reference_mm=self._native.unit_mm,
         )
         new.filter, new.grains_per_void = self.filter, self.grains_per_void
         return new

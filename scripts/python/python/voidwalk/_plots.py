@@ -221,9 +221,7 @@ def plot_boundaries(outcome: Boundaries, walks: Walked, ax: Optional[Axes]) -> A
     for row in outcome["boundaries"]:
         chosen = (walks["density"] == row["density"]) & (walks["thickness"] == row["thickness"])
         points = drawn.scatter(
-            walks["d15f_over_d85b"][chosen],
-            100 * walks["eroded_first"][chosen],
-            s=12,
+            walks["d15f_over_d85b"][chosen], 100 * walks["eroded_first"][chosen], s=12,
             label=f"{row['density']}, {row['thickness']}",
         )
         colour = points.get_facecolor()[0]

@@ -15,13 +15,7 @@ from ._progress import Follower, Following
 from ._result import page_of, read_csv
 from ._tables import Soil, workplace
 from .columns import Table
-from .records import (
-    ProductMargin,
-    SieveLimit,
-    SizeBand,
-    Specification as SpecificationRecord,
-    SpecificationStep,
-)
+from .records import ProductMargin, SieveLimit, SizeBand, Specification as SpecificationRecord, SpecificationStep
 
 if TYPE_CHECKING:
     import pandas  # type: ignore[import-untyped,import-not-found,unused-ignore]
@@ -218,12 +212,7 @@ def specification(
     with workplace() as place, Following(progress) as callback:
         place_of_results = Path(place.out(out))
         said = _voidwalk.specification(
-            place.table("base", base),
-            bool(dispersive),
-            bool(finer),
-            sieves,
-            place_of_results,
-            bool(overwrite),
+            place.table("base", base), bool(dispersive), bool(finer), sieves, place_of_results, bool(overwrite),
             callback,
         )
         return read_specification(place_of_results, place.named(said), None if out is None else place_of_results)

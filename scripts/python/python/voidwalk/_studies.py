@@ -8,30 +8,14 @@ import os
 from importlib import import_module
 from pathlib import Path
 from typing import (
-    TYPE_CHECKING,
-    Callable,
-    Dict,
-    Iterable,
-    List,
-    Literal,
-    Mapping,
-    Optional,
-    Sequence,
-    Tuple,
-    Union,
-    cast,
+    TYPE_CHECKING, Callable, Dict, Iterable, List, Literal, Mapping, Optional, Sequence, Tuple, Union, cast,
 )
 
 from . import _voidwalk
 from ._arrays import threads_or_none, whole
 from ._plots import Axes, plot_boundaries
 from ._progress import Follower, Following
-from .records import (
-    Boundaries as BoundariesRecord,
-    BoundaryRow,
-    PercolationStudy,
-    RowNote,
-)
+from .records import Boundaries as BoundariesRecord, BoundaryRow, PercolationStudy, RowNote
 from ._boxes import box
 from ._result import Result, Row, WalkResult, counted_notes, page_of, read_csv, sentences_of
 from ._scene import Scene, Settings, Stated
@@ -208,21 +192,11 @@ def boundary(
             shape = place.table("filter", filter)
         place_of_results = Path(place.out(out))
         said = _voidwalk.boundary(
-            None if base is None else place.table("base", base),
-            shape,
-            search,
-            stated,
-            bool(as_sampled),
-            bool(as_given),
-            place_of_results,
-            bool(overwrite),
-            os.fspath(packings),
-            how,
-            callback,
+            None if base is None else place.table("base", base), shape, search, stated, bool(as_sampled),
+            bool(as_given), place_of_results, bool(overwrite), os.fspath(packings), how, callback,
         )
         return Boundaries(
-            json.loads(place.named(said)),
-            cast(Walked, read_csv(place_of_results / "boundary.csv")),
+            json.loads(place.named(said)), cast(Walked, read_csv(place_of_results / "boundary.csv")),
             None if out is None else place_of_results,
         )
 
@@ -274,13 +248,8 @@ def percolation(
         raise ValueError(f"realisations = {count} is not allowed; a whole number from 1 to 1000000")
     with workplace() as place, Following(progress) as callback:
         said = _voidwalk.percolation(
-            [(x, y, z) for x, y, z in shapes],
-            count,
-            whole("seed", seed),
-            place.out(out),
-            bool(overwrite),
-            threads_or_none(threads),
-            callback,
+            [(x, y, z) for x, y, z in shapes], count, whole("seed", seed), place.out(out), bool(overwrite),
+            threads_or_none(threads), callback,
         )
     found: PercolationStudy = json.loads(said)
     return found

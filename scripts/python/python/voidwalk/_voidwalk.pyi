@@ -26,37 +26,10 @@ _Texts = Tuple[str, str, Optional[str]]
 _Callback = Optional[Callable[[Progress], object]]
 
 __all__ = [
-    "command",
-    "measure",
-    "pack",
-    "read_packing",
-    "Network",
-    "note_sentences",
-    "report",
-    "run_brief",
-    "run_page",
-    "walk_brief",
-    "walk_page",
-    "VoidwalkError",
-    "rules",
-    "Scene",
-    "campaign",
-    "init_text",
-    "resume",
-    "run",
-    "run_in_memory",
-    "Curve",
-    "Gradation",
-    "boundary",
-    "percolation",
-    "schema",
-    "soils",
-    "specification",
-    "specification_words",
-    "replicate_seed",
-    "walk",
-    "Progress",
-    "__version__",
+    "command", "measure", "pack", "read_packing", "Network", "note_sentences", "report", "run_brief", "run_page",
+    "walk_brief", "walk_page", "VoidwalkError", "rules", "Scene", "campaign", "init_text", "resume", "run",
+    "run_in_memory", "Curve", "Gradation", "boundary", "percolation", "schema", "soils", "specification",
+    "specification_words", "replicate_seed", "walk", "Progress", "__version__",
 ]
 
 __version__: str
@@ -120,35 +93,15 @@ class Curve:
 class Network:
     @staticmethod
     def from_columns(
-        pores: int,
-        conns: _Ints,
-        diameter: _Floats,
-        conductance: Optional[_Floats],
-        inlets: _Ints,
-        outlets: _Ints,
-        exit: str,
-        rho: float,
-        unit_mm: float,
+        pores: int, conns: _Ints, diameter: _Floats, conductance: Optional[_Floats], inlets: _Ints, outlets: _Ints,
+        exit: str, rho: float, unit_mm: float,
     ) -> Network: ...
     @staticmethod
     def cubic(
-        shape: Tuple[int, int, int],
-        curve: Curve,
-        unit_mm: float,
-        seed: int,
-        exit: str,
-        rho: float,
-        exponent: Optional[float],
+        shape: Tuple[int, int, int], curve: Curve, unit_mm: float, seed: int, exit: str, rho: float,
     ) -> Network: ...
     @staticmethod
-    def of_packing(
-        grains: _Grains,
-        merge_overlap: float,
-        copies: int,
-        exit: str,
-        rho: float,
-        unit_mm: Optional[float],
-    ) -> Network: ...
+    def of_packing(grains: _Grains, merge_overlap: float, copies: int, exit: str, rho: float) -> Network: ...
     @staticmethod
     def from_csv(path: _Path, unit_mm: float) -> Network: ...
     def to_csv(self) -> bytes: ...
@@ -174,11 +127,7 @@ class Network:
     def flow(self) -> Tuple[_Floats, _Floats]: ...
 
 def pack(
-    gradation: Gradation,
-    density: Union[str, float],
-    grains: Optional[int],
-    seed: int,
-    threads: Optional[int],
+    gradation: Gradation, density: Union[str, float], grains: Optional[int], seed: int, threads: Optional[int],
     progress: _Callback,
 ) -> Tuple[_Grains, Reached]: ...
 def read_packing(
@@ -189,31 +138,14 @@ def measure(
 ) -> Tuple[Dict[str, Union[_Floats, _Ints]], str]: ...
 def replicate_seed(seed: int, replicate: int) -> int: ...
 def walk(
-    networks: List[Network],
-    base: Gradation,
-    n_base: Optional[int],
-    increments: int,
-    engine: str,
-    sampling: str,
-    seed: int,
-    runs: int,
-    replicates: int,
-    series_every: int,
-    size_curves: List[int],
-    size_classes: int,
-    filter: Optional[Tuple[Gradation, bool]],
-    grains_per_void: Optional[float],
-    mass_ratio: float,
-    as_given: bool,
-    threads: Optional[int],
-    progress: _Callback,
+    networks: List[Network], base: Gradation, n_base: Optional[int], increments: int, engine: str, sampling: str,
+    seed: int, runs: int, replicates: int, series_every: int, size_curves: List[int], size_classes: int,
+    filter: Optional[Tuple[Gradation, bool]], grains_per_void: Optional[float], mass_ratio: float, as_given: bool,
+    threads: Optional[int], progress: _Callback,
 ) -> Tuple[str, _Tables, NDArray[np.bool_]]: ...
 def rules(
-    bases: List[Tuple[str, Gradation]],
-    filters: List[Tuple[str, Gradation]],
-    dispersive: bool,
-    joint_mm: Optional[float],
-    as_given: bool,
+    bases: List[Tuple[str, Gradation]], filters: List[Tuple[str, Gradation]], dispersive: bool,
+    joint_mm: Optional[float], as_given: bool,
 ) -> str: ...
 def command(words: List[str], again: List[str]) -> int: ...
 def init_text() -> str: ...
@@ -242,49 +174,24 @@ def run_in_memory(
 ) -> Tuple[str, _Tables, _Texts]: ...
 def resume(folder: _Path, manner: _Manner, progress: _Callback) -> None: ...
 def campaign(
-    path: _Path,
-    json: Optional[str],
-    out: _Path,
-    packings: Optional[_Path],
-    manner: _Manner,
-    progress: _Callback,
+    path: _Path, json: Optional[str], out: _Path, packings: Optional[_Path], manner: _Manner, progress: _Callback,
 ) -> None: ...
 def schema(name: str) -> str: ...
 def soils(path: _Path, d0_mm: Optional[float]) -> str: ...
 def boundary(
-    base: Optional[_Path],
-    filter: Optional[str],
-    search: _Search,
-    settings: List[str],
-    as_sampled: bool,
-    as_given: bool,
-    out: _Path,
-    overwrite: bool,
-    packings: _Path,
-    manner: _Manner,
-    progress: _Callback,
+    base: Optional[_Path], filter: Optional[str], search: _Search, settings: List[str], as_sampled: bool,
+    as_given: bool, out: _Path, overwrite: bool, packings: _Path, manner: _Manner, progress: _Callback,
 ) -> str: ...
 def specification(
-    base: _Path,
-    dispersive: bool,
-    finer: bool,
-    sieves: str,
-    out: _Path,
-    overwrite: bool,
-    progress: _Callback,
+    base: _Path, dispersive: bool, finer: bool, sieves: str, out: _Path, overwrite: bool, progress: _Callback,
 ) -> str: ...
 def specification_words(
     record: str,
 ) -> Tuple[Optional[str], Optional[str], Optional[str], Optional[str], List[Optional[bool]]]: ...
 def note_sentences(notes: str, scale_free: bool = False) -> List[str]: ...
 def percolation(
-    shapes: List[Tuple[int, int, int]],
-    realisations: int,
-    seed: int,
-    out: _Path,
-    overwrite: bool,
-    threads: Optional[int],
-    progress: _Callback,
+    shapes: List[Tuple[int, int, int]], realisations: int, seed: int, out: _Path, overwrite: bool,
+    threads: Optional[int], progress: _Callback,
 ) -> str: ...
 def report(folder: _Path) -> os.PathLike[str]: ...
 def run_page(outcome: str, texts: _Texts, tables: _Tables) -> str: ...

@@ -159,24 +159,12 @@ def walk(
         )
     with Following(progress) as callback:
         said, tables, blocked = _voidwalk.walk(
-            [network._native for network in networks],
-            soil._native,
-            None if n_base is None else whole("n_base", n_base, 1),
-            whole("increments", increments, 1),
-            engine,
-            sampling,
-            seed,
-            whole("runs", runs, 1),
-            count,
-            whole("series_every", series_every),
-            [whole("size_curves", increment, 1) for increment in size_curves],
-            whole("size_classes", size_classes, 1),
-            None if of is None else (of._native, is_measured),
-            grains,
-            float(mass_ratio),
-            bool(as_given),
-            threads_or_none(threads),
-            callback,
+            [network._native for network in networks], soil._native,
+            None if n_base is None else whole("n_base", n_base, 1), whole("increments", increments, 1), engine,
+            sampling, seed, whole("runs", runs, 1), count, whole("series_every", series_every),
+            [whole("size_curves", increment, 1) for increment in size_curves], whole("size_classes", size_classes, 1),
+            None if of is None else (of._native, is_measured), grains, float(mass_ratio), bool(as_given),
+            threads_or_none(threads), callback,
         )
     return WalkResult(json.loads(said), tables, blocked)
 
@@ -186,9 +174,7 @@ def manner(
 ) -> Tuple[Optional[int], Optional[int], Optional[str], str]:
     """How a long call is done, checked; the manifest says that the work was started with this one."""
     return (
-        None if memory is None else whole("memory", memory, 1),
-        threads_or_none(threads),
-        checkpoint_every,
+        None if memory is None else whole("memory", memory, 1), threads_or_none(threads), checkpoint_every,
         f"voidwalk.{call} of Python {sys.version_info.major}.{sys.version_info.minor}",
     )
 
