@@ -11,7 +11,7 @@ import subprocess
 import sys
 import textwrap
 from pathlib import Path
-from typing import Any, Dict, List, Tuple
+from typing import Any, Dict, Iterable, List, Tuple
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = Path(__file__).resolve().parent / "python" / "voidwalk"
@@ -103,10 +103,9 @@ class Types:
             kind = self.of(schema, defs)
             if not kind.startswith("Literal[") or len(kind) <= LONGEST:
                 return kind
-            about = comment(schema.get("description", "")).replace("    #:", "#:")
             listed = json.loads(f"[{kind[len('Literal[') : -1]}]")
             words = "".join(f"    {json.dumps(word)},\n" for word in listed)
-            self.texts.setdefault(name, f"{about}{name} = Literal[\n{words}]\n")
+            self.texts.setdefault(name, f"{comment(schema)}{name} = Literal[\n{words}]\n")
             return name
         required = set(schema.get("required", []))
         groups: Tuple[List[str], List[str]] = ([], [])
@@ -114,23 +113,17 @@ class Types:
         if any(keyword.iskeyword(field) and field not in required for field in schema["properties"]):
             sys.exit(f"{name} has a field that may be missing, and is a word of Python")
         if any(keyword.iskeyword(field) for field in required) and required == set(schema["properties"]):
-            about = comment(schema.get("description", "")).replace("    #:", "#:")
-            self.texts.setdefault(name, about + self.spelled(name, schema, defs))
+            self.texts.setdefault(name, comment(schema) + self.spelled(name, schema, defs))
             return name
-        about = []
         for field, of in schema["properties"].items():
-            about.append((field, of.get("description", "") if isinstance(of, dict) else ""))
             groups[field not in required].append(f"    {field}: {self.of(of, defs)}\n")
-        doc = documented(schema.get("description", ""), about)
-        text = ""
+        text, bases, fields = "", "TypedDict, total=False" if groups[1] else "TypedDict", groups[1] or groups[0]
         if groups[1] and groups[0]:
             text = f"class _{name}(TypedDict):\n{''.join(groups[0])}\n\n"
             if any(keyword.iskeyword(field) for field in required):
                 text = f"{self.spelled(f'_{name}', schema, defs)}\n\n"
-            text += f"class {name}(_{name}, total=False):\n{doc}\n{''.join(groups[1])}"
-        else:
-            total = ", total=False" if groups[1] else ""
-            text = f"class {name}(TypedDict{total}):\n{doc}\n{''.join(groups[0] or groups[1])}"
+            bases = f"_{name}, total=False"
+        text += class_text(name, bases, schema.get("description", ""), schema["properties"], fields)
         if self.texts.setdefault(name, text) != text:
             sys.exit(f"{name} is two types")
         return name
@@ -172,26 +165,31 @@ def merged(schema: Any) -> Any:
     }
 
 
-def sentence(said: str) -> str:
-    """A description in lines that fit, without the marks of Rust's documentation."""
-    plain = said.replace("[`", "`").replace("`]", "`").replace("\\", "\\\\")
-    return "\n    ".join(textwrap.wrap(" ".join(plain.split()), 110)) or "A record."
+def plain(said: str) -> str:
+    """A description without the marks of Rust's documentation, in one line."""
+    return " ".join(said.replace("[`", "`").replace("`]", "`").split())
 
 
-def documented(said: str, fields: List[Tuple[str, str]]) -> str:
-    """The docstring of a type, with what each of its fields is: help() shows no comments."""
-    lines = [f'    """{sentence(said)}\n\n    Keys\n    ----\n']
-    for name, about in fields:
-        plain = " ".join(about.replace("[`", "`").replace("`]", "`").replace("\\", "\\\\").split())
-        lines.append(f"    {name}\n")
-        lines += [f"        {line}\n" for line in textwrap.wrap(plain, 104)]
-    return "".join(lines) + '    """\n'
+def class_text(name: str, bases: str, said: str, about: Dict[str, Any], fields: List[str]) -> str:
+    """A type as a class, whose docstring says what each of its fields is: help() shows no comments."""
+    doc = "\n    ".join(textwrap.wrap(plain(said).replace("\\", "\\\\"), 110)) or "A record."
+    lines = [f'    """{doc}\n\n    Keys\n    ----\n']
+    for field, of in about.items():
+        words = of.get("description", "") if isinstance(of, dict) else ""
+        lines.append(f"    {field}\n")
+        lines += [f"        {line}\n" for line in textwrap.wrap(plain(words).replace("\\", "\\\\"), 104)]
+    return f"class {name}({bases}):\n{''.join(lines)}    \"\"\"\n\n{''.join(fields)}"
 
 
-def comment(said: str) -> str:
-    """A description of a field as comments above it."""
-    plain = " ".join(said.replace("[`", "`").replace("`]", "`").split())
-    return "".join(f"    #: {line}\n" for line in textwrap.wrap(plain, 106))
+def comment(schema: Any) -> str:
+    """The description of a type as comments above it."""
+    return "".join(f"#: {line}\n" for line in textwrap.wrap(plain(schema.get("description", "")), 106))
+
+
+def module(head: str, names: Iterable[str], texts: Iterable[str]) -> str:
+    """A module of types."""
+    listed = "".join(f'    "{name}",\n' for name in sorted(names))
+    return f"{head}__all__ = [\n{listed}]\n\n\n" + "\n\n".join(texts)
 
 
 def printed(*words: str) -> Any:
@@ -207,8 +205,7 @@ def records_text() -> str:
     for name, called in ROOTS.items():
         schema = printed("--schema", name)
         types.named(called, schema, schema.get("$defs", {}))
-    listed = "".join(f'    "{name}",\n' for name in sorted(types.texts))
-    return HEAD + f"__all__ = [\n{listed}]\n\n\n" + "\n\n".join(types.texts.values())
+    return module(HEAD, types.texts, types.texts.values())
 
 
 COLUMNS_HEAD = '''"""The types of tables: the columns of the CSV files of a run, of boundaries and of a campaign.
@@ -259,13 +256,10 @@ def columns_text() -> str:
     kinds = {"uint64": "Counts", "int64": "Whole", "double": "Floats"}
     classes = []
     for row, name in TABLES.items():
-        fields = rows[row]["properties"]
-        about = [(field, of["description"]) for field, of in fields.items()]
-        columns = "".join(f"    {field}: {kinds.get(of.get('format'), 'Words')}\n" for field, of in fields.items())
-        classes.append(f"class {name}(TypedDict):\n{documented(rows[row]['description'], about)}\n{columns}")
-    listed = sorted(["Column", "Table", *TABLES.values()])
-    names = "".join(f'    "{name}",\n' for name in listed)
-    return f"{COLUMNS_HEAD}__all__ = [\n{names}]\n\n\n" + "\n\n".join(classes)
+        about = rows[row]["properties"]
+        columns = [f"    {field}: {kinds.get(of.get('format'), 'Words')}\n" for field, of in about.items()]
+        classes.append(class_text(name, "TypedDict", rows[row]["description"], about, columns))
+    return module(COLUMNS_HEAD, ["Column", "Table", *TABLES.values()], classes)
 
 
 SETTINGS_HEAD = '''"""The types of a scene's settings, as :attr:`voidwalk.Scene.settings` gives them: lengths in mm, as numbers.
@@ -295,23 +289,19 @@ KINDS = {
 
 def settings_text(told: Any) -> str:
     """The module of the settings."""
-    classes = []
-    names = []
+    classes = {}
     sections = sorted(told["sections"], key=lambda section: section["name"] == "")
     for section in sections:
         name = f"{section['name'].capitalize() or 'Scene'}Settings"
-        names.append(name)
-        fields = [f"    {of['name'].rsplit('.', 1)[-1]}: {KINDS[of['type']]}\n" for of in section["settings"]]
-        about = [(of["name"].rsplit(".", 1)[-1], of["meaning"]) for of in section["settings"]]
+        of_section = {of["name"].rsplit(".", 1)[-1]: of for of in section["settings"]}
+        fields = [f"    {field}: {KINDS[of['type']]}\n" for field, of in of_section.items()]
+        about = {field: {"description": of["meaning"]} for field, of in of_section.items()}
         if not section["name"]:
             others = [other["name"] for other in sections if other["name"]]
             fields += [f"    {other}: {other.capitalize()}Settings\n" for other in others]
-            about += [(other, f"Its section [{other}].") for other in others]
-        classes.append(
-            f"class {name}(TypedDict, total=False):\n{documented(section['about'], about)}\n{''.join(fields)}"
-        )
-    listed = "".join(f'    "{name}",\n' for name in sorted(names))
-    return SETTINGS_HEAD + f"__all__ = [\n{listed}]\n\n\n" + "\n\n".join(classes)
+            about |= {other: {"description": f"Its section [{other}]."} for other in others}
+        classes[name] = class_text(name, "TypedDict, total=False", section["about"], about, fields)
+    return module(SETTINGS_HEAD, classes, classes.values())
 
 
 def write() -> None:
