@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import signal
 import subprocess
@@ -135,22 +134,6 @@ def test_threads_change_no_bit() -> None:
     first, *others = (vw.walk(lattice(), base, n_base=20_000, replicates=3, threads=n) for n in (1, 2, 5, None))
     for other in others:
         assert other.summary == first.summary and np.array_equal(other.blocked, first.blocked)
-
-
-def work(seed: int) -> float:
-    """What a child process does."""
-    walked = vw.walk(lattice(), vw.Gradation.linear(1.5, 0.2, 85), n_base=5000, replicates=2, seed=seed)
-    return float(walked.eroded_mass_fraction().mean())
-
-
-@pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
-@pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
-def test_processes_walk_as_this_one_does(method: str) -> None:
-    """After a walk here, so that a pool of threads that outlived it would hang a forked child."""
-    here = [work(seed) for seed in (1, 2, 3)]
-    context: Any = multiprocessing.get_context(method)
-    with context.Pool(2) as pool:
-        assert pool.map_async(work, (1, 2, 3)).get(timeout=120) == here
 
 
 def test_threads_of_python_share_everything() -> None:

@@ -148,9 +148,10 @@ def walked_elsewhere(scene: vw.Scene) -> Tuple[vw.Result, vw.WalkResult, vw.Scen
     return vw.run(scene), vw.walk(lattice(), 0.25, n_base=2000, replicates=2), scene
 
 
-@pytest.mark.parametrize("method", ["fork", "spawn"])
+@pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
 @pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
 def test_scenes_and_results_go_from_process_to_process(method: str, small: Dict[str, Any], tmp_path: Path) -> None:
+    """After a walk here, so that a pool of threads that outlived it would hang a forked child."""
     scene = vw.Scene(small)
     here = walked_elsewhere(scene)
     context: Any = multiprocessing.get_context(method)

@@ -42,13 +42,11 @@ A network:
 """
 
 from ._grains import Constrictions, Packing, constrictions, pack
-from ._judge import judge, soil
+from ._judge import judge, rules, soil
 from ._network import Network
 from ._read import read
 from ._result import CampaignResult, Result, WalkResult
-from ._rules import rules
-from ._scene import Scene, init_text, scene_text
-from ._schema import schema
+from ._scene import Scene, init_text, scene_text, schema
 from ._soil import Curve, Gradation
 from ._specification import Specification, specification
 from ._studies import Boundaries, boundary, percolation, study

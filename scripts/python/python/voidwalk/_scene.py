@@ -1,4 +1,4 @@
-"""Scenes: one base-filter combination and how it is to be walked."""
+"""Scenes: one base-filter combination and how it is to be walked; and the schemas of what is written of it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from . import _voidwalk
 from .settings import SceneSettings
 
-__all__ = ["Scene", "init_text", "scene_text"]
+__all__ = ["Scene", "init_text", "scene_text", "schema"]
 
 #: What a setting may be: a number, a word, a path, a list of them, or a table.
 Setting = Union[None, bool, float, str, "os.PathLike[str]", Sequence[object], Mapping[str, object]]
@@ -162,3 +162,25 @@ def scene_text(scene: Union[Scene, Stated] = None, settings: Optional[Settings] 
 def init_text() -> str:
     """The built-in scene as TOML, with every setting there is and what it means, as ``voidwalk init`` writes it."""
     return _voidwalk.init_text()
+
+
+def schema(name: str) -> Dict[str, object]:
+    """The JSON Schema of a file, as ``voidwalk init --schema NAME`` prints it.
+
+    Parameters
+    ----------
+    name : str
+        The name of its form without number, as ``"outcome"`` for ``outcome.json``.
+
+    Returns
+    -------
+    dict
+
+    Examples
+    --------
+    >>> import voidwalk as vw
+    >>> vw.schema("outcome")["title"]
+    'outcome.json'
+    """
+    found: Dict[str, object] = json.loads(_voidwalk.schema(name))
+    return found
