@@ -12,13 +12,10 @@ first three of the six filters. --samples also times `judge --each` of so many s
 against three graded filters.
 """
 
-import argparse
 import json
 import os
 import random
-import resource
 import shutil
-import subprocess
 import sys
 import tempfile
 import time
@@ -26,7 +23,8 @@ from pathlib import Path
 from statistics import median
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
-from real_pairs import FILTERS, table  # noqa: E402
+from common import parser as command_line, sheet, spent  # noqa: E402
+from real_pairs import FILTERS  # noqa: E402
 
 BEFORE_OTHERS = ("chrt", "-f", "5")
 # Percent finer of a graded filter at multiples of its D15, and three such D15 (mm).
@@ -47,14 +45,14 @@ def commands(folder):
 
 def timed(binary, words, out, first=()):
     """Seconds by the clock and of the processors of a whole process; nothing where the pair is refused."""
-    before, began = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
-    done = subprocess.run([str(part) for part in [*first, binary, *words, "--quiet", "--out", out]], capture_output=True, text=True)
-    seconds, after = time.monotonic() - began, resource.getrusage(resource.RUSAGE_CHILDREN)
+    began = time.monotonic()
+    done, of_processors = spent([*first, binary, *words, "--quiet", "--out", out], capture_output=True, text=True)
+    seconds = time.monotonic() - began
     if done.returncode == 2 and "exchanged" in done.stderr:
         return None
     if done.returncode != 0:
         raise SystemExit(f"{words}: exit code {done.returncode}: {done.stderr[-500:]}")
-    return seconds, after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+    return seconds, of_processors
 
 
 def drawn(soils, pairs, seed):
@@ -71,10 +69,10 @@ def measured(pairs, binaries, turns, only=(), first=()):
         for number, (soil, name) in enumerate(pairs):
             folder = Path(work, f"{number}")
             folder.mkdir()
-            table(folder / "base.csv", soil["points_mm_percent"])
-            table(folder / "filter.csv", FILTERS[name])
+            sheet(folder / "base.csv", soil["points_mm_percent"])
+            sheet(folder / "filter.csv", FILTERS[name])
             for k, other in enumerate(list(FILTERS)[:3]):
-                table(folder / f"other-{k}.csv", FILTERS[other])
+                sheet(folder / f"other-{k}.csv", FILTERS[other])
             for command, words in commands(folder).items():
                 if only and command not in only:
                     continue
@@ -105,7 +103,7 @@ def each_of_many(soils, samples, binaries, turns, first):
             lines += [f'"DATA","BH{number}","1.50","1.50","{mm:g}","{percent:.1f}","WS"' for mm, percent in rows]
         (folder / "site.ags").write_text("\r\n".join(lines) + "\r\n")
         for name, d15_mm in D15F_MM.items():
-            table(folder / f"{name}.csv", [(factor * d15_mm, percent) for factor, percent in sorted(GRADED)])
+            sheet(folder / f"{name}.csv", [(factor * d15_mm, percent) for factor, percent in sorted(GRADED)])
         words = ["judge", folder / "site.ags", *(folder / f"{name}.csv" for name in D15F_MM), "--each"]
         took = [[timed(binary, words, folder / f"{turn}-{at}", first)[0] for at, binary in enumerate(binaries)] for turn in range(turns)]
     return [median(column) for column in zip(*took)]
@@ -116,9 +114,8 @@ def spread(values):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = command_line(__doc__)
     parser.add_argument("soils", type=Path)
-    parser.add_argument("--binary", default="target/release/voidwalk")
     parser.add_argument("--before")
     parser.add_argument("--turns", type=int, default=3)
     parser.add_argument("--pairs", type=int, default=12)

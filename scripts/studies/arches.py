@@ -9,7 +9,6 @@ the first and the last of the five replicates do, by interpolation between the r
 `--law`: only cells of these laws. `concentration`: of `marin-2018`, the solids fraction of the suspension that enters the filter.
 """
 
-import argparse
 import csv
 import json
 import math
@@ -17,6 +16,8 @@ import subprocess
 import tempfile
 import time
 from pathlib import Path
+
+import common
 
 LAWS = ["none", "marin-2018", "zuriguel-2005", "critical-3"]
 FILTERS = [(1.5, "loose"), (1.5, "dense"), (3, "loose"), (3, "dense"), (6, "loose"), (6, "dense")]
@@ -76,8 +77,7 @@ class Walks:
             scene = Path(folder) / "s.toml"
             scene.write_text("")
             command = [self.binary, "run", scene, "--out", Path(folder) / "o", "-q", "--threads", threads or self.threads]
-            command += [part for name, value in settings.items() for part in ("--set", f"{name}={value}")]
-            done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
+            done = subprocess.run([str(part) for part in command + common.sets(settings)], capture_output=True, text=True)
             if done.returncode != 0:
                 raise RuntimeError(done.stderr.strip())
             return json.loads((Path(folder) / "o/outcome.json").read_text())
@@ -156,11 +156,9 @@ def each(out, names, columns, cells, row_of):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = common.parser(__doc__, threads="2")
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--law", nargs="*", default=LAWS, choices=LAWS)
-    parser.add_argument("--binary", default="target/release/voidwalk")
-    parser.add_argument("--threads", default="2")
     options = parser.parse_args()
     each(options.out, CELL, COLUMNS, (cell for cell in cells() if cell[3] in options.law), Walks(options).boundary)
 

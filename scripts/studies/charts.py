@@ -20,23 +20,22 @@ the base, a line for each Cu of the filter, no erosion on the left, continuing o
 """
 
 import argparse
-import csv
 import datetime
 import itertools
 import json
 import pathlib
 import re
-import resource
 import subprocess
 import sys
 
 import matplotlib
 from matplotlib import pyplot
 
+import common
+
 matplotlib.use("svg")
 matplotlib.rcParams |= {"svg.hashsalt": "voidwalk", "svg.fonttype": "none", "font.size": 9}
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
 BOUNDARIES = {"no_erosion": "no erosion up to", "continuing": "continuing erosion from"}
 # Curves that ship with the program, each of a packing of this Cu and density (results/packing.md). The loosest Cu 6 that was
 # packed had friction 0.7 between its grains.
@@ -68,10 +67,9 @@ def words(text):
 
 
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = common.parser(__doc__)
     date = datetime.date.today().isoformat()
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "target" / f"charts-{date}")
-    parser.add_argument("--binary", type=pathlib.Path, default=ROOT / "target/release/voidwalk")
+    parser.add_argument("--out", type=pathlib.Path, default=common.ROOT / "target" / f"charts-{date}")
     parser.add_argument("--cu-f", type=numbers, default=[1.2, 1.5, 2, 3, 4, 6])
     parser.add_argument("--cu-b", type=numbers, default=[1.5, 2, 3, 4.5, 6])
     parser.add_argument("--densities", type=words, default=["loose", "dense"])
@@ -105,9 +103,7 @@ def asked(args, thickness, cu_f, cu_b, density):
     parts = ["--filter", curve or f"{cu_f:g}"] + ([] if curve else ["--density", density]) + ["--thickness", thickness]
     settings = [f"base.cu={cu_b:g}", f"base.d85_mm={args.d85_mm:g}", f"replicates={args.networks}"]
     settings += [f"network.nx={args.across}", f"network.ny={args.across}", *args.set]
-    for setting in settings:
-        parts += ["--set", setting]
-    return parts, settings
+    return parts + common.sets(settings), settings
 
 
 def walk(args, row):
@@ -124,15 +120,13 @@ def walk(args, row):
         command += ["--threads", str(args.threads)]
     folder.parent.mkdir(parents=True, exist_ok=True)
     print(f"{datetime.datetime.now():%H:%M:%S} {folder.name}", file=sys.stderr)
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    code = subprocess.call([str(part) for part in command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done, seconds = common.spent(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     with (args.out / "cases" / "processor.txt").open("a") as file:
-        file.write(f"{folder.name} {after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime:.1f}\n")
-    if code == 3:
+        file.write(f"{folder.name} {seconds:.1f}\n")
+    if done.returncode == 3:
         sys.exit("stopped; the same command goes on")
-    if code != 0:
-        sys.exit(f"{folder}: voidwalk ended with {code}: {' '.join(str(part) for part in command)}")
+    if done.returncode != 0:
+        sys.exit(f"{folder}: voidwalk ended with {done.returncode}: {' '.join(str(part) for part in command)}")
 
 
 def processor_seconds(args):
@@ -233,10 +227,7 @@ def main():
     if not rows:
         sys.exit(f"{args.out}: no row is done")
     table = args.out / "charts.csv"
-    with table.open("w", newline="") as file:
-        writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    common.table(table, rows)
     print(table)
     for density, thickness in dict.fromkeys((row["density"], row["thickness"]) for row in rows):
         of = [row for row in rows if (row["density"], row["thickness"]) == (density, thickness)]

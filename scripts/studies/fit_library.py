@@ -6,11 +6,11 @@ Shapes that are in the table and not among the packings stay in it.
     scripts/studies/fit_library.py FOLDER
 """
 
-import json
 import math
 import sys
 from pathlib import Path
 
+from common import lines_of
 from library_of_packings import PERCENT
 
 TABLE = Path(__file__).parents[2] / "src/core/data/library.csv"
@@ -49,7 +49,7 @@ def row_of(packing):
 
 
 def main():
-    lines = [json.loads(line) for line in (Path(sys.argv[1]) / "packings.jsonl").read_text().splitlines()]
+    lines = lines_of(Path(sys.argv[1]) / "packings.jsonl")
     rows = [row_of(packing) for packing in sorted(lines, key=lambda packing: packing["key"]) if "dc" in packing]
     made = {row.split(",")[0] for row in rows}
     kept = [row for row in TABLE.read_text().splitlines() if row[0].isdigit() and row.split(",")[0] not in made]

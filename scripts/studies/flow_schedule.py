@@ -8,11 +8,11 @@ Walks a base of 20,000 particles, Cu 1.5, on the voids of 400 grains (filter Cu 
 error, and the scatter of the mean of ten replicates.
 """
 
-import argparse
 import statistics
 import subprocess
 from pathlib import Path
 
+import common
 from arches import Walks
 
 SIZES_MM = [0.26, 0.33, 0.36, 0.38, 0.40]
@@ -35,10 +35,8 @@ def eroded(found, run):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = common.parser(__doc__, threads="2")
     parser.add_argument("--work", type=Path, required=True)
-    parser.add_argument("--binary", default="target/release/voidwalk")
-    parser.add_argument("--threads", default="2")
     parser.add_argument("--replicates", type=int, default=60)
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)

@@ -22,7 +22,6 @@ D0F, over bases of Cu 1.2 in steps of 3 %, of those bases whose own largest part
 else.
 """
 
-import argparse
 import concurrent.futures
 import json
 import math
@@ -32,6 +31,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+import common
 from arches import ERODED, THRESHOLD, Walks, concentrations, crossing, each, eroded_of
 
 CELL = ["measure", "filter_cu", "density", "base_cu", "network", "exit", "law", "concentration", "blocked"]
@@ -298,13 +298,11 @@ def boundary(walked):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = common.parser(__doc__, threads="1")
     parser.add_argument("--work", type=Path, required=True, help="folder for the packings")
     parser.add_argument("--out", help="of the cells")
     parser.add_argument("--increments", type=Path)
     parser.add_argument("--experiment", type=Path)
-    parser.add_argument("--binary", default="target/release/voidwalk")
-    parser.add_argument("--threads", default="1")
     parser.add_argument("--minutes", type=float, default=40.0, help="of processor time, after which no cell begins")
     options = parser.parse_args()
     if options.experiment:

@@ -8,13 +8,12 @@ nearest shape, loose and dense. They are never part of the fit: a test in src/co
 every packing, so a run that was stopped goes on.
 """
 
-import argparse
 import concurrent.futures
-import json
 import math
 import random
 from pathlib import Path
 
+import common
 from fit_library import HEAD, SHAPE, TABLE, by_surface, row_of, table_head
 from library_of_packings import bell, cu_of, gap, kinked, pack, power, that_fits
 
@@ -76,14 +75,13 @@ def chosen():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--binary", default="target/release/voidwalk")
+    parser = common.parser(__doc__)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--jobs", type=int, default=2)
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     kept = options.out / "held-out.jsonl"
-    made = [json.loads(line) for line in kept.read_text().splitlines()] if kept.exists() else []
+    made = common.lines_of(kept)
     there = {packing["key"] for packing in made}
 
     def one(job):
@@ -98,8 +96,7 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as workers:
         for packing in workers.map(one, jobs):
             made.append(packing)
-            with kept.open("a") as file:
-                file.write(json.dumps(packing) + "\n")
+            common.keep(kept, packing)
             print(packing["key"], packing["family"], f"{packing['distance']:.3f}", packing.get("refused", ""), flush=True)
     rows = [row_of(packing) for packing in sorted(made, key=lambda packing: packing["key"]) if "dc" in packing]
     OUT.write_text(HEAD.replace("fit_library.py", "library_held_out.py, never fitted") + "\n".join([table_head(), *rows]) + "\n")

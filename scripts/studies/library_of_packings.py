@@ -8,7 +8,6 @@ was stopped goes on. `scripts/studies/fit_library.py` makes src/core/data/librar
 Sizes are relative: the finest grain of every shape has the size 1.
 """
 
-import argparse
 import concurrent.futures
 import itertools
 import json
@@ -18,6 +17,8 @@ import shutil
 import subprocess
 import threading
 from pathlib import Path
+
+import common
 
 FRICTIONS = {"dense": 0.0, "medium": 0.1, "loose": 0.3}
 # Fewer grains scatter, more cost hours; the widest shapes end where the cell is this many largest grains wide.
@@ -180,12 +181,10 @@ def pack(binary, folder, key, points, density, grains, seed):
     work = folder / "work" / key
     shutil.rmtree(work, ignore_errors=True)
     work.mkdir(parents=True)
-    rows = "".join(f"{d:.9g},{p:.9g}\n" for d, p in points)
-    (work / "sieve.csv").write_text("size_mm,percent_finer\n" + rows)
+    common.sheet(work / "sieve.csv", [(f"{d:.9g}", f"{p:.9g}") for d, p in points])
     (work / "filter.toml").write_text(f'[filter]\nsieve = "sieve.csv"\nfriction = {FRICTIONS[density]}\n')
     command = [binary, "pack", work / "filter.toml", "--out", work / "packing", "--threads", "1", "--quiet"]
-    command += ["--seed", str(seed), "--set", f"packing.grains={grains}", "--set", "packing.hold_steps=1000"]
-    command += ["--set", "packing.coarsest=100"]
+    command += ["--seed", str(seed), *common.sets({"packing.grains": grains, "packing.hold_steps": 1000, "packing.coarsest": 100})]
     done = subprocess.run([str(part) for part in command], capture_output=True, text=True)
     if done.returncode != 0:
         return {"refused": done.stderr.strip()}
@@ -212,8 +211,7 @@ def at(curve, percent):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--binary", default="target/release/voidwalk")
+    parser = common.parser(__doc__)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--shapes", type=int, default=DRAWN, help="shapes besides the broad ones")
@@ -221,8 +219,7 @@ def main():
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     kept = options.out / "packings.jsonl"
-    lines = kept.read_text().splitlines() if kept.exists() else []
-    there = {json.loads(line)["key"] for line in lines}
+    there = {packing["key"] for packing in common.lines_of(kept)}
     lock = threading.Lock()
 
     def one(job):
@@ -232,8 +229,8 @@ def main():
         about = {"key": key, "family": family, "density": density, "seed": seed, "cu": whole, "grains": grains}
         line = about | {"percent": 100 * points_share(points, part), "points": part}
         line |= pack(options.binary, options.out, key, part, density, grains, seed)
-        with lock, kept.open("a") as file:
-            file.write(json.dumps(line) + "\n")
+        with lock:
+            common.keep(kept, line)
 
     jobs = []
     drawn = enumerate(shapes(min(options.shapes, DRAWN)))

@@ -10,9 +10,9 @@ do, by interpolation; a `least` that is the least ratio walked (4, or 4 / 1.25 a
 is closed is walked by engine `expected` without water, all else one by one. Rows that are there already are not walked again.
 """
 
-import argparse
 from pathlib import Path
 
+import common
 from arches import CONCENTRATIONS, Walks, each
 
 BLOCKED = ["closed", "open"]
@@ -60,11 +60,9 @@ class Openings(Walks):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = common.parser(__doc__, threads="2")
     parser.add_argument("--out", type=Path)
     parser.add_argument("--flow", type=Path)
-    parser.add_argument("--binary", default="target/release/voidwalk")
-    parser.add_argument("--threads", default="2")
     options = parser.parse_args()
     walks = Openings(options)
     pairs = [(*of, base, "none", "", blocked) for base in BASES for of in FILTERS for blocked in BLOCKED]

@@ -23,7 +23,6 @@ bias      One setting changed at a time: share of the base, caps, width, length,
 Needs Matplotlib.
 """
 
-import argparse
 import concurrent.futures
 import csv
 import datetime
@@ -40,7 +39,8 @@ from pathlib import Path
 import matplotlib
 from matplotlib import pyplot
 
-ROOT = Path(__file__).resolve().parents[2]
+import common
+
 TIERS = ["exact", "sampling", "bias"]
 ENGINES = ["particles", "counts", "expected"]
 PLAIN = ["runs=1", "record.sensitivity=[]", "record.size_curves=[]", "record.series_every=0"]
@@ -68,13 +68,12 @@ class Program:
         self.binary, self.scene, self.folder = args.binary, args.scene, Path(args.folder)
 
     def check(self, settings):
-        words = [word for setting in settings for word in ("--set", setting)]
-        said = subprocess.run([self.binary, "check", *self.scene, "--json", *words], check=True, capture_output=True, text=True)
+        said = subprocess.run([self.binary, "check", *self.scene, "--json", *common.sets(settings)], check=True, capture_output=True, text=True)
         return json.loads(said.stdout)
 
     def run(self, settings, scene=None, keep=None):
         """Its outcome and processor time; `keep` reads the folder before it goes."""
-        words = [word for setting in [*PLAIN, *settings] for word in ("--set", setting)]
+        words = common.sets([*PLAIN, *settings])
         with tempfile.TemporaryDirectory(dir=self.folder) as out:
             command = [self.binary, "run", *(self.scene if scene is None else scene), "-q", "--overwrite", "--threads", "1", "--out", out]
             with tempfile.TemporaryFile() as said:
@@ -355,18 +354,10 @@ def figure(path, title, labels, points, joined=True):
     pyplot.close(drawn)
 
 
-def table(path, rows):
-    with path.open("w", newline="") as file:
-        writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-
-
 def arguments():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = common.parser(__doc__)
     parser.add_argument("scene", nargs="*", help="a scene file, of a lattice")
-    parser.add_argument("--binary", type=Path, default=ROOT / "target/release/voidwalk")
-    parser.add_argument("--out", type=Path, default=ROOT / "results/precision/whole-runs")
+    parser.add_argument("--out", type=Path, default=common.ROOT / "results/precision/whole-runs")
     parser.add_argument("--tiers", nargs="+", choices=TIERS, default=TIERS)
     parser.add_argument("--factors", nargs="+", help="settings of the tier bias that are walked, as: cap injection [default: all]")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a setting of the scene")
@@ -390,7 +381,7 @@ def main():
         args.shape = {axis: network[axis] for axis in ("nx", "ny", "nz")}
         for tier in args.tiers:
             for name, rows in {"exact": exact, "sampling": sampling, "bias": bias}[tier](args, program).items():
-                table(args.out / f"{name}.csv", rows)
+                common.table(args.out / f"{name}.csv", rows)
     version = subprocess.run([args.binary, "--version"], check=True, capture_output=True, text=True).stdout.strip()
     print(f"{datetime.date.today()}, {version}: {args.out}")
 

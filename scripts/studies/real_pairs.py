@@ -7,7 +7,6 @@ SOILS.json is a list of {"id", "points_mm_percent"}. The pairs are drawn with a 
 already are not judged again. `--summary` prints the table of a CSV alone.
 """
 
-import argparse
 import csv
 import json
 import math
@@ -18,6 +17,8 @@ import tempfile
 import time
 from pathlib import Path
 from statistics import median
+
+import common
 
 # The middle of each band; sizes in mm.
 FILTERS = {
@@ -45,15 +46,11 @@ def fines(points):
     return 0.0 if points[0][0] > 0.075 and points[0][1] == 0 else None
 
 
-def table(path, points):
-    path.write_text("size_mm,percent_finer\n" + "".join(f"{d},{p}\n" for d, p in points))
-
-
 def judge(binary, soil, name, extra):
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
-        table(folder / "base.csv", soil["points_mm_percent"])
-        table(folder / "filter.csv", FILTERS[name])
+        common.sheet(folder / "base.csv", soil["points_mm_percent"])
+        common.sheet(folder / "filter.csv", FILTERS[name])
         command = [binary, "judge", folder / "base.csv", folder / "filter.csv", "--quick", "--json"]
         command += ["--out", folder / "out", *extra]
         began = time.monotonic()
@@ -125,10 +122,9 @@ def refuse_other_columns(path):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = common.parser(__doc__)
     parser.add_argument("soils", type=Path)
     parser.add_argument("--out", type=Path, required=True)
-    parser.add_argument("--binary", default="target/release/voidwalk")
     parser.add_argument("--pairs", type=int, default=300)
     parser.add_argument("--summary", action="store_true")
     options, extra = parser.parse_known_args()

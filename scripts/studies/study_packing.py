@@ -16,13 +16,12 @@ import argparse
 import json
 import os
 import pathlib
-import resource
 import statistics
 import subprocess
 import sys
 import tempfile
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+import common
 
 BASE = {"stiffness_ratio": 0.1, "hold_steps": 4000, "max_steps": 400_000}
 
@@ -67,9 +66,9 @@ TABLE2 = [
 def built():
     """Paths of the benchmark and of the program."""
     run = subprocess.run(["cargo", "build", "--release", "--bins", "--message-format=json"],
-                         cwd=ROOT, check=True, capture_output=True, text=True)
+                         cwd=common.ROOT, check=True, capture_output=True, text=True)
     bench = subprocess.run(["cargo", "bench", "--bench", "packing", "--no-run", "--message-format=json"],
-                           cwd=ROOT, check=True, capture_output=True, text=True)
+                           cwd=common.ROOT, check=True, capture_output=True, text=True)
 
     def path(out, name):
         messages = [json.loads(line) for line in out.stdout.splitlines() if line.startswith("{")]
@@ -82,12 +81,9 @@ def one(programs, settings, work):
     """One packing and its curve."""
     pack, voidwalk = programs
     table = work / "packing.csv"
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run([pack, "threads=1", f"out={table}", *(f"{k}={v}" for k, v in settings.items())],
-                          check=True, capture_output=True, text=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    line = json.loads(done.stdout.strip().splitlines()[-1])
-    line["cpu_s"] = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+    command = [pack, "threads=1", f"out={table}", *(f"{k}={v}" for k, v in settings.items())]
+    done, seconds = common.spent(command, check=True, capture_output=True, text=True)
+    line = json.loads(done.stdout.strip().splitlines()[-1]) | {"cpu_s": seconds}
     curve = subprocess.run([voidwalk, "constrictions", str(table), "--overwrite", "--json", "--out", str(work / "curve")],
                            check=True, capture_output=True, text=True)
     curve = json.loads(curve.stdout)
@@ -113,11 +109,7 @@ def main():
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
     kept = options.work / "runs.jsonl"
-    known = {}
-    if kept.exists():
-        for text in kept.read_text().splitlines():
-            entry = json.loads(text)
-            known[json.dumps(entry["settings"], sort_keys=True)] = entry["result"]
+    known = {json.dumps(entry["settings"], sort_keys=True): entry["result"] for entry in common.lines_of(kept)}
     programs = built()
     names = options.only.split(",") if options.only else list(VARIANTS)
 
@@ -125,8 +117,7 @@ def main():
         key = json.dumps(settings, sort_keys=True)
         if key not in known:
             known[key] = one(programs, settings, options.work)
-            with kept.open("a") as out:
-                out.write(json.dumps({"settings": settings, "result": known[key], "load": os.getloadavg()[0]}) + "\n")
+            common.keep(kept, {"settings": settings, "result": known[key], "load": os.getloadavg()[0]})
         return known[key]
 
     seeds = [int(s) for s in options.seeds.split(",")]

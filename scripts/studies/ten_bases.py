@@ -10,17 +10,16 @@ continues. Settings are the program's defaults but for --set. Prints a table in 
 machine's load when each began and ended. Python 3's standard library only.
 """
 
-import argparse
 import json
 import os
 import pathlib
-import resource
 import shutil
 import subprocess
 import sys
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+import common
+
 LINEAR = [1.2, 1.5, 2, 3, 4.5]
 TABLES = {
     "uniform fine sand": [(0.1, 0), (0.125, 12), (0.18, 62), (0.25, 95), (0.355, 100)],
@@ -37,7 +36,7 @@ def bases(args):
         yield f"linear, Cu {cu:g}", ["--set", f"base.cu={cu:g}", "--set", "base.d85_mm=0.2"]
     for name, points in TABLES.items():
         path = args.out / (name.replace(" ", "-") + ".csv")
-        path.write_text("opening_mm,percent_finer\n" + "".join(f"{mm},{percent}\n" for mm, percent in points))
+        common.sheet(path, points)
         yield name, [path]
 
 
@@ -45,18 +44,17 @@ def walk(args, name, told):
     folder = args.out / "boundary"
     shutil.rmtree(folder, ignore_errors=True)
     command = [args.binary, "boundary", *told, "--filter", args.filter, "--threads", args.threads, "--out", folder, "--quiet"]
-    command += [part for setting in args.set for part in ("--set", setting)]
-    load, before, begun = os.getloadavg()[0], resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
-    code = subprocess.call([str(part) for part in command])
-    wall, after = time.monotonic() - begun, resource.getrusage(resource.RUSAGE_CHILDREN)
-    if code:
-        sys.exit(f"{name}: voidwalk ended with {code}")
+    load, begun = os.getloadavg()[0], time.monotonic()
+    done, seconds = common.spent(command + common.sets(args.set))
+    wall = time.monotonic() - begun
+    if done.returncode:
+        sys.exit(f"{name}: voidwalk ended with {done.returncode}")
     walks = (folder / "boundary.csv").read_text().splitlines()[1:]
     return {
         "base": name,
         "boundary": json.loads((folder / "boundary.json").read_text()),
         "walks": len(walks) + sum(not line.endswith(",") for line in walks),
-        "processor_s": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime,
+        "processor_s": seconds,
         "wall_s": wall,
         "load": [load, os.getloadavg()[0]],
     }
@@ -81,9 +79,8 @@ def table(done):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "target/ten-bases")
-    parser.add_argument("--binary", type=pathlib.Path, default=ROOT / "target/release/voidwalk")
+    parser = common.parser(__doc__)
+    parser.add_argument("--out", type=pathlib.Path, default=common.ROOT / "target/ten-bases")
     parser.add_argument("--filter", default="cu1.5-loose")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
@@ -91,7 +88,7 @@ def main():
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
     kept = args.out / "done.jsonl"
-    done = {one["base"]: one for one in map(json.loads, kept.read_text().splitlines())} if kept.exists() else {}
+    done = {one["base"]: one for one in common.lines_of(kept)}
     version = subprocess.run([args.binary, "--version"], capture_output=True, text=True, check=True).stdout.strip()
     asked = {"filter": args.filter, "set": args.set, "version": version, "isa": os.environ.get("VOIDWALK_ISA")}
     wanted = [(name, told) for name, told in bases(args) if name in args.only or not args.only]
@@ -100,8 +97,7 @@ def main():
             sys.exit(f"{kept}: {name} was found with {done[name].get('asked')}, not {asked}: give these, or another --out")
         if name not in done:
             done[name] = {**walk(args, name, told), "asked": asked}
-            with kept.open("a") as file:
-                file.write(json.dumps(done[name]) + "\n")
+            common.keep(kept, done[name])
             print(f"{name}: {done[name]['processor_s']:.0f} s of processor time", file=sys.stderr)
     table([done[name] for name, _ in wanted])
 
