@@ -32,19 +32,28 @@ def case(table, what, must):
     return register
 
 
-def call(folder, command, *sets, code=0, args=()):
-    """Calls the program; its outcome for a run, else what it says."""
-    out = folder / "out"
-    words = [str(VOIDWALK), command, *args]
-    if command == "run":
-        words += ["--out", str(out), "--quiet"]
-    words += itertools.chain.from_iterable(("--set", s) for s in sets)
-    done = subprocess.run(words, capture_output=True, text=True, cwd=folder)
+def called(folder, *words, sets=()):
+    """The finished program, which writes into `out` of its folder."""
+    quiet = [] if words[0] == "constrictions" else ["--quiet"]
+    words = [str(VOIDWALK), *words, "--out", "out", *quiet, *itertools.chain.from_iterable(("--set", s) for s in sets)]
+    return subprocess.run(words, capture_output=True, text=True, cwd=folder, timeout=1500)
+
+
+def walk(folder, *sets, code=0):
+    """The outcome of a run; of one that is refused what it says."""
+    done, out = called(folder, "run", sets=sets), folder / "out"
     assert done.returncode == code, f"exit code {done.returncode}: {done.stderr.strip()[-300:]}"
     if code == 2:
         assert not out.exists(), "something was written"
         return done.stderr.strip()
-    return json.loads((out / "outcome.json").read_text()) if command == "run" else done.stdout
+    return json.loads((out / "outcome.json").read_text())
+
+
+def within(folder, name):
+    """A new folder in this one."""
+    at = folder / str(name)
+    at.mkdir()
+    return at
 
 
 def first(outcome, run=0):
@@ -66,7 +75,7 @@ def refusals(folder, cases):
     slowest = 0.0
     for sets, word in cases:
         begun = time.time()
-        message = call(folder, "run", *sets, code=2)
+        message = walk(folder, *sets, code=2)
         slowest = max(slowest, time.time() - begun)
         assert word in message, f"{sets}: {message} lacks {word}"
     assert slowest < 1.0, f"{slowest} s"
@@ -75,7 +84,7 @@ def refusals(folder, cases):
 
 @case("Walk", "every base particle passive", "100 % eroded, nothing blocked, 3 moves a layer, the report says that no walk was needed")
 def _(folder):
-    outcome = call(folder, "run", "base.single_mm=0.01", "base.n_base=1e6", "engine=counts", "replicates=1",
+    outcome = walk(folder, "base.single_mm=0.01", "base.n_base=1e6", "engine=counts", "replicates=1",
                    "record.sensitivity=[]", "network.nx=40", "network.ny=40", "network.nz=60")
     run = first(outcome)
     moves = run["particle_moves"] / 1e6
@@ -87,7 +96,7 @@ def _(folder):
 @case("Walk", "every base particle coarser than every constriction, large supply",
       "0 eroded, exactly 3 nx ny blocked, nothing moves one attempt after the last insertion")
 def _(folder):
-    run = first(call(folder, "run", *LATTICE, "base.single_mm=5", "base.n_base=1e5"))
+    run = first(walk(folder, *LATTICE, "base.single_mm=5", "base.n_base=1e5"))
     assert (run["eroded"], run["blocked"]) == (0, 300) and run["increments"] <= 101
     return f"0 eroded, {run['blocked']} of 3 x 10 x 10 blocked, ended after increment {run['increments']} of 100 that insert"
 
@@ -96,7 +105,7 @@ def _(folder):
 def _(folder):
     sizes = write(folder, "curve.csv", "percent_smaller,diameter_mm\n0,0.3\n100,0.3\n")
     # One particle at a time: the first that stops would close its exit for the next.
-    outcome = call(folder, "run", network(folder, ["0,0,0.3", "0,0,0.4", "0,end,0.7"]), f"filter.curve={sizes}",
+    outcome = walk(folder, network(folder, ["0,0,0.3", "0,0,0.4", "0,end,0.7"]), f"filter.curve={sizes}",
                    "filter.cu=1.5", "base.single_mm=0.5", "base.n_base=1", "inject_share=1", "replicates=4000", "runs=1",
                    "record.sensitivity=[]", "record.series_every=0")
     eroded = sum(r["runs"][0]["eroded"] for r in outcome["replicates"])
@@ -110,7 +119,7 @@ def _(folder):
 def _(folder):
     rows = ["0,1,1e6", "0,2,1", "0,3,2", "1,end,5e5", "2,end,9", "3,end,9"]
     curve = write(folder, "curve.csv", "percent_smaller,diameter_mm\n0,1\n100,2\n")
-    outcome = call(folder, "run", network(folder, rows), f"filter.curve={curve}", "filter.cu=1.5", "base.single_mm=0.5",
+    outcome = walk(folder, network(folder, rows), f"filter.curve={curve}", "filter.cu=1.5", "base.single_mm=0.5",
                    "base.n_base=1e9", "replicates=1", "runs=1", "engine=counts", "record.sensitivity=[]")
     run = first(outcome)
     assert run["eroded"] == 10**9
@@ -122,10 +131,9 @@ def _(folder):
     curve = write(folder, "curve.csv", "percent_smaller,diameter_mm\n0,1e-6\n50,1\n100,1000000\n")
     said = []
     for engine in ["particles", "counts", "expected"]:
-        at = folder / engine
-        at.mkdir()
+        at = within(folder, engine)
         write(at, "curve.csv", (folder / curve).read_text())
-        run = first(call(at, "run", *LATTICE, "filter.curve=curve.csv", "filter.cu=1.5", "base.single_mm=1e-3",
+        run = first(walk(at, *LATTICE, "filter.curve=curve.csv", "filter.cu=1.5", "base.single_mm=1e-3",
                          "base.n_base=200000", f"engine={engine}"))
         parts = ["eroded", "retained_in_constrictions", "retained_in_voids", "trapped"]
         assert sum(run[p] for p in parts) == run["inserted"] == 200000
@@ -137,7 +145,7 @@ def _(folder):
 @case("Walk", "constriction of size 0; three of them on a void", "closed from the start, counted apart from blocked ones")
 def _(folder):
     curve = write(folder, "curve.csv", "percent_smaller,diameter_mm\n0,1\n100,2\n")
-    outcome = call(folder, "run", network(folder, ["0,1,1", "0,2,1", "1,end,0", "1,2,0", "1,1,0", "2,end,1"]), f"filter.curve={curve}",
+    outcome = walk(folder, network(folder, ["0,1,1", "0,2,1", "1,end,0", "1,2,0", "1,1,0", "2,end,1"]), f"filter.curve={curve}",
                    "filter.cu=1.5", "base.single_mm=0.5", "base.n_base=100000", "replicates=1", "record.sensitivity=[]")
     run = first(outcome)
     assert run["blocked"] == 0 and run["retained_in_voids"] > 49000 and run["eroded"] > 49000
@@ -148,18 +156,17 @@ def _(folder):
 def _(folder):
     refused = refusals(folder, [(["base.n_base=0"], "base.n_base")])
     for n in [1, 99, 100, 101]:
-        at = folder / str(n)
-        at.mkdir()
-        assert first(call(at, "run", *LATTICE, f"base.n_base={n}"))["inserted"] == n
+        at = within(folder, n)
+        assert first(walk(at, *LATTICE, f"base.n_base={n}"))["inserted"] == n
     return f"{refused}; 1, 99, 100 and 101 inserted"
 
 
 @case("Walk", "N_base = 1e12; nx = 1e9", "one by one: refused with the bytes needed and available; by count: 1e12 runs")
 def _(folder):
-    message = call(folder, "run", "base.n_base=1e12", "engine=particles", code=2)
+    message = walk(folder, "base.n_base=1e12", "engine=particles", code=2)
     assert "available" in message and "1000000000000" in message
-    wide = call(folder, "run", "network.nx=1e9", code=2)
-    run = first(call(folder, "run", *LATTICE, "base.single_mm=0.02", "base.n_base=1e12", "engine=counts", "runs=1"))
+    wide = walk(folder, "network.nx=1e9", code=2)
+    run = first(walk(folder, *LATTICE, "base.single_mm=0.02", "base.n_base=1e12", "engine=counts", "runs=1"))
     assert run["inserted"] == 10**12
     return f"refused: \u201c{message.split(': ', 1)[-1][:110]}...\u201d, \u201c{wide.split(': ', 1)[-1][:80]}\u201d; by count {run['eroded']:.0f} eroded"
 
@@ -174,13 +181,10 @@ def _(folder):
     }
     said = []
     for name, rows in curves.items():
-        at = folder / name.replace(" ", "-")
-        at.mkdir()
+        at = within(folder, name.replace(" ", "-"))
         write(at, "curve.csv", f"percent_smaller,diameter_mm\n{rows}\n")
-        words = [str(VOIDWALK), "run", "--out", "out", "--quiet"]
-        for s in [*LATTICE, "filter.curve=curve.csv", "filter.cu=1.5", "base.single_mm=0.15", "base.n_base=1000"]:
-            words += ["--set", s]
-        done = subprocess.run(words, capture_output=True, text=True, cwd=at)
+        sets = [*LATTICE, "filter.curve=curve.csv", "filter.cu=1.5", "base.single_mm=0.15", "base.n_base=1000"]
+        done = called(at, "run", sets=sets)
         assert done.returncode in (0, 2), done.stderr
         said.append(f"{name}: {'walked' if done.returncode == 0 else 'refused: ' + done.stderr.strip().split(': ', 1)[-1][:120]}")
         assert done.returncode == 0 or name == "vertical step", said[-1]
@@ -189,14 +193,10 @@ def _(folder):
 
 def pack(folder, name, gradation, *sets):
     """Packs; the record and the seconds, or what it said where it could not."""
-    at = folder / name
-    at.mkdir()
+    at = within(folder, name)
     write(at, "filter.toml", f"[filter]\n{gradation}\n")
-    words = [str(VOIDWALK), "pack", "filter.toml", "--out", "out", "--quiet"]
-    for s in sets:
-        words += ["--set", s]
     begun = time.time()
-    done = subprocess.run(words, capture_output=True, text=True, cwd=at, timeout=1500)
+    done = called(at, "pack", "filter.toml", sets=sets)
     seconds = time.time() - begun
     record = json.loads((at / "out/packing.json").read_text()) if done.returncode == 0 else None
     return record, seconds, done.stderr.strip().splitlines()[-1:] or [""]
@@ -239,8 +239,6 @@ def _(folder):
 
 @case("Packing", "a whole packing with size ratio 100", "settles, or says why not; neighbour search and triangulation hold")
 def _(folder):
-    at = folder / "sieve"
-    at.mkdir()
     # A gap: a thousandth of the mass is a hundred times finer, about a thousand fines a coarse grain.
     table = write(folder, "gap.csv", "opening_mm,percent_finer\n0.1,0\n0.11,0.1\n9,0.1\n9.5,50\n10,100\n")
     record, seconds, said = pack(folder, "gap", f"sieve = \"../{table}\"\nfriction = 0.0", "packing.grains=12000", "packing.max_steps=60000")
@@ -276,10 +274,9 @@ def _(folder):
                 grains.append(centre)
         edges = ", ".join(repr(n * length * scale) for n, length in zip(repeat, lengths))
         rows = "\n".join(",".join(map(repr, [*centre, scale])) for centre in grains)
-        at = folder / f"{name}-{scale}-{jitter}"
-        at.mkdir()
+        at = within(folder, f"{name}-{scale}-{jitter}")
         write(at, "grains.csv", f"# cell_mm = {edges}\nx_mm,y_mm,z_mm,diameter_mm\n{rows}\n")
-        done = subprocess.run([str(VOIDWALK), "constrictions", "grains.csv", "--out", "out"], capture_output=True, text=True, cwd=at)
+        done = called(at, "constrictions", "grains.csv")
         assert done.returncode == 0, f"{name}, {scale}, {jitter}: {done.stderr}"
         found = json.loads((at / "out/constrictions.json").read_text())
         dc = found["dc_mm"]
