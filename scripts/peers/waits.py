@@ -4,7 +4,7 @@
     scripts/peers/waits.py SOILS.json [--binary target/release/voidwalk] [--before OTHER] [--turns 3] [--pairs 12] [--seed 5] [--first]
         [--samples 50]
 
-The pairs are drawn by the seed from soils of six points and more and the six filters of `scripts/studies/real_pairs.py`; a pair that is
+The pairs are drawn by the seed from soils of six points and more and six filters; a pair that is
 refused, as its base is coarser than its filter, is left out and counted. Whole processes, wall clock, medians of the turns, in which the
 programs follow one another. VOIDWALK_ISA chooses the instructions. --first lets the timed processes run before all others (`chrt`,
 which asks for the right to), so that other work takes no turns from them, though it shares their caches. `judge` with three filters takes the soil and the
@@ -24,8 +24,16 @@ from statistics import median
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "studies"))
 from common import parser as command_line, sheet, spent  # noqa: E402
-from real_pairs import FILTERS  # noqa: E402
 
+# The middle of each band; sizes in mm.
+FILTERS = {
+    "C33 sand": [(0.15, 6), (0.3, 20), (0.6, 42.5), (1.18, 67.5), (2.36, 90), (4.75, 97.5), (9.5, 100)],
+    "No. 8 stone": [(1.18, 2.5), (2.36, 5), (4.75, 20), (9.5, 92.5), (12.5, 100)],
+    "No. 57 stone": [(2.36, 2.5), (4.75, 5), (12.5, 42.5), (25, 97.5), (37.5, 100)],
+    "fine sand": [(0.075, 2), (0.15, 20), (0.3, 70), (0.6, 100)],
+    "2-4 mm gravel": [(2, 0), (4, 100)],
+    "4.75-37.5 mm gravel": [(4.75, 0), (37.5, 100)],
+}
 BEFORE_OTHERS = ("chrt", "-f", "5")
 # Percent finer of a graded filter at multiples of its D15, and three such D15 (mm).
 GRADED = [(8, 100), (4, 80), (2, 50), (1, 15), (0.6, 3), (0.4, 0)]
