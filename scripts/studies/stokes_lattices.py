@@ -29,12 +29,13 @@ fitted to the three finest grids. Its uncertainty is the largest of: the change 
 without the finest grid, half the distance from k0 to the finest grid's k, and twice the standard error of the
 finest grid's mean.
 
-Needs Python 3.8 or later and a C compiler; runs in one thread.
+Needs NumPy and a C compiler; runs in one thread.
 """
 
 import argparse
 import ctypes
 import math
+import re
 import statistics
 import subprocess
 import sys
@@ -42,9 +43,10 @@ import tempfile
 import time
 from pathlib import Path
 
+import numpy as np
+
 KERNEL = r"""
-#include <math.h>
-#include <stdlib.h>
+#include <stddef.h>
 
 enum { Q = 19 };
 /* Velocities 2m - 1 and 2m are opposite; 0 is rest. */
@@ -53,145 +55,28 @@ static const int CY[Q] = {0, 0, 0, 1,-1, 0, 0, 1,-1,-1, 1, 0, 0, 0, 0, 1,-1, 1,-
 static const int CZ[Q] = {0, 0, 0, 0, 0, 1,-1, 0, 0, 0, 0, 1,-1,-1, 1, 1,-1,-1, 1};
 static int opposite(int q) { return q == 0 ? 0 : (q % 2 ? q + 1 : q - 1); }
 
-typedef struct {
-    int size[3];            /* grid cells of the block along x, y, z */
-    int y_wrap_x;           /* x offset that goes with one block step along y */
-    int z_wrap_x, z_wrap_y; /* x and y offsets that go with one block step along z */
-    double side;            /* edge of the cube, in grid cells */
-    double radius;
-    int centres;
-    double centre[4][3];
-} Array;
-
-typedef struct {
-    int nodes;
-    int *source;            /* nodes x Q: where each population is pulled from */
-    int *first_link;        /* nodes + 1: the wall links of each node */
-    int *link_velocity;     /* velocity that comes from the wall */
-    int *link_behind;       /* the fluid node one step away from the wall */
-    double *link_weight;
-    double *now, *next;
-} Flow;
-
-static int floor_div(int a, int b) { int d = a / b; return (a % b < 0) ? d - 1 : d; }
-
-static int block_index(const Array *a, int x, int y, int z) {
-    int step = floor_div(z, a->size[2]);
-    z -= step * a->size[2]; x -= step * a->z_wrap_x; y -= step * a->z_wrap_y;
-    step = floor_div(y, a->size[1]);
-    y -= step * a->size[1]; x -= step * a->y_wrap_x;
-    x -= floor_div(x, a->size[0]) * a->size[0];
-    return (z * a->size[1] + y) * a->size[0] + x;
-}
-
-/* Share of the link from a fluid node to a solid one that lies in the fluid. */
-static double wall_distance(const Array *a, const int node[3], int q) {
-    const double c[3] = {CX[q], CY[q], CZ[q]};
-    double nearest = 1.0;
-    for (int s = 0; s < a->centres; s++) {
-        double cc = 0.0, cd = 0.0, dd = 0.0;
-        for (int k = 0; k < 3; k++) {
-            /* The image of the sphere that is nearest to the link's solid end. */
-            double d = node[k] + c[k] - a->centre[s][k];
-            d -= a->side * floor(d / a->side + 0.5);
-            d -= c[k];
-            cc += c[k] * c[k]; cd += c[k] * d; dd += d * d;
-        }
-        double root = cd * cd - cc * (dd - a->radius * a->radius);
-        if (root < 0.0) continue;
-        double t = (-cd - sqrt(root)) / cc;
-        if (t >= 0.0 && t < nearest) nearest = t;
-    }
-    return nearest;
-}
-
-static int inside_sphere(const Array *a, int x, int y, int z) {
-    const double p[3] = {x, y, z};
-    for (int s = 0; s < a->centres; s++) {
-        double dd = 0.0;
-        for (int k = 0; k < 3; k++) {
-            double d = p[k] - a->centre[s][k];
-            d -= a->side * floor(d / a->side + 0.5);
-            dd += d * d;
-        }
-        if (dd < a->radius * a->radius) return 1;
-    }
-    return 0;
-}
-
-Flow *flow_new(const Array *a) {
-    const int sx = a->size[0], sy = a->size[1], sz = a->size[2], cells = sx * sy * sz;
-    int *number = malloc(sizeof(int) * cells);
-    Flow *f = calloc(1, sizeof(Flow));
-    for (int z = 0, i = 0; z < sz; z++)
-        for (int y = 0; y < sy; y++)
-            for (int x = 0; x < sx; x++, i++)
-                number[i] = inside_sphere(a, x, y, z) ? -1 : f->nodes++;
-    const int n = f->nodes;
-    f->source = malloc(sizeof(int) * n * Q);
-    f->first_link = malloc(sizeof(int) * (n + 1));
-    int room = 1024, links = 0;
-    f->link_velocity = malloc(sizeof(int) * room);
-    f->link_behind = malloc(sizeof(int) * room);
-    f->link_weight = malloc(sizeof(double) * room);
-    for (int z = 0, i = 0; z < sz; z++)
-        for (int y = 0; y < sy; y++)
-            for (int x = 0; x < sx; x++, i++) {
-                const int me = number[i], node[3] = {x, y, z};
-                if (me < 0) continue;
-                f->first_link[me] = links;
-                for (int q = 0; q < Q; q++) {
-                    const int from = number[block_index(a, x - CX[q], y - CY[q], z - CZ[q])];
-                    if (from >= 0) { f->source[me * Q + q] = from * Q + q; continue; }
-                    f->source[me * Q + q] = me * Q + opposite(q);
-                    const int behind = number[block_index(a, x + CX[q], y + CY[q], z + CZ[q])];
-                    if (behind < 0) continue;
-                    if (links == room) {
-                        room *= 2;
-                        f->link_velocity = realloc(f->link_velocity, sizeof(int) * room);
-                        f->link_behind = realloc(f->link_behind, sizeof(int) * room);
-                        f->link_weight = realloc(f->link_weight, sizeof(double) * room);
-                    }
-                    const double t = wall_distance(a, node, opposite(q));
-                    f->link_velocity[links] = q;
-                    f->link_behind[links] = behind;
-                    f->link_weight[links++] = (1.0 - 2.0 * t) / (1.0 + 2.0 * t);
-                }
-            }
-    f->first_link[n] = links;
-    free(number);
-    f->now = calloc((size_t)n * Q, sizeof(double));
-    f->next = calloc((size_t)n * Q, sizeof(double));
-    return f;
-}
-
-void flow_free(Flow *f) {
-    free(f->source); free(f->first_link);
-    free(f->link_velocity); free(f->link_behind); free(f->link_weight);
-    free(f->now); free(f->next); free(f);
-}
-
 /* Advances by some steps under unit force along x; returns the x velocity summed over the fluid nodes, as the
    mean of the last two steps: nodes shut in beside a contact keep a part that changes its sign every step. */
-double flow_run(Flow *f, int steps, double viscosity, double magic) {
+double flow_run(int nodes, const int *sources, const int *first_link, const int *link_velocity, const int *link_behind,
+                const double *link_weight, double *now, double *next, int steps, double viscosity, double magic) {
     const double even = 1.0 / (3.0 * viscosity + 0.5), odd = 1.0 / (magic / (3.0 * viscosity) + 0.5);
     double total = 0.0, before = 0.0;
     for (int step = 0; step < steps; step++) {
         before = total;
         total = 0.0;
-        for (int i = 0; i < f->nodes; i++) {
-            const int *source = f->source + (size_t)i * Q;
+        for (int i = 0; i < nodes; i++) {
+            const int *source = sources + (size_t)i * Q;
             double p[Q], density = 0.0, ux = 0.5, uy = 0.0, uz = 0.0;
-            for (int q = 0; q < Q; q++) p[q] = f->now[source[q]];
-            for (int l = f->first_link[i]; l < f->first_link[i + 1]; l++) {
-                const int q = f->link_velocity[l];
-                const double gap = f->now[f->link_behind[l] * Q + opposite(q)] - f->now[i * Q + q];
-                p[q] += f->link_weight[l] * gap;
+            for (int q = 0; q < Q; q++) p[q] = now[source[q]];
+            for (int l = first_link[i]; l < first_link[i + 1]; l++) {
+                const int q = link_velocity[l];
+                const double gap = now[link_behind[l] * Q + opposite(q)] - now[i * Q + q];
+                p[q] += link_weight[l] * gap;
             }
             for (int q = 0; q < Q; q++) density += p[q];
             for (int q = 1; q < Q; q++) { ux += CX[q] * p[q]; uy += CY[q] * p[q]; uz += CZ[q] * p[q]; }
             total += ux;
-            double *out = f->next + (size_t)i * Q;
+            double *out = next + (size_t)i * Q;
             out[0] = p[0] - even * (p[0] - density / 3.0);
             for (int q = 1; q < Q; q += 2) {
                 const double w = q < 7 ? 1.0 / 18.0 : 1.0 / 36.0;
@@ -204,26 +89,16 @@ double flow_run(Flow *f, int steps, double viscosity, double magic) {
                 out[q + 1] = p[q + 1] - change_even + change_odd;
             }
         }
-        double *swap = f->now; f->now = f->next; f->next = swap;
+        double *swap = now; now = next; next = swap;
     }
     return 0.5 * (before + total);
 }
 """
 
 
-class Array(ctypes.Structure):
-    """The block that is solved and the spheres in its cube, as the kernel wants them."""
-
-    _fields_ = [
-        ("size", ctypes.c_int * 3),
-        ("y_wrap_x", ctypes.c_int),
-        ("z_wrap_x", ctypes.c_int),
-        ("z_wrap_y", ctypes.c_int),
-        ("side", ctypes.c_double),
-        ("radius", ctypes.c_double),
-        ("centres", ctypes.c_int),
-        ("centre", (ctypes.c_double * 3) * 4),
-    ]
+#: The velocities of the kernel, and the opposite of each.
+VELOCITIES = np.array([[int(number) for number in row.split(",")] for row in re.findall(r"C[XYZ]\[Q\] = \{(.*)\}", KERNEL)]).T
+OPPOSITE = np.array([0, *(q + 1 if q % 2 else q - 1 for q in range(1, 19))])
 
 
 class Lattice:
@@ -277,17 +152,16 @@ CHECK_EVERY = 100  # steps
 
 
 def load_kernel(compiler, folder):
-    """Compiles the solver and declares its functions."""
+    """Compiles the solver and declares its function."""
     source, library = Path(folder, "kernel.c"), Path(folder, "kernel.so")
     source.write_text(KERNEL)
     options = ["-O3", "-march=native", "-shared", "-fPIC"]
     subprocess.run([compiler, *options, "-o", library, source, "-lm"], check=True)
-    kernel = ctypes.CDLL(str(library))
-    kernel.flow_new.argtypes, kernel.flow_new.restype = [ctypes.POINTER(Array)], ctypes.c_void_p
-    kernel.flow_free.argtypes, kernel.flow_free.restype = [ctypes.c_void_p], None
-    kernel.flow_run.argtypes = [ctypes.c_void_p, ctypes.c_int, ctypes.c_double, ctypes.c_double]
-    kernel.flow_run.restype = ctypes.c_double
-    return kernel
+    run = ctypes.CDLL(str(library)).flow_run
+    whole, real = np.ctypeslib.ndpointer(np.int32), np.ctypeslib.ndpointer(np.float64)
+    run.argtypes = [ctypes.c_int, whole, whole, whole, whole, real, real, real, ctypes.c_int, ctypes.c_double, ctypes.c_double]
+    run.restype = ctypes.c_double
+    return run
 
 
 def grid_shift(number):
@@ -295,27 +169,79 @@ def grid_shift(number):
     return [(number + 1) * step % 1 for step in (0.8191725134, 0.6710436067, 0.5497004779)]
 
 
+class Block:
+    """The block that is solved: its grid nodes, and the spheres in the cube."""
+
+    def __init__(self, lattice, cells, radius, shift):
+        self.side, self.radius = cells, radius
+        self.size = [cells, cells // lattice.parts[0], cells // lattice.parts[1]]
+        self.y_wrap_x = round(lattice.y_wrap_x * cells)
+        self.z_wrap_x, self.z_wrap_y = [round(wrap * cells) for wrap in lattice.z_wrap]
+        self.centres = np.array(lattice.centres, dtype=float) * cells + np.array(shift)
+        z, y, x = np.meshgrid(*[np.arange(n) for n in self.size[::-1]], indexing="ij")
+        nodes = np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1)
+        inside = [(self.to_nearest(nodes, centre) ** 2).sum(axis=1) < radius * radius for centre in self.centres]
+        is_fluid = ~np.any(inside, axis=0)
+        #: The number of each node among those in the fluid; -1 in a sphere.
+        self.number = np.where(is_fluid, np.cumsum(is_fluid) - 1, -1)
+        self.nodes = nodes[is_fluid]
+
+    def to_nearest(self, points, centre):
+        """From the nearest image of a sphere to these points."""
+        away = points - centre
+        return away - self.side * np.floor(away / self.side + 0.5)
+
+    def number_at(self, points):
+        """The numbers of nodes of which some lie outside the block."""
+        x, y, z = points.T
+        step = z // self.size[2]
+        x, y, z = x - step * self.z_wrap_x, y - step * self.z_wrap_y, z - step * self.size[2]
+        step = y // self.size[1]
+        x, y = (x - step * self.y_wrap_x) % self.size[0], y - step * self.size[1]
+        return self.number[(z * self.size[1] + y) * self.size[0] + x]
+
+    def wall_distance(self, nodes, velocity):
+        """Share of the link from a fluid node to a solid one that lies in the fluid."""
+        nearest, cc = np.ones(len(nodes)), float((velocity**2).sum())
+        for centre in self.centres:
+            # The image of the sphere that is nearest to the link's solid end.
+            away = self.to_nearest(nodes + velocity, centre) - velocity
+            cd, dd = (away * velocity).sum(axis=1), (away**2).sum(axis=1)
+            root = cd * cd - cc * (dd - self.radius * self.radius)
+            at = (-cd - np.sqrt(np.maximum(root, 0.0))) / cc
+            nearest = np.where((root >= 0.0) & (at >= 0.0), np.minimum(nearest, at), nearest)
+        return nearest
+
+    def flow(self):
+        """Where each population is pulled from, the wall links in the order of their nodes, and populations at rest: as the kernel wants them."""
+        me, source, links = np.arange(len(self.nodes)), [], []
+        for q, velocity in enumerate(VELOCITIES):
+            behind_wall = self.number_at(self.nodes - velocity)
+            source.append(np.where(behind_wall >= 0, behind_wall * 19 + q, me * 19 + OPPOSITE[q]))
+            behind = self.number_at(self.nodes + velocity)
+            at = np.flatnonzero((behind_wall < 0) & (behind >= 0))
+            share = self.wall_distance(self.nodes[at], VELOCITIES[OPPOSITE[q]])
+            links.append((at, np.full(len(at), q), behind[at], (1.0 - 2.0 * share) / (1.0 + 2.0 * share)))
+        node, velocities, behind, weights = (np.concatenate(part) for part in zip(*links))
+        order = np.argsort(node, kind="stable")
+        first = np.concatenate([[0], np.cumsum(np.bincount(node, minlength=len(me)))])
+        whole = [np.ascontiguousarray(part, dtype=np.int32) for part in (np.stack(source, axis=1), first, velocities[order], behind[order])]
+        return [len(me), *whole, np.ascontiguousarray(weights[order]), *(np.zeros(len(me) * 19) for _ in range(2))]
+
+
 def permeability(kernel, lattice, fraction, cells, shift, tolerance):
     """k / D^2 on one grid, and the number of steps to the steady state."""
     diameter = lattice.diameter(fraction) * cells
-    array = Array()
-    array.size[:] = [cells, cells // lattice.parts[0], cells // lattice.parts[1]]
-    array.y_wrap_x = round(lattice.y_wrap_x * cells)
-    array.z_wrap_x, array.z_wrap_y = [round(wrap * cells) for wrap in lattice.z_wrap]
-    array.side, array.radius, array.centres = cells, diameter / 2, len(lattice.centres)
-    for number, centre in enumerate(lattice.centres):
-        array.centre[number][:] = [place * cells + offset for place, offset in zip(centre, shift)]
-    block = math.prod(array.size)
+    block = Block(lattice, cells, diameter / 2, shift)
     viscosity = min(2.0, 0.25 / fraction)  # sets the pace to the steady state, not the result
-    flow = kernel.flow_new(ctypes.byref(array))
-    steps, mean, change = 0, 0.0, math.inf
+    flow, steps, mean, change = block.flow(), 0, 0.0, math.inf
     while not change <= tolerance:
-        before, mean = mean, kernel.flow_run(flow, CHECK_EVERY, viscosity, MAGIC) / block
+        # An even number of steps ends in the array in which it began.
+        before, mean = mean, kernel(*flow, CHECK_EVERY, viscosity, MAGIC) / math.prod(block.size)
         steps += CHECK_EVERY
         if not math.isfinite(mean):
             raise SystemExit(f"no steady flow on {cells} cells per edge: the velocity is {mean}")
         change = abs(mean - before) / abs(mean)
-    kernel.flow_free(flow)
     return viscosity * mean / diameter**2, steps
 
 
