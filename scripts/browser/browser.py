@@ -1,4 +1,4 @@
-"""Chromium over its debugging pipe, for look_at_report.py and figures_to_png.py. Python's standard library only."""
+"""Chromium over its debugging pipe, for the others. Python's standard library only."""
 
 import json
 import os
@@ -51,6 +51,13 @@ class Browser:
                     raise SystemExit(f"{method}: {answer['error']['message']}")
                 return answer["result"]
             self.events.append(answer)
+
+    def run(self, tab, script):
+        """What a script in a tab gives; a script that fails ends all."""
+        answer = self.ask("Runtime.evaluate", tab, expression=script, awaitPromise=True, returnByValue=True)
+        if "exceptionDetails" in answer:
+            raise SystemExit(f"{script}: {answer['exceptionDetails']}")
+        return answer["result"].get("value")
 
     def open(self, url, width, height):
         """A tab of this size that shows the page."""

@@ -118,13 +118,9 @@ def look(page, picture, width, dark):
         if dark:
             scheme = [{"name": "prefers-color-scheme", "value": "dark"}]
             browser.ask("Emulation.setEmulatedMedia", tab, features=scheme)
-        is_dark = browser.ask("Runtime.evaluate", tab, expression=IS_DARK, returnByValue=True)["result"].get("value")
-        if is_dark != dark:
+        if browser.run(tab, IS_DARK) != dark:
             faults.append("is light on a dark screen" if dark else "is dark on a light screen")
-        inspected = browser.ask("Runtime.evaluate", tab, expression=INSPECT, returnByValue=True)
-        faults += inspected["result"].get("value", ["the page could not be inspected"])
-        boxes = browser.ask("Runtime.evaluate", tab, expression=TRY_BOXES, returnByValue=True)
-        faults += boxes["result"].get("value", ["the boxes could not be tried"])
+        faults += browser.run(tab, INSPECT) + browser.run(tab, TRY_BOXES)
         size = browser.ask("Page.getLayoutMetrics", tab)["cssContentSize"]
         area = {"x": 0, "y": 0, "width": width, "height": size["height"]}
 
@@ -147,25 +143,23 @@ def print_out(page, pdf, paper):
     width, height = PAPER[paper]
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile, Browser(profile) as browser:
         tab = browser.open(pathlib.Path(page).resolve().as_uri(), 1280, 900)
-        first = browser.ask("Runtime.evaluate", tab, expression=FIRST_PAGE, returnByValue=True)
-        browser.ask("Runtime.evaluate", tab, expression=TURN_BOXES)
+        first = browser.run(tab, FIRST_PAGE)
+        browser.run(tab, TURN_BOXES)
         inside = int(96 * (width - 2 * MARGIN))
         browser.ask("Emulation.setDeviceMetricsOverride", tab, width=inside, height=900, deviceScaleFactor=1, mobile=False)
         browser.ask("Emulation.setEmulatedMedia", tab, media="print")
-        wide = browser.ask("Runtime.evaluate", tab, expression="document.documentElement.scrollWidth", returnByValue=True)
-        letters = browser.ask("Runtime.evaluate", tab, expression=LETTERS, returnByValue=True)["result"].get("value")
-        hidden = browser.ask("Runtime.evaluate", tab, expression=PRINTED_CURVES, returnByValue=True)
+        wide, letters, hidden = (browser.run(tab, script) for script in ("document.documentElement.scrollWidth", LETTERS, PRINTED_CURVES))
         browser.ask("Emulation.setEmulatedMedia", tab, media="")
         printed = browser.ask("Page.printToPDF", tab, paperWidth=width, paperHeight=height,
                               printBackground=False, preferCSSPageSize=True)
         pathlib.Path(pdf).write_bytes(base64.b64decode(printed["data"]))
-    faults = list(faults_of_sheets(sheets(pdf), first["result"]["value"]))
+    faults = list(faults_of_sheets(sheets(pdf), first))
     if letters is not None and letters < LEAST_LETTERS:
         faults.append(f"Figure 1 is lettered at {letters:.1f} pt on {paper}")
-    if hidden["result"].get("value") != 0:
+    if hidden != 0:
         faults.append("what is hidden on the screen is not printed, or a box is")
-    if wide["result"]["value"] > inside:
-        faults.append(f"is {wide['result']['value']} px wide on a sheet of {inside} px: all of it is printed smaller")
+    if wide > inside:
+        faults.append(f"is {wide} px wide on a sheet of {inside} px: all of it is printed smaller")
     return faults
 
 

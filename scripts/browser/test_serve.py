@@ -76,10 +76,7 @@ class Tab:
         self.tab = browser.open(url, width, height)
 
     def run(self, script):
-        answer = self.browser.ask("Runtime.evaluate", self.tab, expression=script, awaitPromise=True, returnByValue=True)
-        if "exceptionDetails" in answer:
-            raise SystemExit(f"{script}: {answer['exceptionDetails']}")
-        return answer["result"].get("value")
+        return self.browser.run(self.tab, script)
 
     def until(self, script, seconds=30):
         end = time.monotonic() + PATIENCE * seconds

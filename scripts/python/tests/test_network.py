@@ -107,15 +107,6 @@ def test_the_flow_is_that_of_linear_algebra() -> None:
         lattice().flow()
 
 
-def test_a_blocking_closes_both_ways() -> None:
-    # A ring: the narrow side is blocked by the first particle that tries it, from whichever end.
-    ring = vw.Network([[0, 1], [2, 1], [0, 3], [3, 2]], [1.0, 1.0, 0.4, 0.4], [0], [2])
-    result = vw.walk(ring, 0.5, n_base=1000, replicates=3)
-    assert result.blocked is not None and result.blocked.shape == (3, 2, 4)
-    assert (result.blocked == [False, False, True, False]).all()
-    assert [r["runs"][1]["eroded"] for r in result.replicates] == [1000] * 3
-
-
 def test_a_lattice_gives_its_arrays_and_comes_back_from_them() -> None:
     made = lattice()
     assert made.conns.shape == (972, 2) and (made.conns[:, 1] == -1).sum() == 36
@@ -247,18 +238,6 @@ def test_a_walk_has_notes_with_a_sentence_each() -> None:
     assert few.notes and all(note["id"] for note in few.notes)
     assert len(few.note_sentences) == len(few.notes) and all(few.note_sentences)
     assert few.verdict in repr(few) and few.verdict in few._repr_html_()
-
-
-@pytest.mark.parametrize("narrow", [0.001, 0.03])
-def test_a_flow_that_rounding_hides_is_known(narrow: float) -> None:
-    """1 : 0.001 : 1 mm in a row: a flow of 1e-12 of what the ways in conduct, which pressures do not tell."""
-    network = vw.Network([[0, 1], [1, 2], [2, 3]], [1.0, narrow, 1.0], [0], [3])
-    _, flux = network.flow()
-    exact = 1 / (2 + 2 / np.mean([1, narrow**4, 1]) + narrow**-4)
-    assert flux == pytest.approx(np.full(3, exact), rel=1e-6)
-    assert network.first_passage(narrow / 2)[0] == pytest.approx(1.0, abs=1e-6)
-    walked = vw.walk(network, narrow / 2, n_base=100, replicates=2)
-    assert all(run["eroded"] == 100 for replicate in walked.replicates for run in replicate["runs"])
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes here")

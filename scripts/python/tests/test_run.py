@@ -105,17 +105,6 @@ def test_a_scene_gives_the_same_files_as_the_command_line(
             assert kept[key].dtype == read[key].dtype and np.array_equal(kept[key], read[key]), (table, key)
 
 
-def test_arches_are_read_with_their_law(small: Dict[str, Any], tmp_path: Path) -> None:
-    plain = vw.run(small, out=tmp_path / "plain")
-    assert "arching" not in plain.outcome
-    arched = vw.run({**small, "walk": {"arching": "critical-3"}}, out=tmp_path / "arched")
-    law = arched.outcome["arching"]
-    assert law["law"] == "critical-3" and law["range_of_ratio"] == [1.0, 3.0] and "Marin" in law["source"]
-    # Where the first run has filled the filter, the second has no arch.
-    runs = [replicate["runs"][0] for replicate in arched.outcome["replicates"]]
-    assert all(0 < run["arches"] <= run["retained_in_arches"] <= run["retained_in_constrictions"] for run in runs)
-
-
 def test_errors_have_the_words_of_the_command_line(small: Dict[str, Any], program: str, tmp_path: Path) -> None:
     for broken in [
         'seed = "one"\n',
