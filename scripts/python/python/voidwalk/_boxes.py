@@ -9,9 +9,7 @@ from typing import Mapping, Sequence, Tuple
 _MOST = 12
 
 
-def box(
-    title: str, facts: Mapping[str, str], heading: Sequence[str] = (), rows: Sequence[Tuple[str, ...]] = ()
-) -> str:
+def box(title: str, facts: Mapping[str, str], heading: Sequence[str] = (), rows: Sequence[Tuple[str, ...]] = ()) -> str:
     """A title with facts below it, and a table; of a long one the ends."""
     shown = list(rows)
     if len(shown) > _MOST:

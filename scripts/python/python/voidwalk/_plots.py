@@ -37,38 +37,30 @@ def axes(ax: Optional[Axes], width: float = 6.4) -> Axes:
     return made
 
 
-def _semi_log(ax: Axes, x: str, y: str) -> None:
+def _semi_log(ax: Axes, x: str, y: str, has_legend: bool = True) -> Axes:
     """Sizes along a logarithmic x, percents from 0 to 100 along y."""
-    ax.set_xscale("log")
-    ax.set_ylim(0, 100)
-    ax.set_xlabel(x)
-    ax.set_ylabel(y)
+    ax.set(xscale="log", ylim=(0, 100), xlabel=x, ylabel=y)
     ax.grid(True, which="both", alpha=0.25)
+    if has_legend:
+        ax.legend()
+    return ax
 
 
 def plot_gradation(sizes: Floats, percents: Floats, label: Optional[str], ax: Optional[Axes]) -> Axes:
     """Percent finer by mass against size."""
     drawn = axes(ax)
     drawn.plot(sizes, percents, marker=".", label=label)
-    _semi_log(drawn, _SIZE, _PERCENT_BY_MASS)
-    if label is not None:
-        drawn.legend()
-    return drawn
+    return _semi_log(drawn, _SIZE, _PERCENT_BY_MASS, label is not None)
 
 
 def plot_curve(percents: Floats, sizes: Floats, label: Optional[str], ax: Optional[Axes]) -> Axes:
     """Percent smaller by number against the diameter of constrictions."""
     drawn = axes(ax)
     drawn.plot(sizes, percents, label=label)
-    _semi_log(drawn, "Constriction diameter (mm)", "Percent smaller by number")
-    if label is not None:
-        drawn.legend()
-    return drawn
+    return _semi_log(drawn, "Constriction diameter (mm)", "Percent smaller by number", label is not None)
 
 
-def plot_network(
-    diameter: Floats, layer: Ints, blocked: Optional[NDArray[np.bool_]], ax: Optional[Axes]
-) -> Axes:
+def plot_network(diameter: Floats, layer: Ints, blocked: Optional[NDArray[np.bool_]], ax: Optional[Axes]) -> Axes:
     """The sizes of constrictions; or, of those that are blocked, the share by layer."""
     if blocked is None:
         sizes = np.sort(diameter[diameter > 0])
@@ -79,15 +71,11 @@ def plot_network(
     share = [100 * float(blocked[layer == one].mean()) for one in layers]
     drawn = axes(ax)
     drawn.step(layers, share, where="mid")
-    drawn.set_xlabel("Layer, along the flow")
-    drawn.set_ylabel("Blocked constrictions (%)")
-    drawn.set_ylim(bottom=0)
+    drawn.set(xlabel="Layer, along the flow", ylabel="Blocked constrictions (%)", ylim=(0, None))
     return drawn
 
 
-def plot_result(
-    outcome: Outcome, tables: Tuple[Series, Layers, Sizes, Sizes], what: str, ax: Optional[Axes]
-) -> Axes:
+def plot_result(outcome: Outcome, tables: Tuple[Series, Layers, Sizes, Sizes], what: str, ax: Optional[Axes]) -> Axes:
     """One of the figures of a result, whose tables are its series, layers, retained and eroded sizes."""
     series, layers, retained, eroded = tables
     if what == "progress":
@@ -120,9 +108,7 @@ def _progress(series: Series, threshold: float, ax: Optional[Axes]) -> Axes:
     drawn = axes(ax)
     _by_run(drawn, series, series["increment"], 100 * series["eroded_mass_fraction"])
     drawn.axhline(100 * threshold, color="black", linestyle="--", linewidth=1, label="Erosion begins")
-    drawn.set_xlabel("Increment")
-    drawn.set_ylabel("Eroded mass (% of the mass inserted)")
-    drawn.set_ylim(bottom=0)
+    drawn.set(xlabel="Increment", ylabel="Eroded mass (% of the mass inserted)", ylim=(0, None))
     drawn.legend()
     return drawn
 
@@ -130,16 +116,12 @@ def _progress(series: Series, threshold: float, ax: Optional[Axes]) -> Axes:
 def _layers(layers: Layers, ax: Optional[Axes]) -> Axes:
     drawn = axes(ax)
     _by_run(drawn, layers, layers["layer"], 100 * layers["blocked"] / np.maximum(layers["constrictions"], 1))
-    drawn.set_xlabel("Layer, along the flow")
-    drawn.set_ylabel("Blocked constrictions (%)")
-    drawn.set_ylim(bottom=0)
+    drawn.set(xlabel="Layer, along the flow", ylabel="Blocked constrictions (%)", ylim=(0, None))
     drawn.legend()
     return drawn
 
 
-def _curves(
-    outcome: Outcome, retained: Sizes, eroded: Sizes, ax: Optional[Axes]
-) -> Axes:
+def _curves(outcome: Outcome, retained: Sizes, eroded: Sizes, ax: Optional[Axes]) -> Axes:
     drawn = axes(ax)
     inputs = outcome.get("inputs")
     lines: Dict[str, Sequence[Sequence[float]]] = {}
@@ -157,9 +139,7 @@ def _curves(
             chosen &= table["increment"] == table["increment"][chosen].max()
             sizes, percents = table["diameter_mm"][chosen], table["percent_finer_by_mass"][chosen]
             drawn.plot(sizes, percents, linestyle="--", label=label)
-    _semi_log(drawn, _SIZE, f"{_PERCENT_BY_MASS} (constrictions: smaller by number)")
-    drawn.legend()
-    return drawn
+    return _semi_log(drawn, _SIZE, f"{_PERCENT_BY_MASS} (constrictions: smaller by number)")
 
 
 def _rules(outcome: Outcome, ax: Optional[Axes]) -> Axes:
@@ -181,10 +161,9 @@ def _rules(outcome: Outcome, ax: Optional[Axes]) -> Axes:
     places = list(range(len(names)))
     drawn.scatter(ratios, places, c=colours)
     drawn.axvline(1, color="black", linewidth=1)
-    drawn.set_xscale("log")
+    drawn.set(xscale="log", xlabel="Value over limit (for a least value, limit over value); kept up to 1")
     drawn.set_yticks(places, names)
     drawn.invert_yaxis()
-    drawn.set_xlabel("Value over limit (for a least value, limit over value); kept up to 1")
     drawn.grid(True, axis="x", which="both", alpha=0.25)
     return drawn
 
@@ -205,9 +184,7 @@ def plot_specification(outcome: Specification, ax: Optional[Axes]) -> Axes:
         _line(drawn, band["coarse_side"], "Filter, coarse side", "black", "-.")
         outline = band["fine_side"] + band["coarse_side"][::-1]
         drawn.fill([point[0] for point in outline], [point[1] for point in outline], color="black", alpha=0.1)
-    _semi_log(drawn, _SIZE, _PERCENT_BY_MASS)
-    drawn.legend()
-    return drawn
+    return _semi_log(drawn, _SIZE, _PERCENT_BY_MASS)
 
 
 def _line(ax: Axes, points: Sequence[Sequence[float]], label: str, colour: str, style: str) -> None:
@@ -231,9 +208,6 @@ def plot_boundaries(outcome: Boundaries, walks: Walked, ax: Optional[Axes]) -> A
     drawn.axhline(100 * outcome["threshold"], color="black", linestyle="--", linewidth=1, label="Erosion begins")
     drawn.plot([], [], color="gray", label="No erosion up to, median")
     drawn.plot([], [], color="gray", linestyle=":", label="Continuing erosion from, median")
-    drawn.set_xscale("log")
-    drawn.set_xlabel("D15F/D85B")
-    drawn.set_ylabel("Eroded mass of the first run (%)")
-    drawn.set_ylim(bottom=0)
+    drawn.set(xscale="log", xlabel="D15F/D85B", ylabel="Eroded mass of the first run (%)", ylim=(0, None))
     drawn.legend()
     return drawn

@@ -123,9 +123,7 @@ class _Walked:
         """The facts of a row that are of no run."""
         raise NotImplementedError
 
-    def _facts(
-        self, d85b: Optional[float], d15f: Optional[float], voids: int, thickness: Optional[float]
-    ) -> Row:
+    def _facts(self, d85b: Optional[float], d15f: Optional[float], voids: int, thickness: Optional[float]) -> Row:
         """What every row has, behind its class."""
         outcome = self.outcome
         return {

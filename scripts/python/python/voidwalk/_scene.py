@@ -57,9 +57,7 @@ class Scene:
     __slots__ = ("_native",)
     _native: _voidwalk.Scene
 
-    def __init__(
-        self, scene: Union[Scene, Stated] = None, settings: Optional[Settings] = None
-    ) -> None:
+    def __init__(self, scene: Union[Scene, Stated] = None, settings: Optional[Settings] = None) -> None:
         self._native = native_scene(scene, settings)
 
     @classmethod
@@ -104,9 +102,7 @@ def assignments(settings: Optional[Settings]) -> List[str]:
     return [f"{key}={json.dumps(of, default=_plain, allow_nan=False)}" for key, of in stated.items()]
 
 
-def native_scene(
-    scene: Union[Scene, Stated], settings: Optional[Settings] = None
-) -> _voidwalk.Scene:
+def native_scene(scene: Union[Scene, Stated], settings: Optional[Settings] = None) -> _voidwalk.Scene:
     """The library's scene of what a user states, with the settings that change it."""
     changes = assignments(settings)
     if scene is None:

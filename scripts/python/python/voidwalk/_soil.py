@@ -214,9 +214,7 @@ class Gradation:
         """
         return plot_gradation(*self.points(), label, ax)
 
-    def base_particles(
-        self, filter: Gradation, voids: int, grains_per_void: float, mass_ratio: float = 0.05
-    ) -> int:
+    def base_particles(self, filter: Gradation, voids: int, grains_per_void: float, mass_ratio: float = 0.05) -> int:
         """Number of particles of this base that a test inserts, by Eq. (2) of the paper.
 
         Parameters
@@ -302,9 +300,7 @@ class Curve:
         self.filter, self.grains_per_void = None, None
 
     @classmethod
-    def _of(
-        cls, native: _voidwalk.Curve, filter: Optional[Gradation], grains_per_void: Optional[float]
-    ) -> Curve:
+    def _of(cls, native: _voidwalk.Curve, filter: Optional[Gradation], grains_per_void: Optional[float]) -> Curve:
         new = cls.__new__(cls)
         new._native, new.filter, new.grains_per_void = native, filter, grains_per_void
         return new

@@ -47,9 +47,7 @@ class Specification:
     tables: Dict[str, Table]
     folder: Optional[Path]
 
-    def __init__(
-        self, outcome: SpecificationRecord, tables: Dict[str, Table], folder: Optional[Path] = None
-    ) -> None:
+    def __init__(self, outcome: SpecificationRecord, tables: Dict[str, Table], folder: Optional[Path] = None) -> None:
         self.outcome, self.tables, self.folder = outcome, tables, folder
         words = _voidwalk.specification_words(json.dumps(outcome))
         self._d15f, self._no_band, self._note, self._set_by, self._fits = words
