@@ -194,11 +194,6 @@ impl Network {
     }
 
     #[getter]
-    fn throats(&self) -> usize {
-        self.exit.len()
-    }
-
-    #[getter]
     fn unit_mm(&self) -> f64 {
         self.inner.unit_mm()
     }
