@@ -5,15 +5,15 @@ from __future__ import annotations
 import json
 import os
 from pathlib import Path
-from typing import List, Optional, Union
+from typing import Dict, List, Optional, Tuple, Union
 
 from . import _voidwalk
 from ._progress import Follower, Following
 from .records import PairRules, SoilSummary
 from ._result import Result, read_run
-from ._scene import Settings
+from ._scene import Setting, Settings
 from ._soil import Gradation
-from ._tables import Soil, curves, gradation, told, workplace
+from ._tables import Soil, changes, curves, gradation, workplace
 from ._walk import manner
 
 __all__ = ["judge", "rules", "soil"]
@@ -101,9 +101,14 @@ def judge(
     >>> result.headline, result.model["class"]
     ('does not meet practice', 'no erosion')
     """
-    tables = told(
-        settings, density, pack, quick, as_sampled, as_given, dispersive, joint_mm, seed, replicates
-    )
+    options: Dict[str, Tuple[str, Optional[Setting]]] = {
+        "dispersive": ("base.dispersive", True if dispersive else None),
+        "joint_mm": ("filter.joint_mm", joint_mm),
+        "seed": ("seed", seed),
+        "replicates": ("replicates", replicates),
+    }
+    stated = changes(settings, options)
+    tables = (density, bool(pack), bool(quick), bool(as_sampled), bool(as_given), stated)
     how = manner("judge", memory, threads, checkpoint_every)
     with workplace() as place, Following(progress) as callback:
         scene = _voidwalk.Scene.of_tables(place.table("base", base), place.table("filter", filter), tables)

@@ -107,29 +107,3 @@ def changes(settings: Optional[Settings], options: Mapping[str, Tuple[str, Optio
             raise ValueError(f"{argument} and settings[{key!r}] say the same thing twice: give one")
         all_of_them[key] = value
     return assignments(all_of_them)
-
-
-#: What goes with two tables, as the library takes it: density, packed, quick, as sampled, as given, settings.
-Told = Tuple[Optional[str], bool, bool, bool, bool, List[str]]
-
-
-def told(
-    settings: Optional[Settings],
-    density: Optional[str],
-    pack: bool,
-    quick: bool,
-    as_sampled: bool,
-    as_given: bool,
-    dispersive: bool,
-    joint_mm: Optional[float],
-    seed: Optional[int],
-    replicates: Optional[int],
-) -> Told:
-    """The arguments that every call with two tables has."""
-    options: Dict[str, Tuple[str, Optional[Setting]]] = {
-        "dispersive": ("base.dispersive", True if dispersive else None),
-        "joint_mm": ("filter.joint_mm", joint_mm),
-        "seed": ("seed", seed),
-        "replicates": ("replicates", replicates),
-    }
-    return density, bool(pack), bool(quick), bool(as_sampled), bool(as_given), changes(settings, options)
