@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What `voidwalk check` says that a scene takes, against what it takes: seconds of one thread.
 
-    scripts/checks/check_times.py --binary target/release/voidwalk [--core 0] [--only NAME ...]
+    scripts/checks/check_times.py --binary target/release/voidwalk [--core 0]
 
 Each scene is checked, packed where its filter is to be packed, and walked, on one thread that is held on one core; what counts is its
 processor time (user and system), as other work may share the machine. Prints a table in Markdown; exit code 1 where a figure is off by
@@ -79,7 +79,6 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--binary", type=pathlib.Path, required=True)
     parser.add_argument("--core", type=int, default=0)
-    parser.add_argument("--only", nargs="*", default=[])
     options = parser.parse_args()
     binary = str(options.binary.resolve())
     off = 0
@@ -99,8 +98,6 @@ def main():
         init = folder / "init.toml"
         subprocess.run([binary, "init", init], check=True, capture_output=True)
         for number, name in enumerate([*SCENES, *FILES]):
-            if options.only and not any(word in name for word in options.only):
-                continue
             scene = folder / f"scene{number}.toml"
             settings = []
             if name in SCENES:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Harms every command of voidwalk that writes a folder, lets it go on, and compares the whole folder with that of unbroken work.
 
-    scripts/checks/supervise.py [--kills 1000] [--seed 1] [--binary target/release/voidwalk] [--commands run pack ...] [--seconds S]
+    scripts/checks/supervise.py [--kills 1000] [--seed 1] [--binary target/release/voidwalk] [--commands run pack ...]
     scripts/checks/supervise.py --kills 10000              # overnight
     scripts/checks/supervise.py --trial 1-run-17           # one trial again, by the name that a find gives it
     scripts/checks/supervise.py --python target/python/bin/python    # also works of the Python package that is installed there
@@ -567,17 +567,16 @@ def main():
     words.add_argument("--python", help="interpreter in which the package is installed: its works too")
     words.add_argument("--kills", type=int, default=1000, help="harms in all")
     words.add_argument("--seed", type=int, default=1)
-    words.add_argument("--seconds", type=float, default=float("inf"), help="end after so long")
     words.add_argument("--commands", nargs="+", choices=list(WORKS), metavar="COMMAND", help="these works alone")
     words.add_argument("--trial", help="SEED-COMMAND-NUMBER: this one alone")
-    words.add_argument("--at", help="where to work [default: in memory]")
     words = words.parse_args()
     if words.trial:
         words.commands = [words.trial.split("-", 1)[1].rsplit("-", 1)[0]]
     words.commands = words.commands or [c for c in WORKS if words.python or c not in PYTHON_WORKS]
     if not words.python and set(words.commands) & set(PYTHON_WORKS):
         sys.exit("say --python INTERPRETER for works of the package")
-    room = words.at or ("/dev/shm" if os.path.isdir("/dev/shm") else None)
+    # In memory, where that can be.
+    room = "/dev/shm" if os.path.isdir("/dev/shm") else None
     trials, works = ({command: 0 for command in words.commands} for _ in range(2))
     begun = time.monotonic()
     with tempfile.TemporaryDirectory(dir=room) as at:
@@ -589,7 +588,7 @@ def main():
                 supervisor.trial(words.commands[0], words.trial, 6)
                 return
             number = 0
-            while sum(trials.values()) < words.kills and time.monotonic() - begun < words.seconds:
+            while sum(trials.values()) < words.kills:
                 # The command that was harmed least, so that each gets its share.
                 command = min(words.commands, key=lambda c: trials[c])
                 left = words.kills - sum(trials.values())

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The first hour of a dam engineer, again: common filters against common bases, each walked, in one table.
 
-    scripts/checks/trial.py --binary target/release/voidwalk [--out target/trial-DATE.md] [--pack] [--small]
+    scripts/checks/trial.py --binary target/release/voidwalk [--pack] [--small]
 
 Writes the sieve sheets, walks every pair with a constriction curve that is guessed from the gradation (`filter.estimate`; with `--pack`
 each filter is packed by `filter.density` instead, which takes minutes to hours), and prints for each: the model's class, the headline of
@@ -84,15 +84,13 @@ def trial(folder, filter_name, base_name, options):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--binary", type=pathlib.Path, required=True)
-    parser.add_argument("--out", type=pathlib.Path, help="also write the table into this file")
-    parser.add_argument("--keep", type=pathlib.Path, help="keep sheets, scenes and runs in this folder, which is to be new")
     parser.add_argument("--pack", action="store_true", help="pack each filter instead of guessing its constrictions")
     parser.add_argument("--small", action="store_true", help="a few pairs on small networks")
     options = parser.parse_args()
     options.binary = options.binary.resolve()
     filters, bases = list(FILTERS), list(BASES)
     pairs = [(filters[f], bases[b]) for f, b in SMALL] if options.small else [(f, b) for f in filters for b in bases]
-    out = [
+    head = [
         f"# Common filters against common bases, {datetime.date.today()}",
         "",
         f"    scripts/checks/trial.py --binary {pathlib.Path('target/release/voidwalk')}{' --pack' * options.pack}{' --small' * options.small}",
@@ -102,24 +100,19 @@ def main():
         "| filter | base | model | base eroded (%) | headline; colour | rules that apply and are not met | s |",
         "|---|---|---|---|---|---|---|",
     ]
-    print("\n".join(out), flush=True)
+    print("\n".join(head), flush=True)
     wrong = []
     with tempfile.TemporaryDirectory() as folder:
-        if options.keep:
-            options.keep.mkdir(parents=True)
-        folder = (options.keep or pathlib.Path(folder)).resolve()
+        folder = pathlib.Path(folder)
         for name, rows in (FILTERS | BASES).items():
             text = "opening_mm,percent_finer\n" + "".join(f"{d},{p}\n" for d, p in rows)
             (folder / f"{slug(name)}.csv").write_text(text)
         for pair in pairs:
             row, problems = trial(folder, *pair, options)
             wrong += problems
-            out.append(f"| {' | '.join(row)} |")
-            print(out[-1], flush=True)
+            print(f"| {' | '.join(row)} |", flush=True)
     ends = ["", *(f"WRONG: {problem}" for problem in wrong)] if wrong else ["", "No page is green where a rule of practice that applies is not met."]
     print("\n".join(ends))
-    if options.out:
-        options.out.write_text("\n".join(out + ends) + "\n")
     sys.exit(1 if wrong else 0)
 
 

@@ -1,14 +1,12 @@
 #!/usr/bin/env python3
 """Prints how long a user waits for `judge` and `boundary` of real pairs, from two sheets to the page, in Markdown.
 
-    scripts/peers/waits.py SOILS.json [--binary target/release/voidwalk] [--before OTHER] [--turns 3] [--pairs 12] [--seed 5] [--first]
-        [--samples 50]
+    scripts/peers/waits.py SOILS.json [--binary target/release/voidwalk] [--before OTHER] [--turns 3] [--pairs 12] [--seed 5] [--samples 50]
 
 The pairs are drawn by the seed from soils of six points and more and six filters; a pair that is
 refused, as its base is coarser than its filter, is left out and counted. Whole processes, wall clock, medians of the turns, in which the
-programs follow one another. VOIDWALK_ISA chooses the instructions. --first lets the timed processes run before all others (`chrt`,
-which asks for the right to), so that other work takes no turns from them, though it shares their caches. `judge` with three filters takes the soil and the
-first three of the six filters. --samples also times `judge --each` of so many samples of one AGS4 file, drawn by a seed of its own (38),
+programs follow one another. VOIDWALK_ISA chooses the instructions. `judge` with three filters takes the soil and the first three of the
+six filters. --samples also times `judge --each` of so many samples of one AGS4 file, drawn by a seed of its own (38),
 against three graded filters.
 """
 
@@ -34,7 +32,6 @@ FILTERS = {
     "2-4 mm gravel": [(2, 0), (4, 100)],
     "4.75-37.5 mm gravel": [(4.75, 0), (37.5, 100)],
 }
-BEFORE_OTHERS = ("chrt", "-f", "5")
 # Percent finer of a graded filter at multiples of its D15, and three such D15 (mm).
 GRADED = [(8, 100), (4, 80), (2, 50), (1, 15), (0.6, 3), (0.4, 0)]
 D15F_MM = {"fine": 0.3, "usual": 0.6, "coarse": 2.0}
@@ -51,10 +48,10 @@ def commands(folder):
     }
 
 
-def timed(binary, words, out, first=()):
+def timed(binary, words, out):
     """Seconds by the clock and of the processors of a whole process; nothing where the pair is refused."""
     began = time.monotonic()
-    done, of_processors = spent([*first, binary, *words, "--quiet", "--out", out], capture_output=True, text=True)
+    done, of_processors = spent([binary, *words, "--quiet", "--out", out], capture_output=True, text=True)
     seconds = time.monotonic() - began
     if done.returncode == 2 and "exchanged" in done.stderr:
         return None
@@ -70,7 +67,7 @@ def drawn(soils, pairs, seed):
     return [(draw.choice(soils), list(FILTERS)[k % len(FILTERS)]) for k in range(pairs)]
 
 
-def measured(pairs, binaries, turns, only=(), first=()):
+def measured(pairs, binaries, turns):
     """By command: soil, filter, and of each program the median seconds by the clock and of the processors."""
     found = {}
     with tempfile.TemporaryDirectory() as work:
@@ -82,12 +79,10 @@ def measured(pairs, binaries, turns, only=(), first=()):
             for k, other in enumerate(list(FILTERS)[:3]):
                 sheet(folder / f"other-{k}.csv", FILTERS[other])
             for command, words in commands(folder).items():
-                if only and command not in only:
-                    continue
                 rows = []
                 for turn in range(turns):
                     out = [folder / f"{command}-{turn}-{at}" for at in range(len(binaries))]
-                    rows.append([timed(binary, words, of, first) for binary, of in zip(binaries, out)])
+                    rows.append([timed(binary, words, of) for binary, of in zip(binaries, out)])
                     for of in out:
                         shutil.rmtree(of, ignore_errors=True)
                     if None in rows[0]:
@@ -99,7 +94,7 @@ def measured(pairs, binaries, turns, only=(), first=()):
     return found
 
 
-def each_of_many(soils, samples, binaries, turns, first):
+def each_of_many(soils, samples, binaries, turns):
     """By program the median seconds of a table of samples against three filters."""
     with tempfile.TemporaryDirectory() as work:
         folder = Path(work)
@@ -113,7 +108,7 @@ def each_of_many(soils, samples, binaries, turns, first):
         for name, d15_mm in D15F_MM.items():
             sheet(folder / f"{name}.csv", [(factor * d15_mm, percent) for factor, percent in sorted(GRADED)])
         words = ["judge", folder / "site.ags", *(folder / f"{name}.csv" for name in D15F_MM), "--each"]
-        took = [[timed(binary, words, folder / f"{turn}-{at}", first)[0] for at, binary in enumerate(binaries)] for turn in range(turns)]
+        took = [[timed(binary, words, folder / f"{turn}-{at}")[0] for at, binary in enumerate(binaries)] for turn in range(turns)]
     return [median(column) for column in zip(*took)]
 
 
@@ -128,17 +123,15 @@ def main():
     parser.add_argument("--turns", type=int, default=3)
     parser.add_argument("--pairs", type=int, default=12)
     parser.add_argument("--seed", type=int, default=5)
-    parser.add_argument("--only", nargs="*", default=[])
-    parser.add_argument("--first", action="store_true")
     parser.add_argument("--samples", type=int, default=0)
     options = parser.parse_args()
     binaries = [binary for binary in (options.before, options.binary) if binary]
-    soils, first = json.loads(options.soils.read_text()), BEFORE_OTHERS if options.first else ()
+    soils = json.loads(options.soils.read_text())
     pairs = drawn(soils, options.pairs, options.seed)
     load = os.getloadavg()[0]
-    found = measured(pairs, binaries, options.turns, options.only, first)
+    found = measured(pairs, binaries, options.turns)
     print(f"Instructions: {os.environ.get('VOIDWALK_ISA', 'the widest of the machine')}; load {load:.1f} before and "
-          f"{os.getloadavg()[0]:.1f} after{', these processes before all others' if options.first else ''}.\n")
+          f"{os.getloadavg()[0]:.1f} after.\n")
     heads = ["before", "now"][-len(binaries):]
     print("| command | pairs | " + " | ".join(f"{head}: median s (least to most)" for head in heads) + " |")
     print("|---|---|" + "---|" * len(heads))
@@ -146,7 +139,7 @@ def main():
         cells = [spread([row[2][at][0] for row in rows]) for at in range(len(binaries))]
         print(f"| {command} | {len(rows)} of {options.pairs} | " + " | ".join(cells) + " |")
     if options.samples:
-        seconds = each_of_many(soils, options.samples, binaries, options.turns, first)
+        seconds = each_of_many(soils, options.samples, binaries, options.turns)
         print(f"| {options.samples} samples, three filters | | " + " | ".join(f"{one:.1f}" for one in seconds) + " |")
     print("\n| soil, filter | " + " | ".join(found) + " |\n|---|" + "---|" * len(found))
     by_pair = {}

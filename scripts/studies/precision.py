@@ -317,10 +317,9 @@ def bias(args, program):
     changes += [("length", f"{n} layers", n, [f"network.nz={n}"], False) for n in LENGTHS if n != args.shape["nz"]]
     changes += [("injection", f"{100 * share:g} % an increment", share, [f"inject_share={share}"], True)
                 for share in INJECTED if abs(share / injected - 1) > 1e-6]
-    wanted = [change for change in changes if change[0] == "reference" or not args.factors or change[0] in args.factors]
-    walked = list(args.pool.map(lambda of: program.replicates([*args.narrow, *of[3]], args.replicates, args.seed), wanted))
+    walked = list(args.pool.map(lambda of: program.replicates([*args.narrow, *of[3]], args.replicates, args.seed), changes))
     rows = []
-    for (factor, level, at, _, paired), found in zip(wanted, walked):
+    for (factor, level, at, _, paired), found in zip(changes, walked):
         is_reference = found is walked[0]
         off = (0.0, None, None) if is_reference else difference(found["values"], walked[0]["values"], paired)
         rows.append({"factor": factor, "level": level, "at": at, "reference": is_reference, "n_base": found["n_base"],
@@ -359,7 +358,6 @@ def arguments():
     parser.add_argument("scene", nargs="*", help="a scene file, of a lattice")
     parser.add_argument("--out", type=Path, default=common.ROOT / "results/precision/whole-runs")
     parser.add_argument("--tiers", nargs="+", choices=TIERS, default=TIERS)
-    parser.add_argument("--factors", nargs="+", help="settings of the tier bias that are walked, as: cap injection [default: all]")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a setting of the scene")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--replicates", type=int, default=32, help="of a line of sampling and of bias")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How void ratio, constriction curve and run time of a packing depend on the settings of its compression.
 
-    python3 scripts/studies/study_packing.py [--set narrow|wide|table2] [--grains 5000] [--seeds 1,2,3] [--work DIR] [--only NAME,...]
+    python3 scripts/studies/study_packing.py [--set narrow|wide|table2] [--grains 5000] [--seeds 1,2,3] [--work DIR]
 
 Every row is the protocol with its default settings, but a tenth of the stiffness (half the time), and except for what it names, for each of the seeds; the table gives the mean over the
 seeds and, after the sign, the standard deviation of one packing. `narrow` is Cu 1.5, dense and loose; `wide` is Cu 3, dense and
@@ -103,15 +103,12 @@ def main():
     parser.add_argument("--set", choices=["narrow", "wide", "table2"], default="narrow")
     parser.add_argument("--grains", type=int, default=5000)
     parser.add_argument("--seeds", default="1,2,3")
-    parser.add_argument("--filters", help="Cu:friction, ... instead of those of the set")
-    parser.add_argument("--only", help="names of rows, separated by commas")
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path(tempfile.gettempdir()) / "study-packing")
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
     kept = options.work / "runs.jsonl"
     known = {json.dumps(entry["settings"], sort_keys=True): entry["result"] for entry in common.lines_of(kept)}
     programs = built()
-    names = options.only.split(",") if options.only else list(VARIANTS)
 
     def result(settings):
         key = json.dumps(settings, sort_keys=True)
@@ -143,13 +140,10 @@ def main():
             row(f"{cu:g}, {friction:g}, {grains} ({paper})",
                 [result({"cu": cu, "friction": friction, "grains": grains, "seed": s}) for s in seeds])
         return
-    filters = FILTERS[options.set]
-    if options.filters:
-        filters = [tuple(map(float, pair.split(":"))) for pair in options.filters.split(",")]
-    for cu, friction in filters:
+    for cu, friction in FILTERS[options.set]:
         print(f"\nCu {cu:g}, friction {friction:g}, {options.grains} grains, seeds {options.seeds}\n")
         header("changed")
-        for name in names:
+        for name in VARIANTS:
             base = {"cu": cu, "friction": friction, "grains": options.grains, **BASE}
             row(name, [result({**base, **VARIANTS[name], "seed": s}) for s in seeds])
 
