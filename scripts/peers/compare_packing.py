@@ -28,7 +28,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 LAMMPS = r"""
 import json, math, sys
 from lammps import lammps
-data, friction, fraction, volume, limit = sys.argv[1], float(sys.argv[2]), float(sys.argv[3]), float(sys.argv[4]), int(sys.argv[5])
+data, friction, fraction, volume = sys.argv[1], float(sys.argv[2]), float(sys.argv[3]), float(sys.argv[4])
 E = 2 * 2.7e9 * 1.3 / 5e4
 step = 0.2 * math.pi * 0.5 * math.sqrt(1 / (2.7e9 / 5e4)) / (0.1631 * 0.3 + 0.8766)
 lmp = lammps(cmdargs=["-screen", "none", "-log", "none"])
@@ -59,7 +59,7 @@ while 1 / (1 + void) < fraction:
 lmp.command("unfix shrink")
 lmp.command("fix hold all press/berendsen iso 1.0 1.0 20.0 modulus 8")
 since, held, settled = steps, 9.0, False
-while steps < limit and not settled:
+while steps < 300_000 and not settled:
     lmp.command("run 500 post no"); steps += 500
     pressure, void = look()
     if abs(pressure - 1) > 0.005 or abs(void - held) > 5e-4:
@@ -104,7 +104,6 @@ def main():
     parser.add_argument("--cases", default="1.5:0.3:9313,1.5:0:9313,3:0.3:22600,3:0:22600", help="Cu:friction:grains, ...")
     parser.add_argument("--threads", default="1,2")
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path(tempfile.gettempdir()) / "compare-packing")
-    parser.add_argument("--limit", type=int, default=300_000, help="most steps of LAMMPS")
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
     environment = options.work / "venv"
@@ -136,7 +135,7 @@ def main():
                        "LD_LIBRARY_PATH": str(environment / "lib")}
             launch = [] if threads == "1" else [str(environment / "bin" / "mpirun"), "-np", threads]
             theirs, cpu, wall = timed(launch + [str(python), str(driver), str(data), friction, str(fraction),
-                                                str(volume), str(options.limit)], env=environ)
+                                                str(volume)], env=environ)
             line = {"program": "LAMMPS", "threads": int(threads), "cu": float(cu), "friction": float(friction),
                     "cpu_s": round(cpu, 1), "wall_s": round(wall, 1), "load": os.getloadavg()[0], **theirs}
             print(json.dumps(line), flush=True)

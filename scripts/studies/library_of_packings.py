@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Packs the filters of the library: 138 shapes of gradation, three densities, and a second seed of some.
 
-    scripts/studies/library_of_packings.py --binary target/release/voidwalk --out FOLDER [--jobs 2] [--shapes N]
+    scripts/studies/library_of_packings.py --binary target/release/voidwalk --out FOLDER [--jobs 2]
 
 Every packing is one line of FOLDER/packings.jsonl. A packing that is there already is not made again, so a run that
 was stopped goes on. `scripts/studies/fit_library.py` makes src/core/data/library.csv of them and measures its error.
@@ -120,12 +120,12 @@ def broad_shapes():
                 break
 
 
-def shapes(count):
+def shapes():
     """The shapes, always the same: (family, points)."""
     draw = random.Random(20261124)
     log_uniform = lambda low, high: math.exp(draw.uniform(math.log(low), math.log(high)))
     k = 0
-    while k < count:
+    while k < DRAWN:
         family = ["power", "kinked", "power", "bell", "kinked", "gap"][k % 6]
         if family == "power":
             n = draw.choice([-0.6, -0.3, 0, 0.3, 0.6, 1, 1.5, 2])
@@ -214,8 +214,6 @@ def main():
     parser = common.parser(__doc__)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--shapes", type=int, default=DRAWN, help="shapes besides the broad ones")
-    parser.add_argument("--from-shape", type=int, default=0, help="leave out the shapes before this one")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     kept = options.out / "packings.jsonl"
@@ -233,12 +231,11 @@ def main():
             common.keep(kept, line)
 
     jobs = []
-    drawn = enumerate(shapes(min(options.shapes, DRAWN)))
-    for k, (family, points) in itertools.chain(drawn, enumerate(broad_shapes(), DRAWN)):
+    for k, (family, points) in enumerate(itertools.chain(shapes(), broad_shapes())):
         for density in FRICTIONS:
             seeds = [1 + k, 1001 + k] if k % 12 == 0 else [1 + k]
             jobs += [(f"{k:03}-{density}-{seed}", family, points, density, seed) for seed in seeds]
-    jobs = [job for job in jobs if job[0] not in there and int(job[0][:3]) >= options.from_shape]
+    jobs = [job for job in jobs if job[0] not in there]
     print(f"{len(there)} packings are there, {len(jobs)} to make")
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as workers:
         for done, _ in enumerate(workers.map(one, jobs), 1):
