@@ -63,10 +63,7 @@ pub fn plain(text: &str) -> String {
 /// Makes a word that can be pasted into a shell (POSIX, fish), with quotes if it needs them.
 pub fn shell_word(word: &str) -> String {
     let needs_none = |c: char| c.is_ascii_alphanumeric() || "/._-+=,:@".contains(c);
-    match !word.is_empty() && word.chars().all(needs_none) {
-        true => word.to_owned(),
-        false => quoted(word),
-    }
+    if !word.is_empty() && word.chars().all(needs_none) { word.to_owned() } else { quoted(word) }
 }
 
 /// Quotes a word so that no shell (POSIX, fish) interprets it.

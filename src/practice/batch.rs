@@ -1,12 +1,17 @@
 //! Many samples of a base against filters: the answer of practice for each pair, one row each, and the
 //! samples that govern.
 
-use super::mistake::Mistake;
-use super::pair::{PairOptions, PairRules};
+use super::pair::{Mistake, PairOptions, PairRules};
 use super::rule_result::credit;
-use crate::design::retention::retaining;
+use crate::applied::d15f_between;
+use crate::design::Specification;
+use crate::design::specification::{NoBand, SizeBand};
+use crate::retention::retaining;
 use crate::rules::{CONSTRICTED_EXIT, DESIGN, NamedCurve, OpenBase, PERMEABILITY, sieved_limit};
-use crate::{AppliedRule, IfDispersive, Note, PracticeClass, RuleNote, RuleQuantity, RuleRole, TestedClass};
+use crate::{
+    AppliedRule, IfDispersive, InputFile, Note, PracticeClass, RuleNote, RuleQuantity, RuleRole, SheetCover,
+    TestedClass,
+};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use voidwalk_sheets::SoilSample;
@@ -15,7 +20,7 @@ use voidwalk_sheets::SoilSample;
 pub const NAMED: usize = 3;
 
 /// What practice says of one sample and one filter. Sizes are in mm.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct BatchRow {
     /// The sample.
@@ -142,30 +147,12 @@ impl BatchRow {
             regraded_at_mm: pair.base.regraded_at_mm,
             d85b_mm: pair.base.d85_mm,
             d15f_mm: pair.filter.d15_mm,
-            limit_mm: None,
-            limit_at_most: false,
-            rule: String::new(),
-            met: None,
-            tests: TestedClass::Unknown,
-            is_beyond_tests: false,
-            drains: None,
-            d15f_min_mm: None,
-            d15f_min_at_most: false,
-            notes: Vec::new(),
-            open_sieves: None,
-            too_coarse_without_percent: None,
-            may_segregate: false,
-            is_drainage_judged: false,
-            joint: None,
-            if_dispersive: None,
-            may_lose_fines: false,
-            breaks_if_dispersive: false,
-            is_refused: false,
+            is_refused: mistake.as_ref().is_some_and(|mistake| mistake.is_refused() && !options.as_given),
+            notes: mistake.map(|mistake| mistake.note).into_iter().collect(),
+            ..Self::default()
         };
-        let is_refused = mistake.as_ref().is_some_and(|mistake| mistake.is_refused() && !options.as_given);
-        let row = Self { notes: mistake.map(|mistake| mistake.note).into_iter().collect(), ..row };
-        if is_refused {
-            return Self { is_refused, ..row };
+        if row.is_refused {
+            return row;
         }
         let (rules, decision) = (&pair.rules, pair.decision());
         let strictest = decision.strictest().map(|(rule, limit)| (rule, limit, rule.limit_at_most));
@@ -196,6 +183,11 @@ impl BatchRow {
             false => drainage.and_then(|rule| rule.met),
         };
         let greatest = drainage.and_then(strictest_by_sieves);
+        let leaves_d15f_open = |rule: &AppliedRule| rule.met.is_none() && d15f_between(&rule.needs).is_some();
+        let joint = |rule: &AppliedRule| JointErosion {
+            percent: rule.value,
+            is_below_source: rule.value.is_none() && rule.needs.is_empty(),
+        };
         Self {
             d15f_mm: judged.filter(|_| met.is_some() || !rules.iter().any(leaves_d15f_open)),
             limit_mm: strictest.map(|(_, limit, _)| limit),
@@ -211,25 +203,13 @@ impl BatchRow {
             too_coarse_without_percent: decision.washout.as_ref().map(|washout| washout.left.percent),
             may_segregate: decision.breaks(RuleRole::Placing),
             is_drainage_judged: drainage.is_some(),
-            joint: joint(rules),
+            joint: decision.applied(CONSTRICTED_EXIT).map(joint),
             if_dispersive: pair.if_dispersive,
             may_lose_fines: decision.breaks(RuleRole::Stability),
             breaks_if_dispersive: met == Some(true) && decision.beyond_dispersive.is_some(),
             ..row
         }
     }
-}
-
-/// True for a rule without a result because D15F lies between two sieves far apart.
-fn leaves_d15f_open(rule: &AppliedRule) -> bool {
-    let is_between = |note: &RuleNote| matches!(note, RuleNote::D15FBetween(..));
-    rule.met.is_none() && rule.needs.iter().any(is_between)
-}
-
-/// Continuing erosion into a joint, if the rule of the joint was applied.
-fn joint(rules: &[AppliedRule]) -> Option<JointErosion> {
-    let rule = rules.iter().find(|rule| rule.id == CONSTRICTED_EXIT && rule.applies)?;
-    Some(JointErosion { percent: rule.value, is_below_source: rule.value.is_none() && rule.needs.is_empty() })
 }
 
 /// Authority of the limit; among rules with equal limits, such as design and Terzaghi for a clean sand, the
@@ -271,4 +251,189 @@ pub fn may_govern<'r>(rows: &'r [BatchRow], filter: &str) -> Vec<&'r BatchRow> {
     let is_open =
         |row: &&BatchRow| row.filter == filter && row.limit_is_open() && !row.is_refused && !is_named(row);
     rows.iter().filter(is_open).collect()
+}
+
+/// A filter of a batch.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+pub struct BatchFilter {
+    /// As it was named, and as the rows name it.
+    pub name: String,
+    /// What its curves are called; several are an envelope.
+    pub curves: Vec<String>,
+    /// D15F (mm), of its coarsest curve; `None` where the table does not reach it.
+    pub d15f_mm: Option<f64>,
+    /// Each curve: rows of (size in mm, percent finer by mass), sizes ascending.
+    pub gradations: Vec<Vec<[f64; 2]>>,
+}
+
+/// Answers of practice for every sample and filter, filter by filter.
+#[derive(Clone, Debug)]
+pub struct BatchTable {
+    /// A row for each filter and sample.
+    pub rows: Vec<BatchRow>,
+    /// Filters of the batch.
+    pub filters: Vec<BatchFilter>,
+    /// Curve of the base as sampled, in rows of (size in mm, percent finer by mass); empty for several
+    /// samples.
+    pub base: Vec<[f64; 2]>,
+    /// Assumptions on the files, a sentence each.
+    pub notes: Vec<String>,
+}
+
+impl BatchTable {
+    /// Table of these samples and of named filters, each with the curves of its envelope.
+    pub fn new(
+        samples: &[SoilSample],
+        filters: Vec<(String, Vec<NamedCurve>)>,
+        notes: Vec<String>,
+        options: PairOptions,
+    ) -> Self {
+        let base = match samples {
+            [sample] => sample.curve.rows(),
+            _ => Vec::new(),
+        };
+        let mut table = Self { rows: Vec::new(), filters: Vec::new(), base, notes };
+        for (name, curves) in filters {
+            let rows = samples.iter().map(|sample| BatchRow::of(sample, (&name, &curves), options));
+            let rows: Vec<BatchRow> = rows.collect();
+            let d15f_mm = rows.iter().find_map(|row| row.d15f_mm);
+            table.rows.extend(rows);
+            let gradations = curves.iter().map(|(_, curve)| curve.rows()).collect();
+            let curves = curves.into_iter().map(|(name, _)| name).collect();
+            table.filters.push(BatchFilter { name, curves, d15f_mm, gradations });
+        }
+        table
+    }
+}
+
+/// The whole of `designs.json`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+pub struct DesignedSamples {
+    /// Version of the program.
+    pub version: String,
+    /// The commit that it was built from; `None` where that is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
+    /// The samples, as they were named.
+    pub samples: String,
+    /// Whether the samples were said to be dispersive.
+    pub dispersive: bool,
+    /// Whether inches stand beside mm on page and terminal.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub inches: bool,
+    /// What the sheet says of itself.
+    #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
+    pub cover: SheetCover,
+    /// Every file that was read.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub inputs: Vec<InputFile>,
+    /// A row for each sample.
+    pub rows: Vec<DesignedSample>,
+    /// What was assumed of the files, a sentence each.
+    pub notes: Vec<String>,
+}
+
+/// How coarse a filter may be for one sample. Sizes are in mm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+pub struct DesignedSample {
+    /// The sample.
+    pub sample: String,
+    /// What names the sample on a command line.
+    pub path: PathBuf,
+    /// Size (mm) and percent finer by mass, as sampled.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gradation: Vec<[f64; 2]>,
+    /// The same after regrading; empty where the rules do not regrade it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub regraded: Vec<[f64; 2]>,
+    /// Group by ASTM D2487; `None` where the sieves do not tell.
+    pub group: Option<String>,
+    /// Category of NRCS, 1 to 4; `None` where the fines are not known closely enough.
+    pub category: Option<u8>,
+    /// Percent finer than 0.075 mm after regrading.
+    pub fines_percent: Option<f64>,
+    /// The size on which the sample was regraded.
+    pub regraded_at_mm: Option<f64>,
+    /// 85 % finer, after regrading.
+    pub d85b_mm: Option<f64>,
+    /// Maximum D15F by which practice retains the sample; `None` where it is not known.
+    pub d15f_max_mm: Option<f64>,
+    /// Whose limit it is.
+    pub rule: String,
+    /// The minimum D15F that drains the sample.
+    pub d15f_min_mm: Option<f64>,
+    /// Whether the true least is not known, and is at most that.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub d15f_min_at_most: bool,
+    /// What practice allows if the sample is dispersive; `None` where somebody has said whether it is, and
+    /// where it has few fines.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub if_dispersive: Option<IfDispersive>,
+    /// D15F of both sides of the band of its specification; `None` without a band.
+    pub band_d15f_mm: Option<[f64; 2]>,
+    /// What a reader must know of the sample itself, as for a filter of its own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<Note>,
+    /// Why the sample has no band of its own, though both limits may be known; `None` where it has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub no_band: Option<NoBand>,
+    /// 1 for the sample that governs, 2 and 3 for those next to it: by `d15f_max_mm`.
+    pub governs: Option<u64>,
+}
+
+impl DesignedSample {
+    /// Answer of practice for a sample.
+    pub fn of(sample: &SoilSample, practice: &Specification) -> Self {
+        let curve = &practice.curves[0];
+        Self {
+            sample: sample.name.clone(),
+            path: sample.path.clone(),
+            gradation: curve.gradation.clone(),
+            regraded: curve.regraded.clone(),
+            group: sample.curve.group(),
+            category: curve.category,
+            fines_percent: curve.fines_percent,
+            regraded_at_mm: curve.regraded_at_mm,
+            d85b_mm: curve.d85_mm,
+            d15f_max_mm: practice.d15f_max_mm,
+            rule: curve.d15f_max_rule.clone(),
+            d15f_min_mm: practice.d15f_min_mm,
+            d15f_min_at_most: practice.d15f_min_at_most,
+            if_dispersive: practice.if_dispersive,
+            band_d15f_mm: practice.band.as_ref().map(SizeBand::d15_mm),
+            notes: practice.notes.iter().map(|row| row.note.clone()).collect(),
+            no_band: practice.no_band.clone(),
+            governs: None,
+        }
+    }
+
+    /// True if practice has a maximum D15F and a band for the sample.
+    pub fn is_settled(&self) -> bool {
+        self.d15f_max_mm.is_some() && self.no_band.is_none()
+    }
+}
+
+impl DesignedSamples {
+    /// Table of these rows, with the samples that govern: the least maximum D15F first, and among equal ones
+    /// the finer base.
+    pub fn new(samples: String, mut rows: Vec<DesignedSample>) -> Self {
+        let mut order: Vec<usize> = (0..rows.len()).filter(|&at| rows[at].d15f_max_mm.is_some()).collect();
+        let key = |row: &DesignedSample| [row.d15f_max_mm, row.d85b_mm].map(|mm| mm.unwrap_or(f64::INFINITY));
+        let less = |a: [f64; 2], b: [f64; 2]| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]));
+        order.sort_by(|&a, &b| less(key(&rows[a]), key(&rows[b])));
+        for (rank, &at) in (1..).zip(order.iter().take(NAMED)) {
+            rows[at].governs = Some(rank);
+        }
+        Self { version: env!("CARGO_PKG_VERSION").into(), samples, rows, ..Self::default() }
+    }
+
+    /// Samples that govern, the strictest first.
+    pub fn governing(&self) -> Vec<&DesignedSample> {
+        let mut rows: Vec<&DesignedSample> = self.rows.iter().filter(|row| row.governs.is_some()).collect();
+        rows.sort_by_key(|row| row.governs);
+        rows
+    }
 }

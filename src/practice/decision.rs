@@ -1,18 +1,13 @@
 //! The decision of filter practice on a pair: made once from its rules, for records, notes and every face.
 
-use std::borrow::Cow;
-
-use super::dispersion::BeyondDispersive;
-use super::listed::listed;
-use super::rule_result::{has_no_margin, met_of, without_margin};
-use super::tested::{is_beyond_tests, is_beyond_unclear, tested};
-use super::washout::{Washout, washout};
-use crate::design::retention::{open_retention, retaining, retention};
+use crate::applied::d15f_between;
+use crate::dispersion::BeyondDispersive;
+use crate::retention::{Washout, open_retention, retaining, retention, washout};
+use crate::rule_result::{has_no_margin, listed, met_of, without_margin};
 use crate::rules::{DESIGN, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
-use crate::{
-    AppliedRule, Headline, IfDispersive, Note, Practice, PracticeClass, RuleNote, RuleQuantity, RuleRole,
-    TestedClass, d15f_between,
-};
+use crate::{AppliedRule, IfDispersive, Note, RuleNote, RuleQuantity, RuleRole};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// All decisions of practice on a pair by its rules.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,15 +78,23 @@ impl Decision {
     /// Decides by the rules of a pair, by the limit of a base that may be dispersive, and by D15F (mm);
     /// `None` where D15F lies in the filter's finest part.
     pub fn new(rules: &[AppliedRule], if_dispersive: Option<IfDispersive>, d15f_mm: Option<f64>) -> Self {
+        let [no_erosion, continuing] = [TESTS_NO_EROSION, TESTS_CONTINUING].map(|id| met_of(rules, id));
+        let is_unclear = |rule: &AppliedRule| rule.notes.contains(&RuleNote::BeyondUnclearBoundary);
         let facts = Self {
             rules: rules.to_vec(),
             // With D15F in a finest tail, the limits are still in mm.
             d15f: d15f_mm.unwrap_or(1.0),
             standing: Standing::NoRules,
             headline: None,
-            tests: tested(rules),
-            is_beyond_tests: is_beyond_tests(rules),
-            is_beyond_unclear: is_beyond_unclear(rules),
+            tests: match (no_erosion, continuing) {
+                (_, Some(false)) => TestedClass::Continuing,
+                (Some(true), _) => TestedClass::None,
+                // At least some erosion: no text that was read gives the boundary of excessive erosion.
+                (Some(false), Some(true)) => TestedClass::Some,
+                _ => TestedClass::Unknown,
+            },
+            is_beyond_tests: no_erosion == Some(false),
+            is_beyond_unclear: rules.iter().any(|rule| rule.id == TESTS_CONTINUING && is_unclear(rule)),
             washout: washout(rules),
             is_strictest_open: open_retention(rules).is_some(),
             if_dispersive,
@@ -237,23 +240,134 @@ fn open_sieves(rules: &[AppliedRule]) -> Option<RuleNote> {
     open.flat_map(|rule| &rule.needs).copied().find(|need| need.sieves_between().is_some())
 }
 
+/// What filter practice says of a pair, for programs.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+pub struct Practice {
+    /// All of it, as the headline has it.
+    pub class: PracticeClass,
+    /// D15F (mm), twice; of one that lies between two sieves that stand far apart their openings. `None`
+    /// where it lies in the filter's finest part.
+    pub d15f_mm: Option<[f64; 2]>,
+    /// The limit of design (mm): the most that D15F may be; `None` where that is not known.
+    pub limit_mm: Option<f64>,
+    /// Whether the true limit is not known, and is at most `limit_mm`.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub limit_at_most: bool,
+    /// Class of such pairs in tests, by the boundaries of Foster and Fell.
+    pub tests: TestedClass,
+    /// D15F (mm) between which tests of bases with such fines began to erode (Fell et al., Table 9.2); `None`
+    /// of a dispersive base, which had other tests, and where fines or D85B are not known.
+    pub range_of_tests_mm: Option<[f64; 2]>,
+}
+
+/// Whether a filter meets the rules checked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+pub enum PracticeClass {
+    /// The limit of design is kept, and the filter holds its own finer part. Whether it drains, and holds a
+    /// base that may be dispersive, is said beside it.
+    #[serde(rename = "meets")]
+    Meets,
+    /// A limit is not kept.
+    #[serde(rename = "does not meet")]
+    DoesNotMeet,
+    /// A limit or a size that is needed is not known, or the filter may lose its finer part.
+    #[serde(rename = "not known")]
+    NotKnown,
+}
+
+/// Declares the headlines, each with its words and its class.
+macro_rules! headlines {
+    ($($(#[$doc:meta])* $name:ident $words:literal $class:ident;)*) => {
+        /// The answer of filter practice, with which every face begins.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+        #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+        pub enum Headline {
+            $($(#[$doc])* #[serde(rename = $words)] $name,)*
+        }
+
+        impl Headline {
+            /// Words of the headline, on every face and in every file.
+            pub fn words(self) -> &'static str {
+                match self {
+                    $(Self::$name => $words,)*
+                }
+            }
+
+            /// Class of the headline: practice met, not met, or not known.
+            pub fn class(self) -> PracticeClass {
+                match self {
+                    $(Self::$name => PracticeClass::$class,)*
+                }
+            }
+        }
+    };
+}
+
+headlines! {
+    /// The limit of design is kept, and no other rule of retention, stability, drainage or placing is broken.
+    Meets "meets the rules checked" Meets;
+    /// The same, unless the base is dispersive, of which nobody has said whether it is.
+    MeetsUnlessDispersive "meets the rules checked unless the base is dispersive" Meets;
+    /// The limit of design is kept; whether the filter drains the base is not known.
+    DrainageNotKnown "meets the limit of retention, drainage not known" Meets;
+    /// The limit of design is kept by a filter that breaks a rule of drainage.
+    MayNotDrain "meets the limit of retention, but may not drain" Meets;
+    /// The limit of design is kept by a filter that breaks a rule of placing.
+    MaySegregate "meets the limit of retention, but may segregate" Meets;
+    /// Beyond the limit of design, within the boundary of no erosion of tests.
+    BeyondDesign "does not meet the limit of design" DoesNotMeet;
+    /// Beyond a limit of retention.
+    DoesNotMeet "does not meet practice" DoesNotMeet;
+    /// Not internally stable, and beyond a limit of retention without its finer part.
+    TooCoarseWithoutFiner
+        "does not meet practice: it may lose its finer part, and is too coarse without it" DoesNotMeet;
+    /// Not internally stable.
+    MayLoseFiner "not known: the filter may lose its finer part" NotKnown;
+    /// A result depends on sizes between two sieves that lie far apart.
+    SievesMissing "not known: sieves are missing" NotKnown;
+    /// A limit that decides is not known.
+    TestMissing "not known: a test is missing" NotKnown;
+}
+
+/// What filter tests showed, by the boundaries of Foster and Fell.
+///
+/// Their boundary of excessive erosion stands in figures whose numbers no text gives, so what lies between
+/// the boundaries of no and of continuing erosion is "some erosion" here, though it may be excessive.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+pub enum TestedClass {
+    /// Within the boundary of no erosion.
+    #[serde(rename = "no erosion")]
+    None,
+    /// Beyond that of no erosion, within that of continuing erosion.
+    #[serde(rename = "some erosion")]
+    Some,
+    /// Beyond that of excessive erosion: never said until its numbers can be read.
+    #[serde(rename = "excessive erosion")]
+    Excessive,
+    /// Beyond the boundary of continuing erosion.
+    #[serde(rename = "continuing erosion")]
+    Continuing,
+    /// A boundary that is needed is not known for these soils.
+    #[default]
+    #[serde(rename = "unknown")]
+    Unknown,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_soils::{filter, soil};
+    use crate::test_soils::{CLAY, SAND, SILTY, TILL, curve, filter, soil};
     use crate::{BatchRow, PairOptions, PairRules};
-
-    /// A fat clay with a D85B of 0.0185 mm, and 37 % fines with a D85B of 1.40 mm.
-    const CLAY: [(f64, f64); 6] =
-        [(0.002, 52.0), (0.005, 66.0), (0.01, 77.0), (0.02, 86.0), (0.04, 93.0), (0.425, 100.0)];
-    const SILTY: [(f64, f64); 6] =
-        [(0.005, 13.0), (0.075, 37.0), (0.25, 60.0), (0.85, 78.0), (2.0, 90.0), (4.75, 100.0)];
+    use voidwalk_sheets::SoilSample;
 
     /// Sherard and Dunnigan allow 0.2 and 1.28 mm, Foster and Fell 0.166 and 0.7 mm.
     #[test]
     fn practice_goes_by_design_where_tests_are_stricter() {
         for (base, d15f, [design, tests]) in [(&CLAY, 0.178, [0.2, 0.166]), (&SILTY, 0.85, [1.28, 0.7])] {
-            let options = PairOptions { dispersive: false, ..PairOptions::default() };
+            let options = PairOptions::default();
             let pair = PairRules::of_envelopes(&soil(base), &filter(d15f), options);
             let (rules, decision) = (&pair.rules, pair.decision());
             assert_eq!((met_of(rules, DESIGN), met_of(rules, TESTS_NO_EROSION)), (Some(true), Some(false)));
@@ -263,15 +377,35 @@ mod tests {
                 let limit = decision.applied(id).and_then(|rule| rule.limit).unwrap();
                 assert!((limit / wanted - 1.0).abs() < 0.01, "{id} {limit}");
             }
-            let sample = voidwalk_sheets::SoilSample {
-                name: "s".into(),
-                path: "s".into(),
-                curve: soil(base).remove(0).1,
-            };
+            let sample = SoilSample { name: "s".into(), path: "s".into(), curve: curve(base) };
             assert_eq!(BatchRow::of(&sample, ("F", &filter(d15f)), options).met, Some(true));
             // Beyond the limit of design, practice is not met.
             let coarse = PairRules::of_envelopes(&soil(base), &filter(2.0 * d15f), options);
             assert_eq!(coarse.practice.unwrap().class, PracticeClass::DoesNotMeet);
+        }
+    }
+
+    /// Excessive erosion damages a dam: unjudged erosion is never reported as less. 7 D85B and 9 D95B of this
+    /// sand are 3.56 and 5.11 mm; with 38 % fines and a D95B of 2.6 mm tests identified no boundary of
+    /// continuing erosion.
+    #[test]
+    fn beyond_no_erosion_worse_erosion_is_never_left_out() {
+        for (base, d15f, class, excluded) in [
+            (&SAND[..], 3.0, TestedClass::None, true),
+            (&SAND, 3.7, TestedClass::Some, false),
+            (&SAND, 5.0, TestedClass::Some, false),
+            (&SAND, 6.0, TestedClass::Continuing, true),
+            (&TILL, 6.5, TestedClass::Unknown, false),
+            (&TILL, 40.0, TestedClass::Continuing, true),
+        ] {
+            let decision = PairRules::of(&curve(base), &filter(d15f)[0].1).decision();
+            assert_eq!(decision.tests, class, "{d15f}");
+            let is_worse_open = match class {
+                TestedClass::Unknown => decision.is_beyond_tests,
+                class => class == TestedClass::Some,
+            };
+            assert_eq!(is_worse_open, !excluded, "{d15f}");
+            assert_eq!(decision.is_beyond_unclear, d15f == 40.0);
         }
     }
 }

@@ -3,11 +3,41 @@
 //! A sieve table does not show dispersion. Tests of dispersive soils had other boundaries, and practice has
 //! other limits for them.
 
-use super::washout::{lost_beyond, washout};
-use crate::design::retention::{open_retention, retention};
+use crate::retention::{lost_beyond, open_retention, retention, washout};
 use crate::rules::{NamedCurve, RuleInputs, apply};
-use crate::{AppliedRule, DispersiveLack, IfDispersive, Note};
+use crate::{AppliedRule, Note};
+use serde::{Deserialize, Serialize};
 use voidwalk_core::gradation::{FEW_FINES, Gradation};
+
+/// What practice allows if a base is dispersive, of which nobody has said whether it is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+pub struct IfDispersive {
+    /// The most that D15F (mm) may be then.
+    pub d15f_max_mm: f64,
+    /// Whether the true limit is not known, and is at most that.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub at_most: bool,
+    /// Why it is not known; `None` where it is.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lacks: Option<DispersiveLack>,
+}
+
+/// Why the limit of a dispersive base is not known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+pub enum DispersiveLack {
+    /// No source that was read gives a limit of design for such fines: at most that of no erosion.
+    #[serde(rename = "limit of design")]
+    LimitOfDesign,
+    /// No source that was read gives any limit for such fines: the most is the limit of bases that are not
+    /// dispersive.
+    #[serde(rename = "any limit")]
+    AnyLimit,
+    /// No sieve tells the base's D85.
+    #[serde(rename = "D85B")]
+    D85B,
+}
 
 impl IfDispersive {
     /// Limit for a pair whose base is taken as dispersive; `None` if it has few fines, or they are not known.
@@ -28,7 +58,7 @@ impl IfDispersive {
     }
 
     /// The strictest among the curves of a base with one filter.
-    pub fn of_bases(bases: &[NamedCurve], filter: &Gradation) -> Option<Self> {
+    pub(crate) fn of_bases(bases: &[NamedCurve], filter: &Gradation) -> Option<Self> {
         let limit = |(_, base): &NamedCurve| {
             Self::of(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(base, filter) })
         };
@@ -94,10 +124,7 @@ pub fn note(if_dispersive: IfDispersive) -> Note {
 mod tests {
     use super::*;
     use crate::PairRules;
-
-    fn soil(points: &[(f64, f64)]) -> Gradation {
-        Gradation::from_lines(points).unwrap()
-    }
+    use crate::test_soils::{curve, filter};
 
     fn with_fines(fines: f64) -> [(f64, f64); 4] {
         [(0.01, 0.0), (0.075, fines), (0.3, 92.0), (0.6, 100.0)]
@@ -105,8 +132,7 @@ mod tests {
 
     /// True if a filter of this D15 breaks the limit of a dispersive base alone, and this limit.
     fn broken(base: &[(f64, f64)], d15f: f64) -> Option<(bool, IfDispersive)> {
-        let filter = soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)]);
-        let pair = PairRules::of(&soil(base), &filter);
+        let pair = PairRules::of(&curve(base), &filter(d15f)[0].1);
         let limit = pair.if_dispersive?;
         Some((limit.broken_by(&pair.rules, Some(d15f)).is_some(), limit))
     }
@@ -155,10 +181,10 @@ mod tests {
     /// lose; then it is beyond 0.500 mm.
     #[test]
     fn what_is_left_of_an_unstable_filter_is_judged_by_the_limit_of_a_dispersive_base_too() {
-        let base = soil(&with_fines(45.0));
+        let base = curve(&with_fines(45.0));
         let of_gap = |scale: f64| {
             let gap = [(0.30, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
-            let filter = soil(&gap.map(|(size, percent)| (scale * size, percent)));
+            let filter = curve(&gap.map(|(size, percent)| (scale * size, percent)));
             let pair = PairRules::of(&base, &filter);
             (pair.if_dispersive.unwrap(), pair.rules, filter.d(15.0))
         };

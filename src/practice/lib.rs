@@ -19,51 +19,32 @@
 //! - [`rules`]: each rule with its limit, the soils that it was made for, and its source.
 //! - [`Decision`]: the decision of practice on a pair; [`PairRules`]: two soils; [`batch`]: many samples.
 //! - [`design`]: the specification of a filter, step by step, with standard products.
-//! - [`washout`]: the remainder of a filter that is not internally stable; [`dispersion`]: dispersive bases.
-//! - [`note`]: notes, as names and numbers; [`quantity`]: the way from a number to text.
+//! - [`retention`]: limits of D15F, also of the remainder of an unstable filter; [`dispersion`].
+//! - [`note`]: notes, as names and numbers; [`quantity`]: the way from a number to text; [`page`]: what every
+//!   page shows of its author and its soils.
 
-mod answer;
 mod applied;
-pub mod base_cautions;
 pub mod batch;
-mod batch_table;
-mod cover;
 pub mod decision;
 pub mod design;
-mod designed_samples;
 pub mod dispersion;
-#[cfg(test)]
-mod fewer_sieves;
-mod input_file;
-mod listed;
-mod mistake;
 pub mod note;
-mod note_order;
+pub mod page;
 mod pair;
 pub mod quantity;
-mod rule_note;
+#[cfg(test)]
+mod random_soils;
+pub mod retention;
 pub mod rule_result;
 pub mod rules;
-pub mod soil_sizes;
-mod specification;
 #[cfg(test)]
 mod test_soils;
-mod tested;
-pub mod washout;
-#[cfg(test)]
-mod worse_soils;
 
-pub use answer::{DispersiveLack, Headline, IfDispersive, Practice, PracticeClass, TestedClass};
-pub use applied::{AppliedRule, RuleQuantity, RuleRole, RuleUnit, ValueBound, WithoutFiner};
-pub use batch::BatchRow;
-pub use batch_table::{BatchFilter, BatchTable};
-pub use cover::{AboutPage, SheetCover};
-pub use decision::Decision;
-pub use designed_samples::{DesignedSample, DesignedSamples};
-pub use input_file::InputFile;
-pub use mistake::{Mistake, MistakeKind};
-pub use note::Note;
-pub use note_order::ordered;
-pub use pair::{BaseSizes, FilterSizes, PairOptions, PairRules};
-pub use rule_note::{RuleNote, d15f_between};
-pub use specification::{SpecificationOptions, least_of_band, no_band_between};
+pub use applied::{AppliedRule, RuleNote, RuleQuantity, RuleRole, RuleUnit, ValueBound, WithoutFiner};
+pub use batch::{BatchFilter, BatchRow, BatchTable, DesignedSample, DesignedSamples};
+pub use decision::{Decision, Headline, Practice, PracticeClass, TestedClass};
+pub use design::{SpecificationOptions, least_of_band, no_band_between};
+pub use dispersion::{DispersiveLack, IfDispersive};
+pub use note::{Note, ordered};
+pub use page::{AboutPage, InputFile, SheetCover};
+pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules};

@@ -24,7 +24,6 @@ macro_rules! notes {
     (@setting) => { "" };
     (@setting $setting:literal) => { $setting };
     ($(
-        $(#[$doc:meta])*
         $name:ident { $($number:ident: $kind:ty),* $(,)? }
             $label:literal $page:literal $sentence:literal $($setting:literal)?;
     )*) => {
@@ -33,7 +32,7 @@ macro_rules! notes {
         #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema), schemars(with = "schema::Note"))]
         #[serde(tag = "id", content = "numbers", rename_all = "snake_case")]
         pub enum Note {
-            $($(#[$doc])* $name {
+            $(#[doc = $sentence] $name {
                 $(#[allow(missing_docs)] $number: $kind),*
             },)*
         }
@@ -103,432 +102,309 @@ macro_rules! notes {
 }
 
 notes! {
-    // What replicates leave open.
-    /// The replicates leave two classes open.
+    // Open questions of replicates.
     ReplicatesLeaveOpen {} "replicates" "uncertainty.md"
         "The replicates do not separate the classes."
         "--decide-percent 99 adds replicates until the class is that certain.";
-    /// A class that needs a second run.
     SecondRunMissing {} "second run" "uncertainty.md"
         "Some and continuing erosion differ by the second run, and only a first was asked for."
         "runs = 2 walks both.";
-    /// A confidence level that was not reached.
     LevelMissed { level_percent: f64, run: u64, distance_pp: f64 } "level" "uncertainty.md"
         "The class is open at the {level_percent} confidence level: the mean of run {run} lies \
          {distance_pp} from 7.5 %.";
 
-    // What practice finds besides retention.
-    /// A filter that is not internally stable.
+    // Results of practice besides retention.
     LosesFines { authorities: Vec<String> } "internal stability" "rules.md"
         "The filter may lose its finer part by {authorities}.";
-    /// A filter too fine to drain.
     TooFineToDrain { least_d15f_mm: f64 } "drainage" "rules.md"
         "The filter may be too fine to drain the base: practice asks for a D15F of at least {least_d15f_mm}.";
-    /// A filter with too many fines to drain.
     FinesOfFilter { most_fines_percent: f64 } "drainage" "rules.md"
         "The filter has fines and may not drain: practice allows at most {most_fines_percent} finer than \
          0.075 mm.";
-    /// A filter that may segregate.
     MaySegregate { quantities: Vec<String> } "segregation" "rules.md"
         "The filter may segregate when it is placed ({quantities}).";
-    /// A base of which nobody has said whether it is dispersive.
     DispersionNotKnown { most_d15f_mm: f64 } "dispersion" "rules.md"
         "Whether the base is dispersive is not stated; if it is, D15F must be at most {most_d15f_mm}."
         "Say so once a test has shown it: --dispersive, or --set base.dispersive=false if it is not.";
-    /// The same where no source gives the limit.
     DispersiveLimitNotKnown { most_d15f_mm: f64 } "dispersion" "rules.md"
         "Whether the base is dispersive is not stated; if it is, D15F must be less than {most_d15f_mm}, and \
          only a test tells how much."
         "Say so once a test has shown it: --dispersive, or --set base.dispersive=false if it is not.";
-    /// A limit of design that is not below the boundary of no erosion of tests.
     LimitWithoutMargin { most_d15f_mm: f64 } "margin" "rules.md"
         "The limit of D15F itself, {most_d15f_mm}, has no margin: it is not below the boundary of no erosion \
          of tests.";
-    /// A base that is not internally stable.
     UnstableBase { index: f64, finer_percent: f64 } "base stability" "rules.md"
         "The base is internally unstable by Kenney and Lau (H/F {index} at {finer_percent} finer): decide \
          whether the filter is to hold its finer part.";
 
     // The search of a boundary.
-    /// One layer of voids thicker than the filter that was asked for.
     LayerThicker { ratio: f64, layer_mm: f64, thickness: String } "thickness" "boundary.md"
         "At D15F/D85B {ratio} one layer of voids is {layer_mm} thick; a filter of {thickness} holds less.";
-    /// A boundary that few particles decide.
     Unsteady { networks_held: u64, networks_eroding: u64 } "scatter" "boundary.md"
         "The boundary is noisy: {networks_held} of the {networks_eroding} eroding networks held at a larger \
-         D15F/D85B \
-         than one that failed.";
-    /// A search in which nothing could be walked.
+         D15F/D85B than one that failed.";
     NothingWalked {} "search" "boundary.md"
         "No D15F/D85B of the search could be walked.";
-    /// Networks that erode at every ratio.
     ErodesEverywhere { networks_eroding: u64, networks: u64 } "search" "boundary.md"
         "{networks_eroding} of {networks:network} erode 7.5 % or more at every ratio of the search.";
-    /// Networks that hold at every ratio.
     HoldsEverywhere { ratio: f64 } "search" "boundary.md"
         "Nearly all networks hold to D15F/D85B {ratio}, where the search ends; the boundary is not known.";
-    /// A median beyond the search.
     MedianBeyond { ratio: f64, networks_eroding: u64, networks: u64 } "search" "boundary.md"
         "{networks_eroding} of {networks:network} erode up to D15F/D85B {ratio}, where the search ends; the \
          median lies beyond it.";
-    /// A search that ends while the base erodes.
     ErodesToEnd { ratio: f64, networks: u64 } "search" "boundary.md"
         "At least 7.5 % of the base erodes down to D15F/D85B {ratio}, where the search ends \
          ({networks:network}).";
-    /// Ratios below which nothing can be walked.
     ErodesTo { ratio: f64, networks: u64, reason: String } "search" "boundary.md"
         "At least 7.5 % of the base erodes down to D15F/D85B {ratio} ({networks:network}); smaller ratios: \
          {reason}.";
-    /// A search that ends while the filter holds.
     HoldsToEnd { run: u64, ratio: f64, networks: u64 } "search" "boundary.md"
         "Less than 7.5 % erodes in run {run} up to D15F/D85B {ratio}, where the search ends \
          ({networks:network}).";
-    /// Ratios beyond which nothing can be walked.
     NotWalked { networks: u64, reason: String } "search" "boundary.md"
         "The search could go no further ({networks:network}): {reason}.";
-    /// An end of the range of a density that was not searched.
     SparedEnd { density: String, ratio: f64 } "search" "boundary.md"
         "The end {density} holds clearly more (D15F/D85B {ratio} on its first network); its boundary was \
          not searched.";
-    /// A finest part of the base that is enough to erode.
     PanErodes { finest_percent: f64 } "below the last sieve" "boundary.md"
         "{finest_percent} of the base is finer than its finest sieve, which is enough to count as erosion."
         "Finer sieves would tell, or base.d0_mm.";
 
-    // What walks find themselves.
-    /// A class decided at a lower level than 95 %.
+    // Results of walks.
     DecidedBelow95 { level_percent: f64 } "level" "uncertainty.md"
         "The class is decided at the {level_percent} confidence level, as asked; at 95 % these replicates \
          leave it open.";
-    /// A filter that was closed before the second run.
     CloggedBefore { replicates: u64, walked: u64, smaller_inject_share: f64 } "clogging" "uncertainty.md"
         "No water flows in the second run in {replicates} of {walked:replicate}: what was on its way counts \
          as retained."
         "Try inject_share = {smaller_inject_share}.";
-    /// A filter that closed during a run.
     Clogged {
         run: u64, replicates: u64, walked: u64, over_on_its_way_percent: f64, smaller_inject_share: f64,
     }
         "clogging" "uncertainty.md"
         "The filter clogged in run {run} in {replicates} of {walked:replicate}; at least \
-         {over_on_its_way_percent} of \
-         the base, on its way then, counts as retained."
+         {over_on_its_way_percent} of the base, on its way then, counts as retained."
         "Try inject_share = {smaller_inject_share}.";
-    /// Trapped particles that could turn the class.
     TrappedCouldTurn { trapped: u64, inserted: u64, mass_percent: f64 } "trapped" "uncertainty.md"
         "{trapped} of {inserted} particles, up to {mass_percent} of the base, are trapped in closed loops \
-         and could \
-         change the class.";
-    /// A second run that erodes though the first does not.
+         and could change the class.";
     SecondRunErodes { eroded_percent: f64 } "second run" "uncertainty.md"
         "The second run erodes {eroded_percent} of its base, though the first erodes less than 7.5 %.";
 
-    /// A second run that may erode though the first does not.
     SecondRunMayErode { most_percent: f64 } "second run" "uncertainty.md"
         "The second run may erode up to {most_percent} of its base, though the first erodes less than 7.5 %.";
 
-    // What goes in.
-    /// A base whose sizes may be micrometres.
+    // Inputs.
     CoarseBase { d85_mm: f64 } "unit" "soils.md"
         "The D85 of the base is {d85_mm}: are its sizes micrometres under a header in mm?";
-    /// Fines that may be cohesive.
     CohesiveFines { fines_percent: f64 } "fines" "soils.md"
         "The base has {fines_percent} fines (finer than 0.075 mm), and the model ignores cohesion.";
-    /// Fines that nobody sieved.
     FinesNotSieved { fines_percent: f64, sieve_mm: f64 } "fines" "soils.md"
         "Up to {fines_percent} of the base, finer than its last sieve ({sieve_mm}), may be fines; the model \
-         ignores \
-         cohesion.";
-    /// A base that practice would regrade.
+         ignores cohesion.";
     NotRegraded { sieve_mm: f64 } "unsafe side" "soils.md"
         "The model errs on the unsafe side: practice regrades this base on {sieve_mm}, and it is walked as \
          sampled."
         "base.regrade = \"practice\" walks the part that practice looks at.";
-    /// A base that is broadly graded.
     BroadlyGraded { cu: f64 } "unsafe side" "soils.md"
         "The model errs on the unsafe side for a broadly graded base (Cu {cu}): a few coarse grains block \
          for the rest.";
-    /// Amounts and thicknesses that were not walked.
     NotStudied {} "not studied" "uncertainty.md"
         "How the class changes with the amount of base and the thickness of the filter was not studied."
         "record.sensitivity and record.thickness study it.";
-    /// A dispersive base.
     DispersiveBase {} "dispersion" "rules.md"
         "The base is dispersive; the model knows its sizes alone.";
-    /// An open joint.
     OpenJoint { width_mm: f64 } "joint" "rules.md"
         "An open joint of {width_mm} was not walked; the rules say how likely erosion continues into it.";
-    /// A thickness that sizes without a unit cannot be compared with.
     ThicknessWithoutUnit { real_mm: f64, unit: String } "thickness" "uncertainty.md"
         "The real filter is {real_mm} thick, and sizes are multiples of {unit}: the two cannot be compared."
         "Give sizes in mm, or leave filter.thickness_mm out.";
-    /// A network from a file, which has no known thickness.
     ThicknessOfFile { real_mm: f64 } "thickness" "uncertainty.md"
         "The thickness of a network from a file is not known; the real filter is {real_mm} thick.";
-    /// A lattice thicker than the filter.
     LayersThicker { layers: u64, modelled_mm: f64, real_mm: f64 } "thickness" "uncertainty.md"
         "The modelled filter ({layers:layer}, {modelled_mm}) is thicker than the real one ({real_mm}) and \
          retains more."
         "network.nz says how many layers.";
-    /// Copies of a packing thicker than the filter.
     CopiesThicker { copies: u64, modelled_mm: f64, real_mm: f64 } "thickness" "uncertainty.md"
         "The modelled filter ({copies:copy|copies} of the packing, {modelled_mm}) is thicker than the real \
-         one \
-         ({real_mm}) and retains more."
+         one ({real_mm}) and retains more."
         "network.copies, or network.thickness_mm, rounded up to whole copies, says how thick it is.";
-    /// A modelled filter thinner than its largest grain.
     ThinnerThanGrain { modelled_mm: f64, grain_mm: f64 } "thickness" "uncertainty.md"
         "The model is {modelled_mm} of the filter, less than its largest grain ({grain_mm}).";
-    /// A cap on the base.
     CappedBase { particles: u64, needed: u64 } "amount of base" "uncertainty.md"
         "The base is capped at {particles} of {needed} particles; offered too few, a filter can seem to hold."
         "base.cap is the cap.";
-    /// Fewer particles than asked for.
     FewParticles { particles: u64, needed: u64 } "amount of base" "uncertainty.md"
         "The base has {particles} of the {needed} particles of Eq. (2); offered too few, a filter can seem \
          to hold.";
-    /// More particles than asked for.
     MoreParticles { particles: u64, needed: u64 } "amount of base" "uncertainty.md"
         "The base has {particles} particles for the {needed} of Eq. (2); with more base a smaller fraction \
-         passes, so \
-         a filter can seem to hold.";
-    /// A small mass of base.
+         passes, so a filter can seem to hold.";
     LowMassRatio { ratio_percent: f64 } "amount of base" "uncertainty.md"
         "The mass of the base is {ratio_percent} of the filter's instead of 5 %; offered too few, a filter \
-         can seem to \
-         hold."
+         can seem to hold."
         "base.mass_ratio says how much.";
-    /// A number of particles that is compared with nothing.
     AmountUnknown { particles: u64 } "amount of base" "uncertainty.md"
         "Whether {particles} base particles are enough is not known: the grains per void of the filter are \
          not given."
         "filter.grains_per_void says how many grains the filter has for each void.";
-    /// A number of particles that does not follow a search.
     AmountHeld { particles: u64 } "amount of base" "boundary.md"
         "At most {particles} base particles are walked at every ratio; where more are needed, filters can \
          seem to hold."
         "base.n_base and base.cap hold it.";
-    /// A network that was given.
     GivenNetwork { voids: u64 } "network" "graph.md"
         "The network was given, with {voids:void}; nothing of it was checked against tests.";
-    /// A network without its filter.
     NoFilter {} "filter" "rules.md"
         "The filter was not given, so no rule of practice was applied.";
-    /// A narrow lattice.
     NarrowLattice { nx: u64, ny: u64 } "network" "uncertainty.md"
         "The lattice is only {nx} x {ny} voids across and can seal by chance; use 10 x 10 or more, better \
          40 x 40.";
-    /// A base that is all inserted before any can be through.
     AllOnItsWay { increments: u64, layers: u64 } "increments" "uncertainty.md"
         "The whole base is inserted in {increments:increment} before any is through {layers:layer}; what is \
-         on its \
-         way when water stops counts as retained."
+         on its way when water stops counts as retained."
         "A smaller inject_share makes more increments.";
-    /// A Cu outside the checked range.
     CuUnchecked { soil: String, cu: f64, low: f64, high: f64 } "uniformity" "soils.md"
         "The Cu of the {soil} is {cu}, and the model was checked for {low} to {high}.";
-    /// A Cu of which only the least is known, outside the checked range.
     CuAtLeast { soil: String, over_cu: f64, d10_mm: f64, low: f64, high: f64 } "uniformity" "soils.md"
-        "The Cu of the {soil} is more than {over_cu} (D10 is finer than {d10_mm}), and the model was \
-         checked for {low} \
-         to {high}.";
-    /// A Cu that is not known.
+        "The Cu of the {soil} is more than {over_cu} (D10 is finer than {d10_mm}), and the model was checked \
+         for {low} to {high}.";
     CuUnknown { soil: String, low: f64, high: f64 } "uniformity" "soils.md"
         "The D10, and so the Cu, of the {soil} is not known; the model was checked for a Cu of {low} to \
          {high}.";
-    /// A filter with a gap.
     GapGraded { within_percent: f64, from_mm: f64 } "gap" "soils.md"
         "The filter is gap-graded: only {within_percent} lies between {from_mm} and four times that; its \
-         finer part, \
-         which it may lose, was walked.";
-    /// The constriction curve of another filter.
+         finer part, which it may lose, was walked.";
     OtherCurve { cu: f64, curve: String, curve_cu: f64 } "constrictions" "uncertainty.md"
         "The filter has a Cu of {cu}, but is walked with the constrictions of one of {curve_cu} ({curve}).";
-    /// Constrictions from the library, at a density that is not known.
     LibraryOfAnyDensity { error_percent: f64, grains_percent: f64 } "density" "uncertainty.md"
         "The density is not given: similar packings, loose to dense, are walked with errors of \
          {error_percent} (constrictions) and {grains_percent} (grains per void)."
         "filter.library says how densely it lies; filter.density packs this very filter.";
-    /// Constrictions from the library.
     LibraryOfDensity { density: String, error_percent: f64, grains_percent: f64 }
         "not packed" "uncertainty.md"
         "Similar packings ({density}) give constrictions within {error_percent}, grains per void within \
          {grains_percent}; both ends are walked, the coarser with fewest grains."
         "filter.density packs this very filter.";
-    /// A gradation outside the library.
     LikeNoneOfTheLibrary {} "constrictions" "uncertainty.md"
         "No packing of the library is like this filter, so its constrictions are guessed."
         "filter.density packs it.";
-    /// A guess of the constrictions.
     GuessedConstrictions {} "constrictions" "uncertainty.md"
         "The constrictions are a guess, 0.65 to 1.9 times the median that was measured on packed filters; \
-         both ends \
-         are walked."
+         both ends are walked."
         "filter.density packs the grains and measures it, of a broad filter on its finer part.";
-    /// A guess of the grains per void.
     GuessedGrains { grains: f64 } "amount of base" "uncertainty.md"
         "The grains per void, {grains}, are a guess (0.43 to 0.69 were measured); the amount of base \
          follows from them."
         "filter.grains_per_void gives it.";
-    /// A finer part that was packed.
     PartPacked { part_percent: f64, largest_mm: f64, finer_percent: f64 } "packed part" "uncertainty.md"
         "Only the finer {part_percent} (up to {largest_mm}) was packed; its constrictions may be \
-         {finer_percent} too fine, \
-         and both ends are walked.";
-    /// A finer part in which the coarse grains float.
+         {finer_percent} too fine, and both ends are walked.";
     FloatingPartPacked { part_percent: f64, largest_mm: f64, finer_percent: f64 } "packed part"
         "uncertainty.md"
         "Only the finer {part_percent} (up to {largest_mm}) was packed, {finer_percent} finer at most; the \
-         coarse \
-         grains are taken to float in it.";
-    /// A finer part between coarse grains that carry each other.
+         coarse grains are taken to float in it.";
     LoosePartPacked { part_percent: f64, largest_mm: f64, finer_percent: f64 } "packed part" "uncertainty.md"
         "Only the finer {part_percent} (up to {largest_mm}) was packed, {finer_percent} finer at most; it \
-         may lie loose, \
-         with wider constrictions open.";
-    /// Nearly all grains loose.
+         may lie loose, with wider constrictions open.";
     Skeleton { loose_percent: f64 } "loose grains" "uncertainty.md"
-        "The coarse grains carry each other, and {loose_percent} of all grains lie loose: water may wash \
-         out the \
-         constrictions that were walked.";
-    /// One replicate.
+        "The coarse grains carry each other, and {loose_percent} of all grains lie loose: water may wash out \
+         the constrictions that were walked.";
     OneReplicate {} "replicates" "uncertainty.md"
         "There is one replicate, so the scatter is unknown."
         "replicates = 10, say.";
-    /// Few replicates.
     FewReplicates { replicates: u64 } "replicates" "uncertainty.md"
         "There are only {replicates:replicate}, whose scatter is hardly known."
         "replicates = 10, say.";
-    /// Few networks of a search.
     FewNetworks { networks: u64 } "networks" "boundary.md"
         "The search has only {networks:network}; a range of 5 to 95 % needs 5 at least, better 20."
         "--set replicates=20.";
 
-    // What was looked at, and what else to know.
-    /// A finest part that blocks nothing.
+    // Further facts.
     PanPassive { finest_percent: f64 } "below the last sieve" "soils.md"
         "{finest_percent} of the base is finer than its last sieve and than every constriction; it counts \
          by mass only.";
-    /// A finest part that may block, and counts as if it did not.
     PanCountsAsPassing { finest_percent: f64, sieve_mm: f64, constriction_mm: f64 }
         "below the last sieve" "soils.md"
         "The finest {finest_percent} of the base lies below its last sieve, {sieve_mm}, and counts as \
-         passing; the \
-         finest constriction is {constriction_mm}.";
-    /// A walk with arches.
+         passing; the finest constriction is {constriction_mm}.";
     Arches { law: String } "arches" "arches.md"
         "Particles jam together in constrictions that each would pass, by a law ({law}) that no filter test \
          has checked.";
-    /// A walk in which blocked constrictions leave openings.
     Openings {} "openings" "arches.md"
         "A blocked constriction stays open beside the particle that blocks it; no filter test has checked \
          how wide.";
-    /// A range of constriction curves, whose class and mass count.
     CurveRange {} "constrictions" "uncertainty.md"
         "Every constriction curve that was walked gives this class; the eroded mass covers all of them."
         "A filter that is packed whole (filter.density) has one measured curve.";
-    /// A range of constriction curves that gives more than one class.
     CurveDecides { of_the_curve: String } "constrictions" "uncertainty.md"
         "The class depends on where the filter lies within the range that was walked: its likeliest \
          constrictions give {of_the_curve}."
         "A filter that is packed whole (filter.density) has one measured curve.";
-    /// A base far coarser than its filter.
     UnitDoubtful { base_d50_mm: f64, filter_d50_mm: f64 } "tables" "soils.md"
         "The base (D50 {base_d50_mm}) is far coarser than the filter (D50 {filter_d50_mm}): are sizes \
-         micrometres, or \
-         the files exchanged?";
-    /// A base coarser than its filter.
+         micrometres, or the files exchanged?";
     FilesExchanged { base_d15_mm: f64, filter_d15_mm: f64 } "tables" "soils.md"
         "The base is coarser than the filter (D15 {base_d15_mm} against {filter_d15_mm}): are the files \
-         exchanged, or \
-         its sizes micrometres?";
-    /// A filter of boulders.
+         exchanged, or its sizes micrometres?";
     FilterOfBoulders { d50_mm: f64 } "tables" "soils.md"
         "The filter's D50 is {d50_mm}: are its sizes micrometres under a header in mm?";
-    /// A side of a specified band that is not internally stable.
     UnstableSide { side: String, authorities: Vec<String> } "stability of the band" "design.md"
         "The {side} side of the band is not internally stable by {authorities}: judge each delivery by its \
-         own \
-         gradation.";
-    /// A broadly graded base.
+         own gradation.";
     BroadBase { cu: f64 } "grading of the base" "design.md"
         "The base is broadly graded (Cu {cu} as sampled): its finer part may move between its coarse grains.";
-    /// The same where only the least of its Cu is known.
     BroadBaseAtLeast { over_cu: f64 } "grading of the base" "design.md"
         "The base is broadly graded (Cu above {over_cu} as sampled): its finer part may move between its \
          coarse grains.";
-    /// A base with a gap.
     GapOfBase { within_percent: f64, from_mm: f64, to_mm: f64 } "gap of the base" "design.md"
         "The base is gap-graded by the program's check: only {within_percent} lies between {from_mm} and \
-         {to_mm}. Look \
-         at the curve.";
-    /// A base whose curve is flat somewhere, though it has no gap.
+         {to_mm}. Look at the curve.";
     FlatBase { from_mm: f64, to_mm: f64, within_percent: f64 } "gap of the base" "design.md"
-        "The curve of the base is flat: {within_percent} lies between {from_mm} and {to_mm}. Whether that \
-         is a gap is \
-         left to judgement.";
-    /// A target error that was not reached.
+        "The curve of the base is flat: {within_percent} lies between {from_mm} and {to_mm}. Whether that is \
+         a gap is left to judgement.";
     TargetMissed { target_pp: f64, half_width_pp: f64, replicates: u64, needed: u64 } "target error"
         "uncertainty.md"
         "After {replicates:replicate} the error is {half_width_pp}, not {target_pp}; about {needed} would \
          do.";
-    /// A base that is walked regraded.
     Regraded { part_percent: f64, sieve_mm: f64 } "grading" "soils.md"
         "The base is walked as practice regrades it: the {part_percent} of it that is finer than {sieve_mm}.";
-    /// A base that was to be regraded.
     RegradingNotNeeded {} "grading" "soils.md"
         "The base was to be regraded, and is walked as sampled: practice does not regrade it, or its sizes \
          do not tell.";
-    /// A reading of a file.
     ReadAs { file: String, reading: String } "file" "soils.md"
         "{file}: {reading}.";
-    /// Files of one soil with several curves.
     Envelope { soil: String, curves: Vec<String> } "envelope" "rules.md"
         "The {soil} is taken as the envelope of its curves ({curves})."
         "FILE#NAME takes one of them.";
-    /// A finest part of the filter that is not counted.
     PanOfFilter { finest_percent: f64 } "finest part" "soils.md"
         "The finest {finest_percent} of the filter is not counted: more base is offered, and a filter can \
          seem to hold."
         "filter.d0_mm says where that part ends.";
-    /// Many loose grains.
     LooseGrains { loose_percent: f64 } "loose grains" "uncertainty.md"
         "{loose_percent} of the filter's grains lie loose between the others; water may move them, and the \
-         model does \
-         not.";
-    /// A tall cell that is narrow.
+         model does not.";
     NarrowCell { grains: u64, aspect: f64, width: f64, usual: f64 } "cell" "uncertainty.md"
         "The packed cell of {grains:grain}, {aspect} times as tall as wide, is {width} times as wide as the \
-         largest grain \
-         ({usual} is usual)."
+         largest grain ({usual} is usual)."
         "packing.grains says how many grains.";
-    /// Replicates on one network.
     OneNetwork {} "network" "graph.md"
         "All replicates walk one network; their spread says nothing of other networks of the filter.";
-    /// Replicates on one packing.
     OnePacking { copies: u64 } "packing" "graph.md"
         "All replicates walk the voids of one packing ({copies:copy|equal copies}); their spread leaves out \
-         that between \
-         packings.";
-    /// Loops whose way out is narrow.
+         that between packings.";
     LongWayOut { moves: f64 } "loops" "graph.md"
         "A particle that nothing stops makes {moves} moves in loops with narrow ways out; the walk may not \
          end."
         "Give those ways out a diameter of 0, so that what circles counts as trapped, or a wider one.";
-    /// Ratios that hold above one that erodes.
     NotMonotone { networks: u64 } "search" "boundary.md"
         "On {networks:network} a larger ratio held than one that eroded; the smallest that eroded counts.";
-    /// Particles that circle.
     Trapped { particles: u64 } "trapped" "uncertainty.md"
         "{particles:particle} trapped in closed loops; they count as retained.";
-    /// The fall of the permeability.
     Permeability { run: u64, left_percent: f64 } "permeability" "graph.md"
         "At the end of run {run} the permeability is {left_percent} of the clean filter's.";
-    /// Voids that hold more than they have room for.
     Overfull { fullest: f64, voids_percent: f64 } "full voids" "graph.md"
         "Up to {voids_percent} of the voids hold more than there is room for (the fullest {fullest} times \
          its volume).";
-    /// Particles in voids without volume.
     NoRoom { voids_percent: f64 } "full voids" "graph.md"
         "Particles rest in up to {voids_percent} of the voids that have no volume between the grains.";
 }
@@ -545,30 +421,57 @@ pub struct Sample {
     pub name: String,
 }
 
-mod samples {
-    use super::Sample;
+impl From<Sample> for f64 {
+    fn from(sample: Sample) -> Self {
+        sample.number
+    }
+}
 
-    impl From<Sample> for f64 {
-        fn from(sample: Sample) -> Self {
-            sample.number
+impl From<Sample> for u64 {
+    fn from(sample: Sample) -> Self {
+        sample.count
+    }
+}
+
+impl From<Sample> for String {
+    fn from(sample: Sample) -> Self {
+        sample.name
+    }
+}
+
+impl From<Sample> for Vec<String> {
+    fn from(sample: Sample) -> Self {
+        vec![sample.name; 2]
+    }
+}
+
+/// The notes of a case, each once, in the order of their table.
+pub fn ordered(notes: impl IntoIterator<Item = Note>) -> Vec<Note> {
+    let mut all: Vec<Note> = Vec::new();
+    for note in notes {
+        if !all.contains(&note) {
+            all.push(note);
         }
     }
+    all.sort_by_key(Note::place);
+    all
+}
 
-    impl From<Sample> for u64 {
-        fn from(sample: Sample) -> Self {
-            sample.count
-        }
-    }
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-    impl From<Sample> for String {
-        fn from(sample: Sample) -> Self {
-            sample.name
-        }
-    }
-
-    impl From<Sample> for Vec<String> {
-        fn from(sample: Sample) -> Self {
-            vec![sample.name; 2]
+    #[test]
+    fn notes_stand_in_the_order_of_the_table_whatever_the_order_in_which_they_came() {
+        let table = [
+            Note::ReplicatesLeaveOpen {},
+            Note::CohesiveFines { fines_percent: 35.0 },
+            Note::PanOfFilter { finest_percent: 2.0 },
+        ];
+        let mut all = vec![table[2].clone(), table[1].clone(), table[0].clone(), table[1].clone()];
+        for _ in 0..all.len() {
+            all.rotate_left(1);
+            assert_eq!(ordered(all.clone()), table);
         }
     }
 }

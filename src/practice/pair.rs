@@ -1,11 +1,9 @@
 //! Two soils judged by filter practice, without a walk.
 
-use serde::Serialize;
-
-use super::decision::Decision;
-use super::mistake::Mistake;
+use crate::quantity::significant;
 use crate::rules::{BaseSoil, NamedCurve, RuleInputs, apply_and_decide, tested_range};
-use crate::{AppliedRule, Headline, IfDispersive, Note, Practice};
+use crate::{AppliedRule, Decision, Headline, IfDispersive, Note, Practice};
+use serde::Serialize;
 use voidwalk_core::gradation::{Gradation, RegradeReason};
 
 /// What is said of two sieve curves by the rules of practice alone.
@@ -153,7 +151,7 @@ impl PairRules {
         let (rules, [filter, base], soil) =
             apply_and_decide(bases, filters, options.dispersive, options.joint_mm);
         let ((curve, filter), (base_curve, base)) = (&filters[filter], &bases[base]);
-        let BaseSoil { gradation, regraded, regraded_at_mm, why, fines_percent, category, .. } = soil.clone();
+        let BaseSoil { gradation, regraded_at_mm, why, fines_percent, category, .. } = soil.clone();
         let names = |curves: &[NamedCurve]| match curves.len() {
             1 => Vec::new(),
             _ => curves.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>(),
@@ -190,7 +188,7 @@ impl PairRules {
                 dispersive: options.dispersive,
                 category,
                 fines_percent,
-                regraded,
+                regraded: regraded_at_mm.is_some(),
                 regraded_at_mm,
                 why,
                 d15_mm: base.d(15.0),
@@ -214,20 +212,161 @@ impl PairRules {
     }
 }
 
+/// Two tables that can hardly be a base and its filter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mistake {
+    /// The error, if the two are refused.
+    pub sentence: String,
+    /// The note, if they are not refused.
+    pub note: Note,
+    /// Kind of mistake.
+    pub kind: MistakeKind,
+}
+
+/// Kind of mistake in two tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MistakeKind {
+    /// Sizes so far apart that a unit must be wrong, or the files are exchanged.
+    Unit,
+    /// The D15 of the base is far above the D15 of the filter.
+    Exchanged,
+    /// The base is the coarser of the two, but not by enough to prove an exchange.
+    Coarser,
+    /// The filter's sizes may be micrometres.
+    Boulders,
+}
+
+/// Bounds of the size that a percentage is finer than: two if it lies in a finest tail.
+struct Bounds {
+    least: f64,
+    most: f64,
+}
+
+impl Bounds {
+    fn of(soil: &Gradation, percent: f64) -> Self {
+        match soil.d(percent) {
+            Some(size) => Self { least: size, most: size },
+            None => Self { least: 0.0, most: soil.smallest_mm() },
+        }
+    }
+
+    fn words(&self) -> String {
+        if self.least > 0.0 { format!("{:.3} mm", self.most) } else { format!("below {:.3} mm", self.most) }
+    }
+}
+
+impl Mistake {
+    /// Looks for exchanged tables, and for micrometres where mm are meant.
+    ///
+    /// The D15 of both are compared as sampled, as for permeability: a broad till has a D50 above many
+    /// filters that hold it, and a D15 far below. The bounds of an open finest tail are compared. Two soils
+    /// that are close are told apart by the D50 of the regraded base, with a warning only. Sizes that are
+    /// multiples of D0F (`scale_free`) have no unit that could be wrong.
+    ///
+    /// ```
+    /// use voidwalk_core::Gradation;
+    /// use voidwalk_practice::Mistake;
+    /// let base = Gradation::from_lines(&[(0.08, 0.0), (0.3, 100.0)])?;
+    /// let filter = Gradation::from_lines(&[(0.5, 0.0), (2.0, 100.0)])?;
+    /// assert_eq!(Mistake::find(&base, &filter, false), None);
+    /// assert!(Mistake::find(&filter, &base, false).unwrap().is_refused());
+    /// # Ok::<(), voidwalk_core::gradation::GradationError>(())
+    /// ```
+    pub fn find(base: &Gradation, filter: &Gradation, scale_free: bool) -> Option<Self> {
+        /// No soil is so much coarser than its filter (D50).
+        const HOPELESS: f64 = 50.0;
+        /// A filter whose D15 is this much finer than its base's drains less than the base does, and practice
+        /// asks for the contrary, four or five times: the other order of such a pair is the right one.
+        const FINER: f64 = 2.0;
+        /// No filter is coarser than this (D50, mm).
+        const BOULDERS_MM: f64 = 300.0;
+        let [d15f, d50f] = [15.0, 50.0].map(|percent| Bounds::of(filter, percent));
+        let [d15b, d50b] = [15.0, 50.0].map(|percent| Bounds::of(base, percent));
+        if d50b.least > HOPELESS * d50f.most && d15b.most > d15f.least && !scale_free {
+            let sentence = format!(
+                "the base (D50 {}) is {:.0} times as coarse as the filter (D50 {}): are its sizes \
+                 micrometres under a header in mm, or are the two files exchanged?",
+                d50b.words(),
+                d50b.least / d50f.most,
+                d50f.words()
+            );
+            let note = Note::UnitDoubtful { base_d50_mm: d50b.least, filter_d50_mm: d50f.most };
+            return Some(Self { sentence, note, kind: MistakeKind::Unit });
+        }
+        let BaseSoil { gradation, regraded_at_mm, .. } = BaseSoil::of(base, scale_free);
+        let regraded = Bounds::of(&gradation, 50.0);
+        // In a base regraded at a gap, the part that practice looks at may be far finer than its D15.
+        let looked_at = Bounds::of(&gradation, 85.0);
+        let is_fine = regraded_at_mm.is_some() && looked_at.most < d15f.least;
+        let is_far = d15b.least > FINER * d15f.most && !is_fine;
+        if is_far || (d15b.least > d15f.most && regraded.least > d50f.most) {
+            let how =
+                regraded_at_mm.map_or(String::new(), |at| format!(" regraded on {} mm", significant(at)));
+            let sentence = format!(
+                "the base is coarser than the filter (D15 {} against {}, D50 {}{how} against {}): are \
+                 the two files exchanged? Or its sizes micrometres under a header in mm?",
+                d15b.words(),
+                d15f.words(),
+                regraded.words(),
+                d50f.words()
+            );
+            let kind = if is_far { MistakeKind::Exchanged } else { MistakeKind::Coarser };
+            let note = Note::FilesExchanged { base_d15_mm: d15b.most, filter_d15_mm: d15f.most };
+            return Some(Self { sentence, note, kind });
+        }
+        (d50f.least > BOULDERS_MM && !scale_free).then(|| Self {
+            sentence: format!(
+                "the filter's D50 is {:.0} mm: are its sizes micrometres under a header in mm?",
+                d50f.least
+            ),
+            note: Note::FilterOfBoulders { d50_mm: d50f.least },
+            kind: MistakeKind::Boulders,
+        })
+    }
+
+    /// Looks for mistakes in two envelopes, by every base and the coarsest filter, so that a single sensible
+    /// pair of curves prevents a refusal.
+    pub fn of_envelopes(bases: &[NamedCurve], filters: &[NamedCurve]) -> Option<Self> {
+        let d15 = |curve: &NamedCurve| curve.1.d(15.0).unwrap_or(0.0);
+        let (_, coarsest) = filters.iter().max_by(|a, b| d15(a).total_cmp(&d15(b)))?;
+        let mut all = Vec::new();
+        for (_, base) in bases {
+            all.push(Self::find(base, coarsest, false)?);
+        }
+        let refused = all.iter().position(|mistake| !mistake.is_refused()).unwrap_or(0);
+        all.into_iter().nth(refused)
+    }
+
+    /// True if the two tables are refused, unless the user says that they are as given.
+    pub fn is_refused(&self) -> bool {
+        matches!(self.kind, MistakeKind::Unit | MistakeKind::Exchanged)
+    }
+
+    /// Text of the refusal on the command line.
+    pub fn refusal(&self) -> String {
+        self.refusal_unless("--as-given")
+    }
+
+    /// Text of the refusal if another setting says that the two are as given.
+    pub fn refusal_unless(&self, as_given: &str) -> String {
+        format!(
+            "{} The base is named first, then the filter: exchange the two, or say that they are as given \
+             ({as_given})",
+            self.sentence
+        )
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::decision::Standing;
     use crate::rules::DESIGN;
-    use crate::{Headline, RuleRole};
+    use crate::test_soils::{TILL, curve};
 
     /// The till with 35 % fines on a gravel with D15 6.3 mm, of the first trial.
     #[test]
     fn a_till_on_a_gravel_is_not_retained() {
-        let till = [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
-        let till = Gradation::from_lines(&till).unwrap();
-        let gravel = Gradation::linear_from_dx(15.0, 6.3, 1.5).unwrap();
-        let pair = PairRules::of(&till, &gravel);
+        let pair = PairRules::of(&curve(&TILL), &Gradation::linear_from_dx(15.0, 6.3, 1.5).unwrap());
         assert_eq!((pair.base.category, pair.base.regraded), (Some(3), true));
         let met = |id: &str| pair.rules.iter().find(|rule| rule.id == id).unwrap().met;
         assert_eq!(met("sherard-dunnigan"), Some(false));
@@ -237,102 +376,10 @@ mod tests {
         assert!(pair.notes.is_empty());
     }
 
-    /// 45 % fines, and nobody has said whether they are dispersive: a filter that meets practice
-    /// unconditionally is reported with the condition, by the rules alone too.
-    #[test]
-    fn a_limit_that_a_dispersive_base_would_have_stands_in_the_line() {
-        let soil = |points: &[(f64, f64)]| vec![("soil".to_owned(), Gradation::from_lines(points).unwrap())];
-        let base = soil(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)]);
-        let judged = |d15f: f64, dispersive| {
-            let filter = soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)]);
-            PairRules::of_envelopes(&base, &filter, PairOptions { dispersive, ..PairOptions::default() })
-        };
-        let pair = judged(0.61, false);
-        assert_eq!(pair.headline, Some(Headline::MeetsUnlessDispersive));
-        assert_eq!(pair.if_dispersive.map(|limit| limit.d15f_max_mm), Some(0.5));
-        assert_eq!(judged(0.45, false).headline, Some(Headline::Meets));
-        let stated = judged(0.61, true);
-        assert!(stated.headline == Some(Headline::DoesNotMeet) && stated.if_dispersive.is_none());
-    }
-
-    /// Bases of every category, with gravel, gaps and tails, and filters from too fine to too coarse.
-    fn curves(draw: &mut impl FnMut() -> f64, middle: [f64; 2], name: &str) -> Vec<NamedCurve> {
-        let count = 1 + (3.0 * draw()) as usize;
-        let curve = |draw: &mut dyn FnMut() -> f64| {
-            let mut size = middle[0] * libm::pow(middle[1] / middle[0], draw());
-            let mut percent = if draw() < 0.4 { 20.0 * draw() } else { 0.0 };
-            let mut points = vec![(size, percent)];
-            while percent < 100.0 {
-                size *= 1.1 + 2.0 * draw() * draw();
-                percent = (percent + 35.0 * draw() * draw()).min(100.0);
-                points.push((size, if points.len() > 11 { 100.0 } else { percent }));
-                percent = points[points.len() - 1].1;
-            }
-            Gradation::from_lines(&points).unwrap()
-        };
-        (0..count).map(|at| (format!("{name}{at}"), curve(draw))).collect()
-    }
-
-    /// The place of a result: broken, not known, met, not made for these soils.
-    fn place(rule: &AppliedRule) -> u8 {
-        match rule.met {
-            Some(false) => 0,
-            None if rule.applies || !rule.needs.is_empty() || rule.role == RuleRole::Continuation => 1,
-            Some(true) => 2,
-            None => 3,
-        }
-    }
-
-    fn worse(standing: &Standing) -> u8 {
-        match standing {
-            Standing::Fails | Standing::WashedOut => 0,
-            Standing::NoMargin => 1,
-            Standing::Unstable | Standing::Unknown(_) | Standing::Open(_) => 2,
-            Standing::Met => 3,
-            Standing::NoRules => 4,
-        }
-    }
-
-    /// An envelope is never better than the worst of its curves alone, and by each rule exactly as bad.
-    #[test]
-    fn an_envelope_is_as_bad_as_the_worst_of_its_curves() {
-        let mut state = 57u64;
-        let mut draw = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1u64 << 53) as f64
-        };
-        let mut apart = 0;
-        for _ in 0..300 {
-            let [bases, filters] = [([0.002, 0.3], "b"), ([0.05, 2.0], "f")]
-                .map(|(middle, name)| curves(&mut draw, middle, name));
-            let dispersive = draw() < 0.3;
-            let options = PairOptions { dispersive, joint_mm: Some(0.5), as_given: true };
-            let all = PairRules::of_envelopes(&bases, &filters, options).rules;
-            let one = std::slice::from_ref;
-            let pairs: Vec<Vec<AppliedRule>> = filters
-                .iter()
-                .flat_map(|filter| {
-                    let pair = |base| PairRules::of_envelopes(one(base), one(filter), options).rules;
-                    bases.iter().map(pair)
-                })
-                .collect();
-            for rule in all.iter().filter(|rule| rule.id != "filter-band") {
-                let alone = pairs.iter().flatten().filter(|other| other.id == rule.id).map(place);
-                assert_eq!(Some(place(rule)), alone.min(), "{} of {bases:?} and {filters:?}", rule.id);
-            }
-            let stands = |rules: &Vec<AppliedRule>| worse(&Decision::new(rules, None, None).standing);
-            let worst = pairs.iter().map(stands).min().unwrap();
-            assert!(stands(&all) <= worst, "{all:?}");
-            apart += usize::from(pairs.iter().any(|rules| stands(rules) != worst));
-        }
-        assert!(apart > 50, "{apart} envelopes have curves of which not all are as bad");
-    }
-
     /// A sand is finer at 85 % than a clay with gravel, and allows a coarser filter.
     #[test]
     fn the_curve_with_the_lower_limit_counts_though_its_d85_is_larger() {
-        let soil =
-            |name: &str, points: &[(f64, f64)]| (name.to_owned(), Gradation::from_lines(points).unwrap());
+        let soil = |name: &str, points: &[(f64, f64)]| (name.to_owned(), curve(points));
         let clay = soil("clay", &[(0.002, 54.0), (0.09, 62.8), (0.71, 72.1), (1.7, 91.0), (6.3, 100.0)]);
         let sand = soil("sand", &[(0.075, 0.0), (0.18, 12.0), (0.355, 54.0), (0.425, 73.9), (0.5, 100.0)]);
         let filter = [soil("filter", &[(0.075, 0.0), (0.85, 0.9), (16.0, 100.0)])];
@@ -342,5 +389,60 @@ mod tests {
             assert_eq!((design.met, design.limit, &*design.base_curve), (Some(false), Some(0.2), "clay"));
             assert_eq!((pair.base.curve.as_str(), pair.base.category), ("clay", Some(2)));
         }
+    }
+
+    #[test]
+    fn exchanged_tables_and_micrometres_are_recognised() {
+        let mistake = |base: f64, filter: f64| {
+            let [base, filter] = [base, filter].map(|d0| Gradation::linear_from_d0(d0, 2.0).unwrap());
+            Mistake::find(&base, &filter, false)
+        };
+        assert_eq!(mistake(0.2, 2.0), None);
+        let exchanged = mistake(2.0, 0.2).unwrap();
+        assert_eq!(exchanged.kind, MistakeKind::Exchanged);
+        assert!(exchanged.refusal().contains("are the two files exchanged?"));
+        assert!(exchanged.refusal().ends_with("(--as-given)"));
+        // 318 um, read as mm.
+        let micrometres = mistake(200.0, 2.0).unwrap();
+        assert!(micrometres.sentence.contains("micrometres under a header in mm"));
+        assert_eq!(micrometres.kind, MistakeKind::Unit);
+        let boulders = mistake(0.2, 400.0).unwrap();
+        assert!(boulders.sentence.contains("the filter's D50 is 800 mm") && !boulders.is_refused());
+    }
+
+    /// A natural sand a little coarser than its filter sand gets a warning and is not refused.
+    #[test]
+    fn two_soils_that_are_close_are_no_exchange() {
+        let sand = |d15: f64| Gradation::linear_from_dx(15.0, d15, 2.0).unwrap();
+        let close = Mistake::find(&sand(0.3), &sand(0.18), false).unwrap();
+        assert!(close.kind == MistakeKind::Coarser && !close.is_refused());
+        assert!(Mistake::find(&sand(0.37), &sand(0.18), false).unwrap().is_refused());
+    }
+
+    /// A gravel with a gap, regraded on it: practice looks at the silt, which no filter can be exchanged
+    /// with.
+    #[test]
+    fn a_base_that_is_regraded_at_a_gap_is_no_exchange() {
+        let gravel =
+            curve(&[(0.01, 0.0), (0.05, 9.0), (0.06, 12.0), (2.0, 12.0), (8.0, 60.0), (20.0, 100.0)]);
+        let filter = curve(&[(0.15, 0.0), (0.2, 15.0), (0.6, 60.0), (2.0, 100.0)]);
+        let BaseSoil { regraded_at_mm, gradation, .. } = BaseSoil::of(&gravel, false);
+        assert!(
+            regraded_at_mm.is_some() && gradation.d(85.0).unwrap() < 0.2 && gravel.d(15.0).unwrap() > 0.4
+        );
+        assert_eq!(Mistake::find(&gravel, &filter, false), None);
+    }
+
+    /// A till whose D50 is above the D50 of its filter sand.
+    #[test]
+    fn a_broad_till_is_no_exchange() {
+        let till = [(0.002, 2.0), (0.02, 15.0), (0.075, 22.0), (0.425, 34.0), (5.0, 50.0), (75.0, 100.0)];
+        let till = curve(&till);
+        let c33 =
+            [(0.075, 1.5), (0.15, 5.0), (0.3, 17.5), (0.6, 42.5), (1.18, 67.5), (2.36, 90.0), (9.5, 100.0)];
+        let c33 = curve(&c33);
+        assert!(till.d(50.0) > c33.d(50.0) && till.d(15.0).unwrap() < 0.021);
+        assert_eq!(Mistake::find(&till, &c33, false), None);
+        assert_eq!(Mistake::find(&c33, &till, false).unwrap().kind, MistakeKind::Exchanged);
     }
 }

@@ -138,6 +138,16 @@ pub fn length(value: f64, unit: SizeUnit) -> Quantity {
     Quantity { unit: Unit::Size(unit), ..significant(value) }
 }
 
+/// A size that is the least allowed.
+pub fn least_length(value: f64, unit: SizeUnit) -> Quantity {
+    length(value, unit).role(NumberRole::Least)
+}
+
+/// A size that is the greatest allowed.
+pub fn greatest_length(value: f64, unit: SizeUnit) -> Quantity {
+    length(value, unit).role(NumberRole::Greatest)
+}
+
 impl Quantity {
     /// Sets the role.
     pub fn role(self, role: NumberRole) -> Self {
@@ -185,7 +195,7 @@ impl Quantity {
     /// Digits, with inches if the unit shows them, but without the name of the unit: for the cell of a table
     /// whose head names the unit.
     pub fn in_cell(self) -> String {
-        self.number() + &self.inches().map_or_else(String::new, |inches| bracket(&inches))
+        self.number() + &self.inches_text()
     }
 
     /// A size for the cell of a table whose head names both units, with at most three digits.
@@ -212,6 +222,11 @@ impl Quantity {
         })
     }
 
+    /// Inches in brackets, if the unit shows them.
+    fn inches_text(self) -> String {
+        self.inches().map_or_else(String::new, |inches| bracket(&inches))
+    }
+
     /// Text behind the digits.
     fn unit_text(self) -> String {
         match self.unit {
@@ -225,8 +240,7 @@ impl Quantity {
 
 impl fmt::Display for Quantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let inches = self.inches().map_or_else(String::new, |inches| bracket(&inches));
-        f.pad(&format!("{}{}{inches}", self.number(), self.unit_text()))
+        f.pad(&format!("{}{}{}", self.number(), self.unit_text(), self.inches_text()))
     }
 }
 
@@ -269,12 +283,12 @@ fn bracket(inches: &str) -> String {
 
 /// A least and a greatest size in mm, each rounded to its safe side.
 pub fn limits(least: f64, greatest: f64, unit: SizeUnit) -> Span {
-    length(least, unit).role(NumberRole::Least).to(length(greatest, unit).role(NumberRole::Greatest))
+    least_length(least, unit).to(greatest_length(greatest, unit))
 }
 
 /// The range of sizes in mm in which tests located a boundary, with ends rounded outward.
 pub fn range_of_tests(low: f64, high: f64, unit: SizeUnit) -> Span {
-    length(low, unit).role(NumberRole::Greatest).to(length(high, unit).role(NumberRole::Least))
+    greatest_length(low, unit).to(least_length(high, unit))
 }
 
 /// A value and its limit, as far as they are known, with as many digits as tell the two apart: a value beyond
@@ -303,17 +317,16 @@ fn both_beside(
                 NumberRole::Value => digits_of(number.value, DIGITS),
                 NumberRole::Least | NumberRole::Greatest => digits_within(number.value, DIGITS, at_least),
             };
-            let inches = number.inches().map_or_else(String::new, |inches| bracket(&inches));
-            without_zeros(&digits, unit).to_owned() + &named(number) + &inches
+            without_zeros(&digits, unit).to_owned() + &named(number) + &number.inches_text()
         };
         return [value.map(alone), limit.map(alone)];
     };
-    let texts = apart(value.value, limit.value, at_least, DIGITS);
+    let texts = apart(value.value, limit.value, at_least);
     let both = [(&texts[0], value), (&texts[1], limit)];
     let [of_value, of_limit] = both.map(|(text, number)| text.parse().unwrap_or(number.value) / INCH_MM);
     let inches = match unit {
         Unit::Size(SizeUnit::MmAndInches) => {
-            apart(of_value, of_limit, at_least, DIGITS).map(|inches| bracket(&inches))
+            apart(of_value, of_limit, at_least).map(|inches| bracket(&inches))
         }
         _ => Default::default(),
     };
@@ -340,14 +353,14 @@ fn without_zeros(number: &str, unit: Unit) -> &str {
 
 /// Rounds a limit to a whole number: a least upwards, a greatest downwards. A limit that is whole except for
 /// a rounding error of arithmetic keeps its value.
-pub fn whole_within(limit: f64, at_least: bool) -> f64 {
+fn whole_within(limit: f64, at_least: bool) -> f64 {
     const HAIR: f64 = 1e-9;
     if at_least { (limit * (1.0 - HAIR)).ceil() } else { (limit * (1.0 + HAIR)).floor() }
 }
 
-/// A value and its limit with as many digits as tell them apart, but at least this many; two equal numbers
-/// get as many digits as give both one text.
-fn apart(value: f64, limit: f64, at_least: bool, digits: i32) -> [String; 2] {
+/// A value and its limit with as many digits as tell them apart; two equal numbers get as many digits as give
+/// both one text.
+fn apart(value: f64, limit: f64, at_least: bool) -> [String; 2] {
     let pair = |digits| [digits_of(value, digits), digits_within(limit, digits, at_least)];
     let is_order =
         |[shown, limit_shown]: &[String; 2]| match (shown.parse::<f64>(), limit_shown.parse::<f64>()) {
@@ -355,9 +368,9 @@ fn apart(value: f64, limit: f64, at_least: bool, digits: i32) -> [String; 2] {
             _ => shown != limit_shown,
         };
     // A limit that is just reached is kept, and the value reads as elsewhere.
-    let alike = || (digits..MOST_DIGITS).map(pair).find(|[shown, limit_shown]| shown == limit_shown);
-    let cut = || [value, limit].map(|number| digits_within(number, digits, at_least));
-    let apart = (digits..MOST_DIGITS).filter(|_| value != limit).map(pair).find(is_order);
+    let alike = || (DIGITS..MOST_DIGITS).map(pair).find(|[shown, limit_shown]| shown == limit_shown);
+    let cut = || [value, limit].map(|number| digits_within(number, DIGITS, at_least));
+    let apart = (DIGITS..MOST_DIGITS).filter(|_| value != limit).map(pair).find(is_order);
     apart.or_else(alike).unwrap_or_else(cut)
 }
 
@@ -481,8 +494,8 @@ fn seconds(seconds: f64) -> (String, &'static str) {
 mod tests {
     use super::*;
 
-    fn texts<const N: usize>(of: [Quantity; N]) -> [String; N] {
-        of.map(|quantity| quantity.to_string().replace(THIN, " "))
+    fn texts<const N: usize>(quantities: [Quantity; N]) -> [String; N] {
+        quantities.map(|quantity| quantity.to_string().replace(THIN, " "))
     }
 
     #[test]
@@ -546,7 +559,7 @@ mod tests {
 
     #[test]
     fn a_value_beyond_its_limit_reads_as_beyond_it_and_one_within_as_within() {
-        let pair = |value, limit| apart(value, limit, false, 3);
+        let pair = |value, limit| apart(value, limit, false);
         assert_eq!(pair(4.0004, 4.0), ["4.0004", "4.0000"]);
         assert_eq!(pair(3.9996, 4.0), ["3.9996", "4.0000"]);
         assert_eq!(pair(3.52, 4.0), ["3.52", "4.00"]);
@@ -557,21 +570,21 @@ mod tests {
         assert_eq!(pair(2.8579, 2.8579), ["2.8579", "2.8579"]);
         assert_eq!(pair(20.0 / 7.0 - 1e-9, 20.0 / 7.0 - 1e-9), ["2.857", "2.857"]);
         assert_eq!(pair(2.0 / 3.0, 2.0 / 3.0), ["0.666", "0.666"]);
-        assert_eq!(apart(0.1399, 0.14, true, 3), ["0.1399", "0.1400"]);
+        assert_eq!(apart(0.1399, 0.14, true), ["0.1399", "0.1400"]);
         for step in 0..2000 {
             let limit = 0.05 * libm::pow(1.005, f64::from(step % 700));
             for at_least in [false, true] {
                 for part in [1e-2, 1e-3, 1e-4, 1e-6] {
                     let values = [limit * (1.0 - part), limit * (1.0 + part)];
                     for value in values {
-                        let shown = apart(value, limit, at_least, 3);
-                        let [shown, of] = shown.map(|text| text.parse::<f64>().unwrap());
+                        let shown = apart(value, limit, at_least);
+                        let [shown, most] = shown.map(|text| text.parse::<f64>().unwrap());
                         assert!(
-                            shown != of && (shown < of) == (value < limit),
-                            "{value} {limit}: {shown} {of}"
+                            shown != most && (shown < most) == (value < limit),
+                            "{value} {limit}: {shown} {most}"
                         );
                         let hair = limit * 1e-8;
-                        assert!(if at_least { of >= limit - hair } else { of <= limit + hair });
+                        assert!(if at_least { most >= limit - hair } else { most <= limit + hair });
                     }
                 }
             }

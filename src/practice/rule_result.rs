@@ -1,9 +1,12 @@
 //! Results of single rules of practice, and their authors.
 
-use crate::rules::{DESIGN, DESIGN_FLOOR_MM, TESTS_CONTINUING, TESTS_NO_EROSION, authority};
+use crate::rules::{
+    DESIGN, DESIGN_FLOOR_MM, PERMEABILITY, PERMEABILITY_LEAST, TESTS_CONTINUING, TESTS_NO_EROSION, authority,
+};
 use crate::{AppliedRule, RuleNote, RuleRole};
+use std::borrow::Cow;
 
-/// Result of a rule of practice, worked out by `verdict` alone and shown by faces.
+/// Result of a rule of practice: worked out here alone, and shown by faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RuleResult {
     /// The limit is kept.
@@ -81,22 +84,17 @@ pub fn credit(rule: &AppliedRule) -> &str {
 }
 
 /// Citation of a rule of retention: its author, and the rule among the author's.
-pub fn cited(id: &str, authority: &str) -> String {
-    let kind = match id {
+pub(super) fn cited_rule(rule: &AppliedRule) -> String {
+    let kind = match rule.id.as_str() {
         DESIGN => "limit of design",
         TESTS_NO_EROSION => "boundary of no erosion",
         TESTS_CONTINUING => "boundary of continuing erosion",
         _ => "rule",
     };
-    format!("{authority}'s {kind}")
-}
-
-/// Citation of a rule that was applied.
-pub fn cited_rule(rule: &AppliedRule) -> String {
     match authority(rule) {
         name if *name == rule.name => name.into(),
         _ if is_of_dispersive(rule) => "the limit of Fell et al. for dispersive bases".into(),
-        authority => cited(&rule.id, authority),
+        authority => format!("{authority}'s {kind}"),
     }
 }
 
@@ -105,16 +103,50 @@ pub(super) fn met_of(rules: &[AppliedRule], id: &str) -> Option<bool> {
     rules.iter().find(|rule| rule.id == id && rule.applies)?.met
 }
 
+/// Rules in the form of a sheet's list. Of two rules of drainage with one limit, their floor, the list has
+/// the first. The limit of a dispersive base, one number for design and for no erosion, appears once and
+/// under its own name.
+pub(super) fn listed(rules: &[AppliedRule]) -> Vec<Cow<'_, AppliedRule>> {
+    let repeats = |rule: &&AppliedRule| {
+        let is_listed = |other: &AppliedRule| {
+            other.id == PERMEABILITY && other.limit.is_some() && other.limit == rule.limit
+        };
+        rule.id == PERMEABILITY_LEAST && !rule.limit_at_most && rules.iter().any(is_listed)
+    };
+    let is_one = without_margin(rules).is_some();
+    let once = rules.iter().filter(|rule| !(repeats(rule) || is_one && rule.id == TESTS_NO_EROSION));
+    once.map(|rule| match is_one && rule.id == DESIGN {
+        true => Cow::Owned(of_dispersive(rule)),
+        false => Cow::Borrowed(rule),
+    })
+    .collect()
+}
+
+/// The limit of design of a dispersive base, under the name of its authors.
+fn of_dispersive(design: &AppliedRule) -> AppliedRule {
+    AppliedRule {
+        name: "Fell et al.: no erosion of a highly dispersive base (taken for design, too, without a margin)"
+            .into(),
+        authority: "Fell et al.".into(),
+        source: "Fell, MacGregor, Stapledon & Bell, Geotechnical Engineering of Dams, Table 9.2, note (b)"
+            .into(),
+        applies_to: "highly dispersive bases: the lower boundary of no erosion, without a margin of safety; \
+                     this program takes it for design, too"
+            .into(),
+        ..design.clone()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::PairRules;
-    use crate::rules::{PERMEABILITY, range_of_tests};
-    use voidwalk_core::gradation::Gradation;
+    use crate::rules::range_of_tests;
+    use crate::test_soils::{SAND, TILL, curve, soil};
+    use crate::{PairOptions, PairRules};
+    use voidwalk_core::Gradation;
 
     fn rules(base: &[(f64, f64)], d15f: f64) -> Vec<AppliedRule> {
-        let base = Gradation::from_lines(base).unwrap();
-        PairRules::of(&base, &Gradation::linear_from_dx(15.0, d15f, 1.5).unwrap()).rules
+        PairRules::of(&curve(base), &Gradation::linear_from_dx(15.0, d15f, 1.5).unwrap()).rules
     }
 
     /// By Fell et al., Table 9.2: below 15 % fines tests begin at 6.8 D85B and design ends at 4; from 40 to
@@ -128,10 +160,9 @@ mod tests {
         }
         // Agrees with the range of tests, in which the limit of design is at or above the lower end.
         for percent in [5.0, 25.0, 34.0, 34.9, 36.0, 38.0, 60.0, 90.0] {
-            let base = Gradation::from_lines(&fines(percent)).unwrap();
             let all = rules(&fines(percent), 0.3);
             let design = all.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.limit).unwrap();
-            let [low, _] = range_of_tests(percent, base.d(85.0).unwrap());
+            let [low, _] = range_of_tests(percent, curve(&fines(percent)).d(85.0).unwrap());
             assert_eq!(has_no_margin(&all), design >= low * (1.0 - 1e-9), "{percent} % fines");
         }
         // Without known fines, only the greatest possible limits are known.
@@ -141,19 +172,45 @@ mod tests {
     /// A folder of a run that is read back has the same results.
     #[test]
     fn a_boundary_that_is_not_reached_is_never_met() {
-        let sand = [(0.2, 0.0), (0.6, 100.0)];
-        let till = [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
         for (base, d15f, result) in [
-            (&sand[..], 3.0, RuleResult::NotReached),
-            (&sand, 4.0, RuleResult::ExcessiveNotJudged),
-            (&sand, 6.0, RuleResult::NotMet),
-            (&till, 6.5, RuleResult::NotALimit),
+            (&SAND[..], 3.0, RuleResult::NotReached),
+            (&SAND, 4.0, RuleResult::ExcessiveNotJudged),
+            (&SAND, 6.0, RuleResult::NotMet),
+            (&TILL, 6.5, RuleResult::NotALimit),
         ] {
             let rule = rules(base, d15f).into_iter().find(|rule| rule.id == TESTS_CONTINUING).unwrap();
             let read: AppliedRule = serde_json::from_str(&serde_json::to_string(&rule).unwrap()).unwrap();
             assert_eq!([result_of(&rule), result_of(&read)], [result; 2], "{rule:?}");
         }
-        let drains = rules(&sand, 3.0).into_iter().find(|rule| rule.id == PERMEABILITY).unwrap();
+        let drains = rules(&SAND, 3.0).into_iter().find(|rule| rule.id == PERMEABILITY).unwrap();
         assert_eq!(result_of(&drains), RuleResult::Met);
+    }
+
+    /// A clay has the floor of both rules of drainage; of a sand they ask for 5 and 3 times D15B.
+    #[test]
+    fn a_limit_of_drainage_is_listed_once() {
+        let filter = curve(&[(0.5, 0.0), (2.0, 100.0)]);
+        let clay = [(0.002, 51.0), (0.02, 87.0), (0.63, 100.0)];
+        for (base, count) in [(&clay[..], 1), (&[(0.1, 0.0), (0.4, 100.0)], 2)] {
+            let pair = PairRules::of(&curve(base), &filter);
+            let drains = |rule: &AppliedRule| rule.id.starts_with(PERMEABILITY);
+            assert_eq!(listed(&pair.rules).iter().filter(|rule| drains(rule)).count(), count);
+            assert_eq!(pair.rules.iter().filter(|rule| drains(rule)).count(), 2);
+        }
+    }
+
+    #[test]
+    fn the_limit_of_a_dispersive_base_has_its_own_authors() {
+        let base = soil(&[(0.01, 0.0), (0.075, 60.0), (0.3, 92.0), (0.6, 100.0)]);
+        let filter = soil(&[(0.3, 0.0), (2.0, 100.0)]);
+        let authors = |dispersive| {
+            let options = PairOptions { dispersive, ..PairOptions::default() };
+            let rules = PairRules::of_envelopes(&base, &filter, options).rules;
+            let rows = listed(&rules);
+            let design = rows.iter().find(|rule| rule.id == DESIGN).unwrap();
+            design.authorities().join(", ")
+        };
+        assert_eq!(authors(false), "Sherard and Dunnigan, NRCS, USBR, USACE");
+        assert_eq!(authors(true), "Fell et al., NRCS, USBR, USACE");
     }
 }

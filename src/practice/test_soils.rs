@@ -2,15 +2,33 @@
 
 use voidwalk_core::Gradation;
 
+/// A curve of these points: size (mm) and percent finer.
+pub fn curve(points: &[(f64, f64)]) -> Gradation {
+    Gradation::from_lines(points).unwrap()
+}
+
 /// A soil of these points, as one curve.
 pub fn soil(points: &[(f64, f64)]) -> Vec<(String, Gradation)> {
-    vec![("soil".to_owned(), Gradation::from_lines(points).unwrap())]
+    vec![("soil".to_owned(), curve(points))]
 }
 
 /// A uniform filter with this D15F (mm).
 pub fn filter(d15f: f64) -> Vec<(String, Gradation)> {
     soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)])
 }
+
+pub const SAND: [(f64, f64); 2] = [(0.2, 0.0), (0.6, 100.0)];
+
+/// The till of the first trial: 35 % finer than 0.075 mm, 92 % finer than 4.75 mm.
+pub const TILL: [(f64, f64); 5] = [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
+
+/// A fat clay with a D85B of 0.0185 mm.
+pub const CLAY: [(f64, f64); 6] =
+    [(0.002, 52.0), (0.005, 66.0), (0.01, 77.0), (0.02, 86.0), (0.04, 93.0), (0.425, 100.0)];
+
+/// A soil with 37 % fines and a D85B of 1.40 mm.
+pub const SILTY: [(f64, f64); 6] =
+    [(0.005, 13.0), (0.075, 37.0), (0.25, 60.0), (0.85, 78.0), (2.0, 90.0), (4.75, 100.0)];
 
 /// A till with 28 % fines (37.8 % regraded on No. 4): limits 1.26 mm (design) and 0.700 mm (no erosion).
 pub const REGRADED_TILL: [(f64, f64); 9] = [

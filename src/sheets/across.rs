@@ -1,20 +1,21 @@
-//! Tables on their side: the openings in a row, and below it a row for each soil.
+//! Tables on their side: the openings in a row, also within the headings of percents (`P#200`, `Passing
+//! 19 mm`), and below it a row for each soil, with its names to the left.
 
-use super::content::{begins_with_words, is_blank, is_data, is_text, is_value, is_words, percentage};
+use super::content::{
+    begins_with_words, holds_several, is_blank, is_data, is_text, is_value, is_words, percentage,
+    refuse_short, refused_row, row_below,
+};
 use super::grid::{Grid, GridRow};
-use super::heading::{Role, role, unit};
-use super::heads::{Head, head, is_broken, is_misspelt, is_of_names};
-use super::labels::Labels;
+use super::heading::{Retained, Role, role, says_finer, says_sample, unit, words};
+use super::languages::list;
 use super::layout::{Layout, ROWS_OF_TITLES, SoilColumn, is_heading, says_soil};
-use super::size::{Opening, Unit, opening};
-use super::torn;
-use voidwalk_core::gradation::percent_is_allowed;
-use voidwalk_core::gradation::{TableError, shortened};
+use super::size::{Opening, Unit, goes_one_way, opening};
+use std::collections::HashMap;
+use voidwalk_core::gradation::{TableError, percent_is_allowed, shortened};
 
 /// Fewest openings of a row: fewer bare numbers may be anything, and fewer named openings make no curve.
 const LEAST_OPENINGS: usize = 3;
 const LEAST_NAMED: usize = 2;
-/// Most columns that a note names.
 const MOST_NAMED: usize = 6;
 
 /// The openings of a table that lies on its side.
@@ -61,7 +62,6 @@ fn openings(row: &GridRow) -> Option<Openings> {
     starts.find_map(|start| openings_from(row, start).filter(|openings| start == first || !openings.bare))
 }
 
-/// Openings of a row that begin in this column.
 fn openings_from(row: &GridRow, first: usize) -> Option<Openings> {
     let mut heads: Vec<Head> = Vec::new();
     for c in first..row.cells.len() {
@@ -82,7 +82,7 @@ fn openings_from(row: &GridRow, first: usize) -> Option<Openings> {
         })
         .collect();
     let bare = read.iter().all(|(_, bare)| *bare);
-    let one_way = read.windows(2).all(|w| w[0].0 > w[1].0) || read.windows(2).all(|w| w[0].0 < w[1].0);
+    let one_way = goes_one_way(&read.iter().map(|(size, _)| *size).collect::<Vec<_>>());
     let least = if bare { LEAST_OPENINGS } else { LEAST_NAMED };
     if heads.len() < least || !one_way && !mixes_units(&heads) {
         return None;
@@ -149,7 +149,6 @@ fn refused_percents(grid: &Grid, at: usize, columns: &[usize]) -> TableError {
     grid.refused(row.line, 0, "heading", name, allowed)
 }
 
-/// True if a column is among these adjacent columns.
 fn is_between(columns: &[usize], c: usize) -> bool {
     columns.first().is_some_and(|&first| first <= c) && columns.last().is_some_and(|&last| c <= last)
 }
@@ -235,7 +234,7 @@ fn refuse_lost(grid: &Grid, at: usize, soils: &[usize], openings: &[usize]) -> R
         |row: &GridRow, c: usize, allowed: &str| Err(grid.refused(row.line, c, "row", row.cell(c), allowed));
     let is_opening = |row: &GridRow, c: usize| opening(row.cell(c)).is_some();
     if let Some(above) = grid.rows[..at].iter().find(|row| {
-        row.filled().any(|c| !is_opening(row, c) && torn::holds_several(row.cell(c)))
+        row.filled().any(|c| !is_opening(row, c) && holds_several(row.cell(c)))
             || openings.iter().filter(|&&c| is_opening(row, c)).count() >= LEAST_OPENINGS
     }) {
         let c = above.filled().next().unwrap_or(0);
@@ -243,7 +242,7 @@ fn refuse_lost(grid: &Grid, at: usize, soils: &[usize], openings: &[usize]) -> R
     }
     let rows: Vec<&GridRow> = soils.iter().map(|&soil| &grid.rows[at + 1 + soil]).collect();
     for row in &rows {
-        torn::refuse_short(grid, row, "", last)?;
+        refuse_short(grid, row, "", last)?;
         let is_size = |&c: &usize| role(row.cell(c)) == Role::Size && !is_value(row.cell(c));
         if let Some(c) = (0..openings[0]).find(is_size) {
             return refused(row, c, "one row of openings");
@@ -261,10 +260,10 @@ fn refuse_lost(grid: &Grid, at: usize, soils: &[usize], openings: &[usize]) -> R
     let Some(end) = grid.rows.iter().rposition(is_soil) else { return Ok(()) };
     for (index, row) in grid.rows.iter().enumerate().skip(at + 1).filter(|(_, row)| is_text(row)) {
         let is_near = index < end || row.line == grid.rows[end].line + 1;
-        let several = || row.filled().find(|&c| torn::holds_several(row.cell(c)));
-        let column = several().or_else(|| torn::row_below(row)).filter(|_| is_near);
+        let several = || row.filled().find(|&c| holds_several(row.cell(c)));
+        let column = several().or_else(|| row_below(row)).filter(|_| is_near);
         if let Some(column) = column {
-            return Err(torn::refused(grid, row, column));
+            return Err(refused_row(grid, row, column));
         }
     }
     Ok(())
@@ -298,19 +297,17 @@ fn upright(grid: &Grid, at: usize, openings: &Openings, soils: &[usize]) -> (Gri
     };
     let stated_retained =
         words_above.iter().map(|text| role(text)).find(|role| matches!(role, Role::Retained(_)));
-    let labels = Labels::new(&grid.rows[..=at], &rows_of_soils, columns[0]);
+    let (names, unread) = names(&grid.rows[..=at], &rows_of_soils, columns[0]);
     let soil = |(index, row): (usize, &&GridRow)| {
         let words = (0..columns[0]).map(|c| row.cell(c)).filter(|cell| !cell.is_empty());
         let stated = words.map(role).find(|role| matches!(role, Role::Finer | Role::Retained(_)));
         let role = stated.or(*retained).or(stated_retained).unwrap_or(Role::Other);
-        SoilColumn { column: index + 1, heading: labels.names[index].clone(), role, end: None }
+        SoilColumn { column: index + 1, heading: names[index].clone(), role, end: None }
     };
     let named = |c: usize| rows_of_soils.iter().any(|row| percentage(row.cell(c)).is_some());
     let last = columns[columns.len() - 1];
-    let mut unused: Vec<String> = labels
-        .unused
-        .iter()
-        .copied()
+    let mut unused: Vec<String> = unread
+        .into_iter()
         .chain(last + 1..heading.cells.len().max(last + 1))
         .filter(|&c| named(c))
         .map(|c| format!("{} (\"{}\")", grid.column_label(c), shortened(heading.cell(c))))
@@ -333,27 +330,200 @@ fn upright(grid: &Grid, at: usize, openings: &Openings, soils: &[usize]) -> (Gri
         ));
     }
     let layout = Layout {
-        size: 0,
-        other_size: None,
         unit: words_above.iter().find_map(stated_unit),
         soils: rows_of_soils.iter().enumerate().map(soil).collect(),
-        at: 0,
-        first: 0,
         headed: true,
-        accounted: Vec::new(),
         notes,
+        ..Layout::default()
     };
     let lines = std::iter::once(heading).chain(rows_of_soils.iter().copied()).map(|row| row.line).collect();
-    let grid = Grid {
-        file: grid.file.clone(),
-        sheet: grid.sheet.clone(),
-        delimiter: grid.delimiter,
-        rows: columns.iter().zip(texts).map(turned).collect(),
-        commented: grid.commented.clone(),
-        notes: grid.notes.clone(),
-        left: 0,
-        across: Some(lines),
-        part: None,
+    let turned = grid.with_rows(columns.iter().zip(texts).map(turned).collect());
+    (Grid { left: 0, across: Some(lines), part: None, ..turned }, layout)
+}
+
+/// Words before or behind an opening that mean finer.
+const FINER: [&str; 17] = list(
+    "p|pass|passing|passed|percent|percentage|pct|perc|finer|smaller|than|through|minus|cum|cumul|\
+     cumulative|undersize",
+);
+const RETAINED: [&str; 6] = ["ret", "retained", "coarser", "plus", "oversize", "cr"];
+const BETWEEN: [&str; 8] = ["on", "sieve", "sieves", "size", "the", "by", "mass", "weight"];
+
+/// An opening as the heading of a column.
+struct Head {
+    text: String,
+    /// Finer or retained, as the words say; `None` without words.
+    role: Option<Role>,
+}
+
+/// The heading without the words of percents at its edges, and the role that they name.
+fn without_words(heading: &str) -> (String, Option<Role>) {
+    let small = heading.to_lowercase().replace('_', " ");
+    let (mut rest, mut stated, mut retained, mut cumulative) = (small.as_str(), false, false, None);
+    let mut take = |word: &str, stated: &mut bool| {
+        let is_retained =
+            RETAINED.contains(&word) || matches!(role(word), Role::Retained(Retained { percent: true, .. }));
+        retained |= is_retained;
+        if word.starts_with("cum") {
+            cumulative = Some(true);
+        }
+        let is_word = is_retained || FINER.contains(&word) || says_finer(word);
+        *stated |= is_word;
+        is_word || *stated && BETWEEN.contains(&word)
     };
-    (grid, layout)
+    loop {
+        let bare = rest.trim_start_matches([' ', '%', '.', ':', '<', '≤', '(', '-']);
+        stated |= rest[..rest.len() - bare.len()].contains(['%', '<', '≤', '-']);
+        rest = bare;
+        if let Some(after) = rest.strip_prefix('+') {
+            rest = after;
+            take("plus", &mut stated);
+            continue;
+        }
+        let mut word: String = rest.chars().take_while(|c| c.is_alphabetic()).collect();
+        if ["pno", "pnr"].contains(&word.as_str()) {
+            word.truncate(1);
+        }
+        if word.is_empty() || !take(&word, &mut stated) {
+            break;
+        }
+        rest = &rest[word.len()..];
+    }
+    while opening(rest).is_none() {
+        let bare = rest.trim_end_matches([' ', '%', '.', ':', ',', '(', ')']);
+        stated |= rest[bare.len()..].contains('%');
+        rest = bare;
+        let from = rest
+            .rfind(|c: char| !c.is_alphabetic())
+            .map_or(0, |at| at + rest[at..].chars().next().map_or(1, char::len_utf8));
+        if from == rest.len() || !take(&rest[from..], &mut stated) {
+            break;
+        }
+        rest = &rest[..from];
+    }
+    let role = if retained { Role::Retained(Retained { percent: true, cumulative }) } else { Role::Finer };
+    (rest.trim().to_owned(), stated.then_some(role))
+}
+
+fn is_size(text: &str) -> bool {
+    match opening(text) {
+        Some((Opening::Mm(size) | Opening::Bare(size), _)) => size > 0.0 && size.is_finite(),
+        _ => false,
+    }
+}
+
+/// The opening that a heading names, with or without words of percents around it.
+fn head(heading: &str) -> Option<Head> {
+    if is_size(heading) && !heading.starts_with('+') {
+        return Some(Head { text: heading.to_owned(), role: None });
+    }
+    let (text, role) = without_words(heading);
+    (role.is_some() && is_size(&text)).then_some(Head { text, role })
+}
+
+/// True if a heading seems to name an opening and does not: `P#4x`.
+fn is_broken(heading: &str) -> bool {
+    let (text, role) = without_words(heading);
+    role.is_some() && text.contains(|c: char| c.is_ascii_digit()) && !is_size(&text)
+}
+
+/// True if a heading may be an opening with a typing error: `#2OO`, `0..075`, `PO.O75`; not `LL`, `D60`.
+fn is_misspelt(heading: &str) -> bool {
+    let mended = heading.replace(['O', 'o'], "0").replace(['l', 'I'], "1");
+    let has_digit = heading.contains(|c: char| c.is_ascii_digit() || c == '#');
+    has_digit && (!is_words(heading) || head(&mended).is_some())
+}
+
+/// True if a heading says that names lie below it, and is no name itself: `Sample no.`, `Hole`.
+fn is_of_names(heading: &str) -> bool {
+    const BESIDE: [&str; 18] = list(
+        "no|nr|number|id|ref|reference|type|test|trial|hole|bore|location|station|description|bh|tp|\
+         lab|layer",
+    );
+    let words = words(heading);
+    !words.is_empty() && words.iter().all(|word| says_sample(word) || BESIDE.contains(&word.as_str()))
+}
+
+/// Names of the soils in `rows` below `headings`, whose openings begin in column `end`, and the columns that
+/// appear in no name. A name takes the first column and those whose heading says so; a depth and the others
+/// only if names would otherwise be equal.
+fn names(headings: &[GridRow], rows: &[&GridRow], end: usize) -> (Vec<String>, Vec<usize>) {
+    /// Most further columns used to tell soils of one name apart.
+    const MOST_MORE: usize = 8;
+    let head = |c: usize| {
+        let near = headings.iter().rev().take(3).map(|row| row.cell(c));
+        near.into_iter().find(|cell| !cell.is_empty()).unwrap_or_default()
+    };
+    let any = |c: usize, is: &dyn Fn(&str) -> bool| rows.iter().any(|row| is(row.cell(c)));
+    let filled: Vec<usize> = (0..end).filter(|&c| any(c, &|cell| !is_blank(cell))).collect();
+    let is_first = |c: usize| Some(&c) == filled.first();
+    let is_text = |c: usize| head(c).is_empty() && !any(c, &is_value);
+    let rank = |c: usize| match () {
+        () if is_first(c) || says_sample(head(c)) || is_text(c) => 0,
+        () if words(head(c)).iter().any(|word| says_depth(word)) => 1,
+        () => 2,
+    };
+    let mut order = filled.clone();
+    order.sort_by_key(|&c| rank(c));
+    let (always, more) = order.split_at(order.partition_point(|&c| rank(c) == 0));
+    let joined = |row: &GridRow, columns: &[usize]| {
+        let cells = columns.iter().map(|&c| row.cell(c)).filter(|cell| !is_blank(cell));
+        cells.collect::<Vec<_>>().join(" ")
+    };
+    let mut names: Vec<String> = rows.iter().map(|row| joined(row, always)).collect();
+    let mut unused = Vec::new();
+    let (more, others) = more.split_at(more.len().min(MOST_MORE));
+    for &c in more {
+        let mut times: HashMap<String, usize> = HashMap::new();
+        names.iter().for_each(|name| *times.entry(name.clone()).or_default() += 1);
+        let mut used = false;
+        for (name, row) in names.iter_mut().zip(rows) {
+            if (times[name] > 1 || name.is_empty()) && !is_blank(row.cell(c)) {
+                *name = format!("{name} {}", row.cell(c)).trim().to_owned();
+                used = true;
+            }
+        }
+        unused.extend((!used).then_some(c));
+    }
+    unused.extend(others);
+    (names, unused)
+}
+
+/// True if a word of a heading says that depths lie below it.
+pub(super) fn says_depth(word: &str) -> bool {
+    ["depth", "tiefe", "profondeur", "profundidad", "prof", "from", "top", "elevation"].contains(&word)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn openings_are_found_within_headings_of_percents() {
+        let all = "P3/4 = 3/4|P#4 = #4|P 200 = 200|PNo. 40 = no. 40|P-#40 = #40|Passing 19 mm = 19 mm|\
+            % pass #40 = #40|%<0.425mm = 0.425mm|<0.075 mm = 0.075 mm|% finer No. 200 = no. 200|\
+            Percent passing sieve No. 4 = no. 4|pct_finer_0.075mm = 0.075mm|Cum 19 = 19|#200 (%) = #200|\
+            19 mm passing = 19 mm|3/4 in. % passing = 3/4 in|Minus #200 = #200|Durchgang 4 mm = 4 mm|\
+            Passant 80 µm = 80 µm|No. 4 = No. 4";
+        for (heading, text) in all.split('|').filter_map(|pair| pair.split_once(" = ")) {
+            let head = head(heading).unwrap_or_else(|| panic!("{heading}"));
+            assert_eq!(head.text, text, "{heading}");
+            assert!(!matches!(head.role, Some(Role::Retained(_))), "{heading}");
+        }
+        for heading in ["% ret #4", "Rückstand 4 mm", "Cum. % retained on 4.75 mm", "+4.75 mm"] {
+            assert!(matches!(head(heading).unwrap().role, Some(Role::Retained(_))), "{heading}");
+        }
+        for heading in ["LL", "PI (%)", "Sample", "P80 (um)", "D60", "Depth (m)", "Gravel %", "Cu", "P", "%"]
+        {
+            assert!(head(heading).is_none(), "{heading}");
+        }
+        assert!(["P#4x", "% pass 3//4", "Passing No. 201"].into_iter().all(is_broken));
+        assert!(
+            ["#2OO", "0..075", "PO.O75", "#200x", "#lOO", "No. 2OO", "O.O75"].into_iter().all(is_misspelt)
+        );
+        for other in ["LL", "PI", "Cu", "D60", "Moisture (%)", "P80 (um)", "CaCO3 (%)", "USCS", "LL1"] {
+            assert!(!is_misspelt(other), "{other}");
+        }
+        assert!(!["LL (%)", "P#4", "Depth 2", "D60", "Cu"].into_iter().any(is_broken));
+    }
 }

@@ -1,16 +1,13 @@
 //! AGS4, the exchange format of ground investigations. Its group GRAT holds a row for each opening; its group
 //! GRAG summarises a grading (percents of gravel, sand, silt and clay, Cu) and has no curve.
 
-use std::collections::{BTreeSet, HashMap};
-
-use super::csv::all_cells;
-use super::grid::{Grid, GridRow};
+use super::grid::{Grid, GridRow, listed};
 use super::heading::{Role, unit};
 use super::layout::{Layout, SoilColumn};
-use super::lines::listed;
 use super::size::Unit;
-use voidwalk_core::gradation::number;
-use voidwalk_core::gradation::{TableError, shortened};
+use super::text::all_cells;
+use std::collections::{BTreeSet, HashMap};
+use voidwalk_core::gradation::{TableError, number, shortened};
 
 /// Columns of size and percent of a group, and the unit of its sizes.
 type Written = ([usize; 2], Option<Unit>);
@@ -28,7 +25,6 @@ pub(super) fn is_ags(text: &str) -> bool {
         && text.lines().any(|line| ["HEADING", "DATA"].contains(&kind(line).as_str()))
 }
 
-/// True if a sheet of a workbook holds groups of AGS4.
 pub(super) fn is_ags_sheet(grid: &Grid) -> bool {
     let any = |kind: &str| grid.rows.iter().any(|row| row.cell(0) == kind);
     any("HEADING") && any("DATA")
@@ -45,11 +41,10 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
 
 /// Soils of a sheet that bears the name of its group, or names the group in a row.
 pub(super) fn soils_of_sheet(grid: &Grid) -> Result<Vec<(String, Grid, Layout)>, TableError> {
-    let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
     let named = |name: &str| vec!["GROUP".to_owned(), name.trim().to_uppercase()];
     let group = grid.sheet.iter().map(|name| (0, named(name), false));
     let rows = grid.rows.iter().map(|row| {
-        let cells = (0..width).map(|c| row.cell(c).to_owned());
+        let cells = (0..grid.width()).map(|c| row.cell(c).to_owned());
         (row.line, cells.collect(), false)
     });
     soils_of_rows(&grid.file, grid.sheet.as_deref(), group.chain(rows))
@@ -162,7 +157,6 @@ fn soils_of_rows(
         });
     }
     let soils = soils.into_iter().map(|(name, mut grid, types, (columns, unit))| {
-        let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
         in_order(&mut grid, columns);
         if types.len() > 1 {
             let types = types.into_iter().take(8).collect::<Vec<_>>().join(", ");
@@ -176,18 +170,10 @@ fn soils_of_rows(
                 .push("the group GRAG, which sums gradings up, was passed over: sizes are of GRAT".into());
         }
         let soil = SoilColumn { column: columns[1], heading: name.clone(), role: Role::Finer, end: None };
-        let layout = Layout {
-            size: columns[0],
-            other_size: None,
-            unit,
-            soils: vec![soil],
-            at: 0,
-            first: 0,
-            headed: true,
-            // The headings of AGS4 define the other columns.
-            accounted: (0..width).collect(),
-            notes: Vec::new(),
-        };
+        // The headings of AGS4 define the other columns.
+        let accounted = (0..grid.width()).collect();
+        let (size, soils) = (columns[0], vec![soil]);
+        let layout = Layout { size, unit, soils, headed: true, accounted, ..Layout::default() };
         (name, grid, layout)
     });
     Ok(soils.collect())

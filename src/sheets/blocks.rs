@@ -1,15 +1,15 @@
-//! Cuts a grid into its tables, side by side or below each other. Each part has its own headings and its own
-//! openings, and is read by itself.
+//! Cuts a grid into its tables, side by side, below each other, or for each sample that its rows name. Each
+//! part has its own headings and its own openings, and is read by itself.
 
-use std::ops::Range;
-
-use super::content::{begins_with_words, is_data, is_text, is_value, percentage};
+use super::across::says_depth;
+use super::content::{begins_with_words, is_blank, is_data, is_text, is_value, percentage, whole_row};
 use super::grid::{Grid, GridRow};
-use super::heading::{Role, role};
+use super::heading::{Role, role, says_sample, words};
 use super::layout::{Headings, Layout, fields, find, headings, is_heading, says_soil};
-use super::size::{Opening, opening};
-use super::torn::whole_row;
-use super::{across, agreement, tidy};
+use super::size::{Opening, goes_one_way, opening};
+use super::{across, roles};
+use std::collections::HashMap;
+use std::ops::Range;
 use voidwalk_core::gradation::TableError;
 
 /// Most tables of a sheet. A sheet of soils has some tens of tables; their columns may be many more.
@@ -26,13 +26,11 @@ pub(super) struct Block {
 }
 
 impl Block {
-    /// Line of the headings.
     pub(super) fn line(&self) -> usize {
         self.grid.rows.get(self.layout.at).map_or(0, |row| row.line)
     }
 }
 
-/// The tables of a grid.
 pub(super) fn blocks(grid: Grid) -> Result<Vec<Block>, TableError> {
     if let Some(row) = grid.rows.iter().find(|row| row.open) {
         return Err(fields(&grid, row));
@@ -40,7 +38,7 @@ pub(super) fn blocks(grid: Grid) -> Result<Vec<Block>, TableError> {
     if let Some((grid, layout)) = across::find(&grid)? {
         return Ok(vec![Block { grid, layout, columns: 0..0, sample: None }]);
     }
-    let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
+    let width = grid.width();
     let place = grid.place();
     let regions = regions(&grid, width);
     bounded(&place, regions.len())?;
@@ -50,8 +48,10 @@ pub(super) fn blocks(grid: Grid) -> Result<Vec<Block>, TableError> {
     for part in parts {
         let bands = bands(&part);
         bounded(&place, blocks.len() + bands.len())?;
-        let bands =
-            if bands.len() > 1 { bands.into_iter().map(|b| part.band(b)).collect() } else { vec![part] };
+        let bands = match bands.len() > 1 {
+            true => bands.into_iter().map(|rows| part.with_rows(part.rows[rows].to_vec())).collect(),
+            false => vec![part],
+        };
         for band in bands {
             blocks.extend(side_by_side(band, several)?);
             bounded(&place, blocks.len())?;
@@ -70,18 +70,14 @@ pub(super) fn has_table(grid: &Grid) -> bool {
     grid.rows.iter().any(is_heading) || grid.rows.iter().filter(is_row).take(LEAST_ROWS).count() == LEAST_ROWS
 }
 
-/// Refuses more tables than any sheet has.
 fn bounded(place: &str, tables: usize) -> Result<(), TableError> {
-    match tables > MOST_TABLES {
-        true => {
-            let is = format!("a sheet of more than {MOST_TABLES} tables");
-            Err(TableError::Format { file: place.to_owned(), is })
-        }
-        false => Ok(()),
+    if tables <= MOST_TABLES {
+        return Ok(());
     }
+    let is = format!("a sheet of more than {MOST_TABLES} tables");
+    Err(TableError::Format { file: place.to_owned(), is })
 }
 
-/// True if a cell may be the heading of openings.
 fn is_size_heading(cell: &str) -> bool {
     cell.contains(char::is_alphabetic)
         && role(cell) == Role::Size
@@ -216,15 +212,14 @@ fn side_by_side(band: Grid, several: bool) -> Result<Vec<Block>, TableError> {
         if several {
             refuse_far_values(&grid, &layout)?;
         }
-        let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
-        let columns = grid.left..grid.left + width;
-        let parts = tidy::parts(&grid, &layout)?;
+        let columns = grid.left..grid.left + grid.width();
+        let parts = by_sample(&grid, &layout)?;
         if parts.is_empty() {
             blocks.push(Block { grid, layout, columns, sample: None });
             continue;
         }
         bounded(&grid.place(), parts.len())?;
-        for tidy::Part { name, grid } in parts {
+        for (name, grid) in parts {
             let layout = find(&grid)?;
             blocks.push(Block { grid, layout, columns: columns.clone(), sample: Some(name) });
         }
@@ -232,10 +227,8 @@ fn side_by_side(band: Grid, several: bool) -> Result<Vec<Block>, TableError> {
     Ok(blocks)
 }
 
-/// Columns of adjacent tables without an empty column between them.
 fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableError> {
     let Headings { at, first, roles, .. } = headings;
-    let width = grid.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
     let rows = &grid.rows[*first..];
     let mut holds = vec![(false, false); roles.len()];
     for row in rows {
@@ -274,14 +267,14 @@ fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableEr
     let (mut openings_before, mut retained_before) = (None, false);
     let mut rest = &kinds[..];
     for (place, &start) in starts.iter().enumerate() {
-        let end = starts.get(place + 1).copied().unwrap_or(width);
+        let end = starts.get(place + 1).copied().unwrap_or(grid.width());
         let (group, after) = rest.split_at(rest.partition_point(|(c, _)| *c < end));
         rest = after;
         let openings = group.iter().find(|(_, size)| *size).map(|(c, _)| *c);
         let values = || group.iter().filter(|(_, size)| !size).map(|(c, _)| roles[*c]);
         let (some, all_finer) = (values().next().is_some(), values().all(|role| role == Role::Finer));
         let agrees = || match (openings_before, openings) {
-            (Some(a), Some(b)) => agreement::agree(grid, headings, a, b),
+            (Some(a), Some(b)) => roles::agree(grid, headings, a, b),
             _ => false,
         };
         match groups.last_mut() {
@@ -339,4 +332,99 @@ fn refuse_other_headings(grid: &Grid, line: usize) -> Result<(), TableError> {
         }
     }
     Ok(())
+}
+
+/// Most places of the headings of all parts.
+const MOST_PLACES: usize = 1_000_000;
+
+/// Parts of a table whose rows name their samples, with these names; empty for fewer than two names.
+fn by_sample(grid: &Grid, layout: &Layout) -> Result<Vec<(String, Grid)>, TableError> {
+    let headings = &grid.rows[layout.at..layout.first];
+    if !layout.headed || layout.soils.len() != 1 {
+        return Ok(Vec::new());
+    }
+    let value = layout.soils[0].column;
+    let width = headings.iter().map(|row| row.cells.len()).max().unwrap_or(0);
+    let is_free = |c: usize| c != value && c != layout.size && layout.other_size != Some(c);
+    let heads =
+        |c: usize| headings.iter().map(move |row| row.cell(c)).filter(|cell| role(cell) == Role::Other);
+    let of_samples =
+        |c: usize| heads(c).any(|cell| says_sample(cell) || words(cell).iter().any(|w| w == "hole"));
+    let of_depths = |c: usize| heads(c).any(|cell| words(cell).iter().any(|word| says_depth(word)));
+    let samples: Vec<usize> = (0..width).filter(|&c| is_free(c) && of_samples(c)).collect();
+    let depths: Vec<usize> =
+        (0..width).filter(|&c| is_free(c) && !samples.contains(&c) && of_depths(c)).collect();
+    // A name that is merged over rows lies in the first of them.
+    let mut last: Vec<String> = vec![String::new(); width];
+    let mut rows: Vec<(String, String, &GridRow)> = Vec::new();
+    for row in grid.rows[layout.first..].iter().filter(|row| opening(row.cell(layout.size)).is_some()) {
+        for &c in samples.iter().chain(&depths).filter(|&&c| !is_blank(row.cell(c))) {
+            row.cell(c).clone_into(&mut last[c]);
+        }
+        let joined = |columns: &[usize]| {
+            let cells: Vec<&str> =
+                columns.iter().map(|&c| last[c].as_str()).filter(|c| !c.is_empty()).collect();
+            cells.join(" ")
+        };
+        rows.push((joined(&samples), joined(&depths), row));
+    }
+    // `Cu | 5` below the table names no sample.
+    let mut places: HashMap<(&str, &str), usize> = HashMap::new();
+    let mut keys: Vec<(&str, &str)> = Vec::new();
+    for (sample, depth, _) in rows.iter().filter(|row| !is_blank(row.2.cell(value))) {
+        places.entry((sample, depth)).or_insert_with(|| {
+            keys.push((sample, depth));
+            keys.len() - 1
+        });
+    }
+    if samples.is_empty() || keys.len() < 2 {
+        return Ok(Vec::new());
+    }
+    let of_fractions = samples.iter().all(|&c| heads(c).any(may_be_of_fractions));
+    if keys.len() == rows.len() && !of_fractions {
+        let allowed = "a row for each opening of a sample, or openings in the headings above a row for each \
+                       sample";
+        return Err(grid.refused(rows[0].2.line, samples[0], "row", keys[0].0, allowed));
+    }
+    let size = |row: &(String, String, &GridRow)| match opening(row.2.cell(layout.size))?.0 {
+        Opening::Mm(size) | Opening::Bare(size) if size > 0.0 => Some(size),
+        _ => None,
+    };
+    if of_fractions && goes_one_way(&rows.iter().filter_map(size).collect::<Vec<_>>()) {
+        return Ok(Vec::new());
+    }
+    if keys.len().saturating_mul(width) > MOST_PLACES {
+        let is = format!("a table of {} samples in {width} columns", keys.len());
+        return Err(TableError::Format { file: grid.place(), is });
+    }
+    let mut times: HashMap<&str, usize> = HashMap::new();
+    keys.iter().for_each(|key| *times.entry(key.0).or_default() += 1);
+    let part = |key: &(&str, &str)| {
+        let name = if times[key.0] > 1 { format!("{} {}", key.0, key.1) } else { key.0.to_owned() };
+        (name.trim().to_owned(), grid.with_rows(headings.to_vec()))
+    };
+    let mut parts: Vec<(String, Grid)> = keys.iter().map(part).collect();
+    let mut named = rows.iter().peekable();
+    let mut last = 0;
+    for row in &grid.rows[layout.first..] {
+        let mut row = row.clone();
+        if let Some((sample, depth, _)) = named.next_if(|named| named.2.line == row.line)
+            && let Some(&place) = places.get(&(sample.as_str(), depth.as_str()))
+        {
+            last = place;
+            for &c in samples.iter().chain(&depths) {
+                if let Some(cell) = row.cells.get_mut(c) {
+                    cell.clear();
+                }
+            }
+        }
+        // Rows between the rows of samples go with the sample above them.
+        parts[last].1.rows.push(row);
+    }
+    Ok(parts)
+}
+
+/// True if a heading of names may name the fractions of one soil.
+fn may_be_of_fractions(heading: &str) -> bool {
+    words(heading).iter().any(|word| ["material", "soil", "name", "source"].contains(&word.as_str()))
 }

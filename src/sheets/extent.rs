@@ -1,42 +1,35 @@
 //! Rows of the table below the headings, without its remarks, repeated headings and notes of the laboratory
-//! below it.
+//! below it; and checks that each of its numbers is read and that its commas have one meaning.
 
-use super::content::{is_blank, is_text, is_value, is_words, percentage};
-use super::grid::{Grid, GridRow};
-use super::heading::Role;
-use super::layout::{Layout, repeats_headings};
-use super::lines::listed;
-use super::size::{Opening, opening};
-use super::torn;
-use voidwalk_core::gradation::{TableError, shortened};
+use super::content::{is_blank, is_text, is_value, is_words, percentage, refused_row, row_below, whole_row};
+use super::grid::{Grid, GridRow, listed};
+use super::heading::{Retained, Role};
+use super::layout::{Layout, SoilColumn, repeats_headings};
+use super::size::{Opening, Unit, opening};
+use super::soil::Soil;
+use std::collections::HashSet;
+use voidwalk_core::gradation::{Comma, FIELDS, TableError, comma, shortened};
 
 /// A row below a table: `Dry mass (g) | 500`.
 pub(super) struct Below {
     pub(super) line: usize,
-    /// Column of the words.
     pub(super) column: usize,
     pub(super) words: String,
     /// The first number behind the words, and its column.
     pub(super) value: Option<(usize, f64)>,
 }
 
-/// The rows of a table.
 pub(super) struct Extent {
     /// Indices of the rows, counted from the first below the headings.
     table: Vec<usize>,
     /// Rows below the table, which are left out.
     pub(super) below: Vec<Below>,
-    /// Notes on the rows that were left out.
     pub(super) notes: Vec<String>,
-    /// The first column that holds a soil.
     first_value: usize,
 }
 
 impl Extent {
     /// Determines the rows of the table in a grid.
-    ///
-    /// # Errors
-    /// A row, amid the others or as the last, that cannot be read as one.
     pub(super) fn of(grid: &Grid, layout: &Layout) -> Result<Extent, TableError> {
         let rows = &grid.rows[layout.first..];
         let first_value = layout.soils.iter().map(|soil| soil.column).min().unwrap_or(0);
@@ -47,9 +40,9 @@ impl Extent {
         let mut remarks = Vec::new();
         for (index, row) in rows[..end].iter().enumerate() {
             let is_next = || index > last && row.line == rows[last].line + 1;
-            let below = || is_next().then(|| torn::row_below(row)).flatten();
-            if let Some(column) = torn::whole_row(row, index < last).or_else(below) {
-                return Err(torn::refused(grid, row, column));
+            let below = || is_next().then(|| row_below(row)).flatten();
+            if let Some(column) = whole_row(row, index < last).or_else(below) {
+                return Err(refused_row(grid, row, column));
             }
             match () {
                 () if repeats_headings(row, layout) => {}
@@ -75,7 +68,6 @@ impl Extent {
         Ok(extent)
     }
 
-    /// Rows of the table.
     pub(super) fn rows<'a>(&'a self, grid: &'a Grid, layout: &Layout) -> impl Iterator<Item = &'a GridRow> {
         let first = layout.first;
         self.table.iter().map(move |index| &grid.rows[first + index])
@@ -170,5 +162,145 @@ impl Extent {
         };
         let left = if rows.len() == 1 { "was" } else { "were" };
         Some(format!("{lines} below the table ({}) {left} left out", named.join(", ")))
+    }
+}
+
+/// Refuses a table that holds a number found in no curve and named by no note.
+pub(super) fn refuse_lost(
+    grid: &Grid,
+    layout: &Layout,
+    extent: &Extent,
+    soils: &[Result<Soil, TableError>],
+) -> Result<(), TableError> {
+    let lost = |line: usize, column: usize, cell: &str| {
+        let allowed = "numbers that are read, or stand in a column of their own beside the table";
+        Err(grid.refused(line, column, FIELDS[1], cell, allowed))
+    };
+    let is_rest = |row: &GridRow| {
+        let size = opening(row.cell(extent.column_of_size(layout, row)));
+        matches!(size, Some((Opening::Pan | Opening::Total | Opening::Below(_), _)))
+            || matches!(size, Some((Opening::Class(_, 0.0), _)))
+            || matches!(size, Some((Opening::Bare(0.0) | Opening::Mm(0.0), _)))
+    };
+    let mut read: HashSet<usize> = HashSet::new();
+    for (column, soil) in layout.soils.iter().zip(soils) {
+        // A refused soil carries its own reason.
+        let Ok(soil) = soil else { return Ok(()) };
+        let lines: HashSet<usize> = soil.rows.iter().map(|row| row.line).collect();
+        for row in extent.rows(grid, layout).filter(|row| !lines.contains(&row.line)) {
+            let cell = row.cell(column.column);
+            if is_value(cell) && !is_rest(row) {
+                return lost(row.line, column.column, cell);
+            }
+        }
+        read.extend(lines);
+    }
+    let is_read = |row: &GridRow, c: usize| {
+        let is_size = Some(c) == layout.other_size || c == layout.size;
+        let is_skipped = || layout.soils.iter().all(|soil| is_blank(row.cell(soil.column)));
+        layout.accounted.contains(&c)
+            || layout.soils.iter().any(|soil| soil.column == c)
+            || is_size && (read.contains(&row.line) || is_rest(row) || is_skipped())
+    };
+    for row in extent.rows(grid, layout) {
+        if let Some(c) = row.filled().find(|&c| is_value(row.cell(c)) && !is_read(row, c)) {
+            return lost(row.line, c, row.cell(c));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a table whose numbers have points and commas, and one in which every comma may separate thousands.
+pub(super) fn check_commas(
+    grid: &Grid,
+    layout: &Layout,
+    extent: &Extent,
+    column: &SoilColumn,
+    notes: &mut Vec<String>,
+) -> Result<(), TableError> {
+    refuse_points_of_thousands(grid, layout, extent, column)?;
+    let (mut point, mut other, mut decimal, mut either) = (None, None, false, None);
+    for row in extent.rows(grid, layout) {
+        let at = extent.column_of_size(layout, row);
+        for c in [at, column.column] {
+            let cell = row.cell(c);
+            // `1,254.6` has both: one of them separates thousands.
+            let is_number = percentage(cell).is_some() && !(cell.contains('.') && cell.contains(','));
+            if is_number && cell.contains('.') {
+                point = point.or(Some(row.line));
+            }
+            if is_number && cell.contains(',') {
+                other = other.or(Some((row.line, cell)));
+            }
+            // No percentage is a thousand.
+            let is_percent = c != at && !matches!(column.role, Role::Retained(_));
+            match comma(cell) {
+                Some(Comma::Decimal) => decimal = true,
+                Some(Comma::Either) if is_percent => decimal = true,
+                Some(Comma::Either) => either = either.or(Some((row.line, c, cell))),
+                None => {}
+            }
+        }
+    }
+    if let (Some(point), Some((line, value)), None) = (point, other, &grid.sheet) {
+        let allowed = format!(
+            "one decimal sign in the whole file ({} has a decimal point), no thousands separators",
+            grid.row_label(point)
+        );
+        return Err(grid.refused(line, layout.size, "number", value, allowed));
+    }
+    let Some((line, c, cell)) = either else { return Ok(()) };
+    let is_usual =
+        !decimal && (grid.sheet.is_some() || grid.delimiter == ',' || layout.unit == Some(Unit::Micrometre));
+    if is_usual {
+        let (as_decimal, as_thousands) = (cell.replace(',', "."), cell.replace(',', ""));
+        let allowed = format!(
+            "{as_decimal} or {as_thousands}: here the comma may be a decimal sign or separate thousands"
+        );
+        return Err(grid.refused(line, c, "number", cell, allowed));
+    }
+    notes.push(format!("commas within numbers, as in {cell}, read as decimal signs"));
+    Ok(())
+}
+
+/// Refuses `1.100` among whole masses of hundreds of grams: the point may separate thousands.
+fn refuse_points_of_thousands(
+    grid: &Grid,
+    layout: &Layout,
+    extent: &Extent,
+    column: &SoilColumn,
+) -> Result<(), TableError> {
+    const LEAST: f64 = 100.0;
+    if !matches!(column.role, Role::Retained(Retained { percent: false, .. })) {
+        return Ok(());
+    }
+    let may_be_thousands = |cell: &str| {
+        let (whole, rest) = cell.split_once('.').unwrap_or_default();
+        let is_digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit());
+        (1..=3).contains(&whole.len())
+            && !whole.starts_with('0')
+            && rest.len() == 3
+            && is_digits(whole)
+            && is_digits(rest)
+    };
+    let (mut first, mut largest) = (None, 0.0f64);
+    for row in extent.rows(grid, layout) {
+        let cell = row.cell(column.column);
+        match percentage(cell) {
+            Some(_) if may_be_thousands(cell) => first = first.or(Some((row.line, cell))),
+            Some(mass) if mass.fract() != 0.0 => return Ok(()),
+            Some(mass) => largest = largest.max(mass),
+            None => {}
+        }
+    }
+    match first.filter(|_| largest >= LEAST) {
+        Some((line, cell)) => {
+            let allowed = format!(
+                "{cell} or {}, as a number: here the point may be a decimal sign or separate thousands",
+                cell.replace('.', "")
+            );
+            Err(grid.refused(line, column.column, "number", cell, allowed))
+        }
+        None => Ok(()),
     }
 }

@@ -2,23 +2,19 @@
 
 use std::ops::Range;
 use std::rc::Rc;
-
 use voidwalk_core::gradation::{Position, TableError, letters, shortened};
+use voidwalk_core::text::plain;
 
 /// Cells as text, with their places in the file.
 #[derive(Debug, Default)]
 pub(super) struct Grid {
-    /// File as the user named it.
     pub(super) file: String,
-    /// Sheet of a workbook.
     pub(super) sheet: Option<String>,
-    /// Separator of the cells in a text file.
     pub(super) delimiter: char,
     /// Rows that are not empty.
     pub(super) rows: Vec<GridRow>,
     /// Rows of numbers that are commented out: their lines and texts.
     pub(super) commented: Vec<(usize, String)>,
-    /// Assumptions made so far.
     pub(super) notes: Vec<String>,
     /// Columns of the file to the left of this grid, where it is a part of one.
     pub(super) left: usize,
@@ -35,7 +31,6 @@ pub(super) struct Place {
     pub(super) column: usize,
 }
 
-/// A line of a text file.
 #[derive(Debug)]
 pub(super) struct Line {
     pub(super) text: String,
@@ -43,14 +38,12 @@ pub(super) struct Line {
     pub(super) cells: usize,
 }
 
-/// A row of cells.
 #[derive(Clone, Debug)]
 pub(super) struct GridRow {
     /// Line of a text file or row of a sheet, counted from 1.
     pub(super) line: usize,
     /// Cells, trimmed, without empty ones at the end.
     pub(super) cells: Vec<String>,
-    /// The whole line of a text file.
     pub(super) text: Option<Rc<Line>>,
     /// True if a quote is left open in the row.
     pub(super) open: bool,
@@ -73,8 +66,7 @@ impl Grid {
     pub(super) fn place_of(&self, line: usize, column: usize) -> Place {
         match &self.across {
             Some(lines) => {
-                let line_of_file = lines.get(column).or(lines.first());
-                Place { line: line_of_file.copied().unwrap_or(1), column: line - 1 }
+                Place { line: *lines.get(column).or(lines.first()).unwrap_or(&1), column: line - 1 }
             }
             None => Place { line, column: self.left + column },
         }
@@ -85,7 +77,6 @@ impl Grid {
         format!("{} {}", self.row_word(), self.row_name(line))
     }
 
-    /// `line`, `row` or `column`.
     pub(super) fn row_word(&self) -> &'static str {
         match (&self.across, &self.sheet) {
             (Some(_), _) => "column",
@@ -110,24 +101,34 @@ impl Grid {
         }
     }
 
-    /// Parts of the grid in these columns, which follow each other; each part leaves out the rows that are
-    /// empty in it.
-    pub(super) fn columns(&self, ranges: &[Range<usize>]) -> Vec<Grid> {
-        let like = |range: &Range<usize>| Grid {
+    pub(super) fn width(&self) -> usize {
+        self.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0)
+    }
+
+    /// Part of the same file with these rows.
+    pub(super) fn with_rows(&self, rows: Vec<GridRow>) -> Grid {
+        Grid {
             file: self.file.clone(),
             sheet: self.sheet.clone(),
             delimiter: self.delimiter,
-            rows: Vec::new(),
+            rows,
             commented: self.commented.clone(),
             notes: self.notes.clone(),
-            left: self.left + range.start,
+            left: self.left,
             across: None,
-            part: match &self.sheet {
-                Some(_) => None,
-                None => Some(format!("columns {} to {}", self.left + range.start + 1, self.left + range.end)),
-            },
+            part: self.part.clone(),
+        }
+    }
+
+    /// Parts of the grid in these columns, which follow each other; each part leaves out the rows that are
+    /// empty in it.
+    pub(super) fn columns(&self, ranges: &[Range<usize>]) -> Vec<Grid> {
+        let part = |range: &Range<usize>| {
+            let left = self.left + range.start;
+            let name = || format!("columns {} to {}", left + 1, self.left + range.end);
+            Grid { left, part: self.sheet.is_none().then(name), ..self.with_rows(Vec::new()) }
         };
-        let mut parts: Vec<Grid> = ranges.iter().map(like).collect();
+        let mut parts: Vec<Grid> = ranges.iter().map(part).collect();
         // Each row is visited once, whatever the number of parts.
         for row in &self.rows {
             for (range, part) in ranges.iter().zip(&mut parts) {
@@ -145,21 +146,6 @@ impl Grid {
         parts
     }
 
-    /// The part of the grid in these rows.
-    pub(super) fn band(&self, range: Range<usize>) -> Grid {
-        Grid {
-            file: self.file.clone(),
-            sheet: self.sheet.clone(),
-            delimiter: self.delimiter,
-            rows: self.rows[range].to_vec(),
-            commented: self.commented.clone(),
-            notes: self.notes.clone(),
-            left: self.left,
-            across: None,
-            part: self.part.clone(),
-        }
-    }
-
     /// Error for a cell whose `value` is refused as a value of `field`.
     pub(super) fn refused(
         &self,
@@ -175,7 +161,6 @@ impl Grid {
         TableError::Value { at, value: shortened(value), allowed: allowed.into() }
     }
 
-    /// Error for a heading that is refused.
     pub(super) fn refused_heading(&self, line: usize, value: &str, allowed: &str) -> TableError {
         let (file, value) = (self.place(), shortened(value));
         TableError::Header { file, line, value, allowed: allowed.into() }
@@ -189,4 +174,26 @@ impl Grid {
             (None, None) => self.file.clone(),
         }
     }
+}
+
+/// `line 5`, `rows 5, 7, 8`, `lines 5, 7 and 12 more`.
+pub(super) fn listed<T>(word: &str, all: &[T], name: impl Fn(&T) -> String) -> String {
+    const MOST: usize = 8;
+    let shown: Vec<String> = all.iter().take(MOST).map(name).collect();
+    let shown = shown.join(", ");
+    match all.len() {
+        1 => format!("{word} {shown}"),
+        n if n > MOST => format!("{word}s {shown} and {} more", n - MOST),
+        _ => format!("{word}s {shown}"),
+    }
+}
+
+/// Names of soils, shortened; of many, the first ones.
+pub(super) fn names_listed(names: &[String]) -> String {
+    const MOST: usize = 12;
+    let mut shown: Vec<String> = names.iter().take(MOST).map(|name| shortened(&plain(name))).collect();
+    if names.len() > MOST {
+        shown.push(format!("and {} more", names.len() - MOST));
+    }
+    shown.join(", ")
 }

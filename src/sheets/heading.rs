@@ -1,21 +1,18 @@
 //! Meaning of the heading of a column.
 
 use super::languages::{
-    say_cumulative, say_finer, say_inches, say_individual, say_micrometres, say_millimetres, say_retained,
-    say_size,
+    any, list, say_cumulative, say_finer, say_inches, say_individual, say_micrometres, say_millimetres,
+    say_retained, say_size,
 };
 use super::size::Unit;
 
 /// Content of a column by its heading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Role {
-    /// Openings.
     Size,
     /// Percent (or fraction) finer.
     Finer,
-    /// Retained, in percent or by mass.
     Retained(Retained),
-    /// Anything else.
     Other,
 }
 
@@ -29,96 +26,21 @@ pub(super) struct Retained {
     pub(super) cumulative: Option<bool>,
 }
 
-const FINER: [&str; 24] = [
-    "percent",
-    "finer",
-    "passing",
-    "pct",
-    "percentage",
-    "pass",
-    "cumulative",
-    "smaller",
-    "durchgang",
-    "siebdurchgang",
-    "passant",
-    "passants",
-    "tamisat",
-    "pasa",
-    "pasante",
-    "passed",
-    "massendurchgang",
-    "perp",
-    "undersize",
-    "massenanteil",
-    "doorval",
-    "przesiew",
-    "passa",
-    "passing%",
-];
-const RETAINED: [&str; 14] = [
-    "retained",
-    "coarser",
-    "rückstand",
-    "siebrückstand",
-    "rueckstand",
-    "refus",
-    "retenido",
-    "retenu",
-    "oversize",
-    "retain",
-    "ret",
-    "rest",
-    "zeefrest",
-    "trattenuto",
-];
-const SIZE: [&str; 46] = [
-    "opening",
-    "size",
-    "sieve",
-    "diameter",
-    "mm",
-    "d",
-    "openings",
-    "aperture",
-    "siebgröße",
-    "sieböffnung",
-    "korngröße",
-    "korndurchmesser",
-    "maschenweite",
-    "tamis",
-    "ouverture",
-    "diamètre",
-    "diametre",
-    "tamiz",
-    "abertura",
-    "particle",
-    "phi",
-    "φ",
-    "screen",
-    "mesh",
-    "sieves",
-    "sizes",
-    "korndurchm",
-    "siebweite",
-    "um",
-    "µm",
-    "μm",
-    "micron",
-    "microns",
-    "grain",
-    "grains",
-    "größe",
-    "grösse",
-    "korn",
-    "sieb",
-    "malla",
-    "maille",
-    "dia",
-    "diam",
-    "apertura",
-    "luz",
-    "zeef",
-];
+const FINER: [&str; 24] = list(
+    "percent|finer|passing|pct|percentage|pass|cumulative|smaller|durchgang|siebdurchgang|passant|\
+     passants|tamisat|pasa|pasante|passed|massendurchgang|perp|undersize|massenanteil|doorval|\
+     przesiew|passa|passing%",
+);
+const RETAINED: [&str; 14] = list(
+    "retained|coarser|rückstand|siebrückstand|rueckstand|refus|retenido|retenu|oversize|retain|ret|\
+     rest|zeefrest|trattenuto",
+);
+const SIZE: [&str; 46] = list(
+    "opening|size|sieve|diameter|mm|d|openings|aperture|siebgröße|sieböffnung|korngröße|\
+     korndurchmesser|maschenweite|tamis|ouverture|diamètre|diametre|tamiz|abertura|particle|phi|φ|\
+     screen|mesh|sieves|sizes|korndurchm|siebweite|um|µm|μm|micron|microns|grain|grains|größe|grösse|\
+     korn|sieb|malla|maille|dia|diam|apertura|luz|zeef",
+);
 const MASS: [&str; 11] =
     ["mass", "weight", "masse", "gewicht", "wt", "peso", "g", "gram", "grams", "kg", "grammes"];
 const GRAMS: [&str; 5] = ["g", "gram", "grams", "kg", "grammes"];
@@ -127,10 +49,6 @@ const INDIVIDUAL: [&str; 8] = ["individual", "each", "single", "partial", "on", 
 /// Words of a column's name, in small letters.
 pub(super) fn words(name: &str) -> Vec<String> {
     name.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).map(str::to_lowercase).collect()
-}
-
-fn any(words: &[String], list: &[&str]) -> bool {
-    words.iter().any(|word| list.contains(&word.as_str()))
 }
 
 /// True if a heading says cumulative. `of total`, `total mass`, `total sample` name only the whole of the
@@ -179,7 +97,6 @@ fn is_letter_of_sample(name: &str, words: &[String], letter: &str) -> bool {
     !(is_bracketed || is_alone || letter == "g" && is_weighed)
 }
 
-/// True if a heading names a unit of length.
 fn is_length(name: &str) -> bool {
     matches!(unit(name), Ok(Some(Unit::Mm | Unit::Micrometre | Unit::Cm | Unit::Inch)))
 }
@@ -187,76 +104,29 @@ fn is_length(name: &str) -> bool {
 /// True if a text says that a table goes on from the finest sieve: a hydrometer or another sedimentation
 /// test.
 pub(super) fn says_sedimentation(text: &str) -> bool {
-    const STEMS: [&str; 10] = [
-        "hydrom",
-        "sediment",
-        "sédiment",
-        "areom",
-        "aräom",
-        "aréom",
-        "schlämm",
-        "schlaemm",
-        "densim",
-        "pipette",
-    ];
+    const STEMS: [&str; 10] =
+        list("hydrom|sediment|sédiment|areom|aräom|aréom|schlämm|schlaemm|densim|pipette");
     words(text).iter().any(|word| STEMS.iter().any(|stem| word.starts_with(stem)))
 }
 
-/// True if the name of a soil says that it is the mean of others.
 pub(super) fn says_mean(name: &str) -> bool {
-    const MEAN: [&str; 12] = [
-        "average",
-        "avg",
-        "ave",
-        "mean",
-        "mittel",
-        "mittelwert",
-        "moyenne",
-        "media",
-        "promedio",
-        "média",
-        "gemiddelde",
-        "średnia",
-    ];
+    const MEAN: [&str; 12] =
+        list("average|avg|ave|mean|mittel|mittelwert|moyenne|media|promedio|média|gemiddelde|średnia");
     any(&words(name), &MEAN)
 }
 
-/// True if the name of a soil says that it is a limit of others.
 pub(super) fn says_limit(name: &str) -> bool {
-    const LIMIT: [&str; 10] = [
-        "min",
-        "max",
-        "minimum",
-        "maximum",
-        "limit",
-        "limits",
-        "mínimo",
-        "máximo",
-        "untergrenze",
-        "obergrenze",
-    ];
+    const LIMIT: [&str; 10] =
+        list("min|max|minimum|maximum|limit|limits|mínimo|máximo|untergrenze|obergrenze");
     any(&words(name), &LIMIT)
 }
 
 /// `Sample no.`, `Borehole:`: words before the name of a soil.
 pub(super) fn says_sample(text: &str) -> bool {
-    const SAMPLE: [&str; 15] = [
-        "sample",
-        "samples",
-        "specimen",
-        "soil",
-        "material",
-        "probe",
-        "borehole",
-        "boring",
-        "bohrung",
-        "name",
-        "échantillon",
-        "echantillon",
-        "muestra",
-        "pit",
-        "source",
-    ];
+    const SAMPLE: [&str; 15] = list(
+        "sample|samples|specimen|soil|material|probe|borehole|boring|bohrung|name|échantillon|\
+         echantillon|muestra|pit|source",
+    );
     any(&words(text), &SAMPLE)
 }
 
@@ -285,36 +155,11 @@ pub(super) fn says_cumulative(name: &str) -> bool {
 
 /// True for the heading of a weighing that still includes the sieve or its tare.
 pub(super) fn is_weighing(name: &str) -> bool {
-    const TARE: [&str; 14] = [
-        "tare",
-        "gross",
-        "empty",
-        "tara",
-        "brutto",
-        "bruto",
-        "container",
-        "dish",
-        "leer",
-        "leeres",
-        "vide",
-        "vacío",
-        "vacio",
-        "vuoto",
-    ];
+    const TARE: [&str; 14] =
+        list("tare|gross|empty|tara|brutto|bruto|container|dish|leer|leeres|vide|vacío|vacio|vuoto");
     const AND: [&str; 10] = ["and", "with", "plus", "und", "mit", "et", "avec", "y", "con", "com"];
-    const SOIL: [&str; 11] = [
-        "soil",
-        "sample",
-        "material",
-        "boden",
-        "probe",
-        "sol",
-        "échantillon",
-        "suelo",
-        "muestra",
-        "solo",
-        "retained",
-    ];
+    const SOIL: [&str; 11] =
+        list("soil|sample|material|boden|probe|sol|échantillon|suelo|muestra|solo|retained");
     let words = words_of_column(name);
     let has_unit = !matches!(unit(name), Ok(None | Some(Unit::SieveNumber)) | Err(()));
     let (size, mass) = (any(&words, &SIZE) || say_size(&words), any(&words, &MASS));
@@ -325,7 +170,6 @@ pub(super) fn is_weighing(name: &str) -> bool {
             || size && !any(&words, &RETAINED) && !say_retained(&words))
 }
 
-/// Content of a column of this name.
 pub(super) fn role(name: &str) -> Role {
     let words = words_of_column(name);
     if is_characteristic(&words) {
@@ -425,43 +269,22 @@ mod tests {
     #[test]
     fn headings_are_told_apart() {
         let retained = |percent, cumulative| Role::Retained(Retained { percent, cumulative });
-        for (name, expected) in [
-            ("opening_mm", Role::Size),
-            ("Sieve No.", Role::Size),
-            ("D (µm)", Role::Size),
-            ("% passing", Role::Finer),
-            ("percent finer by mass", Role::Finer),
-            ("Durchgang", Role::Finer),
-            ("Fraction finer", Role::Finer),
-            ("Mass retained (g)", retained(false, None)),
-            ("Mass (g)", retained(false, None)),
-            ("Retained on each sieve, g", retained(false, Some(false))),
-            ("% retained", retained(true, None)),
-            ("Cumulative % retained", retained(true, Some(true))),
-            ("Cum. mass retained", retained(false, Some(true))),
-            ("Total % retained", retained(true, Some(true))),
-            ("Retained, % of total", retained(true, None)),
-            ("% of the total sample retained", retained(true, None)),
-            ("Cumulative % of total retained", retained(true, Some(true))),
-            ("Retained on (mm)", Role::Size),
-            ("Passing, mm", Role::Size),
-            ("Passing, %", Role::Finer),
-            ("percent coarser", retained(true, Some(true))),
-            ("Filter A", Role::Other),
-            ("D10 (mm)", Role::Other),
-            ("D 60, mm", Role::Other),
-            ("D (mm)", Role::Size),
-            ("Mass of sieve (g)", Role::Other),
-            ("Soil D (g)", retained(false, None)),
-            ("Sample D", Role::Other),
-            ("Zone G", Role::Other),
-            ("Filter D (%)", Role::Finer),
-            ("D, mm", Role::Size),
-            ("D", Role::Size),
-            ("Individual, g", retained(false, Some(false))),
-            ("Weight g", retained(false, None)),
+        for (expected, names) in [
+            (Role::Size, "opening_mm|Sieve No.|D (µm)|Retained on (mm)|Passing, mm|D (mm)|D, mm|D"),
+            (Role::Finer, "% passing|percent finer by mass|Durchgang|Fraction finer|Passing, %|Filter D (%)"),
+            (retained(false, None), "Mass retained (g)|Mass (g)|Soil D (g)|Weight g"),
+            (retained(false, Some(false)), "Retained on each sieve, g|Individual, g"),
+            (retained(false, Some(true)), "Cum. mass retained"),
+            (retained(true, None), "% retained|Retained, % of total|% of the total sample retained"),
+            (
+                retained(true, Some(true)),
+                "Cumulative % retained|Total % retained|Cumulative % of total retained|percent coarser",
+            ),
+            (Role::Other, "Filter A|D10 (mm)|D 60, mm|Mass of sieve (g)|Sample D|Zone G"),
         ] {
-            assert_eq!(role(name), expected, "{name}");
+            for name in names.split('|') {
+                assert_eq!(role(name), expected, "{name}");
+            }
         }
         assert_eq!(unit("opening_mm"), Ok(Some(Unit::Mm)));
         assert_eq!(unit("opening (inch)"), Ok(Some(Unit::Inch)));

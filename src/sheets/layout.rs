@@ -1,39 +1,36 @@
 //! Place of the openings in a grid with one table, and the columns that hold a soil each.
 
-use super::columns::Columns;
-use super::content::{begins_with_words, is_data, is_short_opening, is_text, is_value, percentage};
+use super::content::{
+    Column, begins_with_words, columns, is_data, is_short_opening, is_text, is_value, percentage, whole_row,
+};
 use super::grid::{Grid, GridRow};
 use super::heading::{Role, is_weighing, role, says_sample, unit, words};
-use super::size::{Opening, Unit, opening};
-use super::torn::whole_row;
+use super::size::{Opening, Unit, goes_one_way, opening};
 use voidwalk_core::gradation::{TableError, shortened};
 
-/// Most rows that titles may take.
 pub(super) const ROWS_OF_TITLES: usize = 60;
+
+/// Allowed headings of openings, in words.
+const UNITS: &str = "openings in mm (opening_mm), or in cm, um, inches or phi";
 
 /// Most places of a table, filled or empty.
 const MOST_PLACES: usize = 40_000_000;
 
-/// Places of the parts of a table.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Layout {
-    /// Column of the openings.
     pub(super) size: usize,
     /// Another column with openings or their names, for rows without an opening in the first.
     pub(super) other_size: Option<usize>,
     /// Unit that the heading gives to openings without one.
     pub(super) unit: Option<Unit>,
-    /// Columns that hold a soil each.
     pub(super) soils: Vec<SoilColumn>,
     /// Index of the row of headings.
     pub(super) at: usize,
     /// Index of the first row below the headings.
     pub(super) first: usize,
-    /// True if the table has headings.
     pub(super) headed: bool,
     /// Further columns, whose numbers agree with those read or are named in a note.
     pub(super) accounted: Vec<usize>,
-    /// Notes on assumptions and on columns left out.
     pub(super) notes: Vec<String>,
 }
 
@@ -47,7 +44,6 @@ pub(super) struct SoilColumn {
     pub(super) end: Option<End>,
 }
 
-/// An end of a range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum End {
     Least,
@@ -61,7 +57,6 @@ pub(super) fn is_heading(row: &GridRow) -> bool {
         && row.filled().any(|c| role(row.cell(c)) == Role::Size)
 }
 
-/// True if a heading says that its column holds a soil.
 pub(super) fn says_soil(row: &GridRow) -> bool {
     row.filled().any(|c| !matches!(role(row.cell(c)), Role::Size | Role::Other))
 }
@@ -74,13 +69,11 @@ pub(super) fn repeats_headings(row: &GridRow, layout: &Layout) -> bool {
         && layout.soils.iter().all(|soil| role(row.cell(soil.column)) == soil.role)
 }
 
-/// The headings of a table.
 pub(super) struct Headings {
     /// Index of the row of headings.
     pub(super) at: usize,
     /// Index of the first row below the headings and the cells that belong to them.
     pub(super) first: usize,
-    /// Text above each column.
     pub(super) heads: Vec<String>,
     pub(super) roles: Vec<Role>,
 }
@@ -125,7 +118,6 @@ fn belongs_to_heading(cell: &str) -> bool {
     !cell.contains(|c: char| c.is_ascii_digit()) || cell.starts_with(char::is_alphabetic)
 }
 
-/// Finds the table of a grid that holds one.
 pub(super) fn find(grid: &Grid) -> Result<Layout, TableError> {
     match headings(grid) {
         (Some(headings), _) => with_headings(grid, headings),
@@ -133,7 +125,6 @@ pub(super) fn find(grid: &Grid) -> Result<Layout, TableError> {
     }
 }
 
-/// Text above a column.
 pub(super) fn head(rows: &[GridRow], column: usize) -> String {
     let cells: Vec<&str> = rows.iter().map(|row| row.cell(column)).filter(|cell| !cell.is_empty()).collect();
     cells.join(" ")
@@ -156,30 +147,24 @@ fn with_headings(grid: &Grid, headings: Headings) -> Result<Layout, TableError> 
     if let Some(row) = rows.iter().find(too_wide).filter(|_| grid.sheet.is_none()) {
         return Err(fields(grid, row));
     }
-    let columns = Columns::of(rows, heads.len());
+    let columns = columns(rows, heads.len());
     let sizes = sizes(&heads, &roles, &columns);
     let Some(&size) = sizes.first() else {
         return Err(TableError::NoRows { file: grid.place(), header: true });
     };
-    let unit = unit(&heads[size]).map_err(|()| {
-        grid.refused_heading(line, &heads[size], "openings in mm (opening_mm), or in cm, um, inches or phi")
-    })?;
-    let mut layout = Layout {
-        size,
-        other_size: sizes.get(1).copied(),
-        unit,
-        soils: Vec::new(),
-        at,
-        first,
-        headed: true,
-        accounted: Vec::new(),
-        notes: Vec::new(),
-    };
+    let unit = unit(&heads[size]).map_err(|()| grid.refused_heading(line, &heads[size], UNITS))?;
+    let other_size = sizes.get(1).copied();
+    let mut layout = Layout { size, other_size, unit, at, first, headed: true, ..Layout::default() };
     let values = value_columns(&roles, &columns);
     if values.is_empty() {
         return match rows.iter().find(|row| row.filled().count() != 2) {
             Some(row) if grid.sheet.is_none() => Err(fields(grid, row)),
-            _ if heads.len() == 2 => Ok(layout.with_one(&heads)),
+            _ if heads.len() == 2 => {
+                let column = usize::from(size == 0);
+                let heading = heads[column].clone();
+                layout.soils.push(SoilColumn { column, heading, role: Role::Finer, end: None });
+                Ok(layout)
+            }
             _ => Err(TableError::NoRows { file: grid.place(), header: true }),
         };
     }
@@ -202,7 +187,7 @@ fn with_headings(grid: &Grid, headings: Headings) -> Result<Layout, TableError> 
             return Err(grid.refused_heading(line, &heading, "percent finer by mass (percent_finer)"));
         }
         let soil = SoilColumn { column, heading, role, end: None };
-        if columns.with_ranges[column] && !matches!(role, Role::Retained(_)) {
+        if columns[column].with_ranges && !matches!(role, Role::Retained(_)) {
             for (end, word) in [(End::Least, "min"), (End::Most, "max")] {
                 let heading = format!("{} {word}", soil.heading).trim().to_owned();
                 layout.soils.push(SoilColumn { heading, end: Some(end), ..soil.clone() });
@@ -213,19 +198,19 @@ fn with_headings(grid: &Grid, headings: Headings) -> Result<Layout, TableError> 
     }
     let is_used = |c: &usize| values.binary_search(c).is_ok() || sizes.contains(c);
     layout.accounted =
-        (0..columns.with_values.len()).filter(|&c| columns.with_values[c]).filter(|c| !is_used(c)).collect();
+        (0..columns.len()).filter(|&c| columns[c].with_values).filter(|c| !is_used(c)).collect();
     layout.notes.extend(not_used(grid, &heads, &layout.accounted));
     Ok(layout)
 }
 
 /// Columns of openings or of their names; the one to be read comes first.
-fn sizes(heads: &[String], roles: &[Role], columns: &Columns) -> Vec<usize> {
+fn sizes(heads: &[String], roles: &[Role], columns: &[Column]) -> Vec<usize> {
     let mut sizes: Vec<usize> = (0..heads.len()).filter(|&c| roles[c] == Role::Size).collect();
     let rank = |c: usize| match unit(&heads[c]) {
         Ok(Some(Unit::Mm)) => 0,
         Ok(Some(Unit::Micrometre | Unit::Cm | Unit::Phi)) => 1,
         Ok(Some(Unit::Inch)) => 2,
-        Ok(None) if columns.with_numbers[c] => 3,
+        Ok(None) if columns[c].with_numbers => 3,
         _ => 4,
     };
     sizes.sort_by_key(|&c| rank(c));
@@ -233,9 +218,9 @@ fn sizes(heads: &[String], roles: &[Role], columns: &Columns) -> Vec<usize> {
 }
 
 /// Columns that are read as soils: percents finer, or else retained, or else the other numbers.
-fn value_columns(roles: &[Role], columns: &Columns) -> Vec<usize> {
+fn value_columns(roles: &[Role], columns: &[Column]) -> Vec<usize> {
     let with_values = |wanted: &dyn Fn(usize) -> bool| -> Vec<usize> {
-        (0..roles.len()).filter(|&c| columns.with_values[c] && wanted(c)).collect()
+        (0..roles.len()).filter(|&c| columns[c].with_values && wanted(c)).collect()
     };
     let retained = |percent: bool, cumulative: bool| {
         with_values(&|c| match roles[c] {
@@ -249,7 +234,7 @@ fn value_columns(roles: &[Role], columns: &Columns) -> Vec<usize> {
         retained(true, false),
         retained(false, true),
         retained(false, false),
-        with_values(&|c| roles[c] == Role::Other && columns.mostly_values[c]),
+        with_values(&|c| roles[c] == Role::Other && columns[c].balance > 0),
     ]
     .into_iter()
     .find(|columns| !columns.is_empty())
@@ -261,12 +246,12 @@ fn value_columns(roles: &[Role], columns: &Columns) -> Vec<usize> {
 fn refuse_unnamed_openings(
     grid: &Grid,
     heads: &[String],
-    columns: &Columns,
+    columns: &[Column],
     first: usize,
     [left, right]: [usize; 2],
 ) -> Result<(), TableError> {
     let rows = &grid.rows[first..];
-    let Some(column) = (left + 1..right).rev().find(|&c| columns.with_values[c]) else { return Ok(()) };
+    let Some(column) = (left + 1..right).rev().find(|&c| columns[c].with_values) else { return Ok(()) };
     if role(&heads[column]) != Role::Other {
         return Ok(());
     }
@@ -278,8 +263,7 @@ fn refuse_unnamed_openings(
             _ => None,
         })
         .collect();
-    let one_way = sizes.windows(2).all(|w| w[0] > w[1]) || sizes.windows(2).all(|w| w[0] < w[1]);
-    if sizes.len() < 2 || !one_way {
+    if sizes.len() < 2 || !goes_one_way(&sizes) {
         return Ok(());
     }
     let allowed = "a heading that says what these numbers are: openings (such as Sieve (mm)) for the \
@@ -352,20 +336,6 @@ fn is_sample_d(heads: &[String], roles: &[Role], column: usize) -> bool {
         && (is(column - 1, "c") || is(column + 1, "e"))
 }
 
-impl Layout {
-    /// Keeps the one column besides the openings as the only soil.
-    fn with_one(mut self, heads: &[String]) -> Layout {
-        let column = usize::from(self.size == 0);
-        let heading = heads[column].clone();
-        self.soils.push(SoilColumn { column, heading, role: Role::Finer, end: None });
-        self
-    }
-}
-
-fn is_number(cell: &str) -> bool {
-    percentage(cell).is_some()
-}
-
 /// Layout of a table whose openings no row names: the first row of numbers begins it, and places decide the
 /// rest.
 fn without_headings(grid: &Grid, data: Option<usize>) -> Result<Layout, TableError> {
@@ -378,7 +348,9 @@ fn without_headings(grid: &Grid, data: Option<usize>) -> Result<Layout, TableErr
         // Titles hold numbers too; a title can be taken for a broken row only if it has two cells.
         (Some(start), Some(data))
             if grid.rows[start..data].iter().all(|row| {
-                row.filled().count() == 1 && !is_number(row.cell(0)) && whole_row(row, false).is_none()
+                row.filled().count() == 1
+                    && percentage(row.cell(0)).is_none()
+                    && whole_row(row, false).is_none()
             }) =>
         {
             data
@@ -403,7 +375,9 @@ fn without_headings(grid: &Grid, data: Option<usize>) -> Result<Layout, TableErr
             let percent = role(&head(a)) == Role::Finer && role(&head(b)) != Role::Finer;
             if percent { (b, None, a) } else { (a, None, b) }
         }
-        [a, b, c] if !is_number(first_row.cell(a)) && opening(first_row.cell(a)).is_some() => (b, Some(a), c),
+        [a, b, c] if percentage(first_row.cell(a)).is_none() && opening(first_row.cell(a)).is_some() => {
+            (b, Some(a), c)
+        }
         _ => return Err(fields(grid, first_row)),
     };
     let most = columns.len();
@@ -415,17 +389,11 @@ fn without_headings(grid: &Grid, data: Option<usize>) -> Result<Layout, TableErr
     }
     let stated = role(&head(value));
     let role = if matches!(stated, Role::Retained(_)) { stated } else { Role::Finer };
-    let unit = unit(&head(size)).map_err(|()| {
-        grid.refused_heading(
-            grid.rows[start - 1].line,
-            &head(size),
-            "openings in mm (opening_mm), or in cm, um, inches or phi",
-        )
-    })?;
+    let unit = unit(&head(size))
+        .map_err(|()| grid.refused_heading(grid.rows[start - 1].line, &head(size), UNITS))?;
     let soils = vec![SoilColumn { column: value, heading: head(value), role, end: None }];
     let (headed, at) = (headings.is_some(), start.saturating_sub(1));
-    let (accounted, notes) = (Vec::new(), Vec::new());
-    Ok(Layout { size, other_size: other, unit, soils, at, first: start, headed, accounted, notes })
+    Ok(Layout { size, other_size: other, unit, soils, at, first: start, headed, ..Layout::default() })
 }
 
 /// Error for a row whose number of cells differs from the table's number of columns.

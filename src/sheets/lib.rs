@@ -1,60 +1,37 @@
-//! Soils as laboratories write them down: from the bytes of a file to tables of openings and percents finer.
+//! Soils as laboratories write them down: from the bytes of a file to tables of openings and percents
+//! finer.
 //!
-//! Bytes become text or sheets (`text`, `csv`; `workbook` with `xlsx` and `ods`, their `runs` and `literals`;
-//! `ags`). Text and sheets become rows of cells (`grid`), which are cut into parts with one table each
-//! (`blocks`, `tidy`; `across` turns a table that lies on its side, by `heads` and `labels`). In each part
-//! the table is located (`layout`, by `heading` and `languages`; `extent` gives its end) and read (`points`,
-//! `size`, `units`, `stated`, `roles`, `retained`). A table that continues another is joined to it
-//! (`joined`); `names` names the soils. `read` runs all steps. An assumption about something that the file
-//! does not spell out becomes a note; an ambiguity is refused.
+//! Bytes become text (`text`, `ags`) or sheets (`workbook`, with `xlsx` and `ods`). Both become rows of
+//! cells (`grid`), which are cut into parts with one table each (`blocks`; `across` turns a table that
+//! lies on its side). In each part the table is located (`layout`, by `heading` and `languages`;
+//! `extent` gives its end) and read (`points`, `size`, `units`, `roles`, `retained`). `names` joins a
+//! table that continues another and names the soils. `read` runs all steps. An assumption about
+//! something that the file does not spell out becomes a note; an ambiguity is refused. A function that
+//! reads a file has the errors of [`read_gradation`].
 
-mod account;
 mod across;
-mod agreement;
 mod ags;
 mod blocks;
-mod bounds;
-mod cells;
-mod columns;
-mod commas;
 mod content;
-mod contradiction;
-mod csv;
 mod extent;
 mod grid;
 mod heading;
-mod heads;
-mod joined;
-mod labels;
 mod languages;
 mod layout;
-mod lines;
-mod literals;
-mod marks;
 mod names;
 mod ods;
 mod points;
 mod read;
 mod retained;
 mod roles;
-mod runs;
-mod samples;
 mod size;
-mod stated;
-mod summary;
-mod table;
+mod soil;
 mod text;
-mod tidy;
-mod torn;
 mod units;
 mod workbook;
 mod xlsx;
-mod zipped;
 
-pub use read::{
-    curves_in_file, file_and_soil, notes_in_file, parse_gradation, read_gradation, soils_in_file,
-};
-pub use samples::{SoilSample, envelope_in, named_soils_in, samples_in};
+pub use read::{SoilSample, curves_in_file, envelope_in, file_and_soil, named_soils_in, notes_in_file};
+pub use read::{parse_gradation, read_gradation, samples_in, soils_in_file};
 pub use size::us_sieve;
-pub use summary::SoilSummary;
-pub use table::Soil;
+pub use soil::{Soil, SoilSummary};

@@ -1,21 +1,17 @@
 //! Sheets of OpenDocument: `content.xml`.
 
-use std::collections::{HashMap, HashSet};
-
+use super::grid::Grid;
+use super::workbook::{
+    Budget, Cells, Kind, Runs, Zipped, around, as_shown, attribute, characters, tidy, too_large, unreadable,
+};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
-
-use super::cells::{Budget, Cells, tidy};
-use super::grid::Grid;
-use super::literals::{around, as_shown};
-use super::runs::{Kind, Runs};
-use super::zipped::{Zipped, attribute, characters, too_large, unreadable};
+use std::collections::{HashMap, HashSet};
 use voidwalk_core::gradation::TableError;
 
 /// Most equal cells or rows that one filled cell or row may repeat.
 const MOST_REPEATS: usize = 1000;
 
-/// Reads the sheets.
 pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, TableError> {
     let text = zipped.text("content.xml")?;
     let mut reader = Reader::from_str(&text);

@@ -1,21 +1,18 @@
 //! Conversion of a column of a table to openings in mm and percents finer.
 
-use std::collections::HashMap;
-
-use super::content::{bound, is_blank, is_date, is_value, is_words, percentage, range};
-use super::extent::Extent;
-use super::grid::Grid;
+use super::content::{bound, is_blank, is_date, is_value, is_words, percentage, range, refuse_short};
+use super::extent::{Extent, check_commas, refuse_lost};
+use super::grid::{Grid, listed};
 use super::heading::Role;
 use super::layout::{End, Layout, SoilColumn, fields};
-use super::lines::listed;
-use super::marks::unmarked;
-use super::retained::{Weighed, percents_finer, says_fraction, says_percent};
-use super::size::{Entry, Form, Opening, Unit, opening};
-use super::table::{Kind, Soil};
-use super::{account, commas, contradiction, roles, torn, units};
-use voidwalk_core::gradation::FIELDS;
-use voidwalk_core::gradation::TableError;
-use voidwalk_core::gradation::{Row, allowed_percent, allowed_size, percent_is_allowed, size_is_allowed};
+use super::retained::{Weighed, percents_finer, refuse_contradiction, says_fraction, says_percent};
+use super::size::{Entry, Form, Opening, Unit, opening, unmarked};
+use super::soil::{Kind, Soil};
+use super::{roles, units};
+use std::collections::HashMap;
+use voidwalk_core::gradation::{
+    FIELDS, Row, TableError, allowed_percent, allowed_size, percent_is_allowed, size_is_allowed,
+};
 
 /// Percents from here on at the coarsest size are 100 % rounded by a laboratory.
 const ALL_PERCENT: f64 = 99.9;
@@ -23,18 +20,15 @@ const ALL_PERCENT: f64 = 99.9;
 const LEAST_BOUND: f64 = 1.0;
 
 /// Soils of a table, column by column.
-///
-/// # Errors
-/// Rows, openings or numbers that do not fit a table, whichever soil is read.
 pub(super) fn soils(grid: &Grid, layout: &Layout) -> Result<Vec<Result<Soil, TableError>>, TableError> {
     let extent = Extent::of(grid, layout)?;
     let last = last_column(grid, layout, &extent);
     for row in extent.rows(grid, layout) {
-        torn::refuse_short(grid, row, row.cell(extent.column_of_size(layout, row)), last)?;
+        refuse_short(grid, row, row.cell(extent.column_of_size(layout, row)), last)?;
     }
     let soils: Vec<_> = layout.soils.iter().map(|column| soil(grid, layout, &extent, column)).collect();
-    contradiction::refuse(grid, layout, &extent, &soils)?;
-    account::refuse_lost(grid, layout, &extent, &soils)?;
+    refuse_contradiction(grid, layout, &extent, &soils)?;
+    refuse_lost(grid, layout, &extent, &soils)?;
     Ok(soils)
 }
 
@@ -51,28 +45,24 @@ fn last_column(grid: &Grid, layout: &Layout, extent: &Extent) -> usize {
     values.iter().rposition(|&n| 2 * n > rows).unwrap_or(0).max(layout.size).max(first)
 }
 
-/// The soil in one column of a grid.
 fn soil(grid: &Grid, layout: &Layout, extent: &Extent, column: &SoilColumn) -> Result<Soil, TableError> {
     let mut notes = grid.notes.clone();
     notes.extend(layout.notes.iter().chain(&extent.notes).cloned());
     let (mut entries, missing) = entries(grid, layout, extent, column, &mut notes)?;
     let unit = units::of_bare(grid, layout, column.role, &entries, &mut notes)?;
     for entry in &mut entries {
+        let own = if entry.form == Form::Plain { unit } else { Unit::Mm };
         entry.opening = match entry.opening {
             Opening::Bare(value) => in_mm(grid, entry, value, unit)?,
             Opening::Mm(mm) => in_mm(grid, entry, mm, Unit::Mm)?,
-            Opening::Below(value) => {
-                let unit = if entry.form == Form::Plain { unit } else { Unit::Mm };
-                match in_mm(grid, entry, value, unit)? {
-                    Opening::Mm(mm) => Opening::Below(mm),
-                    other => other,
-                }
-            }
+            Opening::Below(value) => match in_mm(grid, entry, value, own)? {
+                Opening::Mm(mm) => Opening::Below(mm),
+                other => other,
+            },
             Opening::Class(one, other) => {
-                let unit = if entry.form == Form::Plain { unit } else { Unit::Mm };
                 let mm = |value: f64| match value {
                     f64::INFINITY => Ok(value),
-                    value => match in_mm(grid, entry, value, unit)? {
+                    value => match in_mm(grid, entry, value, own)? {
                         Opening::Mm(mm) => Ok(mm),
                         _ => Ok(0.0),
                     },
@@ -87,10 +77,8 @@ fn soil(grid: &Grid, layout: &Layout, extent: &Extent, column: &SoilColumn) -> R
     let role = roles::settle(grid, layout, column, &mut entries, &mut notes)?;
     let mut rows = match role {
         Role::Retained(retained) => {
-            let below = &extent.below;
-            let heading = &column.heading;
-            let at = column.column;
-            let weighed = Weighed { grid, column: at, heading, retained, below, missing: &missing };
+            let (heading, column, below) = (&*column.heading, column.column, &*extent.below);
+            let weighed = Weighed { grid, column, heading, retained, below, missing: &missing };
             weighed.scale_fractions(&mut entries, &mut notes)?;
             percents_finer(&weighed, &entries, &mut notes)?
         }
@@ -132,7 +120,6 @@ fn entries(
     column: &SoilColumn,
     notes: &mut Vec<String>,
 ) -> Result<(Vec<Entry>, Vec<usize>), TableError> {
-    let single = layout.soils.len() == 1;
     let retained = matches!(column.role, Role::Retained(_));
     let (mut entries, mut without, mut missing) = (Vec::new(), Vec::new(), Vec::new());
     let mut marked: Option<String> = None;
@@ -155,7 +142,7 @@ fn entries(
                     continue;
                 }
                 Some((Opening::Pan | Opening::Total, _)) => continue,
-                None if size.is_empty() && !single => continue,
+                None if size.is_empty() && layout.soils.len() > 1 => continue,
                 _ => {}
             }
         }
@@ -173,7 +160,6 @@ fn entries(
         if matches!(opening, Opening::Bare(value) if !value.is_finite()) {
             return Err(grid.refused(line, at, FIELDS[0], size, allowed_size()));
         }
-        let allowed = if retained { "a number from 0".to_owned() } else { allowed_percent() };
         let of_range = |(least, most): (f64, f64)| if column.end == Some(End::Least) { least } else { most };
         let bound = bound(value).filter(|_| !retained);
         if let Some(most) = bound.filter(|&most| most > LEAST_BOUND) {
@@ -194,6 +180,7 @@ fn entries(
         let number =
             value_read.filter(|&v| if retained { v >= 0.0 && v.is_finite() } else { percent_is_allowed(v) });
         let Some(number) = number else {
+            let allowed = if retained { "a number from 0".to_owned() } else { allowed_percent() };
             return Err(grid.refused(line, column.column, FIELDS[1], value, allowed));
         };
         match value.contains('%') {
@@ -216,19 +203,14 @@ fn entries(
         ));
     }
     notes.extend(marked.map(|cell| format!("marks of footnotes, as in {cell}, left out")));
-    commas::check(grid, layout, extent, column, notes)?;
+    check_commas(grid, layout, extent, column, notes)?;
     Ok((entries, missing))
 }
 
 /// Text on the allowed forms of an opening; spreadsheets turn `3/8` into a date.
 fn allowed_opening(text: &str) -> String {
-    match is_date(text) {
-        true => {
-            "an opening; this is a date, into which spreadsheets turn fractions such as 3/8: write 3/8 in"
-                .into()
-        }
-        false => allowed_size(),
-    }
+    let date = "an opening; this is a date, into which spreadsheets turn fractions such as 3/8: write 3/8 in";
+    if is_date(text) { date.into() } else { allowed_size() }
 }
 
 fn in_mm(grid: &Grid, entry: &Entry, value: f64, unit: Unit) -> Result<Opening, TableError> {
@@ -285,9 +267,8 @@ fn finer(
     let falls = |rows: &[Row]| rows.is_sorted_by(|a, b| a.size >= b.size);
     let rises = rows.is_sorted_by(|a, b| a.size <= b.size);
     if !falls(&rows) && !rises && entries.iter().all(|entry| entry.form > Form::Plain) {
-        notes.push(
-            "rows in no order of their sizes, each with its unit or the name of its sieve, sorted".into(),
-        );
+        let note = "rows in no order of their sizes, each with its unit or the name of its sieve, sorted";
+        notes.push(note.into());
         rows.sort_by(|a, b| b.size.total_cmp(&a.size));
     }
     Ok(rows)

@@ -1,23 +1,20 @@
-//! The way from a file to its soils.
-
-use std::collections::{HashMap, HashSet};
-use std::path::{Path, PathBuf};
+//! The way from a file to its soils, and from many files to samples.
 
 use super::blocks::Block;
-use super::grid::Grid;
-use super::heading::{Role, says_mean};
-use super::joined::Read;
+use super::content::whole_row;
+use super::grid::{Grid, names_listed};
+use super::heading::{Role, says_limit, says_mean};
 use super::layout::{Layout, SoilColumn};
-use super::lines::names_listed;
-use super::stated::states_unit;
-use super::summary::SoilSummary;
-use super::table::Soil;
-use super::torn::whole_row;
-use super::units::TAKEN_AS_MM;
-use super::{ags, blocks, bounds, csv, joined, names, points, text, workbook};
-use voidwalk_core::gradation::Gradation;
-use voidwalk_core::gradation::{FILE_LIMIT_BYTES, bytes_of};
-use voidwalk_core::gradation::{GradationError, TableError, letters, shortened};
+use super::names::Read;
+use super::soil::{Soil, SoilSummary};
+use super::units::{TAKEN_AS_MM, states_unit};
+use super::workbook::{Zipped, unreadable};
+use super::{ags, blocks, names, ods, points, roles, text, xlsx};
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+use voidwalk_core::gradation::{
+    FILE_LIMIT_BYTES, Gradation, GradationError, TableError, bytes_of, letters, shortened,
+};
 use voidwalk_core::text::plain;
 
 impl Soil {
@@ -85,7 +82,7 @@ fn tables(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, 
     if bytes.len() as u64 > FILE_LIMIT_BYTES {
         return Err(TableError::TooLarge { file: file.into(), limit: FILE_LIMIT_BYTES });
     }
-    if workbook::is_zip(bytes) {
+    if is_zip(bytes) {
         return of_workbook(file, bytes, wanted);
     }
     let (text, note) = text::decoded(file, bytes)?;
@@ -93,8 +90,8 @@ fn tables(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, 
         return of_ags(ags::soils(file, &text)?);
     }
     let mut refusal = None;
-    for delimiter in csv::separators(&text) {
-        let mut grid = csv::grid(file, &text, delimiter);
+    for delimiter in text::separators(&text) {
+        let mut grid = text::grid(file, &text, delimiter);
         grid.notes.extend(note.clone());
         if grid.rows.is_empty() {
             return Err(TableError::NoRows { file: file.into(), header: false });
@@ -141,7 +138,7 @@ fn of_ags(tables: Vec<(String, Grid, Layout)>) -> Result<Vec<Named>, TableError>
 /// if it was asked for by name, its error is returned.
 fn of_workbook(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, TableError> {
     let (mut soils, mut refusals) = (Vec::new(), Vec::new());
-    let sheets = workbook::sheets(file, bytes)?;
+    let sheets = sheets(file, bytes)?;
     if sheets.is_empty() {
         return Err(TableError::NoRows { file: file.into(), header: false });
     }
@@ -189,7 +186,6 @@ fn is_named(names: &[String], wanted: &str) -> bool {
     names.iter().any(|name| folded(name) == folded(wanted))
 }
 
-/// Soils of one grid.
 fn soils_of(grid: Grid) -> Result<Vec<Named>, TableError> {
     let mut blocks = blocks::blocks(grid)?;
     let several = blocks.len() > 1;
@@ -197,11 +193,11 @@ fn soils_of(grid: Grid) -> Result<Vec<Named>, TableError> {
     let titles = if several { names::titles(&blocks) } else { vec![String::new(); blocks.len()] };
     let read = |(mut block, title): (Block, String)| {
         let title = block.sample.take().unwrap_or(title);
-        bounds::settle(&mut block.grid, &mut block.layout)?;
+        roles::settle_bounds(&mut block.grid, &mut block.layout)?;
         let soils = points::soils(&block.grid, &block.layout)?;
         Ok(Read { block, title, soils })
     };
-    let tables = joined::joined(blocks.into_iter().zip(titles).map(read).collect::<Result<_, _>>()?)?;
+    let tables = names::joined(blocks.into_iter().zip(titles).map(read).collect::<Result<_, _>>()?)?;
     Ok(named(tables))
 }
 
@@ -290,33 +286,24 @@ fn samples_of_file(path: &Path) -> Result<Vec<Soil>, GradationError> {
 }
 
 /// Summaries of the soils of a file, or of the one that `path` names after a `#`.
-///
-/// # Errors
-/// Errors of [`read_gradation`], for each soil.
 pub fn soils_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<SoilSummary>, GradationError> {
     samples_of_file(path)?.iter().map(|soil| SoilSummary::of(soil, d0_mm)).collect()
 }
 
 /// Names and sieve curves of the soils of a file, or of the one that `path` names after a `#`.
-///
-/// # Errors
-/// Errors of [`read_gradation`], for each soil.
 pub fn curves_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<(String, Gradation)>, GradationError> {
     let named = |soil: &Soil| Ok((soil.name.clone(), soil.gradation(d0_mm)?));
     samples_of_file(path)?.iter().map(named).collect()
 }
 
 /// Curves as in [`curves_in_file`], with those of soils that are no samples.
-pub(super) fn all_in_file(path: &Path) -> Result<Vec<(String, Gradation)>, GradationError> {
+fn all_in_file(path: &Path) -> Result<Vec<(String, Gradation)>, GradationError> {
     let named = |soil: &Soil| Ok((soil.name.clone(), soil.gradation(None)?));
     soils_of_file(path)?.iter().map(named).collect()
 }
 
 /// Assumptions about the soils of a file, or about the one that `path` names after a `#`, without
 /// repetitions.
-///
-/// # Errors
-/// Errors of [`read_gradation`], for each soil.
 pub fn notes_in_file(path: &Path) -> Result<Vec<String>, GradationError> {
     let mut seen = HashSet::new();
     let mut notes: Vec<String> = soils_of_file(path)?.into_iter().flat_map(|soil| soil.notes).collect();
@@ -341,9 +328,214 @@ pub fn read_gradation(path: impl AsRef<Path>, d0_mm: Option<f64>) -> Result<Grad
 }
 
 /// Reads the content of a file as [`read_gradation`] does; messages call it `name`.
-///
-/// # Errors
-/// Errors of [`read_gradation`].
 pub fn parse_gradation(name: &str, content: &[u8], d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
     Soil::one(name, content, None)?.gradation(d0_mm)
+}
+
+/// True if a file is a zip, like workbooks.
+fn is_zip(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06")
+}
+
+/// Sheets that are not empty.
+fn sheets(file: &str, bytes: &[u8]) -> Result<Vec<Grid>, TableError> {
+    let mut zipped = Zipped::open(file, bytes)?;
+    let sheets = if zipped.has("xl/workbook.xml") {
+        xlsx::sheets(file, &mut zipped)?
+    } else if zipped.has("content.xml") {
+        ods::sheets(file, &mut zipped)?
+    } else {
+        return Err(unreadable(file, "it is a zip, but no workbook (.xlsx or .ods)"));
+    };
+    Ok(sheets.into_iter().filter(|sheet| !sheet.rows.is_empty()).collect())
+}
+
+/// One of many samples.
+#[derive(Clone, Debug)]
+pub struct SoilSample {
+    /// Name of the sample: its name in the file, preceded by the file's name if a folder has several files.
+    /// The file's name includes its ending if two files of a folder differ in that alone.
+    pub name: String,
+    /// Path on a command line: `site.ags#BH1 1.50`, or the file alone if it holds no other soil.
+    pub path: PathBuf,
+    /// Sieve curve.
+    pub curve: Gradation,
+}
+
+const ENDINGS: [&str; 5] = ["csv", "txt", "xlsx", "ods", "ags"];
+
+/// Every sample of a file, or the one that `path` names after a `#`. For a folder, the samples of every table
+/// in it, file by file in the order of their names; folders within it are not searched.
+///
+/// # Errors
+/// A folder without a table; a file that cannot be read as one, with the errors of [`curves_in_file`]; limits
+/// of a specification, or the mean of others, beside the samples.
+pub fn samples_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
+    in_files(path, &|file| {
+        let curves = curves_in_file(file, None)?;
+        let names: Vec<&str> = curves.iter().map(|(name, _)| name.as_str()).collect();
+        let what = "limits, which are no samples";
+        names::ask_about(&file.display().to_string(), &names, says_limit, what)?;
+        Ok(curves)
+    })
+}
+
+/// Curves of an envelope: every soil of a file, or the one that `path` names after a `#`.
+pub fn envelope_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
+    in_file(path, &|file| curves_in_file(file, None))
+}
+
+/// Every soil of a file or a folder, like [`samples_in`], together with soils that are no samples.
+///
+/// # Errors
+/// A folder without a table; a file that cannot be read as one.
+pub fn named_soils_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
+    in_files(path, &all_in_file)
+}
+
+type Curves<'a> = &'a dyn Fn(&Path) -> Result<Vec<(String, Gradation)>, GradationError>;
+
+fn in_files(path: &Path, curves: Curves) -> Result<Vec<SoilSample>, GradationError> {
+    if !path.is_dir() {
+        return in_file(path, curves);
+    }
+    let folder = || path.display().to_string();
+    let read = |source| TableError::Read { file: folder(), source };
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(path).map_err(read)? {
+        let file = entry.map_err(read)?.path();
+        let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let is_hidden = file.file_name().unwrap_or_default().to_string_lossy().starts_with('.');
+        if file.is_file() && !is_hidden && ENDINGS.contains(&&*ending) {
+            files.push(file);
+        }
+    }
+    if files.is_empty() {
+        return Err(TableError::NoTables { folder: folder(), endings: ENDINGS.join(", .") }.into());
+    }
+    files.sort();
+    // Names that some disks and some readers take as equal count as equal.
+    let lower = |stem: &str| stem.to_lowercase();
+    let stem = |file: &PathBuf| file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let stems: Vec<String> = files.iter().map(stem).collect();
+    let mut samples = Vec::new();
+    for (file, stem) in files.iter().zip(&stems) {
+        let is_alone = stems.iter().filter(|other| lower(other) == lower(stem)).count() == 1;
+        let whole = || file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let stem = if is_alone { stem.clone() } else { whole() };
+        let of_file = in_file(file, curves)?;
+        let several = of_file.len() > 1;
+        samples.extend(of_file.into_iter().map(|sample| {
+            let name = if several { format!("{stem}/{}", sample.name) } else { stem.clone() };
+            SoilSample { name, ..sample }
+        }));
+    }
+    Ok(samples)
+}
+
+fn in_file(path: &Path, curves: Curves) -> Result<Vec<SoilSample>, GradationError> {
+    let curves = curves(path)?;
+    let several = curves.len() > 1;
+    let (file, _) = file_and_soil(path);
+    let sample = |(name, curve): (String, Gradation)| {
+        let path =
+            if several { PathBuf::from(format!("{}#{name}", file.display())) } else { path.to_owned() };
+        SoilSample { name, path, curve }
+    };
+    Ok(curves.into_iter().map(sample).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn write(folder: &Path, name: &str, text: &str) {
+        std::fs::write(folder.join(name), text).unwrap();
+    }
+
+    fn names(samples: &[SoilSample]) -> Vec<&str> {
+        samples.iter().map(|sample| sample.name.as_str()).collect()
+    }
+
+    /// Every sample is read again by its path.
+    fn read_again(samples: &[SoilSample]) {
+        for sample in samples {
+            let again = read_gradation(&sample.path, None).unwrap();
+            assert_eq!(again.d(50.0), sample.curve.d(50.0), "{}", sample.path.display());
+        }
+    }
+
+    #[test]
+    fn a_folder_has_the_samples_of_all_its_tables_in_order() {
+        let root = tempfile::tempdir().unwrap();
+        let write = |name, text| write(root.path(), name, text);
+        write("notes.md", "no table");
+        let error = |path: &Path| samples_in(path).unwrap_err().to_string();
+        assert!(error(root.path()).contains("no table in it; allowed: files of .csv"));
+        write("b.csv", "opening_mm,percent_finer\n2,100\n0.5,0\n");
+        write("a.csv", "Sieve (mm),Core,Shell\n2,100,100\n0.5,40,10\n0.1,0,0\n");
+        let samples = samples_in(root.path()).unwrap();
+        assert_eq!(names(&samples), ["a/Core", "a/Shell", "b"]);
+        read_again(&samples);
+        write("c.csv", "nothing");
+        assert!(error(root.path()).contains("c.csv"));
+    }
+
+    #[test]
+    fn means_and_limits_are_no_samples_unless_they_are_named() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("a.csv");
+        let write = |heads: &str| {
+            let rows = "2,100,100,100\n0.5,40,45,50\n0.1,2,3,4\n";
+            std::fs::write(&path, format!("Sieve (mm),{heads}\n{rows}")).unwrap();
+        };
+        let one = |name: &str| read_gradation(root.path().join(format!("a.csv#{name}")), None);
+        write("Min,Result,Max");
+        assert!(
+            samples_in(&path).unwrap_err().to_string().contains("limits, which are no samples: Min, Max")
+        );
+        assert_eq!(curves_in_file(&path, None).unwrap().len(), 3);
+        assert_eq!(named_soils_in(&path).unwrap().len(), 3);
+        assert_eq!(samples_in(&root.path().join("a.csv#Result")).unwrap().len(), 1);
+        write("Test 1 % passing,Average % passing,Test 2 % passing");
+        assert!(curves_in_file(&path, None).unwrap_err().to_string().contains("means, which are no samples"));
+        assert!(samples_in(&path).is_err() && named_soils_in(&path).is_ok());
+        assert_eq!(one("Average % passing").unwrap().percent_finer_if_known(0.5), Some(45.0));
+        write("Upper shell,Lower shell,Core");
+        assert_eq!(samples_in(&path).unwrap().len(), 3);
+    }
+
+    #[test]
+    fn a_sample_called_d_is_no_second_column_of_openings() {
+        let root = tempfile::tempdir().unwrap();
+        let names = |text: &str| -> Vec<String> {
+            let path = root.path().join("a.csv");
+            std::fs::write(&path, text).unwrap();
+            samples_in(&path).unwrap().into_iter().map(|sample| sample.name).collect()
+        };
+        let five = "Sieve (mm),A,B,C,D,E\n2,100,100,100,100,100\n0.5,40,10,20,30,50\n0.1,0,0,0,0,0\n";
+        assert_eq!(names(five), ["A", "B", "C", "D", "E"]);
+        let four = "Sieve (mm),A,B,C,d\n2,100,100,100,100\n0.5,40,10,20,30\n0.1,0,0,0,0\n";
+        assert_eq!(names(four), ["A", "B", "C", "d"]);
+        // An ordinary column of openings.
+        assert_eq!(names("D,A,B\n2,100,100\n0.5,40,10\n0.1,0,0\n"), ["A", "B"]);
+        assert_eq!(names("D,C,E\n2,100,100\n0.5,40,10\n0.1,0,0\n"), ["C", "E"]);
+    }
+
+    /// Two files of one stem, and a `#` in the names of files and soils: every sample is read again by its
+    /// path.
+    #[test]
+    fn names_that_look_alike_are_told_apart() {
+        let root = tempfile::tempdir().unwrap();
+        let write = |name, text| write(root.path(), name, text);
+        write("a.csv", "opening_mm,percent_finer\n2,100\n0.5,0\n");
+        write("A.txt", "opening_mm,percent_finer\n4,100\n0.5,0\n");
+        write("b#1.csv", "Sieve (mm),BH#1,BH#2\n2,100,100\n0.5,40,10\n0.1,0,0\n");
+        write("c#2.csv", "opening_mm,percent_finer\n8,100\n0.5,0\n");
+        let samples = samples_in(root.path()).unwrap();
+        assert_eq!(names(&samples), ["A.txt", "a.csv", "b#1/BH#1", "b#1/BH#2", "c#2"]);
+        read_again(&samples);
+        let none = file_and_soil(&root.path().join("none.xlsx#Filter A"));
+        assert_eq!(none, (root.path().join("none.xlsx"), Some("Filter A".into())));
+    }
 }

@@ -1,13 +1,15 @@
-//! Conversion of retained values, by mass or in percent, to percent finer.
+//! Retained values, by mass or in percent: turned into percents finer, or compared with those that are read.
 
 use super::content::{is_words, percentage};
-use super::extent::Below;
-use super::grid::Grid;
-use super::heading::{Retained, Role, role, words};
+use super::extent::{Below, Extent};
+use super::grid::{Grid, GridRow};
+use super::heading::{Retained, Role, role, says_of_fines, words};
+use super::languages::list;
+use super::layout::{Layout, head};
 use super::size::{Entry, Opening, is_washed, opening};
-use voidwalk_core::gradation::FIELDS;
-use voidwalk_core::gradation::Row;
-use voidwalk_core::gradation::TableError;
+use super::soil::Soil;
+use std::collections::HashMap;
+use voidwalk_core::gradation::{FIELDS, Row, TableError};
 
 /// Percents that are weighed one by one sum to 100 within this.
 const ROUNDED: f64 = 0.6;
@@ -15,7 +17,6 @@ const ROUNDED: f64 = 0.6;
 /// Percents retained that end below this, under a heading that does not say percent, may be grams.
 const NEARLY_ALL: f64 = 95.0;
 
-/// True if a heading says percent.
 pub(super) fn says_percent(heading: &str) -> bool {
     let small = heading.to_lowercase();
     ["%", "percent", "pct", "prozent"].iter().any(|word| small.contains(word))
@@ -27,13 +28,11 @@ pub(super) fn says_fraction(heading: &str) -> bool {
     small.contains("fraction") || small.contains("ratio")
 }
 
-/// A column of retained values.
 pub(super) struct Weighed<'a> {
     pub(super) grid: &'a Grid,
     pub(super) column: usize,
     pub(super) heading: &'a str,
     pub(super) retained: Retained,
-    /// Rows below the table.
     pub(super) below: &'a [Below],
     /// Lines of openings without a value.
     pub(super) missing: &'a [usize],
@@ -90,20 +89,8 @@ impl Weighed<'_> {
         const ALL: [&str; 8] =
             ["total", "initial", "dry", "sample", "specimen", "start", "original", "before"];
         const TARE: [&str; 7] = ["tare", "container", "dish", "can", "pan", "wet", "with"];
-        const PART: [&str; 12] = [
-            "after",
-            "washed",
-            "retained",
-            "water",
-            "sieve",
-            "unit",
-            "density",
-            "subsample",
-            "passing",
-            "fines",
-            "minimum",
-            "required",
-        ];
+        const PART: [&str; 12] =
+            list("after|washed|retained|water|sieve|unit|density|subsample|passing|fines|minimum|required");
         for row in self.below.iter().chain(&self.stated()) {
             let Some((first, value)) = row.value else { continue };
             let of_row = words(&row.words);
@@ -168,7 +155,6 @@ impl Weighed<'_> {
     }
 }
 
-/// A mass with or without its unit.
 fn mass(cell: &str) -> Option<f64> {
     percentage(cell.trim_end_matches("kg").trim_end_matches('g').trim())
 }
@@ -178,7 +164,6 @@ fn tidy(sum: f64) -> f64 {
     (sum * 1e6).round() / 1e6
 }
 
-/// Rows in percent finer.
 pub(super) fn percents_finer(
     weighed: &Weighed,
     entries: &[Entry],
@@ -211,28 +196,19 @@ pub(super) fn percents_finer(
                        the whole; or a row for the total, to which all of them sum";
         return Err(weighed.grid.refused(part.line, part.column, FIELDS[0], &part.text, allowed));
     }
+    let refused_size = |&(line, size, _): &(usize, f64, f64), allowed: String| {
+        weighed.grid.refused(line, weighed.column, FIELDS[0], &size.to_string(), allowed)
+    };
     let is_turn = |w: &[(usize, f64, f64)]| (w[0].1 - w[1].1) * (w[1].1 - w[2].1) < 0.0;
     if let Some(turn) = sieves.windows(3).find(|three| is_turn(three)) {
         let allowed = "sizes all ascending or all descending";
-        return Err(weighed.grid.refused(
-            turn[2].0,
-            weighed.column,
-            FIELDS[0],
-            &turn[2].1.to_string(),
-            allowed,
-        ));
+        return Err(refused_size(&turn[2], allowed.into()));
     }
     sieves.sort_by(|a, b| b.1.total_cmp(&a.1));
     let Some(&(first_line, _, first)) = sieves.first() else { return Ok(Vec::new()) };
     if let Some(pair) = sieves.windows(2).find(|pair| pair[0].1 == pair[1].1) {
         let allowed = format!("every size once (it is also in {})", weighed.grid.row_label(pair[0].0));
-        return Err(weighed.grid.refused(
-            pair[1].0,
-            weighed.column,
-            FIELDS[0],
-            &pair[1].1.to_string(),
-            allowed,
-        ));
+        return Err(refused_size(&pair[1], allowed));
     }
     let on_sieves: f64 = sieves.iter().map(|sieve| sieve.2).sum();
     let all = on_sieves + pan.map_or(0.0, |(_, mass)| mass);
@@ -325,6 +301,106 @@ pub(super) fn percents_finer(
         ));
     }
     Ok(rows)
+}
+
+/// Percents that were rounded to whole ones differ by less than this.
+const ROUNDED_TO_WHOLE: f64 = 1.5;
+
+/// Refuses a retained column that agrees with no soil.
+pub(super) fn refuse_contradiction(
+    grid: &Grid,
+    layout: &Layout,
+    extent: &Extent,
+    soils: &[Result<Soil, TableError>],
+) -> Result<(), TableError> {
+    let read: Vec<&Soil> = soils.iter().filter_map(|soil| soil.as_ref().ok()).collect();
+    if grid.across.is_some() || !layout.headed || read.len() < soils.len() {
+        return Ok(());
+    }
+    let width = extent.rows(grid, layout).map(|row| row.cells.len()).max().unwrap_or(0);
+    for column in (0..width).filter(|&c| layout.soils.iter().all(|soil| soil.column != c)) {
+        let heading = head(&grid.rows[layout.at..layout.first], column);
+        let Role::Retained(retained) = role(&heading) else { continue };
+        if says_of_fines(&heading) {
+            continue;
+        }
+        let values: HashMap<usize, f64> = extent
+            .rows(grid, layout)
+            .filter_map(|row| Some((row.line, percentage(row.cell(column))?)))
+            .collect();
+        let is_pan = |row: &&GridRow| {
+            let size = opening(row.cell(extent.column_of_size(layout, row)));
+            matches!(size, Some((Opening::Pan | Opening::Below(_), _)))
+        };
+        let pans: Vec<usize> = extent.rows(grid, layout).filter(is_pan).map(|row| row.line).collect();
+        let percents = |soil: &&Soil| differs(soil, &values, &pans);
+        let masses = |soil: &&Soil| masses_differ(soil, &values, &pans);
+        let differing: Vec<Option<usize>> = match retained.percent {
+            true => read.iter().map(percents).collect(),
+            false => read.iter().map(masses).collect(),
+        };
+        if let Some(Some(line)) = differing.first().filter(|_| differing.iter().all(Option::is_some)) {
+            let allowed = format!(
+                "{} retained that agree with the percents in {}, or one of the two columns alone",
+                if retained.percent { "percents" } else { "masses" },
+                grid.column_label(layout.soils[0].column)
+            );
+            let value = values.get(line).map_or(String::new(), f64::to_string);
+            return Err(grid.refused(*line, column, FIELDS[1], &value, allowed));
+        }
+    }
+    Ok(())
+}
+
+/// The first line in which masses with a pan, on each sieve or cumulative, differ from the curve.
+fn masses_differ(soil: &Soil, masses: &HashMap<usize, f64>, pans: &[usize]) -> Option<usize> {
+    let mut rows: Vec<_> = soil.rows.iter().filter(|row| masses.contains_key(&row.line)).collect();
+    rows.sort_by(|a, b| b.size.total_cmp(&a.size));
+    let of_pans: Vec<f64> = pans.iter().filter_map(|line| masses.get(line).copied()).collect();
+    let finest =
+        rows.last().filter(|row| !of_pans.is_empty() && rows.len() > 1 && !pans.contains(&row.line))?;
+    let on_sieves: f64 = rows.iter().map(|row| masses[&row.line]).sum();
+    let most = masses.values().fold(0.0, |most: f64, &mass| most.max(mass));
+    let coarser = 1.0 - finest.percent / 100.0;
+    let pan = of_pans.iter().sum::<f64>();
+    // Mass washed out may be in the percents and not in the pan.
+    let whole = [on_sieves + pan, most, on_sieves / coarser, masses[&finest.line] / coarser];
+    let line_of = |(at, &whole): (usize, &f64)| {
+        let mut sum = 0.0;
+        let is_possible = whole.is_finite() && whole >= if at % 2 == 1 { most } else { on_sieves + pan };
+        rows.iter().find_map(|row| {
+            let mass = masses[&row.line];
+            sum = if at % 2 == 1 { mass } else { sum + mass };
+            let is_other = (100.0 * sum / whole - (100.0 - row.percent)).abs() > ROUNDED_TO_WHOLE;
+            (is_other || !is_possible).then_some(row.line)
+        })
+    };
+    let lines: Vec<usize> = whole.iter().enumerate().map_while(line_of).collect();
+    lines.first().copied().filter(|_| lines.len() == whole.len())
+}
+
+/// The first line in which percents retained, on each sieve or cumulative, differ from the curve.
+fn differs(soil: &Soil, retained: &HashMap<usize, f64>, pans: &[usize]) -> Option<usize> {
+    let mut rows: Vec<_> = soil.rows.iter().filter(|row| retained.contains_key(&row.line)).collect();
+    rows.sort_by(|a, b| b.size.total_cmp(&a.size));
+    let is_fraction = rows.len() > 1 && rows.iter().all(|row| retained[&row.line] <= 1.0);
+    let factor = if is_fraction { 100.0 } else { 1.0 };
+    let value = |line: usize| factor * retained[&line];
+    let cumulative =
+        rows.iter().find(|row| (value(row.line) - (100.0 - row.percent)).abs() > ROUNDED_TO_WHOLE);
+    let mut sum = 0.0;
+    let single = rows.iter().find(|row| {
+        sum += value(row.line);
+        (sum - (100.0 - row.percent)).abs() > ROUNDED_TO_WHOLE
+    });
+    let single = single.map(|row| row.line);
+    // Mass washed out is a part of the pan.
+    let of_pans: Vec<f64> = pans.iter().filter_map(|line| Some(factor * retained.get(line)?)).collect();
+    let rest = pans.first().copied().filter(|_| {
+        let finest = rows.last().filter(|row| !pans.contains(&row.line) && !of_pans.is_empty());
+        finest.is_some_and(|finest| (of_pans.iter().sum::<f64>() - finest.percent).abs() > ROUNDED_TO_WHOLE)
+    });
+    cumulative.and(single.or(rest))
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! A cell that names an opening: a number, a number with its unit, a US sieve, the pan.
 
-use super::languages::{is_pan, is_total};
-use super::marks::unmarked;
+use super::languages::{is_pan, is_total, list};
 use voidwalk_core::gradation::number;
 use voidwalk_core::schema::length::fraction;
 
@@ -66,9 +65,6 @@ const BY_INCHES: [(f64, f64); 19] = [
     (12.0, 300.0),
 ];
 
-/// Length of an inch in millimetres.
-const INCH_MM: f64 = 25.4;
-
 /// Unit of numbers that have none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unit {
@@ -77,7 +73,6 @@ pub(super) enum Unit {
     Micrometre,
     Inch,
     Phi,
-    /// Numbers of US sieves.
     SieveNumber,
 }
 
@@ -94,17 +89,14 @@ pub(super) enum Opening {
     Class(f64, f64),
     /// Mass that passed the finest sieve.
     Pan,
-    /// Sum of all rows.
     Total,
 }
 
 /// A row of the table, not yet in percent finer.
 pub(super) struct Entry {
     pub(super) line: usize,
-    /// Column of the opening.
     pub(super) column: usize,
     pub(super) opening: Opening,
-    /// Opening as written.
     pub(super) text: String,
     pub(super) form: Form,
     pub(super) value: f64,
@@ -113,26 +105,17 @@ pub(super) struct Entry {
 /// Form in which an opening was written, beyond its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Form {
-    /// A number.
     Plain,
     /// A number with a unit that is not inches.
     WithUnit,
-    /// A US sieve by its number.
     UsNumber,
-    /// Inches.
     Inches,
 }
 
 /// True if a text names mass washed out of a sample before sieving.
 pub(super) fn is_washed(text: &str) -> bool {
-    const NAMES: [&str; 6] = [
-        "fines washed out",
-        "washed out",
-        "loss by washing",
-        "loss on washing",
-        "lost by washing",
-        "washing loss",
-    ];
+    const NAMES: [&str; 6] =
+        list("fines washed out|washed out|loss by washing|loss on washing|lost by washing|washing loss");
     let small = text.to_lowercase();
     let name = small.trim_end_matches([' ', ':', '.']);
     NAMES.contains(&name.strip_suffix("(g)").unwrap_or(name).trim())
@@ -158,10 +141,7 @@ pub(super) fn opening(text: &str) -> Option<(Opening, Form)> {
     let plain = if within.contains('%') || is_unit(within) { text } else { before };
     let plain = plain.trim_end_matches([' ', ':', '.', ',']);
     const PAN: [&str; 7] = ["pan", "the pan", "bottom", "receiver", "rest", "tray", "base pan"];
-    if PAN.contains(&plain.trim_start_matches("bottom ")) || is_pan(plain) {
-        return Some((Opening::Pan, Form::Plain));
-    }
-    if is_washed(text) {
+    if PAN.contains(&plain.trim_start_matches("bottom ")) || is_pan(plain) || is_washed(text) {
         return Some((Opening::Pan, Form::Plain));
     }
     if is_sum(plain) || is_total(plain) {
@@ -216,6 +196,10 @@ const NEAR: f64 = 0.07;
 /// True if two openings (mm) belong to one sieve.
 pub(super) fn near(one: f64, other: f64) -> bool {
     (one - other).abs() <= NEAR * one.max(other)
+}
+
+pub(super) fn goes_one_way(sizes: &[f64]) -> bool {
+    sizes.is_sorted_by(|a, b| a > b) || sizes.is_sorted_by(|a, b| a < b)
 }
 
 /// Most bytes of the other name of a sieve, as `US Standard Sieve No. 4`.
@@ -341,12 +325,7 @@ pub(super) fn us_sieve_number(text: &str) -> Option<f64> {
 /// Opening (mm) of a sieve named by inches: the standard opening if the series has one.
 fn of_inches(inches: f64) -> f64 {
     let standard = BY_INCHES.iter().find(|(named, _)| (named - inches).abs() < 1e-9);
-    standard.map_or(inches * INCH_MM, |(_, mm)| *mm)
-}
-
-/// True if an opening (mm) belongs to a US sieve.
-pub(super) fn is_us_sieve(mm: f64) -> bool {
-    us_sieve(mm).is_some()
+    standard.map_or(inches * 25.4, |(_, mm)| *mm)
 }
 
 /// True if an opening (mm) that was given in inches belongs to a US sieve.
@@ -368,51 +347,57 @@ impl Unit {
     }
 }
 
+/// A number in which one sign separates thousands and the other decimals: `1,254.6`, `1.254,6`.
+pub(super) fn with_thousands(text: &str) -> Option<f64> {
+    let at = text.rfind(['.', ','])?;
+    let (whole, decimals) = (&text[..at], &text[at + 1..]);
+    let sign = if text[at..].starts_with('.') { ',' } else { '.' };
+    let is_digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    let mut groups = whole.split(sign);
+    let first =
+        groups.next().filter(|first| is_digits(first) && first.len() <= 3 && !first.starts_with('0'))?;
+    let rest: Vec<&str> = groups.collect();
+    let is_grouped = !rest.is_empty() && rest.iter().all(|group| is_digits(group) && group.len() == 3);
+    (is_grouped && is_digits(decimals))
+        .then(|| format!("{first}{}.{decimals}", rest.concat()).parse().ok())?
+}
+
+/// A cell without the mark of a footnote behind it: `0.075*`, `22.7 (1)`, `11.3 (a)`.
+pub(super) fn unmarked(cell: &str) -> &str {
+    let bare = cell.trim_end_matches(['*', '†', '‡']).trim_end();
+    let is_mark = |mark: &str| mark.len() == 1 && mark.bytes().all(|b| b.is_ascii_alphanumeric());
+    match bare.strip_suffix(')').and_then(|rest| rest.rsplit_once('(')) {
+        Some((rest, mark)) if is_mark(mark) && !rest.trim().is_empty() => rest.trim_end(),
+        _ => bare,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn openings_are_read_as_laboratories_write_them() {
-        for (text, mm) in [
-            ("No. 4", 4.75),
-            ("No.200", 0.075),
-            ("no 40", 0.425),
-            ("#200", 0.075),
-            ("# 10", 2.0),
-            ("200 mesh", 0.075),
-            ("US No. 60", 0.25),
-            ("3\"", 75.0),
-            ("1 1/2\"", 37.5),
-            ("1-1/2 in.", 37.5),
-            ("1½\"", 37.5),
-            ("¾ in", 19.0),
-            ("3/8", 9.5),
-            ("3/8 inch", 9.5),
-            ("3/8-in.", 9.5),
-            ("0.375\"", 9.5),
-            ("6 in", 152.39999999999998),
-            ("9.5 mm", 9.5),
-            ("9,5mm", 9.5),
-            ("75 µm", 0.075),
-            ("75um", 0.075),
-            ("63 microns", 0.063),
-            ("No. 4 (4.75 mm)", 4.75),
-            ("4.75 mm (No. 4)", 4.75),
-            ("No. 4 (4.76 mm)", 4.76),
-            ("No. 40 (0.42 mm)", 0.42),
-            ("425 um (0.425 mm)", 0.425),
-            ("3/4 in. (19.0 mm)", 19.0),
-            ("2 cm", 20.0),
-            ("US 4", 4.75),
-            ("US Sieve No. 200", 0.075),
-            ("US Standard Sieve 40", 0.425),
-            ("USS #200", 0.075),
-            ("Sieve 200 (US)", 0.075),
-            ("No. 200*", 0.075),
-            ("0.075 mm (1)", 0.075),
+        for (mm, texts) in [
+            (4.75, "No. 4|No. 4 (4.75 mm)|4.75 mm (No. 4)|US 4"),
+            (4.76, "No. 4 (4.76 mm)"),
+            (0.42, "No. 40 (0.42 mm)"),
+            (0.425, "no 40|425 um (0.425 mm)|US Standard Sieve 40"),
+            (0.25, "US No. 60"),
+            (0.075, "No.200|#200|200 mesh|75 µm|75um|US Sieve No. 200|USS #200"),
+            (0.075, "Sieve 200 (US)|No. 200*|0.075 mm (1)"),
+            (0.063, "63 microns"),
+            (2.0, "# 10"),
+            (75.0, "3\""),
+            (37.5, "1 1/2\"|1-1/2 in.|1½\""),
+            (19.0, "¾ in|3/4 in. (19.0 mm)"),
+            (9.5, "3/8|3/8 inch|3/8-in.|0.375\"|9.5 mm|9,5mm"),
+            (152.39999999999998, "6 in"),
+            (20.0, "2 cm"),
         ] {
-            assert_eq!(opening(text).map(|(opening, _)| opening), Some(Opening::Mm(mm)), "{text}");
+            for text in texts.split('|') {
+                assert_eq!(opening(text).map(|(opening, _)| opening), Some(Opening::Mm(mm)), "{text}");
+            }
         }
         assert_eq!(opening("0,5"), Some((Opening::Bare(0.5), Form::Plain)));
         for pan in ["Pan", "Pan (dry)", "bottom pan", "Receptáculo", "Siebpfanne:", "底盘", "受け皿"] {
@@ -430,27 +415,10 @@ mod tests {
             assert_eq!(opening(class), Some((Opening::Class(bounds.0, bounds.1), form)), "{class}");
         }
         assert_eq!(opening("< 0.075 mm"), Some((Opening::Below(0.075), Form::WithUnit)));
-        for text in [
-            "Rest (%)",
-            "US 199",
-            "2026-03-14",
-            "BH-1",
-            "No. 3",
-            "#",
-            "project no. 4",
-            "mm",
-            "sixty",
-            "3/0\"",
-            "8-Mar",
-            "1 3/2\"",
-            "x9.5 mm",
-            "No. 40 (0.245 mm)",
-            "No. 30 (0.06 mm)",
-            "0.6 mm (No. 40)",
-            "3/8 in (19 mm)",
-            "425 um (0.245 mm)",
-            "",
-        ] {
+        let all = "Rest (%)|US 199|2026-03-14|BH-1|No. 3|#|project no. 4|mm|sixty|3/0\"|8-Mar|1 3/2\"|\
+            x9.5 mm|No. 40 (0.245 mm)|No. 30 (0.06 mm)|0.6 mm (No. 40)|3/8 in (19 mm)|\
+            425 um (0.245 mm)|";
+        for text in all.split('|') {
             assert_eq!(opening(text), None, "{text}");
         }
         for (inches, mm) in BY_INCHES {
@@ -464,5 +432,21 @@ mod tests {
         assert_eq!(Unit::Phi.mm(-2.0), Some(4.0));
         assert_eq!(Unit::SieveNumber.mm(200.0), Some(0.075));
         assert_eq!(Unit::SieveNumber.mm(4.75), None);
+    }
+
+    #[test]
+    fn thousands_and_footnotes_are_told_from_numbers() {
+        assert_eq!(
+            ["1,254.6", "1.254,6", "12,345,678.9"].map(with_thousands),
+            [Some(1254.6), Some(1254.6), Some(12345678.9)]
+        );
+        assert_eq!(
+            ["1,254", "1254.6", "0,254.6", "1,25.6", "1,254.", "1.2,3"].map(with_thousands),
+            [None; 6]
+        );
+        assert_eq!(
+            ["0.075*", "22.7 (1)", "11.3(a)**", "5 (No. 4)", "(1)"].map(unmarked),
+            ["0.075", "22.7", "11.3", "5 (No. 4)", "(1)"]
+        );
     }
 }

@@ -1,12 +1,12 @@
-//! Unit of openings that have none of their own.
+//! Unit of openings that have none of their own: by the numbers, by a column or a row of units, by a title.
 
-use super::grid::Grid;
-use super::heading::{Retained, Role};
+use super::grid::{Grid, GridRow};
+use super::heading::{Retained, Role, role, unit, words};
+use super::languages::say_inches;
 use super::layout::Layout;
-use super::size::{Entry, Form, Opening, Unit, is_us_sieve_of_inches};
-use super::stated;
-use voidwalk_core::gradation::FIELDS;
-use voidwalk_core::gradation::TableError;
+use super::size::{Entry, Form, Opening, Unit, goes_one_way, is_us_sieve_of_inches, us_sieve};
+use std::collections::HashMap;
+use voidwalk_core::gradation::{FIELDS, TableError};
 
 /// US sieves in decimals of an inch, with the usual roundings, that are the openings of no metric sieve. The
 /// first few may be chosen in mm, too: one of them alone says nothing.
@@ -36,8 +36,8 @@ pub(super) fn of_bare(
     entries: &[Entry],
     notes: &mut Vec<String>,
 ) -> Result<Unit, TableError> {
-    stated::refuse_other_series(grid, layout, entries)?;
-    let stated = stated::beside(grid, layout, entries)?;
+    refuse_other_series(grid, layout, entries)?;
+    let stated = beside(grid, layout, entries)?;
     if matches!(stated, None | Some(Unit::Mm)) {
         refuse_micrometres(grid, entries)?;
     }
@@ -45,7 +45,7 @@ pub(super) fn of_bare(
         Opening::Bare(value) => value != 0.0 && Unit::SieveNumber.mm(value).is_none(),
         _ => false,
     };
-    stated::refuse_other_unit(grid, layout, entries, stated)?;
+    refuse_other_unit(grid, layout, entries, stated)?;
     match stated {
         // Headings also say `Sieve no.` above openings in mm.
         Some(Unit::SieveNumber) if entries.iter().any(is_no_sieve) => {}
@@ -53,10 +53,8 @@ pub(super) fn of_bare(
         None => {}
     }
     let bare = |entry: &&Entry| matches!(entry.opening, Opening::Bare(value) if value > 0.0);
-    let is_sieve_number = |entry: &Entry| match entry.opening {
-        Opening::Bare(value) => value.fract() == 0.0 && Unit::SieveNumber.mm(value).is_some(),
-        _ => false,
-    };
+    let is_sieve_number =
+        |entry: &Entry| matches!(entry.opening, Opening::Bare(value) if is_whole_sieve_number(value));
     let Some(first) = entries.iter().find(bare) else { return Ok(Unit::Mm) };
     let any = |form: Form| entries.iter().any(|entry| entry.form == form);
     let refused =
@@ -74,7 +72,7 @@ pub(super) fn of_bare(
         return Err(grid.refused(entry.line, entry.column, FIELDS[0], text, allowed));
     }
     if any(Form::Inches) || any(Form::UsNumber) {
-        match (goes_one_way(entries, Unit::Mm), goes_one_way(entries, Unit::Inch)) {
+        match (goes_one_way_in(entries, Unit::Mm), goes_one_way_in(entries, Unit::Inch)) {
             (false, true) => {
                 notes.push("openings without a unit read as inches, as those around them are".into());
                 return Ok(Unit::Inch);
@@ -119,10 +117,9 @@ fn refuse_micrometres(grid: &Grid, entries: &[Entry]) -> Result<(), TableError> 
     let may_be = |(value, entry): &(f64, &Entry)| {
         matches!(entry.opening, Opening::Bare(_)) && value.fract() == 0.0 && *value >= LEAST_MICROMETRES
     };
-    let goes_one_way = |fine: std::ops::Range<usize>| {
+    let in_mm = |fine: &std::ops::Range<usize>| -> Vec<f64> {
         let mm = |at: usize| if fine.contains(&at) { sizes[at].0 / 1e3 } else { sizes[at].0 };
-        let pairs = || (1..sizes.len()).map(|at| mm(at - 1) - mm(at));
-        pairs().all(|step| step > 0.0) || pairs().all(|step| step < 0.0)
+        (0..sizes.len()).map(mm).collect()
     };
     let steps: Vec<bool> = sizes.windows(2).map(|pair| pair[0].0 > pair[1].0).collect();
     // A single step against the others marks the change of unit.
@@ -132,7 +129,7 @@ fn refuse_micrometres(grid: &Grid, entries: &[Entry]) -> Result<(), TableError> 
     };
     let places = [alone(true), alone(false)].into_iter().flatten();
     for fine in places.flat_map(|at| [at + 1..sizes.len(), 0..at + 1]) {
-        if !sizes[fine.clone()].iter().all(may_be) || !goes_one_way(fine.clone()) {
+        if !sizes[fine.clone()].iter().all(may_be) || !goes_one_way(&in_mm(&fine)) {
             continue;
         }
         let beside = if fine.start > 0 { &sizes[fine.start - 1] } else { &sizes[fine.end] };
@@ -148,19 +145,15 @@ fn refuse_micrometres(grid: &Grid, entries: &[Entry]) -> Result<(), TableError> 
 }
 
 /// True if the openings only rise or only fall once those without a unit are read in this one.
-fn goes_one_way(entries: &[Entry], unit: Unit) -> bool {
-    let sizes: Vec<f64> = entries
-        .iter()
-        .filter_map(|entry| match entry.opening {
-            Opening::Mm(mm) => Some(mm),
-            Opening::Bare(value) if value > 0.0 => unit.mm(value),
-            _ => None,
-        })
-        .collect();
-    sizes.windows(2).all(|w| w[0] > w[1]) || sizes.windows(2).all(|w| w[0] < w[1])
+fn goes_one_way_in(entries: &[Entry], unit: Unit) -> bool {
+    let size = |entry: &Entry| match entry.opening {
+        Opening::Mm(mm) => Some(mm),
+        Opening::Bare(value) if value > 0.0 => unit.mm(value),
+        _ => None,
+    };
+    goes_one_way(&entries.iter().filter_map(size).collect::<Vec<_>>())
 }
 
-/// Number of inch-only openings that are round numbers.
 const ROUND: usize = 4;
 
 /// True if all openings without a unit are US sieves in decimals of an inch and not metric sieves. The
@@ -183,23 +176,25 @@ fn is_series_of_inches(entries: &[Entry]) -> bool {
     only || round > 1
 }
 
-/// Fewest numbers that make a series of sieves.
 const LEAST_NUMBERS: usize = 3;
 
 /// Numbers of US sieves that are not the opening (mm) of any metric sieve.
 const NO_METRIC_SIEVE: [f64; 12] =
     [7.0, 18.0, 30.0, 35.0, 60.0, 70.0, 120.0, 140.0, 170.0, 230.0, 270.0, 325.0];
 
+fn is_whole_sieve_number(value: f64) -> bool {
+    value.fract() == 0.0 && Unit::SieveNumber.mm(value).is_some()
+}
+
 /// The first opening of a table whose bare openings are US sieves by number: whole numbers up to No. 100 or
 /// more, the larger number for the finer sieve. Sizes in mm may be the same numbers, such as 4, 8, 20, 100.
 fn first_sieve_number(entries: &[Entry], role: Role) -> Option<&Entry> {
-    let is_number = |value: f64| value.fract() == 0.0 && Unit::SieveNumber.mm(value).is_some();
     let is_inches =
         |value: f64| ONLY_INCHES.iter().chain(&ALSO_MM).any(|inches| (inches - value).abs() < 1e-9);
     let (mut numbers, mut all) = (Vec::new(), true);
     for entry in entries {
         match entry.opening {
-            Opening::Bare(value) if is_number(value) => numbers.push((value, entry)),
+            Opening::Bare(value) if is_whole_sieve_number(value) => numbers.push((value, entry)),
             Opening::Bare(value) if value == 0.0 || is_inches(value) => all &= value == 0.0,
             Opening::Bare(_) => return None,
             _ => {}
@@ -228,7 +223,6 @@ fn first_sieve_number(entries: &[Entry], role: Role) -> Option<&Entry> {
     is_it.then_some(first)
 }
 
-/// The bare opening next to the pan.
 fn beside_pan(entries: &[Entry]) -> Option<f64> {
     let is_pan = |entry: &Entry| match entry.opening {
         Opening::Pan | Opening::Below(_) => true,
@@ -273,8 +267,171 @@ pub(super) fn say_names(entries: &[Entry], unit: Unit, notes: &mut Vec<String>) 
     }
 }
 
+/// Allowed text of the error for openings without a unit beside them.
+const ALLOWED: &str = "openings whose heading names their unit, as Size (mm) or Size (um)";
+
+/// Unit of bare openings as stated beside them, in the heading or in a column of units.
+fn beside(grid: &Grid, layout: &Layout, entries: &[Entry]) -> Result<Option<Unit>, TableError> {
+    let bare: HashMap<usize, &Entry> =
+        entries.iter().filter(|e| matches!(e.opening, Opening::Bare(_))).map(|e| (e.line, e)).collect();
+    let mut stated = layout.unit.filter(|unit| *unit != Unit::SieveNumber);
+    let (mut rows, mut count) = (0, 0);
+    for row in &grid.rows[layout.first..] {
+        let Some(entry) = bare.get(&row.line) else { continue };
+        rows += 1;
+        // The unit lies near the openings, outside the columns of soils.
+        let near = entry.column.saturating_sub(2)..=entry.column + 2;
+        let Some((cell, unit)) = near.filter(|&c| c != entry.column).find_map(|c| unit_alone(row.cell(c)))
+        else {
+            continue;
+        };
+        count += 1;
+        if *stated.get_or_insert(unit) != unit {
+            let allowed = "one unit for all openings, or each with its unit in its own cell, as 425 um";
+            return Err(grid.refused(row.line, entry.column, "unit", cell, allowed));
+        }
+    }
+    match bare.values().next() {
+        Some(entry) if count > 0 && count < rows && layout.unit.is_none() => {
+            Err(grid.refused(entry.line, entry.column, FIELDS[0], &entry.text, ALLOWED))
+        }
+        _ => Ok(stated.or(layout.unit)),
+    }
+}
+
+/// Refuses bare openings if a title or a row of units states their unit, or if they are sieves in another
+/// unit than the one taken.
+fn refuse_other_unit(
+    grid: &Grid,
+    layout: &Layout,
+    entries: &[Entry],
+    unit: Option<Unit>,
+) -> Result<(), TableError> {
+    const MICROMETRES: [f64; 18] = [
+        45.0, 53.0, 63.0, 75.0, 90.0, 106.0, 125.0, 150.0, 180.0, 212.0, 250.0, 300.0, 355.0, 425.0, 500.0,
+        600.0, 710.0, 850.0,
+    ];
+    /// Fewer may be chosen in any unit.
+    const LEAST: usize = 4;
+    let bare = |entry: &Entry| match entry.opening {
+        Opening::Bare(value) if value > 0.0 => Some(value),
+        _ => None,
+    };
+    let sizes: Vec<f64> = entries.iter().filter_map(bare).collect();
+    let Some(first) = entries.iter().find(|entry| bare(entry).is_some()) else { return Ok(()) };
+    if unit.is_none() {
+        for row in titles(grid, layout) {
+            if let Some(cell) = row.cells.iter().find(|cell| states_unit(cell)) {
+                let allowed = format!("{ALLOWED}; this names one that is not mm");
+                return Err(grid.refused_heading(row.line, cell, &allowed));
+            }
+        }
+    }
+    let all_bare = entries.iter().all(|e| !matches!(e.opening, Opening::Mm(_) | Opening::Class(..)));
+    let finest = sizes.iter().copied().fold(f64::INFINITY, f64::min);
+    let in_micrometres = sizes.iter().filter(|size| MICROMETRES.contains(size)).count();
+    let text = &first.text;
+    let refused = |why: &str| {
+        let allowed = format!("{text} um or {text} mm: {why}; write the unit in the heading");
+        Err(grid.refused(first.line, first.column, FIELDS[0], text, allowed))
+    };
+    match unit {
+        None if all_bare
+            && sizes.iter().all(|size| size.fract() == 0.0)
+            && (20.0..=100.0).contains(&finest)
+            && in_micrometres >= LEAST =>
+        {
+            refused("no unit is given, and these look like micrometres")
+        }
+        Some(Unit::Micrometre)
+            if sizes.len() >= LEAST
+                && sizes.iter().all(|&size| us_sieve(size).is_some())
+                && sizes.iter().any(|size| size.fract() != 0.0) =>
+        {
+            refused("the heading says micrometres, and these are sieves in mm")
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Refuses sieves by number if the sheet names a series other than the United States one.
+fn refuse_other_series(grid: &Grid, layout: &Layout, entries: &[Entry]) -> Result<(), TableError> {
+    let (mut numbered, mut bare, mut whole, mut largest) = (None, None, true, 0.0f64);
+    for entry in entries {
+        if let Opening::Bare(value) = entry.opening {
+            bare = bare.or(Some(entry));
+            whole &= value.fract() == 0.0;
+            largest = largest.max(value);
+        }
+        numbered = numbered.or(Some(entry).filter(|e| e.form == Form::UsNumber));
+    }
+    let may_be_numbers = matches!(layout.unit, None | Some(Unit::SieveNumber)) && whole && largest >= 100.0;
+    let Some(entry) = numbered.or(bare.filter(|_| may_be_numbers)) else { return Ok(()) };
+    let named = titles(grid, layout).flat_map(|row| &row.cells).find_map(|cell| other_series(cell));
+    let Some(series) = named else { return Ok(()) };
+    let allowed =
+        format!("openings in mm: the sheet names {series}, whose numbers are not those of US sieves");
+    Err(grid.refused(entry.line, entry.column, FIELDS[0], &entry.text, allowed))
+}
+
+fn titles<'a>(grid: &'a Grid, layout: &Layout) -> impl Iterator<Item = &'a GridRow> {
+    grid.rows[..layout.first.min(grid.rows.len())].iter()
+}
+
+/// Series of sieves that a text names, other than the United States one.
+fn other_series(text: &str) -> Option<String> {
+    const NAMES: [&str; 5] = ["TYLER", "JIS", "AFNOR", "GOST", "ГОСТ"];
+    let parts: Vec<&str> =
+        text.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty()).collect();
+    let is_sieve = |part: &&str| {
+        part.bytes().all(|b| b.is_ascii_digit())
+            || ["sieve", "sieves", "mesh", "no", "number", "size", "test"]
+                .contains(&part.to_lowercase().as_str())
+    };
+    parts.iter().enumerate().find_map(|(at, part)| {
+        let next = parts.get(at + 1);
+        let is_it = NAMES.contains(&part.to_uppercase().as_str())
+            || ["BS", "BSS"].contains(part)
+            || *part == "B" && next == Some(&"S") && text.contains("B.S")
+            // `IS` is also a word.
+            || *part == "IS" && (parts.len() == 1 || next.is_some_and(is_sieve));
+        is_it.then(|| (*part).to_owned())
+    })
+}
+
+/// A cell that holds nothing but a unit of length.
+fn unit_alone(cell: &str) -> Option<(&str, Unit)> {
+    const LONGEST: usize = 16;
+    let bare = cell.trim_matches(['(', ')', '[', ']', '.', ' ']);
+    let is_one =
+        (1..=LONGEST).contains(&bare.len()) && !bare.contains(|c: char| c.is_ascii_digit() || c == ' ');
+    let unit = if is_one { unit(bare).ok().flatten() } else { None };
+    unit.filter(|unit| *unit != Unit::SieveNumber && role(bare) != Role::Finer).map(|unit| (cell, unit))
+}
+
+/// True if a title or a remark names a unit of openings other than mm; `below 63 µm` names a size.
+pub(super) fn states_unit(text: &str) -> bool {
+    let all = words(text);
+    let behind_number = |word: &str| {
+        let at = text.to_lowercase().find(word).unwrap_or(0);
+        text.to_lowercase()[..at].trim_end().ends_with(|c: char| c.is_ascii_digit())
+    };
+    let is_stated = |word: &String| match unit(word) {
+        Ok(Some(Unit::Micrometre)) => true,
+        Ok(Some(Unit::Phi)) => all.len() > 1,
+        Ok(Some(Unit::Inch)) => say_inches(&all),
+        _ => false,
+    };
+    let units: Vec<&String> = all.iter().filter(|word| is_stated(word) && !behind_number(word)).collect();
+    let needs_size = !units.iter().any(|word| unit(word) == Ok(Some(Unit::Micrometre)));
+    let says_size =
+        role(text) == Role::Size || all.iter().any(|word| role(word) == Role::Size && !units.contains(&word));
+    !units.is_empty() && (!needs_size || says_size)
+}
+
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::{Soil, read_gradation};
     use voidwalk_core::gradation::Gradation;
 
@@ -348,5 +505,52 @@ mod tests {
         assert!(standard.contains("ASTM E11 (3/8 in = 9.5 mm)") && !standard.contains("25.4"), "{standard}");
         let both = notes("Sieve,% finer\n6 in,100\n3/4 in,50\n3/8 in,2\n");
         assert!(both.contains("ASTM E11") && both.contains("other openings in inches converted exactly"));
+    }
+
+    #[test]
+    fn titles_state_units_and_series_of_sieves() {
+        let all = "Sizes in µm|Sieve sizes in microns|Grain size in phi units|unit: um|\
+            # size_um,percent_finer|Sieve openings in inches|µm|Units: um and %";
+        for title in all.split('|') {
+            assert!(states_unit(title), "{title}");
+        }
+        for title in ["Fines below 63 µm", "phi", "Dam, north", "Sieve (mm)", "Gradation in soils"] {
+            assert!(!states_unit(title), "{title}");
+        }
+        for title in "Tyler mesh|BS No.|B.S. sieve no.|IS Sieve|IS 2720|JIS Z 8801|BSS mesh|GOST".split('|') {
+            assert!(other_series(title).is_some(), "{title}");
+        }
+        for title in ["US mesh", "this is sieve 4", "Sieve No.", "ASTM", "IS THE SOIL", "BSc"] {
+            assert!(other_series(title).is_none(), "{title}");
+        }
+    }
+
+    #[test]
+    fn units_are_understood_in_many_languages_and_others_are_refused() {
+        let all = "Size (µ)|Size (μ)|Sieve size, mikrometer|Korngröße (Mikrometer)|Tamiz (micras)|\
+            Tamiz (micrones)|Peneira (mícrons)|Abertura (micrómetros)|Taille (micromètres)|\
+            Sito (mikrony)|Elek (mikron)|Size (mcm)|Size [mic]|Diameter, mu|孔径(微米)|SizeUm|sizeUM|\
+            Sieve, Micro meter|Size (1/1000 mm)|Sieve opening (10^-3 mm)|Size (10⁻³ mm)|\
+            Maschenweite in Mikrometern|Size (㎛)";
+        for name in all.split('|') {
+            assert_eq!(unit(name), Ok(Some(Unit::Micrometre)), "{name}");
+        }
+        let all = "Tamiz (pulg)|Tamiz (pulgadas)|Peneira (pol)|Tamis (pouces)|Setaccio (pollici)|\
+            Siebweite (Zoll)|Zeef (duim)|Sieve (ins)";
+        for name in all.split('|') {
+            assert_eq!(unit(name), Ok(Some(Unit::Inch)), "{name}");
+        }
+        for name in ["Microsieve (mm)", "SizeMm", "Ø (mm)"] {
+            assert_eq!(unit(name), Ok(Some(Unit::Mm)), "{name}");
+        }
+        for name in ["Size (furlongs)", "Sieve [xyz]", "Ø", "Size (ø)"] {
+            assert_eq!(unit(name), Err(()), "{name}");
+        }
+        for name in
+            ["Sieve (ASTM)", "Sieve size (US)", "Particle size (D)", "Sieve (opening)", "Size (D6913)"]
+        {
+            assert_eq!(unit(name), Ok(None), "{name}");
+        }
+        assert_eq!(unit("Grain size, phi units"), Ok(Some(Unit::Phi)));
     }
 }

@@ -1,24 +1,375 @@
-//! Conversion of a workbook to its sheets.
+//! What both kinds of workbook have: files in a zip and cells, read within bounds; texts of cells in several
+//! formats; and number formats that write text around a number, such as the unit in `0" µm"`.
 
-use super::grid::Grid;
-use super::zipped::{Zipped, unreadable};
-use super::{ods, xlsx};
-use voidwalk_core::gradation::TableError;
+use super::grid::{Grid, GridRow, listed};
+use quick_xml::events::{BytesStart, Event};
+use std::collections::HashSet;
+use std::io::{Cursor, Read};
+use std::mem::take;
+use std::ops::Range;
+use voidwalk_core::gradation::{TableError, letters};
+use zip::ZipArchive;
 
-/// True if a file is a zip, like workbooks.
-pub(super) fn is_zip(bytes: &[u8]) -> bool {
-    bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06")
+/// Limit on the unpacked size of all parts of a workbook (bytes).
+const UNPACKED_LIMIT: u64 = 64 << 20;
+/// Limit on the size of a part that is read into memory (bytes).
+const PART_LIMIT: u64 = 24 << 20;
+const PARTS_LIMIT: usize = 2000;
+
+pub(super) struct Zipped<'a> {
+    file: String,
+    archive: ZipArchive<Cursor<&'a [u8]>>,
+    names: Vec<String>,
 }
 
-/// Sheets that are not empty.
-pub(super) fn sheets(file: &str, bytes: &[u8]) -> Result<Vec<Grid>, TableError> {
-    let mut zipped = Zipped::open(file, bytes)?;
-    let sheets = if zipped.has("xl/workbook.xml") {
-        xlsx::sheets(file, &mut zipped)?
-    } else if zipped.has("content.xml") {
-        ods::sheets(file, &mut zipped)?
-    } else {
-        return Err(unreadable(file, "it is a zip, but no workbook (.xlsx or .ods)"));
+impl<'a> Zipped<'a> {
+    /// Opens a zip; refuses one that unpacks to more than a workbook of soils holds.
+    pub(super) fn open(file: &str, bytes: &'a [u8]) -> Result<Zipped<'a>, TableError> {
+        let broken = |_| unreadable(file, "its zip cannot be read");
+        let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(broken)?;
+        if archive.len() > PARTS_LIMIT {
+            return Err(too_large(file, &format!("{} parts", archive.len())));
+        }
+        let (mut names, mut unpacked) = (Vec::new(), 0u64);
+        for index in 0..archive.len() {
+            let part = archive.by_index_raw(index).map_err(broken)?;
+            if part.encrypted() {
+                return Err(unreadable(file, "it has a password"));
+            }
+            unpacked = unpacked.saturating_add(part.size());
+            if unpacked > UNPACKED_LIMIT {
+                return Err(too_large(file, &format!("more than {} MB unpacked", UNPACKED_LIMIT >> 20)));
+            }
+            names.push(part.name().map_err(broken)?.into_owned());
+        }
+        let zipped = Zipped { file: file.into(), archive, names };
+        if zipped.names.iter().any(|name| name.to_lowercase().ends_with("vbaproject.bin")) {
+            return Err(unreadable(file, "it holds macros: save it as .xlsx, without them"));
+        }
+        Ok(zipped)
+    }
+
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.names.iter().any(|part| part == name)
+    }
+
+    /// Text of a part. The limit holds for the unpacked bytes, whatever size the zip declares.
+    pub(super) fn text(&mut self, name: &str) -> Result<String, TableError> {
+        let file = self.file.clone();
+        let part = self.archive.by_name(name);
+        let part = part.map_err(|_| unreadable(&file, &format!("its part {name} cannot be read")))?;
+        let mut bytes = Vec::new();
+        let read = part.take(PART_LIMIT + 1).read_to_end(&mut bytes);
+        read.map_err(|_| unreadable(&file, &format!("its part {name} cannot be unpacked")))?;
+        if bytes.len() as u64 > PART_LIMIT {
+            return Err(too_large(&file, &format!("{name} is more than {} MB", PART_LIMIT >> 20)));
+        }
+        String::from_utf8(bytes).map_err(|_| unreadable(&file, &format!("its part {name} is not UTF-8")))
+    }
+}
+
+pub(super) fn unreadable(file: &str, why: &str) -> TableError {
+    TableError::Workbook { file: file.into(), why: why.into() }
+}
+
+/// Error for a workbook that is larger than any workbook of soils.
+pub(super) fn too_large(file: &str, how: &str) -> TableError {
+    unreadable(file, &format!("it is too large ({how}); keep the sheet with the soils alone"))
+}
+
+pub(super) fn attribute(element: &BytesStart, name: &str) -> Option<String> {
+    let attribute = element
+        .attributes()
+        .with_checks(false)
+        .flatten()
+        .find(|a| a.key.as_ref() == name || !name.contains(':') && a.key.local_name().as_ref() == name)?;
+    let value = quick_xml::escape::unescape(&attribute.value).ok()?;
+    Some(value.into_owned())
+}
+
+/// Characters that an event within an element represents.
+pub(super) fn characters(event: &Event) -> Option<String> {
+    match event {
+        Event::Text(text) => Some((**text).to_owned()),
+        Event::CData(text) => Some((**text).to_owned()),
+        Event::GeneralRef(reference) => {
+            let written = format!("&{};", &**reference);
+            // Keeps an unknown entity as written: without it `8&b;1` would be 81.
+            let known = quick_xml::escape::unescape(&written).map(std::borrow::Cow::into_owned);
+            Some(known.unwrap_or(written))
+        }
+        _ => None,
+    }
+}
+
+/// Most columns and rows that are kept; a sheet of soils has some tens.
+const MOST_COLUMNS: usize = 500;
+const MOST_ROWS: usize = 20_000;
+/// Most places for cells, and most characters, of a whole workbook.
+const MOST_PLACES: usize = 500_000;
+const MOST_CHARACTERS: usize = 4_000_000;
+/// Longest text of a cell that is kept.
+const LONGEST: usize = 200;
+
+/// Places and characters that the sheets of a workbook may still take.
+pub(super) struct Budget {
+    places: usize,
+    characters: usize,
+}
+
+impl Budget {
+    pub(super) fn new() -> Budget {
+        Budget { places: MOST_PLACES, characters: MOST_CHARACTERS }
+    }
+}
+
+/// The text of a cell on one line, shortened.
+pub(super) fn tidy(text: &str) -> String {
+    let mut tidy = String::new();
+    for word in text.split_whitespace() {
+        if tidy.len() >= LONGEST {
+            break;
+        }
+        if !tidy.is_empty() {
+            tidy.push(' ');
+        }
+        tidy.extend(word.chars().take(LONGEST));
+    }
+    tidy
+}
+
+pub(super) struct Cells<'a> {
+    grid: Grid,
+    budget: &'a mut Budget,
+    hidden_rows: Vec<usize>,
+    hidden_columns: Vec<Range<usize>>,
+}
+
+impl<'a> Cells<'a> {
+    pub(super) fn new(file: &str, sheet: &str, budget: &'a mut Budget) -> Cells<'a> {
+        let grid = Grid { file: file.into(), sheet: Some(sheet.into()), delimiter: ',', ..Grid::default() };
+        Cells { grid, budget, hidden_rows: Vec::new(), hidden_columns: Vec::new() }
+    }
+
+    /// Takes a cell behind all that came before; row and column are counted from 0.
+    pub(super) fn put(&mut self, row: usize, column: usize, text: &str) -> Result<(), TableError> {
+        let text = tidy(text);
+        if text.is_empty() {
+            return Ok(());
+        }
+        let file = &self.grid.file;
+        if row >= MOST_ROWS || column >= MOST_COLUMNS {
+            let how = format!("cells beyond {MOST_ROWS} rows or {MOST_COLUMNS} columns");
+            return Err(too_large(file, &how));
+        }
+        let line = row + 1;
+        match self.grid.rows.last() {
+            Some(last) if last.line == line => {}
+            Some(last) if last.line > line => return Err(unreadable(file, "its rows are not in order")),
+            _ => self.grid.rows.push(GridRow { line, cells: Vec::new(), text: None, open: false }),
+        }
+        let Some(last) = self.grid.rows.last_mut() else { return Ok(()) };
+        let more = (column + 1).saturating_sub(last.cells.len());
+        let left = (self.budget.places.checked_sub(more), self.budget.characters.checked_sub(text.len()));
+        let (Some(places), Some(characters)) = left else {
+            return Err(too_large(file, "too many cells"));
+        };
+        *self.budget = Budget { places, characters };
+        if !last.cell(column).is_empty() {
+            let name = format!("{}{line}", letters(column as u32));
+            return Err(unreadable(file, &format!("its cell {name} stands in it twice")));
+        }
+        if more > 0 {
+            last.cells.resize(column + 1, String::new());
+        }
+        last.cells[column] = text;
+        Ok(())
+    }
+
+    /// Marks a row as hidden, counted from 0.
+    pub(super) fn hide_row(&mut self, row: usize) {
+        if row < MOST_ROWS {
+            self.hidden_rows.push(row + 1);
+        }
+    }
+
+    /// Marks columns as hidden, counted from 0.
+    pub(super) fn hide_columns(&mut self, columns: Range<usize>) {
+        if self.hidden_columns.len() < MOST_COLUMNS {
+            self.hidden_columns.push(columns);
+        }
+    }
+
+    /// Returns all cells as a grid, with a note of those hidden from a reader of the sheet.
+    pub(super) fn done(mut self, hidden: bool) -> Grid {
+        let grid = &mut self.grid;
+        if hidden {
+            grid.notes.push("its sheet is hidden in the workbook".into());
+        }
+        let filled: HashSet<usize> = grid.rows.iter().map(|row| row.line).collect();
+        let rows: Vec<String> =
+            self.hidden_rows.iter().filter(|row| filled.contains(row)).map(usize::to_string).collect();
+        let width = grid.width();
+        let mut is_filled = vec![false; width];
+        grid.rows.iter().flat_map(GridRow::filled).for_each(|c| is_filled[c] = true);
+        let is_hidden = |c: &usize| self.hidden_columns.iter().any(|columns| columns.contains(c));
+        let columns: Vec<String> =
+            (0..width).filter(|&c| is_filled[c]).filter(is_hidden).map(|c| letters(c as u32)).collect();
+        for (word, all) in [("row", rows), ("column", columns)].iter().filter(|(_, all)| !all.is_empty()) {
+            grid.notes
+                .push(format!("{} of the sheet, though hidden, read", listed(word, all, String::clone)));
+        }
+        self.grid
+    }
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Kind {
+    #[default]
+    Plain,
+    Raised,
+    Struck,
+}
+
+/// Text so far, and the part that may still go on.
+#[derive(Default)]
+pub(super) struct Runs {
+    text: String,
+    part: String,
+    kind: Kind,
+    format: String,
+}
+
+impl Runs {
+    pub(super) fn push(&mut self, more: &str, kind: Kind, format: &str) {
+        if (self.kind, self.format.as_str()) != (kind, format) {
+            self.close();
+            (self.kind, self.format) = (kind, format.to_owned());
+        }
+        self.part.push_str(more);
+    }
+
+    pub(super) fn text(&mut self) -> String {
+        self.close();
+        take(self).text
+    }
+
+    fn close(&mut self) {
+        let part = take(&mut self.part);
+        let last = self.text.chars().next_back();
+        let follows_digit = last.is_some_and(|c| c.is_ascii_digit());
+        let is_mark = part.contains(char::is_alphanumeric) && !last.is_some_and(char::is_alphabetic);
+        self.text += &match self.kind {
+            _ if part.trim().is_empty() => part,
+            Kind::Struck => format!("[struck out: {}]", part.trim()),
+            Kind::Raised if is_mark => format!(" ({})", part.trim()),
+            // Digits of two formats may be two numbers.
+            _ if follows_digit && part.starts_with(|c: char| c.is_ascii_digit()) => format!("[{part}]"),
+            _ => part,
+        };
+    }
+}
+
+/// A number with the text around it, which may be its unit or a sign such as `<`; grams and percents are left
+/// out.
+pub(super) fn as_shown(before: &str, number: &str, after: &str) -> String {
+    const USUAL: [&str; 11] = ["", "g", "gr", "gm", "gms", "gram", "grams", "gramm", "kg", "%", "pct"];
+    let after = match after.trim().trim_end_matches('.').to_lowercase() {
+        usual if USUAL.contains(&usual.as_str()) => "",
+        _ => after,
     };
-    Ok(sheets.into_iter().filter(|sheet| !sheet.rows.is_empty()).collect())
+    format!("{before}{number}{after}").trim().to_owned()
+}
+
+/// Text before the first digit of a number as it is shown, and behind the last.
+pub(super) fn around(shown: &str) -> (&str, &str) {
+    let is_digit = |c: char| c.is_ascii_digit();
+    match (shown.find(is_digit), shown.rfind(is_digit)) {
+        (Some(first), Some(last)) => (
+            shown[..first].trim_end_matches(['-', '+', '\u{2212}', '.', ',', '(']),
+            shown[last + 1..].trim_start_matches(['.', ',', ')']),
+        ),
+        _ => ("", ""),
+    }
+}
+
+/// Text that the code of a format writes before a positive number and behind it, and the rest of the code
+/// without quoted text, colours and spaces of a character's width.
+pub(super) fn parts_of(code: &str) -> (String, String, String) {
+    let (mut before, mut after, mut plain) = (String::new(), String::new(), String::new());
+    let (mut chars, mut quoted, mut is_first) = (code.chars(), false, true);
+    while let Some(c) = chars.next() {
+        let literal = match c {
+            '"' => {
+                quoted = !quoted;
+                None
+            }
+            c if quoted => Some(c),
+            '\\' => chars.next(),
+            // A space as wide as a character, or a character that fills the cell.
+            '_' | '*' => {
+                chars.next();
+                None
+            }
+            '[' => {
+                chars.by_ref().take_while(|&c| c != ']').for_each(drop);
+                None
+            }
+            ' ' | '<' | '>' => Some(c),
+            c => {
+                is_first &= c != ';';
+                plain.push(c);
+                None
+            }
+        };
+        if let Some(c) = literal.filter(|_| is_first) {
+            if plain.is_empty() { before.push(c) } else { after.push(c) }
+        }
+    }
+    (before, after, plain)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::content::percentage;
+
+    fn text(parts: &[(&str, Kind, &str)]) -> String {
+        let mut runs = Runs::default();
+        parts.iter().for_each(|(more, kind, format)| runs.push(more, *kind, format));
+        runs.text()
+    }
+
+    #[test]
+    fn raised_struck_and_glued_digits_are_not_those_of_the_number_beside_them() {
+        let plain = |text| (text, Kind::Plain, "");
+        assert_eq!(percentage(&text(&[plain("95"), ("1", Kind::Raised, "")])), Some(95.0));
+        assert_eq!(percentage(&text(&[plain("95"), ("a", Kind::Raised, "")])), Some(95.0));
+        assert_eq!(percentage(&text(&[plain("9"), plain("5"), plain(".5")])), Some(95.5));
+        for parts in [
+            [("1", Kind::Raised, ""), plain("95")],
+            [("97", Kind::Struck, ""), plain("95")],
+            [plain("95"), ("7", Kind::Struck, "")],
+            [plain("95"), ("1", Kind::Plain, "small")],
+            [("", Kind::Plain, ""), ("95", Kind::Struck, "")],
+        ] {
+            assert_eq!(percentage(&text(&parts)), None, "{parts:?}");
+        }
+        assert_eq!(text(&[plain("cm"), ("3", Kind::Raised, "")]), "cm3");
+    }
+
+    #[test]
+    fn units_in_formats_are_kept() {
+        let shown = |code: &str| {
+            let (before, after, _) = parts_of(code);
+            as_shown(&before, "425", &after)
+        };
+        assert_eq!(
+            ["0\" µm\"", "0\\ \\µ\\m", "\"No. \"0", "0.0\" g\"", "0.0_D_M", "0;-0\" in\"", "#,##0.0\"%\""]
+                .map(shown),
+            ["425 µm", "425 µm", "No. 425", "425", "425", "425", "425"]
+        );
+        assert_eq!(around("1.180,5 µm"), ("", " µm"));
+        assert_eq!(around("-5"), ("", ""));
+    }
 }

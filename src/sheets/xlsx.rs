@@ -1,22 +1,18 @@
 //! Sheets of Office Open XML: the workbook's list, its shared strings, its number formats and its sheets.
 
-use std::collections::HashMap;
-
+use super::grid::Grid;
+use super::workbook::{
+    Budget, Cells, Kind, Runs, Zipped, as_shown, attribute, characters, parts_of, tidy, too_large, unreadable,
+};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
-
-use super::cells::{Budget, Cells, tidy};
-use super::grid::Grid;
-use super::literals::{as_shown, parts_of};
-use super::runs::{Kind, Runs};
-use super::zipped::{Zipped, attribute, characters, too_large, unreadable};
+use std::collections::HashMap;
 use voidwalk_core::gradation::{Position, TableError};
 
 /// Most shared strings, and most sheets.
 const MOST_STRINGS: usize = 200_000;
 const MOST_SHEETS: usize = 200;
 
-/// Reads the sheets.
 pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, TableError> {
     let book = zipped.text("xl/workbook.xml")?;
     let mut targets = HashMap::new();
@@ -61,7 +57,6 @@ fn broken(file: &str) -> TableError {
     unreadable(file, "its XML is broken")
 }
 
-/// Calls `visit` for each element of this name.
 fn visit_elements(
     file: &str,
     text: &str,
@@ -131,7 +126,6 @@ impl Rich {
     }
 }
 
-/// Display of a number.
 #[derive(Clone, Debug, PartialEq)]
 enum Style {
     /// With the text before it and behind it.
@@ -140,7 +134,6 @@ enum Style {
     Date,
 }
 
-/// The styles of cells, by their numbers.
 fn styles(file: &str, text: &str) -> Result<Vec<Style>, TableError> {
     let mut formats: HashMap<u32, Style> = HashMap::new();
     visit_elements(file, text, "numFmt", |e| {
@@ -245,7 +238,6 @@ impl Context<'_> {
         }
     }
 
-    /// The text of a cell.
     fn value(
         &self,
         reader: &mut Reader<&[u8]>,
@@ -343,16 +335,8 @@ mod tests {
         for code in ["dd\\-mmm", "m", "m:ss", "[s]", "[hh]:mm", "h AM/PM"] {
             assert_eq!(of_format(code), Style::Date, "{code}");
         }
-        for code in [
-            "0.00\" mm\"",
-            "[Red]0.0;General",
-            "[Magenta]0.0",
-            "0.00E+00",
-            "[>=100]0;0.0",
-            "0.0_D_M",
-            "0.0\\d",
-            "0*d",
-        ] {
+        let all = "0.00\" mm\"|[Red]0.0;General|[Magenta]0.0|0.00E+00|[>=100]0;0.0|0.0_D_M|0.0\\d|0*d";
+        for code in all.split('|') {
             assert!(matches!(of_format(code), Style::Number(..)), "{code}");
         }
     }

@@ -1,15 +1,13 @@
 //! What scripts rely on: how JSON begins, `--fail-on`, and the digest of an outcome.
 
+use crate::judge::{SMALL, soils};
+use crate::program::{call, done, refused};
+use crate::schemas::{beginning, json_files, keep_to_schema, problems, schema_of};
+use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::process::Output;
-
-use serde_json::Value;
-
-use crate::judge::{SMALL, soils};
-use crate::program::{call, done, refused};
-use crate::schemas::{beginning, json_files, keep_to_schema, problems, schema_of};
 
 fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
@@ -214,7 +212,7 @@ fn every_number_of_an_outcome_but_wall_time_changes_its_digest() {
     done(&call(&at, &[&run[..], &SMALL].concat()));
     let whole = outcome(&at.join("r"));
     let digest = whole["digest"].as_str().unwrap();
-    assert_eq!(voidwalk::outcome::digest::digest(&whole).unwrap(), digest, "of what is written");
+    assert_eq!(voidwalk::outcome::record::digest(&whole).unwrap(), digest, "of what is written");
     let mut all = Vec::new();
     places("", &whole, &mut all);
     assert!(all.len() > 200, "{}", all.len());
@@ -226,7 +224,7 @@ fn every_number_of_an_outcome_but_wall_time_changes_its_digest() {
             (None, Some(number)) => number.next_up().into(),
             (None, None) => value.as_bool().map_or(0.into(), |is| (!is).into()),
         };
-        let is_same = voidwalk::outcome::digest::digest(&changed).unwrap() == digest;
+        let is_same = voidwalk::outcome::record::digest(&changed).unwrap() == digest;
         assert_eq!(is_same, place.ends_with("/seconds") || place == "/studies_to_come", "{place}");
     }
 }

@@ -64,7 +64,8 @@ fn every_script_and_every_result_stands_in_its_index() {
     }
 }
 
-/// Paths into `scripts` and `results` that a text names, without what stands for any name (`DATE`, `*`).
+/// Paths into `scripts` and `results` that a text names, without what stands for any name (`DATE`, `*`) and
+/// what an earlier commit holds (`scripts/a.py` of 7a45e404).
 fn named(text: &str) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     for folder in ["scripts/", "results/"] {
@@ -80,7 +81,10 @@ fn named(text: &str) -> BTreeSet<String> {
             let is_pattern =
                 text[end..].starts_with(['*', '{', '$', '<', '(', '%']) || text[at..end].contains("DATE");
             let path = text[at..end].trim_end_matches('.');
-            if !is_pattern && path.len() > folder.len() {
+            let is_of_a_commit = text[end..]
+                .strip_prefix("` of ")
+                .is_some_and(|commit| commit.chars().take_while(char::is_ascii_hexdigit).count() >= 7);
+            if !is_pattern && !is_of_a_commit && path.len() > folder.len() {
                 found.insert(path.to_owned());
             }
         }
@@ -90,8 +94,7 @@ fn named(text: &str) -> BTreeSet<String> {
 
 #[test]
 fn the_reader_of_paths_leaves_out_patterns() {
-    let text =
-        "`scripts/a.sh`, see results/b.md. results/c-*.md, my-scripts/d, scripts/e-DATE.md, (scripts/f/)";
+    let text = "`scripts/a.sh`, see results/b.md, `scripts/g.py` of 7a45e404. results/c-*.md, my-scripts/d, scripts/e-DATE.md, (scripts/f/)";
     let expected = ["results/b.md", "scripts/a.sh", "scripts/f/"];
     assert_eq!(named(text), expected.map(String::from).into());
 }

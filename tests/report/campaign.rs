@@ -1,18 +1,16 @@
 //! The page of a made-up campaign.
 
+use super::folder::note;
+use super::{folder, words};
 use std::fs;
 use std::path::Path;
-
 use tempfile::TempDir;
 use voidwalk::outcome::ledger::{Campaign, LedgerLine, Made, leaves_out};
 use voidwalk::outcome::record::{Classed, CurveEnd, CurveRange, ModelLimit, Outcome, Stopping, Verdict};
-use voidwalk::outcome::undecided::UndecidedBy;
+use voidwalk::outcome::verdict::UndecidedBy;
 use voidwalk::practice::Note;
 use voidwalk::report;
 use voidwalk::store::format::CAMPAIGN;
-
-use super::folder::note;
-use super::{folder, words};
 
 fn line(case: &str, place: &str, outcome: &Outcome) -> LedgerLine {
     let made = Made {

@@ -1,10 +1,11 @@
-//! The base of a case, as given and as walked: regraded by filter practice, if the scene asks for it.
+//! The base of a case: as given, as walked (regraded by filter practice, if the scene asks for it), and the
+//! particles that it is walked as.
 
 use super::error::CaseError;
 use super::files::Files;
 use super::filter::CaseFilter;
-use crate::scene::{BaseGradation, D85, FilterGradation, Regrade, Scene, SceneError};
-use voidwalk_core::gradation::Gradation;
+use crate::scene::{Amount, BaseGradation, D85, FilterGradation, Regrade, Scene, SceneError};
+use voidwalk_core::gradation::{BaseSupply, Gradation, GradationError, SizeSampler, base_particles};
 use voidwalk_practice::{Mistake, MistakeKind};
 
 /// A base, worked out.
@@ -49,9 +50,6 @@ impl CaseBase {
 
     /// The mistake that two soils look like and are not refused for. A sieve table is refused whose sizes
     /// must be in another unit; of a pair that is guarded also one that must be exchanged.
-    ///
-    /// # Errors
-    /// The two are refused.
     pub(super) fn mistake(
         &self,
         scene: &Scene,
@@ -75,7 +73,7 @@ impl CaseBase {
 fn given(scene: &Scene, filter: &CaseFilter, files: &mut Files) -> Result<Gradation, CaseError> {
     let (cu, d85_mm) = match &scene.base.gradation() {
         BaseGradation::Sieve(path, d0_mm) => {
-            return files.sieve(path, *d0_mm, "base.sieve", "base-sieve.csv", &scene.name);
+            return files.sieve(path, *d0_mm, "base.sieve", &scene.name);
         }
         BaseGradation::Single(size) => return Ok(Gradation::single(*size)?),
         BaseGradation::Linear { cu, d85: D85::Mm(mm) } => (*cu, *mm),
@@ -84,27 +82,134 @@ fn given(scene: &Scene, filter: &CaseFilter, files: &mut Files) -> Result<Gradat
             (*cu, d15f.ok_or_else(|| scene.clash("the filter's D15 is not known"))? / ratio)
         }
         BaseGradation::Linear { cu, d85: D85::AtDc(percent, other) } => {
-            let other = match other {
+            let curve = match other {
                 Some(source) => {
-                    let (other, _) =
-                        files.curve(source, "base.dc_curve", "base-dc-curve.csv", &scene.name)?;
-                    Some(other.in_mm(filter.unit_mm)?)
+                    &files.curve(source, "base.dc_curve", &scene.name)?.0.in_mm(filter.unit_mm)?
                 }
-                None => None,
+                None => &filter.curve,
             };
-            let curve = other.as_ref().unwrap_or(&filter.curve);
             (*cu, curve.dc(*percent).ok_or_else(|| scene.clash("base.d85_at_dc is not on the curve"))?)
         }
     };
     Ok(Gradation::linear_from_dx(85.0, d85_mm, cu)?)
 }
 
+/// The mass ratio for Eq. (2) if the scene gives a number of particles: the paper's 5 %.
+pub const PAPER_MASS_RATIO: f64 = 0.05;
+
+/// The particles that a base is walked as.
+#[derive(Clone)]
+pub struct CaseSupply {
+    /// The base's pan fraction is walked as particles just finer than every constriction, not counted by mass
+    /// only.
+    pub pan_is_walked: bool,
+    /// Draws their sizes, in units of the reference length.
+    pub sampler: SizeSampler,
+    /// Base particles of a run, by Eq. (2) or as given.
+    pub n_base: u64,
+    /// Base particles by Eq. (2); `None` if the grains per void are not given.
+    pub n_base_eq2: Option<u64>,
+    /// True if a cap made `n_base` smaller than Eq. (2).
+    pub capped: bool,
+    /// Mass of base over mass of filter for `n_base` particles; `None` if the grains per void are not given.
+    pub mass_ratio: Option<f64>,
+}
+
+impl CaseSupply {
+    /// The particles of a base behind this filter, on a network of `voids`: a pan fraction that need not be
+    /// passive is walked as passive particles. A filter that `is_packed` can no longer be refused.
+    pub(super) fn new(
+        scene: &Scene,
+        filter: &CaseFilter,
+        voids: u64,
+        base: &Gradation,
+        is_packed: bool,
+    ) -> Result<Self, CaseError> {
+        let pan_is_walked = may_block(base, filter.finest_mm);
+        let taken = match pan_is_walked {
+            true => &as_passive(base, filter.finest_mm, scene)?,
+            false => base,
+        };
+        // A number that the user gives counts particles whose sizes are known; the mass stays the same. A cap
+        // limits the work, to which passive particles add little.
+        let more = taken.particles_per_unit_volume() / base.particles_per_unit_volume();
+        let times = |n: u64| match n as f64 * more {
+            _ if more == 1.0 => Ok(n),
+            product if product < 9e18 => Ok((product.round() as u64).max(1)),
+            _ => Err(scene.clash(
+                "the base's pan fraction, as fine as the finest constriction, has more particles than can be \
+                 counted: give base.d0_mm or a finer sieve",
+            )),
+        };
+        let (ratio, cap) = match scene.base.amount() {
+            Amount::MassRatio(ratio, cap) => (ratio, cap.map(times).transpose()?),
+            Amount::Number(n) => {
+                let n_base = times(n)?;
+                let sampler = SizeSampler::new(taken, filter.unit_mm)?;
+                let (mut n_base_eq2, mut mass_ratio) = (None, None);
+                if let Some(grains) = filter.grains_per_void {
+                    let filter = &filter.gradation;
+                    let per_grain = taken.particles_per_unit_volume() / filter.particles_per_unit_volume();
+                    let supply = base_particles(PAPER_MASS_RATIO, grains, voids, taken, filter, None)?;
+                    n_base_eq2 = Some(supply.n_base_eq2);
+                    mass_ratio = Some(n_base as f64 / (grains * voids as f64 * per_grain));
+                }
+                return Ok(Self { pan_is_walked, sampler, n_base, n_base_eq2, capped: false, mass_ratio });
+            }
+        };
+        let Some(grains) = filter.grains_per_void else {
+            let problem = "filter.grains_per_void is missing (Eq. 2): only the shipped curves know theirs";
+            return Err(scene.clash(problem).into());
+        };
+        let BaseSupply { mut n_base, n_base_eq2, capped } =
+            base_particles(ratio, grains, voids, taken, &filter.gradation, cap)?;
+        if n_base == 0 && is_packed {
+            // The grains per void that were guessed gave one, just so.
+            n_base = 1;
+        }
+        if n_base == 0 {
+            let problem = "Eq. (2) gives less than half a base particle: a larger network, mass ratio or \
+                           grains per void is needed";
+            return Err(scene.clash(problem).into());
+        }
+        let sampler = SizeSampler::new(taken, filter.unit_mm)?;
+        let mass_ratio = Some(if capped { ratio * n_base as f64 / n_base_eq2 as f64 } else { ratio });
+        let n_base_eq2 = Some(n_base_eq2);
+        Ok(Self { pan_is_walked, sampler, n_base, n_base_eq2, capped, mass_ratio })
+    }
+}
+
+/// Passive particles are walked this much finer than the finest size that is stopped, and with sizes that
+/// span as much: a passive particle is never stopped by a constriction, so that its size matters to nothing
+/// else.
+const FINER: f64 = 0.99;
+
+/// True if a pan fraction may hold particles that are not passive: if the finest sieve is coarser than the
+/// finest constriction. All of it is then walked as passive particles of the same mass, just finer than every
+/// constriction, or than every size that arches in one: of all sizes that it may have these erode most.
+fn may_block(base: &Gradation, finest_mm: f64) -> bool {
+    base.pan_fraction() > 0.0 && base.smallest_mm() > finest_mm
+}
+
+/// The base with all of its pan fraction just finer than the finest size that a constriction stops.
+pub(super) fn as_passive(
+    base: &Gradation,
+    finest_mm: f64,
+    scene: &Scene,
+) -> Result<Gradation, GradationError> {
+    let mut points: Vec<_> = base.points().iter().map(|point| (point.size, point.percent)).collect();
+    let passive = FINER * finest_mm / scene.law().map_or(1.0, |law| law.widest);
+    points.splice(0..0, [(FINER * passive, 0.0), (passive, points[0].1)]);
+    Gradation::from_points(&points, None)
+}
+
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
+    use super::*;
     use crate::case::Case;
     use crate::scene::{Scene, TableOptions};
+    use std::path::Path;
+    use voidwalk_core::gradation::SizeSampler;
 
     #[test]
     fn two_tables_that_are_exchanged_are_refused_unless_they_are_as_given() {
@@ -129,5 +234,20 @@ mod tests {
         {
             assert!(message.contains(words), "{message}");
         }
+    }
+
+    #[test]
+    fn a_passive_pan_fraction_keeps_its_mass_and_is_finer_than_every_constriction() {
+        let base = Gradation::from_lines(&[(0.075, 35.0), (0.5, 80.0), (2.0, 100.0)]).unwrap();
+        assert!(!may_block(&base, 0.075) && may_block(&base, 0.0749));
+        let passive = as_passive(&base, 0.04, &Scene::built_in(&[]).unwrap()).unwrap();
+        assert_eq!(passive.pan_fraction(), 0.0);
+        for percent in [36.0, 80.0, 99.0] {
+            assert_eq!(passive.d(percent), base.d(percent));
+        }
+        for size in [0.075, 0.0399] {
+            assert!((passive.percent_finer_by_mass(size) - 35.0).abs() < 1e-12, "{size}");
+        }
+        assert!(SizeSampler::new(&passive, 1.0).unwrap().smallest() > 0.039);
     }
 }

@@ -1,7 +1,6 @@
 //! Why a scene cannot be walked.
 
-use super::packed_filter::PackedError;
-use super::packing_plan::PackingPlan;
+use super::packed_filter::{PackedError, PackingPlan};
 use crate::scene::SceneError;
 use voidwalk_core::constrictions::CurveError;
 use voidwalk_core::gradation::{GradationError, NumberError};

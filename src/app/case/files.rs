@@ -1,17 +1,15 @@
 //! The files of a scene: each is read once, and its contents are kept for the run folder.
 
+use super::error::CaseError;
+use super::packed_filter::{GRAINS, Input, PackedError, PackedFilter, RECORD};
+use crate::scene::{BUILT_IN_NAME, CurveSource, Scene, SceneError};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
-
-use super::error::CaseError;
-use super::input::Input;
-use super::packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
-use crate::scene::{BUILT_IN_NAME, CurveSource, Scene, SceneError};
 use voidwalk_core::constrictions::{Curve, ShippedFilter, find};
 use voidwalk_core::gradation::Gradation;
 use voidwalk_core::network::{ArrayOptions, Network, NetworkError};
-use voidwalk_core::packing::{PACKING_FILE_LIMIT_BYTES, Packing};
+use voidwalk_core::packing::{PACKING_FILE_LIMIT_BYTES, Packing, ReadOptions};
 use voidwalk_core::store::{read_regular, why_not_read};
 use voidwalk_sheets::{Soil, file_and_soil};
 
@@ -25,12 +23,6 @@ const INPUTS: &str = "inputs";
 
 /// File of the user's names for the files in that folder, by their names there.
 pub const INPUT_NAMES: &str = "inputs/names.json";
-
-/// Name under which a run keeps the grains whose voids it walks.
-pub(super) const KEPT_GRAINS: &str = "network-packing.csv";
-
-/// Likewise a network of arrays.
-const ARRAYS: &str = "network.npz";
 
 /// Every file that may be kept there.
 pub const INPUT_FILES: [&str; 15] = [
@@ -46,15 +38,12 @@ pub const INPUT_FILES: [&str; 15] = [
     "base-sieve.ags",
     "base-dc-curve.csv",
     "network.csv",
-    ARRAYS,
-    KEPT_GRAINS,
+    "network.npz",
+    "network-packing.csv",
     "names.json",
 ];
 
 /// The user's name for a file: from the list beside it in a run's folder, else its path.
-///
-/// # Errors
-/// The list is not as the program writes it.
 fn first_name(path: &Path, soil: Option<&str>) -> Result<String, CaseError> {
     let part = soil.map(|soil| format!("#{soil}")).unwrap_or_default();
     let path_name = format!("{}{part}", path.display());
@@ -73,12 +62,17 @@ fn first_name(path: &Path, soil: Option<&str>) -> Result<String, CaseError> {
     Ok(path.file_name().and_then(|name| names.remove(name.to_str()?)).unwrap_or(path_name))
 }
 
-/// The name under which a run keeps a table: a workbook keeps its ending.
-fn kept_name(kept_as: &str, path: &Path) -> String {
+/// The name under which a run keeps the file of a setting: workbooks and arrays keep their ending.
+fn kept_name(setting: &str, path: &Path) -> String {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    match (["xlsx", "ods", "ags"].contains(&ending.as_str()), kept_as.rsplit_once('.')) {
-        (true, Some((stem, _))) => format!("{stem}.{ending}"),
-        _ => kept_as.to_owned(),
+    match setting {
+        "filter.density" => RECORD.into(),
+        "network.file" => format!("network.{}", if ending == "npz" { "npz" } else { "csv" }),
+        _ => {
+            let is_workbook = SIEVES.contains(&setting) && ["xlsx", "ods", "ags"].contains(&&*ending);
+            let ending = if is_workbook { &ending } else { "csv" };
+            format!("{}.{ending}", setting.replace(['.', '_'], "-"))
+        }
     }
 }
 
@@ -111,7 +105,6 @@ impl Files {
         &mut self,
         setting: &'static str,
         path: &Path,
-        kept_as: &str,
         largest: u64,
         scene: &str,
     ) -> Result<(String, &[u8]), CaseError> {
@@ -130,18 +123,13 @@ impl Files {
             let problem = why_not_read(path, largest);
             return Err(SceneError::Syntax { file: named, at: String::new(), problem }.into());
         };
-        self.keep(setting, path, kept_as, bytes)?;
+        self.keep(setting, path, bytes)?;
         Ok((file, &self.inputs[self.inputs.len() - 1].bytes))
     }
 
-    fn keep(
-        &mut self,
-        setting: &'static str,
-        path: &Path,
-        kept_as: &str,
-        bytes: Vec<u8>,
-    ) -> Result<(), CaseError> {
-        debug_assert!(INPUT_FILES.contains(&kept_as), "{kept_as} would outlive its run");
+    fn keep(&mut self, setting: &'static str, path: &Path, bytes: Vec<u8>) -> Result<(), CaseError> {
+        let kept_as = kept_name(setting, path);
+        debug_assert!(INPUT_FILES.contains(&&*kept_as), "{kept_as} would outlive its run");
         let (name, kept_as, bytes) =
             (first_name(path, None)?, format!("{INPUTS}/{kept_as}"), Arc::new(bytes));
         self.inputs.push(Input { setting, name, kept_as, bytes, soil: None, notes: Vec::new() });
@@ -152,7 +140,6 @@ impl Files {
         &mut self,
         source: &CurveSource,
         setting: &'static str,
-        kept_as: &str,
         scene: &str,
     ) -> Result<(Curve, Option<&'static ShippedFilter>), CaseError> {
         match source {
@@ -164,24 +151,17 @@ impl Files {
                 Ok((shipped.curve()?, Some(shipped)))
             }
             CurveSource::File(path) => {
-                let (name, bytes) = self.read(setting, path, kept_as, LARGEST_TABLE, scene)?;
+                let (name, bytes) = self.read(setting, path, LARGEST_TABLE, scene)?;
                 Ok((Curve::from_csv_text(&name, bytes)?, None))
             }
         }
     }
 
     /// The curve of a filter that was packed; kept as if it had been given, with the packing's record.
-    ///
-    /// # Errors
-    /// Names of files that are not as the program writes them.
     pub fn packed(&mut self, packed: &PackedFilter) -> Result<Curve, CaseError> {
         if let Some([curve, record]) = &packed.files {
-            for (setting, path, kept_as, bytes) in [
-                ("filter.curve", curve, "filter-curve.csv", packed.curve_csv.as_bytes()),
-                ("filter.density", record, RECORD, &packed.record),
-            ] {
-                self.keep(setting, path, kept_as, bytes.to_vec())?;
-            }
+            self.keep("filter.curve", curve, packed.curve_csv.clone().into_bytes())?;
+            self.keep("filter.density", record, packed.record.clone())?;
         }
         Ok(packed.curve.clone())
     }
@@ -191,11 +171,10 @@ impl Files {
         path: &Path,
         d0_mm: Option<f64>,
         setting: &'static str,
-        kept_as: &str,
         scene: &str,
     ) -> Result<Gradation, CaseError> {
         let (path, soil) = file_and_soil(path);
-        let (name, bytes) = self.read(setting, &path, &kept_name(kept_as, &path), LARGEST_TABLE, scene)?;
+        let (name, bytes) = self.read(setting, &path, LARGEST_TABLE, scene)?;
         let read = Soil::one(&name, bytes, soil.as_deref())?;
         let gradation = read.gradation(d0_mm)?;
         if let Some(input) = self.inputs.last_mut() {
@@ -207,15 +186,10 @@ impl Files {
     }
 
     /// The grains of a file, and its name for users.
-    pub fn packing(
-        &mut self,
-        path: &Path,
-        kept_as: &str,
-        scene: &Scene,
-    ) -> Result<(String, Packing), CaseError> {
-        let (name, bytes) =
-            self.read("network.packing", path, kept_as, PACKING_FILE_LIMIT_BYTES, &scene.name)?;
-        let read = Packing::parse_as(&name, bytes, &scene.network.read_options());
+    pub fn packing(&mut self, path: &Path, scene: &Scene) -> Result<(String, Packing), CaseError> {
+        let (name, bytes) = self.read("network.packing", path, PACKING_FILE_LIMIT_BYTES, &scene.name)?;
+        let options = ReadOptions { unit: scene.network.unit, cell: scene.network.cell };
+        let read = Packing::parse_as(&name, bytes, &options);
         let (packing, notes) = read.map_err(PackedError::from)?;
         if let Some(input) = self.inputs.last_mut() {
             input.notes = notes;
@@ -223,24 +197,15 @@ impl Files {
         Ok((name, packing))
     }
 
-    /// Adds a note to the file that was read last.
-    pub fn note(&mut self, note: String) {
-        if let Some(input) = self.inputs.last_mut() {
-            input.notes.push(note);
-        }
-    }
-
     /// The grains of a filter that was packed; kept as if they had been given.
-    pub fn packed_grains(&mut self, grains: &[u8], kept_as: &str) -> Result<(String, Packing), CaseError> {
-        self.keep("network.packing", Path::new(GRAINS), kept_as, grains.to_vec())?;
+    pub fn packed_grains(&mut self, grains: &[u8]) -> Result<(String, Packing), CaseError> {
+        self.keep("network.packing", Path::new(GRAINS), grains.to_vec())?;
         Ok((GRAINS.into(), Packing::parse(GRAINS, grains).map_err(PackedError::from)?))
     }
 
     pub fn network(&mut self, path: &Path, scene: &Scene, unit_mm: f64) -> Result<Network, CaseError> {
-        let of_arrays = scene.network.is_of_arrays();
-        let kept_as = if of_arrays { ARRAYS } else { "network.csv" };
-        let (name, bytes) = self.read("network.file", path, kept_as, LARGEST_NETWORK, &scene.name)?;
-        if !of_arrays {
+        let (name, bytes) = self.read("network.file", path, LARGEST_NETWORK, &scene.name)?;
+        if !scene.network.is_of_arrays() {
             let network = Network::from_csv(bytes, &name, unit_mm)?;
             if !network.leads_out() {
                 let problem = "no open way leads from a start node to an outlet: rows with diameters above 0 \

@@ -1,14 +1,21 @@
-//! The filter of a case: its gradation, and its constrictions in mm with how far they may be off.
+//! The filter of a case: as the scene and its files state it, then its gradation, its constrictions in mm and
+//! how far they may be off, and the network that all replicates walk, if it brings one.
 
-use super::curve_ends::{self, OtherCurve};
 use super::error::CaseError;
-use super::fixed_network::FixedNetwork;
-use super::library_filter::LibraryFilter;
+use super::files::Files;
+use super::library_filter::{LibraryFilter, OtherCurve, curve_ends};
 use super::packed_filter::{GUESSED_GRAINS_PER_VOID, PackedFilter};
-use super::stated_filter::StatedFilter;
-use crate::scene::{Amount, BaseGradation, D85, FilterGradation, Scene};
-use voidwalk_core::constrictions::{Curve, CurveUnit, ShippedFilter};
+use crate::scene::{
+    Amount, BaseGradation, D85, Extent, FilterGradation, LibraryDensity, NetworkSource, Scene, USUAL_LAYERS,
+};
+use std::path::PathBuf;
+use std::sync::Arc;
+use voidwalk_core::constrictions::{
+    Curve, CurveUnit, DEFAULT_MERGE_OVERLAP, ShippedFilter, VoidGraph, inscribed,
+};
 use voidwalk_core::gradation::Gradation;
+use voidwalk_core::network::{GraphShape, Network, WIDE};
+use voidwalk_core::packing::Packing;
 
 /// A filter, worked out.
 #[derive(Clone)]
@@ -58,23 +65,18 @@ impl CaseFilter {
             }
             (None, None) => return Err(scene.clash("filter.curve is missing").into()),
         };
-        let curve_ends = match (fixed, &library) {
+        let mut curve_ends = match (fixed, &library) {
             (Some(_), _) => Vec::new(),
-            (None, Some(library)) => {
-                // A value stated by the user holds for every curve.
-                let is_stated = scene.filter.grains_per_void.is_some();
-                let times = |end: &OtherCurve| if is_stated { 1.0 } else { end.times_grains };
-                library
-                    .ends
-                    .iter()
-                    .map(|end| OtherCurve { times_grains: times(end), ..end.clone() })
-                    .collect()
-            }
+            (None, Some(library)) => library.ends.clone(),
             (None, None) => {
                 let part = packed.as_ref().and_then(|packed| packed.part.as_ref());
-                curve_ends::of(&curve, &gradation, part, guessed_density)
+                curve_ends(&curve, &gradation, part, guessed_density)
             }
         };
+        if scene.filter.grains_per_void.is_some() {
+            // A value stated by the user holds for every curve.
+            curve_ends.iter_mut().for_each(|end| end.times_grains = 1.0);
+        }
         let finest_mm = curve_ends.iter().map(|end| end.curve.smallest()).fold(curve.smallest(), f64::min);
         Ok(Self {
             gradation,
@@ -102,9 +104,6 @@ impl CaseFilter {
     }
 
     /// Enlarges all sizes of the filter by `factor`, and keeps its own curve alone.
-    ///
-    /// # Errors
-    /// Sizes out of range.
     pub(super) fn enlarged(self, factor: f64) -> Result<Self, CaseError> {
         let gradation = self.gradation.scaled(factor)?;
         Ok(Self {
@@ -129,10 +128,229 @@ pub(super) fn needs_grains_per_void(scene: &Scene, guessed_density: Option<f64>)
 fn grains_per_void(scene: &Scene, stated: &StatedFilter, fixed: Option<&FixedNetwork>) -> Option<f64> {
     // The grains per void of a shipped packing do not apply to a network from elsewhere.
     let of_shipped = stated.shipped.filter(|_| fixed.is_none()).map(|shipped| shipped.grains_per_void);
-    let of_graph = stated.graph.as_ref().map(|graph| graph.grains_per_void(&stated.gradation));
+    // Eq. (2) gives the base its share of the mass of the grains of a graph.
+    let of_graph = stated.graph.as_ref().map(|graph| {
+        let solid = std::f64::consts::FRAC_PI_6 * graph.graph.cubes_mm3;
+        solid * stated.gradation.particles_per_unit_volume() / graph.graph.voids() as f64
+    });
     let of_packing = stated.packed.as_ref().map(|packed| packed.grains_per_void).or(of_shipped);
     let of_library = stated.library.as_ref().map(|library| library.found.grains_per_void);
     let known = scene.filter.grains_per_void.or(of_graph).or(of_packing).or(of_library);
     let is_guessed = needs_grains_per_void(scene, stated.guessed_density);
     known.or(is_guessed.then_some(GUESSED_GRAINS_PER_VOID))
+}
+
+/// A filter as it is stated, with the fields of [`CaseFilter`].
+pub(super) struct StatedFilter {
+    pub gradation: Gradation,
+    /// Its constriction curve, in the unit in which it is stated; `None` if the network defines it.
+    pub curve: Option<Curve>,
+    pub shipped: Option<&'static ShippedFilter>,
+    pub packed: Option<PackedFilter>,
+    pub library: Option<LibraryFilter>,
+    pub guessed_density: Option<f64>,
+    /// Measurements on the packing whose voids are the network.
+    pub graph: Option<Arc<GraphPacking>>,
+}
+
+impl StatedFilter {
+    /// Reads the files of a filter; `packed` and `measured` are its packing and that packing's voids, if they
+    /// exist already.
+    pub fn read(
+        scene: &Scene,
+        packed: Option<PackedFilter>,
+        measured: Option<Arc<GraphPacking>>,
+        files: &mut Files,
+    ) -> Result<Self, CaseError> {
+        let packed = match (&scene.filter.measured, scene.filter.grains_per_void) {
+            (Some(curve), Some(grains_per_void)) => Some(PackedFilter::kept(curve, grains_per_void)?),
+            _ => packed,
+        };
+        let graph = match (measured, scene.network.source()) {
+            (None, NetworkSource::Graph(file, _)) => {
+                GraphPacking::read(scene, file.as_ref(), packed.as_ref(), files)?.map(Arc::new)
+            }
+            (measured, _) => measured,
+        };
+        let (curve, shipped) = match (&scene.filter.curve, &packed) {
+            (_, Some(packed)) => (Some(files.packed(packed)?), None),
+            (Some(source), None) => {
+                let (curve, shipped) = files.curve(source, "filter.curve", &scene.name)?;
+                (Some(curve), shipped)
+            }
+            (None, None) if scene.packing.is_some() => {
+                return Err(CaseError::NotPacked { file: scene.name.clone() });
+            }
+            (None, None) => (graph.as_ref().map(|graph| graph.curve.clone()), None),
+        };
+        let gradation = gradation(scene, shipped, graph.as_deref(), files)?;
+        let library = match scene.filter.library {
+            Some(density) => LibraryFilter::find(&gradation, density)?,
+            None => None,
+        };
+        // The constrictions of a filter are guessed if no library filter is like it.
+        let of_library = scene.filter.library.filter(|_| library.is_none());
+        let guessed_density = scene.filter.estimate.or(of_library.map(LibraryDensity::relative));
+        let curve = match (&library, guessed_density) {
+            (Some(library), _) => Some(library.found.curve.clone()),
+            (None, Some(density)) => Some(inscribed(&gradation, density)?),
+            (None, None) => curve,
+        };
+        Ok(Self { gradation, curve, shipped, packed, library, guessed_density, graph })
+    }
+}
+
+/// The gradation: of the packing or of the shipped filter if the scene does not state it.
+fn gradation(
+    scene: &Scene,
+    shipped: Option<&ShippedFilter>,
+    graph: Option<&GraphPacking>,
+    files: &mut Files,
+) -> Result<Gradation, CaseError> {
+    match (&scene.filter.gradation(), graph) {
+        (FilterGradation::Linear { cu: None, .. }, Some(graph)) if shipped.is_none() => {
+            Ok(graph.gradation.clone())
+        }
+        (FilterGradation::Linear { d0_mm, cu }, _) => {
+            let cu = cu.or(shipped.map(|s| s.cu)).ok_or_else(|| {
+                scene.clash(
+                    "filter.cu or filter.sieve is missing: this constriction curve does not say \
+                     its filter's gradation",
+                )
+            })?;
+            Ok(Gradation::linear_from_d0(*d0_mm, cu)?)
+        }
+        (FilterGradation::Sieve(path, d0_mm), _) => files.sieve(path, *d0_mm, "filter.sieve", &scene.name),
+    }
+}
+
+/// A network that all replicates walk.
+#[derive(Clone)]
+pub struct FixedNetwork {
+    /// The network.
+    pub network: Network,
+    /// Its finest constriction, in units of the reference length.
+    pub(super) finest: f32,
+    /// The packing whose voids it is; `None` for a network from a file.
+    pub packing: Option<CopiedPacking>,
+}
+
+/// A packing whose voids are a network, repeated along the flow.
+#[derive(Clone)]
+pub struct CopiedPacking {
+    /// Copies.
+    pub copies: u32,
+    /// Their thickness together (mm).
+    pub thickness_mm: f64,
+    /// Measurements on the packing.
+    pub(super) graph: Arc<GraphPacking>,
+}
+
+impl FixedNetwork {
+    /// Reads the network of a scene; `None` if each replicate builds its own, or if the packing is still to
+    /// be made.
+    pub(super) fn read(
+        scene: &Scene,
+        filter: &StatedFilter,
+        files: &mut Files,
+    ) -> Result<Option<Self>, CaseError> {
+        let unit_mm = filter.gradation.smallest_mm();
+        let (network, packing) = match (&scene.network.source(), &filter.graph) {
+            (NetworkSource::File(path), _) => (files.network(path, scene, unit_mm)?, None),
+            (NetworkSource::Graph(_, extent), Some(graph)) => {
+                let copies = graph.copies(*extent, filter.gradation.d(50.0).unwrap_or(unit_mm));
+                let thickness_mm = f64::from(copies) * graph.graph.cell_mm[2];
+                let (rule, rho) = (scene.exit_rule(), scene.exits.rho.unwrap_or(0.0));
+                let network = Network::of_graph(&graph.graph, GraphShape { copies, rule, rho, unit_mm })?;
+                (network, Some(CopiedPacking { copies, thickness_mm, graph: graph.clone() }))
+            }
+            _ => return Ok(None),
+        };
+        Ok(Some(Self { finest: network.finest_open(|_| false), network, packing }))
+    }
+
+    /// Its constriction curve (mm): its open diameters by number, at most a thousand points.
+    pub(super) fn curve(&self) -> Result<Curve, CaseError> {
+        let unit_mm = self.network.unit_mm();
+        let open = self.network.diameters().iter().filter(|&&d| d > 0.0 && d != WIDE);
+        let mut sizes: Vec<f64> = open.map(|&d| f64::from(d) * unit_mm).collect();
+        sizes.sort_by(f64::total_cmp);
+        let Some(last) = sizes.len().checked_sub(1) else {
+            return Ok(Curve::from_points(&[(100.0, unit_mm)], CurveUnit::Mm)?);
+        };
+        let steps = last.clamp(1, 1000);
+        let point = |k: usize| (100.0 * k as f64 / steps as f64, sizes[last * k / steps]);
+        Ok(Curve::from_points(&(0..=steps).map(point).collect::<Vec<_>>(), CurveUnit::Mm)?)
+    }
+}
+
+/// Measurements on the grains of a graph's packing.
+pub(super) struct GraphPacking {
+    pub graph: VoidGraph,
+    /// In mm.
+    pub curve: Curve,
+    pub gradation: Gradation,
+}
+
+impl GraphPacking {
+    /// Reads the file that the scene names, or measures the filter's own packing; `None` if that is still to
+    /// be made.
+    pub fn read(
+        scene: &Scene,
+        file: Option<&PathBuf>,
+        packed: Option<&PackedFilter>,
+        files: &mut Files,
+    ) -> Result<Option<Self>, CaseError> {
+        let merge_overlap =
+            scene.packing.as_ref().map_or(DEFAULT_MERGE_OVERLAP, |packing| packing.filter.merge_overlap);
+        let (name, packing) = match (file, packed) {
+            (Some(path), _) => files.packing(path, scene)?,
+            (None, Some(PackedFilter { grains: Some(grains), .. })) => files.packed_grains(grains)?,
+            (None, _) => return Ok(None),
+        };
+        let (constrictions, graph) = VoidGraph::measure(&packing, merge_overlap)
+            .map_err(|error| scene.clash(format!("{name}: {error}")))?;
+        if let (Some(_), Some(input)) = (file, files.inputs.last_mut()) {
+            input.notes.extend(constrictions.doubts());
+        }
+        let gradation = of_grains(&packing)?;
+        Ok(Some(Self { graph, curve: constrictions.curve()?, gradation }))
+    }
+
+    /// Copies of the packing that a scene asks for.
+    pub fn copies(&self, extent: Extent, d50f_mm: f64) -> u32 {
+        let cell = self.graph.cell_mm[2];
+        let thickness = match extent {
+            Extent::Copies(copies) => return copies,
+            other => other.thickness_mm(d50f_mm).unwrap_or(USUAL_LAYERS as f64 * self.graph.spacing_mm()),
+        };
+        // A cell that fits but for rounding is enough.
+        libm::ceil(thickness / cell - 1e-9).clamp(1.0, 1e6) as u32
+    }
+}
+
+/// The gradation by mass of grains, at about 200 points.
+fn of_grains(packing: &Packing) -> Result<Gradation, CaseError> {
+    let mut sizes = packing.diameter.clone();
+    sizes.sort_by(f64::total_cmp);
+    let (smallest, largest) = (sizes[0], sizes[sizes.len() - 1]);
+    if smallest == largest {
+        return Ok(Gradation::single(smallest)?);
+    }
+    let cube = |d: f64| d * d * d;
+    let all: f64 = sizes.iter().map(|&d| cube(d)).sum();
+    let (mut finer, mut points) = (0.0, vec![(smallest, 0.0)]);
+    for &size in &sizes {
+        finer += cube(size);
+        let percent = 100.0 * finer / all;
+        let (last_size, last_percent) = points[points.len() - 1];
+        if size > last_size && percent >= last_percent + 0.5 {
+            points.push((size, percent.min(100.0)));
+        }
+    }
+    match points.last_mut() {
+        Some(last) if last.0 == largest => last.1 = 100.0,
+        _ => points.push((largest, 100.0)),
+    }
+    Ok(Gradation::from_points(&points, None)?)
 }

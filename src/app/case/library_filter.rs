@@ -1,11 +1,10 @@
-//! A filter's constrictions from the library of packings, and how far they may be off.
+//! A filter's constrictions from the library of packings, and the curves that are walked since it or a guess
+//! may be off.
 
-use super::curve_ends::OtherCurve;
-use super::cut;
-use super::recipe::{GRAINS_OF_PART, LEAST_WIDTH, width_by_largest};
+use super::recipe::{GRAINS_OF_PART, LEAST_WIDTH, that_can_be_packed, width_by_largest};
 use crate::outcome::packing::PackedPart;
 use crate::scene::LibraryDensity;
-use voidwalk_core::constrictions::{CurveError, FromLibrary, from_library};
+use voidwalk_core::constrictions::{Curve, CurveError, FromLibrary, from_library, inscribed};
 use voidwalk_core::gradation::Gradation;
 
 /// Least error of the grains per void if only the finer part of a filter was looked up: for C33 sand, which
@@ -33,7 +32,7 @@ impl LibraryFilter {
         let width = |gradation: &Gradation| width_by_largest(gradation, GRAINS_OF_PART, 1.0);
         let (looked_up, part) = match width(filter) < LEAST_WIDTH {
             false => (filter.clone(), None),
-            true => match cut::that_can_be_packed(filter, width) {
+            true => match that_can_be_packed(filter, width) {
                 Some((finer, part)) => (finer, Some(part)),
                 None => return Ok(None),
             },
@@ -74,6 +73,50 @@ impl LibraryFilter {
             [end(loose, Some(&first), coarsest), end(dense, at_dense.as_ref(), 1.0 - first.curve_error)];
         Ok(Some(Self { found: first, part, ends: ends.into_iter().flatten().collect() }))
     }
+}
+
+/// Another curve that the filter may have.
+#[derive(Clone)]
+pub struct OtherCurve {
+    /// Its description in words.
+    pub name: String,
+    /// The curve (mm).
+    pub curve: Curve,
+    /// Grains per void of such a filter over the grains per void of the case's own curve: the base is
+    /// multiplied by it.
+    pub times_grains: f64,
+}
+
+/// The ends of a guess, by relative density.
+const END_GUESSES: [(f64, &str); 2] = [(1.0, "densest guess"), (0.0, "loosest guess")];
+
+/// Name of the guess at this relative density if it is an end.
+pub fn end_of_guess(relative_density: f64) -> Option<&'static str> {
+    END_GUESSES.iter().find(|(density, _)| *density == relative_density).map(|(_, name)| *name)
+}
+
+/// The ends of the range in which a constriction curve is known: for a filter whose finer part was packed,
+/// the constrictions made coarser by the greatest error of leaving the others out; for a guess, the densest
+/// and the loosest. Empty for a curve that was given, or measured on the whole.
+pub(super) fn curve_ends(
+    curve: &Curve,
+    filter: &Gradation,
+    part: Option<&PackedPart>,
+    guessed: Option<f64>,
+) -> Vec<OtherCurve> {
+    let finer_by = part.map_or(0.0, |part| part.finer_by);
+    let coarser = 1.0 / (1.0 - finer_by);
+    let coarser = (finer_by > 0.0).then(|| {
+        let name = format!("constrictions {:.1} % coarser", 100.0 * (coarser - 1.0));
+        Some(OtherCurve { name, curve: curve.scaled(coarser).ok()?, times_grains: 1.0 })
+    });
+    let guess = |(density, name): (f64, &str)| {
+        let name = name.to_owned();
+        Some(OtherCurve { name, curve: inscribed(filter, density).ok()?, times_grains: 1.0 })
+    };
+    let is_other = |(end, _): &(f64, &str)| guessed.is_some_and(|given| given != *end);
+    let guesses = END_GUESSES.into_iter().filter(is_other).map(guess);
+    coarser.into_iter().chain(guesses).flatten().collect()
 }
 
 #[cfg(test)]

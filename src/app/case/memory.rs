@@ -1,8 +1,7 @@
-//! Memory that a case takes, and the place of the columns of its particles.
-
-use std::path::Path;
+//! Particles of a case that are walked one by one, the memory that it takes, and the place of their columns.
 
 use super::{Case, CaseError, CaseNetwork};
+use std::path::Path;
 use voidwalk_core::network::ExitRule;
 use voidwalk_core::store::{Placement, platform};
 use voidwalk_core::walk::{CHUNK, Engine};
@@ -38,6 +37,13 @@ const NARROWINGS: u64 = 8;
 /// for a constriction its row, its line, and the time when it was blocked.
 const KEPT_BYTES: [u64; 3] = [200, 240, 420];
 
+/// Bytes of a network: for a void, and for a constriction (its target and diameter).
+const NETWORK_BYTES: [u64; 2] = [8, 8];
+
+/// Bytes of the exits with which its first runs begin: words and exits; shares, and the void that a
+/// constriction leaves.
+const EXIT_BYTES: [u64; 2] = [16, 16];
+
 /// Limits on memory and disk for the walks of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ResourceLimits {
@@ -61,8 +67,40 @@ impl ResourceLimits {
 }
 
 impl Case {
+    /// Base particles of a run of `n_base` that are walked one by one: all, or those that may be coarser than
+    /// the finest constriction.
+    pub fn one_by_one(&self, n_base: u64) -> u64 {
+        if self.takes_each(n_base) {
+            return n_base;
+        }
+        let passive = self.first_word(n_base) as f64 / 18_446_744_073_709_551_616.0;
+        (n_base as f64 * (1.0 - passive)).ceil() as u64
+    }
+
+    /// True if all of `n_base` particles are walked one by one, whatever their sizes, on a network that has
+    /// its finest constriction.
+    pub fn takes_each(&self, n_base: u64) -> bool {
+        let passive = Engine::passive_share(n_base / self.increments(), self.passive_words());
+        self.scene.walk.engine.takes_each(passive, self.network.start_nodes)
+    }
+
+    /// The first random word that draws one of those particles.
+    pub fn first_word(&self, n_base: u64) -> u128 {
+        if self.takes_each(n_base) { 0 } else { self.passive_words() }
+    }
+
+    /// Number of the 2^64 words that draw a particle that is passive on the open network.
+    fn passive_words(&self) -> u128 {
+        if self.scene.leaves_openings() {
+            return 0;
+        }
+        let (filter, fixed) = (&self.filter, self.network.fixed.as_ref());
+        let finest = fixed.map_or((filter.finest_mm / filter.unit_mm) as f32, |fixed| fixed.finest);
+        self.supply.sampler.word_limit(self.scene.law().map_or(finest, |law| law.passive_limit(finest)))
+    }
+
     /// Bytes of the columns of a walk of `n_base` particles.
-    pub fn column_bytes(&self, n_base: u64) -> u64 {
+    fn column_bytes(&self, n_base: u64) -> u64 {
         // A void and a diameter; one size needs no column.
         let bytes = if self.supply.sampler.smallest() == self.supply.sampler.largest() { 4 } else { 8 };
         self.one_by_one(n_base).div_ceil(CHUNK as u64).saturating_mul(bytes * CHUNK as u64)
@@ -71,52 +109,35 @@ impl Case {
     /// Further bytes of walking `n_base` particles on this many threads: network, tallies, book-keeping.
     fn other_bytes(&self, n_base: u64, threads: u64) -> u64 {
         let CaseNetwork { voids, constrictions, .. } = self.network;
-        let chunks = self.one_by_one(n_base).div_ceil(CHUNK as u64);
-        let workers = threads.max(1).saturating_mul(self.worker_bytes(n_base));
-        chunks
+        let one_by_one = self.one_by_one(n_base);
+        // Without a direction of its own each constriction is two exits with conductance, weight and flow, in
+        // the network, in a copy of it that the walk directs, and in the system.
+        let (flow, exits) = match self.scene.exit_rule() {
+            ExitRule::Area => (0, constrictions),
+            _ => (constrictions.saturating_mul(FLOW_BYTES), constrictions.saturating_mul(2)),
+        };
+        let openings = match self.scene.leaves_openings() {
+            true => {
+                // A particle narrows one at most.
+                let narrowings = exits.saturating_mul(NARROWINGS).min(n_base);
+                exits.saturating_mul(OPENING_BYTES).saturating_add(narrowings.saturating_mul(NARROWING_BYTES))
+            }
+            false => 0,
+        };
+        // With counts each thread keeps a column of the whole network, into which it moves particles; one
+        // thread alone moves the expectation, and particles move in place.
+        let is_counted = matches!(self.scene.walk.engine, Engine::Auto | Engine::Counts)
+            && !self.takes_each(n_base)
+            && one_by_one < n_base;
+        let (of_void, of_batch) = COUNTS_A_WORKER;
+        let of_worker = if is_counted { voids.saturating_mul(of_void).saturating_add(of_batch) } else { 0 };
+        one_by_one
+            .div_ceil(CHUNK as u64)
             .saturating_mul(EVENT_BYTES)
             .saturating_add(voids * 140 + constrictions * 25)
-            .saturating_add(self.flow_bytes())
-            .saturating_add(self.openings_bytes(n_base))
-            .saturating_add(workers)
-    }
-
-    /// Bytes of the openings that blocked constrictions leave. A particle narrows one at most.
-    fn openings_bytes(&self, n_base: u64) -> u64 {
-        if !self.scene.leaves_openings() {
-            return 0;
-        }
-        let of_each = match self.scene.exit_rule() {
-            ExitRule::Area => 1,
-            _ => 2,
-        };
-        let exits = self.network.constrictions.saturating_mul(of_each);
-        let narrowings = exits.saturating_mul(NARROWINGS).min(n_base);
-        exits.saturating_mul(OPENING_BYTES).saturating_add(narrowings.saturating_mul(NARROWING_BYTES))
-    }
-
-    /// Further bytes of a network without directions of its own: each constriction is two exits with
-    /// conductance, weight and flow, in the network, in a copy of it that the walk directs, and in the
-    /// system.
-    fn flow_bytes(&self) -> u64 {
-        match self.scene.exit_rule() {
-            ExitRule::Area => 0,
-            _ => self.network.constrictions.saturating_mul(FLOW_BYTES),
-        }
-    }
-
-    /// Bytes that each thread of a walk keeps for itself: with counts a column of the whole network, into
-    /// which it moves particles; one thread alone moves the expectation, and particles move in place.
-    fn worker_bytes(&self, n_base: u64) -> u64 {
-        let engine = self.scene.walk.engine;
-        let counts = matches!(engine, Engine::Auto | Engine::Counts)
-            && !self.takes_each(n_base)
-            && self.one_by_one(n_base) < n_base;
-        if counts {
-            self.network.voids.saturating_mul(COUNTS_A_WORKER.0).saturating_add(COUNTS_A_WORKER.1)
-        } else {
-            0
-        }
+            .saturating_add(flow)
+            .saturating_add(openings)
+            .saturating_add(threads.max(1).saturating_mul(of_worker))
     }
 
     /// Bytes of the records of each void of the first replicate, if `record.voids` keeps them: at most a row
@@ -134,6 +155,17 @@ impl Case {
             .saturating_mul(of_row)
             .saturating_add(voids.saturating_mul(of_void))
             .saturating_add(constrictions.saturating_mul(of_constriction))
+    }
+
+    /// About the bytes of one of its networks, and of the exits that first runs on it may begin with, be they
+    /// of this case or of another with the network.
+    pub fn shared_network_bytes(&self) -> [u64; 2] {
+        let CaseNetwork { voids, constrictions, .. } = self.network;
+        let bytes = |[of_void, of_constriction]: [u64; 2]| {
+            voids.saturating_mul(of_void).saturating_add(constrictions.saturating_mul(of_constriction))
+        };
+        let exits = if self.scene.is_lattice_by_area() { EXIT_BYTES } else { [0; 2] };
+        [bytes(NETWORK_BYTES), bytes(exits)]
     }
 
     /// Bytes that walking `n_base` particles on this many threads takes, network and tallies included.
@@ -290,12 +322,9 @@ pub fn in_words(bytes: u64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Scene;
-
     fn case(set: &[&str]) -> Case {
         let small = ["network.nx=80", "network.ny=80", "network.nz=100", "record.sensitivity=[]"];
-        let all: Vec<String> = small.iter().chain(set).map(ToString::to_string).collect();
-        Case::new(Scene::built_in(&all).unwrap()).unwrap()
+        Case::built_in(&[&small, set].concat()).unwrap()
     }
 
     /// Holds at the ends of a guessed curve's range.
@@ -328,10 +357,7 @@ mod tests {
         // Replicates side by side have columns each, so that there are fewer of them.
         let small =
             case(&["network.nx=40", "network.ny=40", "network.nz=60", "base.single_mm=0.1", "engine=counts"]);
-        assert!(
-            small.side_by_side(small.supply.n_base, 4) == 4
-                && small.side_by_side(small.supply.n_base, 64) == 1
-        );
+        assert_eq!([4, 64].map(|threads| small.side_by_side(small.supply.n_base, threads)), [4, 1]);
     }
 
     #[test]
@@ -380,8 +406,7 @@ mod tests {
     fn a_refusal_names_what_asks_for_the_memory() {
         let all = ["network.nx=9", "network.ny=9", "network.nz=12", "base.n_base=1000", "engine=particles"];
         let refused = |set: &str| {
-            let all: Vec<String> = all.iter().chain(&[set]).map(ToString::to_string).collect();
-            let mut case = Case::new(Scene::built_in(&all).unwrap()).unwrap();
+            let mut case = Case::built_in(&[&all, &[set][..]].concat()).unwrap();
             let room = ResourceLimits { memory: 100_000_000, disk: 0 };
             case.place(&room, 1, Path::new(".")).unwrap_err().to_string()
         };

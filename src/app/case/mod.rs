@@ -4,64 +4,44 @@
 //! is stated, a network that all replicates walk, the filter, the base, the network, the particles of the
 //! base.
 
-mod arching;
 mod base;
-mod curve_ends;
-mod cut;
 mod error;
 mod files;
 mod filter;
-mod fixed_network;
-mod input;
-mod left_out;
 mod library_filter;
 mod memory;
 mod network;
-mod network_key;
 mod notes;
-mod one_by_one;
 mod packed_filter;
-mod packing_plan;
-mod pan;
-mod places;
 mod recipe;
 mod record;
 mod resolved;
-mod scaled;
-mod sensitivity;
-mod stated_filter;
-mod supply;
-mod thickness;
-mod void_graph;
+mod varied;
 
-pub use base::CaseBase;
-pub use curve_ends::{OtherCurve, end_of_guess};
+pub use base::{CaseBase, CaseSupply, PAPER_MASS_RATIO};
 pub use error::CaseError;
-use files::Files;
 pub use files::{INPUT_FILES, INPUT_NAMES};
-pub use filter::CaseFilter;
-pub use fixed_network::{CopiedPacking, FixedNetwork};
-pub use input::Input;
-pub use library_filter::LibraryFilter;
+pub use filter::{CaseFilter, CopiedPacking, FixedNetwork};
+pub use library_filter::{LibraryFilter, OtherCurve, end_of_guess};
 pub use memory::{ResourceLimits, in_words};
 pub use network::{CaseNetwork, replicate_seed};
-use network::{placeholder_shape, set_layers_of_thickness};
-pub use packed_filter::{GRAINS, PackedError, PackedFilter, RECORD};
-pub use packing_plan::PackingPlan;
+pub use packed_filter::{GRAINS, Input, PackedError, PackedFilter, PackingPlan, RECORD};
 pub use record::base_record;
-pub use scaled::StatedBase;
-use stated_filter::StatedFilter;
-use supply::Against;
-pub use supply::{CaseSupply, PAPER_MASS_RATIO};
-use void_graph::GraphPacking;
+pub use varied::StatedBase;
 
-use crate::outcome::record::Ratios;
+use crate::outcome::Modelled;
+use crate::outcome::record::{ArchingRecord, Ratios};
 use crate::scene::{NetworkSource, Scene};
+use base::as_passive;
+use files::Files;
+use filter::{GraphPacking, StatedFilter};
+use network::{placeholder_shape, set_layers_of_thickness};
 use std::borrow::Cow;
 use std::sync::Arc;
 use voidwalk_core::gradation::Gradation;
 use voidwalk_core::network::{CONDUCTANCE_EXPONENT, ExitRule, Network, NetworkError};
 use voidwalk_core::store::Placement;
+use voidwalk_core::walk::{Arching, DENSEST};
 use voidwalk_practice::Note;
 
 /// A scene, worked out.
@@ -105,6 +85,13 @@ impl Case {
         Self::with_graph(scene, None, None, Vec::new())
     }
 
+    /// The case of the built-in scene with these settings.
+    #[cfg(test)]
+    pub(crate) fn built_in(set: &[&str]) -> Result<Self, CaseError> {
+        let set: Vec<String> = set.iter().map(ToString::to_string).collect();
+        Self::new(Scene::built_in(&set)?)
+    }
+
     /// The case of a scene whose filter has been packed, with these files read before.
     ///
     /// # Errors
@@ -134,11 +121,13 @@ impl Case {
         let mistake = base.mistake(&scene, &filter.gradation, scale_free)?;
         let network = CaseNetwork::new(&scene, &filter, fixed)?;
         let is_packed = filter.packed.as_ref().is_some_and(|packed| packed.files.is_some());
-        let against = Against { scene: &scene, filter: &filter, voids: network.voids, is_packed };
-        let supply = against.supply(&base.gradation).map_err(|error| match &mistake {
-            Some(mistake) if scene.base.sieve.is_some() => scene.clash(&mistake.sentence).into(),
-            _ => error,
-        })?;
+        let supply =
+            CaseSupply::new(&scene, &filter, network.voids, &base.gradation, is_packed).map_err(|error| {
+                match &mistake {
+                    Some(mistake) if scene.base.sieve.is_some() => scene.clash(&mistake.sentence).into(),
+                    _ => error,
+                }
+            })?;
         for (name, soil, percent) in [("filter", &filter.gradation, 15.0), ("base", &base.gradation, 85.0)] {
             if soil.d(percent).is_none() {
                 let problem = format!(
@@ -151,7 +140,11 @@ impl Case {
         let (inputs, memory, placement) = (files.inputs, u64::MAX, Placement::Memory);
         let mistake = mistake.map(|mistake| mistake.note);
         let case = Self { scene, filter, base, mistake, network, supply, inputs, memory, placement };
-        case.check_clogging()?;
+        if case.scene.leaves_openings() && case.base.as_given().pan_fraction() > 0.0 {
+            let problem = "walk.blocked = \"open\" needs the sizes of the whole base, as openings may stop a \
+                           particle of any size: add base.d0_mm, or finer sieves down to 0 %";
+            return Err(case.scene.clash(problem).into());
+        }
         Ok(case)
     }
 
@@ -164,7 +157,7 @@ impl Case {
     pub fn base_as_walked(&self) -> Cow<'_, Gradation> {
         let (base, finest_mm) = (&self.base.gradation, self.filter.finest_mm);
         match self.supply.pan_is_walked {
-            true => Cow::Owned(pan::as_passive(base, finest_mm, &self.scene).expect("it was sampled")),
+            true => Cow::Owned(as_passive(base, finest_mm, &self.scene).expect("it was sampled")),
             false => Cow::Borrowed(base),
         }
     }
@@ -219,5 +212,38 @@ impl Case {
         let d = |gradation: &Gradation, percent| gradation.d(percent).unwrap_or(f64::NAN);
         let (d15f, base) = (d(&self.filter.gradation, 15.0), &self.base.gradation);
         Ratios { d15f_over_d85b: d15f / d(base, 85.0), d15f_over_d95b: d15f / d(base, 95.0) }
+    }
+
+    /// The law of its arches at the concentration that the scene states; `None` if particles do not arch.
+    pub fn arching(&self) -> Option<Arc<Arching>> {
+        let concentration = self.scene.exits.concentration.unwrap_or(DENSEST);
+        self.scene.law().map(|law| Arc::new(Arching::new(law, concentration)))
+    }
+
+    /// Record of its arches.
+    pub fn arching_record(&self) -> Option<ArchingRecord> {
+        let law = self.scene.law()?;
+        Some(ArchingRecord {
+            law: law.name.into(),
+            source: law.source.into(),
+            basis: law.basis.into(),
+            range_of_ratio: [1.0, law.widest],
+            concentration: self.scene.exits.concentration,
+        })
+    }
+
+    /// Mechanisms in its walks that others leave out.
+    pub fn modelled(&self) -> Modelled {
+        Modelled {
+            flow: self.scene.exit_rule().needs_flow(),
+            arches: self.scene.law().is_some(),
+            openings: self.scene.leaves_openings(),
+        }
+    }
+
+    /// Doubts about a verdict from arches and openings, which no test has checked.
+    pub fn unchecked_clogging(&self) -> impl Iterator<Item = Note> {
+        let arches = self.scene.law().map(|law| Note::Arches { law: law.name.into() });
+        arches.into_iter().chain(self.scene.leaves_openings().then_some(Note::Openings {}))
     }
 }

@@ -1,13 +1,11 @@
 //! The network of a case: its size, and if all replicates walk the same one.
 
-use std::collections::BTreeMap;
-
 use super::error::CaseError;
-use super::filter::CaseFilter;
-use super::fixed_network::{CopiedPacking, FixedNetwork};
+use super::filter::{CaseFilter, CopiedPacking, FixedNetwork};
 use super::packed_filter::GUESSED_GRAINS_PER_VOID;
 use crate::scene::{Extent, NetworkSource, Scene, USUAL_LAYERS};
 use rand::Rng;
+use std::collections::BTreeMap;
 use voidwalk_core::gradation::Gradation;
 use voidwalk_core::network::{Connectivity, Network, NetworkError};
 use voidwalk_core::stream::{Key, Purpose};

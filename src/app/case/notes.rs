@@ -1,13 +1,13 @@
 //! Notes on a case before it is walked: where it leaves the range in which the model was checked, and other
 //! facts for a reader.
 
+use super::base::PAPER_MASS_RATIO;
 use super::filter::needs_grains_per_void;
 use super::packed_filter::GUESSED_GRAINS_PER_VOID;
-use super::supply::PAPER_MASS_RATIO;
 use super::{Case, Input, PackingPlan, replicate_seed};
 use crate::scene::{LibraryDensity, NetworkSource, Regrade};
 use crate::verdict::PlannedWalk;
-use crate::verdict::beside::packed_part;
+use crate::verdict::walks::packed_part;
 use voidwalk_core::gradation::GRAVEL_MM;
 use voidwalk_core::network::ExitRule;
 use voidwalk_practice::Note;
@@ -185,15 +185,9 @@ impl Case {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Scene;
 
-    fn case(changes: &[&str]) -> Result<Case, String> {
-        let changes: Vec<String> = changes.iter().map(|c| c.to_string()).collect();
-        Case::new(Scene::built_in(&changes).unwrap()).map_err(|error| error.to_string())
-    }
-
-    fn of_thickness(changes: &[&str]) -> Option<Note> {
-        case(changes).unwrap().notes().into_iter().find(|note| note.entry().label == "thickness")
+    fn of_thickness(set: &[&str]) -> Option<Note> {
+        Case::built_in(set).unwrap().notes().into_iter().find(|note| note.entry().label == "thickness")
     }
 
     #[test]
@@ -201,7 +195,7 @@ mod tests {
         let without_unit = Note::ThicknessWithoutUnit { real_mm: 50.0, unit: "D0F".into() };
         assert_eq!(of_thickness(&["filter.thickness_mm=50"]), Some(without_unit));
         let sized = |real: &str| of_thickness(&["filter.d0_mm=2.1", "network.thickness_mm=100", real]);
-        let case = case(&["filter.d0_mm=2.1", "network.thickness_mm=100"]).unwrap();
+        let case = Case::built_in(&["filter.d0_mm=2.1", "network.thickness_mm=100"]).unwrap();
         let (layer, modelled) = (case.filter.gradation.d_by_number(50.0).unwrap(), case.thickness().unwrap());
         assert!(modelled != 100.0 && sized("filter.thickness_mm=100").is_none());
         assert!(sized(&format!("filter.thickness_mm={}", modelled - 0.49 * layer)).is_none());
@@ -212,17 +206,17 @@ mod tests {
     #[test]
     fn a_network_is_no_thinner_than_half_a_layer() {
         for thin in ["network.thickness_mm=0.5", "network.thickness_d50f=0.3"] {
-            let error = case(&["filter.d0_mm=2.1", thin]).err().unwrap();
+            let error = Case::built_in(&["filter.d0_mm=2.1", thin]).err().unwrap().to_string();
             assert!(error.contains("allowed: half a layer or more"), "{error}");
         }
-        assert_eq!(case(&["filter.d0_mm=2.1", "network.thickness_mm=1.5"]).unwrap().network.layers, 1);
+        let thinnest = Case::built_in(&["filter.d0_mm=2.1", "network.thickness_mm=1.5"]).unwrap();
+        assert_eq!(thinnest.network.layers, 1);
     }
 
     fn doubts(set: &[&str]) -> Vec<Note> {
         let small =
             ["network.nx=10", "network.ny=10", "network.nz=12", "base.cu=3", "base.d15f_over_d85b=3.9"];
-        let all: Vec<String> = small.iter().chain(set).map(ToString::to_string).collect();
-        Case::new(Scene::built_in(&all).unwrap()).unwrap().notes()
+        Case::built_in(&[&small, set].concat()).unwrap().notes()
     }
 
     #[track_caller]
@@ -259,8 +253,8 @@ mod tests {
     #[test]
     fn a_capped_base_has_the_mass_ratio_of_its_particles() {
         let mass_ratio = |set: &str| {
-            let all = ["network.nx=10", "network.ny=10", "network.nz=12", set].map(String::from);
-            Case::new(Scene::built_in(&all).unwrap()).unwrap().supply.mass_ratio.unwrap()
+            let all = ["network.nx=10", "network.ny=10", "network.nz=12", set];
+            Case::built_in(&all).unwrap().supply.mass_ratio.unwrap()
         };
         let (capped, given) = (mass_ratio("base.cap=1000"), mass_ratio("base.n_base=1000"));
         assert!((capped / given - 1.0).abs() < 0.01 && capped < 0.04, "{capped} {given}");

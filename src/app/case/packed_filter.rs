@@ -1,19 +1,21 @@
-//! A filter that has been packed: the data for a walk, read from the folder of the packing.
+//! A filter that has been packed: the data for a walk, read from the folder of the packing; and the plan of a
+//! packing.
 //!
 //! The grains follow from the packing plan alone, so a packing is made once and kept under the fingerprint of
 //! its plan. Its constrictions are measured again for each use: that takes a second, and the overlap of voids
 //! may change.
 
-use std::path::{Path, PathBuf};
-
-use super::packing_plan::PackingPlan;
 use crate::outcome::packing::{PackedPart, PackingRecord, SameShape};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use voidwalk_core::constrictions::{
     Constrictions, ConstrictionsError, Curve, CurveError, CurveUnit, inscribed,
 };
-use voidwalk_core::packing::{ImportError, Packing};
+use voidwalk_core::gradation::Gradation;
+use voidwalk_core::packing::{self, ImportError, Packing, Settings as Compression};
 use voidwalk_core::store::format::{self, from_json};
 use voidwalk_core::store::{StoreError, read_whole};
+use voidwalk_practice::InputFile;
 
 /// The packing's measures; a folder that holds it is whole.
 pub const RECORD: &str = "packing.json";
@@ -93,8 +95,8 @@ impl PackedFilter {
     pub fn read(folder: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
         let Some((record, read)) = read_record(folder)? else { return Ok(None) };
         if read.fingerprint != order.fingerprint() {
-            let problem = "this is the packing of another recipe; name another folder".into();
-            return Err(PackedError::Record { file: folder.join(RECORD).display().to_string(), problem });
+            let problem = "this is the packing of another recipe; name another folder";
+            return Err(refused(&folder.join(RECORD), problem));
         }
         // Another filter may have the same finer part.
         let is_of_it = read.part == order.part && read.same_shape.is_none();
@@ -151,24 +153,22 @@ impl PackedFilter {
         record: Option<Vec<u8>>,
     ) -> Result<Self, PackedError> {
         let path = folder.join(RECORD);
-        let problem = |problem: String| PackedError::Record { file: path.display().to_string(), problem };
         let grains = folder.join(GRAINS);
-        let bytes = match read_whole(&grains) {
-            Ok(bytes) => bytes,
-            Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
-                return Err(problem(format!("{} is missing", GRAINS)));
-            }
-            Err(source) => return Err(StoreError::Io { path: grains, action: "read", source }.into()),
+        let Some(bytes) = read_if_there(&grains)? else {
+            return Err(refused(&path, format!("{GRAINS} is missing")));
         };
         if format!("{:016x}", xxhash_rust::xxh3::xxh3_64(&bytes)) != read.grains_xxh3 {
-            return Err(problem(format!("{} is not the file that this record was written with", GRAINS)));
+            return Err(refused(
+                &path,
+                format!("{GRAINS} is not the file that this record was written with"),
+            ));
         }
         let packing = Packing::parse(&grains.display().to_string(), &bytes)?;
         let packing = if factor == 1.0 { packing } else { packing.scaled(factor) };
         let constrictions = Constrictions::measure(&packing, order.merge_overlap)?;
         let record = match record {
             Some(record) => record,
-            None => format::PACKING.json(&read).map_err(|e| problem(e.to_string()))?.into_bytes(),
+            None => format::PACKING.json(&read).map_err(|e| refused(&path, e))?.into_bytes(),
         };
         Ok(Self {
             files: Some([folder.join("constrictions.csv"), path]),
@@ -190,13 +190,8 @@ impl PackedFilter {
     /// A file that is missing or damaged.
     pub fn kept(curve: &Path, grains_per_void: f64) -> Result<Self, PackedError> {
         let record = curve.with_file_name(RECORD);
-        let read = |path: &Path| {
-            let io = |source| StoreError::Io { path: path.to_owned(), action: "read", source };
-            read_whole(path).map_err(io)
-        };
         let (curve_bytes, record_bytes) = (read(curve)?, read(&record)?);
-        let problem = |problem: String| PackedError::Record { file: record.display().to_string(), problem };
-        let packing: PackingRecord = from_json(&record_bytes).map_err(|e| problem(e.to_string()))?;
+        let packing: PackingRecord = from_json(&record_bytes).map_err(|e| refused(&record, e))?;
         Ok(Self {
             curve: Curve::from_csv_text(&curve.display().to_string(), &curve_bytes)?,
             curve_csv: String::from_utf8_lossy(&curve_bytes).into_owned(),
@@ -248,15 +243,155 @@ impl PackedFilter {
 /// A packing's record, as bytes and parsed; `None` if it is missing.
 fn read_record(folder: &Path) -> Result<Option<(Vec<u8>, PackingRecord)>, PackedError> {
     let path = folder.join(RECORD);
-    let record = match read_whole(&path) {
-        Ok(bytes) => bytes,
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-        Err(source) => return Err(StoreError::Io { path, action: "read", source }.into()),
-    };
-    let problem = |e: serde_json::Error| PackedError::Record {
-        file: path.display().to_string(),
-        problem: e.to_string(),
-    };
-    let read = from_json(&record).map_err(problem)?;
+    let Some(record) = read_if_there(&path)? else { return Ok(None) };
+    let read = from_json(&record).map_err(|e| refused(&path, e))?;
     Ok(Some((record, read)))
+}
+
+fn read(path: &Path) -> Result<Vec<u8>, StoreError> {
+    read_whole(path).map_err(|source| StoreError::Io { path: path.to_owned(), action: "read", source })
+}
+
+/// The bytes of a file; `None` if it is missing.
+fn read_if_there(path: &Path) -> Result<Option<Vec<u8>>, StoreError> {
+    match read(path) {
+        Err(StoreError::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        read => read.map(Some),
+    }
+}
+
+fn refused(record: &Path, problem: impl ToString) -> PackedError {
+    PackedError::Record { file: record.display().to_string(), problem: problem.to_string() }
+}
+
+/// Two gradations have one shape if their sizes, scaled, agree to within this ...
+const SAME_SIZE: f64 = 1e-3;
+/// ... and their percentages as near as this.
+const SAME_PERCENT: f64 = 1e-2;
+
+/// Part of the definition of a packing: another number gives other grains from the same recipe.
+const PROTOCOL: u32 = 2;
+/// Protocol of gradations so wide that their most crowded grains are moved as heavier ones.
+const WIDE_PROTOCOL: u32 = 3;
+
+/// Plan of a packing.
+#[derive(Clone, Debug)]
+pub struct PackingPlan {
+    /// The gradation that is packed: the filter's, or its finer part's.
+    pub gradation: Gradation,
+    /// The gradation in words.
+    pub name: String,
+    /// True if it is linear.
+    pub linear: bool,
+    /// Part of the filter that it is, if the whole is not packed.
+    pub part: Option<PackedPart>,
+    /// Height of the cell by its width.
+    pub aspect: f64,
+    /// Settings of the compression.
+    pub compression: Compression,
+    /// Overlap of two inscribed spheres from which their tetrahedra are one void.
+    pub merge_overlap: f64,
+    /// Files that were read.
+    pub inputs: Vec<Input>,
+}
+
+impl PackingPlan {
+    /// Fingerprint of everything that the grains follow from.
+    pub fn fingerprint(&self) -> String {
+        self.fingerprint_of(&pairs(&self.gradation))
+    }
+
+    /// Fingerprint of a gradation with these points, compressed likewise.
+    fn fingerprint_of(&self, points: &[(f64, f64)]) -> String {
+        let protocol = if packing::is_wide(&self.gradation) { WIDE_PROTOCOL } else { PROTOCOL };
+        let mut text = format!("{protocol} {points:?} {:?}", self.compression);
+        if self.aspect != 1.0 {
+            text += &format!(" {:?} times as tall", self.aspect);
+        }
+        format!("{:016x}", xxhash_rust::xxh3::xxh3_64(text.as_bytes()))
+    }
+
+    /// The factor from a gradation with these points to the plan's: `None` if no factor takes every size to
+    /// within a thousandth of its target.
+    fn scale_from(&self, points: &[(f64, f64)]) -> Option<f64> {
+        let planned = pairs(&self.gradation);
+        let (coarsest, its) = (planned.last()?, points.last()?);
+        let factor = coarsest.0 / its.0;
+        let fits = |(planned, other): (&(f64, f64), &(f64, f64))| {
+            (factor * other.0 / planned.0 - 1.0).abs() < SAME_SIZE
+                && (other.1 - planned.1).abs() < SAME_PERCENT
+        };
+        (planned.len() == points.len() && planned.iter().zip(points).all(fits)).then_some(factor)
+    }
+
+    /// True if one packing, scaled, serves both plans.
+    pub fn has_shape_of(&self, other: &Self) -> bool {
+        let points = pairs(&other.gradation);
+        self.scale_from(&points).is_some() && self.fingerprint_of(&points) == other.fingerprint()
+    }
+
+    /// Name of the folder in which the packing is kept among others.
+    pub fn folder_name(&self) -> String {
+        let cu = self.gradation.cu().map_or("graded".to_string(), |cu| format!("cu{:.3}", cu));
+        let cu = cu.trim_end_matches('0').trim_end_matches('.');
+        format!("{cu}-friction{}-{}", self.compression.friction, &self.fingerprint()[..8])
+    }
+}
+
+/// Size and percent of each point, as fingerprints hash them.
+fn pairs(gradation: &Gradation) -> Vec<(f64, f64)> {
+    gradation.points().iter().map(|point| (point.size, point.percent)).collect()
+}
+
+/// A file that was read, and the name under which a run folder keeps it.
+#[derive(Clone, Debug)]
+pub struct Input {
+    /// The setting that names it.
+    pub setting: &'static str,
+    /// Its path as the user gave it first: a run that continues from the files in its folder reads it there.
+    pub name: String,
+    /// Name inside the run folder.
+    pub kept_as: String,
+    /// Its bytes, which copies of a case share.
+    pub bytes: Arc<Vec<u8>>,
+    /// Soil to use, if the file holds several.
+    pub soil: Option<String>,
+    /// Assumptions made to understand it.
+    pub notes: Vec<String>,
+}
+
+impl Input {
+    /// Its name and its checksum.
+    pub fn file(&self) -> InputFile {
+        InputFile::of(&self.name, &self.bytes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Scene;
+
+    #[test]
+    fn the_fingerprint_names_the_protocol() {
+        let protocols = |cu: f64, grains: usize| {
+            let set = [
+                format!("filter.cu={cu}"),
+                "filter.density=loose".into(),
+                format!("packing.grains={grains}"),
+                "packing.coarsest=100".into(),
+            ];
+            let plan = PackingPlan::of(&Scene::built_in(&set).unwrap()).unwrap().unwrap();
+            let points = pairs(&plan.gradation);
+            let text = |protocol: u32| format!("{protocol} {points:?} {:?}", plan.compression);
+            let [earlier, wide] = [2, 3]
+                .map(|protocol| format!("{:016x}", xxhash_rust::xxh3::xxh3_64(text(protocol).as_bytes())));
+            (plan.fingerprint() == earlier, plan.fingerprint() == wide)
+        };
+        assert_eq!(protocols(3.0, 20_000), (true, false));
+        assert_eq!(protocols(4.4, 20_000), (true, false));
+        // 4.5^2 is 20.25, even if too few grains reach it.
+        assert_eq!(protocols(4.5, 20_000), (false, true));
+        assert_eq!(protocols(6.0, 60_000), (false, true));
+    }
 }

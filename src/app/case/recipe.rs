@@ -1,9 +1,16 @@
-//! A recipe worked out: its files read, its number of grains decided, before any work is done.
+//! A recipe worked out before any work is done: its files read, the part of the filter and the number of
+//! grains decided.
+//!
+//! A cell must be wider than two of its largest grains, so that a broad gradation asks for millions of
+//! grains, most of them of the finest sizes. Its finer part is packed then: the constrictions are those
+//! between the finer grains; coarser ones are walls to them. The effect of leaving the coarser ones out was
+//! measured on filters that can be packed whole (`results/packing.md`): all constrictions become finer, from
+//! Dc5 to Dc90 by at most 0.6 times the share of the grains' surface that is left out.
 
-use super::cut;
 use super::error::CaseError;
 use super::files::Files;
-use super::packing_plan::PackingPlan;
+use super::packed_filter::PackingPlan;
+use crate::outcome::packing::{FLOATING_PERCENT, PackedPart};
 use crate::scene::{FilterGradation, PackingSpec, Scene, SceneError};
 use voidwalk_core::gradation::Gradation;
 
@@ -20,9 +27,6 @@ const FRACTION: f64 = 0.65;
 
 impl PackingPlan {
     /// Plan of the packing for a scene, if its filter is to be packed and was not measured before.
-    ///
-    /// # Errors
-    /// See [`PackingPlan::new`].
     pub fn of(scene: &Scene) -> Result<Option<Self>, CaseError> {
         let spec = scene.packing_spec()?.filter(|_| scene.filter.measured.is_none());
         spec.as_ref().map(Self::new).transpose()
@@ -35,17 +39,15 @@ impl PackingPlan {
     /// grain.
     pub fn new(recipe: &PackingSpec) -> Result<Self, CaseError> {
         let mut files = Files::default();
-        let (gradation, linear) = match &recipe.gradation {
+        let (gradation, linear, name) = match &recipe.gradation {
             FilterGradation::Linear { d0_mm, cu } => {
-                (Gradation::linear_from_d0(*d0_mm, cu.unwrap_or(1.0))?, true)
+                let cu = cu.unwrap_or(1.0);
+                (Gradation::linear_from_d0(*d0_mm, cu)?, true, format!("linear, Cu {cu}"))
             }
             FilterGradation::Sieve(path, d0_mm) => {
-                (files.sieve(path, *d0_mm, "filter.sieve", "filter-sieve.csv", &recipe.file)?, false)
+                let gradation = files.sieve(path, *d0_mm, "filter.sieve", &recipe.file)?;
+                (gradation, false, path.display().to_string())
             }
-        };
-        let name = match &recipe.gradation {
-            FilterGradation::Linear { cu, .. } => format!("linear, Cu {}", cu.unwrap_or(1.0)),
-            FilterGradation::Sieve(path, _) => path.display().to_string(),
         };
         let mut plan = Self {
             name,
@@ -65,26 +67,25 @@ impl PackingPlan {
     /// narrow; and decides on the number of grains.
     fn take_part(&mut self, recipe: &PackingSpec) -> Result<(), CaseError> {
         let (whole, grains) = (self.gradation.clone(), recipe.grains);
-        let aspect = self.aspect;
+        let (aspect, mut usual) = (self.aspect, Self::usual_grains(&self.gradation));
         let width = |gradation: &Gradation, grains| width_by_largest(gradation, grains, aspect);
         let part = match recipe.coarsest {
-            Some(percent) if percent < 100.0 => Some(cut::finer_part(&whole, percent).ok_or_else(|| {
+            Some(percent) if percent < 100.0 => Some(finer_part(&whole, percent).ok_or_else(|| {
                 let problem = format!(
                     "packing.coarsest = {percent}: no grains of known size are finer than that percentage"
                 );
                 SceneError::Clash { file: recipe.file.clone(), problem }
             })?),
-            None if width(&whole, grains.unwrap_or_else(|| self.tall(grains_for(&whole)))) < LEAST_WIDTH => {
+            None if width(&whole, grains.unwrap_or_else(|| self.tall(usual))) < LEAST_WIDTH => {
                 let most = grains.unwrap_or(self.tall(GRAINS_OF_PART));
-                cut::that_can_be_packed(&whole, |part| width(part, most))
+                that_can_be_packed(&whole, |part| width(part, most))
             }
             _ => None,
         };
-        let mut usual = grains_for(&whole);
         if let Some((gradation, packed)) = part {
             self.name = format!("{}, its finer {:.1} %", self.name, packed.percent);
             let most = if recipe.coarsest.is_some() { GRAINS.1 } else { GRAINS_OF_PART };
-            usual = grains_for(&gradation).min(most);
+            usual = Self::usual_grains(&gradation).min(most);
             (self.gradation, self.part, self.linear) = (gradation, Some(packed), false);
         }
         self.compression.grains = grains.unwrap_or(self.tall(usual));
@@ -92,7 +93,9 @@ impl PackingPlan {
         if width >= LEAST_WIDTH {
             return Ok(());
         }
-        let grains = self.tall(grains_at_least(&self.gradation));
+        // Grains with which the cell is wide enough, and a little more.
+        let of_cube = ((LEAST_WIDTH + 0.1) / width_by_largest(&self.gradation, 1, 1.0)).powi(3);
+        let grains = self.tall(libm::ceil(of_cube) as usize);
         let problem = format!(
             "packing.grains = {}: the cell would be about {width:.1} times as wide as the largest grain, at \
              least {LEAST_WIDTH} times is needed; about {grains} grains would do",
@@ -110,7 +113,8 @@ impl PackingPlan {
     /// Default number of grains of a gradation: enough for a cell 5.4 times as wide as the largest, 9,000 to
     /// 60,000.
     pub fn usual_grains(gradation: &Gradation) -> usize {
-        grains_for(gradation)
+        let wanted = (CELLS_WIDTH / width_by_largest(gradation, 1, 1.0)).powi(3);
+        (wanted as usize).clamp(GRAINS.0, GRAINS.1)
     }
 
     /// Width of a tall cell as a multiple of the largest grain, about, and the usual multiple, if it is
@@ -121,20 +125,103 @@ impl PackingPlan {
     }
 }
 
-/// Grains that make the cell wide enough.
-fn grains_for(gradation: &Gradation) -> usize {
-    let wanted = (CELLS_WIDTH / width_by_largest(gradation, 1, 1.0)).powi(3);
-    (wanted as usize).clamp(GRAINS.0, GRAINS.1)
-}
-
-/// Grains with which the cell is wide enough, and a little more.
-fn grains_at_least(gradation: &Gradation) -> usize {
-    libm::ceil(((LEAST_WIDTH + 0.1) / width_by_largest(gradation, 1, 1.0)).powi(3)) as usize
-}
-
 /// Width of the cell of this many grains, by the largest grain; the cell is `aspect` times as tall.
 pub(super) fn width_by_largest(gradation: &Gradation, grains: usize, aspect: f64) -> f64 {
     let largest = gradation.largest_mm();
     let grain_mm3 = 1.0 / gradation.particles_per_unit_volume();
     libm::cbrt(grains as f64 * grain_mm3 / FRACTION / aspect) / largest
+}
+
+/// Width of a cell over the largest grain that is packed, if the program chooses it.
+const WIDTH_OF_PART: f64 = 2.5;
+/// Relative error of the constrictions, which come out finer than in the whole, per surface share left out.
+const ERROR_BY_SURFACE: f64 = 0.6;
+/// A part that leaves more in doubt than this is not chosen.
+const LARGEST_ERROR: f64 = 0.05;
+
+/// The finer part of a filter, as a gradation of its own, with its description.
+fn finer_part(whole: &Gradation, percent: f64) -> Option<(Gradation, PackedPart)> {
+    let largest_mm = whole.d(percent)?;
+    let part = whole.passing(largest_mm)?;
+    let surface_left_out = whole.surface_coarser_than(part.largest_mm());
+    let packed = PackedPart {
+        percent,
+        largest_mm: part.largest_mm(),
+        surface_left_out,
+        finer_by: ERROR_BY_SURFACE * surface_left_out,
+        sizes_missing_above: whole.percent_finer_by_mass(1.5 * part.largest_mm()) <= percent + 0.5,
+    };
+    Some((part, packed))
+}
+
+/// The largest finer part of which this many grains make a wide enough cell; `None` if it leaves out so much
+/// that the result is in doubt.
+pub(super) fn that_can_be_packed(
+    whole: &Gradation,
+    width: impl Fn(&Gradation) -> f64,
+) -> Option<(Gradation, PackedPart)> {
+    let (mut fits, mut too_wide) = (whole.pan_fraction() * 100.0, 100.0);
+    for _ in 0..40 {
+        let percent = 0.5 * (fits + too_wide);
+        match finer_part(whole, percent) {
+            Some((part, _)) if width(&part) < WIDTH_OF_PART => too_wide = percent,
+            _ => fits = percent,
+        }
+    }
+    // Percent rounded down to a tenth.
+    let percent = libm::floor(10.0 * fits + 1e-6) / 10.0;
+    finer_part(whole, percent)
+        .filter(|(_, packed)| packed.finer_by <= LARGEST_ERROR && packed.percent >= FLOATING_PERCENT)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::verdict::walks::packed_part;
+    use voidwalk_practice::Note;
+
+    /// ASTM C33 fine aggregate, the middle of its band.
+    fn c33() -> Gradation {
+        let table = [(0.15, 6.0), (0.3, 20.0), (0.6, 42.5), (1.18, 67.5), (2.36, 90.0), (4.75, 97.5)];
+        Gradation::from_lines(&[&table[..], &[(9.5, 100.0)]].concat()).unwrap()
+    }
+
+    #[test]
+    fn a_part_says_what_it_leaves_out() {
+        let (part, packed) = finer_part(&c33(), 90.0).unwrap();
+        assert!((part.largest_mm() - 2.36).abs() < 1e-9 && packed.percent == 90.0);
+        assert!((part.percent_finer_by_mass(1.18) - 75.0).abs() < 1e-9);
+        // By hand: percent / ln(b/a) (1/a - 1/b) of each row.
+        assert!((packed.surface_left_out - 0.015855).abs() < 1e-6, "{packed:?}");
+        assert!((packed.finer_by - 0.6 * packed.surface_left_out).abs() < 1e-15);
+        assert!(!packed.sizes_missing_above);
+        let Note::PartPacked { part_percent, largest_mm, .. } = packed_part(&packed) else {
+            panic!("{packed:?}")
+        };
+        assert!((part_percent - 90.0).abs() < 0.05 && (largest_mm - 2.36).abs() < 0.005, "{packed:?}");
+        // All of it leaves nothing out.
+        let (all, packed) = finer_part(&c33(), 100.0).unwrap();
+        assert_eq!((all, packed.surface_left_out), (c33(), 0.0));
+    }
+
+    #[test]
+    fn what_is_chosen_makes_a_wide_cell_and_no_more() {
+        // A cell of 8 mm, whatever is packed.
+        let width = |part: &Gradation| 8.0 / part.largest_mm();
+        let (part, packed) = that_can_be_packed(&c33(), width).unwrap();
+        assert!((width(&part) - WIDTH_OF_PART).abs() < 0.02, "{packed:?}");
+        // In a gap the part ends with the sizes below it.
+        let gap_at = |percent| {
+            let table = [(0.2, 0.0), (0.5, percent), (5.0, percent), (10.0, 100.0)];
+            Gradation::from_lines(&table).unwrap()
+        };
+        let gap = gap_at(40.0);
+        let (part, packed) = that_can_be_packed(&gap, width).unwrap();
+        assert!(part.largest_mm() <= 0.5 && packed.percent > 39.8, "{packed:?}");
+        assert!(packed.sizes_missing_above);
+        assert!(matches!(packed_part(&packed), Note::FloatingPartPacked { .. }));
+        // Too few grains for a part that represents the whole, and fines that coarse grains do not float in.
+        assert_eq!(that_can_be_packed(&c33(), |part| 1.0 / part.largest_mm()), None);
+        assert_eq!(that_can_be_packed(&gap_at(20.0), width), None);
+    }
 }

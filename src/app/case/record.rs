@@ -1,12 +1,19 @@
-//! Inputs, as a run folder records them.
+//! Inputs, as a run folder records them, and the positions of voids.
 
 use super::{Case, CaseFilter, CaseNetwork, Input, RECORD};
 use crate::outcome::record;
+use crate::outcome::recorder::Places;
 use crate::scene::{BaseGradation, CurveSource, FilterGradation, NetworkSource};
 use voidwalk_core::constrictions::ShippedFilter;
 use voidwalk_core::gradation::{CurvePoint, Gradation};
 use voidwalk_core::network::{ExitRule, FLOW_TOLERANCE, flow_error_pp};
 use voidwalk_practice::{AboutPage, InputFile};
+
+/// Kinematic viscosity of water of 10 C (m2/s).
+const KINEMATIC_VISCOSITY: f64 = 1.307e-6;
+
+/// Gravity (m/s2).
+const GRAVITY: f64 = 9.81;
 
 impl Case {
     /// The page of its run.
@@ -26,10 +33,8 @@ impl Case {
 
     /// The user's name for the file of a setting.
     fn name_of(&self, setting: &str) -> String {
-        self.inputs
-            .iter()
-            .find(|input| input.setting == setting)
-            .map_or(String::new(), |input| input.name.clone())
+        let input = self.inputs.iter().find(|input| input.setting == setting);
+        input.map_or(String::new(), |input| input.name.clone())
     }
 
     /// The user's name for each file, by its name in the folder of inputs.
@@ -40,6 +45,11 @@ impl Case {
 
     /// Inputs, as a run folder records them.
     pub fn record(&self) -> record::Inputs {
+        let base_name = match &self.scene.base.gradation() {
+            BaseGradation::Sieve(..) => self.name_of("base.sieve"),
+            BaseGradation::Single(_) => "one size".into(),
+            BaseGradation::Linear { cu, .. } => format!("linear, Cu {cu}"),
+        };
         record::Inputs {
             filter: self.filter_record(),
             base: record::BaseRecord {
@@ -50,7 +60,7 @@ impl Case {
                     d100_mm: given.largest_mm(),
                     gradation: rows(given.points()),
                 }),
-                ..base_record(self.base_name(), &self.base.gradation)
+                ..base_record(base_name, &self.base.gradation)
             },
             network: self.network_record(),
             mass_ratio: self.supply.mass_ratio,
@@ -157,15 +167,6 @@ impl Case {
         }
     }
 
-    /// Name or description of the base.
-    fn base_name(&self) -> String {
-        match &self.scene.base.gradation() {
-            BaseGradation::Sieve(..) => self.name_of("base.sieve"),
-            BaseGradation::Single(_) => "one size".into(),
-            BaseGradation::Linear { cu, .. } => format!("linear, Cu {cu}"),
-        }
-    }
-
     /// The network that was walked, if its constrictions have no direction of their own. `k0_mm2` is the
     /// permeability of the clean filter, if known.
     pub fn network_summary(&self, k0_mm2: Option<f64>) -> Option<record::NetworkSummary> {
@@ -236,6 +237,33 @@ impl Case {
     pub fn is_scale_free(&self) -> bool {
         self.network.fixed.is_none() && self.filter.is_scale_free(&self.scene)
     }
+
+    /// Positions of the voids of its network; `None` for a network from a file, which has no positions, and
+    /// for a packing that is still to be made.
+    pub fn places(&self) -> Option<Places> {
+        if let Some([nx, ny, nz]) = self.scene.network.source().shape() {
+            let layer_mm = self.filter.gradation.d_by_number(50.0).unwrap_or(self.filter.unit_mm);
+            let middle = |at: u32| (f64::from(at) + 0.5) * layer_mm;
+            let row = |z: u32, y: u32| (0..nx).map(move |x| [middle(x), middle(y), middle(z)]);
+            return Some(Places {
+                point_mm: (0..nz).flat_map(|z| (0..ny).flat_map(move |y| row(z, y))).collect(),
+                period_mm: [nx, ny].map(|n| f64::from(n) * layer_mm),
+                layer_mm,
+            });
+        }
+        let packing = self.network.packing()?;
+        let graph = &packing.graph.graph;
+        let [x_mm, y_mm, z_mm] = graph.cell_mm;
+        let lifted = |copy: u32| {
+            let by = f64::from(copy) * z_mm;
+            graph.point_mm.iter().map(move |&[x, y, z]| [x, y, z + by])
+        };
+        Some(Places {
+            point_mm: (0..packing.copies).flat_map(lifted).collect(),
+            period_mm: [x_mm, y_mm],
+            layer_mm: graph.spacing_mm(),
+        })
+    }
 }
 
 /// A base, as records of results hold it.
@@ -265,13 +293,41 @@ fn rows(points: Vec<CurvePoint>) -> Vec<[f64; 2]> {
     points.into_iter().map(CurvePoint::row).collect()
 }
 
-/// Kinematic viscosity of water of 10 C (m2/s).
-const KINEMATIC_VISCOSITY: f64 = 1.307e-6;
-
-/// Gravity (m/s2).
-const GRAVITY: f64 = 9.81;
-
 /// A coefficient of uniformity without the digits that rounding left.
 fn rounded(cu: Option<f64>) -> f64 {
     cu.map_or(f64::NAN, |cu| (cu * 1e6).round() / 1e6)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By the layer in the network itself, and by its constrictions, which lead to a neighbour.
+    #[test]
+    fn the_voids_of_a_lattice_lie_in_their_layers_beside_their_neighbours() {
+        let case = Case::built_in(&["network.nx=3", "network.ny=4", "network.nz=5"]).unwrap();
+        let (network, places) = (case.network(1).unwrap(), case.places().unwrap());
+        assert_eq!(places.point_mm.len(), network.voids());
+        for void in 0..network.voids() {
+            let [x, y, z] = places.point_mm[void];
+            assert_eq!((z / places.layer_mm) as u32, network.layer_of()[void]);
+            for c in network.exits(void as u32) {
+                let Some(&[other_x, other_y, other_z]) = places.point_mm.get(network.targets()[c] as usize)
+                else {
+                    continue;
+                };
+                let across = |from: f64, to: f64, period: f64| {
+                    let by = to - from;
+                    by - period * (by / period).round()
+                };
+                let by = [
+                    across(x, other_x, places.period_mm[0]),
+                    across(y, other_y, places.period_mm[1]),
+                    other_z - z,
+                ];
+                let steps: f64 = by.iter().sum::<f64>() / places.layer_mm;
+                assert!((steps - 1.0).abs() < 1e-9, "{by:?}");
+            }
+        }
+    }
 }

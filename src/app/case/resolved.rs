@@ -1,11 +1,11 @@
-//! Identity of a case: its scene with every number given and its files beside it, and the fingerprint of
-//! both.
-
-use std::path::PathBuf;
+//! Identity of a case: its scene with every number given and its files beside it, the fingerprint of both,
+//! and the key of its networks.
 
 use super::Case;
 use super::filter::needs_grains_per_void;
-use crate::scene::{About, CurveSource, Scene};
+use crate::scene::{About, CurveSource, NetworkSource, Scene};
+use std::path::PathBuf;
+use voidwalk_core::walk::Engine;
 
 /// Part of the fingerprint of every case: raised whenever the program gives other results for the same scene.
 const PROTOCOL: u32 = 1;
@@ -79,6 +79,28 @@ impl Case {
         }
         format!("{:032x}", xxhash_rust::xxh3::xxh3_128(&text))
     }
+
+    /// A number that two cases share only if [`Case::network`] builds the same network for this seed; `None`
+    /// if a case has one network, which exists already.
+    pub fn network_key(&self, seed: u64) -> Option<u128> {
+        let source = self.scene.network.source();
+        if self.network.fixed.is_some() || matches!(source, NetworkSource::File(_)) {
+            return None;
+        }
+        let curve: Vec<(u64, u64)> =
+            self.filter.curve.points().iter().map(|p| (p.percent.to_bits(), p.size.to_bits())).collect();
+        let (unit, rule) = (self.filter.unit_mm.to_bits(), self.scene.exit_rule());
+        let made_of = format!("{seed} {source:?} {unit} {rule:?} {:?} {curve:?}", self.scene.exits);
+        Some(xxhash_rust::xxh3::xxh3_128(made_of.as_bytes()))
+    }
+
+    /// True if its first runs begin with exits that depend on the network alone, and passive particles take
+    /// them.
+    pub fn begins_with_plain_exits(&self) -> bool {
+        let scene = &self.scene;
+        let has_counts = matches!(scene.walk.engine, Engine::Counts | Engine::Expected);
+        has_counts && scene.is_lattice_by_area() && scene.law().is_none() && !scene.leaves_openings()
+    }
 }
 
 #[cfg(test)]
@@ -88,8 +110,7 @@ mod tests {
     /// Ends that differ in their amount of base alone give other results.
     #[test]
     fn the_grains_per_void_of_an_end_are_in_the_fingerprint() {
-        let set = ["filter.library=loose", "filter.cu=1.5", "filter.d0_mm=1"].map(str::to_owned);
-        let case = Case::new(Scene::built_in(&set).unwrap()).unwrap();
+        let case = Case::built_in(&["filter.library=loose", "filter.cu=1.5", "filter.d0_mm=1"]).unwrap();
         let mut other = case.clone();
         other.filter.curve_ends[0].times_grains *= 0.9;
         assert_ne!(case.fingerprint(), other.fingerprint());
@@ -97,10 +118,7 @@ mod tests {
 
     #[test]
     fn what_is_only_said_of_a_scene_is_kept_and_changes_no_fingerprint() {
-        let case = |set: &[&str]| {
-            let set: Vec<String> = set.iter().map(ToString::to_string).collect();
-            Case::new(Scene::built_in(&set).unwrap()).unwrap()
-        };
+        let case = |set: &[&str]| Case::built_in(set).unwrap();
         let with_cover = case(&["about.client=Water Board", "about.project=Dam"]);
         assert_eq!(with_cover.fingerprint(), case(&[]).fingerprint());
         assert_ne!(with_cover.fingerprint(), case(&["base.cu=1.6"]).fingerprint());

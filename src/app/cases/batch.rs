@@ -5,28 +5,31 @@
 //! of its own, finished ones are kept, and stopped or killed ones continue. The table follows from samples,
 //! filters and settings alone.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use super::days::last_day;
-use super::kept::{self, hash_of};
-use super::pairs::BatchPlan;
-use super::plan::PlannedCase;
+use super::inputs::{InputSoils, as_folders, names, refuse_twice};
+use super::kept::{self, hash_of, last_day};
+use super::plan::{CasePlan, PlannedCase};
 use super::prepared::{CASES, PreparedCase};
-use super::run::{CaseOptions, FinishedCases, ReadyCases, Walk, look, run_around};
+use super::run::{CaseOptions, FinishedCases, ReadyCases, Walk, look, run_around, unsound};
 use super::walk::CaseCallbacks;
 use crate::outcome::leaves_out_of_all;
 use crate::outcome::ledger::LedgerLine;
 use crate::outcome::record::Outcome;
-use crate::run::error::{Exit, RunError};
-use crate::run::folder::{FolderKind, claim, shown};
-use crate::run::unfinished::Unfinished;
-use crate::scene::Scene;
+use crate::run::folder::{FolderKind, Unfinished, claim, shown};
+use crate::run::{Exit, RunError};
+use crate::scene::{Scene, TableOptions};
 use crate::verdict::{SampleWalk, WalkedBatch, WalkedRow};
-use crate::words::batch::walked_columns;
+use crate::words::batch::{EXCHANGED, MAY_GOVERN, walked_columns};
+use voidwalk_core::gradation::GradationError;
+use voidwalk_core::schema::setting_name;
 use voidwalk_core::store::Folder;
 use voidwalk_core::store::format::from_json;
+use voidwalk_practice::batch::{NAMED, governing};
 use voidwalk_practice::quantity::SizeUnit;
+use voidwalk_practice::{BatchFilter, BatchRow, BatchTable, PairOptions, SheetCover};
+use voidwalk_sheets::curves_in_file;
 
 /// Folder of the campaign, inside the batch's.
 const WALKS: &str = "pairs";
@@ -34,8 +37,244 @@ const WALKS: &str = "pairs";
 /// One row a sample and filter.
 const TABLE: &str = "batch.csv";
 
-/// Kind of the folder of a batch.
 const KIND: FolderKind = FolderKind::Batch;
+
+/// Voids across the lattice of a first look, as `voidwalk boundary` searches.
+const ACROSS: u64 = 20;
+
+/// Settings that give the lattice a size of the user's own.
+const OWN_LATTICE: [&str; 4] = ["network.nx", "network.ny", "network.file", "network.packing"];
+
+/// Which pairs are walked, and how.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BatchWalks {
+    /// A first look at every sample, and the three that govern each filter in full.
+    #[default]
+    GoverningInFull,
+    /// A first look at every sample.
+    FirstLook,
+    /// The three that govern each filter alone, in full.
+    GoverningAlone,
+    /// The one base against every filter, as the settings say.
+    OneBase,
+}
+
+/// A batch, its pairs worked out.
+#[derive(Clone, Debug)]
+pub struct BatchPlan {
+    /// The samples, as they were named.
+    samples: PathBuf,
+    filters: Vec<BatchFilter>,
+    /// The curve of the one base as sampled; empty if each soil is a sample.
+    base: Vec<[f64; 2]>,
+    rows: Vec<WalkedRow>,
+    /// Name of the case of each row, walked or not.
+    cases: Vec<String>,
+    /// Cases that are walked in full.
+    in_full: HashSet<String>,
+    notes: Vec<String>,
+    campaign: CasePlan,
+}
+
+impl BatchPlan {
+    /// The pairs of the samples of a file or a folder with filters. `tables` holds the further options of
+    /// each scene. A pair that cannot be walked stays in the table, with the reason.
+    ///
+    /// # Errors
+    /// A file that cannot be read; a filter that is named twice; several soils in place of one base; cases
+    /// that do not fit the memory; no pair that can be walked.
+    pub fn new(
+        samples: &Path,
+        filters: &[PathBuf],
+        tables: &TableOptions,
+        walks: BatchWalks,
+        options: &CaseOptions,
+    ) -> Result<Self, RunError> {
+        let table = pairs_of(samples, filters, tables.of_rules()?, walks != BatchWalks::OneBase)?;
+        let cases = case_names(&table, filters);
+        let mut plan = Self {
+            samples: samples.to_owned(),
+            rows: governed(&table),
+            filters: table.filters,
+            base: if walks == BatchWalks::OneBase { table.base } else { Vec::new() },
+            cases,
+            in_full: HashSet::new(),
+            notes: table.notes,
+            campaign: CasePlan {
+                file: "batch".into(),
+                title: format!("samples of {}", shown(samples)),
+                factors: vec!["sample".into(), "filter".into()],
+                cases: Vec::new(),
+            },
+        };
+        let looks = first_look(tables);
+        for (row, case) in plan.rows.iter_mut().zip(&plan.cases) {
+            let in_full = match walks {
+                BatchWalks::OneBase => !tables.quick,
+                BatchWalks::FirstLook => false,
+                BatchWalks::GoverningInFull | BatchWalks::GoverningAlone => row.governs.is_some(),
+            };
+            if walks == BatchWalks::GoverningAlone && !in_full {
+                row.not_walked = match (row.rules.is_refused, row.rules.limit_is_open()) {
+                    (true, _) => EXCHANGED,
+                    (false, true) => MAY_GOVERN,
+                    (false, false) => "does not govern",
+                }
+                .into();
+                continue;
+            }
+            let as_stated = in_full || walks == BatchWalks::OneBase;
+            match scene(row, &plan.filters, if as_stated { tables } else { &looks }) {
+                Ok(scene) => {
+                    let pair = [("sample", &row.rules.sample), ("filter", &row.rules.filter)];
+                    let levels = pair.map(|(factor, level)| (factor.to_owned(), level.clone())).to_vec();
+                    plan.campaign.cases.push(PlannedCase { name: case.clone(), levels, scene });
+                    plan.in_full.extend(in_full.then(|| case.clone()));
+                }
+                Err(problem) => row.not_walked = problem,
+            }
+        }
+        plan.leave_out_unsound(options)?;
+        Ok(plan)
+    }
+
+    /// Replaces the paths of the samples and of each filter by these names, and notes that may hold paths by
+    /// the result of `reworded`.
+    #[must_use]
+    pub fn named(mut self, samples: &str, filters: &[String], reworded: impl Fn(&str) -> String) -> Self {
+        let of_filter = (self.rows.len() / self.filters.len().max(1)).max(1);
+        for (at, row) in self.rows.iter_mut().enumerate() {
+            row.rules.filter.clone_from(&filters[at / of_filter]);
+            row.not_walked = reworded(&row.not_walked);
+            let case = self.campaign.cases.iter_mut().find(|case| case.name == self.cases[at]);
+            let levels = case.into_iter().flat_map(|case| &mut case.levels);
+            let level = levels.filter(|(factor, _)| factor == "filter");
+            level.for_each(|(_, level)| level.clone_from(&filters[at / of_filter]));
+        }
+        self.filters.iter_mut().zip(filters).for_each(|(filter, name)| filter.name.clone_from(name));
+        self.notes.iter_mut().for_each(|note| *note = reworded(note));
+        self.campaign.title = format!("samples of {samples}");
+        self.samples = samples.into();
+        self
+    }
+
+    /// Removes unsound cases from the walks.
+    fn leave_out_unsound(&mut self, options: &CaseOptions) -> Result<(), RunError> {
+        if !self.campaign.cases.is_empty() {
+            for failed in unsound(&self.campaign, options)? {
+                self.campaign.cases.retain(|case| case.name != failed.case);
+                let at = self.cases.iter().position(|case| *case == failed.case);
+                at.into_iter().for_each(|at| self.rows[at].not_walked = failed.problem.clone());
+            }
+        }
+        if self.campaign.cases.is_empty() {
+            let why = |row: &WalkedRow| {
+                format!("{} and {}: {}", row.rules.sample, row.rules.filter, row.not_walked)
+            };
+            let reasons: Vec<String> = self.rows.iter().take(NAMED).map(why).collect();
+            let problem = format!("no pair of a sample and a filter can be walked\n{}", reasons.join("\n"));
+            return Err(RunError::Refused(problem));
+        }
+        Ok(())
+    }
+
+    /// Cover of the sheet: all scenes of the walks agree on it.
+    fn cover(&self) -> SheetCover {
+        self.campaign.cases.first().map(|case| case.scene.about.cover()).unwrap_or_default()
+    }
+
+    /// True if page and terminal show inches beside mm.
+    pub fn shows_inches(&self) -> bool {
+        self.campaign.cases.first().is_some_and(|case| case.scene.about.shows_inches())
+    }
+
+    /// Source of the constrictions of the walks, in a sentence.
+    pub fn constrictions_in_words(&self) -> String {
+        self.campaign.cases.first().map_or(String::new(), |case| case.scene.constrictions_in_words())
+    }
+}
+
+/// The rows of the samples of a file or a folder against filters, without `each` of one base; every soil of a
+/// filter's file is a curve of its envelope. Errors: a file that cannot be read; a filter that is named
+/// twice; several soils in place of one base.
+pub(crate) fn pairs_of(
+    samples: &Path,
+    filters: &[PathBuf],
+    options: PairOptions,
+    each: bool,
+) -> Result<BatchTable, RunError> {
+    refuse_twice(filters)?;
+    let bases = InputSoils::samples(&[samples.to_owned()])?;
+    let soils = bases.soils.len();
+    if soils > 1 && !each {
+        return Err(RunError::Refused(format!(
+            "{} holds {soils} soils; name one of them as FILE#NAME, or add --each for all of them",
+            samples.display()
+        )));
+    }
+    let curves = |filter: &PathBuf| Ok((filter.display().to_string(), curves_in_file(filter, None)?));
+    let curves: Result<Vec<_>, GradationError> = filters.iter().map(curves).collect();
+    let curves = curves.map_err(RunError::refused)?;
+    Ok(BatchTable::new(&bases.soils, curves, bases.notes(filters)?, options))
+}
+
+/// The rows of a table, with those that govern.
+fn governed(table: &BatchTable) -> Vec<WalkedRow> {
+    let of_filters: Vec<Vec<&BatchRow>> =
+        table.filters.iter().map(|filter| governing(&table.rows, &filter.name, NAMED)).collect();
+    let rank = |row: &BatchRow| {
+        let of_filter = |named: &Vec<&BatchRow>| named.iter().position(|other| std::ptr::eq(*other, row));
+        of_filters.iter().find_map(of_filter).map(|at| at as u64 + 1)
+    };
+    let walked = |row: &BatchRow| WalkedRow {
+        rules: row.clone(),
+        governs: rank(row),
+        walk: None,
+        not_walked: String::new(),
+    };
+    table.rows.iter().map(walked).collect()
+}
+
+/// A name for each row, no two the same: sample and filter.
+fn case_names(table: &BatchTable, filters: &[PathBuf]) -> Vec<String> {
+    let samples = table.rows.len() / filters.len().max(1);
+    let of_samples = table.rows[..samples].iter().map(|row| row.sample.clone());
+    let of_samples = as_folders(of_samples.collect());
+    let of_filters = names(filters);
+    let pair = |filter: &String| {
+        let name = |sample: &String| format!("{sample} in {filter}");
+        of_samples.iter().map(name).collect::<Vec<_>>()
+    };
+    of_filters.iter().flat_map(pair).collect()
+}
+
+/// The scene of a pair, or the reason why it has none.
+fn scene(row: &WalkedRow, filters: &[BatchFilter], tables: &TableOptions) -> Result<Scene, String> {
+    let filter = filters.iter().find(|filter| filter.name == row.rules.filter);
+    if filter.is_some_and(|filter| filter.curves.len() > 1) {
+        return Err("the filter is an envelope; name one of its curves to walk it".into());
+    }
+    if row.rules.is_refused {
+        return Err(EXCHANGED.into());
+    }
+    // An exchange of base and filter is already known.
+    let tables = TableOptions { as_given: true, ..tables.clone() };
+    let filter = PathBuf::from(&row.rules.filter);
+    Scene::of_tables(&row.rules.path, &filter, &tables).map_err(|problem| {
+        // A client knows of soils, not of the scene that they are put into.
+        let problem = problem.to_string();
+        problem.strip_prefix("built-in scene: ").map_or(problem.clone(), str::to_owned)
+    })
+}
+
+/// The settings of a first look: as `--quick`, on a lattice no wider than is needed for the class.
+fn first_look(tables: &TableOptions) -> TableOptions {
+    let is_own = |change: &String| OWN_LATTICE.contains(&setting_name(change));
+    let lattice = ["nx", "ny"].map(|side| format!("network.{side}={ACROSS}"));
+    let lattice = lattice.into_iter().filter(|_| !tables.changes.iter().any(is_own));
+    let changes = lattice.chain(tables.changes.iter().cloned()).collect();
+    TableOptions { quick: true, changes, ..tables.clone() }
+}
 
 /// Walks every pair that is not done, in a campaign inside the folder that the options name, and writes
 /// `batch.csv` and, last, `batch.json`. With `overwrite` an earlier batch there is replaced; its walks that
@@ -112,8 +351,7 @@ impl BatchPlan {
             let place = format!("{WALKS}/{CASES}/{}", planned.folder_name());
             let at = folder.join(&place);
             let is_done = at.is_dir() && FolderKind::Run.is_finished(&at).unwrap_or(false);
-            let outcome = is_done.then(|| outcome(&at).ok()).flatten()?;
-            Some(SampleWalk::of(&outcome, place, self.in_full.contains(case)))
+            is_done.then(|| self.walk(folder, place, case).ok()).flatten().map(|(walk, _)| walk)
         };
         let rows = self.rows.iter().zip(&self.cases);
         rows.map(|(row, case)| WalkedRow { walk: walked(case), ..row.clone() }).collect()
@@ -122,10 +360,14 @@ impl BatchPlan {
     /// The row of a case that was just done in this folder, and its place among all.
     pub fn walked_row(&self, folder: &Path, line: &LedgerLine) -> Option<(usize, WalkedRow)> {
         let at = self.cases.iter().position(|case| *case == line.case)?;
-        let place = format!("{WALKS}/{}", line.folder);
-        let outcome = outcome(&folder.join(&place)).ok()?;
-        let walk = SampleWalk::of(&outcome, place, self.in_full.contains(&line.case));
+        let (walk, _) = self.walk(folder, format!("{WALKS}/{}", line.folder), &line.case).ok()?;
         Some((at, WalkedRow { walk: Some(walk), ..self.rows[at].clone() }))
+    }
+
+    /// The walk of a case that is done, and its outcome.
+    fn walk(&self, folder: &Path, place: String, case: &str) -> Result<(SampleWalk, Outcome), RunError> {
+        let outcome: Outcome = kept::record(&folder.join(&place), FolderKind::Run)?;
+        Ok((SampleWalk::of(&outcome, place, self.in_full.contains(case)), outcome))
     }
 
     /// Number of its walks in this folder that were kept from an earlier call with another cover; their own
@@ -139,10 +381,7 @@ impl BatchPlan {
     }
 
     /// Everything that the table follows from, as the record writes it; fields that the record leaves out are
-    /// left out here, too.
-    ///
-    /// # Errors
-    /// A name that is not UTF-8.
+    /// left out here, too. Errors: a name that is not UTF-8.
     fn work(&self, cases: &[PreparedCase]) -> Result<String, RunError> {
         let cases: Vec<_> = cases.iter().map(|case| (&case.planned.name, &case.fingerprint)).collect();
         let in_full: Vec<bool> = self.cases.iter().map(|case| self.in_full.contains(case)).collect();
@@ -151,41 +390,30 @@ impl BatchPlan {
         Ok(hash_of(&serde_json::to_string(&work).map_err(RunError::failed)?))
     }
 
-    /// Compares this work with the work of the batch with these cases.
     fn has_work(&self, cases: &[PreparedCase], work: &str) -> bool {
         self.work(cases).is_ok_and(|all| all == work)
     }
 
-    /// The rows with their walks.
     fn walked(&self, folder: &Folder, work: &str, walked: &FinishedCases) -> Result<WalkedBatch, RunError> {
         let mut modelled = Vec::new();
         let mut walks = HashMap::new();
         for line in walked.lines.iter().flatten() {
             let place = format!("{WALKS}/{}", line.folder);
-            let outcome = outcome(&folder.path().join(&place))?;
-            let in_full = self.in_full.contains(&line.case);
-            walks.insert(line.case.as_str(), SampleWalk::of(&outcome, place, in_full));
+            let (walk, outcome) = self.walk(folder.path(), place, &line.case)?;
+            walks.insert(line.case.as_str(), walk);
             modelled.push(outcome.modelled());
         }
-        let of_row = |(row, case): (&WalkedRow, &String)| WalkedRow {
-            walk: walks.get(case.as_str()).cloned(),
-            ..row.clone()
-        };
-        let rows = self.rows.iter().zip(&self.cases).map(of_row).collect();
+        let walk = |case: &String| walks.get(case.as_str()).cloned();
+        let rows = self.rows.iter().zip(&self.cases);
+        let rows = rows.map(|(row, case)| WalkedRow { walk: walk(case), ..row.clone() }).collect();
         let batch = WalkedBatch::new(shown(&self.samples), self.filters.clone(), rows);
         let base = self.base.clone();
         let (work, notes) = (work.to_owned(), self.notes.clone());
         let seed = self.campaign.cases.first().map_or(0, |case| case.scene.walk.seed);
         let folders =
             batch.rows.iter().filter_map(|row| Some(folder.path().join(&row.walk.as_ref()?.folder)));
-        let folders: Vec<PathBuf> = folders.collect();
-        let cover = self.cover().dated(last_day(folders.iter().map(PathBuf::as_path)));
+        let cover = self.cover().dated(last_day(folders));
         let (inches, model_leaves_out) = (self.shows_inches(), leaves_out_of_all(modelled));
         Ok(WalkedBatch { base, work, seed, notes, cover, inches, model_leaves_out, ..batch })
     }
-}
-
-/// The outcome of a case that is done.
-fn outcome(case: &Path) -> Result<Outcome, RunError> {
-    kept::record(case, FolderKind::Run)
 }

@@ -7,15 +7,13 @@ use serde::Serialize;
 
 use super::plan::{CasePlan, PlannedCase};
 use super::prepared::{FailedCase, named, wanted};
-use super::run::{CaseOptions, have_common_seeds, rooms};
+use super::run::CaseOptions;
 use crate::case::{Case, PackingPlan};
-use crate::run::at_once::CasesAtOnce;
+use crate::run::RunError;
 use crate::run::callbacks::Callbacks;
-use crate::run::error::RunError;
-use crate::run::machine::threads;
-use crate::run::planned::runs_to_walk;
-use crate::run::prepare::{Draft, PrepareOptions};
-use crate::run::replicates::have_networks;
+use crate::run::machine::{CasesAtOnce, threads};
+use crate::run::prepare::Draft;
+use crate::run::replicates::{have_networks, runs_to_walk};
 
 /// What the cases of a plan would take; sizes and times are estimates.
 #[derive(Clone, Debug, Serialize)]
@@ -48,7 +46,7 @@ pub struct PlanCheck {
 }
 
 /// What one case would take.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CaseCheck {
     /// Its name.
@@ -82,9 +80,8 @@ impl PlanCheck {
 /// # Errors
 /// There is no such part of the plan, or no such folder of packings.
 pub fn check_plan(plan: &CasePlan, options: &CaseOptions) -> Result<PlanCheck, RunError> {
-    let prepare = PrepareOptions { memory: options.memory, ..PrepareOptions::default() };
     let wanted = wanted(plan, &options.part)?;
-    let (limits, _) = rooms(prepare.limits(&options.out), have_common_seeds(&wanted));
+    let (limits, _) = options.rooms(&options.out, &wanted);
     let pool = threads(options.threads)?;
     let workers = pool.current_num_threads() as u64;
     let look = |planned: &PlannedCase| -> Result<(Case, Option<PackingPlan>), RunError> {
@@ -97,16 +94,8 @@ pub fn check_plan(plan: &CasePlan, options: &CaseOptions) -> Result<PlanCheck, R
         Ok((case, packing))
     };
     let check = |planned: &PlannedCase| {
-        let looked = look(planned);
-        let none = CaseCheck {
-            case: planned.name.clone(),
-            n_base: 0,
-            runs_to_walk: 0,
-            bytes: 0,
-            core_seconds: 0.0,
-            problem: String::new(),
-        };
-        match looked {
+        let none = CaseCheck { case: planned.name.clone(), ..CaseCheck::default() };
+        match look(planned) {
             Err(problem) => (CaseCheck { problem: problem.to_string(), ..none }, None),
             Ok((case, packing)) => {
                 let check = CaseCheck {

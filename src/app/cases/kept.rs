@@ -4,40 +4,41 @@
 //! a hash of all inputs of the study. Parts under way are started again; their results follow from the seed
 //! alone, so the whole equals an uninterrupted study. A batch keeps no such file: its cases are run folders,
 //! each of which continues by itself.
+//!
+//! The day on a sheet is the day of the last walk behind it, or of its making if nothing was walked.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use xxhash_rust::xxh3::xxh3_128;
 
+use crate::outcome::record::Manifest;
+use crate::run::RunError;
 use crate::run::callbacks::Callbacks;
-use crate::run::error::RunError;
-use crate::run::folder::{FolderKind, LATTICES, NETWORKS, clear, shown};
+use crate::run::folder::{FolderKind, LATTICES, NETWORKS, Unfinished, clear, shown};
 use crate::run::results::json;
-use crate::run::unfinished::{self, Unfinished};
 use voidwalk_core::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
 use voidwalk_core::store::format::from_json;
 use voidwalk_core::store::{Folder, read_whole};
+use voidwalk_core::text::moment;
 
-/// Hash of all inputs of a study.
 pub(crate) fn hash_of(work: &str) -> String {
     format!("{:032x}", xxh3_128(work.as_bytes()))
 }
 
 /// Makes a study of this kind, identified by `work`, in its claimed folder: continues from the results of an
 /// earlier start, and reads the record instead if a study without cases lacks only its page. `study` writes
-/// its tables; then its record and its page are written, and the checkpoint is removed.
-///
-/// # Errors
-/// The folder holds another study; errors of the study and of the folder.
+/// its tables; then its record and its page are written, and the checkpoint is removed. Errors: the folder
+/// holds another study; errors of the study and of the folder.
 pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
     (folder, kind, overwrite): (&Folder, FolderKind, bool),
     work: String,
     callbacks: &Callbacks,
     study: impl FnOnce(&Kept, Option<F>) -> Result<R, RunError>,
 ) -> Result<R, RunError> {
-    let mark = Unfinished { kind: kind.name().into(), work, ..Unfinished::default() };
+    let mark = Unfinished::new(kind, work);
     let kept = Kept::new(kind, folder, &mark.work);
     // The cases of a batch are checked again: each has files of its own.
     let whole = mark.whole(folder, kind.record())?.filter(|_| !overwrite && !kind.has_cases());
@@ -76,14 +77,11 @@ pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
     };
     callbacks.results(kind, folder.path(), None)?;
     folder.remove_all(kept.files)?;
-    unfinished::end(folder)?;
+    Unfinished::end(folder)?;
     Ok(record)
 }
 
 /// The record of a finished folder.
-///
-/// # Errors
-/// It cannot be read.
 pub(crate) fn record<R: DeserializeOwned>(folder: &Path, kind: FolderKind) -> Result<R, RunError> {
     let path = folder.join(kind.record());
     let failed = |error: &dyn std::fmt::Display| RunError::failed(format!("{}: {error}", shown(&path)));
@@ -96,28 +94,24 @@ pub(crate) struct Kept<'a> {
     kind: FolderKind,
     folder: &'a Folder,
     identity: Identity,
-    /// The checkpoint.
+    /// Name of the checkpoint, and of the parts that the study does one after the other and keeps when done.
     name: &'static str,
     files: &'static [&'static str],
-    /// Name of the parts that the study does one after the other and keeps when done.
-    parts: &'static str,
 }
 
 impl<'a> Kept<'a> {
     /// In a claimed folder, of the study that these words describe.
-    pub fn new(kind: FolderKind, folder: &'a Folder, work: &str) -> Self {
+    fn new(kind: FolderKind, folder: &'a Folder, work: &str) -> Self {
         let scene = hash_of(work);
-        let (name, files, parts) = match kind {
-            FolderKind::Percolation => ("lattices", &LATTICES, "lattices"),
-            _ => ("networks", &NETWORKS, "networks"),
+        let (name, files) = match kind {
+            FolderKind::Percolation => ("lattices", &LATTICES),
+            _ => ("networks", &NETWORKS),
         };
-        Self { kind, folder, identity: Identity { scene, ..Identity::default() }, name, files, parts }
+        Self { kind, folder, identity: Identity { scene, ..Identity::default() }, name, files }
     }
 
-    /// Results of an earlier start of this very study.
-    ///
-    /// # Errors
-    /// The file belongs to another study, or cannot be read.
+    /// Results of an earlier start of this very study. Errors: the file belongs to another study, or cannot
+    /// be read.
     fn newest<T: DeserializeOwned>(&self, callbacks: &Callbacks) -> Result<Option<T>, RunError> {
         let refused = |error: CheckpointError| match error.is_unreadable() {
             true => RunError::Checkpoint(error),
@@ -136,9 +130,6 @@ impl<'a> Kept<'a> {
     }
 
     /// Keeps the results of this many parts; the previous checkpoint stays until this one is whole.
-    ///
-    /// # Errors
-    /// Errors of the folder.
     pub fn keep(&self, parts: usize, results: &impl Serialize) -> Result<(), RunError> {
         let label = Label { identity: self.identity.clone(), generation: parts as u64, ..Label::default() };
         let record = serde_json::to_vec(results)?;
@@ -148,9 +139,63 @@ impl<'a> Kept<'a> {
 
     /// Reports that the study was stopped with this many of its parts done.
     pub fn stopped(&self, done: usize, all: usize) -> RunError {
-        let (folder, parts) = (shown(self.folder.path()), self.parts);
+        let (folder, parts) = (shown(self.folder.path()), self.name);
         RunError::Stopped(format!(
             "after {done} of {all} {parts}, which are kept in {folder}; continue with the same command"
         ))
+    }
+}
+
+/// Today, as `2026-11-25`.
+pub(crate) fn today() -> Option<String> {
+    day(&moment(SystemTime::now()))
+}
+
+/// The last day on which one of these cases was done; `None` if no folder has a date.
+pub(super) fn last_day(cases: impl IntoIterator<Item = PathBuf>) -> Option<String> {
+    let finished = |case: PathBuf| {
+        let bytes = read_whole(&case.join("manifest.json")).ok()?;
+        day(&from_json::<Manifest>(&bytes).ok()?.finished)
+    };
+    // Days of this form are in order as texts.
+    cases.into_iter().filter_map(finished).max()
+}
+
+/// The day of a moment.
+fn day(moment: &str) -> Option<String> {
+    moment.split('T').next().filter(|day| !day.is_empty()).map(str::to_owned)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use voidwalk_core::store::format::MANIFEST;
+
+    #[test]
+    fn the_last_day_of_several_cases_counts_and_a_folder_without_one_says_nothing() {
+        let at = tempfile::tempdir().unwrap();
+        let case = |name: &str, finished: &str| {
+            let folder = at.path().join(name);
+            std::fs::create_dir(&folder).unwrap();
+            let manifest = Manifest {
+                version: "1".into(),
+                commit: None,
+                seed: 1,
+                inputs: Vec::new(),
+                threads: 1,
+                host: String::new(),
+                machine: String::new(),
+                started: String::new(),
+                finished: finished.into(),
+                command: String::new(),
+            };
+            std::fs::write(folder.join("manifest.json"), MANIFEST.json(&manifest).unwrap()).unwrap();
+            folder
+        };
+        let cases =
+            [case("a", "2026-11-25T23:59:59Z"), case("b", "2026-11-26T00:00:01Z"), at.path().join("c")];
+        assert_eq!(last_day([cases[2].clone()]), None);
+        assert_eq!(last_day(cases).as_deref(), Some("2026-11-26"));
+        assert_eq!(today().map(|day| day.len()), Some(10));
     }
 }

@@ -1,34 +1,29 @@
 //! Many cases: rows of base, filter and settings, walked by as many processes as are started on one folder,
 //! kept in a ledger, and shown in one table.
 //!
-//! - [`plan`] is a list of cases, each with a name and a seed: from a file that crosses factors. `pairs`
-//!   makes one of samples and filters. `prepared` are its cases, worked out.
-//! - [`run()`] walks the unfinished cases, by `walk`; [`collect`] writes their results, the `ledger`.
-//! - [`batch`] makes one table of the pairs, by practice and walk.
+//! - [`plan`] is a list of cases, each with a name and a seed: from a file that crosses factors. `prepared`
+//!   are its cases, worked out.
+//! - [`run()`] walks the unfinished cases, by `walk`; [`collect`] writes their results, the ledger.
+//! - [`batch`] makes a plan of samples and filters, and one table of the pairs, by practice and walk.
 //! - `cluster` hands a plan to a cluster's scheduler, with the cost of its cases from `crate::run::cost`;
 //!   [`check_plan`] reports the cost on this machine.
 //! - `kept` holds the results so far of a study that is stopped.
 
 pub mod batch;
-mod changed;
 mod check;
 pub(crate) mod cluster;
-pub(crate) mod days;
-mod file_names;
 pub(crate) mod inputs;
 pub(crate) mod kept;
-pub(crate) mod ledger;
-mod pairs;
 pub mod plan;
 pub(crate) mod prepared;
 pub(crate) mod run;
 pub(crate) mod walk;
 
+pub(crate) use batch::pairs_of;
+pub use batch::{BatchPlan, BatchWalks};
 pub use check::{CaseCheck, PlanCheck, check_plan};
-pub use cluster::jobs::{JobOptions, WrittenJobs, write_job_scripts};
-pub(crate) use file_names::numbered;
-pub(crate) use pairs::pairs_of;
-pub use pairs::{BatchPlan, BatchWalks};
+pub use cluster::{JobOptions, WrittenJobs, write_job_scripts};
+pub(crate) use inputs::numbered;
 pub use plan::CasePlan;
 pub use prepared::{CasePart, FailedCase};
 pub use run::{CaseOptions, FinishedCases, check, collect, make_packing, names, run, unsound};

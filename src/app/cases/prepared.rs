@@ -1,18 +1,21 @@
-//! The cases of a plan, worked out: the wanted ones, the packings that they need, and the state of each.
+//! The cases of a plan, worked out: the wanted ones, the packings that they need, and the state of each; and
+//! the cases of each task of a job array.
+//!
+//! The list of tasks has one line a case: the task's number, a tab, the case's name. Names hold neither tabs
+//! nor line ends (the plan refuses them) and are read by the program alone, never by a shell.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::cluster::tasks;
 use super::plan::{CasePlan, PlannedCase};
 use crate::case::{Case, PackedFilter, PackingPlan};
 use crate::outcome::ledger::LedgerLine;
 use crate::run::checkpoints::Checkpoints;
-use crate::run::error::{Exit, RunError};
 use crate::run::folder::shown;
 use crate::run::prepare::Draft;
+use crate::run::{Exit, RunError};
 use voidwalk_core::store::format::from_json;
 use voidwalk_core::store::{Folder, StoreError, read_regular, read_whole};
 
@@ -46,9 +49,6 @@ pub enum CasePart {
 
 impl CasePart {
     /// The cases of a task as a user writes it, a file and a number: `tasks.tsv:3`.
-    ///
-    /// # Errors
-    /// The form that is expected.
     pub fn task(text: &str) -> Result<Self, String> {
         let parts = text.rsplit_once(':').filter(|(file, _)| !file.is_empty());
         let read = parts.and_then(|(file, number)| Some(Self::Task(file.into(), number.parse().ok()?)));
@@ -76,9 +76,6 @@ pub(super) fn named(failed: &[FailedCase]) -> String {
 }
 
 /// The cases of a plan that a process has to walk.
-///
-/// # Errors
-/// There is no such case, or no such task.
 pub fn wanted<'a>(plan: &'a CasePlan, part: &CasePart) -> Result<Vec<&'a PlannedCase>, RunError> {
     match part {
         CasePart::All => Ok(plan.cases.iter().collect()),
@@ -97,7 +94,7 @@ pub fn wanted<'a>(plan: &'a CasePlan, part: &CasePart) -> Result<Vec<&'a Planned
             let bytes = read_regular(file, LARGEST_LIST).map_err(|error| refused(&error))?;
             let bytes = bytes.ok_or_else(|| refused(&"is no list of tasks that --slurm wrote"))?;
             let text = String::from_utf8_lossy(&bytes);
-            let names = tasks::read(&shown, &text, *number).map_err(RunError::refused)?;
+            let names = names_of_task(&shown, &text, *number).map_err(RunError::refused)?;
             let find = |name: &&str| {
                 plan.case(name).ok_or_else(|| {
                     let problem = "the plan was changed; write the scripts again";
@@ -134,9 +131,6 @@ impl<'a> Drafts<'a> {
     }
 
     /// The cases with their filters, each filter had once; and those that cannot be walked.
-    ///
-    /// # Errors
-    /// It was stopped.
     pub fn finish(
         self,
         mut filter: impl FnMut(&PackingPlan) -> Result<PackedFilter, RunError>,
@@ -157,7 +151,7 @@ impl<'a> Drafts<'a> {
             let filter = draft.packing.as_ref().map(|plan| filters[&key(plan)].clone()).transpose();
             let case = filter.and_then(|filter| draft.finished(filter).map_err(|e| e.to_string()));
             match case.and_then(|mut case| place(&mut case).map(|()| case).map_err(|e| e.to_string())) {
-                Ok(case) => cases.push(PreparedCase::new(planned, case)),
+                Ok(case) => cases.push(PreparedCase { planned, fingerprint: case.fingerprint(), case }),
                 Err(problem) => failed.push(FailedCase { case: planned.name.clone(), problem }),
             }
         }
@@ -172,21 +166,13 @@ fn key(plan: &PackingPlan) -> String {
 
 /// A case of a plan, worked out.
 pub struct PreparedCase<'a> {
-    /// The case as planned.
     pub planned: &'a PlannedCase,
-    /// The case with its files read.
     pub case: Case,
     /// Fingerprint of everything that its results follow from.
     pub fingerprint: String,
 }
 
-impl<'a> PreparedCase<'a> {
-    /// A case with its fingerprint.
-    pub fn new(planned: &'a PlannedCase, case: Case) -> Self {
-        let fingerprint = case.fingerprint();
-        Self { planned, case, fingerprint }
-    }
-
+impl PreparedCase<'_> {
     /// Folder of the results, inside the campaign's.
     pub fn folder(&self) -> PathBuf {
         // Written into ledger and table in one form on every system.
@@ -200,9 +186,6 @@ impl<'a> PreparedCase<'a> {
 
     /// Reads the line of the ledger; a file that exists but cannot be read is an error, not an unfinished
     /// case.
-    ///
-    /// # Errors
-    /// Errors of the system.
     pub fn read_line(&self, out: &Path) -> Result<Option<LedgerLine>, StoreError> {
         let path = out.join(self.folder()).join(LINE);
         let bytes = match read_whole(&path) {
@@ -217,44 +200,84 @@ impl<'a> PreparedCase<'a> {
     }
 }
 
-/// State of a case that is not done.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum CaseState {
-    /// Not begun yet.
-    NotBegun,
-    /// A process is at it.
-    Walking(String),
-    /// It was stopped or killed; the next start continues from its checkpoints.
-    Saved,
-    /// It could not be walked.
-    Failed(String),
+/// State in words of a case that is not done, from its folder.
+pub(super) fn state(case: &PreparedCase, out: &Path) -> String {
+    let path = out.join(case.folder());
+    let not_walked = |problem: &str| format!("could not be walked: {problem}");
+    if path.symlink_metadata().is_err() {
+        return "not begun".into();
+    }
+    match Folder::open(&path) {
+        Err(StoreError::Held { holder, .. }) => format!("being walked ({holder})"),
+        Err(other) => not_walked(&other.to_string()),
+        Ok(folder) => match folder.read(PROBLEM) {
+            Ok(Some(text)) => not_walked(String::from_utf8_lossy(&text).trim_end()),
+            _ => match Checkpoints::is_in(folder.path()) {
+                Ok(true) => "stopped or killed; its checkpoints are kept".into(),
+                Ok(false) => "not begun".into(),
+                Err(error) => not_walked(&error.to_string()),
+            },
+        },
+    }
 }
 
-impl CaseState {
-    /// Looks into the case's folder.
-    pub fn of(ready: &PreparedCase, out: &Path) -> Self {
-        let path = out.join(ready.folder());
-        if path.symlink_metadata().is_err() {
-            return Self::NotBegun;
+/// Tasks that a job array may have: Slurm's own limit unless it is raised.
+const MOST_TASKS: usize = 1000;
+
+/// Bundles cases into `tasks` tasks of about the same seconds each; every task has a case, and its cases are
+/// in the order of the plan. Cases are given by their seconds, tasks by the places of their cases.
+pub(super) fn bundle(seconds: &[f64], tasks: usize) -> Vec<Vec<usize>> {
+    let tasks = tasks.clamp(1, MOST_TASKS).min(seconds.len());
+    let mut longest_first: Vec<usize> = (0..seconds.len()).collect();
+    longest_first.sort_by(|a, b| seconds[*b].total_cmp(&seconds[*a]));
+    let mut bundles = vec![(0.0, Vec::new()); tasks];
+    for case in longest_first {
+        let least = |a: &&mut (f64, Vec<usize>), b: &&mut (f64, Vec<usize>)| {
+            a.0.total_cmp(&b.0).then(a.1.len().cmp(&b.1.len()))
+        };
+        if let Some(least) = bundles.iter_mut().min_by(least) {
+            least.0 += seconds[case];
+            least.1.push(case);
         }
-        match Folder::open(&path) {
-            Err(StoreError::Held { holder, .. }) => Self::Walking(holder),
-            Err(other) => Self::Failed(other.to_string()),
-            Ok(folder) => match folder.read(PROBLEM) {
-                Ok(Some(text)) => Self::Failed(String::from_utf8_lossy(&text).trim_end().to_owned()),
-                _ => match Checkpoints::is_in(folder.path()) {
-                    Ok(true) => Self::Saved,
-                    Ok(false) => Self::NotBegun,
-                    Err(error) => Self::Failed(error.to_string()),
-                },
-            },
+    }
+    let mut all: Vec<Vec<usize>> = bundles.into_iter().map(|(_, cases)| cases).collect();
+    all.iter_mut().for_each(|cases| cases.sort_unstable());
+    all.sort();
+    all
+}
+
+pub(super) fn task_list(tasks: &[Vec<&str>]) -> String {
+    let mut text = String::new();
+    for (number, names) in (1..).zip(tasks) {
+        names.iter().for_each(|name| text += &format!("{number}\t{name}\n"));
+    }
+    text
+}
+
+/// Names of the cases of a task, from the text of a file.
+fn names_of_task<'a>(file: &str, text: &'a str, number: u64) -> Result<Vec<&'a str>, String> {
+    let (mut names, mut tasks) = (Vec::new(), 0);
+    for (line, words) in (1..).zip(text.lines()) {
+        let (task, name) = words
+            .split_once('\t')
+            .and_then(|(task, name)| Some((task.parse::<u64>().ok()?, name)))
+            .ok_or_else(|| {
+                format!("{file}, line {line}: must be a task's number, a tab and the name of a case")
+            })?;
+        tasks = tasks.max(task);
+        if task == number {
+            names.push(name);
         }
+    }
+    match names.is_empty() {
+        true => Err(format!("{file}: there is no task {number}; it has {tasks}")),
+        false => Ok(names),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::CasePart;
+    use super::*;
 
     #[test]
     fn a_task_is_a_file_and_a_number() {
@@ -262,5 +285,29 @@ mod tests {
         for text in ["tasks.tsv", ":3", "tasks.tsv:", "tasks.tsv:-1", "tasks.tsv:x"] {
             assert!(CasePart::task(text).is_err(), "{text}");
         }
+    }
+
+    #[test]
+    fn tasks_take_about_the_same_time_and_hold_every_case_once() {
+        let seconds = [1.0, 9.0, 2.0, 8.0, 3.0, 7.0, 0.0];
+        assert_eq!(bundle(&seconds, 3), [vec![0, 1, 6], vec![2, 3], vec![4, 5]]);
+        assert_eq!(bundle(&seconds, 1), [vec![0, 1, 2, 3, 4, 5, 6]]);
+        assert_eq!(bundle(&[0.0; 5], 99).len(), 5, "no task without a case");
+        assert!(bundle(&[], 4).is_empty());
+        let many = bundle(&vec![1.0; 2500], 2500);
+        assert_eq!(many.len(), MOST_TASKS);
+        let mut all: Vec<usize> = many.into_iter().flatten().collect();
+        all.sort_unstable();
+        assert!(all.into_iter().eq(0..2500));
+    }
+
+    #[test]
+    fn a_file_of_tasks_is_read_back_whatever_the_cases_are_called() {
+        let names = ["$(rm -rf ~)", "a; b", "`x` * ?", "-f", " \u{e9} "];
+        let text = task_list(&[names[..2].to_vec(), names[2..].to_vec()]);
+        assert_eq!(names_of_task("t", &text, 1).unwrap(), names[..2]);
+        assert_eq!(names_of_task("t", &text, 2).unwrap(), names[2..]);
+        assert_eq!(names_of_task("t", &text, 3).unwrap_err(), "t: there is no task 3; it has 2");
+        assert!(names_of_task("t", "1 x\n", 1).unwrap_err().contains("line 1"));
     }
 }

@@ -5,23 +5,24 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::changed;
-use super::ledger;
 use super::plan::{CasePlan, PlannedCase};
-use super::prepared::{CASES, CasePart, CaseState, Drafts, FailedCase, PreparedCase, named, wanted};
+use super::prepared::{CASES, CasePart, Drafts, FailedCase, LINE, PreparedCase, named, state, wanted};
 use super::walk::{CaseCallbacks, CaseRunner, LOST};
 use crate::case::{PackedFilter, PackingPlan, ResourceLimits};
-use crate::outcome::ledger::LedgerLine;
-use crate::run::allocation::Allocation;
+use crate::outcome::ledger::{Campaign, LedgerLine};
+use crate::run::RunError;
 use crate::run::callbacks::Callbacks;
 use crate::run::checkpoints::CheckpointInterval;
-use crate::run::error::RunError;
-use crate::run::folder::{FolderKind, claim, shown};
-use crate::run::machine::{on_threads, threads};
+use crate::run::folder::{FolderKind, claim, refused, shown};
+use crate::run::machine::{Allocation, on_threads, threads};
 use crate::run::pack::provide;
 use crate::run::prepare::{Draft, PrepareOptions};
 use crate::run::replicates::have_networks;
+use crate::run::results::json;
 use crate::run::shared_networks::SharedNetworks;
+use crate::words::ledger::columns;
+use voidwalk_core::store::format::{self, from_json, visible_json};
+use voidwalk_core::store::{files_in, read_whole, write_whole};
 
 /// Options of walking a campaign; no setting changes a result.
 #[derive(Clone, Debug)]
@@ -67,7 +68,7 @@ impl CaseOptions {
         match path.symlink_metadata() {
             Ok(meta) if meta.is_symlink() => {
                 let problem = "is a symbolic link, which is not followed; name that folder by --packings";
-                Err(RunError::Refused(format!("{}: {problem}", shown(&path))))
+                Err(refused(&path, problem))
             }
             _ => Ok(path),
         }
@@ -77,19 +78,17 @@ impl CaseOptions {
     pub(super) fn packed(&self, plan: &PackingPlan) -> Result<Option<PackedFilter>, RunError> {
         Ok(PackedFilter::find(&self.packings()?, plan)?)
     }
-}
 
-/// True if any two cases have one seed, and so may share networks.
-pub(super) fn have_common_seeds(cases: &[&PlannedCase]) -> bool {
-    let seeds: BTreeSet<u64> = cases.iter().map(|case| case.scene.walk.seed).collect();
-    seeds.len() < cases.len()
-}
-
-/// Limits of a case within the available resources, and the room for networks that cases share.
-pub(super) fn rooms(mut limits: ResourceLimits, share_networks: bool) -> (ResourceLimits, Option<u64>) {
-    let shared = share_networks.then(|| SharedNetworks::bytes(limits.memory));
-    limits.memory -= shared.unwrap_or(0);
-    (limits, shared)
+    /// Limits of one of these cases within the available resources, and the room for networks, which cases
+    /// with one seed may share.
+    pub(super) fn rooms(&self, out: &Path, cases: &[&PlannedCase]) -> (ResourceLimits, Option<u64>) {
+        let prepare = PrepareOptions { memory: self.memory, ..PrepareOptions::default() };
+        let mut limits = prepare.limits(out);
+        let seeds: BTreeSet<u64> = cases.iter().map(|case| case.scene.walk.seed).collect();
+        let shared = (seeds.len() < cases.len()).then(|| SharedNetworks::bytes(limits.memory));
+        limits.memory -= shared.unwrap_or(0);
+        (limits, shared)
+    }
 }
 
 /// A campaign of which this process has done its part.
@@ -122,8 +121,7 @@ impl FinishedCases {
 /// There is no such part of the plan; a case that is wrong.
 pub fn names(plan: &CasePlan, part: &CasePart) -> Result<Vec<String>, RunError> {
     let wanted = wanted(plan, part)?;
-    let names = wanted.iter().map(|case| case.name.clone()).collect();
-    Drafts::new(wanted).map(|_| names)
+    Drafts::new(wanted.clone()).map(|_| wanted.iter().map(|case| case.name.clone()).collect())
 }
 
 /// Walks the cases of a plan that are not done, packing their filters first, and collects the whole plan.
@@ -156,9 +154,8 @@ pub fn check(plan: &CasePlan, options: &CaseOptions) -> Result<(), RunError> {
 /// # Errors
 /// Cases that are sound and do not fit the memory.
 pub fn unsound(plan: &CasePlan, options: &CaseOptions) -> Result<Vec<FailedCase>, RunError> {
-    let prepare = PrepareOptions { memory: options.memory, ..PrepareOptions::default() };
     let wanted = wanted(plan, &options.part)?;
-    let (limits, _) = rooms(prepare.limits(&options.out), have_common_seeds(&wanted));
+    let (limits, _) = options.rooms(&options.out, &wanted);
     let pool = threads(options.threads)?;
     let workers = pool.current_num_threads() as u64;
     // Problem of a case; true if it is lack of room.
@@ -177,19 +174,12 @@ pub fn unsound(plan: &CasePlan, options: &CaseOptions) -> Result<Vec<FailedCase>
     };
     let all: Vec<(bool, FailedCase)> = pool.install(|| wanted.into_par_iter().filter_map(wrong).collect());
     let (no_room, wrong): (Vec<_>, Vec<_>) = all.into_iter().partition(|(has_no_room, _)| *has_no_room);
-    let cases =
-        |problems: Vec<(bool, FailedCase)>| problems.into_iter().map(|(_, case)| case).collect::<Vec<_>>();
-    match no_room.is_empty() {
-        true => Ok(cases(wrong)),
-        false => Err(RunError::Refused(named(&cases(no_room)))),
-    }
+    let cases = |all: Vec<(bool, FailedCase)>| all.into_iter().map(|(_, case)| case).collect::<Vec<_>>();
+    if no_room.is_empty() { Ok(cases(wrong)) } else { Err(RunError::Refused(named(&cases(no_room)))) }
 }
 
 /// Looks at the cases of a plan as far as they can be worked out without packing a filter: `None` if a filter
-/// is still to be packed. Claims and writes nothing.
-///
-/// # Errors
-/// A case that is wrong.
+/// is still to be packed. Claims and writes nothing. Errors: a case that is wrong.
 pub(crate) fn look<R>(
     plan: &CasePlan,
     options: &CaseOptions,
@@ -216,17 +206,15 @@ pub(crate) fn run_around<R>(
     around: impl FnOnce(ReadyCases, Walk) -> Result<R, RunError>,
 ) -> Result<R, RunError> {
     let wanted = wanted(plan, &options.part)?;
-    let (count, share_networks) = (wanted.len(), have_common_seeds(&wanted));
-    let drafts = Drafts::new(wanted)?;
+    let drafts = Drafts::new(wanted.clone())?;
     let pool = threads(options.threads)?;
     let threads = pool.current_num_threads();
     let folder = claim(&options.out, FolderKind::Campaign, false)?;
     let (out, packings, needs_none) = (folder.path(), options.packings()?, drafts.packings().is_empty());
-    let prepare = PrepareOptions { packings, memory: options.memory, threads: options.threads };
-    let (limits, shared) = rooms(prepare.limits(out), share_networks);
+    let (limits, shared) = options.rooms(out, &wanted);
     let mut has_room = true;
     let (cases, failed) = drafts.finish(
-        |packing| pool.install(|| provide(packing, &prepare.packings, &callbacks.run)),
+        |packing| pool.install(|| provide(packing, &packings, &callbacks.run)),
         |case| {
             let placed = case.place(&limits, threads as u64, out);
             has_room &= placed.is_ok();
@@ -244,7 +232,7 @@ pub(crate) fn run_around<R>(
         }
         let mut failed = failed;
         if options.part == CasePart::All {
-            changed::sentences(plan, &cases, out).iter().for_each(|sentence| (callbacks.run.warn)(sentence));
+            changed(plan, &cases, out).iter().for_each(|sentence| (callbacks.run.warn)(sentence));
         }
         (callbacks.on_cases)(cases.len(), cases.iter().filter(|case| case.line(out).is_some()).count());
         let runner = CaseRunner {
@@ -259,7 +247,7 @@ pub(crate) fn run_around<R>(
         let result = runner.run(&cases);
         if options.part != CasePart::All {
             failed.extend(result?);
-            return Ok(FinishedCases { lines: None, failed, cases: count });
+            return Ok(FinishedCases { lines: None, failed, cases: wanted.len() });
         }
         // The whole plan is collected, whichever of its cases this process was at, and whatever has ended it.
         let mut lines = write_ledger(plan, &cases, out, &callbacks.run)?;
@@ -281,24 +269,27 @@ pub(crate) fn run_around<R>(
             lines = write_ledger(plan, &cases, out, &callbacks.run)?;
             gone = absent(&lines, &failed);
         }
-        let lost =
-            gone.into_iter().map(|case| FailedCase { case: case.planned.name.clone(), problem: LOST.into() });
-        let lost: Vec<FailedCase> = lost.collect();
+        let lost = |case: &PreparedCase| FailedCase { case: case.planned.name.clone(), problem: LOST.into() };
+        let lost: Vec<FailedCase> = gone.into_iter().map(lost).collect();
         failed.extend(lost);
-        let lines = Some(lines);
-        Ok(FinishedCases { lines, failed, cases: count })
+        Ok(FinishedCases { lines: Some(lines), failed, cases: wanted.len() })
     });
     around(ready, walk)
 }
 
-/// Collects finished cases into the campaign's folder.
+/// Collects the finished cases of a plan, in its order, into `ledger.jsonl`, one JSON line a case,
+/// `campaign.json` and `cases.csv` in the campaign's folder. A finished case that cannot be read is an error:
+/// a ledger without it would be wrong.
 fn write_ledger(
     plan: &CasePlan,
     cases: &[PreparedCase],
     out: &Path,
     callbacks: &Callbacks,
 ) -> Result<Vec<LedgerLine>, RunError> {
-    let dropped = ledger::of_other_plans(plan, out);
+    let before = read_whole(&out.join("ledger.jsonl")).unwrap_or_default();
+    let before = serde_json::Deserializer::from_slice(&before).into_iter::<LedgerLine>();
+    let before = before.map_while(Result::ok).map(|line| line.case);
+    let dropped: Vec<String> = before.filter(|name| plan.case(name).is_none()).collect();
     if !dropped.is_empty() {
         (callbacks.warn)(&format!(
             "{}: the ledger of another plan was there, or of this one before it was changed: {} of its cases \
@@ -309,7 +300,26 @@ fn write_ledger(
             if dropped.len() > 3 { ", ..." } else { "" }
         ));
     }
-    let lines = ledger::collect(plan, cases, out)?;
+    let lines: Vec<LedgerLine> =
+        cases.iter().filter_map(|case| case.read_line(out).transpose()).collect::<Result<_, _>>()?;
+    let there: BTreeSet<&str> = lines.iter().map(|line| line.case.as_str()).collect();
+    let is_missing = |case: &&PlannedCase| !there.contains(case.name.as_str());
+    let about = Campaign {
+        title: plan.title.clone(),
+        plan: plan.file_name(),
+        factors: plan.factors.clone(),
+        cases: plan.cases.len() as u64,
+        missing: plan.cases.iter().filter(is_missing).map(|case| case.name.clone()).collect(),
+    };
+    let mut ledger = String::new();
+    for line in &lines {
+        let line = serde_json::to_string(line)
+            .map_err(|e| RunError::Format { file: "ledger.jsonl", source: e.into() })?;
+        ledger.extend([visible_json(line), "\n".into()]);
+    }
+    write_whole(&out.join("ledger.jsonl"), ledger.as_bytes())?;
+    write_whole(&out.join("campaign.json"), &json(format::CAMPAIGN, &about)?)?;
+    write_whole(&out.join("cases.csv"), &columns(&about.factors).csv(&lines))?;
     callbacks.results(FolderKind::Campaign, out, None)?;
     Ok(lines)
 }
@@ -324,28 +334,22 @@ pub fn collect(
     callbacks: &Callbacks,
 ) -> Result<Vec<LedgerLine>, RunError> {
     let drafts = Drafts::new(wanted(plan, &CasePart::All)?)?;
-    let name = shown(&options.out);
     if !options.out.join(CASES).is_dir() {
         let problem = "holds no cases of a campaign; nothing of the plan has been walked here";
-        return Err(RunError::Refused(format!("{name}: {problem}")));
+        return Err(refused(&options.out, problem));
     }
     let folder = claim(&options.out, FolderKind::Campaign, false)?;
     let not_packed = || RunError::failed("not begun: its filter has not been packed");
     let (cases, mut missing) =
         drafts.finish(|packing| options.packed(packing)?.ok_or_else(not_packed), |_| Ok(()))?;
     for case in cases.iter().filter(|case| case.line(folder.path()).is_none()) {
-        let problem = match CaseState::of(case, folder.path()) {
-            CaseState::NotBegun => "not begun".to_owned(),
-            CaseState::Walking(holder) => format!("being walked ({holder})"),
-            CaseState::Saved => "stopped or killed; its checkpoints are kept".to_owned(),
-            CaseState::Failed(problem) => format!("could not be walked: {problem}"),
-        };
-        missing.push(FailedCase { case: case.planned.name.clone(), problem });
+        missing.push(FailedCase { case: case.planned.name.clone(), problem: state(case, folder.path()) });
     }
     if !missing.is_empty() {
         return Err(RunError::Refused(format!(
-            "{name}: {} of {} cases are missing, nothing is written; submit the campaign again to continue\n\
+            "{}: {} of {} cases are missing, nothing is written; submit the campaign again to continue\n\
              {}",
+            shown(&options.out),
             missing.len(),
             plan.cases.len(),
             named(&missing)
@@ -373,4 +377,46 @@ pub fn make_packing(
     })?;
     let packings = options.packings()?;
     on_threads(options.threads, || provide(packing, &packings, callbacks)).map(drop)
+}
+
+/// Consequences for finished cases that do not belong to the present plan, in sentences. Unreadable cases are
+/// skipped: they are reported at a later step.
+fn changed(plan: &CasePlan, cases: &[PreparedCase], out: &Path) -> Vec<String> {
+    let finished = |folder: &Path| folder.join(LINE).symlink_metadata().is_ok();
+    let again: Vec<&str> = cases
+        .iter()
+        .filter(|case| finished(&out.join(case.folder())) && case.line(out).is_none())
+        .map(|case| case.planned.name.as_str())
+        .collect();
+    let of_plan: BTreeSet<String> = plan.cases.iter().map(|case| case.folder_name()).collect();
+    let folders = files_in(&out.join(CASES)).unwrap_or_default();
+    let dropped: Vec<LedgerLine> = folders
+        .iter()
+        .filter(|folder| folder.file_name().is_some_and(|name| !of_plan.contains(&*name.to_string_lossy())))
+        .filter_map(|folder| from_json(&read_whole(&folder.join(LINE)).ok()?).ok())
+        .collect();
+    let dropped: Vec<&str> = dropped.iter().map(|line| line.case.as_str()).collect();
+    let mut sentences = Vec::new();
+    if !again.is_empty() {
+        sentences.push(format!(
+            "{}: settings or files have changed since; walked again, and their results replaced",
+            counted(&again)
+        ));
+    }
+    if !dropped.is_empty() {
+        sentences.push(format!(
+            "{}: not in the plan any more; left out of ledger, table and page, and kept in {}",
+            counted(&dropped),
+            shown(&out.join(CASES))
+        ));
+    }
+    sentences
+}
+
+/// `2 finished cases (a; b)`, with the first three names.
+fn counted(names: &[&str]) -> String {
+    let all = names.len();
+    let more = if all > 3 { format!("; and {} more", all - 3) } else { String::new() };
+    let first = names[..all.min(3)].join("; ");
+    format!("{all} finished {} ({first}{more})", if all == 1 { "case" } else { "cases" })
 }

@@ -20,20 +20,15 @@ use std::time::{Duration, Instant, SystemTime};
 use super::prepared::{CASES, FailedCase, LINE, PROBLEM, PreparedCase};
 use crate::case::Case;
 use crate::outcome::ledger::{LedgerLine, Made};
-use crate::run::at_once::CasesAtOnce;
 use crate::run::callbacks::{Callbacks, Event};
-use crate::run::case_walks::CaseWalks;
+use crate::run::case_walks::{CaseWalks, Studies};
 use crate::run::checkpoints::{self, CheckpointInterval, Checkpoints};
-use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, clear, shown};
-use crate::run::machine::on_each;
-use crate::run::planned;
+use crate::run::machine::{CasesAtOnce, on_each};
 use crate::run::replicates::{self, ReplicateContext};
-use crate::run::results;
 use crate::run::shared_networks::SharedNetworks;
-use crate::run::studies::Studies;
-use voidwalk_core::store::format;
-use voidwalk_core::store::{Folder, StoreError, make_folder};
+use crate::run::{Exit, RunError, results};
+use voidwalk_core::store::{Folder, StoreError, format, make_folder};
 
 /// Problem of a case whose results are gone.
 pub(super) const LOST: &str = "its results were overwritten by another process; is another plan, or this \
@@ -45,7 +40,6 @@ const LOOK: (Duration, Duration) = (Duration::from_millis(300), Duration::from_s
 /// Time that another process may take to replace the files of a case with the same ones.
 const REPLACING: Duration = Duration::from_secs(5);
 
-/// Number of attempts to write results.
 const TRIES: u32 = 3;
 
 /// Event of a case in a process.
@@ -91,13 +85,9 @@ impl Default for CaseCallbacks<'_> {
 
 /// Runner of the cases of a campaign.
 pub(super) struct CaseRunner<'a> {
-    /// The campaign's folder.
     pub out: &'a Path,
-    /// Worker threads, all cases together.
     pub threads: usize,
-    /// Who follows the campaign.
     pub callbacks: &'a CaseCallbacks<'a>,
-    /// Interval between saves of a case that is being walked.
     pub checkpoint_interval: CheckpointInterval,
     /// Networks, if cases with one seed may share them.
     pub networks: Option<SharedNetworks>,
@@ -109,10 +99,7 @@ pub(super) struct CaseRunner<'a> {
 
 impl CaseRunner<'_> {
     /// Walks every unfinished case, and waits for those of other processes; returns those that cannot be
-    /// walked.
-    ///
-    /// # Errors
-    /// Errors that concern all cases; finished cases stay finished.
+    /// walked. Fails for all cases at once only; finished ones stay finished.
     pub fn run(&self, cases: &[PreparedCase]) -> Result<Vec<FailedCase>, RunError> {
         make_folder(&self.out.join(CASES))?;
         let (done, mut open): (Vec<&PreparedCase>, Vec<&PreparedCase>) =
@@ -177,7 +164,6 @@ impl CaseRunner<'_> {
         (self.callbacks.run.warn)(&format!("case {name}: {problem}"));
     }
 
-    /// Tries each case once.
     fn pass(&self, open: &[&PreparedCase], tally: &Tally) -> Result<(), RunError> {
         let next = AtomicUsize::new(0);
         // One pool for all: if a case leaves a thread idle, another case has work for it. A thread blocked in
@@ -240,7 +226,7 @@ impl CaseRunner<'_> {
         (self.callbacks.on_case)(name, CaseEvent::Begun { resumes });
         let (begun, started) = (Instant::now(), SystemTime::now());
         let checkpoints = Checkpoints::new(folder, &prepared.fingerprint, self.checkpoint_interval)?;
-        let runs = Mutex::new([0, planned::runs_to_walk(case)]);
+        let runs = Mutex::new([0, replicates::runs_to_walk(case)]);
         let count = |event: Event| {
             let Ok(mut runs) = runs.lock() else { return };
             match event {
@@ -303,7 +289,6 @@ impl CaseRunner<'_> {
     }
 }
 
-/// Message of a panic.
 fn fault(panic: &(dyn std::any::Any + Send)) -> RunError {
     let text = panic.downcast_ref::<String>().map(String::as_str);
     let text = text.or(panic.downcast_ref::<&str>().copied()).unwrap_or("it does not say which");

@@ -1,22 +1,21 @@
 //! `voidwalk campaign`: the cases of a plan, by any number of processes on its folder.
 
-use std::fmt::Write;
-use std::path::Path;
-
 use super::args::CampaignArgs;
-use super::case_progress::CaseProgress;
 use super::print::{grains_per_void, percent, plain, shown, to_copy, to_stdout};
-use super::progress::{followed, unfollowed};
-use super::run::command_line;
-use super::start::START;
-use crate::cases::{self, CaseOptions, CasePart, CasePlan, FinishedCases, JobOptions, WrittenJobs};
-use crate::outcome::ledger::{self, LedgerLine};
+use super::progress::{CaseProgress, followed, unfollowed};
+use super::run::{START, command_line};
+use crate::cases;
+use crate::cases::{CaseOptions, CasePart, CasePlan, JobOptions, WrittenJobs};
+use crate::outcome::ledger;
+use crate::outcome::ledger::LedgerLine;
 use crate::outcome::record::Verdict;
 use crate::run::RunError;
-use crate::run::allocation::Allocation;
 use crate::run::cost::duration;
+use crate::run::machine::Allocation;
 use crate::words::ledger::thickness as thickness_words;
 use crate::words::left_out::left_out_line;
+use std::fmt::Write;
+use std::path::Path;
 
 /// A summary names no more cases than this.
 const SHOWN: usize = 20;
@@ -55,7 +54,8 @@ pub fn campaign(args: &CampaignArgs) -> Result<(), RunError> {
     let (lines, problem) = if args.collect {
         (Some(cases::collect(&plan, &options, &unfollowed())?), None)
     } else {
-        let finished = walk(args, &plan, &options)?;
+        let progress = CaseProgress::new(quiet, Allocation::here().is_some());
+        let finished = progress.followed(|callbacks| cases::run(&plan, &options, callbacks))?;
         let problem = finished.problem();
         (finished.lines, problem)
     };
@@ -63,11 +63,6 @@ pub fn campaign(args: &CampaignArgs) -> Result<(), RunError> {
         to_stdout(&words(&lines, &args.out));
     }
     problem.map_or(Ok(()), Err)
-}
-
-fn walk(args: &CampaignArgs, plan: &CasePlan, options: &CaseOptions) -> Result<FinishedCases, RunError> {
-    let progress = CaseProgress::new(args.walk.quiet, Allocation::here().is_some());
-    progress.followed(|callbacks| cases::run(plan, options, callbacks))
 }
 
 fn words(lines: &[LedgerLine], out: &Path) -> String {
@@ -105,7 +100,6 @@ fn thickness(line: &LedgerLine) -> String {
     format!("modelled filter thickness: {}", thickness_words(&line.thickness))
 }
 
-/// Writes the job scripts for the cases that are not done.
 fn write_scripts(args: &CampaignArgs, plan: &CasePlan, options: &CaseOptions) -> Result<(), RunError> {
     let (program, words) = match START.get().and_then(|start| start.again.as_deref()) {
         Some([program, words @ ..]) => (program.into(), words.to_vec()),

@@ -1,23 +1,22 @@
-//! `voidwalk check`: a forecast of a run.
+//! `voidwalk check`: a forecast of a run, or of the cases of a campaign's plan.
 
 use std::fmt::Write;
+use std::path::Path;
 
-use super::args::{SceneArgs, SettingArgs};
-use super::check_plan::check_plan;
-use super::print::{as_it_is, json, plain, to_stdout};
-use crate::cases::CasePlan;
+use super::options::{SceneArgs, SettingArgs};
+use super::print::{answer, counted, plain, to_copy};
+use crate::case::in_words;
+use crate::cases::{self, CaseOptions, CasePlan, PlanCheck};
 use crate::run::cost::duration;
 use crate::run::{self, Check, PackingCheck, PrepareOptions, RunError};
 use crate::scene::Scene;
-use crate::words::grading;
 use crate::words::left_out::left_out;
-use crate::words::sentence;
+use crate::words::{grading, sentence};
 use voidwalk_core::constrictions::shipped;
 use voidwalk_core::store::format;
 use voidwalk_practice::quantity::{SizeUnit, whole};
 
 impl SettingArgs {
-    /// Options of preparing the scene.
     pub fn prepare(&self, threads: Option<usize>) -> PrepareOptions {
         PrepareOptions { packings: self.packings.clone(), memory: self.memory, threads }
     }
@@ -34,17 +33,12 @@ impl SceneArgs {
     }
 }
 
-/// Prints a forecast of a run, or of the cases of a plan.
 pub fn check(args: &SceneArgs) -> Result<(), RunError> {
     if let Some(plan) = args.scene.as_deref().filter(|file| CasePlan::is_plan(file)) {
         return check_plan(plan, &args.set);
     }
     let check = run::check(args.scene()?, &args.set.prepare(None))?;
-    if args.set.json {
-        as_it_is(&json(format::CHECK, &check)?);
-    } else {
-        to_stdout(&words(&check));
-    }
+    answer((args.set.json, false), format::CHECK, &check, || words(&check))?;
     check.refusal.map_or(Ok(()), |refusal| Err(refusal.into()))
 }
 
@@ -136,4 +130,84 @@ fn packing_time(packing: &PackingCheck) -> String {
         true => "none: the packing is made already".into(),
         false => format!("about {time} of one core, a rough guess: some {steps} steps, once"),
     }
+}
+
+const LISTED: usize = 20;
+
+/// Prints a forecast of the cases of a plan, and the mistakes in each.
+fn check_plan(path: &Path, set: &SettingArgs) -> Result<(), RunError> {
+    if !set.settings.assignments.is_empty() {
+        return Err(RunError::refused(
+            "settings go with a scene: a plan has those of all its cases under [set]",
+        ));
+    }
+    let plan = CasePlan::read(path)?;
+    // If no folder of packings is named, a campaign keeps them in its own.
+    let is_named = set.packings != PrepareOptions::default().packings;
+    let packings = is_named.then(|| set.packings.clone());
+    let options = CaseOptions { packings, memory: set.memory, ..CaseOptions::default() };
+    let check = cases::check_plan(&plan, &options)?;
+    answer((set.json, false), format::PLAN_CHECK, &check, || plan_words(&check))?;
+    check.refusal().map_or(Ok(()), Err)
+}
+
+fn plan_words(check: &PlanCheck) -> String {
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "{name:<22}{}", plain(&value));
+    };
+    let title = if check.title.is_empty() { String::new() } else { format!(": {}", check.title) };
+    line("plan", format!("{}{title}", check.plan));
+    let factors = match check.factors.is_empty() {
+        true => String::new(),
+        false => format!(", factors {}", check.factors.join(", ")),
+    };
+    line("cases", format!("{}{factors}", check.cases.len()));
+    for case in check.cases.iter().take(LISTED) {
+        let forecast = match case.problem.is_empty() {
+            true => format!(
+                "{} base particles a run, {} runs, {}, about {}",
+                whole(case.n_base),
+                whole(case.runs_to_walk),
+                in_words(case.bytes),
+                duration(case.core_seconds)
+            ),
+            false => format!("cannot be walked: {}", case.problem.replace('\n', " ")),
+        };
+        line(&format!("  {}", case.case), format!(" {forecast}"));
+    }
+    if check.cases.len() > LISTED {
+        line("", format!("and {} more: --json has all", check.cases.len() - LISTED));
+    }
+    let runs = check.cases.iter().map(|case| case.runs_to_walk).sum();
+    line("to walk", format!("{} runs", whole(runs)));
+    line(
+        "memory",
+        format!(
+            "{} for the largest case, {} for as many cases as are walked at once ({}), of {}",
+            in_words(check.bytes),
+            in_words(check.bytes_at_once),
+            check.cases_at_once,
+            in_words(check.bytes_allowed)
+        ),
+    );
+    if check.packings > 0 {
+        let made = check.packings - check.packings_to_make;
+        let packings = counted(check.packings, "packing", "packings");
+        line("packings", format!("{packings} of filters, {made} made already"));
+        line(
+            "time to pack",
+            format!("about {} of one core, a rough guess", duration(check.packing_core_seconds)),
+        );
+    }
+    line(
+        "time to walk",
+        format!("about {} of one core for all, a rough guess", duration(check.core_seconds)),
+    );
+    let wrong = check.cases.iter().filter(|case| !case.problem.is_empty()).count();
+    if wrong == 0 {
+        line("next", format!("voidwalk campaign {}", to_copy(&check.plan)));
+    }
+    text
 }

@@ -40,7 +40,6 @@ pub fn explained(mut error: clap::Error, command: &Command, words: &[OsString]) 
     error
 }
 
-/// Guess at the command meant by a first word that is not a command.
 fn instead_of_command(name: &str, command: &Command) -> Option<String> {
     if is_table(name) {
         return Some(JUDGE.into());
@@ -80,7 +79,6 @@ fn instead_of_argument(name: &str, command: &Command, words: &[String]) -> Optio
     None
 }
 
-/// `--set` with the setting that a flag names.
 fn as_setting(flag: &str, words: &[String]) -> Option<String> {
     let name = flag.trim_start_matches('-').replace('-', "_");
     let known: Vec<String> = Scene::keys().iter().map(KeyInfo::full_name).collect();
@@ -119,7 +117,6 @@ fn two_tables(words: &[String]) -> Option<String> {
     }
 }
 
-/// True if a word names a table by its ending.
 fn is_table(word: &str) -> bool {
     let path = word.split('#').next().unwrap_or_default().to_lowercase();
     [".csv", ".xlsx", ".ods", ".ags"].iter().any(|ending| path.ends_with(ending))
@@ -205,7 +202,7 @@ mod tests {
 
     #[test]
     fn commands_and_tables_are_known() {
-        let command = super::super::examples::command();
+        let command = super::super::help::command();
         let hint = |name: &str| instead_of_command(name, &command).unwrap();
         assert_eq!(hint("rnu"), "did you mean `voidwalk run`?");
         assert_eq!(hint("jugde"), "did you mean `voidwalk judge`?");

@@ -1,55 +1,34 @@
-//! The command line: it parses, calls the library and prints, and is the only place that does.
-//!
-//! One table, `EXIT_CODES` (`exit.rs`), lists its ends.
+//! The command line: it parses, calls the library and prints, and is the only place that does. One table,
+//! `EXIT_CODES` (`exit.rs`), lists its ends.
 
 mod args;
-mod batch;
-mod boundary;
 mod campaign;
-mod case_progress;
 mod check;
-mod check_plan;
-mod constrictions;
-mod design;
-mod design_each;
-mod examples;
 mod exit;
-mod export;
-mod groups;
+mod help;
 mod init;
-mod judge;
-mod judge_each;
 mod mistakes;
+mod options;
 mod pack;
-mod percolation;
 mod print;
 mod progress;
 mod report;
 mod rules;
 mod run;
-mod schemas;
-#[cfg(feature = "serve")]
-mod serve;
-mod setting_options;
-mod shared_args;
 mod shell;
 mod soil;
-mod start;
-mod study_args;
-mod values;
-mod write_examples;
-
-use std::ffi::OsString;
-use std::process::ExitCode;
-
-use clap::FromArgMatches;
+mod study;
 
 use crate::run::{Exit, RunError};
 use args::{Arguments, Command};
-pub use report::page;
-pub use schemas::schema;
-use start::START;
-pub use start::Start;
+use clap::FromArgMatches;
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+pub use init::schema;
+pub use progress::page;
+use run::START;
+pub use run::Start;
 
 /// The system's number of the error that a file is not there: the same on Unix and Windows.
 const NO_FILE: i32 = 2;
@@ -58,10 +37,10 @@ const NO_FILE: i32 = 2;
 /// `--help` asked for.
 fn arguments(words: &[OsString]) -> Result<Arguments, u8> {
     if words.len() < 2 {
-        print::to_stderr(examples::FIRST_WORDS);
+        print::to_stderr(help::FIRST_WORDS);
         return Err(Exit::Refused.code());
     }
-    let command = examples::command();
+    let command = help::command();
     let read = command.clone().try_get_matches_from(words);
     read.and_then(|matches| Arguments::from_arg_matches(&matches)).map_err(|error| {
         let error = mistakes::explained(error, &command, words);
@@ -82,8 +61,8 @@ pub fn main() -> ExitCode {
 /// Runs the program, once a process, and returns its exit code. For programs that hold the command line in a
 /// library.
 pub fn main_with(start: Start) -> u8 {
-    voidwalk_core::store::platform::signals::outlive_large_files();
-    voidwalk_core::store::platform::allocator::keep_memory();
+    voidwalk_core::store::platform::process::outlive_large_files();
+    voidwalk_core::store::platform::process::keep_memory();
     let words = &START.get_or_init(|| start).words;
     let code = match arguments(words) {
         Ok(arguments) => told(command(arguments), words),
@@ -95,27 +74,26 @@ pub fn main_with(start: Start) -> u8 {
     }
 }
 
-/// Runs a command.
 fn command(arguments: Arguments) -> Result<(), RunError> {
     match arguments.command {
         Command::Run(args) => run::run(&args),
-        Command::Judge(args) => judge::judge(&args),
+        Command::Judge(args) => run::judge(&args),
         #[cfg(feature = "serve")]
-        Command::Serve(args) => serve::serve(&args),
+        Command::Serve(args) => report::serve(&args),
         Command::Resume(args) => run::resume(&args),
         Command::Soil(args) => soil::soil(&args),
         Command::Check(args) => check::check(&args),
         Command::Init { path, plan, json, schema } => init::init(path.as_deref(), plan, json, schema),
-        Command::Examples { folder } => write_examples::examples(&folder),
-        Command::Design(args) => design::design(&args),
-        Command::Boundary(args) => boundary::boundary(&args),
+        Command::Examples { folder } => init::examples(&folder),
+        Command::Design(args) => study::design(&args),
+        Command::Boundary(args) => study::boundary(&args),
         Command::Campaign(args) => campaign::campaign(&args),
         Command::Pack(args) => pack::pack(&args),
-        Command::Constrictions(args) => constrictions::constrictions(&args),
+        Command::Constrictions(args) => pack::constrictions(&args),
         Command::Rules(args) => rules::rules(&args),
-        Command::Percolation(args) => percolation::percolation(&args),
+        Command::Percolation(args) => study::percolation(&args),
         Command::Report { folder } => report::report(&folder),
-        Command::Export { folder } => export::export(&folder),
+        Command::Export { folder } => report::export(&folder),
         Command::Completions { shell } => {
             shell::completions(shell);
             Ok(())

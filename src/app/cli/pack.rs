@@ -1,15 +1,17 @@
-//! `voidwalk pack`: grains from a gradation, and their constrictions.
+//! `voidwalk pack` and `constrictions`: grains from a gradation, and the constrictions of a packing.
 
-use super::args::PackArgs;
-use super::print::{as_it_is, plain, to_stdout};
-use super::progress::followed;
-use crate::run::{self, FinishedPacking, PackOptions, RunError};
+use super::args::{ConstrictionsArgs, PackArgs};
+use super::print::{as_it_is, json, plain, to_stdout};
+use super::progress::{followed, unfollowed};
+use crate::run;
+use crate::run::{ConstrictionsOptions, FinishedPacking, PackOptions, RunError, measure_constrictions};
 use crate::scene::Scene;
-use crate::verdict::beside::packed_part;
+use crate::verdict::walks::packed_part;
 use crate::words::sentence;
+use voidwalk_core::packing::ReadOptions;
+use voidwalk_core::store::format;
 use voidwalk_practice::quantity::{SizeUnit, whole};
 
-/// Packs a filter into a folder.
 pub fn pack(args: &PackArgs) -> Result<(), RunError> {
     let spec = Scene::read_packing(&args.filter, &args.settings.assignments)?;
     let options = PackOptions {
@@ -58,4 +60,48 @@ fn summary(packing: &FinishedPacking) -> String {
     ];
     let part = filter.part.iter().map(|part| format!("  {}", sentence(&packed_part(part), SizeUnit::Mm)));
     lines.into_iter().chain(part).map(|line| plain(&line) + "\n").collect()
+}
+
+pub fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
+    let options = ConstrictionsOptions {
+        merge_overlap: args.merge_overlap,
+        facets: args.facets,
+        read: ReadOptions { unit: args.unit, cell: args.cell },
+        out: args.out.clone(),
+        overwrite: args.overwrite,
+    };
+    let summary = measure_constrictions(&args.packing, &options, &unfollowed())?;
+    if args.json {
+        as_it_is(&json(format::CONSTRICTIONS, &summary)?);
+        return Ok(());
+    }
+    let mut lines = vec![
+        format!("{} grains, void ratio {:.4}", whole(summary.grains as u64), summary.void_ratio),
+        format!(
+            "{} voids, {:.3} grains per void (Eq. 2), {:.2} constrictions a void on average",
+            whole(summary.voids as u64),
+            summary.grains_per_void,
+            summary.mean_connectivity
+        ),
+        format!(
+            "{} constrictions, Cu_CSD {:.3}, merge_overlap {}",
+            whole(summary.constrictions as u64),
+            summary.cu_csd,
+            args.merge_overlap
+        ),
+        match summary.k_over_d32_squared.zip(summary.kozeny_carman_over_d32_squared) {
+            Some((k, kc)) => format!(
+                "permeability {k:.3e} d32 squared along z, {:.2} times Kozeny and Carman's; the void \
+                 graph: graph.csv",
+                k / kc
+            ),
+            None => {
+                "no void graph: it needs a periodic cell through which no void runs from end to end".into()
+            }
+        },
+        format!("for a scene: filter.curve = \"{}\"", args.out.join("constrictions.csv").display()),
+    ];
+    lines.splice(1..1, summary.warnings.iter().map(|warning| format!("warning: {warning}")));
+    to_stdout(&lines.iter().map(|line| plain(line) + "\n").collect::<String>());
+    Ok(())
 }

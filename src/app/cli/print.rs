@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::run::RunError;
 use voidwalk_core::store::format::Format;
+
 pub use voidwalk_core::text::plain;
 use voidwalk_core::text::shell_word;
 use voidwalk_practice::quantity::THIN;
@@ -40,10 +41,7 @@ pub fn by_stdout(print: impl FnOnce() -> io::Result<()>) {
     }
 }
 
-/// Confirms that all of stdout was written.
-///
-/// # Errors
-/// A part of it was not, other than to a closed pipe.
+/// Confirms that all of stdout was written, other than to a closed pipe.
 pub fn whole_stdout() -> Result<(), RunError> {
     LOST.get().map_or(Ok(()), |error| Err(RunError::failed(format!("cannot write to stdout: {error}"))))
 }
@@ -63,9 +61,23 @@ pub fn shown(path: &Path) -> String {
     plain(&path.display().to_string())
 }
 
-/// A record in its form, as in its file.
 pub fn json(format: Format, record: &impl Serialize) -> Result<String, RunError> {
     Ok(format.json(record)?)
+}
+
+/// Prints a result: its record as in its file, or in words unless it is to be quiet.
+pub fn answer(
+    (as_json, quiet): (bool, bool),
+    format: Format,
+    record: &impl Serialize,
+    words: impl FnOnce() -> String,
+) -> Result<(), RunError> {
+    if as_json {
+        as_it_is(&json(format, record)?);
+    } else if !quiet {
+        to_stdout(&words());
+    }
+    Ok(())
 }
 
 /// A count and its noun, one or many: `1 replicate`.
@@ -81,7 +93,6 @@ pub fn grains_per_void(grains: Option<f64>) -> String {
     }
 }
 
-/// Widest line (characters).
 const WIDTH: usize = 100;
 
 /// A text in lines that begin with this many spaces.

@@ -1,21 +1,22 @@
-//! Follows packings and walks on stderr: a bar on a terminal, plain lines otherwise; and stops them on a
-//! signal.
-
-use std::io::IsTerminal;
-use std::sync::atomic::AtomicBool;
-use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant};
-
-use indicatif::{ProgressBar, ProgressStyle};
+//! Follows packings, walks and the cases of a campaign on stderr: a bar on a terminal, plain lines otherwise;
+//! stops them on a signal, and writes the pages of their results.
 
 use super::print::{plain, shown, to_stderr};
-use super::report::page;
-use crate::case::PackingPlan;
-use crate::outcome::so_far::SoFar;
-use crate::run::{Callbacks, Event, RunError};
+use crate::cases::{CaseCallbacks, CaseEvent};
+use crate::outcome::verdict::SoFar;
+use crate::report;
+use crate::report::ReportError;
+use crate::run::{Callbacks, Event, FolderKind, RunError};
+use crate::verdict::RunFiles;
 use crate::words::{first_lines, sentence, so_far};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, OnceLock};
+use std::time::{Duration, Instant};
 use voidwalk_core::packing::{CompressionProgress, Stage};
-use voidwalk_core::store::platform::signals::{end_at_once, stop_on_request};
+use voidwalk_core::store::platform::process::{end_at_once, stop_on_request};
 use voidwalk_practice::quantity::whole;
 
 /// Plain lines come at most this often.
@@ -25,11 +26,11 @@ const BETWEEN_LINES: Duration = Duration::from_secs(5);
 pub fn followed<T>(quiet: bool, work: impl FnOnce(&Callbacks) -> Result<T, RunError>) -> Result<T, RunError> {
     let stop = stop_on_signals()?;
     end_at_once();
-    let display = Display::new(quiet);
+    let display = Display { quiet, begun: Instant::now(), shown: Mutex::new(None) };
     let done = work(&Callbacks {
         on_event: &|event| display.tell(event),
         stop: &stop,
-        warn: &|warning| display.warn(warning),
+        warn: &|warning| display.line(&format!("warning: {}\n", plain(warning))),
         on_results: unfollowed().on_results,
     });
     display.end();
@@ -45,16 +46,33 @@ pub fn unfollowed() -> Callbacks<'static> {
     }
 }
 
+/// Writes the page of finished results, of a run from the content of its files if that is at hand; a set of
+/// constrictions has no page, nor has a server's folder.
+pub fn page(kind: FolderKind, folder: &Path, run: Option<RunFiles>) -> Result<PathBuf, ReportError> {
+    let written = match kind {
+        FolderKind::Run => match run {
+            Some(files) => report::write_walked(folder, files),
+            None => report::write(folder),
+        },
+        FolderKind::Packing => report::write_packing(folder),
+        FolderKind::Campaign => report::write_campaign(folder),
+        FolderKind::Percolation => report::write_percolation(folder),
+        FolderKind::Batch => report::write_batch(folder),
+        FolderKind::Boundary => report::write_boundary(folder),
+        FolderKind::Designs => report::write_designs(folder),
+        FolderKind::Specification => report::write_specification(folder),
+        FolderKind::Constrictions | FolderKind::Serve => return Ok(folder.to_owned()),
+    };
+    written.map(|written| written.page)
+}
+
 /// A flag that the first request to end sets.
-///
-/// # Errors
-/// Errors of the system.
 pub fn stop_on_signals() -> Result<Arc<AtomicBool>, RunError> {
     stop_on_request().map_err(RunError::failed)
 }
 
 /// A bar of this length on a terminal, and no bar elsewhere.
-pub fn bar_on_terminal(length: u64, style: &str) -> Option<ProgressBar> {
+fn bar_on_terminal(length: u64, style: &str) -> Option<ProgressBar> {
     if !std::io::stderr().is_terminal() {
         return None;
     }
@@ -69,7 +87,6 @@ pub fn bar_on_terminal(length: u64, style: &str) -> Option<ProgressBar> {
 /// Looks at the replicates so far come at most this often as plain lines.
 const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
 
-/// Display of the work.
 struct Display {
     quiet: bool,
     begun: Instant,
@@ -127,10 +144,6 @@ impl Walk {
 }
 
 impl Display {
-    fn new(quiet: bool) -> Self {
-        Self { quiet, begun: Instant::now(), shown: Mutex::new(None) }
-    }
-
     fn tell(&self, event: Event) {
         if self.quiet {
             return;
@@ -140,7 +153,13 @@ impl Display {
                 to_stderr(&format!("waiting for the packing in {} ({})\n", shown(folder), plain(holder)));
             }
             Event::PackingBegun(plan) => {
-                to_stderr(&packing_begun(plan));
+                to_stderr(&format!(
+                    "packing {} grains ({}), friction {}: about {} steps\n",
+                    whole(plan.compression.grains as u64),
+                    plain(&plan.name),
+                    plan.compression.friction,
+                    whole(plan.usual_steps())
+                ));
                 self.begin(0, "{spinner} {msg}", Work::Packing { usual: plan.usual_steps(), first: None });
             }
             Event::PackingEnded => self.end(),
@@ -170,10 +189,6 @@ impl Display {
                 }
             }
         }
-    }
-
-    fn warn(&self, warning: &str) {
-        self.line(&format!("warning: {}\n", plain(warning)));
     }
 
     /// Prints a line, above the bar if there is one.
@@ -206,12 +221,8 @@ impl Shown {
         match (&mut self.work, event) {
             (Work::Packing { usual, first }, Event::Packing(progress)) => {
                 let here = progress.steps - *first.get_or_insert(progress.steps);
-                if let Some(bar) = &self.bar {
-                    bar.set_message(packing_line(progress, *usual, here, seconds));
-                } else if self.last.elapsed() >= BETWEEN_LINES {
-                    self.last = Instant::now();
-                    to_stderr(&(packing_line(progress, *usual, here, seconds) + "\n"));
-                }
+                let (bar, last) = (self.bar.as_ref(), &mut self.last);
+                show(bar, last, BETWEEN_LINES, || packing_line(progress, *usual, here, seconds));
             }
             (Work::Walk(walk), Event::VerdictNeeds { replicates, runs, readings }) => {
                 walk.needs = [replicates, runs];
@@ -230,15 +241,14 @@ impl Shown {
                     to_stderr(&(words + "\n"));
                 }
             }
-            (Work::Walk(walk), Event::Increment { replicate, run, increment, moving }) => {
-                if walk.looked_at > 0 {
-                    // The bar shows the results of the replicates.
-                } else if let Some(bar) = &self.bar {
-                    bar.set_message(increment_line(replicate, run, increment, moving));
-                } else if self.last.elapsed() >= BETWEEN_INCREMENTS {
-                    self.last = Instant::now();
-                    to_stderr(&(increment_line(replicate, run, increment, moving) + "\n"));
-                }
+            // Once there are results of replicates, the bar shows those.
+            (Work::Walk(walk), Event::Increment { replicate, run, increment, moving })
+                if walk.looked_at == 0 =>
+            {
+                show(self.bar.as_ref(), &mut self.last, BETWEEN_INCREMENTS, || {
+                    let (increment, moving) = (whole(increment), whole(moving));
+                    format!("replicate {replicate}, run {run}, increment {increment}: {moving} moving")
+                });
             }
             (Work::Walk(walk), Event::MoreRuns { runs: more }) => {
                 walk.runs += more;
@@ -261,18 +271,14 @@ impl Shown {
     }
 }
 
-fn increment_line(replicate: u64, run: u64, increment: u64, moving: u64) -> String {
-    format!("replicate {replicate}, run {run}, increment {}: {} moving", whole(increment), whole(moving))
-}
-
-fn packing_begun(plan: &PackingPlan) -> String {
-    format!(
-        "packing {} grains ({}), friction {}: about {} steps\n",
-        whole(plan.compression.grains as u64),
-        plain(&plan.name),
-        plan.compression.friction,
-        whole(plan.usual_steps())
-    )
+/// Shows a message beside the bar; without one prints it, if the last line is this long ago.
+fn show(bar: Option<&ProgressBar>, last: &mut Instant, between: Duration, message: impl FnOnce() -> String) {
+    if let Some(bar) = bar {
+        bar.set_message(message());
+    } else if last.elapsed() >= between {
+        *last = Instant::now();
+        to_stderr(&(message() + "\n"));
+    }
 }
 
 /// Progress of a packing, with `here` of its steps done by this start of the program.
@@ -299,4 +305,121 @@ fn packing_line(progress: &CompressionProgress, usual: u64, here: u64, seconds: 
         progress.coordination,
         progress.unbalanced,
     )
+}
+
+/// Plain lines come at most this often, outside of a cluster's job.
+const BETWEEN_CASES: Duration = Duration::from_secs(2);
+
+/// After this long without a message, the progress of a case is reported.
+const BETWEEN_RUNS: Duration = Duration::from_secs(5);
+
+pub struct CaseProgress {
+    quiet: bool,
+    /// True if every event of a case has a line, as in the log of a job.
+    every_event: bool,
+    /// Known as soon as the cases are counted.
+    shown: OnceLock<(Option<ProgressBar>, Mutex<Lines>)>,
+}
+
+/// Cases done, when this process began and now, of how many.
+struct Lines {
+    first: usize,
+    done: usize,
+    total: usize,
+    begun: Instant,
+    last: Instant,
+}
+
+impl CaseProgress {
+    pub fn new(quiet: bool, every_event: bool) -> Self {
+        Self { quiet, every_event, shown: OnceLock::new() }
+    }
+
+    pub fn followed<T>(
+        &self,
+        work: impl FnOnce(&CaseCallbacks) -> Result<T, RunError>,
+    ) -> Result<T, RunError> {
+        followed(self.quiet, |run| {
+            let callbacks = CaseCallbacks {
+                run: *run,
+                on_cases: &|total, done| self.begin(total, done),
+                on_case: &|case, event| self.tell(case, event),
+            };
+            let done = work(&callbacks);
+            self.end();
+            done
+        })
+    }
+
+    fn begin(&self, total: usize, done: usize) {
+        if self.quiet {
+            return;
+        }
+        if done > 0 {
+            to_stderr(&format!("{done} of {total} cases are done already\n"));
+        }
+        let style = "{bar:30} {pos}/{len} cases, {elapsed} gone, about {eta} to go  {msg}";
+        let bar = bar_on_terminal(total as u64, style);
+        if let Some(bar) = &bar {
+            bar.set_position(done as u64);
+            bar.reset_eta();
+        }
+        let now = Instant::now();
+        let lines = Lines { first: done, done, total, begun: now, last: now };
+        let _ = self.shown.set((bar, Mutex::new(lines)));
+    }
+
+    fn tell(&self, case: &str, event: CaseEvent) {
+        let Some((bar, lines)) = self.shown.get() else { return };
+        let case = plain(case);
+        match (bar, event) {
+            (Some(bar), CaseEvent::Begun { .. }) => bar.set_message(case),
+            (Some(bar), CaseEvent::Waiting) => bar.set_message(format!("waiting for {case}")),
+            (Some(bar), CaseEvent::Walked { done, runs }) => {
+                bar.set_message(format!("{case}: {done} of {runs} runs"));
+            }
+            (Some(bar), CaseEvent::Done(_)) => bar.inc(1),
+            (bar, CaseEvent::Failed(problem)) => {
+                let tell = || to_stderr(&format!("failed: {case}: {}\n", plain(problem)));
+                bar.as_ref().map_or_else(tell, |bar| bar.suspend(tell));
+            }
+            (None, CaseEvent::Begun { resumes }) if self.every_event => {
+                to_stderr(&format!("{}: {case}\n", if resumes { "continues" } else { "begins" }));
+            }
+            (None, CaseEvent::Waiting) if self.every_event => {
+                to_stderr(&format!("waits: {case}: another process is at it\n"));
+            }
+            (None, CaseEvent::Walked { done, runs }) if !self.every_event => {
+                let Ok(mut lines) = lines.lock() else { return };
+                if lines.last.elapsed() >= BETWEEN_RUNS {
+                    lines.last = Instant::now();
+                    to_stderr(&format!("{case}: {done} of {runs} runs\n"));
+                }
+            }
+            (None, CaseEvent::Begun { .. } | CaseEvent::Waiting | CaseEvent::Walked { .. }) => {}
+            (None, CaseEvent::Done(line)) => {
+                let Ok(mut lines) = lines.lock() else { return };
+                lines.done += 1;
+                if !self.every_event && lines.done < lines.total && lines.last.elapsed() < BETWEEN_CASES {
+                    return;
+                }
+                lines.last = Instant::now();
+                let gone = lines.begun.elapsed().as_secs_f64();
+                let to_go = lines.total.saturating_sub(lines.done);
+                let left = gone / (lines.done - lines.first) as f64 * to_go as f64;
+                to_stderr(&format!(
+                    "{} of {} cases, {gone:.0} s gone, about {left:.0} s to go; {case}: {}\n",
+                    lines.done,
+                    lines.total,
+                    line.verdict.words()
+                ));
+            }
+        }
+    }
+
+    fn end(&self) {
+        if let Some((Some(bar), _)) = self.shown.get() {
+            bar.finish_and_clear();
+        }
+    }
 }

@@ -1,14 +1,18 @@
-//! `voidwalk report`, and the pages of all commands.
+//! Commands on finished folders, `report` and `export`, and `voidwalk serve`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::print::{shown, to_stdout};
+use super::print::{plain, shown, to_stdout};
+use super::progress::page;
 use crate::report::{self, ReportError};
 use crate::run::folder::claim;
 use crate::run::{FolderKind, RunError};
-use crate::verdict::RunFiles;
 
-/// Writes the report of a finished folder again.
+#[cfg(feature = "serve")]
+use super::{args::ServeArgs, print::whole_stdout, progress::stop_on_signals, run::command_line};
+#[cfg(feature = "serve")]
+use crate::run::PrepareOptions;
+
 pub fn report(folder: &Path) -> Result<(), RunError> {
     let Some(kind) = FolderKind::of(folder).filter(|kind| kind.has_page()) else {
         let problem = "holds no outcome.json, packing.json, campaign.json, batch.json, percolation.json, \
@@ -25,22 +29,51 @@ pub fn report(folder: &Path) -> Result<(), RunError> {
     Ok(())
 }
 
-/// Writes the page of finished results, of a run from the content of its files if that is at hand; a set of
-/// constrictions has no page, nor has a server's folder.
-pub fn page(kind: FolderKind, folder: &Path, run: Option<RunFiles>) -> Result<PathBuf, ReportError> {
-    let written = match kind {
-        FolderKind::Run => match run {
-            Some(files) => report::write_walked(folder, files),
-            None => report::write(folder),
-        },
-        FolderKind::Packing => report::write_packing(folder),
-        FolderKind::Campaign => report::write_campaign(folder),
-        FolderKind::Percolation => report::write_percolation(folder),
-        FolderKind::Batch => report::write_batch(folder),
-        FolderKind::Boundary => report::write_boundary(folder),
-        FolderKind::Designs => report::write_designs(folder),
-        FolderKind::Specification => report::write_specification(folder),
-        FolderKind::Constrictions | FolderKind::Serve => return Ok(folder.to_owned()),
+pub fn export(folder: &Path) -> Result<(), RunError> {
+    let Some(kind) = FolderKind::of(folder).filter(|kind| *kind != FolderKind::Serve) else {
+        let problem = "holds no finished work; name the folder of a run, a packing, constrictions, a \
+                       campaign, a batch, a study or a specification";
+        return Err(RunError::Refused(format!("{}: {problem}", shown(folder))));
     };
-    written.map(|written| written.page)
+    let claimed = claim(folder, kind, true)?;
+    let into = claimed.path().join("export");
+    if into.symlink_metadata().is_ok_and(|meta| !meta.is_dir()) {
+        let what = if into.is_symlink() { "a symbolic link" } else { "a file" };
+        return Err(RunError::Refused(format!(
+            "{}: is {what}, and the tables go into a folder of that name; move it away or give it another \
+             name",
+            shown(&into)
+        )));
+    }
+    let tables = report::export(claimed.path()).map_err(RunError::failed)?;
+    let mut text: String = tables.files.iter().map(|path| shown(path) + "\n").collect();
+    if !tables.words.is_empty() {
+        text += &format!("columns of words are left out: {}\n", plain(&tables.words.join(", ")));
+    }
+    to_stdout(&text);
+    Ok(())
+}
+
+#[cfg(feature = "serve")]
+pub fn serve(args: &ServeArgs) -> Result<(), RunError> {
+    let stop = stop_on_signals()?;
+    let server = crate::serve::Server::open(crate::serve::ServeOptions {
+        port: args.port,
+        folder: args.out.clone(),
+        prepare: PrepareOptions {
+            packings: args.packings.clone(),
+            memory: args.memory,
+            threads: args.threads,
+        },
+        on_results: |kind, folder, run| Ok(page(kind, folder, run).map(drop)?),
+        command: command_line(),
+    })?;
+    let (address, folder) = (plain(&server.address()), shown(server.folder()));
+    to_stdout(&format!(
+        "open {address}\nfor this machine alone; whoever has the address can use it. Sheets and results are \
+         in {folder}; Ctrl-C ends it\n"
+    ));
+    // No other program is given the address.
+    whole_stdout()?;
+    server.run(&stop)
 }

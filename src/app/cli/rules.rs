@@ -1,24 +1,25 @@
-//! `voidwalk rules`: the answer of filter practice on two soils, without a walk.
+//! `voidwalk rules`: the answer of filter practice on two soils, or on many samples and filters in one table,
+//! without a walk.
 
 use super::args::RulesArgs;
-use super::batch::each;
-use super::print::{as_it_is, json, plain, shown, to_stdout, wrapped};
-use crate::run::RunError;
+use super::print::{answer, plain, shown, to_copy, to_stdout, wrapped};
+use crate::cases::pairs_of;
+use crate::outcome::table::{ColumnKind, Columns};
+use crate::run::{RunError, write_new};
 use crate::scene::TableOptions;
+use crate::words::batch::{columns, of_filter as filter_lines};
 use crate::words::left_out::NOT_COVERED;
-use crate::words::rule::{LIMITS_ROUNDED, PARTS, limit, result, value};
-use crate::words::rule_note::{regrade_reason, rule_notes};
+use crate::words::rule::{LIMITS_ROUNDED, PARTS, limit, regrade_reason, result, rule_notes, value};
 use crate::words::{practice_line, sentence};
 use std::fmt::Write;
 use std::path::Path;
 use voidwalk_core::store::format;
-use voidwalk_practice::PairRules;
+use voidwalk_practice::batch::{NAMED, governing};
 use voidwalk_practice::quantity::{SizeUnit, significant};
 use voidwalk_practice::rule_result::{RuleResult, result_of};
-use voidwalk_practice::{AppliedRule, RuleNote};
+use voidwalk_practice::{AppliedRule, BatchFilter, BatchRow, PairOptions, PairRules, RuleNote};
 use voidwalk_sheets::{curves_in_file, notes_in_file};
 
-/// Spaces before the text below a row.
 const INDENT: usize = 14;
 
 /// Applies every rule to two sieve tables, or to the curves of two envelopes.
@@ -27,7 +28,7 @@ pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
     let options = TableOptions { as_given: args.as_given, changes, ..TableOptions::default() }.of_rules()?;
     let filter = match &args.filters[..] {
         [filter] if !args.each => filter,
-        _ => return each(args, options),
+        _ => return rules_of_each(args, options),
     };
     if args.csv.is_some() {
         return Err(RunError::refused("--csv goes with --each, or with several filters"));
@@ -40,12 +41,7 @@ pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
     })?;
     let assumed = |path| notes_in_file(path).map_err(RunError::refused);
     let notes = [("base", assumed(&args.base)?), ("filter", assumed(filter)?)];
-    if args.json {
-        as_it_is(&json(format::RULES, &pair)?);
-    } else {
-        to_stdout(&words(&pair, (&args.base, filter), &notes));
-    }
-    Ok(())
+    answer((args.json, false), format::RULES, &pair, || words(&pair, (&args.base, filter), &notes))
 }
 
 fn words(
@@ -162,6 +158,82 @@ fn sizes(sizes: &[(&str, Option<f64>)]) -> String {
 /// Three digits that mean something.
 fn number(value: Option<f64>) -> String {
     value.map_or_else(|| "not known".into(), |value| significant(value).to_string())
+}
+
+fn rules_of_each(args: &RulesArgs, options: PairOptions) -> Result<(), RunError> {
+    if args.json {
+        return Err(RunError::refused("--json goes with one filter, without --each"));
+    }
+    let table = pairs_of(&args.base, &args.filters, options, args.each)?;
+    let rows = &table.rows;
+    if let Some(path) = &args.csv {
+        let csv = columns(SizeUnit::Mm).csv(rows);
+        // A call that continues finds the table that it wrote.
+        if std::fs::read(path).ok().as_ref() != Some(&csv) {
+            write_new(path, &csv)?;
+        }
+    }
+    let mut text = aligned(columns(SizeUnit::Mm), rows);
+    text += &in_notes(&table.notes);
+    for filter in &table.filters {
+        text.push('\n');
+        text += &of_filter(rows, filter, false);
+        text += &to_walk(&args.base, options, rows, Path::new(&filter.name));
+    }
+    if let Some(path) = &args.csv {
+        text += &format!("\n{}\n", shown(path));
+    }
+    to_stdout(&text);
+    Ok(())
+}
+
+/// Assumptions about the files, a line each.
+pub(super) fn in_notes(notes: &[String]) -> String {
+    let lines = notes.iter().map(|note| format!("note  {}\n", plain(note))).collect::<String>();
+    if lines.is_empty() { lines } else { format!("\n{lines}") }
+}
+
+pub(super) fn aligned<T>(columns: Columns<T>, rows: &[T]) -> String {
+    let columns: Vec<_> = columns.of_page().collect();
+    let mut lines = vec![columns.iter().map(|column| column.heading.text.clone()).collect::<Vec<_>>()];
+    let cells = |row: &T| columns.iter().map(|column| plain(&(column.cell)(row).line())).collect();
+    lines.extend(rows.iter().map(cells));
+    let width = |at: usize| lines.iter().map(|line| line[at].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns.len()).map(width).collect();
+    let mut text = String::new();
+    for line in &lines {
+        let cell = |(at, cell): (usize, &String)| match columns[at].kind {
+            ColumnKind::Number => format!("{cell:>0$}", widths[at]),
+            _ => format!("{cell:<0$}", widths[at]),
+        };
+        let line: Vec<String> = line.iter().enumerate().map(cell).collect();
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{}", line.join("  ").trim_end());
+    }
+    text
+}
+
+/// Number of samples that a filter retains, and the governing ones.
+pub(super) fn of_filter(rows: &[BatchRow], filter: &BatchFilter, inches: bool) -> String {
+    let lines = filter_lines(filter, rows, SizeUnit::of(false, inches));
+    lines.iter().map(|line| plain(line)).collect::<Vec<_>>().join("\n  ") + "\n"
+}
+
+fn to_walk(samples: &Path, options: PairOptions, rows: &[BatchRow], filter: &Path) -> String {
+    let governing = governing(rows, &filter.display().to_string(), NAMED);
+    let paths: Vec<String> = governing.iter().map(|row| to_copy(&row.path)).collect();
+    let (which, walk) = match paths.len() {
+        0 => return String::new(),
+        1 => ("the one that governs", format!("{} {}", paths[0], to_copy(filter))),
+        _ => {
+            let samples = to_copy(samples);
+            ("those that govern", format!("{samples} {} --each --governing", to_copy(filter)))
+        }
+    };
+    let dispersive = if options.dispersive { " --dispersive" } else { "" };
+    let as_given = if options.as_given { " --as-given" } else { "" };
+    let joint = options.joint_mm.map_or_else(String::new, |mm| format!(" --joint-mm {mm}"));
+    format!("  Nothing was walked. To walk {which}: voidwalk judge {walk}{dispersive}{joint}{as_given}\n")
 }
 
 #[cfg(test)]

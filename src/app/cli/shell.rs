@@ -8,11 +8,10 @@ use clap_complete::{Shell, generate};
 use clap_mangen::Man;
 use clap_mangen::roff::{Roff, bold, roman};
 
-use super::examples::command;
 use super::exit::EXIT_CODES;
+use super::help::command;
+use super::options::{FACETS, SET};
 use super::print::{shown, to_stdout};
-use super::setting_options::SET;
-use super::values::FACETS;
 use crate::run::RunError;
 use crate::scene::{Density, LibraryDensity, Scene};
 use voidwalk_core::constrictions::shipped;
@@ -89,7 +88,6 @@ _voidwalk_and_soils() {
 compdef _voidwalk_and_soils voidwalk
 "#;
 
-/// Additions for fish.
 const FISH_MORE: &str = r#"
 function __voidwalk_soils
     set -l word (string unescape -- (commandline -ct))
@@ -180,11 +178,9 @@ fn page(command: Command) -> Result<Vec<u8>, RunError> {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeSet;
-
-    use clap::error::ErrorKind;
-
     use super::*;
+    use clap::error::ErrorKind;
+    use std::collections::BTreeSet;
 
     #[test]
     fn values_are_completed_where_they_are_known() {

@@ -1,22 +1,23 @@
 //! `voidwalk soil`: the contents of a file of soils, as the program understands it.
 
 use std::fmt::Write;
-#[cfg(feature = "xlsx")]
-use std::path::Path;
 
 use super::args::SoilArgs;
-use super::print::{as_it_is, json, plain, shown, to_stdout};
-use super::schemas::Soils;
+use super::init::Soils;
+use super::print::{answer, plain, shown, to_stdout};
 use crate::case::CaseError;
-#[cfg(feature = "xlsx")]
-use crate::report::soil_template;
 use crate::report::soils_figure;
 use crate::run::{RunError, write_new};
 use voidwalk_core::gradation::Gradation;
 use voidwalk_core::store::format;
 use voidwalk_sheets::{SoilSummary, named_soils_in, soils_in_file};
 
-/// Shows the soils of a file.
+#[cfg(feature = "xlsx")]
+use std::path::Path;
+
+#[cfg(feature = "xlsx")]
+use crate::report::soil_template;
+
 pub fn soil(args: &SoilArgs) -> Result<(), RunError> {
     #[cfg(feature = "xlsx")]
     if let Some(path) = &args.template {
@@ -35,15 +36,9 @@ pub fn soil(args: &SoilArgs) -> Result<(), RunError> {
     }
     let soils = Soils { soils };
     let drawn = args.figure.as_deref().map_or(String::new(), |path| format!("\n{}\n", shown(path)));
-    if args.json {
-        as_it_is(&json(format::SOILS, &soils)?);
-    } else {
-        to_stdout(&(words(&soils.soils) + &drawn));
-    }
-    Ok(())
+    answer((args.json, false), format::SOILS, &soils, || words(&soils.soils) + &drawn)
 }
 
-/// Writes a workbook to fill in.
 #[cfg(feature = "xlsx")]
 fn template(path: &Path) -> Result<(), RunError> {
     if path.extension().is_none_or(|ending| !ending.eq_ignore_ascii_case("xlsx")) {

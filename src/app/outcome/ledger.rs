@@ -1,10 +1,9 @@
 //! The ledger of a campaign, as types: one line of `ledger.jsonl` for each finished case.
 
-use serde::{Deserialize, Serialize};
-
-use super::record::{ModelLimit, Outcome, Ratios, RunSummary, Verdict};
-use super::undecided::UndecidedBy;
+use super::record::{ModelLimit, Outcome, Ratios, RunSummary, Verdict, commit};
+use super::verdict::UndecidedBy;
 use super::{BaseSize, Modelled, leaves_out_of_all};
+use serde::{Deserialize, Serialize};
 use voidwalk_practice::Note;
 
 /// A finished case.
@@ -94,14 +93,6 @@ pub struct ModelledThickness {
     pub scale_free: bool,
 }
 
-impl ModelledThickness {
-    /// Takes the numbers of an outcome.
-    fn of(outcome: &Outcome) -> Self {
-        let network = &outcome.inputs.network;
-        Self { layers: network.layers, mm: network.thickness_mm, scale_free: outcome.inputs.scale_free }
-    }
-}
-
 /// Where and when a case was walked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
@@ -130,7 +121,7 @@ impl LedgerLine {
         made: Made,
     ) -> Self {
         let count = |verdict| outcome.replicates.iter().filter(|r| r.verdict == verdict).count() as u64;
-        let modelled = outcome.modelled();
+        let (modelled, inputs) = (outcome.modelled(), &outcome.inputs);
         let broken = outcome.rules.iter().filter(|rule| rule.is_broken());
         Self {
             case: case.into(),
@@ -139,10 +130,14 @@ impl LedgerLine {
             fingerprint,
             seed: outcome.seed,
             version: env!("CARGO_PKG_VERSION").into(),
-            commit: option_env!("VOIDWALK_COMMIT").map(String::from),
+            commit: commit(),
             verdict: outcome.model.class,
             undecided_by: outcome.undecided_by(),
-            thickness: ModelledThickness::of(outcome),
+            thickness: ModelledThickness {
+                layers: inputs.network.layers,
+                mm: inputs.network.thickness_mm,
+                scale_free: inputs.scale_free,
+            },
             with_flow: modelled.flow,
             with_arches: modelled.arches,
             with_openings: modelled.openings,
@@ -154,7 +149,7 @@ impl LedgerLine {
             capped: outcome.capped,
             grains_per_void: outcome.grains_per_void,
             ratios: outcome.ratios,
-            base: outcome.inputs.base_size(),
+            base: inputs.base_size(),
             runs: outcome.summary.clone(),
             notes: outcome.notes.clone(),
             made,

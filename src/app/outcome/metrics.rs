@@ -1,9 +1,11 @@
 //! The numbers of one run at its end, and its rows of the CSV files.
 
-use super::record::{BlockedRow, FlowRow, LayerRow, RetainedRow, Run, SeriesRow, SizeRow};
-use super::recorder::Recorder;
+use super::record::{
+    BlockedRow, ByConnectivity, FlowRow, LayerRow, Replicate, RetainedRow, Run, SeriesRow, SizeRow,
+};
+use super::recorder::{self, Recorder};
 use super::verdict::{below_by_count, below_by_mass};
-use super::{by_connectivity, by_void};
+use std::collections::BTreeMap;
 use voidwalk_core::network::{NO_LAYER, Network};
 use voidwalk_core::walk::{FlowRecord, SizeClasses, SizeCounts, State, Tally};
 
@@ -104,8 +106,15 @@ impl RunMetrics {
             Eroded::of(state, id.pan_fraction);
         let largest_mm = (tally.eroded > 0).then(|| f64::from(tally.largest_eroded) * network.unit_mm());
         let retained = tally.retained_in_constrictions + tally.retained_in_voids + tally.trapped;
-        let [deepest, most] = retained_layers(network, state);
-        let fullness = Fullness::of(network, state);
+        let layers = layers(network, state, id);
+        let [deepest, most] = retained_layers(&layers);
+        let (blocked, constrictions) =
+            layers.iter().take(3).fold((0, 0), |(b, c), row| (b + row.blocked, c + row.constrictions));
+        let (fullness_max, overfull_fraction) = match state.passive.expected() {
+            // For an expectation only the number by void is known.
+            Some(_) => (None, None),
+            None => fullness(network.volumes(), &state.retained_cubes),
+        };
         let run = Run {
             run: id.run,
             eroded_mass_fraction,
@@ -114,7 +123,7 @@ impl RunMetrics {
             largest_eroded_over_d15f: largest_mm.map(|d| d / id.d15f_mm),
             blocked: tally.blocked,
             blocked_fraction: tally.blocked as f64 / network.passages().max(1) as f64,
-            blocked_first_three_layers_fraction: blocked_first_layers(network, state, 3),
+            blocked_first_three_layers_fraction: blocked as f64 / constrictions.max(1) as f64,
             backbone_fraction: network.backbone_fraction(|c| !state.is_closed(network, c)),
             inserted: tally.inserted,
             eroded: tally.eroded,
@@ -134,9 +143,9 @@ impl RunMetrics {
             flow_closed_most: flow
                 .map(|flow| flow.solutions.iter().map(|solution| solution.closed).fold(0.0, f64::max)),
             k0_mm2: flow.and_then(|flow| flow.k0_mm2),
-            fullness_max: fullness.max,
-            overfull_fraction: fullness.overfull_fraction,
-            by_connectivity: by_connectivity::of_run(network, state),
+            fullness_max,
+            overfull_fraction,
+            by_connectivity: of_run(network, state),
             seconds,
         };
         Self { run, below_threshold }
@@ -177,8 +186,8 @@ impl Recorded {
             layers: layers(network, state, id),
             flow: flow.collect(),
             // Without recorded voids nobody asked for the blocked constrictions.
-            blocked: if recorder.voids.is_empty() { Vec::new() } else { by_void::blocked(network, state) },
-            voids: by_void::of_filter(network, &recorder.voids),
+            blocked: if recorder.voids.is_empty() { Vec::new() } else { recorder::blocked(network, state) },
+            voids: recorder::of_filter(network, &recorder.voids),
             ..Self::default()
         };
         for (increment, retained, eroded) in &recorder.sizes {
@@ -204,40 +213,19 @@ impl Recorded {
 /// A void is overfull above this part of its volume: no packing of its particles is denser.
 const OVERFULL: f64 = 0.6;
 
-/// Fill of the voids of a network.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Fullness {
-    /// Retained volume over volume of the fullest void that has a volume.
-    max: Option<f64>,
-    /// Share of the voids that are overfull.
-    overfull_fraction: Option<f64>,
-}
-
-impl Fullness {
-    /// Reads a finished run; empty if volumes are unknown.
-    fn of(network: &Network, state: &State) -> Self {
-        match state.passive.expected() {
-            // For an expectation only the number by void is known.
-            Some(_) => Self::default(),
-            None => Self::of_voids(network.volumes(), &state.retained_cubes),
-        }
-    }
-
-    /// Reads voids with these volumes and sums of the cubed diameters of their resting particles. A void
-    /// without a volume has room for nothing: any particle makes it overfull, by an unknown amount.
-    fn of_voids(volumes: &[f64], cubes: &[f64]) -> Self {
-        let full = |(&volume, &cubes): (&f64, &f64)| match cubes > 0.0 {
-            true if volume > 0.0 => std::f64::consts::FRAC_PI_6 * cubes / volume,
-            true => f64::INFINITY,
-            false => 0.0,
-        };
-        let fullness: Vec<f64> = volumes.iter().zip(cubes).map(full).collect();
-        let overfull = fullness.iter().filter(|&&full| full > OVERFULL).count();
-        Self {
-            max: fullness.iter().copied().filter(|full| full.is_finite()).reduce(f64::max),
-            overfull_fraction: (!fullness.is_empty()).then(|| overfull as f64 / fullness.len() as f64),
-        }
-    }
+/// Retained volume over volume of the fullest void that has a volume, and the share of the voids that are
+/// overfull, by volumes and by sums of the cubed diameters of resting particles. A void without a volume has
+/// room for nothing: any particle makes it overfull, by an unknown amount.
+fn fullness(volumes: &[f64], cubes: &[f64]) -> (Option<f64>, Option<f64>) {
+    let full = |(&volume, &cubes): (&f64, &f64)| match cubes > 0.0 {
+        true if volume > 0.0 => std::f64::consts::FRAC_PI_6 * cubes / volume,
+        true => f64::INFINITY,
+        false => 0.0,
+    };
+    let fullness: Vec<f64> = volumes.iter().zip(cubes).map(full).collect();
+    let overfull = fullness.iter().filter(|&&full| full > OVERFULL).count();
+    let most = fullness.iter().copied().filter(|full| full.is_finite()).reduce(f64::max);
+    (most, (!fullness.is_empty()).then(|| overfull as f64 / fullness.len() as f64))
 }
 
 /// Moves out of the reservoir through entries that are no constrictions: entering is no move.
@@ -250,28 +238,15 @@ fn free_entries(network: &Network, state: &State) -> u64 {
 
 /// The deepest layer with a retained particle, and the layer down to which 95 % of the particles retained in
 /// layers lie.
-fn retained_layers(network: &Network, state: &State) -> [Option<u64>; 2] {
-    let mut by_layer = vec![0u64; network.layers()];
-    for (void, &layer) in network.layer_of().iter().enumerate().filter(|&(_, &layer)| layer != NO_LAYER) {
-        by_layer[layer as usize] += state.retained_in_constrictions[void] + state.retained_in_voids[void];
-    }
-    let all: u128 = by_layer.iter().map(|&n| u128::from(n)).sum();
+fn retained_layers(layers: &[LayerRow]) -> [Option<u64>; 2] {
+    let retained = |row: &LayerRow| row.retained_in_constrictions + row.retained_in_voids;
+    let all: u128 = layers.iter().map(|row| u128::from(retained(row))).sum();
     let mut down_to = 0u128;
-    let most = by_layer.iter().position(|&n| {
-        down_to += u128::from(n);
+    let most = layers.iter().position(|row| {
+        down_to += u128::from(retained(row));
         all > 0 && down_to * 100 >= all * 95
     });
-    [by_layer.iter().rposition(|&n| n > 0), most].map(|layer| layer.map(|l| l as u64))
-}
-
-fn blocked_first_layers(network: &Network, state: &State, layers: u32) -> f64 {
-    let (mut blocked, mut all) = (0u64, 0u64);
-    for void in (0..network.voids() as u32).filter(|&v| network.layer_of()[v as usize] < layers) {
-        let exits = network.exits(void).filter(|&c| network.counts(c));
-        all += exits.clone().count() as u64;
-        blocked += exits.filter(|&c| state.blocked[c]).count() as u64;
-    }
-    blocked as f64 / all.max(1) as f64
+    [layers.iter().rposition(|row| retained(row) > 0), most].map(|layer| layer.map(|l| l as u64))
 }
 
 fn layers(network: &Network, state: &State, id: RunId) -> Vec<LayerRow> {
@@ -285,11 +260,7 @@ fn layers(network: &Network, state: &State, id: RunId) -> Vec<LayerRow> {
         retained_in_voids: 0,
     };
     let mut rows: Vec<LayerRow> = (0..network.layers() as u64).map(row).collect();
-    for void in 0..network.voids() {
-        let layer = network.layer_of()[void];
-        if layer == NO_LAYER {
-            continue;
-        }
+    for (void, &layer) in network.layer_of().iter().enumerate().filter(|&(_, &layer)| layer != NO_LAYER) {
         let row = &mut rows[layer as usize];
         let exits = network.exits(void as u32).filter(|&c| network.counts(c));
         row.constrictions += exits.clone().count() as u64;
@@ -330,22 +301,87 @@ fn size_curve(
     rows
 }
 
+/// Voids, exits, blocked exits, particles in exits, particles in voids.
+type Sums = [u64; 5];
+
+/// Sums of a run by ascending connectivity. Trapped particles never settle in one void and are not counted.
+fn of_run(network: &Network, state: &State) -> Vec<ByConnectivity> {
+    // Entrances and exits are the same there, and all voids of the cubic lattice are alike.
+    if network.reservoir().is_some() || network.shape().is_some() {
+        return Vec::new();
+    }
+    let of_void = |(void, &k): (usize, _)| {
+        let exits = network.exits(void as u32);
+        let sums = [
+            1,
+            exits.len() as u64,
+            exits.filter(|&c| state.blocked[c]).count() as u64,
+            state.retained_in_constrictions[void],
+            state.retained_in_voids[void],
+        ];
+        (u64::from(k), sums)
+    };
+    by_connectivity(network.connectivity().iter().enumerate().map(of_void))
+}
+
+/// Particles retained and constrictions blocked in run `run` (counted from 1) of all replicates together, by
+/// the connectivity of the void (paper, Table 3).
+pub fn of_replicates(replicates: &[Replicate], run: u64) -> Vec<ByConnectivity> {
+    let runs = replicates.iter().flat_map(|r| &r.runs).filter(|r| r.run == run);
+    let of_row = |row: &ByConnectivity| {
+        let retained = [row.retained_in_constrictions, row.retained_in_voids];
+        (row.connectivity, [row.voids, row.constrictions, row.blocked, retained[0], retained[1]])
+    };
+    by_connectivity(runs.flat_map(|r| &r.by_connectivity).map(of_row))
+}
+
+/// Rows by ascending connectivity; empty if all voids have the same.
+fn by_connectivity(parts: impl IntoIterator<Item = (u64, Sums)>) -> Vec<ByConnectivity> {
+    let mut sums: BTreeMap<u64, Sums> = BTreeMap::new();
+    for (connectivity, more) in parts {
+        sums.entry(connectivity).or_default().iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+    }
+    if sums.len() < 2 {
+        return Vec::new();
+    }
+    let retained = |s: &Sums| s[3] + s[4];
+    let all_voids: u64 = sums.values().map(|s| s[0]).sum();
+    let all_retained: u64 = sums.values().map(retained).sum();
+    let row = |(&connectivity, s): (&u64, &Sums)| ByConnectivity {
+        connectivity,
+        voids: s[0],
+        voids_fraction: s[0] as f64 / all_voids as f64,
+        constrictions: s[1],
+        blocked: s[2],
+        retained_in_constrictions: s[3],
+        retained_in_voids: s[4],
+        retained_per_void: retained(s) as f64 / s[0] as f64,
+        retained_fraction: retained(s) as f64 / all_retained.max(1) as f64,
+    };
+    sums.iter().map(row).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn a_void_without_volume_is_overfull_with_anything_and_leaves_the_fullest_finite() {
-        let fullness_of = |volumes: &[f64], cubes: &[f64]| {
-            let Fullness { max, overfull_fraction } = Fullness::of_voids(volumes, cubes);
-            (max, overfull_fraction)
-        };
         let sphere = std::f64::consts::FRAC_PI_6;
-        assert_eq!(fullness_of(&[1.0, 0.0, 0.0, 2.0], &[0.5, 3.0, 0.0, 2.0]), (Some(sphere), Some(0.25)));
-        assert_eq!(fullness_of(&[1.0, 1.0], &[2.0, 0.0]), (Some(2.0 * sphere), Some(0.5)));
+        assert_eq!(fullness(&[1.0, 0.0, 0.0, 2.0], &[0.5, 3.0, 0.0, 2.0]), (Some(sphere), Some(0.25)));
+        assert_eq!(fullness(&[1.0, 1.0], &[2.0, 0.0]), (Some(2.0 * sphere), Some(0.5)));
         // A volume next to zero is treated as zero.
-        assert_eq!(fullness_of(&[5e-324, 1.0], &[1e300, 0.0]), (Some(0.0), Some(0.5)));
-        assert_eq!(fullness_of(&[0.0], &[1.0]), (None, Some(1.0)));
-        assert_eq!(fullness_of(&[], &[]), (None, None));
+        assert_eq!(fullness(&[5e-324, 1.0], &[1e300, 0.0]), (Some(0.0), Some(0.5)));
+        assert_eq!(fullness(&[0.0], &[1.0]), (None, Some(1.0)));
+        assert_eq!(fullness(&[], &[]), (None, None));
+    }
+
+    #[test]
+    fn rows_by_hand() {
+        let rows = by_connectivity([(6, [2, 6, 0, 4, 0]), (5, [1, 2, 1, 30, 0]), (6, [1, 3, 0, 0, 6])]);
+        assert_eq!((rows[0].voids_fraction, rows[1].voids_fraction), (0.25, 0.75));
+        assert_eq!((rows[0].retained_per_void, rows[0].retained_fraction), (30.0, 0.75));
+        assert!((rows[1].retained_per_void - 10.0 / 3.0).abs() < 1e-12);
+        assert!(by_connectivity([(6, [1, 3, 0, 0, 0])]).is_empty());
     }
 }

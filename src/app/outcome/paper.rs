@@ -1,5 +1,10 @@
-//! Numbers that the paper states about its filters, to be set beside ours. Nothing is fitted to them at run
-//! time.
+//! The paper beside the walk: Table 2 on its filters, to which nothing is fitted at run time, and Eq. (1) on
+//! the depth that single particles reach in the clean filter.
+
+use super::record::{Infiltration, InfiltrationSize};
+use voidwalk_core::constrictions::Curve;
+use voidwalk_core::gradation::Gradation;
+use voidwalk_core::network::Passage;
 
 /// A row of Table 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,7 +20,7 @@ pub struct PaperFilter {
 }
 
 /// Table 2 of Shire & O'Sullivan, *A network model to assess base-filter combinations*.
-pub const TABLE_2: [PaperFilter; 6] = [
+const TABLE_2: [PaperFilter; 6] = [
     PaperFilter { cu: 1.2, friction: 0.0, void_ratio: 0.558, cu_csd: 1.48 },
     PaperFilter { cu: 1.5, friction: 0.0, void_ratio: 0.531, cu_csd: 1.52 },
     PaperFilter { cu: 1.5, friction: 0.3, void_ratio: 0.658, cu_csd: 1.63 },
@@ -27,4 +32,70 @@ pub const TABLE_2: [PaperFilter; 6] = [
 /// The paper's filter with this linear gradation and friction, if it has one.
 pub fn filter(cu: f64, friction: f64) -> Option<PaperFilter> {
     TABLE_2.into_iter().find(|f| (f.cu - cu).abs() < 1e-6 && f.friction == friction)
+}
+
+/// Percentages by mass of the base whose sizes are followed.
+const SIZES: [f64; 6] = [15.0, 50.0, 85.0, 90.0, 95.0, 100.0];
+
+/// Number of parts of the base's mass over which the mass that would leave without blocking is summed.
+const PARTS: u32 = 400;
+
+/// Eq. (1) for this base on a cubic lattice of `layers` layers with this constriction curve (mm).
+///
+/// The pan fraction (finer than the finest sieve) is passive: all of it would leave.
+pub fn infiltration(curve: &Curve, base: &Gradation, layers: u64) -> Infiltration {
+    let passage = Passage::new(curve);
+    let of_size = |percent: &f64| {
+        let diameter_mm = base.d(*percent)?;
+        Some(InfiltrationSize {
+            name: format!("D{percent}B"),
+            diameter_mm,
+            downstream: passage.downstream(diameter_mm),
+            layers_95: passage.layers(diameter_mm, 0.95),
+            layers_99: passage.layers(diameter_mm, 0.99),
+            through: passage.through(diameter_mm, layers),
+        })
+    };
+    let pan_fraction = base.pan_fraction();
+    let sized = (0..PARTS).filter_map(|part| {
+        let share = (f64::from(part) + 0.5) / f64::from(PARTS);
+        Some(passage.through(base.d(100.0 * (pan_fraction + (1.0 - pan_fraction) * share))?, layers))
+    });
+    let sized = sized.sum::<f64>() / f64::from(PARTS);
+    Infiltration {
+        layers,
+        sizes: SIZES.iter().filter_map(of_size).collect(),
+        coarsest_through_mm: passage.coarsest_through(layers, 0.95),
+        eroded_without_blocking: pan_fraction + (1.0 - pan_fraction) * sized,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use voidwalk_core::constrictions::CurveUnit;
+
+    #[test]
+    fn all_or_nothing_passes_a_filter_of_one_constriction_size() {
+        let curve = Curve::from_points(&[(100.0, 0.2)], CurveUnit::Mm).unwrap();
+        let of_base = |d0: f64| infiltration(&curve, &Gradation::linear_from_d0(d0, 1.5).unwrap(), 60);
+        assert_eq!(of_base(0.05).eroded_without_blocking, 1.0);
+        assert_eq!(of_base(0.3).eroded_without_blocking, 0.0);
+        // Straight from 0.15 to 0.3375 on semi-log paper: ln(0.2 / 0.15) / ln(2.25) of the mass is fine
+        // enough.
+        let some = of_base(0.15);
+        let expected = libm::log(0.2 / 0.15) / libm::log(2.25);
+        assert!((some.eroded_without_blocking - expected).abs() < 0.5 / 400.0 + 1e-9);
+        assert_eq!((some.sizes[0].layers_95, some.sizes[5].layers_95), (None, Some(0.0)));
+        assert!((some.coarsest_through_mm - 0.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_pan_fraction_would_leave() {
+        let curve = Curve::from_points(&[(100.0, 0.2)], CurveUnit::Mm).unwrap();
+        let base = Gradation::from_lines(&[(0.3, 40.0), (0.6, 100.0)]).unwrap();
+        let result = infiltration(&curve, &base, 60);
+        assert!((result.eroded_without_blocking - 0.4).abs() < 1e-12);
+        assert_eq!(result.sizes[0].name, "D50B");
+    }
 }

@@ -16,10 +16,9 @@
 //! one along it): `nu` = 1.295(6) (Hinrichsen, Adv. Phys. 49, 815, 2000) and `z` = 1.766. (1.105 belongs to 3
 //! + 1 dimensions.)
 
-use serde::{Deserialize, Serialize};
-
-use super::least_squares::{Straight, log_log_slope};
 use super::record::Statistic;
+use super::statistic::{Straight, log_log_slope};
+use serde::{Deserialize, Serialize};
 
 /// Threshold of the infinite lattice: directed bond percolation on the simple cubic lattice.
 pub const INFINITE_LATTICE: f64 = 0.38222;
@@ -133,7 +132,7 @@ impl PercolationStudy {
         };
         let sizes: Vec<SizeThreshold> = cubes.iter().map(of_size).collect();
         let realisations = thresholds.first().map_or(0, |(_, all)| all.len() as u64);
-        let points: Vec<Point> = sizes.iter().filter_map(|s| Point::of(s, realisations)).collect();
+        let points: Vec<Point> = sizes.iter().filter_map(|s| Point::new(s, realisations)).collect();
         let enough = points.len() >= 2;
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
@@ -190,7 +189,7 @@ struct Point {
 
 impl Point {
     /// `None` without scatter, as the weight would be undefined.
-    fn of(size: &SizeThreshold, realisations: u64) -> Option<Self> {
+    fn new(size: &SizeThreshold, realisations: u64) -> Option<Self> {
         let sd = size.threshold.sd.filter(|sd| *sd > 0.0)?;
         let error = sd / (realisations as f64).sqrt();
         Some(Self { size: size.size as f64, mean: size.threshold.mean, sd, error })

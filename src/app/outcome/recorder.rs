@@ -1,7 +1,7 @@
-//! Records the requested data of a running walk.
+//! The requested data of a running walk, and what happens in each void and constriction, for pictures.
 
-use super::by_void;
-use super::record::RetainedRow;
+use super::record::{BlockedRow, ConstrictionRow, RetainedRow};
+use voidwalk_core::network::Network;
 use voidwalk_core::walk::{SizeCounts, State, Tally};
 
 /// Data to record of a run.
@@ -19,7 +19,7 @@ pub struct Wanted {
 }
 
 /// Rows that a series may have before it is thinned.
-pub const LONGEST_SERIES: usize = 20_000;
+const LONGEST_SERIES: usize = 20_000;
 
 /// Sums and size curves of one run, as recorded.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -54,7 +54,98 @@ impl Recorder {
         if let Some(increments) = &wanted.voids
             && (state.finished || increments.contains(&t))
         {
-            self.voids.extend(by_void::retained(state));
+            self.voids.extend(retained(state));
         }
     }
+}
+
+/// Number of a void that represents the outside.
+const OUTSIDE: i64 = -1;
+
+/// Places of voids, for pictures: no result depends on them. Water flows along z, from 0 on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Places {
+    /// Place (mm) by void of the filter.
+    pub point_mm: Vec<[f64; 3]>,
+    /// Lengths (mm) after which the network repeats along x and y.
+    pub period_mm: [f64; 2],
+    /// Thickness of a layer (mm).
+    pub layer_mm: f64,
+}
+
+impl Places {
+    /// Vector (mm) from one void to the nearest image of another; half a layer if either lies outside.
+    fn vector(&self, from: i64, to: i64) -> [f64; 3] {
+        let point = |void: i64| usize::try_from(void).ok().and_then(|void| self.point_mm.get(void));
+        let (Some(from), Some(to)) = (point(from), point(to)) else { return [0.0, 0.0, 0.5 * self.layer_mm] };
+        let mut vector = [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
+        for (length, period) in vector.iter_mut().zip(self.period_mm) {
+            *length -= period * (*length / period).round();
+        }
+        vector
+    }
+}
+
+/// The constrictions of a network whose voids lie in these places, each once.
+pub fn constrictions(network: &Network, places: &Places) -> Vec<ConstrictionRow> {
+    let filter = network.filter_voids() as u32;
+    let mut rows = Vec::with_capacity(network.passages());
+    for void in 0..network.voids() as u32 {
+        for exit in network.exits(void).filter(|&exit| network.counts(exit)) {
+            let target = network.targets()[exit];
+            // The reservoir is no void of the filter; a constriction that leads there leads in from it.
+            let (from, to) = match (void < filter, network.reservoir() == Some(target)) {
+                (true, true) => (OUTSIDE, i64::from(void)),
+                (true, false) if target < filter => (i64::from(void), i64::from(target)),
+                (true, false) => (i64::from(void), OUTSIDE),
+                (false, _) => (OUTSIDE, i64::from(target)),
+            };
+            let [dx_mm, dy_mm, dz_mm] = places.vector(from, to);
+            rows.push(ConstrictionRow {
+                constriction: network.either_way(exit) as u64,
+                from,
+                to,
+                dx_mm,
+                dy_mm,
+                dz_mm,
+                diameter_mm: f64::from(network.diameters()[exit]) * network.unit_mm(),
+                conductance: network.conductance(exit),
+            });
+        }
+    }
+    rows
+}
+
+/// The constrictions that a run blocked, in the order of blocking.
+pub fn blocked(network: &Network, state: &State) -> Vec<BlockedRow> {
+    let row = |blocking: &voidwalk_core::walk::Blocking| BlockedRow {
+        run: state.run,
+        increment: blocking.increment,
+        constriction: network.either_way(blocking.constriction as usize) as u64,
+    };
+    state.history.iter().map(row).collect()
+}
+
+/// The voids that hold retained particles of a run, and void 0, so that the moment is known even if no void
+/// holds any.
+fn retained(state: &State) -> Vec<RetainedRow> {
+    let counts = state.retained_in_constrictions.iter().zip(&state.retained_in_voids);
+    (0i64..)
+        .zip(counts)
+        .filter(|(void, (in_constrictions, in_void))| *void == 0 || **in_constrictions + **in_void > 0)
+        .map(|(void, (&retained_in_constrictions, &retained_in_voids))| RetainedRow {
+            run: state.run,
+            increment: state.increment,
+            void,
+            retained_in_constrictions,
+            retained_in_voids,
+        })
+        .collect()
+}
+
+/// Rows with the reservoir before the filter as the outside instead of the void after the last.
+pub fn of_filter(network: &Network, rows: &[RetainedRow]) -> Vec<RetainedRow> {
+    let filter = network.filter_voids() as i64;
+    let void = |row: &RetainedRow| if row.void < filter { row.void } else { OUTSIDE };
+    rows.iter().map(|row| RetainedRow { void: void(row), ..row.clone() }).collect()
 }

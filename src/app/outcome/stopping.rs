@@ -22,8 +22,8 @@
 //! (Chow and Robbins). Its coverage is measured in the tests.
 
 use super::record::{ShortOf, Statistic, Stopping, Verdict};
-use super::student;
-use super::verdict::{BelowThreshold, THRESHOLD, below_by_interval, classify};
+use super::statistic::two_sided;
+use super::verdict::{BelowThreshold, THRESHOLD, below_by_interval, class_of, classify};
 use voidwalk_core::schema::{only, section, whole, within};
 
 /// Error probability of the deciding intervals if no level is requested.
@@ -35,17 +35,6 @@ const FEWEST: u64 = 8;
 section! {
     /// Replicates are added until the eroded mass is known closely enough, or the verdict is decided; then
     /// `replicates` is where it first looks.
-    ///
-    /// ```
-    /// use voidwalk_app::outcome::stopping::{Look, StopRule};
-    /// let rule = StopRule { decide_percent: Some(99.0), most_replicates: 100, ..StopRule::default() };
-    /// // Eroded mass fractions far above 7.5 % in the first run and far below it in the second.
-    /// let run = |mean: f64| (0..10).map(|k| (mean + 1e-3 * f64::from(k), mean < 0.075)).collect::<Vec<_>>();
-    /// let Look::Stop(stopping) = rule.look(10, &[run(0.3), run(0.01)]) else { panic!("ten are enough") };
-    /// assert!(stopping.met && stopping.looks == 1);
-    /// // Close to it, it asks for half as many replicates again.
-    /// assert_eq!(rule.look(10, &[run(0.071), run(0.071)]), Look::Until(15));
-    /// ```
     pub struct StopRule in "stop" {
         /// Half width of the 95 % interval of the eroded mass, in every run: percentage points of the base.
         pub target_error_pp: Option<f64> = None, off "0.1",
@@ -87,25 +76,25 @@ impl StopRule {
         (1..look).fold(first.max(FEWEST).min(self.most_replicates), |n, _| grow(n))
     }
 
-    /// Looks at `runs[r][replicate]`, where the first look is at `first` replicates.
-    pub fn look(&self, first: u64, runs: &[ReplicateValues]) -> Look {
-        self.look_at_one_of(1, first, runs)
-    }
-
-    /// Looks like [`look`](Self::look) at the replicates of one of several constriction curves, which share
-    /// the error.
+    /// Looks at `runs[r][replicate]` of one of several constriction curves, which share the error; the first
+    /// look is at `first` replicates.
     pub fn look_at_one_of(&self, curves: usize, first: u64, runs: &[ReplicateValues]) -> Look {
         let replicates = runs.first().map_or(0, |values| values.len() as u64);
         let look = (1..)
             .find(|&k| self.replicates_at(first, k) >= replicates.min(self.most_replicates))
             .unwrap_or(1);
-        let (half_width, close) = self.closeness(runs);
+        let half = |values: &ReplicateValues| {
+            let statistic = statistic(values, USUAL_ERROR);
+            Some(statistic.high? - statistic.mean)
+        };
+        let half_width = runs.iter().map(half).try_fold(0.0, |widest, half| Some(f64::max(widest, half?)));
+        let near = |target: f64| half_width.is_some_and(|half| 100.0 * half <= target);
+        let close = self.target_error_pp.is_none_or(near);
         let of_curve = self.error_of_curve(curves);
         let error = of_curve.map(|error| error / (look * (look + 1)) as f64 / runs.len().max(1) as f64);
         let below: Vec<BelowThreshold> =
             error.map_or(vec![], |error| runs.iter().map(|run| lies(run, error)).collect());
-        let verdict =
-            error.map(|_| classify(below.first().copied().flatten(), below.get(1).copied().flatten()));
+        let verdict = error.map(|_| class_of(&below));
         let met = close && verdict != Some(Verdict::Undecided);
         let next = self.replicates_at(first, look + 1);
         if !met && next > replicates && replicates < self.most_replicates && !self.is_hopeless(runs) {
@@ -124,18 +113,6 @@ impl StopRule {
                 _ => self.too_wide(replicates, half_width, close),
             },
         })
-    }
-
-    /// The widest half of the 95 % intervals, with `true` if it is narrow enough.
-    fn closeness(&self, runs: &[ReplicateValues]) -> (Option<f64>, bool) {
-        let half = |values: &ReplicateValues| {
-            let statistic = statistic(values, USUAL_ERROR);
-            Some(statistic.high? - statistic.mean)
-        };
-        let widest = runs.iter().map(half).try_fold(0.0, |widest, half| Some(f64::max(widest, half?)));
-        let near = |target: f64| widest.is_some_and(|widest| 100.0 * widest <= target);
-        let close = self.target_error_pp.is_none_or(near);
-        (widest, close)
     }
 
     /// Error probability of the class of each constriction curve out of `curves`, if a verdict is requested.
@@ -196,11 +173,7 @@ impl Stopping {
 pub fn class_at(error: f64, runs: &[ReplicateValues]) -> [Verdict; 2] {
     let error_of_run = (error / runs.len().max(1) as f64).min(USUAL_ERROR);
     let [first, second] = [0, 1].map(|run| runs.get(run).and_then(|run| lies(run, error_of_run)));
-    let worst = match (first, second) {
-        (Some(true), _) => Verdict::None,
-        (_, Some(true)) => Verdict::Some,
-        _ => Verdict::Continuing,
-    };
+    let worst = classify(Some(first == Some(true)), Some(second == Some(true)));
     [classify(first, second), worst]
 }
 
@@ -210,7 +183,8 @@ fn lies(run: &ReplicateValues, error: f64) -> BelowThreshold {
     below_by_interval(&statistic(run, error), &is_below)
 }
 
-fn statistic(values: &ReplicateValues, error: f64) -> Statistic {
+/// Mean, standard deviation and interval of replicates.
+pub(super) fn statistic(values: &ReplicateValues, error: f64) -> Statistic {
     let values: Vec<f64> = values.iter().map(|&(value, _)| value).collect();
     Statistic::with_error(&values, error)
 }
@@ -220,7 +194,7 @@ fn statistic(values: &ReplicateValues, error: f64) -> Statistic {
 fn needed(walked: f64, sd: f64, error: f64) -> f64 {
     let mut n = walked + 1.0;
     loop {
-        let wanted = (student::two_sided(n.min(1001.0) as u64 - 1, error) * sd).powi(2);
+        let wanted = (two_sided(n.min(1001.0) as u64 - 1, error) * sd).powi(2);
         if wanted <= n || n > 1e9 {
             return n.max(wanted);
         }
@@ -274,7 +248,7 @@ mod tests {
             while (runs[0].len() as u64) < wanted {
                 runs.iter_mut().zip(means).for_each(|(run, &mean)| run.extend(values([draw(mean)])));
             }
-            match rule.look(10, &runs) {
+            match rule.look_at_one_of(1, 10, &runs) {
                 Look::Until(next) => wanted = next,
                 Look::Stop(stopping) => return (stopping, runs),
             }
@@ -297,15 +271,15 @@ mod tests {
             values((0..10).map(|k| 0.4 + 0.01 * f64::from(k))),
             values((0..10).map(|k| 0.01 + 0.001 * f64::from(k))),
         ];
-        let Look::Stop(stopping) = rule.look(10, &far) else { panic!("clear") };
+        let Look::Stop(stopping) = rule.look_at_one_of(1, 10, &far) else { panic!("clear") };
         assert!(stopping.met && stopping.verdict == Some(Verdict::Some) && stopping.short_of.is_none());
         let near = values((0..10).map(|k| THRESHOLD + 0.01 * (f64::from(k) - 4.6)));
-        assert_eq!(rule.look(10, &[near.clone(), near]), Look::Until(15));
+        assert_eq!(rule.look_at_one_of(1, 10, &[near.clone(), near]), Look::Until(15));
         let (stopping, runs) = until_stop(rule.clone(), &[0.0751, 0.01], 0.02, false, 3);
         assert!(!stopping.met && stopping.verdict == Some(Verdict::Undecided) && runs[0].len() == 60);
         assert!(matches!(stopping.short_of, Some(ShortOf::Decision { run: 1, .. })), "{stopping:?}");
         // A first run that is clearly above, and no second: more replicates cannot help.
-        let Look::Stop(stopping) = rule.look(10, &far[..1]) else { panic!("hopeless") };
+        let Look::Stop(stopping) = rule.look_at_one_of(1, 10, &far[..1]) else { panic!("hopeless") };
         assert!(!stopping.met && stopping.short_of == Some(ShortOf::SecondRun));
     }
 

@@ -10,7 +10,9 @@
 //! interval that straddles the threshold, or a missing second run that would decide, makes the verdict
 //! *undecided*.
 
-use super::record::{Statistic, Verdict};
+use super::record::{CurveEnd, CurveRange, Outcome, RunSummary, Statistic, Verdict};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Eroded mass fraction that divides the classes (paper, section 6).
 pub const THRESHOLD: f64 = 0.075;
@@ -19,15 +21,6 @@ pub const THRESHOLD: f64 = 0.075;
 pub type BelowThreshold = Option<bool>;
 
 /// The class of two runs; the second may be missing.
-///
-/// ```
-/// use voidwalk_app::outcome::record::Verdict;
-/// use voidwalk_app::outcome::verdict::{below_by_mass, classify};
-/// // 9 % of the base eroded in the first run, 1 % in the second.
-/// let [first, second] = [0.09, 0.01].map(|eroded| Some(below_by_mass(eroded, 1.0)));
-/// assert_eq!(classify(first, second), Verdict::Some);
-/// assert_eq!(classify(first, None), Verdict::Undecided);
-/// ```
 pub fn classify(first: BelowThreshold, second: BelowThreshold) -> Verdict {
     match (first, second) {
         (Some(true), _) => Verdict::None,
@@ -35,6 +28,11 @@ pub fn classify(first: BelowThreshold, second: BelowThreshold) -> Verdict {
         (Some(false), Some(false)) => Verdict::Continuing,
         _ => Verdict::Undecided,
     }
+}
+
+/// The class of the sides of one run or two.
+pub(super) fn class_of(below: &[BelowThreshold]) -> Verdict {
+    classify(below.first().copied().flatten(), below.get(1).copied().flatten())
 }
 
 /// Tells if less than 7.5 % eroded, by exact comparison: `eroded * 40 < inserted * 3`.
@@ -47,9 +45,9 @@ pub fn below_by_count(eroded: u64, inserted: u64) -> bool {
     u128::from(eroded) * 40 < u128::from(inserted) * 3
 }
 
-/// The side of the mean over replicates: the side of its whole interval. `each` holds the exact side of every
-/// replicate; it decides for a single replicate, or if the replicates agree in value, so that the rounding of
-/// a mean decides nothing.
+/// The side of the mean over replicates: the side of its whole interval. The exact side of every replicate,
+/// `is_below`, decides for a single replicate, or if the replicates agree in value, so that the rounding of a
+/// mean decides nothing.
 pub fn below_by_interval(statistic: &Statistic, is_below: &[bool]) -> BelowThreshold {
     let no_scatter = statistic.sd.is_none_or(|sd| sd < 1e-12);
     if no_scatter && is_below.iter().all(|&below| below == is_below[0]) {
@@ -62,9 +60,155 @@ pub fn below_by_interval(statistic: &Statistic, is_below: &[bool]) -> BelowThres
     }
 }
 
+/// What leaves a verdict undecided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub enum UndecidedBy {
+    /// The ends of the constriction curve's range give another class than the curve itself.
+    #[serde(rename = "constriction curve")]
+    Curve,
+    /// The second run, which was not asked for, would tell the classes apart.
+    #[serde(rename = "second run")]
+    SecondRun,
+    /// The replicates.
+    #[serde(rename = "replicates")]
+    Replicates,
+}
+
+impl UndecidedBy {
+    /// All causes.
+    pub const ALL: [Self; 3] = [Self::Curve, Self::SecondRun, Self::Replicates];
+}
+
+impl Outcome {
+    /// The cause that leaves the verdict undecided; `None` if it is decided.
+    pub fn undecided_by(&self) -> Option<UndecidedBy> {
+        if self.model.class != Verdict::Undecided {
+            return None;
+        }
+        let erodes = |run: &RunSummary| {
+            let eroded = &run.eroded_mass_fraction;
+            eroded.low.unwrap_or(eroded.mean) >= self.threshold
+        };
+        let leaves_open =
+            |range: &CurveRange| range.whole() == Verdict::Undecided && range.verdict != Verdict::Undecided;
+        Some(if self.curve_range.as_ref().is_some_and(leaves_open) {
+            UndecidedBy::Curve
+        } else if self.summary.len() == 1 && self.summary.iter().all(erodes) {
+            UndecidedBy::SecondRun
+        } else {
+            UndecidedBy::Replicates
+        })
+    }
+}
+
+/// The verdict of replicates that are walked also at the ends of the range in which the curve is known.
+///
+/// If the ends of a guess differ, the verdict is undecided. The ends of a filter from the library are the
+/// coarsest and the finest constrictions that it may have, loose or dense: the worst class is its verdict,
+/// which errs on the safe side. A walk with an open class that could be worse leaves the verdict undecided.
+impl CurveRange {
+    /// The range of a verdict whose own curve gives `verdict` and `runs`; `None` without ends.
+    pub fn new(
+        verdict: Verdict,
+        runs: &[Statistic],
+        ends: Vec<CurveEnd>,
+        worst_counts: bool,
+        could_be: Option<Verdict>,
+    ) -> Option<Self> {
+        if ends.is_empty() {
+            return None;
+        }
+        let of_run = |run: usize| {
+            let all =
+                ends.iter().map(|end| &end.walked.runs).filter_map(|runs| runs.get(run)).chain([&runs[run]]);
+            all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], s| {
+                [low.min(s.low.unwrap_or(s.mean)), high.max(s.high.unwrap_or(s.mean))]
+            })
+        };
+        let eroded_mass_fraction = (0..runs.len()).map(of_run).collect();
+        Some(Self { verdict, ends, worst_counts, could_be, eroded_mass_fraction })
+    }
+
+    /// The class that the whole range supports.
+    pub fn whole(&self) -> Verdict {
+        match self.agrees() {
+            true => self.verdict,
+            false if self.worst_counts => self.worst(),
+            false => Verdict::Undecided,
+        }
+    }
+
+    /// The worst class of the range; undecided if a walk with an open class could be of a worse one.
+    fn worst(&self) -> Verdict {
+        let all = || self.ends.iter().map(|end| end.walked.verdict).chain([self.verdict]);
+        let decided = [Verdict::Continuing, Verdict::Some, Verdict::None];
+        let worst = decided.into_iter().find(|class| all().any(|verdict| verdict == *class));
+        let is_open = all().any(|verdict| verdict == Verdict::Undecided);
+        let above =
+            |run: usize| self.eroded_mass_fraction.get(run).is_none_or(|[_, high]| *high >= THRESHOLD);
+        // The worst class that the intervals of the whole range allow.
+        let could_be = self.could_be.unwrap_or_else(|| classify(Some(!above(0)), Some(!above(1))));
+        match worst {
+            Some(Verdict::Continuing) => Verdict::Continuing,
+            Some(worst) if !is_open || worst == could_be => worst,
+            _ => Verdict::Undecided,
+        }
+    }
+
+    /// Tells if the ends have the class of the curve itself.
+    pub fn agrees(&self) -> bool {
+        self.ends.iter().all(|end| end.walked.verdict == self.verdict)
+    }
+}
+
+/// Runs of replicates as they come, in any order.
+#[derive(Clone, Debug, Default)]
+pub struct SoFar {
+    /// Mass eroded, and true if it is below the threshold, by replicate and run.
+    walked: BTreeMap<u64, BTreeMap<u64, (f64, bool)>>,
+}
+
+/// A look at the complete replicates. It is not a verdict: more replicates follow, and an interval that is
+/// looked at repeatedly lies on the wrong side more often than its level states.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FirstLook {
+    /// Number of complete replicates.
+    pub replicates: usize,
+    /// The class that their intervals support; undecided if they support none.
+    pub class: Verdict,
+    /// Eroded mass fraction, one per run.
+    pub eroded: Vec<Statistic>,
+}
+
+impl SoFar {
+    /// Takes a run of a replicate, both counted from 1.
+    pub fn add(&mut self, replicate: u64, run: u64, eroded_mass_fraction: f64, below_threshold: bool) {
+        self.walked.entry(replicate).or_default().insert(run, (eroded_mass_fraction, below_threshold));
+    }
+
+    /// The replicates that have `runs` runs; `None` until one replicate is complete.
+    pub fn look(&self, runs: u64) -> Option<FirstLook> {
+        let is_whole = |walked: &&BTreeMap<u64, (f64, bool)>| (1..=runs).all(|run| walked.contains_key(&run));
+        let whole: Vec<_> = self.walked.values().filter(is_whole).collect();
+        if whole.is_empty() {
+            return None;
+        }
+        let (mut below, mut eroded) = (Vec::new(), Vec::new());
+        for run in 1..=runs {
+            let (values, is_below): (Vec<f64>, Vec<bool>) = whole.iter().map(|walked| walked[&run]).unzip();
+            let statistic = Statistic::of_fraction(&values);
+            below.push(below_by_interval(&statistic, &is_below));
+            eroded.push(statistic);
+        }
+        Some(FirstLook { replicates: whole.len(), class: class_of(&below), eroded })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::outcome::record::Classed;
 
     #[test]
     fn the_three_classes_and_the_fourth() {
@@ -95,5 +239,73 @@ mod tests {
         let ten = Statistic::of(&[0.075; 10]);
         assert!(ten.mean < THRESHOLD);
         assert_eq!(below_by_interval(&ten, &[false; 10]), Some(false));
+    }
+
+    fn range(verdict: Verdict, end: Verdict) -> CurveRange {
+        range_with(verdict, &[(1.02, end)], false)
+    }
+
+    fn range_with(verdict: Verdict, ends: &[(f64, Verdict)], worst_counts: bool) -> CurveRange {
+        let (sd, low, high) = (Some(0.01), |mean: f64| Some(mean - 0.01), |mean: f64| Some(mean + 0.01));
+        let statistic = |mean: f64| Statistic { mean, sd, low: low(mean), high: high(mean) };
+        let end = |&(dc50_factor, verdict): &(f64, Verdict)| {
+            let runs = vec![statistic(0.09), statistic(0.02)];
+            let walked = Classed { replicates: 5, stopped_when_clear: false, verdict, runs };
+            CurveEnd { curve: format!("times {dc50_factor}"), dc50_factor, walked }
+        };
+        let ends = ends.iter().map(end).collect();
+        CurveRange::new(verdict, &[statistic(0.05), statistic(0.04)], ends, worst_counts, None).unwrap()
+    }
+
+    #[test]
+    fn a_range_supports_what_its_curves_agree_on() {
+        let agreed = range(Verdict::None, Verdict::None);
+        assert_eq!(agreed.whole(), Verdict::None);
+        for (actual, wanted) in agreed.eroded_mass_fraction.iter().flatten().zip([0.04, 0.10, 0.01, 0.05]) {
+            assert!((actual - wanted).abs() < 1e-12, "{agreed:?}");
+        }
+        let open = range(Verdict::None, Verdict::Some);
+        assert_eq!(open.whole(), Verdict::Undecided);
+        assert_eq!(CurveRange::new(Verdict::None, &[], Vec::new(), false, None), None);
+    }
+
+    #[test]
+    fn of_a_filter_from_the_library_the_worst_class_counts() {
+        use Verdict::{Continuing, None, Some, Undecided};
+        let whole = |curve, coarse, fine| range_with(curve, &[(1.03, coarse), (0.8, fine)], true).whole();
+        assert_eq!(whole(None, None, None), None);
+        assert_eq!(whole(Some, Some, None), Some);
+        assert_eq!(whole(None, Some, None), Some);
+        assert_eq!(whole(Some, Continuing, None), Continuing);
+        // Up to 10 % erode in the first run and 5 % in the second: the open class is some erosion at most.
+        assert_eq!(whole(Undecided, Some, Undecided), Some);
+        assert_eq!(whole(None, None, Undecided), Undecided);
+        assert_eq!(whole(None, Undecided, None), Undecided);
+        assert_eq!(whole(Continuing, Undecided, None), Continuing);
+        // At another level other intervals determine the open classes.
+        let mut range = range_with(Undecided, &[(1.03, Some), (0.8, Undecided)], true);
+        for (worst, expected) in [(Some, Some), (Continuing, Undecided)] {
+            range.could_be = std::option::Option::Some(worst);
+            assert_eq!(range.whole(), expected);
+        }
+    }
+
+    #[test]
+    fn only_whole_replicates_count() {
+        let mut so_far = SoFar::default();
+        assert_eq!(so_far.look(2), None);
+        so_far.add(2, 1, 0.5, false);
+        assert_eq!(so_far.look(2), None, "half a replicate");
+        so_far.add(2, 2, 0.01, true);
+        so_far.add(1, 1, 0.52, false);
+        let one = so_far.look(2).unwrap();
+        assert_eq!((one.replicates, one.class), (1, Verdict::Some));
+        so_far.add(1, 2, 0.011, true);
+        let two = so_far.look(2).unwrap();
+        assert_eq!((two.replicates, two.class), (2, Verdict::Some));
+        // Far apart, they support no class.
+        so_far.add(3, 1, 0.0, true);
+        so_far.add(3, 2, 0.9, false);
+        assert_eq!(so_far.look(2).unwrap().class, Verdict::Undecided);
     }
 }

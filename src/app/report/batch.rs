@@ -5,19 +5,16 @@ use std::path::Path;
 use maud::{Markup, Render, html};
 
 use super::cases;
-use super::cover::program;
-use super::error::ReportError;
 use super::figures::{
     Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, Line, ORANGE, PURPLE, Point, Rule, Shape,
     VERMILLION, positive_range, shorten,
 };
-use super::files::json;
-use super::names::{is_named, note_words, soil_name, titled, told_apart};
+use super::files::{ReportError, json, refused};
+use super::names::{brief_name, file_notes, is_named, soil_name, titled, told_apart};
 use super::run_figures::size_axis;
-use super::section::Sections;
-use super::shell::{Drawn, citation, clean, leaves_out};
+use super::section::{Sections, Written};
+use super::shell::{Drawn, citation, clean, leaves_out, program};
 use super::table::Table;
-use super::written::Written;
 use crate::outcome::statistic::interval_in_percent;
 use crate::verdict::{SampleWalk, WalkedBatch, WalkedRow};
 use crate::words::batch::{
@@ -44,41 +41,36 @@ const LINES: [(Colour, Dash); 6] = [
 ];
 
 /// Writes `batch.html` and `figures/*.svg` into the folder of a batch.
-///
-/// # Errors
-/// A file that is missing or malformed; nothing is written then.
+/// A file that is missing or malformed is an error, and nothing is written then.
 pub fn write_batch(folder: &Path) -> Result<Written, ReportError> {
     let path = folder.join(RECORD);
     let batch: WalkedBatch = json(&path)?;
     if batch.rows.is_empty() {
-        let (field, value, allowed) = ("rows".into(), "empty".into(), "one or more".into());
-        return Err(ReportError::Value { path, field, value, allowed });
+        return Err(refused(&path, "rows", "empty".into(), "one or more"));
     }
     page(folder, &batch).write(folder, "batch.html", &citation())
 }
 
-fn name(name: &str) -> String {
-    clean(&shorten(name, 60))
+fn alike<'a>(batch: &'a WalkedBatch, filter: &str) -> Vec<&'a str> {
+    let names = batch.filters.iter().map(|other| other.name.as_str());
+    names.filter(|other| soil_name(other) == soil_name(filter)).collect()
 }
 
 /// Name of a filter here: its soil, with a number if another filter has the same soil name.
 fn filter_name(batch: &WalkedBatch, filter: &str) -> String {
-    let alike = batch.filters.iter().filter(|other| soil_name(&other.name) == soil_name(filter));
-    let alike: Vec<&str> = alike.map(|other| other.name.as_str()).collect();
-    let soil = soil_name(filter);
+    let (alike, soil) = (alike(batch, filter), soil_name(filter));
     match alike.iter().position(|other| *other == filter) {
-        Some(at) if alike.len() > 1 => name(&format!("{soil} ({})", at + 1)),
-        _ => name(soil),
+        Some(at) if alike.len() > 1 => brief_name(&format!("{soil} ({})", at + 1)),
+        _ => brief_name(soil),
     }
 }
 
 /// The file of each filter that has a number; empty if the names tell them apart.
 fn key(batch: &WalkedBatch) -> Markup {
     let line = |filter: &BatchFilter| {
-        let alike = batch.filters.iter().filter(|other| soil_name(&other.name) == soil_name(&filter.name));
-        let alike: Vec<&str> = alike.map(|other| other.name.as_str()).collect();
+        let alike = alike(batch, &filter.name);
         let shown = filter_name(batch, &filter.name);
-        (alike.len() > 1).then(|| format!("{shown}: {}", name(&told_apart(&filter.name, &alike))))
+        (alike.len() > 1).then(|| format!("{shown}: {}", brief_name(&told_apart(&filter.name, &alike))))
     };
     let all: Vec<String> = batch.filters.iter().filter_map(line).collect();
     html! { @if !all.is_empty() { p.small { "The filters: " (all.join("; ")) "." } } }
@@ -122,7 +114,7 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
         .words(&html! { h2 { "Figures" } })
         .figures([curves(batch), limits(batch), eroded(batch)].into_iter().flatten())
         .section("Samples", &table(folder, batch))
-        .section("Notes on the files", &notes(batch))
+        .section("Notes on the files", &file_notes(&batch.notes))
         .section("How this was made", &made)
 }
 
@@ -152,7 +144,8 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
                 @for row in batch.governing(&filter.name) {
                     li {
                         @if row.governs == Some(1) { b { "Governing sample" } " " } @else { "Then " }
-                        bdi { (name(&row.rules.sample)) } ": " (limit_and_answer(folder, row, batch.inches))
+                        bdi { (brief_name(&row.rules.sample)) } ": "
+                        (limit_and_answer(folder, row, batch.inches))
                     }
                 }
             }
@@ -167,11 +160,8 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
 
 /// D15F of a filter, with enough digits to tell it apart from the nearest limit.
 fn d15f(rules: &[BatchRow]) -> Option<String> {
-    let beside = rules.iter().filter_map(|row| {
-        let [d15f, _] = d15f_and_limit(row, SizeUnit::Mm);
-        d15f
-    });
-    beside.max_by_key(String::len)
+    let beside = rules.iter().map(|row| d15f_and_limit(row, SizeUnit::Mm));
+    beside.filter_map(|[d15f, _]| d15f).max_by_key(String::len)
 }
 
 /// The limit of a sample, D15F beside it, and the answer.
@@ -197,9 +187,9 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
         None => html! {},
     };
     let columns = walked_columns(SizeUnit::of(false, batch.inches));
-    let table = Table::of(batch.rows.iter().take(LISTED), columns)
+    let table = Table::new(batch.rows.iter().take(LISTED), columns)
         .class("cases")
-        .showing("sample", |row| html! { bdi { (name(&row.rules.sample)) } })
+        .showing("sample", |row| html! { bdi { (brief_name(&row.rules.sample)) } })
         .showing("filter", |row| html! { bdi { (filter_name(batch, &row.rules.filter)) } })
         .showing("class", class);
     html! {
@@ -214,12 +204,6 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
             (percent(batch.threshold).in_digits(3))
             "."
         }
-    }
-}
-
-fn notes(batch: &WalkedBatch) -> Markup {
-    html! {
-        @if !batch.notes.is_empty() { ul { @for note in &batch.notes { li { (clean(&note_words(note))) } } } }
     }
 }
 

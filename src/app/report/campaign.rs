@@ -1,32 +1,31 @@
-//! The page of a campaign, from `campaign.json` and `ledger.jsonl` alone.
+//! The page of a campaign, from `campaign.json` and `ledger.jsonl` alone: one row a case, with a link to its
+//! page.
 
-use std::path::Path;
-
-use maud::{Markup, html};
-
+use super::cases;
 use super::cases::AtRatio;
-use super::error::ReportError;
-use super::figures::{Across, Axis, BLACK, Dash, Figure, Rule};
-use super::files::{json, json_of, lines, lines_of};
-use super::quantity::{duration, whole};
-use super::section::Sections;
+use super::figures::{Across, Axis, BLACK, Dash, Figure, Rule, shorten};
+use super::files::{ReportError, json, json_of, lines, lines_of};
+use super::section::{Sections, Written};
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
-use super::written::Written;
-use super::{campaign_cases, cases};
 use crate::outcome::ledger::{Campaign, LedgerLine, leaves_out as of_ledger};
 use crate::outcome::record::{Statistic, Verdict};
 use crate::outcome::statistic::{interval, interval_in_percent};
 use crate::outcome::table::Columns;
-use crate::outcome::verdict::THRESHOLD;
+use crate::outcome::verdict::{THRESHOLD, UndecidedBy};
+use crate::words::ledger::columns;
+use crate::words::{sentence, undecided_by};
+use maud::{Markup, html};
+use std::collections::BTreeMap;
+use std::path::Path;
+use voidwalk_practice::quantity::{SizeUnit, duration, whole};
+use voidwalk_practice::rules::RULES;
 
 /// Cases drawn one by one; all are in the table.
 const DRAWN: usize = 120;
 
 /// Writes `report.html` and `figures/*.svg` into the folder of a campaign.
-///
-/// # Errors
-/// A file that is missing or malformed; nothing is written then.
+/// A file that is missing or malformed is an error, and nothing is written then.
 pub fn write_campaign(folder: &Path) -> Result<Written, ReportError> {
     let about: Campaign = json(&folder.join(ABOUT))?;
     let ledger: Vec<LedgerLine> = lines(&folder.join(LEDGER))?;
@@ -34,9 +33,7 @@ pub fn write_campaign(folder: &Path) -> Result<Written, ReportError> {
 }
 
 /// The page of a campaign whose `campaign.json` and `ledger.jsonl` hold these texts; writes nothing.
-///
-/// # Errors
-/// A text that is malformed.
+/// A text that is malformed is an error.
 pub fn campaign_page(about: &str, ledger: &str) -> Result<String, ReportError> {
     let about: Campaign = json_of(Path::new(ABOUT), about)?;
     let ledger: Vec<LedgerLine> = lines_of(Path::new(LEDGER), ledger)?;
@@ -46,13 +43,6 @@ pub fn campaign_page(about: &str, ledger: &str) -> Result<String, ReportError> {
 
 const ABOUT: &str = "campaign.json";
 const LEDGER: &str = "ledger.jsonl";
-
-fn drawn(ledger: &[LedgerLine]) -> Vec<Drawn> {
-    match ledger.is_empty() {
-        true => Vec::new(),
-        false => vec![by_ratio(ledger), both_runs(ledger), largest(ledger)],
-    }
-}
 
 fn eroded(line: &LedgerLine, run: usize) -> Option<&Statistic> {
     line.runs.get(run).map(|run| &run.eroded_mass_fraction)
@@ -90,7 +80,6 @@ fn against_ratio(
     cases::against_ratio(words, (x, y), rules, &symbols)
 }
 
-/// Eroded mass of the first run.
 fn by_ratio(ledger: &[LedgerLine]) -> Drawn {
     let y = Axis::percent("Base eroded in the first run, by mass (%)");
     let what =
@@ -110,7 +99,6 @@ fn by_ratio(ledger: &[LedgerLine]) -> Drawn {
     Drawn::new("by-ratio", figure, caption)
 }
 
-/// First and second run of each case, one row a case.
 fn both_runs(ledger: &[LedgerLine]) -> Drawn {
     let shown = ledger.iter().take(DRAWN);
     let shown: Vec<_> = shown.map(|line| (line.case.as_str(), [eroded(line, 0), eroded(line, 1)])).collect();
@@ -142,8 +130,8 @@ fn page(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Sections {
     let first = html! { div.first {
         section {
             p.lead { (whole(ledger.len() as u64)) " of " (whole(about.cases)) " cases are done." }
-            (Table::of(classes.iter().filter(|(_, count)| *count > 0), columns))
-            (campaign_cases::undecided(ledger))
+            (Table::new(classes.iter().filter(|(_, count)| *count > 0), columns))
+            (undecided(ledger))
         }
         (leaves_out(&of_ledger(ledger), &html! {}))
     } };
@@ -152,13 +140,15 @@ fn page(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Sections {
         ul { @for name in about.missing.iter().take(50) { li { (clean(name)) } } }
     } };
     let names = html! { b { bdi { (clean(title)) } } };
+    let drawn: &[fn(&[LedgerLine]) -> Drawn] =
+        if ledger.is_empty() { &[] } else { &[by_ratio, both_runs, largest] };
     Sections::new(clean(title), "Which of these filters hold?", &names)
         .words(&first)
         .contents()
         .section("Missing cases", &missing)
-        .section("Cases", &campaign_cases::all(folder, about, ledger))
+        .section("Cases", &all(folder, about, ledger))
         .words(&html! { h2 { "Figures" } })
-        .figures(drawn(ledger))
+        .figures(drawn.iter().map(|draw| draw(ledger)))
         .section("How this was made", &provenance(about, ledger))
 }
 
@@ -173,6 +163,96 @@ fn provenance(about: &Campaign, ledger: &[LedgerLine]) -> Markup {
             " from start to end of each case, beside other cases. Each case has a folder of its own with its \
              report; " code { "ledger.jsonl" }
             " holds one line per case, " code { "cases.csv" } " the table above."
+        }
+    }
+}
+
+/// Cases listed in the page; all are in `cases.csv`.
+const LISTED: usize = 2000;
+
+/// Different warnings that are listed.
+const WARNINGS: usize = 40;
+
+/// The table of all cases, and below it an explanation of its counts. Cases whose folder holds a page are
+/// linked.
+fn all(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Markup {
+    let table = Table::new(ledger.iter().take(LISTED), columns(&about.factors)).class("cases");
+    html! {
+        (table.showing("verdict", |line| class(line, folder)))
+        @if ledger.len() > LISTED { p.small { "The rest is in cases.csv." } }
+        p.small {
+            "Class: with a link to the page of the case; below it the replicates by class, where they \
+             differ. Below a number its 95 % interval over the replicates."
+        }
+        (listed("Rules of practice that are not met", &tally(ledger, rules_of)))
+        (listed("Notes", &tally(ledger, |line| {
+            line.notes.iter().map(|note| sentence(note, SizeUnit::Mm)).collect::<Vec<_>>()
+        })))
+    }
+}
+
+/// Causes that leave verdicts undecided, each once with the number of cases.
+fn undecided(ledger: &[LedgerLine]) -> Markup {
+    let open = || ledger.iter().filter(|line| line.verdict == Verdict::Undecided);
+    let count = |by| open().filter(|line| line.undecided_by == Some(by)).count() as u64;
+    let causes = UndecidedBy::ALL.map(|by| (by, count(by)));
+    html! {
+        @for (by, count) in causes.into_iter().filter(|(_, count)| *count > 0) {
+            p {
+                "Undecided, " (whole(count)) @if count == 1 { " case: " } @else { " cases: " }
+                (undecided_by(by)) "."
+            }
+        }
+    }
+}
+
+/// The class, with a link to the case's own page, and below it the replicates if they differ.
+fn class(line: &LedgerLine, folder: &Path) -> Markup {
+    let mixed = line.replicate_verdicts.iter().filter(|count| **count > 0).count() > 1;
+    html! {
+        (cases::class(line.verdict, folder, &line.folder))
+        @if mixed { br; span.small { (replicates_by_class(line)) } }
+    }
+}
+
+/// "7 no, 3 some".
+fn replicates_by_class(line: &LedgerLine) -> String {
+    let parts = Verdict::ALL.iter().zip(line.replicate_verdicts).filter(|(_, count)| *count > 0);
+    parts
+        .map(|(class, count)| format!("{count} {}", class.words().replace(" erosion", "")))
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+fn rules_of(line: &LedgerLine) -> Vec<String> {
+    let name = |id: &String| RULES.iter().find(|rule| rule.id == id).map(|rule| rule.name());
+    line.rules_not_met.iter().map(|id| name(id).unwrap_or_else(|| id.clone())).collect()
+}
+
+/// Texts of the cases, each once with the number of cases that have it, the commonest first.
+fn tally(ledger: &[LedgerLine], texts: impl Fn(&LedgerLine) -> Vec<String>) -> Vec<(String, u64)> {
+    let mut counts: BTreeMap<String, u64> = BTreeMap::new();
+    for text in ledger.iter().flat_map(texts) {
+        *counts.entry(text).or_default() += 1;
+    }
+    let mut counts: Vec<_> = counts.into_iter().collect();
+    counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    counts
+}
+
+fn listed(heading: &str, counts: &[(String, u64)]) -> Markup {
+    html! {
+        @if !counts.is_empty() {
+            h3 { (heading) }
+            ul {
+                @for (text, count) in counts.iter().take(WARNINGS) {
+                    li { (clean(&shorten(text, 400))) " (" (whole(*count))
+                        @if *count == 1 { " case)" } @else { " cases)" } }
+                }
+                @if counts.len() > WARNINGS {
+                    li { (counts.len() - WARNINGS) " more, on the pages of the cases" }
+                }
+            }
         }
     }
 }

@@ -1,13 +1,12 @@
-//! The tables of a folder for other programs: arrays for NumPy, grids for ParaView.
+//! The tables of a folder for other programs: arrays for NumPy, grids of VTK for ParaView (`.vtu`, its
+//! numbers in binary at its end).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use super::by_void;
-use super::error::ReportError;
-use super::files::{rows, text};
-use super::vtu::{CellKind, Grid};
-use crate::outcome::record::LayerRow;
+use super::files::{ReportError, malformed, rows, text};
+use crate::outcome::record::{BlockedRow, ConstrictionRow, LayerRow, RetainedRow, VoidRow};
 use voidwalk_core::store::{Array, make_folder, npz, write_whole};
 
 /// The files that were written, and the columns of words that were not.
@@ -44,8 +43,7 @@ pub fn export(folder: &Path) -> Result<Exported, ReportError> {
     if tables.contains_key("layers") {
         grids.push(("layers.vtu", layers(&folder.join("layers.csv"))?));
     }
-    let of_voids =
-        tables.contains_key("retained_by_void").then(|| by_void::Tables::read(folder)).transpose()?;
+    let of_voids = tables.contains_key("retained_by_void").then(|| Tables::read(folder)).transpose()?;
     grids.extend(tables.get("grains").and_then(grains).map(|bytes| ("grains.vtu", bytes)));
     #[cfg(feature = "xlsx")]
     if folder.join("outcome.json").is_file() {
@@ -63,7 +61,7 @@ pub fn export(folder: &Path) -> Result<Exported, ReportError> {
         write(name, &bytes)?;
     }
     if let Some(tables) = of_voids {
-        by_void::grids(&tables, &mut write)?;
+        void_grids(&tables, &mut write)?;
     }
     Ok(Exported { files, words })
 }
@@ -71,7 +69,6 @@ pub fn export(folder: &Path) -> Result<Exported, ReportError> {
 /// A table: its columns with their names, in order.
 type Table = Vec<(String, Vec<String>)>;
 
-/// Every CSV table in the folder, by its name.
 fn tables(folder: &Path) -> Result<BTreeMap<String, Table>, ReportError> {
     let unread = |source| ReportError::Read { path: folder.to_owned(), source };
     let mut tables = BTreeMap::new();
@@ -88,10 +85,8 @@ fn tables(folder: &Path) -> Result<BTreeMap<String, Table>, ReportError> {
 fn table(path: &Path) -> Result<Table, ReportError> {
     let text = text(path)?;
     let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(text.as_bytes());
-    let form = |error: csv::Error| ReportError::Form {
-        path: path.to_owned(),
-        line: error.position().map_or(1, csv::Position::line),
-        message: error.to_string(),
+    let form = |error: csv::Error| {
+        malformed(path, error.position().map_or(1, csv::Position::line), error.to_string())
     };
     let mut table: Table =
         reader.headers().map_err(form)?.iter().map(|name| (name.trim().to_owned(), Vec::new())).collect();
@@ -118,7 +113,7 @@ fn layers(path: &Path) -> Result<Vec<u8>, ReportError> {
     let count = rows.iter().map(|(_, row)| row.layer.saturating_add(1)).max().unwrap_or(0) as usize;
     if count > rows.len() {
         let message = format!("layer {} without those before it", count - 1);
-        return Err(ReportError::Form { path: path.to_owned(), line: rows.len() as u64 + 1, message });
+        return Err(malformed(path, rows.len() as u64 + 1, message));
     }
     let mut sums: BTreeMap<(u64, &str), Vec<(f64, f64)>> = BTreeMap::new();
     for (_, row) in &rows {
@@ -162,6 +157,210 @@ fn grains(table: &Table) -> Option<Vec<u8>> {
     Some(Grid { points: &points, kind: CellKind::Vertex, corners: &corners, columns: &columns }.file())
 }
 
+/// A moment: run, and increments that were done.
+type Moment = (u64, u64);
+
+/// Contents and moments of the drawing: the tables of a folder.
+struct Tables {
+    voids: Vec<[f64; 3]>,
+    constrictions: Vec<ConstrictionRow>,
+    /// Moment at which each constriction was blocked, by its number.
+    blocked: BTreeMap<u64, Moment>,
+    /// Contents of voids, by moment.
+    retained: BTreeMap<Moment, Vec<RetainedRow>>,
+    moments: BTreeSet<Moment>,
+}
+
+/// Writes grids of a run that kept its voids: for each moment `voids_N.vtu`, a point for each void with its
+/// contents, and `constrictions_N.vtu`, a line for each constriction with its diameter, its conductance and
+/// the time of blocking, if any; and `voids.pvd` and `constrictions.pvd`, which ParaView opens as a sequence
+/// of moments.
+fn void_grids(
+    tables: &Tables,
+    mut write: impl FnMut(&str, &[u8]) -> Result<(), ReportError>,
+) -> Result<(), ReportError> {
+    for (kind, grid) in GRIDS {
+        let mut sets = String::new();
+        for (number, &moment) in tables.moments.iter().enumerate() {
+            let name = format!("{kind}_{number:04}.vtu");
+            write(&name, &grid(tables, moment))?;
+            let time = tables.time_of(moment);
+            sets += &format!("<DataSet timestep=\"{time}\" file=\"{name}\"/>\n");
+        }
+        let text = format!(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" \
+             byte_order=\"LittleEndian\">\n<Collection>\n{sets}</Collection>\n</VTKFile>\n"
+        );
+        write(&format!("{kind}.pvd"), text.as_bytes())?;
+    }
+    Ok(())
+}
+
+type Draw = fn(&Tables, Moment) -> Vec<u8>;
+
+const GRIDS: [(&str, Draw); 2] = [("voids", Tables::voids_at), ("constrictions", Tables::lines_at)];
+
+impl Tables {
+    fn read(folder: &Path) -> Result<Self, ReportError> {
+        let [of_voids, of_network, of_retained] =
+            ["voids.csv", "constrictions_of_network.csv", "retained_by_void.csv"]
+                .map(|name| folder.join(name));
+        let voids = rows::<VoidRow>(&of_voids)?;
+        let count = voids.len() as u64;
+        // The row number of a void is its number.
+        if let Some((index, (line, row))) = (0u64..).zip(&voids).find(|(index, (_, row))| row.void != *index)
+        {
+            return Err(malformed(&of_voids, *line, format!("void is {}, allowed: {index}", row.void)));
+        }
+        let mut constrictions = Vec::new();
+        for (line, row) in rows::<ConstrictionRow>(&of_network)? {
+            let known = |void: i64| void < count as i64;
+            if !known(row.from) || !known(row.to) || row.from.max(row.to) < 0 {
+                let joins = format!("joins {} and {}", row.from, row.to);
+                let message = format!("{joins}, but voids.csv holds {count} voids");
+                return Err(malformed(&of_network, line, message));
+            }
+            constrictions.push(row);
+        }
+        let mut blocked = BTreeMap::new();
+        for (_, row) in rows::<BlockedRow>(&folder.join("blocked.csv"))? {
+            blocked.entry(row.constriction).or_insert((row.run, row.increment));
+        }
+        let mut retained: BTreeMap<Moment, Vec<RetainedRow>> = BTreeMap::new();
+        for (line, row) in rows::<RetainedRow>(&of_retained)? {
+            if row.void >= count as i64 {
+                let message = format!("void is {}, but voids.csv holds {count} voids", row.void);
+                return Err(malformed(&of_retained, line, message));
+            }
+            retained.entry((row.run, row.increment)).or_default().push(row);
+        }
+        let moments = [(1, 0)].into_iter().chain(retained.keys().copied()).collect();
+        let voids = voids.into_iter().map(|(_, row)| [row.x_mm, row.y_mm, row.z_mm]).collect();
+        Ok(Self { voids, constrictions, blocked, retained, moments })
+    }
+
+    /// The time of a moment: increments, with the second run after the first.
+    fn time_of(&self, (run, increment): Moment) -> u64 {
+        let last = |run: u64| self.moments.iter().filter(|m| m.0 == run).map(|m| m.1).max().unwrap_or(0);
+        let before: u64 = self.moments.iter().map(|m| m.0).filter(|&r| r < run).max().map_or(0, last);
+        before.saturating_add(increment)
+    }
+
+    fn voids_at(&self, moment: Moment) -> Vec<u8> {
+        let (mut in_constrictions, mut in_voids) = (vec![0.0; self.voids.len()], vec![0.0; self.voids.len()]);
+        for row in self.retained.get(&moment).into_iter().flatten() {
+            // The reservoir before the filter, -1, is no void of it.
+            if let Ok(void) = usize::try_from(row.void) {
+                in_constrictions[void] = row.retained_in_constrictions as f64;
+                in_voids[void] = row.retained_in_voids as f64;
+            }
+        }
+        // The second run counts from zero again.
+        let columns = [
+            ("retained_in_constrictions_in_this_run".to_owned(), in_constrictions),
+            ("retained_in_voids_in_this_run".to_owned(), in_voids),
+        ];
+        let corners: Vec<i64> = (0..self.voids.len() as i64).collect();
+        Grid { points: &self.voids, kind: CellKind::Vertex, corners: &corners, columns: &columns }.file()
+    }
+
+    fn lines_at(&self, moment: Moment) -> Vec<u8> {
+        let ends = |row: &ConstrictionRow| {
+            let vector = [row.dx_mm, row.dy_mm, row.dz_mm];
+            let by = |p: [f64; 3], sign: f64| [0, 1, 2].map(|axis| p[axis] + sign * vector[axis]);
+            match usize::try_from(row.from) {
+                Ok(from) => [self.voids[from], by(self.voids[from], 1.0)],
+                Err(_) => [by(self.voids[row.to as usize], -1.0), self.voids[row.to as usize]],
+            }
+        };
+        let points: Vec<[f64; 3]> = self.constrictions.iter().flat_map(ends).collect();
+        let corners: Vec<i64> = (0..points.len() as i64).collect();
+        let column = |name: &str, value: &dyn Fn(&ConstrictionRow) -> f64| {
+            (name.to_owned(), self.constrictions.iter().map(value).collect::<Vec<f64>>())
+        };
+        let blocked_at =
+            |row: &ConstrictionRow| self.blocked.get(&row.constriction).filter(|&&at| at <= moment);
+        let columns = [
+            column("diameter_mm", &|row| row.diameter_mm),
+            column("conductance", &|row| row.conductance),
+            column("blocked", &|row| f64::from(u8::from(blocked_at(row).is_some()))),
+            // An open constriction has -1.
+            column("blocked_at", &|row| blocked_at(row).map_or(-1.0, |&at| self.time_of(at) as f64)),
+        ];
+        Grid { points: &points, kind: CellKind::Line, corners: &corners, columns: &columns }.file()
+    }
+}
+
+/// Kind of each cell of a grid.
+#[derive(Clone, Copy)]
+enum CellKind {
+    Vertex,
+    Line,
+    Hexahedron,
+}
+
+impl CellKind {
+    /// VTK's number of the kind, and the corners of a cell.
+    fn number_and_corners(self) -> (u8, usize) {
+        match self {
+            Self::Vertex => (1, 1),
+            Self::Line => (3, 2),
+            Self::Hexahedron => (12, 8),
+        }
+    }
+}
+
+/// Points, cells between them, and named numbers of each cell.
+struct Grid<'a> {
+    points: &'a [[f64; 3]],
+    kind: CellKind,
+    /// Points of the cells, cell by cell.
+    corners: &'a [i64],
+    columns: &'a [(String, Vec<f64>)],
+}
+
+impl Grid<'_> {
+    /// The file: a head with the beginning of each array, then the arrays, each after its length in bytes.
+    fn file(&self) -> Vec<u8> {
+        let (number, corners) = self.kind.number_and_corners();
+        let cells = self.corners.len() / corners;
+        let (mut head, mut data) = (String::new(), Vec::new());
+        // Writing to a string cannot fail.
+        let _ = write!(
+            head,
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
+             byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece \
+             NumberOfPoints=\"{}\" \
+             NumberOfCells=\"{cells}\">\n<Points>\n",
+            self.points.len()
+        );
+        let mut array = |head: &mut String, kind: &str, name: &str, more: &str, bytes: Vec<u8>| {
+            let offset = data.len();
+            let _ = writeln!(
+                head,
+                "<DataArray type=\"{kind}\" Name=\"{name}\"{more} format=\"appended\" offset=\"{offset}\"/>"
+            );
+            data.extend((bytes.len() as u64).to_le_bytes());
+            data.extend(bytes);
+        };
+        let floats = |all: &mut dyn Iterator<Item = f64>| all.flat_map(f64::to_le_bytes).collect::<Vec<u8>>();
+        let whole = |all: &mut dyn Iterator<Item = i64>| all.flat_map(i64::to_le_bytes).collect::<Vec<u8>>();
+        let points = floats(&mut self.points.iter().flatten().copied());
+        array(&mut head, "Float64", "points", " NumberOfComponents=\"3\"", points);
+        head.push_str("</Points>\n<Cells>\n");
+        array(&mut head, "Int64", "connectivity", "", whole(&mut self.corners.iter().copied()));
+        let ends = whole(&mut (1..=cells).map(|cell| (cell * corners) as i64));
+        array(&mut head, "Int64", "offsets", "", ends);
+        array(&mut head, "UInt8", "types", "", vec![number; cells]);
+        head.push_str("</Cells>\n<CellData>\n");
+        for (name, column) in self.columns {
+            array(&mut head, "Float64", name, "", floats(&mut column.iter().copied()));
+        }
+        head.push_str("</CellData>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
+        [head.as_bytes(), &data, b"\n</AppendedData>\n</VTKFile>\n"].concat()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -188,5 +387,28 @@ mod tests {
         assert_eq!(export(root.path()).unwrap(), exported);
         write("broken.csv", "a,b\n1\n");
         assert!(export(root.path()).unwrap_err().to_string().contains("broken.csv:2:"));
+    }
+
+    #[test]
+    fn every_array_stands_where_the_head_says() {
+        let columns = [("size".to_owned(), vec![0.5, 0.25])];
+        let points = [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]];
+        let grid = Grid { points: &points, kind: CellKind::Vertex, corners: &[0, 1], columns: &columns };
+        let file = grid.file();
+        let begin = file.windows(2).position(|pair| pair == b"\n_").unwrap() + 2;
+        let head = String::from_utf8(file[..begin].to_vec()).unwrap();
+        let at = |name: &str| -> usize {
+            let (_, rest) = head.split_once(&format!("Name=\"{name}\"")).unwrap();
+            rest.split_once("offset=\"").unwrap().1.split('"').next().unwrap().parse().unwrap()
+        };
+        let word = |at: usize| file[begin + at..begin + at + 8].try_into().unwrap();
+        for (name, bytes) in
+            [("points", 48), ("connectivity", 16), ("offsets", 16), ("types", 2), ("size", 16)]
+        {
+            assert_eq!(u64::from_le_bytes(word(at(name))), bytes, "{name}");
+        }
+        assert_eq!(f64::from_le_bytes(word(at("points") + 8 + 40)), 5.0);
+        assert_eq!(i64::from_le_bytes(word(at("offsets") + 8 + 8)), 2);
+        assert_eq!(f64::from_le_bytes(word(at("size") + 8)), 0.5);
     }
 }

@@ -1,13 +1,13 @@
 //! Readers of the files in a folder of results: JSON, JSON lines and CSV, into the types of
-//! [`crate::outcome`], which the writer of the file used too. Every error has the file and line.
+//! [`crate::outcome`], which the writer of the file used too; and their errors, with file and line.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
+use thiserror::Error;
 
-use super::error::ReportError;
 use voidwalk_core::store::format::from_json;
-use voidwalk_core::store::read_whole;
+use voidwalk_core::store::{StoreError, read_whole};
 
 /// Reads a file of text.
 pub(super) fn text(path: &Path) -> Result<String, ReportError> {
@@ -17,29 +17,25 @@ pub(super) fn text(path: &Path) -> Result<String, ReportError> {
 }
 
 /// Reads a file of JSON.
-///
-/// # Errors
-/// [`ReportError`] names the file, and the line if its form is wrong.
 pub fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
     from_json(text(path)?.as_bytes()).map_err(|error| form(path, &error))
 }
 
 /// Reads JSON like [`json()`] from a text, which `path` names in errors; it need not begin as a file does.
-///
-/// # Errors
-/// Returns the errors of [`json()`].
 pub fn json_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, ReportError> {
     serde_json::from_str(text).map_err(|error| form(path, &error))
 }
 
 fn form(path: &Path, error: &serde_json::Error) -> ReportError {
-    ReportError::Form { path: path.to_owned(), line: error.line().max(1) as u64, message: error.to_string() }
+    malformed(path, error.line().max(1) as u64, error.to_string())
+}
+
+/// Refuses a line of a file.
+pub(super) fn malformed(path: &Path, line: u64, message: String) -> ReportError {
+    ReportError::Form { path: path.to_owned(), line, message }
 }
 
 /// Reads the lines of a file of JSON lines, as `ledger.jsonl`.
-///
-/// # Errors
-/// [`ReportError`] names the file and the line.
 pub fn lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ReportError> {
     lines_of(path, &text(path)?)
 }
@@ -47,20 +43,14 @@ pub fn lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ReportError> {
 /// Reads [`lines()`] of a file with this text.
 pub(super) fn lines_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<Vec<T>, ReportError> {
     let one = |(index, line): (usize, &str)| {
-        serde_json::from_str(line).map_err(|error| ReportError::Form {
-            path: path.to_owned(),
-            line: index as u64 + 1,
-            message: error.to_string(),
-        })
+        serde_json::from_str(line).map_err(|error| malformed(path, index as u64 + 1, error.to_string()))
     };
     text.lines().enumerate().map(one).collect()
 }
 
 /// Reads the rows of a CSV file, each with its line; columns are found by their names in the first line of
 /// the file.
-///
-/// # Errors
-/// [`ReportError`] names the file, the line and the column.
+/// Errors name the column, too.
 pub fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<(u64, T)>, ReportError> {
     let content = text(path)?;
     let mut reader = csv::Reader::from_reader(content.as_bytes());
@@ -72,7 +62,7 @@ pub fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<(u64, T)>, ReportErr
             },
             _ => error.to_string(),
         };
-        ReportError::Form { path: path.to_owned(), line, message }
+        malformed(path, line, message)
     };
     let headers = reader.headers().map_err(|error| form(1, error))?.clone();
     let mut rows = Vec::new();
@@ -88,4 +78,52 @@ pub fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<(u64, T)>, ReportErr
             Err(error) => return Err(form(line, error)),
         }
     }
+}
+
+/// Refuses the value of a field in a file.
+pub(super) fn refused(path: &Path, field: &str, value: String, allowed: &str) -> ReportError {
+    let (field, allowed) = (field.to_owned(), allowed.to_owned());
+    ReportError::Value { path: path.to_owned(), field, value, allowed }
+}
+
+/// The reason why a report could not be written.
+#[derive(Debug, Error)]
+pub enum ReportError {
+    /// A file of the run folder is missing or cannot be read.
+    #[error(
+        "{path}: cannot be read: {source} (a finished run folder holds outcome.json, manifest.json, \
+         scene.toml, series.csv, layers.csv, retained.csv and eroded.csv)",
+        path = path.display()
+    )]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Message of the system.
+        source: std::io::Error,
+    },
+    /// A file does not have the form that it must have.
+    #[error("{path}:{line}: {message}", path = path.display())]
+    Form {
+        /// The file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: u64,
+        /// The fault, with the field if known.
+        message: String,
+    },
+    /// A value that is impossible, or two files that contradict each other.
+    #[error("{path}: {field} is {value}, allowed: {allowed}", path = path.display())]
+    Value {
+        /// The file.
+        path: PathBuf,
+        /// The field.
+        field: String,
+        /// Its value.
+        value: String,
+        /// The values that would be right.
+        allowed: String,
+    },
+    /// The page or a figure cannot be written.
+    #[error(transparent)]
+    Write(#[from] StoreError),
 }

@@ -1,53 +1,42 @@
-//! The first sheet, which can be handed in by itself: client and author, the answer in three lines, the
-//! gradations with their sizes, and the rules of practice that decide or are not met.
+//! The first sheet, which can be handed in by itself: cover, answer, sizes, and the rules that decide or are
+//! not met; and below it all rules with their sources.
 
-use maud::{Markup, html};
-
-use super::cover::{cover, foot, program};
 use super::folder::RunFolder;
 use super::names::{is_named, titled};
-use super::quantity::{SizeUnit, range_of_tests};
-use super::shell::{clean, unbroken};
-use super::sizes::{SizedSoil, of_few};
-use super::table::Table;
+use super::shell::{clean, cover, program, unbroken};
+use super::table::{SizedSoil, Table, of_few};
 use crate::outcome::record::Outcome;
-use crate::words::left_out::left_out_line;
-use crate::words::rule::{self, limit_begins, limit_ends, value_and_limit, value_begins};
-use crate::words::{FirstLine, first_lines, grading, judged_alone};
-use voidwalk_practice::Decision;
+use crate::words::left_out::{NOT_COVERED, left_out_line};
+use crate::words::rule::{
+    LIMITS_ROUNDED, limit_begins, limit_ends, rule_notes, value, value_and_limit, value_begins,
+};
+use crate::words::{FirstLine, first_lines, grading, judged_alone, rule};
+use maud::{Markup, html};
+use std::borrow::Cow;
+use voidwalk_practice::quantity::{SizeUnit, length, range_of_tests};
 use voidwalk_practice::rule_result::{RuleResult, result_of};
 use voidwalk_practice::rules::{DESIGN, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION};
-use voidwalk_practice::{AppliedRule, Headline, PracticeClass, RuleRole};
+use voidwalk_practice::{AppliedRule, Decision, Headline, PracticeClass, RuleRole};
 
 /// The two soils, and the cover of a sheet that is handed in.
 pub(super) fn header(folder: &RunFolder) -> Markup {
     let inputs = &folder.outcome.inputs;
     let (base, filter) = (titled("Base", &inputs.base.name), titled("filter", &inputs.filter.name));
     let regraded = inputs.base.regraded_at_mm.map(|_| grading(&inputs.base.size()));
+    let manifest = &folder.manifest;
+    let program = program(&manifest.version, manifest.commit.as_deref());
+    let day = manifest.finished.split('T').next().map(String::from);
     let is_shown = is_named("Base", &inputs.base.name) || is_named("filter", &inputs.filter.name);
     html! {
         h1 { (QUESTION) }
         @if is_shown || regraded.is_some() {
             p.names { (base) @if let Some(words) = regraded { " (" (words) ")" } " against " (filter) }
         }
-        (about(folder))
+        (cover(&folder.about.cover.clone().dated(day), &program, Some(folder.outcome.seed)))
     }
 }
 
-/// Question that the page answers.
 pub(super) const QUESTION: &str = "Will this filter hold this soil?";
-
-/// Text at the foot of every printed page.
-pub(super) fn foot_of(folder: &RunFolder) -> Option<String> {
-    foot(&folder.about.cover)
-}
-
-fn about(folder: &RunFolder) -> Markup {
-    let manifest = &folder.manifest;
-    let program = program(&manifest.version, manifest.commit.as_deref());
-    let day = manifest.finished.split('T').next().map(String::from);
-    cover(&folder.about.cover.clone().dated(day), &program, Some(folder.outcome.seed))
-}
 
 /// The answer: the lines of practice and model, and the number of notes.
 pub(super) fn answer(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> Markup {
@@ -70,7 +59,7 @@ pub(super) fn answer(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> 
 }
 
 /// The colour of an answer, by practice: neutral without it.
-pub(super) fn colour(headline: Option<Headline>) -> &'static str {
+fn colour(headline: Option<Headline>) -> &'static str {
     let Some(headline) = headline else { return "neutral" };
     match (headline, headline.class()) {
         (Headline::Meets, _) => "none",
@@ -171,7 +160,6 @@ fn place(rule: &AppliedRule) -> usize {
     }
 }
 
-/// The purpose of a rule, in a word or two.
 fn purpose(rule: &AppliedRule) -> &'static str {
     match (rule.id.as_str(), rule.role) {
         (DESIGN, _) => "Design",
@@ -193,7 +181,7 @@ fn quantity_in_brief(rule: &AppliedRule) -> &str {
 
 fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
     let columns = rule::columns(unit).only(&["rule", "quantity", "value", "limit", "authority", "result"]);
-    let table = Table::of(rules.iter().copied(), columns)
+    let table = Table::new(rules.iter().copied(), columns)
         .showing("quantity", |rule| html! { (clean(quantity_in_brief(rule))) })
         .showing("authority", |rule| html! { (clean(rule.authorities().first().unwrap_or(&"–"))) })
         .showing("rule", |rule| match DECIDING.contains(&rule.id.as_str()) {
@@ -221,4 +209,125 @@ fn table(rules: &[&AppliedRule], unit: SizeUnit) -> Markup {
             }
         });
     html! { (table) }
+}
+
+/// Every rule with its value, limit, result, source and origin.
+pub(super) fn rules(decision: &Decision, unit: SizeUnit) -> Markup {
+    let listed = decision.listed();
+    let ([practice, walk], sources) = (of_practice_and_walk(&listed), distinct_sources(&listed));
+    html! {
+        h2 { "All rules" }
+        @if decision.rules.is_empty() { p { "No rule was applied." } } @else {
+            p.small { (LIMITS_ROUNDED) " " (NOT_COVERED) " In brackets: sources, below." }
+            (table_of_all(&practice, unit, &sources))
+            @if !walk.is_empty() {
+                div.screen {
+                    h3 { "Comparisons of the walk with tests and with the paper" }
+                    p.small { "They show whether the walk agrees with both. No filter fails by them." }
+                    (table_of_all(&walk, unit, &sources))
+                }
+            }
+        }
+    }
+}
+
+/// The sources of all rules, by their numbers in the table.
+pub(super) fn sources(decision: &Decision) -> Markup {
+    let listed = decision.listed();
+    let sources = distinct_sources(&listed);
+    let is_of_walk = |source: &str| {
+        let citing = decision.rules.iter().filter(|rule| rule.source == source);
+        citing.clone().count() > 0 && citing.into_iter().all(|rule| rule.role == RuleRole::Walk)
+    };
+    html! {
+        @if !sources.is_empty() {
+            h2 { "Sources" }
+            ol.sources {
+                @for source in &sources {
+                    // Comparisons of the walk stay on the screen.
+                    li.screen[is_of_walk(source)] { (clean(source)) }
+                }
+            }
+        }
+    }
+}
+
+fn of_practice_and_walk<'a>(rules: &'a [Cow<AppliedRule>]) -> [Vec<&'a AppliedRule>; 2] {
+    let (walk, practice) = rules.iter().map(AsRef::as_ref).partition(|rule| rule.role == RuleRole::Walk);
+    [practice, walk]
+}
+
+/// Each source once, those of practice first.
+fn distinct_sources<'a>(rules: &'a [Cow<AppliedRule>]) -> Vec<&'a str> {
+    let mut sources: Vec<&str> = Vec::new();
+    for rule in of_practice_and_walk(rules).into_iter().flatten() {
+        if !rule.source.is_empty() && !sources.contains(&&*rule.source) {
+            sources.push(&rule.source);
+        }
+    }
+    sources
+}
+
+/// Rules as a table in which numbers represent the sources.
+fn table_of_all(rules: &[&AppliedRule], unit: SizeUnit, sources: &[&str]) -> Markup {
+    let number = |rule: &AppliedRule| sources.iter().position(|source| *source == rule.source);
+    let columns = rule::columns(unit).only(&["rule", "authority", "value", "limit", "result"]);
+    let value = |rule: &AppliedRule| value(rule, unit).unwrap_or_else(|| "–".into());
+    let table = Table::new(rules.iter().copied(), columns)
+        .class("rules")
+        .showing("rule", |rule| {
+            html! {
+                (clean(&rule.name)) @if let Some(place) = number(rule) { " [" (place + 1) "]" }
+                @if !rule.applies_to.is_empty() { br; span.small { "For " (clean(&rule.applies_to)) "." } }
+                @if let Some(left) = rule.without_finer.filter(|_| rule.is_broken()) {
+                    br; span.small {
+                        "Without its finest " (format!("{:.1}", left.percent)) " % its D15F is "
+                        (length(left.d15f, unit)) "."
+                    }
+                }
+                @for notes in [&rule.notes, &rule.needs] {
+                    @if !notes.is_empty() { br; span.small { b { (clean(&rule_notes(notes, unit))) } } }
+                }
+            }
+        })
+        .showing("value", |rule| html! { (clean(rule.quantity.name())) " " br; (clean(&value(rule))) });
+    html! { (table) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use voidwalk_core::gradation::Gradation;
+    use voidwalk_practice::PairRules;
+    use voidwalk_practice::rules::TERZAGHI;
+
+    fn rule(id: &str, value: f64, limit: f64) -> AppliedRule {
+        let soil = |d15, size| Gradation::linear_from_dx(d15, size, 1.5).unwrap();
+        let rules = PairRules::of(&soil(85.0, 0.2), &soil(15.0, 0.8)).rules;
+        let rule = rules.into_iter().find(|rule| rule.id == id).unwrap();
+        AppliedRule { value: Some(value), limit: Some(limit), met: Some(value <= limit), ..rule }
+    }
+
+    fn shown(rule: &AppliedRule, unit: SizeUnit) -> [String; 2] {
+        value_and_limit(rule, unit).map(Option::unwrap)
+    }
+
+    #[test]
+    fn a_value_that_exceeds_its_limit_never_reads_as_within_it() {
+        let terzaghi = |value| shown(&rule(TERZAGHI, value, 4.0), SizeUnit::Mm);
+        assert_eq!(terzaghi(4.0003), ["4.0003", "4"]);
+        assert_eq!(terzaghi(3.9998), ["3.9998", "4"]);
+        assert_eq!(terzaghi(3.52), ["3.52", "4"]);
+        let broken = [rule(TERZAGHI, 4.0003, 4.0)];
+        let decision = Decision::new(&broken, None, None);
+        let listed = decision.listed();
+        let page = table_of_all(&[&listed[0]], SizeUnit::Mm, &[]).into_string();
+        assert!(page.contains("= 4.0003") && page.contains("≤ 4<") && page.contains("✗ not met"), "{page}");
+        // 0.70003 mm and 0.7 mm are 0.027561 and 0.027559 inches.
+        let texts = shown(&rule(DESIGN, 0.70003, 0.7), SizeUnit::MmAndInches);
+        assert_eq!(texts[0], "0.70003\u{202f}mm (0.0276\u{202f}in)");
+        assert_eq!(texts[1], "0.70000\u{202f}mm (0.0275\u{202f}in)");
+        let within = shown(&rule(DESIGN, 0.699, 0.7), SizeUnit::MmAndInches);
+        assert_eq!(within, ["0.699\u{202f}mm (0.02752\u{202f}in)", "0.700\u{202f}mm (0.02755\u{202f}in)"]);
+    }
 }

@@ -2,18 +2,19 @@
 
 use std::path::Path;
 
-use super::about::about_page;
-use super::error::ReportError;
-use super::files::{json, text};
-use super::quantity::SizeUnit;
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+
+use super::figures::shorten;
+use super::files::{ReportError, json, malformed, text};
+use super::shell::LINE;
 use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{Classed, Manifest, Outcome, Sensitivity};
 use crate::verdict::RunFiles;
-use voidwalk_practice::AboutPage;
-use voidwalk_practice::Decision;
+use voidwalk_practice::quantity::SizeUnit;
+use voidwalk_practice::{AboutPage, Decision};
 
-/// Contents of a finished run folder.
 pub(super) struct RunFolder {
     pub outcome: Outcome,
     /// The decision of practice on its pair.
@@ -23,9 +24,7 @@ pub(super) struct RunFolder {
     pub packing: Option<PackingRecord>,
     /// `scene.toml`, verbatim.
     pub scene: String,
-    /// Its settings of the page.
     pub about: AboutPage,
-    /// The rows of its CSV files.
     pub rows: RunRows,
 }
 
@@ -44,14 +43,13 @@ impl RunFolder {
     }
 
     /// Makes the folder of a run whose files have this content; errors name a file of `folder`.
-    pub(super) fn of(folder: &Path, files: RunFiles) -> Result<RunFolder, ReportError> {
+    pub(super) fn from_files(folder: &Path, files: RunFiles) -> Result<RunFolder, ReportError> {
         let RunFiles { outcome, decision, manifest, scene, about, packing, recorded } = files;
         let outcome = checked(&folder.join(OUTCOME), outcome)?;
         let rows = rows_of(&outcome, folder, RowSource::Memory(recorded))?;
         Ok(RunFolder { packing, outcome, decision, manifest, scene, about, rows })
     }
 
-    /// Results and rows for its figures and tables of walks.
     pub(super) fn walks(&self) -> Walks<'_> {
         walks(&self.outcome, &self.rows)
     }
@@ -125,4 +123,43 @@ fn stand_among_its_variations(outcome: &mut Outcome) {
     };
     outcome.sensitivity.push(itself);
     outcome.sensitivity.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+}
+
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct ShownSizes {
+    coarse_left: bool,
+    units: Option<SheetUnits>,
+}
+
+#[derive(Deserialize, PartialEq)]
+#[serde(rename_all = "lowercase")]
+enum SheetUnits {
+    Metric,
+    Us,
+}
+
+/// The page that the text of a run's scene asks for; `path` names the text in errors.
+/// A value that cannot be read is an error with its line: a page without it may go to a client.
+pub fn about_page(path: &Path, scene: &str, outcome: &Outcome) -> Result<AboutPage, ReportError> {
+    let (cover, sizes): (_, ShownSizes) = (about(path, scene)?, about(path, scene)?);
+    let unit = SizeUnit::of(outcome.inputs.scale_free, sizes.units == Some(SheetUnits::Us));
+    Ok(AboutPage { cover, coarse_left: sizes.coarse_left, unit })
+}
+
+/// The settings of one kind in the table `about`; nothing else of the scene is read. Each kind is read
+/// separately, as an error within a flattened struct would have no line.
+fn about<T: Default + DeserializeOwned>(path: &Path, scene: &str) -> Result<T, ReportError> {
+    #[derive(Deserialize)]
+    struct Scene<T> {
+        #[serde(default)]
+        about: T,
+    }
+    toml::from_str(scene).map(|scene: Scene<T>| scene.about).map_err(|error| {
+        let before = scene.bytes().take(error.span().map_or(0, |span| span.start));
+        let line = before.filter(|byte| *byte == b'\n').count();
+        let text = shorten(scene.lines().nth(line).unwrap_or_default().trim(), LINE);
+        let message = format!("`{text}`: {}", error.message());
+        malformed(path, line as u64 + 1, message)
+    })
 }

@@ -5,9 +5,8 @@ use std::borrow::Cow;
 
 use maud::{Markup, html};
 
-use super::cover::LINE;
 use super::figures::shorten;
-use super::shell::clean;
+use super::shell::{LINE, clean};
 
 /// Endings of the tables from which soils are read.
 const TABLES: [&str; 7] = ["csv", "txt", "tsv", "xlsx", "ods", "ags", "dat"];
@@ -93,15 +92,24 @@ pub(super) fn option_words(option: &str) -> String {
 }
 
 /// A note that begins with the name of its file.
-pub(super) fn note_words(note: &str) -> String {
+fn note_words(note: &str) -> String {
     match note.split_once(": ") {
         Some((file, note)) => format!("{}: {note}", file_name(file)),
         None => note.to_owned(),
     }
 }
 
-/// The part of a path after its last separator.
-pub(super) fn last_part(path: &str) -> &str {
+/// A name from outside, as tables and legends have room for it.
+pub(super) fn brief_name(name: &str) -> String {
+    clean(&shorten(name, 60))
+}
+
+/// Notes on files as a list; empty without notes.
+pub(super) fn file_notes(notes: &[String]) -> Markup {
+    html! { @if !notes.is_empty() { ul { @for note in notes { li { (clean(&note_words(note))) } } } } }
+}
+
+fn last_part(path: &str) -> &str {
     path.rsplit(['/', '\\']).next().unwrap_or_default()
 }
 

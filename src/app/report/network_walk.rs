@@ -1,33 +1,27 @@
 //! The page of walks on given networks, without a scene.
 
-use std::path::Path;
-
-use maud::{Markup, html};
-
-use super::connectivity::by_connectivity;
-use super::error::ReportError;
 use super::figures::{Axis, BLUE, Dash, Figure, Line, VERMILLION};
-use super::files::json_of;
-use super::results::{replicates, results};
-use super::run_figures::{self, size_axis};
-use super::shell::{self, Drawn, citation, clean, drawing, fact, leaves_out, whole_page};
-use super::shown::{counts, known};
-use super::verdict_box::{Said, brief, eroded_table, in_words, replicates_in_words};
+use super::files::{ReportError, json_of, refused};
+use super::results::{
+    brief, by_connectivity, eroded_table, in_words, replicates, replicates_in_words, results,
+};
+use super::run_figures::size_axis;
+use super::shell::{Drawn, citation, clean, drawing, fact, leaves_out, page_with_foot};
+use super::table::{counts, known};
 use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
+use super::{run_figures, shell};
 use crate::outcome::Recorded;
-use crate::outcome::network_walk::NetworkWalkRecord;
-use crate::outcome::record::Verdict;
+use crate::outcome::record::{NetworkWalkRecord, Verdict};
 use crate::words::left_out::left_out_words;
 use crate::words::{FirstLine, sentence};
+use maud::{Markup, html};
+use std::path::Path;
 use voidwalk_practice::quantity::{SizeUnit, length, percent, significant, whole};
 
-/// Name of the record in errors.
 const RECORD: &str = "outcome";
 
 /// The page of walks on given networks: their record as JSON, and the rows of their tables.
-///
-/// # Errors
-/// A record that is malformed, and rows that do not fit together.
+/// Errors are a record that is malformed, and rows that do not fit together.
 pub fn network_walk_page(record: &str, recorded: Recorded) -> Result<String, ReportError> {
     let record = checked(record)?;
     let (replicates, runs) = (record.replicates.len(), record.summary.len());
@@ -47,23 +41,14 @@ pub fn network_walk_page(record: &str, recorded: Recorded) -> Result<String, Rep
 
 /// The verdict of walks on given networks, as a piece of a page: its numbers, a figure, the omissions of the
 /// model.
-///
-/// # Errors
-/// A record that is malformed.
+/// A record that is malformed is an error.
 pub fn network_walk_brief(record: &str) -> Result<String, ReportError> {
     let record = checked(record)?;
     let rows = RunRows::default();
     let walks = walks(&record, &rows);
-    Ok(brief(
-        &walks,
-        &Said {
-            lines: &[(FirstLine::Model, record.verdict.words().to_owned())],
-            meaning: in_words(&walks),
-            notes: &record.notes,
-            replicate: replicate(&record),
-            leaves_out: &record.model_leaves_out,
-        },
-    ))
+    let lines = [(FirstLine::Model, record.verdict.words().to_owned())];
+    let meaning = in_words(&walks);
+    Ok(brief(&walks, &lines, &meaning, &record.notes, replicate(&record), &record.model_leaves_out))
 }
 
 fn checked(record: &str) -> Result<NetworkWalkRecord, ReportError> {
@@ -73,12 +58,7 @@ fn checked(record: &str) -> Result<NetworkWalkRecord, ReportError> {
     check_curve(path, "base.gradation", &record.base.gradation)?;
     check_curve(path, "network.diameters", &record.network.diameters)?;
     if record.increments == 0 {
-        return Err(ReportError::Value {
-            path: path.to_owned(),
-            field: "increments".into(),
-            value: "0".into(),
-            allowed: "1 or more".into(),
-        });
+        return Err(refused(path, "increments", "0".into(), "1 or more"));
     }
     Ok(record)
 }
@@ -107,7 +87,6 @@ fn replicate(record: &NetworkWalkRecord) -> [&'static str; 2] {
     ["one network, one walk", of_several]
 }
 
-/// The base, and the diameters of the constrictions.
 fn sizes(record: &NetworkWalkRecord) -> Drawn {
     let (base, network) = (&record.base.gradation, &record.network.diameters);
     let x = size_axis(SizeUnit::Mm, base.iter().chain(network).map(|row| row[0]));
@@ -137,27 +116,21 @@ fn page(record: &NetworkWalkRecord, walks: &Walks, figures: &[Drawn]) -> String 
                 (leaves_out(&record.model_leaves_out, &html! {}))
             }
         }
-        (notes(record))
-        (shell::contents())
-        h2 { "Figures" }
-        (shell::figures(figures))
-        (results(walks))
-        (by_connectivity(walks))
-        (replicates(walks))
-        (inputs(record))
-    };
-    whole_page(&title, &header, &main, &citation())
-}
-
-fn notes(record: &NetworkWalkRecord) -> Markup {
-    html! {
         @if !record.notes.is_empty() {
             section.sheet {
                 h2 { "What else to know" }
                 ul { @for note in &record.notes { li { (clean(&sentence(note, SizeUnit::Mm))) } } }
             }
         }
-    }
+        (shell::contents())
+        h2 { "Figures" }
+        @for (number, drawn) in (1..).zip(figures) { (shell::figure(number, drawn)) }
+        (results(walks))
+        (by_connectivity(walks))
+        (replicates(walks))
+        (inputs(record))
+    };
+    page_with_foot(None, &title, [&header, &main, &citation()])
 }
 
 /// Number of base particles, and the number that Eq. (2) requires.

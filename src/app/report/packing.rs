@@ -4,18 +4,15 @@ use std::path::Path;
 
 use maud::{Markup, Render, html};
 
-use super::error::ReportError;
 use super::figures::{Axis, BLUE, Dash, Disc, Figure, GREY, Line, Point, Shape, VERMILLION, ramp};
-use super::files::{json, rows};
-use super::quantity::{duration, percent, significant, whole};
-use super::section::Sections;
+use super::files::{ReportError, json, rows};
+use super::section::{Sections, Written};
 use super::shell::{Drawn, citation, clean, fact};
-use super::shown::known;
-use super::table::Table;
-use super::written::Written;
+use super::table::{Table, known};
 use crate::outcome::packing::{CurveRow, Measure, PackingRecord, Summary};
 use crate::outcome::paper;
 use crate::outcome::table::Columns;
+use voidwalk_practice::quantity::{duration, percent, significant, whole};
 
 /// Number of shades, by size, in which the grains of a slice are drawn.
 const SHADES: usize = 6;
@@ -29,9 +26,7 @@ struct Packed {
 }
 
 /// Writes `report.html` and `figures/*.svg` into the folder of a packing.
-///
-/// # Errors
-/// A file that is missing or malformed; nothing is written then.
+/// A file that is missing or malformed is an error, and nothing is written then.
 pub fn write_packing(folder: &Path) -> Result<Written, ReportError> {
     let packed = Packed {
         record: json(&folder.join("packing.json"))?,
@@ -41,12 +36,10 @@ pub fn write_packing(folder: &Path) -> Result<Written, ReportError> {
     page(&packed).write(folder, "report.html", &citation())
 }
 
-/// A diameter (mm) of the summary.
 fn dc(summary: &Summary, percent: f64) -> Option<f64> {
     summary.dc_mm.get(&percent.to_string()).and_then(serde_json::Value::as_f64)
 }
 
-/// Gradation and constriction curve together.
 fn curves(packed: &Packed) -> Drawn {
     let gradation = &packed.record.gradation;
     let constrictions: Vec<(f64, f64)> =
@@ -96,7 +89,7 @@ pub(super) fn slice(record: &PackingRecord) -> Drawn {
     for &[x, y, cut, grain] in &record.slice {
         let share = if high > low { libm::log(grain / low) / libm::log(high / low) } else { 0.5 };
         let shade = (share * SHADES as f64).clamp(0.0, SHADES as f64 - 1.0) as usize;
-        figure.add(Disc::new((x, y), cut, ramp(shade, SHADES)));
+        figure.add(Disc { centre: (x, y), diameter: cut, colour: ramp(shade, SHADES) });
     }
     let caption = format!(
         "The plane z = {} mm through the middle of the periodic cell. A circle is the cut of a grain, not \
@@ -202,7 +195,7 @@ fn states(record: &PackingRecord) -> Markup {
         .name("measure", "At rest with friction", |row: &Row| row.0)
         .number("before", significant(record.friction), |row| (row.1)(&record.before))
         .number("after", significant(record.final_friction), |row| (row.1)(&record.after));
-    Table::of(&rows, columns).render()
+    Table::new(&rows, columns).render()
 }
 
 /// The paper's values, if its Table 2 has this filter.
@@ -220,5 +213,5 @@ fn beside_the_paper(packed: &Packed) -> Markup {
         .number("packing", "this packing", |row| format!("{:.3}", row.1))
         .number("paper", "paper", |row| format!("{:.3}", row.2))
         .number("difference", "difference", |row| format!("{:+.3}", row.1 - row.2));
-    Table::of(&rows, columns).render()
+    Table::new(&rows, columns).render()
 }

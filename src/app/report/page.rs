@@ -1,37 +1,26 @@
 //! The page of a run.
 
-use std::path::Path;
-
-use maud::{Markup, html};
-
-use super::connectivity::by_connectivity;
-use super::error::ReportError;
-use super::figures::shorten;
-use super::files::json_of;
-use super::first_page::{self, answer, in_short, sizes};
+use super::files::{ReportError, json_of};
+use super::first_page::{answer, in_short, rules, sizes, sources};
 use super::folder::{RunFolder, checked, walks};
-use super::infiltration::infiltration;
-use super::names::{file_name, is_named, soil_name};
-use super::quantity::{SizeUnit, length, percent, significant, whole};
-use super::results::{replicates, results, varied};
-use super::rules::{rules, sources};
-use super::run_figures;
-use super::shell::{self, Drawn, clean, drawing, fact, page_with_foot, unbroken};
-use super::shown::{counts, known};
-use super::verdict_box::{self, Said};
+use super::names::{brief_name, file_name, is_named, soil_name};
+use super::results::{by_connectivity, infiltration, replicates, results, varied};
+use super::section::{Written, write_page};
+use super::shell::{Drawn, clean, drawing, fact, leaves_out, page_with_foot, unbroken};
+use super::table::{counts, known};
 use super::walks::{RunRows, Walks};
-use super::written::{Written, write_page};
-use super::{appendix, packing, shell::leaves_out};
+use super::{first_page, packing, results, run_figures, shell, soils};
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{NetworkKind, Outcome, Stopping};
-use crate::outcome::undecided::UndecidedBy;
+use crate::outcome::verdict::UndecidedBy;
 use crate::verdict::RunFiles;
-use crate::words::capital;
-use crate::words::grading;
 use crate::words::left_out::left_out_words;
-use crate::words::{first_lines, foremost, sentence, undecided_by};
+use crate::words::{capital, first_lines, foremost, grading, sentence, undecided_by};
+use maud::{Markup, html};
+use std::path::Path;
 use voidwalk_core::text::visible;
 use voidwalk_practice::Note;
+use voidwalk_practice::quantity::{SizeUnit, length, percent, significant, whole};
 
 /// Characters of `scene.toml` that are shown.
 const SCENE: usize = 100_000;
@@ -45,45 +34,32 @@ const SCENE: usize = 100_000;
 /// if there is one. Nothing is written then.
 pub fn write(folder: &Path) -> Result<Written, ReportError> {
     let (page, figures) = drawn(&RunFolder::read(folder)?);
-    write_page(folder, &figures, &page)
+    write_page(folder, "report.html", &figures, &page)
 }
 
 /// Writes the page of a run that was just walked: [`write()`] without reading its files.
-///
-/// # Errors
-/// Returns the errors of [`write()`].
 pub fn write_walked(folder: &Path, files: RunFiles) -> Result<Written, ReportError> {
-    let (page, figures) = drawn(&RunFolder::of(folder, files)?);
-    write_page(folder, &figures, &page)
+    let (page, figures) = drawn(&RunFolder::from_files(folder, files)?);
+    write_page(folder, "report.html", &figures, &page)
 }
 
 /// The page of a run whose files would have this content; writes nothing.
-///
-/// # Errors
-/// Returns the errors of [`write()`], with the names that the files would have.
+/// Errors have the names that the files would have.
 pub fn run_page(files: RunFiles) -> Result<String, ReportError> {
-    Ok(drawn(&RunFolder::of(Path::new(""), files)?).0)
+    Ok(drawn(&RunFolder::from_files(Path::new(""), files)?).0)
 }
 
 /// The verdict of a run whose `outcome.json` holds this text, as a piece of a page: its numbers, a figure,
 /// the omissions of the model.
-///
-/// # Errors
-/// A text that is malformed.
+/// A text that is malformed is an error.
 pub fn run_brief(outcome: &str) -> Result<String, ReportError> {
     let path = Path::new("outcome.json");
     let outcome = checked(path, json_of(path, outcome)?)?;
     let rows = RunRows::default();
     let walks = walks(&outcome, &rows);
     let lines = first_lines(&outcome, &outcome.decision(), SizeUnit::Mm);
-    let texts = Said {
-        lines: &lines,
-        meaning: in_words(&outcome, &walks),
-        notes: foremost(&outcome).0,
-        replicate: replicate(&outcome),
-        leaves_out: &outcome.model_leaves_out,
-    };
-    Ok(verdict_box::brief(&walks, &texts))
+    let (meaning, notes) = (in_words(&outcome, &walks), foremost(&outcome).0);
+    Ok(results::brief(&walks, &lines, &meaning, notes, replicate(&outcome), &outcome.model_leaves_out))
 }
 
 /// Words for the only replicate of a run, and for each of several. The ends of a range of constrictions have
@@ -98,7 +74,6 @@ fn replicate(outcome: &Outcome) -> [&'static str; 2] {
     }
 }
 
-/// The page of a run and all its figures.
 fn drawn(run: &RunFolder) -> (String, Vec<Drawn>) {
     let walks = run.walks();
     let verdict = run_figures::verdict(&walks);
@@ -122,7 +97,7 @@ fn page(folder: &RunFolder, [verdict, gradations]: [&Drawn; 2], figures: &[Drawn
     let RunFolder { outcome, decision, .. } = folder;
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
     let (unit, walks) = (folder.about.unit, &folder.walks());
-    let soil = |name: &str| clean(&shorten(soil_name(name), 60));
+    let soil = |name: &str| brief_name(soil_name(name));
     let title = match is_named("base", &base.name) || is_named("filter", &filter.name) {
         true => format!("{} on {}", soil(&base.name), soil(&filter.name)),
         false => first_page::QUESTION.to_owned(),
@@ -134,7 +109,10 @@ fn page(folder: &RunFolder, [verdict, gradations]: [&Drawn; 2], figures: &[Drawn
             div.pair { (in_short(outcome, decision, unit)) (sizes(outcome, unit)) }
         }
         (shell::contents())
-        (notes(outcome, unit))
+        @if !outcome.notes.is_empty() {
+            h2 { "Notes" }
+            ul { @for note in &outcome.notes { li { (unbroken(&sentence(note, unit))) } } }
+        }
         (walk(outcome, walks, verdict))
         (leaves_out(&outcome.model_leaves_out, &html! {
             @if outcome.model_leaves_out.is_empty() { p { "outcome.json does not say." } }
@@ -153,11 +131,11 @@ fn page(folder: &RunFolder, [verdict, gradations]: [&Drawn; 2], figures: &[Drawn
             (varied(outcome))
             (inputs(outcome, folder.packing.as_ref(), walks.unit))
         }
-        (appendix::of_run(outcome, unit))
+        (soils::of_run(outcome, unit))
         (sources(decision))
         (provenance(folder, unit))
     };
-    let foot = first_page::foot_of(folder);
+    let foot = shell::foot(&folder.about.cover);
     page_with_foot(foot.as_deref(), &title, [&first_page::header(folder), &main, &citation(outcome)])
 }
 
@@ -179,9 +157,9 @@ fn walk(outcome: &Outcome, walks: &Walks, verdict: &Drawn) -> Markup {
         (shell::model())
         p.lead { b { (capital(outcome.model.class.words())) } ". " (in_words(outcome, walks)) }
         div.drawn { (drawing(verdict)) }
-        (verdict_box::eroded_table(walks))
+        (results::eroded_table(walks))
         @if let Some(stopping) = &outcome.stopping { p { (stopped(stopping)) } }
-        (verdict_box::replicates_in_words(walks, replicate(outcome)))
+        (results::replicates_in_words(walks, replicate(outcome)))
     }
 }
 
@@ -205,21 +183,10 @@ fn stopped(stopping: &Stopping) -> String {
 fn in_words(outcome: &Outcome, walks: &Walks) -> String {
     match outcome.undecided_by() {
         Some(open @ UndecidedBy::Curve) => format!("Inconclusive: {}.", undecided_by(open)),
-        _ => verdict_box::in_words(walks),
+        _ => results::in_words(walks),
     }
 }
 
-/// Every note on the answer.
-fn notes(outcome: &Outcome, unit: SizeUnit) -> Markup {
-    html! {
-        @if !outcome.notes.is_empty() {
-            h2 { "Notes" }
-            ul { @for note in &outcome.notes { li { (unbroken(&sentence(note, unit))) } } }
-        }
-    }
-}
-
-/// Names the missing figures, with the reason.
 fn missing(folder: &RunFolder, figures: &[Drawn]) -> Markup {
     let has = |name: &str| figures.iter().any(|drawn| drawn.name == name);
     let reasons = [
@@ -344,7 +311,7 @@ fn provenance(folder: &RunFolder, unit: SizeUnit) -> Markup {
                 format!("{} (commit {})", manifest.version, manifest.commit.as_deref().unwrap_or("unknown"))))
             (fact("Engine", &outcome.engine))
             @if !outcome.digest.is_empty() { (fact("Digest of the numbers", &outcome.digest)) }
-            (appendix::input_files(&manifest.inputs))
+            (soils::input_files(&manifest.inputs))
         } }
         div.screen {
             @if !outcome.left_out.is_empty() {

@@ -4,13 +4,11 @@ use std::path::Path;
 
 use maud::{Markup, Render, html};
 
-use super::error::ReportError;
 use super::figures::{Across, Axis, BLUE, Dash, Figure, GREY, Line, PURPLE, Point, Rule, Shape, Tick};
-use super::files::json;
-use super::section::Sections;
+use super::files::{ReportError, json};
+use super::section::{Sections, Written};
 use super::shell::Drawn;
 use super::table::Table;
-use super::written::Written;
 use crate::outcome::percolation::{NU_PARALLEL, PercolationStudy, SizeThreshold, Z};
 use crate::outcome::record::Statistic;
 use crate::outcome::table::Columns;
@@ -18,9 +16,6 @@ use voidwalk_practice::quantity::{duration, significant, whole};
 
 /// Writes `report.html` and its figures into the folder of a percolation study, from `percolation.json`
 /// there.
-///
-/// # Errors
-/// Returns the errors of reading the folder and of writing.
 pub fn write_percolation(folder: &Path) -> Result<Written, ReportError> {
     let study: &PercolationStudy = &json(&folder.join("percolation.json"))?;
     let title = "Percolation threshold of the directed cubic lattice";
@@ -52,7 +47,7 @@ fn sizes(study: &PercolationStudy) -> Markup {
         .number("interval", "95 % interval of the mean", |row| ends(row.1))
         .number("sd", "Standard deviation", |row| digits(row.1.sd))
         .number("sd_error", "its standard error", |row| digits(row.2));
-    Table::of(&rows, columns).render()
+    Table::new(&rows, columns).render()
 }
 
 fn fits(study: &PercolationStudy) -> Markup {

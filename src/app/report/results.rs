@@ -1,20 +1,31 @@
-//! The tables of results of a report page.
+//! Results of walks on a page: their tables, Table 3 and Eq. (1) of the paper for them, and the parts of the
+//! box with their verdict.
 
-use maud::{Markup, html};
-
-use super::quantity::{Quantity, length, percent, significant, whole};
+use super::run_figures;
 use super::run_figures::run_name;
+use super::shell::clean;
 use super::table::Table;
 use super::walks::Walks;
-use crate::outcome::record::{Classed, OfThickness, Outcome, Replicate, Run, RunSummary, Verdict};
+use crate::outcome::metrics::of_replicates;
+use crate::outcome::record::{
+    ByConnectivity, Classed, Infiltration, InfiltrationSize, ModelLimit, OfThickness, Outcome, Replicate,
+    Run, RunSummary, Verdict,
+};
+use crate::outcome::statistic::percent_interval;
 use crate::outcome::table::{Columns, Emphasis, Shown, TableCell};
-use crate::words::capital;
+use crate::words;
+use crate::words::left_out::left_out_in_brief;
+use crate::words::{FirstLine, capital, sentence};
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use maud::{Markup, Render, html};
+use voidwalk_practice::Note;
+use voidwalk_practice::quantity::{Quantity, SizeUnit, length, percent, significant, whole};
 
 /// Replicates listed one by one; all are in `outcome.json`.
 const LISTED: usize = 100;
 
-/// "First run", in the colour of the run.
-pub(super) fn run_heading(run: u64) -> Shown {
+fn run_heading(run: u64) -> Shown {
     capital(run_name(run)).shown().emphasised(Emphasis::Run(run))
 }
 
@@ -63,7 +74,7 @@ pub(super) fn results(walks: &Walks) -> Markup {
     }
     html! {
         h2 { "Results" }
-        (Table::of(rows, columns))
+        (Table::new(rows, columns))
     }
 }
 
@@ -97,7 +108,7 @@ pub(super) fn replicates(walks: &Walks) -> Markup {
         .number("increments", "Increments", |(.., run)| particles(run.increments))
         .number("moves", "Moves", |(.., run)| particles(run.particle_moves));
     let table =
-        Table::of(&rows, columns).class("replicates").showing("replicate", |(number, replicate, _)| {
+        Table::new(&rows, columns).class("replicates").showing("replicate", |(number, replicate, _)| {
             html! { (number) span.seed { " (seed " (replicate.seed) ")" } }
         });
     html! {
@@ -162,7 +173,7 @@ pub(super) fn varied(outcome: &Outcome) -> Markup {
         }
         @if !rows.is_empty() { details {
             summary { "Amount of base and thickness (×1 has the class of this page)" }
-            (Table::of(&rows, columns))
+            (Table::new(&rows, columns))
         } }
     }
 }
@@ -170,4 +181,225 @@ pub(super) fn varied(outcome: &Outcome) -> Markup {
 /// A class whose words are never broken.
 fn class(verdict: Verdict) -> Shown {
     verdict.shown().emphasised(Emphasis::Whole)
+}
+
+/// Empty if all voids have the same connectivity.
+pub(super) fn by_connectivity(walks: &Walks) -> Markup {
+    let runs: Vec<(u64, Vec<ByConnectivity>)> = walks
+        .runs()
+        .map(|run| (run, of_replicates(walks.replicates, run)))
+        .filter(|(_, rows)| !rows.is_empty())
+        .collect();
+    html! {
+        @if !runs.is_empty() {
+            h2 { "By connectivity of the void" }
+            p {
+                "A void’s connectivity is the number of its entrances and exits. The network is not \
+                 uniform: voids with few "
+                "connections close early and then retain whatever enters (Table 3 of the paper). All \
+                 replicates together."
+            }
+            @for (run, rows) in &runs { (of_run(*run, rows)) }
+        }
+    }
+}
+
+fn of_run(run: u64, rows: &[ByConnectivity]) -> Markup {
+    let sum = |count: fn(&ByConnectivity) -> u64| rows.iter().map(count).sum::<u64>();
+    let retained = sum(|r| r.retained_in_constrictions + r.retained_in_voids);
+    let blocked = |blocked: u64, all: u64| percent(blocked as f64 / all.max(1) as f64);
+    let columns = Columns::default()
+        .number("connectivity", "Connectivity", |row: &ByConnectivity| row.connectivity.to_string())
+        .number("voids", "Share of voids", |row| percent(row.voids_fraction))
+        .number("retained_per_void", "Retained per void", |row| row.retained_per_void)
+        .number("retained", "Share of retained", |row| percent(row.retained_fraction))
+        .number("blocked", "Exits blocked", |row| blocked(row.blocked, row.constrictions));
+    let all = html! { tr {
+        th { "All (" (whole(sum(|r| r.voids))) " voids)" }
+        td.n { (percent(1.0)) }
+        td.n { (significant(retained as f64 / sum(|r| r.voids) as f64)) }
+        td.n { (percent(1.0)) }
+        td.n { (blocked(sum(|r| r.blocked), sum(|r| r.constrictions))) }
+    } };
+    html! {
+        h3 { span class={ "run-" (run) } { (run_name(run)) } }
+        (Table::new(rows, columns).more(all))
+    }
+}
+
+/// Eq. (1) for single particles, the result of the walk, and their difference.
+pub(super) fn infiltration(outcome: &Outcome, unit: SizeUnit) -> Markup {
+    html! {
+        h2 { "Infiltration depth without blocking" }
+        @match &outcome.infiltration {
+            None => p {
+                "Not given: the closed form holds for a regular cubic lattice whose exits are chosen by \
+                 area, and this network is another."
+            },
+            Some(result) => details {
+                summary { "Eq. (1) for single particles, beside the walk" }
+                p {
+                    "How far a single particle gets in the clean filter: with a confidence P of \
+                     95 % (or 99 %) it does not pass more than n = ln(1 − P) / ln(P(F)) layers, where P(F) \
+                     is its chance to move one layer downstream in the directed lattice that is walked. \
+                     Nothing is blocked here."
+                }
+                (sizes(result, unit))
+                (beside_the_walk(result, outcome, unit))
+            },
+        }
+    }
+}
+
+fn sizes(result: &Infiltration, unit: SizeUnit) -> Markup {
+    let layers = |layers: Option<f64>| layers.map_or("no end".shown(), TableCell::shown);
+    let columns = Columns::default()
+        .name("particle", "Particle", |row: &InfiltrationSize| row.name.clone())
+        .number("diameter_mm", "Size", |row| length(row.diameter_mm, unit))
+        .number("downstream", "Chance to move one layer on", |row| format!("{:.4}", row.downstream))
+        .number("layers_95", "Layers, 95 %", |row| layers(row.layers_95))
+        .number("layers_99", "Layers, 99 %", |row| layers(row.layers_99))
+        .number("through", format!("Passes all {}", whole(result.layers)), |row| percent(row.through));
+    Table::new(&result.sizes, columns).render()
+}
+
+fn beside_the_walk(result: &Infiltration, outcome: &Outcome, unit: SizeUnit) -> Markup {
+    // Mean over the replicates that have the quantity.
+    let mean = |run: u64, quantity: fn(&Run) -> Option<f64>, show: &dyn Fn(f64) -> String| {
+        let runs = outcome.replicates.iter().flat_map(|r| &r.runs).filter(|r| r.run == run);
+        let values: Vec<f64> = runs.filter_map(quantity).collect();
+        match values.len() {
+            0 => "none".to_owned(),
+            n => show(values.iter().sum::<f64>() / n as f64),
+        }
+    };
+    let in_unit = |d| length(d, unit).to_string();
+    let layer = |layer| format!("{layer:.1}");
+    let eroded = |run: usize| outcome.summary.get(run).map(|s| s.eroded_mass_fraction.mean);
+    html! {
+        ul {
+            li {
+                "By the closed form particles up to "
+                (length(result.coarsest_through_mm, unit))
+                " pass all layers with a probability of 5 % or more. The largest that left in the walk: "
+                @for (index, run) in outcome.summary.iter().enumerate() {
+                    @if index > 0 { ", " }
+                    (mean(run.run, |r| r.largest_eroded_mm, &in_unit))
+                    " (" (run_name(run.run)) ")"
+                }
+                ", mean over the replicates. Among many particles a few get farther than that."
+            }
+            li {
+                "Layers with retained particles, counted from 0: "
+                @for (index, run) in outcome.summary.iter().enumerate() {
+                    @if index > 0 { "; " }
+                    "down to " (mean(run.run, |r| Some(r.deepest_retained_layer? as f64), &layer))
+                    ", 95 % of them down to " (mean(run.run, |r| Some(r.retained_95_layer? as f64), &layer))
+                    " (" (run_name(run.run)) ")"
+                }
+                ", means over the replicates."
+            }
+            @if let Some(first) = eroded(0) { li {
+                "If nothing were ever blocked, " b { (percent(result.eroded_without_blocking)) }
+                " of the base’s mass would leave; in the walk " b { (percent(first)) }
+                " left in the first run"
+                @if let Some(second) = eroded(1) { " and " b { (percent(second)) } " in the second" }
+                ". "
+                (what_blocking_does(result.eroded_without_blocking - first))
+            } }
+        }
+    }
+}
+
+/// Meaning of the difference between the mass that Eq. (1) lets through and the mass that left.
+fn what_blocking_does(held: f64) -> &'static str {
+    if held > 0.01 {
+        "The difference is due to blocking: coarser particles close constrictions, and finer ones that would \
+         pass a clean filter stay behind them."
+    } else if held < -0.01 {
+        "More left than a clean filter lets pass: a constriction that stops one particle is closed to the \
+         next, which then takes a coarser exit."
+    } else {
+        "Blocking changes little here: what a clean filter lets pass leaves."
+    }
+}
+
+/// Eroded mass by run, with its interval.
+pub(super) fn eroded_table(walks: &Walks) -> Markup {
+    Table::new(walks.summary, eroded_columns()).render()
+}
+
+fn eroded_columns<'a>() -> Columns<'a, RunSummary> {
+    Columns::default()
+        .name("run", "Base eroded, by mass", |run: &RunSummary| run_heading(run.run))
+        .number("mean", "mean", |run| percent(run.eroded_mass_fraction.mean))
+        .number("interval", "95 % interval", |run| {
+            percent_interval(&run.eroded_mass_fraction)
+                .map_or_else(|| "none".to_owned(), |span| span.to_string())
+        })
+}
+
+/// Meaning of the class, in a sentence.
+pub(super) fn in_words(walks: &Walks) -> String {
+    words::meaning(walks.verdict, walks.summary, walks.threshold)
+}
+
+/// The classes of the replicates, counted, with the words for one replicate and for each of several.
+fn tally(walks: &Walks, [single, several]: [&str; 2]) -> String {
+    let count = walks.replicates.len();
+    if count == 1 {
+        return format!("1 replicate ({single}).");
+    }
+    let classes = Verdict::ALL.into_iter().filter_map(|class| {
+        let number = walks.replicates.iter().filter(|replicate| replicate.verdict == class).count();
+        let share = if number == count { "all".to_owned() } else { number.to_string() };
+        (number > 0).then(|| format!("{} in {share}", class.words()))
+    });
+    let classes = classes.collect::<Vec<_>>().join(", ");
+    format!("{count} replicates, each {several}: {classes}.")
+}
+
+/// Text on replicates below the table: their number, the threshold, and a warning for a single one.
+pub(super) fn replicates_in_words(walks: &Walks, what: [&str; 2]) -> Markup {
+    html! {
+        p {
+            (tally(walks, what)) " Threshold between the classes: "
+            (percent(walks.threshold).in_digits(3)) "."
+        }
+        @if walks.replicates.len() == 1 {
+            p {
+                b { "One replicate: the scatter is unknown." }
+                " Walk more replicates before relying on this."
+            }
+        }
+    }
+}
+
+/// The verdict in brief, for a page of another program, as a notebook: it needs no style, and the figure is a
+/// picture, so that several fit on one page. `lines` are those of practice and model, for a network the
+/// model's alone; `replicate` are the words for one replicate, and for each of several.
+pub(super) fn brief(
+    walks: &Walks,
+    lines: &[(FirstLine, String)],
+    meaning: &str,
+    notes: &[Note],
+    replicate: [&str; 2],
+    limits: &[ModelLimit],
+) -> String {
+    let drawn = run_figures::verdict(walks);
+    let picture = BASE64_STANDARD.encode(drawn.figure.file());
+    let columns = eroded_columns().number("blocked", "constrictions blocked", |run| run.blocked_fraction);
+    html! {
+        div {
+            @for (line, words) in lines { p { b { (line.name()) } ": " (clean(words)) "." } }
+            p { (clean(meaning)) }
+            ul { @for note in notes { li { (clean(&sentence(note, SizeUnit::Mm))) } } }
+            img src={ "data:image/svg+xml;base64," (picture) }
+                alt="Mean and 95 % interval of the eroded mass in each run, against the threshold";
+            (Table::new(walks.summary, columns))
+            (replicates_in_words(walks, replicate))
+            p { (clean(&left_out_in_brief(limits))) }
+        }
+    }
+    .into_string()
 }

@@ -2,35 +2,33 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::boundaries::{self, boundaries};
 use super::figures::{
     Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Point, Rule,
     Shape, VERMILLION, positive_range, ramp, shorten,
 };
 use super::folder::RunFolder;
 use super::names::{is_named, soil_name};
-use super::quantity::{SizeUnit, length, percent, significant, whole};
 use super::shell::Drawn;
 use super::walks::Walks;
 use crate::outcome::record::{LayerRow, SeriesRow, SizeRow, Statistic, Verdict};
 use crate::outcome::statistic::{interval, interval_in_percent};
-use crate::words::capital;
-use crate::words::{base_size, grading};
+use crate::words::{base_size, capital, grading};
+use voidwalk_practice::quantity::{SizeUnit, length, percent, significant, whole};
+use voidwalk_practice::rules::{DESIGN, TESTS_CONTINUING, TESTS_NO_EROSION};
+use voidwalk_practice::{Decision, RuleQuantity};
 
 /// Replicates drawn one by one; with more, the mean and the first ones are drawn.
 const DRAWN: usize = 40;
 
-/// "first run", "second run".
 pub(super) fn run_name(run: u64) -> &'static str {
     if run == 1 { "first run" } else { "second run" }
 }
 
 /// The colour, symbol and dashes of a run in every figure.
-pub(super) fn run_look(run: u64) -> (Colour, Shape, Dash) {
+fn run_look(run: u64) -> (Colour, Shape, Dash) {
     if run == 1 { (BLUE, Shape::Circle, Dash::Solid) } else { (PURPLE, Shape::Square, Dash::Dashed) }
 }
 
-/// The colour of a class.
 pub(super) fn verdict_colour(verdict: Verdict) -> Colour {
     match verdict {
         Verdict::None => GREEN,
@@ -40,24 +38,23 @@ pub(super) fn verdict_colour(verdict: Verdict) -> Colour {
     }
 }
 
-/// A logarithmic axis around sizes.
 pub(super) fn size_axis(unit: SizeUnit, sizes: impl Iterator<Item = f64>) -> Axis {
     let (low, high) = positive_range(sizes);
     Axis::log(if unit == SizeUnit::D0f { "Size / D0F (–)" } else { "Size (mm)" }, low, high)
 }
 
 /// The upper end of an interval, or the mean without one.
-pub(super) fn upper(statistic: &Statistic) -> f64 {
+fn upper(statistic: &Statistic) -> f64 {
     interval(statistic).map_or(statistic.mean, |(_, high)| high)
 }
 
-pub(super) fn threshold_rule(walks: &Walks, across: Across) -> Rule {
+fn threshold_rule(walks: &Walks, across: Across) -> Rule {
     let limit = walks.threshold;
     Rule::new(across, limit * 100.0, BLACK).dash(Dash::Dashed).label(&percent(limit).in_digits(3).to_string())
 }
 
 /// An axis from 0 that holds these percentages and the threshold, and never less than 10 %.
-pub(super) fn eroded_axis(label: &str, walks: &Walks, highest: f64) -> Axis {
+fn eroded_axis(label: &str, walks: &Walks, highest: f64) -> Axis {
     let high = highest.max(walks.threshold * 100.0 * 1.3).min(100.0);
     if high > 60.0 { Axis::percent(label) } else { Axis::linear(label, 0.0, high) }
 }
@@ -116,7 +113,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
         true => format!("{kind}:\n{}", shorten(soil_name(name), 24)),
         false => kind.to_owned(),
     };
-    boundaries::draw(&mut figure, &limits);
+    draw(&mut figure, &limits);
     // With two curves of the base each has its own words; a single curve is as sampled.
     let walked = match (inputs.base_size(), sampled) {
         (Some(size), Some(_)) => format!("base, {}", grading(&size)),
@@ -137,7 +134,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     figure.add(mark(base.d85_mm, 85.0, VERMILLION, Shape::Square, "D85B"));
     let caption = format!(
         "Gradations by mass, constrictions by number.{}{}",
-        boundaries::caption(decision, &limits),
+        caption(decision, &limits),
         if inputs.scale_free { " Sizes are multiples of D0F, the smallest filter grain." } else { "" },
     );
     Drawn::new("gradations", figure, caption)
@@ -336,4 +333,54 @@ pub(super) fn retained(walks: &Walks) -> Option<Drawn> {
         caption.push_str(" Nothing was retained.");
     }
     Some(Drawn::new("retained", figure, caption))
+}
+
+/// Half the height of a line, in percent finer.
+const HALF: f64 = 4.0;
+
+/// The rules whose limit is a D15F: the name beside the line, its colour, and its words in the caption.
+const LIMITS: [(&str, &str, Colour, &str); 3] = [
+    (DESIGN, "design", GREY, "design"),
+    (TESTS_NO_EROSION, "NE", GREEN, "no erosion (NE)"),
+    (TESTS_CONTINUING, "CE", PURPLE, "continuing erosion (CE)"),
+];
+
+/// A boundary: its index in [`LIMITS`], and its D15F.
+type Boundary = (usize, f64);
+
+/// The boundaries that are known for these soils.
+fn boundaries(decision: &Decision) -> Vec<Boundary> {
+    let limit = |id: &str| {
+        let rule = decision.applied(id).filter(|rule| rule.quantity == RuleQuantity::D15F)?;
+        let is_unclear = id == TESTS_CONTINUING && decision.is_beyond_unclear;
+        rule.limit.filter(|limit| !is_unclear && *limit > 0.0 && limit.is_finite())
+    };
+    let boundary = |(place, (id, ..)): (usize, &(&str, _, _, _))| Some((place, limit(id)?));
+    LIMITS.iter().enumerate().filter_map(boundary).collect()
+}
+
+/// Draws the row of 15 % and the boundaries at it, which are named there; the caption names the row.
+fn draw(figure: &mut Figure, boundaries: &[Boundary]) {
+    figure.add(Rule::new(Across::Y, 15.0, BLACK).dash(Dash::Dotted));
+    for (place, limit) in boundaries {
+        let (_, name, colour, _) = LIMITS[*place];
+        let line = Line::new(vec![(*limit, 15.0 - HALF), (*limit, 15.0 + HALF)], colour);
+        figure.add(line.width(3.0).stays().label(name));
+    }
+}
+
+/// The names of the lines, for the caption; empty without lines.
+fn caption(decision: &Decision, boundaries: &[Boundary]) -> String {
+    if boundaries.is_empty() {
+        return String::new();
+    }
+    // Design and no erosion have the same limit for a dispersive base.
+    let is_one = decision.without_margin().is_some();
+    let name = |(place, ..): &Boundary| match LIMITS[*place] {
+        (DESIGN, ..) if is_one => "design and no erosion",
+        (.., name) => name,
+    };
+    let repeats = |(place, ..): &&Boundary| is_one && LIMITS[*place].0 == TESTS_NO_EROSION;
+    let names: Vec<&str> = boundaries.iter().filter(|line| !repeats(line)).map(name).collect();
+    format!(" Short lines: D15F of {}.", names.join(", "))
 }

@@ -1,14 +1,12 @@
-//! A page as a list of sections: heading, words, figures, tables. The figures are numbered through the page,
-//! and written beside it.
+//! A page as a list of sections, whose figures are numbered through the page, and written beside it.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use maud::{Markup, PreEscaped, html};
 
-use super::cover::{cover, foot};
-use super::error::ReportError;
-use super::shell::{Drawn, contents, figure, model, page_with_foot};
-use super::written::{Written, write_page_as};
+use super::files::ReportError;
+use super::shell::{Drawn, contents, cover, figure, foot, model, page_with_foot};
+use voidwalk_core::store::{Together, make_folder};
 use voidwalk_practice::SheetCover;
 
 /// A page that is built from the top.
@@ -40,7 +38,6 @@ impl Sections {
         self
     }
 
-    /// Adds words, or a table.
     pub(super) fn words(mut self, words: &Markup) -> Self {
         self.main += &words.0;
         self
@@ -54,12 +51,10 @@ impl Sections {
         }
     }
 
-    /// Adds the list of the headings that follow.
     pub(super) fn contents(self) -> Self {
         self.words(&contents())
     }
 
-    /// Adds figures.
     pub(super) fn figures(mut self, figures: impl IntoIterator<Item = Drawn>) -> Self {
         for drawn in figures {
             self.main += &figure(self.drawn.len() + 1, &drawn).0;
@@ -75,12 +70,39 @@ impl Sections {
     }
 
     /// Writes the figures and then the page, with this at its end, under its name in the folder.
-    ///
-    /// # Errors
-    /// Returns the error of a file that cannot be written.
     pub(super) fn write(&self, folder: &Path, name: &str, footer: &Markup) -> Result<Written, ReportError> {
-        write_page_as(name, folder, &self.drawn, &self.text(footer))
+        write_page(folder, name, &self.drawn, &self.text(footer))
     }
+}
+
+/// The files of a report.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// `report.html`.
+    pub page: PathBuf,
+    /// `figures/*.svg`, in the order of the page.
+    pub figures: Vec<PathBuf>,
+}
+
+/// Writes the figures as `figures/*.svg`, then the page under its name. Each file appears whole or not at
+/// all, and an older one of the same name is replaced.
+pub(super) fn write_page(
+    folder: &Path,
+    name: &str,
+    figures: &[Drawn],
+    page: &str,
+) -> Result<Written, ReportError> {
+    make_folder(&folder.join("figures"))?;
+    let mut files = Together::in_folder(folder);
+    let mut written = Vec::new();
+    for drawn in figures {
+        let name = format!("figures/{}.svg", drawn.name);
+        files.add(&name, drawn.figure.file().as_bytes())?;
+        written.push(folder.join(name));
+    }
+    files.add(name, page.as_bytes())?;
+    files.finish()?;
+    Ok(Written { page: folder.join(name), figures: written })
 }
 
 #[cfg(test)]

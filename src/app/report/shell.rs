@@ -1,14 +1,13 @@
-//! Frame of every page: one HTML file that fetches nothing, its head, its figures.
-//!
-//! A page is built from [`maud::Markup`], which escapes its texts; texts from outside go through [`clean()`]
-//! too. `written` writes it with its figures.
+//! Frame of every page: one HTML file that fetches nothing, its head, its figures, and the cover of a sheet
+//! that can be handed in. [`maud::Markup`] escapes texts; those from outside go through [`clean()`] too.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::figures::{Figure, Size};
+use super::figures::{Figure, Size, shorten};
 use crate::outcome::record::ModelLimit;
 use crate::words::left_out::model_limit;
 use voidwalk_core::text::visible;
+use voidwalk_practice::SheetCover;
 
 const STYLE: &str = include_str!("page.css");
 /// SHA-256 of the style in base64, as a content policy names it. If the style changes, a test on Linux prints
@@ -19,14 +18,11 @@ const STYLE_HASH: &str = "mDepA0nhVqGFzpjx3fdu2udUK7V6SF3ya+Kp73qFFQA=";
 pub struct Drawn {
     /// Name of its file, without the ending; no other figure of the page has it.
     pub name: &'static str,
-    /// Caption below the figure.
     pub caption: String,
-    /// The figure.
     pub figure: Figure,
 }
 
 impl Drawn {
-    /// A figure with the name of its file and its caption.
     pub fn new(name: &'static str, figure: Figure, caption: impl Into<String>) -> Self {
         Self { name, caption: caption.into(), figure }
     }
@@ -38,12 +34,8 @@ pub fn content_policy() -> String {
     format!("default-src 'none'; style-src 'sha256-{STYLE_HASH}'; base-uri 'none'; form-action 'none'")
 }
 
-/// A page as text: `title` for the browser, and the contents of each part of its body.
-pub fn whole_page(title: &str, header: &Markup, main: &Markup, footer: &Markup) -> String {
-    page_with_foot(None, title, [header, main, footer])
-}
-
-/// A page as text, with a text at the foot of every sheet of paper, beside its number.
+/// A page as text: `title` for the browser, a text at the foot of every sheet of paper beside its number, and
+/// the contents of each part of its body.
 pub(super) fn page_with_foot(
     foot: Option<&str>,
     title: &str,
@@ -131,12 +123,6 @@ pub fn drawing(drawn: &Drawn) -> Markup {
     }
 }
 
-/// Figures with their captions, numbered from 1.
-pub(super) fn figures(drawn: &[Drawn]) -> Markup {
-    html! { @for (index, drawn) in drawn.iter().enumerate() { (figure(index + 1, drawn)) } }
-}
-
-/// A figure with its number and its caption.
 pub(super) fn figure(number: usize, drawn: &Drawn) -> Markup {
     html! {
         figure.tall[drawn.figure.is_tall()] {
@@ -181,7 +167,6 @@ pub(super) fn leaves_out(limits: &[ModelLimit], more: &Markup) -> Markup {
     }
 }
 
-/// Citation of the model.
 pub(super) fn citation() -> Markup {
     html! {
         h2 { "How to cite" }
@@ -193,9 +178,78 @@ pub(super) fn citation() -> Markup {
     }
 }
 
-/// A row of a table of facts: its name, and its value.
 pub(super) fn fact(name: &str, value: impl std::fmt::Display) -> Markup {
     html! { tr { th { (name) } td { (clean(&value.to_string())) } } }
+}
+
+/// Characters of a text of the user's that are shown.
+pub(super) const LINE: usize = 120;
+
+/// Characters that fit at the foot of a printed page.
+const FOOT: usize = 60;
+
+/// Those who sign: on paper their names are in the signature fields.
+const SIGNED: [&str; 2] = ["Author", "Checked by"];
+
+/// Version and commit of the program, in short.
+pub(super) fn program(version: &str, commit: Option<&str>) -> String {
+    match commit {
+        Some(commit) => format!("{version} ({})", shorten(commit, 12)),
+        None => version.to_owned(),
+    }
+}
+
+/// Stated facts, the date, the program and, if something was walked, its seed; on paper blank lines for
+/// missing facts, and the fields of three signatures.
+pub(super) fn cover(sheet: &SheetCover, program: &str, seed: Option<u64>) -> Markup {
+    let facts = [
+        ("Project", sheet.project.clone()),
+        ("Number", sheet.number.clone()),
+        ("Purpose", sheet.purpose.clone()),
+        ("Client", sheet.client.clone()),
+        ("Author", sheet.author.clone()),
+        ("Checked by", sheet.checker.clone()),
+        ("Revision", sheet.revision.clone()),
+        ("Date", sheet.date.clone()),
+        ("Program", Some(format!("voidwalk {program}"))),
+        ("Seed", seed.map(|seed| seed.to_string())),
+    ];
+    // A missing fact is a blank line on paper; without a seed nothing was walked.
+    let shown = facts.iter().filter(|(name, value)| *name != "Seed" || value.is_some());
+    html! {
+        div.title {
+            dl.about { @for (name, value) in shown { @match value {
+                Some(value) => div class=[SIGNED.contains(name).then_some("signed")] {
+                    dt { (name) } " " dd { bdi { (clean(&shorten(value, LINE))) } }
+                },
+                None => div.blank.signed[SIGNED.contains(name)] aria-hidden="true" {
+                    dt { (name) } " " dd {}
+                },
+            } } }
+            (signatures(sheet))
+        }
+    }
+}
+
+/// Text at the foot of every page beside its number: the number of the project, or its name.
+pub(super) fn foot(sheet: &SheetCover) -> Option<String> {
+    let text = sheet.number.as_ref().or(sheet.project.as_ref())?;
+    Some(clean(&shorten(text, FOOT)))
+}
+
+/// Signature fields of those who prepared, checked and approved the sheet, on paper.
+fn signatures(sheet: &SheetCover) -> Markup {
+    let who = [("Prepared", sheet.author.as_ref()), ("Checked", sheet.checker.as_ref()), ("Approved", None)];
+    html! {
+        table.sign aria-hidden="true" {
+            thead { tr { th {} th { "Name" } th { "Date" } th { "Signature" } } }
+            tbody { @for (did, name) in who { tr {
+                th { (did) }
+                td { @if let Some(name) = name { bdi { (clean(&shorten(name, LINE))) } } }
+                td {} td {}
+            } } }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -219,22 +273,22 @@ mod tests {
     #[test]
     fn a_page_is_written_with_its_figures() {
         use super::super::figures::{Axis, BLUE, Line};
-        use super::super::written::write_page;
+        use super::super::section::write_page;
         let x = Axis::linear("Increment (–)", 0.0, 10.0);
         let mut figure =
             Figure::new("Eroded", "Base eroded by increment", "", x, Axis::percent("Eroded (%)"));
         figure.add(Line::new(vec![(0.0, 0.0), (10.0, 8.0)], BLUE));
         let drawn = Drawn::new("eroded", figure, "One walk.");
         let main = html! { p { (clean("a name\u{202e} from outside")) } figure { (drawing(&drawn)) } };
-        let page = whole_page("Erosion", &html! { h1 { "Erosion" } }, &main, &html! {});
+        let page = page_with_foot(None, "Erosion", [&html! { h1 { "Erosion" } }, &main, &html! {}]);
         let folder = tempfile::tempdir().unwrap();
-        let written = write_page(folder.path(), &[drawn], &page).unwrap();
+        let written = write_page(folder.path(), "report.html", &[drawn], &page).unwrap();
         assert!(written.page.ends_with("report.html") && written.figures[0].ends_with("figures/eroded.svg"));
     }
 
     #[test]
     fn the_policy_names_the_style_by_its_hash() {
-        let page = whole_page("A page", &html! {}, &html! {}, &html! {});
+        let page = page_with_foot(None, "A page", [&html! {}; 3]);
         let (_, style) = page.split_once("<style>").unwrap();
         let (style, _) = style.split_once("</style>").unwrap();
         assert!(style == STYLE && page.contains(&format!("style-src 'sha256-{STYLE_HASH}'")));
@@ -261,5 +315,49 @@ mod tests {
         let marked = "<h2 id=\"part-1\">Part &amp; 1</h2><p>1</p><h2 id=\"part-2\">Of <b>2</b></h2>";
         assert_eq!(page, format!("<h2>Before</h2>{list}{marked}"));
         assert_eq!(with_contents(part), part);
+    }
+
+    #[test]
+    fn a_program_is_named_with_the_commit_that_it_was_built_from() {
+        assert_eq!(
+            program("1.0", Some("0123456789abcdef")),
+            format!("1.0 ({})", shorten("0123456789abcdef", 12))
+        );
+        assert_eq!(program("1.0", None), "1.0");
+    }
+
+    #[test]
+    fn every_field_stands_once_and_what_is_not_said_is_a_blank_line() {
+        let text = |text: &str| Some(text.to_owned());
+        let sheet = SheetCover {
+            project: text("Dam <1>"),
+            number: text("D-2031"),
+            purpose: text("Chimney filter"),
+            client: text("Water Board"),
+            author: text("N. N."),
+            checker: text("M. M."),
+            revision: text("A"),
+            date: text("2026-11-25"),
+        };
+        let page = cover(&sheet, "1.0", Some(7)).into_string();
+        for fact in ["Dam &lt;1&gt;", "D-2031", "Chimney filter", "Water Board", ">A<"] {
+            assert_eq!(page.matches(fact).count(), 1, "{fact}: {page}");
+        }
+        // The signature fields, and the foot of every page.
+        assert_eq!(foot(&sheet).as_deref(), Some("D-2031"));
+        for fact in ["Prepared</th><td><bdi>N. N.<", "Checked</th><td><bdi>M. M.<", "Approved</th><td></td>"]
+        {
+            assert!(page.contains(fact), "{fact}: {page}");
+        }
+        assert!(!page.contains("class=\"blank"), "{page}");
+        assert!(
+            page.contains("2026-11-25") && page.contains("voidwalk 1.0") && page.contains(">7<"),
+            "{page}"
+        );
+        let none = cover(&SheetCover::default(), "1.0", None).into_string();
+        assert_eq!((none.matches("<dt>").count(), none.matches("class=\"blank").count()), (9, 8), "{none}");
+        assert!(none.contains("Program") && !none.contains("Seed"), "{none}");
+        let project = SheetCover { project: text("Main dam"), ..SheetCover::default() };
+        assert_eq!((foot(&project).as_deref(), foot(&SheetCover::default())), (Some("Main dam"), None));
     }
 }

@@ -1,8 +1,23 @@
-//! The sieve curves of soils, as one figure.
+//! Gradations of soils: as one figure, as tables of numbers in an appendix, and as those of a specification;
+//! and the files that were read.
 
-use super::figures::{Axis, BLACK, BLUE, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, VERMILLION};
-use super::figures::{positive_range, shorten};
+use super::figures::{
+    Area, Axis, BLACK, BLUE, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, VERMILLION, positive_range,
+    shorten,
+};
+use super::names::{input_name, is_named, soil_name};
+use super::shell::{Drawn, clean, fact};
+use super::table::{SizedSoil, Table, of_few, of_many};
 use crate::outcome::CurvePoint;
+use crate::outcome::record::Outcome;
+use crate::outcome::table::Columns;
+use crate::words::grading;
+use maud::{Markup, html};
+use voidwalk_practice::InputFile;
+use voidwalk_practice::design::Specification;
+use voidwalk_practice::design::specification::SpecifiedCurve;
+use voidwalk_practice::quantity::{SizeUnit, percent, significant};
+use voidwalk_sheets::us_sieve;
 
 /// Percent finer by mass against size (mm) for each soil: its name and its points, as an SVG file; with
 /// coarse sizes on the left if requested, as in the United States.
@@ -29,6 +44,207 @@ pub fn soils_figure<'a>(
         figure.add(line.dash(dash).label(name));
     }
     figure.file()
+}
+
+/// Rows shown of each gradation; all are in the record.
+const ROWS: usize = 200;
+
+/// A gradation: its kind, as `Filter`, its name, and its rows of size and percent finer by mass.
+struct TabledSoil<'a> {
+    kind: &'a str,
+    /// Its name, which may say no more.
+    name: &'a str,
+    rows: &'a [[f64; 2]],
+}
+
+/// Filter and base as the walk read them: the values that a reader types in to check it.
+pub(super) fn of_run(outcome: &Outcome, unit: SizeUnit) -> Markup {
+    let inputs = &outcome.inputs;
+    let (filter, base) = (&inputs.filter, &inputs.base);
+    let sampled = base.as_sampled.as_ref();
+    let mut soils = vec![TabledSoil { kind: "Filter", name: &filter.name, rows: &filter.gradation }];
+    let name = if is_named("base", &base.name) { base.name.as_str() } else { "" };
+    if let Some(sampled) = sampled {
+        soils.push(TabledSoil { kind: "Base, as sampled", name, rows: &sampled.gradation });
+    }
+    let kind = sampled.map_or("Base".into(), |_| format!("Base, {}", grading(&base.size())));
+    soils.push(TabledSoil { kind: &kind, name, rows: &base.gradation });
+    let note = html! {
+        p.small {
+            "Percent finer by mass, as walked and as the rules read them"
+            @if sampled.is_some() { ", and of the base as it was sampled: permeability is judged by that" }
+            "; " (BETWEEN) " Files that they were \
+             read from are kept in the folder " code { "inputs" } " of this run."
+        }
+    };
+    let gradations = gradations(&soils, unit, "outcome.json");
+    html! { section.appendix { h2 { "Appendix: the two gradations" } (note) (gradations) } }
+}
+
+const BETWEEN: &str = "between two rows straight lines on semi-logarithmic paper.";
+
+/// Gradations side by side; the record has all of their rows.
+fn gradations(soils: &[TabledSoil], unit: SizeUnit, record: &str) -> Markup {
+    html! { div.gradations { @for soil in soils { (gradation(soil, unit, record)) } } }
+}
+
+/// Every file that was read, as rows of a table of facts.
+pub(super) fn input_files(files: &[InputFile]) -> Markup {
+    html! { @for file in files {
+        (fact("Input file", format!("{} (XXH3 {})", input_name(&file.name), file.xxh3)))
+    } }
+}
+
+fn gradation(soil: &TabledSoil, unit: SizeUnit, record: &str) -> Markup {
+    let TabledSoil { kind, name, rows } = soil;
+    let finest = rows.iter().map(|row| row[1]).fold(100.0, f64::min);
+    // The coarsest first, as a laboratory writes it.
+    let shown: Vec<&[f64; 2]> = rows.iter().rev().take(ROWS).collect();
+    let mut columns = Columns::default();
+    if unit == SizeUnit::MmAndInches {
+        columns = columns.name("us_sieve", "US sieve", |row: &[f64; 2]| us_sieve(row[0]).unwrap_or_default());
+    }
+    let heading = format!("Size ({})", unit.short());
+    let percent_finer = |row: &[f64; 2]| significant((row[1] * 100.0).round() / 100.0).in_digits(4);
+    let columns = columns.number("size", heading, |row| significant(row[0]).in_digits(4));
+    let columns = columns.number("percent_finer", "Percent finer", percent_finer);
+    html! {
+        div {
+            h3 { (kind) @if is_named(kind, name) { ": " bdi { (clean(soil_name(name))) } } }
+            (Table::new(shown, columns))
+            @if finest > 0.0 {
+                p.small {
+                    (percent(finest / 100.0)) " are finer than the finest size; how fine is not known."
+                }
+            }
+            @if rows.len() > ROWS { p.small { "The rest is in " (record) "." } }
+        }
+    }
+}
+
+const RECORD: &str = "specification.json";
+
+/// Greatest number of curves of a base that are drawn with every row shown.
+const CURVES: usize = 12;
+
+/// The curves of the base of a specification, drawn on the form of gradations with the band if there is one,
+/// and in an appendix.
+pub(super) struct GivenCurves<'a>(pub &'a Specification);
+
+impl<'a> GivenCurves<'a> {
+    pub(super) fn heading(&self) -> &'static str {
+        match self.0.curves.len() {
+            1 => "Appendix: the gradation of the base",
+            _ => "Appendix: the gradations",
+        }
+    }
+
+    /// Sizes and gradations of every soil; empty if no soil is known.
+    pub(super) fn appendix(&self) -> Markup {
+        let (curves, unit) = (&self.0.curves, SizeUnit::of(false, self.0.inches));
+        if curves.is_empty() {
+            return html! {};
+        }
+        html! {
+            p.small {
+                "Percent finer by mass, as sampled"
+                @if curves.iter().any(|curve| !curve.regraded.is_empty()) {
+                    " and as regraded for the rules of practice"
+                }
+                "; " (BETWEEN)
+            }
+            @if curves.len() > 1 { (of_many(&self.sized())) } @else { (of_few(&self.sized(), unit)) }
+            (gradations(&self.tabled(), unit, RECORD))
+            @if curves.len() > CURVES {
+                p.small { "The other " (curves.len() - CURVES) " curves are in " (RECORD) "." }
+            }
+        }
+    }
+
+    fn sized(&self) -> Vec<SizedSoil<'a>> {
+        let several = self.0.curves.len() > 1;
+        let mut soils = Vec::new();
+        for curve in &self.0.curves {
+            let (sampled, regraded) = match (several, curve.regraded.is_empty()) {
+                (false, true) => ("Base".into(), String::new()),
+                (false, false) => ("Base, sampled".into(), "regraded".into()),
+                (true, _) => (curve.curve.clone(), format!("{}, regraded", curve.curve)),
+            };
+            soils.push(SizedSoil::new(sampled, &curve.gradation));
+            if !curve.regraded.is_empty() {
+                soils.push(SizedSoil::new(regraded, &curve.regraded));
+            }
+        }
+        soils
+    }
+
+    fn tabled(&self) -> Vec<TabledSoil<'a>> {
+        let several = self.0.curves.len() > 1;
+        let mut soils = Vec::new();
+        for curve in self.0.curves.iter().take(CURVES) {
+            let name = if several || is_named("base", &curve.curve) { &*curve.curve } else { "" };
+            soils.push(TabledSoil { kind: "Base, as sampled", name, rows: &curve.gradation });
+            if !curve.regraded.is_empty() {
+                soils.push(TabledSoil { kind: "Base, regraded", name, rows: &curve.regraded });
+            }
+        }
+        soils
+    }
+
+    /// The first curves on the form of gradations, with both sides of the band, whose D15F is in `words`;
+    /// `None` if there is nothing to draw.
+    pub(super) fn figure(&self, words: Option<&str>) -> Option<Drawn> {
+        let (curves, band) = (&self.0.curves, self.0.band.as_ref());
+        let sides = band.map(|band| (band.drawn_fine_side(), &band.coarse_side));
+        let bases =
+            curves.iter().take(CURVES).flat_map(|curve| curve.gradation.iter().chain(&curve.regraded));
+        let of_sides = sides.iter().flat_map(|(fine, coarse)| fine.iter().chain(*coarse));
+        let sizes: Vec<f64> = bases.chain(of_sides).map(|row| row[0]).collect();
+        if sizes.is_empty() {
+            return None;
+        }
+        let (low, high) = positive_range(sizes.into_iter());
+        let (title, what) = match band {
+            Some(_) => (
+                "Band of the filter",
+                "Percent finer against size for the base and for both sides of the band of the filter",
+            ),
+            None => ("Gradations", "Percent finer against size for the soils that were given"),
+        };
+        let (x, y) = (Axis::log("Size (mm)", low, high), Axis::percent("Percent finer by mass (%)"));
+        let mut figure = Figure::new(title, what, "", x, y).sizes((720.0, 460.0), (358.0, 400.0)).sieves();
+        if let Some((fine, coarse)) = &sides {
+            let outline = fine.iter().chain(coarse.iter().rev()).map(|&[x, y]| (x, y)).collect();
+            figure.add(Area::new(outline, GREEN, 0.15).label("band"));
+            figure.add(Line::of_rows(fine, GREEN).width(2.6).label("fine side"));
+            figure.add(Line::of_rows(coarse, BLUE).width(2.6).label("coarse side"));
+        }
+        for curve in curves.iter().take(CURVES) {
+            draw(&mut figure, curve, if curves.len() == 1 { "base" } else { &curve.curve });
+        }
+        let mut caption = match band {
+            Some(_) => format!(
+                "The band of the filter for this base, as its limits at the sieves have it{}. Its control \
+                 points are joined by straight lines; above 60 % finer both sides go on straight, and below \
+                 its D5 the fine side runs level: no more than 5 % may be finer.",
+                words.map_or(String::new(), |words| format!(": {words}"))
+            ),
+            None => "Gradations by mass. There is no band to draw.".to_owned(),
+        };
+        if curves.len() > CURVES {
+            caption += &format!(" {} more curves of the base are not drawn.", curves.len() - CURVES);
+        }
+        Some(Drawn::new("specification", figure, caption))
+    }
+}
+
+fn draw(figure: &mut Figure, curve: &SpecifiedCurve, name: &str) {
+    let (name, sampled) = (shorten(name, 24), Line::of_rows(&curve.gradation, VERMILLION));
+    if curve.regraded.is_empty() {
+        return figure.add(sampled.label(&name));
+    }
+    figure.add(sampled.width(1.4).dash(Dash::Dashed).label(&format!("{name},\nas sampled")));
+    figure.add(Line::of_rows(&curve.regraded, VERMILLION).label(&format!("{name},\nregraded")));
 }
 
 #[cfg(test)]

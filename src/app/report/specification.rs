@@ -1,37 +1,30 @@
-//! The page of a specification: warnings, both sides of the band on the form of gradations, limits sieve by
-//! sieve, standard products, the steps with their numbers, and the base.
+//! The page of a specification, and that of the specifications for many samples.
 
 use std::path::Path;
 
-use maud::{Markup, html};
+use maud::{Markup, Render, html};
 
-use super::appendix::input_files;
-use super::cover::program;
-use super::error::ReportError;
-use super::files::json;
-use super::given_soils::GivenSoils;
-use super::names::titled_by_file;
-use super::section::Sections;
-use super::shell::{clean, unbroken};
-use super::shown::known;
-use super::table::Table;
-use super::written::Written;
+use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, Point, Rule, Shape, positive_range};
+use super::files::{ReportError, json, refused};
+use super::names::{brief_name, file_notes, titled_by_file};
+use super::section::{Sections, Written};
+use super::shell::{Drawn, clean, program, unbroken};
+use super::soils::{GivenCurves, input_files};
+use super::table::{SizedSoil, Table, known, of_many};
 use crate::outcome::table::{Columns, Emphasis, Shown, TableCell};
 use crate::words::products::{columns, product as product_result, products as products_line, to_be_checked};
-use crate::words::row_note;
 use crate::words::specification::{
-    DESIGN_AGAIN, band, beside_limits, if_dispersive, limit, limit_columns, no_band, raised, step_name,
-    step_notes, step_value, still_to_set as still_to_set_line, without_margin,
+    DESIGN_AGAIN, DESIGN_EACH_AGAIN, band, beside_limits, if_dispersive, limit, limit_columns, no_band,
+    raised, step_name, step_notes, step_value, still_to_set, without_margin,
 };
+use crate::words::{designed, row_note};
 use voidwalk_practice::design::specification::StepValue;
 use voidwalk_practice::design::{Specification, SpecificationStep};
 use voidwalk_practice::quantity::{NumberRole, SizeUnit, length};
+use voidwalk_practice::{DesignedSample, DesignedSamples};
 
 /// Writes `specification.html`, its figure and `specification.xlsx` into the folder of a specification, from
 /// `specification.json` there.
-///
-/// # Errors
-/// The file is missing or malformed, or something cannot be written.
 pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
     let design: Specification = json(&folder.join("specification.json"))?;
     let names = html! {
@@ -45,34 +38,33 @@ pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
     };
     #[cfg(feature = "xlsx")]
     super::workbook::write_specification_workbook(folder, &design)?;
-    let soils = GivenSoils::of_specification(&design);
-    let made = html! { table.facts { tbody { (input_files(&design.inputs)) } } };
+    let curves = GivenCurves(&design);
+    let more = design.notes.iter().skip(WARNINGS).map(|row| row_note(row, unit(&design)));
+    let more =
+        html! { @if design.notes.len() > WARNINGS { ul { @for note in more { li { (clean(&note)) } } } } };
+    let made = html! { @if !design.inputs.is_empty() {
+        table.facts { tbody { (input_files(&design.inputs)) } }
+    } };
     let title = "Specification of a filter";
     let page = Sections::new(title, title, &names)
         .cover(&design.cover, &program(&design.version, design.commit.as_deref()), None)
         .words(&html! { section.sheet { (answer(&design)) } })
-        .figures(
-            soils.figure(design.band.as_ref(), band(&design, SizeUnit::of(false, design.inches)).as_deref()),
-        );
-    page.section("More warnings", &more_warnings(&design))
-        .section("Limits sieve by sieve", &limits(&design))
+        .figures(curves.figure(band(&design, unit(&design)).as_deref()));
+    page.section("More warnings", &more)
+        .section("Limits sieve by sieve", &sieve_limits(&design))
         .section("Standard products", &products(&design))
         .section("Step by step", &steps(&design))
-        .section(soils.heading(), &soils.appendix())
-        .section(
-            "How this was made",
-            &if design.inputs.is_empty() {
-                html! {}
-            } else {
-                made
-            },
-        )
+        .section(curves.heading(), &curves.appendix())
+        .section("How this was made", &made)
         .write(folder, "specification.html", &footer)
 }
 
-/// The answer of practice.
+fn unit(design: &Specification) -> SizeUnit {
+    SizeUnit::of(false, design.inches)
+}
+
 fn answer(design: &Specification) -> Markup {
-    let unit = SizeUnit::of(false, design.inches);
+    let unit = unit(design);
     html! {
         section.verdict {
             @if let Some(band) = band(design, unit) { p.word.long { (clean(&band)) ", by practice." } }
@@ -86,9 +78,11 @@ fn answer(design: &Specification) -> Markup {
                 p.word.long { "No band." }
                 p { (clean(&no_band(why, unit))) }
             }
-            (cautions(design))
+            @for row in design.notes.iter().take(WARNINGS) {
+                p.caution { b { "Warning" } ": " (unbroken(&row_note(row, unit))) }
+            }
             @if design.notes.len() > WARNINGS { p.small { "More warnings stand below." } }
-            (still_to_set(design))
+            @if let Some(gaps) = still_to_set(design, unit) { p.caution { b { (unbroken(&gaps)) } } }
             p { (clean(&products_line(design))) "." }
         }
     }
@@ -97,33 +91,10 @@ fn answer(design: &Specification) -> Markup {
 /// Number of warnings in the answer; those of further curves are below it.
 const WARNINGS: usize = 4;
 
-fn more_warnings(design: &Specification) -> Markup {
-    let (more, unit) = (design.notes.iter().skip(WARNINGS), SizeUnit::of(false, design.inches));
-    html! {
-        @if design.notes.len() > WARNINGS { ul { @for row in more { li { (clean(&row_note(row, unit))) } } } }
-    }
-}
-
-/// The first warnings of the base itself.
-fn cautions(design: &Specification) -> Markup {
-    let unit = SizeUnit::of(false, design.inches);
-    html! {
-        @for row in design.notes.iter().take(WARNINGS) {
-            p.caution { b { "Warning" } ": " (unbroken(&row_note(row, unit))) }
-        }
-    }
-}
-
-/// Gaps of the specification; empty without a band.
-fn still_to_set(design: &Specification) -> Markup {
-    let gaps = still_to_set_line(design, SizeUnit::of(false, design.inches));
-    html! { @if let Some(gaps) = gaps { p.caution { b { (unbroken(&gaps)) } } } }
-}
-
 /// The reason for the beginning of the band, and the sizes of its two sides; empty without a band.
 fn to_specify(design: &Specification) -> Markup {
     let Some(band) = &design.band else { return html! {} };
-    let unit = SizeUnit::of(false, design.inches);
+    let unit = unit(design);
     let sides = [("Fine side", true), ("Coarse side", false)];
     let columns = Columns::default().name("side", unit.name(), |side: &(&'static str, bool)| side.0);
     let columns = band.sizes.iter().fold(columns, |columns, size| {
@@ -135,12 +106,12 @@ fn to_specify(design: &Specification) -> Markup {
     });
     html! {
         @if let Some(raised) = raised(design, unit) { p { (clean(&raised)) "." } }
-        (Table::of(&sides, columns).class("band"))
+        (Table::new(&sides, columns).class("band"))
     }
 }
 
 fn steps(design: &Specification) -> Markup {
-    let unit = SizeUnit::of(false, design.inches);
+    let unit = unit(design);
     let number = |value: &StepValue| known(step_value(value, unit), |words| words);
     let columns = Columns::default()
         .name("step", "What is done, formula, source", |step: &SpecificationStep| {
@@ -159,23 +130,21 @@ fn steps(design: &Specification) -> Markup {
              handbook (National Engineering Handbook, Part 633, Chapter 26). Each step names the text that \
              its numbers come from, or says that they are this program’s own."
         }
-        (Table::of(&design.steps, columns).class("study steps").showing("values", |step| html! {
+        (Table::new(&design.steps, columns).class("study steps").showing("values", |step| html! {
             @for value in &step.values { (clean(&value.name)) " = " b { (number(value)) } br; }
         }))
     }
 }
 
-fn limits(design: &Specification) -> Markup {
+fn sieve_limits(design: &Specification) -> Markup {
+    let unit = unit(design);
     if design.band.is_none() {
-        let unit = SizeUnit::of(false, design.inches);
         return html! { @if let Some(why) = &design.no_band { p { (clean(&no_band(why, unit))) } } };
     }
     html! {
-        (Table::of(&design.limits, limit_columns()))
-        @if let Some(beside) = beside_limits(design, SizeUnit::of(false, design.inches)) {
-            p { (clean(&beside)) }
-        }
-        @if if_dispersive(design, DESIGN_AGAIN, SizeUnit::of(false, design.inches)).is_some() {
+        (Table::new(&design.limits, limit_columns()))
+        @if let Some(beside) = beside_limits(design, unit) { p { (clean(&beside)) } }
+        @if if_dispersive(design, DESIGN_AGAIN, unit).is_some() {
             p { b { "Valid only for a base that tests show not to be dispersive." } }
         }
         p.small {
@@ -187,15 +156,14 @@ fn limits(design: &Specification) -> Markup {
     }
 }
 
-/// Margins of standard products, with their result.
 fn products(design: &Specification) -> Markup {
-    let columns = columns(SizeUnit::of(false, design.inches)).text("result", "", |product| {
+    let columns = columns(unit(design)).text("result", "", |product| {
         product_result(design, product).shown().emphasised(product.fits().map(Emphasis::Kept))
     });
     let to_check = to_be_checked(&design.products);
     html! {
         @if !design.products.is_empty() {
-            (Table::of(&design.products, columns).class("study"))
+            (Table::new(&design.products, columns).class("study"))
             p.small {
                 "A margin of 1 and more is kept. Each product is tested with its own two sides; its \
                  supplier’s gradation decides."
@@ -203,6 +171,107 @@ fn products(design: &Specification) -> Markup {
             }
         }
     }
+}
+
+const RECORD: &str = "designs.json";
+
+/// Rows of the page's table; all are in `designs.csv`.
+const LISTED: usize = 2000;
+
+/// Writes `designs.html` and `figures/designs.svg` into the folder of the designs of many samples.
+/// A file that is missing or malformed is an error, and nothing is written then.
+pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
+    let path = folder.join(RECORD);
+    let all: DesignedSamples = json(&path)?;
+    if all.rows.is_empty() {
+        return Err(refused(&path, "rows", "empty".into(), "one or more"));
+    }
+    let names = html! {
+        (titled_by_file("Samples", "Samples", &all.samples))
+        @if all.dispersive { ", dispersive" }
+        ", by the rules of practice alone"
+    };
+    let lines = designed::lines(&all, DESIGN_EACH_AGAIN, SizeUnit::of(false, all.inches));
+    let first = html! { section.verdict {
+        p.word.long { (clean(&lines[0])) "." }
+        ul { @for line in &lines[1..] { li { (clean(line)) "." } } }
+    } };
+    let made = html! { table.facts { tbody { (input_files(&all.inputs)) } } p {
+        "voidwalk " (clean(&all.version)) ". "
+        code { "designs.json" } " holds this page’s numbers, " code { "designs.csv" }
+        " its table with further columns."
+    } };
+    Sections::new("Filters for many samples", "How coarse may the filter be?", &names)
+        .cover(&all.cover, &program(&all.version, all.commit.as_deref()), None)
+        .words(&first)
+        .contents()
+        .words(&html! { h2 { "Figures" } })
+        .figures(limits(&all))
+        .section("Samples", &table(&all))
+        .section("Notes on the files", &file_notes(&all.notes))
+        .section("Appendix: the soils", &appendix(&all))
+        .section("How this was made", &made)
+        .write(folder, "designs.html", &html! {})
+}
+
+fn appendix(all: &DesignedSamples) -> Markup {
+    let mut soils: Vec<SizedSoil> = Vec::new();
+    for row in all.rows.iter().take(LISTED).filter(|row| !row.gradation.is_empty()) {
+        soils.push(SizedSoil::new(brief_name(&row.sample), &row.gradation));
+        if !row.regraded.is_empty() {
+            soils.push(SizedSoil::new(format!("{}, regraded", brief_name(&row.sample)), &row.regraded));
+        }
+    }
+    if soils.is_empty() {
+        return html! {};
+    }
+    html! {
+        p.small {
+            "By mass, as sampled and as regraded for the rules of practice. " code { "designs.json" }
+            " has every gradation."
+        }
+        (of_many(&soils))
+    }
+}
+
+fn table(all: &DesignedSamples) -> Markup {
+    let columns = designed::columns(SizeUnit::of(false, all.inches));
+    let table = Table::new(all.rows.iter().take(LISTED), columns)
+        .class("cases")
+        .showing("sample", |row| html! { bdi { (brief_name(&row.sample)) } });
+    html! {
+        (table.render())
+        @if all.rows.len() > LISTED { p.small { "The rest is in designs.csv." } }
+        p.small {
+            "Limit of practice: the strictest D15F by which the rules retain the sample. Drains from: the \
+             minimum D15F that drains it. Band: D15F of both sides of its specification. Governs: 1 for the \
+             sample with the least limit."
+        }
+    }
+}
+
+/// The limit of practice of every sample against its D85B; `None` without a number.
+fn limits(all: &DesignedSamples) -> Option<Drawn> {
+    let limit = |row: &DesignedSample| Some((row.d85b_mm?, row.d15f_max_mm?, row.governs == Some(1)));
+    let practice: Vec<_> = all.rows.iter().filter_map(limit).collect();
+    practice.first()?;
+    let (low, high) = positive_range(practice.iter().map(|(d85, ..)| *d85));
+    let x = Axis::log("D85B after regrading (mm)", low / 1.2, high * 1.2);
+    let (low, high) = positive_range(practice.iter().map(|(_, mm, _)| *mm));
+    let y = Axis::log("D15F (mm)", low / 1.2, high * 1.2);
+    let what = "Maximum D15F by practice against D85B of each sample";
+    let mut figure = Figure::new("How coarse the filter may be", what, "", x, y).names_above();
+    let governs = all.governing().first().and_then(|row| row.d15f_max_mm);
+    if let Some(mm) = governs {
+        figure.add(Rule::new(Across::Y, mm, BLACK).dash(Dash::Dashed).label("governing sample"));
+    }
+    let point = |(d85, mm, governs): &(f64, f64, bool)| {
+        Point::new(*d85, *mm, BLUE, if *governs { Shape::Square } else { Shape::Circle })
+    };
+    figure.add_points("limit of practice", practice.iter().map(point));
+    let caption = "The strictest limit of practice of each sample. Square: the sample that governs. The \
+                   dashed line is the D15F beyond which that sample is not served.";
+    Some(Drawn::new("designs", figure, caption))
 }
 
 #[cfg(test)]
@@ -218,7 +287,7 @@ mod tests {
         let core = Specification::of("core", &[("core".into(), base)], SpecificationOptions::default());
         let line = products_line(&core);
         assert_eq!(line, "Standard products that fit: ASTM C33 fine aggregate");
-        assert!(limits(&core).into_string().contains("D15F of each delivery must lie within 0.140 to"));
+        assert!(sieve_limits(&core).into_string().contains("D15F of each delivery must lie within 0.140 to"));
         // The greatest is unknown, and the least alone refuses the finest product.
         let unknown =
             Specification { d15f_max_mm: None, products: margins((Some(0.2), 0.2), None), ..core.clone() };

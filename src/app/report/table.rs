@@ -1,11 +1,13 @@
-//! Tables of a page: rows with the columns that describe them ([`Columns`]), which a page may decorate.
-
-use std::collections::BTreeMap;
-
-use maud::{Markup, Render, html};
+//! Tables of a page: rows with the columns that describe them ([`Columns`]), which a page may decorate; and
+//! the sizes of soils as such tables.
 
 use super::shell::clean;
 use crate::outcome::table::{ColumnKind, Columns, Emphasis, PageColumn, Shown};
+use maud::{Markup, Render, html};
+use std::collections::BTreeMap;
+use std::fmt::Display;
+use voidwalk_practice::page::sizes_of;
+use voidwalk_practice::quantity::{SizeUnit, whole};
 
 /// Markup that a page shows in the cells of a column instead of its description.
 type Decoration<'a, T> = Box<dyn Fn(&T) -> Markup + 'a>;
@@ -21,13 +23,11 @@ pub(super) struct Table<'a, T> {
 }
 
 impl<'a, T> Table<'a, T> {
-    /// A table of these rows with these columns.
-    pub(super) fn of(rows: impl IntoIterator<Item = &'a T>, columns: Columns<'a, T>) -> Self {
+    pub(super) fn new(rows: impl IntoIterator<Item = &'a T>, columns: Columns<'a, T>) -> Self {
         let (rows, columns) = (rows.into_iter().collect(), columns.of_page().collect());
         Self { rows, columns, decorations: BTreeMap::new(), class: None, more: html! {} }
     }
 
-    /// Sets a class of the style.
     pub(super) fn class(self, class: &'static str) -> Self {
         Self { class: Some(class), ..self }
     }
@@ -110,6 +110,63 @@ impl<T> Render for Table<'_, T> {
     }
 }
 
+/// A soil: its name in the table, and its rows of size and percent finer by mass.
+pub(super) struct SizedSoil<'a> {
+    name: String,
+    rows: &'a [[f64; 2]],
+}
+
+impl<'a> SizedSoil<'a> {
+    pub(super) fn new(name: impl Into<String>, rows: &'a [[f64; 2]]) -> Self {
+        Self { name: name.into(), rows }
+    }
+}
+
+/// The name of a soil, and its sizes by their names.
+type SoilRow<'a> = (&'a String, Vec<(&'static str, Option<String>)>);
+
+fn note(unit: SizeUnit) -> Markup {
+    html! { p.small {
+        @if unit != SizeUnit::D0f {
+            "Group by ASTM D2487, finer than 75 mm. "
+        }
+        "–: not known."
+    } }
+}
+
+/// Sizes of a few soils, one column each.
+pub(super) fn of_few(soils: &[SizedSoil], unit: SizeUnit) -> Markup {
+    let sizes: Vec<_> = soils.iter().map(|soil| sizes_of(soil.rows, unit)).collect();
+    let rows: Vec<usize> = (0..sizes.first().map_or(0, Vec::len)).collect();
+    let mut columns = Columns::default().name("size", unit.name(), |row: &usize| sizes[0][*row].0);
+    for (at, (soil, sizes)) in soils.iter().zip(&sizes).enumerate() {
+        columns = columns.number(format!("soil_{at}"), &*soil.name, |row| sizes[*row].1.clone());
+    }
+    html! { div.sizes { (Table::new(&rows, columns)) (note(unit)) } }
+}
+
+/// Sizes of many soils, one row each, in mm.
+pub(super) fn of_many(soils: &[SizedSoil]) -> Markup {
+    let sizes: Vec<_> = soils.iter().map(|soil| (&soil.name, sizes_of(soil.rows, SizeUnit::Mm))).collect();
+    let Some((_, first)) = sizes.first() else { return html! {} };
+    let mut columns = Columns::default().name("soil", "Soil", |row: &SoilRow| row.0.clone());
+    for (at, (name, _)) in first.iter().enumerate() {
+        let heading = if name.starts_with('D') { format!("{name}, mm") } else { (*name).into() };
+        columns = columns.number(format!("size_{at}"), heading, move |(_, sizes)| sizes[at].1.clone());
+    }
+    let table = Table::new(&sizes, columns).class("cases");
+    html! { (table.showing("soil", |(name, _)| html! { bdi { (clean(name)) } })) (note(SizeUnit::Mm)) }
+}
+
+/// A value, or words for a missing one.
+pub(super) fn known<T, R: Display>(value: Option<T>, words: impl FnOnce(T) -> R) -> String {
+    value.map_or_else(|| "not given".to_owned(), |value| words(value).to_string())
+}
+
+pub(super) fn counts<const N: usize>(numbers: [u64; N]) -> String {
+    numbers.map(|number| whole(number).to_string()).join(", ")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -122,7 +179,7 @@ mod tests {
             "".shown(),
             |row| format!("{:.2}", row.1),
         );
-        let table = Table::of(&[("<b>", 0.25)], columns).class("study");
+        let table = Table::new(&[("<b>", 0.25)], columns).class("study");
         let expected = "<div class=\"scroll\"><table class=\"study\"><thead><tr><th>Name</th><th \
                         class=\"n\"></th></tr></thead><tbody><tr><th>&lt;b&gt;</th><td \
                         class=\"n\">0.25</td></tr></tbody></table></div>";
@@ -141,7 +198,7 @@ mod tests {
             })
             .column("hidden", |row| row.1);
         let rows = [("<a>", 12_345)];
-        let table = Table::of(&rows, columns).showing("case", |row| html! { i { (row.0) } });
+        let table = Table::new(&rows, columns).showing("case", |row| html! { i { (row.0) } });
         let text = table.render().into_string();
         let head = "<th class=\"n\"><span class=\"run-2\">Count</span></th><th>Case</th><th>Met</th></tr>";
         let row = "<td class=\"n\">12\u{202f}345</td><th><i>&lt;a&gt;</i></th><td><span \

@@ -5,11 +5,10 @@ use std::path::Path;
 
 use serde::de::DeserializeOwned;
 
-use super::error::ReportError;
-use super::files::rows;
-use super::quantity::SizeUnit;
+use super::files::{ReportError, malformed, refused, rows};
 use crate::outcome::Recorded;
 use crate::outcome::record::{LayerRow, Replicate, RunSummary, SeriesRow, SizeRow, Verdict};
+use voidwalk_practice::quantity::SizeUnit;
 
 /// The results of walks and their rows.
 #[derive(Clone, Copy)]
@@ -52,7 +51,6 @@ pub(super) struct RunRows {
     pub eroded: BTreeMap<(u64, u64, u64), Vec<SizeRow>>,
 }
 
-/// Rows with their line numbers.
 type Numbered<T> = Vec<(u64, T)>;
 
 /// Source of the rows of a run: its files, or the contents that they would have.
@@ -62,7 +60,6 @@ pub(super) enum RowSource<'a> {
 }
 
 impl RowSource<'_> {
-    /// The rows of a table.
     fn rows<T: DeserializeOwned>(
         &mut self,
         name: &str,
@@ -82,10 +79,8 @@ const RETAINED: &str = "retained.csv";
 const ERODED: &str = "eroded.csv";
 
 impl RunRows {
-    /// Sorts the rows of these numbers of replicates and runs; errors name a file of `folder`.
-    ///
-    /// # Errors
-    /// A file that cannot be read, and rows that do not fit together.
+    /// Sorts the rows of these numbers of replicates and runs, and refuses those that do not fit together;
+    /// errors name a file of `folder`.
     pub(super) fn read(
         folder: &Path,
         mut source: RowSource,
@@ -96,94 +91,72 @@ impl RunRows {
         let layers = source.rows(LAYERS, |recorded| &mut recorded.layers)?;
         let retained = source.rows(RETAINED, |recorded| &mut recorded.retained)?;
         let eroded = source.rows(ERODED, |recorded| &mut recorded.eroded)?;
-        let known = |path: &Path, line: u64, replicate: u64, run: u64| {
+        let known = |replicate: u64, run: u64| {
             let (replicates, runs) = (replicates as u64, runs as u64);
-            if (1..=replicates).contains(&replicate) && (1..=runs).contains(&run) {
-                return Ok(());
+            match (1..=replicates).contains(&replicate) && (1..=runs).contains(&run) {
+                true => Ok(()),
+                false => Err(format!(
+                    "replicate {replicate}, run {run}: outcome.json holds replicates 1 to {replicates} and \
+                     runs 1 to {runs}"
+                )),
             }
-            let message = format!(
-                "replicate {replicate}, run {run}: outcome.json holds replicates 1 to {replicates} and runs \
-                 1 to {runs}"
-            );
-            Err(ReportError::Form { path: path.to_owned(), line, message })
         };
         let curves = |name: &str, rows: Numbered<SizeRow>| {
-            let path = folder.join(name);
             let key = |row: &SizeRow| (row.run, row.replicate, row.increment);
-            sorted(rows, key, |line, row, _| {
-                known(&path, line, row.replicate, row.run)?;
-                in_range(&path, line, "diameter_mm", row.diameter_mm, f64::MAX)?;
-                in_range(&path, line, "percent_finer_by_mass", row.percent_finer_by_mass, 100.0)?;
-                in_range(&path, line, "percent_finer_by_number", row.percent_finer_by_number, 100.0)
+            sorted(&folder.join(name), rows, key, |row, _| {
+                known(row.replicate, row.run)?;
+                in_range("diameter_mm", row.diameter_mm, f64::MAX)?;
+                in_range("percent_finer_by_mass", row.percent_finer_by_mass, 100.0)?;
+                in_range("percent_finer_by_number", row.percent_finer_by_number, 100.0)
             })
         };
-        let (of_series, of_layers) = (folder.join(SERIES), folder.join(LAYERS));
-        let refuse =
-            |path: &Path, line, message| Err(ReportError::Form { path: path.to_owned(), line, message });
-        Ok(Self {
-            series: sorted(
-                series,
-                |row| (row.run, row.replicate),
-                |line, row, last| {
-                    known(&of_series, line, row.replicate, row.run)?;
-                    in_range(&of_series, line, "eroded_mass_fraction", row.eroded_mass_fraction, 1.0)?;
-                    match last.map(|last| last.increment).filter(|last| row.increment <= *last) {
-                        Some(last) => {
-                            let at = row.increment;
-                            let message =
-                                format!("increment is {at}, allowed: more than {last}, the one before");
-                            refuse(&of_series, line, message)
-                        }
-                        None => Ok(()),
-                    }
-                },
-            )?,
-            layers: sorted(
-                layers,
-                |row| (row.run, row.replicate),
-                |line, row, _| {
-                    known(&of_layers, line, row.replicate, row.run)?;
-                    let (blocked, all) = (row.blocked, row.constrictions);
-                    if blocked <= all {
-                        return Ok(());
-                    }
-                    refuse(
-                        &of_layers,
-                        line,
-                        format!("blocked is {blocked}, allowed: at most constrictions, {all}"),
-                    )
-                },
-            )?,
-            retained: curves(RETAINED, retained)?,
-            eroded: curves(ERODED, eroded)?,
-        })
+        let key = |row: &SeriesRow| (row.run, row.replicate);
+        let series = sorted(&folder.join(SERIES), series, key, |row, last| {
+            known(row.replicate, row.run)?;
+            in_range("eroded_mass_fraction", row.eroded_mass_fraction, 1.0)?;
+            let at = row.increment;
+            match last.map(|last| last.increment).filter(|last| at <= *last) {
+                Some(last) => Err(format!("increment is {at}, allowed: more than {last}, the one before")),
+                None => Ok(()),
+            }
+        })?;
+        let key = |row: &LayerRow| (row.run, row.replicate);
+        let layers = sorted(&folder.join(LAYERS), layers, key, |row, _| {
+            known(row.replicate, row.run)?;
+            let (blocked, all) = (row.blocked, row.constrictions);
+            match blocked <= all {
+                true => Ok(()),
+                false => Err(format!("blocked is {blocked}, allowed: at most constrictions, {all}")),
+            }
+        })?;
+        Ok(Self { series, layers, retained: curves(RETAINED, retained)?, eroded: curves(ERODED, eroded)? })
     }
 }
 
-/// Rows by their key, each checked with its line and the previous row of its key.
+/// Rows by their key, each checked beside the previous row of its key; `path` names their file in errors.
 fn sorted<K: Ord, T>(
+    path: &Path,
     rows: Numbered<T>,
     key: impl Fn(&T) -> K,
-    check: impl Fn(u64, &T, Option<&T>) -> Result<(), ReportError>,
+    check: impl Fn(&T, Option<&T>) -> Result<(), String>,
 ) -> Result<BTreeMap<K, Vec<T>>, ReportError> {
     let mut sorted: BTreeMap<K, Vec<T>> = BTreeMap::new();
     for (line, row) in rows {
         let before = sorted.entry(key(&row)).or_default();
-        check(line, &row, before.last())?;
+        check(&row, before.last()).map_err(|message| malformed(path, line, message))?;
         before.push(row);
     }
     Ok(sorted)
 }
 
 /// Refuses values that are not between 0 and `most` (Rust reads "nan" and "inf" as numbers).
-fn in_range(path: &Path, line: u64, field: &str, value: f64, most: f64) -> Result<(), ReportError> {
+fn in_range(field: &str, value: f64, most: f64) -> Result<(), String> {
     if value >= 0.0 && value <= most * (1.0 + 1e-9) {
         return Ok(());
     }
     let allowed =
         if most == f64::MAX { "a finite number, not negative".to_owned() } else { format!("0 to {most}") };
-    let message = format!("{field} is {value}, allowed: {allowed}");
-    Err(ReportError::Form { path: path.to_owned(), line, message })
+    Err(format!("{field} is {value}, allowed: {allowed}"))
 }
 
 /// Refuses results that no walks have.
@@ -229,15 +202,9 @@ pub(super) fn check_curve(path: &Path, field: &str, curve: &[[f64; 2]]) -> Resul
     }
     for [size, percent] in curve {
         if !(*size >= 0.0 && size.is_finite() && (0.0..=100.0 + 1e-9).contains(percent)) {
-            let (value, allowed) =
-                (format!("[{size}, {percent}]"), "a size not negative, a percentage of 0 to 100");
-            return Err(refused(path, field, value, allowed));
+            let allowed = "a size not negative, a percentage of 0 to 100";
+            return Err(refused(path, field, format!("[{size}, {percent}]"), allowed));
         }
     }
     Ok(())
-}
-
-fn refused(path: &Path, field: &str, value: String, allowed: &str) -> ReportError {
-    let (field, allowed) = (field.to_owned(), allowed.to_owned());
-    ReportError::Value { path: path.to_owned(), field, value, allowed }
 }

@@ -3,17 +3,16 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::error::{AnyError, RunError};
-use super::folder::FolderKind;
-use super::unfinished;
+use super::RunError;
+use super::error::AnyError;
+use super::folder::{FolderKind, Unfinished};
 use crate::case::PackingPlan;
 use crate::outcome::record::Outcome;
 use crate::verdict::RunFiles;
 use voidwalk_core::packing::CompressionProgress;
 use voidwalk_core::store::Folder;
-use voidwalk_practice::Decision;
-use voidwalk_practice::Note;
 use voidwalk_practice::quantity::SizeUnit;
+use voidwalk_practice::{Decision, Note};
 
 /// Event while a filter is packed and a case is walked.
 #[derive(Clone, Copy, Debug)]
@@ -95,24 +94,7 @@ pub enum Event<'a> {
 }
 
 /// Callbacks of a caller that follow the work, from any thread, and stop it; the default follows nothing and
-/// never stops.
-///
-/// ```
-/// use std::sync::atomic::{AtomicU64, Ordering};
-/// use voidwalk_app::run::Event;
-/// use voidwalk_app::{Callbacks, Case, Scene, walk_case};
-/// let small = ["network.nx=8", "network.ny=8", "network.nz=12", "replicates=2", "record.sensitivity=[]"];
-/// let case = Case::new(Scene::built_in(&small.map(String::from))?)?;
-/// let runs = AtomicU64::new(0);
-/// let on_event = |event: Event| {
-///     if let Event::RunDone = event {
-///         runs.fetch_add(1, Ordering::Relaxed);
-///     }
-/// };
-/// walk_case(&case, &Callbacks { on_event: &on_event, ..Callbacks::default() })?;
-/// assert_eq!(runs.into_inner(), 4);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+/// never stops. [`resume`](super::resume) has an example.
 #[derive(Clone, Copy)]
 pub struct Callbacks<'a> {
     /// Receives every event.
@@ -157,6 +139,6 @@ impl Callbacks<'_> {
     /// Reports that results are written, and removes the mark of unfinished work.
     pub(crate) fn finish(&self, kind: FolderKind, folder: &Folder) -> Result<(), RunError> {
         self.results(kind, folder.path(), None)?;
-        Ok(unfinished::end(folder)?)
+        Ok(Unfinished::end(folder)?)
     }
 }

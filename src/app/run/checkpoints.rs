@@ -27,13 +27,10 @@ pub const FOLDER: &str = "checkpoint";
 /// Finished part of a replicate.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Done {
-    /// True if the replicate is finished.
     pub complete: bool,
-    /// Figures of the runs that are done.
     pub runs: Vec<Run>,
     /// True, by run, if it eroded less than the threshold.
     pub below: Vec<bool>,
-    /// Their rows of the CSV files.
     pub recorded: Recorded,
     /// Records of the run that is under way.
     pub recorder: Recorder,
@@ -47,14 +44,12 @@ pub struct WalkId {
     pub part: u64,
     /// Replicate, counted from 1.
     pub replicate: u64,
-    /// Seed of the replicate.
     pub seed: u64,
     /// Base particles of each run.
     pub n_base: u64,
 }
 
 impl WalkId {
-    /// Name of its checkpoints.
     fn name(self) -> String {
         format!("{}-{}", self.part, self.replicate)
     }
@@ -115,9 +110,6 @@ pub struct Checkpoints {
 
 impl Checkpoints {
     /// The checkpoints of the case with this fingerprint, in a run's folder.
-    ///
-    /// # Errors
-    /// The folder of the checkpoints cannot be made.
     pub fn new(folder: &Folder, scene: &str, every: CheckpointInterval) -> Result<Self, StoreError> {
         let path = folder.path().join(FOLDER);
         make_folder(&path)?;
@@ -132,9 +124,6 @@ impl Checkpoints {
     }
 
     /// Fingerprint of the scene of the checkpoints in a run's folder; `None` if no checkpoint is whole.
-    ///
-    /// # Errors
-    /// The system fails to read one.
     pub fn scene_in(folder: &Path) -> Result<Option<String>, CheckpointError> {
         let folder = folder.join(FOLDER);
         let files = files_in(&folder)
@@ -150,9 +139,6 @@ impl Checkpoints {
     }
 
     /// True if a run's folder holds checkpoints.
-    ///
-    /// # Errors
-    /// The system fails to look.
     pub fn is_in(folder: &Path) -> Result<bool, StoreError> {
         Ok(!files_in(&folder.join(FOLDER))?.is_empty())
     }
@@ -165,10 +151,8 @@ impl Checkpoints {
         }
     }
 
-    /// Loads a replicate: its finished part, and the checkpoint of the run that is under way.
-    ///
-    /// # Errors
-    /// It has checkpoints, but no checkpoint is whole and belongs to this very walk.
+    /// Loads a replicate: its finished part, and the checkpoint of the run that is under way. Errors: it has
+    /// checkpoints, but no checkpoint is whole and belongs to this very walk.
     pub fn load(&self, walk: WalkId) -> Result<Option<(Done, Checkpoint)>, CheckpointError> {
         let name = walk.name();
         let (saved, refused) = newest(&self.folder, &name, &self.identity(walk))?;
@@ -182,15 +166,11 @@ impl Checkpoints {
         Ok(Some((saved.read_record("done")?, saved)))
     }
 
-    /// Checkpoints that were passed over, and why.
     pub fn passed_over(&self) -> Vec<String> {
         self.passed_over.lock().map(|all| all.clone()).unwrap_or_default()
     }
 
-    /// Saves a walk after a whole increment.
-    ///
-    /// # Errors
-    /// Errors of the system; the previous checkpoint stays then.
+    /// Saves a walk after a whole increment. If that fails, the previous checkpoint stays.
     pub fn save_walk(
         &self,
         walk: WalkId,
@@ -222,9 +202,6 @@ impl Checkpoints {
     }
 
     /// Writes the finished replicates that are not on the disk yet.
-    ///
-    /// # Errors
-    /// Errors of the system.
     pub fn flush(&self) -> Result<(), StoreError> {
         let waiting = self.waiting.lock().map(|mut w| std::mem::take(&mut *w)).unwrap_or_default();
         for (name, (label, text)) in &waiting {
@@ -234,9 +211,6 @@ impl Checkpoints {
     }
 
     /// Removes every checkpoint: the results are complete.
-    ///
-    /// # Errors
-    /// Errors of the system.
     pub fn clear(&self) -> Result<(), StoreError> {
         remove_folder(&self.folder)
     }
@@ -258,9 +232,6 @@ impl Checkpoints {
 }
 
 /// Removes the checkpoints in a run's folder, whatever they belong to.
-///
-/// # Errors
-/// Errors of the system.
 pub fn discard(folder: &Path) -> Result<(), StoreError> {
     remove_folder(&folder.join(FOLDER))
 }

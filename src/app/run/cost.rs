@@ -6,14 +6,20 @@
 //! speed of the machine on which they run. `results/speed.md` holds estimates against measured times
 //! (`scripts/checks/check_times.py`).
 
-use super::pilot::{WorkByVoid, pilot, small_packing_seconds};
-use super::planned::{first_replicates, likely_replicates, replicates_of_end};
-use crate::case::{Case, CaseNetwork, PackingPlan};
+use std::ops::Range;
+use std::sync::LazyLock;
+
+use super::machine::on_threads;
+use super::replicates::{first_replicates, likely_replicates, plan, replicates_of_end};
+use crate::case::{Case, CaseNetwork, PackingPlan, replicate_seed};
+use crate::outcome::Eroded;
 use crate::scene::NetworkSource;
 use voidwalk_core::constrictions::Curve;
-use voidwalk_core::packing::is_wide;
-use voidwalk_core::store::platform::THREAD_SECONDS_STEP;
-use voidwalk_core::walk::Engine;
+use voidwalk_core::gradation::Gradation;
+use voidwalk_core::network::Network;
+use voidwalk_core::packing::{Settings, compress, is_wide};
+use voidwalk_core::store::platform::{THREAD_SECONDS_STEP, thread_seconds};
+use voidwalk_core::walk::{Clogged, Engine, Passive, SizeClasses, State, Walk, WalkControl};
 
 /// Seconds that parts of a walk take on a cubic lattice.
 struct Rates {
@@ -49,7 +55,7 @@ const PARTS: usize = 64;
 const NETWORK_S: f64 = 1e-7;
 /// Seconds to write a case's files and page ...
 const FILES_S: f64 = 0.12;
-/// ... and further seconds for the files of a packing.
+/// ... and further ones for the files of a packing.
 const PACKED_FILES_S: f64 = 0.1;
 /// The most that a pilot walk of a case may take.
 const PILOT_S: f64 = 0.25;
@@ -58,9 +64,7 @@ const BUSY: f64 = 0.7;
 /// Seconds for one grain in one step of a compression of `GRAINS` grains; more fit the cache less well, and
 /// their seconds grow with the power `GRAINS_POWER` of their number.
 const GRAIN_STEP_S: f64 = 7.5e-8;
-/// See `GRAIN_STEP_S`.
 const GRAINS: f64 = 9_000.0;
-/// See `GRAIN_STEP_S`.
 const GRAINS_POWER: f64 = 0.3;
 /// Power of Cu with which the seconds of a grain and step grow: the wider the gradation, the more of its
 /// grains touch nothing.
@@ -111,8 +115,8 @@ impl Case {
 
     /// Core seconds on this machine, from the pace of the case's pilot walks.
     pub fn core_seconds_here(&self) -> f64 {
-        let Foreseen { seconds, besides, pilots, .. } = self.foreseen();
-        (seconds - besides) * pace(pilots.took, pilots.predicted) + besides
+        let Foreseen { seconds, besides, took, predicted, .. } = self.foreseen();
+        (seconds - besides) * pace(took, predicted) + besides
     }
 
     fn foreseen(&self) -> Foreseen {
@@ -153,26 +157,26 @@ impl Case {
     /// a guess.
     fn of_replicate(&self, n_base: u64, most_s: f64) -> Foreseen {
         let runs = self.scene.walk.runs as f64;
-        let guess = self.guessed(n_base);
+        let (guessed, solved) = self.guessed(n_base);
         let (voids, constrictions) = (self.network.voids as f64, self.network.constrictions as f64);
-        let besides = runs * guess.solved + (voids + constrictions) * NETWORK_S;
-        match pilot(self, n_base, runs * guess.seconds, most_s) {
+        let besides = runs * solved + (voids + constrictions) * NETWORK_S;
+        match pilot(self, n_base, runs * guessed, most_s) {
             Some(work) => {
-                // A pilot walks on a lattice by area, whatever the case's own network is.
-                let predicted = work.of_voids(work.voids, self.of_engine(true));
                 Foreseen {
                     seconds: work.of_voids(voids, self.slower()) + besides,
                     besides,
-                    pilots: Pilots { took: work.took, predicted },
+                    took: work.took,
+                    // A pilot walks on a lattice by area, whatever the case's own network is.
+                    predicted: work.of_voids(work.voids, self.of_engine(true)),
                     eroded: Some(work.eroded),
                 }
             }
-            None => Foreseen { seconds: runs * guess.seconds + besides, besides, ..Foreseen::default() },
+            None => Foreseen { seconds: runs * guessed + besides, besides, ..Foreseen::default() },
         }
     }
 
-    /// Seconds of one run that meets a clean network all the way.
-    fn guessed(&self, n_base: u64) -> Guess {
+    /// Seconds of one run that meets a clean network all the way, and those in which the flow is solved.
+    fn guessed(&self, n_base: u64) -> (f64, f64) {
         let CaseNetwork { voids, constrictions, layers, .. } = self.network;
         let is_one_by_one = self.takes_each(n_base);
         let one_by_one = self.one_by_one(n_base) as f64;
@@ -182,8 +186,7 @@ impl Case {
             true => (increments / SOLVED_EVERY + 2.0) * constrictions as f64 * SOLVE_S,
             false => 0.0,
         };
-        let seconds = COUNTED.seconds(occupied, 0.0, one_by_one, one_by_one * self.moves_of_each(n_base));
-        Guess { seconds, solved }
+        (COUNTED.seconds(occupied, 0.0, one_by_one, one_by_one * self.moves_of_each(n_base)), solved)
     }
 
     /// Time of a void's counts relative to a cubic lattice by engine `counts`.
@@ -209,10 +212,8 @@ impl Case {
     /// the chance that it has on the clean network, or until it leaves.
     fn moves_of_each(&self, n_base: u64) -> f64 {
         let shares = || (0..PARTS).map(|part| (part as f64 + 0.5) / PARTS as f64);
-        let areas: Vec<(f64, f64)> = shares()
-            .map(|share| self.filter.curve.quantile(share) / self.filter.unit_mm)
-            .map(|d| (d, d * d))
-            .collect();
+        let size = |share| self.filter.curve.quantile(share) / self.filter.unit_mm;
+        let areas: Vec<(f64, f64)> = shares().map(size).map(|d| (d, d * d)).collect();
         let all: f64 = areas.iter().map(|(_, area)| area).sum();
         let most = MOVES_A_LAYER * (self.network.layers as f64).max(1.0);
         let moves = |d: f64| {
@@ -236,10 +237,8 @@ impl Rates {
     /// Seconds for voids that hold counts and voids that are looked at, both summed over the increments,
     /// particles that are walked by themselves, and moves of those.
     fn seconds(&self, voids: f64, looked_at: f64, one_by_one: f64, moves: f64) -> f64 {
-        self.void_s * voids
-            + self.looked_at_s * looked_at
-            + self.inserted_s * one_by_one
-            + self.moved_s * moves
+        let Self { moved_s, inserted_s, void_s, looked_at_s } = self;
+        void_s * voids + looked_at_s * looked_at + inserted_s * one_by_one + moved_s * moves
     }
 }
 
@@ -252,14 +251,14 @@ impl WorkByVoid {
     }
 }
 
-/// Forecast of walks.
 #[derive(Default)]
 struct Foreseen {
     seconds: f64,
     /// Part of those seconds without walks: networks are built, the flow is solved, files are written.
     besides: f64,
-    /// The pilot walks by which it was.
-    pilots: Pilots,
+    /// Seconds of the pilot walks by which it was: measured here, and predicted by the rates of this module.
+    took: f64,
+    predicted: f64,
     /// Eroded mass fraction by run, if a pilot walk gives it.
     eroded: Option<Vec<f64>>,
 }
@@ -267,11 +266,11 @@ struct Foreseen {
 impl Foreseen {
     /// Sum of this and a multiple of `other`, whose pilot walks were walked once.
     fn and(self, times: f64, other: &Self) -> Self {
-        let Pilots { took, predicted } = self.pilots;
         Self {
             seconds: self.seconds + times * other.seconds,
             besides: self.besides + times * other.besides,
-            pilots: Pilots { took: took + other.pilots.took, predicted: predicted + other.pilots.predicted },
+            took: self.took + other.took,
+            predicted: self.predicted + other.predicted,
             eroded: self.eroded,
         }
     }
@@ -281,19 +280,6 @@ impl Foreseen {
 fn pace(took: f64, predicted: f64) -> f64 {
     let least = LEAST_TIMED_S.max(LEAST_STEPS * THREAD_SECONDS_STEP);
     if took >= least && predicted > 0.0 { took / predicted } else { 1.0 }
-}
-
-/// Seconds of pilot walks: measured here, and predicted by the rates of this module.
-#[derive(Clone, Copy, Default)]
-struct Pilots {
-    took: f64,
-    predicted: f64,
-}
-
-/// Seconds of a run, those in which the flow is solved apart.
-struct Guess {
-    seconds: f64,
-    solved: f64,
 }
 
 impl PackingPlan {
@@ -353,6 +339,118 @@ pub fn duration(seconds: f64) -> String {
         s if s < 90.0 => format!("{:.0} s", s.ceil()),
         s if s < 5400.0 => format!("{:.0} min", s / 60.0),
         s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+/// Work of all runs of one replicate, for each void of its network, counted by a pilot walk: the runs of a
+/// case on a slim lattice as deep as its own.
+///
+/// The time of a run depends on its base: a filter that seals leaves the voids below empty, a base of one
+/// size blocks the constrictions that would stop it and then walks to the end. A lattice a few voids wide
+/// meets the same base per void and so does the same work per void, in a fraction of the time.
+#[derive(Default)]
+struct WorkByVoid {
+    /// Voids that held counts, summed over the increments.
+    occupied: f64,
+    /// Voids that are looked at, in layers of which any held counts, summed likewise.
+    looked_at: f64,
+    /// Moves that were attempted by particles that are walked by themselves.
+    moves: f64,
+    one_by_one: f64,
+    /// Eroded mass fraction of each run: a slim lattice erodes about as much.
+    eroded: Vec<f64>,
+    voids: f64,
+    /// Processor time of their walk here (s); 0 if the system does not give it.
+    took: f64,
+}
+
+/// Greatest width of the slim lattice: voids along x and y.
+const WIDEST: u32 = 10;
+/// Least width: narrower ones meet themselves.
+const NARROWEST: u32 = 4;
+
+/// Size classes of its records, which are not used.
+const CLASSES: usize = 2;
+
+/// Work of the runs of the case's first replicate, with `n_base` particles in all, on a slim lattice; `None`
+/// if its own is as slim, if even the narrowest takes more than `most_s`, or if it cannot be walked. On its
+/// own lattice these runs are guessed to take `whole_s`.
+fn pilot(case: &Case, n_base: u64, whole_s: f64, most_s: f64) -> Option<WorkByVoid> {
+    let CaseNetwork { voids, start_nodes, layers, .. } = case.network;
+    let depth = u32::try_from(layers).ok()?;
+    let seconds = |width: u32| whole_s * (f64::from(width).powi(2) * f64::from(depth) / voids as f64);
+    let width = (NARROWEST..=WIDEST).rev().find(|&width| seconds(width) <= most_s)?;
+    if u64::from(width).pow(2) >= start_nodes {
+        return None;
+    }
+    alone(|| walked(case, n_base, width, depth))
+}
+
+/// Result of `work` on one thread, so that its time includes no other work.
+fn alone<T: Send>(work: impl Fn() -> T + Send + Sync) -> T {
+    on_threads(Some(1), || Ok(work())).unwrap_or_else(|_| work())
+}
+
+/// Pilot walk on a lattice this many voids wide and deep.
+fn walked(case: &Case, n_base: u64, width: u32, depth: u32) -> Option<WorkByVoid> {
+    let seed = replicate_seed(case.scene.walk.seed, 1);
+    let network =
+        Network::cubic([width, width, depth], &case.filter.curve, case.filter.unit_mm, seed).ok()?;
+    let share = network.voids() as f64 / case.network.voids as f64;
+    let n_base = ((n_base as f64 * share).round() as u64).max(1);
+    let across = width as usize * width as usize;
+    let mut work = WorkByVoid::default();
+    let mut clogged = Clogged::none(&network);
+    let (begun, mut counting) = (thread_seconds(), 0.0);
+    for run in 1..=case.scene.walk.runs {
+        let plan = plan(case, &network, &clogged.blocked, n_base);
+        let supply = plan.supply(case.supply.sampler.clone(), n_base, case.increments(), seed, run);
+        let classes =
+            SizeClasses::logarithmic(case.supply.sampler.smallest(), case.supply.sampler.largest(), CLASSES);
+        let mut state = State::new(&network, &supply, classes, clogged, seed, run);
+        work.one_by_one += supply.total() as f64;
+        Walk::new(&network, &supply, &state)
+            .run(&mut state, &mut |state| {
+                let begun = thread_seconds();
+                work.moves += state.particles.live.iter().map(|&live| f64::from(live)).sum::<f64>();
+                for layer in 0..depth as usize {
+                    let held = occupied(&state.passive, layer * across..(layer + 1) * across);
+                    work.occupied += held as f64;
+                    work.looked_at += if held > 0 { across as f64 } else { 0.0 };
+                }
+                counting += thread_seconds() - begun;
+                WalkControl::Continue
+            })
+            .ok()?;
+        work.eroded.push(Eroded::of(&state, case.pan_by_mass_only()).mass_fraction);
+        clogged = state.into_clogged();
+    }
+    let voids = network.voids() as f64;
+    let sums = [&mut work.occupied, &mut work.looked_at, &mut work.moves, &mut work.one_by_one];
+    sums.into_iter().for_each(|sum| *sum /= voids);
+    Some(WorkByVoid { voids, took: thread_seconds() - begun - counting, ..work })
+}
+
+/// Processor time of a small packing here, on one thread (s): the same grains and steps everywhere. Packed
+/// once; 0 if the system does not give it.
+fn small_packing_seconds() -> f64 {
+    static SECONDS: LazyLock<f64> = LazyLock::new(|| {
+        let Ok(gradation) = Gradation::linear_from_d0(1.0, 1.5) else { return 0.0 };
+        let settings = Settings { grains: 200, stiffness_ratio: 0.01, ..Settings::default() };
+        alone(|| {
+            let begun = thread_seconds();
+            compress(&gradation, &settings, |_| true).map_or(0.0, |_| thread_seconds() - begun)
+        })
+    });
+    *SECONDS
+}
+
+/// Number of these voids that hold counts.
+fn occupied(passive: &Passive, voids: Range<usize>) -> usize {
+    match passive {
+        Passive::OneByOne => 0,
+        Passive::Counts(counts) => counts[voids].iter().filter(|&&n| n > 0).count(),
+        Passive::Expected(expected) => expected.moving[voids].iter().filter(|&&n| n > 0.0).count(),
     }
 }
 

@@ -40,16 +40,6 @@ pub type AnyError = Box<dyn std::error::Error + Send + Sync>;
 
 /// Reason why a command of the program ended early; [`RunError::exit`] tells refused, stopped and failed
 /// commands apart.
-///
-/// ```
-/// use voidwalk_app::run::{Exit, RunError};
-/// use voidwalk_app::{Callbacks, RunOptions, resume};
-/// let folder = tempfile::tempdir()?;
-/// let Err(error) = resume(folder.path(), &RunOptions::default(), &Callbacks::default()) else { panic!() };
-/// assert_eq!((error.exit(), error.exit().code()), (Exit::Refused, 2));
-/// assert!(error.to_string().contains("holds no scene.toml"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// A scene or plan that is refused.
@@ -269,7 +259,7 @@ mod tests {
         let advice = |error: RunError| error.advice().unwrap_or_default();
         assert!(advice(RunError::Store(io(StorageFull, "write"))).contains("make room"));
         assert!(advice(RunError::Save(io(FileTooLarge, "write"))).contains("ulimit"));
-        let of_page = crate::run::error::AnyError::from(io(StorageFull, "write"));
+        let of_page = super::AnyError::from(io(StorageFull, "write"));
         assert!(advice(RunError::Results(of_page)).contains("make room"));
         assert!(advice(RunError::Claim(io(PermissionDenied, "make the folder"))).contains("--out"));
         for other in [

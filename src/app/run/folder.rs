@@ -1,12 +1,15 @@
-//! Claims the folder that a command writes to, by one rule for all commands.
+//! The folder that a command writes to: claimed by one rule for all commands, cleared, and marked while its
+//! work is unfinished.
 
 use std::path::{Path, PathBuf};
 
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use super::RunError;
 use super::checkpoints::Checkpoints;
-use super::error::RunError;
-use super::unfinished::{self, Unfinished};
 use crate::case::{GRAINS, INPUT_FILES, RECORD};
-use voidwalk_core::store::format::{self, Format};
+use voidwalk_core::store::format::{self, Format, from_json};
 use voidwalk_core::store::{Folder, StoreError};
 use voidwalk_core::text::plain;
 
@@ -18,6 +21,9 @@ pub(crate) const NETWORKS: [&str; 2] = ["networks.0", "networks.1"];
 
 /// The files of the checkpoint of a percolation study that is not finished.
 pub(crate) const LATTICES: [&str; 2] = ["lattices.0", "lattices.1"];
+
+/// The file of the mark of unfinished work.
+pub(super) const MARK: &str = ".voidwalk.unfinished";
 
 /// Files that `voidwalk export` writes into a folder of that name ...
 const EXPORTED: [&str; 6] =
@@ -202,12 +208,9 @@ impl FolderKind {
 
     /// True if the work in a folder is finished, its page included; the work of a campaign or a server can
     /// always be extended.
-    ///
-    /// # Errors
-    /// Errors of the system.
     pub fn is_finished(self, folder: &Path) -> Result<bool, RunError> {
         let has = |name: &str| folder.join(name).symlink_metadata().is_ok();
-        Ok(!has(unfinished::FILE)
+        Ok(!has(MARK)
             && match self {
                 // With checkpoints, its studies are still to come.
                 Self::Run => has("scene.toml") && has("manifest.json") && !Checkpoints::is_in(folder)?,
@@ -230,7 +233,7 @@ pub fn claim(path: &Path, kind: FolderKind, overwrite: bool) -> Result<Folder, R
         FolderKind::Campaign => Folder::open_shared(path).map_err(no_locks)?,
         _ => Folder::open(path).map_err(RunError::Claim)?,
     };
-    let refuse = |problem: String| Err(RunError::Refused(format!("{}: {problem}", shown(path))));
+    let refuse = |problem: String| Err(refused(path, problem));
     // Work that has begun names its kind; if the mark is corrupt, its files tell the kind.
     let begun = Unfinished::read(&folder)?.map(|begun| begun.kind);
     let of_begun = |other: &FolderKind| begun.as_deref() == Some(other.name());
@@ -255,40 +258,31 @@ pub fn claim(path: &Path, kind: FolderKind, overwrite: bool) -> Result<Folder, R
 /// Clears a claimed folder of the files of earlier work of this kind, except the checkpoints of a run, before
 /// the first file of other work is written. The removal of the first file makes the folder unfinished; files
 /// that the program does not know to be its own stay.
-///
-/// # Errors
-/// Errors of the system.
 pub fn clear(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
     let files = kind.files();
     if kind == FolderKind::Packing && folder.has(RECORD) {
         // Otherwise its constrictions would be taken for those of a user's own grains once the record is
         // gone.
-        Unfinished { kind: kind.name().into(), ..Unfinished::default() }.begin(folder)?;
+        Unfinished::new(kind, String::new()).begin(folder)?;
     }
     folder.remove_all(&files[..files.len().min(1)])?;
     clear_results(folder, kind)?;
     if kind == FolderKind::Run {
         folder.remove_all_in("inputs", &INPUT_FILES)?;
     }
-    folder.remove_all(&[unfinished::FILE])
+    folder.remove_all(&[MARK])
 }
 
 /// Clears a claimed folder, and marks it as unfinished work of this kind.
-///
-/// # Errors
-/// Errors of the system.
 pub fn begin(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
     clear(folder, kind)?;
-    Unfinished { kind: kind.name().into(), ..Unfinished::default() }.begin(folder)
+    Unfinished::new(kind, String::new()).begin(folder)
 }
 
 /// Clears a claimed folder like [`clear`], except the scene of a run and its input files.
-///
-/// # Errors
-/// Errors of the system.
 pub(super) fn clear_but_scene(folder: &Folder) -> Result<(), StoreError> {
     clear_results(folder, FolderKind::Run)?;
-    folder.remove_all(&[unfinished::FILE])
+    folder.remove_all(&[MARK])
 }
 
 fn clear_results(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
@@ -303,9 +297,6 @@ fn clear_results(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
 
 /// Refuses files from which work is begun and that [`clear`] would take away before it is: a kill in between
 /// would lose them.
-///
-/// # Errors
-/// The file.
 pub(super) fn outlive_clear(folder: &Folder, kind: FolderKind, files: &[PathBuf]) -> Result<(), RunError> {
     let Ok(real) = folder.path().canonicalize() else { return Ok(()) };
     let goes = |name: &Path| match (name.parent(), name.file_name().and_then(|name| name.to_str())) {
@@ -339,9 +330,6 @@ fn exported(folder: &Path) -> Vec<String> {
 
 /// Claims the first of `NAME`, `NAME-2`, ... for a run that is new, or that an earlier run left without
 /// results.
-///
-/// # Errors
-/// Errors of the system.
 pub(super) fn claim_first_free(name: &str) -> Result<Folder, RunError> {
     let names = std::iter::once(name.to_owned()).chain((2..).map(|n| format!("{name}-{n}")));
     for name in names {
@@ -361,10 +349,10 @@ pub(super) fn claim_first_free(name: &str) -> Result<Folder, RunError> {
 /// would be written to.
 pub(crate) fn own_packings(packings: &Path) -> Result<(), RunError> {
     match packings.symlink_metadata() {
-        Ok(meta) if meta.is_symlink() => Err(RunError::Refused(format!(
-            "{}: is a symbolic link, which is not followed; put the folder itself there, or remove the link",
-            shown(packings)
-        ))),
+        Ok(meta) if meta.is_symlink() => Err(refused(
+            packings,
+            "is a symbolic link, which is not followed; put the folder itself there, or remove the link",
+        )),
         _ => Ok(()),
     }
 }
@@ -379,9 +367,64 @@ fn no_locks(error: StoreError) -> RunError {
     }
 }
 
+/// The refusal of a path.
+pub(crate) fn refused(path: &Path, problem: impl std::fmt::Display) -> RunError {
+    RunError::Refused(format!("{}: {problem}", shown(path)))
+}
+
 /// A path in one line.
 pub(crate) fn shown(path: &Path) -> String {
     plain(&path.display().to_string())
+}
+
+/// Mark of a folder whose work has begun and is not whole yet, its page included.
+///
+/// It is written before the first file of the work and removed after the last, so a folder that holds it is
+/// not finished, whatever else it holds. It describes the work, so that the same command continues it, and
+/// holds the options of a run that change no result.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Unfinished {
+    /// Kind of the folder, as a user calls it.
+    pub kind: String,
+    /// Fingerprint of everything that the results follow from.
+    pub work: String,
+    /// Interval between saves of a run, as it was given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub checkpoint_every: Option<String>,
+}
+
+impl Unfinished {
+    /// The mark of this work; empty, if nothing is known of it but its kind.
+    pub fn new(kind: FolderKind, work: String) -> Self {
+        Self { kind: kind.name().into(), work, checkpoint_every: None }
+    }
+
+    /// Reads the mark in a folder; `None` if no work is under way, and an empty mark if the file is corrupt.
+    pub fn read(folder: &Folder) -> Result<Option<Self>, StoreError> {
+        let bytes = folder.read(MARK)?;
+        Ok(bytes.map(|bytes| serde_json::from_slice(&bytes).unwrap_or_default()))
+    }
+
+    /// The record of this very work, if everything except its page was written.
+    pub fn whole<T: DeserializeOwned>(&self, folder: &Folder, record: &str) -> Result<Option<T>, StoreError> {
+        if Self::read(folder)?.as_ref() != Some(self) {
+            return Ok(None);
+        }
+        Ok(folder.read(record)?.and_then(|bytes| from_json(&bytes).ok()))
+    }
+
+    /// Marks a folder, unless it has this mark already.
+    pub fn begin(&self, folder: &Folder) -> Result<(), StoreError> {
+        if Self::read(folder)?.as_ref() == Some(self) {
+            return Ok(());
+        }
+        folder.write(MARK, &serde_json::to_vec(self).expect("words"))
+    }
+
+    /// Removes the mark: the work is finished.
+    pub fn end(folder: &Folder) -> Result<(), StoreError> {
+        folder.remove(MARK)
+    }
 }
 
 #[cfg(test)]
@@ -395,13 +438,8 @@ mod tests {
             let path = root.path().join(held.name());
             claim(&path, held, false).unwrap().write(held.record(), b"{}").unwrap();
             for kind in FolderKind::ALL {
-                let is_same = kind == held;
-                for overwrite in [false, true] {
-                    let claimed = claim(&path, kind, overwrite);
-                    if is_same {
-                        continue;
-                    }
-                    let error = claimed.unwrap_err();
+                for overwrite in [false, true].into_iter().filter(|_| kind != held) {
+                    let error = claim(&path, kind, overwrite).unwrap_err();
                     let message = format!("holds a {}; name another folder", held.name());
                     assert!(error.to_string().ends_with(&message), "{kind:?} into {held:?}: {error}");
                     assert_eq!(error.exit().code(), 2);

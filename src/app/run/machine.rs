@@ -1,9 +1,9 @@
-//! The machine of a case: number of threads, and memory that it may use.
+//! The machine of a case: threads, memory, the job of a cluster, and the number of cases at the same time.
 
 use std::panic::resume_unwind;
 
-use super::allocation::Allocation;
-use super::error::RunError;
+use super::RunError;
+use crate::case::Case;
 use voidwalk_core::store::platform;
 
 /// The machine, in words.
@@ -46,14 +46,11 @@ impl Machine {
 /// # Errors
 /// The system gives no threads.
 pub fn threads(asked: Option<usize>) -> Result<rayon::ThreadPool, RunError> {
-    Ok(rayon::ThreadPoolBuilder::new().num_threads(number_of_threads(asked)).build()?)
-}
-
-/// Number of worker threads.
-pub fn number_of_threads(asked: Option<usize>) -> usize {
-    let allocated = || Allocation::here().and_then(|job| job.threads());
-    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    asked.or_else(allocated).unwrap_or_else(cores)
+    let cores = std::thread::available_parallelism().ok().map(usize::from);
+    // No more than this process may run on.
+    let allocated = || Some(Allocation::here()?.processors?.min(cores.unwrap_or(usize::MAX)));
+    let number = asked.or_else(allocated).or(cores).unwrap_or(1);
+    Ok(rayon::ThreadPoolBuilder::new().num_threads(number).build()?)
 }
 
 /// Does some work on such threads.
@@ -65,9 +62,6 @@ pub(crate) fn on_threads<T: Send>(
 }
 
 /// Does the same work on this many threads, this one included; on fewer if the system gives no more.
-///
-/// # Errors
-/// The first error of the work.
 pub(crate) fn on_each(count: usize, work: impl Fn() -> Result<(), RunError> + Sync) -> Result<(), RunError> {
     std::thread::scope(|scope| {
         let start = |_| std::thread::Builder::new().spawn_scoped(scope, &work).ok();
@@ -80,9 +74,6 @@ pub(crate) fn on_each(count: usize, work: impl Fn() -> Result<(), RunError> + Sy
 }
 
 /// A size in bytes as a user writes it: `4GB`, `500 MB`, `1.5GiB`.
-///
-/// # Errors
-/// The form that is expected.
 pub fn bytes_from_words(text: &str) -> Result<u64, String> {
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let unit = match text[digits.len()..].to_lowercase().as_str() {
@@ -103,9 +94,112 @@ pub fn bytes_from_words(text: &str) -> Result<u64, String> {
     }
 }
 
+/// The job of a cluster in which the program runs, and its resources, as Slurm describes them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Allocation {
+    /// Job, and task if it is one of an array, as Slurm writes it: `12_3`.
+    pub job: String,
+    processors: Option<usize>,
+    /// Memory (bytes).
+    memory: Option<u64>,
+}
+
+impl Allocation {
+    /// The job of this process; `None` outside a job.
+    pub fn here() -> Option<Self> {
+        Self::of(|name| std::env::var(name).ok())
+    }
+
+    fn of(variable: impl Fn(&str) -> Option<String>) -> Option<Self> {
+        let number = |name| variable(name)?.trim().parse::<u64>().ok();
+        let job = match (variable("SLURM_ARRAY_JOB_ID"), variable("SLURM_ARRAY_TASK_ID")) {
+            (Some(array), Some(task)) => format!("{array}_{task}"),
+            _ => variable("SLURM_JOB_ID")?,
+        };
+        let on_node = number("SLURM_CPUS_ON_NODE");
+        let processors = number("SLURM_CPUS_PER_TASK").or(on_node).filter(|n| *n > 0);
+        // Megabytes of 2^20 bytes; 0 means all memory of the node.
+        let per_processor = || number("SLURM_MEM_PER_CPU")?.checked_mul(on_node.or(processors)?);
+        let memory = number("SLURM_MEM_PER_NODE").or_else(per_processor).filter(|megabytes| *megabytes > 0);
+        Some(Self {
+            job,
+            processors: processors.and_then(|n| usize::try_from(n).ok()),
+            memory: memory.and_then(|megabytes| megabytes.checked_mul(1 << 20)),
+        })
+    }
+}
+
+/// Factor on the estimated memory in the request of a job script.
+pub(crate) const MEMORY_MARGIN: f64 = 1.5;
+
+/// A job takes little that takes no more than this for each of its threads (bytes).
+const LITTLE_BYTES: u64 = 1 << 30;
+
+/// Cases that are walked at the same time: one answer for the process itself, for `check`, and for the job
+/// scripts that ask for its memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct CasesAtOnce {
+    pub cases: u64,
+    /// Bytes that the process takes then.
+    pub bytes: u64,
+}
+
+impl CasesAtOnce {
+    /// Counts these cases in a job whose script asks for their memory. A case beside those that keep the
+    /// threads busy is added if the job takes little memory with it: no job asks for twice the memory to fill
+    /// threads that idle at the end of a case.
+    pub fn of_job(cases: &[&Case], threads: u64) -> Self {
+        let of_room = |spare| Self::where_there_is_room(cases, threads, spare, u64::MAX);
+        let with_spare = of_room(1);
+        if with_spare.bytes <= threads.saturating_mul(LITTLE_BYTES) { with_spare } else { of_room(0) }
+    }
+
+    /// Counts these cases in this process.
+    pub fn here(cases: &[&Case], threads: u64) -> Self {
+        let in_job = Allocation::here().is_some_and(|job| job.memory.is_some());
+        Self::within(cases, threads, Machine::here().available, in_job)
+    }
+
+    /// Counts these cases if this many bytes are available: to a job alone, or to all that runs on the
+    /// machine.
+    fn within(cases: &[&Case], threads: u64, available: u64, in_job: bool) -> Self {
+        if !in_job {
+            return Self::where_there_is_room(cases, threads, 1, available / 2);
+        }
+        let room = (available as f64 / MEMORY_MARGIN) as u64;
+        let Self { cases: most, .. } = Self::of_job(cases, threads);
+        Self::at_most(most, cases, threads, room)
+    }
+
+    fn where_there_is_room(cases: &[&Case], threads: u64, spare: u64, room: u64) -> Self {
+        let fewest = cases.iter().map(|case| case.scene.walk.replicates).min().unwrap_or(1);
+        Self::at_most(wanted(threads, fewest, spare, cases.len()), cases, threads, room)
+    }
+
+    /// Limits the number of cases by `most`, by the room for their walks, and by the limit of each case.
+    fn at_most(most: u64, cases: &[&Case], threads: u64, room: u64) -> Self {
+        let allowed = cases.iter().map(|case| case.memory).min().unwrap_or(u64::MAX);
+        let largest = cases.iter().map(|case| case.peak_bytes(threads)).max().unwrap_or(0);
+        let count = most.min(allowed.min(room) / largest.max(1)).max(1);
+        // Particles that do not fit into memory go into files.
+        let walks = largest.saturating_mul(count).min(allowed);
+        let bytes = cases.iter().map(|case| case.program_bytes(walks)).max().unwrap_or(walks);
+        Self { cases: count, bytes }
+    }
+}
+
+/// Number of these cases to walk at the same time, memory aside, if each has at least this many replicates:
+/// enough to give each thread a replicate, and `spare` more for the threads that wait for the last replicate
+/// or the page of another.
+fn wanted(threads: u64, replicates: u64, spare: u64, cases: usize) -> u64 {
+    let spare = if threads > 1 { spare } else { 0 };
+    (threads.div_ceil(replicates.max(1)) + spare).clamp(1, cases.max(1) as u64)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::bytes_from_words;
+    use super::{Allocation, bytes_from_words, *};
+    use crate::run::case_of;
 
     #[test]
     fn sizes_are_read_with_their_units() {
@@ -117,5 +211,79 @@ mod tests {
         for text in ["", "GB", "-1GB", "0", "4 apples", "nan", "inf", "1e30TB"] {
             assert!(bytes_from_words(text).is_err(), "{text}");
         }
+    }
+
+    fn allocation(variables: &[(&str, &str)]) -> Option<Allocation> {
+        let find = |name: &str| variables.iter().find(|(key, _)| *key == name);
+        Allocation::of(|name| find(name).map(|(_, value)| (*value).to_string()))
+    }
+
+    #[test]
+    fn what_slurm_says_is_understood() {
+        assert_eq!(allocation(&[("HOME", "/root")]), None);
+        let task = allocation(&[
+            ("SLURM_JOB_ID", "14"),
+            ("SLURM_ARRAY_JOB_ID", "12"),
+            ("SLURM_ARRAY_TASK_ID", "3"),
+            ("SLURM_CPUS_PER_TASK", "4"),
+            ("SLURM_CPUS_ON_NODE", "8"),
+            ("SLURM_MEM_PER_NODE", "600"),
+        ]);
+        let wanted = Allocation { job: "12_3".into(), processors: Some(4), memory: Some(600 << 20) };
+        assert_eq!(task, Some(wanted));
+        let by_processor =
+            allocation(&[("SLURM_JOB_ID", "14"), ("SLURM_CPUS_ON_NODE", "8"), ("SLURM_MEM_PER_CPU", "100")])
+                .unwrap();
+        assert_eq!(by_processor.memory, Some(800 << 20));
+        assert_eq!((by_processor.processors, by_processor.job.as_str()), (Some(8), "14"));
+        let all = allocation(&[("SLURM_JOB_ID", "14"), ("SLURM_MEM_PER_NODE", "0")]).unwrap();
+        assert_eq!((all.memory, all.processors), (None, None));
+    }
+
+    fn case(n_base: u64, replicates: u64) -> Case {
+        let settings = [&*format!("base.n_base={n_base}"), &*format!("replicates={replicates}")];
+        Case { memory: u64::MAX, ..case_of(&settings) }
+    }
+
+    #[test]
+    fn one_thread_walks_one_case_and_several_have_one_to_spare() {
+        let number = |threads, replicates, cases| wanted(threads, replicates, 1, cases);
+        assert_eq!([number(1, 5, 9), number(2, 5, 9), number(2, 1, 9), number(64, 10, 99)], [1, 2, 3, 8]);
+        assert_eq!([number(2, 5, 1), number(64, 1, 7), number(2, 0, 0)], [1, 7, 1]);
+        assert_eq!([wanted(4, 10, 0, 9), wanted(64, 10, 0, 99)], [1, 7]);
+    }
+
+    /// A job asks for the memory of the cases that it then walks, however large they are.
+    #[test]
+    fn a_job_walks_as_many_cases_as_its_script_asked_for() {
+        let mut numbers = Vec::new();
+        for (n_base, replicates, threads) in
+            [(300_000_000, 10, 4), (300_000_000, 10, 64), (50_000_000, 3, 8), (20_000, 10, 4), (20_000, 1, 2)]
+        {
+            let case = case(n_base, replicates);
+            let cases = vec![&case; 20];
+            let job = CasesAtOnce::of_job(&cases, threads);
+            let asked = (MEMORY_MARGIN * job.bytes as f64) as u64;
+            // A script rounds up to the next 100 MiB.
+            for available in [asked, asked + (100 << 20)] {
+                let inside = Case { memory: available / 5 * 4, ..case.clone() };
+                let inside = vec![&inside; 20];
+                let walked = CasesAtOnce::within(&inside, threads, available, true);
+                assert_eq!(walked.cases, job.cases, "{n_base} {replicates} {threads}");
+                assert!(walked.bytes <= available, "{walked:?} of {available}");
+            }
+            numbers.push(job.cases);
+        }
+        assert_eq!(numbers, [1, 8, 4, 2, 3]);
+    }
+
+    #[test]
+    fn half_of_a_machine_that_others_use_too_has_room_for_the_walks() {
+        let case = case(300_000_000, 10);
+        let (cases, largest) = ([&case, &case], case.peak_bytes(4));
+        let number = |available| CasesAtOnce::within(&cases, 4, available, false).cases;
+        assert_eq!([number(0), number(4 * largest - 2), number(4 * largest)], [1, 1, 2]);
+        let little = Case { memory: 2 * largest - 1, ..case.clone() };
+        assert_eq!(CasesAtOnce::within(&[&little, &little], 4, u64::MAX, false).cases, 1);
     }
 }

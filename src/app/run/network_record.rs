@@ -1,14 +1,18 @@
 //! Record of walks on given networks.
 
-use rayon::slice::ParallelSliceMut;
-
 use super::network_walk::{NetworkOutcome, NetworkWalk};
-use crate::case::base_record;
+use super::replicates::said_by_walks;
+use crate::case::{PAPER_MASS_RATIO, base_record};
 use crate::outcome::left_out::LeftOut;
-use crate::outcome::network_walk::{GivenNetwork, NetworkWalkRecord};
+use crate::outcome::record::{GivenNetwork, NetworkWalkRecord, Statistic};
 use crate::outcome::{Modelled, leaves_out, verdict};
+use crate::verdict::PlannedWalk;
+use rayon::slice::ParallelSliceMut;
+use std::cmp::Ordering;
 use voidwalk_core::gradation::Gradation;
 use voidwalk_core::network::Network;
+use voidwalk_practice::rules::RuleInputs;
+use voidwalk_practice::{Decision, Mistake, Note, ordered, rules};
 
 /// Steps of the curve of a network's diameters (percent).
 const STEP: usize = 2;
@@ -73,13 +77,79 @@ fn given(network: &Network, networks: usize) -> GivenNetwork {
     }
 }
 
+impl NetworkOutcome {
+    /// Notes on the class; `network` is the first of this many networks.
+    pub fn notes(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> Vec<Note> {
+        let walked = || self.replicates.iter().map(|walked| &walked.result);
+        let layers = network.layers() as u64;
+        let mut notes = said_by_walks(self.verdict, walked(), &plan.base, plan.increments, (layers, false));
+        notes.extend(plan.notes(network, self.replicates.len() as u64));
+        if networks == 1 && self.replicates.len() > 1 {
+            notes.push(Note::OneNetwork {});
+        }
+        let rules = plan.filter.as_ref().map_or(Vec::new(), |filter| {
+            let largest: Vec<f64> =
+                walked().filter_map(|w| w.replicate.runs.first()?.largest_eroded_over_d15f).collect();
+            rules::apply(&RuleInputs {
+                filter_is_measured: filter.is_measured,
+                largest_eroded_over_d15f: (!largest.is_empty()).then(|| Statistic::of(&largest).mean),
+                ..RuleInputs::of_soils(&plan.base, &filter.gradation)
+            })
+        });
+        ordered(Decision::new(&rules, None, None).notes().chain(notes))
+    }
+}
+
+impl NetworkWalk {
+    /// Notes on unchecked or unknown inputs, whatever the result of the walk.
+    fn notes(&self, network: &Network, replicates: u64) -> Vec<Note> {
+        let filter = self.filter.as_ref();
+        let planned = PlannedWalk {
+            base: &self.base,
+            regraded_from: None,
+            finest_constriction_mm: f64::from(network.finest_open(|_| false)) * network.unit_mm(),
+            filter: filter.map(|filter| &filter.gradation),
+            filter_is_measured: filter.is_some_and(|filter| filter.is_measured),
+            scale_free: false,
+            given_voids: Some(network.filter_voids() as u64),
+            lattice: network.shape(),
+            layers: network.layers() as u64,
+            flows: network.exit_rule().needs_flow(),
+            increments: self.increments,
+            replicates,
+        };
+        let mistake = filter.and_then(|filter| Mistake::find(&self.base, &filter.gradation, false));
+        let mistake = mistake.map(|mistake| mistake.note);
+        planned.notes().into_iter().chain(mistake).chain(self.amount(network)).collect()
+    }
+
+    /// Note on a class that depends on a number of base particles which differs from Eq. (2), or cannot be
+    /// compared with it.
+    fn amount(&self, network: &Network) -> Option<Note> {
+        let particles = self.n_base;
+        let Some(needed) = self.eq2(network, PAPER_MASS_RATIO).ok().flatten() else {
+            return Some(Note::AmountUnknown { particles });
+        };
+        match particles.cmp(&needed) {
+            Ordering::Less => Some(Note::FewParticles { particles, needed }),
+            Ordering::Equal => None,
+            Ordering::Greater => Some(Note::MoreParticles { particles, needed }),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::*;
+    use crate::case::Case;
     use crate::outcome::record::ModelLimit;
-    use crate::run::{Callbacks, walk_networks};
+    use crate::run::case_of;
+    use crate::run::{Callbacks, GivenFilter, walk_networks};
+    use std::collections::BTreeSet;
+    use std::fs;
+    use std::sync::Arc;
+    use voidwalk_core::constrictions::find;
+    use voidwalk_core::gradation::Gradation;
     use voidwalk_core::network::{ExitRule, NetworkColumns};
 
     /// Two constrictions that are passed both ways and one that is closed from the start, each counted once.
@@ -109,5 +179,173 @@ mod tests {
         assert!(record.model_leaves_out.contains(&ModelLimit::Gradient));
         assert_eq!((record.n_base_eq2, record.grains_per_void), (None, None));
         assert!(record.notes.iter().any(|note| note.id() == "amount_unknown"), "{:?}", record.notes);
+    }
+
+    fn number_and_notes(
+        n_base: Option<u64>,
+        filter: Option<Gradation>,
+        grains_per_void: Option<f64>,
+    ) -> (u64, Vec<Note>) {
+        let curve = find("cu1.5-loose").unwrap().curve().unwrap().in_mm(1.0).unwrap();
+        let network = Arc::new(Network::cubic([10, 10, 12], &curve, 1.0, 5).unwrap());
+        let filter = filter.map(|gradation| GivenFilter { gradation, is_measured: true, grains_per_void });
+        let base = Gradation::linear_from_dx(85.0, 0.25, 1.5).unwrap();
+        let mut plan = NetworkWalk { replicates: 6, filter, ..NetworkWalk::new(base, 1) };
+        let eq2 = plan.eq2(&network, 0.05).unwrap();
+        plan.n_base = n_base.or(eq2).unwrap();
+        let outcome = walk_networks(&[Arc::clone(&network)], &plan, &Callbacks::default()).unwrap();
+        (plan.n_base, outcome.notes(&plan, &network, 1))
+    }
+
+    /// Numbers that cannot be compared with Eq. (2), fall short of it or exceed it are doubts; its own number
+    /// is not.
+    #[test]
+    fn a_number_of_particles_that_is_not_that_of_equation_two_is_a_doubt() {
+        let filter = || Gradation::linear_from_d0(1.0, 1.5).ok();
+        let has = |notes: &[Note], id: &str| notes.iter().any(|note| note.id() == id);
+        let (n, of_eq2) = number_and_notes(None, filter(), Some(0.6));
+        assert!(
+            n > 1000
+                && !["few_particles", "more_particles", "amount_unknown"].iter().any(|id| has(&of_eq2, id))
+        );
+        assert!(has(&number_and_notes(Some(1000), filter(), Some(0.6)).1, "few_particles"));
+        assert!(has(&number_and_notes(Some(n + 1), filter(), Some(0.6)).1, "more_particles"));
+        for filter in [None, filter()] {
+            assert!(has(&number_and_notes(Some(n), filter, None).1, "amount_unknown"));
+        }
+        assert!(has(&number_and_notes(Some(n), None, None).1, "no_filter"));
+    }
+
+    /// The one constriction is closed by the first particle.
+    #[test]
+    fn a_network_that_clogs_is_a_doubt() {
+        let columns = NetworkColumns {
+            voids: 2,
+            conns: &[[0, 1]],
+            diameter_mm: &[0.1],
+            conductance: None,
+            inlets: &[0],
+            outlets: &[1],
+            rule: ExitRule::Flux,
+            rho: 0.0,
+            unit_mm: 1.0,
+        };
+        let network = Arc::new(Network::from_columns(&columns).unwrap().0);
+        let plan = NetworkWalk { replicates: 2, ..NetworkWalk::new(Gradation::single(0.2).unwrap(), 1000) };
+        let outcome = walk_networks(&[Arc::clone(&network)], &plan, &Callbacks::default()).unwrap();
+        let notes = outcome.notes(&plan, &network, 1);
+        assert!(notes.iter().any(|note| note.id() == "clogged"), "{notes:?}");
+    }
+
+    /// Notes that only a scene has: on its files, and on a filter's finest part, which matters if Eq. (2)
+    /// gives the base.
+    const OF_A_SCENE: [&str; 2] = ["read_as", "pan_of_filter"];
+
+    /// Notes on a scene, and on its soils on its network without it: all but the list above.
+    fn of_both(case: &Case, network: &Network) -> [BTreeSet<(String, String)>; 2] {
+        let filter = GivenFilter {
+            gradation: case.filter.gradation.clone(),
+            is_measured: case.filter_is_measured(),
+            grains_per_void: case.filter.grains_per_void,
+        };
+        let plan = NetworkWalk {
+            increments: case.increments(),
+            filter: Some(filter),
+            ..NetworkWalk::new(case.base.gradation.clone(), case.supply.n_base)
+        };
+        let shared = |notes: Vec<Note>, allowed: &[&str]| {
+            let shared = notes.into_iter().filter(|note| !allowed.contains(&&*note.id()));
+            shared.map(|note| (note.id(), format!("{note:?}"))).collect()
+        };
+        let of_scene = case.notes();
+        let of_network = plan.notes(network, case.scene.walk.replicates);
+        [shared(of_scene, &OF_A_SCENE), shared(of_network, &[])]
+    }
+
+    /// A narrow lattice, and one whose water stops before any of the base can be through.
+    #[test]
+    fn a_lattice_that_is_given_has_the_findings_of_its_scene() {
+        for (own, id) in [
+            (["network.nx=7", "walk.exit=area"], "narrow_lattice"),
+            (["network.nx=10", "walk.exit=flux"], "all_on_its_way"),
+        ] {
+            let small = ["network.ny=10", "network.nz=10", "filter.d0_mm=2", "base.n_base=100"];
+            let rest = ["inject_share=0.1", "replicates=2", "record.sensitivity=[]"];
+            let case = case_of(&[&own[..], &small, &rest].concat());
+            let [of_scene, mut of_network] = of_both(&case, &case.network(1).unwrap());
+            of_network.retain(|(id, _)| id != "given_network");
+            assert_eq!(of_scene, of_network);
+            let ids: BTreeSet<&str> = of_scene.iter().map(|(id, _)| &**id).collect();
+            assert_eq!(ids, [id, "few_particles", "few_replicates"].into());
+        }
+    }
+
+    /// Percent finer by mass (mm).
+    type Points = &'static [(f64, f64)];
+    const SAND: Points = &[(0.2, 0.0), (0.6, 100.0)];
+    const FILTER: Points = &[(1.0, 0.0), (3.0, 100.0)];
+    const GAP: Points = &[(1.0, 0.0), (1.2, 15.0), (8.0, 15.0), (20.0, 100.0)];
+    const SILT: Points = &[(0.01, 0.0), (0.075, 40.0), (0.3, 100.0)];
+    const BROAD: Points = &[(0.1, 0.0), (0.2, 12.0), (1.4, 60.0), (4.0, 100.0)];
+    const NEARLY_BROAD: Points = &[(0.1, 0.0), (0.2, 12.0), (1.0, 60.0), (4.0, 100.0)];
+    const GRAVELLY: Points = &[(0.1, 0.0), (2.0, 40.0), (19.0, 100.0)];
+    const HIDDEN: Points = &[(0.3, 25.0), (1.0, 100.0)];
+    const PASSIVE: Points = &[(0.3, 3.0), (1.0, 100.0)];
+    const PAIRS: [(Points, Points); 9] = [
+        (SAND, FILTER),
+        (SAND, GAP),
+        (SILT, FILTER),
+        (BROAD, FILTER),
+        (NEARLY_BROAD, FILTER),
+        (GRAVELLY, FILTER),
+        (HIDDEN, FILTER),
+        (PASSIVE, FILTER),
+        (FILTER, SAND),
+    ];
+
+    /// Walks the soils on one network, with a scene and without: each note that follows from them is reported
+    /// by both with equal numbers, or is in the list above.
+    #[test]
+    fn a_walk_without_a_scene_finds_what_a_scene_of_the_same_soils_finds() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let write = |name: &str, points: Points| {
+            let rows = points.iter().map(|(mm, percent)| format!("{mm},{percent}\n"));
+            fs::write(path(name), rows.fold("size_mm,percent_finer\n".into(), |all: String, row| all + &row))
+        };
+        let network = "from,to,diameter_mm\nstart,0,\n0,1,0.5\n1,end,0.4\n1,0,0.5\n";
+        fs::write(path("network.csv"), network).unwrap();
+        let (mut seen, mut pairs) = (BTreeSet::new(), 0);
+        for (base, filter) in PAIRS {
+            write("base.csv", base).unwrap();
+            write("filter.csv", filter).unwrap();
+            for replicates in [1, 3, 6] {
+                let file = |key: &str, name: &str| format!("{key}={}", path(name).display());
+                let case = case_of(&[
+                    &file("network.file", "network.csv"),
+                    &file("base.sieve", "base.csv"),
+                    &file("filter.sieve", "filter.csv"),
+                    "base.n_base=1000",
+                    &format!("replicates={replicates}"),
+                    "record.sensitivity=[]",
+                ]);
+                let network = &case.network.fixed.as_ref().unwrap().network;
+                let [of_scene, of_network] = of_both(&case, network);
+                assert_eq!(of_scene, of_network, "{base:?}");
+                seen.extend(of_scene.into_iter().map(|(id, _)| id));
+                pairs += 1;
+            }
+        }
+        let wanted = [
+            "broadly_graded",
+            "cohesive_fines",
+            "cu_unchecked",
+            "few_replicates",
+            "gap_graded",
+            "given_network",
+            "not_regraded",
+            "one_replicate",
+        ];
+        assert!(wanted.iter().all(|id| seen.contains(*id)) && pairs == 27, "{seen:?}");
     }
 }

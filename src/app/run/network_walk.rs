@@ -6,13 +6,11 @@ use std::time::Instant;
 
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
-use rayon::prelude::*;
 
+use super::RunError;
 use super::callbacks::{Callbacks, Event};
-use super::error::RunError;
 use super::machine::Machine;
-use super::replicates::ReplicateResult;
-use super::summary::summarise;
+use super::replicates::{ReplicateResult, map_side_by_side, summarise};
 use crate::case::{CaseError, PAPER_MASS_RATIO, in_words, replicate_seed};
 use crate::outcome::record::{Replicate, RunSummary, Verdict};
 use crate::outcome::verdict::classify;
@@ -117,15 +115,9 @@ pub fn walk_networks(
         plan.replicate(&networks[index], &samplers[index], replicate, callbacks)
     };
     let replicates = 1..=plan.replicates;
-    let walked: Result<Vec<Walked>, RunError> = match plan
-        .bytes(networks)
-        .saturating_mul(rayon::current_num_threads() as u64)
-        <= SIDE_BY_SIDE_BYTES
-    {
-        true => replicates.into_par_iter().map(one).collect(),
-        false => replicates.map(one).collect(),
-    };
-    let (results, blocked): (Vec<ReplicateResult>, Vec<_>) = walked?.into_iter().unzip();
+    let bytes = plan.bytes(networks).saturating_mul(rayon::current_num_threads() as u64);
+    let walked = map_side_by_side(replicates.collect(), bytes <= SIDE_BY_SIDE_BYTES, one)?;
+    let (results, blocked): (Vec<ReplicateResult>, Vec<_>) = walked.into_iter().unzip();
     let (verdict, summary) = summarise(&results);
     let replicates =
         results.into_iter().zip(blocked).map(|(result, blocked)| WalkedNetwork { result, blocked }).collect();
@@ -135,7 +127,7 @@ pub fn walk_networks(
 /// A replicate, and its blocked exits at the end of each run.
 type Walked = (ReplicateResult, Vec<BitVec>);
 
-/// Replicates that take no more together are walked side by side.
+/// Replicates that take no more together are walked side by side (bytes).
 const SIDE_BY_SIDE_BYTES: u64 = 1 << 30;
 
 impl NetworkWalk {
@@ -177,17 +169,18 @@ impl NetworkWalk {
 
     /// Refuses plans that cannot be walked; draws sizes for each network.
     fn check(&self, networks: &[Arc<Network>]) -> Result<Vec<SizeSampler>, RunError> {
-        let within = |name, value: u64, most: u64| match (1..=most).contains(&value) {
-            true => Ok(()),
-            false => Err(RunError::Refused(format!(
-                "{name} = {value} is not allowed; a whole number from 1 to {most}"
-            ))),
-        };
-        within("runs", self.runs, 2)?;
-        within("replicates", self.replicates, 100_000)?;
-        within("increments", self.increments, 1_000_000)?;
-        within("n_base", self.n_base, u64::MAX)?;
-        within("size_classes", self.wanted.size_classes as u64, 10_000)?;
+        for (name, value, most) in [
+            ("runs", self.runs, 2),
+            ("replicates", self.replicates, 100_000),
+            ("increments", self.increments, 1_000_000),
+            ("n_base", self.n_base, u64::MAX),
+            ("size_classes", self.wanted.size_classes as u64, 10_000),
+        ] {
+            if !(1..=most).contains(&value) {
+                let problem = format!("{name} = {value} is not allowed; a whole number from 1 to {most}");
+                return Err(RunError::Refused(problem));
+            }
+        }
         if networks.is_empty() {
             return Err(RunError::refused("there is no network to walk"));
         }
@@ -275,14 +268,12 @@ impl NetworkWalk {
                 recorder.observe(&self.wanted, state);
                 let (increment, moving) = (state.increment, state.tally.moving);
                 (callbacks.on_event)(Event::Increment { replicate, run, increment, moving });
-                match callbacks.is_stopped() {
-                    true => WalkControl::Stop,
-                    false => WalkControl::Continue,
-                }
+                if callbacks.is_stopped() { WalkControl::Stop } else { WalkControl::Continue }
             })?;
             let (end, flow, left) = walk.end_with_exits(&state)?;
             exits = left;
-            let run_id = self.run_id(replicate, run);
+            let d15f_mm = self.d15f_mm().unwrap_or(f64::NAN);
+            let run_id = RunId { replicate, run, d15f_mm, pan_fraction: self.base.pan_fraction() };
             let seconds = begun.elapsed().as_secs_f64();
             let mut metrics = RunMetrics::new(&end, &state, flow.as_ref(), run_id, seconds);
             if self.d15f_mm().is_none() {
@@ -304,11 +295,6 @@ impl NetworkWalk {
             below,
         };
         Ok((result, at_ends))
-    }
-
-    fn run_id(&self, replicate: u64, run: u64) -> RunId {
-        let d15f_mm = self.d15f_mm().unwrap_or(f64::NAN);
-        RunId { replicate, run, d15f_mm, pan_fraction: self.base.pan_fraction() }
     }
 }
 

@@ -9,18 +9,23 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use super::RunError;
 use super::callbacks::{Callbacks, Event};
 use super::cost::duration;
-use super::error::RunError;
-use super::folder::{FolderKind, STATES, claim, clear, shown};
+use super::folder::{FolderKind, MARK, STATES, Unfinished, begin, claim, clear, shown};
 use super::machine::on_threads;
-use super::packing_record::record;
-use super::unfinished::{self, Unfinished};
+use super::results::json;
 use crate::case::{CaseError, GRAINS, PackedFilter, PackingPlan, RECORD};
 use crate::outcome::packing::PackingRecord;
 use crate::scene::PackingSpec;
-use voidwalk_core::constrictions::Constrictions;
-use voidwalk_core::packing::{Compression, PackReport, PackingError, draw, tall_start};
+use voidwalk_core::constrictions::{
+    Constrictions, CurveError, DEFAULT_MERGE_OVERLAP, Facets, Summary, Triangulation, VoidGraph, inscribed,
+};
+use voidwalk_core::gradation::CurvePoint;
+use voidwalk_core::network::permeability_mm2;
+use voidwalk_core::packing::{
+    Cell, Compression, PackReport, Packing, PackingError, ReadOptions, draw, tall_start,
+};
 use voidwalk_core::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
 use voidwalk_core::store::format::{self, from_json};
 use voidwalk_core::store::{Folder, StoreError};
@@ -111,12 +116,9 @@ pub(super) fn with_time(error: CaseError) -> RunError {
 
 /// Provides the packing of a scene's filter: taken from the folder of packings, its own or else one of the
 /// same shape in another size, or made and kept there; waits for a packing that another process makes.
-///
-/// # Errors
-/// See [`pack`].
 pub fn provide(plan: &PackingPlan, packings: &Path, callbacks: &Callbacks) -> Result<PackedFilter, RunError> {
     let path = packings.join(plan.folder_name());
-    let has_page = || path.join(unfinished::FILE).symlink_metadata().is_err();
+    let has_page = || path.join(MARK).symlink_metadata().is_err();
     if let Some(filter) = PackedFilter::read(&path, plan)?.filter(|_| has_page()) {
         return Ok(filter);
     }
@@ -124,7 +126,7 @@ pub fn provide(plan: &PackingPlan, packings: &Path, callbacks: &Callbacks) -> Re
         return Ok(filter);
     }
     let folder = wait_for(&path, callbacks)?;
-    if !folder.has(RECORD) || folder.has(unfinished::FILE) {
+    if !folder.has(RECORD) || folder.has(MARK) {
         make(&folder, plan, SAVE_EVERY, callbacks)?;
     }
     PackedFilter::read(&path, plan)?.ok_or_else(|| gone(&path))
@@ -165,12 +167,7 @@ fn make(
     if matches!(PackedFilter::read(folder.path(), plan), Ok(Some(_))) {
         return finish(folder, callbacks);
     }
-    let mark = Unfinished {
-        kind: FolderKind::Packing.name().into(),
-        work: plan.fingerprint(),
-        ..Default::default()
-    };
-    mark.begin(folder)?;
+    Unfinished::new(FolderKind::Packing, plan.fingerprint()).begin(folder)?;
     let begun = Instant::now();
     (callbacks.on_event)(Event::PackingBegun(plan));
     let compressed = compress(folder, plan, save_every, callbacks);
@@ -186,7 +183,7 @@ fn make(
     }
     let seconds = seconds_before + begun.elapsed().as_secs_f64();
     let record = record(plan, &packing, &grains, &report, seconds)?;
-    folder.write(RECORD, &super::results::json(format::PACKING, &record)?)?;
+    folder.write(RECORD, &json(format::PACKING, &record)?)?;
     finish(folder, callbacks)
 }
 
@@ -275,4 +272,164 @@ fn saved(
 /// Identity of its checkpoints.
 fn identity(plan: &PackingPlan) -> Identity {
     Identity { scene: plan.fingerprint(), seed: plan.compression.seed, ..Identity::default() }
+}
+
+/// The record of a packing whose grains were written as `grains_csv`, after this many seconds of compression.
+fn record(
+    plan: &PackingPlan,
+    packing: &Packing,
+    grains_csv: &str,
+    report: &PackReport,
+    seconds: f64,
+) -> Result<PackingRecord, CurveError> {
+    let s = &plan.compression;
+    let [cell_mm, height_mm] = match packing.cell {
+        Cell::Periodic([x, _, z]) => [x, z],
+        Cell::Free => [f64::NAN; 2],
+    };
+    let mut settings = match serde_json::to_value(s) {
+        Ok(serde_json::Value::Object(settings)) => settings,
+        _ => unreachable!("a section of settings is a map"),
+    };
+    for said_apart in ["seed", "final_friction", "pressure_kpa"] {
+        settings.remove(said_apart);
+    }
+    let guess = |density| -> Result<Vec<[f64; 2]>, CurveError> {
+        Ok(inscribed(&plan.gradation, density)?.points().into_iter().map(CurvePoint::row).collect())
+    };
+    Ok(PackingRecord {
+        inscribed: [guess(1.0)?, guess(0.0)?],
+        fingerprint: plan.fingerprint(),
+        grains_xxh3: format!("{:016x}", xxhash_rust::xxh3::xxh3_64(grains_csv.as_bytes())),
+        name: plan.name.clone(),
+        linear: plan.linear,
+        cu: plan.gradation.cu(),
+        part: plan.part,
+        same_shape: None,
+        gradation: plan.gradation.points().into_iter().map(CurvePoint::row).collect(),
+        grains: packing.x.len() as u64,
+        seed: s.seed,
+        friction: s.friction,
+        final_friction: s.final_friction,
+        pressure_kpa: s.pressure_kpa,
+        settings,
+        before: report.before,
+        after: report.after,
+        steps: report.steps,
+        simulated_s: report.simulated_s,
+        seconds,
+        cell_mm,
+        height_mm: (plan.aspect != 1.0).then_some(height_mm),
+        slice: slice(packing, cell_mm, height_mm),
+    })
+}
+
+/// The grains that the plane through the middle of the cell cuts, with those that reach over its sides on
+/// both.
+fn slice(packing: &Packing, cell_mm: f64, height_mm: f64) -> Vec<[f64; 4]> {
+    let mut cuts = Vec::new();
+    for i in 0..packing.x.len() {
+        let height = packing.z[i] - 0.5 * height_mm;
+        let radius = 0.5 * packing.diameter[i];
+        let cut = radius * radius - height * height;
+        if cut <= 0.0 {
+            continue;
+        }
+        let cut = cut.sqrt();
+        for dx in [-cell_mm, 0.0, cell_mm] {
+            for dy in [-cell_mm, 0.0, cell_mm] {
+                let (x, y) = (packing.x[i] + dx, packing.y[i] + dy);
+                let inside = |v: f64| v + cut > 0.0 && v - cut < cell_mm;
+                if inside(x) && inside(y) {
+                    cuts.push([x, y, 2.0 * cut, packing.diameter[i]]);
+                }
+            }
+        }
+    }
+    cuts
+}
+
+/// Options of measuring constrictions.
+#[derive(Clone, Debug)]
+pub struct ConstrictionsOptions {
+    /// Overlap of two inscribed spheres from which their tetrahedra are one void.
+    pub merge_overlap: f64,
+    /// Which facets between voids are constrictions of the curve.
+    pub facets: Facets,
+    /// Options that complete the file of grains.
+    pub read: ReadOptions,
+    /// Folder for the results.
+    pub out: PathBuf,
+    /// True if earlier results there are replaced.
+    pub overwrite: bool,
+}
+
+impl Default for ConstrictionsOptions {
+    fn default() -> Self {
+        Self {
+            merge_overlap: DEFAULT_MERGE_OVERLAP,
+            facets: Facets::All,
+            read: ReadOptions::default(),
+            out: "voidwalk-constrictions".into(),
+            overwrite: false,
+        }
+    }
+}
+
+/// Measures the constrictions of the grains in a file and writes `grains.vtp`, `constrictions.csv`,
+/// `constrictions.vtp`, for grains in a periodic cell `graph.csv` and, last, `constrictions.json`; returns
+/// the contents of that file.
+///
+/// # Errors
+/// Grains that are refused, or do not fit their cell; a folder that cannot be claimed or written.
+pub fn measure_constrictions(
+    packing: &Path,
+    options: &ConstrictionsOptions,
+    callbacks: &Callbacks,
+) -> Result<Summary, RunError> {
+    on_threads(None, || measure_here(packing, options, callbacks))
+}
+
+fn measure_here(
+    packing: &Path,
+    options: &ConstrictionsOptions,
+    callbacks: &Callbacks,
+) -> Result<Summary, RunError> {
+    let file = shown(packing);
+    let (packing, notes) = Packing::read_as(packing, &options.read)?;
+    let refused = |error: &dyn std::error::Error| RunError::Refused(format!("{file}: {error}"));
+    let t = Triangulation::new(&packing).map_err(|error| refused(&error))?;
+    let constrictions = Constrictions::from_triangulation(&t, options.merge_overlap, options.facets)
+        .map_err(|error| refused(&error))?;
+    constrictions.check().map_err(|error| refused(&error))?;
+    // Grains without a cell, and voids that run through it, have no graph.
+    let graph = VoidGraph::of(&t, options.merge_overlap).ok();
+    // Constrictions near the outside of grains without a cell do not count for the curve.
+    let whole =
+        |summary: &Summary| summary.grains_per_void.is_finite() && summary.mean_connectivity.is_finite();
+    let mut summary = constrictions.summary().ok().filter(whole).ok_or_else(|| {
+        RunError::Refused(format!(
+            "{file}: {} grains are too few: no constriction lies between two voids inside the packing. At \
+             least 5 grains that do not lie in one plane are needed for one, some thousands for a curve",
+            packing.diameter.len()
+        ))
+    })?;
+    notes.iter().for_each(|note| (callbacks.warn)(&format!("{file}: {note}")));
+    if let Some(graph) = &graph {
+        let square = graph.d32_mm * graph.d32_mm;
+        let k = permeability_mm2(graph, 2).map_err(|error| refused(&error))?;
+        summary.k_over_d32_squared = Some(k / square);
+        summary.kozeny_carman_over_d32_squared = Some(graph.kozeny_carman_mm2() / square);
+    }
+    let folder = claim(&options.out, FolderKind::Constrictions, options.overwrite)?;
+    begin(&folder, FolderKind::Constrictions)?;
+    folder.write("grains.vtp", packing.to_vtp().as_bytes())?;
+    if let Some(graph) = &graph {
+        folder.write("graph.csv", graph.to_csv().as_bytes())?;
+    }
+    for (name, text) in constrictions.files(&summary)? {
+        folder.write(name, text.as_bytes())?;
+    }
+    Unfinished::end(&folder)?;
+    Ok(summary)
 }

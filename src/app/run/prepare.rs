@@ -3,18 +3,25 @@
 //! A scene is drafted first, with a guess at a filter that is still to be packed: its mistakes, and a lack of
 //! memory, are refused then. The caller claims the folder for the results next. Only then is the draft
 //! finished, and its filter packed unless it has been packed before, which may take hours.
+//!
+//! A check forecasts the run of a scene before any of its work. Examples are files to start from.
 
 use std::path::{Path, PathBuf};
 
+use serde::Serialize;
+
+use super::RunError;
 use super::callbacks::Callbacks;
-use super::error::RunError;
-use super::folder::shown;
+use super::folder::refused;
 use super::machine::{Machine, on_threads};
 use super::pack::{provide, with_time};
-use super::replicates::have_networks;
+use super::replicates::{have_networks, left_out_of_first_run, runs_to_walk};
+use super::results::left_out;
 use crate::case::{Case, CaseError, PackedFilter, PackingPlan, ResourceLimits};
+use crate::outcome::record::{Inputs, LeftOut, Ratios};
 use crate::scene::Scene;
-use voidwalk_core::store::write_whole;
+use voidwalk_core::store::{Placement, StoreError, write_whole};
+use voidwalk_practice::{Note, ordered};
 
 /// Options of preparing a scene; no setting changes a result.
 #[derive(Clone, Debug)]
@@ -42,7 +49,6 @@ impl PrepareOptions {
 
 /// A scene that has been found sound, and the packing that it needs.
 pub struct Draft {
-    /// The scene.
     scene: Scene,
     /// The case, with a guess at a filter that is to be packed.
     pub case: Case,
@@ -52,9 +58,6 @@ pub struct Draft {
 
 impl Draft {
     /// Works a scene out, with a guess at a filter that is to be packed.
-    ///
-    /// # Errors
-    /// Everything that is wrong with the scene.
     pub fn new(scene: Scene) -> Result<Self, RunError> {
         let packing = PackingPlan::of(&scene).map_err(with_time)?;
         let placeholder = packing.as_ref().map(PackedFilter::placeholder).transpose();
@@ -63,10 +66,8 @@ impl Draft {
         Ok(Self { scene, case, packing })
     }
 
-    /// Finishes the case, with the packed filter if it needs one; no file is read again.
-    ///
-    /// # Errors
-    /// A filter that turns out unsuitable once it is packed.
+    /// Finishes the case, with the packed filter if it needs one; no file is read again. Errors: a filter
+    /// that turns out unsuitable once it is packed.
     pub fn finished(self, filter: Option<PackedFilter>) -> Result<Case, RunError> {
         match filter {
             Some(_) => Ok(Case::with_packed(self.scene, filter, self.case.inputs)?),
@@ -111,22 +112,220 @@ pub(crate) fn prepare_into<F: AsRef<Path>>(
     Ok((case, folder))
 }
 
-/// Writes the built-in scene, commented, as a start for another.
-///
-/// # Errors
-/// A file that exists already is refused.
+/// Writes the built-in scene, commented, as a start for another; refuses a file that exists already.
 pub fn write_built_in(path: &Path) -> Result<(), RunError> {
     write_new(path, Scene::init_text().as_bytes())
 }
 
-/// Writes a file that does not exist yet.
-///
-/// # Errors
-/// A file that exists already is refused.
+/// Writes a file; refuses one that exists already.
 pub fn write_new(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     if path.symlink_metadata().is_ok() {
-        let problem = "is there already; name a file that is not";
-        return Err(RunError::Refused(format!("{}: {problem}", shown(path))));
+        return Err(refused(path, "is there already; name a file that is not"));
     }
     write_whole(path, bytes).map_err(RunError::Claim)
+}
+
+/// What a run of a scene would do; sizes and times are estimates.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct Check {
+    /// Base particles of a run.
+    pub n_base: u64,
+    /// Base particles by Eq. (2), where the grains per void are known.
+    pub n_base_eq2: Option<u64>,
+    /// Whether a cap made `n_base` smaller than Eq. (2).
+    pub capped: bool,
+    /// Filter grains per void, where known.
+    pub grains_per_void: Option<f64>,
+    /// Mass of base over mass of filter, where known.
+    pub mass_ratio: Option<f64>,
+    /// Base particles that are walked by themselves, at most.
+    pub one_by_one: u64,
+    /// Runs to walk.
+    pub runs_to_walk: u64,
+    /// Increments of insertion of a run, at most.
+    pub increments: u64,
+    /// Memory of a walk (bytes).
+    pub bytes: u64,
+    /// Memory that the walks may take (bytes).
+    pub bytes_allowed: u64,
+    /// Memory in words.
+    pub memory: String,
+    /// Seconds of one core of this machine for the walks, the packing apart.
+    pub core_seconds: f64,
+    /// Whether the particles are in files, mapped into memory.
+    pub particles_on_disk: bool,
+    /// Sizes of filter over base.
+    pub ratios: Ratios,
+    /// The packing that is needed.
+    pub packing: Option<PackingCheck>,
+    /// What goes in.
+    pub inputs: Inputs,
+    /// Parts of the program that are not needed.
+    pub left_out: Vec<LeftOut>,
+    /// What a user must know.
+    pub notes: Vec<Note>,
+    /// Why a run would be refused all the same: memory does not suffice.
+    #[serde(skip)]
+    pub refusal: Option<CaseError>,
+}
+
+/// The packing that a scene needs.
+#[derive(Clone, Debug, Serialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct PackingCheck {
+    /// Grains.
+    pub grains: u64,
+    /// Its folder.
+    pub folder: PathBuf,
+    /// Whether it is there; until then the filter's constrictions and grains per void are guesses.
+    pub is_made: bool,
+    /// Steps that it takes.
+    pub steps: u64,
+    /// Seconds of one core of this machine that it takes; where it is made, of one of 2024.
+    pub core_seconds: f64,
+}
+
+/// Forecasts a run of a scene, here and with these options; makes no packing and writes nothing.
+///
+/// # Errors
+/// All mistakes of the scene, memory apart: see [`Check::refusal`].
+pub fn check(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> {
+    on_threads(options.threads, || check_here(scene, options))
+}
+
+fn check_here(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> {
+    let draft = Draft::new(scene)?;
+    let (mut packing, mut filter) = (None, None);
+    if let Some(plan) = &draft.packing {
+        let mut folder = options.packings.join(plan.folder_name());
+        filter = PackedFilter::find(&options.packings, plan)?;
+        if let Some(other) = filter.as_ref().and_then(|made| made.same_shape.as_ref()) {
+            folder = other.folder.clone().into();
+        }
+        let is_made = filter.is_some();
+        let core_seconds = if is_made { plan.core_seconds() } else { plan.core_seconds_here() };
+        let (grains, steps) = (plan.compression.grains as u64, plan.usual_steps());
+        packing = Some(PackingCheck { grains, folder, is_made, steps, core_seconds });
+    }
+    let mut case = draft.finished(filter)?;
+    let here = Path::new(".");
+    let threads = rayon::current_num_threads() as u64;
+    let refusal = case.place(&options.limits(here), threads, here).err();
+    let mut of_run = Vec::new();
+    if refusal.is_none() {
+        have_networks(&case, &Callbacks::default())?;
+        of_run = left_out_of_first_run(&case).map_err(RunError::refused)?;
+    }
+    Ok(Check {
+        n_base: case.supply.n_base,
+        n_base_eq2: case.supply.n_base_eq2,
+        capped: case.supply.capped,
+        grains_per_void: case.filter.grains_per_void,
+        mass_ratio: case.supply.mass_ratio,
+        one_by_one: case.one_by_one(case.supply.n_base),
+        runs_to_walk: runs_to_walk(&case),
+        increments: case.increments(),
+        bytes: case.bytes(case.supply.n_base, threads).saturating_add(case.kept_bytes()),
+        bytes_allowed: case.memory,
+        memory: case.memory_in_words(threads),
+        core_seconds: case.core_seconds_here(),
+        particles_on_disk: case.placement != Placement::Memory,
+        ratios: case.ratios(),
+        packing,
+        inputs: case.record(),
+        left_out: left_out(&case, &of_run),
+        notes: ordered(case.notes()),
+        refusal,
+    })
+}
+
+/// An example: its file name, a description, and its text.
+#[derive(Clone, Copy, Debug)]
+pub struct ExampleFile {
+    /// Its name.
+    pub name: &'static str,
+    /// Description of its contents.
+    pub what: &'static str,
+    /// All that is in it.
+    pub text: &'static str,
+}
+
+/// The example in `src/app/data/examples` of this name.
+macro_rules! example {
+    ($name:literal, $what:literal) => {
+        ExampleFile { name: $name, what: $what, text: include_str!(concat!("../data/examples/", $name)) }
+    };
+}
+
+/// Every example.
+pub const EXAMPLE_FILES: [ExampleFile; 8] = [
+    example!("base.csv", "a base: openings in mm, percent finer by mass"),
+    example!("filter.csv", "a filter for it"),
+    example!("filter-fine.csv", "a finer one"),
+    example!("us-sieves.csv", "two soils by US sieves, as they stand side by side in a sheet"),
+    example!("borrow-area.ags", "six samples of a borrow area (AGS4)"),
+    example!("scene.toml", "a scene: base, filter and network, with a cover for the first sheet"),
+    example!("plan.toml", "a plan: two filters by two densities"),
+    example!("notebook.ipynb", "the same from Python"),
+];
+
+/// Writes every example into a folder, which is made if it is missing. Other files in it stay.
+///
+/// # Errors
+/// [`RunError::Refused`] if a file is there already, or the folder is a file: then nothing is written.
+pub fn write_examples(folder: &Path) -> Result<(), RunError> {
+    let places = EXAMPLE_FILES.map(|file| folder.join(file.name));
+    if let Some(taken) = places.iter().find(|path| path.symlink_metadata().is_ok()) {
+        return Err(refused(taken, "is there already; nothing was written. Name another folder"));
+    }
+    if let Some(file) = folder.ancestors().find(|part| part.exists() && !part.is_dir()) {
+        return Err(refused(file, "is a file; name a folder, a new one or one that is there"));
+    }
+    let io = |source| StoreError::Io { path: folder.to_owned(), action: "make the folder", source };
+    std::fs::create_dir_all(folder).map_err(io).map_err(RunError::Claim)?;
+    places.iter().zip(EXAMPLE_FILES).try_for_each(|(path, file)| write_new(path, file.text.as_bytes()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cases::CasePlan;
+    use voidwalk_sheets::{curves_in_file, soils_in_file};
+
+    #[test]
+    fn every_example_is_read_without_a_remark_and_the_soils_are_what_is_said() {
+        let root = tempfile::tempdir().unwrap();
+        write_examples(root.path()).unwrap();
+        let place = |name: &str| root.path().join(name);
+        let soils = |name: &str| curves_in_file(&place(name), None).unwrap().len();
+        let counts =
+            ["base.csv", "filter.csv", "filter-fine.csv", "us-sieves.csv", "borrow-area.ags"].map(soils);
+        assert_eq!(counts, [1, 1, 1, 2, 6]);
+        let notes = |name: &str| soils_in_file(&place(name), None).unwrap()[0].notes.clone();
+        let of_sieves = "US sieves read as the openings of ASTM E11 (No. 200 = 0.075 mm)";
+        assert_eq!(notes("us-sieves.csv"), [of_sieves]);
+        let case = Case::new(Scene::read(&place("scene.toml"), &[]).unwrap()).unwrap();
+        assert_eq!(case.scene.filter.thickness_mm, Some(609.6));
+        let plan = CasePlan::read(&place("plan.toml")).unwrap();
+        assert_eq!(plan.cases.len(), 4);
+        for case in &plan.cases {
+            Case::new(case.scene.clone()).unwrap();
+        }
+        let notebook = EXAMPLE_FILES.iter().find(|file| file.name == "notebook.ipynb").unwrap();
+        let notebook: serde_json::Value = serde_json::from_str(notebook.text).unwrap();
+        assert_eq!((&notebook["nbformat"], notebook["cells"].as_array().unwrap().len()), (&4.into(), 8));
+    }
+
+    #[test]
+    fn nothing_is_written_over_and_nothing_half() {
+        let root = tempfile::tempdir().unwrap();
+        let taken = root.path().join("plan.toml");
+        std::fs::write(&taken, "mine").unwrap();
+        let message = write_examples(root.path()).unwrap_err().to_string();
+        assert!(message.contains("plan.toml: is there already; nothing was written"), "{message}");
+        assert_eq!(std::fs::read_dir(root.path()).unwrap().count(), 1);
+        let message = write_examples(&taken.join("below")).unwrap_err().to_string();
+        assert!(message.contains("plan.toml: is a file"), "{message}");
+    }
 }

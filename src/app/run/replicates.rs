@@ -9,21 +9,20 @@ use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 use rayon::prelude::*;
 
+use super::RunError;
 use super::callbacks::{Callbacks, Event};
 use super::checkpoints::{Checkpoints, Done, WalkId};
-use super::error::RunError;
-use super::planned::first_replicates;
 use super::shared_networks::{NetworkToWalk, SharedNetworks};
 use crate::case::{Case, replicate_seed};
-use crate::outcome::record::{Replicate, Run, Stopping, Verdict};
+use crate::outcome::early_stop::{FEWEST_OF_RANGE, FEWEST_OWN, clear, looks};
+use crate::outcome::record::{Classed, Replicate, Run, RunSummary, Statistic, Stopping, Verdict};
 use crate::outcome::stopping::{Look, ReplicateValues};
-use crate::outcome::verdict::classify;
-use voidwalk_core::gradation::Gradation;
-use voidwalk_core::network::{Network, NetworkError};
-
+use crate::outcome::verdict::{THRESHOLD, below_by_interval, classify};
 use crate::outcome::{Recorded, RunId, RunMetrics};
 use crate::scene::NetworkSource;
 use crate::verdict::walks::{self, Walked, is_clogged};
+use voidwalk_core::gradation::Gradation;
+use voidwalk_core::network::{Network, NetworkError};
 use voidwalk_core::store::checkpoint::{Checkpoint, CheckpointError};
 use voidwalk_core::walk::{
     Clogged, Engine, FlowRecord, PlainExits, RunPlan, Shortcut, SizeClasses, State, Supply, Walk,
@@ -31,7 +30,7 @@ use voidwalk_core::walk::{
 };
 use voidwalk_practice::Note;
 
-/// Context of walking replicates: callbacks and checkpoints.
+/// Callbacks, checkpoints and networks of walking replicates.
 #[derive(Clone, Copy)]
 pub struct ReplicateContext<'a> {
     /// Who follows the walks and stops them.
@@ -57,9 +56,7 @@ impl ReplicateContext<'_> {
 
 /// One replicate: its figures, and its rows of the CSV files.
 pub struct ReplicateResult {
-    /// Entry of `outcome.json`.
     pub replicate: Replicate,
-    /// Rows of the CSV files.
     pub recorded: Recorded,
     /// The engine that walked the first run.
     pub engine: Engine,
@@ -69,45 +66,25 @@ pub struct ReplicateResult {
     pub(super) below: Vec<bool>,
 }
 
-/// Walks every replicate of the case: the number of the scene, or until its rule stops.
-///
-/// # Errors
-/// A walk that loses particles, or that was stopped.
-pub fn replicates(case: &Case, context: &ReplicateContext) -> Result<Vec<ReplicateResult>, RunError> {
-    tell_needs(case, first_replicates(case), context);
-    all_replicates(case, 0, context)
-}
-
-/// Reports the number of replicates that the verdict needs, as far as is known.
-fn tell_needs(case: &Case, replicates: u64, context: &ReplicateContext) {
-    let readings = !case.filter.curve_ends.is_empty();
-    context.tell(Event::VerdictNeeds { replicates, runs: case.scene.walk.runs, readings });
-}
-
-fn all_replicates(
-    case: &Case,
-    part: u64,
-    context: &ReplicateContext,
-) -> Result<Vec<ReplicateResult>, RunError> {
+/// Walks every replicate of the case: the number of the scene, or until its rule stops. Errors: a walk that
+/// loses particles, or that was stopped.
+pub(super) fn replicates(case: &Case, context: &ReplicateContext) -> Result<Vec<ReplicateResult>, RunError> {
+    let (runs, readings) = (case.scene.walk.runs, !case.filter.curve_ends.is_empty());
+    let tell_needs = |replicates| context.tell(Event::VerdictNeeds { replicates, runs, readings });
     let (mut wanted, mut walked) = (first_replicates(case), Vec::new());
+    tell_needs(wanted);
     loop {
         let more = walked.len() as u64 + 1..=wanted;
-        walked.extend(some_replicates(case, part, more, case.supply.n_base, context)?);
-        match look(case, &walked) {
-            Some(Look::Until(next)) => {
-                context.tell(Event::MoreRuns { runs: (next - wanted) * case.scene.walk.runs });
-                wanted = next;
-                if part == 0 {
-                    tell_needs(case, wanted, context);
-                }
-            }
-            _ => return Ok(walked),
-        }
+        walked.extend(some_replicates(case, 0, more, case.supply.n_base, context)?);
+        let Some(Look::Until(next)) = look(case, &walked) else { return Ok(walked) };
+        context.tell(Event::MoreRuns { runs: (next - wanted) * runs });
+        wanted = next;
+        tell_needs(wanted);
     }
 }
 
 /// Result of the scene's stopping rule, if it has one.
-pub fn stopping(case: &Case, walked: &[ReplicateResult]) -> Option<Stopping> {
+pub(super) fn stopping(case: &Case, walked: &[ReplicateResult]) -> Option<Stopping> {
     match look(case, walked)? {
         Look::Stop(stopping) => Some(stopping),
         Look::Until(_) => None,
@@ -139,11 +116,12 @@ pub(super) fn some_replicates(
     context: &ReplicateContext,
 ) -> Result<Vec<ReplicateResult>, RunError> {
     let one = |replicate| walk_replicate(case, part, replicate, n_base, context);
-    map_side_by_side(
-        replicates.collect(),
-        case.side_by_side(n_base, rayon::current_num_threads() as u64) > 1,
-        one,
-    )
+    map_side_by_side(replicates.collect(), fit_side_by_side(case, n_base), one)
+}
+
+/// True if walks of the case with this many particles fit into the memory side by side.
+pub(super) fn fit_side_by_side(case: &Case, n_base: u64) -> bool {
+    case.side_by_side(n_base, rayon::current_num_threads() as u64) > 1
 }
 
 /// Applies `one` to each item, side by side if their walks fit into the memory together.
@@ -223,28 +201,23 @@ fn tell_walked(id: WalkId, run: &Run, below_threshold: bool, context: &Replicate
 }
 
 /// Plan of a run with these constrictions blocked.
-pub(super) fn plan(case: &Case, network: &Network, blocked: &BitSlice, n_base: u64) -> RunPlan {
+pub(crate) fn plan(case: &Case, network: &Network, blocked: &BitSlice, n_base: u64) -> RunPlan {
     let (engine, share) = (case.scene.walk.engine, n_base / case.increments());
     let clogging = (case.arching(), case.scene.leaves_openings());
     RunPlan::with_clogging(engine, network, &case.supply.sampler, blocked, share, clogging)
         .sampled(case.scene.walk.sampling)
 }
 
-/// Parts that the first run of the first replicate does not need.
-///
-/// # Errors
-/// See [`Case::network`].
-pub fn left_out_of_first_run(case: &Case) -> Result<Vec<Shortcut>, RunError> {
+/// Parts that the first run of the first replicate does not need. Errors: see [`Case::network`].
+pub(super) fn left_out_of_first_run(case: &Case) -> Result<Vec<Shortcut>, RunError> {
     let network = case.network(replicate_seed(case.scene.walk.seed, 1))?;
     let open: BitVec = BitVec::repeat(false, network.constrictions());
     Ok(plan(case, &network, &open, case.supply.n_base).left_out().to_vec())
 }
 
 /// Checks that every replicate that is known to be walked has a network: a network with a distribution of
-/// connectivity is searched for at random, and the search of another replicate may fail.
-///
-/// # Errors
-/// A replicate without a network; a stop.
+/// connectivity is searched for at random, and the search of another replicate may fail. Errors: a replicate
+/// without a network; a stop.
 pub fn have_networks(case: &Case, callbacks: &Callbacks) -> Result<(), RunError> {
     if !matches!(case.scene.network.source(), NetworkSource::Connected(..)) {
         return Ok(());
@@ -255,11 +228,9 @@ pub fn have_networks(case: &Case, callbacks: &Callbacks) -> Result<(), RunError>
         network.map(drop).map_err(|error| RunError::Refused(format!("replicate {replicate}: {error}")))
     };
     let replicates = 1..=first_replicates(case).max(case.scene.record.sensitivity_replicates);
-    let fit = case.side_by_side(case.supply.n_base, rayon::current_num_threads() as u64) > 1;
-    map_side_by_side(replicates.collect(), fit, one).map(drop)
+    map_side_by_side(replicates.collect(), fit_side_by_side(case, case.supply.n_base), one).map(drop)
 }
 
-/// Result of a run.
 struct RunEnd<'a> {
     state: State,
     network: Cow<'a, Network>,
@@ -267,7 +238,6 @@ struct RunEnd<'a> {
     exits: Option<PlainExits>,
 }
 
-/// One run of one replicate.
 struct RunContext<'a> {
     case: &'a Case,
     network: &'a Arc<Network>,
@@ -297,12 +267,8 @@ impl RunContext<'_> {
                 done.recorder.observe(&wanted, state);
             }
             let (increment, moving) = (state.increment, state.tally.moving);
-            context.tell(Event::Increment {
-                replicate: run_id.replicate,
-                run: run_id.run,
-                increment,
-                moving,
-            });
+            let RunId { replicate, run, .. } = run_id;
+            context.tell(Event::Increment { replicate, run, increment, moving });
             let stop = context.callbacks.is_stopped();
             let due = |checkpoints: &&Checkpoints| checkpoints.is_due(last, increment, stop);
             if let Some(checkpoints) = context.checkpoints.filter(due) {
@@ -312,10 +278,7 @@ impl RunContext<'_> {
                 }
                 last = Instant::now();
             }
-            match stop {
-                true => WalkControl::Stop,
-                false => WalkControl::Continue,
-            }
+            if stop { WalkControl::Stop } else { WalkControl::Continue }
         });
         if let Some(error) = failed {
             return Err(RunError::Save(error));
@@ -388,7 +351,7 @@ fn blocked_at_start(network: &Network, saved: &Checkpoint) -> Result<BitVec, Run
 
 /// Notes of walks against their verdict: for a base in this many increments through this many layers, with
 /// openings or without.
-pub fn said_by_walks<'a>(
+pub(super) fn said_by_walks<'a>(
     verdict: Verdict,
     walked: impl IntoIterator<Item = &'a ReplicateResult, IntoIter: Clone>,
     base: &Gradation,
@@ -409,10 +372,97 @@ pub fn said_by_walks<'a>(
     walks::notes(verdict, &Walked { replicates, clogged, base, share, layers, openings })
 }
 
+/// Number of runs that are walked for a case: its own, and those of the ends of its curve's range and of its
+/// studies, as far as it is known before.
+pub fn runs_to_walk(case: &Case) -> u64 {
+    let first = first_replicates(case);
+    let of_ends = replicates_of_end(first) * case.filter.curve_ends.len() as u64;
+    let points = (case.sensitivity_factors().len() + case.thickness_factors().len()) as u64;
+    case.scene.walk.runs * (first + of_ends + points * replicates_at_least(case))
+}
+
+/// Replicates of a case as far as it is known before it is walked.
+pub(super) fn first_replicates(case: &Case) -> u64 {
+    let (rule, replicates) = (&case.scene.stop, case.scene.walk.replicates);
+    if rule.is_set() { rule.replicates_at(replicates, 1) } else { replicates }
+}
+
+/// Least number of replicates of an end of the curve's range, for this many of the case.
+pub(super) fn replicates_of_end(of_case: u64) -> u64 {
+    if of_case >= FEWEST_OF_RANGE as u64 { 1 } else { of_case }
+}
+
+/// Replicates of each point that are walked at the least, as far as it is known before the case is walked.
+pub(super) fn replicates_at_least(case: &Case) -> u64 {
+    let most = case.scene.record.sensitivity_replicates;
+    if first_replicates(case) >= FEWEST_OWN as u64 { most.min(1) } else { most }
+}
+
+/// Scatter of replicates over their mean before any walk: the value of the built-in scene.
+const LIKELY_SCATTER: f64 = 0.05;
+
+/// Replicates of a point that are likely to be walked, given the eroded mass of each run in a replicate of
+/// the case and in one of the point; all of them if it is not known.
+pub(super) fn likely_replicates(case: &Case, eroded: Option<(&[f64], &[f64])>) -> u64 {
+    let most = case.scene.record.sensitivity_replicates;
+    let Some((of_case, point)) = eroded else { return most };
+    let several = |values: &[f64], replicates: u64| -> Vec<ReplicateValues> {
+        let about = |&value: &f64| {
+            let sign = |k: u64| if k.is_multiple_of(2) { -LIKELY_SCATTER } else { LIKELY_SCATTER };
+            (0..replicates).map(|k| value * (1.0 + sign(k))).map(|v| (v, v < THRESHOLD)).collect()
+        };
+        values.iter().map(about).collect()
+    };
+    let below = |run: usize| of_case.get(run).map(|&eroded| eroded < THRESHOLD);
+    let class = classify(below(0), below(1));
+    let replicates = first_replicates(case);
+    let of_case = several(of_case, replicates);
+    let is_clear = |&look: &u64| clear(&of_case, class, &several(point, look)).is_some();
+    let looks = looks(class, replicates as usize, most);
+    looks.into_iter().find(is_clear).map_or(most, |look| look.min(most))
+}
+
+/// The verdict that the replicates support together, and their statistics by run.
+pub(super) fn summarise(walked: &[ReplicateResult]) -> (Verdict, Vec<RunSummary>) {
+    let runs = walked.first().map_or(0, |w| w.replicate.runs.len());
+    let summaries: Vec<RunSummary> = (0..runs).map(|run| run_summary(walked, run)).collect();
+    let below = |run: usize| {
+        let summary = summaries.get(run)?;
+        let below_by_replicate: Vec<bool> = walked.iter().map(|w| w.below[run]).collect();
+        below_by_interval(&summary.eroded_mass_fraction, &below_by_replicate)
+    };
+    (classify(below(0), below(1)), summaries)
+}
+
+/// Class and statistics of the replicates, as a point of a study holds them.
+pub(super) fn classed(walked: &[ReplicateResult]) -> Classed {
+    let (verdict, summaries) = summarise(walked);
+    let runs = summaries.iter().map(|run| run.eroded_mass_fraction).collect();
+    Classed { replicates: walked.len() as u64, stopped_when_clear: false, verdict, runs }
+}
+
+fn run_summary(walked: &[ReplicateResult], run: usize) -> RunSummary {
+    let statistic = |figure: fn(&Run) -> f64| {
+        let values: Vec<f64> = walked.iter().map(|w| figure(&w.replicate.runs[run])).collect();
+        Statistic::of_fraction(&values)
+    };
+    let largest: Vec<f64> =
+        walked.iter().filter_map(|w| w.replicate.runs[run].largest_eroded_over_d15f).collect();
+    RunSummary {
+        run: run as u64 + 1,
+        eroded_mass_fraction: statistic(|r| r.eroded_mass_fraction),
+        eroded_number_fraction: statistic(|r| r.eroded_number_fraction),
+        largest_eroded_over_d15f: (!largest.is_empty()).then(|| Statistic::of(&largest)),
+        blocked_fraction: statistic(|r| r.blocked_fraction),
+        blocked_first_three_layers_fraction: statistic(|r| r.blocked_first_three_layers_fraction),
+        backbone_fraction: statistic(|r| r.backbone_fraction),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Scene;
+    use crate::run::case_of;
 
     /// The figures and rows of a replicate, times apart.
     fn walked(case: &Case, networks: Option<&SharedNetworks>) -> String {
@@ -429,11 +479,7 @@ mod tests {
     fn a_replicate_is_the_same_whichever_case_has_left_its_network() {
         let small = ["network.nx=6", "network.ny=6", "network.nz=8"];
         for engine in ["engine=counts", "engine=expected"] {
-            let case = |more: &[&str]| {
-                let settings: Vec<String> =
-                    small.iter().chain(&[engine]).chain(more).map(ToString::to_string).collect();
-                Case::new(Scene::built_in(&settings).unwrap()).unwrap()
-            };
+            let case = |more: &[&str]| case_of(&[&small[..], &[engine], more].concat());
             let (before, other) = (case(&["base.cu=3", "replicates=1"]), case(&["base.n_base=30000"]));
             let (shared, seed) = (SharedNetworks::new(1 << 27), replicate_seed(other.scene.walk.seed, 1));
             let exits_of = |case: &Case| {

@@ -1,32 +1,25 @@
 //! Writes the results of a case into a run folder.
 
-use std::time::SystemTime;
-
-use serde::Serialize;
-
-use super::case_walks::CaseWalks;
-use super::error::RunError;
+use super::RunError;
+use super::case_walks::{CaseWalks, Studies};
 use super::machine::Machine;
 use super::replicates::{ReplicateResult, said_by_walks};
-use super::studies::Studies;
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
-use crate::outcome::digest::digest;
 use crate::outcome::left_out::LeftOut;
 use crate::outcome::record::{
-    ConstrictionsRecord, CurveRange, Manifest, Model, Outcome, RunSummary, Statistic, VoidRow, commit,
+    ConstrictionsRecord, CurveRange, Manifest, Model, Outcome, RunSummary, Statistic, VoidRow, commit, digest,
 };
 use crate::outcome::table::csv_of;
-use crate::outcome::{Recorded, by_void, infiltration, leaves_out, verdict};
+use crate::outcome::{Recorded, infiltration, leaves_out, recorder, verdict};
 use crate::verdict::RunFiles;
-use voidwalk_core::store::format::{self, Format, from_json};
-use voidwalk_core::store::{Folder, StoreError, Together};
+use serde::Serialize;
+use std::time::SystemTime;
+use voidwalk_core::store::format::{Format, from_json};
+use voidwalk_core::store::{Folder, StoreError, Together, format};
 use voidwalk_core::text::moment;
 use voidwalk_core::walk::Shortcut;
-use voidwalk_practice::IfDispersive;
-use voidwalk_practice::Note;
 use voidwalk_practice::rules::{BaseSoil, RuleInputs};
-use voidwalk_practice::{Decision, ordered};
-use voidwalk_practice::{dispersion, rules};
+use voidwalk_practice::{Decision, IfDispersive, Note, dispersion, ordered, rules};
 
 /// The outcome of a walked case with these earlier notes, and the decision of practice on its pair; with its
 /// studies, left empty if they follow later.
@@ -133,9 +126,6 @@ fn eroded_percent(summary: &[RunSummary], range: Option<&CurveRange>) -> Vec<[f6
 }
 
 /// Writes the files from which a run can be started again: the resolved scene and its input files.
-///
-/// # Errors
-/// Errors of the folder.
 pub fn write_scene(folder: &Folder, case: &Case) -> Result<(), StoreError> {
     let mut files = Together::in_folder(folder.path());
     for input in &case.inputs {
@@ -245,16 +235,13 @@ fn add_voids(files: &mut Together, case: &Case, recorded: &Recorded) -> Result<(
         .map(|(void, (&[x_mm, y_mm, z_mm], &layer))| VoidRow { void, layer: layer.into(), x_mm, y_mm, z_mm })
         .collect();
     files.add("voids.csv", &csv_of(&rows))?;
-    let rows = by_void::constrictions(&network, &places);
+    let rows = recorder::constrictions(&network, &places);
     files.add("constrictions_of_network.csv", &csv_of(&rows))?;
     files.add("blocked.csv", &csv_of(&recorded.blocked))?;
     Ok(files.add("retained_by_void.csv", &csv_of(&recorded.voids))?)
 }
 
 /// A file of JSON in its form.
-///
-/// # Errors
-/// A record that cannot be written as JSON.
 pub fn json(format: Format, record: &impl Serialize) -> Result<Vec<u8>, RunError> {
     let text = format.json(record).map_err(|e| RunError::Format { file: format.file, source: e.into() })?;
     Ok(text.into_bytes())

@@ -21,7 +21,6 @@ type KeptExits = Arc<OnceLock<PlainExits>>;
 
 /// A network to walk, and its exits if they are kept.
 pub struct NetworkToWalk {
-    /// The network.
     pub network: Arc<Network>,
     exits: Option<KeptExits>,
 }
@@ -44,7 +43,6 @@ impl NetworkToWalk {
     }
 }
 
-/// A network that is kept.
 struct KeptNetwork {
     key: u128,
     network: Arc<Network>,
@@ -57,10 +55,6 @@ impl KeptNetwork {
     fn bytes(&self) -> u64 {
         let [network, exits] = self.bytes;
         network.saturating_add(if self.exits.is_some() { exits } else { 0 })
-    }
-
-    fn to_walk(&self) -> NetworkToWalk {
-        NetworkToWalk { network: self.network.clone(), exits: self.exits.clone() }
     }
 }
 
@@ -83,9 +77,6 @@ impl SharedNetworks {
     }
 
     /// The network of the replicate of a case with this seed, as [`Case::network`] builds it.
-    ///
-    /// # Errors
-    /// See [`Case::network`].
     pub fn get(&self, case: &Case, seed: u64) -> Result<NetworkToWalk, NetworkError> {
         let Some(key) = case.network_key(seed) else {
             return Ok(NetworkToWalk::own(case.network(seed)?));
@@ -122,19 +113,18 @@ impl SharedNetworks {
 
     fn find(&self, key: u128) -> Option<NetworkToWalk> {
         let kept = self.kept.lock().ok()?;
-        kept.iter().find(|other| other.key == key).map(KeptNetwork::to_walk)
+        let KeptNetwork { network, exits, .. } = kept.iter().find(|other| other.key == key)?;
+        Some(NetworkToWalk { network: network.clone(), exits: exits.clone() })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Scene;
+    use crate::run::case_of;
 
     fn case(settings: &[&str]) -> Case {
-        let small = ["network.nx=6", "network.ny=6", "network.nz=8"];
-        let settings: Vec<String> = small.iter().chain(settings).map(|s| s.to_string()).collect();
-        Case::new(Scene::built_in(&settings).unwrap()).unwrap()
+        case_of(&[&["network.nx=6", "network.ny=6", "network.nz=8"], settings].concat())
     }
 
     #[test]
@@ -143,21 +133,20 @@ mod tests {
         let case_itself = case(&[]);
         let network = shared.get(&case_itself, 5).unwrap().network;
         assert_eq!(network.fingerprint(), case_itself.network(5).unwrap().fingerprint());
-        for same in [vec!["base.cu=3"], vec!["base.n_base=1000"], vec!["replicates=3"], vec!["engine=counts"]]
-        {
-            assert!(Arc::ptr_eq(&network, &shared.get(&case(&same), 5).unwrap().network), "{same:?}");
+        for same in ["base.cu=3", "base.n_base=1000", "replicates=3", "engine=counts"] {
+            assert!(Arc::ptr_eq(&network, &shared.get(&case(&[same]), 5).unwrap().network), "{same}");
         }
-        for other in [
-            vec!["network.nx=7"],
-            vec!["filter.curve=shire2016-cu1.5-dense"],
-            vec!["walk.exit=flux"],
-            vec!["network.connectivity=table3"],
-            vec!["filter.d0_mm=2"],
+        for name in [
+            "network.nx=7",
+            "filter.curve=shire2016-cu1.5-dense",
+            "walk.exit=flux",
+            "network.connectivity=table3",
+            "filter.d0_mm=2",
         ] {
-            let (other, name) = (case(&other), other);
+            let other = case(&[name]);
             let other_network = shared.get(&other, 5).unwrap().network;
-            assert!(!Arc::ptr_eq(&network, &other_network), "{name:?}");
-            assert_eq!(other_network.fingerprint(), other.network(5).unwrap().fingerprint(), "{name:?}");
+            assert!(!Arc::ptr_eq(&network, &other_network), "{name}");
+            assert_eq!(other_network.fingerprint(), other.network(5).unwrap().fingerprint(), "{name}");
         }
         assert!(!Arc::ptr_eq(&network, &shared.get(&case_itself, 6).unwrap().network));
     }
@@ -174,9 +163,8 @@ mod tests {
             assert_eq!(has_some.is_some(), case.begins_with_plain_exits(), "{set:?}");
             at
         };
-        for without in [vec!["engine=particles"], vec!["network.connectivity=table3"], vec!["walk.exit=flux"]]
-        {
-            assert_eq!(exits_of(&without), None, "{without:?}");
+        for without in ["engine=particles", "network.connectivity=table3", "walk.exit=flux"] {
+            assert_eq!(exits_of(&[without]), None, "{without}");
         }
         let first = exits_of(&["engine=expected"]);
         assert!(first.is_some() && exits_of(&["engine=counts", "base.cu=3"]) == first);

@@ -4,19 +4,16 @@ use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
 
 use super::callbacks::{Callbacks, Event};
-use super::case_walks::CaseWalks;
+use super::case_walks::{CaseWalks, Studies};
 use super::checkpoints::{self, CheckpointInterval, Checkpoints};
-use super::error::{Exit, RunError};
 use super::folder::{
-    FolderKind, claim, claim_first_free, clear, clear_but_scene, outlive_clear, own_packings, shown,
+    FolderKind, Unfinished, claim, claim_first_free, clear, clear_but_scene, outlive_clear, own_packings,
+    refused,
 };
 use super::machine::on_threads;
-use super::planned::runs_to_walk;
 use super::prepare::{PrepareOptions, prepare_into};
-use super::replicates::{ReplicateContext, ReplicateResult};
-use super::results;
-use super::studies::Studies;
-use super::unfinished::{self, Unfinished};
+use super::replicates::{ReplicateContext, ReplicateResult, runs_to_walk};
+use super::{Exit, RunError, results};
 use crate::case::Case;
 use crate::outcome::Recorded;
 use crate::outcome::record::Outcome;
@@ -24,18 +21,11 @@ use crate::scene::{CurveSource, Scene};
 use voidwalk_core::store::Folder;
 use voidwalk_core::store::format::from_json;
 use voidwalk_core::text::{plain, shell_word};
-use voidwalk_practice::Note;
 use voidwalk_practice::quantity::SizeUnit;
-use voidwalk_practice::{Decision, ordered};
+use voidwalk_practice::{Decision, Note, ordered};
 use voidwalk_sheets::file_and_soil;
 
 /// Options of walking a scene; no setting changes a result. [`walk_scene`] has an example.
-///
-/// ```
-/// use voidwalk_app::RunOptions;
-/// let options = RunOptions { out: Some("my-run".into()), overwrite: true, ..RunOptions::default() };
-/// assert_eq!(options.prepare.threads, None);
-/// ```
 #[derive(Clone, Debug, Default)]
 pub struct RunOptions {
     /// Folder for the results; the first free of `voidwalk-run`, `voidwalk-run-2`, ... without one.
@@ -118,15 +108,14 @@ pub fn walk_scene(
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn resume(folder: &Path, options: &RunOptions, callbacks: &Callbacks) -> Result<FinishedRun, RunError> {
-    let (scene, name) = (folder.join("scene.toml"), shown(folder));
+    let scene = folder.join("scene.toml");
     if !scene.is_file() {
         let problem = "holds no scene.toml; name the folder of a run that was stopped, or walk a scene into \
              it: voidwalk run SCENE --out DIR";
-        return Err(RunError::Refused(format!("{name}: {problem}")));
+        return Err(refused(folder, problem));
     }
     if FolderKind::Run.is_finished(folder)? {
-        let problem = "this run is finished; voidwalk report writes its page again";
-        return Err(RunError::Refused(format!("{name}: {problem}")));
+        return Err(refused(folder, "this run is finished; voidwalk report writes its page again"));
     }
     own_packings(&options.prepare.packings)?;
     let options = RunOptions { out: Some(folder.to_owned()), overwrite: false, ..options.clone() };
@@ -139,19 +128,6 @@ pub fn resume(folder: &Path, options: &RunOptions, callbacks: &Callbacks) -> Res
 ///
 /// # Errors
 /// A walk that goes wrong, or that was stopped.
-///
-/// # Example
-/// ```
-/// use voidwalk_app::case::Case;
-/// use voidwalk_app::run::{Callbacks, walk_case};
-/// use voidwalk_app::scene::Scene;
-///
-/// let settings = ["replicates=2", "base.n_base=20000", "record.sensitivity=[]"].map(String::from);
-/// let case = Case::new(Scene::built_in(&settings)?)?;
-/// let outcome = walk_case(&case, &Callbacks::default())?;
-/// assert_eq!(outcome.replicates.len(), 2);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub fn walk_case(case: &Case, callbacks: &Callbacks) -> Result<Outcome, RunError> {
     Ok(walk_case_recorded(case, callbacks)?.0)
 }
@@ -166,13 +142,14 @@ pub fn walk_case_recorded(case: &Case, callbacks: &Callbacks) -> Result<(Outcome
         let context = ReplicateContext { callbacks, checkpoints: None, networks: None };
         (callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(case) });
         let walks = CaseWalks::walk(case, &context)?;
-        let (first, decision) = results::outcome(case, &notes, &walks, Studies::default(), seconds(begun));
+        let (first, decision) =
+            results::outcome(case, &notes, &walks, Studies::default(), begun.elapsed().as_secs_f64());
         if !Studies::are_none(case) {
             let unit = case.about_page().unit;
             (callbacks.on_event)(Event::VerdictStands { outcome: &first, decision: &decision, unit });
         }
         let studies = Studies::walk(case, &walks, &context)?;
-        let (outcome, _) = results::outcome(case, &notes, &walks, studies, seconds(begun));
+        let (outcome, _) = results::outcome(case, &notes, &walks, studies, begun.elapsed().as_secs_f64());
         let mut recorded = Recorded::default();
         walks.replicates.into_iter().for_each(|replicate| recorded.append(replicate.recorded));
         Ok((outcome, recorded))
@@ -207,18 +184,14 @@ fn walk_here(
     } else if let Some(outcome) = without_page(&folder, &case)? {
         callbacks.results(FolderKind::Run, folder.path(), None)?;
         checkpoints::discard(folder.path())?;
-        unfinished::end(&folder)?;
+        Unfinished::end(&folder)?;
         let decision = outcome.decision();
         return Ok(FinishedRun { folder: folder.path().to_owned(), outcome, decision, unit });
     }
     let told = || begun?.checkpoint_every?.parse().ok();
     let every = options.checkpoint_interval.or_else(told).unwrap_or_default();
-    let mark = Unfinished {
-        kind: FolderKind::Run.name().into(),
-        work: fingerprint.clone(),
-        checkpoint_every: Some(every.to_string()),
-    };
-    mark.begin(&folder)?;
+    let mark = Unfinished::new(FolderKind::Run, fingerprint.clone());
+    Unfinished { checkpoint_every: Some(every.to_string()), ..mark }.begin(&folder)?;
     results::write_scene(&folder, &case)?;
     let checkpoints = Checkpoints::new(&folder, &fingerprint, every)?;
     let run =
@@ -231,7 +204,7 @@ fn walk_here(
         callbacks.results(FolderKind::Run, folder.path(), Some(files))
     })?;
     checkpoints.clear()?;
-    unfinished::end(&folder)?;
+    Unfinished::end(&folder)?;
     Ok(FinishedRun { folder: folder.path().to_owned(), outcome, decision, unit })
 }
 
@@ -275,12 +248,10 @@ fn unchanged(folder: &Folder, fingerprint: &str) -> Result<(), RunError> {
     match Unfinished::read(folder)? {
         // A corrupt mark tells nothing.
         Some(begun) if !begun.work.is_empty() && begun.work != fingerprint => {
-            Err(RunError::Refused(format!(
-                "{}: scene.toml or a file in inputs is not what this run was begun with, or another version \
-                 of voidwalk began it; put it back, or walk the scene anew into another folder: \
-                 voidwalk run SCENE --out DIR",
-                shown(folder.path())
-            )))
+            let problem = "scene.toml or a file in inputs is not what this run was begun with, or another \
+                           version of voidwalk began it; put it back, or walk the scene anew into another \
+                           folder: voidwalk run SCENE --out DIR";
+            Err(refused(folder.path(), problem))
         }
         _ => Ok(()),
     }
@@ -297,11 +268,11 @@ fn begun(folder: &Folder, fingerprint: &str, overwrite: bool) -> Result<Option<U
         Some(scene) if scene == fingerprint => Ok(Some(begun.unwrap_or_default())),
         // Without a scene the checkpoints remain from a run that was to be replaced: nothing continues from
         // them.
-        Some(_) if folder.has("scene.toml") => Err(RunError::Refused(format!(
-            "{}: holds checkpoints of another scene, or of another version of voidwalk; continue with that \
-             one by `voidwalk resume`, or add --overwrite",
-            shown(folder.path())
-        ))),
+        Some(_) if folder.has("scene.toml") => Err(refused(
+            folder.path(),
+            "holds checkpoints of another scene, or of another version of voidwalk; continue with that one \
+             by `voidwalk resume`, or add --overwrite",
+        )),
         _ => Ok(begun),
     }
 }
@@ -314,10 +285,6 @@ fn without_page(folder: &Folder, case: &Case) -> Result<Option<Outcome>, RunErro
     let outcome = folder.read(FolderKind::Run.record())?;
     let outcome: Option<Outcome> = outcome.and_then(|bytes| from_json(&bytes).ok());
     Ok(outcome.filter(|o| Studies::are_whole(case, &o.sensitivity, &o.thickness)))
-}
-
-fn seconds(begun: Instant) -> f64 {
-    begun.elapsed().as_secs_f64()
 }
 
 /// A case that is walked into a folder.
@@ -342,8 +309,9 @@ impl CaseRun<'_> {
         let context = ReplicateContext { callbacks, checkpoints, networks: None };
         (self.callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(self.case) });
         let walks = CaseWalks::walk(self.case, &context).map_err(|error| self.ended(error))?;
-        let answer =
-            |studies: Studies| results::outcome(self.case, self.notes, &walks, studies, seconds(begun));
+        let answer = |studies: Studies| {
+            results::outcome(self.case, self.notes, &walks, studies, begun.elapsed().as_secs_f64())
+        };
         for problem in self.checkpoints.passed_over() {
             (self.callbacks.warn)(&format!("{problem}; the checkpoint before it was taken"));
         }

@@ -1,16 +1,22 @@
-//! The settings of a scene, section by section: each declared once, with its meaning and its allowed values.
-
-use std::path::PathBuf;
+//! The settings of a scene, section by section: each declared once, with its meaning and its allowed values;
+//! and which of them exclude each other.
 
 use super::values::{
     CurveSource, Density, LibraryDensity, NetworkMadeOf, Regrade, SheetUnits, VoidConnectivity,
 };
+use serde::Serialize;
+use std::path::PathBuf;
 use voidwalk_core::constrictions::{DEFAULT_MERGE_OVERLAP, shipped};
 use voidwalk_core::network::ExitRule;
-use voidwalk_core::packing::{CellOption, LengthUnit};
-use voidwalk_core::schema::{Allowed, above_zero, any, length, only, section, whole, within, words};
+use voidwalk_core::packing::{self, CellOption, LengthUnit};
+use voidwalk_core::schema::{
+    Allowed, Alternative, GivenSettings, Group, SceneError, above_zero, any, length, only, section, whole,
+    within, words,
+};
 use voidwalk_core::text::is_hidden;
 use voidwalk_core::walk::{BlockedAs, DENSEST, Engine, LawName, Sampling};
+use voidwalk_practice::quantity::SizeUnit;
+use voidwalk_practice::{AboutPage, SheetCover};
 
 section! {
     /// A base-filter combination for voidwalk: `voidwalk run scene.toml`, or `voidwalk check scene.toml`
@@ -280,6 +286,9 @@ section! {
     }
 }
 
+/// Largest number of increments after which the contents of each void are kept.
+const MOST_MOMENTS: usize = 100;
+
 /// The names of the shipped curves.
 fn shipped_names() -> Vec<&'static str> {
     shipped().iter().map(|filter| filter.name.as_str()).collect()
@@ -295,29 +304,165 @@ fn line() -> Allowed<String> {
     only(format!("a text in quotes, one line of at most {LINE} characters that are seen"), fits)
 }
 
-impl About {
-    /// True if no field is given.
-    pub fn is_unset(&self) -> bool {
-        *self == Self::default()
-    }
-
-    /// True if inches are shown beside mm.
-    pub fn shows_inches(&self) -> bool {
-        self.units == Some(SheetUnits::Us)
-    }
-}
-
-impl ExitKeys {
-    /// True if no field is given.
-    pub fn is_unset(&self) -> bool {
-        *self == Self::default()
-    }
-}
-
 /// The concentrations that a scene may state, in words.
 pub(super) fn concentrations() -> String {
     format!("a number above 0 and up to {DENSEST}")
 }
 
-/// Largest number of increments after which the contents of each void are kept.
-const MOST_MOMENTS: usize = 100;
+/// Settings of the sheet that are one of a few words, or of the figure: they are not on the cover.
+const NO_COVER: [&str; 2] = ["coarse_left", "units"];
+
+impl About {
+    /// True if inches are shown beside mm.
+    pub fn shows_inches(&self) -> bool {
+        self.units == Some(SheetUnits::Us)
+    }
+
+    /// The full names of the settings of the cover, which are texts.
+    pub fn texts() -> Vec<String> {
+        let of_cover = Self::keys().into_iter().filter(|key| !NO_COVER.contains(&key.name));
+        of_cover.map(|key| key.full_name()).collect()
+    }
+
+    /// The page of a run, whose sizes may be multiples of D0F.
+    pub fn page(&self, scale_free: bool) -> AboutPage {
+        let unit = SizeUnit::of(scale_free, self.shows_inches());
+        AboutPage { cover: self.cover(), coarse_left: self.coarse_left == Some(true), unit }
+    }
+
+    /// The cover of the sheet; it has no date if the scene states no date.
+    pub fn cover(&self) -> SheetCover {
+        SheetCover {
+            project: self.project.clone(),
+            number: self.number.clone(),
+            purpose: self.purpose.clone(),
+            client: self.client.clone(),
+            author: self.author.clone(),
+            checker: self.checker.clone(),
+            revision: self.revision.clone(),
+            date: self.date.clone(),
+        }
+    }
+}
+
+/// The section `packing`: settings of the measured packing, and of the compression of its grains.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PackingKeys {
+    /// Grains and voids.
+    #[serde(flatten)]
+    pub filter: FilterPacking,
+    /// The compression; friction and number of grains are not set here.
+    #[serde(flatten)]
+    pub compression: packing::Settings,
+}
+
+/// The section `packing`, if density or friction asks for a packing.
+pub(super) fn packing_keys(s: &GivenSettings) -> Result<Option<PackingKeys>, SceneError> {
+    let stated = s.has("filter.density") || s.has("filter.friction");
+    match s.first_in("packing.") {
+        Some(name) if !stated => Err(s.clash(format!(
+            "{name} goes with filter.density or filter.friction: nothing is packed without one of them"
+        ))),
+        _ if !stated => Ok(None),
+        _ => Ok(Some(PackingKeys {
+            filter: FilterPacking::read(s)?,
+            compression: packing::Settings::read(s)?,
+        })),
+    }
+}
+
+/// Settings that state one fact in different ways.
+pub(super) const GROUPS: &[Group] = &[
+    // Measurements on one packing do not apply to another.
+    Group {
+        says: "say what is packed",
+        alternatives: &[Alternative {
+            resets: &["filter.measured"],
+            ..Alternative::by(&["filter.density", "filter.friction", "filter.cu", "filter.sieve", "packing."])
+        }],
+    },
+    Group {
+        says: "say what the filter's constrictions are",
+        alternatives: &[
+            Alternative::by(&["filter.curve"]),
+            Alternative::by(&["filter.density"]),
+            Alternative::by(&["filter.friction"]),
+            Alternative::by(&["filter.library"]),
+            Alternative::by(&["filter.estimate"]),
+        ],
+    },
+    // A network from a file brings its constrictions along; a curve may still define D85B.
+    Group {
+        says: "say what the filter's constrictions are",
+        alternatives: &[
+            Alternative::by(&["filter.density", "filter.friction", "filter.library", "filter.estimate"]),
+            Alternative::by(&["network.file"]),
+        ],
+    },
+    Group {
+        says: "give the filter's gradation",
+        alternatives: &[
+            Alternative::by(&["filter.cu"]),
+            // With a sieve table, d0_mm is the end of its tail, not the start of the gradation.
+            Alternative { resets: &["filter.d0_mm"], ..Alternative::by(&["filter.sieve"]) },
+        ],
+    },
+    Group {
+        says: "give the base",
+        alternatives: &[
+            Alternative {
+                with_chooses: true,
+                ..Alternative::by(&["base.cu"]).with(&[
+                    "base.d85_mm",
+                    "base.d85_at_dc",
+                    "base.d15f_over_d85b",
+                    "base.dc_curve",
+                ])
+            },
+            Alternative::by(&["base.sieve"]).with(&["base.d0_mm"]),
+            Alternative::by(&["base.single_mm"]),
+        ],
+    },
+    Group {
+        says: "set D85B",
+        alternatives: &[
+            Alternative::by(&["base.d85_mm"]),
+            Alternative::by(&["base.d85_at_dc"]).with(&["base.dc_curve"]),
+            Alternative::by(&["base.d15f_over_d85b"]),
+        ],
+    },
+    Group {
+        says: "say how much base",
+        alternatives: &[
+            Alternative::by(&["base.mass_ratio"]).with(&["base.cap"]),
+            Alternative::by(&["base.n_base"]),
+        ],
+    },
+    Group {
+        says: "give the network",
+        alternatives: &[
+            Alternative::by(&["network.nx", "network.ny", "network.nz", "network.connectivity"]),
+            Alternative::by(&["network.file"]),
+            Alternative {
+                resets: &["filter.curve", "filter.library", "filter.estimate"],
+                ..Alternative::by(&["network.packing", "network.copies"])
+            },
+        ],
+    },
+    Group {
+        says: "say what the network is made of",
+        alternatives: &[Alternative {
+            resets: &["network.nx", "network.ny", "network.nz", "network.connectivity", "network.file"],
+            ..Alternative::by(&["network.kind"])
+        }],
+    },
+    Group {
+        says: "say how thick the filter is",
+        alternatives: &[
+            Alternative::by(&["network.nz"]),
+            Alternative::by(&["network.copies"]),
+            Alternative::by(&["network.thickness_mm"]),
+            Alternative::by(&["network.thickness_d50f"]),
+        ],
+    },
+];

@@ -7,7 +7,7 @@ use super::values::{CurveSource, NetworkMadeOf};
 use super::{PackingKeys, SceneError};
 use crate::outcome::Wanted;
 use voidwalk_core::network::Connectivity;
-use voidwalk_core::packing::{self, ReadOptions};
+use voidwalk_core::packing;
 
 /// The filter's gradation by mass.
 #[derive(Clone, Debug, PartialEq)]
@@ -165,20 +165,14 @@ impl NetworkKeys {
         self.file.as_ref().and_then(ending).is_some_and(|ending| ending == "npz")
     }
 
-    /// Options of the scene for reading its packing that the packing's file does not state.
-    pub fn read_options(&self) -> ReadOptions {
-        ReadOptions { unit: self.unit, cell: self.cell }
-    }
-
     pub(super) fn fill_in(&mut self) {
         if self.file.is_some() || self.kind == Some(NetworkMadeOf::Graph) {
             return;
         }
-        let is_thick = self.extent() != Extent::Usual;
         for (given, usual) in [&mut self.nx, &mut self.ny].into_iter().zip(VOIDS) {
             given.get_or_insert(usual);
         }
-        if !is_thick {
+        if self.extent() == Extent::Usual {
             self.nz.get_or_insert(VOIDS[2]);
         }
     }
@@ -291,13 +285,5 @@ impl PackingSpec {
         let merge_overlap = packing.filter.merge_overlap;
         let (coarsest, aspect) = (packing.filter.coarsest, packing.filter.aspect.unwrap_or(1.0));
         Ok(Self { gradation, grains, aspect, coarsest, compression, merge_overlap, file: file.to_owned() })
-    }
-
-    /// The sieve table of the gradation, if there is one.
-    pub fn sieve(&self) -> Option<&PathBuf> {
-        match &self.gradation {
-            FilterGradation::Sieve(path, _) => Some(path),
-            FilterGradation::Linear { .. } => None,
-        }
     }
 }

@@ -3,40 +3,31 @@
 //! Every setting is declared once, in `keys` or by the stage that it belongs to ([`StopRule`], packing's
 //! [`Settings`](voidwalk_core::packing::Settings)); a [`Scene`] holds them all. Those declarations decide the
 //! commented text of [`Scene::init_text`], the allowed and refused settings, and the resolved scene that a
-//! run writes and that identifies it. `groups` lists the settings that exclude each other. The names are a
-//! contract.
+//! run writes and that identifies it. The names are a contract.
 
-mod complete;
-mod cover;
-mod groups;
-mod init;
 mod keys;
 mod meaning;
-mod packing_keys;
 mod reference;
 mod tables;
 mod values;
 
-use std::path::{Path, PathBuf};
-use std::sync::LazyLock;
-
-use serde::Serialize;
-
-pub use keys::{About, Base, ExitKeys, Filter, FilterPacking, NetworkKeys, Record, WalkKeys};
+pub use keys::{About, Base, ExitKeys, Filter, FilterPacking, NetworkKeys, PackingKeys, Record, WalkKeys};
 pub use meaning::{
     Amount, BaseGradation, D85, Extent, FilterGradation, NetworkSource, PackingSpec, USUAL_LAYERS,
 };
-pub use packing_keys::PackingKeys;
 pub use reference::{ExclusiveSettings, SceneReference, SectionReference, SettingReference, WayReference};
 pub use tables::{TableOptions, keep_soils, quoted};
 pub use values::{CurveSource, Density, LibraryDensity, NetworkMadeOf, Regrade, SheetUnits};
 pub use voidwalk_core::schema::{Origin, SceneError};
 
 use crate::outcome::stopping::StopRule;
-use packing_keys::packing_keys;
+use keys::{GROUPS, concentrations, packing_keys};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 use voidwalk_core::network::ExitRule;
 use voidwalk_core::schema::{GivenSettings, KeyInfo, Names};
-use voidwalk_core::walk::{BlockedAs, Law};
+use voidwalk_core::walk::{BlockedAs, Engine, Law};
 
 /// Name of the built-in scene in errors.
 pub(crate) const BUILT_IN_NAME: &str = "built-in scene";
@@ -71,46 +62,35 @@ pub struct Scene {
     /// The base soil.
     pub base: Base,
     /// Choice of exits by particles.
-    #[serde(rename = "walk", skip_serializing_if = "ExitKeys::is_unset")]
+    #[serde(rename = "walk", skip_serializing_if = "is_unset")]
     pub exits: ExitKeys,
     /// The network.
     pub network: NetworkKeys,
     /// Results to keep.
     pub record: Record,
     /// Further entries on the first page of the report.
-    #[serde(skip_serializing_if = "About::is_unset")]
+    #[serde(skip_serializing_if = "is_unset")]
     pub about: About,
+}
+
+fn is_unset<T: Default + PartialEq>(section: &T) -> bool {
+    *section == T::default()
 }
 
 /// The names of all settings, and which exclude each other.
 static NAMES: LazyLock<Names> = LazyLock::new(|| Names {
     known: Scene::keys().iter().map(KeyInfo::full_name).collect(),
     lines: About::texts(),
-    groups: groups::GROUPS,
+    groups: GROUPS,
 });
 
 impl Scene {
-    /// Every setting, section by section, in the order in which they are written.
-    pub fn keys() -> Vec<KeyInfo> {
-        init::sections().into_iter().flat_map(|(_, keys)| keys).collect()
-    }
-
-    /// The built-in scene as commented TOML, as `voidwalk init` writes it, with every setting.
-    pub fn init_text() -> String {
-        init::text()
-    }
-
-    /// Reference for programs: every setting with its type, default and allowed values.
-    pub fn reference() -> SceneReference {
-        reference::reference()
-    }
-
     /// The built-in scene, with `name=value` settings applied.
     ///
     /// # Errors
     /// A setting that does not exist or is not allowed.
     pub fn built_in(assignments: &[String]) -> Result<Self, SceneError> {
-        Self::parse(init::text().as_bytes(), BUILT_IN_NAME, assignments)
+        Self::parse(Self::init_text().as_bytes(), BUILT_IN_NAME, assignments)
     }
 
     /// A scene from a file, with `name=value` settings applied.
@@ -122,18 +102,12 @@ impl Scene {
     }
 
     /// A scene from TOML text; errors call the file `name`, and paths are taken as they are.
-    ///
-    /// # Errors
-    /// See [`Scene::read`].
     pub fn parse(bytes: &[u8], name: &str, assignments: &[String]) -> Result<Self, SceneError> {
         Self::assigned(GivenSettings::parse(bytes, name, PathBuf::new(), &NAMES)?, assignments)
     }
 
     /// The scene of a plan's case: the built-in scene or one from a file, with the case's settings, those
     /// stated together in one list each.
-    ///
-    /// # Errors
-    /// See [`Scene::read`].
     pub fn planned(
         base: Option<&Path>,
         assignments: &[Vec<String>],
@@ -141,21 +115,23 @@ impl Scene {
     ) -> Result<Self, SceneError> {
         let mut s = match base {
             Some(path) => GivenSettings::read(path, &NAMES)?,
-            None => GivenSettings::parse(init::text().as_bytes(), BUILT_IN_NAME, PathBuf::new(), &NAMES)?,
+            None => {
+                GivenSettings::parse(Self::init_text().as_bytes(), BUILT_IN_NAME, PathBuf::new(), &NAMES)?
+            }
         };
         for together in assignments {
             s.set_together(together, &NAMES, origin)?;
         }
-        Ok(Self { name: origin.to_string(), ..Self::of(&s)? })
+        Ok(Self { name: origin.to_string(), ..Self::from_settings(&s)? })
     }
 
     fn assigned(mut s: GivenSettings, assignments: &[String]) -> Result<Self, SceneError> {
         s.set_together(assignments, &NAMES, &Origin::CommandLine)?;
-        Self::of(&s)
+        Self::from_settings(&s)
     }
 
-    fn of(s: &GivenSettings) -> Result<Self, SceneError> {
-        s.check_groups(groups::GROUPS)?;
+    fn from_settings(s: &GivenSettings) -> Result<Self, SceneError> {
+        s.check_groups(GROUPS)?;
         let mut scene = Self {
             name: s.file().to_owned(),
             is_guarded: false,
@@ -170,7 +146,10 @@ impl Scene {
             about: About::read(s)?,
         };
         scene.check_what_is_missing(s)?;
-        scene.fill_in();
+        // The settings that follow from others get their values, so that the scene is complete.
+        scene.filter.fill_in();
+        scene.base.fill_in();
+        scene.network.fill_in();
         Ok(scene)
     }
 
@@ -181,7 +160,7 @@ impl Scene {
     pub fn read_packing(path: &Path, assignments: &[String]) -> Result<PackingSpec, SceneError> {
         let mut s = GivenSettings::read(path, &NAMES)?;
         s.set_together(assignments, &NAMES, &Origin::CommandLine)?;
-        s.check_groups(groups::GROUPS)?;
+        s.check_groups(GROUPS)?;
         let (mut filter, packing) = (Filter::read(&s)?, packing_keys(&s)?);
         filter.fill_in();
         let Some(packing) = packing else {
@@ -234,11 +213,154 @@ impl Scene {
         matches!(self.network.source(), NetworkSource::Cubic(_)) && self.exit_rule() == ExitRule::Area
     }
 
-    /// Gives the settings that follow from others their values, so that the scene is complete.
-    fn fill_in(&mut self) {
-        self.filter.fill_in();
-        self.base.fill_in();
-        self.network.fill_in();
+    /// Refuses a scene that leaves a question open, or answers one that is not asked.
+    fn check_what_is_missing(&self, s: &GivenSettings) -> Result<(), SceneError> {
+        let filter = &self.filter;
+        if filter.curve.is_none()
+            && filter.library.is_none()
+            && filter.estimate.is_none()
+            && self.packing.is_none()
+            && self.network.file.is_none()
+            && self.network.packing.is_none()
+        {
+            return Err(s.clash(
+                "the filter's constrictions are missing: filter.density = \"loose\" (or \"intermediate\", \
+                 \"dense\") packs its grains; filter.library = \"loose\" takes them from the library of \
+                 packings; filter.curve names a shipped curve, or a CSV file with \
+                 percent_smaller,diameter_mm",
+            ));
+        }
+        if filter.measured.is_some() && (self.packing.is_none() || filter.grains_per_void.is_none()) {
+            return Err(s.clash(
+                "filter.measured goes with filter.grains_per_void, and filter.density or filter.friction",
+            ));
+        }
+        self.check_network(s)?;
+        let base = &self.base;
+        if base.cu.is_none() && base.sieve.is_none() && base.single_mm.is_none() {
+            return Err(
+                s.clash("the base is missing: give base.cu (with D85B), base.sieve or base.single_mm")
+            );
+        }
+        if base.cu.is_some() && base.d85().is_none() {
+            return Err(s.clash("base.cu needs one of base.d85_mm, base.d85_at_dc, base.d15f_over_d85b"));
+        }
+        if s.has("stop.most_replicates") && self.stop.is_unset() {
+            return Err(s.clash(
+                "stop.most_replicates says nothing without stop.target_error_pp or stop.decide_percent",
+            ));
+        }
+        self.packing_spec().map(drop)
+    }
+
+    /// Refuses a network that is half a lattice and half a graph, and an exit rule that does not go with it.
+    fn check_network(&self, s: &GivenSettings) -> Result<(), SceneError> {
+        let graph = self.network.kind == Some(NetworkMadeOf::Graph);
+        let wrong = |names: &[&str], problem: &str| match names.iter().find(|name| s.has(name)) {
+            Some(name) => Err(s.clash(format!("{name} {problem}"))),
+            None => Ok(()),
+        };
+        if graph {
+            wrong(
+                &["network.nx", "network.ny", "network.nz", "network.connectivity", "network.file"],
+                "does not go with network.kind = \"graph\": a packing has its voids where they are",
+            )?;
+            wrong(&["walk.conductance_exponent"], "is for a lattice: a packing's voids conduct as they do")?;
+            if self.network.packing.is_some() {
+                let problem = "says what the constrictions are, but network.packing brings its own: keep one";
+                wrong(&["filter.curve", "filter.library", "filter.estimate"], problem)?;
+                // A run keeps the grains of the filter that it packed, and states both.
+                if self.filter.measured.is_none() {
+                    wrong(&["filter.density", "filter.friction"], problem)?;
+                }
+            }
+            if self.network.packing.is_none() && self.packing.is_none() {
+                return Err(s.clash(
+                    "network.kind = \"graph\" needs grains: filter.density packs them, or network.packing \
+                     names a file of them",
+                ));
+            }
+        } else {
+            wrong(&["network.packing", "network.copies"], "goes with network.kind = \"graph\"")?;
+        }
+        if self.network.file.is_some() {
+            wrong(
+                &["record.voids"],
+                "needs to know where voids lie, which a network from a file does not say",
+            )?;
+        }
+        let of_arrays = self.network.is_of_arrays();
+        if self.network.packing.is_none() {
+            wrong(&["network.cell"], "goes with network.packing")?;
+            if !of_arrays {
+                wrong(&["network.unit"], "goes with network.packing, or with an .npz as network.file")?;
+            }
+        }
+        if of_arrays {
+            wrong(
+                &["walk.conductance_exponent"],
+                "is for a lattice: arrays say what conducts, or the fourth power does",
+            )?;
+        }
+        if self.network.file.is_some() || self.network.connectivity.is_some() {
+            wrong(&["network.thickness_mm", "network.thickness_d50f"], "is for a lattice or a graph")?;
+        }
+        let rule = self.exit_rule();
+        let allowed: &[ExitRule] = match (graph, &self.network.file, &self.network.connectivity) {
+            (false, Some(_), _) if of_arrays => &[ExitRule::Flux, ExitRule::AreaAlongFlow, ExitRule::Area],
+            (true, ..) => &[ExitRule::Flux, ExitRule::AreaAlongFlow, ExitRule::Height],
+            (false, None, None) => &[ExitRule::Area, ExitRule::Flux, ExitRule::AreaAlongFlow],
+            _ => &[ExitRule::Area],
+        };
+        if !allowed.contains(&rule) {
+            let words: Vec<String> = allowed.iter().map(|rule| format!("\"{}\"", rule.name())).collect();
+            return Err(s.refuse(
+                "walk.exit",
+                format!(
+                    "{} on this network: {}",
+                    words.join(", "),
+                    match graph {
+                        true =>
+                            "the constrictions of a graph have no direction of their own, so that area alone \
+                             leads nowhere",
+                        false => "the rule needs to know which way is which",
+                    }
+                ),
+            ));
+        }
+        if !rule.needs_flow() {
+            wrong(
+                &["walk.rho", "walk.flow_tolerance", "walk.conductance_exponent"],
+                "says nothing where no water flows: walk.exit",
+            )?;
+        }
+        if self.leaves_openings() {
+            wrong(
+                &["walk.rho", "walk.conductance_exponent"],
+                "says nothing where walk.blocked is \"open\": what openings conduct follows from the fourth \
+                 power of their size",
+            )?;
+            if matches!(self.walk.engine, Engine::Counts | Engine::Expected) {
+                let problem = format!(
+                    "\"particles\" or \"auto\": where walk.blocked is \"open\" any particle may be stopped, \
+                     and \"{}\" counts those that cannot be",
+                    self.walk.engine.name()
+                );
+                return Err(s.refuse("engine", problem));
+            }
+        }
+        match self.law().filter(|law| law.of_concentration) {
+            None => {
+                wrong(&["walk.concentration"], "says nothing without a law of arching that depends on it")
+            }
+            Some(law) if self.exits.concentration.is_none() => Err(s.clash(format!(
+                "walk.concentration is missing: \"{}\" depends on the solids fraction of the suspension that \
+                 enters the filter (volume of particles by volume of suspension), {}",
+                law.name,
+                concentrations()
+            ))),
+            Some(_) => Ok(()),
+        }
     }
 }
 

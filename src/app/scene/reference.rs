@@ -1,10 +1,16 @@
-//! Every setting for programs: printed by `voidwalk init --json`, and the source of the book's reference.
+//! Every setting in its order: as the commented text of `voidwalk init`, and for programs, as `voidwalk init
+//! --json` prints it and the book shows it.
 
+use super::Scene;
+use super::keys::{About, Base, ExitKeys, Filter, FilterPacking, GROUPS, NetworkKeys, Record, WalkKeys};
+use crate::outcome::stopping::StopRule;
 use serde::Serialize;
-
-use super::groups::GROUPS;
-use super::init::{for_users, sections};
+use std::fmt::Write;
+use voidwalk_core::packing;
 use voidwalk_core::schema::{Alternative, Group, KeyInfo};
+
+/// Columns of a comment.
+const WIDTH: usize = 96;
 
 /// Every setting of a scene, and which exclude each other. Values stand as they are written in TOML.
 #[derive(Clone, Debug, Serialize)]
@@ -69,16 +75,68 @@ pub struct WayReference {
     pub with: &'static [&'static str],
 }
 
-/// Reference of a scene's settings.
-pub(super) fn reference() -> SceneReference {
-    let section = |(about, keys): (&[&str], Vec<KeyInfo>)| SectionReference {
-        name: keys.first().map_or("", |key| key.section),
-        about: for_users(about),
-        settings: keys.into_iter().map(setting).collect(),
-    };
-    // In a group with one alternative the others give way on the command line only.
-    let exclusive = GROUPS.iter().filter(|group| group.alternatives.len() > 1).map(exclusive);
-    SceneReference { sections: sections().into_iter().map(section).collect(), exclusive: exclusive.collect() }
+impl Scene {
+    /// Every setting, section by section, in the order in which they are written.
+    pub fn keys() -> Vec<KeyInfo> {
+        sections().into_iter().flat_map(|(_, keys)| keys).collect()
+    }
+
+    /// The built-in scene as commented TOML, with every setting: words follow `# `, settings that are off
+    /// follow `#`; a section whose settings are all off is off too.
+    pub fn init_text() -> String {
+        let mut text = String::new();
+        for (about, keys) in sections() {
+            let section = keys.first().map_or("", |key| key.section);
+            let line = |text: &mut String, is_set: bool, what: String| {
+                // Writing to a string cannot fail.
+                let _ = writeln!(text, "{}{what}", if is_set { "" } else { "#" });
+            };
+            if !section.is_empty() {
+                text.push('\n');
+            }
+            comment(&mut text, &for_users(about));
+            match section {
+                "" => text.push('\n'),
+                name => line(&mut text, keys.iter().any(|key| key.is_set), format!("[{name}]")),
+            }
+            for key in keys {
+                comment(&mut text, &key.doc);
+                line(&mut text, key.is_set, format!("{} = {}", key.name, key.shown));
+            }
+        }
+        text
+    }
+
+    /// Reference for programs: every setting with its type, default and allowed values.
+    pub fn reference() -> SceneReference {
+        let section = |(about, keys): (&[&str], Vec<KeyInfo>)| SectionReference {
+            name: keys.first().map_or("", |key| key.section),
+            about: for_users(about),
+            settings: keys.into_iter().map(setting).collect(),
+        };
+        // In a group with one alternative the others give way on the command line only.
+        let exclusive = GROUPS.iter().filter(|group| group.alternatives.len() > 1).map(exclusive);
+        SceneReference {
+            sections: sections().into_iter().map(section).collect(),
+            exclusive: exclusive.collect(),
+        }
+    }
+}
+
+/// Description of each section, with its settings.
+fn sections() -> Vec<(&'static [&'static str], Vec<KeyInfo>)> {
+    let packing_keys = [FilterPacking::keys(), packing::Settings::keys()].concat();
+    vec![
+        (WalkKeys::ABOUT, WalkKeys::keys()),
+        (StopRule::ABOUT, StopRule::keys()),
+        (Filter::ABOUT, Filter::keys()),
+        (FilterPacking::ABOUT, packing_keys),
+        (Base::ABOUT, Base::keys()),
+        (ExitKeys::ABOUT, ExitKeys::keys()),
+        (NetworkKeys::ABOUT, NetworkKeys::keys()),
+        (Record::ABOUT, Record::keys()),
+        (About::ABOUT, About::keys()),
+    ]
 }
 
 fn setting(key: KeyInfo) -> SettingReference {
@@ -98,21 +156,40 @@ fn exclusive(group: &Group) -> ExclusiveSettings {
     ExclusiveSettings { says: group.says, alternatives: group.alternatives.iter().map(reference).collect() }
 }
 
+/// First paragraph of a section's description; the paragraphs after it are for programmers.
+fn for_users(about: &[&str]) -> String {
+    about.iter().take_while(|line| !line.trim().is_empty()).copied().collect::<String>().trim().to_owned()
+}
+
+/// Appends words as comment lines.
+fn comment(text: &mut String, words: &str) {
+    let mut line = String::from("#");
+    for word in words.split_whitespace() {
+        if line.len() + 1 + word.len() > WIDTH && line.len() > 1 {
+            text.push_str(&line);
+            text.push('\n');
+            line = String::from("#");
+        }
+        line.push(' ');
+        line.push_str(word);
+    }
+    text.push_str(&line);
+    text.push('\n');
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Scene;
-
     /// A value that no setting takes.
     const WRONG: &str = "[[]]";
 
     fn settings() -> Vec<SettingReference> {
-        reference().sections.into_iter().flat_map(|section| section.settings).collect()
+        Scene::reference().sections.into_iter().flat_map(|section| section.settings).collect()
     }
 
     /// The only setting beside which this one is allowed.
     fn beside(name: &str) -> Option<&'static str> {
-        let exclusive = reference().exclusive;
+        let exclusive = Scene::reference().exclusive;
         let alternative = exclusive
             .iter()
             .flat_map(|group| &group.alternatives)

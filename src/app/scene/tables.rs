@@ -64,7 +64,6 @@ impl TableOptions {
     /// # Errors
     /// [`SceneError::Clash`]: a change also sets the density, or the regrading of the base.
     fn settings(&self) -> Result<Vec<String>, SceneError> {
-        let clash = |problem: String| SceneError::Clash { file: Origin::CommandLine.to_string(), problem };
         if let (Some(density), true) = (self.density, self.is_set(&["filter.density", "filter.library"])) {
             return Err(clash(format!(
                 "density {} and filter.density or filter.library say the same thing twice: give one",
@@ -77,8 +76,7 @@ impl TableOptions {
         }
         match (self.as_sampled, self.is_set(&["base.regrade"])) {
             (true, true) => {
-                let problem = "--as-sampled and base.regrade say the same thing twice: give one";
-                return Err(clash(problem.into()));
+                return Err(clash("--as-sampled and base.regrade say the same thing twice: give one".into()));
             }
             (true, false) => settings.push(Self::AS_SAMPLED.into()),
             (false, false) => settings.push("base.regrade=\"practice\"".into()),
@@ -187,16 +185,17 @@ impl Scene {
 pub fn keep_soils(changes: &[String], base: Option<&str>, filter: Option<&str>) -> Result<(), SceneError> {
     for (role, named, names) in [("base", base, &BASE[..]), ("filter", filter, &FILTER)] {
         if let (Some(named), Some(name)) = (named, set_among(changes, names)) {
-            return Err(SceneError::Clash {
-                file: Origin::CommandLine.to_string(),
-                problem: format!(
-                    "{name} would put another soil in the place of the {role}, {named}: name the other \
-                     instead, or leave {name} out"
-                ),
-            });
+            return Err(clash(format!(
+                "{name} would put another soil in the place of the {role}, {named}: name the other instead, \
+                 or leave {name} out"
+            )));
         }
     }
     Ok(())
+}
+
+fn clash(problem: String) -> SceneError {
+    SceneError::Clash { file: Origin::CommandLine.to_string(), problem }
 }
 
 /// The first of these settings among the changes.
@@ -222,6 +221,10 @@ mod tests {
 
     fn scene(options: &TableOptions) -> Result<Scene, SceneError> {
         Scene::of_tables(Path::new("1e5"), Path::new("a \"b\".xlsx#Filter A"), options)
+    }
+
+    fn refused(options: &TableOptions) -> String {
+        scene(options).unwrap_err().to_string()
     }
 
     fn with(changes: &[&str]) -> TableOptions {
@@ -260,7 +263,7 @@ mod tests {
         {
             assert_eq!(regrade(&with(&[set])), Some(wanted), "{set}");
             let twice = TableOptions { as_sampled: true, ..with(&[set]) };
-            assert!(scene(&twice).unwrap_err().to_string().contains("say the same thing twice"));
+            assert!(refused(&twice).contains("say the same thing twice"));
         }
     }
 
@@ -278,12 +281,12 @@ mod tests {
         let given = scene(&with(&["filter.curve=cu3-loose", "replicates=3"])).unwrap();
         assert!(given.filter.estimate.is_none() && given.walk.replicates == 3);
         let both = TableOptions { density: Some(Density::Loose), ..with(&["filter.estimate=1"]) };
-        assert!(scene(&both).unwrap_err().to_string().contains("both say what the filter's constrictions"));
-        let twice = TableOptions { density: Some(Density::Loose), ..with(&["filter.density=dense"]) };
-        assert!(scene(&twice).unwrap_err().to_string().contains("say the same thing twice"));
-        let twice = TableOptions { density: Some(Density::Loose), ..with(&["filter.library=dense"]) };
-        assert!(scene(&twice).unwrap_err().to_string().contains("say the same thing twice"));
-        let odd = scene(&with(&["base.uc=3"])).unwrap_err().to_string();
+        assert!(refused(&both).contains("both say what the filter's constrictions"));
+        for set in ["filter.density=dense", "filter.library=dense"] {
+            let twice = TableOptions { density: Some(Density::Loose), ..with(&[set]) };
+            assert!(refused(&twice).contains("say the same thing twice"), "{set}");
+        }
+        let odd = refused(&with(&["base.uc=3"]));
         assert!(odd.contains("there is no setting `base.uc`"), "{odd}");
     }
 
@@ -305,14 +308,12 @@ mod tests {
             "base.single_mm=0.2",
             "filter.cu=3",
         ] {
-            let message = scene(&with(&[change])).unwrap_err().to_string();
+            let message = refused(&with(&[change]));
             assert!(message.contains("would put another soil in the place of the"), "{change}: {message}");
         }
-        let message = scene(&with(&["filter.sieve=b.csv"])).unwrap_err().to_string();
-        assert!(
-            message.contains("in the place of the filter, a \"b\".xlsx#Filter A: name the other"),
-            "{message}"
-        );
+        let message = refused(&with(&["filter.sieve=b.csv"]));
+        let words = "in the place of the filter, a \"b\".xlsx#Filter A: name the other";
+        assert!(message.contains(words), "{message}");
         assert!(scene(&with(&["base.d0_mm=0.01", "filter.d0_mm=0.1", "base.mass_ratio=0.1"])).is_ok());
         assert!(keep_soils(&["base.cu=2".into()], None, Some("f")).is_ok());
     }

@@ -9,21 +9,13 @@ use voidwalk_core::network::Connectivity;
 use voidwalk_core::schema::Leaf;
 
 /// Where a constriction curve comes from: a file name has a folder or an ending.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum CurveSource {
     /// A filter that comes with the program.
     Shipped(String),
     /// A CSV file.
     File(PathBuf),
-}
-
-impl Serialize for CurveSource {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::Shipped(name) => name.serialize(serializer),
-            Self::File(path) => path.serialize(serializer),
-        }
-    }
 }
 
 impl<'de> Deserialize<'de> for CurveSource {
@@ -44,32 +36,45 @@ impl Leaf for CurveSource {
     }
 }
 
-/// A word for how densely a filter is packed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Density {
-    /// The densest packing: no friction.
-    Dense,
-    /// Between the two: friction 0.1. "medium" is read as this too.
-    #[serde(alias = "medium")]
-    Intermediate,
-    /// Loose: friction 0.3.
-    Loose,
+/// Declares a value that is one of a few words.
+macro_rules! words {
+    ($(#[$about:meta])* $kind:ident { $($(#[$what:meta])* $variant:ident = $word:literal,)* }) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+        pub enum $kind {
+            $($(#[$what])* #[serde(rename = $word)] $variant,)*
+        }
+
+        impl $kind {
+            /// Every value.
+            pub const ALL: [Self; [$($word),*].len()] = [$(Self::$variant),*];
+
+            /// The word in a scene.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $word,)*
+                }
+            }
+        }
+
+        impl Leaf for $kind {}
+    };
+}
+
+words! {
+    /// A word for how densely a filter is packed.
+    Density {
+        /// The densest packing: no friction.
+        Dense = "dense",
+        /// Between the two: friction 0.1. "medium" is read as this too.
+        #[serde(alias = "medium")]
+        Intermediate = "intermediate",
+        /// Loose: friction 0.3.
+        Loose = "loose",
+    }
 }
 
 impl Density {
-    /// From the densest.
-    pub const ALL: [Self; 3] = [Self::Dense, Self::Intermediate, Self::Loose];
-
-    /// The word in a scene.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Dense => "dense",
-            Self::Intermediate => "intermediate",
-            Self::Loose => "loose",
-        }
-    }
-
     /// The words that [`Density::named`] takes, for a message.
     pub const WORDS: &str = "dense, medium (or intermediate), loose";
 
@@ -91,41 +96,28 @@ impl Density {
     }
 }
 
-/// Density of a filter whose constrictions come from the library of packings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum LibraryDensity {
-    /// The densest packing.
-    Dense,
-    /// Between the two. "medium" is read as this too.
-    #[serde(alias = "medium")]
-    Intermediate,
-    /// Loose.
-    Loose,
-    /// Not known: anything from loose to dense.
-    Unknown,
+words! {
+    /// Density of a filter whose constrictions come from the library of packings.
+    LibraryDensity {
+        /// The densest packing.
+        Dense = "dense",
+        /// Between the two. "medium" is read as this too.
+        #[serde(alias = "medium")]
+        Intermediate = "intermediate",
+        /// Loose.
+        Loose = "loose",
+        /// Not known: anything from loose to dense.
+        Unknown = "unknown",
+    }
 }
 
 impl LibraryDensity {
-    /// From the densest, and the unknown one last.
-    pub const ALL: [Self; 4] = [Self::Dense, Self::Intermediate, Self::Loose, Self::Unknown];
-
     /// From 0, loose, to 1, dense; the middle if it is unknown.
     pub fn relative(self) -> f64 {
         match self {
             Self::Loose => 0.0,
             Self::Intermediate | Self::Unknown => 0.5,
             Self::Dense => 1.0,
-        }
-    }
-
-    /// The word in a scene.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Dense => Density::Dense.name(),
-            Self::Intermediate => Density::Intermediate.name(),
-            Self::Loose => Density::Loose.name(),
-            Self::Unknown => "unknown",
         }
     }
 }
@@ -140,68 +132,35 @@ impl From<Density> for LibraryDensity {
     }
 }
 
-/// Structure of a network.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum NetworkMadeOf {
-    /// A cubic lattice of voids.
-    Lattice,
-    /// The voids of a packing.
-    Graph,
-}
-
-impl NetworkMadeOf {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Lattice, Self::Graph];
-
-    /// Its name in a scene.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Lattice => "lattice",
-            Self::Graph => "graph",
-        }
+words! {
+    /// Structure of a network.
+    NetworkMadeOf {
+        /// A cubic lattice of voids.
+        Lattice = "lattice",
+        /// The voids of a packing.
+        Graph = "graph",
     }
 }
 
-/// Units that a sheet shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum SheetUnits {
-    /// mm alone.
-    Metric,
-    /// Inches beside mm.
-    Us,
-}
-
-impl SheetUnits {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::Metric, Self::Us];
-
-    /// The word in a scene.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Metric => "metric",
-            Self::Us => "us",
-        }
+words! {
+    /// Units that a sheet shows.
+    SheetUnits {
+        /// mm alone.
+        Metric = "metric",
+        /// Inches beside mm.
+        Us = "us",
     }
 }
 
-impl Leaf for SheetUnits {}
-impl Leaf for NetworkMadeOf {}
-
-/// Regrading of a base before its walk.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Regrade {
-    /// Regraded by filter practice.
-    Practice,
-    /// Left unchanged.
-    No,
+words! {
+    /// Regrading of a base before its walk.
+    Regrade {
+        /// Regraded by filter practice.
+        Practice = "practice",
+        /// Left unchanged.
+        No = "no",
+    }
 }
-
-impl Leaf for Regrade {}
-impl Leaf for Density {}
-impl Leaf for LibraryDensity {}
 
 /// Percent of the voids by connectivity, as written in a scene.
 #[derive(Clone, Debug, PartialEq)]

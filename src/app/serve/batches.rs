@@ -1,30 +1,28 @@
-//! Every sample of a sheet walked against filters: the requests of the page, and the table that it shows,
-//! which grows as the walks are done.
-
-use std::path::PathBuf;
-
-use serde::Deserialize;
-use serde_json::{Value, json};
+//! Tables of the page: the rules of practice on two sheets; and every sample of a sheet against filters, by
+//! the rules alone or walked, which grows as the walks are done, with the requests for it.
 
 use super::sheets::Sheets;
-use crate::cases::BatchWalks;
-use crate::cases::numbered;
+use crate::cases::{BatchWalks, numbered, pairs_of};
 use crate::outcome::table::{ColumnKind, Columns, PageColumn};
 use crate::verdict::{WalkedBatch, WalkedRow};
 use crate::words::batch::{answer, of_filter, walked_columns, walks};
 use crate::words::left_out::left_out_in_brief;
+use crate::words::rule::{LIMITS_ROUNDED, PARTS, regrade_reason};
+use crate::words::{batch, practice_line, rule, sentence};
+use serde::Deserialize;
+use serde_json::{Value, json};
+use std::path::PathBuf;
 use voidwalk_practice::quantity::SizeUnit;
-use voidwalk_practice::{BatchFilter, BatchRow};
+use voidwalk_practice::rule_result::{RuleResult, result_of};
+use voidwalk_practice::{BatchFilter, BatchRow, BatchTable, PairOptions, PairRules};
 
-/// Request of the page for a batch.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AskedBatch {
     /// The sheet whose every soil is a sample, by its number; or the one base, for walks of `filters`.
     pub base: String,
-    /// The sheets of the filters.
     pub filters: Vec<String>,
-    /// Which pairs are walked, and how: `governing`, `look`, `alone`, or `filters` for one base.
+    /// Pairs that are walked, and their walks: `governing`, `look`, `alone`, or `filters` for one base.
     pub walks: String,
     #[serde(flatten)]
     pub tables: AskedTables,
@@ -46,14 +44,9 @@ pub struct AskedTables {
     pub changes: Vec<String>,
 }
 
-/// Most filters of a table.
 const FILTERS: usize = 6;
 
-/// The paths of the filters that the page names.
-///
-/// # Errors
-/// There is no such sheet; no filter, or too many of them.
-pub fn filter_paths(sheets: &Sheets, named: &[impl AsRef<str>]) -> Result<Vec<PathBuf>, String> {
+fn filter_paths(sheets: &Sheets, named: &[impl AsRef<str>]) -> Result<Vec<PathBuf>, String> {
     match (1..=FILTERS).contains(&named.len()) {
         true => named.iter().map(|name| sheets.path(name.as_ref())).collect(),
         false => Err(format!("name one to {FILTERS} filters")),
@@ -66,10 +59,7 @@ pub fn filter_names(sheets: &Sheets, paths: &[PathBuf]) -> Vec<String> {
 }
 
 impl AskedBatch {
-    /// Pairs that are walked.
-    ///
-    /// # Errors
-    /// An unknown word.
+    /// Pairs that are walked; an unknown word is an error.
     pub fn walks(&self) -> Result<BatchWalks, String> {
         match self.walks.as_str() {
             "governing" => Ok(BatchWalks::GoverningInFull),
@@ -80,10 +70,6 @@ impl AskedBatch {
         }
     }
 
-    /// The samples, and the filters.
-    ///
-    /// # Errors
-    /// There is no such sheet; no filter, or too many of them.
     pub fn sheets(&self, sheets: &Sheets) -> Result<(PathBuf, Vec<PathBuf>), String> {
         let filters = filter_paths(sheets, &self.filters)?;
         let base = if self.has_one_base() { &self.base } else { whole_sheet(&self.base) };
@@ -94,20 +80,18 @@ impl AskedBatch {
         self.walks == "filters"
     }
 
-    /// Title of its job, with the names of samples and filters.
     pub fn title(&self, samples: &str, filters: &[String]) -> String {
         let every = if self.has_one_base() { "" } else { "Every sample of " };
         format!("{every}{samples} on {}", filters.join(", "))
     }
 }
 
-/// The sheet in which a soil is.
-pub fn whole_sheet(soil: &str) -> &str {
+fn whole_sheet(soil: &str) -> &str {
     soil.split_once('#').map_or(soil, |(sheet, _)| sheet)
 }
 
 /// JSON of a table for the page: headings, a text below each, cells, and the class of each row's result.
-pub fn table<'r, T: 'r>(
+fn table<'r, T: 'r>(
     columns: Columns<T>,
     rows: impl IntoIterator<Item = &'r T>,
     class: impl Fn(&T) -> Option<&'static str>,
@@ -131,7 +115,7 @@ pub fn table<'r, T: 'r>(
 }
 
 /// The class of the result of a sample: a result that is met but in doubt is not green.
-pub fn class_of(row: &BatchRow, is_doubted: bool) -> Option<&'static str> {
+fn class_of(row: &BatchRow, is_doubted: bool) -> Option<&'static str> {
     match row.met {
         Some(true) if !is_doubted && !row.breaks_if_dispersive => Some("keeps"),
         Some(false) => Some("breaks"),
@@ -139,7 +123,6 @@ pub fn class_of(row: &BatchRow, is_doubted: bool) -> Option<&'static str> {
     }
 }
 
-/// The rows of a batch as far as they are walked.
 pub fn so_far(rows: &[WalkedRow], inches: bool) -> Value {
     let columns = walked_columns(SizeUnit::of(false, inches));
     table(columns, rows, |row| class_of(&row.rules, row.is_doubted()))
@@ -162,11 +145,79 @@ pub fn of_batch(batch: &WalkedBatch) -> Value {
     value
 }
 
+const SHOWN: [&str; 7] = ["result", "rule", "authority", "quantity", "value", "limit", "note"];
+
+/// The rules part by part with their results for the pair: the page computes nothing.
+pub fn rules_of_pair(pair: &PairRules) -> Value {
+    let decision = pair.decision();
+    let listed = decision.listed();
+    let part = |(role, title)| {
+        let rules = listed.iter().map(AsRef::as_ref).filter(|rule| rule.role == role);
+        let mut part = table(rule::columns(SizeUnit::Mm).only(&SHOWN), rules, |rule| match result_of(rule) {
+            RuleResult::Met => Some("keeps"),
+            RuleResult::NotMet => Some("breaks"),
+            _ => Some("none"),
+        });
+        part["title"] = json!(title);
+        part
+    };
+    let named = |result| -> Vec<&str> {
+        let rules = listed.iter().map(AsRef::as_ref).filter(|rule| result_of(rule) == result);
+        rules.map(|rule| rule.name.as_str()).collect()
+    };
+    json!({
+        "base": pair.base,
+        "parts": PARTS.map(part),
+        "not_met": named(RuleResult::NotMet),
+        "open": named(RuleResult::NoResult),
+        "notes": pair.notes.iter().map(|note| sentence(note, SizeUnit::Mm)).collect::<Vec<_>>(),
+        "practice": practice_line(&decision, SizeUnit::Mm),
+        "why": regrade_reason(pair.base.why),
+        "rounded": LIMITS_ROUNDED,
+    })
+}
+
+const MOST_SHOWN: usize = 1000;
+
+/// The rules on all samples of the sheet in which a base is, against filters.
+pub fn samples(
+    sheets: &Sheets,
+    base: &str,
+    filters: &[&str],
+    options: PairOptions,
+) -> Result<BatchTable, String> {
+    let paths = filter_paths(sheets, filters)?;
+    let table = pairs_of(&sheets.path(whole_sheet(base))?, &paths, options, true);
+    let mut table = table.map_err(|problem| sheets.as_named(&problem.to_string()))?;
+    // Sheets have their own names here, which may repeat, and no folder.
+    let names = filter_names(sheets, &paths);
+    let of_filter = (table.rows.len() / table.filters.len()).max(1);
+    for (at, row) in table.rows.iter_mut().enumerate() {
+        row.filter.clone_from(&names[at / of_filter]);
+    }
+    table.filters.iter_mut().zip(names).for_each(|(filter, name)| filter.name = name);
+    table.notes.iter_mut().for_each(|note| *note = sheets.as_named(note));
+    Ok(table)
+}
+
+/// JSON of the samples for the page, with sentences on each filter.
+pub fn of_samples(samples: &BatchTable) -> Value {
+    let all = &samples.rows;
+    let rows = &all[..all.len().min(MOST_SHOWN)];
+    let cut = (rows.len() < all.len())
+        .then(|| format!("the first {MOST_SHOWN} of {} rows; the file has all", all.len()));
+    let notes = samples.notes.iter().cloned().chain(cut);
+    let mut value = table(batch::columns(SizeUnit::Mm), rows, |row| class_of(row, row.may_lose_fines));
+    let of_filters = samples.filters.iter().map(|filter| of_filter(filter, all, SizeUnit::Mm));
+    value["filters"] = json!(of_filters.collect::<Vec<_>>());
+    value["notes"] = json!(notes.collect::<Vec<_>>());
+    value
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use voidwalk_core::gradation::Gradation;
-    use voidwalk_practice::PairOptions;
     use voidwalk_sheets::SoilSample;
 
     #[test]

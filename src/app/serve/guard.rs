@@ -7,10 +7,13 @@
 //! - A request that a page of another origin has made is refused, whatever it knows.
 
 use std::io;
+use std::net::{Shutdown, TcpStream};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 use super::http::Request;
 
-/// Conditions on a request.
 #[derive(Clone, Debug)]
 pub struct Guard {
     token: String,
@@ -18,10 +21,7 @@ pub struct Guard {
 }
 
 impl Guard {
-    /// A new secret for this port.
-    ///
-    /// # Errors
-    /// The system gives no random bytes.
+    /// A new secret for this port; an error if the system gives no random bytes.
     pub fn new(port: u16) -> io::Result<Self> {
         // A secret must not follow from any seed, so it is not a number of `voidwalk_core::stream`.
         let mut bytes = [0u8; 16];
@@ -29,7 +29,6 @@ impl Guard {
         Ok(Self { token: bytes.iter().map(|byte| format!("{byte:02x}")).collect(), port })
     }
 
-    /// The address of the page.
     pub fn address(&self) -> String {
         format!("http://127.0.0.1:{}/{}/", self.port, self.token)
     }
@@ -69,9 +68,83 @@ impl Guard {
     }
 }
 
+/// Connections that are answered at the same time; others wait.
+const MOST: usize = 64;
+
+/// Time for which a connection that has not shown the secret is left alone, however many wait.
+const GRACE: Duration = Duration::from_secs(1);
+
+/// Interval between checks for connections past that time.
+const LOOK: Duration = Duration::from_millis(50);
+
+#[derive(Default)]
+pub struct Connections {
+    /// In the order in which they came.
+    open: Mutex<Vec<Connection>>,
+    /// Number of connections so far: each has a number of its own, even after the last was ended.
+    came: AtomicU64,
+    freed: Condvar,
+}
+
+struct Connection {
+    id: u64,
+    /// The stream by which to end it; `None` once it has shown the secret.
+    shed: Option<TcpStream>,
+    since: Instant,
+}
+
+/// The place of a connection, until it is dropped.
+pub struct Place {
+    connections: Arc<Connections>,
+    id: u64,
+}
+
+impl Connections {
+    fn locked(&self) -> MutexGuard<'_, Vec<Connection>> {
+        self.open.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A place for a connection, as soon as there is one: if all are taken, the oldest connection without the
+    /// secret is ended. An error if there are no more file handles.
+    pub fn place(self: &Arc<Self>, stream: &TcpStream) -> io::Result<Place> {
+        let shed = Some(stream.try_clone()?);
+        let mut open = self.locked();
+        while open.len() >= MOST {
+            let oldest = open.iter().position(|one| one.shed.is_some() && one.since.elapsed() >= GRACE);
+            if let Some(at) = oldest {
+                // Its thread finds the connection ended.
+                let ended = open.remove(at).shed.map(|stream| stream.shutdown(Shutdown::Both));
+                drop(ended);
+                continue;
+            }
+            open = self.freed.wait_timeout(open, LOOK).unwrap_or_else(PoisonError::into_inner).0;
+        }
+        let id = self.came.fetch_add(1, Ordering::Relaxed);
+        open.push(Connection { id, shed, since: Instant::now() });
+        Ok(Place { connections: Arc::clone(self), id })
+    }
+}
+
+impl Place {
+    /// The connection has shown the secret: it is not ended for others.
+    pub fn keep(&self) {
+        if let Some(one) = self.connections.locked().iter_mut().find(|one| one.id == self.id) {
+            one.shed = None;
+        }
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        self.connections.locked().retain(|one| one.id != self.id);
+        self.connections.freed.notify_one();
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::net::TcpListener;
 
     #[test]
     fn only_port_80_goes_without_saying() {
@@ -83,5 +156,29 @@ mod tests {
                 assert_eq!(guard.is_host(name), allowed.contains(name), "{name} at {port}");
             }
         }
+    }
+
+    /// All but the last have shown the secret; the last makes room for another, and when its thread finds it
+    /// ended, that other keeps its place.
+    #[test]
+    fn a_connection_that_is_ended_takes_no_other_out_of_the_list() {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let address = listener.local_addr().unwrap();
+        let connections = Arc::new(Connections::default());
+        let (mut streams, mut places) = (Vec::new(), Vec::new());
+        for number in 0..MOST {
+            streams.push((TcpStream::connect(address).unwrap(), listener.accept().unwrap().0));
+            let place = connections.place(&streams[number].1).unwrap();
+            if number + 1 < MOST {
+                place.keep();
+            }
+            places.push(place);
+        }
+        let _stays = connections.place(&TcpStream::connect(address).unwrap()).unwrap();
+        assert_eq!(connections.locked().len(), MOST);
+        drop(places.pop());
+        assert_eq!(connections.locked().len(), MOST, "the place of one that was ended before is none");
+        drop(places);
+        assert_eq!(connections.locked().len(), 1);
     }
 }

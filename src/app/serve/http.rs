@@ -12,10 +12,8 @@ use serde_json::Value;
 
 use voidwalk_core::text::visible;
 
-/// The largest head of a request (bytes).
 const HEAD: usize = 16 << 10;
 
-/// Most header fields of a request.
 const FIELDS: usize = 64;
 
 /// The largest body of a request (bytes): a workbook.
@@ -34,11 +32,8 @@ const DRAIN: (Duration, u64) = (Duration::from_secs(1), 2 * BODY);
 /// A request whose body has not been read.
 #[derive(Debug)]
 pub struct Request {
-    /// `GET`, `POST`.
     pub method: String,
-    /// Path before the `?`.
     pub path: String,
-    /// Query after the `?`.
     pub query: String,
     fields: Vec<(String, String)>,
     /// Part of the body that came with the head.
@@ -56,12 +51,10 @@ impl Request {
         }
     }
 
-    /// True if a header field is given at all.
     pub fn has(&self, name: &str) -> bool {
         self.fields.iter().any(|(field, _)| field.eq_ignore_ascii_case(name))
     }
 
-    /// The value of a parameter of the query, decoded.
     pub fn parameter(&self, name: &str) -> Option<String> {
         let pairs = self.query.split('&').filter_map(|pair| pair.split_once('='));
         pairs.into_iter().find(|(key, _)| *key == name).map(|(_, value)| decoded(value))
@@ -92,13 +85,10 @@ fn decoded(text: &str) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// Answer to a request.
 pub struct Answer {
-    /// Status, such as 200.
     pub status: u16,
     /// Type of the body.
     pub kind: &'static str,
-    /// The body.
     pub body: Body,
     /// The content security policy; nothing at all is allowed without one.
     pub policy: Option<String>,
@@ -106,21 +96,17 @@ pub struct Answer {
     pub download: Option<String>,
 }
 
-/// Body of an answer.
 pub enum Body {
-    /// In memory.
     Bytes(Vec<u8>),
     /// In a file, from its start, with its length.
     File(std::fs::File, u64),
 }
 
 impl Answer {
-    /// A body in memory.
     pub fn new(status: u16, kind: &'static str, body: impl Into<Vec<u8>>) -> Self {
         Self { status, kind, body: Body::Bytes(body.into()), policy: None, download: None }
     }
 
-    /// A file.
     pub fn file(kind: &'static str, file: std::fs::File) -> io::Result<Self> {
         let length = file.metadata()?.len();
         Ok(Self { body: Body::File(file, length), ..Self::new(200, kind, "") })
@@ -132,7 +118,6 @@ impl Answer {
         Self::new(status, "application/json; charset=utf-8", value.to_string())
     }
 
-    /// Answer with a problem in words.
     pub fn problem(status: u16, words: &str) -> Self {
         Self::json(status, serde_json::json!({ "problem": words }))
     }
@@ -152,7 +137,6 @@ fn show(value: &mut Value) {
 struct Until<'a> {
     stream: &'a mut TcpStream,
     end: Instant,
-    /// Time for one piece.
     piece: Duration,
 }
 
@@ -202,8 +186,7 @@ pub fn read_head(stream: &mut TcpStream) -> io::Result<Result<Request, Answer>> 
         let mut parsed = httparse::Request::new(&mut fields);
         match parsed.parse(&bytes) {
             Ok(httparse::Status::Complete(length)) => {
-                let request = request(&parsed, bytes[length..].to_vec());
-                return Ok(request);
+                return Ok(request(&parsed, bytes[length..].to_vec()));
             }
             Ok(httparse::Status::Partial) if bytes.len() < HEAD => {}
             Ok(httparse::Status::Partial) => return Ok(Err(Answer::problem(431, "the head is too large"))),
@@ -215,7 +198,6 @@ pub fn read_head(stream: &mut TcpStream) -> io::Result<Result<Request, Answer>> 
     }
 }
 
-/// A parsed head as a request.
 fn request(parsed: &httparse::Request, begun: Vec<u8>) -> Result<Request, Answer> {
     let target = parsed.path.unwrap_or_default();
     let (path, query) = target.split_once('?').unwrap_or((target, ""));
@@ -257,19 +239,13 @@ pub fn read_body(request: &mut Request, stream: &mut TcpStream) -> io::Result<Re
     let length = request.length as usize;
     let mut bytes = std::mem::take(&mut request.begun);
     bytes.truncate(length);
-    let mut piece = vec![0; 64 << 10];
-    while bytes.len() < length {
-        let wanted = piece.len().min(length - bytes.len());
-        let count = stream.read(&mut piece[..wanted])?;
-        if count == 0 {
-            return Err(io::ErrorKind::UnexpectedEof.into());
-        }
-        bytes.extend_from_slice(&piece[..count]);
+    stream.take((length - bytes.len()) as u64).read_to_end(&mut bytes)?;
+    if bytes.len() < length {
+        return Err(io::ErrorKind::UnexpectedEof.into());
     }
     Ok(Ok(bytes))
 }
 
-/// Sends an answer and ends the connection.
 pub fn send(stream: &mut TcpStream, answer: Answer) -> io::Result<()> {
     let (length, refused) = match &answer.body {
         Body::Bytes(bytes) => (bytes.len() as u64, answer.status >= 400),
@@ -298,23 +274,13 @@ pub fn send(stream: &mut TcpStream, answer: Answer) -> io::Result<()> {
     }
     leaving.flush()?;
     stream.shutdown(Shutdown::Write)?;
-    if refused {
-        drain(stream)?;
-    }
-    Ok(())
+    if refused { drain(stream) } else { Ok(()) }
 }
 
 /// Discards further input: an end with bytes unread would lose the answer.
 fn drain(stream: &mut TcpStream) -> io::Result<()> {
-    let (mut stream, mut drained) = (Until::new(stream, DRAIN.0, DRAIN.0), 0);
-    let mut piece = vec![0; 64 << 10];
-    while drained < DRAIN.1 {
-        match stream.read(&mut piece)? {
-            0 => break,
-            count => drained += count as u64,
-        }
-    }
-    Ok(())
+    let mut rest = Until::new(stream, DRAIN.0, DRAIN.0).take(DRAIN.1);
+    io::copy(&mut rest, &mut io::sink()).map(drop)
 }
 
 fn reason(status: u16) -> &'static str {

@@ -1,15 +1,9 @@
 //! Jobs that the page has asked for: one is walked at a time, the others wait.
 //!
 //! A job is a call of the library into a folder of its own, the same folder of a run or a batch as by the
-//! command line. The request is kept there before any work (`job_file.rs`), so that a later server on the
+//! command line. The request is kept there before any work ([`JobFile`]), so that a later server on the
 //! same folder can do it. A new kind of job needs a variant of [`Work`], its work in `WorkContext::work`, and
 //! the reading of its request (`Routes::planned`).
-
-mod earlier;
-mod job;
-#[cfg(test)]
-mod tests;
-mod work;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -18,31 +12,25 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use serde_json::Value;
 
-use super::job_file::JobFile;
+use super::job::{
+    Job, JobFile, JobState, LAST, OnResults, Work, WorkContext, earlier, has_scene, how_to_continue,
+};
 use super::live::Live;
 use crate::run::error::Exit;
 use crate::run::{PrepareOptions, RunError};
-use earlier::{LAST, earlier};
-use job::{Job, JobState, has_scene, how_to_continue};
 use voidwalk_core::store::remove_folder;
 use voidwalk_core::text::shell_word;
-use work::WorkContext;
-pub use work::{OnResults, Work, of_cases};
 
-/// Most jobs that wait.
 const WAITING: usize = 20;
 
 /// Most jobs that are listed; of more, those that ended first are left out. Their folders stay.
 const LISTED: usize = 200;
 
-/// All jobs of a server.
 pub struct JobQueue {
     context: WorkContext,
     all: Mutex<Vec<Job>>,
-    /// The last number that a job was given.
     last: AtomicUsize,
     wake: Condvar,
-    /// Nothing more is begun.
     ends: AtomicBool,
 }
 
@@ -71,10 +59,7 @@ impl JobQueue {
         }
     }
 
-    /// Adds a job, keeps its request in its folder, and returns its number.
-    ///
-    /// # Errors
-    /// Too many wait, which is a refusal; its folder cannot be written.
+    /// Adds a job, keeps its request in its folder, and returns its number; refused if too many wait.
     pub fn add(&self, file: JobFile, work: Work) -> Result<usize, RunError> {
         let has_room = |all: &[Job]| self.has_room(all).map_err(RunError::Refused);
         has_room(&self.locked())?;
@@ -103,9 +88,6 @@ impl JobQueue {
     }
 
     /// Stops a job, or removes it from the queue.
-    ///
-    /// # Errors
-    /// No job of this number can be stopped.
     pub fn stop(&self, id: usize) -> Result<(), String> {
         let mut all = self.locked();
         let job = all.iter_mut().find(|job| job.id == id).ok_or("there is no such job")?;
@@ -120,21 +102,18 @@ impl JobQueue {
     }
 
     /// Request of a job that can continue; `None` if it is to resume the run in its folder.
-    ///
-    /// # Errors
-    /// No job of this number can continue.
     pub fn kept(&self, id: usize) -> Result<Option<JobFile>, String> {
-        let (folder, resumes) = {
+        let folder = {
             let mut all = self.locked();
             let job = self.that_continues(&mut all, id)?;
-            (self.context.root.join(&job.folder), matches!(job.work, Work::Resume))
+            if matches!(job.work, Work::Resume) {
+                return Ok(None);
+            }
+            self.context.root.join(&job.folder)
         };
-        match resumes {
-            true => Ok(None),
-            false => match JobFile::read(&folder) {
-                None if !has_scene(&folder) => Err("what this job was asked for is lost; ask again".into()),
-                file => Ok(file),
-            },
+        match JobFile::read(&folder) {
+            None if !has_scene(&folder) => Err("what this job was asked for is lost; ask again".into()),
+            file => Ok(file),
         }
     }
 
@@ -150,9 +129,6 @@ impl JobQueue {
     }
 
     /// Lets a job that was stopped or has failed continue, with its work planned again.
-    ///
-    /// # Errors
-    /// No job of this number can continue; too many wait.
     pub fn resume(&self, id: usize, work: Work) -> Result<(), String> {
         let folder = {
             let mut all = self.locked();
@@ -190,10 +166,7 @@ impl JobQueue {
         .collect()
     }
 
-    /// End of these jobs, once nothing is walked any more.
-    ///
-    /// # Errors
-    /// The message of a job that failed; else the jobs that are not done.
+    /// End of these jobs, once nothing is walked any more: an error if one failed, else if one is not done.
     pub fn ended(&self, ids: &[usize]) -> Result<(), RunError> {
         let all = self.locked();
         let in_state =
@@ -214,7 +187,6 @@ impl JobQueue {
         }
     }
 
-    /// The folder of a job, by its name.
     pub fn folder(&self, name: &str) -> Option<PathBuf> {
         self.locked().iter().any(|job| job.folder == name).then(|| self.context.root.join(name))
     }
@@ -286,4 +258,155 @@ fn shorten(all: &mut Vec<Job>) {
         more -= usize::from(!stays);
         stays
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn queue(root: &Path) -> JobQueue {
+        JobQueue::new(root, PrepareOptions::default(), String::new(), |_, _, _| Ok(()))
+    }
+
+    fn file() -> JobFile {
+        let (title, asked) = ("a job".into(), json!({ "base": "1" }));
+        JobFile { kind: "judge".into(), title, asked, request: json!({}), ended: None }
+    }
+
+    fn set(queue: &JobQueue, id: usize, state: JobState) {
+        let mut all = queue.locked();
+        let job = all.iter_mut().find(|job| job.id == id).unwrap();
+        (job.state, job.message) = (state, format!("it is {}", state.words()));
+    }
+
+    #[test]
+    fn how_a_server_ends_is_how_what_was_under_way_ended() {
+        let root = tempfile::tempdir().unwrap();
+        let queue = queue(root.path());
+        let ids = [(); 4].map(|()| queue.add(file(), Work::Kept).unwrap());
+        // The first is walked, the second was stopped before, the others wait.
+        set(&queue, ids[0], JobState::Running);
+        set(&queue, ids[1], JobState::Stopped);
+        let open = queue.stop_all();
+        assert_eq!(open, [ids[0], ids[2], ids[3]]);
+        assert!(queue.add(file(), Work::Kept).is_err() && queue.resume(ids[1], Work::Kept).is_err());
+        set(&queue, ids[0], JobState::Done);
+        let error = queue.ended(&open).unwrap_err();
+        assert_eq!(error.exit(), Exit::Stopped);
+        assert!(error.to_string().contains("run-3") && !error.to_string().contains("run-1"), "{error}");
+        set(&queue, ids[0], JobState::Failed);
+        let error = queue.ended(&open).unwrap_err();
+        assert!(
+            error.exit() == Exit::Failed && error.to_string().ends_with("run-1: it is failed"),
+            "{error}"
+        );
+        for (state, ends_well) in
+            [(JobState::Done, true), (JobState::Refused, true), (JobState::Stopped, false)]
+        {
+            set(&queue, ids[0], state);
+            assert_eq!(queue.ended(&ids[..1]).is_ok(), ends_well, "{state:?}");
+        }
+    }
+
+    #[test]
+    fn no_more_wait_than_may_however_they_came() {
+        let root = tempfile::tempdir().unwrap();
+        let queue = queue(root.path());
+        let first = queue.add(file(), Work::Kept).unwrap();
+        queue.stop(first).unwrap();
+        (0..WAITING).for_each(|_| assert!(queue.add(file(), Work::Kept).is_ok()));
+        assert_eq!(queue.add(file(), Work::Kept).unwrap_err().exit(), Exit::Refused);
+        assert!(queue.resume(first, Work::Kept).unwrap_err().contains("jobs wait already"));
+    }
+
+    #[test]
+    fn jobs_that_come_at_once_are_numbered_and_listed_in_order() {
+        let root = tempfile::tempdir().unwrap();
+        let queue = queue(root.path());
+        std::thread::scope(|scope| {
+            (0..WAITING).for_each(|_| {
+                scope.spawn(|| queue.add(file(), Work::Kept).unwrap());
+            });
+        });
+        let ids: Vec<usize> = queue.locked().iter().map(|job| job.id).collect();
+        assert_eq!(ids, (1..=WAITING).collect::<Vec<_>>());
+        // A request that cannot be kept makes no job, and the next job takes its number.
+        queue.stop(1).unwrap();
+        let large = JobFile { request: "x".repeat(5 << 20).into(), ..file() };
+        assert!(queue.add(large, Work::Kept).is_err() && !root.path().join("run-21").exists());
+        assert_eq!(queue.add(file(), Work::Kept).unwrap(), 21);
+    }
+
+    #[test]
+    fn every_job_of_an_earlier_server_is_listed_and_no_number_is_too_large() {
+        let root = tempfile::tempdir().unwrap();
+        let before = queue(root.path());
+        let ids = [(); 3].map(|()| before.add(file(), Work::Kept).unwrap());
+        for (id, state) in [(ids[1], JobState::Refused), (ids[2], JobState::Failed)] {
+            let ended = Some((state.words().to_owned(), "why".to_owned()));
+            JobFile { ended, ..file() }.write(&root.path().join(format!("run-{id}"))).unwrap();
+        }
+        let wrong = ["run-18446744073709551615", "run-99999999", "run-+9", "run-09", "run-x", "a-2"];
+        for folder in wrong.into_iter().chain(["sheets-1000", "batch-7"]) {
+            std::fs::create_dir(root.path().join(folder)).unwrap();
+        }
+        // The request of one job is unknown; another, which left only the mark, was never accepted.
+        std::fs::write(root.path().join("batch-7/cases.jsonl"), "").unwrap();
+        std::fs::create_dir(root.path().join("run-5")).unwrap();
+        std::fs::write(root.path().join("run-5/.voidwalk.lock"), "").unwrap();
+        #[cfg(unix)]
+        std::os::unix::fs::symlink("/tmp", root.path().join("run-8")).unwrap();
+        let queue = queue(root.path());
+        let told = queue.snapshot(str::to_owned);
+        let told: Vec<_> = told.as_array().unwrap().iter().collect();
+        let states = |key: &str| told.iter().map(|job| job[key].clone()).collect::<Vec<_>>();
+        assert_eq!(states("id"), [7, 3, 2, 1]);
+        assert_eq!(states("state"), ["stopped", "failed", "refused", "stopped"]);
+        assert_eq!(states("can_continue"), [false, true, false, true]);
+        assert_eq!((&told[1]["message"], &told[3]["title"]), (&json!("why"), &json!("a job")));
+        assert_eq!(queue.kept(1), Ok(Some(file())));
+        assert!(queue.kept(7).is_err() && queue.kept(2).is_err());
+        // The next number is free: under 8 there is a link.
+        assert_eq!(queue.add(file(), Work::Kept).unwrap(), 9);
+    }
+
+    #[test]
+    fn of_very_many_jobs_the_first_to_end_are_left_out() {
+        let job = |id| Job::new(id, String::new(), format!("run-{id}"), Work::Kept, JobState::Stopped);
+        let mut all: Vec<Job> = (1..=LISTED + 3).map(job).collect();
+        all[0].state = JobState::Running;
+        all[2].state = JobState::Waiting;
+        shorten(&mut all);
+        let ids: Vec<usize> = all.iter().map(|job| job.id).collect();
+        assert_eq!((all.len(), &ids[..3]), (LISTED, &[1, 3, 6][..]));
+    }
+
+    /// A job that a full disk ended continues once there is room: if the command line resumes a folder, so
+    /// does the page, on this server and the next.
+    #[test]
+    fn what_has_failed_can_continue() {
+        let root = tempfile::tempdir().unwrap();
+        let before = queue(root.path());
+        let ids = [(); 3].map(|()| before.add(file(), Work::Kept).unwrap());
+        let folder = |id: usize| root.path().join(format!("run-{id}"));
+        for (id, state) in ids.into_iter().zip([JobState::Failed, JobState::Refused, JobState::Refused]) {
+            set(&before, id, state);
+            let ended = Some((state.words().to_owned(), "the disk is full".to_owned()));
+            JobFile { ended, ..file() }.write(&folder(id)).unwrap();
+        }
+        std::fs::write(folder(ids[1]).join("scene.toml"), "").unwrap();
+        let after = queue(root.path());
+        for queue in [&before, &after] {
+            let can = ids.map(|id| queue.kept(id).is_ok());
+            assert_eq!(can, [true, true, false], "the last was refused before it began");
+        }
+        // The request is lost, but the scene is not.
+        std::fs::write(folder(ids[1]).join("job.json"), "{").unwrap();
+        assert_eq!(after.kept(ids[1]), Ok(None));
+        // While it continues, no message reports a failure.
+        after.resume(ids[0], Work::Kept).unwrap();
+        assert_eq!(JobFile::read(&folder(ids[0])).unwrap().ended, None);
+        assert!(after.resume(ids[0], Work::Kept).is_err(), "it waits already");
+    }
 }

@@ -1,26 +1,22 @@
 //! Progress of a job while it is walked.
 
-use std::collections::BTreeMap;
-
-use serde_json::{Value, json};
-
 use super::batches::so_far;
 use crate::cases::CaseEvent;
-use crate::outcome::so_far::SoFar;
+use crate::outcome::verdict::SoFar;
 use crate::run::Event;
 use crate::verdict::WalkedRow;
 use crate::words::sentence;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
 
 /// Fewer replicates have no class while more are to come.
 const FEW: usize = 4;
 
-/// Most warnings that are kept.
 const WARNINGS: usize = 50;
 
 /// Lines of a study that are kept: the newest.
 const LINES: usize = 12;
 
-/// Progress of a job while it is walked.
 #[derive(Clone, Debug, Default)]
 pub struct Live {
     /// Grains of the packing, its steps, and how many it usually takes.
@@ -28,25 +24,20 @@ pub struct Live {
     waits_for_packing: bool,
     /// Runs that are done, and that are to be walked, as far as it is known.
     runs: [u64; 2],
-    /// Results of the runs.
     walked: SoFar,
     /// Cases that are done, and all.
-    cases: [usize; 2],
-    /// Finished cases with their results.
+    pub cases: [usize; 2],
     done: Vec<Value>,
     /// Cases that are walked, with their runs that are done and that are to be walked.
     walking: BTreeMap<String, [u64; 2]>,
     case: String,
     /// The rows of a batch, as far as they are walked; true if they show inches.
-    batch: Option<(Vec<WalkedRow>, bool)>,
-    /// Messages of a study, the newest last.
+    pub batch: Option<(Vec<WalkedRow>, bool)>,
     lines: Vec<String>,
-    /// Warnings for the user.
     pub warnings: Vec<String>,
 }
 
 impl Live {
-    /// An event of a walk.
     pub fn tell(&mut self, event: Event) {
         match event {
             Event::PackingElsewhere { .. } => self.waits_for_packing = true,
@@ -78,12 +69,6 @@ impl Live {
         }
     }
 
-    /// The cases of a batch are counted.
-    pub fn cases(&mut self, all: usize, done: usize) {
-        self.cases = [done, all];
-    }
-
-    /// An event of a case of a batch.
     pub fn tell_case(&mut self, case: &str, event: CaseEvent) {
         match event {
             CaseEvent::Begun { .. } | CaseEvent::Waiting => self.case = case.to_owned(),
@@ -103,11 +88,6 @@ impl Live {
         }
     }
 
-    /// A batch begins, or continues.
-    pub fn batch(&mut self, rows: Vec<WalkedRow>, inches: bool) {
-        self.batch = Some((rows, inches));
-    }
-
     /// A batch is done: its result has the table.
     pub fn end_batch(&mut self) {
         if let Some((rows, _)) = &mut self.batch {
@@ -115,14 +95,12 @@ impl Live {
         }
     }
 
-    /// A pair of a batch is walked.
     pub fn walked_pair(&mut self, at: usize, row: WalkedRow) {
         if let Some(there) = self.batch.as_mut().and_then(|(rows, _)| rows.get_mut(at)) {
             *there = row;
         }
     }
 
-    /// Adds a warning for the user.
     pub fn warn(&mut self, warning: &str) {
         if self.warnings.len() < WARNINGS && !self.warnings.iter().any(|earlier| earlier == warning) {
             self.warnings.push(warning.to_owned());
@@ -193,8 +171,7 @@ mod tests {
 
     #[test]
     fn the_runs_of_each_case_are_counted_while_it_is_walked() {
-        let mut live = Live::default();
-        live.cases(2, 0);
+        let mut live = Live { cases: [0, 2], ..Live::default() };
         live.tell_case("a.csv", CaseEvent::Begun { resumes: false });
         live.tell_case("a.csv", CaseEvent::Walked { done: 3, runs: 20 });
         live.tell_case("b.csv", CaseEvent::Walked { done: 1, runs: 20 });

@@ -9,18 +9,13 @@
 //! server on the folder lists every job and continues it; `voidwalk resume` continues a run that has begun to
 //! walk.
 
-mod archive;
 mod batches;
-mod connections;
-mod downloads;
 mod guard;
 mod http;
-mod job_file;
+mod job;
 mod jobs;
 mod live;
 mod routes;
-mod rules_of_pair;
-mod samples;
 mod sheets;
 
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
@@ -29,12 +24,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-pub use jobs::OnResults;
+pub use job::OnResults;
 
 use crate::run::folder::{FolderKind, claim};
 use crate::run::{PrepareOptions, RunError};
-use connections::{Connections, Place};
-use guard::Guard;
+use guard::{Connections, Guard, Place};
 use jobs::JobQueue;
 use routes::Routes;
 use sheets::Sheets;

@@ -1,37 +1,37 @@
 //! Answers to requests: each answer is a call of the library.
 
-use std::io;
+use std::fs::{self, File};
+use std::io::{self, Seek};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
-use serde::de::DeserializeOwned;
 use serde_json::{Value, json};
+use zip::ZipWriter;
+use zip::write::SimpleFileOptions;
 
-use super::archive::archive;
-use super::batches::{self, AskedBatch, AskedTables};
-use super::downloads::example;
+use super::batches::{self, AskedBatch, AskedTables, rules_of_pair};
 use super::guard::Guard;
 use super::http::{Answer, BODY, Request, read_body};
-use super::job_file::JobFile;
-use super::jobs::{JobQueue, Work, of_cases};
-use super::rules_of_pair::rules_of_pair;
-use super::samples::SampleTable;
+use super::job::{JobFile, Work, of_cases};
+use super::jobs::JobQueue;
 use super::sheets::Sheets;
 use crate::case::LibraryFilter;
 use crate::cases::BatchPlan;
 use crate::report;
 use crate::run::error::Exit;
 use crate::run::prepare::Draft;
-use crate::run::{self, PrepareOptions, RunError};
+use crate::run::{self, EXAMPLE_FILES, PrepareOptions, RunError, checkpoints};
 use crate::scene::{Density, LibraryDensity, Scene, TableOptions};
+use crate::words::batch::columns;
 use crate::words::sentence;
 use voidwalk_core::constrictions::shipped;
 use voidwalk_core::gradation::{CurvePoint, Gradation};
+use voidwalk_core::schema::KeyInfo;
 use voidwalk_core::store::open_regular;
 use voidwalk_core::text::is_plain_part;
 use voidwalk_practice::quantity::SizeUnit;
-use voidwalk_practice::{PairOptions, PairRules};
+use voidwalk_practice::{BatchTable, PairOptions, PairRules};
 use voidwalk_sheets::curves_in_file;
 
 const PAGE: &str = include_str!("page.html");
@@ -44,13 +44,11 @@ const ICON: &str = include_str!("icon.svg");
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; \
     connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
-/// Content security policy of a drawing.
 const POLICY_OF_DRAWING: &str = "default-src 'none'; style-src 'unsafe-inline'; sandbox";
 
 /// Longest list of settings, and longest setting.
 const SETTINGS: (usize, usize) = (200, 2000);
 
-/// Request of the page for a walk.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Asked {
@@ -60,33 +58,18 @@ struct Asked {
     tables: AskedTables,
 }
 
-impl Asked {
-    /// The two sheets.
-    fn sheets(&self) -> Value {
-        json!({ "base": self.base, "filter": self.filter })
-    }
-}
-
-/// A request, understood.
 struct Planned {
-    /// Title of the job's card.
     title: String,
-    /// The sheets of its card.
     asked: Value,
     work: Work,
 }
 
 /// Everything that a request may reach.
 pub struct Routes {
-    /// Who may ask.
     pub guard: Guard,
-    /// The sheets.
     pub sheets: Sheets,
-    /// The jobs.
     pub jobs: JobQueue,
-    /// Threads, memory and the folder of packings.
     pub prepare: PrepareOptions,
-    /// The server's folder.
     pub root: PathBuf,
 }
 
@@ -103,7 +86,6 @@ fn constrictions(filter: &Gradation) -> Vec<(String, Vec<CurvePoint>)> {
     [LibraryDensity::Loose, LibraryDensity::Dense].into_iter().filter_map(curve).collect()
 }
 
-/// Problem of an input.
 fn wrong(error: impl std::fmt::Display) -> Problem {
     (422, on_page(&error.to_string()))
 }
@@ -119,9 +101,6 @@ fn on_page(message: &str) -> String {
 
 impl Routes {
     /// The answer to a request.
-    ///
-    /// # Errors
-    /// The connection ends before the request does.
     pub fn answer(&self, mut request: Request, stream: &mut TcpStream) -> io::Result<Answer> {
         let Some(path) = self.guard.path(&request).map(str::to_owned) else {
             let words = "not allowed: open the address that voidwalk serve has printed, with its secret";
@@ -149,13 +128,14 @@ impl Routes {
             "api/form" => Ok(Answer::json(200, form())),
             "api/rules" => self.rules(request),
             "api/curves.svg" => self.curves(request),
-            "api/samples" => Ok(Answer::json(200, self.samples(request)?.json())),
+            "api/samples" => Ok(Answer::json(200, batches::of_samples(&self.samples(request)?))),
             "samples.csv" => {
-                let answer = Answer::new(200, "text/csv; charset=utf-8", self.samples(request)?.csv());
+                let csv = columns(SizeUnit::Mm).csv(&self.samples(request)?.rows);
+                let answer = Answer::new(200, "text/csv; charset=utf-8", csv);
                 Ok(Answer { download: Some("voidwalk-samples.csv".into()), ..answer })
             }
             #[cfg(feature = "xlsx")]
-            "voidwalk-soils.xlsx" => super::downloads::template(path),
+            "voidwalk-soils.xlsx" => template(path),
             _ => match path.split_once('/') {
                 Some(("files", file)) => self.file(file),
                 Some(("examples", name)) => example(name),
@@ -178,8 +158,7 @@ impl Routes {
                 Ok(Answer::json(200, json!(*sheet)))
             }
             "api/judge" | "api/batch" => {
-                let request: Value =
-                    serde_json::from_slice(body).map_err(|error| (400, error.to_string()))?;
+                let request: Value = serde_json::from_slice(body).map_err(malformed)?;
                 let kind = path.trim_start_matches("api/").to_owned();
                 let Planned { title, asked, work } = self.planned(&kind, &request)?;
                 let file = JobFile { kind, title, asked, request, ended: None };
@@ -190,7 +169,8 @@ impl Routes {
                 self.jobs.add(file, work).map(accepted).map_err(status)
             }
             "api/check" => {
-                let check = run::check(self.scene(&asked(body)?)?, &self.prepare).map_err(wrong)?;
+                let asked = serde_json::from_slice(body).map_err(malformed)?;
+                let check = run::check(self.scene(&asked)?, &self.prepare).map_err(wrong)?;
                 let refusal =
                     check.refusal.as_ref().map(|refusal| self.sheets.as_named(&refusal.to_string()));
                 let unit = SizeUnit::of(check.inputs.scale_free, false);
@@ -222,15 +202,15 @@ impl Routes {
     fn planned(&self, kind: &str, request: &Value) -> Result<Planned, Problem> {
         match kind {
             "judge" => {
-                let asked: Asked = read(request)?;
+                let asked: Asked = Deserialize::deserialize(request).map_err(malformed)?;
                 let title = format!("{} on {}", self.title(&asked.base), self.title(&asked.filter));
                 let scene = self.scene(&asked)?;
                 Draft::new(scene.clone()).map_err(wrong)?;
-                let work = Work::Judge(Box::new(scene));
-                Ok(Planned { title, asked: asked.sheets(), work })
+                let sheets = json!({ "base": asked.base, "filter": asked.filter });
+                Ok(Planned { title, asked: sheets, work: Work::Judge(Box::new(scene)) })
             }
             "batch" => {
-                let asked: AskedBatch = read(request)?;
+                let asked: AskedBatch = Deserialize::deserialize(request).map_err(malformed)?;
                 let sheets = json!({ "base": asked.base, "filter": asked.filters.first() });
                 let (samples, filters) = asked.sheets(&self.sheets).map_err(wrong)?;
                 let names = batches::filter_names(&self.sheets, &filters);
@@ -280,7 +260,6 @@ impl Routes {
         BatchPlan::new(samples, filters, &tables, walks, &options).map_err(wrong)
     }
 
-    /// Every rule of practice on two sheets.
     fn rules(&self, request: &Request) -> Result<Answer, Problem> {
         let curves = |name: &str| {
             let path = self.path(&request.parameter(name).unwrap_or_default())?;
@@ -292,11 +271,10 @@ impl Routes {
         Ok(Answer::json(200, rules_of_pair(&pair)))
     }
 
-    /// The rules of practice on every sample of a sheet.
-    fn samples(&self, request: &Request) -> Result<SampleTable, Problem> {
+    fn samples(&self, request: &Request) -> Result<BatchTable, Problem> {
         let [base, filters] = ["base", "filter"].map(|name| request.parameter(name).unwrap_or_default());
         let filters: Vec<&str> = filters.split('\n').filter(|name| !name.is_empty()).collect();
-        SampleTable::new(&self.sheets, &base, &filters, pair_options(request)?).map_err(wrong)
+        batches::samples(&self.sheets, &base, &filters, pair_options(request)?).map_err(wrong)
     }
 
     /// The sieve curves of the sheets that are named, in one drawing, with the library's constrictions of the
@@ -355,7 +333,6 @@ impl Routes {
         Ok(Answer { policy, ..answer })
     }
 
-    /// A job's folder, to take away.
     fn zip(&self, named: &str) -> Result<Answer, Problem> {
         let name = named.strip_suffix(".zip").unwrap_or(named);
         let folder = self.jobs.folder(name).filter(|folder| is_own(folder));
@@ -367,7 +344,6 @@ impl Routes {
     }
 }
 
-/// Options of two soils beside their sheets.
 fn pair_options(request: &Request) -> Result<PairOptions, Problem> {
     let changes: Vec<String> =
         request.parameter("changes").iter().flat_map(|all| all.lines().map(String::from)).collect();
@@ -381,16 +357,13 @@ fn is_own(folder: &Path) -> bool {
     folder.symlink_metadata().is_ok_and(|meta| meta.is_dir())
 }
 
-fn read<T: DeserializeOwned>(request: &Value) -> Result<T, Problem> {
-    serde_json::from_value(request.clone()).map_err(|error| (400, error.to_string()))
+/// A request that is not of its form.
+fn malformed(error: serde_json::Error) -> Problem {
+    (400, error.to_string())
 }
 
 fn conflict(words: String) -> Problem {
     (409, words)
-}
-
-fn asked<T: DeserializeOwned>(body: &[u8]) -> Result<T, Problem> {
-    serde_json::from_slice(body).map_err(|error| (400, error.to_string()))
 }
 
 fn table_options(asked: &AskedTables) -> Result<TableOptions, Problem> {
@@ -410,16 +383,60 @@ fn bounded(changes: &[String]) -> Result<(), Problem> {
 
 /// Every setting of a scene with its meaning, and the curves and filters that ship with the program.
 fn form() -> Value {
-    let keys: Vec<Value> = Scene::keys()
-        .iter()
-        .map(|key| {
-            json!({
-                "section": key.section, "name": key.full_name(), "doc": key.doc, "shown": key.shown,
-                "is_set": key.is_set,
-            })
+    let key = |key: &KeyInfo| {
+        json!({
+            "section": key.section, "name": key.full_name(), "doc": key.doc, "shown": key.shown,
+            "is_set": key.is_set,
         })
-        .collect();
+    };
+    let keys: Vec<Value> = Scene::keys().iter().map(key).collect();
     let curves: Vec<Value> =
         shipped().iter().map(|curve| json!({ "name": curve.name, "title": curve.title })).collect();
     json!({ "keys": keys, "curves": curves, "densities": Density::ALL.map(Density::name) })
+}
+
+fn example(name: &str) -> Result<Answer, Problem> {
+    let example = EXAMPLE_FILES.iter().find(|file| file.name == name);
+    let file = example.ok_or_else(|| (404, "there is no such example".to_owned()))?;
+    Ok(Answer::new(200, "text/plain; charset=utf-8", file.text))
+}
+
+#[cfg(feature = "xlsx")]
+fn template(path: &str) -> Result<Answer, Problem> {
+    let bytes = report::soil_template().map_err(|error| (500, error.to_string()))?;
+    let answer = Answer::new(200, "application/octet-stream", bytes);
+    Ok(Answer { download: Some(path.into()), ..answer })
+}
+
+/// Packs the results in `folder`, below `name`, into a file without a name in `beside`. Names that begin with
+/// a dot and checkpoints are left out, and no link is followed.
+fn archive(folder: &Path, name: &str, beside: &Path) -> io::Result<File> {
+    let mut writer = ZipWriter::new(tempfile::tempfile_in(beside)?);
+    add(&mut writer, folder, name)?;
+    let mut file = writer.finish().map_err(io::Error::other)?;
+    file.rewind()?;
+    Ok(file)
+}
+
+fn add(writer: &mut ZipWriter<File>, folder: &Path, name: &str) -> io::Result<()> {
+    let mut entries = fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>()?;
+    entries.sort_by_key(fs::DirEntry::file_name);
+    for entry in entries {
+        let (file, kind) = (entry.file_name().to_string_lossy().into_owned(), entry.file_type()?);
+        let inside = format!("{name}/{file}");
+        if file.starts_with('.') || file == checkpoints::FOLDER {
+            continue;
+        }
+        if kind.is_dir() {
+            add(writer, &entry.path(), &inside)?;
+        } else if kind.is_file()
+            && let Some(mut content) = open_regular(&entry.path())?
+        {
+            let options =
+                SimpleFileOptions::default().large_file(entry.metadata()?.len() > u64::from(u32::MAX));
+            writer.start_file(inside, options).map_err(io::Error::other)?;
+            io::copy(&mut content, writer)?;
+        }
+    }
+    Ok(())
 }

@@ -9,7 +9,6 @@ use voidwalk_core::store::{is_device, make_folder, write_whole};
 use voidwalk_core::text::{is_hidden, plain, visible};
 use voidwalk_sheets::{SoilSummary, soils_in_file};
 
-/// Folder of the sheets.
 const FOLDER: &str = "sheets";
 
 /// Most sheets of a server, and all their bytes.
@@ -24,22 +23,18 @@ const LAST: usize = 100_000;
 /// Longest name of a file and its ending (letters, bytes): file systems allow 255 bytes.
 const NAME: [(usize, usize); 2] = [(60, 180), (8, 32)];
 
-/// A sheet.
 #[derive(Debug, Serialize)]
 pub struct Sheet {
-    /// Its number.
     pub id: usize,
-    /// Its name, harmless.
     pub name: String,
     /// The soils that can be chosen, the first of the file, as `voidwalk soil` understands them.
     pub soils: Vec<SoilSummary>,
-    /// Soils in the file.
+    /// Number of soils in the file.
     pub in_all: usize,
 }
 
 impl Sheet {
-    /// Reads a sheet.
-    fn of(id: usize, path: &Path) -> Result<Arc<Self>, String> {
+    fn open(id: usize, path: &Path) -> Result<Arc<Self>, String> {
         let mut soils = soils_in_file(path, None).map_err(|error| error.to_string())?;
         let in_all = soils.len();
         soils.truncate(MOST_SOILS);
@@ -49,7 +44,6 @@ impl Sheet {
     }
 }
 
-/// The sheets of a server.
 pub struct Sheets {
     folder: PathBuf,
     kept: Mutex<Kept>,
@@ -58,9 +52,7 @@ pub struct Sheets {
 #[derive(Default)]
 struct Kept {
     sheets: Vec<Arc<Sheet>>,
-    /// Sheets that are being read.
     read: usize,
-    /// Bytes of all of them.
     bytes: u64,
 }
 
@@ -83,10 +75,7 @@ impl Sheets {
         Self { folder, kept: Mutex::new(kept) }
     }
 
-    /// Keeps a sheet, if soils can be read from it.
-    ///
-    /// # Errors
-    /// The errors of `voidwalk soil`; there is no more room.
+    /// Keeps a sheet, if soils can be read from it and there is room.
     pub fn add(&self, name: &str, bytes: &[u8]) -> Result<Arc<Sheet>, String> {
         let size = bytes.len() as u64;
         {
@@ -114,7 +103,7 @@ impl Sheets {
         let (id, folder) = self.new_folder()?;
         let path = folder.join(harmless(name));
         let written = write_whole(&path, bytes).map_err(|error| error.to_string());
-        written.and_then(|()| Sheet::of(id, &path)).map_err(|problem| {
+        written.and_then(|()| Sheet::open(id, &path)).map_err(|problem| {
             // Removes a file that is not a sheet; if that fails it stays, and does no harm.
             let _ = std::fs::remove_file(&path).and_then(|()| std::fs::remove_dir(&folder));
             self.as_named(&problem)
@@ -138,15 +127,11 @@ impl Sheets {
         Err("no room: too many sheets in this folder".into())
     }
 
-    /// All sheets.
     pub fn all(&self) -> Vec<Arc<Sheet>> {
         self.locked().sheets.clone()
     }
 
     /// The path of a sheet that a page names by its number, with the soil behind a `#`: `3#Filter A`.
-    ///
-    /// # Errors
-    /// There is no such sheet, or no such soil in it.
     pub fn path(&self, named: &str) -> Result<PathBuf, String> {
         let (id, soil) = named.split_once('#').map_or((named, None), |(id, soil)| (id, Some(soil)));
         let sheets = self.all();
@@ -191,7 +176,7 @@ fn earlier(folder: &Path, id: usize) -> Option<(Arc<Sheet>, u64)> {
         Some((name, meta.len()))
     });
     let (name, bytes) = files.next().filter(|(_, bytes)| *bytes <= MOST.1)?;
-    Some((Sheet::of(id, &folder.join(name)).ok()?, bytes))
+    Some((Sheet::open(id, &folder.join(name)).ok()?, bytes))
 }
 
 /// True if no terminal, page or file system gives a letter a special meaning.

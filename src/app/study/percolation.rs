@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 use crate::cases::kept::{self, Kept};
 use crate::outcome::percolation::{PercolationStudy, is_cube, lattice_name};
 use crate::outcome::table::Columns;
+use crate::run::RunError;
 use crate::run::callbacks::Callbacks;
-use crate::run::error::RunError;
 use crate::run::folder::{FolderKind, claim};
 use crate::run::machine::on_threads;
 use voidwalk_core::network::{Network, NetworkError, percolation_threshold};
@@ -52,7 +52,6 @@ impl Default for PercolationPlan {
     }
 }
 
-/// Results so far.
 #[derive(Default, Serialize, Deserialize)]
 struct Found {
     /// The lengths of a lattice, and the threshold of each of its realisations in order.
@@ -93,10 +92,8 @@ impl PercolationPlan {
     }
 
     /// Finds every threshold that was not found before, realisations side by side, and keeps each lattice as
-    /// soon as it is done; the same bits for any number of threads.
-    ///
-    /// # Errors
-    /// Errors of the folder; [`PercolationPlan::checked`] has already found all others.
+    /// soon as it is done; the same bits for any number of threads. All errors but those of the folder are
+    /// known from [`PercolationPlan::checked`].
     fn run(&self, mut found: Found, kept: Option<&Kept>) -> Result<Found, RunError> {
         let (begun, seconds_before) = (Instant::now(), found.seconds);
         for &shape in &self.shapes[found.thresholds.len()..] {

@@ -5,22 +5,21 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use crate::cases::days::today;
 use crate::cases::inputs::{InputSoils, input_files};
+use crate::cases::kept::today;
 use crate::outcome::record::commit;
 use crate::outcome::table::csv_of;
+use crate::run::RunError;
 use crate::run::callbacks::Callbacks;
-use crate::run::error::RunError;
-use crate::run::folder::{FolderKind, begin, claim, shown};
+use crate::run::folder::{FolderKind, begin, claim, refused, shown};
 use crate::run::results::json;
 use crate::words::specification::step_rows;
 use crate::words::{designed, products};
 use voidwalk_core::store::{Folder, StoreError};
 use voidwalk_core::text::plain;
-use voidwalk_practice::SheetCover;
 use voidwalk_practice::design::{SieveSeries, Specification};
 use voidwalk_practice::quantity::SizeUnit;
-use voidwalk_practice::{DesignedSample, DesignedSamples, SpecificationOptions};
+use voidwalk_practice::{DesignedSample, DesignedSamples, SheetCover, SpecificationOptions};
 use voidwalk_sheets::{SoilSample, file_and_soil};
 
 /// A coarser base (D85, mm) is refused: its sizes are in another unit.
@@ -85,7 +84,11 @@ pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specif
     let inputs = input_files(&base.soils)?;
     let specification = Specification { commit: commit(), inches, cover, inputs, ..specification };
     options.write((FolderKind::Specification, &specification), callbacks, |folder| {
-        write_tables(folder, &specification)
+        let steps: Vec<_> = specification.steps.iter().flat_map(step_rows).collect();
+        let products = products::columns(SizeUnit::Mm).csv(&specification.products);
+        folder.write("specification.csv", &csv_of(&specification.limits))?;
+        folder.write("specification_steps.csv", &csv_of(&steps))?;
+        folder.write("specification_products.csv", &products)
     })?;
     Ok(specification)
 }
@@ -141,10 +144,7 @@ fn no_filter_within(base: &InputSoils) -> Result<(), RunError> {
 /// Refuses stones: a size in micrometres under a header in mm, most likely.
 fn is_a_base(soil: &SoilSample) -> Result<(), RunError> {
     match soil.curve.d(85.0).filter(|d85| *d85 > NO_BASE_MM) {
-        Some(d85) => {
-            let problem = format!("{}: {}: {}", shown(&soil.path), soil.name, no_base(d85));
-            Err(RunError::Refused(problem))
-        }
+        Some(d85) => Err(refused(&soil.path, format!("{}: {}", soil.name, no_base(d85)))),
         None => Ok(()),
     }
 }
@@ -155,16 +155,4 @@ pub(super) fn no_base(d85: f64) -> String {
         "the base's D85 is {d85:.0} mm, and no filter holds such stones: are its sizes micrometres under a \
          header in mm?"
     )
-}
-
-/// Writes limits, steps and products as CSV.
-///
-/// # Errors
-/// Errors of the system.
-fn write_tables(folder: &Folder, specification: &Specification) -> Result<(), StoreError> {
-    let steps: Vec<_> = specification.steps.iter().flat_map(step_rows).collect();
-    let products = products::columns(SizeUnit::Mm).csv(&specification.products);
-    folder.write("specification.csv", &csv_of(&specification.limits))?;
-    folder.write("specification_steps.csv", &csv_of(&steps))?;
-    folder.write("specification_products.csv", &products)
 }

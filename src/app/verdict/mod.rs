@@ -1,20 +1,232 @@
 //! A case's answer as facts: practice beside the walks, each with its notes. No walk changes the answer of
 //! practice.
-//!
-//! - [`PlannedWalk`] has the notes on soils and network before their walk, `walks` and `beside` the notes on
-//!   walks themselves.
-//! - [`WalkedBatch`] is a table of many samples with their walks.
-//! - [`RunFiles`] is the content of the files of a run folder, as values.
-//! - [`counts_as()`] is the class as which practice counts where a command accepts verdicts.
 
-pub(crate) mod beside;
-mod planned_walk;
-mod run_files;
-mod severity;
-mod walked_batch;
 pub(crate) mod walks;
 
-pub use planned_walk::PlannedWalk;
-pub use run_files::RunFiles;
-pub use severity::counts_as;
-pub use walked_batch::{SampleWalk, WalkedBatch, WalkedRow};
+pub use walks::PlannedWalk;
+
+use crate::outcome::packing::PackingRecord;
+use crate::outcome::record::{Manifest, ModelLimit, Outcome, Ratios, Statistic, Verdict, commit};
+use crate::outcome::verdict::THRESHOLD;
+use crate::outcome::{BaseSize, Recorded};
+use serde::{Deserialize, Serialize};
+use voidwalk_practice::decision::Standing;
+use voidwalk_practice::{AboutPage, BatchFilter, BatchRow, Decision, Headline, SheetCover, TestedClass};
+
+/// The content of the files of a run folder and the derived values from which its page is made.
+pub struct RunFiles {
+    /// `outcome.json`.
+    pub outcome: Outcome,
+    /// The decision of practice on the pair.
+    pub decision: Decision,
+    /// `manifest.json`.
+    pub manifest: Manifest,
+    /// `scene.toml`.
+    pub scene: String,
+    /// Its settings of the page.
+    pub about: AboutPage,
+    /// `inputs/packing.json`, if the filter was packed.
+    pub packing: Option<PackingRecord>,
+    /// The rows of the CSV files.
+    pub recorded: Recorded,
+}
+
+/// The class by which practice counts when verdicts are accepted or not, the worst that nobody excludes;
+/// `None` if no rule of design was applied.
+pub fn counts_as(decision: &Decision) -> Option<Verdict> {
+    let coarse = match decision.tests {
+        TestedClass::Continuing => Verdict::Continuing,
+        TestedClass::Unknown if decision.is_beyond_tests => Verdict::Undecided,
+        _ => Verdict::Some,
+    };
+    match decision.standing {
+        Standing::NoRules => None,
+        Standing::Met => Some(Verdict::None),
+        Standing::Unknown(_) | Standing::Open(_) => Some(Verdict::Undecided),
+        Standing::NoMargin | Standing::Unstable => Some(Verdict::Some),
+        Standing::WashedOut if decision.washout.as_ref().is_some_and(|washout| washout.continues) => {
+            Some(Verdict::Continuing)
+        }
+        Standing::Fails | Standing::WashedOut => Some(coarse),
+    }
+}
+
+/// The whole of `batch.json`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct WalkedBatch {
+    /// Version of the program.
+    pub version: String,
+    /// The commit that it was built from; `None` where that is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
+    /// Hash of everything that the rows follow from: samples, filters and settings.
+    pub work: String,
+    /// Seed of every walk.
+    pub seed: u64,
+    /// The samples, as they were named.
+    pub samples: String,
+    /// The filters.
+    pub filters: Vec<BatchFilter>,
+    /// The curve of the one base as sampled, rows of (size in mm, percent finer by mass); left out where each
+    /// soil is a sample.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub base: Vec<[f64; 2]>,
+    /// A row for each filter and sample, filter by filter.
+    pub rows: Vec<WalkedRow>,
+    /// What was assumed of the files, a sentence each.
+    pub notes: Vec<String>,
+    /// Eroded mass fraction that divides the classes: 0.075.
+    pub threshold: f64,
+    /// What the sheet says of itself.
+    #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
+    pub cover: SheetCover,
+    /// Whether inches stand beside mm on page and terminal.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub inches: bool,
+    /// What no walk contains.
+    pub model_leaves_out: Vec<ModelLimit>,
+}
+
+/// One sample and one filter.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct WalkedRow {
+    /// What practice says.
+    #[serde(flatten)]
+    pub rules: BatchRow,
+    /// 1 for the sample that governs the filter by the rules, 2 and 3 for those next to it.
+    pub governs: Option<u64>,
+    /// What its walk says; `None` where there was none.
+    pub walk: Option<SampleWalk>,
+    /// Why it was not walked; empty where it was.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub not_walked: String,
+}
+
+/// What the walk of one sample says.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct SampleWalk {
+    /// Folder of its results, inside the batch's.
+    pub folder: String,
+    /// Whether it was walked in full; otherwise it was a first look.
+    pub in_full: bool,
+    /// The answer of practice; `None` without two sieve curves in mm.
+    pub headline: Option<Headline>,
+    /// The class that its replicates together support.
+    pub verdict: Verdict,
+    /// The class as which practice counts; `None` without a rule.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by_practice: Option<Verdict>,
+    /// Replicates.
+    pub replicates: u64,
+    /// D15F over D85B and D95B.
+    pub ratios: Ratios,
+    /// D85B, and which base it is of.
+    pub base: Option<BaseSize>,
+    /// Eroded mass fraction of each run.
+    pub runs: Vec<Statistic>,
+    /// Least and most eroded over the range of the constriction curve, one pair per run; empty where the
+    /// curve is no range.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub curve_range: Vec<[f64; 2]>,
+}
+
+impl SampleWalk {
+    /// Takes the numbers of the outcome in this folder.
+    pub fn of(outcome: &Outcome, folder: String, in_full: bool) -> Self {
+        let range = outcome.curve_range.as_ref();
+        Self {
+            folder,
+            in_full,
+            headline: outcome.headline,
+            verdict: outcome.model.class,
+            by_practice: counts_as(&outcome.decision()),
+            replicates: outcome.replicates.len() as u64,
+            ratios: outcome.ratios,
+            base: outcome.inputs.base_size(),
+            runs: outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect(),
+            curve_range: range.map_or_else(Vec::new, |range| range.eroded_mass_fraction.clone()),
+        }
+    }
+}
+
+impl WalkedBatch {
+    /// A batch of these rows.
+    pub fn new(samples: String, filters: Vec<BatchFilter>, rows: Vec<WalkedRow>) -> Self {
+        Self {
+            version: env!("CARGO_PKG_VERSION").into(),
+            commit: commit(),
+            samples,
+            filters,
+            rows,
+            threshold: THRESHOLD,
+            ..Self::default()
+        }
+    }
+
+    /// True for one base and several filters instead of samples.
+    pub fn has_one_base(&self) -> bool {
+        !self.base.is_empty()
+    }
+
+    /// The rows of a filter.
+    pub fn of_filter(&self, filter: &str) -> impl Iterator<Item = &WalkedRow> {
+        self.rows.iter().filter(move |row| row.rules.filter == filter)
+    }
+
+    /// The samples that govern a filter, the strictest first.
+    pub fn governing(&self, filter: &str) -> Vec<&WalkedRow> {
+        let mut rows: Vec<&WalkedRow> = self.of_filter(filter).filter(|row| row.governs.is_some()).collect();
+        rows.sort_by_key(|row| row.governs);
+        rows
+    }
+}
+
+impl WalkedRow {
+    /// Tells if its walk erodes.
+    pub fn erodes(&self) -> bool {
+        let class = self.walk.as_ref().map(|walk| walk.verdict);
+        matches!(class, Some(Verdict::Some | Verdict::Continuing))
+    }
+
+    /// Tells if a rule that is met is in doubt: another rule is not kept, or the walk erodes.
+    pub fn is_doubted(&self) -> bool {
+        self.is_against_practice() || self.erodes()
+    }
+
+    /// Tells if a rule of retention or of the filter's own stability is not kept.
+    pub fn is_against_practice(&self) -> bool {
+        let breaks = |walk: &SampleWalk| walk.by_practice.is_some_and(|class| class != Verdict::None);
+        self.walk.as_ref().is_some_and(breaks) || self.rules.met == Some(false) || self.rules.may_lose_fines
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_soils::{filter, soil};
+    use voidwalk_practice::{PairOptions, PairRules, PracticeClass};
+
+    #[test]
+    fn what_is_accepted_follows_where_the_filter_stands() {
+        let sand = soil(&[(0.2, 0.0), (0.6, 100.0)]);
+        let hidden = soil(&[(0.3, 25.0), (1.0, 100.0)]);
+        let gap = [(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
+        let halved = gap.map(|(size, percent)| (0.5 * size, percent));
+        for (base, filter, class, counts) in [
+            (&sand, filter(1.0), PracticeClass::Meets, Verdict::None),
+            (&sand, filter(2.5), PracticeClass::DoesNotMeet, Verdict::Some),
+            (&sand, filter(4.0), PracticeClass::DoesNotMeet, Verdict::Some),
+            (&sand, filter(6.0), PracticeClass::DoesNotMeet, Verdict::Continuing),
+            (&sand, soil(&halved), PracticeClass::NotKnown, Verdict::Some),
+            (&hidden, filter(1.0), PracticeClass::NotKnown, Verdict::Undecided),
+        ] {
+            let pair = PairRules::of_envelopes(base, &filter, PairOptions::default());
+            let recorded = pair.practice.as_ref().unwrap().class;
+            assert_eq!((recorded, counts_as(&pair.decision())), (class, Some(counts)));
+        }
+        assert_eq!(counts_as(&Decision::new(&[], None, None)), None);
+    }
+}

@@ -1,10 +1,168 @@
-//! Doubts about a verdict from its own walk: a filter that clogged, particles that circle, a second run that
-//! erodes more than the first.
+//! Notes on a walk: on soils and network before it, on its own doubts, and on the results of a run.
 
-use crate::outcome::record::{Replicate, Run, Verdict};
-use crate::outcome::verdict::THRESHOLD;
-use voidwalk_core::gradation::Gradation;
+use crate::outcome::packing::{FLOATING_PERCENT, PackedPart};
+use crate::outcome::record::{Outcome, Replicate, Run, ShortOf, Stopping, Verdict};
+use crate::outcome::verdict::{THRESHOLD, UndecidedBy};
+use voidwalk_core::gradation::{BROAD_CU, FEW_FINES, FINES_MM, Gradation};
 use voidwalk_practice::Note;
+use voidwalk_practice::rules::broad_base;
+
+/// With fewer replicates than these a note states their number: their scatter is hardly known.
+const FEW_REPLICATES: u64 = 5;
+
+/// Ranges of Cu, of filter and base, in which the model was checked.
+const FILTER_CU: [f64; 2] = [1.2, 6.0];
+const BASE_CU: [f64; 2] = [1.2, 4.5];
+
+/// A lattice narrower than this many voids has few parallel paths: on one pair of soils one void across
+/// eroded 3.3 %, forty 13.3 %.
+const FEWEST_ACROSS: u32 = 10;
+
+/// A base, a filter and a network that are to be walked.
+#[derive(Clone)]
+pub struct PlannedWalk<'a> {
+    /// The base, as it is walked.
+    pub base: &'a Gradation,
+    /// The base as it was stated, if it is walked regraded.
+    pub regraded_from: Option<&'a Gradation>,
+    /// The finest constriction (mm): a pan fraction of the base that may be coarser counts as finer.
+    pub finest_constriction_mm: f64,
+    /// The filter, if it is known.
+    pub filter: Option<&'a Gradation>,
+    /// True if the filter's gradation is a sieve curve, and not an assumed straight line.
+    pub filter_is_measured: bool,
+    /// True if sizes are multiples of D0F.
+    pub scale_free: bool,
+    /// Voids of a network that was given, not built.
+    pub given_voids: Option<u64>,
+    /// Voids along each axis of a lattice.
+    pub lattice: Option<[u32; 3]>,
+    /// Layers of voids.
+    pub layers: u64,
+    /// True if water flows.
+    pub flows: bool,
+    /// Increments in which the base is inserted.
+    pub increments: u64,
+    /// Replicates.
+    pub replicates: u64,
+}
+
+impl PlannedWalk<'_> {
+    /// Notes on unchecked and unknown things, in no order.
+    pub fn notes(&self) -> Vec<Note> {
+        let notes = [
+            self.fines(),
+            self.broad_base(),
+            self.filter.and_then(|filter| not_as_uniform("filter", filter.cu(), FILTER_CU)),
+            self.cu_of_base(),
+            self.unstable_base(),
+            self.pan(),
+            self.filter.is_none().then_some(Note::NoFilter {}),
+            self.gap(),
+            self.given_voids.map(|voids| Note::GivenNetwork { voids }),
+            self.narrow_lattice(),
+            self.all_on_its_way(),
+            self.few_replicates(),
+        ];
+        notes.into_iter().flatten().collect()
+    }
+
+    /// Notes fines of the base that may be cohesive, or that are unknown.
+    fn fines(&self) -> Option<Note> {
+        let fines = self.base.percent_finer_by_mass(FINES_MM);
+        if self.scale_free || fines <= FEW_FINES {
+            return None;
+        }
+        let sieve = self.base.smallest_mm();
+        Some(match sieve <= FINES_MM || self.base.pan_fraction() == 0.0 {
+            true => Note::CohesiveFines { fines_percent: fines },
+            false => Note::FinesNotSieved { fines_percent: fines, sieve_mm: sieve },
+        })
+    }
+
+    /// Notes a broadly graded base, walked as practice cuts it or as it is.
+    fn broad_base(&self) -> Option<Note> {
+        if self.scale_free {
+            return None;
+        }
+        if let Some(sampled) = self.regraded_from {
+            return broad_base(sampled);
+        }
+        let regraded = self.base.regraded();
+        match regraded.at_mm {
+            Some(sieve_mm) => Some(Note::NotRegraded { sieve_mm }),
+            None => self.base.cu().filter(|cu| *cu >= BROAD_CU).map(|cu| Note::BroadlyGraded { cu }),
+        }
+    }
+
+    /// Notes a Cu that is a lower bound: if D10 is finer than the finest sieve, its size is not extrapolated.
+    /// Cu is greater than if all of that part were as coarse as that sieve, by an unknown amount.
+    fn cu_of_base(&self) -> Option<Note> {
+        let ([low, high], sieve) = (BASE_CU, self.base.smallest_mm());
+        match (self.base.cu(), self.base.d(60.0)) {
+            (None, Some(d60)) => {
+                Some(Note::CuAtLeast { soil: "base".into(), over_cu: d60 / sieve, d10_mm: sieve, low, high })
+            }
+            (cu, _) => not_as_uniform("base", cu, BASE_CU),
+        }
+    }
+
+    /// Notes a base whose coarser part does not hold its own finer part.
+    fn unstable_base(&self) -> Option<Note> {
+        let stated = self.regraded_from.unwrap_or(self.base);
+        let index = stated.known_kenney_lau().filter(|index| index.value < 1.0 && !self.scale_free)?;
+        Some(Note::UnstableBase { index: index.value, finer_percent: index.percent })
+    }
+
+    fn pan(&self) -> Option<Note> {
+        let percent = Some(100.0 * self.base.pan_fraction()).filter(|percent| *percent > 0.0)?;
+        let (sieve, finest) = (self.base.smallest_mm(), self.finest_constriction_mm);
+        Some(match sieve > finest {
+            true => {
+                Note::PanCountsAsPassing { finest_percent: percent, sieve_mm: sieve, constriction_mm: finest }
+            }
+            false => Note::PanPassive { finest_percent: percent },
+        })
+    }
+
+    fn gap(&self) -> Option<Note> {
+        let gap = self.filter.filter(|_| self.filter_is_measured)?.gap(0.0)?;
+        Some(Note::GapGraded { within_percent: gap.within, from_mm: gap.from_mm })
+    }
+
+    fn narrow_lattice(&self) -> Option<Note> {
+        let [nx, ny, _] = self.lattice?;
+        (nx.min(ny) < FEWEST_ACROSS).then(|| Note::NarrowLattice { nx: nx.into(), ny: ny.into() })
+    }
+
+    /// Notes a base that is, with water, inserted completely before any of it can be through.
+    ///
+    /// A particle makes one move per increment, and needs as many as there are layers. Particles on their way
+    /// when the water stops count as retained; here this is the whole base.
+    fn all_on_its_way(&self) -> Option<Note> {
+        let is_late = self.flows && self.increments <= self.layers;
+        is_late.then_some(Note::AllOnItsWay { increments: self.increments, layers: self.layers })
+    }
+
+    /// Notes that the replicates reveal little of their own scatter.
+    fn few_replicates(&self) -> Option<Note> {
+        match self.replicates {
+            1 => Some(Note::OneReplicate {}),
+            few if few < FEW_REPLICATES => Some(Note::FewReplicates { replicates: few }),
+            _ => None,
+        }
+    }
+}
+
+/// Notes a soil that is more or less uniform than the soils for which the model was checked.
+fn not_as_uniform(soil: &str, cu: Option<f64>, [low, high]: [f64; 2]) -> Option<Note> {
+    let soil = soil.to_owned();
+    match cu {
+        Some(cu) if (low - 1e-9..=high + 1e-9).contains(&cu) => None,
+        Some(cu) => Some(Note::CuUnchecked { soil, cu, low, high }),
+        None => Some(Note::CuUnknown { soil, low, high }),
+    }
+}
 
 /// A permeability below this part of the clean filter's is treated as zero: it is shown as 0.0 %.
 const CLOGGED: f64 = 5e-4;
@@ -104,9 +262,120 @@ impl Walked<'_> {
     }
 }
 
+/// Above this part of its volume a void holds more than any packing of particles would.
+const ROOM: f64 = 0.6;
+
+impl Outcome {
+    /// Notes on its results: a target that was not reached, classes that the replicates leave open, trapped
+    /// particles, and the effects of water and full voids.
+    pub fn notes_of_results(&self) -> Vec<Note> {
+        let trapped: u64 = self.replicates.iter().flat_map(|r| &r.runs).map(|r| r.trapped).sum();
+        [
+            self.stopping.as_ref().and_then(short_of),
+            self.replicates_leave_open(),
+            (trapped > 0).then_some(Note::Trapped { particles: trapped }),
+            self.second_run_may_erode(),
+            self.thinner_than_grain(),
+            self.not_studied(),
+            self.permeability(),
+            self.overfull(),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
+    }
+
+    /// Notes the cause of a class that the replicates do not separate, unless another note does.
+    fn replicates_leave_open(&self) -> Option<Note> {
+        // A target error that was met says nothing about the class.
+        let is_told = |stopping: &Stopping| stopping.short_of.is_some() || stopping.decide_percent.is_some();
+        if self.stopping.as_ref().is_some_and(is_told) {
+            return None;
+        }
+        match self.undecided_by()? {
+            UndecidedBy::Curve => None,
+            UndecidedBy::SecondRun => Some(Note::SecondRunMissing {}),
+            UndecidedBy::Replicates => Some(Note::ReplicatesLeaveOpen {}),
+        }
+    }
+
+    /// Notes that the second run may erode though the first does not.
+    fn second_run_may_erode(&self) -> Option<Note> {
+        let mean = self.summary.get(1)?.eroded_mass_fraction.mean;
+        let [_, most_percent] = *self.model.eroded_percent.get(1)?;
+        let may = mean < THRESHOLD && most_percent >= 100.0 * THRESHOLD;
+        (self.model.class == Verdict::None && may).then_some(Note::SecondRunMayErode { most_percent })
+    }
+
+    /// Notes that the modelled part of the filter is thinner than its largest grain.
+    fn thinner_than_grain(&self) -> Option<Note> {
+        let modelled_mm = self.inputs.network.thickness_mm?;
+        let [grain_mm, _] = *self.inputs.filter.gradation.last()?;
+        (grain_mm > modelled_mm).then_some(Note::ThinnerThanGrain { modelled_mm, grain_mm })
+    }
+
+    /// Notes that no other amount of base or thickness was walked.
+    fn not_studied(&self) -> Option<Note> {
+        let is_studied = self.studies_to_come || !(self.sensitivity.is_empty() && self.thickness.is_empty());
+        (self.practice.is_some() && !is_studied).then_some(Note::NotStudied {})
+    }
+
+    /// Notes the part of the permeability that is left at the end: a mean over the replicates; `None` without
+    /// water.
+    fn permeability(&self) -> Option<Note> {
+        let last = self.summary.len().checked_sub(1)?;
+        let left_percent = 100.0 * self.mean_of(last, |run| run.k_over_k0)?;
+        Some(Note::Permeability { run: last as u64 + 1, left_percent })
+    }
+
+    /// Notes that a void holds more than it has room for; `None` if no void does, or volumes are unknown.
+    fn overfull(&self) -> Option<Note> {
+        let runs = || self.replicates.iter().flat_map(|replicate| &replicate.runs);
+        let share = 100.0 * runs().filter_map(|run| run.overfull_fraction).reduce(f64::max)?;
+        let fullest = runs().filter_map(|run| run.fullness_max).reduce(f64::max);
+        match fullest.filter(|&fullest| fullest > ROOM) {
+            Some(fullest) => Some(Note::Overfull { fullest, voids_percent: share }),
+            None => (share > 0.0).then_some(Note::NoRoom { voids_percent: share }),
+        }
+    }
+
+    /// Mean of a quantity of one run over the replicates that have it.
+    fn mean_of(&self, run: usize, quantity: impl Fn(&Run) -> Option<f64>) -> Option<f64> {
+        let values: Vec<f64> = self.replicates.iter().filter_map(|r| quantity(r.runs.get(run)?)).collect();
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
+    }
+}
+
+/// The note on a filter from which this part was packed.
+pub fn packed_part(part: &PackedPart) -> Note {
+    let PackedPart { percent: part_percent, largest_mm, finer_by, sizes_missing_above, .. } = *part;
+    let finer_percent = 100.0 * finer_by;
+    match (sizes_missing_above, part_percent >= FLOATING_PERCENT) {
+        (_, false) => Note::LoosePartPacked { part_percent, largest_mm, finer_percent },
+        (true, true) => Note::FloatingPartPacked { part_percent, largest_mm, finer_percent },
+        (false, true) => Note::PartPacked { part_percent, largest_mm, finer_percent },
+    }
+}
+
+/// Notes the reason why replicates miss the requested target.
+fn short_of(stopping: &Stopping) -> Option<Note> {
+    Some(match stopping.short_of? {
+        ShortOf::SecondRun => Note::SecondRunMissing {},
+        ShortOf::Decision { run, distance_pp, .. } => {
+            let level_percent = stopping.decide_percent.unwrap_or(0.0);
+            Note::LevelMissed { level_percent, run, distance_pp }
+        }
+        ShortOf::Target { half_width_pp, replicates, needed } => {
+            let target_pp = stopping.target_error_pp.unwrap_or(0.0);
+            Note::TargetMissed { target_pp, half_width_pp, replicates, needed }
+        }
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_soils::curve;
 
     fn replicate(runs: &[(f64, u64, Option<f64>)]) -> Replicate {
         let run = |(number, &(eroded, trapped, k)): (u64, &(f64, u64, Option<f64>))| {
@@ -185,5 +454,87 @@ mod tests {
         let notes = doubts(Verdict::None, &[(0.07, 0, None), (0.2, 0, None)], &[]);
         assert_eq!(notes, [Note::SecondRunErodes { eroded_percent: 20.0 }]);
         assert_eq!(doubts(Verdict::None, &[(0.05, 0, None), (0.07, 0, None)], &[]), []);
+    }
+
+    /// A plan without findings, and the finding of each change of it.
+    #[test]
+    fn each_finding_follows_from_its_own_change_alone() {
+        let sand = curve(&[(0.2, 0.0), (0.6, 100.0)]);
+        let filter = curve(&[(1.0, 0.0), (3.0, 100.0)]);
+        let silt = curve(&[(0.05, 0.0), (0.075, 40.0), (0.15, 100.0)]);
+        let hidden = curve(&[(0.3, 25.0), (1.0, 100.0)]);
+        let till = curve(&[(0.1, 0.0), (2.0, 40.0), (19.0, 100.0)]);
+        let broad = curve(&[(0.1, 0.0), (0.2, 12.0), (1.4, 60.0), (4.0, 100.0)]);
+        let gap = curve(&[(1.0, 0.0), (1.2, 15.0), (8.0, 15.0), (20.0, 100.0)]);
+        let plan = PlannedWalk {
+            base: &sand,
+            regraded_from: None,
+            finest_constriction_mm: 0.4,
+            filter: Some(&filter),
+            filter_is_measured: true,
+            scale_free: false,
+            given_voids: None,
+            lattice: Some([10, 10, 12]),
+            layers: 12,
+            flows: false,
+            increments: 12,
+            replicates: 5,
+        };
+        let ids = |plan: &PlannedWalk| plan.notes().iter().map(Note::id).collect::<Vec<_>>();
+        let notes_after = |change: &dyn Fn(&mut PlannedWalk)| {
+            let mut changed = plan.clone();
+            change(&mut changed);
+            ids(&changed)
+        };
+        assert_eq!(ids(&plan), [""; 0]);
+        // Each pair of soils with its findings in mm, and in multiples of D0F.
+        for (base, in_mm, free) in [
+            (&silt, vec!["cohesive_fines"], vec![]),
+            (
+                &hidden,
+                vec!["fines_not_sieved", "cu_at_least", "pan_passive"],
+                vec!["cu_at_least", "pan_passive"],
+            ),
+            (&till, vec!["not_regraded", "cu_unchecked", "unstable_base"], vec!["cu_unchecked"]),
+            (&broad, vec!["broadly_graded", "cu_unchecked"], vec!["cu_unchecked"]),
+        ] {
+            let plan = PlannedWalk { base, ..plan.clone() };
+            assert_eq!(ids(&plan), in_mm);
+            assert_eq!(ids(&PlannedWalk { scale_free: true, ..plan }), free);
+        }
+        assert_eq!(
+            ids(&PlannedWalk { base: &till, regraded_from: Some(&till), ..plan.clone() }),
+            ["broad_base", "cu_unchecked", "unstable_base"]
+        );
+        let gap_graded = PlannedWalk { filter: Some(&gap), ..plan.clone() };
+        assert_eq!(ids(&gap_graded), ["cu_unchecked", "gap_graded"]);
+        assert_eq!(ids(&PlannedWalk { filter_is_measured: false, ..gap_graded }), ["cu_unchecked"]);
+        assert_eq!(notes_after(&|plan| plan.filter = None), ["no_filter"]);
+        let wide = Gradation::linear_from_dx(85.0, 0.4, 4.6).unwrap();
+        assert_eq!(ids(&PlannedWalk { base: &wide, scale_free: true, ..plan.clone() }), ["cu_unchecked"]);
+        let mostly_hidden = curve(&[(0.3, 65.0), (1.0, 100.0)]);
+        assert!(
+            ids(&PlannedWalk { base: &mostly_hidden, ..plan.clone() }).contains(&"cu_unknown".to_owned())
+        );
+        // 14 % finer than 0.002 mm, D60 0.2 mm.
+        let clayey = curve(&[(0.002, 14.0), (0.2, 60.0), (0.4, 100.0)]);
+        let open = PlannedWalk { base: &clayey, ..plan.clone() };
+        let least = open.notes().into_iter().find_map(|note| match note {
+            Note::CuAtLeast { over_cu, d10_mm, .. } => Some([over_cu, d10_mm]),
+            _ => None,
+        });
+        assert!(least.is_some_and(|[cu, d10]| (cu - 100.0).abs() < 1e-9 && d10 == 0.002), "{least:?}");
+        // A Cu of more than 3 may be beyond 4.5.
+        let narrow = curve(&[(0.1, 14.0), (0.3, 60.0), (0.4, 100.0)]);
+        let within = PlannedWalk { base: &narrow, ..plan.clone() };
+        assert!(ids(&within).contains(&"cu_at_least".to_owned()), "{:?}", ids(&within));
+        assert_eq!(notes_after(&|plan| plan.given_voids = Some(7)), ["given_network"]);
+        assert_eq!(notes_after(&|plan| plan.lattice = Some([9, 10, 12])), ["narrow_lattice"]);
+        assert_eq!(notes_after(&|plan| plan.flows = true), ["all_on_its_way"]);
+        assert_eq!(notes_after(&|plan| (plan.flows, plan.increments) = (true, 13)), [""; 0]);
+        assert_eq!(notes_after(&|plan| plan.replicates = 4), ["few_replicates"]);
+        assert_eq!(notes_after(&|plan| plan.replicates = 1), ["one_replicate"]);
+        let fine = PlannedWalk { base: &hidden, finest_constriction_mm: 0.2, ..plan.clone() };
+        assert_eq!(ids(&fine), ["fines_not_sieved", "cu_at_least", "pan_counts_as_passing"]);
     }
 }

@@ -1,11 +1,14 @@
 //! The lines at the top of every face: practice, the model, and the next step.
 
-use super::next::next;
-use super::practice::practice_line;
-use crate::outcome::record::{Model, Outcome};
-use voidwalk_practice::Decision;
-use voidwalk_practice::Note;
-use voidwalk_practice::quantity::{SizeUnit, percent};
+use super::practice::{beside_dispersive, practice_line};
+use super::rule::missing;
+use crate::outcome::record::{Model, Outcome, RunSummary, Statistic, Verdict};
+use crate::outcome::verdict::{FirstLook, UndecidedBy};
+use voidwalk_core::gradation::FINES_MM;
+use voidwalk_practice::decision::Standing;
+use voidwalk_practice::quantity::{SizeUnit, greatest_length, least_length, limits, percent, significant};
+use voidwalk_practice::rules::{FILTER_FINES, FILTER_GREATEST_SIZE, PERMEABILITY};
+use voidwalk_practice::{AppliedRule, Decision, Note, RuleQuantity, RuleRole, TestedClass};
 
 /// Most notes in a brief verdict of a run, and in the answer on boundaries, which counts the others.
 pub const FOREMOST: usize = 3;
@@ -64,4 +67,245 @@ pub fn model(model: &Model) -> String {
     };
     let runs: Vec<String> = model.eroded_percent.iter().enumerate().map(run).collect();
     format!("{}; {}", model.class.words(), runs.join(", "))
+}
+
+/// Above this D15F (mm) a filter is a drain, bedding or rockfill, and coarse grains are no fault.
+const DRAIN_D15F_MM: f64 = 5.0;
+
+/// The next step by practice for a pair in mm, in a sentence without its end.
+pub fn next(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> String {
+    Pair { decision, d15f_mm: outcome.inputs.filter.d15_mm, class: outcome.model.class, unit }.step()
+}
+
+/// A pair as practice sees it.
+struct Pair<'a> {
+    decision: &'a Decision,
+    d15f_mm: f64,
+    /// The class of the model.
+    class: Verdict,
+    unit: SizeUnit,
+}
+
+impl Pair<'_> {
+    fn step(&self) -> String {
+        match self.decision.standing {
+            Standing::Fails | Standing::NoMargin => self.retention(),
+            // The filter as placed is too coarse already.
+            Standing::WashedOut if self.decision.breaks(RuleRole::Retention) => {
+                self.retention() + "; it must be internally stable"
+            }
+            Standing::WashedOut | Standing::Unstable => self.stability(),
+            Standing::Unknown(need) => {
+                format!("get {}", need.and_then(missing).unwrap_or("the limit of design"))
+            }
+            Standing::Open(_) => "test the sieves between".into(),
+            Standing::Met | Standing::NoRules if self.decision.beyond_dispersive.is_some() => {
+                "have the base tested for dispersion by a pinhole or crumb test".into()
+            }
+            Standing::Met | Standing::NoRules => {
+                let by_rules = self.drainage().or_else(|| self.placing()).or_else(|| self.fines());
+                by_rules.or_else(|| self.missing_drainage()).unwrap_or_else(|| match self.class {
+                    Verdict::None => "nothing by these rules".into(),
+                    Verdict::Some | Verdict::Continuing | Verdict::Undecided => {
+                        "have this pair tested".into()
+                    }
+                })
+            }
+        }
+    }
+
+    /// The filter to take instead of one that may lose its finer part.
+    fn stability(&self) -> String {
+        let filter = match self.greatest() {
+            Some((limit, false)) => self.sized("an internally stable filter", limit),
+            _ => "take an internally stable filter".into(),
+        };
+        // A test of its stability would leave these open.
+        let is_open = self.decision.breaks(RuleRole::Drainage) || self.decision.breaks(RuleRole::Placing);
+        if is_open { filter } else { format!("{filter}, or have its internal stability tested") }
+    }
+
+    /// The D15F that retains the base, and the advice for an existing filter.
+    fn retention(&self) -> String {
+        // Beyond the boundary of continuing erosion no test of the pair is worth waiting for.
+        let exists = match self.decision.tests {
+            TestedClass::Continuing => "for an existing filter, assume continuing erosion",
+            _ => "for an existing filter, have this pair tested",
+        };
+        match self.greatest() {
+            Some((limit, true)) => format!(
+                "take a finer filter; the limit lies below a D15F of {}, and is not known; {exists}",
+                greatest_length(limit, self.unit)
+            ),
+            None => format!("take a finer filter; {exists}"),
+            Some((limit, false)) => format!("{}; {exists}", self.sized("a filter", limit)),
+        }
+    }
+
+    /// A filter with a D15F of at most this (mm), and at least the D15F that drains the base.
+    fn sized(&self, filter: &str, most: f64) -> String {
+        let drainage = self.drainage_rule().filter(|rule| !rule.limit_at_most);
+        let (drains, dry) = match self.drainage_rule().and_then(|rule| rule.limit) {
+            Some(least) if least <= most => {
+                (format!(" and at least {}", least_length(least, self.unit)), None)
+            }
+            // A limit with an upper bound may be lower, and perhaps requires no more than is allowed.
+            Some(least) if drainage.is_some() => {
+                let least = least_length(least, self.unit).to_string();
+                (String::new(), Some(format!("drainage asks for at least {least}: compare permeabilities")))
+            }
+            Some(_) | None => (String::new(), None),
+        };
+        let beside = self.beside_dispersive(most).into_iter().chain(dry).collect::<Vec<_>>().join("; ");
+        let beside = if beside.is_empty() { beside } else { format!(" ({beside})") };
+        format!("take {filter} with D15F at most {}{beside}{drains}", greatest_length(most, self.unit))
+    }
+
+    /// The limit of a dispersive base beside a D15F (mm) that is recommended.
+    fn beside_dispersive(&self, most: f64) -> Option<String> {
+        beside_dispersive(self.decision.if_dispersive?, most, self.unit)
+    }
+
+    /// The maximum D15F (mm) that every rule of retention allows, and true if the limit itself is lower and
+    /// unknown.
+    fn greatest(&self) -> Option<(f64, bool)> {
+        self.decision.strictest().map(|(_, limit)| (limit, self.decision.is_strictest_open))
+    }
+
+    fn drainage_rule(&self) -> Option<&AppliedRule> {
+        self.decision.applied(PERMEABILITY)
+    }
+
+    fn drainage(&self) -> Option<String> {
+        let (of_size, of_fines): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
+            self.decision.broken(RuleRole::Drainage).partition(|rule| rule.quantity == RuleQuantity::D15F);
+        let fines = of_fines.iter().find_map(|rule| rule.limit);
+        let least = of_size.iter().find_map(|rule| rule.limit);
+        let clean = fines.map_or_else(String::new, |most| format!(" and {}", few_fines(most)));
+        match (least, self.greatest()) {
+            (Some(least), Some((most, false))) if most >= least => {
+                let range = limits(least, most, self.unit);
+                let dispersive =
+                    self.beside_dispersive(most).map_or_else(String::new, |limit| format!(" ({limit})"));
+                Some(format!("take a coarser filter, D15F {range}{dispersive}{clean}"))
+            }
+            (Some(_), _) => {
+                Some("compare the permeabilities of filter and base: no D15F both retains and drains".into())
+            }
+            (None, _) => fines.map(|most| format!("wash the filter: {}", few_fines(most))),
+        }
+    }
+
+    /// Advice on a filter whose fines nobody sieved.
+    fn fines(&self) -> Option<String> {
+        let most = self.decision.applied(FILTER_FINES).filter(|rule| rule.met.is_none())?.limit?;
+        Some(format!("have the fines of the filter tested, and wash it where needed: {}", few_fines(most)))
+    }
+
+    /// Advice on a filter that may segregate.
+    fn placing(&self) -> Option<String> {
+        let step = |rule: &AppliedRule| {
+            if rule.id != FILTER_GREATEST_SIZE {
+                return Some("narrow the filter's range of sizes, or specify how it is placed".into());
+            }
+            let limit = rule.limit.filter(|_| self.d15f_mm <= DRAIN_D15F_MM)?;
+            Some(format!("take out the grains coarser than {} mm", significant(limit).in_digits(3)))
+        };
+        self.decision.broken(RuleRole::Placing).find_map(step)
+    }
+
+    /// Missing data for judging drainage.
+    fn missing_drainage(&self) -> Option<String> {
+        let need = self.drainage_rule().filter(|rule| rule.met.is_none())?.needs.first()?;
+        missing(*need).map(|need| format!("get {need}: drainage is not known"))
+    }
+}
+
+/// Fines that a filter may have once it is placed.
+fn few_fines(most: f64) -> String {
+    format!("at most {most} % finer than {FINES_MM} mm in place")
+}
+
+/// The reason why a class is undecided, in a sentence without its end.
+pub fn undecided_by(cause: UndecidedBy) -> &'static str {
+    match cause {
+        UndecidedBy::Curve => {
+            "the constriction curve is known within a range only, and its ends do not give one class"
+        }
+        UndecidedBy::SecondRun => {
+            "some and continuing erosion differ by the second run, and only a first was asked for"
+        }
+        UndecidedBy::Replicates => {
+            "the replicates do not separate the classes; more replicates may decide it"
+        }
+    }
+}
+
+/// A text with a capital letter at its beginning.
+pub fn capital(text: &str) -> String {
+    let mut chars = text.chars();
+    chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
+}
+
+/// Meaning of a class, in a sentence, for runs with these means.
+pub fn meaning(verdict: Verdict, summary: &[RunSummary], threshold: f64) -> String {
+    let limit = format!("{}\u{202f}%", (1e4 * threshold).round() / 1e2);
+    match verdict {
+        Verdict::None => format!(
+            "In the model the filter holds this base: less than {limit} of its mass passes in the first run."
+        ),
+        Verdict::Some => format!(
+            "In the model the filter seals after some erosion: {limit} or more of the base passes in the \
+             first run, less in the second, on the constrictions that the first left blocked."
+        ),
+        Verdict::Continuing => format!(
+            "In the model the filter does not hold this base: {limit} or more of its mass passes in the \
+             first run and again in the second."
+        ),
+        Verdict::Undecided => undecided(summary, threshold, &limit),
+    }
+}
+
+fn undecided(summary: &[RunSummary], threshold: f64, limit: &str) -> String {
+    let straddles = |run: &&RunSummary| {
+        let eroded = &run.eroded_mass_fraction;
+        eroded.low.zip(eroded.high).is_some_and(|(low, high)| low < threshold && threshold <= high)
+    };
+    let name = |run: &RunSummary| if run.run == 1 { "first run" } else { "second run" };
+    let runs: Vec<&str> = summary.iter().filter(straddles).map(name).collect();
+    if !runs.is_empty() {
+        let plural = if runs.len() > 1 { "intervals of the " } else { "interval of the " };
+        return format!("Inconclusive: the {plural}{} includes {limit}.", runs.join(" and the "));
+    }
+    let by = match summary {
+        [first] if first.eroded_mass_fraction.mean >= threshold => undecided_by(UndecidedBy::SecondRun),
+        _ => "these replicates do not separate the classes",
+    };
+    format!("Inconclusive: {by}.")
+}
+
+/// A look in one line, for a verdict with `wanted` replicates; `None` for one replicate, which says nothing
+/// about the scatter.
+///
+/// ```
+/// use voidwalk_app::outcome::verdict::SoFar;
+/// use voidwalk_app::words::so_far;
+/// let mut walked = SoFar::default();
+/// for (replicate, eroded) in [(1, 0.31), (2, 0.33), (3, 0.32)] {
+///     walked.add(replicate, 1, eroded, false);
+/// }
+/// let words = walked.look(1).and_then(|look| so_far(&look, 10)).unwrap();
+/// assert!(words.starts_with("after 3 of 10 replicates, not yet final: undecided; first run 29.5"));
+/// ```
+pub fn so_far(look: &FirstLook, wanted: u64) -> Option<String> {
+    let interval = |statistic: &Statistic| Some((statistic.low?, statistic.high?));
+    let runs = look.eroded.iter().zip(["first run", "second run"]).map(|(statistic, run)| {
+        let (low, high) = interval(statistic)?;
+        Some(format!("{run} {:.1} to {:.1} %", 100.0 * low, 100.0 * high))
+    });
+    let runs = runs.collect::<Option<Vec<String>>>()?.join(", ");
+    let (replicates, class) = (look.replicates, look.class.words());
+    Some(format!(
+        "after {replicates} of {wanted} replicates, not yet final: {class}; {runs} of the mass eroded"
+    ))
 }

@@ -1,18 +1,16 @@
 //! Many samples against filters: the columns of their table, and the lines on each filter.
 
-use super::dispersion::dispersive_limit;
 use super::note::sentence;
-use super::practice::tested_in_brief;
-use super::rule_note::rule_note;
+use super::practice::{dispersive_limit, tested_in_brief};
+use super::rule::rule_note;
 use crate::outcome::record::Verdict;
 use crate::outcome::table::{Columns, TableCell};
 use crate::verdict::{SampleWalk, WalkedBatch, WalkedRow};
-use voidwalk_practice::IfDispersive;
 use voidwalk_practice::batch::{NAMED, governing, may_govern, more_with_that_limit};
 use voidwalk_practice::quantity::{
-    NumberRole, SizeUnit, Unit, beside_limit, beside_limit_in_cells, length, significant,
+    SizeUnit, Unit, beside_limit, beside_limit_in_cells, least_length, length, significant,
 };
-use voidwalk_practice::{BatchFilter, BatchRow};
+use voidwalk_practice::{BatchFilter, BatchRow, IfDispersive};
 
 /// Words for a sample whose limit is open.
 pub const MAY_GOVERN: &str = "may govern, as its limit is not known or may be lower";
@@ -65,7 +63,15 @@ pub fn walked_columns<'a>(unit: SizeUnit) -> Columns<'a, WalkedRow> {
     let walk = |row: &WalkedRow| row.walk.clone();
     let of_walk = Columns::default()
         .number("governs", "Governs", |row: &WalkedRow| row.governs)
-        .text("walked", "Walked", |row| depth(row).shown().below(why_not(row)))
+        .text("walked", "Walked", |row| {
+            let why_not = row.walk.is_none().then(|| row.not_walked.clone()).filter(|why| !why.is_empty());
+            let depth = match &row.walk {
+                None => "not walked",
+                Some(walk) if walk.in_full => "in full",
+                Some(_) => "first look",
+            };
+            depth.shown().below(why_not)
+        })
         .text("class", "Class by walk", move |row| walk(row).map(|walk| walk.verdict))
         .column("replicates", move |row| walk(row).map(|walk| walk.replicates))
         .digits("d15f_over_d85b", 4, move |row| walk(row).map(|walk| walk.ratios.d15f_over_d85b))
@@ -78,18 +84,6 @@ pub fn walked_columns<'a>(unit: SizeUnit) -> Columns<'a, WalkedRow> {
         .column("not_walked", |row| row.not_walked.clone())
         .column("folder", move |row| walk(row).map(|walk| walk.folder));
     columns(unit).of_part(|row: &WalkedRow| &row.rules).and(of_walk).in_brief()
-}
-
-fn depth(row: &WalkedRow) -> &'static str {
-    match &row.walk {
-        None => "not walked",
-        Some(walk) if walk.in_full => "in full",
-        Some(_) => "first look",
-    }
-}
-
-fn why_not(row: &WalkedRow) -> Option<String> {
-    row.walk.is_none().then(|| row.not_walked.clone()).filter(|why| !why.is_empty())
 }
 
 /// D15F of the filter and its limit, with enough digits to tell them apart.
@@ -201,11 +195,8 @@ pub fn governs_drainage(rows: &[BatchRow], filter: &str, unit: SizeUnit) -> Opti
     let limits = undrained.filter_map(|row| Some((row.d15f_min_mm?, row)));
     let (least, row) = limits.max_by(|a, b| a.0.total_cmp(&b.0))?;
     let limit = match row.d15f_min_at_most {
-        true => format!(
-            "the minimum D15F is not known, and at most {}",
-            length(least, unit).role(NumberRole::Least)
-        ),
-        false => format!("D15F {} or more", length(least, unit).role(NumberRole::Least)),
+        true => format!("the minimum D15F is not known, and at most {}", least_length(least, unit)),
+        false => format!("D15F {} or more", least_length(least, unit)),
     };
     Some(format!("drainage is governed by {}: {limit}", row.sample))
 }
@@ -289,19 +280,32 @@ fn classes(walks: &[&SampleWalk]) -> String {
 mod tests {
     use super::*;
     use crate::outcome::record::Ratios;
+    use crate::test_soils::{GRAVEL_0_32, REGRADED_TILL, curve, filter, soil};
     use voidwalk_core::gradation::Gradation;
-    use voidwalk_practice::{BatchFilter, BatchRow, PairOptions};
+    use voidwalk_practice::batch::JointErosion;
+    use voidwalk_practice::retention::retention;
+    use voidwalk_practice::rules::NamedCurve;
+    use voidwalk_practice::{PairOptions, PairRules, TestedClass};
     use voidwalk_sheets::SoilSample;
 
+    fn row(name: &str, curve: &Gradation, filter: &[NamedCurve], options: PairOptions) -> BatchRow {
+        let sample = SoilSample { name: name.into(), path: name.into(), curve: curve.clone() };
+        BatchRow::of(&sample, ("F", filter), options)
+    }
+
+    /// A filter with a D15F of 0.725 mm, linear from 0.5 to 2 mm.
+    fn named_filter() -> Vec<NamedCurve> {
+        vec![("F".to_owned(), curve(&[(0.5, 0.0), (2.0, 100.0)]))]
+    }
+
+    fn batch_filter(d15f_mm: Option<f64>) -> BatchFilter {
+        BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm, gradations: Vec::new() }
+    }
+
     fn walked(sample: &str, met: bool, walk: Option<(Verdict, Verdict, bool)>) -> WalkedRow {
-        let soil = |points: &[(f64, f64)]| Gradation::from_lines(points).unwrap();
-        let curve = soil(&[(0.08, 0.0), (0.3, 100.0)]);
-        let soil_sample = SoilSample { name: sample.into(), path: sample.into(), curve };
-        let filter = vec![("F".to_owned(), soil(&[(0.5, 0.0), (2.0, 100.0)]))];
-        let rules = BatchRow {
-            if_dispersive: None,
-            ..BatchRow::of(&soil_sample, ("F", &filter), PairOptions::default())
-        };
+        let base = curve(&[(0.08, 0.0), (0.3, 100.0)]);
+        let rules =
+            BatchRow { if_dispersive: None, ..row(sample, &base, &named_filter(), PairOptions::default()) };
         let walk = walk.map(|(verdict, by_practice, in_full)| SampleWalk {
             folder: String::new(),
             in_full,
@@ -331,13 +335,10 @@ mod tests {
         let doubted: Vec<bool> = rows.iter().map(WalkedRow::is_doubted).collect();
         assert_eq!(doubted, [false, true, true, false]);
         assert_eq!(answer(&rows[3]), "not walked: no table");
-        let filter =
-            BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: None, gradations: Vec::new() };
-        let batch = WalkedBatch::new("s.csv".into(), vec![filter], rows);
+        let batch = WalkedBatch::new("s.csv".into(), vec![batch_filter(None)], rows);
         assert!(walks(&batch, "F", SizeUnit::Mm)[0].contains("2 no erosion, 1 some erosion"));
     }
 
-    /// The filter has a D15F of 0.725 mm.
     #[test]
     fn a_sample_that_may_be_dispersive_is_said_with_its_limit() {
         let sample = |name: &str, verdict, d15f_max_mm| {
@@ -360,10 +361,155 @@ mod tests {
         );
         assert!(!words.contains("B ("), "{words}");
         assert_eq!(dispersive_samples(&[&sand], SizeUnit::Mm), None);
-        let filter =
-            BatchFilter { name: "F".into(), curves: vec!["F".into()], d15f_mm: None, gradations: Vec::new() };
-        let batch = WalkedBatch::new("s.csv".into(), vec![filter], rows.to_vec());
+        let batch = WalkedBatch::new("s.csv".into(), vec![batch_filter(None)], rows.to_vec());
         let last = walks(&batch, "F", SizeUnit::Mm).pop().unwrap();
         assert!(last.starts_with("not known whether dispersive: 3 samples"), "{last}");
+    }
+
+    fn rows() -> Vec<BatchRow> {
+        let filter = named_filter();
+        let samples = [
+            ("sand", curve(&[(0.08, 0.0), (0.3, 100.0)])),
+            ("fine sand", curve(&[(0.076, 0.0), (0.15, 100.0)])),
+            ("silty", curve(&[(0.01, 0.0), (0.075, 60.0), (0.4, 100.0)])),
+            ("open", curve(&[(0.4, 30.0), (1.0, 100.0)])),
+            ("gravel", curve(&[(10.0, 0.0), (30.0, 100.0)])),
+        ];
+        let row_of = |(name, base): &(&str, Gradation)| row(name, base, &filter, PairOptions::default());
+        samples.iter().map(row_of).collect()
+    }
+
+    #[test]
+    fn a_row_is_what_the_rules_say_of_the_pair_alone() {
+        let (rows, filter) = (rows(), &named_filter()[0].1);
+        let pair = PairRules::of(&curve(&[(0.08, 0.0), (0.3, 100.0)]), filter);
+        let d15f = filter.d(15.0).unwrap();
+        assert_eq!(rows[0].d15f_mm, Some(d15f));
+        assert_eq!(rows[0].limit_mm, retention(&pair.rules, d15f).map(|(_, limit)| limit));
+        assert_eq!((rows[0].met, rows[0].tests), (Some(true), TestedClass::None));
+        assert_eq!((rows[1].met, rows[2].limit_mm, rows[2].category), (Some(false), Some(0.7), Some(2)));
+        // Fines that nobody sieved: an upper bound of the limit, and no result for a filter within it.
+        assert!(rows[3].limit_at_most && rows[3].met != Some(true), "{:?}", rows[3]);
+        assert!(rows[4].met.is_none() && rows[4].is_refused, "{:?}", rows[4]);
+        let csv = String::from_utf8(columns(SizeUnit::Mm).csv(&rows)).unwrap();
+        assert!(
+            csv.starts_with("sample,filter,group,category,fines_percent,regraded_at_mm,d85b_mm,d15f_mm,")
+        );
+        assert_eq!(csv.lines().count(), 6);
+    }
+
+    /// A limit that is kept reads as kept, and one that is exceeded as exceeded; inches as well.
+    #[test]
+    fn a_d15f_stands_on_its_side_of_the_limit() {
+        let texts = |d15f: f64, limit: f64| {
+            let row = BatchRow { d15f_mm: Some(d15f), limit_mm: Some(limit), ..rows().remove(0) };
+            let shown = |unit| {
+                let columns = columns(unit);
+                let columns: Vec<_> = columns.of_page().collect();
+                let cell = |heading: &str| {
+                    let column = columns.iter().find(|column| column.heading.text == heading).unwrap();
+                    (column.cell)(&row).text
+                };
+                [cell("D15F, mm"), cell("Limit, mm")]
+            };
+            let filter = batch_filter(Some(d15f));
+            (
+                shown(SizeUnit::Mm),
+                shown(SizeUnit::MmAndInches),
+                of_filter(&filter, std::slice::from_ref(&row), SizeUnit::Mm),
+            )
+        };
+        let (mm, inches, lines) = texts(2.376, 2.3784);
+        assert_eq!(mm, ["2.376", "2.378"]);
+        assert_eq!(inches, ["2.376 (0.0935\u{202f}in)", "2.378 (0.0936\u{202f}in)"]);
+        assert!(lines[1].contains("D15F up to 2.378\u{202f}mm"), "{lines:?}");
+        let (mm, inches, lines) = texts(1.683, 1.6818);
+        assert_eq!(mm, ["1.683", "1.681"]);
+        assert_eq!(inches, ["1.683 (0.0663\u{202f}in)", "1.681 (0.0661\u{202f}in)"]);
+        assert!(lines[1].contains("D15F up to 1.681\u{202f}mm"), "{lines:?}");
+        assert_eq!(texts(1.196, 1.196).0, ["1.196", "1.196"]);
+    }
+
+    #[test]
+    fn the_strictest_governs_and_open_limits_are_named() {
+        let rows = rows();
+        let names = |rows: Vec<&BatchRow>| rows.iter().map(|row| row.sample.clone()).collect::<Vec<_>>();
+        assert_eq!(names(governing(&rows, "F", 2)), ["fine sand", "silty"]);
+        // The upper bound among four limits governs, or may govern.
+        let named = names(governing(&rows, "F", NAMED));
+        let open: &[&str] = if named.contains(&"open".to_owned()) { &[] } else { &["open"] };
+        assert_eq!(names(may_govern(&rows, "F")), open);
+        let lines = open_limits(&rows, "F").join("\n");
+        assert!(lines.ends_with("nothing applied, as base and filter look exchanged: gravel"), "{lines}");
+        assert!(governing(&rows, "G", 3).is_empty());
+    }
+
+    #[test]
+    fn a_row_that_a_dispersive_base_would_break_is_met_on_that_condition_alone() {
+        let silt = curve(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)]);
+        let row_with = |d15f: f64| row("silt", &silt, &filter(d15f), PairOptions::default());
+        let (beyond, within) = (row_with(0.61), row_with(0.45));
+        assert_eq!((beyond.met, beyond.breaks_if_dispersive), (Some(true), true));
+        assert_eq!((within.met, within.breaks_if_dispersive), (Some(true), false));
+        let sentence = counts(&[beyond], "F");
+        assert!(
+            sentence.contains("1 met (1 of them unless the base is dispersive), 0 not met"),
+            "{sentence}"
+        );
+    }
+
+    /// A filter that is too coarse without its finer part is not met in the table either. A filter with a
+    /// tenth of its sizes keeps, without its finer part, the limit of a dispersive till too, and has no
+    /// result: it may lose more.
+    #[test]
+    fn a_filter_that_is_too_coarse_without_its_finer_part_is_not_met() {
+        let scaled = |scale: f64| {
+            let filter = soil(&GRAVEL_0_32.map(|(size, percent)| (scale * size, percent)));
+            row("till", &curve(&REGRADED_TILL), &filter, PairOptions::default())
+        };
+        let (coarse, fine) = (scaled(1.0), scaled(0.1));
+        assert_eq!((coarse.met, coarse.may_lose_fines), (Some(false), true));
+        assert!((coarse.too_coarse_without_percent.unwrap() - 19.4).abs() < 0.05, "{coarse:?}");
+        assert_eq!((fine.met, fine.may_lose_fines), (None, true));
+        assert_eq!(fine.too_coarse_without_percent, None);
+        assert!(counts(&[coarse], "F").starts_with("of 1 sample 0 met, 1 not met"));
+    }
+
+    #[test]
+    fn doubtful_tables_and_joints_stand_in_the_note() {
+        let filter = named_filter();
+        let gravel = curve(&[(10.0, 0.0), (30.0, 100.0)]);
+        let given = row("gravel", &gravel, &filter, PairOptions { as_given: true, ..PairOptions::default() });
+        assert!(given.limit_mm.is_some() && given.notes.len() == 1, "{given:?}");
+        let sand = curve(&[(0.08, 0.0), (0.3, 100.0)]);
+        let joint =
+            |mm| row("sand", &sand, &filter, PairOptions { joint_mm: Some(mm), ..Default::default() });
+        assert_eq!(joint(2.0).joint, Some(JointErosion { percent: Some(90.0), is_below_source: false }));
+        // D95B = 0.3 (0.08/0.3)^(1/20): 0.45 of it lies below the table of the source.
+        let d95b = sand.d(95.0).unwrap();
+        assert_eq!(joint(0.45 * d95b).joint, Some(JointErosion { percent: None, is_below_source: true }));
+    }
+
+    /// Limits of fines are the same for many samples: 0.7 mm. The finer sample comes first.
+    #[test]
+    fn of_equal_limits_the_finer_base_governs_and_the_others_are_counted() {
+        let filter = named_filter();
+        let coarsest = |at: usize| curve(&[(0.01, 0.0), (0.075, 60.0), (0.8 - 0.1 * at as f64, 100.0)]);
+        let numbered = |at| row(&format!("S{at}"), &coarsest(at), &filter, PairOptions::default());
+        let rows: Vec<BatchRow> = (0..5).map(numbered).collect();
+        let named = governing(&rows, "F", 3);
+        assert!(named.iter().all(|row| row.limit_mm == Some(0.7)), "{named:?}");
+        assert_eq!(named.iter().map(|row| row.sample.as_str()).collect::<Vec<_>>(), ["S4", "S3", "S2"]);
+        assert_eq!(more_with_that_limit(&rows, "F", &named), 2);
+        assert_eq!(more_with_that_limit(&rows, "G", &[]), 0);
+    }
+
+    /// The limit of a base whose fines nobody sieved is an upper bound, with a known D15F and without.
+    #[test]
+    fn a_d15f_in_the_pan_hides_no_limit_that_is_one_at_most() {
+        let filter = vec![("F".to_owned(), curve(&[(0.5, 30.0), (2.0, 100.0)]))];
+        let open = row("open", &curve(&[(0.3, 25.0), (1.0, 100.0)]), &filter, PairOptions::default());
+        assert!(open.d15f_mm.is_none() && open.limit_mm.is_some() && open.limit_at_most, "{open:?}");
+        assert_eq!(open.met, None);
     }
 }

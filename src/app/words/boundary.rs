@@ -1,7 +1,7 @@
 //! Words of every face for the boundaries of the model.
 
 use crate::outcome::boundary::{Boundaries, are_few};
-use voidwalk_practice::quantity::{NumberRole, SizeUnit, length, significant};
+use voidwalk_practice::quantity::{NumberRole, SizeUnit, greatest_length, significant};
 
 /// The share of networks that is shown: for few networks the least and the most of them.
 pub fn share_of_networks(networks: u64) -> &'static str {
@@ -26,10 +26,7 @@ pub fn held(boundaries: &Boundaries, unit: SizeUnit) -> String {
     let Some((row, ratio)) = boundaries.least_held() else {
         return "no D15F/D85B is known that nearly all networks hold".into();
     };
-    let size = boundaries
-        .base
-        .d85_mm
-        .map(|d85| format!(", D15F {}", length(ratio * d85, unit).role(NumberRole::Greatest)));
+    let size = boundaries.base.d85_mm.map(|d85| format!(", D15F {}", greatest_length(ratio * d85, unit)));
     let holds_whole_search = row.no_erosion.is_none() && row.eroding_networks() == 0;
     format!(
         "nearly all networks hold D15F/D85B {}{}{}",

@@ -1,19 +1,19 @@
 //! Limits of a filter for many samples, in sentences.
 
-use super::dispersion::{beside_dispersive, dispersive_limit, test};
+use super::practice::{beside_dispersive, dispersive_limit, test};
 use super::specification::no_band;
 use crate::outcome::table::Columns;
-use voidwalk_practice::IfDispersive;
-use voidwalk_practice::Note;
-use voidwalk_practice::quantity::{NumberRole, SizeUnit, length, limits};
+use voidwalk_practice::quantity::{NumberRole, SizeUnit, greatest_length, least_length, length, limits};
 use voidwalk_practice::rules::WIDEST_BAND;
-use voidwalk_practice::{DesignedSample, DesignedSamples, least_of_band, no_band_between};
+use voidwalk_practice::{
+    DesignedSample, DesignedSamples, IfDispersive, Note, least_of_band, no_band_between,
+};
 
-/// Tells if a note is of a kind.
-type IsKind = fn(&Note) -> bool;
+/// A kind of note, and the beginning of its warning for several samples.
+type Caution = (fn(&Note) -> bool, &'static str);
 
-/// Warnings of a specification on a base, and their beginnings for several samples.
-const CAUTIONS: [(IsKind, &str); 5] = [
+/// Warnings of a specification on a base.
+const CAUTIONS: [Caution; 5] = [
     (|note| matches!(note, Note::UnstableBase { .. }), "Not internally stable by Kenney and Lau"),
     (
         |note| matches!(note, Note::UnstableSide { .. }),
@@ -34,24 +34,25 @@ fn counted(samples: usize) -> String {
     format!("{samples} sample{}", if samples == 1 { "" } else { "s" })
 }
 
-/// The sample with the greatest minimum D15F to drain, and that D15F (mm); `None` if no sample has one.
-fn drainage<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<(&'a DesignedSample, f64)> {
+/// A sample, and one of its limits of D15F (mm).
+type Limit<'a> = (&'a DesignedSample, f64);
+
+/// The sample with the greatest minimum D15F to drain; `None` if no sample has one.
+fn drainage<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<Limit<'a>> {
     let limits = rows.into_iter().filter_map(|row| Some((row, row.d15f_min_mm?)));
     limits.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// The sample with the least maximum D15F, and that D15F (mm); `None` if no sample has one.
-fn strictest<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<(&'a DesignedSample, f64)> {
+/// The sample with the least maximum D15F; `None` if no sample has one.
+fn strictest<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<Limit<'a>> {
     let limits = rows.into_iter().filter_map(|row| Some((row, row.d15f_max_mm?)));
     limits.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// The maximum D15F of a sample, and the origin of its rule.
 fn greatest(row: &DesignedSample, unit: SizeUnit) -> String {
-    row.d15f_max_mm.map_or_else(
-        || "no maximum D15F is known".into(),
-        |mm| format!("D15F up to {} (practice: {})", length(mm, unit).role(NumberRole::Greatest), row.rule),
-    )
+    let Some(mm) = row.d15f_max_mm else { return "no maximum D15F is known".into() };
+    format!("D15F up to {} (practice: {})", greatest_length(mm, unit), row.rule)
 }
 
 /// The reason why a sample has no band of its own, without the last full stop; empty if it has one.
@@ -62,25 +63,22 @@ fn without_band(row: &DesignedSample, unit: SizeUnit) -> String {
 /// The D15F of a filter for all samples, in a sentence without its end.
 ///
 /// Both ends belong to settled samples, and the greatest is never above the limit of any other sample.
-pub fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
+fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
     let [most, least_of] = [false, true]
         .map(|at_least| move |mm: f64| length(mm, unit).role(NumberRole::of_limit(at_least)).to_string());
     let (settled, others): (Vec<_>, Vec<_>) = all.rows.iter().partition(|row| row.is_settled());
     let cap = strictest(others.iter().copied());
     let Some((first, most_of_settled)) = strictest(settled.iter().copied()) else {
-        return match cap {
-            Some((row, mm)) => format!(
-                "No filter is known that serves {}: none is settled, and {} allows D15F up to {} at most",
-                if others.len() == 1 {
-                    "the sample".into()
-                } else {
-                    format!("all {}", counted(others.len()))
-                },
-                row.sample,
-                most(mm)
-            ),
-            None => "No maximum D15F is known for any sample".into(),
+        let Some((row, mm)) = cap else { return "No maximum D15F is known for any sample".into() };
+        let all = match others.len() {
+            1 => "the sample".into(),
+            all => format!("all {}", counted(all)),
         };
+        return format!(
+            "No filter is known that serves {all}: none is settled, and {} allows D15F up to {} at most",
+            row.sample,
+            most(mm)
+        );
     };
     let cap = cap.filter(|(_, mm)| *mm < most_of_settled);
     let (first, greatest) = cap.unwrap_or((first, most_of_settled));
@@ -142,11 +140,15 @@ pub fn lines(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Vec<String> 
     if let Some((row, least)) = drainage(&all.rows) {
         let at_most = if row.d15f_min_at_most { "at most " } else { "" };
         let open = if row.is_settled() { "" } else { " (this sample is not settled)" };
-        let limit = length(least, unit).role(NumberRole::Least).to_string();
+        let limit = least_length(least, unit).to_string();
         sentences
             .push(format!("Drainage is governed by {}: minimum D15F {at_most}{limit}{open}", row.sample));
     }
-    sentences.extend(still_to_set(all));
+    if all.rows.iter().any(DesignedSample::is_settled) {
+        let still_to_set = "Not a complete specification: the maximum D90F is still to be set, for each \
+                            sample and for a filter for several";
+        sentences.push(still_to_set.into());
+    }
     sentences.extend(cautions(all));
     sentences.extend(dispersion(all, again, unit));
     let (open, known): (Vec<_>, Vec<_>) = all.rows.iter().partition(|row| row.d15f_max_mm.is_none());
@@ -181,19 +183,9 @@ fn dispersion(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Option<Stri
     ))
 }
 
-/// Items that no band has, for one sample or for all; `None` if no sample has a band.
-fn still_to_set(all: &DesignedSamples) -> Option<String> {
-    let has_band = all.rows.iter().any(|row| row.d15f_max_mm.is_some() && row.no_band.is_none());
-    has_band.then(|| {
-        "Not a complete specification: the maximum D90F is still to be set, for each sample and for a \
-         filter for several"
-            .into()
-    })
-}
-
 /// Warnings on the samples themselves, with their names.
 fn cautions(all: &DesignedSamples) -> Vec<String> {
-    let named = |(is_it, what): &(fn(&Note) -> bool, &str)| {
+    let named = |(is_it, what): &Caution| {
         let is_so = |row: &&DesignedSample| row.notes.iter().any(is_it);
         let names: Vec<&str> = all.rows.iter().filter(is_so).map(|row| row.sample.as_str()).collect();
         (!names.is_empty()).then(|| format!("{what}: {}", names.join(", ")))
@@ -216,8 +208,7 @@ fn clause(limit: IfDispersive, unit: SizeUnit) -> String {
 pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
     let drains = move |row: &DesignedSample| {
         let at_most = if row.d15f_min_at_most { " at most" } else { "" };
-        row.d15f_min_mm
-            .map(|least| format!("{}{at_most}", length(least, unit).role(NumberRole::Least).in_cell()))
+        row.d15f_min_mm.map(|least| format!("{}{at_most}", least_length(least, unit).in_cell()))
     };
     let band = move |row: &DesignedSample| match row.band_d15f_mm {
         Some([least, greatest]) => limits(least, greatest, unit).in_cell(),
@@ -233,7 +224,7 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
         .page_number("D85B, regraded, mm", move |row| row.d85b_mm.map(|mm| length(mm, unit).in_cell()))
         .digits("d15f_max_mm", 4, |row| row.d15f_max_mm)
         .page_number("Limit of practice, mm", move |row| {
-            row.d15f_max_mm.map(|mm| length(mm, unit).role(NumberRole::Greatest).in_cell())
+            row.d15f_max_mm.map(|mm| greatest_length(mm, unit).in_cell())
         })
         .text("rule", "Whose limit", |row| row.rule.clone())
         .digits("d15f_min_mm", 4, |row| row.d15f_min_mm)
@@ -249,15 +240,22 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::test_soils::curve;
     use crate::words::specification::DESIGN_EACH_AGAIN;
-    use voidwalk_core::gradation::Gradation;
     use voidwalk_practice::SpecificationOptions;
     use voidwalk_practice::design::Specification;
-    use voidwalk_practice::quantity::SizeUnit;
     use voidwalk_sheets::SoilSample;
 
+    fn designed(rows: Vec<DesignedSample>) -> DesignedSamples {
+        DesignedSamples::new("s".into(), rows)
+    }
+
+    fn lines_of(all: &DesignedSamples) -> Vec<String> {
+        lines(all, DESIGN_EACH_AGAIN, SizeUnit::Mm)
+    }
+
     fn row(name: &str, points: &[(f64, f64)]) -> DesignedSample {
-        let curve = Gradation::from_lines(points).unwrap();
+        let curve = curve(points);
         let sample = SoilSample { name: name.into(), path: name.into(), curve: curve.clone() };
         let specification = Specification::of(name, &[(name.into(), curve)], SpecificationOptions::default());
         DesignedSample::of(&sample, &specification)
@@ -270,8 +268,8 @@ mod tests {
         let sand = row("sand", &[(0.1, 0.0), (0.5, 100.0)]);
         let limit = sand.d15f_max_mm.unwrap();
         assert!(core.d15f_max_mm == Some(0.7) && (limit - 4.0 * sand.d85b_mm.unwrap()).abs() < 1e-9);
-        let by_practice = DesignedSamples::new("s".into(), vec![sand.clone(), core.clone()]);
-        let sentences = lines(&by_practice, DESIGN_EACH_AGAIN, SizeUnit::Mm);
+        let by_practice = designed(vec![sand.clone(), core.clone()]);
+        let sentences = lines_of(&by_practice);
         assert_eq!(
             sentences[1],
             format!("Governing sample core: D15F up to 0.700\u{202f}mm (practice: {})", core.rule)
@@ -293,14 +291,13 @@ mod tests {
     fn samples_that_are_not_stable_themselves_are_named() {
         let gap = [(0.01, 0.0), (0.075, 20.0), (0.425, 29.0), (2.0, 30.0), (4.75, 50.0), (19.0, 100.0)];
         let sand = row("sand", &[(0.1, 0.0), (0.5, 100.0)]);
-        let all = DesignedSamples::new("s".into(), vec![row("A", &gap), sand.clone(), row("B", &gap)]);
-        let text = lines(&all, DESIGN_EACH_AGAIN, SizeUnit::Mm).join("\n");
+        let all = designed(vec![row("A", &gap), sand.clone(), row("B", &gap)]);
+        let text = lines_of(&all).join("\n");
         for words in ["Not internally stable by Kenney and Lau", "Gap-graded by this program's own check"] {
             assert!(text.contains(&format!("\n{words}: A, B\n")), "{words}: {text}");
         }
         assert!(text.contains("are then not valid: design again for dispersive soils"), "{text}");
-        let text =
-            lines(&DesignedSamples::new("s".into(), vec![sand]), DESIGN_EACH_AGAIN, SizeUnit::Mm).join("\n");
+        let text = lines_of(&designed(vec![sand])).join("\n");
         assert!(!text.contains("Kenney") && text.contains("the maximum D90F is still to be set"), "{text}");
     }
 
@@ -308,10 +305,10 @@ mod tests {
     fn samples_that_no_one_filter_serves_are_said() {
         let fine = row("fine", &[(0.01, 0.0), (0.05, 100.0)]);
         let coarse = row("coarse", &[(0.5, 0.0), (4.0, 100.0)]);
-        let all = DesignedSamples::new("s".into(), vec![fine, coarse]);
+        let all = designed(vec![fine, coarse]);
         let sentence = for_all(&all, SizeUnit::Mm);
         assert!(sentence.starts_with("No one filter serves all 2 samples: coarse needs D15F "), "{sentence}");
-        let none = DesignedSamples::new("s".into(), Vec::new());
+        let none = designed(Vec::new());
         assert_eq!(for_all(&none, SizeUnit::Mm), "No maximum D15F is known for any sample");
     }
 
@@ -324,8 +321,7 @@ mod tests {
             row("T2", &[(37.5, 100.0), (19.0, 95.0), (9.5, 75.0), (4.75, 50.0), (2.0, 20.0), (1.0, 0.0)]);
         assert!(t1.no_band.is_some() && t1.d15f_max_mm.is_some(), "{t1:?}");
         let why = no_band(t1.no_band.as_ref().unwrap(), SizeUnit::Mm);
-        let sentences =
-            lines(&DesignedSamples::new("s".into(), vec![t1, t2]), DESIGN_EACH_AGAIN, SizeUnit::Mm);
+        let sentences = lines_of(&designed(vec![t1, t2]));
         assert!(sentences[0].starts_with("No filter is known that serves all 2 samples"), "{}", sentences[0]);
         assert!(
             sentences.contains(&format!("No band for T1: {}", why.trim_end_matches('.'))),
@@ -339,11 +335,7 @@ mod tests {
         let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
         let gravel = DesignedSample { d15f_max_mm: None, ..row("g", &[(1.0, 0.0), (9.0, 100.0)]) };
         assert!(gravel.d15f_min_mm.unwrap() > 1.0);
-        let sentences = lines(
-            &DesignedSamples::new("s".into(), vec![core.clone(), gravel]),
-            DESIGN_EACH_AGAIN,
-            SizeUnit::Mm,
-        );
+        let sentences = lines_of(&designed(vec![core.clone(), gravel]));
         assert_eq!(
             sentences[0],
             "A filter for the 1 sample that is settled (1 is not): D15F from 0.140 to 0.700\u{202f}mm (the \
@@ -353,7 +345,7 @@ mod tests {
             sentences.iter().any(|line| line.ends_with("mm (this sample is not settled)")),
             "{sentences:?}"
         );
-        let one = DesignedSamples::new("s".into(), vec![core.clone()]);
+        let one = designed(vec![core.clone()]);
         let sentence = for_all(&one, SizeUnit::Mm);
         assert!(
             sentence.starts_with("A filter for the sample: D15F from 0.140 to 0.700\u{202f}mm (the"),
@@ -365,7 +357,7 @@ mod tests {
             d15f_min_at_most: true,
             ..core.clone()
         };
-        let sentence = for_all(&DesignedSamples::new("s".into(), vec![core, open]), SizeUnit::Mm);
+        let sentence = for_all(&designed(vec![core, open]), SizeUnit::Mm);
         assert!(
             sentence.starts_with("It is not known whether one filter serves all 2 samples: core drains"),
             "{sentence}"

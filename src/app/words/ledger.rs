@@ -1,9 +1,12 @@
-//! The lines of a campaign's ledger.
+//! The lines of a campaign's ledger, the columns that its table shares with batches, and D85 of a base.
 
+use crate::outcome::BaseSize;
 use crate::outcome::ledger::{LedgerLine, ModelledThickness};
-use crate::outcome::table::{Columns, TableCell};
+use crate::outcome::record::Statistic;
+use crate::outcome::table::{Columns, Emphasis, TableCell};
 use voidwalk_core::text::shorten;
-use voidwalk_practice::quantity::{SizeUnit, whole};
+use voidwalk_practice::quantity::{SizeUnit, length, percent, significant, whole};
+use voidwalk_sheets::us_sieve;
 
 /// The thickness of a modelled filter, as `60 layers, 93.1 mm`.
 pub fn thickness(filter: &ModelledThickness) -> String {
@@ -30,12 +33,18 @@ pub fn columns(factors: &[String]) -> Columns<'_, LedgerLine> {
     columns
         .name("verdict", "Class", |line| line.verdict)
         .place(-1)
-        .broken_rules("rules_not_met", "Rules not met", |line| Some(line.rules_not_met.len()))
+        .column("rules_not_met", |line| Some(line.rules_not_met.len()))
+        .page_number("Rules not met", |line| {
+            let count = line.rules_not_met.len();
+            Some(count).shown().emphasised((count > 0).then_some(Emphasis::Doubt))
+        })
         .number("notes", "Notes", |line| line.notes.len())
         .column("layers", |line| line.thickness.layers)
-        .thickness(3, SizeUnit::Mm, |line| {
+        .digits("thickness_mm", 3, |line| line.thickness.mm.filter(|_| !line.thickness.scale_free))
+        .page_number("Thickness", |line| {
             let ModelledThickness { layers, mm, scale_free } = line.thickness;
-            (mm, scale_free, Some(layers))
+            let unit = if scale_free { SizeUnit::D0f } else { SizeUnit::Mm };
+            mm.map(|mm| length(mm, unit)).shown().below(Some(format!("{} layers", whole(layers))))
         })
         .place(2)
         .column("replicates", |line| line.replicates)
@@ -48,7 +57,16 @@ pub fn columns(factors: &[String]) -> Columns<'_, LedgerLine> {
         .digits("grains_per_void", 5, |line| line.grains_per_void)
         .page_number("Grains per void", |line| line.grains_per_void)
         .place(2)
-        .ratios(5, SizeUnit::Mm, |line| (line.ratios, line.base))
+        .digits("d15f_over_d85b", 5, |line| Some(line.ratios.d15f_over_d85b))
+        .page_number("D15F/ D85B", |line| {
+            let base = line.base.map(|base| base_size(&base, SizeUnit::Mm));
+            significant(line.ratios.d15f_over_d85b).shown().below(base)
+        })
+        .place(1)
+        .digits("d15f_over_d95b", 5, |line| Some(line.ratios.d15f_over_d95b))
+        .page_number("D15F/ D95B", |line| line.ratios.d15f_over_d95b)
+        .place(1)
+        .column("d85b_of", |line| line.base.map(|base| grading(&base)))
         .eroded(|line, run| (line.runs.get(run).map(|run| run.eroded_mass_fraction), None))
         .digits("first_largest_eroded_over_d15f", 5, move |line| largest(line, 0))
         .page_number("Largest eroded/ D15F", move |line| largest(line, 0))
@@ -60,4 +78,48 @@ pub fn columns(factors: &[String]) -> Columns<'_, LedgerLine> {
         .column("replicates_continuing_erosion", |line| line.replicate_verdicts[2])
         .column("seed", |line| line.seed)
         .column("folder", |line| line.folder.clone())
+}
+
+/// Mass eroded in a run, and its range if the constriction curve is a range.
+type Eroded = (Option<Statistic>, Option<[f64; 2]>);
+
+impl<'a, T: 'a> Columns<'a, T> {
+    /// Adds the mass eroded in the first run and in the second, with its interval and, on a page, its range
+    /// if the constriction curve is a range.
+    pub(super) fn eroded(self, eroded_of: fn(&T, usize) -> Eroded) -> Self {
+        let cell = move |row: &T, run| {
+            let (statistic, range) = eroded_of(row, run);
+            let curve = |[low, high]: [f64; 2]| format!("curve: {} to {}", percent(low), percent(high));
+            statistic.shown().below(range.map(curve))
+        };
+        self.statistic(["first_eroded_mass_percent", "first_low", "first_high"], move |row| {
+            eroded_of(row, 0).0
+        })
+        .page_number("Eroded, first run", move |row| cell(row, 0))
+        .statistic(["second_eroded_mass_percent", "second_low", "second_high"], move |row| {
+            eroded_of(row, 1).0
+        })
+        .page_number("second run", move |row| cell(row, 1))
+    }
+}
+
+/// Grading of a base: as sampled, or the sieve on which it is regraded.
+pub fn grading(base: &BaseSize) -> String {
+    let regraded = |at| format!("regraded on {} mm", significant(at));
+    base.regraded_at_mm.map_or_else(|| "as sampled".into(), regraded)
+}
+
+/// The whole text, as `D85B 1.80 mm, regraded on 4.75 mm (as sampled 12.8 mm)`; if inches are shown, with
+/// inches behind each D85 and the name of a US sieve.
+pub fn base_size(base: &BaseSize, unit: SizeUnit) -> String {
+    let size = |mm: f64| length(mm, unit).to_string();
+    let before = base.as_sampled_mm.filter(|_| base.regraded_at_mm.is_some());
+    let before = before.map_or(String::new(), |d85| format!(" (as sampled {})", size(d85)));
+    let comma = if base.regraded_at_mm.is_some() { "," } else { "" };
+    let sieve = base.regraded_at_mm.filter(|_| unit == SizeUnit::MmAndInches);
+    let grading = match sieve.and_then(|at| Some((us_sieve(at)?, at))) {
+        Some((name, at)) => format!("regraded on {name}, {} mm", significant(at)),
+        None => grading(base),
+    };
+    format!("D85B {}{comma} {grading}{before}", size(base.d85_mm))
 }

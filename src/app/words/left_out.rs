@@ -30,8 +30,7 @@ fn parts(limit: ModelLimit) -> (&'static str, &'static str) {
             "the verdict knows no, some and continuing erosion",
         ),
         ModelLimit::Cohesion => (
-            "cohesion, dispersion, suffusion of the filter itself, segregation and layering of the \
-                 filter",
+            "cohesion, dispersion, suffusion of the filter itself, segregation and layering of the filter",
             "",
         ),
     }
@@ -176,9 +175,8 @@ fn shortcut_words(shortcut: Shortcut, unit: &str) -> String {
         ),
         Shortcut::OneSize => "The base has one size: no column of diameters is kept.".into(),
         Shortcut::FewPassive(passive, start_nodes) => format!(
-            "None is kept as a count: {passive} passive base particles an increment for {start_nodes} \
-                 start nodes are so few that walking each by itself is faster, and the distribution is the \
-                 same."
+            "None is kept as a count: {passive} passive base particles an increment for {start_nodes} start \
+             nodes are so few that walking each by itself is faster, and the distribution is the same."
         ),
     }
 }

@@ -1,16 +1,17 @@
-//! The line of practice.
+//! The line of practice, and the limit of a base that may be dispersive or not.
 
-use super::dispersion::beyond_dispersive;
-use super::rule::value_and_limit;
-use super::rule_note::{missing, rule_note};
+use super::rule::{missing, rule_note, value_and_limit};
 use crate::outcome::record::Outcome;
-use voidwalk_practice::Decision;
 use voidwalk_practice::decision::Standing;
-use voidwalk_practice::quantity::{SizeUnit, Unit, beside_limit, significant};
+use voidwalk_practice::dispersion::BeyondDispersive;
+use voidwalk_practice::quantity::{SizeUnit, Unit, beside_limit, greatest_length, significant};
+use voidwalk_practice::retention::Washout;
 use voidwalk_practice::rule_result::credit;
 use voidwalk_practice::rules::{DESIGN, TESTS_NO_EROSION, authority, authority_in_brief};
-use voidwalk_practice::washout::Washout;
-use voidwalk_practice::{AppliedRule, Headline, Note, RuleNote, RuleRole, RuleUnit, TestedClass};
+use voidwalk_practice::{
+    AppliedRule, Decision, DispersiveLack, Headline, IfDispersive, Note, RuleNote, RuleRole, RuleUnit,
+    TestedClass,
+};
 
 /// Notes that the rules that are met were judged for one curve of each soil alone; `None` for envelopes.
 pub fn judged_alone(outcome: &Outcome, decision: &Decision) -> Option<&'static str> {
@@ -102,7 +103,7 @@ fn of_tests(decision: &Decision, unit: SizeUnit) -> Option<String> {
 
 /// A class by the boundaries that Foster and Fell saw in tests. Beyond the boundary of no erosion
 /// (`is_beyond`) a base erodes, even if tests identified no boundary of the classes beyond.
-pub fn tested_in_brief(class: TestedClass, is_beyond: bool) -> &'static str {
+pub(super) fn tested_in_brief(class: TestedClass, is_beyond: bool) -> &'static str {
     match class {
         TestedClass::None => "no erosion",
         TestedClass::Some => "at least some erosion, excessive not excluded",
@@ -147,10 +148,59 @@ fn besides(decision: &Decision, headline: Headline) -> Vec<&'static str> {
     ];
     all.into_iter().filter(|(holds, _)| *holds).map(|(_, words)| words).collect()
 }
+
+/// A filter that is too coarse for a dispersive base alone, in a clause.
+pub(super) fn beyond_dispersive(beyond: &BeyondDispersive, unit: SizeUnit) -> String {
+    let at_most = if beyond.limit.at_most { "at most " } else { "" };
+    let [value, most] =
+        beside_limit([Some(beyond.d15f_mm), Some(beyond.limit.d15f_max_mm)], false, Unit::Size(unit))
+            .map(Option::unwrap_or_default);
+    let without = beyond.without_percent.map(|part| {
+        format!(" (D15F {value} without the filter's finest {} %)", significant(part).decimals(1))
+    });
+    let without = without.unwrap_or_default();
+    format!("dispersive base: limit {at_most}{most}, not kept{without}")
+}
+
+/// The limit behind a recommended D15F (mm); `None` if that holds for a dispersive base too.
+pub(super) fn beside_dispersive(limit: IfDispersive, d15f_mm: f64, unit: SizeUnit) -> Option<String> {
+    if !limit.at_most && limit.d15f_max_mm >= d15f_mm {
+        return None;
+    }
+    let bound = match limit.lacks {
+        Some(DispersiveLack::AnyLimit) => "less than",
+        Some(DispersiveLack::D85B | DispersiveLack::LimitOfDesign) | None => "at most",
+    };
+    let most = greatest_length(limit.d15f_max_mm, unit);
+    Some(format!("dispersive base: {bound} {most}"))
+}
+
+/// The limit of D15F. A limit that no source gives is never stated as the limit of other bases.
+pub fn dispersive_limit(limit: IfDispersive, unit: SizeUnit) -> String {
+    let most = greatest_length(limit.d15f_max_mm, unit).to_string();
+    match limit.lacks.filter(|_| limit.at_most) {
+        Some(DispersiveLack::AnyLimit) => {
+            format!("less than {most}, by how much no source that was read says")
+        }
+        Some(DispersiveLack::D85B) => format!("at most {most}, as D85B is not known"),
+        Some(DispersiveLack::LimitOfDesign) | None => format!("at most {most}"),
+    }
+}
+
+/// The test that determines an unknown limit: this one, if no text has the limit.
+pub(super) fn test(limit: IfDispersive, of_the_pair: &'static str) -> &'static str {
+    match limit.lacks {
+        Some(DispersiveLack::D85B) => "have the base tested with a hydrometer",
+        Some(DispersiveLack::LimitOfDesign | DispersiveLack::AnyLimit) | None => of_the_pair,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_soils::{GRAVEL_0_32, REGRADED_TILL, SAND_OF_1_MM, STEPPED};
+    use crate::test_soils::{
+        CLAY, GRAVEL_0_32, REGRADED_TILL, SAND, SAND_OF_1_MM, SILTY, STEPPED, TILL, curve, filter, soil,
+    };
     use crate::words::{dispersive_limit, sentence, specification};
     use voidwalk_core::gradation::Gradation;
     use voidwalk_practice::design::Specification;
@@ -158,13 +208,10 @@ mod tests {
     use voidwalk_practice::{PracticeClass, RuleQuantity};
 
     fn rules(filter: &[(f64, f64)], base: &[(f64, f64)], dispersive: bool) -> Vec<AppliedRule> {
-        let one = |points| vec![("soil".to_owned(), Gradation::from_lines(points).unwrap())];
         let options = PairOptions { dispersive, ..PairOptions::default() };
-        PairRules::of_envelopes(&one(base), &one(filter), options).rules
+        PairRules::of_envelopes(&soil(base), &soil(filter), options).rules
     }
 
-    const SAND: [(f64, f64); 2] = [(0.2, 0.0), (0.6, 100.0)];
-    const TILL: [(f64, f64); 5] = [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
     const GAP: [(f64, f64); 4] = [(0.3, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
 
     #[test]
@@ -194,30 +241,26 @@ mod tests {
         assert_eq!(Decision::new(&[], None, None).headline, None);
     }
 
-    #[test]
-    fn every_headline_is_written_by_its_words() {
-        for headline in Headline::ALL {
-            assert_eq!(serde_json::to_value(headline).unwrap(), headline.words());
-        }
-    }
-
     /// 45 % fines: 0.7 mm, and 0.5 mm if they are dispersive.
     #[test]
     fn a_filter_that_a_dispersive_base_would_break_meets_practice_on_that_condition() {
-        let base = [(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)];
-        let filter = |d15f: f64| [(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)];
+        let base = soil(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)]);
+        let judged = |d15f: f64, dispersive| {
+            let options = PairOptions { dispersive, ..PairOptions::default() };
+            PairRules::of_envelopes(&base, &filter(d15f), options)
+        };
         for (d15f, breaks) in [(0.61, true), (0.45, false)] {
-            let one = |points: &[(f64, f64)]| vec![("s".to_owned(), Gradation::from_lines(points).unwrap())];
-            let pair = PairRules::of_envelopes(&one(&base), &one(&filter(d15f)), PairOptions::default());
+            let pair = judged(d15f, false);
             let limit = pair.if_dispersive.unwrap();
             assert_eq!((limit.d15f_max_mm, limit.is_broken_by(d15f)), (0.5, breaks));
-            assert_eq!(pair.headline == Some(Headline::MeetsUnlessDispersive), breaks);
+            let headline = if breaks { Headline::MeetsUnlessDispersive } else { Headline::Meets };
+            assert_eq!(pair.headline, Some(headline));
             let line = practice_line(&pair.decision(), SizeUnit::Mm);
             assert_eq!(line.starts_with(Headline::MeetsUnlessDispersive.words()), breaks, "{line}");
             assert_eq!(line.contains("dispersive base: limit 0.500\u{202f}mm"), breaks, "{line}");
         }
-        let rules = rules(&filter(0.61), &base, true);
-        assert_eq!(Decision::new(&rules, None, None).headline, Some(Headline::DoesNotMeet));
+        let stated = judged(0.61, true);
+        assert_eq!((stated.headline, stated.if_dispersive), (Some(Headline::DoesNotMeet), None));
     }
 
     #[test]
@@ -234,7 +277,7 @@ mod tests {
     #[test]
     fn a_d15f_between_distant_sieves_is_recorded_with_both() {
         let filter = Gradation::from_points(&[(0.3, 10.0), (38.0, 100.0)], None).unwrap();
-        let pair = PairRules::of(&Gradation::from_lines(&SAND).unwrap(), &filter);
+        let pair = PairRules::of(&curve(&SAND), &filter);
         assert_eq!(pair.headline, Some(Headline::SievesMissing));
         assert_eq!(pair.practice.as_ref().unwrap().d15f_mm, Some([0.3, 38.0]));
         let line = practice_line(&pair.decision(), SizeUnit::Mm);
@@ -254,12 +297,6 @@ mod tests {
         }
     }
 
-    /// A fat clay with a D85B of 0.0185 mm, and 37 % fines with a D85B of 1.40 mm.
-    const CLAY: [(f64, f64); 6] =
-        [(0.002, 52.0), (0.005, 66.0), (0.01, 77.0), (0.02, 86.0), (0.04, 93.0), (0.425, 100.0)];
-    const SILTY: [(f64, f64); 6] =
-        [(0.005, 13.0), (0.075, 37.0), (0.25, 60.0), (0.85, 78.0), (2.0, 90.0), (4.75, 100.0)];
-
     /// The inches behind the last mm of a text, in mm; `None` without inches.
     fn back_in_mm(behind: &str) -> Option<f64> {
         let bracket = behind.strip_prefix(" (")?.split_once("\u{202f}in)")?.0;
@@ -270,10 +307,8 @@ mod tests {
     #[test]
     fn no_sentence_has_inches_beyond_the_limit_that_it_names() {
         const UNIT: SizeUnit = SizeUnit::MmAndInches;
-        let soil = |points: &[(f64, f64)], by: f64| {
-            let points: Vec<(f64, f64)> =
-                points.iter().map(|(size, percent)| (size * by, *percent)).collect();
-            vec![("soil".to_owned(), Gradation::from_lines(&points).unwrap())]
+        let scaled = |points: &[(f64, f64)], by: f64| {
+            soil(&points.iter().map(|(size, percent)| (size * by, *percent)).collect::<Vec<_>>())
         };
         let bases: [&[(f64, f64)]; 4] = [
             &[(0.1, 0.0), (0.3, 15.0), (1.2, 85.0), (3.0, 100.0)],
@@ -285,7 +320,7 @@ mod tests {
         for step in 0..60 {
             let by = libm::pow(1.01, f64::from(step));
             for base in bases {
-                let design = Specification::of("b", &soil(base, by), SpecificationOptions::default());
+                let design = Specification::of("b", &scaled(base, by), SpecificationOptions::default());
                 let of_band = [
                     specification::band(&design, UNIT),
                     specification::raised(&design, UNIT),
@@ -294,8 +329,8 @@ mod tests {
                     specification::if_dispersive(&design, "again", UNIT),
                 ];
                 for d15f in [0.05, 0.16, 0.6, 0.9, 2.5, 6.0, 40.0] {
-                    let filter = soil(&[(0.9, 0.0), (1.0, 15.0), (2.0, 100.0)], d15f * by);
-                    let pair = PairRules::of_envelopes(&soil(base, by), &filter, PairOptions::default());
+                    let filter = scaled(&[(0.9, 0.0), (1.0, 15.0), (2.0, 100.0)], d15f * by);
+                    let pair = PairRules::of_envelopes(&scaled(base, by), &filter, PairOptions::default());
                     let decision = pair.decision();
                     let mut sentences = vec![practice_line(&decision, UNIT)];
                     sentences.extend(decision.notes().map(|note| sentence(&note, UNIT)));

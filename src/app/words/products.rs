@@ -7,17 +7,8 @@ use voidwalk_practice::design::specification::{ProductMargin, Specification};
 use voidwalk_practice::quantity::{SizeUnit, length, significant};
 use voidwalk_practice::rules::{GREATEST_SIZE_MM, MOST_CU, WIDEST_BAND};
 
-/// Words for a product whose two sides keep every requirement.
-pub const FITS: &str = "fits";
-
-/// Words for a product whose drainage depends on D15B.
-const MAY_DRAIN: &str = "may drain: D15B must be tested";
-
-/// Words for the case that no product fits.
-const NONE_FITS: &str = "None of the standard products fits";
-
 /// Requirements that the sides of a product break beside D15F.
-pub fn not_kept(all: &[NotKept]) -> String {
+fn not_kept(all: &[NotKept]) -> String {
     let one = |breach: &NotKept| match breach {
         NotKept::CuOfFineSide { cu } => cu_of("fine", *cu),
         NotKept::CuOfCoarseSide { cu } => cu_of("coarse", *cu),
@@ -32,11 +23,6 @@ pub fn not_kept(all: &[NotKept]) -> String {
 
 fn cu_of(side: &str, cu: f64) -> String {
     format!("Cu of its {side} side is {}, and {LEAST_CU} to {MOST_CU} is asked for", significant(cu))
-}
-
-/// Words for a product that does not fit, with the requirements that its sides break beside D15F.
-fn does_not_fit(breaches: &[NotKept]) -> String {
-    if breaches.is_empty() { "does not fit".into() } else { format!("does not fit: {}", not_kept(breaches)) }
 }
 
 /// Names the products whose limits are to be checked; `None` without any.
@@ -74,9 +60,12 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, ProductMargin> {
 /// The result of a standard product beside a specification.
 pub fn product(specification: &Specification, product: &ProductMargin) -> String {
     match product.fits() {
-        Some(true) => FITS.into(),
-        Some(false) => does_not_fit(&product.not_kept),
-        None if specification.d15f_min_at_most && product.drains_by.is_none() => MAY_DRAIN.into(),
+        Some(true) => "fits".into(),
+        Some(false) if product.not_kept.is_empty() => "does not fit".into(),
+        Some(false) => format!("does not fit: {}", not_kept(&product.not_kept)),
+        None if specification.d15f_min_at_most && product.drains_by.is_none() => {
+            "may drain: D15B must be tested".into()
+        }
         None => "no result".into(),
     }
 }
@@ -94,7 +83,9 @@ pub fn products(specification: &Specification) -> String {
         "standard"
     };
     match specification.nearest_product() {
-        Some(nearest) => format!("{NONE_FITS}. {} comes closest by its D15", nearest.product),
+        Some(nearest) => {
+            format!("None of the standard products fits. {} comes closest by its D15", nearest.product)
+        }
         None if specification.d15f_min_at_most => {
             "Whether a standard product fits is not known: D15B must be tested".into()
         }
@@ -119,7 +110,7 @@ mod tests {
             fits.iter().map(|product| &*product.product).collect::<Vec<_>>(),
             ["ASTM C33 fine aggregate"]
         );
-        assert_eq!(product(&core, fits[0]), FITS);
+        assert_eq!(product(&core, fits[0]), "fits");
         // No. 8 stone may be delivered with a Cu of 1.6.
         let stone = core.products.iter().find(|product| product.product.contains("No. 8 ")).unwrap();
         let [NotKept::CuOfCoarseSide { cu }, ..] = stone.not_kept[..] else { panic!("{stone:?}") };

@@ -1,12 +1,14 @@
 //! Rules of practice in words: their table, from which every face shows some columns, their results, and
 //! values beside limits.
 
-use super::rule_note::rule_notes;
 use crate::outcome::table::{Columns, Emphasis, Shown, TableCell};
-use voidwalk_practice::quantity::{SizeUnit, Unit, beside_limit};
+use voidwalk_core::gradation::{FEW_FINES, RegradeCause, RegradeReason};
+use voidwalk_practice::quantity::{
+    SizeUnit, Unit, beside_limit, given, greatest_length, least_length, length, significant,
+};
 use voidwalk_practice::rule_result::{RuleResult, result_of};
 use voidwalk_practice::rules::PERMEABILITY_LEAST;
-use voidwalk_practice::{AppliedRule, RuleRole, RuleUnit, ValueBound};
+use voidwalk_practice::{AppliedRule, RuleNote, RuleRole, RuleUnit, ValueBound};
 
 /// Note beside lists of limits: a reader finds the digits that are not shown a little larger.
 pub const LIMITS_ROUNDED: &str = "Limits are rounded to the safe side.";
@@ -159,4 +161,246 @@ pub fn value_and_limit(rule: &AppliedRule, unit: SizeUnit) -> [Option<String>; 2
         RuleUnit::Mm => Unit::Size(unit),
     };
     beside_limit([rule.value, rule.limit], rule.at_least, unit)
+}
+
+/// Notes of rules beside their results, as part of a sentence.
+pub fn rule_notes(notes: &[RuleNote], unit: SizeUnit) -> String {
+    notes.iter().map(|note| rule_note(*note, unit)).collect::<Vec<_>>().join("; ")
+}
+
+/// A note of a rule, as part of a sentence.
+pub(super) fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
+    let text = match note {
+        RuleNote::D15FBetween(from, to) => return between(unit, "D15F lies", from, to),
+        RuleNote::D15BBetween(from, to) => return between(unit, "D15B lies", from, to),
+        RuleNote::D85BBetween(from, to) => return between(unit, "D85B lies", from, to),
+        RuleNote::D95BBetween(from, to) => return between(unit, "D95B lies", from, to),
+        RuleNote::FilterBetween(from, to) => {
+            return between(unit, "sizes of the filter are not known", from, to);
+        }
+        RuleNote::BaseBetween(from, to) => return between(unit, "sizes of the base are not known", from, to),
+        RuleNote::FlatBase(limit) => {
+            let limit = greatest_length(limit, unit).to_string();
+            return format!("the base may be gap-graded: the stricter limit; the other is {limit}");
+        }
+        RuleNote::Dispersive => "dispersive",
+        RuleNote::Category(category) => return format!("base category {category}"),
+        RuleNote::RegradedOn(size) => return format!("base regraded on {}", length(size, unit)),
+        RuleNote::BeforeRegrading => "base before regrading",
+        RuleNote::TakenAsSand => "sizes are multiples of D0F: taken as a sand without fines",
+        RuleNote::ResultOfModel => "a result of the model, for the base as it is walked",
+        RuleNote::BeyondAnyLimit => "beyond the most that the limit can be",
+        RuleNote::NoClearBoundary => {
+            "not a limit: with 15 to 85 % fines and D95B above 2 mm tests identified no boundary of \
+                 continuing erosion (Fell et al., section 9.3.2); the manual of the Corps has one in a \
+                 figure alone"
+        }
+        RuleNote::BeyondUnclearBoundary => {
+            "beyond 9 D95B, though with 15 to 85 % fines and D95B above 2 mm tests identified no \
+                 boundary of continuing erosion (Fell et al., section 9.3.2)"
+        }
+        RuleNote::ExcessiveNotJudged => "continuing erosion not reached; excessive erosion not judged",
+        RuleNote::ByFines(times, until, fines) => {
+            let [width, until] = [until - FEW_FINES, until].map(given);
+            let fines = given((100.0 * fines).round() / 100.0);
+            let times = if times == 1.0 { String::new() } else { format!("{} ", given(times)) };
+            let by_fines = format!("[({until} - {fines})/{width} (4 D85B - 0.7) + 0.7]");
+            return format!("{times}{by_fines} mm for {fines} % fines");
+        }
+        RuleNote::FloorGoverns(times, size) => {
+            return format!("its floor: {} D85B would be {}", given(times), greatest_length(size, unit));
+        }
+        RuleNote::LeastGoverns(times, size) => {
+            return format!("its floor: {} D15B is below {}", given(times), least_length(size, unit));
+        }
+        RuleNote::D15FAtMost => "D15F is finer than the finest sieve: at most this",
+        RuleNote::LimitAtMost => "D15B is finer than the finest sieve: no more than this is needed",
+        RuleNote::LimitAtLeast => "D15B is finer than the finest sieve; the limit is never less than this",
+        RuleNote::CuAtLeast => "D10 is finer than the finest sieve: Cu is at least this",
+        RuleNote::FinestSieveOfFilter(size) => {
+            return format!("the finest sieve is {}: at most what passes it", length(size, unit));
+        }
+        RuleNote::AtPercentFiner(percent) => {
+            return format!("at {} % finer", significant(percent).decimals(0));
+        }
+        RuleNote::BandFrom(percent) => {
+            return format!(
+                "compared from {} % finer, as no finer sieve tells",
+                significant(percent).decimals(0)
+            );
+        }
+        RuleNote::Joint(joint, d95b, ratio) => {
+            let [d95b, ratio] = [significant(d95b).decimals(3), significant(ratio).decimals(2)];
+            return format!("joint of {} mm, D95B {d95b} mm: JOS/D95B = {ratio}; steady flow", given(joint));
+        }
+        RuleNote::LessThanSource => "less than 0.01 %",
+        RuleNote::ChecksWalk => "checks the walk against their tests, not the filter",
+        RuleNote::FarFinerThanTests(times) => {
+            let times = significant(times).in_digits(2);
+            return format!("{times} times finer: the openings walked are not those of such tests");
+        }
+        RuleNote::KezdiAt(split, coarse, fine) => {
+            let [coarse, fine] = [coarse, fine].map(significant);
+            return format!(
+                "split at {} % finer: D'15 of the coarser part {coarse} mm, d'85 of the finer part {fine} mm",
+                significant(split).decimals(1)
+            );
+        }
+        RuleNote::KezdiSplits(from, to) => {
+            return format!(
+                "judged over splits at {} to {} % finer",
+                significant(from).decimals(1),
+                significant(to).decimals(1)
+            );
+        }
+        RuleNote::KezdiHidden(share) => {
+            let share = significant(share).decimals(0);
+            return format!("what its {share} % finer than the finest sieve hide is not known");
+        }
+        RuleNote::ShapeAt(at, most) => {
+            return format!("at F = {} %, judged up to F = {} %", significant(at).decimals(1), given(most));
+        }
+        RuleNote::ShapeAbovePan(at, from, most) => {
+            let [at, from] = [at, from].map(|percent| significant(percent).decimals(1));
+            return format!(
+                "at F = {at} %, judged from F = {from} % (finest sieve) up to F = {} %",
+                given(most)
+            );
+        }
+        RuleNote::BurenkovaRange(whole, low, high) => {
+            let [whole, low, high] = [whole, low, high].map(|value| significant(value).decimals(2));
+            return format!("h'' = D90/D15 = {whole}; the range is {low} to {high}");
+        }
+        RuleNote::WanFellSand => "as sand and gravel with up to 10 % of fines that are not plastic",
+        RuleNote::WanFellSilt => {
+            "as silt, sand and gravel with up to 10 % of clay and a plasticity index of up to 12"
+        }
+        RuleNote::WanFellContours => {
+            "the source states contours from 5 to 95 % and no limit, and is unsure of soils with less \
+                 than 15 % of finer fraction"
+        }
+        RuleNote::LimitsByFines(percent) => {
+            let percent = significant(percent).decimals(0);
+            return format!("{percent} % of the base is fines: limits by fines stand in its place");
+        }
+        RuleNote::BurenkovaSoils => "for grains of up to 100 mm and a Cu of up to 200",
+        RuleNote::BurenkovaThirdZone(high) => {
+            return format!(
+                "h' is above {}: Burenkova's third zone, of which Wan and Fell have no tests and expect \
+                     no loss of fines",
+                significant(high).decimals(2)
+            );
+        }
+        RuleNote::UniformFilter => "the filter is neither broadly graded (Cu of 6 and more) nor gap-graded",
+        _ => return missing(note).map_or_else(String::new, |need| format!("needs {need}")),
+    };
+    text.into()
+}
+
+/// Missing data for a result, without a word before it; `None` if nothing is missing.
+pub fn missing(note: RuleNote) -> Option<&'static str> {
+    Some(match note {
+        RuleNote::NeedsFinesOfBase => "finer sieves of the base, to tell whether it has 15 % fines or more",
+        RuleNote::NeedsD85B => "the base's D85",
+        RuleNote::NeedsD95B => "the base's D95",
+        RuleNote::NeedsD15B => "the base's D15",
+        RuleNote::NeedsD15F | RuleNote::NeedsD15FSieved => "the filter's D15",
+        RuleNote::NeedsD10F => "the filter's D10",
+        RuleNote::NeedsFinesOfFilter => "finer sieves of the filter, down to 0.075 mm",
+        RuleNote::NeedsSievesOfFilter => "finer sieves of the filter",
+        RuleNote::NeedsFinestPartOfFilter => {
+            "finer sieves of the filter, of which too much passes the finest"
+        }
+        RuleNote::NeedsCurveOfFilter => "the filter's sieve curve",
+        RuleNote::NeedsCurveOfFilterInMm => "the filter's sieve curve in mm",
+        RuleNote::NeedsTestOfDispersive => {
+            "a test of this dispersive soil, for whose fines no source gives a limit"
+        }
+        RuleNote::NeedsErosion => "a walk whose first run erodes something",
+        _ => return None,
+    })
+}
+
+fn between(unit: SizeUnit, what: &str, from: f64, to: f64) -> String {
+    let [low, high] = [from, to].map(|sieve| length(sieve, unit).in_digits(6));
+    format!("{what} between {} and {}: test the sieves between", low.in_cell(), high)
+}
+
+/// The reason why practice regrades a base or does not, as part of a sentence.
+pub fn regrade_reason(reason: RegradeReason) -> String {
+    let cause = match reason.cause {
+        RegradeCause::Gap(from) => &*format!(
+            "gap-graded: next to nothing between {} mm and four times that",
+            significant(from).decimals(3)
+        ),
+        RegradeCause::GapAmongGravel(from) => &*format!(
+            "gap-graded: next to nothing between {} mm and four times that; what is finer is regraded on \
+                 No. 4 (4.75 mm)",
+            significant(from).decimals(3)
+        ),
+        RegradeCause::GravelAndFines => "grains coarser than No. 4 (4.75 mm) and 15 % fines or more",
+        RegradeCause::BroadGravel => "broadly graded, with grains coarser than No. 4 (4.75 mm)",
+        RegradeCause::GravelOfUnknownCu => {
+            "grains coarser than No. 4 (4.75 mm), and Cu is not known: taken as broadly graded"
+        }
+        RegradeCause::NarrowGravel => "less than 15 % fines and not broadly graded",
+        RegradeCause::NoGravel => "nothing is coarser than No. 4 (4.75 mm)",
+        RegradeCause::NoUnit => "sizes are multiples of D0F",
+    };
+    match reason.nothing_passes {
+        true => format!("{cause}; but no known size of it passes that sieve: left as it is"),
+        false => cause.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_note_reads_well_with_any_number() {
+        for number in [0.0, 1e-300, -1.0, 12.345, 1e300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for note in RuleNote::all_with(number) {
+                let words = rule_note(note, SizeUnit::Mm);
+                assert!(!words.contains("NaN") && !words.contains("inf "), "{note:?}: {words}");
+                assert!(!words.is_empty() && !words.contains("  ") && words.len() < 200, "{note:?}: {words}");
+                // Others follow behind a semicolon.
+                assert!(!words.ends_with(['.', ';', ':', ' ']), "{note:?}: {words}");
+                assert_eq!(words.starts_with("needs "), format!("{note:?}").starts_with("Needs"), "{words}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_reason_to_regrade_reads_well_with_any_number() {
+        for size in [0.0, 1e-300, -1.0, 12.345, 1e300, f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for (cause, begin) in [
+                (RegradeCause::Gap(size), "gap-graded: next to nothing between "),
+                (RegradeCause::GapAmongGravel(size), "gap-graded: next to nothing between "),
+                (RegradeCause::GravelAndFines, "grains coarser than No. 4 (4.75 mm) and 15 %"),
+                (RegradeCause::BroadGravel, "broadly graded, with grains"),
+                (RegradeCause::GravelOfUnknownCu, "grains coarser than No. 4 (4.75 mm), and Cu"),
+                (RegradeCause::NarrowGravel, "less than 15 % fines"),
+                (RegradeCause::NoGravel, "nothing is coarser than No. 4"),
+                (RegradeCause::NoUnit, "sizes are multiples of D0F"),
+            ] {
+                for nothing_passes in [false, true] {
+                    let words = regrade_reason(RegradeReason { cause, nothing_passes });
+                    assert!(words.starts_with(begin) && words.len() < 200, "{words}");
+                    assert_eq!(words.ends_with("sieve: left as it is"), nothing_passes, "{words}");
+                    assert!(!words.contains("NaN") && !words.contains("inf ") && !words.ends_with('.'));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn notes_are_written_as_data_and_read_back() {
+        for note in RuleNote::all_with(12.345) {
+            let text = serde_json::to_string(&note).unwrap();
+            assert_eq!(serde_json::from_str::<RuleNote>(&text).unwrap(), note, "{text}");
+        }
+        let text = serde_json::to_string(&RuleNote::RegradedOn(4.75)).unwrap();
+        assert_eq!(text, "{\"id\":\"regraded_on\",\"numbers\":4.75}");
+    }
 }

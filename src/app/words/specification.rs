@@ -1,17 +1,19 @@
 //! The specification of a filter in words.
 
-use super::class::capital;
-use super::dispersion::{beside_dispersive, dispersive_limit, test};
-use super::rule_note::{regrade_reason, rule_notes};
-use serde::{Deserialize, Serialize};
-
+use super::answer::capital;
+use super::practice::{beside_dispersive, dispersive_limit, test};
+use super::rule::{regrade_reason, rule_notes};
 use crate::outcome::table::{Columns, Shown, TableCell};
+use serde::{Deserialize, Serialize};
 use voidwalk_core::gradation::{FEW_FINES, FINES_MM, GAP_PERCENT};
 use voidwalk_practice::design::products::LEAST_CU;
 use voidwalk_practice::design::size_band::{D15_OVER_D10, SieveLimit, SizeBand};
 use voidwalk_practice::design::specification::{NoBand, StepName, StepNote, StepValue};
 use voidwalk_practice::design::{Specification, SpecificationStep};
-use voidwalk_practice::quantity::{self, NumberRole, SizeUnit, length, limits, significant};
+use voidwalk_practice::quantity;
+use voidwalk_practice::quantity::{
+    NumberRole, SizeUnit, greatest_length, least_length, length, limits, significant,
+};
 use voidwalk_practice::rules::{
     DESIGN_FLOOR_MM, GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT, WIDEST_BAND,
     range_of_tests,
@@ -48,8 +50,7 @@ pub fn band(specification: &Specification, unit: SizeUnit) -> Option<String> {
 pub fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let [least, most] = specification.band.as_ref()?.d15_mm();
     if let Some(retains) = specification.d15f_max_mm.filter(|max| most < max * (1.0 - 1e-9)) {
-        let [retains, most] =
-            [retains, most].map(|mm| length(mm, unit).role(NumberRole::Greatest).to_string());
+        let [retains, most] = [retains, most].map(|mm| greatest_length(mm, unit).to_string());
         return Some(format!(
             "The maximum D15F that retains the base is {retains}; this maximum is lowered to {most}, so that \
              the band is no wider than {WIDEST_BAND} to 1"
@@ -57,7 +58,7 @@ pub fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
     }
     let drains = specification.d15f_min_mm.filter(|drains| least > drains * (1.0 + 1e-9))?;
     let at_most = if specification.d15f_min_at_most { "not known, and at most " } else { "" };
-    let [drains, least] = [drains, least].map(|mm| length(mm, unit).role(NumberRole::Least).to_string());
+    let [drains, least] = [drains, least].map(|mm| least_length(mm, unit).to_string());
     Some(format!(
         "The minimum D15F that drains the base is {at_most}{drains}; this minimum is raised to {least}, so \
          that the band is no wider than {WIDEST_BAND} to 1"
@@ -73,7 +74,7 @@ pub fn still_to_set(specification: &Specification, unit: SizeUnit) -> Option<Str
          from the table of FEMA (2011) or NRCS (National Engineering Handbook, Part 633, Chapter 26), for a \
          minimum D10F of {}.",
         // Entry of the table: a finer D10F allows no coarser D90F.
-        length(least, unit).role(NumberRole::Greatest)
+        greatest_length(least, unit)
     ))
 }
 
@@ -83,8 +84,7 @@ pub fn beside_limits(specification: &Specification, unit: SizeUnit) -> Option<St
     let [least, most] = specification.band.as_ref()?.d15_mm();
     Some(format!(
         "The limits alone are not enough: D15F of each delivery must lie within {}, its Cu between \
-         {LEAST_CU} \
-         and {MOST_CU}, and it must have no gap. Judge each delivery by its own gradation.",
+         {LEAST_CU} and {MOST_CU}, and it must have no gap. Judge each delivery by its own gradation.",
         limits(least, most, unit)
     ))
 }
@@ -123,7 +123,7 @@ pub fn without_margin(specification: &Specification, unit: SizeUnit) -> Option<S
 pub fn limit(specification: &Specification, unit: SizeUnit) -> String {
     match specification.strictest() {
         Some((curve, limit)) => {
-            format!("D15F {} ({})", length(limit, unit).role(NumberRole::Greatest), curve.d15f_max_rule)
+            format!("D15F {} ({})", greatest_length(limit, unit), curve.d15f_max_rule)
         }
         None => "not known".into(),
     }
@@ -155,15 +155,14 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
         NoBand::DrainageNotKnown { most_drains_mm, most_mm } => format!(
             "The minimum D15F that drains this base is not known. It is at most {}, and D15F must be at most \
              {} to retain the base: D15B must be tested.",
-            length(*most_drains_mm, unit).role(NumberRole::Least),
-            length(*most_mm, unit).role(NumberRole::Greatest)
+            least_length(*most_drains_mm, unit),
+            greatest_length(*most_mm, unit)
         ),
         NoBand::NoneDrainsAndRetains { least_mm, most_mm } => format!(
             "No filter both drains and retains this base: D15F must be at least {} to drain it and at most \
-             {} \
-             to retain it. {}",
-            length(*least_mm, unit).role(NumberRole::Least),
-            length(*most_mm, unit).role(NumberRole::Greatest),
+             {} to retain it. {}",
+            least_length(*least_mm, unit),
+            greatest_length(*most_mm, unit),
             // Such a fine base is not broad: the least D15F of any filter is beyond its limit.
             if *least_mm <= LEAST_D15F_MM {
                 "Have the base tested in the laboratory with the filter, or take a filter in two stages."
@@ -176,7 +175,7 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
         }
         NoBand::TooCoarse { most_d60f_mm } => format!(
             "The maximum D60F is {} and lies beyond the greatest size of {GREATEST_SIZE_MM} mm.",
-            length(*most_d60f_mm, unit).role(NumberRole::Greatest)
+            greatest_length(*most_d60f_mm, unit)
         ),
         NoBand::LimitNotKnown { curve, needs } => {
             let why =
@@ -226,8 +225,7 @@ pub fn step_notes(step: &SpecificationStep, unit: SizeUnit) -> String {
         ),
         StepName::LimitEnds => format!(
             "At most {MOST_FINES_PERCENT} % is finer than {FINES_MM} mm, and than the minimum D5F. These \
-             fines \
-             must not be plastic."
+             fines must not be plastic."
         ),
         StepName::KeepFromSegregating => "Still to be set: no text with its numbers could be read. The \
             maximum D90F follows from this minimum D10F by a table of FEMA and NRCS."

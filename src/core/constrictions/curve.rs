@@ -44,15 +44,10 @@ pub enum CurveError {
     Number(#[from] NumberError),
     /// A packing has no constriction to measure.
     #[error(
-        "the packing has no constriction: its {tetrahedra} tetrahedra form {voids} voids, with no open facet \
+        "the packing has no constriction: its {0} tetrahedra form {1} voids, with no open facet \
          between two; more grains of the sizes that carry the filter are needed"
     )]
-    NoConstriction {
-        /// Tetrahedra of the triangulation.
-        tetrahedra: usize,
-        /// Voids that they form.
-        voids: usize,
-    },
+    NoConstriction(usize, usize),
     /// No shipped filter has this name.
     #[error("no shipped filter is called \"{name}\"; the nearest is \"{nearest}\" (shipped: {all})")]
     UnknownFilter {
@@ -117,9 +112,6 @@ impl Curve {
     }
 
     /// [`Curve::from_csv`] on the content of a file, called `name` in messages.
-    ///
-    /// # Errors
-    /// Errors of [`Curve::from_csv`].
     pub fn from_csv_text(name: &str, content: &[u8]) -> Result<Curve, CurveError> {
         Curve::from_table(&Table::parse(name, content)?)
     }

@@ -1,4 +1,4 @@
-//! The disc of a facet: the largest that passes between its three grains.
+//! The disc of a facet, the largest that passes between its three grains; tangent circles and spheres.
 //!
 //! The disc is the circle tangent to the three grains in the plane of their centres. If further grains cut
 //! into it, it is the largest circle through any three of the grains concerned (their sections by that plane)
@@ -6,9 +6,14 @@
 //! distribution of constriction sizes for an assembly of spheres*, doi:10.1016/j.compgeo.2009.09.002. The
 //! others are the corners of the two tetrahedra at the facet, of their neighbours and of their neighbours'
 //! neighbours: on packings of Cu 1.5 and Cu 3 a search one step further cut no further disc.
+//!
+//! # Tangents
+//! Seen from the centre of the smallest grain (radius `r0`), a centre `q` at distance `s = rho + r0`
+//! touches grain `k` (centre `d`, radius `r0 + delta`) when `d.q + s delta = (|d|^2 - delta^2) / 2`:
+//! linear in `q` and `s`. So `q = A + B s`, and `|q| = s` is a quadratic. Differences of squares are
+//! taken as products, so that a grain of one in a gap of grains of a million keeps its digits.
 
-use super::tangent::{Tangent, circle, cross};
-use super::triangulation::{GrainPoint, Positions, Shift, Triangulation};
+use super::triangulation::{GrainPoint, Shift, Triangulation, cross, dot, facet, offset};
 
 /// Cuts shallower than this part of the disc's radius are contacts.
 const CONTACT: f64 = 1e-9;
@@ -23,11 +28,11 @@ const RINGS: usize = 2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ConstrictionDisc {
     /// Centre in the stored translate of the requested tetrahedron.
-    pub(super) centre: [f64; 3],
+    pub centre: [f64; 3],
     /// Radius; zero if the grains leave no room.
-    pub(super) radius: f64,
+    pub radius: f64,
     /// True if a further grain cuts into the circle tangent to the three.
-    pub(super) cut: bool,
+    pub cut: bool,
 }
 
 /// The plane of a facet: coordinates along `u`, `v`, and `w` above it.
@@ -38,19 +43,18 @@ struct Plane {
 
 impl Plane {
     fn through(facet: &[GrainPoint; 3]) -> Self {
-        let along = |k: usize| -> [f64; 3] { std::array::from_fn(|axis| facet[k][axis] - facet[0][axis]) };
         let unit = |v: [f64; 3]| {
-            let length = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
+            let length = dot(&v, &v).sqrt();
             v.map(|c| c / length)
         };
-        let u = unit(along(1));
-        let w = unit(cross(&u, &along(2)));
+        let u = unit(offset(&facet[0], &facet[1]));
+        let w = unit(cross(&u, &offset(&facet[0], &facet[2])));
         Self { origin: facet[0], axes: [u, cross(&w, &u), w] }
     }
 
     fn local(&self, p: &GrainPoint) -> [f64; 3] {
-        let d: [f64; 3] = std::array::from_fn(|axis| p[axis] - self.origin[axis]);
-        self.axes.map(|a| a[0] * d[0] + a[1] * d[1] + a[2] * d[2])
+        let d = offset(&self.origin, p);
+        self.axes.map(|a| dot(&a, &d))
     }
 
     /// Circle in which a grain meets the plane.
@@ -68,14 +72,8 @@ impl Plane {
 }
 
 /// Finds the disc of the facet opposite a corner of a tetrahedron.
-pub(super) fn disc(
-    t: &Triangulation,
-    positions: &Positions<'_>,
-    tetrahedron: usize,
-    corner: usize,
-) -> ConstrictionDisc {
-    let corners = t.at(positions, tetrahedron, Shift::ZERO);
-    let facet = [1, 2, 3].map(|k| corners[(corner + k) % 4]);
+pub(super) fn disc(t: &Triangulation, tetrahedron: usize, corner: usize) -> ConstrictionDisc {
+    let facet = facet(&t.stored(tetrahedron), corner);
     let plane = Plane::through(&facet);
     let sections = facet.map(|g| {
         let [u, v, _] = plane.local(&g);
@@ -88,10 +86,10 @@ pub(super) fn disc(
     let Some(first) = circle(&sections) else { return place(None, false) };
     // Few discs are cut: look for one cutting grain before listing all.
     let (centre, mut cut) = (plane.global(first.centre), false);
-    around(t, positions, tetrahedron, corner, |grain| {
-        let d: [f64; 3] = std::array::from_fn(|axis| grain[axis] - centre[axis]);
+    around(t, tetrahedron, corner, |grain| {
+        let d = offset(&centre, grain);
         let reach = grain[3] + first.radius;
-        if d[0] * d[0] + d[1] * d[1] + d[2] * d[2] < reach * reach && !facet.contains(grain) {
+        if dot(&d, &d) < reach * reach && !facet.contains(grain) {
             cut |= plane.section(grain).is_some_and(|section| cuts(&first, &section));
         }
     });
@@ -99,12 +97,8 @@ pub(super) fn disc(
         return place(Some(first), false);
     }
     let mut others = Vec::new();
-    around(t, positions, tetrahedron, corner, |grain| {
-        if !facet.contains(grain)
-            && let Some(section) = plane.section(grain)
-        {
-            others.push(section);
-        }
+    around(t, tetrahedron, corner, |grain| {
+        others.extend(plane.section(grain).filter(|_| !facet.contains(grain)));
     });
     place(largest(&sections, &others, &first), true)
 }
@@ -136,25 +130,17 @@ fn largest(facet: &[[f64; 3]; 3], others: &[[f64; 3]], first: &Tangent<2>) -> Op
 }
 
 /// Visits the corners of the tetrahedra within [`RINGS`] of a facet, in its tetrahedron's translate.
-fn around(
-    t: &Triangulation,
-    positions: &Positions<'_>,
-    tetrahedron: usize,
-    corner: usize,
-    mut visit: impl FnMut(&GrainPoint),
-) {
-    visit(&t.corner_at(positions, tetrahedron, corner, Shift::ZERO));
-    beyond(t, positions, (tetrahedron, Shift::ZERO, corner), RINGS, &mut visit);
-    if let Some((u, j, shift)) = t.across(tetrahedron, corner) {
-        visit(&t.corner_at(positions, u, j, shift));
-        beyond(t, positions, (u, shift, j), RINGS, &mut visit);
+fn around(t: &Triangulation, tetrahedron: usize, corner: usize, mut visit: impl FnMut(&GrainPoint)) {
+    let sides = [Some((tetrahedron, corner, Shift::ZERO)), t.across(tetrahedron, corner)];
+    for (u, j, shift) in sides.into_iter().flatten() {
+        visit(&t.corner_at(u, j, shift));
+        beyond(t, (u, shift, j), RINGS, &mut visit);
     }
 }
 
-/// Corners beyond the facets of a tetrahedron, except the facet of entry.
+/// Visits the corners beyond the facets of a tetrahedron, except the facet of entry.
 fn beyond(
     t: &Triangulation,
-    positions: &Positions<'_>,
     (tetrahedron, translate, entered): (usize, Shift, usize),
     rings: usize,
     visit: &mut impl FnMut(&GrainPoint),
@@ -165,8 +151,134 @@ fn beyond(
     for i in (0..4).filter(|&i| i != entered) {
         if let Some((u, j, shift)) = t.across(tetrahedron, i) {
             let shift = translate.plus(shift);
-            visit(&t.corner_at(positions, u, j, shift));
-            beyond(t, positions, (u, shift, j), rings - 1, visit);
+            visit(&t.corner_at(u, j, shift));
+            beyond(t, (u, shift, j), rings - 1, visit);
+        }
+    }
+}
+
+/// A tangent circle or sphere: its centre and radius.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Tangent<const N: usize> {
+    pub centre: [f64; N],
+    pub radius: f64,
+}
+
+/// `(|d|^2 - delta^2) / 2`.
+fn half_power<const N: usize>(d: &[f64; N], delta: f64) -> f64 {
+    let length = dot(d, d).sqrt();
+    0.5 * (length - delta) * (length + delta)
+}
+
+/// Distance `s` of `A + B s` from the origin that equals `s`: the smaller positive root. This root changes
+/// smoothly with the sizes; a larger one, if any, comes in from infinity (a sphere that holds the grains on
+/// its other side).
+fn distance<const N: usize>(a: &[f64; N], b: &[f64; N]) -> Option<f64> {
+    let (square, half, constant) = (dot(b, b) - 1.0, dot(a, b), dot(a, a));
+    let discriminant = half * half - square * constant;
+    if discriminant < 0.0 {
+        return None;
+    }
+    let root = discriminant.sqrt();
+    let s = if half <= 0.0 { constant / (root - half) } else { (-half - root) / square };
+    (s.is_finite() && s > 0.0).then_some(s)
+}
+
+/// Finds the sphere that touches four grains (centre and radius each); `None` if they leave no such room.
+pub(super) fn sphere(grains: &[[f64; 4]; 4]) -> Option<Tangent<3>> {
+    let first = least(grains.map(|g| g[3]));
+    let origin = grains[first];
+    let others = [1, 2, 3].map(|k| grains[(first + k) % 4]);
+    let d = others.map(|g| offset(&origin, &g));
+    let delta = others.map(|g| g[3] - origin[3]);
+    let normals = [cross(&d[1], &d[2]), cross(&d[2], &d[0]), cross(&d[0], &d[1])];
+    let volume = dot(&d[0], &normals[0]);
+    let solve = |right: [f64; 3]| -> [f64; 3] {
+        std::array::from_fn(|axis| (0..3).map(|k| right[k] * normals[k][axis]).sum::<f64>() / volume)
+    };
+    let a = solve(std::array::from_fn(|k| half_power(&d[k], delta[k])));
+    let b = solve(delta.map(|delta| -delta));
+    let s = distance(&a, &b)?;
+    let centre = std::array::from_fn(|axis| origin[axis] + (a[axis] + b[axis] * s));
+    (s > origin[3]).then_some(Tangent { centre, radius: s - origin[3] })
+}
+
+/// Finds the circle that touches three circles (centre and radius each); `None` if they leave no room.
+pub(super) fn circle(circles: &[[f64; 3]; 3]) -> Option<Tangent<2>> {
+    let first = least(circles.map(|c| c[2]));
+    let origin = circles[first];
+    let others = [1, 2].map(|k| circles[(first + k) % 3]);
+    let d = others.map(|c| [c[0] - origin[0], c[1] - origin[1]]);
+    let delta = others.map(|c| c[2] - origin[2]);
+    let area = d[0][0] * d[1][1] - d[1][0] * d[0][1];
+    let solve = |right: [f64; 2]| -> [f64; 2] {
+        [(right[0] * d[1][1] - right[1] * d[0][1]) / area, (right[1] * d[0][0] - right[0] * d[1][0]) / area]
+    };
+    let a = solve([half_power(&d[0], delta[0]), half_power(&d[1], delta[1])]);
+    let b = solve(delta.map(|delta| -delta));
+    let s = distance(&a, &b)?;
+    let centre = [origin[0] + (a[0] + b[0] * s), origin[1] + (a[1] + b[1] * s)];
+    (s > origin[2]).then_some(Tangent { centre, radius: s - origin[2] })
+}
+
+fn least<const N: usize>(values: [f64; N]) -> usize {
+    (1..N).fold(0, |best, i| if values[i] < values[best] { i } else { best })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Three circles that touch each other.
+    fn touching(r: [f64; 3]) -> [[f64; 3]; 3] {
+        let (ab, ac, bc) = (r[0] + r[1], r[0] + r[2], r[1] + r[2]);
+        let x = (ab * ab + (r[0] - r[1]) * (ac + bc)) / (2.0 * ab);
+        // Heron, in the form that keeps the digits of thin triangles.
+        let area = (r[0] * r[1] * r[2] * (r[0] + r[1] + r[2])).sqrt();
+        [[0.0, 0.0, r[0]], [ab, 0.0, r[1]], [x, 2.0 * area / ab, r[2]]]
+    }
+
+    /// Known geometry: three equal grains 0.154701 of their diameter; radii of wide ratios.
+    #[test]
+    fn known_discs() {
+        for (r, expected) in [
+            ([0.5, 0.5, 0.5], 0.154_701 / 2.0),
+            ([1.0, 1.0, 10.0], 0.233_052),
+            ([1.0, 10.0, 10.0], 0.472_475),
+            ([1.0, 1e6, 1e6], 0.997_178),
+            ([1e6, 1.0, 1e6], 0.997_178),
+            ([1e6, 1e6, 1.0], 0.997_178),
+        ] {
+            let radius = circle(&touching(r)).unwrap().radius;
+            assert!((radius / expected - 1.0).abs() < 3e-6, "{r:?}: {radius}");
+        }
+    }
+
+    proptest! {
+        /// Descartes: 1/r4 = k1 + k2 + k3 + 2 sqrt(k1 k2 + k2 k3 + k3 k1).
+        #[test]
+        fn touching_circles_obey_descartes(a in -3.0..3.0, b in -3.0..3.0, c in -3.0..3.0) {
+            let r = [a, b, c].map(|e: f64| libm::pow(10.0, e));
+            let k = r.map(|r| 1.0 / r);
+            let pairs = k[0] * k[1] + k[1] * k[2] + k[2] * k[0];
+            let expected = 1.0 / (k[0] + k[1] + k[2] + 2.0 * pairs.sqrt());
+            let radius = circle(&touching(r)).unwrap().radius;
+            prop_assert!((radius / expected - 1.0).abs() < 1e-8, "{r:?}: {radius} {expected}");
+        }
+
+        /// A tangent sphere is at its radius from all four grains.
+        #[test]
+        fn a_tangent_sphere_touches(
+            v in prop::collection::vec(0.0..10.0, 12), r in prop::collection::vec(0.1..1.0, 4)) {
+            let grains: [[f64; 4]; 4] = std::array::from_fn(|i| [v[3 * i], v[3 * i + 1], v[3 * i + 2], r[i]]);
+            if let Some(tangent) = sphere(&grains) && tangent.radius < 1e3 {
+                for g in grains {
+                    let d = offset(&tangent.centre, &g);
+                    let gap = dot(&d, &d).sqrt() - g[3] - tangent.radius;
+                    prop_assert!(gap.abs() < 1e-6 * (1.0 + tangent.radius), "{gap}");
+                }
+            }
         }
     }
 }

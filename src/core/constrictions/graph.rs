@@ -1,12 +1,23 @@
 //! The void graph of a packing: voids, the constrictions between them, and their conductances.
+//!
+//! After Chareyre, Cortis, Catalano & Barthelemy (2012), *Pore-scale modeling of viscous flow and induced
+//! forces in dense sphere packings*, doi:10.1007/s11242-011-9915-6. A throat is the bipyramid of a facet and
+//! the power centres on either side of it. Its hydraulic radius is the volume of water in it over the surface
+//! of grains in it, `R_h = phi / gamma`, and it conducts
+//!
+//! ```text
+//! g = A_f R_h^2 / (2 mu L)
+//! ```
+//! with `A_f` the part of the facet outside the grains and `L` the path between the two voids. Volumes and
+//! solid angles have a sign: a power centre on the far side of a facet subtracts. So the sums over all facets
+//! are exactly the volume of the voids and the surface of the grains.
 
-use rayon::prelude::*;
-
-use super::measure::{Constrictions, ConstrictionsError, Facets, Passages, merged};
-use super::throat::{Throat, power_centre, solid_angle};
-use super::triangulation::{GrainPoint, Positions, Shift, Triangulation};
-use super::voids::{Insphere, Voids};
+use super::triangulation::{GrainPoint, Shift, Triangulation, cross, dot, edges, facet, offset, six_volume};
+use super::voids::{Insphere, Voids, solid_angle};
+use super::{Constrictions, ConstrictionsError, Facets, Passages};
 use crate::packing::Packing;
+use rayon::prelude::*;
+use std::fmt::Write;
 
 /// Least distance of two void points, as a part of the smallest grain: a path of no length would conduct
 /// without limit.
@@ -76,12 +87,11 @@ impl VoidGraph {
         merge_overlap: f64,
     ) -> Result<(Constrictions, Self), ConstrictionsError> {
         let t = Triangulation::new(packing)?;
-        let voids = merged(&t, merge_overlap)?;
-        let passages = Passages::new(&t, &t.positions(), &voids, Facets::All);
-        let constrictions = Constrictions::between(&t, &voids, &passages, merge_overlap, Facets::All);
+        let passages = Passages::find(&t, merge_overlap, Facets::All)?;
+        let constrictions = Constrictions::between(&t, &passages);
         // Checked first, or an error of the cell would appear as one of the graph.
         constrictions.check()?;
-        Ok((constrictions, Self::between(&t, &voids, &passages, merge_overlap)?))
+        Ok((constrictions, Self::between(&t, &passages)?))
     }
 
     /// Makes the graph of a triangulation.
@@ -89,58 +99,57 @@ impl VoidGraph {
     /// # Errors
     /// A triangulation without a periodic cell; a void that meets itself through the cell.
     pub fn of(t: &Triangulation, merge_overlap: f64) -> Result<Self, ConstrictionsError> {
-        let voids = merged(t, merge_overlap)?;
-        let passages = Passages::new(t, &t.positions(), &voids, Facets::All);
-        Self::between(t, &voids, &passages, merge_overlap)
+        Self::between(t, &Passages::find(t, merge_overlap, Facets::All)?)
     }
 
     /// Makes the graph of a triangulation's voids and of all facets between them.
-    fn between(
-        t: &Triangulation,
-        voids: &Voids,
-        passages: &Passages,
-        merge_overlap: f64,
-    ) -> Result<Self, ConstrictionsError> {
+    fn between(t: &Triangulation, passages: &Passages) -> Result<Self, ConstrictionsError> {
         let cell = t.cell().ok_or(ConstrictionsError::NoCell)?;
-        let positions = t.positions();
+        let voids = &passages.voids;
         if let Some(void) = voids.endless.iter().position(|&endless| endless) {
-            return Err(ConstrictionsError::Endless { void: void as u32, merge_overlap });
+            return Err(ConstrictionsError::Endless(void as u32, voids.merge_overlap));
         }
         let unit = t.unit_mm();
         let smallest = t.spheres().iter().map(|s| s[3]).fold(f64::INFINITY, f64::min);
-        let points = void_points(t, &positions, voids);
+        let points = void_points(t, voids);
         let folds: Vec<Shift> = points.iter().map(|p| fold(p, &cell)).collect();
-        let centres = power_centres(t, &positions, voids);
+        let centres = power_centres(t, voids);
+        let (mut grains, mut squares, mut cubes) = (0, 0.0, 0.0);
+        for (grain, s) in (0u32..).zip(t.spheres()) {
+            if t.hidden().binary_search(&grain).is_err() {
+                let d = 2.0 * s[3] * unit;
+                grains += 1;
+                squares += d * d;
+                cubes += d * d * d;
+            }
+        }
+        let cell_mm = cell.map(|l| l * unit);
+        let [x, y, z] = cell_mm;
         let mut graph = Self {
-            cell_mm: cell.map(|l| l * unit),
+            cell_mm,
             from: Vec::new(),
             to: Vec::new(),
             shift: Vec::new(),
             diameter_mm: Vec::new(),
             conductance_mm3: Vec::new(),
             point_mm: (points.iter().zip(&folds))
-                .map(|(p, &fold)| place(&moved(p, &positions.displacement(fold)), t))
+                .map(|(p, &fold)| t.in_mm(moved(p, &t.displacement(fold))))
                 .collect(),
-            volume_mm3: volumes(t, &positions, voids, unit),
-            grains: 0,
-            cubes_mm3: 0.0,
-            d32_mm: 0.0,
+            volume_mm3: volumes(t, voids),
+            grains,
+            cubes_mm3: cubes,
+            d32_mm: cubes / squares,
             d0_mm: 2.0 * smallest * unit,
-            porosity: 0.0,
+            porosity: 1.0 - std::f64::consts::PI / 6.0 * cubes / (x * y * z),
         };
-        graph.weigh(t);
         for passage in &passages.open {
-            let (i, k) = passage.facet;
-            let Some((u, _, across)) = t.across(i, k) else { continue };
+            let ((i, k), (u, across)) = (passage.facet, passage.across);
             let (a, b) = (voids.by_tetrahedron[i] as usize, voids.by_tetrahedron[u] as usize);
             // Place of the far void if the near one is at its own place, and then its place in the cell.
             let by = voids.shift[i].plus(across).minus(voids.shift[u]);
-            let far = moved(&points[b], &positions.displacement(by));
-            let length = distance(&points[a], &far).max(LEAST_WAY * 2.0 * smallest);
-            let corners = t.at(&positions, i, Shift::ZERO);
-            let facet = [1, 2, 3].map(|e| corners[(k + e) % 4]);
-            let other = moved(&centres[u], &positions.displacement(across));
-            let throat = Throat::new(&facet, &corners[k], [&centres[i], &other]);
+            let path = offset(&points[a], &moved(&points[b], &t.displacement(by)));
+            let length = dot(&path, &path).sqrt().max(LEAST_WAY * 2.0 * smallest);
+            let throat = Throat::new(t, (i, k), (u, across), &centres);
             let conductance = throat.conductance(length) * unit * unit * unit;
             match graph.conductance_mm3.get_mut(passage.constriction) {
                 Some(sum) => *sum += conductance,
@@ -148,30 +157,12 @@ impl VoidGraph {
                     graph.from.push(a as u32);
                     graph.to.push(b as u32);
                     graph.shift.push(by.plus(folds[a]).minus(folds[b]).cells());
-                    graph.diameter_mm.push(2.0 * passage.radius * unit);
+                    graph.diameter_mm.push(2.0 * passage.disc.radius * unit);
                     graph.conductance_mm3.push(conductance);
                 }
             }
         }
         Ok(graph)
-    }
-
-    /// Sums over the grains.
-    fn weigh(&mut self, t: &Triangulation) {
-        let unit = t.unit_mm();
-        let (mut squares, mut cubes) = (0.0, 0.0);
-        for (grain, s) in (0u32..).zip(t.spheres()) {
-            if t.hidden().binary_search(&grain).is_err() {
-                let d = 2.0 * s[3] * unit;
-                self.grains += 1;
-                squares += d * d;
-                cubes += d * d * d;
-            }
-        }
-        let [x, y, z] = self.cell_mm;
-        self.cubes_mm3 = cubes;
-        self.d32_mm = cubes / squares;
-        self.porosity = 1.0 - std::f64::consts::PI / 6.0 * cubes / (x * y * z);
     }
 
     /// Number of voids.
@@ -194,7 +185,6 @@ impl VoidGraph {
     /// Writes the graph as CSV: `from,to,shift_x,shift_y,shift_z,diameter_mm,conductance_mm3`, where the
     /// conductance is multiplied by the viscosity.
     pub fn to_csv(&self) -> String {
-        use std::fmt::Write;
         let mut text = String::from("from,to,shift_x,shift_y,shift_z,diameter_mm,conductance_mm3\n");
         for c in 0..self.from.len() {
             let [x, y, z] = self.shift[c];
@@ -210,25 +200,14 @@ fn moved(p: &[f64; 3], by: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| p[axis] + by[axis])
 }
 
-fn distance(p: &[f64; 3], q: &[f64; 3]) -> f64 {
-    let d: [f64; 3] = std::array::from_fn(|axis| p[axis] - q[axis]);
-    (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt()
-}
-
 /// Shift in cells that moves a point into the cell.
 fn fold(p: &[f64; 3], cell: &[f64; 3]) -> Shift {
     Shift::new(std::array::from_fn(|axis| -libm::floor(p[axis] / cell[axis]) as i32))
 }
 
-/// A point of the cell, in mm.
-fn place(p: &[f64; 3], t: &Triangulation) -> [f64; 3] {
-    let origin = t.origin_mm();
-    std::array::from_fn(|axis| p[axis] * t.unit_mm() + origin[axis])
-}
-
 /// Centre of the largest tangent sphere of each void, beside the stored translate of its first tetrahedron; a
 /// void without one has a corner of that tetrahedron.
-fn void_points(t: &Triangulation, positions: &Positions<'_>, voids: &Voids) -> Vec<[f64; 3]> {
+fn void_points(t: &Triangulation, voids: &Voids) -> Vec<[f64; 3]> {
     let mut largest = vec![-1.0; voids.count];
     let mut points = vec![[0.0; 3]; voids.count];
     for (i, insphere) in voids.inspheres.iter().enumerate() {
@@ -236,13 +215,13 @@ fn void_points(t: &Triangulation, positions: &Positions<'_>, voids: &Voids) -> V
         let (radius, centre) = match insphere {
             Insphere::Sphere(s) => (s.radius, s.centre),
             _ => {
-                let [x, y, z, _] = t.at(positions, i, Shift::ZERO)[0];
+                let [x, y, z, _] = t.stored(i)[0];
                 (0.0, [x, y, z])
             }
         };
         if radius > largest[void] {
             largest[void] = radius;
-            points[void] = moved(&centre, &positions.displacement(voids.shift[i]));
+            points[void] = moved(&centre, &t.displacement(voids.shift[i]));
         }
     }
     points
@@ -250,12 +229,9 @@ fn void_points(t: &Triangulation, positions: &Positions<'_>, voids: &Voids) -> V
 
 /// Power centre of each tetrahedron, in its stored translate. For four grains on a circle it is ill-defined:
 /// the centre of the neighbour in the same void replaces it.
-fn power_centres(t: &Triangulation, positions: &Positions<'_>, voids: &Voids) -> Vec<[f64; 3]> {
-    let by_tetrahedron: Vec<[f64; 3]> = (0..t.tetrahedra())
-        .into_par_iter()
-        .with_min_len(1024)
-        .map(|i| power_centre(&t.at(positions, i, Shift::ZERO)))
-        .collect();
+fn power_centres(t: &Triangulation, voids: &Voids) -> Vec<[f64; 3]> {
+    let by_tetrahedron: Vec<[f64; 3]> =
+        (0..t.tetrahedra()).into_par_iter().with_min_len(1024).map(|i| power_centre(&t.stored(i))).collect();
     let mut centres = by_tetrahedron.clone();
     for i in (0..by_tetrahedron.len()).filter(|&i| voids.inspheres[i] == Insphere::Flat) {
         let beside = (0..4).filter_map(|k| t.across(i, k)).find(|&(u, _, shift)| {
@@ -264,33 +240,126 @@ fn power_centres(t: &Triangulation, positions: &Positions<'_>, voids: &Voids) ->
                 && voids.shift[i].plus(shift) == voids.shift[u]
         });
         if let Some((u, _, shift)) = beside {
-            centres[i] = moved(&by_tetrahedron[u], &positions.displacement(shift));
+            centres[i] = moved(&by_tetrahedron[u], &t.displacement(shift));
         }
     }
     centres
 }
 
 /// Volume of each void outside the grains (mm3); 0 if overlaps make the sum negative.
-fn volumes(t: &Triangulation, positions: &Positions<'_>, voids: &Voids, unit_mm: f64) -> Vec<f64> {
-    let mut volumes = vec![0.0; voids.count];
-    for i in 0..t.tetrahedra() {
-        volumes[voids.by_tetrahedron[i] as usize] +=
-            water(&t.at(positions, i, Shift::ZERO)) * unit_mm * unit_mm * unit_mm;
+fn volumes(t: &Triangulation, voids: &Voids) -> Vec<f64> {
+    let (unit_mm, mut volumes) = (t.unit_mm(), vec![0.0; voids.count]);
+    for (i, &void) in voids.by_tetrahedron.iter().enumerate() {
+        volumes[void as usize] += water(&t.stored(i)) * unit_mm * unit_mm * unit_mm;
     }
-    volumes.iter_mut().for_each(|volume| *volume = volume.max(0.0));
+    volumes.iter_mut().for_each(|volume: &mut f64| *volume = volume.max(0.0));
     volumes
 }
 
 /// Volume of a tetrahedron outside its grains.
 fn water(c: &[GrainPoint; 4]) -> f64 {
-    let edges = |a: usize| {
-        [1, 2, 3].map(|k| -> [f64; 3] { std::array::from_fn(|axis| c[(a + k) % 4][axis] - c[a][axis]) })
-    };
-    let [e, f, g] = edges(0);
-    let normal = super::tangent::cross(&f, &g);
-    let six = (e[0] * normal[0] + e[1] * normal[1] + e[2] * normal[2]).abs();
-    let solid: f64 = (0..4).map(|a| solid_angle(&edges(a), six) * c[a][3] * c[a][3] * c[a][3] / 3.0).sum();
+    let six = six_volume(&edges(c, 0));
+    let solid: f64 = (0..4).map(|a| solid_angle(&edges(c, a), six) * c[a][3] * c[a][3] * c[a][3] / 3.0).sum();
     six / 6.0 - solid
+}
+
+/// Water and grains in the bipyramid of a facet, in grid units.
+struct Throat {
+    /// Volume of water.
+    volume: f64,
+    /// Surface of grains.
+    surface: f64,
+    /// Area of the facet outside its grains.
+    area: f64,
+}
+
+impl Throat {
+    /// Makes the throat of the facet `k` of tetrahedron `i` from the tetrahedron across it, shifted, and the
+    /// power centres.
+    fn new(
+        t: &Triangulation,
+        (i, k): (usize, usize),
+        (u, across): (usize, Shift),
+        centres: &[[f64; 3]],
+    ) -> Self {
+        let corners = t.stored(i);
+        let (facet, inside) = (facet(&corners, k), &corners[k]);
+        let here = half(&facet, inside, &centres[i]);
+        // The far side's inside is this side's outside.
+        let there = half(&facet, inside, &moved(&centres[u], &t.displacement(across)));
+        Self { volume: here.0 - there.0, surface: here.1 - there.1, area: open_area(&facet) }
+    }
+
+    /// Conductance times viscosity over a path of `length`; zero if the bipyramid holds no water or no grain.
+    fn conductance(&self, length: f64) -> f64 {
+        if self.volume <= 0.0 || self.surface <= 0.0 {
+            return 0.0;
+        }
+        let radius = self.volume / self.surface;
+        self.area * radius * radius / (2.0 * length)
+    }
+}
+
+/// Volume of water and surface of grains between a facet and a point, positive if the point is on the side of
+/// `inside`.
+fn half(facet: &[GrainPoint; 3], inside: &GrainPoint, apex: &[f64; 3]) -> (f64, f64) {
+    let (e, f) = (offset(&facet[0], &facet[1]), offset(&facet[0], &facet[2]));
+    let normal = cross(&e, &f);
+    let six = dot(&normal, &offset(&facet[0], apex));
+    let sign = six.signum() * dot(&normal, &offset(&facet[0], inside)).signum();
+    let (mut volume, mut surface) = (six.abs() / 6.0, 0.0);
+    for k in 0..3 {
+        let grain = &facet[k];
+        let edges = [&facet[(k + 1) % 3][..], &facet[(k + 2) % 3][..], &apex[..]].map(|q| offset(grain, q));
+        let angle = solid_angle(&edges, six.abs());
+        let square = grain[3] * grain[3];
+        volume -= angle * square * grain[3] / 3.0;
+        surface += angle * square;
+    }
+    (sign * volume, sign * surface)
+}
+
+/// Area of a facet less the sectors of its three grains, each up to the opposite edge.
+fn open_area(facet: &[GrainPoint; 3]) -> f64 {
+    let edge = |a: usize, b: usize| offset(&facet[a], &facet[b]);
+    let normal = cross(&edge(0, 1), &edge(0, 2));
+    let area = 0.5 * dot(&normal, &normal).sqrt();
+    let covered: f64 = (0..3)
+        .map(|k| {
+            let (b, c) = ((k + 1) % 3, (k + 2) % 3);
+            let opposite = edge(b, c);
+            let along = dot(&opposite, &opposite).sqrt();
+            let height = 2.0 * area / along;
+            // Angles of the two edges at this grain, from the perpendicular onto the opposite edge.
+            let angle = |to: usize| libm::atan2(dot(&edge(k, to), &opposite) / along, height);
+            sector(facet[k][3], height, angle(b), angle(c))
+        })
+        .sum();
+    (area - covered).max(0.0)
+}
+
+/// Area of a circle's sector between two angles from the perpendicular onto a line, up to that line.
+fn sector(radius: f64, height: f64, from: f64, to: f64) -> f64 {
+    let reach = if radius > height { libm::acos(height / radius) } else { 0.0 };
+    let (cut_from, cut_to) = (from.clamp(-reach, reach), to.clamp(-reach, reach));
+    let round = (to - from) - (cut_to - cut_from);
+    0.5 * radius * radius * round + 0.5 * height * height * (libm::tan(cut_to) - libm::tan(cut_from))
+}
+
+/// Point of equal power to the four grains of a tetrahedron; not finite if they lie in a plane.
+fn power_centre(corners: &[GrainPoint; 4]) -> [f64; 3] {
+    let origin = corners[0];
+    let others = [corners[1], corners[2], corners[3]];
+    let d = others.map(|g| offset(&origin, &g));
+    let right: [f64; 3] = std::array::from_fn(|k| {
+        let delta = others[k][3] - origin[3];
+        0.5 * (dot(&d[k], &d[k]) - delta * (others[k][3] + origin[3]))
+    });
+    let normals = [cross(&d[1], &d[2]), cross(&d[2], &d[0]), cross(&d[0], &d[1])];
+    let volume = dot(&d[0], &normals[0]);
+    std::array::from_fn(|axis| {
+        origin[axis] + (0..3).map(|k| right[k] * normals[k][axis]).sum::<f64>() / volume
+    })
 }
 
 #[cfg(test)]
@@ -321,16 +390,11 @@ mod tests {
     fn throats_sum_to_all_water_and_all_surface() {
         let packing = packing();
         let t = Triangulation::new(&packing).unwrap();
-        let positions = t.positions();
-        let voids = Voids::merge(&t, &positions, 0.1);
-        let centres = power_centres(&t, &positions, &voids);
+        let centres = power_centres(&t, &Voids::merge(&t, 0.1));
         let (mut volume, mut surface) = (0.0, 0.0);
         for (i, k) in (0..t.tetrahedra()).flat_map(|i| (0..4).map(move |k| (i, k))) {
             let (u, _, across) = t.across(i, k).unwrap();
-            let corners = t.at(&positions, i, Shift::ZERO);
-            let facet = [1, 2, 3].map(|e| corners[(k + e) % 4]);
-            let other = moved(&centres[u], &positions.displacement(across));
-            let throat = Throat::new(&facet, &corners[k], [&centres[i], &other]);
+            let throat = Throat::new(&t, (i, k), (u, across), &centres);
             // Both sides of a facet count it.
             volume += 0.5 * throat.volume;
             surface += 0.5 * throat.surface;
@@ -351,7 +415,8 @@ mod tests {
         for c in (0..graph.from.len()).filter(|&c| alone(graph.from[c]) && alone(graph.to[c])) {
             let (p, q) = (graph.point_mm[graph.from[c] as usize], graph.point_mm[graph.to[c] as usize]);
             let far: [f64; 3] = std::array::from_fn(|axis| q[axis] + 6.0 * f64::from(graph.shift[c][axis]));
-            assert!((0.5..1.5).contains(&distance(&p, &far)), "{c}: {}", distance(&p, &far));
+            let path = offset(&p, &far);
+            assert!((0.5..1.5).contains(&dot(&path, &path).sqrt()), "{c}: {path:?}");
             seen += 1;
         }
         assert!(seen > 30, "{seen}");
@@ -366,5 +431,38 @@ mod tests {
         assert!(error.contains("runs through the whole cell"), "{error}");
         let free = Packing { cell: Cell::Free, ..packing() };
         assert!(VoidGraph::measure(&free, 0.1).unwrap_err().to_string().contains("periodic cell"));
+    }
+
+    /// A grain that reaches beyond the opposite edge covers no more of the facet than the facet has.
+    #[test]
+    fn a_sector_ends_at_the_opposite_edge() {
+        let long = |r| sector(r, 1.0, -0.4, 0.7);
+        let triangle = 0.5 * (libm::tan(0.7) + libm::tan(0.4));
+        assert!((long(10.0) - triangle).abs() < 1e-15);
+        assert!((long(1.0) - 0.5 * 1.1).abs() < 1e-15);
+        // Between the two: by quadrature.
+        let steps = 100_000;
+        let sum: f64 = (0..steps)
+            .map(|k| {
+                let angle = -0.4 + 1.1 * (f64::from(k) + 0.5) / f64::from(steps);
+                let reach = 1.1f64.min(1.0 / libm::cos(angle));
+                0.5 * reach * reach * 1.1 / f64::from(steps)
+            })
+            .sum();
+        assert!((long(1.1) - sum).abs() < 1e-9);
+        // The perpendicular may fall outside.
+        assert!((sector(0.5, 1.0, 0.3, 0.9) - 0.5 * 0.25 * 0.6).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_power_centre_has_one_power() {
+        let corners =
+            [[0.0, 0.0, 0.0, 0.3], [1.0, 0.1, 0.0, 0.5], [0.2, 1.0, 0.3, 0.1], [0.4, 0.3, 1.2, 0.6]];
+        let centre = power_centre(&corners);
+        let power = corners.map(|c| {
+            let d = offset(&c, &centre);
+            dot(&d, &d) - c[3] * c[3]
+        });
+        assert!(power.iter().all(|p| (p - power[0]).abs() < 1e-12), "{power:?}");
     }
 }

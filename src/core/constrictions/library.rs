@@ -12,13 +12,11 @@
 //! measurements (universal kriging; Rasmussen & Williams 2006, section 2.7). Grains per void and void ratio
 //! are found likewise.
 
-use std::sync::OnceLock;
-
-use libm::{exp, log, sqrt};
-use multiversion::multiversion;
-
 use super::curve::{Curve, CurveError, CurveUnit};
 use crate::gradation::Gradation;
+use libm::{exp, log, sqrt};
+use multiversion::multiversion;
+use std::sync::OnceLock;
 
 const TABLE: &str = include_str!("../data/library.csv");
 
@@ -85,7 +83,6 @@ pub fn from_library(gradation: &Gradation, relative_density: f64) -> Result<Opti
 }
 
 /// A packing of the library.
-#[derive(Clone, Debug)]
 struct Shipped {
     place: [f64; PLACE],
     /// Logarithms of the curve's percentiles by `S50`, of grains per void, and of the void ratio.
@@ -143,10 +140,7 @@ impl Library {
         let (mut trend, mut weights) = (Vec::new(), Vec::new());
         for k in 0..packings.first().map_or(0, |packing| packing.measured.len()) {
             let mut values: Vec<f64> = packings.iter().map(|packing| packing.measured[k]).collect();
-            let right = by_term
-                .iter()
-                .map(|solution| solution.iter().zip(&values).map(|(a, b)| a * b).sum())
-                .collect();
+            let right = by_term.iter().map(|solution| product(solution, &values)).collect();
             let factors = back(&normal, forward(&normal, right));
             let factors: [f64; TREND] = std::array::from_fn(|t| factors[t]);
             for (value, terms) in values.iter_mut().zip(&terms) {
@@ -198,10 +192,7 @@ impl Library {
         let terms = terms(place);
         let near: Vec<f64> = self.places.iter().map(|other| near(place, other)).collect();
         let sums = self.trend.iter().zip(&self.weights);
-        sums.map(|(trend, weights)| {
-            exp(product(&terms, trend) + near.iter().zip(weights).map(|(a, b)| a * b).sum::<f64>())
-        })
-        .collect()
+        sums.map(|(trend, weights)| exp(product(&terms, trend) + product(&near, weights))).collect()
     }
 }
 
@@ -236,7 +227,7 @@ fn terms(place: &[f64; PLACE]) -> [f64; TREND] {
     })
 }
 
-fn product(a: &[f64; TREND], b: &[f64; TREND]) -> f64 {
+fn product(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
@@ -297,51 +288,64 @@ fn back(root: &Root, mut right: Vec<f64>) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// A packing of the library, predicted without its shape.
-    struct LeftOut {
+    /// A packing, and what a library that was not fitted to it says.
+    struct Predicted {
         cu: f64,
         density: f64,
+        /// Distance to the nearest shape.
         distance: f64,
         /// Relative errors of the percentiles, grains per void and void ratio.
         errors: Vec<f64>,
     }
 
-    /// Predicts every packing from a library without its shape.
-    fn left_out() -> Vec<LeftOut> {
-        let all = packings(TABLE);
-        let rows: Vec<Vec<f64>> = TABLE
-            .lines()
-            .filter(|line| line.starts_with(|c: char| c.is_ascii_digit()))
-            .map(|line| line.split(',').take(3).map(|cell| cell.parse().unwrap()).collect())
-            .collect();
-        let shapes: std::collections::BTreeSet<u64> = rows.iter().map(|row| row[0] as u64).collect();
-        let of_shape = |shape: u64| {
-            let is_out = |k: &usize| rows[*k][0] as u64 == shape;
-            let others = (0..all.len()).filter(|k| !is_out(k)).map(|k| all[k].clone()).collect();
-            let library = Library::fitted(others);
-            let error = |k: usize| {
-                let values = library.at(&all[k].place);
-                let errors = values
-                    .iter()
-                    .zip(&all[k].measured)
-                    .map(|(value, measured)| value / exp(*measured) - 1.0)
-                    .collect();
-                LeftOut {
-                    cu: rows[k][1],
-                    density: rows[k][2],
-                    distance: library.distance(&all[k].place),
-                    errors,
-                }
-            };
-            (0..all.len()).filter(is_out).map(error).collect::<Vec<_>>()
-        };
-        shapes.into_iter().flat_map(of_shape).collect()
+    impl Predicted {
+        fn new(library: &Library, packing: &Shipped, cu: f64) -> Self {
+            let values = library.at(&packing.place).into_iter().zip(&packing.measured);
+            Self {
+                cu,
+                density: packing.place[SHAPE.len()],
+                distance: library.distance(&packing.place),
+                errors: values.map(|(value, measured)| value / exp(*measured) - 1.0).collect(),
+            }
+        }
+
+        /// Largest error from Dc5 to Dc95.
+        fn of_curve(&self) -> f64 {
+            let inner = percentages().into_iter().zip(&self.errors);
+            let inner = inner.filter(|(percent, _)| (5.0..=95.0).contains(percent));
+            inner.map(|(_, error)| error.abs()).fold(0.0, f64::max)
+        }
+
+        fn of_grains(&self) -> f64 {
+            self.errors[percentages().len()]
+        }
+    }
+
+    /// Shape and Cu of each packing of the library.
+    fn shapes() -> Vec<(usize, f64)> {
+        let rows = TABLE.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit()));
+        rows.map(|line| {
+            let mut cells = line.split(',');
+            (cells.next().unwrap().parse().unwrap(), cells.next().unwrap().parse().unwrap())
+        })
+        .collect()
+    }
+
+    /// Predicts the packings with a shape for which `is_out` holds from a library of the others.
+    fn left_out(is_out: impl Fn(usize) -> bool) -> Vec<Predicted> {
+        let (out, others): (Vec<_>, Vec<_>) =
+            shapes().into_iter().zip(packings(TABLE)).partition(|((shape, _), _)| is_out(*shape));
+        let library = Library::fitted(others.into_iter().map(|(_, packing)| packing).collect());
+        out.iter().map(|((_, cu), packing)| Predicted::new(&library, packing, *cu)).collect()
     }
 
     /// Prints the errors for `results/library.md`: `cargo test --release library -- --nocapture`.
     #[test]
     fn nine_in_ten_packings_whose_shape_is_not_in_the_library_lie_as_near_as_it_says() {
-        let all = left_out();
+        let all_shapes: std::collections::BTreeSet<usize> =
+            shapes().into_iter().map(|(shape, _)| shape).collect();
+        let all: Vec<Predicted> =
+            all_shapes.into_iter().flat_map(|out| left_out(|shape| shape == out)).collect();
         let percent = percentages();
         let columns: Vec<(String, usize)> = [5.0, 15.0, 50.0, 75.0, 95.0]
             .iter()
@@ -350,7 +354,8 @@ mod tests {
             })
             .chain([("grains per void".into(), percent.len()), ("void ratio".into(), percent.len() + 1)])
             .collect();
-        let table = |name: &str, cases: &[&LeftOut]| {
+        let table = |name: &str, is_in: &dyn Fn(&Predicted) -> bool| {
+            let cases: Vec<&Predicted> = all.iter().filter(|case| is_in(case)).collect();
             let cells = columns.iter().map(|(_, k)| {
                 let mut sizes: Vec<f64> = cases.iter().map(|case| 100.0 * case.errors[*k].abs()).collect();
                 sizes.sort_by(f64::total_cmp);
@@ -361,23 +366,20 @@ mod tests {
         };
         let names: Vec<&str> = columns.iter().map(|(name, _)| name.as_str()).collect();
         println!("| packings | number | {} |", names.join(" | "));
-        table("all", &all.iter().collect::<Vec<_>>());
+        table("all", &|_| true);
         for [low, high] in [[1.0, 2.0], [2.0, 5.0], [5.0, 10.0], [10.0, 31.0]] {
-            let cases: Vec<&LeftOut> = all.iter().filter(|case| (low..high).contains(&case.cu)).collect();
-            table(&format!("Cu {low} to {high}"), &cases);
+            table(&format!("Cu {low} to {high}"), &|case| (low..high).contains(&case.cu));
         }
         for (name, density) in [("loose", 0.0), ("medium", 0.5), ("dense", 1.0)] {
-            table(name, &all.iter().filter(|case| case.density == density).collect::<Vec<_>>());
+            table(name, &|case| case.density == density);
         }
         // From Dc5 to Dc95 together, by the distance that sets the stated error.
-        let inner: Vec<usize> = (0..percent.len()).filter(|k| (5.0..=95.0).contains(&percent[*k])).collect();
         let mut nearer = 0.0;
         for LibraryError { up_to, curve, grains } in ERRORS {
-            let cases: Vec<&LeftOut> =
+            let cases: Vec<&Predicted> =
                 all.iter().filter(|case| (nearer..up_to).contains(&case.distance)).collect();
-            let most = |case: &LeftOut| inner.iter().map(|k| case.errors[*k].abs()).fold(0.0, f64::max);
-            let far = cases.iter().filter(|case| most(case) > curve).count();
-            let of_grains = cases.iter().filter(|case| case.errors[percent.len()].abs() > grains).count();
+            let far = cases.iter().filter(|case| case.of_curve() > curve).count();
+            let of_grains = cases.iter().filter(|case| case.of_grains().abs() > grains).count();
             println!(
                 "nearest shape at {nearer} to {up_to}, of {}: curves of {far} beyond {curve}, grains per \
                  void of {of_grains} beyond {grains}",
@@ -393,28 +395,23 @@ mod tests {
     #[test]
     fn packings_that_were_never_fitted_lie_as_near_as_it_says() {
         let table = concat!(env!("CARGO_MANIFEST_DIR"), "/../../results/library-held-out.csv");
-        let packed = packings(&std::fs::read_to_string(table).unwrap());
         let library = Library::fitted(packings(TABLE));
-        let percent = percentages();
         let mut beyond = [[0; 3]; ERRORS.len()];
-        for packing in &packed {
-            let distance = library.distance(&packing.place);
-            let band = ERRORS.iter().position(|error| distance < error.up_to).unwrap();
+        for packing in packings(&std::fs::read_to_string(table).unwrap()) {
+            let case = Predicted::new(&library, &packing, f64::NAN);
+            let band = ERRORS.iter().position(|error| case.distance < error.up_to).unwrap();
             let LibraryError { curve, grains, .. } = &ERRORS[band];
-            let errors = library.at(&packing.place).into_iter().zip(&packing.measured);
-            let errors: Vec<f64> = errors.map(|(value, measured)| value / exp(*measured) - 1.0).collect();
-            let inner = percent.iter().zip(&errors).filter(|(at, _)| (5.0..=95.0).contains(*at));
-            let most = inner.map(|(_, error)| error.abs()).fold(0.0, f64::max);
-            let density = packing.place[SHAPE.len()];
             println!(
-                "density {density}, nearest shape at {distance:.2}: curve {:.1} % (states {:.0}), grains per \
-                 void {:+.1} % (states {:.0})",
-                100.0 * most,
+                "density {}, nearest shape at {:.2}: curve {:.1} % (states {:.0}), grains per void {:+.1} % \
+                 (states {:.0})",
+                case.density,
+                case.distance,
+                100.0 * case.of_curve(),
                 100.0 * curve,
-                100.0 * errors[percent.len()],
+                100.0 * case.of_grains(),
                 100.0 * grains
             );
-            let is_beyond = [true, most > *curve, errors[percent.len()].abs() > *grains];
+            let is_beyond = [true, case.of_curve() > *curve, case.of_grains().abs() > *grains];
             beyond[band].iter_mut().zip(is_beyond).for_each(|(count, is)| *count += usize::from(is));
         }
         println!("packings, curves beyond and grains per void beyond, by band: {beyond:?}");
@@ -425,20 +422,8 @@ mod tests {
     #[test]
     fn the_shapes_before_them_say_the_broad_ones() {
         const BEFORE: usize = 126;
-        let rows = TABLE.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_digit()));
-        let shapes = rows.map(|line| line.split(',').next().unwrap().parse::<usize>().unwrap());
-        let (before, broad): (Vec<_>, Vec<_>) =
-            shapes.zip(packings(TABLE)).partition(|(shape, _)| *shape < BEFORE);
-        let library = Library::fitted(before.into_iter().map(|(_, packing)| packing).collect());
-        let inner =
-            percentages().into_iter().enumerate().filter(|(_, percent)| (5.0..=95.0).contains(percent));
-        let inner: Vec<usize> = inner.map(|(k, _)| k).collect();
-        let mut most = 0.0;
-        for (_, packing) in &broad {
-            let values = library.at(&packing.place);
-            let errors = inner.iter().map(|&k| (values[k] / exp(packing.measured[k]) - 1.0).abs());
-            most = errors.fold(most, f64::max);
-        }
+        let broad = left_out(|shape| shape >= BEFORE);
+        let most = broad.iter().map(Predicted::of_curve).fold(0.0, f64::max);
         println!("{} broad packings by the others: Dc5 to Dc95 within {:.2} %", broad.len(), 100.0 * most);
         assert!(broad.len() == 39 && most < 0.02, "{most}");
     }

@@ -1,7 +1,8 @@
-//! Files about a packing's constrictions.
+//! The figures of a packing's constrictions and files with them; checks of grains that cannot be a packing.
 
 use super::curve::CurveError;
-use super::measure::{Constrictions, Facets};
+use super::voids::Region;
+use super::{Constrictions, ConstrictionsError, Facets};
 use crate::gradation::CurvePoint;
 use crate::packing::vtp_points;
 use crate::store::format;
@@ -9,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
 /// Percent smaller at which [`Summary`] gives diameters.
-pub const SUMMARY_PERCENT: [f64; 13] =
+const SUMMARY_PERCENT: [f64; 13] =
     [0.0, 1.0, 1.5, 5.0, 10.0, 15.0, 25.0, 50.0, 60.0, 75.0, 90.0, 99.0, 100.0];
 
 /// The figures of a packing's constrictions, as in `constrictions.json`.
@@ -127,5 +128,68 @@ impl Constrictions {
             &self.centre_mm,
             &[("diameter_mm", &self.diameter_mm), ("upstream", &upstream), ("downstream", &downstream)],
         )
+    }
+}
+
+/// Least and greatest void ratio of grains that rest on each other.
+const DENSEST: f64 = 0.2;
+const LOOSEST: f64 = 1.5;
+
+impl Constrictions {
+    /// Refuses grains that cannot be a packing: grains inside others in a periodic cell, which must then be
+    /// the wrong cell; grains that occur twice; grains that leave no voids; grains that enclose no grain.
+    ///
+    /// # Errors
+    /// [`ConstrictionsError::Hidden`], [`ConstrictionsError::Twice`], [`ConstrictionsError::Outside`] or
+    /// [`ConstrictionsError::Full`].
+    pub fn check(&self) -> Result<(), ConstrictionsError> {
+        match (self.hidden.first(), self.duplicates.first()) {
+            (Some(&first), _) if self.region == Region::Everything => Err(ConstrictionsError::Hidden {
+                hidden: self.hidden.len(),
+                grains: self.grains + self.hidden.len(),
+                first,
+            }),
+            (_, Some(&first)) => Err(ConstrictionsError::Twice(self.duplicates.len(), first)),
+            _ if !self.is_surrounded => Err(ConstrictionsError::Outside),
+            // The ratio is NaN if the region holds no tetrahedron.
+            _ if self.void_ratio <= 0.0 => Err(ConstrictionsError::Full(self.void_ratio)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Reasons to doubt that the grains are a packing.
+    pub fn doubts(&self) -> Vec<String> {
+        let (ratio, is_periodic) = (self.void_ratio, self.region == Region::Everything);
+        let rest = "grains that rest on each other hardly leave";
+        let other = if is_periodic { "the cell" } else { "their centres" };
+        let loose = match is_periodic {
+            true => "the cell may be too large, or in another unit than the grains",
+            false => "they may lie apart, or diameters be in another unit than centres",
+        };
+        let mut doubts = Vec::new();
+        if ratio > LOOSEST {
+            doubts.push(format!("the void ratio is {ratio:.4}, and {rest} more than {LOOSEST}: {loose}"));
+        }
+        if ratio < DENSEST {
+            doubts.push(format!(
+                "the void ratio is {ratio:.4}, and {rest} less than {DENSEST}: they overlap, or diameters \
+                 are in another unit than {other}"
+            ));
+        }
+        if let Some([one, other]) = self.near.first() {
+            doubts.push(format!(
+                "{} pairs of grains lie nearer than a quarter of the smaller diameter, the first of them \
+                 grains {one} and {other} (counted from 0): they may be one that stands twice",
+                self.near.len()
+            ));
+        }
+        if let Some(first) = self.hidden.first() {
+            doubts.push(format!(
+                "{} grains lie inside others and take no part, the first of them grain {first} (counted \
+                 from 0)",
+                self.hidden.len()
+            ));
+        }
+        doubts
     }
 }

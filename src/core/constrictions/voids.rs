@@ -7,9 +7,11 @@
 //! - four grains (nearly) on one circle make a flat tetrahedron, whose sphere may lie anywhere on the
 //!   axis of that circle. It is a window, not a void: it joins the neighbour with the largest sphere
 //!   and never links two.
+//!
+//! Beside them: the part of a packing that statistics are taken over, and what is odd about its grains.
 
-use super::tangent::{Tangent, cross, sphere};
-use super::triangulation::{GrainPoint, Positions, Shift, Triangulation};
+use super::discs::{Tangent, sphere};
+use super::triangulation::{GrainPoint, Shift, Triangulation, cross, dot, edges, facet, offset, six_volume};
 use rayon::prelude::*;
 use std::collections::HashSet;
 
@@ -46,19 +48,18 @@ pub(super) struct Voids {
     pub(super) count: usize,
     /// Insphere by tetrahedron.
     pub(super) inspheres: Vec<Insphere>,
+    /// Overlap from which two tetrahedra share a void.
+    pub(super) merge_overlap: f64,
 }
 
 impl Voids {
-    pub(super) fn merge(t: &Triangulation, positions: &Positions<'_>, merge_overlap: f64) -> Self {
-        let inspheres: Vec<Insphere> = (0..t.tetrahedra())
-            .into_par_iter()
-            .with_min_len(1024)
-            .map(|i| insphere(&t.at(positions, i, Shift::ZERO)))
-            .collect();
+    pub(super) fn merge(t: &Triangulation, merge_overlap: f64) -> Self {
+        let inspheres: Vec<Insphere> =
+            (0..t.tetrahedra()).into_par_iter().with_min_len(1024).map(|i| insphere(&t.stored(i))).collect();
         let pairs: Vec<(u32, u32, Shift)> = (0..t.tetrahedra())
             .into_par_iter()
             .with_min_len(1024)
-            .flat_map_iter(|i| joined(t, positions, &inspheres, merge_overlap, i))
+            .flat_map_iter(|i| joined(t, &inspheres, merge_overlap, i))
             .collect();
         let mut sets = Sets::new(t.tetrahedra());
         let meets_itself: Vec<u32> =
@@ -78,28 +79,16 @@ impl Voids {
             .unzip();
         let mut endless = vec![false; count as usize];
         meets_itself.iter().for_each(|&i| endless[by_tetrahedron[i as usize] as usize] = true);
-        Self { by_tetrahedron, shift, endless, count: count as usize, inspheres }
+        Self { by_tetrahedron, shift, endless, count: count as usize, inspheres, merge_overlap }
     }
-}
 
-impl Voids {
     /// Tells if the facet opposite a corner lies on the convex hull of the grain centres of its tetrahedron's
     /// void.
-    pub(super) fn on_hull(
-        &self,
-        t: &Triangulation,
-        positions: &Positions<'_>,
-        tetrahedron: usize,
-        corner: usize,
-    ) -> bool {
-        let corners = t.at(positions, tetrahedron, Shift::ZERO);
-        let [a, b, c] = [1, 2, 3].map(|k| corners[(corner + k) % 4]);
-        let from_a = |p: &GrainPoint| -> [f64; 3] { std::array::from_fn(|axis| p[axis] - a[axis]) };
-        let normal = cross(&from_a(&b), &from_a(&c));
-        let height = |p: &GrainPoint| {
-            let d = from_a(p);
-            d[0] * normal[0] + d[1] * normal[1] + d[2] * normal[2]
-        };
+    pub(super) fn on_hull(&self, t: &Triangulation, tetrahedron: usize, corner: usize) -> bool {
+        let corners = t.stored(tetrahedron);
+        let [a, b, c] = facet(&corners, corner);
+        let normal = cross(&offset(&a, &b), &offset(&a, &c));
+        let height = |p: &GrainPoint| dot(&offset(&a, p), &normal);
         let inside = height(&corners[corner]);
         let void = self.by_tetrahedron[tetrahedron];
         let mut seen = HashSet::from([tetrahedron]);
@@ -107,7 +96,7 @@ impl Voids {
         while let Some((at, shift)) = open.pop() {
             // Grains in the plane of the facet (a square window) count as on its side.
             let beyond = |p: &GrainPoint| height(p) * inside.signum() < -COPLANAR * inside.abs();
-            if t.at(positions, at, shift).iter().any(beyond) {
+            if t.at(at, shift).iter().any(beyond) {
                 return false;
             }
             for (u, _, further) in (0..4).filter_map(|k| t.across(at, k)) {
@@ -121,37 +110,21 @@ impl Voids {
 }
 
 fn insphere(corners: &[GrainPoint; 4]) -> Insphere {
-    if is_flat(corners) {
-        return Insphere::Flat;
-    }
-    sphere(corners).map_or(Insphere::Open, Insphere::Sphere)
-}
-
-fn is_flat(corners: &[GrainPoint; 4]) -> bool {
-    let edge =
-        |a: usize, b: usize| -> [f64; 3] { std::array::from_fn(|axis| corners[b][axis] - corners[a][axis]) };
+    let six = six_volume(&edges(corners, 0));
     let length = |a: usize, b: usize| {
-        let e = edge(a, b);
-        (e[0] * e[0] + e[1] * e[1] + e[2] * e[2]).sqrt()
+        let edge = offset(&corners[a], &corners[b]);
+        dot(&edge, &edge).sqrt()
     };
-    let normal = cross(&edge(0, 2), &edge(0, 3));
-    let e = edge(0, 1);
-    let six = (e[0] * normal[0] + e[1] * normal[1] + e[2] * normal[2]).abs();
-    (0..4).all(|a| {
+    let is_flat = (0..4).all(|a| {
         let product: f64 = (0..4).filter(|&b| b != a).map(|b| length(a, b)).product();
         six < FLAT * product
-    })
+    });
+    if is_flat { Insphere::Flat } else { sphere(corners).map_or(Insphere::Open, Insphere::Sphere) }
 }
 
 /// Finds the tetrahedra that share a void with tetrahedron `i`, as far as `i` tells: `i`, the other, and the
 /// translate of the other that the stored one of `i` meets.
-fn joined(
-    t: &Triangulation,
-    positions: &Positions<'_>,
-    inspheres: &[Insphere],
-    merge_overlap: f64,
-    i: usize,
-) -> Vec<(u32, u32, Shift)> {
+fn joined(t: &Triangulation, inspheres: &[Insphere], merge_overlap: f64, i: usize) -> Vec<(u32, u32, Shift)> {
     let neighbours = (0..4).filter_map(|k| t.across(i, k).map(|(u, _, shift)| (u, shift)));
     let pair = |(u, shift): (usize, Shift)| (i as u32, u as u32, shift);
     match inspheres[i] {
@@ -171,11 +144,10 @@ fn joined(
                 if u > i
                     && let Insphere::Sphere(other) = inspheres[u]
                 {
-                    let by = positions.displacement(shift);
+                    let by = t.displacement(shift);
                     let d: [f64; 3] =
                         std::array::from_fn(|axis| other.centre[axis] + by[axis] - sphere.centre[axis]);
-                    let distance = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-                    let overlap = sphere.radius + other.radius - distance;
+                    let overlap = sphere.radius + other.radius - dot(&d, &d).sqrt();
                     if overlap >= merge_overlap * sphere.radius.min(other.radius) {
                         pairs.push(pair((u, shift)));
                     }
@@ -236,6 +208,117 @@ impl Sets {
         self.shift[below as usize] = shift;
         true
     }
+}
+
+/// Share of a free packing's extent, at either end of each axis, that statistics leave out.
+const OUTER_SHARE: f64 = 0.05;
+
+/// Part of space that statistics are taken over (mm).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Region {
+    Everything,
+    Box { low_mm: [f64; 3], high_mm: [f64; 3] },
+}
+
+impl Region {
+    /// The whole cell, or a free packing without the outer share at either end.
+    pub(super) fn new(t: &Triangulation) -> Self {
+        if t.cell().is_some() {
+            return Region::Everything;
+        }
+        let bound = |share: f64| {
+            t.in_mm(std::array::from_fn(|axis| {
+                let values = || t.spheres().iter().map(|s| s[axis]);
+                let (low, high) =
+                    (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+                low + share * (high - low)
+            }))
+        };
+        Region::Box { low_mm: bound(OUTER_SHARE), high_mm: bound(1.0 - OUTER_SHARE) }
+    }
+
+    pub(super) fn holds(&self, p: &[f64; 3]) -> bool {
+        match self {
+            Region::Everything => true,
+            Region::Box { low_mm, high_mm } => {
+                (0..3).all(|axis| low_mm[axis] <= p[axis] && p[axis] <= high_mm[axis])
+            }
+        }
+    }
+}
+
+/// Depth within the hull of all centres, as a share of the grain's radius, at which a grain counts as
+/// surrounded.
+const WITHIN: f64 = 0.5;
+
+/// Tells if a grain has others all around it; in a periodic cell every grain has.
+pub(super) fn is_surrounded(t: &Triangulation) -> bool {
+    let planes: Vec<(GrainPoint, [f64; 3])> = (0..t.tetrahedra())
+        .flat_map(|i| (0..4).map(move |k| (i, k)))
+        .filter(|&(i, k)| t.across(i, k).is_none())
+        .map(|(i, k)| {
+            let corners = t.stored(i);
+            let [a, b, c] = facet(&corners, k);
+            let normal = cross(&offset(&a, &b), &offset(&a, &c));
+            let length = dot(&normal, &normal).sqrt().copysign(dot(&normal, &offset(&a, &corners[k])));
+            (a, normal.map(|n| n / length))
+        })
+        .collect();
+    t.spheres().iter().any(|s| planes.iter().all(|(a, normal)| dot(normal, &offset(a, s)) > WITHIN * s[3]))
+}
+
+/// Void ratio of the tetrahedra whose centroid lies in a region, from their volume and the sectors that their
+/// grains fill.
+pub(super) fn void_ratio_within(t: &Triangulation, region: &Region) -> f64 {
+    let (mut whole, mut solid) = (0.0, 0.0);
+    for i in 0..t.tetrahedra() {
+        let c = t.stored(i);
+        let centroid = std::array::from_fn(|axis| 0.25 * (c[0][axis] + c[1][axis] + c[2][axis] + c[3][axis]));
+        if !region.holds(&t.inside_mm(centroid)) {
+            continue;
+        }
+        for a in 0..4 {
+            let edges = edges(&c, a);
+            let six = six_volume(&edges);
+            solid += solid_angle(&edges, six) / 3.0 * c[a][3] * c[a][3] * c[a][3];
+            if a == 0 {
+                whole += six / 6.0;
+            }
+        }
+    }
+    (whole - solid) / solid
+}
+
+/// Solid angle between three edges from a corner; `six` is six times the volume of their tetrahedron (Van
+/// Oosterom & Strackee, doi:10.1109/TBME.1983.325207).
+pub(super) fn solid_angle(edges: &[[f64; 3]; 3], six: f64) -> f64 {
+    let [l, m, n] = edges.map(|e| dot(&e, &e).sqrt());
+    let [e, f, g] = edges;
+    let below = l * m * n + dot(e, f) * n + dot(e, g) * m + dot(f, g) * l;
+    2.0 * libm::atan2(six, below)
+}
+
+/// Distance of two centres, over the smaller diameter, below which they are one grain that occurs twice.
+pub(super) const SAME_GRAIN: f64 = 1e-3;
+
+/// Distance of two centres, over the smaller diameter, below which they may well be one grain.
+pub(super) const NEAR: f64 = 0.25;
+
+/// Adds to `pairs` the neighbours nearer than this share of the smaller diameter.
+pub(super) fn nearer(share: f64, t: &Triangulation, mut pairs: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
+    for i in 0..t.tetrahedra() {
+        let (grains, at) = (t.corners(i), t.stored(i));
+        for (a, b) in [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)] {
+            let near = share * 2.0 * at[a][3].min(at[b][3]);
+            let apart = offset(&at[a], &at[b]);
+            if dot(&apart, &apart) < near * near {
+                pairs.push([grains[a].max(grains[b]), grains[a].min(grains[b])]);
+            }
+        }
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
 }
 
 #[cfg(test)]

@@ -167,6 +167,18 @@ pub enum TableError {
 }
 
 impl TableError {
+    /// Refuses a value of a column, in a line of a file.
+    pub(super) fn refused(
+        file: &str,
+        line: usize,
+        field: &'static str,
+        value: impl ToString,
+        allowed: impl Into<String>,
+    ) -> TableError {
+        let at = Position { file: file.into(), line, field, column: None };
+        TableError::Value { at, value: value.to_string(), allowed: allowed.into() }
+    }
+
     /// Moves the error to the rows of the original table: `place` gives the line and the column of a row's
     /// opening or percent, `row_name` the row's name; rows count from 1.
     pub fn placed(
@@ -217,26 +229,32 @@ impl NumberError {
         NumberError { name, value, allowed: allowed.into() }
     }
 
+    /// Refuses a `value` that is not right.
+    pub(crate) fn unless(
+        is_right: bool,
+        name: &'static str,
+        value: f64,
+        allowed: impl FnOnce() -> String,
+    ) -> Result<(), NumberError> {
+        if is_right { Ok(()) } else { Err(NumberError::new(name, value, allowed())) }
+    }
+
     /// Refuses a `value` that is not positive and finite.
     pub(crate) fn unless_positive(name: &'static str, value: f64) -> Result<(), NumberError> {
-        match value > 0.0 && value.is_finite() {
-            true => Ok(()),
-            false => Err(NumberError::new(name, value, "a positive finite number")),
-        }
+        let is_right = value > 0.0 && value.is_finite();
+        NumberError::unless(is_right, name, value, || "a positive finite number".into())
     }
 }
 
 /// Shortens `text` and escapes its hidden characters, for a message on one line.
 pub fn shortened(text: &str) -> String {
     const LONGEST: usize = 60;
-    let mut out: String = text.chars().take(LONGEST).flat_map(shown).collect();
+    let mut out = String::new();
+    for c in text.chars().take(LONGEST) {
+        if is_hidden(c) { out.extend(c.escape_default()) } else { out.push(c) }
+    }
     if text.chars().nth(LONGEST).is_some() {
         out.push_str("...");
     }
     out
-}
-
-/// Escapes a hidden character and leaves any other.
-fn shown(c: char) -> Box<dyn Iterator<Item = char>> {
-    if is_hidden(c) { Box::new(c.escape_default()) } else { Box::new(std::iter::once(c)) }
 }

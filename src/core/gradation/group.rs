@@ -1,12 +1,6 @@
 //! Group of a soil by ASTM D2487, as far as a sieve curve decides it.
 
-use super::sieve::Gradation;
-
-/// Fines are finer than this (mm): the No. 200 sieve.
-pub const FINES_MM: f64 = 0.075;
-
-/// Gravel is coarser than this (mm): the No. 4 sieve.
-pub const GRAVEL_MM: f64 = 4.75;
+use super::sieve::{FINES_MM, GRAVEL_MM, Gradation};
 
 /// Coarser grains are cobbles, which the groups leave out (mm).
 const COBBLES_MM: f64 = 75.0;
@@ -50,15 +44,12 @@ impl Group {
 
     /// Symbol; both possible symbols if the plasticity of the fines decides.
     fn symbol(self) -> String {
-        let letter = |is_gravel| if is_gravel { 'G' } else { 'S' };
         match self {
             Self::FineGrained => "fine-grained".into(),
-            Self::ManyFines { is_gravel, .. } => {
-                let kind = letter(is_gravel);
-                format!("{kind}M or {kind}C")
-            }
+            Self::ManyFines { is_gravel: true, .. } => "GM or GC".into(),
+            Self::ManyFines { .. } => "SM or SC".into(),
             Self::FewFines { is_gravel, is_well_graded, has_fines, .. } => {
-                let kind = letter(is_gravel);
+                let kind = if is_gravel { 'G' } else { 'S' };
                 let clean = format!("{kind}{}", if is_well_graded { 'W' } else { 'P' });
                 if has_fines { format!("{clean}-{kind}M or {clean}-{kind}C") } else { clean }
             }
@@ -145,13 +136,6 @@ impl Gradation {
     /// Symbol of the soil's group, sizes in mm: the group of the part finer than 75 mm, with the soil's other
     /// parts. If the plasticity of the fines decides, both possible symbols; `None` if more than half is
     /// coarser than 75 mm, or a finest tail leaves the group open.
-    ///
-    /// ```
-    /// use voidwalk_core::Gradation;
-    /// let sand = Gradation::from_points(&[(0.1, 0.0), (0.3, 15.0), (1.0, 70.0), (2.0, 100.0)], None)?;
-    /// assert_eq!(sand.group().as_deref(), Some("SP"));
-    /// # Ok::<(), voidwalk_core::gradation::GradationError>(())
-    /// ```
     pub fn group(&self) -> Option<String> {
         Class::classify(self).map(|class| class.symbol())
     }
@@ -166,9 +150,16 @@ impl Gradation {
 mod tests {
     use super::*;
 
+    fn soil(points: &[(f64, f64)]) -> Gradation {
+        Gradation::from_points(points, None).unwrap()
+    }
+
+    fn group(points: &[(f64, f64)]) -> Option<String> {
+        soil(points).group()
+    }
+
     #[test]
     fn groups_are_those_of_the_standard() {
-        let group = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap().group();
         let well = [(0.075, 3.0), (0.2, 10.0), (0.7, 30.0), (2.0, 60.0), (9.5, 100.0)];
         assert_eq!(group(&well).as_deref(), Some("SW, with gravel"));
         assert_eq!(group(&[(0.5, 0.0), (1.0, 100.0)]).as_deref(), Some("SP"));
@@ -198,7 +189,6 @@ mod tests {
 
     #[test]
     fn sand_or_gravel_beside_the_other_is_named_from_15_percent_for_every_group() {
-        let group = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap().group();
         for (finer, name) in [(85.0, "SP-SM or SP-SC, with gravel"), (85.1, "SP-SM or SP-SC")] {
             let sand = [(0.075, 7.0), (0.3, 30.0), (4.75, finer), (19.0, 100.0)];
             assert_eq!(group(&sand).as_deref(), Some(name));
@@ -212,7 +202,6 @@ mod tests {
     /// The whole is a gravel, the classified part a sand.
     #[test]
     fn only_the_part_finer_than_75_mm_is_classified() {
-        let soil = |points: &[(f64, f64)]| Gradation::from_points(points, None).unwrap();
         let cobbles = soil(&[(0.075, 20.0), (4.75, 54.0), (75.0, 80.0), (150.0, 100.0)]);
         assert_eq!(cobbles.group().as_deref(), Some("SM or SC, with gravel and cobbles"));
         let name = "sand with more than 12 % fines in the part finer than 75 mm";

@@ -22,39 +22,23 @@
 //! Sizes are diameters in mm. Only ratios of sizes enter a formula that rounds, so a factor of two
 //! on every length changes no bit of any ratio.
 
-mod between;
-mod burenkova;
-mod comma;
-mod curve_point;
 mod error;
 mod group;
-mod numbers;
 mod regrade;
-mod root;
 mod sampler;
-mod segments;
-mod shape;
 mod sieve;
 mod stability;
 mod supply;
-mod surface;
 mod table;
 
-pub use between::{End, Step, USUAL_STEP, WIDE_STEP};
-pub use burenkova::UniformityFactors;
-pub use comma::{Comma, comma};
-pub use curve_point::{CurvePoint, TIE};
 pub use error::{GradationError, NumberError, Position, TableError, letters, shortened};
-pub use group::{FINES_MM, GRAVEL_MM};
-pub use regrade::{BROAD_CU, FEW_FINES, RegradeCause, RegradeReason, Regraded};
+pub use regrade::{BROAD_CU, FEW_FINES, GAP_PERCENT, Gap, RegradeCause, RegradeReason, Regraded};
 pub(crate) use sampler::SizeGuide;
 pub use sampler::{SizeRange, SizeSampler};
-pub use shape::{GAP_PERCENT, Gap};
-pub use sieve::{FIELDS, Gradation, from_rows};
-pub use stability::{KEZDI_RANGE, ShapeIndex, SoilSplit, WIDE_LOOSE_PERCENT};
+pub use sieve::{CurvePoint, End, FIELDS, FINES_MM, GRAVEL_MM, Gradation, Step};
+pub use sieve::{TIE, USUAL_STEP, WIDE_STEP, from_rows};
+pub use stability::{KEZDI_RANGE, ShapeIndex, SoilSplit, UniformityFactors, WIDE_LOOSE_PERCENT};
 pub use supply::{BaseSupply, base_particles};
+pub use table::{Comma, FILE_LIMIT_BYTES, Row, allowed_percent, allowed_size};
 pub(crate) use table::{Direction, Table, check_size, rising};
-pub use table::{
-    FILE_LIMIT_BYTES, Row, SIZE_MAX_MM, SIZE_MIN_MM, allowed_percent, allowed_size, bytes_of, number,
-    percent_is_allowed, size_is_allowed,
-};
+pub use table::{bytes_of, comma, number, percent_is_allowed, size_is_allowed};

@@ -1,10 +1,16 @@
-//! Makes, checks and reads a sieve curve.
+//! A sieve curve: made, checked, read, and the wide steps between two of its sieves, where nobody knows the
+//! distribution of the mass.
 
-use super::curve_point::{CurvePoint, TIE};
-use super::error::Position;
 use super::error::{GradationError, NumberError, TableError};
-use super::segments::cumulative;
 use super::table::{Direction, Row, check_percent, check_size, rising};
+use serde::Serialize;
+use std::f64::consts::PI;
+
+/// Fines are finer than this (mm): the No. 200 sieve.
+pub const FINES_MM: f64 = 0.075;
+
+/// Gravel is coarser than this (mm): the No. 4 sieve.
+pub const GRAVEL_MM: f64 = 4.75;
 
 /// Names of the two columns in messages.
 pub const FIELDS: [&str; 2] = ["opening_mm", "percent_finer"];
@@ -41,8 +47,8 @@ impl Gradation {
     /// Makes a straight line on semi-log paper from its smallest size: `D_x = d0_mm Cu^(x / 50)`.
     ///
     /// # Errors
-    /// A size out of range (`SIZE_MIN_MM ..= SIZE_MAX_MM`, also for the largest, `d0_mm cu^2`), or a `cu`
-    /// below 1; `cu` = 1 is a single size.
+    /// A size out of range (1e-12 to 1e12 mm, also for the largest, `d0_mm cu^2`), or a `cu` below 1; `cu` =
+    /// 1 is a single size.
     pub fn linear_from_d0(d0_mm: f64, cu: f64) -> Result<Gradation, GradationError> {
         check_size("d0_mm", d0_mm)?;
         check_cu(cu)?;
@@ -68,7 +74,7 @@ impl Gradation {
     /// Makes a gradation of particles of one size.
     ///
     /// # Errors
-    /// A size out of range (`SIZE_MIN_MM ..= SIZE_MAX_MM`).
+    /// A size out of range (1e-12 to 1e12 mm).
     pub fn single(d_mm: f64) -> Result<Gradation, GradationError> {
         check_size("d_mm", d_mm)?;
         Ok(Gradation::new(vec![d_mm], vec![100.0]))
@@ -89,9 +95,6 @@ impl Gradation {
 
     /// Makes a curve that is stated as straight lines between these points, and not by sieves: nothing is
     /// open between them.
-    ///
-    /// # Errors
-    /// Errors of [`Gradation::from_points`].
     pub fn from_lines(points: &[(f64, f64)]) -> Result<Gradation, GradationError> {
         let curve = Gradation::from_points(points, None)?;
         Ok(Gradation { lines: curve.size_mm.len(), ..curve })
@@ -206,10 +209,8 @@ impl Gradation {
 }
 
 fn check_cu(value: f64) -> Result<(), NumberError> {
-    match value >= 1.0 && value.is_finite() {
-        true => Ok(()),
-        false => Err(NumberError::new("cu", value, "a finite number, 1 (a single size) or more")),
-    }
+    let allowed = "a finite number, 1 (a single size) or more";
+    NumberError::unless(value >= 1.0 && value.is_finite(), "cu", value, || allowed.into())
 }
 
 /// Makes a curve from the rows of a table, in ascending or descending order.
@@ -221,26 +222,19 @@ pub fn from_rows(file: &str, rows: Vec<Row>, d0_mm: Option<f64>) -> Result<Grada
     match d0_mm {
         Some(d0) => {
             check_size("d0_mm", d0)?;
-            if finest.percent == 0.0 {
-                let allowed = format!("none, since {file} itself goes down to 0 % (at {} mm)", finest.size);
-                return Err(NumberError::new("d0_mm", d0, allowed).into());
-            }
-            if d0 >= finest.size {
-                let allowed = format!("a size below the finest opening of {file}, {} mm", finest.size);
-                return Err(NumberError::new("d0_mm", d0, allowed).into());
-            }
+            NumberError::unless(finest.percent != 0.0, "d0_mm", d0, || {
+                format!("none, since {file} itself goes down to 0 % (at {} mm)", finest.size)
+            })?;
+            NumberError::unless(d0 < finest.size, "d0_mm", d0, || {
+                format!("a size below the finest opening of {file}, {} mm", finest.size)
+            })?;
             size_mm.insert(0, d0);
             percent.insert(0, 0.0);
         }
         None if single => {
-            return Err(TableError::Value {
-                at: Position { file: file.into(), line: finest.line, field: FIELDS[0], column: None },
-                value: finest.size.to_string(),
-                allowed: "at least two openings, or one and the smallest size (d0_mm); \
-                          one row alone leaves all of the mass of unknown size"
-                    .into(),
-            }
-            .into());
+            let allowed = "at least two openings, or one and the smallest size (d0_mm); one row alone leaves \
+                           all of the mass of unknown size";
+            return Err(TableError::refused(file, finest.line, FIELDS[0], finest.size, allowed).into());
         }
         None => {}
     }
@@ -250,14 +244,231 @@ pub fn from_rows(file: &str, rows: Vec<Row>, d0_mm: Option<f64>) -> Result<Grada
     percent.truncate(end);
     let start = percent.partition_point(|&p| p <= 0.0).saturating_sub(1);
     if end == start + 1 {
-        return Err(TableError::Value {
-            at: Position { file: file.into(), line: finest.line, field: FIELDS[1], column: None },
-            value: finest.percent.to_string(),
-            allowed: "less than 100 at the finest opening (all of the mass is of unknown size), \
-                      or the smallest size (d0_mm)"
-                .into(),
-        }
-        .into());
+        let allowed = "less than 100 at the finest opening (all of the mass is of unknown size), or the \
+                       smallest size (d0_mm)";
+        return Err(TableError::refused(file, finest.line, FIELDS[1], finest.percent, allowed).into());
     }
     Ok(Gradation::sieved(size_mm.split_off(start), percent.split_off(start), usize::from(d0_mm.is_some())))
+}
+
+/// Relative difference allowed between two ways of writing the numbers of one curve.
+pub const TIE: f64 = 1e-9;
+
+/// A point of a gradation or of a constriction curve; in JSON a row of size and percent.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(into = "[f64; 2]")]
+pub struct CurvePoint {
+    /// Diameter of a particle or constriction, in the unit of the curve: mm for a gradation.
+    pub size: f64,
+    /// Percent finer by mass, or smaller by number.
+    pub percent: f64,
+}
+
+impl CurvePoint {
+    /// Row of a record: size, percent.
+    pub fn row(self) -> [f64; 2] {
+        [self.size, self.percent]
+    }
+}
+
+impl From<CurvePoint> for [f64; 2] {
+    fn from(point: CurvePoint) -> Self {
+        point.row()
+    }
+}
+
+/// `(1 - e^(-3 l)) / l`, with its limit at 0.
+fn shape(l: f64) -> f64 {
+    if l > 0.0 { -libm::expm1(-3.0 * l) / l } else { 3.0 }
+}
+
+/// Particles per mm3 of solid in a segment from size `a` to `a e^l`, with mass fraction `m`: the integral of
+/// `6 / (pi D^3) dm`, which is `2 m / (pi a^3) (1 - e^(-3 l)) / l`. The number finer than `D` is linear in
+/// `D^-3`.
+pub(super) fn count(a: f64, l: f64, m: f64) -> f64 {
+    2.0 * m / (PI * (a * a * a)) * shape(l)
+}
+
+/// Particles finer than each point, per mm3 of solid.
+fn cumulative(size_mm: &[f64], percent: &[f64], log_ratio: &[f64]) -> Vec<f64> {
+    if let [d] = size_mm {
+        return vec![6.0 / (PI * (d * d * d))];
+    }
+    let mut total = 0.0;
+    let mut number = vec![0.0];
+    for (i, &l) in log_ratio.iter().enumerate() {
+        total += count(size_mm[i], l, (percent[i + 1] - percent[i]) / 100.0);
+        number.push(total);
+    }
+    number
+}
+
+/// Greatest ratio of two neighbouring sieves between which practice reads a straight line. The openings of
+/// 12.5 and 4.75 mm (2.63) are neighbours among the sieves that ASTM D448 asks for of a No. 57 stone.
+pub const USUAL_STEP: f64 = 2.65;
+
+/// Ratio of two neighbouring sieves above which a rule has no result if its answer depends on the sizes
+/// between them.
+pub const WIDE_STEP: f64 = 4.0;
+
+/// Mass (%) that remains spread over a step that is not wide when the rest of its mass is at one of its
+/// sieves.
+pub(super) const TRACE_PERCENT: f64 = 1e-6;
+
+/// Relative distance from a sieve of mass that counts as being at it, and relative distance of mass beside a
+/// size at which a rule counts fines or gravel.
+const NEXT: f64 = 1e-12;
+const BESIDE: f64 = 1e-6;
+
+/// Parts of a wide step, equal in ln(size); the bounds between them are its single sizes.
+const FILLINGS: i32 = 6;
+
+/// Two neighbouring sieves with a ratio above [`USUAL_STEP`] and mass between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// The finer sieve (mm).
+    pub from_mm: f64,
+    /// The coarser sieve (mm).
+    pub to_mm: f64,
+    segment: usize,
+}
+
+impl Step {
+    /// Tells if the ratio of the sieves is above [`WIDE_STEP`].
+    pub fn is_wide(self) -> bool {
+        self.to_mm > self.from_mm * WIDE_STEP * (1.0 + TIE)
+    }
+
+    /// Ratio of the two sieves.
+    pub fn ratio(self) -> f64 {
+        self.to_mm / self.from_mm
+    }
+
+    /// Tells if a size lies strictly between the two sieves.
+    pub fn holds(self, size_mm: f64) -> bool {
+        size_mm > self.from_mm * (1.0 + TIE) && size_mm < self.to_mm * (1.0 - TIE)
+    }
+
+    /// Tells if a size lies between the two sieves, or on one of them.
+    pub fn encloses(self, size_mm: f64) -> bool {
+        (self.from_mm * (1.0 - TIE)..=self.to_mm * (1.0 + TIE)).contains(&size_mm)
+    }
+}
+
+impl Gradation {
+    /// Finds the steps between sieves that are wider than practice interpolates over, the finest first. A
+    /// stated straight line has none.
+    pub fn open_steps(&self) -> Vec<Step> {
+        let step = |i: usize| Step { from_mm: self.size_mm[i], to_mm: self.size_mm[i + 1], segment: i };
+        let is_open = |i: &usize| {
+            self.percent[i + 1] > self.percent[*i]
+                && self.size_mm[i + 1] > self.size_mm[*i] * USUAL_STEP * (1.0 + TIE)
+        };
+        (self.lines..self.log_ratio.len()).filter(is_open).map(step).collect()
+    }
+
+    /// Fills the curve's own steps with these points between their sieves: size (mm) and percent finer,
+    /// rising.
+    pub fn filled(&self, steps: &[(Step, Vec<(f64, f64)>)]) -> Gradation {
+        let (mut size_mm, mut percent) = (self.size_mm.clone(), self.percent.clone());
+        for (step, points) in steps.iter().rev() {
+            let at = step.segment + 1;
+            size_mm.splice(at..at, points.iter().map(|point| point.0));
+            percent.splice(at..at, points.iter().map(|point| point.1));
+        }
+        Gradation::new(size_mm, percent)
+    }
+
+    /// Points that place the mass of a step at one of its sieves.
+    pub fn mass_at(&self, step: &Step, end: End) -> Vec<(f64, f64)> {
+        let [low, high] = self.percents(step);
+        // The sieves of a step that is not wide keep their own percents: a trace of mass marks each.
+        let trace = if step.is_wide() { 0.0 } else { TRACE_PERCENT.min((high - low) / 3.0) };
+        match end {
+            End::Fine => vec![(step.from_mm * (1.0 + NEXT), high - trace)],
+            End::Coarse => vec![(step.to_mm * (1.0 - NEXT), low + trace)],
+        }
+    }
+
+    /// Points that place the mass of a wide step inside it, in case neither of its ends is the worst: at
+    /// single sizes, and in two parts with a gap between them.
+    pub fn fillings(&self, step: &Step) -> Vec<Vec<(f64, f64)>> {
+        let [low, high] = self.percents(step);
+        let within =
+            (1..FILLINGS).map(|i| step.from_mm * libm::pow(step.ratio(), f64::from(i) / f64::from(FILLINGS)));
+        let beside = |size: f64| [size * (1.0 - 2.0 * BESIDE), size * (1.0 + BESIDE)];
+        let sizes = [FINES_MM, GRAVEL_MM].into_iter().flat_map(beside).chain(within);
+        // A gap covers a factor of four.
+        let sizes = sizes.chain([step.from_mm * 3.9, step.to_mm / 3.9]);
+        let at_once = sizes.filter(|size| step.holds(*size) && step.holds(size * (1.0 + BESIDE)));
+        let at_once = at_once.map(|size| vec![(size, low), (size * (1.0 + NEXT), high)]);
+        let parts = [0.1, 0.25, 0.5, 0.75].map(|part| low + part * (high - low));
+        let parts = parts.into_iter().chain([10.0, 20.0, 30.0, 80.0]);
+        let parts = parts.filter(|percent| low < *percent && *percent < high);
+        let ends = [step.from_mm * (1.0 + NEXT), step.to_mm * (1.0 - NEXT)];
+        at_once.chain(parts.map(|percent| ends.map(|end| (end, percent)).to_vec())).collect()
+    }
+
+    /// Percent finer than each of the two sieves of a step.
+    fn percents(&self, step: &Step) -> [f64; 2] {
+        [self.percent[step.segment], self.percent[step.segment + 1]]
+    }
+
+    /// D_x as the largest size (mm) that no more than `percent` of the mass is finer than; [`Gradation::d`]
+    /// gives the smallest: they differ where the curve is flat at this percent.
+    pub fn coarse_d(&self, percent: f64) -> Option<f64> {
+        let above = self.percent.partition_point(|&p| p <= percent + 100.0 * TIE);
+        match above.checked_sub(1).map(|i| (self.percent[i], self.size_mm[i])) {
+            Some((p, d)) if (p - percent).abs() <= 100.0 * TIE => Some(d),
+            _ => self.d(percent),
+        }
+    }
+}
+
+/// Place of a step's mass at one of its two sieves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// At the finer sieve.
+    Fine,
+    /// At the coarser sieve.
+    Coarse,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_of_common_sieves_is_no_open_one() {
+        let stone = [(2.36, 1.0), (4.75, 5.0), (12.5, 42.5), (25.0, 97.5), (37.5, 100.0)];
+        assert!(Gradation::from_points(&stone, None).unwrap().open_steps().is_empty());
+        let four = Gradation::from_points(&[(0.075, 0.0), (0.3, 50.0), (1.3, 100.0)], None).unwrap();
+        assert_eq!(four.open_steps().iter().map(|step| step.is_wide()).collect::<Vec<_>>(), [false, true]);
+        // No sieve is missing between the finest sieve and a size that the user states.
+        let stated = Gradation::from_points(&[(0.3, 12.0), (0.6, 100.0)], Some(0.01)).unwrap();
+        assert!(stated.open_steps().is_empty());
+    }
+
+    #[test]
+    fn mass_stands_at_either_end_of_a_step() {
+        let sparse = Gradation::from_points(&[(0.3, 12.0), (38.0, 60.0), (75.0, 100.0)], None).unwrap();
+        let steps = sparse.open_steps();
+        for (end, d15, finer) in [(End::Fine, 0.3, 60.0), (End::Coarse, 38.0, 12.0)] {
+            let curve = sparse.filled(&[(steps[0], sparse.mass_at(&steps[0], end))]);
+            assert!((curve.d(15.0).unwrap() / d15 - 1.0).abs() < 1e-11);
+            assert!((curve.percent_finer_by_mass(5.0) - finer).abs() < 1e-5);
+            assert_eq!(curve.percent_finer_by_mass(0.3), 12.0);
+            assert_eq!(curve.d(80.0), sparse.d(80.0));
+            assert_eq!(curve.d(12.0), Some(0.3));
+            assert!((curve.coarse_d(60.0).unwrap() / 38.0 - 1.0).abs() < 1e-11);
+        }
+    }
+
+    #[test]
+    fn a_flat_curve_has_two_sizes_of_its_percent() {
+        let flat = Gradation::from_points(&[(0.6, 0.0), (1.18, 15.0), (2.36, 15.0), (4.75, 100.0)], None);
+        let flat = flat.unwrap();
+        assert_eq!((flat.d(15.0), flat.coarse_d(15.0)), (Some(1.18), Some(2.36)));
+        assert_eq!(flat.d(40.0), flat.coarse_d(40.0));
+    }
 }

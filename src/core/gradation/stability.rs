@@ -1,4 +1,4 @@
-//! Tests if a soil holds its own fines: the two classical indices of a sieve curve's shape.
+//! Tests if a soil holds its own fines, by the shape of its sieve curve.
 //!
 //! - Kenney and Lau (1985, 1986): F is the mass finer than D, H the mass between D and 4 D. If H is less than
 //!   F, the coarse part does not hold the fine part. Only the part of a curve that can be loose counts: F up
@@ -20,7 +20,7 @@
 //! they are found exactly. A pan fraction is left out: its effect is not known.
 
 use super::Gradation;
-use super::curve_point::TIE;
+use super::sieve::TIE;
 
 /// Largest Cu of a narrowly graded soil.
 const NARROW_CU: f64 = 3.0;
@@ -68,14 +68,6 @@ impl Gradation {
     /// Index of Kenney and Lau: the least H / F over F up to [`Gradation::loose_percent`].
     ///
     /// `None` for a single size, or if D_10 lies in a pan fraction or that pan fraction reaches beyond F.
-    ///
-    /// ```
-    /// use voidwalk_core::gradation::Gradation;
-    /// // 20 % of fines, then a gap of a factor 10: nothing between D and 4 D at F = 20 %.
-    /// let gap = Gradation::from_points(&[(0.1, 0.0), (0.2, 20.0), (2.0, 20.0), (20.0, 100.0)], None)?;
-    /// assert_eq!(gap.kenney_lau().unwrap().value, 0.0);
-    /// # Ok::<(), voidwalk_core::gradation::GradationError>(())
-    /// ```
     pub fn kenney_lau(&self) -> Option<ShapeIndex> {
         self.least_of_next(self.loose_percent()?, |finer| finer)
     }
@@ -106,8 +98,8 @@ impl Gradation {
 
     /// The least H / `over(F)` for F up to `limit` (%).
     fn least_of_next(&self, limit: f64, over: impl Fn(f64) -> f64) -> Option<ShapeIndex> {
-        let last = self.highest_size_at(limit)?;
-        let between = self.highest_size_at(BETWEEN);
+        let last = self.coarse_d(limit)?;
+        let between = self.coarse_d(BETWEEN);
         let candidates = self.size_mm.iter().flat_map(|&d| [d, d / 4.0]).chain([last]).chain(between);
         let index = |d: f64| {
             let finer = self.percent_finer_by_mass(d);
@@ -128,16 +120,6 @@ impl Gradation {
     /// Kezdi's split: the greatest D'15 / d'85 over splits with d'85 within [`KEZDI_RANGE`].
     ///
     /// `None` for a single size, or if a pan fraction hides all of that range.
-    ///
-    /// ```
-    /// use voidwalk_core::gradation::Gradation;
-    /// // Half of the soil is finer than 1 mm: d'85 of that half is D42.5, D'15 of the other half is D57.5.
-    /// let soil = Gradation::linear_from_d0(0.1, 10.0)?;
-    /// let split = soil.kezdi().unwrap();
-    /// assert!((soil.d(0.85 * split.percent).unwrap() / split.fine_d85_mm - 1.0).abs() < 1e-12);
-    /// assert!((split.value - split.coarse_d15_mm / split.fine_d85_mm).abs() < 1e-12);
-    /// # Ok::<(), voidwalk_core::gradation::GradationError>(())
-    /// ```
     pub fn kezdi(&self) -> Option<SoilSplit> {
         let splits: Vec<SoilSplit> =
             self.splits(KEZDI_RANGE[1]).filter_map(|finer| self.split(finer)).collect();
@@ -165,15 +147,9 @@ impl Gradation {
     /// Split with d'85 at the percent `finer`: the split is at 1/0.85 times `finer`, and D'15 at 15 % more of
     /// the whole mass.
     fn split(&self, finer: f64) -> Option<SoilSplit> {
-        let (coarse, fine) = (self.highest_size_at(finer + BETWEEN)?, self.d(finer)?);
+        let (coarse, fine) = (self.coarse_d(finer + BETWEEN)?, self.d(finer)?);
         let percent = finer / 0.85;
         Some(SoilSplit { value: coarse / fine, percent, coarse_d15_mm: coarse, fine_d85_mm: fine })
-    }
-
-    /// Largest size (mm) that no more than `percent` of the mass is finer than; [`Gradation::d`] gives the
-    /// smallest.
-    fn highest_size_at(&self, percent: f64) -> Option<f64> {
-        self.coarse_d(percent)
     }
 }
 
@@ -187,6 +163,53 @@ fn greatest(places: &[f64], holds: impl Fn(f64) -> bool) -> Option<f64> {
         if holds(middle) { low = middle } else { high = middle }
     }
     Some(low)
+}
+
+/// Burenkova's two conditional factors of uniformity of a soil.
+///
+/// - Burenkova (1993): a soil without cohesion, with grains of up to 100 mm and a Cu of up to 200, keeps its
+///   fines where `0.76 lg h'' + 1 < h' < 1.86 lg h'' + 1`.
+/// - Wan and Fell (2004, 2008): logistic regression of tests on broadly graded and gap-graded soils gives the
+///   probability that a soil loses its fines, `1 / (1 + exp(-Z))`: `Z = 3.875 lg h'' - 3.591 h' + 2.436` for
+///   sand and gravel with up to 10 % of fines that are not plastic, `Z = 2.378 lg h'' - 3.648 h' + 3.701` for
+///   silt, sand and gravel.
+///
+/// Source: the manual named above, chapters "Burenkova Method" and "Modified Burenkova Method". One stored
+/// version of it prints D10 in the equation of h'' and D15 in its list of symbols; the published page, its
+/// text and the chapter on Wan and Fell have D15.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UniformityFactors {
+    /// `h' = D90 / D60`: steepness of the coarse part.
+    pub coarse: f64,
+    /// `h'' = D90 / D15`: distance of the fine part below it.
+    pub whole: f64,
+}
+
+impl UniformityFactors {
+    /// Bounds of `h'` between which Burenkova's soils kept their fines.
+    pub fn stable(&self) -> [f64; 2] {
+        let lg = libm::log10(self.whole);
+        [0.76 * lg + 1.0, 1.86 * lg + 1.0]
+    }
+
+    /// Wan and Fell's probability (0 to 1) that the soil loses its fines: with the equation for sand and
+    /// gravel with few fines, or the one for silt, sand and gravel.
+    pub fn probability_of_instability(&self, few_fines: bool) -> f64 {
+        let lg = libm::log10(self.whole);
+        let z = match few_fines {
+            true => 3.875 * lg - 3.591 * self.coarse + 2.436,
+            false => 2.378 * lg - 3.648 * self.coarse + 3.701,
+        };
+        1.0 / (1.0 + libm::exp(-z))
+    }
+}
+
+impl Gradation {
+    /// Burenkova's factors; `None` if D15 lies in a pan fraction.
+    pub fn uniformity_factors(&self) -> Option<UniformityFactors> {
+        let [d15, d60, d90] = [self.d(15.0)?, self.d(60.0)?, self.d(90.0)?];
+        Some(UniformityFactors { coarse: d90 / d60, whole: d90 / d15 })
+    }
 }
 
 #[cfg(test)]
@@ -247,15 +270,8 @@ mod tests {
     /// The extremes equal those of a fine scan of the curve.
     #[test]
     fn extremes_are_those_of_a_scan() {
-        let g = points(&[
-            (0.05, 0.0),
-            (0.2, 8.0),
-            (0.5, 11.0),
-            (2.0, 30.0),
-            (5.0, 34.0),
-            (9.0, 80.0),
-            (40.0, 100.0),
-        ]);
+        let start = [(0.05, 0.0), (0.2, 8.0), (0.5, 11.0), (2.0, 30.0)];
+        let g = points(&[&start[..], &[(5.0, 34.0), (9.0, 80.0), (40.0, 100.0)]].concat());
         let limit = g.loose_percent().unwrap();
         let (mut least, mut most) = (f64::MAX, 0f64);
         for i in 1..=20_000 {
@@ -334,5 +350,35 @@ mod tests {
         assert!(tail.kezdi().is_some());
         assert_eq!(Gradation::single(1.0).unwrap().kezdi(), None);
         assert_eq!(Gradation::single(1.0).unwrap().kenney_lau(), None);
+    }
+
+    /// By hand for D15 0.1, D60 5, D90 10 mm: h' = 2, h'' = 100, lg h'' = 2; bounds 2.52 and 4.72; Z = 7.75 -
+    /// 7.182 + 2.436 = 3.004 and 4.756 - 7.296 + 3.701 = 1.161.
+    #[test]
+    fn factors_bounds_and_probabilities_by_hand() {
+        let points = [(0.05, 0.0), (0.1, 15.0), (5.0, 60.0), (10.0, 90.0), (20.0, 100.0)];
+        let factors = Gradation::from_points(&points, None).unwrap().uniformity_factors().unwrap();
+        assert!((factors.coarse - 2.0).abs() < 1e-12 && (factors.whole - 100.0).abs() < 1e-9);
+        for (computed, by_hand) in [
+            (factors.stable()[0], 2.52),
+            (factors.stable()[1], 4.72),
+            (factors.probability_of_instability(true), 1.0 / (1.0 + (-3.004f64).exp())),
+            (factors.probability_of_instability(false), 1.0 / (1.0 + (-1.161f64).exp())),
+        ] {
+            assert!((computed - by_hand).abs() < 1e-9, "{computed} {by_hand}");
+        }
+    }
+
+    /// A straight line on semi-log paper has h' = Cu^0.6 and h'' = Cu^1.5: such filters are stable at a usual
+    /// Cu.
+    #[test]
+    fn straight_filters_keep_their_fines() {
+        for cu in [1.5, 3.0, 6.0] {
+            let factors = Gradation::linear_from_d0(1.0, cu).unwrap().uniformity_factors().unwrap();
+            let [low, high] = factors.stable();
+            assert!((factors.coarse - cu.powf(0.6)).abs() < 1e-9, "{factors:?}");
+            assert!((factors.whole - cu.powf(1.5)).abs() < 1e-9, "{factors:?}");
+            assert!(low < factors.coarse && factors.coarse < high, "{cu}");
+        }
     }
 }

@@ -1,5 +1,7 @@
-//! Number of base particles that a test inserts: Eq. (2) of the paper.
+//! Numbers and surfaces of particles, and the number of base particles that a test inserts: Eq. (2) of the
+//! paper.
 
+use super::sieve::count;
 use super::{Gradation, GradationError, NumberError};
 
 /// Number of base particles, and its cap.
@@ -33,16 +35,6 @@ pub struct BaseSupply {
 /// # Errors
 /// A mass ratio or grains per void that is not a positive finite number, no voids, or a number of
 /// particles that does not fit u64. A result that rounds to 0 is returned as it is.
-///
-/// ```
-/// use voidwalk_core::gradation::{Gradation, base_particles};
-/// let filter = Gradation::single(1.0)?;
-/// let base = Gradation::single(0.1)?;
-/// // A tenth of the size: a thousand times as many in the same volume.
-/// let supply = base_particles(0.05, 0.6, 96_000, &base, &filter, None)?;
-/// assert_eq!(supply.n_base, 2_880_000);
-/// # Ok::<(), voidwalk_core::gradation::GradationError>(())
-/// ```
 pub fn base_particles(
     mass_ratio: f64,
     grains_per_void: f64,
@@ -53,18 +45,111 @@ pub fn base_particles(
 ) -> Result<BaseSupply, GradationError> {
     NumberError::unless_positive("mass_ratio", mass_ratio)?;
     NumberError::unless_positive("grains_per_void", grains_per_void)?;
-    if voids == 0 {
-        return Err(NumberError::new("voids", 0.0, "at least one void").into());
-    }
+    NumberError::unless(voids > 0, "voids", 0.0, || "at least one void".into())?;
     let per_grain = base.particles_per_unit_volume() / filter.particles_per_unit_volume();
     let n = (mass_ratio * (grains_per_void * voids as f64) * per_grain).round();
     // 2^64 itself does not fit.
-    if n.is_nan() || n >= 18_446_744_073_709_551_616.0 {
-        return Err(NumberError::new("n_base", n, "less than 2^64").into());
-    }
+    NumberError::unless(n < 18_446_744_073_709_551_616.0, "n_base", n, || "less than 2^64".into())?;
     let n_base_eq2 = n as u64;
     let n_base = cap.map_or(n_base_eq2, |cap| n_base_eq2.min(cap));
     Ok(BaseSupply { n_base, n_base_eq2, capped: n_base < n_base_eq2 })
+}
+
+impl Gradation {
+    /// Number of particles of known size in one mm3 of solid: the integral of `6 / (pi D^3)` over the mass
+    /// fraction. Base and filter have one solid density, so the ratio of two of these is `N_base,unit /
+    /// N_filter,unit` of Eq. (2). A pan fraction is in the solid, not in the number.
+    pub fn particles_per_unit_volume(&self) -> f64 {
+        self.number[self.number.len() - 1]
+    }
+
+    /// Percent by number, among the particles of known size, no coarser than `d_mm`.
+    pub fn percent_finer_by_number(&self, d_mm: f64) -> f64 {
+        100.0 * self.number_fraction_in(0.0, d_mm)
+    }
+
+    /// Smallest size (mm) that `percent` by number of the particles of known size is finer than or equal to;
+    /// `None` outside 0 to 100.
+    pub fn d_by_number(&self, percent: f64) -> Option<f64> {
+        if !(0.0..=100.0).contains(&percent) {
+            return None;
+        }
+        if self.size_mm.len() == 1 {
+            return Some(self.size_mm[0]);
+        }
+        let target = percent / 100.0 * self.particles_per_unit_volume();
+        let i = self.number.partition_point(|&n| n < target).max(1);
+        let (a, b) = (self.size_mm[i - 1], self.size_mm[i]);
+        let (low, high) = (self.number[i - 1], self.number[i]);
+        if target <= low || high == low {
+            return Some(a);
+        }
+        if target >= high {
+            return Some(b);
+        }
+        // The share of the segment's particles is (1 - (a / D)^3) / (1 - e^(-3 L)).
+        let share = (target - low) / (high - low);
+        let x = -libm::expm1(-3.0 * self.log_ratio[i - 1]) * share;
+        Some((a / libm::cbrt(1.0 - x)).clamp(a, b))
+    }
+
+    /// Share by number, 0 to 1, of the particles of known size that are coarser than `low_mm` and no
+    /// coarser than `high_mm`.
+    pub fn number_fraction_in(&self, low_mm: f64, high_mm: f64) -> f64 {
+        (self.number_in(low_mm, high_mm) / self.particles_per_unit_volume()).min(1.0)
+    }
+
+    /// Particles per mm3 of solid in `low_mm < D <= high_mm`.
+    fn number_in(&self, low_mm: f64, high_mm: f64) -> f64 {
+        if self.size_mm.len() == 1 {
+            let inside = low_mm < self.size_mm[0] && self.size_mm[0] <= high_mm;
+            return if inside { self.number[0] } else { 0.0 };
+        }
+        let mut number = 0.0;
+        for (i, &whole) in self.log_ratio.iter().enumerate() {
+            let (a, b) = (self.size_mm[i], self.size_mm[i + 1]);
+            if low_mm <= a && b <= high_mm {
+                number += self.number[i + 1] - self.number[i];
+                continue;
+            }
+            let (from, to) = (a.max(low_mm), b.min(high_mm));
+            if from < to {
+                let l = libm::log(to / from);
+                // The mass per unit of ln(D) is m / whole.
+                let m = (self.percent[i + 1] - self.percent[i]) / 100.0;
+                number += count(from, l, if whole > 0.0 { (m * (l / whole)).min(m) } else { m });
+            }
+        }
+        number
+    }
+
+    /// Share, 0 to 1, of the surface of the particles of known size that belongs to those coarser than
+    /// `d_mm`.
+    ///
+    /// Mass `m` spread evenly over ln(D) from `a` to `b` has the surface `6 m (1/a - 1/b) / ln(b/a)` for one
+    /// mm3 of solid.
+    ///
+    /// ```
+    /// use voidwalk_core::gradation::Gradation;
+    /// // Linear, D100/D0 = 36: (1/9 - 1/36) / (1 - 1/36) of the surface is coarser than 9 D0.
+    /// let soil = Gradation::linear_from_d0(1.0, 6.0)?;
+    /// assert!((soil.surface_coarser_than(9.0) - 3.0 / 35.0).abs() < 1e-12);
+    /// # Ok::<(), voidwalk_core::gradation::GradationError>(())
+    /// ```
+    pub fn surface_coarser_than(&self, d_mm: f64) -> f64 {
+        let (mut coarser, mut all) = (0.0, 0.0);
+        for (i, &log_ratio) in self.log_ratio.iter().enumerate() {
+            let (a, b) = (self.size_mm[i], self.size_mm[i + 1]);
+            let mass = self.percent[i + 1] - self.percent[i];
+            if log_ratio <= 0.0 || mass <= 0.0 {
+                continue;
+            }
+            let coarser_than = |from: f64| (mass / log_ratio * (1.0 / from - 1.0 / b)).max(0.0);
+            all += coarser_than(a);
+            coarser += coarser_than(d_mm.clamp(a, b));
+        }
+        if all > 0.0 { coarser / all } else { f64::from(u8::from(self.largest_mm() > d_mm)) }
+    }
 }
 
 #[cfg(test)]

@@ -5,16 +5,13 @@
 //! quotes; empty fields at the end of a row, as spreadsheets write them. A row is the header if it is the
 //! first and has no number among its fields.
 
-use super::comma::{Comma, comma};
-use super::error::{NumberError, Position, TableError, shortened};
+use super::error::{NumberError, TableError, shortened};
 use crate::store::read_regular;
 use std::path::Path;
 
-/// Smallest size that an input may hold (mm).
-pub const SIZE_MIN_MM: f64 = 1e-12;
-
-/// Largest size that an input may hold (mm).
-pub const SIZE_MAX_MM: f64 = 1e12;
+/// Smallest and largest size that an input may hold (mm).
+const SIZE_MIN_MM: f64 = 1e-12;
+const SIZE_MAX_MM: f64 = 1e12;
 
 /// Largest file that is read, in bytes.
 pub const FILE_LIMIT_BYTES: u64 = 16 << 20;
@@ -38,16 +35,17 @@ impl Row {
         [size_field, percent_field]: [&'static str; 2],
     ) -> Result<Vec<Row>, TableError> {
         for row in &mut rows {
-            let refused = |field, value: f64, allowed| TableError::Value {
-                at: Position { file: file.into(), line: row.line, field, column: None },
-                value: value.to_string(),
-                allowed,
-            };
             if !size_is_allowed(row.size) {
-                return Err(refused(size_field, row.size, allowed_size()));
+                return Err(TableError::refused(file, row.line, size_field, row.size, allowed_size()));
             }
             if !percent_is_allowed(row.percent) {
-                return Err(refused(percent_field, row.percent, allowed_percent()));
+                return Err(TableError::refused(
+                    file,
+                    row.line,
+                    percent_field,
+                    row.percent,
+                    allowed_percent(),
+                ));
             }
             // Minus zero is zero.
             row.percent += 0.0;
@@ -141,15 +139,11 @@ impl Table {
             && is(Comma::Decimal).is_none()
             && let Some((line, value)) = is(Comma::Either)
         {
-            return Err(TableError::Value {
-                at: Position { file: self.file.clone(), line, field: "number", column: None },
-                allowed: format!(
-                    "{} or {}: here the comma may be a decimal sign or separate thousands",
-                    value.replace(',', "."),
-                    value.replace(',', "")
-                ),
-                value: shortened(&value),
-            });
+            let (as_decimal, as_thousands) = (value.replace(',', "."), value.replace(',', ""));
+            let allowed = format!(
+                "{as_decimal} or {as_thousands}: here the comma may be a decimal sign or separate thousands"
+            );
+            return Err(TableError::refused(&self.file, line, "number", shortened(&value), allowed));
         }
         let with = |sign: char| {
             self.rows.iter().find_map(|(line, fields)| {
@@ -157,14 +151,13 @@ impl Table {
             })
         };
         match (with('.'), with(',')) {
-            (Some((dot_line, _)), Some((line, value))) => Err(TableError::Value {
-                at: Position { file: self.file.clone(), line, field: "number", column: None },
-                value: shortened(value),
-                allowed: format!(
+            (Some((dot_line, _)), Some((line, value))) => {
+                let allowed = format!(
                     "one decimal sign in the whole file (line {dot_line} has a decimal point), no \
                      thousands separators"
-                ),
-            }),
+                );
+                Err(TableError::refused(&self.file, line, "number", shortened(value), allowed))
+            }
             _ => Ok(()),
         }
     }
@@ -181,10 +174,8 @@ impl Table {
         size_field: &'static str,
         percent_field: &'static str,
     ) -> Result<Vec<Row>, TableError> {
-        let refused = |line, field, value: &str, allowed: String| TableError::Value {
-            at: Position { file: self.file.clone(), line, field, column: None },
-            value: shortened(value),
-            allowed,
+        let refused = |line, field, value: &str, allowed: String| {
+            TableError::refused(&self.file, line, field, shortened(value), allowed)
         };
         let mut rows = Vec::new();
         for (line, fields) in &self.rows {
@@ -220,18 +211,12 @@ pub fn bytes_of(path: &Path) -> Result<Vec<u8>, TableError> {
 
 /// Refuses a `value` that is not allowed as a size.
 pub(crate) fn check_size(name: &'static str, value: f64) -> Result<(), NumberError> {
-    match size_is_allowed(value) {
-        true => Ok(()),
-        false => Err(NumberError::new(name, value, allowed_size())),
-    }
+    NumberError::unless(size_is_allowed(value), name, value, allowed_size)
 }
 
 /// Refuses a `value` that is not allowed as a percentage.
 pub(super) fn check_percent(name: &'static str, value: f64) -> Result<(), NumberError> {
-    match percent_is_allowed(value) {
-        true => Ok(()),
-        false => Err(NumberError::new(name, value, allowed_percent())),
-    }
+    NumberError::unless(percent_is_allowed(value), name, value, allowed_percent)
 }
 
 /// Tells if a size is allowed.
@@ -271,11 +256,8 @@ pub(crate) fn rising(
     fields: [&'static str; 2],
     direction: Direction,
 ) -> Result<Vec<Row>, TableError> {
-    let refused = |line, field, value: f64, allowed: String| TableError::Value {
-        at: Position { file: file.to_string(), line, field, column: None },
-        value: value.to_string(),
-        allowed,
-    };
+    let refused =
+        |line, field, value: f64, allowed: String| TableError::refused(file, line, field, value, allowed);
     let [size_field, percent_field] = fields;
     let descending = match &rows[..] {
         [first, .., last] if first.size != last.size => first.size > last.size,
@@ -334,9 +316,7 @@ fn split(line: &str, delimiter: char) -> Vec<String> {
             }
         }
     }
-    for field in &mut fields {
-        *field = field.trim().to_string();
-    }
+    fields.iter_mut().for_each(|field| *field = field.trim().to_string());
     while fields.last().is_some_and(String::is_empty) {
         fields.pop();
     }
@@ -354,5 +334,47 @@ pub fn number(field: &str) -> Option<f64> {
         (0, _) => field.parse().ok(),
         (1, false) => field.replace(',', ".").parse().ok(),
         _ => None,
+    }
+}
+
+/// Meaning of the comma in a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Comma {
+    /// A decimal sign.
+    Decimal,
+    /// A decimal sign, or one between thousands, as in `1,180`.
+    Either,
+}
+
+/// Reads the only comma of the number in a text, such as `1,180 um`.
+pub fn comma(text: &str) -> Option<Comma> {
+    let at = text.find(',')?;
+    let before = text[..at].bytes().rev().take_while(u8::is_ascii_digit).count();
+    let after = text[at + 1..].bytes().take_while(u8::is_ascii_digit).count();
+    let first = text.as_bytes()[at - before];
+    let ends = text[at + 1 + after..].starts_with([',', '.']);
+    match (before, after) {
+        _ if ends || text[at + 1..].contains(',') => None,
+        (0, _) | (_, 0) => None,
+        (1..=3, 3) if first != b'0' => Some(Comma::Either),
+        _ => Some(Comma::Decimal),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_digits_behind_a_comma_may_be_thousands() {
+        for text in ["1,180", "100,000", "1,180 um", "1,000%"] {
+            assert_eq!(comma(text), Some(Comma::Either), "{text}");
+        }
+        for text in ["0,180", "1,18", "1180,000", "97,5 %", "4,75 mm"] {
+            assert_eq!(comma(text), Some(Comma::Decimal), "{text}");
+        }
+        for text in ["1180", "1,", ",5", "No. 4, fine", "1,000,000", "Dam, north"] {
+            assert_eq!(comma(text), None, "{text}");
+        }
     }
 }

@@ -86,7 +86,6 @@ impl Network {
     }
 }
 
-/// An array and its name.
 type Named = (&'static str, Array);
 
 /// Number of voids: the entries of the longest array with an entry for each void; without such an array the

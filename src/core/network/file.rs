@@ -1,15 +1,12 @@
 //! Networks in CSV files.
 //!
-//! Header `from,to,diameter_mm`. A row `FROM,TO,D` is a constriction from void FROM to void TO; `TO`
-//! = `end` leaves the filter. A row `start,ID,` makes void ID a start node. Void ids count from 0
-//! without gaps. Exits of a void keep the order of their rows. Lines that begin with `#` are
-//! comments; `# shape = nx, ny, nz` marks the cubic lattice, whose exits must be where +x, +y, +z
-//! of that lattice lead.
+//! Header `from,to,diameter_mm`. A row `FROM,TO,D` is a constriction from void FROM to void TO; `TO` = `end`
+//! leaves the filter. A row `start,ID,` makes void ID a start node. Void ids count from 0 without gaps. Exits
+//! of a void keep the order of their rows. Lines that begin with `#` are comments; `# shape = nx, ny, nz`
+//! marks the cubic lattice, whose exits must be where +x, +y, +z of that lattice lead.
 
-use std::io::Write;
-
-use super::listed::listed_twice;
 use super::{END, Network};
+use std::io::Write;
 
 /// Bytes that one void of a cubic lattice takes while it is walked: three constrictions, tables and tallies.
 const BYTES_A_VOID: f64 = 215.0;
@@ -106,8 +103,7 @@ impl Network {
     /// # Errors
     /// Names file, line, field, value and what is allowed.
     pub fn from_csv(bytes: &[u8], file: &str, unit_mm: f64) -> Result<Self, NetworkError> {
-        let rows = Rows::parse(bytes, file)?;
-        rows.into_network(file, unit_mm)
+        Rows::parse(bytes, file)?.into_network(file, unit_mm)
     }
 
     /// Writes the network as CSV, such that [`Network::from_csv`] gives it back bit for bit.
@@ -135,7 +131,6 @@ impl Network {
     }
 }
 
-/// The rows of a file, each checked on its own.
 #[derive(Default)]
 struct Rows {
     shape: Option<[u32; 3]>,
@@ -252,45 +247,60 @@ impl Rows {
                  and back or again; keep one row of each"
             )));
         }
-        let (exit_begin, slots) = in_order_of_voids(voids, &self.from);
-        let mut target = vec![END; self.from.len()];
-        let mut diameter = vec![0f32; self.from.len()];
-        for ((&slot, &to), &mm) in slots.iter().zip(&self.to).zip(&self.diameter_mm) {
-            let slot = slot as usize;
-            target[slot] = to;
-            diameter[slot] = (mm / unit_mm) as f32;
-            if !diameter[slot].is_finite() || (mm > 0.0 && diameter[slot] < f32::MIN_POSITIVE) {
-                return Err(whole(format!(
-                    "diameter {mm} mm is too far from the reference length {unit_mm} mm"
-                )));
-            }
+        let unit = |&mm: &f64| {
+            let d = (mm / unit_mm) as f32;
+            let is_far = !d.is_finite() || (mm > 0.0 && d < f32::MIN_POSITIVE);
+            let problem = || format!("diameter {mm} mm is too far from the reference length {unit_mm} mm");
+            if is_far { Err(whole(problem())) } else { Ok(d) }
+        };
+        let diameter = self.diameter_mm.iter().map(unit).collect::<Result<Vec<f32>, _>>()?;
+        let (network, _) = Network::of_rows(voids, &self.from, &self.to, &diameter, self.start, unit_mm);
+        let Some(shape) = self.shape else { return Ok(network) };
+        let lattice = Network::cubic_from_diameters(shape, network.diameter, unit_mm)
+            .map_err(|error| whole(error.to_string()))?;
+        if lattice.target != network.target
+            || lattice.start != network.start
+            || lattice.exit_begin != network.exit_begin
+        {
+            return Err(whole(format!("says `# shape = {shape:?}`, but its rows are not that lattice")));
         }
-        if let Some(shape) = self.shape {
-            let lattice =
-                Network::cubic_from_diameters(shape, diameter, unit_mm).map_err(|e| whole(e.to_string()))?;
-            if lattice.target != target || lattice.start != self.start || lattice.exit_begin != exit_begin {
-                return Err(whole(format!("says `# shape = {shape:?}`, but its rows are not that lattice")));
-            }
-            return Ok(lattice);
-        }
-        let mut network = Network {
+        Ok(lattice)
+    }
+}
+
+impl Network {
+    /// Builds the network of directed constrictions, a row for each; also returns their places among the
+    /// exits.
+    pub(super) fn of_rows(
+        voids: usize,
+        from: &[u32],
+        to: &[u32],
+        diameter: &[f32],
+        start: Vec<u32>,
+        unit_mm: f64,
+    ) -> (Self, Vec<u32>) {
+        let (exit_begin, slots) = in_order_of_voids(voids, from);
+        let mut network = Self {
             exit_begin,
-            target,
-            diameter,
-            start: self.start,
+            target: vec![END; to.len()],
+            diameter: vec![0.0; to.len()],
+            start,
             layer: vec![],
             unit_mm,
             shape: None,
             undirected: None,
         };
+        for ((&slot, &to), &d) in slots.iter().zip(to).zip(diameter) {
+            (network.target[slot as usize], network.diameter[slot as usize]) = (to, d);
+        }
         network.layer = network.distances(|_| true);
-        Ok(network)
+        (network, slots)
     }
 }
 
 /// First exit of each void with one more entry at the end, and the place of each constriction among the
 /// exits, for constrictions that lead from these voids.
-pub(super) fn in_order_of_voids(voids: usize, from: &[u32]) -> (Vec<u32>, Vec<u32>) {
+fn in_order_of_voids(voids: usize, from: &[u32]) -> (Vec<u32>, Vec<u32>) {
     let mut exit_begin = vec![0u32; voids + 1];
     for &from in from {
         exit_begin[from as usize + 1] += 1;
@@ -310,6 +320,63 @@ pub(super) fn in_order_of_voids(voids: usize, from: &[u32]) -> (Vec<u32>, Vec<u3
 fn parse_shape(text: &str) -> Option<[u32; 3]> {
     let lengths: Vec<u32> = text.split(',').map(|n| n.trim().parse().ok()).collect::<Option<_>>()?;
     lengths.try_into().ok()
+}
+
+/// Allowed difference of the sizes of one constriction listed there and back, as a part of the larger.
+const BACK: f64 = 2e-3;
+/// Allowed difference of the sizes of a row that is listed again, as a part of the larger.
+const AGAIN: f64 = 1e-9;
+/// Number of rows below which partners may arise by chance.
+const FEW: usize = 8;
+
+/// Lower and higher void, sizes, whether the row leads back, and its number.
+type Row = ([i64; 2], [f64; 2], bool, usize);
+
+/// Finds two rows that are one constriction, if too many rows are listed twice: there and back, as in lists
+/// of neighbours, or the same row again. One constriction would become two, and one of them would stay open
+/// when the other is blocked. Some voids may well be joined by several constrictions, which can all be passed
+/// both ways: half of all rows there and back, whatever their sizes, are too many, and so is a twentieth of
+/// like sizes. If each row leads one way (`directed`), only nine rows of ten of like sizes are too many.
+pub(super) fn listed_twice(
+    rows: impl Iterator<Item = ([i64; 2], [f64; 2])>,
+    directed: bool,
+) -> Option<[usize; 2]> {
+    let with_key = |(row, ([a, b], sizes)): (usize, ([i64; 2], [f64; 2]))| -> Row {
+        ([a.min(b), a.max(b)], sizes, a > b, row)
+    };
+    let mut rows: Vec<Row> =
+        rows.enumerate().map(with_key).filter(|row| row.0[0] >= 0 && row.0[0] < row.0[1]).collect();
+    rows.sort_unstable_by(|a, b| {
+        let by_size = a.1[0].total_cmp(&b.1[0]).then(a.1[1].total_cmp(&b.1[1]));
+        a.0.cmp(&b.0).then(by_size).then((a.2, a.3).cmp(&(b.2, b.3)))
+    });
+    let like = |a: [f64; 2], b: [f64; 2], part: f64| {
+        (0..2).all(|k| (a[k] - b[k]).abs() <= part * a[k].abs().max(b[k].abs()))
+    };
+    let are_alike = rows.windows(2).all(|pair| like(pair[0].1, pair[1].1, AGAIN));
+    let (mut twice, mut back, mut first) = (0, 0, None);
+    for same in rows.chunk_by(|a, b| a.0 == b.0) {
+        let pairs = |turned: bool, part: f64| {
+            let is_pair =
+                |pair: &&[Row]| (pair[0].2 != pair[1].2) == turned && like(pair[0].1, pair[1].1, part);
+            (2 * same.windows(2).filter(is_pair).count()).min(same.len())
+        };
+        let both_ways = same.iter().any(|row| row.2 != same[0].2);
+        let (of_back, of_again) = (pairs(true, BACK), if are_alike { 0 } else { pairs(false, AGAIN) });
+        let count = if both_ways && !directed { same.len() } else { (of_back + of_again).min(same.len()) };
+        twice += count;
+        back += of_back;
+        if count > 0 && first.is_none() {
+            let (one, other) = (&same[0], same.iter().find(|row| row.2 != same[0].2).unwrap_or(&same[1]));
+            first = Some([one.3.min(other.3), one.3.max(other.3)]);
+        }
+    }
+    let too_many = match directed {
+        // Two of them may join the same voids, each its own way.
+        true => twice >= 3 * FEW && 10 * twice >= 9 * rows.len(),
+        false => 2 * twice >= rows.len() || !are_alike && back >= FEW && 20 * back >= rows.len(),
+    };
+    first.filter(|_| too_many)
 }
 
 #[cfg(test)]

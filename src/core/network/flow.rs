@@ -6,31 +6,23 @@
 //! an approximate factor (module `elimination`) of the open constrictions, or of those that were open until a
 //! few closed. So an answer depends, within the accuracy asked for, on those before. If conductances lie so
 //! far apart that fluxes cannot be told from residuals, voids are eliminated without subtraction (module
-//! `exact`), provided the network is small enough. Module `thresholds` defines when a flow counts as solved.
+//! `exact`), provided the network is small enough. Module `system` defines when a flow counts as solved.
 
 mod elimination;
-mod error;
 mod exact;
-mod permeability;
-mod rest;
-mod system;
-mod thresholds;
-mod together;
+pub(super) mod system;
 
+use super::exit_rule::NO_TWIN;
+use super::{END, Network};
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
-
-use super::twins::NO_TWIN;
-use super::{END, Network};
 use exact::Eliminated;
-use system::{Kept, System};
-use thresholds::{
-    CLEAR, CLOSELY, CLOSEST, CONVERGED, ELIMINATED, KEPT_UNTIL, KNOWN, NO_FLUX, RESOLVED, ROUNDING,
+use system::{
+    CLEAR, CLOSELY, CLOSEST, CONVERGED, ELIMINATED, KEPT_UNTIL, KNOWN, Kept, NO_FLUX, RESOLVED, ROUNDING,
+    System, Together,
 };
-use together::Together;
 
-pub use error::FlowError;
-pub use permeability::permeability_mm2;
+pub use system::FlowError;
 
 /// Conductance and permeability of a network.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +33,6 @@ pub struct Permeability {
     pub k_mm2: Option<f64>,
 }
 
-/// A constriction as water sees it.
 struct Passage {
     /// The void that it is an exit of.
     one: u32,
@@ -57,15 +48,12 @@ struct Meets {
     end: bool,
 }
 
-/// Both.
 const THROUGH: Meets = Meets { reservoir: true, end: true };
 
 /// The flow through an undirected network, solved again and again as constrictions close.
 pub struct Flow {
-    /// Each constriction once.
     passages: Vec<Passage>,
     reservoir: Option<u32>,
-    /// Exits of the reservoir.
     inlets: std::ops::Range<usize>,
     /// Pressure by void, and behind the filter.
     pressure: Vec<f64>,
@@ -89,7 +77,6 @@ pub struct Flow {
     most: f64,
     /// Number of voids that were too many to eliminate; far fewer are tried again.
     too_many: usize,
-    /// Factor kept from one solution to the next.
     kept: Option<Kept>,
     /// By void: true if water flowed through it when the kept factor was first wanted.
     inside: BitVec,
@@ -261,7 +248,7 @@ impl Flow {
         }
         let conductance = if leads_through && through > 0.0 { through } else { 0.0 };
         self.most = self.most.max(conductance);
-        let factor = network.undirected.as_ref().and_then(|u| u.permeability_mm2);
+        let factor = network.undirected.as_ref().and_then(|u| u.permeability_factor);
         Ok(Permeability { conductance, k_mm2: factor.map(|factor| factor * conductance) })
     }
 
@@ -286,7 +273,6 @@ impl Flow {
         (0..outside as u32).map(|void| of_root[together.root(void) as usize]).collect()
     }
 
-    /// Sets the conductances that these blocked constrictions leave.
     fn set_blocked(&mut self, network: &Network, blocked: &BitSlice, rho: f64) {
         assert_eq!(blocked.len(), self.open.len(), "one bit for each exit");
         if std::mem::take(&mut self.is_of_parts) {
@@ -395,7 +381,6 @@ impl Flow {
         self.pressure[reservoir as usize] = 1.0;
     }
 
-    /// Sets fluxes from the falls of pressure through passages.
     fn set_fluxes(&mut self, network: &Network, falls: &[f64]) {
         for (passage, fall) in self.passages.iter().zip(falls) {
             let exit = passage.exit as usize;

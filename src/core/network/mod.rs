@@ -17,30 +17,27 @@ mod connectivity;
 mod cubic;
 mod exit_rule;
 mod file;
-mod first_passage;
 mod flow;
 mod graph;
-mod listed;
 mod passage;
-mod percolation;
+mod possible_exits;
 mod reach;
-mod twins;
 mod undirected;
 
 pub use arrays::ArrayOptions;
 pub use columns::{CONDUCTANCE_EXPONENT, NO_EXIT, NetworkColumns};
-pub use connectivity::{Connectivity, TABLE_3, TOLERANCE_PERCENT};
+pub use connectivity::{Connectivity, TABLE_3};
+pub use cubic::percolation_threshold;
 pub use exit_rule::ExitRule;
 pub use file::NetworkError;
-pub use first_passage::FirstPassage;
-pub use flow::{Flow, FlowError, Permeability, permeability_mm2};
-pub use graph::GraphShape;
-pub use passage::Passage;
-pub use percolation::percolation_threshold;
+pub use flow::{Flow, FlowError, Permeability};
+pub use graph::{GraphShape, permeability_mm2};
+pub use passage::{FirstPassage, Passage};
+pub use possible_exits::TOLERANCE_PERCENT;
 pub use reach::Reachability;
 pub use undirected::{FLOW_TOLERANCE, Link, LinkEnd, LinkedVoids, WIDE, flow_error_pp};
 
-use twins::{Undirected, hash_column};
+use exit_rule::{Undirected, hash_column};
 
 /// Target of an exit that leaves the filter.
 pub const END: u32 = u32::MAX;
@@ -49,21 +46,11 @@ pub const END: u32 = u32::MAX;
 pub const NO_LAYER: u32 = u32::MAX;
 
 /// Voids, constrictions and start nodes, as columns.
-///
-/// ```
-/// use voidwalk_core::{Network, constrictions::find};
-/// let curve = find("cu1.5-loose")?.curve()?.in_mm(1.0)?;
-/// // Three constrictions lead on from each void of the lattice.
-/// let network = Network::cubic([10, 10, 20], &curve, 1.0, 7)?;
-/// assert_eq!((network.voids(), network.constrictions()), (2000, 6000));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Network {
     /// First exit of each void, and one more entry: exits of void `v` are constrictions
     /// `exit_begin[v] .. exit_begin[v + 1]`.
     exit_begin: Vec<u32>,
-    /// Downstream void of each constriction, or [`END`].
     target: Vec<u32>,
     /// Diameter of each constriction in units of `unit_mm`; 0 is closed from the start.
     diameter: Vec<f32>,
@@ -71,9 +58,7 @@ pub struct Network {
     start: Vec<u32>,
     /// Layer of each void, counted from 0: z on a lattice, else the fewest moves from a start node.
     layer: Vec<u32>,
-    /// Length of one unit of `diameter` (mm).
     unit_mm: f64,
-    /// Voids along x, y, z where the network is the cubic lattice.
     shape: Option<[u32; 3]>,
     /// Columns that exist only if constrictions have no direction of their own.
     undirected: Option<Box<Undirected>>,

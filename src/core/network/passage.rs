@@ -1,8 +1,7 @@
-//! Depth that one particle reaches in a clean cubic lattice: Eq. (1) of the paper.
+//! Depth that one particle reaches, which blocks nothing that matters to it. In each void it picks an open
+//! exit with a probability proportional to area, and is stopped where that exit is finer than it.
 //!
-//! A particle that alone enters a clean network blocks nothing that matters to it. In each void it picks one
-//! of three exits with a probability proportional to area; it is stopped where that exit is finer than it.
-//! With independent constrictions
+//! On a clean cubic lattice with independent constrictions (Eq. (1) of the paper, [`Passage`])
 //!
 //! ```text
 //! q = E[ area of exits finer than d / area of all three ]     stopped in this attempt
@@ -14,7 +13,20 @@
 //! Schuler's network, in which a void has five exits; this P(F) holds for the directed lattice that the
 //! program walks. It takes every void as new, which holds for lattices wider than a particle's way around
 //! them.
+//!
+//! On a given network ([`FirstPassage`]), with `t(e)` the void that exit `e` leads to and `p_e` its share,
+//!
+//! ```text
+//! leaves(v) = sum over exits e that it fits of p_e (1 if e leads out, else leaves(t(e)))
+//! moves(v)  = sum over exits e that it fits of p_e (1 + (0 if e leads out, else moves(t(e))))
+//! ```
+//!
+//! The smallest solution of the first is the probability to leave; the second is the mean number of completed
+//! moves, infinite where the particle may be trapped in closed loops. Gauss-Seidel sweeps, downstream voids
+//! first: on a lattice that is periodic sideways only the rows of a layer wait for each other, so some tens
+//! of sweeps do.
 
+use super::{END, Network, NetworkError};
 use crate::constrictions::Curve;
 
 /// Parts of the curve over which the first of three exits is followed.
@@ -105,11 +117,185 @@ impl<'a> Passage<'a> {
     }
 }
 
+/// Relative change below which sweeps end.
+const CONVERGED: f64 = 1e-15;
+
+/// Constrictions looked at until an answer is given up: seconds. A loop that is left once in `n` moves takes
+/// some `30 n` sweeps.
+const MOST_LOOKS: usize = 1 << 30;
+
+/// Sweeps until an answer is given up on the largest network, at least.
+const LEAST_SWEEPS: usize = 1 << 12;
+
+/// Expectations of a single particle, by the void that it starts in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FirstPassage {
+    /// Probability to leave the filter.
+    pub leaves: Vec<f64>,
+    /// Mean number of completed moves, the one that leaves included.
+    pub moves: Vec<f64>,
+}
+
+impl FirstPassage {
+    /// Mean of both over the start nodes of the network: a particle starts on each with the same probability.
+    pub fn from_start(&self, network: &Network) -> (f64, f64) {
+        let mean = |values: &[f64]| {
+            let sum: f64 = network.start().iter().map(|&void| values[void as usize]).sum();
+            sum / network.start().len() as f64
+        };
+        (mean(&self.leaves), mean(&self.moves))
+    }
+}
+
+impl Network {
+    /// Expectations of a single particle of diameter `d` (in units of [`Network::unit_mm`]) while `closed`
+    /// constrictions, and those of size 0, are closed.
+    ///
+    /// ```
+    /// use voidwalk_core::network::Network;
+    /// // One void: it leaves through z by the share of area, or is stopped by the finer x; y leads back.
+    /// let network = Network::cubic_from_diameters([1, 1, 1], vec![1.0, 2.0, 2.0], 1.0)?;
+    /// let passage = network.first_passage(1.5, |_| false)?;
+    /// assert!((passage.leaves[0] - 0.8).abs() < 1e-12);
+    /// // x is closed: nothing stops it, and it leaves after two moves on average.
+    /// let passage = network.first_passage(1.5, |c| c == 0)?;
+    /// assert!((passage.leaves[0] - 1.0).abs() < 1e-12 && (passage.moves[0] - 2.0).abs() < 1e-12);
+    /// # Ok::<(), voidwalk_core::network::NetworkError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Loops have so narrow a way out that the answer would take too long.
+    pub fn first_passage(
+        &self,
+        d: f32,
+        closed: impl Fn(usize) -> bool,
+    ) -> Result<FirstPassage, NetworkError> {
+        let weight = |c: usize| if closed(c) { 0.0 } else { self.exit_weight(c) };
+        let (share, mut ends) = self.shares(weight, d);
+        self.upstream_of(&share, &mut ends);
+        // Closed loops without an end, and all that leads there.
+        let mut unending: Vec<bool> = ends.iter().map(|ends| !ends).collect();
+        self.upstream_of(&share, &mut unending);
+        let most = (MOST_LOOKS / self.constrictions().max(1)).max(LEAST_SWEEPS);
+        let leaves = self.relax(&share, &vec![false; self.voids()], |out| f64::from(u8::from(out)), most)?;
+        let moves = self.relax(&share, &unending, |_| 1.0, most)?;
+        Ok(FirstPassage { leaves, moves })
+    }
+
+    /// By exit: its share of the weights in its void, if a particle of this size fits. By void: true if such
+    /// a particle may leave or be stopped there.
+    fn shares(&self, weight: impl Fn(usize) -> f64, d: f32) -> (Vec<f64>, Vec<bool>) {
+        let mut share = vec![0.0; self.constrictions()];
+        let mut ends = vec![false; self.voids()];
+        for void in 0..self.voids() as u32 {
+            let total: f64 = self.exits(void).map(&weight).sum();
+            for c in self.exits(void).filter(|&c| weight(c) > 0.0) {
+                if self.diameter[c] >= d {
+                    share[c] = weight(c) / total;
+                }
+                ends[void as usize] |= self.diameter[c] < d || self.target[c] == END;
+            }
+            ends[void as usize] |= total == 0.0;
+        }
+        (share, ends)
+    }
+
+    /// Marks the voids from which a marked one can be reached through exits with a share, and returns all
+    /// marked voids, each after the one that its shortest way leads to.
+    fn upstream_of(&self, share: &[f64], marked: &mut [bool]) -> Vec<u32> {
+        let (begin, entrances) = self.entrances();
+        let upstream = self.upstream();
+        let mut marked_voids: Vec<u32> =
+            (0..self.voids() as u32).filter(|&void| marked[void as usize]).collect();
+        let mut next = 0;
+        while let Some(&void) = marked_voids.get(next) {
+            next += 1;
+            for &entrance in &entrances[begin[void as usize] as usize..begin[void as usize + 1] as usize] {
+                let above = upstream[entrance as usize];
+                if share[entrance as usize] > 0.0 && !marked[above as usize] {
+                    marked[above as usize] = true;
+                    marked_voids.push(above);
+                }
+            }
+        }
+        marked_voids
+    }
+
+    /// Approximate number of moves that a particle that fits everywhere makes until it leaves, comes to a
+    /// void without an open exit, or is in closed loops for good; infinite if that is more than numbers can
+    /// hold. It looks at about `most` constrictions, one after another, and extrapolates from there by the
+    /// changes.
+    pub fn moves_to_an_end(&self, most: u64) -> f64 {
+        let area = |c: usize| f64::from(self.diameter[c]) * f64::from(self.diameter[c]);
+        let (share, mut ends) = self.shares(area, 0.0);
+        let order = self.upstream_of(&share, &mut ends);
+        let mut moves = vec![0.0; self.voids()];
+        // Means after each round; once they grow by a constant ratio, the rest of the sum is known.
+        let mut means = vec![0.0];
+        // From layer to layer an answer takes a few rounds.
+        let least = 4 * self.layers() + 100;
+        let most = usize::try_from(most / self.constrictions().max(1) as u64).unwrap_or(usize::MAX);
+        let most = most.min(1 << 20).max(least);
+        loop {
+            for &void in &order {
+                let one = |c: usize| match self.target[c] {
+                    _ if share[c] == 0.0 => 0.0,
+                    END => share[c],
+                    to => share[c] * (1.0 + moves[to as usize]),
+                };
+                moves[void as usize] = self.exits(void).map(one).sum();
+            }
+            let sum: f64 = self.start.iter().map(|&void| moves[void as usize]).sum();
+            means.push(sum / self.start.len() as f64);
+            let (last, half) = (means.len() - 1, means.len() / 2);
+            let grown = means[last] - means[last - 1];
+            if grown <= 1e-9 * means[last] {
+                return means[last];
+            }
+            if last == most {
+                let before = means[half] - means[half - 1];
+                let part = libm::pow(grown / before, 1.0 / (last - half) as f64);
+                return if part < 1.0 { means[last] + grown * part / (1.0 - part) } else { f64::INFINITY };
+            }
+        }
+    }
+
+    /// Finds, in at most this many sweeps, the smallest solution of
+    /// `x(v) = sum share_e (gain(e leads out) + x(t(e)))`; infinite where `unending`.
+    fn relax(
+        &self,
+        share: &[f64],
+        unending: &[bool],
+        gain: impl Fn(bool) -> f64,
+        most: usize,
+    ) -> Result<Vec<f64>, NetworkError> {
+        let mut x: Vec<f64> = unending.iter().map(|&u| if u { f64::INFINITY } else { 0.0 }).collect();
+        for _ in 0..most {
+            let mut change = 0f64;
+            for void in (0..self.voids()).rev().filter(|&void| !unending[void]) {
+                let one = |c: usize| match self.target[c] {
+                    _ if share[c] == 0.0 => 0.0,
+                    END => share[c] * gain(true),
+                    to => share[c] * (gain(false) + x[to as usize]),
+                };
+                let new: f64 = self.exits(void as u32).map(one).sum();
+                if new > 0.0 {
+                    change = change.max((new - x[void]).abs() / new);
+                }
+                x[void] = new;
+            }
+            if change <= CONVERGED {
+                return Ok(x);
+            }
+        }
+        Err(NetworkError::NarrowWayOut { sweeps: most })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::constrictions::find;
-    use crate::network::Network;
 
     #[test]
     fn one_size_of_constriction_stops_all_or_none() {
@@ -154,5 +340,68 @@ mod tests {
                 / network.voids() as f64;
             assert!((passage.stopped(d) - mean).abs() < 0.003, "Dc{percent}: {} {mean}", passage.stopped(d));
         }
+    }
+
+    /// With equal constrictions a third of the moves leads downstream, on a lattice of any width: 3 nz moves.
+    #[test]
+    fn equal_constrictions_take_three_moves_a_layer() {
+        let network = Network::cubic_from_diameters([3, 2, 7], vec![0.5; 126], 1.0).unwrap();
+        let (leaves, moves) = network.first_passage(0.5, |_| false).unwrap().from_start(&network);
+        assert!((leaves - 1.0).abs() < 1e-12 && (moves - 21.0).abs() < 1e-9, "{leaves} {moves}");
+        assert_eq!(network.first_passage(0.6, |_| false).unwrap().leaves, vec![0.0; 42]);
+    }
+
+    /// x and y lead round, z is closed: it never leaves, and never stops moving.
+    #[test]
+    fn a_particle_that_circles_never_leaves() {
+        let network = Network::cubic_from_diameters([2, 2, 2], vec![1.0; 24], 1.0).unwrap();
+        let passage = network.first_passage(0.5, |c| c % 3 == 2 && c >= 12).unwrap();
+        assert_eq!(
+            (passage.leaves[0], passage.moves[0], passage.moves[4]),
+            (0.0, f64::INFINITY, f64::INFINITY)
+        );
+        // Once everything is closed it moves no more.
+        let stuck = network.first_passage(0.5, |_| true).unwrap();
+        assert_eq!((stuck.leaves[0], stuck.moves[0]), (0.0, 0.0));
+    }
+
+    /// A loop that is left once in a million million moves would be swept for days; one that is left once in
+    /// ten thousand has its answer.
+    #[test]
+    fn an_answer_that_takes_too_long_is_given_up_in_words() {
+        let passage = |narrow: f64| {
+            let text = format!("from,to,diameter_mm\nstart,0,\n0,0,1\n0,end,{narrow}\n");
+            let network = Network::from_csv(text.as_bytes(), "n.csv", 1.0).unwrap();
+            network.first_passage(0.0, |_| false).map(|passage| passage.from_start(&network))
+        };
+        let (leaves, moves) = passage(0.01).unwrap();
+        assert!((leaves - 1.0).abs() < 1e-9 && (moves / 10_001.0 - 1.0).abs() < 1e-6, "{leaves} {moves}");
+        // With as few sweeps as on a large network, so that the test is short.
+        let text = "from,to,diameter_mm\nstart,0,\n0,0,1\n0,end,0.000001\n";
+        let network = Network::from_csv(text.as_bytes(), "n.csv", 1.0).unwrap();
+        let error = network.relax(&[1.0, 1e-12], &[false], |_| 1.0, 1000).unwrap_err().to_string();
+        assert!(error.contains("after 1000 sweeps") && error.contains("way out"), "{error}");
+    }
+
+    /// Loops with a way out that is taken once in a million and in a million million moves, of one void and
+    /// of many; and ordinary lattices, closed loops and dead ends, which take few.
+    #[test]
+    fn narrow_ways_out_are_known_without_going_them() {
+        let moves =
+            |text: &str| Network::from_csv(text.as_bytes(), "n.csv", 1.0).unwrap().moves_to_an_end(1 << 22);
+        let head = "from,to,diameter_mm\nstart,0,\n";
+        let about = |moves: f64, wanted: f64| (moves / wanted - 1.0).abs() < 0.02;
+        assert!(about(moves(&format!("{head}0,0,1\n0,end,0.001\n")), 1e6));
+        assert!(moves(&format!("{head}0,0,1000\n0,end,0.001\n")) > 1e11);
+        assert!(about(moves(&format!("{head}0,1,1\n1,2,1\n2,0,1\n2,end,0.001\n")), 3e6));
+        // The way out hides in a void that is seldom seen and easily left.
+        assert!(about(moves(&format!("{head}0,1,1\n1,0,1\n1,2,0.001\n2,0,1\n2,end,1\n")), 4e6));
+        assert!(moves(&format!("{head}0,1,1\n1,0,1\n")) == 0.0);
+        assert!(moves(&format!("{head}0,1,1\n0,end,1\n1,1,1\n")) <= 1.0);
+        assert!(moves(&format!("{head}0,1,1\n1,2,1\n2,2,0\n")) == 2.0);
+        let lattice = Network::cubic_from_diameters([5, 4, 40], vec![0.5; 2400], 1.0).unwrap();
+        assert!(about(lattice.moves_to_an_end(1 << 22), 120.0));
+        let few = lattice.moves_to_an_end(0);
+        assert!(about(few, 120.0), "{few}");
     }
 }

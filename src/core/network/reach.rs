@@ -21,12 +21,15 @@ impl Network {
     /// Tells if an open way leads from a start node out of the network: nothing can leave any other network,
     /// whatever it would hold.
     pub fn leads_out(&self) -> bool {
-        let open = |c: usize| self.diameter[c] > 0.0;
-        let reached = self.distances(open);
-        let is_last = |&void: &u32| {
-            reached[void as usize] != NO_LAYER && self.exits(void).any(|c| self.target[c] == END && open(c))
-        };
-        (0..self.voids() as u32).any(|void| is_last(&void))
+        self.leads_out_by(|c| self.diameter[c] > 0.0)
+    }
+
+    /// Tells if constrictions that `open` admits lead from a start node out of the network.
+    pub(super) fn leads_out_by(&self, open: impl Fn(usize) -> bool) -> bool {
+        let reached = self.distances(&open);
+        let is_last = |c: usize| self.target[c] == END && open(c);
+        let mut voids = (0..self.voids() as u32).filter(|&void| reached[void as usize] != NO_LAYER);
+        voids.any(|void| self.exits(void).any(is_last))
     }
 
     /// Share of all constrictions that lie on a path from start to end through constrictions that `open`
@@ -50,7 +53,7 @@ impl Network {
     /// Number of these constrictions on a lattice: layer by layer, as no path leads back into one that it
     /// left.
     fn on_paths_of_lattice(&self, shape: [u32; 3], open: impl Fn(usize) -> bool) -> u64 {
-        let [nx, _, _, plane, voids] = lengths(shape);
+        let [nx, plane, voids] = lengths(shape);
         let open = open_exits(voids, open);
         let mut leads_out = vec![false; voids];
         for v in (voids - plane..voids).filter(|&v| open[v] & ALONG_Z > 0) {
@@ -177,10 +180,10 @@ const ALONG_X: u8 = 1;
 const ALONG_Y: u8 = 2;
 const ALONG_Z: u8 = 4;
 
-/// Voids of a lattice along x, y and z, in a layer, and in all.
-fn lengths(shape: [u32; 3]) -> [usize; 5] {
+/// Voids of a lattice along x, in a layer, and in all.
+fn lengths(shape: [u32; 3]) -> [usize; 3] {
     let [nx, ny, nz] = shape.map(|n| n as usize);
-    [nx, ny, nz, nx * ny, nx * ny * nz]
+    [nx, nx * ny, nx * ny * nz]
 }
 
 /// By void of a lattice: the bits of its exits that are open.
@@ -192,7 +195,7 @@ fn open_exits(voids: usize, open: impl Fn(usize) -> bool) -> Vec<u8> {
 /// Adds the voids of a lattice from which open exits lead to marked ones: layer by layer, as no exit leads
 /// back into a layer, so that memory is read close together.
 fn spread_upstream(shape: [u32; 3], open: &[u8], leads: &mut [bool]) {
-    let [nx, _, _, plane, voids] = lengths(shape);
+    let [nx, plane, voids] = lengths(shape);
     let mut stack = Vec::new();
     for layer in (0..voids).step_by(plane).rev() {
         for v in layer..layer + plane {

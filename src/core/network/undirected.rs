@@ -6,9 +6,8 @@
 //!
 //! The reservoir is the last void, so that all others keep their numbers.
 
-use super::exit_rule::ExitRule;
-use super::twins::{NO_TWIN, Undirected};
-use super::{END, Network, NetworkError};
+use super::exit_rule::{NO_TWIN, Undirected};
+use super::{END, ExitRule, Network, NetworkError};
 
 /// Default tolerance of the flow in a walk.
 pub const FLOW_TOLERANCE: f64 = 0.03;
@@ -146,7 +145,7 @@ impl Network {
                 flow_tolerance: FLOW_TOLERANCE,
                 volume: voids.volume,
                 passages,
-                permeability_mm2: voids.permeability_mm2,
+                permeability_factor: voids.permeability_mm2,
             })),
         };
         network.leads_through()?;
@@ -183,24 +182,20 @@ impl Network {
         };
         let mean = (0..self.constrictions()).map(conductance).sum::<f64>() / self.constrictions() as f64;
         let mut links = Vec::with_capacity(self.constrictions() + self.start.len());
-        for &void in &self.start {
-            links.push(Link {
-                from: LinkEnd::Outside,
-                to: LinkEnd::Void(void),
-                diameter: WIDE,
-                conductance: mean,
-                rise: 1.0,
-            });
-        }
+        let inlet = |&void: &u32| Link {
+            from: LinkEnd::Outside,
+            to: LinkEnd::Void(void),
+            diameter: WIDE,
+            conductance: mean,
+            rise: 1.0,
+        };
+        links.extend(self.start.iter().map(inlet));
         for void in 0..self.voids() as u32 {
             for c in self.exits(void) {
-                let to = match self.target[c] {
-                    END => LinkEnd::Outside,
-                    to => LinkEnd::Void(to),
-                };
-                let rise = match to {
-                    LinkEnd::Void(to) if self.layer[to as usize] == self.layer[void as usize] => 0.0,
-                    _ => 1.0,
+                let (to, rise) = match self.target[c] {
+                    END => (LinkEnd::Outside, 1.0),
+                    to if self.layer[to as usize] == self.layer[void as usize] => (LinkEnd::Void(to), 0.0),
+                    to => (LinkEnd::Void(to), 1.0),
                 };
                 links.push(Link {
                     from: LinkEnd::Void(void),
@@ -213,11 +208,10 @@ impl Network {
         }
         let voids = LinkedVoids {
             layer: self.layer.clone(),
-            volume: Vec::new(),
             unit_mm: self.unit_mm,
             rule,
             rho,
-            permeability_mm2: None,
+            ..LinkedVoids::default()
         };
         Self::linked(voids, &links)
     }
@@ -307,12 +301,7 @@ impl Network {
             return Err(nowhere("it has no outlet: no constriction leads out of the filter"));
         }
         let open = |c: usize| self.diameter[c] > 0.0 && self.conductance(c) > 0.0;
-        let distance = self.distances(open);
-        let out = |v: &u32| {
-            distance[*v as usize] != super::NO_LAYER
-                && self.exits(*v).any(|c| self.target[c] == END && open(c))
-        };
-        match (0..self.voids() as u32).any(|v| out(&v)) {
+        match self.leads_out_by(open) {
             true => Ok(()),
             false => Err(nowhere("no open way leads from an inlet to an outlet")),
         }

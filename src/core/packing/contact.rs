@@ -50,7 +50,6 @@ pub(super) struct Law {
     pub tangential: f64,
     /// Damping coefficient over `sqrt(m kn)`.
     pub damping: f64,
-    /// Coulomb friction.
     pub friction: f64,
     /// Cuts the normal force at zero.
     pub clip: bool,
@@ -59,13 +58,10 @@ pub(super) struct Law {
 /// Input of one step besides the grains.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Now {
-    /// Width of the cell.
     pub cell: f64,
-    /// Height of the cell by its width.
     pub aspect: Aspect,
     /// Relative growth of the cell per unit of time.
     pub strain_rate: f64,
-    /// Time step.
     pub step: f64,
     /// Reach for a new pick of the close pairs, if one is due.
     pub pick: Option<Reach>,
@@ -80,14 +76,12 @@ pub(super) struct Grains<'a> {
     pub velocity: &'a [[f64; 4]],
     /// Angular velocity; unused.
     pub spin: &'a [[f64; 4]],
-    /// Chunk of each grain.
     pub chunk: &'a [u16],
 }
 
 /// Forces for the grains of another chunk.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Outbox {
-    /// The grain.
     pub grain: Vec<u32>,
     /// Force; normal stiffness.
     pub force: Vec<[f64; 4]>,
@@ -113,9 +107,7 @@ pub(super) struct Work {
     pub outbox: Vec<Outbox>,
     /// Sum of normal force times distance of the centres.
     pub virial: f64,
-    /// Sum of the normal forces.
     pub normal: f64,
-    /// Contacts.
     pub contacts: u64,
 }
 
@@ -156,7 +148,6 @@ struct Block {
     torque: [Lanes; 3],
     /// Normal stiffness; zero where the grains do not touch.
     stiffness: Lanes,
-    /// Normal force.
     normal: Lanes,
     /// Normal force times distance.
     virial: Lanes,

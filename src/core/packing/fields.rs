@@ -1,7 +1,12 @@
-//! The fields of a packing file, and the errors of a file that cannot be used.
+//! The content of a packing file before anything is added to it: its fields, its unit, and the errors of a
+//! file that cannot be used.
 
+use super::Cell;
 use crate::gradation::{Position, shortened};
+use crate::schema::Leaf;
 use crate::store::in_mb;
+use serde::{Deserialize, Serialize};
+use std::str::FromStr;
 
 /// Largest packing file that is read, in bytes, and largest size that a packed file may unpack to.
 pub const PACKING_FILE_LIMIT_BYTES: u64 = 4 << 30;
@@ -28,66 +33,40 @@ pub enum ImportError {
         source: std::io::Error,
     },
     /// A folder in place of a file.
-    #[error("{file} is a folder; name a file of grains: {known}", known = KNOWN)]
-    Folder {
-        /// Folder as the user named it.
-        file: String,
-    },
+    #[error("{0} is a folder; name a file of grains: {known}", known = KNOWN)]
+    Folder(String),
     /// A file of no known format.
-    #[error("{file} is no packing that is known: {looks_like}. Known are: {known}", known = KNOWN)]
-    Unknown {
-        /// File as the user named it.
-        file: String,
-        /// Description of its actual content.
-        looks_like: String,
-    },
+    #[error("{0} is no packing that is known: {1}. Known are: {known}", known = KNOWN)]
+    Unknown(String, String),
     /// Neither the file nor the user gives the unit of its lengths.
     #[error(
-        "{file} does not say the unit of its lengths, and a guess may be wrong by a factor of 1000; say it: \
+        "{0} does not say the unit of its lengths, and a guess may be wrong by a factor of 1000; say it: \
          --unit m (or cm, mm, um, nm), in a scene network.unit = \"m\"{programs}",
         programs = UNITS_OF_PROGRAMS
     )]
-    NoUnit {
-        /// File as the user named it.
-        file: String,
-    },
+    NoUnit(String),
     /// Neither the file nor the user tells if the boundaries are periodic.
     #[error(
-        "{file} does not say whether its boundaries are periodic; say it: --cell none for free ones, --cell \
-         Lx,Ly,Lz for a periodic cell with a corner at the origin (in the file's unit){bounds}; in a scene \
+        "{0} does not say whether its boundaries are periodic; say it: --cell none for free ones, --cell \
+         Lx,Ly,Lz for a periodic cell with a corner at the origin (in the file's unit){1}; in a scene \
          network.cell"
     )]
-    NoCell {
-        /// File as the user named it.
-        file: String,
-        /// Further option, if the file gives bounds.
-        bounds: &'static str,
-    },
+    NoCell(String, &'static str),
     /// Boundaries that are periodic along some axes only.
     #[error(
-        "{file}: its box is periodic along some axes only, and a cell is periodic along all or none; say \
+        "{0}: its box is periodic along some axes only, and a cell is periodic along all or none; say \
          --cell none to take its grains as free ones; in a scene network.cell"
     )]
-    Mixed {
-        /// File as the user named it.
-        file: String,
-    },
+    Mixed(String),
     /// Grains that do not fit the periodic cell given for them.
-    #[error("{file}: the grains do not fit their cell: {problem}")]
-    Misfit {
-        /// File as the user named it.
-        file: String,
-        /// Evidence of the misfit.
-        problem: String,
-    },
+    #[error("{0}: the grains do not fit their cell: {1}")]
+    Misfit(String, String),
     /// A file larger than any packing.
-    #[error("{file} is larger than {}; allowed: a packing file up to that size", in_mb(*.limit))]
-    TooLarge {
-        /// File as the user named it.
-        file: String,
-        /// Largest file that is read.
-        limit: u64,
-    },
+    #[error(
+        "{0} is larger than {limit}; allowed: a packing file up to that size",
+        limit = in_mb(PACKING_FILE_LIMIT_BYTES)
+    )]
+    TooLarge(String),
     /// Bytes that are no UTF-8 text.
     #[error("{file}, line {line}: byte 0x{byte:02X} is not UTF-8 text; allowed: a text file saved as UTF-8")]
     Encoding {
@@ -123,6 +102,24 @@ pub enum ImportError {
 /// A line of a file and its number, counted from 1.
 pub(super) type Line<'a> = (usize, &'a str);
 
+/// The lines that are not blank.
+pub(super) fn numbered(text: &str) -> impl Iterator<Item = Line<'_>> + Clone {
+    text.lines().enumerate().map(|(i, line)| (i + 1, line)).filter(|(_, line)| !line.trim().is_empty())
+}
+
+/// Bytes as text.
+pub(super) fn in_utf8<'a>(file: &str, content: &'a [u8]) -> Result<&'a str, ImportError> {
+    std::str::from_utf8(content).map_err(|error| {
+        let good = error.valid_up_to();
+        let line = 1 + content[..good].iter().filter(|&&b| b == b'\n').count();
+        ImportError::Encoding { file: file.into(), line, byte: content[good] }
+    })
+}
+
+pub(super) fn ended(file: &str, line: usize, expected: impl Into<String>) -> ImportError {
+    ImportError::Truncated { file: file.into(), line, expected: expected.into() }
+}
+
 pub(super) fn refused(
     file: &str,
     line: usize,
@@ -154,5 +151,123 @@ pub(super) fn number(
         (Some(value), Kind::Positive) if value > 0.0 => Ok(value),
         (_, Kind::Finite) => Err(refused(file, line, field, text.trim(), "a finite number")),
         (_, Kind::Positive) => Err(refused(file, line, field, text.trim(), "a finite number above 0")),
+    }
+}
+
+/// Reads a low and a high bound, which are `shown` if they are in the wrong order.
+pub(super) fn bounds(
+    file: &str,
+    line: usize,
+    field: &'static str,
+    [low, high]: [&str; 2],
+    shown: &str,
+) -> Result<[f64; 2], ImportError> {
+    let read = |text| number(file, line, field, text, Kind::Finite);
+    let bounds = [read(low)?, read(high)?];
+    match bounds[0] < bounds[1] {
+        true => Ok(bounds),
+        false => Err(refused(file, line, field, shown, "a low bound below the high one")),
+    }
+}
+
+/// Names of the four columns in messages.
+pub(super) const NAMES: [&str; 4] = ["x", "y", "z", "diameter"];
+
+/// Grains as a file gives them.
+pub(super) struct FileGrains {
+    /// x, y, z and diameter of each, in the file's unit.
+    pub grains: Vec<[f64; 4]>,
+    pub unit: Option<LengthUnit>,
+    pub cell: FileCell,
+    /// The line that names the columns, for messages.
+    pub line: usize,
+    /// Notes to the user on how the file was understood.
+    pub notes: Vec<String>,
+}
+
+/// Boundaries according to a file.
+pub(super) enum FileCell {
+    /// A complete cell.
+    Known(Cell),
+    /// Bounds of the grains, without telling if they are periodic.
+    Bounds([[f64; 2]; 3]),
+    /// Periodic along some axes only, which no packing here can be.
+    Mixed,
+    /// Not given.
+    Unsaid,
+}
+
+/// Reads one grain's row: the four numbers at `places` among its fields, the last times `factor`.
+pub(super) fn grain(
+    file: &str,
+    line: usize,
+    fields: &[&str],
+    places: [usize; 4],
+    factor: f64,
+) -> Result<[f64; 4], ImportError> {
+    let mut grain = [0.0; 4];
+    for (axis, (slot, place)) in grain.iter_mut().zip(places).enumerate() {
+        let kind = if axis == 3 { Kind::Positive } else { Kind::Finite };
+        *slot = number(file, line, NAMES[axis], fields[place], kind)?;
+    }
+    grain[3] *= factor;
+    Ok(grain)
+}
+
+/// A unit of length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LengthUnit {
+    /// Metres.
+    M,
+    /// Centimetres.
+    Cm,
+    /// Millimetres.
+    Mm,
+    /// Micrometres.
+    Um,
+    /// Nanometres.
+    Nm,
+}
+
+impl Leaf for LengthUnit {}
+
+impl LengthUnit {
+    /// All units, from the largest.
+    pub const ALL: [Self; 5] = [Self::M, Self::Cm, Self::Mm, Self::Um, Self::Nm];
+
+    fn described(self) -> (&'static str, &'static str, f64) {
+        match self {
+            Self::M => ("m", "metres", 1e3),
+            Self::Cm => ("cm", "centimetres", 10.0),
+            Self::Mm => ("mm", "millimetres", 1.0),
+            Self::Um => ("um", "micrometres", 1e-3),
+            Self::Nm => ("nm", "nanometres", 1e-6),
+        }
+    }
+
+    /// Name in a scene or on a command line.
+    pub fn name(self) -> &'static str {
+        self.described().0
+    }
+
+    /// Full name, in the plural.
+    pub fn words(self) -> &'static str {
+        self.described().1
+    }
+
+    /// Length of the unit (mm).
+    pub fn mm(self) -> f64 {
+        self.described().2
+    }
+}
+
+impl FromStr for LengthUnit {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let text = text.trim().replace(['µ', 'μ'], "u");
+        let unit = Self::ALL.into_iter().find(|unit| unit.name() == text);
+        unit.ok_or_else(|| "write the unit of the file's lengths: m, cm, mm, um or nm".into())
     }
 }

@@ -1,11 +1,9 @@
 //! Reads packings from files of this program and of others.
 //!
 //! # Formats
-//! - CSV with a column each for the coordinates of the centres and the diameter or radius, by their names
-//!   ([`csv`](super::csv)): this program's own, spreadsheets, and what ParaView saves of points (MFIX and
-//!   other programs write points for it);
-//! - text dumps of LAMMPS and LIGGGHTS ([`dump`](super::dump));
-//! - what Yade's `export.text` writes, and MercuryDPM's `.data` ([`rows`](super::rows));
+//! - text ([`tables`](super::tables)): CSV, which is this program's own and what spreadsheets and ParaView
+//!   save of points (MFIX and other programs write points for it); dumps of LAMMPS and LIGGGHTS; what Yade's
+//!   `export.text` writes, and MercuryDPM's `.data`;
 //! - points of VTK with a diameter or radius, as LIGGGHTS, Yade, MercuryDPM and ParaView write them
 //!   ([`vtk`](super::vtk)).
 //!
@@ -13,22 +11,18 @@
 //! length and the boundaries are never guessed: if a file does not give them, [`ReadOptions`] does, or the
 //! file is refused.
 
+use super::fields::{
+    FileCell, FileGrains, ImportError, LengthUnit, PACKING_FILE_LIMIT_BYTES, in_utf8, refused,
+};
+use super::tables::{csv, dump, is_mercury, mercury, yade};
+use super::vtk::{legacy, xml};
+use super::{Cell, Packing};
 use crate::schema::Leaf;
+use crate::store::read_regular;
+use serde::{Deserialize, Serialize};
 use std::io::Read;
 use std::path::Path;
 use std::str::FromStr;
-
-use serde::{Deserialize, Serialize};
-
-use super::csv::csv;
-use super::dump::dump;
-use super::fields::{ImportError, PACKING_FILE_LIMIT_BYTES, refused};
-use super::found::{FileCell, FileGrains};
-use super::grains::{Cell, Packing};
-use super::rows::{is_mercury, mercury, yade};
-use super::unit::LengthUnit;
-use super::vtk::{legacy, xml};
-use crate::store::read_regular;
 
 /// Facts about a packing file that the file itself does not give.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -115,14 +109,14 @@ impl Packing {
         let file = path.display().to_string();
         let failed = |source| ImportError::Read { file: file.clone(), source };
         if std::fs::metadata(path).map_err(failed)?.is_dir() {
-            return Err(ImportError::Folder { file });
+            return Err(ImportError::Folder(file));
         }
         match read_regular(path, PACKING_FILE_LIMIT_BYTES).map_err(failed)? {
             Some(bytes) => Self::parse_as(&file, &bytes, options),
             None if std::fs::metadata(path).is_ok_and(|meta| !meta.is_file()) => {
                 Err(failed(std::io::Error::other("is no regular file")))
             }
-            None => Err(ImportError::TooLarge { file, limit: PACKING_FILE_LIMIT_BYTES }),
+            None => Err(ImportError::TooLarge(file)),
         }
     }
 
@@ -135,9 +129,6 @@ impl Packing {
     /// assert_eq!((packing.cell, packing.diameter), (Cell::Periodic([2.0; 3]), vec![1.0]));
     /// # Ok::<(), voidwalk_core::packing::ImportError>(())
     /// ```
-    ///
-    /// # Errors
-    /// Errors of [`Packing::read_as`].
     pub fn parse(name: &str, content: &[u8]) -> Result<Packing, ImportError> {
         Ok(Self::parse_as(name, content, &ReadOptions::default())?.0)
     }
@@ -153,9 +144,6 @@ impl Packing {
     /// assert!(Packing::parse("spheres.txt", yade.as_bytes()).is_err());
     /// # Ok::<(), voidwalk_core::packing::ImportError>(())
     /// ```
-    ///
-    /// # Errors
-    /// Errors of [`Packing::read_as`].
     pub fn parse_as(
         name: &str,
         content: &[u8],
@@ -165,20 +153,16 @@ impl Packing {
             return Self::parse_as(name, &unpacked(name, content)?, options);
         }
         if let Some((_, what)) = NOT_TEXT.iter().find(|(begin, _)| content.starts_with(begin)) {
-            return Err(ImportError::Unknown { file: name.into(), looks_like: (*what).into() });
+            return Err(ImportError::Unknown(name.into(), (*what).into()));
         }
         // These two may hold binary numbers.
         if content.starts_with(b"# vtk DataFile") {
             return complete(name, legacy(name, content)?, options);
         }
         if is_vtk_in_xml(content) {
-            return complete(name, xml(name, content)?, options);
+            return complete(name, xml::xml(name, content)?, options);
         }
-        let text = std::str::from_utf8(content).map_err(|error| {
-            let good = error.valid_up_to();
-            let line = 1 + content[..good].iter().filter(|&&b| b == b'\n').count();
-            ImportError::Encoding { file: name.into(), line, byte: content[good] }
-        })?;
+        let text = in_utf8(name, content)?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let start = text.trim_start();
         let grains = if start.starts_with("ITEM:") {
@@ -194,7 +178,6 @@ impl Packing {
     }
 }
 
-/// First bytes of a gzip file.
 const GZIP: &[u8] = b"\x1f\x8b";
 
 /// Unpacks the content of a gzip file, once: nothing inside it is unpacked further.
@@ -206,11 +189,11 @@ fn unpacked(name: &str, content: &[u8]) -> Result<Vec<u8>, ImportError> {
         ImportError::Read { file: name.into(), source }
     })?;
     if bytes.len() as u64 > limit {
-        return Err(ImportError::TooLarge { file: name.into(), limit });
+        return Err(ImportError::TooLarge(name.into()));
     }
     if bytes.starts_with(GZIP) {
         let looks_like = "packed twice (gzip): unpack it first".into();
-        return Err(ImportError::Unknown { file: name.into(), looks_like });
+        return Err(ImportError::Unknown(name.into(), looks_like));
     }
     Ok(bytes)
 }
@@ -234,7 +217,9 @@ fn complete(
     grains: FileGrains,
     options: &ReadOptions,
 ) -> Result<(Packing, Vec<String>), ImportError> {
-    let FileGrains { columns: [mut x, mut y, mut z, diameter], unit, cell, line, mut notes } = grains;
+    let FileGrains { grains, unit, cell, line, mut notes } = grains;
+    let [mut x, mut y, mut z, diameter] =
+        std::array::from_fn(|axis| grains.iter().map(|grain| grain[axis]).collect::<Vec<f64>>());
     let unit = match (unit, options.unit) {
         (Some(from_file), Some(given)) if from_file != given => {
             let allowed = format!("{}: the file says the unit of its lengths itself", from_file.name());
@@ -242,7 +227,7 @@ fn complete(
         }
         (Some(from_file), _) => from_file,
         (None, Some(given)) => given,
-        (None, None) => return Err(ImportError::NoUnit { file: file.into() }),
+        (None, None) => return Err(ImportError::NoUnit(file.into())),
     };
     let cell = match (cell, options.cell) {
         (FileCell::Known(cell), None) => cell,
@@ -251,7 +236,7 @@ fn complete(
             return Err(refused(file, line, "cell", "as it was given", allowed));
         }
         (_, Some(CellOption::None)) => Cell::Free,
-        (FileCell::Mixed, _) => return Err(ImportError::Mixed { file: file.into() }),
+        (FileCell::Mixed, _) => return Err(ImportError::Mixed(file.into())),
         (_, Some(CellOption::Lengths(lengths))) => Cell::Periodic(lengths),
         (FileCell::Bounds(bounds), Some(CellOption::Bounds)) => {
             for (column, [low, _]) in [&mut x, &mut y, &mut z].into_iter().zip(bounds) {
@@ -263,13 +248,13 @@ fn complete(
             let allowed = "none, or Lx,Ly,Lz: the file gives no bounds";
             return Err(refused(file, line, "cell", "bounds", allowed));
         }
-        (FileCell::Bounds(_), None) => {
-            return Err(ImportError::NoCell {
-                file: file.into(),
-                bounds: ", or bounds for one between those in the file",
-            });
+        (cell, None) => {
+            let bounds = match cell {
+                FileCell::Bounds(_) => ", or bounds for one between those in the file",
+                _ => "",
+            };
+            return Err(ImportError::NoCell(file.into(), bounds));
         }
-        (FileCell::Unsaid, None) => return Err(ImportError::NoCell { file: file.into(), bounds: "" }),
     };
     let mut packing = Packing { cell, x, y, z, diameter };
     fits(file, &packing, matches!(options.cell, Some(CellOption::Lengths(_))))?;
@@ -285,10 +270,9 @@ fn complete(
 /// other check can confirm a cell given by hand.
 fn fits(file: &str, packing: &Packing, by_hand: bool) -> Result<(), ImportError> {
     let Cell::Periodic(lengths) = packing.cell else { return Ok(()) };
-    let misfit = |problem| Err(ImportError::Misfit { file: file.into(), problem });
-    for ((axis, column), length) in
-        ["x", "y", "z"].into_iter().zip([&packing.x, &packing.y, &packing.z]).zip(lengths)
-    {
+    let misfit = |problem| Err(ImportError::Misfit(file.into(), problem));
+    let columns = [("x", &packing.x), ("y", &packing.y), ("z", &packing.z)];
+    for ((axis, column), length) in columns.into_iter().zip(lengths) {
         let low = column.iter().copied().fold(f64::INFINITY, f64::min);
         let high = column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if by_hand && high - low > length * (1.0 + ROUNDING) {
@@ -302,13 +286,11 @@ fn fits(file: &str, packing: &Packing, by_hand: bool) -> Result<(), ImportError>
     let solid: f64 = packing.diameter.iter().map(|d| std::f64::consts::FRAC_PI_6 * d * d * d).sum();
     let whole: f64 = lengths.iter().product();
     if solid >= whole {
+        let [x, y, z] = lengths;
         return misfit(format!(
-            "the grains have {:.3} times the volume of the cell, {} x {} x {}, and leave no voids. A cell is \
-             given in the file's unit; or are radii read as diameters?",
-            solid / whole,
-            lengths[0],
-            lengths[1],
-            lengths[2]
+            "the grains have {:.3} times the volume of the cell, {x} x {y} x {z}, and leave no voids. A cell \
+             is given in the file's unit; or are radii read as diameters?",
+            solid / whole
         ));
     }
     Ok(())

@@ -1,12 +1,275 @@
-//! Motion of the grains: forces from the other chunks, kick, drift and the sums over the grains.
+//! A step of a compression: the lists kept complete, forces, kick and drift, and the time step.
+//!
+//! # Step
+//! Positions are in units of the cell's width and relative to its deformation, at full steps; velocities
+//! (without the motion of the cell) and spins at half steps. A step: forces from positions and the last half
+//! step's velocities, kick, drift, and the cell grows by the servo's strain rate.
+//!
+//! # Masses
+//! A grain of diameter `D` weighs `pi/6 D^(3 - mass_exponent)`. With the true masses (0) the smallest grains
+//! set the time step and the largest take `Dmax/Dmin` times as many steps to move as the smallest. Masses do
+//! not matter in a packing at rest.
+//!
+//! If the largest grain is 20 times as wide as the smallest or more, a few small grains between large ones
+//! have contacts so stiff that they would set the step of all. Each grain is then moved with a mass of at
+//! least `s K t^2 / 4`, and the moment of inertia of that mass: `K` is the sum of its contacts' stiffness at
+//! that moment, `s` the factor of the critical step `2 / sqrt(s K / m)`, and `t` 1.5 times the critical step
+//! before there are contacts. The damping of contacts and the energies keep the grain's own mass, so that its
+//! restitution differs. A fixed step makes no grain heavier. A stage then ends after as much time as with the
+//! own masses: a hold is counted in the steps that the own masses would have taken.
 
-use super::contact::Work;
-use super::neighbours::chunk_bounds;
+use super::contact::{Grains, Now, Work, pass};
+use super::neighbours::{GrainChunk, Reach, Remembered, chunk_bounds, list, morton};
+use super::settings::{PackingError, damped_part, heavier_mass_by_stiffness, stability};
+use super::state::Compression;
 use multiversion::multiversion;
+use rayon::prelude::*;
 
 /// Farthest move of a grain in a step, in units of the smallest diameter: only an overlapping start comes
 /// near it.
 pub(super) const LONGEST_MOVE: f64 = 0.02;
+
+/// Steps between two checks of the time step.
+const STEP_CHECK: u64 = 16;
+
+/// Part of the critical step at which the step is checked without waiting.
+const CLOSE_STEP: f64 = 0.85;
+
+/// Part of the way to its target strain rate that the servo goes in a step. The contacts' damping makes the
+/// pressure answer at once to the strain rate; an immediate servo swings between its limits from step to step
+/// once its gain exceeds the viscosity's inverse (0.03 for Cu 6 at 5e4 times the pressure), this one only
+/// above seven times that gain.
+const SERVO_SHARE: f64 = 0.25;
+
+/// Steps that a pick of close pairs is meant to last.
+const PICKS: (u64, u64) = (10, 25);
+
+/// Steps that lists are meant to last.
+const LISTS: (u64, u64) = (100, 300);
+
+/// Lengthens a reach that lasted too short a time, shortens one that lasted too long.
+fn follow(reach: &mut Reach, strained: bool, lasted: u64, meant: (u64, u64), least: Reach) {
+    if lasted < meant.0 {
+        if strained {
+            reach.relative = (reach.relative * 1.5).min(0.05);
+        } else {
+            reach.absolute = (reach.absolute * 1.3).min(1.0);
+        }
+    } else if lasted > meant.1 {
+        reach.relative *= 0.8;
+        reach.absolute *= 0.8;
+    }
+    reach.relative = reach.relative.max(least.relative);
+    reach.absolute = reach.absolute.max(least.absolute);
+}
+
+impl Compression {
+    /// Takes one step; without `servo` (its largest rate, and its gain) the strain rate is left as it is.
+    pub(super) fn advance_once(&mut self, servo: Option<(f64, f64)>) -> Result<(), PackingError> {
+        let pick = self.renew();
+        self.now.steps += 1;
+        let now = Now {
+            cell: self.now.cell,
+            aspect: self.aspect,
+            strain_rate: self.now.strain_rate,
+            step: self.now.step,
+            pick,
+        };
+        let parallel = rayon::current_num_threads() > 1 && self.chunks.len() > 1;
+        let grains = Grains {
+            position: &self.position,
+            velocity: &self.velocity,
+            spin: &self.spin,
+            chunk: &self.chunk_of,
+        };
+        let law = &self.law;
+        let (force, torque) = (split(&mut self.force), split(&mut self.torque));
+        let tasks = self.chunks.iter_mut().zip(&mut self.work).zip(force.into_iter().zip(torque));
+        let one = |((chunk, work), (force, torque)): ((&mut GrainChunk, &mut Work), (&mut [_], &mut [_]))| {
+            pass(chunk, work, grains, law, &now, force, torque);
+        };
+        if parallel {
+            tasks.collect::<Vec<_>>().into_par_iter().for_each(one);
+        } else {
+            tasks.for_each(one);
+        }
+        let (mut virial, mut normal) = (0.0, 0.0);
+        self.now.contacts = 0;
+        for work in &self.work {
+            virial += work.virial;
+            normal += work.normal;
+            self.now.contacts += work.contacts;
+        }
+        self.now.pressure =
+            virial / (3.0 * self.now.cell * self.now.cell * self.now.cell * self.aspect.height());
+        self.now.mean_normal = if self.now.contacts > 0 { normal / self.now.contacts as f64 } else { 0.0 };
+        if let Some((rate, gain)) = servo {
+            let goal = (gain * (self.now.pressure - 1.0)).clamp(-rate, rate);
+            self.now.strain_rate += SERVO_SHARE * (goal - self.now.strain_rate);
+        }
+        self.kick_and_drift(parallel);
+        self.now.cell *= 1.0 + self.now.strain_rate * self.now.step;
+        self.now.time += self.now.step;
+        if self.now.steps.is_multiple_of(STEP_CHECK) || self.now.step > CLOSE_STEP * self.critical_step() {
+            self.check_step()?;
+        }
+        Ok(())
+    }
+
+    fn kick_and_drift(&mut self, parallel: bool) {
+        let step = self.now.step;
+        let drag =
+            step * if self.now.hold.braking { self.settings.settling_drag } else { self.settings.drag };
+        let rule = StepRule {
+            step,
+            per_cell: step / (self.now.cell * (1.0 + 0.5 * self.now.strain_rate * step)),
+            keep: (1.0 - 0.5 * drag) / (1.0 + 0.5 * drag),
+            kick: 1.0 / (1.0 + 0.5 * drag),
+            local: self.settings.local_damping,
+            fastest: LONGEST_MOVE / step,
+            rotate: self.law.friction > 0.0,
+            least_mass: match self.makes_heavier() {
+                true => heavier_mass_by_stiffness(&self.law, self.loose_step),
+                false => 0.0,
+            },
+        };
+        let (work, picked) = (&self.work, &self.picked);
+        let bounds = chunk_bounds(self.position.len());
+        let mut parts: Vec<ChunkInStep<'_>> = split(&mut self.position)
+            .into_iter()
+            .zip(split(&mut self.velocity))
+            .zip(split(&mut self.spin))
+            .zip(split(&mut self.force).into_iter().zip(split(&mut self.torque)))
+            .zip(bounds)
+            .enumerate()
+            .map(|(c, ((((position, velocity), spin), (force, torque)), (first, last)))| ChunkInStep {
+                chunk: c,
+                first,
+                position,
+                velocity,
+                spin,
+                force,
+                torque,
+                picked: &picked[first..last],
+            })
+            .collect();
+        let sums: Vec<Sums> = if parallel {
+            parts.par_iter_mut().map(|part| advance(part, work, &rule)).collect()
+        } else {
+            parts.iter_mut().map(|part| advance(part, work, &rule)).collect()
+        };
+        let mut total = Sums::default();
+        for sums in sums {
+            total.moved = total.moved.max(sums.moved);
+            total.stiffest = total.stiffest.max(sums.stiffest);
+            total.stiffest_of_own = total.stiffest_of_own.max(sums.stiffest_of_own);
+            total.twice_kinetic += sums.twice_kinetic;
+            total.unbalanced += sums.unbalanced;
+        }
+        self.now.moved = total.moved.sqrt();
+        self.now.stiffest = total.stiffest;
+        self.now.twice_kinetic = total.twice_kinetic;
+        self.now.unbalanced = total.unbalanced;
+        if rule.least_mass > 0.0 {
+            self.now.hold.saved += (step / self.followed(total.stiffest_of_own) - 1.0).max(0.0);
+        }
+    }
+
+    /// Keeps the step below the critical one: follows it, or refuses a fixed step that is no longer below it.
+    fn check_step(&mut self) -> Result<(), PackingError> {
+        let critical = self.critical_step();
+        match self.settings.step {
+            Some(step) if step >= critical => {
+                Err(PackingError::Step { step, critical, cause: "the stiffness of a grain's contacts" })
+            }
+            Some(_) => Ok(()),
+            None => {
+                let goal = self.followed(self.now.stiffest);
+                self.now.step = if goal < self.now.step { goal } else { goal.min(1.02 * self.now.step) };
+                Ok(())
+            }
+        }
+    }
+
+    /// The largest stable time step for the contacts of the last step.
+    pub(super) fn critical_step(&self) -> f64 {
+        self.critical(self.now.stiffest)
+    }
+
+    /// Critical step of grains whose stiffest contacts, by mass, sum up to `stiffest`.
+    fn critical(&self, stiffest: f64) -> f64 {
+        if stiffest > 0.0 { 2.0 / (stability(&self.law) * stiffest).sqrt() } else { f64::INFINITY }
+    }
+
+    /// Step that follows their critical one.
+    fn followed(&self, stiffest: f64) -> f64 {
+        let part = self.settings.step_fraction.min(damped_part(&self.law));
+        part * self.critical(stiffest).min(2.0 * self.loose_step)
+    }
+
+    /// Makes sure that every pair that can touch is among the close ones; returns the reach of a new pick if
+    /// one is due.
+    ///
+    /// Both reaches follow from how long they last: a longer one costs more pairs a step, a shorter one is
+    /// renewed more often.
+    fn renew(&mut self) -> Option<Reach> {
+        if self.now.close.holds(Reach::CONTACT, self.now.cell, self.now.picked_cell, self.now.moved) {
+            return None;
+        }
+        let strained = self.now.picked_cell > self.now.cell * (1.0 + self.now.close.relative);
+        let least = Reach { relative: 2e-5, absolute: 2e-4 };
+        follow(&mut self.now.close, strained, self.now.steps - self.now.picked_at, PICKS, least);
+        let listed_moved = self.position.iter().zip(&self.listed).fold(0.0, |far: f64, (p, l)| {
+            let d = [p[0] - l[0], p[1] - l[1], p[2] - l[2]];
+            far.max(d[0] * d[0] + d[1] * d[1] + d[2] * d[2])
+        });
+        if !self.now.reach.holds(self.now.close, self.now.cell, self.now.listed_cell, listed_moved.sqrt()) {
+            let strained = self.now.listed_cell * (1.0 + self.now.close.relative)
+                > self.now.cell * (1.0 + self.now.reach.relative);
+            let least =
+                Reach { relative: 3.0 * self.now.close.relative, absolute: 3.0 * self.now.close.absolute };
+            follow(&mut self.now.reach, strained, self.now.steps - self.now.listed_at, LISTS, least);
+            self.relist();
+        }
+        self.picked.clone_from(&self.position);
+        self.now.picked_cell = self.now.cell;
+        self.now.picked_at = self.now.steps;
+        self.now.moved = 0.0;
+        Some(self.now.close)
+    }
+
+    /// Makes new lists, with the grains in the order of a space-filling curve.
+    pub(super) fn relist(&mut self) {
+        let remembered = Remembered::collect(&self.chunks, &self.rank);
+        for p in &mut self.position {
+            let [x, y, z, radius] = *p;
+            let [x, y, z] = self.aspect.wrapped([x, y, z]);
+            *p = [x, y, z, radius];
+        }
+        let mut order: Vec<u64> = (0..self.rank.len() as u64)
+            .map(|i| {
+                let [x, y, z, _] = self.position[i as usize];
+                (u64::from(morton([x, y, z / self.aspect.height()])) << 32) | u64::from(self.rank[i as usize])
+            })
+            .collect();
+        order.sort_unstable();
+        let mut place = vec![0u32; self.rank.len()];
+        for (i, &r) in self.rank.iter().enumerate() {
+            place[r as usize] = i as u32;
+        }
+        let from: Vec<usize> =
+            order.iter().map(|&key| place[(key & 0xffff_ffff) as usize] as usize).collect();
+        self.rank = from.iter().map(|&i| self.rank[i]).collect();
+        for column in [&mut self.position, &mut self.velocity, &mut self.spin] {
+            *column = from.iter().map(|&i| column[i]).collect();
+        }
+        self.listed.clone_from(&self.position);
+        self.now.listed_cell = self.now.cell;
+        self.now.listed_at = self.now.steps;
+        self.chunks = list(&self.position, &self.rank, self.now.cell, self.aspect, self.now.reach);
+        remembered.restore(&mut self.chunks, &self.rank);
+    }
+}
 
 /// Cuts a column at the bounds of the chunks.
 pub(super) fn split<T>(mut column: &mut [T]) -> Vec<&mut [T]> {
@@ -21,45 +284,44 @@ pub(super) fn split<T>(mut column: &mut [T]) -> Vec<&mut [T]> {
 }
 
 /// Parameters of a step for the grains of a chunk.
-pub(super) struct StepRule {
-    pub step: f64,
-    pub per_cell: f64,
-    pub keep: f64,
-    pub kick: f64,
-    pub local: f64,
-    pub fastest: f64,
-    pub rotate: bool,
+struct StepRule {
+    step: f64,
+    per_cell: f64,
+    keep: f64,
+    kick: f64,
+    local: f64,
+    fastest: f64,
+    rotate: bool,
     /// Least mass of a grain by the sum of its contacts' stiffness; 0 if grains keep their own.
-    pub least_mass: f64,
+    least_mass: f64,
 }
 
 /// Sums over the grains of a chunk.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Sums {
-    pub moved: f64,
-    pub stiffest: f64,
+struct Sums {
+    moved: f64,
+    stiffest: f64,
     /// `stiffest` with the grains' own masses.
-    pub stiffest_of_own: f64,
-    pub twice_kinetic: f64,
-    pub unbalanced: f64,
+    stiffest_of_own: f64,
+    twice_kinetic: f64,
+    unbalanced: f64,
 }
 
 /// The grains of a chunk on their way through a step.
-pub(super) struct ChunkInStep<'a> {
-    pub chunk: usize,
-    pub first: usize,
-    pub position: &'a mut [[f64; 4]],
-    pub velocity: &'a mut [[f64; 4]],
-    pub spin: &'a mut [[f64; 4]],
-    pub force: &'a mut [[f64; 4]],
-    pub torque: &'a mut [[f64; 4]],
-    pub picked: &'a [[f64; 4]],
-    pub sums: Sums,
+struct ChunkInStep<'a> {
+    chunk: usize,
+    first: usize,
+    position: &'a mut [[f64; 4]],
+    velocity: &'a mut [[f64; 4]],
+    spin: &'a mut [[f64; 4]],
+    force: &'a mut [[f64; 4]],
+    torque: &'a mut [[f64; 4]],
+    picked: &'a [[f64; 4]],
 }
 
 /// Takes the forces that other chunks sent, and moves the grains of `part` by a step.
 #[multiversion(targets("x86_64+avx+avx2+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx+avx2"))]
-pub(super) fn advance(part: &mut ChunkInStep<'_>, work: &[Work], rule: &StepRule) {
+fn advance(part: &mut ChunkInStep<'_>, work: &[Work], rule: &StepRule) -> Sums {
     for sender in work {
         let outbox = &sender.outbox[part.chunk];
         collect(part.force, part.first, &outbox.grain, &outbox.force);
@@ -67,10 +329,10 @@ pub(super) fn advance(part: &mut ChunkInStep<'_>, work: &[Work], rule: &StepRule
             collect(part.torque, part.first, &outbox.grain, &outbox.torque);
         }
     }
-    part.sums = match rule.least_mass > 0.0 {
+    match rule.least_mass > 0.0 {
         true => kick_by::<true>(part, rule),
         false => kick_by::<false>(part, rule),
-    };
+    }
 }
 
 #[inline(always)]

@@ -38,6 +38,9 @@ pub(super) struct Aspect {
 }
 
 impl Aspect {
+    /// Largest height by width.
+    pub const TALLEST: f64 = 100.0;
+
     /// Makes the aspect of a cell that is `height` times as tall as wide.
     pub fn new(height: f64) -> Self {
         Self { height, per_height: 1.0 / height }
@@ -53,6 +56,13 @@ impl Aspect {
     #[inline(always)]
     pub fn nearest(self, d: f64) -> f64 {
         d - self.height * ((d * self.per_height + ROUND) - ROUND)
+    }
+
+    /// Square of the distance of the nearest images of two positions.
+    #[inline(always)]
+    pub fn square(self, p: &[f64], q: &[f64]) -> f64 {
+        let [x, y, z] = [nearest(q[0] - p[0]), nearest(q[1] - p[1]), self.nearest(q[2] - p[2])];
+        x * x + y * y + z * z
     }
 
     /// Number of cells along z, none flatter than the width of one of `across` cells.
@@ -84,6 +94,12 @@ impl Reach {
     /// Reach of contact alone.
     pub(super) const CONTACT: Self = Self { relative: 0.0, absolute: 0.0 };
 
+    /// Distance within which grains count whose radii sum up to `radii`.
+    #[inline(always)]
+    fn around(self, radii: f64) -> f64 {
+        radii * (1.0 + self.relative) + self.absolute
+    }
+
     /// Tells if lists made when the cell was `listed_cell` wide still hold every pair within the shorter
     /// `reach`, when the farthest any grain has moved since is `moved` (in units of the cell).
     ///
@@ -104,7 +120,6 @@ pub(super) type Memory = [f64; 4];
 /// The pairs that the grains `first .. last` list.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GrainChunk {
-    /// First grain.
     pub first: usize,
     /// One past the last grain.
     pub last: usize,
@@ -116,7 +131,6 @@ pub(super) struct GrainChunk {
     pub close: Vec<[u32; 2]>,
     /// Index of each close pair among the listed pairs.
     pub close_pair: Vec<u32>,
-    /// Tangential memory of each close pair.
     pub memory: Vec<Memory>,
 }
 
@@ -141,9 +155,8 @@ impl GrainChunk {
             for pair in self.start[i - self.first]..self.start[i - self.first + 1] {
                 let j = self.neighbour[pair as usize];
                 let q = position[j as usize];
-                let gap = [nearest(q[0] - p[0]), nearest(q[1] - p[1]), aspect.nearest(q[2] - p[2])];
-                let far = ((p[3] + q[3]) * (1.0 + reach.relative) + reach.absolute) * per_cell;
-                if gap[0] * gap[0] + gap[1] * gap[1] + gap[2] * gap[2] < far * far {
+                let far = reach.around(p[3] + q[3]) * per_cell;
+                if aspect.square(&p, &q) < far * far {
                     while old.next_if(|o| *o.0 < pair).is_some() {}
                     let memory = old.next_if(|o| *o.0 == pair).map_or([0.0; 4], |o| *o.1);
                     self.close.push([i as u32, j]);
@@ -165,15 +178,12 @@ pub(super) fn chunk_bounds(grains: usize) -> Vec<(usize, usize)> {
 }
 
 struct Level {
-    /// Largest radius.
     radius: f64,
-    /// Cells along x and along y.
+    /// Cells along x and along y; `along` along z.
     cells: usize,
-    /// Cells along z.
     along: usize,
     /// First grain of cell `(x * cells + y) * along + z`.
     start: Vec<u32>,
-    /// Grain, by cell.
     grain: Vec<u32>,
     /// Position in units of the cell, and radius, by cell.
     position: Vec<[f64; 4]>,
@@ -185,31 +195,31 @@ fn cell_of(s: f64, cells: usize) -> usize {
 }
 
 /// Level of each radius: the number of factors of two above the smallest.
-fn levels_of(position: &[[f64; 4]]) -> (Vec<u8>, usize) {
+fn levels_of(position: &[[f64; 4]]) -> Vec<u8> {
     let smallest = position.iter().fold(f64::INFINITY, |m, p| m.min(p[3]));
-    let level: Vec<u8> = position
-        .iter()
-        .map(|p| {
-            let (mut level, mut bound) = (0, 2.0 * smallest);
-            while p[3] >= bound && level < 60 {
-                bound *= 2.0;
-                level += 1;
-            }
-            level
-        })
-        .collect();
-    let count = level.iter().map(|&l| usize::from(l) + 1).max().unwrap_or(1);
-    (level, count)
+    let level = |p: &[f64; 4]| {
+        let (mut level, mut bound) = (0, 2.0 * smallest);
+        while p[3] >= bound && level < 60 {
+            bound *= 2.0;
+            level += 1;
+        }
+        level
+    };
+    position.iter().map(level).collect()
 }
 
-fn grids(
-    position: &[[f64; 4]],
-    level: &[u8],
-    count: usize,
-    cell: f64,
-    aspect: Aspect,
-    reach: Reach,
-) -> Vec<Level> {
+/// Place of the first entry of each of `count` keys among entries sorted by key, and the number of entries.
+fn starts(keys: impl Iterator<Item = u32>, count: usize) -> Vec<u32> {
+    let mut start = vec![0u32; count + 1];
+    keys.for_each(|key| start[key as usize + 1] += 1);
+    for key in 0..count {
+        start[key + 1] += start[key];
+    }
+    start
+}
+
+fn grids(position: &[[f64; 4]], level: &[u8], cell: f64, aspect: Aspect, reach: Reach) -> Vec<Level> {
+    let count = level.iter().map(|&l| usize::from(l) + 1).max().unwrap_or(1);
     (0..count)
         .map(|l| {
             let members: Vec<u32> =
@@ -217,7 +227,7 @@ fn grids(
             let radius = members.iter().fold(0.0, |m: f64, &i| m.max(position[i as usize][3]));
             let mut cells = 1;
             while radius > 0.0
-                && (cells + 1) as f64 * (2.0 * radius * (1.0 + reach.relative) + reach.absolute) <= cell
+                && (cells + 1) as f64 * reach.around(2.0 * radius) <= cell
                 && (cells + 1) * (cells + 1) * aspect.along(cells + 1) <= 8 * members.len() + 64
             {
                 cells += 1;
@@ -231,13 +241,7 @@ fn grids(
                     (column * along + cell_of(z / aspect.height, along)) as u32
                 })
                 .collect();
-            let mut start = vec![0u32; cells * cells * along + 1];
-            for &c in &home {
-                start[c as usize + 1] += 1;
-            }
-            for c in 0..start.len() - 1 {
-                start[c + 1] += start[c];
-            }
+            let start = starts(home.iter().copied(), cells * cells * along);
             let mut next = start.clone();
             let mut grain = vec![0; members.len()];
             for (&i, &c) in members.iter().zip(&home) {
@@ -272,14 +276,15 @@ pub(super) fn list(
     aspect: Aspect,
     reach: Reach,
 ) -> Vec<GrainChunk> {
-    let (level, count) = levels_of(position);
-    let grids = grids(position, &level, count, cell, aspect, reach);
+    let level = levels_of(position);
+    let grids = grids(position, &level, cell, aspect, reach);
     let build = |&(first, last): &(usize, usize)| {
         let mut chunk = GrainChunk { first, last, start: vec![0], ..GrainChunk::default() };
         for i in first..last {
-            let [x, y, z, radius] = position[i];
+            let at = position[i];
+            let [x, y, z, radius] = at;
             for (l, grid) in grids.iter().enumerate().take(usize::from(level[i]) + 1) {
-                let half = ((radius + grid.radius) * (1.0 + reach.relative) + reach.absolute) / cell;
+                let half = reach.around(radius + grid.radius) / cell;
                 for (x0, x1) in runs(x, half, grid.cells) {
                     for cx in x0..x1 {
                         for (y0, y1) in runs(y, half, grid.cells) {
@@ -292,12 +297,8 @@ pub(super) fn list(
                                     let range = grid.start[row + z0] as usize..grid.start[row + z1] as usize;
                                     for (&j, p) in grid.grain[range.clone()].iter().zip(&grid.position[range])
                                     {
-                                        let dx = nearest(p[0] - x);
-                                        let dy = nearest(p[1] - y);
-                                        let dz = aspect.nearest(p[2] - z);
-                                        let far = ((radius + p[3]) * (1.0 + reach.relative) + reach.absolute)
-                                            / cell;
-                                        if dx * dx + dy * dy + dz * dz < far * far
+                                        let far = reach.around(radius + p[3]) / cell;
+                                        if aspect.square(&at, p) < far * far
                                             && (l < usize::from(level[i]) || rank[i] < rank[j as usize])
                                         {
                                             chunk.neighbour.push(j);
@@ -331,26 +332,18 @@ pub(super) struct Remembered {
 impl Remembered {
     /// Collects the memories of the close pairs.
     pub fn collect(chunks: &[GrainChunk], rank: &[u32]) -> Self {
-        let mut start = vec![0u32; rank.len() + 1];
-        let visit = |keep: &mut dyn FnMut(u32, u32, Memory)| {
-            for chunk in chunks {
-                for (&[i, j], &memory) in chunk.close.iter().zip(&chunk.memory) {
-                    if memory[3] > 0.0 {
-                        keep(rank[i as usize], rank[j as usize], memory);
-                    }
-                }
-            }
+        let contacts = || {
+            let pairs = chunks.iter().flat_map(|chunk| chunk.close.iter().zip(&chunk.memory));
+            let touching = pairs.filter(|(_, memory)| memory[3] > 0.0);
+            touching.map(|(&[i, j], &memory)| (rank[i as usize], rank[j as usize], memory))
         };
-        visit(&mut |_, small, _| start[small as usize + 1] += 1);
-        for r in 0..rank.len() {
-            start[r + 1] += start[r];
-        }
+        let start = starts(contacts().map(|(_, small, _)| small), rank.len());
         let mut next = start.clone();
         let mut entry = vec![(0, Memory::default()); start[rank.len()] as usize];
-        visit(&mut |large, small, memory| {
+        for (large, small, memory) in contacts() {
             entry[next[small as usize] as usize] = (large, memory);
             next[small as usize] += 1;
-        });
+        }
         Self { start, entry }
     }
 

@@ -1,12 +1,16 @@
-//! The protocol of a compression: squeeze, hold the pressure, switch the friction, hold it again.
+//! The protocol of a compression: squeeze, hold the pressure, switch the friction, hold it again. It can be
+//! stored as bytes at any step and goes on to the same bits.
 
-use super::compression::{Compression, Stage};
-use super::draw::{draw, random_start};
-use super::grains::Packing;
-use super::observed::Measure;
+use super::neighbours::{Aspect, list};
 use super::settings::{PackingError, Settings};
+use super::state::{Compression, Measure, Moment, Stage};
+use super::{Packing, draw, random_start};
 use crate::gradation::Gradation;
 use std::f64::consts::PI;
+use xxhash_rust::xxh3::xxh3_64;
+
+const MAGIC: [u8; 8] = *b"vwpacked";
+const VERSION: u64 = 1;
 
 /// Steps between two checks of the state.
 const CHECK: u64 = 100;
@@ -99,17 +103,17 @@ impl Compression {
     /// A fixed time step that is too long for the contacts by now.
     pub fn advance(&mut self, steps: u64) -> Result<(), PackingError> {
         for _ in 0..steps {
-            match self.stage {
+            match self.now.stage {
                 Stage::Done => break,
                 Stage::Squeeze => {
-                    self.strain_rate = -self.settings.squeeze_rate;
+                    self.now.strain_rate = -self.settings.squeeze_rate;
                     self.advance_once(None)?;
                 }
                 Stage::Compress | Stage::Settle => {
                     self.advance_once(Some((self.settings.servo_rate, self.settings.servo_gain)))?;
                 }
             }
-            if self.steps.is_multiple_of(CHECK) {
+            if self.now.steps.is_multiple_of(CHECK) {
                 self.check_stage();
             }
         }
@@ -117,28 +121,26 @@ impl Compression {
     }
 
     fn check_stage(&mut self) {
-        match self.stage {
+        match self.now.stage {
             Stage::Done => {}
             Stage::Squeeze => {
                 let goal = self.settings.compression_target_fraction * self.expected_fraction();
-                if 1.0 / (1.0 + self.void_ratio()) >= goal || self.pressure > 0.5 {
+                if 1.0 / (1.0 + self.void_ratio()) >= goal || self.now.pressure > 0.5 {
                     self.enter(Stage::Compress);
                 }
             }
             Stage::Compress | Stage::Settle => {
-                self.hold.braking |= (self.pressure - 1.0).abs() < BRAKE;
-                if self.settled() {
-                    let measure = self.measure();
-                    if self.stage == Stage::Compress {
-                        self.hold.before = Some(measure);
-                        if self.settings.final_friction == self.settings.friction {
-                            self.stage = Stage::Done;
-                        } else {
-                            self.law.friction = self.settings.final_friction;
-                            self.enter(Stage::Settle);
-                        }
-                    } else {
-                        self.stage = Stage::Done;
+                self.now.hold.braking |= (self.now.pressure - 1.0).abs() < BRAKE;
+                if !self.settled() {
+                    return;
+                }
+                let (stage, last) = (self.now.stage, self.settings.final_friction);
+                self.now.stage = Stage::Done;
+                if stage == Stage::Compress {
+                    self.now.hold.before = Some(self.measure());
+                    if last != self.settings.friction {
+                        self.law.friction = last;
+                        self.enter(Stage::Settle);
                     }
                 }
             }
@@ -146,8 +148,8 @@ impl Compression {
     }
 
     fn enter(&mut self, stage: Stage) {
-        self.stage = stage;
-        (self.hold.since, self.hold.saved) = (self.steps, 0.0);
+        self.now.stage = stage;
+        (self.now.hold.since, self.now.hold.saved) = (self.now.steps, 0.0);
     }
 
     /// Tells if pressure, unbalanced force, coordination number and void ratio have held for long enough, and
@@ -155,16 +157,16 @@ impl Compression {
     fn settled(&mut self) -> bool {
         let coordination = self.coordination();
         let void_ratio = self.void_ratio();
-        let holds = (self.pressure - 1.0).abs() < PRESSURE
+        let holds = (self.now.pressure - 1.0).abs() < PRESSURE
             && self.unbalanced_ratio() < UNBALANCED
-            && (coordination - self.hold.coordination).abs() < COORDINATION
-            && (void_ratio - self.hold.void_ratio).abs() < VOID_RATIO;
+            && (coordination - self.now.hold.coordination).abs() < COORDINATION
+            && (void_ratio - self.now.hold.void_ratio).abs() < VOID_RATIO;
         if !holds {
-            (self.hold.since, self.hold.saved) = (self.steps, 0.0);
-            self.hold.coordination = coordination;
-            self.hold.void_ratio = void_ratio;
+            (self.now.hold.since, self.now.hold.saved) = (self.now.steps, 0.0);
+            self.now.hold.coordination = coordination;
+            self.now.hold.void_ratio = void_ratio;
         }
-        let held = (self.steps - self.hold.since) as f64 + self.hold.saved;
+        let held = (self.now.steps - self.now.hold.since) as f64 + self.now.hold.saved;
         held >= self.settings.hold_steps as f64 && {
             let energy = self.energy();
             energy.kinetic < KINETIC * energy.elastic
@@ -173,7 +175,7 @@ impl Compression {
 
     /// Mean coordination number `2 N_c / N_p` in the last step.
     pub fn coordination(&self) -> f64 {
-        2.0 * self.contacts as f64 / self.rank.len() as f64
+        2.0 * self.now.contacts as f64 / self.rank.len() as f64
     }
 
     /// Rough packing fraction to be expected: it only decides when the servo replaces the squeeze.
@@ -185,13 +187,11 @@ impl Compression {
         let total = 6.0 / PI * self.grain_volume();
         let size = |percent: f64| {
             let mut coarser = 0.0;
-            for &d in &by_rank {
+            let reached = by_rank.iter().find(|&&d| {
                 coarser += d * d * d;
-                if coarser >= (1.0 - percent / 100.0) * total {
-                    return d;
-                }
-            }
-            by_rank[by_rank.len() - 1]
+                coarser >= (1.0 - percent / 100.0) * total
+            });
+            *reached.unwrap_or(&by_rank[by_rank.len() - 1])
         };
         let uniformity = size(60.0) / size(10.0);
         (0.635 + 0.08 * libm::log(uniformity) - 0.15 * self.settings.friction.min(0.4)).min(0.85)
@@ -200,13 +200,13 @@ impl Compression {
     /// Progress of the compression.
     pub fn progress(&self) -> CompressionProgress {
         CompressionProgress {
-            stage: self.stage,
-            steps: self.steps,
+            stage: self.now.stage,
+            steps: self.now.steps,
             void_ratio: self.void_ratio(),
-            pressure: self.pressure,
+            pressure: self.now.pressure,
             coordination: self.coordination(),
             unbalanced: self.unbalanced_ratio(),
-            step: self.step,
+            step: self.now.step,
         }
     }
 
@@ -223,9 +223,6 @@ impl Compression {
 
     /// Runs like [`Compression::run`], to the same bits, asking whether to stop every million steps of a
     /// grain.
-    ///
-    /// # Errors
-    /// Errors of [`Compression::run`].
     pub fn run_until(
         &mut self,
         is_stopped: impl Fn() -> bool,
@@ -236,9 +233,6 @@ impl Compression {
 
     /// Runs like [`Compression::run`], to the same bits, reporting every `every` steps, which sets how soon
     /// it can be stopped.
-    ///
-    /// # Errors
-    /// Errors of [`Compression::run`].
     pub fn run_reporting(
         &mut self,
         every: u64,
@@ -254,34 +248,134 @@ impl Compression {
         mut progress: impl FnMut(&CompressionProgress) -> bool,
     ) -> Result<PackReport, PackingError> {
         let at_once = (1_000_000 / self.position.len().max(1) as u64).max(1);
-        while self.stage != Stage::Done {
+        while self.now.stage != Stage::Done {
             // After a stop between two reports the run goes on to the next.
-            let report = (self.steps / every + 1) * every;
-            while self.stage != Stage::Done && self.steps < report {
-                self.advance(at_once.min(report - self.steps))?;
-                if self.stage != Stage::Done && is_stopped() {
-                    return Err(PackingError::Stopped(self.steps));
+            let report = (self.now.steps / every + 1) * every;
+            while self.now.stage != Stage::Done && self.now.steps < report {
+                self.advance(at_once.min(report - self.now.steps))?;
+                if self.now.stage != Stage::Done && is_stopped() {
+                    return Err(PackingError::Stopped(self.now.steps));
                 }
             }
             if !progress(&self.progress()) {
-                return Err(PackingError::Stopped(self.steps));
+                return Err(PackingError::Stopped(self.now.steps));
             }
-            if self.stage != Stage::Done && self.steps >= self.settings.max_steps {
+            if self.now.stage != Stage::Done && self.now.steps >= self.settings.max_steps {
                 return Err(PackingError::Unsettled {
-                    steps: self.steps,
-                    pressure: self.pressure,
+                    steps: self.now.steps,
+                    pressure: self.now.pressure,
                     kinetic_ratio: self.measure().kinetic_ratio,
                 });
             }
         }
         let after = self.measure();
-        let unit_s =
-            1e-3 * self.unit_mm * (self.settings.density_kg_m3 / (1e3 * self.settings.pressure_kpa)).sqrt();
+        let unit_s = 1e-3
+            * self.now.unit_mm
+            * (self.settings.density_kg_m3 / (1e3 * self.settings.pressure_kpa)).sqrt();
         Ok(PackReport {
-            before: self.hold.before.unwrap_or(after),
+            before: self.now.hold.before.unwrap_or(after),
             after,
-            steps: self.steps,
-            simulated_s: self.time * unit_s,
+            steps: self.now.steps,
+            simulated_s: self.now.time * unit_s,
         })
+    }
+
+    /// Writes everything that the next step depends on:
+    ///
+    /// | bytes | what |
+    /// |---|---|
+    /// | 8 | `vwpacked` |
+    /// | 8 | version of this format, 1 (all numbers are little-endian) |
+    /// | 8 | bytes of the record |
+    /// | | the record: JSON with named fields; every floating-point number comes back bit for bit |
+    /// | 4 n | `rank` (u32) of each of the `n` grains by size, in memory order |
+    /// | 4 n | `origin` (u32): place in the user's columns, by rank |
+    /// | 32 n each | `position`, `velocity`, `spin`, `listed`, `picked`: rows of four f64, in memory order |
+    /// | 32 each | tangential memory of the close pairs, in list order |
+    /// | 8 | XXH3-64 of everything before, which finds accidents, not attackers |
+    ///
+    /// The lists are left out: they follow from the stored positions at which they were made.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let memory: Vec<[f64; 4]> = self.chunks.iter().flat_map(|c| c.memory.iter().copied()).collect();
+        let now = Moment {
+            close_pairs: memory.len(),
+            friction: self.law.friction,
+            makes_heavier: self.makes_heavier(),
+            ..self.now.clone()
+        };
+        let record = serde_json::to_vec(&now).expect("numbers and words");
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend(VERSION.to_le_bytes());
+        bytes.extend((record.len() as u64).to_le_bytes());
+        bytes.extend(record);
+        bytes.extend_from_slice(bytemuck::cast_slice(&self.rank));
+        bytes.extend_from_slice(bytemuck::cast_slice(&self.origin));
+        for rows in [&self.position, &self.velocity, &self.spin, &self.listed, &self.picked, &memory] {
+            bytes.extend_from_slice(bytemuck::cast_slice(rows));
+        }
+        bytes.extend(xxh3_64(&bytes).to_le_bytes());
+        bytes
+    }
+
+    /// Restores a compression from its bytes, with the settings that it was made with.
+    ///
+    /// # Errors
+    /// Bytes that are corrupt, of another version, or of other settings.
+    pub fn from_bytes(settings: &Settings, bytes: &[u8]) -> Result<Self, PackingError> {
+        settings.check()?;
+        const EARLY: PackingError = PackingError::State("it ends early");
+        let (body, sum) = bytes.split_last_chunk::<8>().ok_or(EARLY)?;
+        if xxh3_64(body) != u64::from_le_bytes(*sum) {
+            return Err(PackingError::State("its checksum is wrong"));
+        }
+        let (magic, body) = body.split_first_chunk::<8>().ok_or(EARLY)?;
+        if *magic != MAGIC {
+            return Err(PackingError::State("it is not a compression"));
+        }
+        let (version, body) = body.split_first_chunk::<8>().ok_or(EARLY)?;
+        if u64::from_le_bytes(*version) != VERSION {
+            return Err(PackingError::State("it has another version"));
+        }
+        let (length, body) = body.split_first_chunk::<8>().ok_or(EARLY)?;
+        let length = usize::try_from(u64::from_le_bytes(*length)).unwrap_or(usize::MAX);
+        let (record, columns) = body.split_at_checked(length).ok_or(EARLY)?;
+        let now: Moment =
+            serde_json::from_slice(record).map_err(|_| PackingError::State("its record cannot be read"))?;
+        if now.settings != settings.fingerprint() {
+            return Err(PackingError::State("it was made with other settings"));
+        }
+        let n = now.grains;
+        if n == 0 || columns.len() as u128 != 168 * n as u128 + 32 * now.close_pairs as u128 {
+            return Err(PackingError::State("its columns have another length"));
+        }
+        let (rank, rest) = columns.split_at(4 * n);
+        let (origin, rest) = rest.split_at(4 * n);
+        let mut rows = rest.chunks(32 * n).map(bytemuck::pod_collect_to_vec::<u8, [f64; 4]>);
+        let mut row = || rows.next().unwrap_or_default();
+        let (position, velocity) = (row(), row());
+        let origin = bytemuck::pod_collect_to_vec(origin);
+        if !(1.0..=1.001 * Aspect::TALLEST).contains(&now.aspect) {
+            return Err(PackingError::State("its cell is none"));
+        }
+        let makes_heavier = now.makes_heavier;
+        let mut this = Self::blank(settings, now, position, velocity, origin);
+        this.is_wide = makes_heavier;
+        this.rank = bytemuck::pod_collect_to_vec(rank);
+        (this.spin, this.listed, this.picked) = (row(), row(), row());
+        let memory: Vec<[f64; 4]> = bytemuck::pod_collect_to_vec(&rest[160 * n..]);
+        this.chunks = list(&this.listed, &this.rank, this.now.listed_cell, this.aspect, this.now.reach);
+        let mut taken = 0;
+        for chunk in &mut this.chunks {
+            if this.now.moved < f64::INFINITY {
+                chunk.pick(&this.picked, this.now.picked_cell, this.aspect, this.now.close);
+            }
+            let part = memory.get(taken..taken + chunk.close.len());
+            chunk.memory.copy_from_slice(part.ok_or(PackingError::State("memory is missing"))?);
+            taken += chunk.close.len();
+        }
+        if taken != memory.len() {
+            return Err(PackingError::State("memory is left over"));
+        }
+        Ok(this)
     }
 }

@@ -1,55 +1,134 @@
-//! Stores a compression as bytes and restores it: a resumed compression gives the same bits as an unbroken
-//! one.
+//! The state of a compression, as columns, and what is measured of it.
+//!
+//! # Reduced units
+//! Length: the smallest diameter. Stress: the target pressure. Density: the grains' density. So the unit of
+//! time is `smallest diameter * sqrt(density / pressure)` and a strain rate of 1e-3 is an inertial number of
+//! 1e-3 for the smallest grains.
+//!
+use super::contact::{Law, Work};
+use super::neighbours::{Aspect, GrainChunk, Memory, Reach, chunk_bounds, nearest};
+use super::settings::{PackingError, Settings, WIDE, critical_step, is_wide, mass};
+use super::{Cell, Packing};
+use crate::gradation::Gradation;
+use std::f64::consts::PI;
 
-use super::compression::{Compression, Stage, TALLEST};
-use super::neighbours::{Aspect, Reach, list};
-use super::observed::HoldState;
-use super::settings::{PackingError, Settings};
-use serde::{Deserialize, Serialize};
-use xxhash_rust::xxh3::xxh3_64;
+/// Stages of a compression.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stage {
+    /// The cell shrinks at a constant rate.
+    Squeeze,
+    /// The servo holds the pressure, with the friction of the compression.
+    Compress,
+    /// The servo holds the pressure, with the final friction.
+    Settle,
+    /// Settled.
+    Done,
+}
 
-const MAGIC: [u8; 8] = *b"vwpacked";
-const VERSION: u64 = 1;
+/// Observables of one instant.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+pub struct Measure {
+    /// Volume of the voids by that of the grains.
+    pub void_ratio: f64,
+    /// Mean contact pressure (kPa).
+    pub pressure_kpa: f64,
+    /// Mean coordination number `2 N_c / N_p`, over all grains.
+    pub coordination: f64,
+    /// Mean coordination number among the grains that are held: with at least two contacts (four without
+    /// friction) with held grains.
+    pub coordination_held: f64,
+    /// Rattler fraction: grains that are not held, by all grains.
+    pub rattlers: f64,
+    /// Kinetic by elastic energy.
+    pub kinetic_ratio: f64,
+    /// Root mean square unbalanced force of a grain by the mean normal contact force.
+    pub unbalanced: f64,
+    /// Largest overlap by the smaller diameter of its two grains.
+    pub largest_overlap: f64,
+}
 
-/// State of a compression besides its columns; the fields of [`Compression`] with these names have the
-/// details.
-#[derive(Serialize, Deserialize)]
+/// Energies in reduced units (pressure times smallest diameter cubed).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Energy {
+    pub kinetic: f64,
+    pub elastic: f64,
+}
+
+fn is_zero(saved: &f64) -> bool {
+    *saved == 0.0
+}
+
+/// State that the protocol keeps between its checks.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Record {
-    /// XXH3 hash of the settings.
-    settings: u64,
-    grains: usize,
-    /// Rows of `memory`.
-    close_pairs: usize,
-    stage: Stage,
-    steps: u64,
-    time: f64,
-    step: f64,
-    unit_mm: f64,
-    cell: f64,
-    /// Height by width of the cell; omitted for a cube.
+pub struct HoldState {
+    /// Step since which all criteria have held.
+    pub since: u64,
+    /// Number of further steps that the grains' own masses would have taken for this time, if some are moved
+    /// as heavier ones.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub saved: f64,
+    /// Mean coordination number then.
+    pub coordination: f64,
+    /// Void ratio then.
+    pub void_ratio: f64,
+    /// True once the pressure has been near its target; the drag is raised from then on.
+    pub braking: bool,
+    /// Observables before the friction was switched.
+    pub before: Option<Measure>,
+}
+
+/// State of a compression besides its columns, as it is stored.
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Moment {
+    pub settings: u64,
+    pub grains: usize,
+    /// Number of close pairs; as `friction` and `makes_heavier`, set when the state is stored.
+    pub close_pairs: usize,
+    pub stage: Stage,
+    pub steps: u64,
+    pub time: f64,
+    pub step: f64,
+    /// The smallest diameter (mm): the unit of length.
+    pub unit_mm: f64,
+    /// Width of the cell.
+    pub cell: f64,
+    /// Height by width of the cell, which is fixed; omitted for a cube.
     #[serde(default = "cube", skip_serializing_if = "is_cube")]
-    aspect: f64,
-    strain_rate: f64,
-    friction: f64,
+    pub aspect: f64,
+    /// Relative growth of the cell per unit of time.
+    pub strain_rate: f64,
+    pub friction: f64,
     /// True if crowded grains are moved as heavier ones.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    makes_heavier: bool,
-    listed_at: u64,
-    listed_cell: f64,
-    reach: Reach,
-    picked_at: u64,
-    picked_cell: f64,
-    close: Reach,
-    /// `null` for infinity, before the first pick.
-    moved: Option<f64>,
-    contacts: u64,
-    pressure: f64,
-    stiffest: f64,
-    twice_kinetic: f64,
-    unbalanced: f64,
-    mean_normal: f64,
-    hold: HoldState,
+    pub makes_heavier: bool,
+    /// Step in which the lists were made, width of the cell then, and their reach.
+    pub listed_at: u64,
+    pub listed_cell: f64,
+    pub reach: Reach,
+    /// Step in which the close pairs were picked, width of the cell then, and their reach.
+    pub picked_at: u64,
+    pub picked_cell: f64,
+    pub close: Reach,
+    /// Farthest move of any grain since the close pairs were picked, in units of the cell; infinite before
+    /// the first pick, which is stored as `null`.
+    #[serde(deserialize_with = "or_infinite")]
+    pub moved: f64,
+    pub contacts: u64,
+    /// In the last step, as all that follows: mean contact pressure by target.
+    pub pressure: f64,
+    /// Largest sum of contact stiffness by the mass that the grain was moved with, in the last step.
+    pub stiffest: f64,
+    /// Sum of the mass that grains were moved with times squared velocity, in the last step.
+    pub twice_kinetic: f64,
+    /// Sum of the squared unbalanced forces, in the last step.
+    pub unbalanced: f64,
+    /// Mean normal force of the contacts in the last step.
+    pub mean_normal: f64,
+    pub hold: HoldState,
 }
 
 fn cube() -> f64 {
@@ -60,147 +139,341 @@ fn is_cube(aspect: &f64) -> bool {
     *aspect == 1.0
 }
 
-impl Compression {
-    /// Writes everything that the next step depends on:
-    ///
-    /// | bytes | what |
-    /// |---|---|
-    /// | 8 | `vwpacked` |
-    /// | 8 | version of this format, 1 (all numbers are little-endian) |
-    /// | 8 | bytes of the record |
-    /// | | the record: JSON with named fields; every floating-point number comes back bit for bit |
-    /// | 4 n | `rank` (u32) of each of the `n` grains by size, in memory order |
-    /// | 4 n | `origin` (u32): place in the user's columns, by rank |
-    /// | 32 n each | `position`, `velocity`, `spin`, `listed`, `picked`: rows of four f64, in memory order |
-    /// | 32 each | tangential memory of the close pairs, in list order |
-    /// | 8 | XXH3-64 of everything before, which finds accidents, not attackers |
-    ///
-    /// The lists are left out: they follow from the stored positions at which they were made.
-    pub fn to_bytes(&self) -> Vec<u8> {
-        let memory: Vec<[f64; 4]> = self.chunks.iter().flat_map(|c| c.memory.iter().copied()).collect();
-        let record = serde_json::to_vec(&self.record(memory.len())).expect("numbers and words");
-        let mut bytes = MAGIC.to_vec();
-        bytes.extend(VERSION.to_le_bytes());
-        bytes.extend((record.len() as u64).to_le_bytes());
-        bytes.extend(record);
-        bytes.extend_from_slice(bytemuck::cast_slice(&self.rank));
-        bytes.extend_from_slice(bytemuck::cast_slice(&self.origin));
-        for rows in [&self.position, &self.velocity, &self.spin, &self.listed, &self.picked, &memory] {
-            bytes.extend_from_slice(bytemuck::cast_slice(rows));
-        }
-        bytes.extend(xxh3_64(&bytes).to_le_bytes());
-        bytes
-    }
+fn or_infinite<'d, D: serde::Deserializer<'d>>(stored: D) -> Result<f64, D::Error> {
+    Ok(<Option<f64> as serde::Deserialize>::deserialize(stored)?.unwrap_or(f64::INFINITY))
+}
 
-    fn record(&self, close_pairs: usize) -> Record {
-        Record {
-            settings: fingerprint(&self.settings),
-            grains: self.rank.len(),
-            close_pairs,
-            stage: self.stage,
-            steps: self.steps,
-            time: self.time,
-            step: self.step,
-            unit_mm: self.unit_mm,
-            cell: self.cell,
-            aspect: self.aspect.height(),
-            strain_rate: self.strain_rate,
-            friction: self.law.friction,
-            makes_heavier: self.makes_heavier(),
-            listed_at: self.listed_at,
-            listed_cell: self.listed_cell,
-            reach: self.reach,
-            picked_at: self.picked_at,
-            picked_cell: self.picked_cell,
-            close: self.close,
-            moved: self.moved.is_finite().then_some(self.moved),
-            contacts: self.contacts,
-            pressure: self.pressure,
-            stiffest: self.stiffest,
-            twice_kinetic: self.twice_kinetic,
-            unbalanced: self.unbalanced,
-            mean_normal: self.mean_normal,
-            hold: self.hold,
+impl Moment {
+    /// Before the first step, which has no length yet.
+    fn start(settings: &Settings, grains: usize, unit_mm: f64, (cell, aspect): (f64, Aspect)) -> Self {
+        Self {
+            settings: settings.fingerprint(),
+            grains,
+            close_pairs: 0,
+            stage: Stage::Squeeze,
+            steps: 0,
+            time: 0.0,
+            step: 0.0,
+            unit_mm,
+            cell,
+            aspect: aspect.height(),
+            strain_rate: 0.0,
+            friction: settings.friction,
+            makes_heavier: false,
+            listed_at: 0,
+            listed_cell: cell,
+            reach: settings.reach,
+            picked_at: 0,
+            picked_cell: cell,
+            close: Reach { relative: 0.1 * settings.reach.relative, absolute: 0.1 * settings.reach.absolute },
+            moved: f64::INFINITY,
+            contacts: 0,
+            pressure: 0.0,
+            stiffest: 0.0,
+            twice_kinetic: 0.0,
+            unbalanced: 0.0,
+            mean_normal: 0.0,
+            hold: HoldState::default(),
         }
-    }
-
-    /// Restores a compression from its bytes, with the settings that it was made with.
-    ///
-    /// # Errors
-    /// Bytes that are corrupt, of another version, or of other settings.
-    pub fn from_bytes(settings: &Settings, bytes: &[u8]) -> Result<Self, PackingError> {
-        settings.check()?;
-        const EARLY: PackingError = PackingError::State("it ends early");
-        let (body, sum) = bytes.split_last_chunk::<8>().ok_or(EARLY)?;
-        if xxh3_64(body) != u64::from_le_bytes(*sum) {
-            return Err(PackingError::State("its checksum is wrong"));
-        }
-        let (magic, body) = body.split_first_chunk::<8>().ok_or(EARLY)?;
-        if *magic != MAGIC {
-            return Err(PackingError::State("it is not a compression"));
-        }
-        let (version, body) = body.split_first_chunk::<8>().ok_or(EARLY)?;
-        if u64::from_le_bytes(*version) != VERSION {
-            return Err(PackingError::State("it has another version"));
-        }
-        let (length, body) = body.split_first_chunk::<8>().ok_or(EARLY)?;
-        let length = usize::try_from(u64::from_le_bytes(*length)).unwrap_or(usize::MAX);
-        let (record, columns) = body.split_at_checked(length).ok_or(EARLY)?;
-        let record: Record =
-            serde_json::from_slice(record).map_err(|_| PackingError::State("its record cannot be read"))?;
-        if record.settings != fingerprint(settings) {
-            return Err(PackingError::State("it was made with other settings"));
-        }
-        let n = record.grains;
-        if n == 0 || columns.len() as u128 != 168 * n as u128 + 32 * record.close_pairs as u128 {
-            return Err(PackingError::State("its columns have another length"));
-        }
-        let (rank, rest) = columns.split_at(4 * n);
-        let (origin, rest) = rest.split_at(4 * n);
-        let mut rows = rest.chunks(32 * n).map(bytemuck::pod_collect_to_vec::<u8, [f64; 4]>);
-        let mut row = || rows.next().unwrap_or_default();
-        let (position, velocity) = (row(), row());
-        let origin = bytemuck::pod_collect_to_vec(origin);
-        if !(1.0..=1.001 * TALLEST).contains(&record.aspect) {
-            return Err(PackingError::State("its cell is none"));
-        }
-        let cell = (record.cell, Aspect::new(record.aspect));
-        let mut this = Self::blank(settings, position, velocity, record.unit_mm, origin, cell);
-        this.is_wide = record.makes_heavier;
-        this.rank = bytemuck::pod_collect_to_vec(rank);
-        (this.spin, this.listed, this.picked) = (row(), row(), row());
-        let memory: Vec<[f64; 4]> = bytemuck::pod_collect_to_vec(&rest[160 * n..]);
-        this.take(&record);
-        this.chunks = list(&this.listed, &this.rank, this.listed_cell, this.aspect, this.reach);
-        let mut taken = 0;
-        for chunk in &mut this.chunks {
-            if this.moved < f64::INFINITY {
-                chunk.pick(&this.picked, this.picked_cell, this.aspect, this.close);
-            }
-            let part = memory.get(taken..taken + chunk.close.len());
-            chunk.memory.copy_from_slice(part.ok_or(PackingError::State("memory is missing"))?);
-            taken += chunk.close.len();
-        }
-        if taken != memory.len() {
-            return Err(PackingError::State("memory is left over"));
-        }
-        Ok(this)
-    }
-
-    fn take(&mut self, record: &Record) {
-        (self.stage, self.steps, self.time, self.step) =
-            (record.stage, record.steps, record.time, record.step);
-        (self.strain_rate, self.law.friction) = (record.strain_rate, record.friction);
-        (self.listed_at, self.listed_cell, self.reach) = (record.listed_at, record.listed_cell, record.reach);
-        (self.picked_at, self.picked_cell, self.close) = (record.picked_at, record.picked_cell, record.close);
-        self.moved = record.moved.unwrap_or(f64::INFINITY);
-        (self.contacts, self.pressure, self.stiffest) = (record.contacts, record.pressure, record.stiffest);
-        (self.twice_kinetic, self.unbalanced) = (record.twice_kinetic, record.unbalanced);
-        (self.mean_normal, self.hold) = (record.mean_normal, record.hold);
     }
 }
 
-/// Hash of the settings, for recognising them.
-fn fingerprint(settings: &Settings) -> u64 {
-    xxh3_64(format!("{settings:?}").as_bytes())
+/// Grains under compression: columns by grain in memory order, which changes, and `rank` (0 = the largest),
+/// which is fixed.
+#[derive(Clone, Debug)]
+pub struct Compression {
+    pub(super) settings: Settings,
+    pub(super) now: Moment,
+    /// Rank of each grain by size, from the largest.
+    pub(super) rank: Vec<u32>,
+    /// Place in the user's columns, by rank.
+    pub(super) origin: Vec<u32>,
+    /// Position along x, y, z in units of the cell; radius.
+    pub(super) position: Vec<[f64; 4]>,
+    /// Velocity along x, y, z relative to the deforming cell, at the last half step; mass.
+    pub(super) velocity: Vec<[f64; 4]>,
+    /// Angular velocity about x, y, z at the last half step; zero.
+    pub(super) spin: Vec<[f64; 4]>,
+    /// Position when the lists were made.
+    pub(super) listed: Vec<[f64; 4]>,
+    /// Position when the close pairs were picked.
+    pub(super) picked: Vec<[f64; 4]>,
+    pub(super) aspect: Aspect,
+    pub(super) law: Law,
+    /// The lists, with the tangential memory.
+    pub(super) chunks: Vec<GrainChunk>,
+    /// The critical step before there are contacts.
+    pub(super) loose_step: f64,
+    /// True if sizes differ so much that the most crowded grains are moved as heavier ones.
+    pub(super) is_wide: bool,
+    pub(super) chunk_of: Vec<u16>,
+    pub(super) work: Vec<Work>,
+    pub(super) force: Vec<[f64; 4]>,
+    pub(super) torque: Vec<[f64; 4]>,
+}
+
+impl Compression {
+    /// Makes a compression of grains at any position, at rest.
+    ///
+    /// # Errors
+    /// Settings out of range; invalid grains; a cell narrower than two of the largest grain; coincident
+    /// centres; a fixed step that is not below the critical one.
+    pub fn new(packing: &Packing, settings: &Settings) -> Result<Self, PackingError> {
+        settings.check()?;
+        let columns = [packing.x.len(), packing.y.len(), packing.z.len(), packing.diameter.len()];
+        let n = columns[0];
+        if columns.iter().any(|&c| c != n) || n == 0 {
+            return Err(PackingError::Columns(columns));
+        }
+        let (cell_mm, aspect) = match packing.cell {
+            Cell::Periodic([x, y, z])
+                if x == y && x > 0.0 && x < f64::INFINITY && z >= x && z <= 1.001 * Aspect::TALLEST * x =>
+            {
+                (x, Aspect::new(z / x))
+            }
+            other => return Err(PackingError::Cell(format!("{other:?}"))),
+        };
+        for (column, values) in [("x", &packing.x), ("y", &packing.y), ("z", &packing.z)] {
+            if let Some(grain) = values.iter().position(|v| !v.is_finite()) {
+                let value = values[grain];
+                return Err(PackingError::Grain { grain, column, value, allowed: "a finite number" });
+            }
+        }
+        PackingError::unless_sizes(&packing.diameter)?;
+        let mut origin: Vec<u32> = (0..n as u32).collect();
+        origin.sort_by(|&a, &b| {
+            packing.diameter[b as usize].total_cmp(&packing.diameter[a as usize]).then(a.cmp(&b))
+        });
+        let unit_mm = packing.diameter[origin[n - 1] as usize];
+        let largest_mm = packing.diameter[origin[0] as usize];
+        if cell_mm < 2.0 * largest_mm {
+            return Err(PackingError::NarrowCell { cell_mm, largest_mm });
+        }
+        let placed = |&i: &u32| {
+            let i = i as usize;
+            let [x, y, z] = aspect.wrapped([packing.x[i], packing.y[i], packing.z[i]].map(|mm| mm / cell_mm));
+            [x, y, z, 0.5 * (packing.diameter[i] / unit_mm)]
+        };
+        let position: Vec<[f64; 4]> = origin.iter().map(placed).collect();
+        let mut by_place: Vec<usize> = (0..n).collect();
+        by_place.sort_by(|&a, &b| position[a][..3].partial_cmp(&position[b][..3]).expect("finite"));
+        if let Some(w) = by_place.windows(2).find(|w| position[w[0]][..3] == position[w[1]][..3]) {
+            let (a, b) = (origin[w[0]] as usize, origin[w[1]] as usize);
+            return Err(PackingError::Coincident(a.min(b), a.max(b)));
+        }
+        let velocity: Vec<[f64; 4]> =
+            position.iter().map(|p| [0.0, 0.0, 0.0, mass(p[3], settings.mass_exponent)]).collect();
+        let now = Moment::start(settings, n, unit_mm, (cell_mm / unit_mm, aspect));
+        let mut this = Self::blank(settings, now, position, velocity, origin);
+        if let Some(step) = settings.step
+            && step >= this.loose_step
+        {
+            let (critical, cause) = critical_step(&this.position, &this.velocity, settings);
+            return Err(PackingError::Step { step, critical, cause });
+        }
+        this.now.step = settings.step.unwrap_or(settings.step_fraction * this.loose_step);
+        this.relist();
+        this.picked.clone_from(&this.position);
+        Ok(this)
+    }
+
+    /// Grains in order of rank, at rest, without lists.
+    pub(super) fn blank(
+        settings: &Settings,
+        now: Moment,
+        position: Vec<[f64; 4]>,
+        velocity: Vec<[f64; 4]>,
+        origin: Vec<u32>,
+    ) -> Self {
+        let n = position.len();
+        let [smallest, largest] = position
+            .iter()
+            .fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], p| [low.min(p[3]), high.max(p[3])]);
+        let mut chunk_of = vec![0; n];
+        let bounds = chunk_bounds(n);
+        for (c, &(first, last)) in bounds.iter().enumerate() {
+            chunk_of[first..last].fill(c as u16);
+        }
+        Self {
+            settings: settings.clone(),
+            loose_step: critical_step(&position, &velocity, settings).0,
+            rank: (0..n as u32).collect(),
+            origin,
+            position,
+            velocity,
+            spin: vec![[0.0; 4]; n],
+            listed: Vec::new(),
+            picked: Vec::new(),
+            aspect: Aspect::new(now.aspect),
+            law: Law::new(settings, now.friction),
+            chunks: Vec::new(),
+            is_wide: largest / smallest >= WIDE,
+            chunk_of,
+            work: vec![Work::new(bounds.len()); bounds.len()],
+            force: vec![[0.0; 4]; n],
+            torque: vec![[0.0; 4]; n],
+            now,
+        }
+    }
+
+    /// Steps done.
+    pub fn steps(&self) -> u64 {
+        self.now.steps
+    }
+
+    /// Current stage.
+    pub fn stage(&self) -> Stage {
+        self.now.stage
+    }
+
+    /// Angular velocity about x, y, z of each grain, in reduced units, in memory order.
+    pub fn spins(&self) -> Vec<[f64; 3]> {
+        self.spin.iter().map(|w| [w[0], w[1], w[2]]).collect()
+    }
+
+    /// Mean contact pressure of the last step, by target.
+    pub fn pressure(&self) -> f64 {
+        self.now.pressure
+    }
+
+    /// Volume of the cell by volume of the grains, less one.
+    pub fn void_ratio(&self) -> f64 {
+        self.cell_volume() / self.grain_volume() - 1.0
+    }
+
+    pub(super) fn cell_volume(&self) -> f64 {
+        self.now.cell * self.now.cell * self.now.cell * self.aspect.height()
+    }
+
+    pub(super) fn grain_volume(&self) -> f64 {
+        let mut cubes = vec![0.0; self.rank.len()];
+        for (p, &r) in self.position.iter().zip(&self.rank) {
+            cubes[r as usize] = p[3] * p[3] * p[3];
+        }
+        cubes.iter().sum::<f64>() * (4.0 / 3.0 * PI)
+    }
+
+    /// Tells if crowded grains are moved as heavier ones.
+    pub(super) fn makes_heavier(&self) -> bool {
+        self.is_wide && self.settings.step.is_none()
+    }
+
+    /// Moves crowded grains as heavier ones if the gradation that the grains were drawn from is wide: a small
+    /// sample may miss the extremes, and one gradation has one protocol.
+    pub fn of_gradation(mut self, gradation: &Gradation) -> Self {
+        self.is_wide = is_wide(gradation);
+        self
+    }
+
+    /// Grains in their present state, in the order that they were given in.
+    pub fn packing(&self) -> Packing {
+        let n = self.rank.len();
+        let edge = self.now.cell * self.now.unit_mm;
+        let height = self.aspect.height();
+        let cell = Cell::Periodic([edge, edge, edge * height]);
+        let [x, y, z, diameter] = std::array::from_fn(|_| vec![0.0; n]);
+        let mut packing = Packing { cell, x, y, z, diameter };
+        for (p, &r) in self.position.iter().zip(&self.rank) {
+            let i = self.origin[r as usize] as usize;
+            let wrapped = |s: f64, length: f64| (s - length * libm::floor(s / length)) * edge;
+            packing.x[i] = wrapped(p[0], 1.0);
+            packing.y[i] = wrapped(p[1], 1.0);
+            packing.z[i] = wrapped(p[2], height);
+            packing.diameter[i] = 2.0 * p[3] * self.now.unit_mm;
+        }
+        packing
+    }
+
+    /// Calls `visit` with the grains, distance, overlap and tangential memory of every contact.
+    pub(super) fn for_each_contact(&self, mut visit: impl FnMut(usize, usize, f64, f64, &Memory)) {
+        for chunk in &self.chunks {
+            for (&[i, j], memory) in chunk.close.iter().zip(&chunk.memory) {
+                let (i, j) = (i as usize, j as usize);
+                let (p, q) = (self.position[i], self.position[j]);
+                let along = self.aspect.nearest(q[2] - p[2]);
+                let d = [nearest(q[0] - p[0]), nearest(q[1] - p[1]), along].map(|d| d * self.now.cell);
+                let r = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
+                let overlap = p[3] + q[3] - r;
+                if overlap > 0.0 {
+                    visit(i, j, r, overlap, memory);
+                }
+            }
+        }
+    }
+
+    /// Energies, with the grains' own masses and the velocities of the last half step.
+    pub(super) fn energy(&self) -> Energy {
+        let mut kinetic = 0.0;
+        for ((p, v), w) in self.position.iter().zip(&self.velocity).zip(&self.spin) {
+            let inertia = 0.4 * v[3] * p[3] * p[3];
+            kinetic += 0.5 * v[3] * (v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+                + 0.5 * inertia * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+        }
+        let mut elastic = 0.0;
+        self.for_each_contact(|i, j, _, overlap, memory| {
+            let (ri, rj) = (self.position[i][3], self.position[j][3]);
+            elastic += if self.law.hertz {
+                let kn = self.law.stiffness * (ri * rj / (ri + rj) * overlap).sqrt();
+                4.0 / 15.0 * kn * overlap * overlap
+            } else {
+                0.5 * self.law.stiffness * overlap * overlap
+            };
+            if self.law.friction > 0.0 && memory[3] > 0.0 {
+                let [x, y, z, kt] = *memory;
+                elastic += 0.5 * (x * x + y * y + z * z) / kt;
+            }
+        });
+        Energy { kinetic, elastic }
+    }
+
+    /// Observables of this instant.
+    pub fn measure(&self) -> Measure {
+        let n = self.rank.len();
+        let mut contacts: Vec<(u32, u32)> = Vec::new();
+        let mut largest_overlap: f64 = 0.0;
+        self.for_each_contact(|i, j, _, overlap, _| {
+            contacts.push((i as u32, j as u32));
+            largest_overlap = largest_overlap.max(0.5 * overlap / self.position[j][3]);
+        });
+        let needed = if self.law.friction > 0.0 { 2 } else { 4 };
+        let mut held = vec![true; n];
+        let mut count = vec![0u32; n];
+        let mut is_settled = false;
+        while !is_settled {
+            is_settled = true;
+            count.fill(0);
+            for &(i, j) in &contacts {
+                if held[i as usize] && held[j as usize] {
+                    count[i as usize] += 1;
+                    count[j as usize] += 1;
+                }
+            }
+            let loose = |(held, count): &(&mut bool, &u32)| **held && **count < needed;
+            for (held, _) in held.iter_mut().zip(&count).filter(loose) {
+                (*held, is_settled) = (false, false);
+            }
+        }
+        let holding = held.iter().filter(|&&h| h).count();
+        let total: u64 = count.iter().zip(&held).filter(|(_, h)| **h).map(|(c, _)| u64::from(*c)).sum();
+        let energy = self.energy();
+        Measure {
+            void_ratio: self.void_ratio(),
+            pressure_kpa: self.now.pressure * self.settings.pressure_kpa,
+            coordination: 2.0 * contacts.len() as f64 / n as f64,
+            coordination_held: if holding > 0 { total as f64 / holding as f64 } else { 0.0 },
+            rattlers: 1.0 - holding as f64 / n as f64,
+            kinetic_ratio: if energy.elastic > 0.0 { energy.kinetic / energy.elastic } else { f64::INFINITY },
+            unbalanced: self.unbalanced_ratio(),
+            largest_overlap,
+        }
+    }
+
+    /// Root mean square unbalanced force of a grain by the mean normal contact force, in the last step.
+    pub(super) fn unbalanced_ratio(&self) -> f64 {
+        if self.now.mean_normal > 0.0 {
+            (self.now.unbalanced / self.rank.len() as f64).sqrt() / self.now.mean_normal
+        } else {
+            f64::INFINITY
+        }
+    }
 }

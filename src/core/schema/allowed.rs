@@ -1,13 +1,13 @@
-//! The types of settings, and their allowed values.
+//! Types of settings, their allowed values, and values in their written form.
 
+use super::length::{LENGTHS, millimetres};
+use serde::de::value::{Error, MapDeserializer, SeqDeserializer};
+use serde::de::{DeserializeOwned, Error as _, IntoDeserializer, Visitor};
+use serde::{Deserializer, Serialize, forward_to_deserialize_any};
+use std::fmt;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
-
-use serde::Serialize;
-use serde::de::DeserializeOwned;
-
-use super::Value;
-use super::length::{LENGTHS, millimetres};
+use toml::de::DeValue;
 
 /// Allowed values of a setting.
 pub struct Allowed<T> {
@@ -125,5 +125,154 @@ impl Leaf for Vec<f64> {
 impl Leaf for PathBuf {
     fn placed(self, folder: &Path) -> Self {
         folder.join(self)
+    }
+}
+
+/// A value in its written form.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// Text.
+    Text(String),
+    /// A number, digit for digit.
+    Number(String),
+    /// A list.
+    List(Vec<Value>),
+    /// A table, in the order of the text.
+    Table(Vec<(String, Value)>),
+    /// Anything else: a date, a truth value, an integer that is not decimal.
+    Other(String),
+}
+
+impl Value {
+    /// Reads a value from a command line: TOML, or else text.
+    pub fn of_assignment(text: &str) -> Self {
+        match DeValue::parse(text) {
+            Ok(parsed) => Self::from(parsed.get_ref()),
+            Err(_) => Self::Text(text.into()),
+        }
+    }
+
+    /// A finite number.
+    fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(digits) => digits.parse::<f64>().ok().filter(|n| n.is_finite()),
+            _ => None,
+        }
+    }
+
+    /// Reads a whole number written as `200000000`, `2e8` or `2.5e8`.
+    fn whole(&self) -> Option<u64> {
+        let Self::Number(digits) = self else { return None };
+        if let Ok(n) = digits.parse::<u64>() {
+            return Some(n);
+        }
+        let n = digits.parse::<f64>().ok()?;
+        (n.fract() == 0.0 && (0.0..=9_007_199_254_740_992.0).contains(&n)).then_some(n as u64)
+    }
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Text(text) | Self::Number(text) | Self::Other(text) => {
+                let printable = text.chars().map(|c| if c.is_control() { '?' } else { c });
+                write!(f, "{}", printable.take(80).collect::<String>())
+            }
+            Self::List(items) => {
+                let items: Vec<String> = items.iter().take(10).map(ToString::to_string).collect();
+                write!(f, "[{}]", items.join(", "))
+            }
+            Self::Table(items) => {
+                let printable = |text: &String| text.chars().filter(|c| !c.is_control()).collect::<String>();
+                let items: Vec<String> =
+                    items.iter().take(14).map(|(k, v)| format!("{} = {v}", printable(k))).collect();
+                write!(f, "{{ {} }}", items.join(", "))
+            }
+        }
+    }
+}
+
+impl From<&DeValue<'_>> for Value {
+    fn from(value: &DeValue) -> Self {
+        match value {
+            DeValue::String(text) => Self::Text(text.to_string()),
+            DeValue::Integer(i) if i.radix() == 10 => Self::Number(i.as_str().to_string()),
+            DeValue::Float(number) => Self::Number(number.as_str().to_string()),
+            DeValue::Array(items) => Self::List(items.iter().map(|i| i.get_ref().into()).collect()),
+            DeValue::Integer(i) => Self::Other(i.to_string()),
+            DeValue::Boolean(b) => Self::Other(b.to_string()),
+            DeValue::Datetime(d) => Self::Other(d.to_string()),
+            DeValue::Table(items) => Self::Table(
+                items
+                    .iter()
+                    .map(|(key, value)| (key.get_ref().to_string(), value.get_ref().into()))
+                    .collect(),
+            ),
+        }
+    }
+}
+
+impl<'de> IntoDeserializer<'de> for &'de Value {
+    type Deserializer = Self;
+
+    fn into_deserializer(self) -> Self {
+        self
+    }
+}
+
+/// Reads digits by the type of the setting: a count may be written `2e8`, a length may not be infinite.
+impl<'de> Deserializer<'de> for &'de Value {
+    type Error = Error;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        match self {
+            Value::Text(text) if !text.is_empty() => visitor.visit_str(text),
+            Value::List(items) => visitor.visit_seq(SeqDeserializer::new(items.iter())),
+            Value::Table(items) => visitor
+                .visit_map(MapDeserializer::new(items.iter().map(|(key, value)| (key.as_str(), value)))),
+            Value::Number(_) => self.deserialize_f64(visitor),
+            Value::Text(_) | Value::Other(_) => Err(Error::custom("not allowed here")),
+        }
+    }
+
+    fn deserialize_bool<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        match self {
+            Value::Other(word) if word == "true" => visitor.visit_bool(true),
+            Value::Other(word) if word == "false" => visitor.visit_bool(false),
+            _ => Err(Error::custom("not true or false")),
+        }
+    }
+
+    fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        visitor.visit_f64(self.number().ok_or_else(|| Error::custom("not a finite number"))?)
+    }
+
+    fn deserialize_u64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Error> {
+        visitor.visit_u64(self.whole().ok_or_else(|| Error::custom("not a whole number"))?)
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        _: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Error> {
+        match self {
+            Value::Text(text) => visitor.visit_enum(text.as_str().into_deserializer()),
+            _ => Err(Error::custom("not a word")),
+        }
+    }
+
+    fn deserialize_newtype_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        visitor: V,
+    ) -> Result<V::Value, Error> {
+        visitor.visit_newtype_struct(self)
+    }
+
+    forward_to_deserialize_any! {
+        i8 i16 i32 i64 i128 u8 u16 u32 u128 f32 char str string bytes byte_buf option unit
+        unit_struct seq tuple tuple_struct map struct identifier ignored_any
     }
 }

@@ -1,8 +1,9 @@
-//! Guesses what a text that is no settings file is, and tells what to write instead.
-
-use toml::de::DeTable;
+//! Guesses what a text that is no settings file is, or a name that does not exist, and tells what to write
+//! instead.
 
 use super::length;
+use strsim::damerau_levenshtein;
+use toml::de::DeTable;
 
 /// First bytes of workbooks: .xlsx and .ods are zips, .xls is older.
 const WORKBOOKS: [&[u8]; 2] = [b"PK\x03\x04", b"\xd0\xcf\x11\xe0"];
@@ -56,10 +57,7 @@ pub fn as_text(bytes: &[u8]) -> Result<&str, String> {
 pub fn of_line(text: &str, line: usize) -> Option<String> {
     let (key, value) = text.lines().nth(line.checked_sub(1)?)?.split_once('=')?;
     let (key, value) = (key.trim(), value.split('#').next().unwrap_or_default().trim());
-    if let Some((whole, part)) = value.split_once(',')
-        && is_digits(whole.trim_start_matches(['+', '-']))
-        && is_digits(part)
-    {
+    if let Some((whole, part)) = decimal_comma(value) {
         return Some(format!("`{value}` has a decimal comma; write {key} = {whole}.{part}"));
     }
     if value.contains('\\') {
@@ -84,10 +82,7 @@ pub fn of_line(text: &str, line: usize) -> Option<String> {
 /// usual mistakes. A number is named only if the setting's unit is certain.
 pub fn of_value(name: &str, value: &str) -> Option<String> {
     let number = value.trim();
-    if let Some((whole, part)) = number.split_once(',')
-        && is_digits(whole.trim_start_matches(['+', '-']))
-        && is_digits(part)
-    {
+    if let Some((whole, part)) = decimal_comma(number) {
         return Some(format!("a decimal point, not a comma: {whole}.{part}"));
     }
     let end = number.find(|c: char| !c.is_ascii_digit() && !".+-".contains(c))?;
@@ -132,8 +127,12 @@ fn rounded(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
 
-fn is_digits(text: &str) -> bool {
-    !text.is_empty() && text.chars().all(|c| c.is_ascii_digit())
+/// The parts of a number before and behind its decimal comma.
+fn decimal_comma(number: &str) -> Option<(&str, &str)> {
+    let is_digits = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
+    number
+        .split_once(',')
+        .filter(|(whole, part)| is_digits(whole.trim_start_matches(['+', '-'])) && is_digits(part))
 }
 
 /// Tells if a text that is no TOML is a table of numbers.
@@ -149,9 +148,67 @@ pub fn is_plan(table: &DeTable) -> bool {
     table.keys().any(|key| OF_A_PLAN.contains(&&**key.get_ref()))
 }
 
+/// Largest number of settings in a list.
+const NAMED: usize = 30;
+
+/// `did you mean ...` if a known name resembles `name`; else the names in its section.
+pub(super) fn instead_of(name: &str, known: &[String]) -> String {
+    let sections = sections(known);
+    // A section by itself, as `[filtre]`.
+    if !name.contains('.')
+        && let Some(section) = sections.iter().find(|section| is_like(section, name))
+        && !known.iter().any(|known| is_like(known, name))
+    {
+        return format!("did you mean [{section}]?");
+    }
+    let last = |name: &str| name.rsplit('.').next().unwrap_or_default().to_owned();
+    let distance = |known: &&String| {
+        let whole = damerau_levenshtein(known, name);
+        (whole.min(damerau_levenshtein(&last(known), &last(name)) + 1), whole)
+    };
+    let nearest = known.iter().min_by_key(distance);
+    let nearest = nearest.filter(|known| is_like(known, name) || is_like(&last(known), &last(name)));
+    let begins = || known.iter().find(|known| name.len() > 2 && known.starts_with(name));
+    if let Some(nearest) = nearest.or_else(begins) {
+        return format!("did you mean `{nearest}`?");
+    }
+    let section = name.rsplit_once('.').map_or("", |(section, _)| section);
+    let of_section: Vec<&str> = known.iter().filter_map(|known| in_section(known, section)).collect();
+    if !section.is_empty() && !of_section.is_empty() {
+        return format!("[{section}] has {}", listed(&of_section));
+    }
+    let top: Vec<&str> = known.iter().filter_map(|known| in_section(known, "")).collect();
+    let sections: Vec<String> = sections.iter().map(|section| format!("[{section}]")).collect();
+    format!("there are {}; and {} without a section", sections.join(", "), listed(&top))
+}
+
+/// Tells if few letters differ, for the length of the name.
+fn is_like(known: &str, name: &str) -> bool {
+    damerau_levenshtein(known, name) <= (name.chars().count() / 3).clamp(1, 3)
+}
+
+fn sections(known: &[String]) -> Vec<&str> {
+    let mut sections: Vec<&str> = known.iter().filter_map(|name| Some(name.split_once('.')?.0)).collect();
+    sections.dedup();
+    sections
+}
+
+/// Name inside a section, if it is in that section.
+fn in_section<'a>(name: &'a str, section: &str) -> Option<&'a str> {
+    match name.rsplit_once('.') {
+        Some((its_section, name)) => (its_section == section).then_some(name),
+        None => section.is_empty().then_some(name),
+    }
+}
+
+fn listed(names: &[&str]) -> String {
+    let more = if names.len() > NAMED { ", ..." } else { "" };
+    format!("{}{more}", names[..names.len().min(NAMED)].join(", "))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{instead_of, *};
 
     #[test]
     fn usual_mistakes_are_known() {
@@ -218,5 +275,25 @@ mod tests {
         assert_eq!(as_text("\u{feff}a".as_bytes()), Ok("a"));
         assert!(is_table("# sand\nopening_mm,percent\n2,100\n") && is_table("2;100\n1;50\n"));
         assert!(!is_table("seed = 1\n") && !is_table("") && !is_table("some words, and more\n"));
+    }
+
+    #[test]
+    fn a_name_that_is_like_none_gets_those_of_its_section() {
+        let known =
+            ["seed", "runs", "filter.cu", "filter.sieve", "base.cu", "base.d85_mm", "stop.decide_percent"];
+        let known = known.map(String::from);
+        for (name, wanted) in [
+            ("sed", "did you mean `seed`?"),
+            ("filtre", "did you mean [filter]?"),
+            ("filter.seive", "did you mean `filter.sieve`?"),
+            ("bas.cu", "did you mean `base.cu`?"),
+            ("base.d85", "did you mean `base.d85_mm`?"),
+            ("base.sieve", "did you mean `filter.sieve`?"),
+            ("stop.bias", "[stop] has decide_percent"),
+            ("walk.bias", "there are [filter], [base], [stop]; and seed, runs without a section"),
+            ("temperature", "there are [filter], [base], [stop]; and seed, runs without a section"),
+        ] {
+            assert_eq!(instead_of(name, &known), wanted, "{name}");
+        }
     }
 }

@@ -9,16 +9,13 @@
 mod allowed;
 pub mod hints;
 pub mod length;
-mod nearest;
 mod settings;
-mod value;
 
 use serde::Serialize;
 
-pub use allowed::{Allowed, Leaf, above_zero, any, length, only, whole, within, words};
+pub use allowed::{Allowed, Leaf, Value, above_zero, any, length, only, whole, within, words};
 pub use settings::setting_name;
 pub use settings::{Alternative, GivenSettings, Group, Names, Origin, SceneError};
-pub use value::Value;
 
 /// Description of a setting for the user, and its allowed values.
 #[derive(Clone, Debug)]

@@ -3,14 +3,12 @@
 //! A setting has a dotted name (`base.cu`). Some exclude each other ([`Group`]): setting one on the command
 //! line replaces the others, and a file that gives both is refused.
 
+use super::{Allowed, Leaf, Value, hints};
+use crate::store::{read_regular, why_not_read};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
-
 use toml::de::{DeTable, DeValue};
-
-use super::{Allowed, Leaf, Value, hints, nearest};
-use crate::store::{read_regular, why_not_read};
 
 /// A refused scene.
 #[derive(Debug, thiserror::Error)]
@@ -175,9 +173,6 @@ impl GivenSettings {
     }
 
     /// Reads TOML text; `file` names it in errors, and relative paths start from `folder`.
-    ///
-    /// # Errors
-    /// Errors of [`GivenSettings::read`].
     pub fn parse(bytes: &[u8], file: &str, folder: PathBuf, names: &Names) -> Result<Self, SceneError> {
         let syntax = |at, problem| SceneError::Syntax { file: file.into(), at, problem };
         let text = hints::as_text(bytes).map_err(|problem| syntax(String::new(), problem))?;
@@ -220,19 +215,11 @@ impl GivenSettings {
         Ok(settings)
     }
 
-    /// Applies `name=value` from the command line; the value is TOML, or else text.
+    /// Applies assignments `name=value` that are stated together: they replace alternatives that were given
+    /// before, not one another. A value is TOML, or else text.
     ///
     /// # Errors
     /// There is no `=`, or no such setting.
-    pub fn set(&mut self, assignment: &str, names: &Names) -> Result<(), SceneError> {
-        self.set_together(&[assignment.to_owned()], names, &Origin::CommandLine)
-    }
-
-    /// Applies assignments that are stated together: they replace alternatives that were given before, not
-    /// one another.
-    ///
-    /// # Errors
-    /// Errors of [`GivenSettings::set`].
     pub fn set_together(
         &mut self,
         assignments: &[String],
@@ -375,7 +362,7 @@ impl Names {
     }
 
     fn unknown(&self, name: &str, origin: &Origin) -> SceneError {
-        let instead = nearest::instead_of(name, &self.known);
+        let instead = hints::instead_of(name, &self.known);
         let name = Value::Text(name.into()).to_string();
         SceneError::Unknown { origin: origin.clone(), name, instead }
     }
@@ -405,6 +392,10 @@ mod tests {
         GivenSettings::parse(text.as_bytes(), "s.toml", PathBuf::from("there"), &names())
     }
 
+    fn set(settings: &mut GivenSettings, assignment: &str) -> Result<(), SceneError> {
+        settings.set_together(&[assignment.to_owned()], &names(), &Origin::CommandLine)
+    }
+
     fn sieve(settings: &GivenSettings) -> Option<PathBuf> {
         settings.get("base.sieve", &any("a file name in quotes")).unwrap()
     }
@@ -429,13 +420,13 @@ mod tests {
     fn the_command_line_replaces_alternatives_and_keeps_paths_apart() {
         let mut settings = parse("[base]\nsieve = \"a.csv\"\nd0_mm = 1").unwrap();
         assert_eq!(sieve(&settings), Some(PathBuf::from("there/a.csv")));
-        settings.set("base.sieve=b.csv", &names()).unwrap();
+        set(&mut settings, "base.sieve=b.csv").unwrap();
         assert_eq!(sieve(&settings), Some(PathBuf::from("b.csv")));
         assert!(settings.has("base.d0_mm"));
-        settings.set("base.cu = 3", &names()).unwrap();
+        set(&mut settings, "base.cu = 3").unwrap();
         assert!(!settings.has("base.sieve") && !settings.has("base.d0_mm"));
-        assert!(settings.set("base.cu", &names()).is_err());
-        assert!(settings.set("base.uc=1", &names()).is_err());
+        assert!(set(&mut settings, "base.cu").is_err());
+        assert!(set(&mut settings, "base.uc=1").is_err());
     }
 
     #[test]
@@ -466,12 +457,8 @@ mod tests {
     fn what_is_no_toml_is_refused_with_its_line() {
         assert!(parse("seed = 1\nbase = \n").unwrap_err().to_string().starts_with("s.toml, line 2: "));
         assert!(GivenSettings::read(Path::new("/"), &names()).is_err());
-        assert!(
-            GivenSettings::read(Path::new("/no/such"), &names())
-                .unwrap_err()
-                .to_string()
-                .starts_with("/no/such")
-        );
+        let missing = GivenSettings::read(Path::new("/no/such"), &names()).unwrap_err();
+        assert!(missing.to_string().starts_with("/no/such"));
     }
 
     proptest! {

@@ -242,9 +242,6 @@ fn regular(file: File) -> io::Result<Option<File>> {
 
 /// Reads a file of a user; `None` if it is no regular file, or has more bytes than `largest`. Does not wait
 /// for a pipe.
-///
-/// # Errors
-/// Error of the system.
 pub fn read_regular(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
     let Some(file) = open_regular(path)? else { return Ok(None) };
     let mut bytes = Vec::new();
@@ -273,9 +270,6 @@ pub fn in_mb(bytes: u64) -> String {
 }
 
 /// Opens a file for reading; `None` if it is no regular file. Does not wait for a pipe.
-///
-/// # Errors
-/// Error of the system.
 pub fn open_regular(path: &Path) -> io::Result<Option<File>> {
     regular(platform::open_any(File::options().read(true), path)?)
 }

@@ -7,17 +7,17 @@
 //! - A file appears under its name only when it is whole: written beside it, synced, renamed, and the folder
 //!   synced. A new folder is synced into its parent.
 //! - Incomplete files of a killed process are removed when their folder is next taken by one process alone.
+//! - A name of a folder or a file is one that every system accepts and none takes for another.
 
-use std::fs::{self, File, TryLockError};
-use std::io::{self, Seek, Write};
+use super::disk::{Call, PART, ask};
+use super::whole::{StoreError, is_empty, make_folder, make_folders, remove_folder, sync, write_whole};
+use super::{disk, platform};
+use crate::text::is_plain;
+use std::fs::{File, TryLockError};
+use std::io::{Seek, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-
-use super::disk::{self, Call, PART, ask};
-use super::error::StoreError;
-use super::inside::{is_empty, make_folder, make_folders, remove_folder, sync};
-use super::platform;
-use super::whole::write_whole;
+use std::{fs, io};
 
 /// Name of the lock file, which marks a folder as ours.
 pub const LOCK_FILE: &str = ".voidwalk.lock";
@@ -52,19 +52,15 @@ impl Folder {
 
     /// Opens a folder like [`Folder::open`], for several processes that each work in folders of their own
     /// inside; it is not taken while one process holds it alone.
-    ///
-    /// # Errors
-    /// Errors of [`Folder::open`].
     pub fn open_shared(path: &Path) -> Result<Self, StoreError> {
         Self::open_locked(path, true)
     }
 
     fn open_locked(path: &Path, shared: bool) -> Result<Self, StoreError> {
         #[cfg(feature = "process")]
-        platform::signals::save_first();
+        platform::process::save_first();
         // Without a trailing slash, which would follow a link.
         let path: &Path = &path.components().collect::<PathBuf>();
-        let io = |action| move |source| StoreError::Io { path: path.to_owned(), action, source };
         let mut marked = false;
         match fs::symlink_metadata(path) {
             Ok(meta) if meta.is_symlink() => {
@@ -76,25 +72,22 @@ impl Folder {
             Ok(_) => {
                 let is_file = |name| path.join(name).symlink_metadata().is_ok_and(|m| m.is_file());
                 // In this order: a process that has just locked an empty folder leaves its mark in it.
-                let empty = is_empty(path).map_err(io("read the folder"))?;
+                let empty = is_empty(path).map_err(StoreError::io(path, "read the folder"))?;
                 marked = is_file(LOCK_FILE) || (is_file("manifest.json") && is_file("outcome.json"));
                 if !marked && !empty {
                     return Err(StoreError::NotOurs { path: path.to_owned() });
                 }
             }
             Err(e) if e.kind() == io::ErrorKind::NotFound => {
-                make_folders(path).map_err(io("make the folder"))?
+                make_folders(path).map_err(StoreError::io(path, "make the folder"))?
             }
-            Err(e) => return Err(io("look at the folder")(e)),
+            Err(e) => return Err(StoreError::io(path, "look at the folder")(e)),
         }
         let lock_path = path.join(LOCK_FILE);
-        let lock = match shared {
-            false => lock(&lock_path, false)?,
-            true => share(&lock_path)?,
-        };
+        let lock = if shared { share(&lock_path)? } else { lock(&lock_path, false)? };
         if !marked {
             // Without this, a power failure could leave a folder with other files but without this mark.
-            disk::sync_folder(path).map_err(io("sync the folder"))?;
+            disk::sync_folder(path).map_err(StoreError::io(path, "sync the folder"))?;
         }
         if !shared {
             let holder = format!("process {} on {}\n", std::process::id(), platform::host_name());
@@ -104,8 +97,8 @@ impl Folder {
                 file.rewind()?;
                 file.write_all(holder.as_bytes())
             })
-            .map_err(io("write to the folder"))?;
-            clear_parts(path).map_err(io("clear up the folder"))?;
+            .map_err(StoreError::io(path, "write to the folder"))?;
+            clear_parts(path).map_err(StoreError::io(path, "clear up the folder"))?;
         }
         Ok(Self { path: path.to_owned(), _lock: lock })
     }
@@ -121,43 +114,27 @@ impl Folder {
     }
 
     /// Reads a file of the folder; `None` if it is missing.
-    ///
-    /// # Errors
-    /// Error of the system, with the file's path.
     pub fn read(&self, name: &str) -> Result<Option<Vec<u8>>, StoreError> {
         let path = self.path.join(name);
         match disk::read(&path) {
             Ok(bytes) => Ok(Some(bytes)),
             Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
-            Err(source) => Err(StoreError::Io { path, action: "read", source }),
+            Err(source) => Err(StoreError::io(&path, "read")(source)),
         }
     }
 
     /// Removes a file of the folder, if it is there.
-    ///
-    /// # Errors
-    /// Error of the system, with the file's path.
     pub fn remove(&self, name: &str) -> Result<(), StoreError> {
         let path = self.path.join(name);
         match ask(Call::Remove(&path), || fs::remove_file(&path)) {
-            Err(source) if source.kind() != io::ErrorKind::NotFound => {
-                Err(StoreError::Io { path, action: "remove", source })
-            }
+            Err(e) if e.kind() != io::ErrorKind::NotFound => Err(StoreError::io(&path, "remove")(e)),
             _ => Ok(()),
         }
     }
 
     /// Removes files of the folder, if present, for good: a power cut restores no file.
-    ///
-    /// # Errors
-    /// Error of the system, with the file's path.
     pub fn remove_all(&self, names: &[&str]) -> Result<(), StoreError> {
-        let there: Vec<&&str> = names.iter().filter(|name| self.has(name)).collect();
-        there.iter().try_for_each(|name| self.remove(name))?;
-        match there.is_empty() {
-            true => Ok(()),
-            false => sync(&self.path),
-        }
+        if self.remove_there(names)? { sync(&self.path) } else { Ok(()) }
     }
 
     /// Removes files like [`Folder::remove_all`] in a folder inside, and that folder too if nothing else is
@@ -172,23 +149,22 @@ impl Folder {
         }
         make_folder(&path)?;
         let names: Vec<String> = names.iter().map(|name| format!("{inside}/{}", name.as_ref())).collect();
-        let there: Vec<&String> = names.iter().filter(|name| self.has(name)).collect();
-        there.iter().try_for_each(|name| self.remove(name))?;
-        let read = |source| StoreError::Io { path: path.clone(), action: "read the folder", source };
-        if is_empty(&path).map_err(read)? {
+        let removed = self.remove_there(&names)?;
+        if is_empty(&path).map_err(StoreError::io(&path, "read the folder"))? {
             remove_folder(&path)?;
             return sync(&self.path);
         }
-        match there.is_empty() {
-            true => Ok(()),
-            false => sync(&path),
-        }
+        if removed { sync(&path) } else { Ok(()) }
+    }
+
+    /// Removes those of the files that are there; tells if there were any.
+    fn remove_there(&self, names: &[impl AsRef<str>]) -> Result<bool, StoreError> {
+        let there: Vec<&str> = names.iter().map(AsRef::as_ref).filter(|name| self.has(name)).collect();
+        there.iter().try_for_each(|name| self.remove(name))?;
+        Ok(!there.is_empty())
     }
 
     /// Writes a whole file: afterwards either all of it is there, or the former content.
-    ///
-    /// # Errors
-    /// Error of the system, with the file's path.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), StoreError> {
         let path = self.path.join(name);
         if let Some(folder) = path.parent().filter(|p| *p != self.path) {
@@ -213,7 +189,7 @@ impl Drop for Lock {
 /// Opens a lock file and locks it, for this process alone or `shared`.
 fn lock(path: &Path, shared: bool) -> Result<Lock, StoreError> {
     let folder = path.parent().unwrap_or(path);
-    let failed = |source| StoreError::Io { path: folder.to_owned(), action: "write to the folder", source };
+    let failed = |source| StoreError::io(folder, "write to the folder")(source);
     let mut options = File::options();
     options.read(true).write(true).create(true).truncate(false);
     // A link in place of the lock file would cause its target to be emptied.
@@ -228,9 +204,7 @@ fn lock(path: &Path, shared: bool) -> Result<Lock, StoreError> {
         Err(TryLockError::WouldBlock) => {
             Err(StoreError::Held { path: folder.to_owned(), holder: holder(path) })
         }
-        Err(TryLockError::Error(source)) => {
-            Err(StoreError::Io { path: folder.to_owned(), action: "lock the folder", source })
-        }
+        Err(TryLockError::Error(source)) => Err(StoreError::io(folder, "lock the folder")(source)),
     }
 }
 
@@ -252,9 +226,7 @@ fn holder(path: &Path) -> String {
 fn share(path: &Path) -> Result<Lock, StoreError> {
     if let Ok(alone) = lock(path, false) {
         let folder = path.parent().unwrap_or(path);
-        let failed =
-            |source| StoreError::Io { path: folder.to_owned(), action: "clear up the folder", source };
-        clear_parts(folder).map_err(failed)?;
+        clear_parts(folder).map_err(StoreError::io(folder, "clear up the folder"))?;
         drop(alone);
     }
     let begun = Instant::now();
@@ -293,5 +265,141 @@ fn is_left(name: &str) -> bool {
     process == std::process::id().to_string() || !platform::is_running(process)
 }
 
+/// Tells if Windows takes a name for a device's, whatever its ending.
+pub fn is_device(name: &str) -> bool {
+    let stem = name.split('.').next().unwrap_or_default().trim_end().to_lowercase();
+    let numbered =
+        |device| stem.strip_prefix(device).is_some_and(|n| "0123456789¹²³".split("").any(|d| d == n));
+    let is_numbered = stem.len() > 3 && (numbered("com") || numbered("lpt"));
+    is_numbered || ["con", "prn", "aux", "nul", "conin$", "conout$"].contains(&stem.as_str())
+}
+
+/// Turns a name into a folder's: if it is not plain, is a device's or ends with a dot, its hash is added at
+/// the end.
+pub fn folder_name(name: &str) -> String {
+    let safe = |c: char| if is_plain(c) { c } else { '_' };
+    let plain: String = name.chars().take(120).map(safe).collect();
+    if plain == name && !is_device(name) && !name.ends_with('.') {
+        return plain;
+    }
+    let plain = if is_device(&plain) { plain.replace('.', "_") } else { plain };
+    format!("{plain}-{:016x}", xxhash_rust::xxh3::xxh3_64(name.as_bytes()))
+}
+
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_new_or_empty_folder_is_taken_and_can_be_taken_again() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("a/b");
+        for text in ["one", "two"] {
+            let folder = Folder::open(&path).unwrap();
+            folder.write("x.txt", text.as_bytes()).unwrap();
+            assert_eq!(fs::read_to_string(path.join("x.txt")).unwrap(), text);
+            assert!(folder.has("x.txt") && !folder.has("y.txt"));
+        }
+        assert_eq!(fs::read_dir(&path).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn a_second_writer_is_told_who_holds_the_folder() {
+        let root = tempfile::tempdir().unwrap();
+        let _first = Folder::open(root.path()).unwrap();
+        let error = Folder::open(root.path()).unwrap_err();
+        assert!(error.is_refusal());
+        assert!(error.to_string().contains(&format!("process {} on", std::process::id())));
+    }
+
+    #[test]
+    fn what_a_killed_process_left_is_cleared_up_by_the_sole_owner_only() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("run");
+        drop(Folder::open(&path).unwrap());
+        let part = |folder: &Path| {
+            fs::create_dir_all(folder).unwrap();
+            fs::write(folder.join(".voidwalk-part-4999999-1"), "half").unwrap();
+            folder.join(".voidwalk-part-4999999-1")
+        };
+        let (left, inside) = (part(&path), part(&path.join("checkpoint")));
+        let of_another = part(&path.join("cases/one"));
+        fs::write(path.join("cases/one").join(LOCK_FILE), "process 7 on x").unwrap();
+        fs::write(path.join("notes.txt"), "mine").unwrap();
+        let held = Folder::open_shared(&path).unwrap();
+        assert!(!left.exists() && !inside.exists() && of_another.exists());
+        // A live holder may own it.
+        part(&path);
+        let _other = Folder::open_shared(&path).unwrap();
+        assert!(left.exists());
+        drop((held, _other));
+        drop(Folder::open(&path).unwrap());
+        assert!(!left.exists() && of_another.exists() && path.join("notes.txt").exists());
+    }
+
+    #[test]
+    fn what_is_not_ours_is_left_alone() {
+        let root = tempfile::tempdir().unwrap();
+        fs::write(root.path().join("thesis.txt"), "years of work").unwrap();
+        assert!(matches!(Folder::open(root.path()), Err(StoreError::NotOurs { .. })));
+        assert!(matches!(
+            Folder::open(&root.path().join("thesis.txt")),
+            Err(StoreError::NotAFolder { what: "a file", .. })
+        ));
+        let linked = root.path().join("linked");
+        fs::create_dir(&linked).unwrap();
+        fs::hard_link(root.path().join("thesis.txt"), linked.join(LOCK_FILE)).unwrap();
+        for opened in [Folder::open(&linked), Folder::open_shared(&linked)] {
+            assert!(matches!(opened, Err(StoreError::NotALock { .. })));
+        }
+        fs::remove_dir_all(&linked).unwrap();
+        assert_eq!(fs::read_to_string(root.path().join("thesis.txt")).unwrap(), "years of work");
+        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn a_link_is_not_followed() {
+        let root = tempfile::tempdir().unwrap();
+        let (link, elsewhere) = (root.path().join("link"), root.path().join("elsewhere"));
+        fs::create_dir(&elsewhere).unwrap();
+        std::os::unix::fs::symlink(&elsewhere, &link).unwrap();
+        assert!(matches!(Folder::open(&link), Err(StoreError::NotAFolder { what: "a symbolic link", .. })));
+        let with_slash = root.path().join("link/");
+        assert!(matches!(Folder::open(&with_slash), Err(StoreError::NotAFolder { .. })));
+        assert_eq!(fs::read_dir(&elsewhere).unwrap().count(), 0);
+    }
+
+    /// A process that is being started has a copy of every open file until it becomes another program.
+    #[test]
+    fn a_folder_that_is_let_go_is_free_though_its_lock_file_is_open_elsewhere() {
+        let root = tempfile::tempdir().unwrap();
+        let folder = Folder::open(root.path()).unwrap();
+        let _copy = folder._lock.0.try_clone().unwrap();
+        drop(folder);
+        assert!(Folder::open(root.path()).is_ok());
+    }
+
+    #[test]
+    fn names_of_devices_are_known() {
+        for device in ["con", "CON", "aux.txt", "nul.a.b", "Com1", "lpt9.csv", "com¹", "con .x", "conin$"] {
+            assert!(is_device(device), "{device}");
+        }
+        for other in ["", "com", "com10", "comx", "lpt", "console", "a.con", "con-1", "auxiliary"] {
+            assert!(!is_device(other), "{other}");
+        }
+    }
+
+    #[test]
+    fn every_system_takes_the_name_of_a_folder() {
+        for plain in ["fine", "cu_b=1.5,filter=a", "0.5"] {
+            assert_eq!(folder_name(plain), plain);
+        }
+        for name in ["con", "con.x", "LPT1", "a.", "a ", "nul", "wide base", "é"] {
+            let folder = folder_name(name);
+            assert!(folder.len() > 17 && !is_device(&folder) && folder.chars().all(is_plain), "{folder}");
+            assert!(!folder.ends_with(['.', ' ']));
+        }
+        assert_eq!(folder_name("wide base").split_once('-').map(|(plain, _)| plain), Some("wide_base"));
+    }
+}

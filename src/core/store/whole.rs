@@ -1,41 +1,31 @@
-//! Whole files: one, or many that wait for the disk together.
+//! Whole files: one, or many that wait for the disk together; the folders around them, inside one of ours.
 //!
 //! A file appears under its name only when it is whole: it is written beside its place, synced and renamed,
 //! and the folder is synced.
 
-use std::io::{self, Write};
+use super::disk;
+use super::disk::{Call, PartFile, ask};
+use std::io::Write;
 use std::path::{Path, PathBuf};
-
-use super::disk::{self, PartFile};
-use super::error::StoreError;
-use super::inside::make_folder;
+use std::{fs, io};
 
 /// Reads a whole file that the program wrote itself.
-///
-/// # Errors
-/// Error of the system.
 pub fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
     disk::read(path)
 }
 
 /// Writes a whole file: afterwards either all of it is there, or the former content.
-///
-/// # Errors
-/// Error of the system, with the file's path.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     write_whole_with(path, |file| file.write_all(bytes))
 }
 
 /// Writes like [`write_whole`], for content that is not in one piece.
-///
-/// # Errors
-/// Error of the system, with the file's path.
 pub fn write_whole_with(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), StoreError> {
     let mut file = Unnamed::beside(path.to_owned(), fill)?;
-    file.part.sync().map_err(failed(path, "sync"))?;
+    file.part.sync().map_err(StoreError::io(path, "sync"))?;
     file.name(true)
 }
 
@@ -55,28 +45,22 @@ impl Together {
     }
 
     /// Adds a file by its name in the folder; a missing subfolder is made.
-    ///
-    /// # Errors
-    /// Error of the system, with the file's path.
     pub fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), StoreError> {
         let path = self.folder.join(name);
         if folder_of(&path) != self.folder {
             make_folder(folder_of(&path))?;
         }
         let mut file = Unnamed::beside(path, |file| file.write_all(bytes))?;
-        file.part.send_all().map_err(failed(&file.path, "sync"))?;
+        file.part.send_all().map_err(StoreError::io(&file.path, "sync"))?;
         self.files.push(file);
         Ok(())
     }
 
     /// Waits for the disk, then gives the files their names; the files of a folder are on the disk before the
     /// first of another folder appears.
-    ///
-    /// # Errors
-    /// Error of the system, with the path of a file.
     pub fn finish(mut self) -> Result<(), StoreError> {
         for file in &mut self.files {
-            file.part.sent().map_err(failed(&file.path, "sync"))?;
+            file.part.sent().map_err(StoreError::io(&file.path, "sync"))?;
         }
         let mut files = self.files.into_iter().peekable();
         while let Some(file) = files.next() {
@@ -100,19 +84,20 @@ impl Unnamed {
         path: PathBuf,
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<Self, StoreError> {
-        let mut part = PartFile::beside(folder_of(&path)).map_err(failed(&path, "write beside the file"))?;
-        fill(&mut part).map_err(failed(&path, "write"))?;
+        let mut part =
+            PartFile::beside(folder_of(&path)).map_err(StoreError::io(&path, "write beside the file"))?;
+        fill(&mut part).map_err(StoreError::io(&path, "write"))?;
         Ok(Self { part, path })
     }
 
     /// Gives a file that is on the disk its name, and syncs its folder if it `is_last` of it.
     fn name(self, is_last: bool) -> Result<(), StoreError> {
         let Self { part, path } = self;
-        part.rename(&path).map_err(failed(&path, "rename"))?;
-        match is_last {
-            true => disk::sync_folder(folder_of(&path)).map_err(failed(&path, "sync the folder")),
-            false => Ok(()),
+        part.rename(&path).map_err(StoreError::io(&path, "rename"))?;
+        if !is_last {
+            return Ok(());
         }
+        disk::sync_folder(folder_of(&path)).map_err(StoreError::io(&path, "sync the folder"))
     }
 }
 
@@ -120,9 +105,137 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
 }
 
-fn failed(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> StoreError {
-    let path = path.to_owned();
-    move |source| StoreError::Io { path, action, source }
+/// Sends the names in a folder to the disk.
+pub(super) fn sync(folder: &Path) -> Result<(), StoreError> {
+    disk::sync_folder(folder).map_err(StoreError::io(folder, "sync the folder"))
+}
+
+/// Tells if a folder is empty.
+pub(super) fn is_empty(folder: &Path) -> io::Result<bool> {
+    ask(Call::List(folder), || Ok(fs::read_dir(folder)?.next().is_none()))
+}
+
+/// Makes a folder and its missing parents, each synced into its own parent.
+pub(super) fn make_folders(path: &Path) -> io::Result<()> {
+    let missing: Vec<&Path> =
+        path.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists()).collect();
+    for folder in missing.into_iter().rev() {
+        match ask(Call::MakeFolder(folder), || fs::create_dir(folder)) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && folder.is_dir() => {}
+            other => other?,
+        }
+        disk::sync_folder(folder.parent().unwrap_or(Path::new("")))?;
+    }
+    Ok(())
+}
+
+/// Makes a folder inside one of ours, if it is missing; one reached through a link is refused.
+///
+/// # Errors
+/// A link or a file in its place, or an error of the system.
+pub fn make_folder(path: &Path) -> Result<(), StoreError> {
+    let not = |what| Err(StoreError::NotAFolder { path: path.to_owned(), what });
+    match path.symlink_metadata() {
+        Ok(meta) if meta.is_symlink() => not("a symbolic link"),
+        Ok(meta) if !meta.is_dir() => not("a file"),
+        Ok(_) => Ok(()),
+        Err(_) => make_folders(path).map_err(StoreError::io(path, "make the folder")),
+    }
+}
+
+/// Removes a folder with all its content, if it exists.
+///
+/// # Errors
+/// A link that somebody has put in its place, or an error of the system.
+pub fn remove_folder(path: &Path) -> Result<(), StoreError> {
+    if path.symlink_metadata().is_ok_and(|meta| meta.is_symlink()) {
+        return Err(StoreError::NotAFolder { path: path.to_owned(), what: "a symbolic link" });
+    }
+    match ask(Call::RemoveFolder(path), || fs::remove_dir_all(path)) {
+        Err(source) if source.kind() != io::ErrorKind::NotFound => {
+            Err(StoreError::io(path, "remove")(source))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Lists the files of a folder; empty if there is no such folder.
+pub fn files_in(folder: &Path) -> Result<Vec<PathBuf>, StoreError> {
+    let list = || fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>();
+    match ask(Call::List(folder), list) {
+        Err(source) if source.kind() != io::ErrorKind::NotFound => {
+            Err(StoreError::io(folder, "read the folder")(source))
+        }
+        listed => {
+            let mut files = listed.unwrap_or_default();
+            files.sort();
+            Ok(files)
+        }
+    }
+}
+
+/// Reasons why a folder cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// The folder holds other things.
+    #[error("{path}: this folder is not empty and was not made by voidwalk; name an empty or new one")]
+    NotOurs {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// The path is there, but is no folder of its own.
+    #[error("{path}: is {what}; name a folder that is empty or new")]
+    NotAFolder {
+        /// The path.
+        path: PathBuf,
+        /// Its actual kind.
+        what: &'static str,
+    },
+    /// A file that is no lock file has the lock file's name.
+    #[error(
+        "{path}: is no lock file of voidwalk: another name of some other file, or no file at all; remove it, \
+         or name another folder"
+    )]
+    NotALock {
+        /// The path.
+        path: PathBuf,
+    },
+    /// Another process is writing.
+    #[error("{path}: another run writes to this folder ({holder})")]
+    Held {
+        /// The folder.
+        path: PathBuf,
+        /// Content of the lock file.
+        holder: String,
+    },
+    /// The system refuses.
+    #[error("{path}: cannot {action}: {source}")]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// Action that failed.
+        action: &'static str,
+        /// Error of the system.
+        source: io::Error,
+    },
+}
+
+impl StoreError {
+    /// Makes the error of a failed action.
+    pub(super) fn io(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Io { path, action, source }
+    }
+
+    /// Tells if the user can fix it by naming another folder, before any work is done.
+    pub fn is_refusal(&self) -> bool {
+        use io::ErrorKind::{InvalidFilename, InvalidInput, NotADirectory, NotFound};
+        use io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem};
+        // Windows reports the name of a device, such as NUL, as an invalid input.
+        let by_name =
+            [InvalidFilename, InvalidInput, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem];
+        !matches!(self, Self::Io { source, .. } if !by_name.contains(&source.kind()))
+    }
 }
 
 #[cfg(test)]

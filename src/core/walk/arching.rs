@@ -4,7 +4,7 @@
 //! A particle that would pass a constriction of `R` times its size (diameter by diameter) jams with the
 //! probability that a [`Law`] gives, by a draw of its own. Particles that jam in one constriction in one
 //! increment are one arch, in the order of insertion, up to as many as an arch of the `R` of the first has
-//! ([`in_arch`]); those beyond pass (module `arches`). Particles so fine that the law gives no arch pass, and
+//! ([`in_arch`]); those beyond pass (module `chunks`). Particles so fine that the law gives no arch pass, and
 //! belong to no arch.
 //!
 //! The constriction closes from the next increment on, like one that a coarser particle blocked, however many
@@ -23,7 +23,7 @@
 //!
 //! # Passive particles
 //! A particle is passive that can neither block nor arch: no coarser than the finest open constriction by
-//! [`Arching::widest`].
+//! [`Law::widest`].
 
 use crate::schema::Leaf;
 use libm::{exp, lgamma, log, pow};
@@ -132,15 +132,6 @@ impl Law {
 
     /// Probability that a particle jams in a constriction `ratio` times its size, from 1 on, at this
     /// concentration (volume of particles by volume of suspension); 0 from the widest on.
-    ///
-    /// ```
-    /// use voidwalk_core::walk::Law;
-    ///
-    /// let law = Law::named("zuriguel-2005").unwrap();
-    /// // 9900 / 2.94^6.9 = 5.80 grains pass on average.
-    /// assert!((law.probability(2.0, 0.6) - 1.0 / 6.80).abs() < 1e-3);
-    /// assert_eq!(law.probability(4.94, 0.6), 0.0);
-    /// ```
     pub fn probability(&self, ratio: f64, concentration: f64) -> f64 {
         if ratio >= self.widest { 0.0 } else { (self.probability)(ratio, concentration) }
     }
@@ -176,7 +167,6 @@ pub fn in_arch(ratio: f64) -> u32 {
     (ratio * ratio + 1.0).round().max(2.0) as u32
 }
 
-/// Steps of the table of a law.
 const STEPS: usize = 1 << 14;
 
 /// Bits of a draw that decide.
@@ -196,7 +186,7 @@ fn wider(ratio: f64) -> f32 {
 /// A law as a walk reads it, at one concentration.
 #[derive(Clone, Debug)]
 pub struct Arching {
-    law: &'static Law,
+    pub(super) law: &'static Law,
     /// Probability at equal steps of `R` from 1 to the widest; the last entry is for just below the widest.
     table: Vec<f64>,
     /// `R` from which the table has no jams.
@@ -233,20 +223,10 @@ impl Arching {
         Self { law, stops_to: end_of(&|&probability| probability > 0.0), table, reach }
     }
 
-    /// `R` from which nothing arches at this concentration: [`Arching::widest`], or less where jams of wider
+    /// `R` from which nothing arches at this concentration: [`Law::widest`], or less where jams of wider
     /// constrictions are too rare for any draw.
     pub fn stops_to(&self) -> f64 {
         self.stops_to
-    }
-
-    /// `R` from which nothing arches.
-    pub fn widest(&self) -> f64 {
-        self.law.widest
-    }
-
-    /// [`Law::passive_limit`] of its law.
-    pub fn passive_limit(&self, finest: f32) -> f32 {
-        self.law.passive_limit(finest)
     }
 
     /// Tells if a particle of this size may arch in this constriction, which it fits.
@@ -255,7 +235,6 @@ impl Arching {
         f64::from(width) < self.law.widest * f64::from(diameter)
     }
 
-    /// [`Reach`] of this law.
     pub(super) fn reach(&self) -> &Reach {
         &self.reach
     }
@@ -327,11 +306,8 @@ mod tests {
         for (ratio, wanted) in [(1.22, 0.12016), (1.23, 0.007888), (1.58, 0.03223), (1.59, 0.003072)] {
             assert!((chance(ratio, 0.047) / wanted - 1.0).abs() < 2e-3, "{ratio}: {}", chance(ratio, 0.047));
         }
-        for ratios in [1.23, 2.0, 2.5, 2.9].windows(2) {
-            assert!(
-                chance(ratios[0], 0.2) < chance(ratios[1], 0.2)
-                    && chance(ratios[0], 0.6) < chance(ratios[1], 0.6)
-            );
+        for dense in [0.2, 0.6] {
+            assert!([1.23, 2.0, 2.5, 2.9].map(|ratio| chance(ratio, dense)).is_sorted_by(|a, b| a < b));
         }
         // Too rare to leave anything of 1 less a sum.
         assert_eq!(chance(2.8, 0.001), 0.0);
@@ -383,7 +359,7 @@ mod tests {
                 let class = Arching::class_of(draw);
                 assert!(class < 32 && class >= Arching::class_of(draw.saturating_sub(1)));
                 let reach = arching.reach()[class];
-                assert!(reach >= 1.0 && f64::from(reach) <= arching.widest() * 1.000_01);
+                assert!(reach >= 1.0 && f64::from(reach) <= arching.law.widest * 1.000_01);
                 if draw % 37 != 0 {
                     continue;
                 }
@@ -404,9 +380,9 @@ mod tests {
     fn a_passive_particle_never_arches() {
         let arching = Arching::new(Law::named("critical-3").unwrap(), 0.0);
         for finest in [0.1f32, 0.333_333_34, 0.7, 1e-3] {
-            let limit = arching.passive_limit(finest);
+            let limit = arching.law.passive_limit(finest);
             assert!(!arching.may(finest, limit) && arching.may(finest, limit * 1.000_01), "{finest}");
         }
-        assert_eq!(arching.passive_limit(f32::INFINITY), f32::INFINITY);
+        assert_eq!(arching.law.passive_limit(f32::INFINITY), f32::INFINITY);
     }
 }

@@ -1,10 +1,12 @@
-//! The chunks of the particles, one after another or over threads: no result depends on which.
+//! Chunks of the particles, worked on one after another or over threads, and the merge of their events: no
+//! result depends on which.
 
+use super::tally::cube;
+use super::{CHUNK, Particles, SizeClasses, SizeCounts, State};
+use crate::network::{END, Network};
 use std::cell::RefCell;
+use std::collections::HashMap;
 use std::iter;
-
-use super::merge::Events;
-use super::{CHUNK, Particles};
 
 /// Columns of one chunk: its part of every column, `CHUNK` entries or fewer, and its events.
 pub(super) struct ChunkColumns<'a> {
@@ -49,7 +51,6 @@ pub(super) fn for_each(
 
 /// The columns of chunks that are neighbours.
 struct Neighbours<'a> {
-    /// The first of them.
     first: usize,
     void: &'a mut [u32],
     /// Unused if all base particles have one size.
@@ -105,4 +106,215 @@ impl Neighbours<'_> {
             }
         }
     }
+}
+
+thread_local! {
+    /// Buffer for the eroded particles of the chunk that a thread works on.
+    static ERODED: RefCell<Vec<f32>> = const { RefCell::new(Vec::new()) };
+}
+
+/// Events of one chunk in one increment.
+#[derive(Default)]
+pub(super) struct Events {
+    /// Particles that the chunk received.
+    pub inserted: u32,
+    pub inserted_mass: f64,
+    pub moves: u64,
+    /// Diameters of the particles that left, in particle order; summed up and gone once the chunk is done.
+    pub eroded: Vec<f32>,
+    eroded_count: u64,
+    /// Constriction and diameter of the particles that were stopped, in particle order.
+    pub stopped: Vec<(u32, f32)>,
+    /// Particles that jammed, in particle order; they are not among those stopped or those that still move.
+    pub jams: Vec<Jam>,
+    /// Void and diameter of the particles without open exit, in particle order.
+    pub stranded: Vec<(u32, f32)>,
+    /// Particles that wait for the flow to find another way.
+    pub waiting: u64,
+    /// Passive particles among those received.
+    pub passive_inserted: u32,
+    passive_eroded: u64,
+    sizes: Option<[SizeCounts; 2]>,
+    eroded_mass: f64,
+    largest: f32,
+}
+
+impl Events {
+    /// Forgets the last increment, but keeps the memory.
+    pub fn clear(&mut self) {
+        self.inserted = 0;
+        self.inserted_mass = 0.0;
+        self.passive_inserted = 0;
+        self.moves = 0;
+        self.waiting = 0;
+        self.eroded_count = 0;
+        self.stopped.clear();
+        self.stranded.clear();
+    }
+
+    /// Takes the buffer that this thread used before, with room for `count` eroded particles.
+    pub fn lend_buffer(&mut self, count: usize) {
+        self.eroded = ERODED.take();
+        self.eroded.clear();
+        self.eroded.reserve(count);
+    }
+
+    /// Sums over the chunk, and gives the buffer back; called where the chunk was worked on.
+    pub fn sum(&mut self, classes: &SizeClasses, passive_limit: f32) {
+        self.eroded_count = self.eroded.len() as u64;
+        self.passive_eroded = self.eroded.iter().map(|&d| u64::from(d <= passive_limit)).sum();
+        self.eroded_mass = self.eroded.iter().map(|&d| cube(d)).sum();
+        self.largest = self.eroded.iter().fold(0.0, |largest, &d| if d > largest { d } else { largest });
+        if !self.is_quiet() {
+            self.sum_sizes(classes);
+        }
+        ERODED.set(std::mem::take(&mut self.eroded));
+    }
+
+    fn sum_sizes(&mut self, classes: &SizeClasses) {
+        let new = || [SizeCounts::new(classes), SizeCounts::new(classes)];
+        let any_retained = self.retained_count() > 0;
+        let [eroded, retained] = self.sizes.get_or_insert_with(new);
+        if self.eroded_count > 0 {
+            eroded.clear();
+            self.eroded.iter().for_each(|&d| eroded.add(classes, d));
+        }
+        if any_retained {
+            retained.clear();
+            self.stopped.iter().chain(&self.stranded).for_each(|&(_, d)| retained.add(classes, d));
+        }
+    }
+
+    fn is_quiet(&self) -> bool {
+        self.eroded_count == 0 && self.retained_count() == 0
+    }
+
+    fn retained_count(&self) -> usize {
+        self.stopped.len() + self.stranded.len()
+    }
+}
+
+/// Adds the events of all chunks to the state; returns the constrictions that have just closed, or whose
+/// openings have just been narrowed, ascending, each as one of its exits.
+///
+/// Counts are added and blocked constrictions joined by OR, which no order can change. Masses are added
+/// within a chunk in particle order and over chunks in chunk order.
+pub(super) fn merge(
+    network: &Network,
+    events: &mut [Events],
+    upstream: &[u32],
+    state: &mut State,
+) -> Vec<u32> {
+    let (narrowed_before, blocked_before) = (state.changes(), state.history.len());
+    for events in events.iter_mut() {
+        let tally = &mut state.tally;
+        tally.inserted += u64::from(events.inserted);
+        tally.moving += u64::from(events.inserted);
+        tally.inserted_mass += events.inserted_mass;
+        tally.passive_inserted += u64::from(events.passive_inserted);
+        tally.particle_moves = tally.particle_moves.saturating_add(events.moves);
+        if !events.is_quiet() {
+            let gone = [events.eroded_count, events.stopped.len() as u64, events.stranded.len() as u64];
+            tally.eroded += gone[0];
+            tally.retained_in_constrictions += gone[1];
+            tally.retained_in_voids += gone[2];
+            tally.moving -= gone.iter().sum::<u64>();
+            tally.passive_eroded += events.passive_eroded;
+            tally.eroded_mass += events.eroded_mass;
+            tally.largest_eroded = tally.largest_eroded.max(events.largest);
+            if let Some([eroded, retained]) = &events.sizes {
+                if events.eroded_count > 0 {
+                    state.eroded_sizes.merge(eroded);
+                }
+                if events.retained_count() > 0 {
+                    state.retained_sizes.merge(retained);
+                }
+            }
+            for &(constriction, diameter) in &events.stopped {
+                state.stop(network, upstream, constriction as usize, diameter);
+            }
+            for &(void, diameter) in &events.stranded {
+                state.retained_in_voids[void as usize] += 1;
+                state.retain_cubes(void as usize, cube(diameter));
+            }
+        }
+        events.clear();
+    }
+    settle(network, events.iter_mut().map(|events| &mut events.jams), upstream, state);
+    let closed = &mut state.history[blocked_before..];
+    closed.sort_unstable_by_key(|blocking| blocking.constriction);
+    state.tally.blocked += closed.len() as u64;
+    match &mut state.openings {
+        Some(openings) => openings.end_increment(state.increment, narrowed_before),
+        None => closed.iter().map(|blocking| blocking.constriction).collect(),
+    }
+}
+
+/// A particle that jammed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Jam {
+    /// Particles of its chunk before it that still move.
+    pub rank: u32,
+    pub exit: u32,
+    pub diameter: f32,
+    /// Particles of the arch that it begins.
+    pub particles: u32,
+}
+
+/// Keeps the arches of an increment and lets the others go on; the jams of all chunks are used up.
+///
+/// The first particle that jammed in a constriction, in the order of insertion, says how many its arch has.
+/// Those beyond it are then in the void beyond, or have left the filter, and keep their place in that order.
+fn settle<'a>(
+    network: &Network,
+    jams: impl Iterator<Item = &'a mut Vec<Jam>>,
+    upstream: &[u32],
+    state: &mut State,
+) {
+    // By constriction: room left in its arch.
+    let mut room = HashMap::new();
+    let mut released = Vec::new();
+    for (chunk, jams) in jams.enumerate().filter(|(_, jams)| !jams.is_empty()) {
+        for jam in jams.drain(..) {
+            let exit = jam.exit as usize;
+            let room = room.entry(network.either_way(exit)).or_insert_with(|| {
+                state.tally.arches += 1;
+                jam.particles
+            });
+            if *room > 0 {
+                *room -= 1;
+                keep(network, jam, upstream, state);
+            } else if let Some(void) = release(network, jam, state) {
+                released.push((jam.rank as usize, void, jam.diameter));
+            }
+        }
+        state.particles.put_back(chunk, &released);
+        released.clear();
+    }
+}
+
+fn keep(network: &Network, jam: Jam, upstream: &[u32], state: &mut State) {
+    let tally = &mut state.tally;
+    tally.moving -= 1;
+    tally.retained_in_constrictions += 1;
+    tally.retained_in_arches += 1;
+    tally.arched_mass += cube(jam.diameter);
+    state.retained_sizes.add(&state.classes, jam.diameter);
+    state.stop(network, upstream, jam.exit as usize, jam.diameter);
+}
+
+/// Lets a particle pass; returns the void that it is in then, unless it has left the filter.
+fn release(network: &Network, jam: Jam, state: &mut State) -> Option<u32> {
+    let tally = &mut state.tally;
+    tally.particle_moves = tally.particle_moves.saturating_add(1);
+    let target = network.targets()[jam.exit as usize];
+    if target != END {
+        return Some(target);
+    }
+    tally.moving -= 1;
+    tally.eroded += 1;
+    tally.eroded_mass += cube(jam.diameter);
+    tally.largest_eroded = tally.largest_eroded.max(jam.diameter);
+    state.eroded_sizes.add(&state.classes, jam.diameter);
+    None
 }

@@ -15,7 +15,7 @@ use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 
 use super::State;
-use super::openings::{CONDUCTS, Weighed, part_kept};
+use super::openings::{CONDUCTS, Narrowing, Openings, Weighed, part_kept};
 use crate::network::{ExitRule, Flow, FlowError, Network};
 
 /// Increments after which the flow is solved again where anything has closed since.
@@ -42,7 +42,6 @@ pub struct FlowSolution {
     pub closed: f64,
 }
 
-/// The directions of a walk.
 pub(super) struct Directions {
     flow: Flow,
     record: FlowRecord,
@@ -56,73 +55,50 @@ pub(super) struct Directions {
     since: (usize, f64),
     /// By exit, as wide as it was then, where blocked constrictions leave openings.
     widths_then: Vec<f32>,
-    /// Rule by which particles choose.
     rule: ExitRule,
 }
 
-/// Constrictions of a state, now or before.
-#[derive(Clone, Copy)]
-enum Passable<'a> {
-    /// Blocked constrictions.
-    Blocked(&'a BitSlice),
-    /// Widths of the exits, where openings are left.
-    Widths(&'a [f32]),
-}
-
-impl<'a> Passable<'a> {
-    fn new(state: &'a State) -> Self {
-        match &state.openings {
-            None => Self::Blocked(&state.blocked),
-            Some(openings) => Self::Widths(&openings.widths),
-        }
-    }
-}
+/// Blocked constrictions, and the widths of the exits where openings are left.
+type Passable<'a> = (&'a BitSlice, Option<&'a Openings>);
 
 /// Constrictions at an earlier time of the run of a state.
 struct Past<'a> {
     state: &'a State,
     blocked: BitVec,
-    widths: Option<Vec<f32>>,
+    openings: Option<Openings>,
 }
 
 impl<'a> Past<'a> {
     /// State of the constrictions when the run began.
     fn begin(network: &Network, state: &'a State) -> Self {
-        let widths = state.openings.as_ref().map(|openings| openings.widths.clone());
-        let mut past = Self { state, blocked: state.blocked.clone(), widths };
+        let mut past = Self { state, blocked: state.blocked.clone(), openings: state.openings.clone() };
         (0..state.changes()).rev().for_each(|at| past.set(network, at, false));
         past
     }
 
     /// Makes a change of the run, or takes it back.
     fn set(&mut self, network: &Network, at: usize, is_done: bool) {
-        match (&self.state.openings, &mut self.widths) {
-            (Some(openings), Some(widths)) => {
-                let change = &openings.history[at];
-                let (exit, width) =
-                    (change.constriction as usize, if is_done { change.after } else { change.before });
-                widths[exit] = width;
-                if let Some(twin) = network.twin(exit) {
-                    widths[twin] = width;
-                }
+        match &mut self.openings {
+            Some(openings) => {
+                let Narrowing { constriction, before, after, .. } = openings.history[at];
+                openings.set(network, constriction as usize, if is_done { after } else { before });
             }
-            _ => {
+            None => {
                 let exit = self.state.history[at].constriction as usize;
                 network.set_blocked(&mut self.blocked, exit, is_done);
             }
         }
     }
 
-    /// The increment of a change.
     fn increment(&self, at: usize) -> u64 {
-        match &self.state.openings {
+        match &self.openings {
             Some(openings) => openings.history[at].increment,
             None => self.state.history[at].increment,
         }
     }
 
     fn passable(&self) -> Passable<'_> {
-        self.widths.as_deref().map_or(Passable::Blocked(&self.blocked), Passable::Widths)
+        (&self.blocked, self.openings.as_ref())
     }
 }
 
@@ -132,12 +108,10 @@ impl Directions {
         let clean_filter: BitVec = BitVec::repeat(false, network.constrictions());
         let mut flow = Flow::new(network);
         let clean = flow.solve(network, &clean_filter)?;
-        let record = FlowRecord { k0_mm2: clean.k_mm2, solutions: vec![] };
-        let clean = clean.conductance;
         let mut directions = Self {
             flow,
-            record,
-            clean,
+            record: FlowRecord { k0_mm2: clean.k_mm2, solutions: vec![] },
+            clean: clean.conductance,
             solved_at: 0,
             changes_then: 0,
             since: (0, 0.0),
@@ -209,7 +183,7 @@ impl Directions {
         let changes = state.changes();
         let is_due = self.is_due(network, state, state.increment, changes);
         if is_due {
-            self.solve(network, Passable::new(state), state.increment - 1, changes)?;
+            self.solve(network, (&state.blocked, state.openings.as_ref()), state.increment - 1, changes)?;
             self.flow.direct(network);
         }
         Ok(is_due)
@@ -220,13 +194,12 @@ impl Directions {
         let changes = state.changes();
         if changes > self.changes_then {
             self.count(network, state, changes);
-            self.solve(network, Passable::new(state), state.increment, changes)?;
+            self.solve(network, (&state.blocked, state.openings.as_ref()), state.increment, changes)?;
         }
         self.flow.direct(network);
         Ok(self.record)
     }
 
-    /// Solves the flow after an increment.
     fn solve(
         &mut self,
         network: &Network,
@@ -235,14 +208,13 @@ impl Directions {
         changes: usize,
     ) -> Result<(), FlowError> {
         let solution = match passable {
-            Passable::Blocked(blocked) => self.flow.solve(network, blocked)?,
-            Passable::Widths(widths) => {
+            (blocked, None) => self.flow.solve(network, blocked)?,
+            (_, Some(Openings { widths, .. })) => {
                 let part = |(&width, &whole): (&f32, &f32)| {
                     if whole > 0.0 { part_kept(f64::from(width) / f64::from(whole), CONDUCTS) } else { 0.0 }
                 };
                 let parts: Vec<f64> = widths.iter().zip(network.diameters()).map(part).collect();
-                self.widths_then.clear();
-                self.widths_then.extend_from_slice(widths);
+                self.widths_then.clone_from(widths);
                 self.flow.solve_parts(network, &parts)?
             }
         };

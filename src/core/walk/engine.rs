@@ -1,13 +1,14 @@
-//! Choice of the engine of a run, and of the work that the run can leave out: decided here and nowhere else.
+//! Choices of how a run is walked, made here alone: engine, work that is left out, instructions, threads.
 
-use crate::schema::Leaf;
-use std::sync::Arc;
-
-use bitvec::slice::BitSlice;
-
+use super::supply::passive_limit;
 use super::{Arching, Sampling, Supply};
 use crate::gradation::SizeSampler;
 use crate::network::Network;
+use crate::schema::Leaf;
+use crate::store::platform::{processors, stay_on};
+use bitvec::slice::BitSlice;
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+use std::sync::{Arc, OnceLock};
 
 /// Methods of moving passive base particles; a run has the same distribution with the first three.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -63,25 +64,6 @@ impl Engine {
 const WORTH_TWICE: u128 = 13;
 
 /// Plan of one run: an engine, and the passive part of the base.
-///
-/// ```
-/// use bitvec::vec::BitVec;
-/// use voidwalk_core::gradation::{Gradation, SizeSampler};
-/// use voidwalk_core::network::Network;
-/// use voidwalk_core::walk::{Engine, RunPlan, SizeClasses, State, Walk, WalkControl};
-///
-/// let network = Network::cubic_from_diameters([4, 4, 6], vec![1.0; 288], 1.0)?;
-/// let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.2, 1.5)?, 1.0)?;
-/// let open: BitVec = BitVec::repeat(false, network.constrictions());
-/// let plan = RunPlan::new(Engine::Auto, &network, &sampler, &open, 10_000_000_000);
-/// assert_eq!(plan.engine(), Engine::Counts);
-/// let supply = plan.supply(sampler, 1_000_000_000_000, 100, 7, 1);
-/// let classes = SizeClasses::logarithmic(0.2, 0.45, 32);
-/// let mut state = State::new(&network, &supply, classes, open, 7, 1);
-/// Walk::new(&network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue)?;
-/// assert_eq!(state.tally.eroded, 1_000_000_000_000);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct RunPlan {
     engine: Engine,
@@ -115,11 +97,7 @@ impl RunPlan {
         share: u64,
         (arching, leaves_openings): (Option<Arc<Arching>>, bool),
     ) -> Self {
-        let passive_limit = |finest| match &arching {
-            _ if leaves_openings => 0.0,
-            Some(arching) => arching.passive_limit(finest),
-            None => finest,
-        };
+        let passive_limit = |finest| passive_limit(arching.as_deref(), leaves_openings, finest);
         let finest = network.finest_open(|c| blocked[c]);
         let passive_words = sampler.word_limit(passive_limit(finest));
         // The open network decides, so that all runs of a replicate have one engine.
@@ -226,6 +204,88 @@ fn left_out(engine: Engine, finest: Finest, passive_words: u128) -> Vec<Shortcut
     left_out
 }
 
+/// A pool of `count` threads to run walks in (0: one for each processor that the program may use).
+///
+/// With `pinned`, thread `i` stays on the `i`-th of those processors, if there are as many as threads: some
+/// systems keep the threads of a busy program together on one. A failure to pin (macOS cannot) is not an
+/// error: results do not depend on it. Use it where the machine is for this program alone: two programs that
+/// pin their threads share the same processors.
+///
+/// # Errors
+/// Those of the system when it cannot start a thread.
+pub fn threads(count: usize, pinned: bool) -> Result<ThreadPool, ThreadPoolBuildError> {
+    let processors = processors();
+    let builder = ThreadPoolBuilder::new().num_threads(count).thread_name(|i| format!("walk {i}"));
+    let needed = if count == 0 { processors.len() } else { count };
+    if !pinned || needed < 2 || processors.len() < needed {
+        return builder.build();
+    }
+    builder
+        .start_handler(move |i| {
+            if let Some(&processor) = processors.get(i) {
+                stay_on(processor);
+            }
+        })
+        .build()
+}
+
+/// Instruction sets that the step is written for; all give the same bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Isa {
+    /// Instructions that every machine has.
+    Portable,
+    /// AVX2: eight particles at once.
+    Avx2,
+    /// AVX-512 (F, BW, DQ, VL): sixteen particles at once.
+    Avx512,
+}
+
+impl Isa {
+    /// All of them, the slowest first.
+    pub const ALL: [Isa; 3] = [Isa::Portable, Isa::Avx2, Isa::Avx512];
+
+    /// The name used in `VOIDWALK_ISA` and in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Portable => "portable",
+            Self::Avx2 => "avx2",
+            Self::Avx512 => "avx512",
+        }
+    }
+
+    /// Tells if this machine has it.
+    pub fn is_available(self) -> bool {
+        #[cfg(target_arch = "x86_64")]
+        match self {
+            Self::Portable => true,
+            Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt"),
+            Self::Avx512 => {
+                is_x86_feature_detected!("avx512f")
+                    && is_x86_feature_detected!("avx512bw")
+                    && is_x86_feature_detected!("avx512dq")
+                    && is_x86_feature_detected!("avx512vl")
+                    && is_x86_feature_detected!("popcnt")
+            }
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        {
+            self == Self::Portable
+        }
+    }
+
+    /// Set that walks use: the fastest that this machine has, or the one that the environment variable
+    /// `VOIDWALK_ISA` names when the first walk starts, if this machine has it.
+    pub fn chosen() -> Self {
+        static CHOSEN: OnceLock<Isa> = OnceLock::new();
+        *CHOSEN.get_or_init(|| {
+            let named = std::env::var("VOIDWALK_ISA").ok();
+            let named = Self::ALL.into_iter().find(|isa| Some(isa.name()) == named.as_deref());
+            let fastest = Self::ALL.into_iter().rev().find(|isa| isa.is_available());
+            named.filter(|isa| isa.is_available()).or(fastest).unwrap_or(Self::Portable)
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -247,5 +307,18 @@ mod tests {
         assert_eq!((engine(least - 16), engine(least + 16)), (Engine::Particles, Engine::Counts));
         assert_eq!(Engine::passive_share(u64::MAX, 1 << 64), u64::MAX);
         assert_eq!(Engine::passive_share(1000, 1 << 62), 250);
+    }
+
+    #[test]
+    fn pinned_threads_keep_to_processors_of_their_own() {
+        let all = processors();
+        let pool = threads(0, true).unwrap();
+        let seen = pool.broadcast(|_| processors());
+        // Windows tells the processors of a program, not of its threads, and macOS pins none.
+        if cfg!(target_os = "linux") && all.len() > 1 && seen.len() == all.len() {
+            assert_eq!(seen.concat(), all);
+        }
+        assert_eq!(threads(1, true).unwrap().broadcast(|_| processors()), [all.as_slice()]);
+        assert!(threads(3, false).unwrap().broadcast(|_| processors()).iter().all(|a| *a == all));
     }
 }

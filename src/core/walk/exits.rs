@@ -1,17 +1,16 @@
 //! Exits that draws pick: thresholds by void, renewed where an exit closes or water turns.
 
-mod few;
+mod forms;
 
 use bitvec::slice::BitSlice;
 use rayon::prelude::*;
 
 use super::openings::Ways;
-use super::reads::Reads;
 use super::{Arching, Isa};
 use crate::network::Network;
-use few::FewExits;
+use forms::FewExits;
+pub(super) use forms::{CLASS, CLASS_SHIFT, Classed, Jamming, Lattice, Plain, Reads, Widths};
 
-/// Exits of one void, for draws.
 #[derive(Clone, Copy)]
 pub(super) struct VoidExits<'a> {
     pub void: u32,
@@ -49,7 +48,6 @@ pub(super) fn of_each(
     }
 }
 
-/// Looks at the exits of these voids, with thresholds by `find`.
 #[inline(always)]
 fn each_by(
     network: &Network,
@@ -76,7 +74,6 @@ pub(super) fn thresholds(
     thresholds_by(network, void, |c| ways.weight(network, c), thresholds)
 }
 
-/// Thresholds by the weights of exits.
 #[inline(always)]
 fn thresholds_by(
     network: &Network,
@@ -109,11 +106,11 @@ const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
 /// Exit thresholds of every void, in the form that suits the network.
 #[derive(Clone)]
 pub struct ExitTable {
-    form: Form,
+    pub(super) form: Form,
     /// Instructions that read it.
-    isa: Isa,
+    pub(super) isa: Isa,
     /// Upstream void of each constriction.
-    upstream: Vec<u32>,
+    pub(super) upstream: Vec<u32>,
 }
 
 #[derive(Clone)]
@@ -123,38 +120,6 @@ pub(super) enum Form {
     /// Any number of exits, targets by look-up.
     General(General),
 }
-
-/// Thresholds of a cubic lattice, two words a void, and its shape.
-///
-/// A step reads the words that suit the particles of its chunk: both kinds say the same, but the one that
-/// says it with fewer bits leaves more draws open.
-#[derive(Clone)]
-pub(super) struct Lattice {
-    /// For particles that are nearly all as fine as the finest open exit of the network. Bits 16..32: top
-    /// sixteen bits of the second threshold. Bits 2..16: top fourteen bits of the first. Bit 1: +y wraps. Bit
-    /// 0: +x wraps. A void without open exits has the first above the second.
-    pub plain: Vec<u32>,
-    /// For coarser ones, unless widths are read: like `plain`, but bits 21..32: top eleven bits of the second
-    /// threshold, and bits 16..21: class of the void's finest open exit.
-    pub classed: Vec<u32>,
-    /// Number that a move adds to the void, modulo 2^32. Bits 0 and 1 of the index: those of a word. Bit 2:
-    /// not the first exit. Bit 3: the third exit. With the latter alone there is no open exit: a void that
-    /// does not exist.
-    pub moves: [u32; 16],
-    /// Bits, as an integer, of a diameter that no open exit is finer than. Particles up to
-    /// `finest + (class << CLASS_SHIFT)`, compared as bits, pass every open exit of a void of that class.
-    pub finest: u32,
-    /// True if particles are held against widths: there are no words with classes.
-    by_widths: bool,
-    nx: u32,
-    plane: u32,
-}
-
-/// Bits of a diameter below its class: 32 classes in a factor of two.
-pub(super) const CLASS_SHIFT: u32 = 18;
-
-/// Bits of the class in a word of [`Lattice::classed`].
-pub(super) const CLASS: u32 = 0x001f_0000;
 
 /// Thresholds of a general network.
 #[derive(Clone)]
@@ -185,7 +150,6 @@ fn waits(network: &Network, void: u32) -> bool {
 pub(super) struct OpenExits<'a> {
     pub network: &'a Network,
     pub table: &'a ExitTable,
-    /// Open exits.
     pub ways: Ways<'a>,
     /// By constriction: its widest way.
     pub widths: &'a [f32],
@@ -228,7 +192,6 @@ impl ExitTable {
         Self::of_form(network, Form::Lattice(lattice)).filled(network, ways)
     }
 
-    /// Table in the form that any network has, with no void set yet.
     fn empty_general(network: &Network) -> Self {
         let general = General {
             threshold: vec![0; network.constrictions()],
@@ -278,26 +241,8 @@ impl ExitTable {
         };
         general.parts(network).into_par_iter().for_each(renew_part);
     }
-
-    pub(super) fn isa(&self) -> Isa {
-        self.isa
-    }
-
-    pub(super) fn set_isa(&mut self, isa: Isa) {
-        self.isa = isa;
-    }
-
-    pub(super) fn form(&self) -> &Form {
-        &self.form
-    }
-
-    /// Upstream void of each constriction.
-    pub(super) fn upstream(&self) -> &[u32] {
-        &self.upstream
-    }
 }
 
-/// Thresholds of voids that follow one another.
 struct GeneralPart<'a> {
     first_void: u32,
     first_exit: usize,
@@ -343,7 +288,6 @@ impl General {
 }
 
 impl GeneralPart<'_> {
-    /// Renews one of its voids.
     fn set(&mut self, network: &Network, ways: Ways, of_void: VoidExits) {
         let VoidExits { void, thresholds, last_open, waits } = of_void;
         let exits = network.exits(void);
@@ -370,90 +314,94 @@ impl GeneralPart<'_> {
     }
 }
 
-/// Class of a void whose finest open exit is this, at its place in a word.
-#[inline]
-fn class_of(finest: f32, of_all: u32) -> u32 {
-    // Nothing opens again.
-    let class = finest.to_bits().checked_sub(of_all).expect("no open exit is finer") >> CLASS_SHIFT;
-    (class << 16).min(CLASS)
-}
-
-impl Lattice {
-    fn new(voids: usize, nx: u32, plane: u32, finest: u32) -> Self {
-        let moves = std::array::from_fn(|index| match index {
-            0 | 2 => 1,
-            1 | 3 => 1u32.wrapping_sub(nx),
-            4 | 5 => nx,
-            6 | 7 => nx.wrapping_sub(plane),
-            8..12 => 1 << 31,
-            _ => plane,
-        });
-        Self { plain: vec![0; voids], classed: vec![0; voids], moves, finest, by_widths: false, nx, plane }
-    }
-
-    /// Tells if particles are held against widths.
-    pub fn by_widths(&self) -> bool {
-        self.by_widths
-    }
-
-    /// Both words of a void.
-    fn set(&mut self, void: u32, thresholds: &[u64], last_open: Option<usize>, finest: f32) {
-        self.set_plain(void, thresholds, last_open);
-        let (class, plain) = (class_of(finest, self.finest), self.plain[void as usize]);
-        self.classed[void as usize] = (plain >> 21) << 21 | class | plain & 0xffff;
-    }
-
-    /// Recomputes the class of every void; no open exit is finer than `finest`.
-    fn class_anew(&mut self, diameters: &[f32], blocked: &BitSlice, finest: f32) {
-        self.finest = finest.to_bits();
-        let of_voids = diameters.as_chunks::<3>().0.iter().zip(&mut self.classed);
-        for (void, (diameters, word)) in of_voids.enumerate() {
-            let open = diameters.iter().zip(3 * void..).filter(|&(&d, c)| d > 0.0 && !blocked[c]);
-            let finest = open.map(|(&d, _)| d).fold(f32::INFINITY, f32::min);
-            *word = *word & !CLASS | class_of(finest, self.finest);
-        }
-    }
-
-    fn set_plain(&mut self, void: u32, thresholds: &[u64], last_open: Option<usize>) {
-        let (x, row) = (void % self.nx, void % self.plane);
-        let wraps = u32::from(x + 1 == self.nx) | u32::from(row + self.nx >= self.plane) << 1;
-        let [first, second] = match last_open {
-            Some(_) => [thresholds[0] >> 50, thresholds[1] >> 48],
-            None => [0x3fff, 0],
-        };
-        self.plain[void as usize] = (second as u32) << 16 | (first as u32) << 2 | wraps;
-    }
-
-    /// The words with or without classes.
-    pub fn words<R: Reads>(&self) -> &[u32] {
-        if R::CLASSED { &self.classed } else { &self.plain }
-    }
-
-    /// Bits of a word that belong to no threshold.
-    pub const fn below<R: Reads>() -> u32 {
-        if R::CLASSED { CLASS | 3 } else { 3 }
-    }
-
-    /// Tells if no exit is open, by a plain word: thresholds of open ones rise.
-    #[inline(always)]
-    pub fn has_no_exit(plain: u32) -> bool {
-        plain & 0xfffc > plain >> 16
-    }
-
-    /// Exit that a draw picks by a word, unless it equals a threshold as far as the word goes, or no exit is
-    /// open.
-    #[inline(always)]
-    pub fn pick<R: Reads>(word: u32, draw: u16) -> Option<u32> {
-        let below = Self::below::<R>();
-        let [first, second] = [word | below, (word | below) >> 16].map(|half| half as u16);
-        let [to_first, to_second] = [draw | below as u16, draw | (below >> 16) as u16];
-        match (to_first > first, to_second > second) {
-            _ if to_first == first || to_second == second => None,
-            (false, true) => None,
-            (past_first, past_second) => Some(u32::from(past_first) + u32::from(past_second)),
-        }
-    }
-}
-
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+    use bitvec::prelude::*;
+
+    fn thresholds_of(diameters: [f32; 3], blocked: [bool; 3]) -> (Vec<u64>, Option<usize>) {
+        let network = Network::cubic_from_diameters([1, 1, 1], diameters.to_vec(), 1.0).unwrap();
+        let blocked: BitVec = blocked.into_iter().collect();
+        let mut out = Vec::new();
+        let last = thresholds(&network, Ways::Unblocked(&blocked), 0, &mut out);
+        (out, last)
+    }
+
+    #[test]
+    fn widths_are_areas_and_a_closed_exit_has_none() {
+        let (t, last) = thresholds_of([1.0, 1.0, f32::sqrt(2.0)], [false; 3]);
+        assert_eq!(last, Some(2));
+        assert!((t[0] as f64 / TWO_TO_64 - 0.25).abs() < 1e-7);
+        assert!((t[1] as f64 / TWO_TO_64 - 0.5).abs() < 1e-7);
+        assert_eq!(thresholds_of([0.0, 1.0, 1.0], [false; 3]).0[0], 0);
+        assert_eq!(thresholds_of([1.0, 1.0, 1.0], [true, true, false]), (vec![0, 0, u64::MAX], Some(2)));
+        assert_eq!(thresholds_of([1.0, 1.0, 1.0], [false, true, true]), (vec![u64::MAX; 3], Some(0)));
+        assert_eq!(thresholds_of([0.0, 1.0, 1.0], [false, true, true]).1, None);
+    }
+
+    /// Exits of very different widths, any of them blocked: a plain word tells if a void has no way out.
+    #[test]
+    fn a_word_tells_whether_an_exit_is_open() {
+        let mut seen = [0; 2];
+        for widths in 0..4usize.pow(3) {
+            let diameters = [0, 1, 2].map(|exit| [0.0, 1e-4, 1.0, 1e4][widths / 4usize.pow(exit) % 4]);
+            for blocked in 0..8 {
+                let blocked = [0, 1, 2].map(|exit| blocked >> exit & 1 == 1);
+                let (thresholds, last_open) = thresholds_of(diameters, blocked);
+                let mut lattice = Lattice::new(1, 1, 1, 0);
+                lattice.set_plain(0, &thresholds, last_open);
+                assert_eq!(
+                    Lattice::has_no_exit(lattice.plain[0]),
+                    last_open.is_none(),
+                    "{diameters:?} {blocked:?}"
+                );
+                seen[usize::from(last_open.is_none())] += 1;
+            }
+        }
+        assert!(seen.iter().all(|&count| count > 100), "{seen:?}");
+    }
+
+    /// Once the exit with nearly all the area is blocked, the others keep their exact ratio.
+    #[test]
+    fn nothing_is_left_of_a_blocked_giant() {
+        let (giant, _) = thresholds_of([1e6, 1.0, 1.0], [false; 3]);
+        assert!(((u64::MAX - giant[0]) as f64 / TWO_TO_64 / 2e-12 - 1.0).abs() < 1e-3);
+        assert_eq!(thresholds_of([1e6, 1.0, 1.0], [true, false, false]).0[1], 1 << 63);
+        for scale in [1e-6, 1e6] {
+            let (t, last) = thresholds_of([scale, 1.0, scale], [false; 3]);
+            assert!(t[0] <= t[1] && last == Some(2));
+        }
+    }
+
+    /// A table whose voids were renewed one after another as constrictions closed, with classes recomputed,
+    /// equals the table made of the constrictions left open.
+    #[test]
+    fn a_table_that_a_run_leaves_is_that_of_the_next() {
+        let shape = [7, 5, 4];
+        let count = Network::lattice_constrictions(shape).unwrap();
+        let diameters =
+            (0..count).map(|c| if c % 41 == 0 { 0.0 } else { 0.2 + (c * 7919 % 1009) as f32 / 100.0 });
+        let network = Network::cubic_from_diameters(shape, diameters.collect(), 1.0).unwrap();
+        let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
+        let mut table = ExitTable::new(&network, &blocked);
+        let mut classes = [0; 2];
+        for coarsest in [0.25, 1.0, 4.0, 20.0] {
+            for c in (0..count).filter(|&c| network.diameters()[c] < coarsest && c % 17 > 0 || c % 29 == 0) {
+                if !blocked.replace(c, true) {
+                    let ways = Ways::Unblocked(&blocked);
+                    of_each(&network, ways, [(c / 3) as u32], |exits| table.set(&network, ways, exits));
+                }
+            }
+            let fresh = ExitTable::new(&network, &blocked);
+            let words = |table: &ExitTable| match &table.form {
+                Form::Lattice(lattice) => (lattice.plain.clone(), lattice.classed.clone(), lattice.finest),
+                Form::General(_) => unreachable!("a lattice"),
+            };
+            classes[0] += usize::from(words(&table) != words(&fresh));
+            table.class_anew(&network, &blocked);
+            assert_eq!(words(&table), words(&fresh), "{coarsest}");
+            classes[1] += 1;
+        }
+        assert!(classes[0] > 0 && classes[1] == 4, "{classes:?}");
+    }
+}

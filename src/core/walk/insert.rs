@@ -1,20 +1,17 @@
-//! Insertion: which chunks receive this increment's base particles, and where they start.
-
-use std::ops::Range;
+//! Insertion: chunks that receive base particles of an increment, and draws of their start nodes and sizes.
 
 use super::chunks::ChunkColumns;
-use super::fill::{Drawing, Drawn};
+use super::tally::cube;
 use super::{CHUNK, Isa, State, Supply};
 use crate::network::Network;
-use crate::stream::{Key, Purpose};
+use crate::stream::{Key, LANES, Lanes, Purpose, below, below_32};
+use std::ops::Range;
 
-/// This increment's share of the base, which each chunk appends to its own columns.
 pub(super) struct Insertion<'a> {
     network: &'a Network,
     supply: &'a Supply,
     isa: Isa,
     passive_limit: f32,
-    /// The stream, but for the chunk.
     key: Key,
     /// Base particles inserted before and after this increment.
     inserted: Range<u64>,
@@ -23,13 +20,13 @@ pub(super) struct Insertion<'a> {
 impl<'a> Insertion<'a> {
     /// Insertion of the increment that `state` is in.
     pub fn new(network: &'a Network, supply: &'a Supply, isa: Isa, state: &State) -> Self {
-        let (increment, purpose) = (state.increment, Purpose::Insertion);
+        let increment = state.increment;
         Self {
             network,
             supply,
             isa,
             passive_limit: state.passive_limit,
-            key: Key { seed: state.seed, purpose, run: state.run, increment, chunk: 0 },
+            key: state.key(Purpose::Insertion),
             inserted: supply.inserted(increment - 1)..supply.inserted(increment),
         }
     }
@@ -66,5 +63,208 @@ impl<'a> Insertion<'a> {
         };
         let Drawn { mass, passive } = drawing.draw(self.isa);
         (events.inserted_mass, events.passive_inserted) = (mass, passive);
+    }
+}
+
+/// Particles drawn at a time.
+const BATCH: usize = 8 * LANES;
+
+type Words = [[u64; LANES]; 2 * BATCH / LANES];
+
+/// Particles of one chunk that are drawn, and the columns that they go to.
+///
+/// Each step of a draw is a loop over a whole batch, so that it becomes vector code and no particle waits for
+/// another; masses alone are added one after another, as their order is part of the result.
+struct Drawing<'a> {
+    pub network: &'a Network,
+    pub supply: &'a Supply,
+    pub key: Key,
+    /// Number of particles that the increment inserts before these.
+    pub before: u64,
+    pub passive_limit: f32,
+    pub void: &'a mut [u32],
+    pub diameter: &'a mut [f32],
+}
+
+struct Drawn {
+    /// Sum of diameters cubed, in particle order.
+    pub mass: f64,
+    pub passive: u32,
+}
+
+impl Drawing<'_> {
+    /// Draws them with the instructions of `isa`, to the same bits.
+    pub fn draw(self, isa: Isa) -> Drawn {
+        assert!(isa.is_available());
+        match isa {
+            // SAFETY: the machine has the instructions.
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx512 => unsafe { with_avx512(self) },
+            // SAFETY: the machine has the instructions.
+            #[cfg(target_arch = "x86_64")]
+            Isa::Avx2 => unsafe { with_avx2(self) },
+            _ => self.draw_by(|lanes, words| {
+                // Two blocks at a time: all at once take half as long again.
+                words.as_chunks_mut::<2>().0.iter_mut().for_each(|two| *two = lanes.next_blocks());
+            }),
+        }
+    }
+
+    /// Draws them; `next` takes the next words of the stream.
+    #[inline(always)]
+    fn draw_by(self, next: impl Fn(&mut Lanes, &mut Words)) -> Drawn {
+        let Self { network, supply, key, before, passive_limit, void, diameter } = self;
+        let (mut lanes, strata) = (key.lanes(), supply.strata(key.increment));
+        let mut drawn = Drawn { mass: 0.0, passive: 0 };
+        let (mut words, mut place) = (Words::default(), before);
+        for (void, diameter) in void.chunks_mut(BATCH).zip(diameter.chunks_mut(BATCH)) {
+            // The last batch leaves some of its words.
+            next(&mut lanes, &mut words);
+            let pairs = words.as_flattened().as_chunks::<2>().0;
+            let mut size_words = [0; BATCH];
+            for (size_word, pair) in size_words.iter_mut().zip(pairs) {
+                *size_word = pair[1];
+            }
+            match &strata {
+                None => start(network, pairs, void),
+                Some(strata) => {
+                    let nodes = network.start();
+                    let particles = void.iter_mut().zip(&mut size_words).zip(pairs);
+                    for (place, ((void, size_word), pair)) in (place..).zip(particles) {
+                        *void = nodes[strata.node(place, pair[0], nodes.len() as u64)];
+                        *size_word = strata.size_word(place, pair[1]);
+                    }
+                    place += void.len() as u64;
+                }
+            }
+            let (mut sizes, mut cubes) = ([0.0; BATCH], [0.0; BATCH]);
+            supply.fill(&mut size_words, &mut sizes);
+            diameter.copy_from_slice(&sizes[..diameter.len()]);
+            for (cube_of, &size) in cubes.iter_mut().zip(&sizes) {
+                *cube_of = cube(size);
+            }
+            drawn.mass = cubes[..diameter.len()].iter().fold(drawn.mass, |mass, cube| mass + cube);
+            drawn.passive += diameter.iter().map(|&d| u32::from(d <= passive_limit)).sum::<u32>();
+        }
+        drawn
+    }
+}
+
+/// Draws the start node of each particle by the first of its words.
+#[inline(always)]
+fn start(network: &Network, pairs: &[[u64; 2]], void: &mut [u32]) {
+    let nodes = network.start();
+    if network.shape().is_none() {
+        for (void, pair) in void.iter_mut().zip(pairs) {
+            *void = nodes[below(pair[0], nodes.len() as u64) as usize];
+        }
+        return;
+    }
+    // Start nodes of a lattice are its first voids, in order.
+    for (void, pair) in void.iter_mut().zip(pairs) {
+        *void = below_32(pair[0], nodes.len() as u32);
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
+fn with_avx512(drawing: Drawing) -> Drawn {
+    drawing.draw_by(|lanes, words| words.iter_mut().for_each(|block| *block = lanes.next_block()))
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,popcnt")]
+fn with_avx2(drawing: Drawing) -> Drawn {
+    drawing.draw_by(|lanes, words| lanes.next_blocks_avx2(words))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gradation::{Gradation, SizeSampler};
+    use crate::network::{ExitRule, NetworkColumns};
+    use crate::stream::Purpose;
+
+    /// A lattice of 15 start nodes, and a network of three that do not follow one another.
+    fn networks() -> [Network; 2] {
+        let columns = NetworkColumns {
+            voids: 6,
+            conns: &[[0, 1], [3, 2], [5, 4]],
+            diameter_mm: &[1.0; 3],
+            conductance: None,
+            inlets: &[3, 0, 5],
+            outlets: &[1, 2, 4],
+            rule: ExitRule::Area,
+            rho: 0.0,
+            unit_mm: 1.0,
+        };
+        let lattice = Network::cubic_from_diameters([3, 5, 2], vec![1.0; 90], 1.0).unwrap();
+        [lattice, Network::from_columns(&columns).unwrap().0]
+    }
+
+    fn supplies() -> Vec<Supply> {
+        let sampler = |gradation: Gradation| SizeSampler::new(&gradation, 1.0).unwrap();
+        let points: Vec<_> =
+            (0..40).map(|i| (0.1 + 0.01 * f64::from(i * i), 2.5 * f64::from(i + 1))).collect();
+        let whole = sampler(Gradation::linear_from_d0(0.1, 4.5).unwrap());
+        let sieved = sampler(Gradation::from_points(&points, Some(0.05)).unwrap());
+        vec![
+            Supply::new(whole.clone(), 400, 2),
+            Supply::new(whole.clone(), 400, 2).stratified(3, 1),
+            Supply::coarse_part(whole, 1 << 63, &[200, 200]),
+            Supply::coarse_part(sieved, 3 << 61, &[200, 200]),
+        ]
+    }
+
+    /// Each particle by definition, from its two words of the stream.
+    fn by_definition(
+        network: &Network,
+        supply: &Supply,
+        key: Key,
+        before: u64,
+        count: usize,
+    ) -> Vec<(u32, f32)> {
+        let (mut lanes, strata, nodes) = (key.lanes(), supply.strata(key.increment), network.start());
+        let words: Vec<u64> = (0..count.div_ceil(4)).flat_map(|_| lanes.next_block()).collect();
+        let particle = |(place, pair): (u64, &[u64; 2])| {
+            let [first, second] = *pair;
+            let (node, size_word) = match &strata {
+                None => (below(first, nodes.len() as u64) as usize, second),
+                Some(strata) => {
+                    (strata.node(place, first, nodes.len() as u64), strata.size_word(place, second))
+                }
+            };
+            (nodes[node], supply.diameter(size_word))
+        };
+        (before..).zip(words.as_chunks::<2>().0).map(particle).take(count).collect()
+    }
+
+    #[test]
+    fn every_instruction_set_draws_each_particle_as_it_is_defined() {
+        let key = Key { seed: 3, purpose: Purpose::Insertion, run: 1, increment: 2, chunk: 7 };
+        for (network, supply) in networks().iter().flat_map(|n| supplies().into_iter().map(move |s| (n, s))) {
+            for count in [0, 1, 7, 63, 64, 65, 190] {
+                let expected = by_definition(network, &supply, key, 9, count);
+                let passive_limit = 0.2;
+                for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
+                    let (mut void, mut diameter) = (vec![99; count], vec![0.0; count]);
+                    let drawing = Drawing {
+                        network,
+                        supply: &supply,
+                        key,
+                        before: 9,
+                        passive_limit,
+                        void: &mut void,
+                        diameter: &mut diameter,
+                    };
+                    let drawn = drawing.draw(isa);
+                    let particles: Vec<_> = void.into_iter().zip(diameter).collect();
+                    assert_eq!(particles, expected, "{isa:?} {count}");
+                    let mass = expected.iter().fold(0.0, |mass, &(_, d)| mass + cube(d));
+                    let passive = expected.iter().filter(|&&(_, d)| d <= passive_limit).count();
+                    assert_eq!((drawn.mass, drawn.passive), (mass, passive as u32), "{isa:?} {count}");
+                }
+            }
+        }
     }
 }

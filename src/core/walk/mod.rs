@@ -22,7 +22,7 @@
 //!
 //! # Sampling
 //! Start nodes and sizes are independent draws, as in the paper, or spread evenly over both
-//! ([`Sampling::Stratified`], module `strata`): each particle's marginal distribution is the same, and
+//! ([`Sampling::Stratified`]): each particle's marginal distribution is the same, and
 //! replicates scatter less.
 //!
 //! # Exit choice
@@ -33,7 +33,7 @@
 //! # Arches
 //! A particle that fits may jam (module `arching`) if the scene asks for a law of that, at one concentration
 //! for the whole walk. Particles that jam in one constriction in one increment are one arch: step 3 keeps as
-//! many as it has (module `arches`), and lets the others pass.
+//! many as it has (module `chunks`), and lets the others pass.
 //!
 //! # Residual openings
 //! If a scene asks for it, a blocked constriction is not closed: it leaves openings (module `openings`), by
@@ -41,7 +41,7 @@
 //!
 //! # The end
 //! A run ends when nothing moves, or when every moving particle is *trapped*: x and y are periodic, so
-//! a particle can move in closed loops for good (module `trapped`).
+//! a particle can move in closed loops for good.
 //!
 //! # Engines
 //! Passive particles may be followed as one count a void instead ([`RunPlan`], module `counts`): each
@@ -54,59 +54,42 @@
 //! The columns of the particles take 8 bytes each. [`State::placed`] puts them into mapped files where they
 //! would not fit; the kernels see slices either way, and the bits are the same.
 
-mod arches;
 mod arching;
-mod bits;
 mod chunks;
 mod counts;
 mod directions;
 mod engine;
-mod error;
 mod exits;
-mod fill;
 mod insert;
-mod isa;
 mod kernel;
-mod merge;
 mod openings;
-mod reads;
 pub mod reference;
 mod saved;
-mod saved_checks;
-mod sizes;
 mod state;
-mod strata;
 mod supply;
 mod tally;
-mod threads;
-mod trapped;
 
 pub use arching::{Arching, DENSEST, LAWS, Law, LawName};
-pub use bits::{from_words, to_words};
 pub use counts::{Counted, Expected, ExpectedSums, Passive};
 pub use directions::{FlowRecord, FlowSolution};
-pub use engine::{Engine, Finest, RunPlan, Shortcut};
-pub use error::WalkError;
+pub use engine::{Engine, Finest, Isa, RunPlan, Shortcut, threads};
 pub use exits::ExitTable;
-pub use isa::Isa;
 pub use openings::{BlockedAs, Clogged, Narrowing, Openings, residual_opening};
-pub use saved::SavedState;
-pub use sizes::{SizeClasses, SizeCounts};
+pub use saved::{SavedState, from_words, to_words};
 pub use state::{Blocking, CHUNK, Particles, State};
-pub use strata::Sampling;
-pub use supply::Supply;
-pub use tally::Tally;
-pub use threads::threads;
+pub use supply::{Sampling, Supply};
+pub use tally::{SizeClasses, SizeCounts, Tally, WalkError};
 
 use std::borrow::Cow;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 
-use crate::network::{FlowError, Network};
+use crate::network::{END, FlowError, Network};
+use chunks::Events;
 use directions::Directions;
-use merge::Events;
 use openings::{Ways, Weighed};
 
 /// Decision after an increment to go on or to stop.
@@ -122,28 +105,6 @@ pub enum WalkControl {
 pub type Observer<'a> = dyn FnMut(&State) -> WalkControl + Send + 'a;
 
 /// A run under way: the machinery that is rebuilt from network and state, and never stored.
-///
-/// ```
-/// use bitvec::vec::BitVec;
-/// use voidwalk_core::constrictions::{Curve, CurveUnit};
-/// use voidwalk_core::gradation::{Gradation, SizeSampler};
-/// use voidwalk_core::network::Network;
-/// use voidwalk_core::walk::{SizeClasses, State, Supply, Walk, WalkControl};
-///
-/// let curve = Curve::from_points(&[(0.0, 0.1), (100.0, 0.3)], CurveUnit::Mm)?;
-/// let network = Network::cubic([8, 8, 12], &curve, 1.0, 7)?;
-/// let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.08, 1.5)?, 1.0)?;
-/// let supply = Supply::new(sampler, 20_000, 100);
-/// let open: BitVec = BitVec::repeat(false, network.constrictions());
-/// let classes = SizeClasses::logarithmic(0.08, 0.18, 16);
-/// let mut state = State::new(&network, &supply, classes, open, 7, 1);
-/// Walk::new(&network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue)?;
-/// let tally = state.tally;
-/// assert_eq!((tally.inserted, tally.moving), (20_000, 0));
-/// assert!(tally.eroded > 0 && tally.retained_in_constrictions > 0);
-/// assert_eq!(state.history.len() as u64, tally.blocked);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub struct Walk<'a> {
     /// An owned copy if water gives constrictions their direction.
     network: Cow<'a, Network>,
@@ -155,7 +116,7 @@ pub struct Walk<'a> {
     supply: &'a Supply,
     table: ExitTable,
     events: Vec<Events>,
-    trap: trapped::Search,
+    trap: Search,
     /// True if every particle walked one by one is trapped, or there is no such particle.
     all_caught: bool,
     passive: Option<counts::PassiveWalk<'a>>,
@@ -168,7 +129,6 @@ pub struct Walk<'a> {
 #[derive(Clone)]
 pub struct PlainExits {
     network: Arc<Network>,
-    /// Blocked constrictions that they hold for.
     blocked: BitVec,
     table: ExitTable,
     /// Shares of passive particles by exit, if there were any.
@@ -204,11 +164,6 @@ impl PlainExits {
         (table, shares)
     }
 
-    /// Tells if they belong to this very network with these constrictions blocked.
-    fn are_of(&self, network: &Network, blocked: &BitSlice) -> bool {
-        std::ptr::eq(&*self.network, network) && self.blocked == *blocked
-    }
-
     /// Exits and shares for a run that begins with them.
     fn again(self) -> (ExitTable, Option<counts::Shares>) {
         let Self { network, blocked, mut table, shares } = self;
@@ -233,7 +188,9 @@ impl<'a> Walk<'a> {
         state: &State,
         known: Option<Cow<PlainExits>>,
     ) -> Self {
-        let known = known.filter(|known| known.are_of(network, &state.blocked));
+        let is_of_this =
+            |known: &Cow<PlainExits>| Arc::ptr_eq(&known.network, network) && known.blocked == state.blocked;
+        let known = known.filter(is_of_this);
         Self { kept: Some(network), ..Self::prepare(network, supply, state, known) }
     }
 
@@ -263,7 +220,7 @@ impl<'a> Walk<'a> {
             },
             _ => (ExitTable::by_widths(&network, ways), None),
         };
-        let trap = trapped::Search::new(&network, supply.arching());
+        let trap = crate::walk::Search::new(&network, supply.arching());
         let passive = counts::PassiveWalk::new(&network, supply, state, shares);
         Self {
             network,
@@ -310,7 +267,7 @@ impl<'a> Walk<'a> {
             network: network.clone(),
             blocked: state.blocked.clone(),
             table,
-            shares: passive.map(counts::PassiveWalk::into_shares),
+            shares: passive.map(|passive| passive.shares),
         });
         Ok((network, record, exits))
     }
@@ -321,7 +278,7 @@ impl<'a> Walk<'a> {
     /// If this machine does not have them.
     pub fn with_isa(mut self, isa: Isa) -> Self {
         assert!(isa.is_available(), "{isa:?} is not available on this machine");
-        self.table.set_isa(isa);
+        self.table.isa = isa;
         if let Some(passive) = &mut self.passive {
             passive.set_isa(isa);
         }
@@ -340,7 +297,6 @@ impl<'a> Walk<'a> {
         self.tally(state)
     }
 
-    /// Gives constrictions the directions of the flow, if it is to be solved again.
     fn direct(&mut self, state: &State) -> Result<(), FlowError> {
         if let Some(error) = self.no_flow.take() {
             return Err(error);
@@ -356,7 +312,7 @@ impl<'a> Walk<'a> {
                 passive.forget_trap();
             };
             rayon::join(|| table.renew(network, ways), renew_passive);
-            self.trap = trapped::Search::new(&self.network, self.supply.arching());
+            self.trap = crate::walk::Search::new(&self.network, self.supply.arching());
             self.all_caught = false;
         }
         Ok(())
@@ -378,15 +334,10 @@ impl<'a> Walk<'a> {
 
     /// Adds the events to the state; the constrictions that were blocked close or are narrower.
     fn merge(&mut self, state: &mut State) {
-        let closed = merge::merge(&self.network, &mut self.events, self.table.upstream(), state);
-        let both = closed.iter().flat_map(|&c| [Some(c as usize), self.network.twin(c as usize)]);
-        let voids: Vec<u32> = both.flatten().map(|c| self.table.upstream()[c]).collect();
-        self.set(state, voids);
-    }
-
-    /// Renews voids with exits that have just closed, are narrower, or lead elsewhere.
-    fn set(&mut self, state: &State, voids: impl IntoIterator<Item = u32>) {
-        let Self { network, table, passive, directions, .. } = self;
+        let Self { network, table, events, passive, directions, .. } = self;
+        let closed = chunks::merge(network, events, &table.upstream, state);
+        let both = closed.iter().flat_map(|&c| [Some(c as usize), network.twin(c as usize)]);
+        let voids: Vec<u32> = both.flatten().map(|c| table.upstream[c]).collect();
         let ways = state.ways(weighed(directions.as_ref()));
         exits::of_each(network, ways, voids, |of_void| {
             table.set(network, ways, of_void);
@@ -429,7 +380,118 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// Widths that the weights of exits refer to.
 fn weighed(directions: Option<&Directions>) -> Weighed<'_> {
     directions.map_or(Weighed::Whole, Directions::weighed)
+}
+
+/// A search for a particle that is not trapped, which remembers the last way out.
+///
+/// A moving particle is trapped when, through open constrictions that it fits, it can reach no end, no open
+/// constriction finer than it or so fine that it may arch there (either would stop it), and no void without
+/// open exits. When every one is trapped nothing can change any more, and the run ends. One that is not is
+/// enough to go on; the way out found for it holds while nothing closes, so that a run that waits for it
+/// costs little.
+struct Search {
+    /// Mark of the voids seen by the search that set it.
+    seen: Vec<u32>,
+    mark: u32,
+    /// Void from which a seen void was reached.
+    came_from: Vec<u32>,
+    stack: Vec<u32>,
+    /// Voids on ways out that hold for `known`.
+    way_out: Vec<bool>,
+    /// Number of blocked or narrowed constrictions and particle size that `way_out` holds for.
+    known: Option<(usize, u32)>,
+    /// Chunk in which the last particle that is not trapped was found.
+    hint: usize,
+    /// Ratio of a constriction to the finest particle that it may stop.
+    stops_from: f64,
+}
+
+impl Search {
+    pub fn new(network: &Network, arching: Option<&Arching>) -> Self {
+        let voids = network.voids();
+        Self {
+            seen: vec![0; voids],
+            mark: 0,
+            came_from: vec![0; voids],
+            stack: Vec::new(),
+            way_out: vec![false; voids],
+            known: None,
+            hint: usize::MAX,
+            stops_from: arching.map_or(1.0, Arching::stops_to),
+        }
+    }
+
+    pub fn all_trapped(&mut self, network: &Network, state: &State) -> bool {
+        let chunks = state.particles.live.len();
+        let mut trapped = HashSet::new();
+        // The last that were inserted come first: trapped ones stay, and lie in front.
+        let hint = self.hint.min(chunks.saturating_sub(1));
+        for chunk in (0..chunks.min(hint + 1)).rev().chain((hint + 1..chunks).rev()) {
+            let (void, diameter) = state.particles.chunk(chunk);
+            for (&void, &diameter) in void.iter().zip(diameter).rev() {
+                // Passive particles fit everywhere: an answer for one holds for all.
+                let size = if diameter <= state.passive_limit { 0.0 } else { diameter };
+                if trapped.contains(&(void, size.to_bits())) {
+                    continue;
+                }
+                if !self.is_trapped(network, state, void, size) {
+                    self.hint = chunk;
+                    return false;
+                }
+                trapped.insert((void, size.to_bits()));
+            }
+        }
+        true
+    }
+
+    /// Depth first, downstream exits before sideways ones.
+    fn is_trapped(&mut self, network: &Network, state: &State, start: u32, diameter: f32) -> bool {
+        let key = Some((state.changes(), diameter.to_bits()));
+        if self.known != key {
+            self.way_out.fill(false);
+            self.known = key;
+        }
+        self.mark = self.mark.checked_add(1).unwrap_or_else(|| {
+            self.seen.fill(0);
+            1
+        });
+        self.stack.clear();
+        self.stack.push(start);
+        self.seen[start as usize] = self.mark;
+        while let Some(void) = self.stack.pop() {
+            let mut closed = true;
+            let mut leads_out = self.way_out[void as usize];
+            for exit in network.exits(void).filter(|&c| !state.is_closed(network, c)) {
+                closed = false;
+                let target = network.targets()[exit];
+                let stops = f64::from(state.width(network, exit)) < self.stops_from * f64::from(diameter);
+                if stops || target == END {
+                    leads_out = true;
+                    break;
+                }
+                if self.seen[target as usize] != self.mark {
+                    self.seen[target as usize] = self.mark;
+                    self.came_from[target as usize] = void;
+                    self.stack.push(target);
+                }
+            }
+            if closed || leads_out {
+                self.remember(start, void);
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Marks the way from `start` to `last` as a way out.
+    fn remember(&mut self, start: u32, last: u32) {
+        let mut void = last;
+        self.way_out[void as usize] = true;
+        while void != start {
+            void = self.came_from[void as usize];
+            self.way_out[void as usize] = true;
+        }
+    }
 }

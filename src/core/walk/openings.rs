@@ -39,7 +39,6 @@ use crate::network::Network;
 /// sqrt(3) - 1`.
 const OF_GRAIN: f64 = 0.154_700_538_379_251_53;
 
-/// Openings beside a particle that rests on three grains.
 const OPENINGS: f64 = 3.0;
 
 /// Power of its diameter that the conductance of an opening grows with (Hagen-Poiseuille), against the
@@ -51,15 +50,6 @@ pub(super) const CONDUCTS: f64 = 4.0;
 ///
 /// `1 / x = 1 / d + 2 / G + 2 sqrt(1 / G^2 + 2 / (d G))` with `G = D / (2 / sqrt(3) - 1)`: Descartes' circle
 /// theorem for the circle inside three that touch each other.
-///
-/// ```
-/// use voidwalk_core::walk::residual_opening;
-///
-/// // A particle that just does not pass: 1 / (1 + 2 (2 / sqrt(3) - 1) + 2 / sqrt(3)) of the constriction.
-/// assert!((residual_opening(0.2, 0.2) - 0.081_165_5).abs() < 1e-7);
-/// // One as large as the grains leaves constrictions of three grains.
-/// assert!((residual_opening(0.2, 0.2 * 6.464_101_615) - 0.2).abs() < 1e-9);
-/// ```
 pub fn residual_opening(constriction: f64, particle: f64) -> f64 {
     let (grain, curvature) = (OF_GRAIN / constriction, 1.0 / particle);
     let inside = curvature + 2.0 * grain + 2.0 * (grain * (grain + 2.0 * curvature)).sqrt();
@@ -240,7 +230,6 @@ impl Openings {
 /// Exits of voids that are open to base particles.
 #[derive(Clone, Copy)]
 pub(super) enum Ways<'a> {
-    /// All but those that are blocked.
     Unblocked(&'a BitSlice),
     /// All, with these widths, against the widths that the exits' weights refer to.
     Openings(&'a [f32], Weighed<'a>),
@@ -249,7 +238,6 @@ pub(super) enum Ways<'a> {
 /// Widths that the weights of exits refer to, where blocked constrictions leave openings.
 #[derive(Clone, Copy)]
 pub(super) enum Weighed<'a> {
-    /// Whole constrictions.
     Whole,
     /// Constrictions as wide as they were when the flow was solved last, and the power of the diameter that a
     /// weight grows with.
@@ -257,7 +245,6 @@ pub(super) enum Weighed<'a> {
 }
 
 impl Ways<'_> {
-    /// Weight of an exit in the choice of a particle.
     #[inline]
     pub fn weight(&self, network: &Network, c: usize) -> f64 {
         match *self {

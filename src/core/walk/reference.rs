@@ -113,7 +113,7 @@ impl<'a> Reference<'a> {
         let mut place_in_chunk = vec![0u64; 1 + self.supply.total() as usize / CHUNK];
         for particle in std::mem::take(&mut self.moving) {
             let place = &mut place_in_chunk[particle.rank as usize / CHUNK];
-            let draw = self.draw(particle.rank / CHUNK as u64, *place);
+            let draw = self.draw_of(self.key(Purpose::Step, particle.rank / CHUNK as u64), *place);
             *place += 1;
             let Some(exit) = self.pick(particle.void, draw) else {
                 match self.waits(particle.void) {
@@ -160,7 +160,6 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// The widest way through a constriction.
     fn width(&self, exit: usize) -> f32 {
         self.widths.as_ref().map_or(self.network.diameters()[exit], |widths| widths[exit])
     }
@@ -243,10 +242,11 @@ impl<'a> Reference<'a> {
     ) -> bool {
         let Some(arching) = self.supply.arching() else { return false };
         let ratio = f64::from(self.width(exit)) / f64::from(diameter);
-        if ratio >= arching.widest() {
+        if ratio >= arching.law.widest {
             return false;
         }
-        if ((self.jam_draw(chunk, place) >> 16) as f64) >= arching.by_table(ratio) * 2f64.powi(48) {
+        let draw = self.draw_of(self.key(Purpose::Arching, chunk), place);
+        if ((draw >> 16) as f64) >= arching.by_table(ratio) * 2f64.powi(48) {
             return false;
         }
         let has = (ratio * ratio + 1.0).round().max(2.0) as u32;
@@ -287,7 +287,6 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// Word `w` of a stream.
     fn word(&self, key: Key, w: u64) -> u64 {
         let mut lanes = key.lanes();
         let mut block = lanes.next_block();
@@ -297,16 +296,7 @@ impl<'a> Reference<'a> {
         block[w as usize % LANES]
     }
 
-    /// The 64-bit draw by which the particle at `place` in its chunk chooses.
-    fn draw(&self, chunk: u64, place: u64) -> u64 {
-        self.draw_of(self.key(Purpose::Step, chunk), place)
-    }
-
-    /// The 64-bit draw by which it jams.
-    fn jam_draw(&self, chunk: u64, place: u64) -> u64 {
-        self.draw_of(self.key(Purpose::Arching, chunk), place)
-    }
-
+    /// Draw of the particle at `place` in its chunk, in all 64 bits.
     fn draw_of(&self, key: Key, place: u64) -> u64 {
         let mut lanes = key.lanes();
         let mut block = lanes.next_block();
@@ -334,9 +324,13 @@ impl<'a> Reference<'a> {
         if self.blocked[exit] { 0.0 } else { diameter * diameter }
     }
 
+    fn open_exits(&self, void: u32) -> Vec<usize> {
+        self.network.exits(void).filter(|&e| self.open_area(e) > 0.0).collect()
+    }
+
     /// The exit that a draw picks, with probability proportional to area, among the open ones.
     fn pick(&self, void: u32, draw: u64) -> Option<usize> {
-        let open: Vec<usize> = self.network.exits(void).filter(|&e| self.open_area(e) > 0.0).collect();
+        let open = self.open_exits(void);
         let total: f64 = open.iter().map(|&e| self.open_area(e)).sum();
         let mut sum = 0.0;
         for &exit in &open {
@@ -354,7 +348,7 @@ impl<'a> Reference<'a> {
         let mut seen = BTreeSet::from([particle.void]);
         let mut todo = vec![particle.void];
         while let Some(void) = todo.pop() {
-            let open: Vec<usize> = self.network.exits(void).filter(|&e| self.open_area(e) > 0.0).collect();
+            let open = self.open_exits(void);
             if open.is_empty() {
                 return false;
             }

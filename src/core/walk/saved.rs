@@ -1,17 +1,13 @@
-//! A state as sections of a checkpoint, and back.
-//!
-//! Nothing that can be rebuilt is saved: no generator, no thresholds, no network.
+//! A state as sections of a checkpoint, and back. Nothing that can be rebuilt is saved.
 
-use bytemuck::Pod;
-use serde::{Deserialize, Serialize};
-
-use super::bits::{from_words, to_words, words_for};
-use super::saved_checks::Forgery;
 use super::{
     Blocking, CHUNK, Expected, ExpectedSums, Narrowing, Openings, Passive, SizeCounts, State, Supply, Tally,
 };
 use crate::network::Network;
 use crate::store::checkpoint::{Checkpoint, CheckpointError, Section};
+use bitvec::vec::BitVec;
+use bytemuck::Pod;
+use serde::{Deserialize, Serialize};
 
 /// A state as the sections of a checkpoint.
 ///
@@ -53,7 +49,6 @@ pub struct SavedState<'a> {
     narrowed: Option<SavedNarrowings>,
 }
 
-/// Narrowings of a run, as columns.
 struct SavedNarrowings {
     increment: Vec<u64>,
     constriction: Vec<u32>,
@@ -80,7 +75,6 @@ impl SavedNarrowings {
         ]
     }
 
-    /// The openings that a checkpoint holds.
     fn read(saved: &Checkpoint, exits: usize) -> Result<Openings, CheckpointError> {
         let increment: Vec<u64> = saved.read("narrowed_increment")?;
         let constriction: Vec<u32> = saved.read_exact("narrowed_constriction", increment.len())?;
@@ -99,7 +93,6 @@ impl SavedNarrowings {
     }
 }
 
-/// Fields of a state that are not columns.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Record {
@@ -335,5 +328,157 @@ impl<'a> Place<'a> {
                 (self.chunk, self.within) = (self.chunk + 1, 0);
             }
         }
+    }
+}
+
+/// Words of the machine in one of 64 bits.
+const IN_64: usize = (u64::BITS / usize::BITS) as usize;
+
+/// The bits, the first the lowest of the first word; those behind the last are 0.
+pub fn to_words(bits: &BitVec) -> Vec<u64> {
+    let join = |parts: &[usize]| parts.iter().rev().fold(0, |word, &part| up(word) | part as u64);
+    let mut words: Vec<u64> = bits.as_raw_slice().chunks(IN_64).map(join).collect();
+    if let (Some(last), unused @ 1..) = (words.last_mut(), words_for(bits.len()) * 64 - bits.len()) {
+        *last &= u64::MAX >> unused;
+    }
+    words
+}
+
+/// `len` bits of such words; beyond these words all are 0.
+pub fn from_words(words: &[u64], len: usize) -> BitVec {
+    let split = |&word: &u64| (0..IN_64).map(move |part| (word >> (part as u32 * usize::BITS)) as usize);
+    let mut bits = BitVec::from_vec(words.iter().flat_map(split).collect());
+    bits.resize(len, false);
+    bits
+}
+
+/// Number of words that hold `len` bits.
+fn words_for(len: usize) -> usize {
+    len.div_ceil(64)
+}
+
+/// A word with room for another of the machine's below it.
+fn up(word: u64) -> u64 {
+    word.checked_shl(usize::BITS).unwrap_or(0)
+}
+
+/// Relative error allowed in the sum of an expectation: sums over very many increments round.
+const ROUNDING: f64 = 1e-6;
+
+/// Increments that no walk reaches.
+const MOST_INCREMENTS: u64 = 1 << 62;
+
+/// Numbers of a checkpoint that a walk relies on, beside the supply of that walk.
+///
+/// Checksums keep chance away from a checkpoint, not somebody who makes them right again. Such a state may
+/// give a wrong answer; it must not index beyond a column, wrap a sum, or move for ever.
+struct Forgery<'a> {
+    pub supply: &'a Supply,
+    pub increment: u64,
+    pub tally: &'a Tally,
+}
+
+impl Forgery<'_> {
+    /// Tells if chunks may hold this many moving particles: no more than were inserted into each.
+    pub fn live_can_be(&self, live: &[u32]) -> bool {
+        let inserted = self.supply.inserted(self.increment);
+        let into = |chunk: usize| inserted.saturating_sub((chunk * CHUNK) as u64).min(CHUNK as u64);
+        live.iter().enumerate().all(|(chunk, &n)| u64::from(n) <= into(chunk))
+    }
+
+    /// Finds an impossible number in a state whose columns have the right lengths and whose tally adds up.
+    pub fn fault(&self, state: &State) -> Option<&'static str> {
+        let (tally, supply) = (self.tally, self.supply);
+        let passive = supply.passive_inserted(self.increment);
+        let inserting = self.increment < supply.increments();
+        if self.increment > MOST_INCREMENTS || state.finished != (!inserting && tally.moving == 0) {
+            return Some("increment");
+        }
+        if u128::from(tally.inserted) != u128::from(supply.inserted(self.increment)) + u128::from(passive) {
+            return Some("number of particles");
+        }
+        // Those that are trapped stay where they are.
+        let live: u128 = state.particles.live.iter().map(|&n| u128::from(n)).sum();
+        let still = match &state.passive {
+            Passive::OneByOne => 0,
+            Passive::Counts(moving) => sum(moving),
+            Passive::Expected(expected) => {
+                if !self.expectation_can_be(expected, passive, state) {
+                    return Some("expectation");
+                }
+                u128::from(expected.sums.inserted - expected.sums.counted.at_rest)
+            }
+        };
+        if live + still != u128::from(tally.moving) + u128::from(tally.trapped) {
+            return Some("number of moving particles");
+        }
+        let columns = [&state.retained_in_constrictions, &state.retained_in_voids];
+        let sizes = [&state.eroded_sizes, &state.retained_sizes];
+        let numbers = columns.into_iter().chain(sizes.map(|sizes| &sizes.number));
+        if numbers.into_iter().any(|column| sum(column) > u128::from(tally.inserted)) {
+            return Some("number of retained or eroded particles");
+        }
+        let masses = sizes.into_iter().flat_map(|sizes| &sizes.mass).copied();
+        let largest = f64::from(tally.largest_eroded);
+        let mut masses = masses.chain([tally.inserted_mass, tally.eroded_mass, largest]);
+        if masses.any(|mass| !mass.is_finite()) {
+            return Some("mass");
+        }
+        let is_past = |increment: u64| (1..=self.increment).contains(&increment);
+        (!state.history.iter().all(|b| is_past(b.increment))).then_some("history")
+    }
+
+    /// Tells if an expectation is valid: numbers, no one below 0, that sum to the number inserted; and the
+    /// whole numbers that were counted of it are in the tally.
+    fn expectation_can_be(&self, expected: &Expected, inserted: u64, state: &State) -> bool {
+        let (sums, counted) = (&expected.sums, &expected.sums.counted);
+        let columns = || expected.moving.iter().chain(&expected.retained);
+        let is_number = |n: &f64| n.is_finite() && *n >= 0.0;
+        let whole = columns().sum::<f64>() + sums.eroded;
+        let retained = sum(&expected.counted_retained);
+        let in_voids = state.retained_in_voids.iter();
+        columns().chain([&sums.eroded, &sums.moves]).all(is_number)
+            && sums.inserted == inserted
+            && (whole - inserted as f64).abs() <= 1.0 + ROUNDING * inserted as f64
+            && counted.eroded <= counted.at_rest
+            && counted.at_rest <= inserted
+            && counted.eroded <= self.tally.eroded
+            && counted.at_rest - counted.eroded <= self.tally.retained_in_voids
+            && retained == u128::from(counted.at_rest - counted.eroded)
+            && counted.moves == (sums.moves + 0.5).floor() as u64
+            && in_voids.zip(&expected.counted_retained).all(|(all, counted)| counted <= all)
+    }
+}
+
+fn sum(column: &[u64]) -> u128 {
+    column.iter().map(|&n| u128::from(n)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_come_back_from_words_and_stand_in_them_in_order() {
+        for len in [0, 1, 31, 32, 33, 63, 64, 65, 127, 128, 1000] {
+            let bits_where = |is: fn(usize) -> bool| (0..len).map(is).collect::<BitVec>();
+            for bits in [
+                bits_where(|_| false),
+                bits_where(|_| true),
+                bits_where(|i| i % 3 == 1),
+                bits_where(|i| i * i % 7 < 3),
+            ] {
+                let words = to_words(&bits);
+                assert_eq!(words.len(), words_for(len));
+                for at in 0..64 * words.len() {
+                    let is = words[at / 64] >> (at % 64) & 1 == 1;
+                    assert_eq!(is, bits.get(at).is_some_and(|bit| *bit), "bit {at} of {len}");
+                }
+                assert_eq!(from_words(&words, len), bits);
+                assert_eq!(from_words(&words, len + 70).count_ones(), bits.count_ones());
+                assert_eq!(from_words(&words, len / 2), bits[..len / 2]);
+            }
+        }
+        assert_eq!(to_words(&from_words(&[u64::MAX, 0x0123_4567_89ab_cdef], 120))[1], 0x23_4567_89ab_cdef);
     }
 }

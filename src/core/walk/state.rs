@@ -1,14 +1,14 @@
 //! The state of a run: columns, and nothing that belongs to an engine.
 
-use std::io;
-
-use bitvec::vec::BitVec;
-
 use super::openings::{Ways, Weighed};
-use super::sizes::cube;
+use super::supply::passive_limit;
+use super::tally::cube;
 use super::{Clogged, Openings, Passive, SizeClasses, SizeCounts, Supply, Tally};
 use crate::network::Network;
 use crate::store::{Column, Placement};
+use crate::stream::{Key, Purpose};
+use bitvec::vec::BitVec;
+use std::io;
 
 /// Base particles of one chunk: 128 KiB of columns, so that a chunk stays in a core's second-level
 /// cache while it is worked on. Part of the definition of every stream: changing it changes results.
@@ -35,17 +35,6 @@ pub struct Particles {
     pub live: Vec<u32>,
 }
 
-/// A particle that moves on.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Moving {
-    /// Moving particles of its chunk that it comes after.
-    pub rank: usize,
-    /// The void that it is in.
-    pub void: u32,
-    /// Its size.
-    pub diameter: f32,
-}
-
 impl Particles {
     /// Void and diameter of the moving particles of one chunk.
     pub fn chunk(&self, chunk: usize) -> (&[u32], &[f32]) {
@@ -54,20 +43,21 @@ impl Particles {
         (&self.void[chunk * CHUNK..][..live], &self.diameter[sizes..][..live])
     }
 
-    /// Puts particles back among those of a chunk, each behind as many of these as its rank says, ascending.
-    pub(super) fn put_back(&mut self, chunk: usize, back: &[Moving]) {
+    /// Puts particles back among those of a chunk, each behind as many of these as its rank says, ascending:
+    /// rank, void and diameter.
+    pub(super) fn put_back(&mut self, chunk: usize, back: &[(usize, u32, f32)]) {
         let first = chunk * CHUNK;
         let mut end = first + self.live[chunk] as usize;
         self.live[chunk] += back.len() as u32;
         let one_size = self.has_one_size();
         // From the last on: particles behind it move up by the number put back before them.
-        for (before, particle) in back.iter().enumerate().rev() {
-            let at = first + particle.rank;
+        for (before, &(rank, void, diameter)) in back.iter().enumerate().rev() {
+            let at = first + rank;
             self.void.copy_within(at..end, at + before + 1);
-            self.void[at + before] = particle.void;
+            self.void[at + before] = void;
             if !one_size {
                 self.diameter.copy_within(at..end, at + before + 1);
-                self.diameter[at + before] = particle.diameter;
+                self.diameter[at + before] = diameter;
             }
             end = at;
         }
@@ -151,6 +141,7 @@ impl State {
         let openings = supply.leaves_openings().then(|| Openings::new(network, &clogged));
         let blocked = clogged.blocked;
         assert_eq!(blocked.len(), network.constrictions(), "one bit a constriction");
+        let finest = network.finest_open(|c| blocked[c]);
         let chunks = (supply.total() as usize).div_ceil(CHUNK);
         let tally = Tally { blocked: network.blocked_count(&blocked), ..Tally::default() };
         let diameter = match supply.single_size() {
@@ -166,7 +157,7 @@ impl State {
             run,
             increment: 0,
             finished: false,
-            passive_limit: supply.passive_limit(network.finest_open(|c| blocked[c])),
+            passive_limit: passive_limit(supply.arching(), supply.leaves_openings(), finest),
             particles: Particles {
                 void: Column::zeroed(chunks * CHUNK, placement)?,
                 diameter,
@@ -197,6 +188,11 @@ impl State {
         is_shut || network.diameters()[c] == 0.0 || network.exit_weight(c) == 0.0
     }
 
+    /// Key of the streams of this increment; that of the first chunk.
+    pub(super) fn key(&self, purpose: Purpose) -> Key {
+        Key { seed: self.seed, purpose, run: self.run, increment: self.increment, chunk: 0 }
+    }
+
     /// Open exits.
     pub(super) fn ways<'a>(&'a self, weighed: Weighed<'a>) -> Ways<'a> {
         match &self.openings {
@@ -221,15 +217,20 @@ impl State {
     pub(super) fn stop(&mut self, network: &Network, upstream: &[u32], exit: usize, diameter: f32) {
         let void = upstream[exit] as usize;
         self.retained_in_constrictions[void] += 1;
-        if let Some(cubes) = self.retained_cubes.get_mut(void) {
-            *cubes += cube(diameter);
-        }
+        self.retain_cubes(void, cube(diameter));
         if !self.blocked[exit] {
             self.history.push(Blocking { increment: self.increment, constriction: exit as u32 });
             network.set_blocked(&mut self.blocked, exit, true);
         }
         if let Some(openings) = &mut self.openings {
             openings.stop(network, exit, diameter);
+        }
+    }
+
+    /// Adds the diameters cubed of what is retained in a void, where it has a volume.
+    pub(super) fn retain_cubes(&mut self, void: usize, cubes: f64) {
+        if let Some(sum) = self.retained_cubes.get_mut(void) {
+            *sum += cubes;
         }
     }
 

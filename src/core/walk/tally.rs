@@ -1,6 +1,6 @@
-//! Sums over a run: integers, and masses added in a fixed order.
+//! Sums over a run: numbers of particles, masses added in a fixed order, and both by size class.
 
-use super::error::WalkError;
+use crate::network::FlowError;
 
 /// Sums over a run up to and including an increment. Masses are sums of diameter cubed, in units of the
 /// reference length cubed.
@@ -21,7 +21,7 @@ pub struct Tally {
     #[serde(default, skip_serializing_if = "is_zero")]
     pub arches: u64,
     /// Mass in arches.
-    #[serde(default, skip_serializing_if = "no_mass")]
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub arched_mass: f64,
     /// Base particles in voids without open exits.
     pub retained_in_voids: u64,
@@ -43,12 +43,8 @@ pub struct Tally {
     pub largest_eroded: f32,
 }
 
-fn is_zero(number: &u64) -> bool {
-    *number == 0
-}
-
-fn no_mass(mass: &f64) -> bool {
-    *mass == 0.0
+fn is_zero<T: Default + PartialEq>(number: &T) -> bool {
+    *number == T::default()
 }
 
 impl Tally {
@@ -70,6 +66,140 @@ impl Tally {
     }
 }
 
+/// Bounds of size classes, ascending; class `k` holds diameters above bound `k - 1` up to bound `k`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SizeClasses {
+    upper: Vec<f32>,
+    /// Class of the smallest diameter of each bucket, and the bound above which the next class begins; a
+    /// bucket is the top bits of an f32.
+    guide: Vec<(u32, f32)>,
+    /// Bucket of the first entry of `guide`.
+    first_bucket: u32,
+    /// True if a bucket holds more than one bound, for example with 64 classes of sizes in a ratio of less
+    /// than 7.
+    several_bounds: bool,
+}
+
+/// Bits of an f32 below its bucket: 32 buckets in a factor of two.
+const BELOW_BUCKET: u32 = 18;
+
+impl SizeClasses {
+    /// `count` classes of equal width in the logarithm of the diameter, from `smallest` to `largest`;
+    /// one class where the two are equal.
+    pub fn logarithmic(smallest: f32, largest: f32, count: usize) -> Self {
+        let ratio = libm::log(f64::from(largest) / f64::from(smallest));
+        let bound = |k: usize| f64::from(smallest) * libm::exp(ratio * k as f64 / count as f64);
+        let mut upper: Vec<f32> = (1..count).map(|k| bound(k) as f32).collect();
+        upper.push(largest);
+        upper.dedup();
+        let bucket = |diameter: f32| diameter.to_bits() >> BELOW_BUCKET;
+        let class = |diameter: f32| upper.partition_point(|&bound| bound < diameter);
+        let first_bucket = bucket(upper[0]);
+        let after_first = first_bucket + 1..=bucket(largest);
+        let starts = after_first.map(|bucket| class(f32::from_bits(bucket << BELOW_BUCKET)));
+        // Sizes above the last bound count in the last class.
+        let bound = |class: usize| if class + 1 < upper.len() { upper[class] } else { f32::INFINITY };
+        let entry = |class: usize| (class as u32, bound(class));
+        let guide: Vec<(u32, f32)> = std::iter::once(0).chain(starts).map(entry).collect();
+        let several_bounds = upper.windows(2).any(|bounds| bucket(bounds[0]) == bucket(bounds[1]));
+        Self { upper, guide, first_bucket, several_bounds }
+    }
+
+    /// Upper bound of each class.
+    pub fn upper(&self) -> &[f32] {
+        &self.upper
+    }
+
+    /// Class of a diameter; sizes above the last bound count in the last class.
+    #[inline]
+    pub fn of(&self, diameter: f32) -> usize {
+        let bucket = (diameter.to_bits() >> BELOW_BUCKET).saturating_sub(self.first_bucket) as usize;
+        let (class, bound) = self.guide[bucket.min(self.guide.len() - 1)];
+        let mut class = class as usize + usize::from(bound < diameter);
+        if self.several_bounds {
+            let last = self.upper.len() - 1;
+            while class < last && self.upper[class] < diameter {
+                class += 1;
+            }
+        }
+        class
+    }
+}
+
+/// Number and mass by size class.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct SizeCounts {
+    /// Particles by class.
+    pub number: Vec<u64>,
+    /// Sum of diameter cubed by class.
+    pub mass: Vec<f64>,
+}
+
+impl SizeCounts {
+    /// Nothing in any class.
+    pub fn new(classes: &SizeClasses) -> Self {
+        Self { number: vec![0; classes.upper.len()], mass: vec![0.0; classes.upper.len()] }
+    }
+
+    #[inline]
+    pub(super) fn add(&mut self, classes: &SizeClasses, diameter: f32) {
+        let class = classes.of(diameter);
+        self.number[class] += 1;
+        self.mass[class] += cube(diameter);
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.number.fill(0);
+        self.mass.fill(0.0);
+    }
+
+    /// Adds the numbers and masses of `other`.
+    pub fn merge(&mut self, other: &Self) {
+        for (sum, n) in self.number.iter_mut().zip(&other.number) {
+            *sum += n;
+        }
+        for (sum, m) in self.mass.iter_mut().zip(&other.mass) {
+            *sum += m;
+        }
+    }
+}
+
+/// Diameter cubed: mass in units of the reference length cubed.
+#[inline]
+pub(super) fn cube(diameter: f32) -> f64 {
+    let d = f64::from(diameter);
+    d * d * d
+}
+
+/// Reason why a walk ended before its run did.
+#[derive(Debug, thiserror::Error)]
+pub enum WalkError {
+    /// Inserted particles are not all accounted for.
+    #[error("increment {increment}: {inserted} base particles inserted, but {accounted} accounted for")]
+    NotConserved {
+        /// The increment.
+        increment: u64,
+        /// Inserted so far.
+        inserted: u64,
+        /// Moving, retained, trapped and eroded.
+        accounted: u64,
+    },
+    /// The flow through the network is not known.
+    #[error("increment {increment}: {source}")]
+    Flow {
+        /// The increment.
+        increment: u64,
+        /// The reason.
+        source: FlowError,
+    },
+    /// The caller asked the run to stop.
+    #[error("stopped on request in increment {increment}")]
+    Stopped {
+        /// The last whole increment.
+        increment: u64,
+    },
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -82,5 +212,36 @@ mod tests {
         assert!(Tally { retained_in_voids: 1, ..tally }.check(3).is_ok());
         // 2^64 and 5 particles are not 5.
         assert!(Tally { retained_in_voids: u64::MAX, trapped: 4, ..tally }.check(3).is_err());
+    }
+
+    #[test]
+    fn classes_cover_their_range() {
+        let classes = SizeClasses::logarithmic(1.0, 8.0, 3);
+        assert_eq!(classes.upper().len(), 3);
+        assert_eq!([classes.of(1.0), classes.of(1.9), classes.of(2.1), classes.of(8.0)], [0, 0, 1, 2]);
+        assert_eq!(classes.of(9.0), 2);
+        assert_eq!(SizeClasses::logarithmic(2.0, 2.0, 64).upper(), [2.0]);
+    }
+
+    /// Comparison with the definition: at every bound, next to it, at every bucket's start, far out.
+    #[test]
+    fn the_guide_finds_the_class_by_definition() {
+        for (smallest, largest, count) in [
+            (1.0, 8.0, 3),
+            (0.016, 0.33, 64),
+            (1e-20, 1e20, 64),
+            (0.2, 0.45, 64),
+            (1.0, 1.01, 500),
+            (2.0, 2.0, 1),
+            (1e-3, 1.0, 1),
+        ] {
+            let classes = SizeClasses::logarithmic(smallest, largest, count);
+            let starts = (0..1u32 << 13).map(|bucket| f32::from_bits(bucket << BELOW_BUCKET));
+            let probes = starts.chain(classes.upper().iter().copied()).filter(|d| d.is_finite() && *d > 0.0);
+            for d in probes.flat_map(|d| [d.next_down(), d, d.next_up()]) {
+                let by_definition = classes.upper().iter().filter(|&&bound| bound < d).count();
+                assert_eq!(classes.of(d), by_definition.min(classes.upper().len() - 1), "{d}");
+            }
+        }
     }
 }

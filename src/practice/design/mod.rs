@@ -1,13 +1,498 @@
-//! The specification of a filter by practice: its record, the rules of retention behind it, and standard
-//! products beside it.
+//! The specification of a filter for a base: record, steps, band, and standard products beside it.
 
 pub mod products;
-pub mod retention;
-mod row_note;
-mod sieves;
 pub mod size_band;
 pub mod specification;
+mod steps;
 
-pub use row_note::RowNote;
-pub use sieves::SieveSeries;
-pub use specification::{Specification, SpecificationStep};
+use crate::rules::{GREATEST_SIZE_MM, MOST_CU, NamedCurve, WIDEST_BAND};
+use crate::{Note, SheetCover};
+use size_band::{D15_OVER_D10, Side};
+use specification::{NoBand, SizeBand, margins};
+use steps::{Control, Findings, ReadCurve};
+
+pub use size_band::SieveSeries;
+pub use specification::{RowNote, Specification, SpecificationStep};
+
+/// Options of a specification.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpecificationOptions {
+    /// True if the base is dispersive; `None` if nobody has said.
+    pub dispersive: Option<bool>,
+    /// Sieves at which the limits are stated.
+    pub sieves: SieveSeries,
+    /// True to place the band at the finer end of the allowed sizes instead of the coarser.
+    pub finer: bool,
+}
+
+impl Specification {
+    /// Specifies a filter for a base of one curve or of several, in mm. The filter must retain and drain
+    /// every curve: the strictest limit of each kind counts.
+    ///
+    /// ```
+    /// use voidwalk_core::Gradation;
+    /// use voidwalk_practice::design::Specification;
+    /// use voidwalk_practice::SpecificationOptions;
+    /// let clay = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)])?;
+    /// let filter = Specification::of("core", &[("core".into(), clay)], SpecificationOptions::default());
+    /// assert_eq!((filter.d15f_min_mm, filter.d15f_max_mm), (Some(0.1), Some(0.7)));
+    /// # Ok::<(), voidwalk_core::gradation::GradationError>(())
+    /// ```
+    pub fn of(name: &str, bases: &[NamedCurve], options: SpecificationOptions) -> Self {
+        let dispersive = options.dispersive == Some(true);
+        let read: Vec<ReadCurve> = bases.iter().map(|base| ReadCurve::of(base, dispersive)).collect();
+        let strictest = read.iter().min_by(|a, b| a.greatest().total_cmp(&b.greatest()));
+        let unknown = read.iter().find(|curve| curve.unknown.is_some());
+        let d15f_max = strictest.filter(|_| unknown.is_none()).and_then(|curve| curve.record.d15f_max_mm);
+        let coarsest = read.iter().max_by(|a, b| a.least().total_cmp(&b.least()));
+        let d15f_min = coarsest.and_then(|curve| curve.record.d15f_min_mm);
+        let control = d15f_min.zip(d15f_max).and_then(|(min, max)| control(min, max, options.finer));
+        let band = control.as_ref().and_then(|control| SizeBand::of(control.d15, control.d60));
+        let at_most = coarsest.is_some_and(ReadCurve::least_at_most);
+        let certain = read.iter().map(ReadCurve::certain_least).fold(0.0, f64::max);
+        let no_band = no_band((d15f_min, at_most), d15f_max, unknown, band.is_some());
+        let if_dispersive = if options.dispersive.is_none() { steps::if_dispersive(bases) } else { None };
+        let facts =
+            Findings { read: &read, strictest, unknown, coarsest, d15f_max, control, finer: options.finer };
+        Self {
+            version: env!("CARGO_PKG_VERSION").into(),
+            commit: None,
+            base: name.into(),
+            dispersive,
+            sieves: options.sieves,
+            cover: SheetCover::default(),
+            inches: false,
+            inputs: Vec::new(),
+            steps: facts.steps(band.as_ref()),
+            curves: read.iter().map(|curve| curve.record.clone()).collect(),
+            notes: steps::notes(&read).into_iter().chain(notes_of_sides(band.as_ref())).collect(),
+            d15f_min_mm: d15f_min,
+            d15f_min_at_most: at_most,
+            d15f_max_mm: d15f_max,
+            finer: options.finer,
+            if_dispersive,
+            limits: band.as_ref().map(|band| band.limits(options.sieves)).unwrap_or_default(),
+            products: margins((d15f_min, certain), d15f_max),
+            no_band,
+            band,
+        }
+    }
+}
+
+/// The control points of a band between a least and a maximum D15F (mm). If that range is wider than a band
+/// may be, they lie at its finer or at its coarser end; `None` if the least is above the maximum.
+fn control(min: f64, max: f64, finer: bool) -> Option<Control> {
+    let d15 = match finer {
+        true => [min, max.min(WIDEST_BAND * min)],
+        false => [min.max(max / WIDEST_BAND), max],
+    };
+    let d60_max = MOST_CU * d15[1] / D15_OVER_D10;
+    (min <= max).then_some(Control { d15, d60: [d60_max / WIDEST_BAND, d60_max] })
+}
+
+/// The D15F (mm) at which the band of a filter begins that drains from a least D15F (mm) and retains up to a
+/// maximum: raised if the band would otherwise be too wide.
+pub fn least_of_band(min: f64, max: f64) -> f64 {
+    control(min, max, false).map_or(min, |control| control.d15[0])
+}
+
+/// Reason why no filter between a least and a maximum D15F (mm) has a band; `None` if one has.
+pub fn no_band_between((min, at_most): (f64, bool), max: f64) -> Option<NoBand> {
+    let band = control(min, max, false).and_then(|control| SizeBand::of(control.d15, control.d60));
+    no_band((Some(min), at_most), Some(max), None, band.is_some())
+}
+
+/// Reason why there is no band.
+fn no_band(
+    (min, at_most): (Option<f64>, bool),
+    max: Option<f64>,
+    unknown: Option<&ReadCurve>,
+    has_band: bool,
+) -> Option<NoBand> {
+    Some(match (min, max) {
+        _ if has_band => return None,
+        (Some(min), Some(max)) if min > max && at_most => {
+            NoBand::DrainageNotKnown { most_drains_mm: min, most_mm: max }
+        }
+        (Some(min), Some(max)) if min > max => NoBand::NoneDrainsAndRetains { least_mm: min, most_mm: max },
+        (Some(_), Some(max)) if MOST_CU * max / D15_OVER_D10 < GREATEST_SIZE_MM => NoBand::TooManyFines,
+        (Some(_), Some(max)) => NoBand::TooCoarse { most_d60f_mm: MOST_CU * max / D15_OVER_D10 },
+        _ => match unknown.and_then(|curve| Some((curve.record.curve.clone(), curve.unknown.clone()?))) {
+            Some((curve, needs)) => NoBand::LimitNotKnown { curve, needs },
+            None => NoBand::NoRule,
+        },
+    })
+}
+
+/// Notes on the sides of a band that are not internally stable.
+fn notes_of_sides(band: Option<&SizeBand>) -> Vec<RowNote> {
+    let row_note = |side: Side| {
+        let authorities = side.authorities();
+        let is_unstable = !authorities.is_empty();
+        let note = Note::UnstableSide { side: side.name.into(), authorities };
+        is_unstable.then_some(RowNote { row: None, note })
+    };
+    band.map(Side::both).into_iter().flatten().filter_map(row_note).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::test_soils::{REGRADED_TILL, TILL, curve};
+    use crate::{DispersiveLack, PairOptions, PairRules, RuleNote, RuleRole};
+    use specification::{StepName, StepNote};
+    use voidwalk_core::gradation::{GAP_PERCENT, Gradation};
+
+    fn specified_with(points: &[(f64, f64)], options: SpecificationOptions) -> Specification {
+        Specification::of("base", &[("base".into(), curve(points))], options)
+    }
+
+    fn specified(points: &[(f64, f64)]) -> Specification {
+        specified_with(points, SpecificationOptions::default())
+    }
+
+    const DISPERSIVE: SpecificationOptions =
+        SpecificationOptions { dispersive: Some(true), sieves: SieveSeries::Us, finer: false };
+    const CORE: [(f64, f64); 3] = [(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)];
+    const CLAY: [(f64, f64); 5] = [(0.001, 0.0), (0.02, 60.0), (0.05, 85.0), (0.075, 90.0), (0.3, 100.0)];
+    const SAND: [(f64, f64); 4] = [(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)];
+
+    fn near(value: Option<f64>, wanted: f64) -> bool {
+        value.is_some_and(|value| (value / wanted - 1.0).abs() < 1e-9)
+    }
+
+    fn value(specified: &Specification, name: &str) -> Option<f64> {
+        let all = specified.steps.iter().flat_map(|step| &step.values);
+        all.filter(|value| value.name == name).find_map(|value| value.value)
+    }
+
+    /// A core of category 2: 0.7 mm and the least of 0.1 mm, whose ratio of 7 is narrowed to 5.
+    #[test]
+    fn a_core_with_60_percent_of_fines_by_hand() {
+        let core = specified(&CORE);
+        assert_eq!(core.curves[0].category, Some(2));
+        assert!(near(core.d15f_max_mm, 0.7) && near(core.d15f_min_mm, 0.1));
+        assert!(near(value(&core, "minimum D15F of the band"), 0.14));
+        assert!(near(value(&core, "maximum D10F"), 0.7 / 1.2));
+        assert!(near(value(&core, "maximum D60F"), 3.5) && near(value(&core, "minimum D60F"), 0.7));
+        assert!(near(value(&core, "minimum D10F"), 0.14 / 1.2));
+        let sizes = &core.band.as_ref().unwrap().sizes;
+        assert_eq!(sizes.iter().map(|size| size.percent).collect::<Vec<_>>(), [5.0, 15.0, 60.0]);
+        assert_eq!(core.steps.iter().map(|step| step.step).collect::<Vec<_>>(), (1..=12).collect::<Vec<_>>());
+        assert!(core.no_band.is_none() && core.nearest_product().is_none());
+        assert!(core.products[0].fits() == Some(true) && core.products[1].fits() == Some(false));
+    }
+
+    /// Categories 1, 3 and 4, and a dispersive clay.
+    #[test]
+    fn the_limits_of_the_other_categories_by_hand() {
+        assert!(near(specified(&CLAY).d15f_max_mm, 9.0 * 0.05));
+        let dispersive = specified_with(&CLAY, DISPERSIVE);
+        assert!(near(dispersive.d15f_max_mm, 6.4 * 0.05) && dispersive.dispersive);
+        let silty = specified(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)]);
+        assert!(near(silty.d15f_max_mm, (40.0 - 25.0) / 25.0 * (4.0 - 0.7) + 0.7));
+        let sand = specified(&SAND);
+        assert!(near(sand.d15f_max_mm, 2.0) && near(sand.d15f_min_mm, 1.0));
+        // The ratio of 2 needs no narrowing.
+        assert!(near(value(&sand, "minimum D15F of the band"), 1.0) && sand.steps[6].notes.is_empty());
+    }
+
+    /// The till of the first trial: D85B 1.53 mm on No. 4, 38 % of fines.
+    #[test]
+    fn a_till_is_regraded_and_its_limit_is_that_of_design() {
+        let till = specified(&TILL);
+        let fines: f64 = 35.0 / 0.92;
+        assert!(near(value(&till, "fines A, finer than 0.075 mm"), fines));
+        assert_eq!(value(&till, "regraded on"), Some(4.75));
+        let d85b = till.curves[0].d85_mm.unwrap();
+        let design = (40.0 - fines) / 25.0 * (4.0 * d85b - 0.7) + 0.7;
+        assert!(near(till.d15f_max_mm, design) && near(value(&till, "maximum D15F by practice"), design));
+        // D15B is finer than the finest sieve: the limit is at most five times the sieve.
+        assert!(near(till.d15f_min_mm, 5.0 * 0.075));
+    }
+
+    /// If the fine side is flatter than the factor says, its own D10 counts.
+    #[test]
+    fn the_least_d10f_is_that_of_the_fine_side_where_that_is_finer() {
+        // D15F of 1 to 2 mm: D5 of the fine side is a fifth of 2 x 5^(-10/45).
+        let sand = specified(&SAND);
+        let d10 = (2.0 * 5f64.powf(-10.0 / 45.0) / 5.0).sqrt();
+        assert!(d10 < 1.0 / 1.2 && near(value(&sand, "minimum D10F"), d10), "{d10}");
+        let sources = [7, 9, 10].map(|at| sand.steps[at].source.as_str());
+        assert!(sources.iter().all(|source| source.contains("this program")), "{sources:?}");
+    }
+
+    #[test]
+    fn the_step_of_gravel_and_gap_answers_both() {
+        let flattest = |points: &[(f64, f64)]| match specified(points).steps[1].notes[..] {
+            [StepNote::Gravel { curve: None, flattest: Some(flattest), .. }] => flattest,
+            ref notes => panic!("{notes:?}"),
+        };
+        let [from, within] = flattest(&[(0.08, 0.0), (0.3, 40.0), (2.4, 41.0), (4.0, 100.0)]);
+        assert!(near(Some(from), 0.3) && within < GAP_PERCENT, "{within}");
+        // 12 % over a factor of 8.33.
+        let [from, within] = flattest(&[(0.08, 10.0), (0.6, 59.0), (5.0, 71.0), (20.0, 100.0)]);
+        assert!(
+            near(Some(from), 0.6) && near(Some(within), 12.0 * 4f64.ln() / (5.0f64 / 0.6).ln()),
+            "{within}"
+        );
+        // 5 % is cited under our name alone.
+        let source = specified(&[(0.1, 0.0), (0.5, 100.0)]).steps[1].source.clone();
+        assert!(source.ends_with("The check for a gap is this program's own"), "{source}");
+    }
+
+    /// The base of a sheet that is signed: unstable, broad, and flat between 0.6 and 5 mm.
+    #[test]
+    fn what_is_wrong_with_the_base_itself_is_among_the_notes() {
+        let notes = |specified: &Specification| {
+            specified.notes.iter().map(|row| row.note.clone()).collect::<Vec<_>>()
+        };
+        let points = [(0.002, 5.0), (0.075, 29.0), (0.6, 59.0), (5.0, 71.0), (20.0, 100.0)];
+        let broad = notes(&specified(&points));
+        // Regraded on 0.6 mm: 49.2 % of fines, and so 0.7 mm, as on No. 4: no other limit is noted.
+        let [Note::UnstableBase { index, .. }, Note::BroadBase { .. }, Note::FlatBase { .. }] = broad[..]
+        else {
+            panic!("{broad:?}")
+        };
+        assert!(index < 1.0, "{index}");
+        let gap = notes(&specified(&[(0.08, 0.0), (0.3, 40.0), (2.4, 41.0), (4.0, 100.0)]));
+        assert!(gap.iter().any(|note| matches!(note, Note::GapOfBase { .. })), "{gap:?}");
+        assert_eq!(notes(&specified(&[(0.1, 0.0), (0.5, 100.0)])), []);
+        // With several curves each note names its own.
+        let sand = curve(&[(0.1, 0.0), (0.5, 100.0)]);
+        let both = [("sand".to_owned(), sand), ("till".to_owned(), curve(&points))];
+        let both = Specification::of("site", &both, SpecificationOptions::default());
+        let rows: Vec<_> = both.notes.iter().map(|row| row.row.as_deref()).collect();
+        assert_eq!(rows, [Some("till"), Some("till"), Some("till"), None]);
+        // The note of the band covers all curves: 0.636 to 0.700 mm, with a fine side that runs far out to
+        // its D5.
+        assert!(matches!(notes(&both)[3], Note::UnstableSide { .. }), "{:?}", both.notes);
+    }
+
+    #[test]
+    fn of_several_curves_the_strictest_limit_of_each_counts() {
+        let curves: Vec<NamedCurve> = vec![
+            ("fine".into(), curve(&[(0.1, 0.0), (0.15, 15.0), (0.4, 85.0), (1.0, 100.0)])),
+            ("coarse".into(), curve(&[(0.1, 0.0), (0.2, 15.0), (0.8, 85.0), (2.0, 100.0)])),
+        ];
+        let both = Specification::of("site", &curves, SpecificationOptions::default());
+        assert!(near(both.d15f_max_mm, 1.6) && near(both.d15f_min_mm, 1.0));
+        let limits: Vec<_> = both.curves.iter().map(|curve| curve.d15f_max_mm.unwrap()).collect();
+        assert!((limits[1] / limits[0] - 2.0).abs() < 1e-9, "{limits:?}");
+        let [StepNote::SetBy { rule: Some(rule), curve }] = &both.steps[4].notes[..] else {
+            panic!("{:?}", both.steps[4])
+        };
+        assert_eq!((Some(rule.as_str()), curve.as_deref()), (both.set_by(), Some("fine")));
+        assert_eq!(both.steps[5].notes[0], StepNote::SetBy { rule: None, curve: Some("coarse".into()) });
+        assert!(value(&both, "D15B of coarse").is_some());
+    }
+
+    #[test]
+    fn without_a_known_limit_or_room_between_both_there_is_no_band_and_it_is_said_why() {
+        // 20 % finer than 0.2 mm: fines, and so the category, are not known.
+        let open = specified(&[(0.2, 20.0), (0.5, 85.0), (1.0, 100.0)]);
+        assert!(open.nearest_product().is_none());
+        assert!(open.band.is_none() && open.d15f_max_mm.is_none() && open.limits.is_empty());
+        let needs = vec![RuleNote::NeedsFinesOfBase];
+        assert_eq!(open.no_band, Some(NoBand::LimitNotKnown { curve: "base".into(), needs }));
+        // A sand of one size: 5 D15B is more than 4 D85B.
+        let uniform = specified(&[(0.4, 0.0), (0.5, 100.0)]);
+        let Some(NoBand::NoneDrainsAndRetains { least_mm, most_mm }) = uniform.no_band else {
+            panic!("{uniform:?}")
+        };
+        assert!(uniform.band.is_none() && near(uniform.d15f_min_mm, least_mm) && least_mm > most_mm);
+        // A gravel whose filter would consist of stones.
+        let gravel = specified(&[(5.0, 0.0), (6.0, 15.0), (9.0, 85.0), (12.0, 100.0)]);
+        assert!(matches!(gravel.no_band, Some(NoBand::TooCoarse { most_d60f_mm }) if most_d60f_mm > 75.0));
+    }
+
+    /// A dispersive clay whose limit is 6.4 D85B, 0.103 mm.
+    #[test]
+    fn a_coarse_side_with_too_many_fines_leaves_no_band() {
+        let narrow = specified_with(&[(0.0008, 0.0), (0.0161, 85.0), (0.03, 100.0)], DISPERSIVE);
+        assert!(narrow.band.is_none() && narrow.limits.is_empty());
+        assert_eq!(narrow.no_band, Some(NoBand::TooManyFines));
+    }
+
+    /// A specification keeps every rule of the table: both sides of the band, against every curve of the
+    /// base.
+    #[test]
+    fn both_sides_of_a_band_keep_every_rule_of_retention_drainage_and_placing() {
+        let bases: [&[(f64, f64)]; 5] = [
+            &CLAY,
+            &CORE,
+            &[
+                (0.002, 6.0),
+                (0.02, 20.0),
+                (0.075, 35.0),
+                (0.425, 60.0),
+                (2.0, 82.0),
+                (4.75, 92.0),
+                (19.0, 100.0),
+            ],
+            &SAND,
+            &[(0.1, 0.0), (0.3, 15.0), (1.2, 85.0), (3.0, 100.0)],
+        ];
+        for points in bases {
+            let band = specified(points).band.unwrap();
+            let side = |rows: &[[f64; 2]]| Gradation::of_rows(rows).unwrap();
+            let [fine, coarse] = band.continued();
+            let sides = [("fine".to_owned(), side(&fine)), ("coarse".to_owned(), side(&coarse))];
+            // Slightly finer, so that no rounding breaks the limit itself.
+            let sides = sides.map(|(name, curve)| {
+                let hair = if name == "coarse" { 1.0 - 1e-9 } else { 1.0 + 1e-9 };
+                (name, curve.scaled(hair).unwrap())
+            });
+            let base = [("base".to_owned(), curve(points))];
+            let pair = PairRules::of_envelopes(&base, &sides, PairOptions::default());
+            let (rules, decision) = (&pair.rules, pair.decision());
+            for role in [RuleRole::Retention, RuleRole::Continuation, RuleRole::Drainage, RuleRole::Placing] {
+                assert_eq!(decision.broken(role).next(), None, "{points:?}");
+            }
+            let met = |id: &str| rules.iter().find(|rule| rule.id == id).unwrap().met;
+            for id in ["sherard-dunnigan", "permeability", "filter-uniformity", "filter-band", "filter-fines"]
+            {
+                assert_eq!(met(id), Some(true), "{id}: {points:?}");
+            }
+        }
+    }
+
+    /// Practice has 0.7 mm for a silt, and 0.5 mm if it is dispersive; with 25 % fines no source has a limit.
+    #[test]
+    fn a_base_of_which_nobody_has_said_whether_it_is_dispersive_has_the_limit_of_one_that_is() {
+        let silt = [(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)];
+        let limit = |points: &[(f64, f64)], dispersive| {
+            let options = SpecificationOptions { dispersive, ..SpecificationOptions::default() };
+            specified_with(points, options).if_dispersive
+        };
+        let known = limit(&silt, None).unwrap();
+        assert_eq!((known.d15f_max_mm, known.at_most, known.lacks), (0.5, false, None));
+        let open = limit(&[(0.01, 0.0), (0.075, 25.0), (0.3, 92.0), (0.6, 100.0)], None).unwrap();
+        assert_eq!((open.at_most, open.lacks), (true, Some(DispersiveLack::AnyLimit)));
+        // Few fines, and an explicit answer.
+        assert_eq!(limit(&[(0.01, 0.0), (0.075, 10.0), (0.3, 92.0), (0.6, 100.0)], None), None);
+        assert_eq!([Some(true), Some(false)].map(|dispersive| limit(&silt, dispersive)), [None, None]);
+    }
+
+    /// D15F of at most 6.4 D85B, here 0.064 mm, is less than any filter may have.
+    #[test]
+    fn a_base_that_is_too_fine_has_no_filter() {
+        let specified = specified_with(&[(0.0005, 0.0), (0.01, 85.0), (0.02, 100.0)], DISPERSIVE);
+        let Some(NoBand::NoneDrainsAndRetains { least_mm, most_mm }) = specified.no_band else {
+            panic!("{specified:?}")
+        };
+        assert!(near(Some(least_mm), 0.1) && near(Some(most_mm), 0.064), "{least_mm} {most_mm}");
+    }
+
+    /// The minimum D15F of 0.1 mm stays, and the maximum is lowered from 0.7 to 0.5 mm.
+    #[test]
+    fn a_finer_band_lowers_its_maximum_and_keeps_its_minimum() {
+        let specified =
+            |finer| specified_with(&CORE, SpecificationOptions { finer, ..SpecificationOptions::default() });
+        let [coarser, finer] = [false, true].map(specified);
+        let d15 = |specified: &Specification| specified.band.as_ref().unwrap().d15_mm();
+        let near = |values: [f64; 2], wanted: [f64; 2]| {
+            values.iter().zip(wanted).all(|(value, wanted)| (value / wanted - 1.0).abs() < 1e-9)
+        };
+        assert!(near(d15(&coarser), [0.14, 0.7]) && near(d15(&finer), [0.1, 0.5]));
+        assert_eq!((finer.d15f_min_mm, finer.d15f_max_mm), (coarser.d15f_min_mm, coarser.d15f_max_mm));
+        assert_eq!(finer.steps[6].notes, [StepNote::Lowered]);
+        assert_eq!(coarser.steps[6].notes, [StepNote::Raised]);
+        // The allowed sizes are equal: products do not depend on the place of the band.
+        assert_eq!(finer.products, coarser.products);
+    }
+
+    /// Each rule for the fines of this base, with its numbers: 37.8 % of fines and a D85B of 1.80 mm.
+    #[test]
+    fn the_step_of_retention_has_the_formula_of_the_category_with_its_numbers() {
+        let formula = |points: &[(f64, f64)]| specified(points).steps[4].formula.clone();
+        assert_eq!(
+            formula(&REGRADED_TILL),
+            "Sherard and Dunnigan's limit of design, category 3, A 15 to 40 %: (40 - A)/25 (4 D85B - 0.7) + \
+             0.7 mm = (40 - 37.84)/25 (4 x 1.80 - 0.7) + 0.7 mm"
+        );
+        assert!(specified(&REGRADED_TILL).steps[4].source.starts_with("Sherard & Dunnigan (1989)"));
+        assert!(
+            formula(&CLAY).starts_with(
+                "Sherard and Dunnigan's limit of design, category 1, A > 85 %: 9 D85B, not less than 0.2 mm \
+                 = 9 x 0.0500, not less than 0.2 mm"
+            ),
+            "{}",
+            formula(&CLAY)
+        );
+        let sand = formula(&SAND);
+        assert_eq!(
+            sand,
+            "Sherard and Dunnigan's limit of design, category 4, A < 15 %: 4 D85B = 4 x 0.500 mm"
+        );
+        let dispersive = |points: &[(f64, f64)]| specified_with(points, DISPERSIVE).steps[4].formula.clone();
+        assert!(
+            dispersive(&CLAY).contains("category 1, A > 85 %, dispersive: 6.4 D85B"),
+            "{}",
+            dispersive(&CLAY)
+        );
+        // No text gives a limit for a dispersive soil of category 3.
+        let silty = dispersive(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)]);
+        assert!(
+            silty.contains(
+                "A 15 to 40 %, dispersive: at most (40 - A)/25 (4 D85B - 0.7) + 0.7 mm = (40 - 25)/25"
+            ) && silty.contains(" mm (no text gives a limit for dispersive soils with such fines)"),
+            "{silty}"
+        );
+        // Unknown fines leave the formula whole.
+        let open = formula(&[(0.2, 20.0), (0.5, 85.0), (1.0, 100.0)]);
+        assert!(open.contains("limit of design: A > 85 %: 9 D85B, "), "{open}");
+    }
+
+    /// Straight sides of a Cu of 6: D'15/d'85 is 6^(15/50), and 4 D is 38.7 % further up.
+    #[test]
+    fn both_sides_of_the_band_are_checked_for_internal_stability() {
+        let core = specified(&CORE);
+        let last = core.steps.last().unwrap();
+        assert_eq!(last.does, StepName::CheckStability);
+        let of_coarse = |name: &str| value(&core, &format!("{name} of the coarse side"));
+        // Percent over ln size: 45 % for a factor of 5.
+        let slope = 45.0 / 5f64.ln();
+        assert!(near(of_coarse("greatest D'15/d'85"), (15.0 / slope).exp()));
+        assert!(near(of_coarse("least H/F"), slope * 4f64.ln() / 20.0));
+        let stable = |side: &str, not_kept: &[&str]| StepNote::Stability {
+            side: side.into(),
+            is_known: true,
+            not_kept: not_kept.iter().map(|name| (*name).into()).collect(),
+        };
+        assert_eq!(last.notes, [stable("fine", &[]), stable("coarse", &[])]);
+        assert!(last.source.contains("Internal Instability") && core.notes.is_empty(), "{last:?}");
+        // 0.705 mm retain barely more than the 0.7 mm that drain: the fine side runs far out to its D5.
+        let narrow = specified(&[(0.1, 0.0), (0.14, 15.0), (0.17625, 85.0), (0.3, 100.0)]);
+        let [RowNote { row: None, note: Note::UnstableSide { side, authorities } }] = &narrow.notes[..]
+        else {
+            panic!("{:?}", narrow.notes)
+        };
+        assert_eq!((side.as_str(), &authorities[..]), ("fine", &["Kenney and Lau".to_owned()][..]));
+        assert_eq!(narrow.steps.last().unwrap().notes[0], stable("fine", &["Kenney and Lau"]));
+    }
+
+    /// A side that loses its finer part still keeps the limit: D60F of the fine side is no more than the
+    /// maximum D15F, and the coarse side is straight, which is stable.
+    #[test]
+    fn no_side_of_a_band_is_too_coarse_without_its_finer_part() {
+        let is_of_side = |row: &&RowNote| matches!(row.note, Note::UnstableSide { .. });
+        let mut unstable = 0;
+        for scale in [0.8, 1.0, 4.0] {
+            // A limit of four D85B, from less than the draining size to much more.
+            for retains in [0.65, 0.7005, 0.705, 0.72, 0.8, 1.0, 2.0] {
+                let sand = [(0.1, 0.0), (0.14, 15.0), (retains / 4.0, 85.0), (1.0, 100.0)];
+                let points = sand.map(|(size, percent)| (scale * size, percent));
+                let (sand, filter) = (curve(&points), specified(&points));
+                unstable += filter.notes.iter().filter(is_of_side).count();
+                for side in filter.band.iter().flat_map(SizeBand::continued) {
+                    let side = Gradation::of_rows(&side).unwrap();
+                    let side = side.scaled(1.0 - 1e-9).unwrap();
+                    let washout = PairRules::of(&sand, &side).decision().washout.map(|washout| washout.left);
+                    assert_eq!(washout, None, "{retains}");
+                }
+            }
+        }
+        assert!(unstable > 0);
+    }
+}

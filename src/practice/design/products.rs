@@ -40,7 +40,7 @@ pub enum NotKept {
 pub const LEAST_CU: f64 = 2.0;
 
 /// A product with the limits of its standard.
-pub struct Product {
+pub(super) struct Product {
     /// Name of the product.
     pub name: &'static str,
     /// Sieve (mm), least and greatest percent finer; rising.
@@ -50,7 +50,7 @@ pub struct Product {
 }
 
 /// Products sold by name.
-pub const PRODUCTS: [Product; 5] = [
+pub(super) const PRODUCTS: [Product; 5] = [
     Product {
         name: "ASTM C33 fine aggregate",
         limits: &[
@@ -114,12 +114,10 @@ pub const PRODUCTS: [Product; 5] = [
     },
 ];
 
-/// Ending of the source of a product whose limits were read in no text of a named body.
-const TO_BE_CHECKED: &str = "limits to be checked against the standard";
-
-/// True if the source of a product says that its limits are to be checked against the standard.
+/// True if the source of a product says that its limits are to be checked against the standard: they were
+/// read in no text of a named body.
 pub fn is_to_be_checked(source: &str) -> bool {
-    source.ends_with(TO_BE_CHECKED)
+    source.ends_with("limits to be checked against the standard")
 }
 
 /// The size (mm) at which a side has this percent finer, straight in percent over log size; the end of the
@@ -133,22 +131,23 @@ pub(super) fn size_at(side: &[[f64; 2]], percent: f64) -> f64 {
 }
 
 impl Product {
-    /// D15 (mm) of the fine and of the coarse side.
-    pub fn d15_mm(&self) -> [f64; 2] {
+    /// The fine and the coarse side: size (mm) and percent finer.
+    fn sides(&self) -> [Vec<[f64; 2]>; 2] {
         let side = |percent: fn(&(f64, f64, f64)) -> f64| {
-            let points: Vec<[f64; 2]> = self.limits.iter().map(|row| [row.0, percent(row)]).collect();
-            size_at(&points, 15.0)
+            self.limits.iter().map(|row| [row.0, percent(row)]).collect()
         };
         [side(|row| row.2), side(|row| row.1)]
+    }
+
+    /// D15 (mm) of the fine and of the coarse side.
+    pub fn d15_mm(&self) -> [f64; 2] {
+        self.sides().map(|side| size_at(&side, 15.0))
     }
 
     /// Requirements of a band, D15F apart, that the two sides do not keep; a delivery may lie anywhere
     /// between them.
     pub fn not_kept(&self) -> Vec<NotKept> {
-        let sides: [Vec<[f64; 2]>; 2] = [
-            self.limits.iter().map(|row| [row.0, row.2]).collect(),
-            self.limits.iter().map(|row| [row.0, row.1]).collect(),
-        ];
+        let sides = self.sides();
         let mut not_kept = Vec::new();
         let of_sides: [fn(f64) -> NotKept; 2] =
             [|cu| NotKept::CuOfFineSide { cu }, |cu| NotKept::CuOfCoarseSide { cu }];
@@ -194,7 +193,7 @@ mod tests {
             let is_signed = ["Colorado DOT, table", "Iowa DOT, Matls. IM"]
                 .iter()
                 .any(|body| product.source.starts_with(body));
-            assert!(is_signed || product.source.ends_with(TO_BE_CHECKED), "{}", product.name);
+            assert!(is_signed || is_to_be_checked(product.source), "{}", product.name);
         }
         let checked = PRODUCTS.iter().filter(|product| is_to_be_checked(product.source));
         let names: Vec<&str> = checked.map(|product| product.name).collect();

@@ -1,11 +1,12 @@
 //! The band of a filter as sizes: its two sides, and its limits sieve by sieve.
 
-use serde::{Deserialize, Serialize};
-
 use super::products::size_at;
-use super::sieves::SieveSeries;
 use crate::rules::{GREATEST_SIZE_MM, MOST_FINES_PERCENT, WIDEST_BAND};
-use voidwalk_core::gradation::FINES_MM;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+use voidwalk_core::gradation::{FINES_MM, Gradation, ShapeIndex, SoilSplit};
+use voidwalk_sheets::us_sieve;
 
 /// The two sides of a band as sizes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -56,7 +57,7 @@ pub const D15_OVER_D10: f64 = 1.2;
 impl SizeBand {
     /// The minimum D10F (mm), which sets the maximum D90F.
     pub fn least_d10_mm(&self) -> f64 {
-        (self.d15_mm()[0] / D15_OVER_D10).min(self.least_size(10.0))
+        (self.d15_mm()[0] / D15_OVER_D10).min(size_at(&self.fine_side, 10.0))
     }
 
     /// Band from the control points of its sides: least and maximum D15 and D60 (mm).
@@ -104,19 +105,13 @@ impl SizeBand {
         foot.into_iter().chain(self.fine_side.iter().copied()).collect()
     }
 
-    /// The size (mm) at which the fine side has this percent finer; the end of the side if it does not reach
-    /// the percent.
-    pub fn least_size(&self, percent: f64) -> f64 {
-        size_at(&self.fine_side, percent)
-    }
-
     /// D15 (mm) of the fine and of the coarse side.
     pub fn d15_mm(&self) -> [f64; 2] {
         [&self.fine_side, &self.coarse_side].map(|side| size_at(side, 15.0))
     }
 
     /// Least and greatest percent finer than an opening (mm); `None` above the D60 of the side.
-    pub fn percent_finer(&self, opening_mm: f64) -> [Option<f64>; 2] {
+    fn percent_finer(&self, opening_mm: f64) -> [Option<f64>; 2] {
         [&self.coarse_side, &self.fine_side].map(|side| {
             let is_drawn = side.last().is_some_and(|top| opening_mm <= top[0]);
             is_drawn.then(|| percent_at(side, opening_mm))
@@ -162,6 +157,103 @@ fn percent_at(side: &[[f64; 2]], size: f64) -> f64 {
             let ([low, a], [high, b]) = (side[last], side[below]);
             a + (b - a) * libm::log(size / low) / libm::log(high / low)
         }
+    }
+}
+
+/// A series of sieves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum SieveSeries {
+    /// Sieves of the United States (ASTM E11), by inches and numbers.
+    #[default]
+    Us,
+    /// Sieves in millimetres, each half of the one before; above them 75 mm, beyond which no side goes, and
+    /// below them 0.075 mm, at which fines are limited.
+    Iso,
+}
+
+const US: [f64; 14] = [75.0, 50.0, 37.5, 25.0, 19.0, 12.5, 9.5, 4.75, 2.36, 1.18, 0.6, 0.3, 0.15, FINES_MM];
+
+const ISO: [f64; 12] = [75.0, 63.0, 31.5, 16.0, 8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125, FINES_MM];
+
+impl SieveSeries {
+    /// Openings of the sieves (mm), the coarsest first.
+    pub fn openings(self) -> &'static [f64] {
+        match self {
+            Self::Us => &US,
+            Self::Iso => &ISO,
+        }
+    }
+
+    /// Name of the sieve with this opening (mm).
+    pub fn name(self, opening_mm: f64) -> String {
+        let in_mm = || format!("{opening_mm} mm");
+        match self {
+            Self::Us => us_sieve(opening_mm).unwrap_or_else(in_mm),
+            Self::Iso => in_mm(),
+        }
+    }
+}
+
+impl FromStr for SieveSeries {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.trim().to_lowercase().as_str() {
+            "us" => Ok(Self::Us),
+            "iso" => Ok(Self::Iso),
+            _ => Err("allowed: us (ASTM E11, by inches and numbers) or iso (mm)".into()),
+        }
+    }
+}
+
+impl fmt::Display for SieveSeries {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Us => "us",
+            Self::Iso => "iso",
+        })
+    }
+}
+
+/// The greatest D'15/d'85 of a stable soil by Kezdi.
+pub(super) const MOST_KEZDI: f64 = 4.0;
+
+/// The least H/F of a stable soil by Kenney and Lau.
+pub(super) const LEAST_SHAPE: f64 = 1.0;
+
+/// A side of a band as a soil.
+pub(super) struct Side {
+    /// `fine` or `coarse`.
+    pub name: &'static str,
+    pub kezdi: Option<SoilSplit>,
+    pub kenney_lau: Option<ShapeIndex>,
+}
+
+impl Side {
+    /// Both sides; an index is `None` for a side of one size. The line drawn below D5 of the fine side is a
+    /// limit of fines, and no part of a gradation.
+    pub fn both(band: &SizeBand) -> [Self; 2] {
+        let [fine, coarse] = band.continued();
+        [("fine", fine), ("coarse", coarse)].map(|(name, points)| {
+            let soil = Gradation::of_rows(&points).ok();
+            let kezdi = soil.as_ref().and_then(Gradation::kezdi);
+            Self { name, kezdi, kenney_lau: soil.as_ref().and_then(Gradation::kenney_lau) }
+        })
+    }
+
+    /// Authors of the rules that the side does not keep.
+    pub fn authorities(&self) -> Vec<String> {
+        let kezdi = self.kezdi.filter(|index| index.value > MOST_KEZDI).map(|_| "Kézdi".to_owned());
+        let shape =
+            self.kenney_lau.filter(|index| index.value < LEAST_SHAPE).map(|_| "Kenney and Lau".to_owned());
+        kezdi.into_iter().chain(shape).collect()
+    }
+
+    /// True if both indices are known.
+    pub fn is_known(&self) -> bool {
+        self.kezdi.is_some() && self.kenney_lau.is_some()
     }
 }
 
@@ -279,5 +371,21 @@ mod tests {
             }
             assert!(band.sizes.iter().all(|size| size.min_mm <= size.max_mm), "{:?}", band.sizes);
         }
+    }
+
+    #[test]
+    fn sieves_fall_and_end_where_fines_are_limited() {
+        for series in [SieveSeries::Us, SieveSeries::Iso] {
+            let openings = series.openings();
+            assert!(openings.windows(2).all(|pair| pair[0] > pair[1]), "{series}");
+            assert_eq!(*openings.last().unwrap(), voidwalk_core::gradation::FINES_MM);
+            assert_eq!(series.to_string().parse::<SieveSeries>(), Ok(series));
+        }
+        let names =
+            |series: SieveSeries| series.openings().iter().map(|mm| series.name(*mm)).collect::<Vec<_>>();
+        assert_eq!(names(SieveSeries::Us)[..3], ["3 in", "2 in", "1 1/2 in"]);
+        assert!(names(SieveSeries::Us).iter().all(|name| !name.ends_with("mm")));
+        assert_eq!(names(SieveSeries::Iso)[10..], ["0.125 mm", "0.075 mm"]);
+        assert!("bs".parse::<SieveSeries>().unwrap_err().contains("allowed: us"));
     }
 }

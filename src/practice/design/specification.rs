@@ -3,11 +3,11 @@
 //!
 //! `verdict` makes it from the rules of practice, with its words.
 
+use super::products::{NotKept, PRODUCTS, Product};
+use super::size_band::SieveSeries;
+use crate::Note;
 use serde::{Deserialize, Serialize};
 
-use super::products::{NotKept, PRODUCTS, Product};
-use super::row_note::RowNote;
-use super::sieves::SieveSeries;
 pub use super::size_band::{BandSize, SieveLimit, SizeBand};
 use crate::{IfDispersive, InputFile, RuleNote, SheetCover};
 use voidwalk_core::gradation::RegradeReason;
@@ -103,7 +103,7 @@ pub struct SpecifiedCurve {
 }
 
 /// A step of the procedure.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct SpecificationStep {
     /// Its number, from 1.
@@ -122,11 +122,12 @@ pub struct SpecificationStep {
 }
 
 /// A step of the procedure by its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum StepName {
     /// Plot the gradation of the base.
+    #[default]
     Plot,
     /// Find gravel and gaps of the base.
     FindGravel,
@@ -354,6 +355,18 @@ pub fn margins((d15f_min, certain): (Option<f64>, f64), d15f_max: Option<f64>) -
         }
     };
     PRODUCTS.iter().map(one).collect()
+}
+
+/// A note on a row of boundaries, or on a curve of the base for which a filter is specified.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
+pub struct RowNote {
+    /// The row or the curve that it is of, in words; `None` where it is of all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub row: Option<String>,
+    /// The note.
+    #[serde(flatten)]
+    pub note: Note,
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! The table of rules.
 
 use super::rule::{FilterRule, Pairing};
-use super::{drainage, exit, retention, stability, walk};
-use crate::applied::{RuleQuantity, RuleRole, RuleUnit};
+use super::{drainage, retention, stability};
+use crate::{RuleQuantity, RuleRole, RuleUnit};
+use voidwalk_core::gradation::Gradation;
 
 /// The rule by which new filters are specified.
 pub const DESIGN: &str = "sherard-dunnigan";
@@ -27,12 +28,6 @@ pub const FILTER_GREATEST_SIZE: &str = "filter-greatest-size";
 
 /// The minimum D15F that an older manual asks for.
 pub const PERMEABILITY_LEAST: &str = "permeability-em-1901";
-
-/// The paper's own boundary of no erosion.
-pub const PAPER_NO_EROSION: &str = "paper-no-erosion";
-
-/// Id of the paper's boundary of continuing erosion.
-pub const PAPER_CONTINUING: &str = "paper-continuing";
 
 /// Id of Terzaghi's ratio.
 pub const TERZAGHI: &str = "terzaghi";
@@ -146,7 +141,7 @@ pub const RULES: &[FilterRule] = &[
         source: "U.S. Army Corps of Engineers, Filter Evaluation manual (RMC-CPD-2023-04), chapter \
                  Constricted Exit, after Fell and Foster",
         pairing: Pairing::EachPair,
-        judge: exit::constricted,
+        judge: retention::constricted,
     },
     FilterRule {
         id: PERMEABILITY,
@@ -162,7 +157,7 @@ pub const RULES: &[FilterRule] = &[
         source: "U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Permeability, which cites \
                  USBR (2011) and NRCS (2017)",
         pairing: Pairing::EachPair,
-        judge: drainage::permeability,
+        judge: |inputs| drainage::permeability(inputs, 5.0),
     },
     FilterRule {
         id: PERMEABILITY_LEAST,
@@ -178,7 +173,7 @@ pub const RULES: &[FilterRule] = &[
         source: "U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Permeability, which cites \
                  EM 1110-2-1901 (2005)",
         pairing: Pairing::EachPair,
-        judge: drainage::least_permeability,
+        judge: |inputs| drainage::permeability(inputs, 3.0),
     },
     FilterRule {
         id: FILTER_FINES,
@@ -268,7 +263,7 @@ pub const RULES: &[FilterRule] = &[
         unit: RuleUnit::One,
         source: INTERNAL_STABILITY,
         pairing: Pairing::EachFilter,
-        judge: stability::kenney_lau,
+        judge: |inputs| stability::shape(inputs, Gradation::kenney_lau),
     },
     FilterRule {
         id: LI_FANNIN,
@@ -283,7 +278,7 @@ pub const RULES: &[FilterRule] = &[
         unit: RuleUnit::One,
         source: INTERNAL_STABILITY,
         pairing: Pairing::EachFilter,
-        judge: stability::li_fannin,
+        judge: |inputs| stability::shape(inputs, Gradation::li_fannin),
     },
     FilterRule {
         id: "burenkova",
@@ -331,10 +326,10 @@ pub const RULES: &[FilterRule] = &[
         unit: RuleUnit::One,
         source: "Kenney et al., as stated by Shire & O'Sullivan, section 2",
         pairing: Pairing::EachPair,
-        judge: walk::largest_passing,
+        judge: retention::largest_passing,
     },
     FilterRule {
-        id: PAPER_NO_EROSION,
+        id: "paper-no-erosion",
         authority: "",
         stated_by: &[],
         says: "Network model of the paper: no erosion rather than some",
@@ -346,10 +341,10 @@ pub const RULES: &[FilterRule] = &[
         unit: RuleUnit::One,
         source: "Shire & O'Sullivan, section 6, Fig. 14(a)",
         pairing: Pairing::EachPair,
-        judge: walk::paper_no_erosion,
+        judge: |inputs| retention::paper(inputs, 85.0, 5.0),
     },
     FilterRule {
-        id: PAPER_CONTINUING,
+        id: "paper-continuing",
         authority: "",
         stated_by: &[],
         says: "Network model of the paper: some erosion rather than continuing",
@@ -361,6 +356,6 @@ pub const RULES: &[FilterRule] = &[
         unit: RuleUnit::One,
         source: "Shire & O'Sullivan, section 6, Fig. 15",
         pairing: Pairing::EachPair,
-        judge: walk::paper_continuing,
+        judge: |inputs| retention::paper(inputs, 95.0, 4.7),
     },
 ];

@@ -6,12 +6,6 @@ use super::rule::{Judged, RuleInputs};
 use crate::{RuleNote, ValueBound};
 use voidwalk_core::gradation::{FINES_MM, Gradation};
 
-/// Least ratio D15F/D15B, by USBR (2011) and NRCS (2017).
-const TIMES: f64 = 5.0;
-
-/// Least ratio D15F/D15B by EM 1110-2-1901, which asks for 3 to 5.
-const LEAST_TIMES: f64 = 3.0;
-
 /// Minimum D15F for any base (mm).
 pub const LEAST_D15F_MM: f64 = 0.1;
 
@@ -27,17 +21,8 @@ pub const MOST_CU: f64 = 6.0;
 /// Greatest ratio of sizes of the coarse side of a band to the fine side.
 pub const WIDEST_BAND: f64 = 5.0;
 
-/// Checks that the filter is coarse enough to drain the base, as it is before regrading.
-pub fn permeability(inputs: &RuleInputs) -> Judged {
-    coarse_enough(inputs, TIMES)
-}
-
-/// Checks permeability by the manual with the lowest requirement.
-pub fn least_permeability(inputs: &RuleInputs) -> Judged {
-    coarse_enough(inputs, LEAST_TIMES)
-}
-
-fn coarse_enough(inputs: &RuleInputs, times: f64) -> Judged {
+/// Checks that the filter is coarse enough to drain the base, as it is before regrading: so many times D15B.
+pub fn permeability(inputs: &RuleInputs, times: f64) -> Judged {
     let least = if inputs.scale_free { 0.0 } else { LEAST_D15F_MM };
     let (d15f, d15b) = (inputs.d15f(), inputs.base.coarse_d(15.0));
     let of_base = times * d15b.unwrap_or(inputs.base.smallest_mm());

@@ -8,16 +8,12 @@
 //!
 //! [`WIDE_STEP`]: voidwalk_core::gradation::WIDE_STEP
 
-use std::cmp::Ordering;
-
 use super::all::RULES;
-
-use super::base::BaseSoil;
-use super::judging::{judged, margin};
-use super::rule::{FilterRule, Judged, Pairing, RuleInputs};
+use super::rule::{BaseSoil, FilterRule, Judged, Pairing, RuleInputs, judged, margin};
 use super::stability::MOST_HIDDEN_PERCENT;
 use crate::RuleNote;
 use crate::applied::RuleRole;
+use std::cmp::Ordering;
 use voidwalk_core::gradation::{End, Gradation, Step};
 
 /// Most steps of a curve that are spread one by one: the widest. The others all go to one end.

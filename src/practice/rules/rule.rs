@@ -1,8 +1,9 @@
-//! A rule and its inputs.
+//! A rule, its inputs and its result, and the base as practice describes it.
 
-use super::base::BaseSoil;
-use crate::{RuleNote, RuleQuantity, RuleRole, RuleUnit, ValueBound, WithoutFiner};
-use voidwalk_core::gradation::Gradation;
+use crate::{Note, RuleNote, RuleQuantity, RuleRole, RuleUnit, ValueBound, WithoutFiner};
+use voidwalk_core::gradation::{
+    BROAD_CU, FEW_FINES, FINES_MM, Gradation, RegradeCause, RegradeReason, Regraded, TIE,
+};
 
 /// A rule of practice, an entry of the table [`super::RULES`].
 pub struct FilterRule {
@@ -29,10 +30,8 @@ pub struct FilterRule {
     pub unit: RuleUnit,
     /// Source of the rule.
     pub source: &'static str,
-    /// Curves that the rule reads if a soil has several.
-    pub pairing: Pairing,
-    /// Function that judges the rule.
-    pub judge: fn(&RuleInputs) -> Judged,
+    pub(super) pairing: Pairing,
+    pub(super) judge: fn(&RuleInputs) -> Judged,
 }
 
 impl FilterRule {
@@ -46,8 +45,8 @@ impl FilterRule {
 }
 
 /// Curves that a rule reads if a soil is an envelope of several.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Pairing {
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Pairing {
     /// Every curve of the filter with every curve of the base; the worst pair counts.
     EachPair,
     /// Every curve of the filter; the worst of them counts.
@@ -57,15 +56,13 @@ pub enum Pairing {
 }
 
 /// Result of a rule for two soils.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Judged {
+#[derive(Clone, Default)]
+pub(super) struct Judged {
     /// True if the rule was made for these soils.
     pub applies: bool,
-    /// Value for these soils.
     pub value: Option<f64>,
     /// Side on which the true value lies, if the value is a bound.
     pub value_bound: Option<ValueBound>,
-    /// Limit for these soils.
     pub limit: Option<f64>,
     /// True if the true limit is not known, and is at most `limit`.
     pub limit_at_most: bool,
@@ -73,7 +70,6 @@ pub struct Judged {
     pub met: Option<bool>,
     /// Input that is missing for a result.
     pub needs: Option<RuleNote>,
-    /// Notes for a reader.
     pub notes: Vec<RuleNote>,
     /// Remainder of the filter without the greatest part that it may lose by this rule.
     pub without_finer: Option<WithoutFiner>,
@@ -97,7 +93,6 @@ impl Judged {
         Self { value_bound: Some(side), ..self }
     }
 
-    /// Adds a note, if there is one.
     pub fn noted(mut self, note: impl Into<Option<RuleNote>>) -> Self {
         self.notes.extend(note.into());
         self
@@ -172,18 +167,17 @@ impl<'a> RuleInputs<'a> {
     }
 
     /// D15 of the filter for a rule that it may not exceed: the coarse end of a flat curve.
-    pub fn coarse_d15f(&self) -> Option<f64> {
+    pub(super) fn coarse_d15f(&self) -> Option<f64> {
         self.filter.coarse_d(15.0)
     }
 
-    /// D15 of the filter.
-    pub fn d15f(&self) -> Option<f64> {
+    pub(super) fn d15f(&self) -> Option<f64> {
         self.filter.d(15.0)
     }
 
     /// A size of the base after regrading, or the greatest that it can be if it lies in the finest tail or if
     /// the part that practice looks at does.
-    pub fn size_of_base(&self, percent: f64) -> SizeBound {
+    pub(crate) fn size_of_base(&self, percent: f64) -> SizeBound {
         let soil = &self.base_soil;
         match (soil.hidden_below_mm, soil.gradation.d(percent)) {
             (Some(most), _) => SizeBound { most, is_known: false },
@@ -193,7 +187,7 @@ impl<'a> RuleInputs<'a> {
     }
 
     /// Fines of the base; sizes without a unit belong to a sand without fines.
-    pub fn fines(&self) -> Fines {
+    pub(super) fn fines(&self) -> Fines {
         match (self.scale_free, self.base_soil.fines_percent) {
             (true, _) => Fines::Assumed,
             (_, Some(percent)) => Fines::Percent(percent),
@@ -204,17 +198,13 @@ impl<'a> RuleInputs<'a> {
 }
 
 /// A size of a base, or the greatest that it can be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SizeBound {
-    /// The size, or the greatest that it can be.
+pub(crate) struct SizeBound {
     pub most: f64,
-    /// True if the size is known.
     pub is_known: bool,
 }
 
 /// Knowledge of the fines of a base.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Fines {
+pub(super) enum Fines {
     /// Fines (%).
     Percent(f64),
     /// Less than 15 %, the exact percent being unknown.
@@ -223,4 +213,161 @@ pub enum Fines {
     Assumed,
     /// Not known: the finest sieve is too coarse.
     Unknown,
+}
+
+/// Margin by which a rule is kept, the worst first.
+pub(super) fn margin(rule: &FilterRule, judged: &Judged) -> (u8, f64, f64) {
+    // A boundary of erosion that tests did not identify excludes less than one that is not reached.
+    let is_open = judged.applies || judged.needs.is_some() || rule.role == RuleRole::Continuation;
+    let class = match judged.met {
+        Some(false) => 0,
+        None if is_open => 1,
+        Some(true) => 2,
+        None => 3,
+    };
+    let over = match (judged.value, judged.limit) {
+        (Some(value), Some(limit)) if rule.at_least => value / limit,
+        (Some(value), Some(limit)) => limit / value,
+        (Some(value), None) => -value,
+        _ => 0.0,
+    };
+    (class, over, judged.limit.filter(|_| !rule.at_least).unwrap_or(f64::INFINITY))
+}
+
+/// Judges one rule; `None` if nobody asked for it.
+pub(super) fn judged(rule: &FilterRule, inputs: &RuleInputs) -> Option<Judged> {
+    let judged = (rule.judge)(inputs);
+    if judged.is_left_out {
+        return None;
+    }
+    let keeps = |(value, limit): (f64, f64)| match rule.at_least {
+        true => value >= limit * (1.0 - TIE),
+        false => value <= limit * (1.0 + TIE),
+    };
+    let met = judged.met.or_else(|| judged.value.zip(judged.limit).map(keeps));
+    // A limit that can only be less is certainly broken, or certainly kept if it is the least allowed.
+    let met = met.filter(|met| !judged.limit_at_most || *met == rule.at_least || judged.met.is_some());
+    let value_bound = judged.value_bound.filter(|_| judged.value.is_some());
+    // A value that is only a bound decides if the bound itself meets or breaks the limit.
+    let is_surely = |bound: ValueBound| (bound == ValueBound::AtMost) != rule.at_least;
+    let met = met.filter(|met| value_bound.is_none_or(|bound| *met == is_surely(bound)));
+    let met = met.filter(|_| judged.applies);
+    Some(Judged { value_bound, met, ..judged })
+}
+
+/// A base soil as practice describes it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BaseSoil {
+    /// The soil after regrading, or the soil itself without regrading.
+    pub gradation: Gradation,
+    /// Size on which the soil was regraded (mm).
+    pub regraded_at_mm: Option<f64>,
+    /// Reason for regrading or not.
+    pub why: RegradeReason,
+    /// Size (mm) below which practice looks at the soil, if no sieve gives the sizes there: they are at most
+    /// this.
+    pub hidden_below_mm: Option<f64>,
+    /// Percent finer than 0.075 mm after regrading; `None` if the finest sieve is coarser and leaves a tail.
+    pub fines_percent: Option<f64>,
+    /// Category of NRCS after regrading, 1 to 4: more than 85 %, 40 to 85 %, 15 to 40 %, less than 15 %
+    /// fines; `None` if the fines are not known closely enough.
+    pub category: Option<u8>,
+}
+
+impl BaseSoil {
+    /// Describes a base. Sizes that are multiples of D0F have no No. 4 and no No. 200 sieve: such a base
+    /// remains as it is, without a category. Others are regraded by [`Gradation::regraded`].
+    pub fn of(base: &Gradation, scale_free: bool) -> Self {
+        if scale_free {
+            return Self {
+                gradation: base.clone(),
+                regraded_at_mm: None,
+                why: RegradeReason { cause: RegradeCause::NoUnit, nothing_passes: false },
+                hidden_below_mm: None,
+                fines_percent: None,
+                category: None,
+            };
+        }
+        Self::regraded(base.regraded())
+    }
+
+    /// Describes a base regraded like another curve of it, and, for a flat curve, the other reading.
+    pub(super) fn both(base: &Gradation, as_of: &Gradation) -> (Self, Option<Self>) {
+        let otherwise = base.regraded_otherwise(as_of).map(Self::regraded);
+        (Self::regraded(base.regraded_as(as_of)), otherwise)
+    }
+
+    fn regraded(regraded: Regraded) -> Self {
+        let Regraded { gradation, at_mm, why, hidden_below_mm } = regraded;
+        let (at_most, is_known) = match hidden_below_mm {
+            Some(below) => (100.0, below <= FINES_MM),
+            None => (
+                whole(gradation.percent_finer_by_mass(FINES_MM)),
+                gradation.percent_finer_if_known(FINES_MM).is_some(),
+            ),
+        };
+        let fines_percent = is_known.then_some(at_most);
+        let category = match fines_percent {
+            Some(percent) if percent > 85.0 => Some(1),
+            Some(percent) if percent >= 40.0 => Some(2),
+            Some(percent) if percent >= FEW_FINES => Some(3),
+            Some(_) => Some(4),
+            None => (at_most < FEW_FINES).then_some(4),
+        };
+        Self { gradation, regraded_at_mm: at_mm, why, hidden_below_mm, fines_percent, category }
+    }
+}
+
+/// A percent without last digits that depend on how its curve was written.
+fn whole(percent: f64) -> f64 {
+    let whole = percent.round();
+    if (percent - whole).abs() <= 100.0 * TIE { whole } else { percent }
+}
+
+/// Cautions that a base is so broad as sampled that practice looks at its finer part alone. If D10 is finer
+/// than the finest sieve, its Cu is greater than with D10 at that sieve.
+pub fn broad_base(sampled: &Gradation) -> Option<Note> {
+    match sampled.cu() {
+        Some(cu) => (cu >= BROAD_CU).then_some(Note::BroadBase { cu }),
+        None => {
+            let over_cu = sampled.d(60.0)? / sampled.smallest_mm();
+            (over_cu >= BROAD_CU).then_some(Note::BroadBaseAtLeast { over_cu })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn soil(points: &[(f64, f64)]) -> BaseSoil {
+        BaseSoil::of(&Gradation::from_lines(points).unwrap(), false)
+    }
+
+    /// The till of the first trial: 35 % finer than 0.075 mm of the whole, 92 % finer than 4.75 mm.
+    #[test]
+    fn fines_are_those_of_the_regraded_base() {
+        let till = soil(&[(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)]);
+        assert_eq!(till.regraded_at_mm, Some(4.75));
+        assert!((till.fines_percent.unwrap() - 35.0 / 0.92).abs() < 1e-9);
+        assert_eq!(till.category, Some(3));
+        // 12 % of the 80 % that pass No. 4 are 15 %: too many to count as few for certain.
+        let tail = soil(&[(0.3, 12.0), (1.0, 40.0), (4.75, 80.0), (9.5, 100.0)]);
+        assert_eq!((tail.fines_percent, tail.category), (None, None));
+    }
+
+    #[test]
+    fn categories_are_by_fines_after_regrading() {
+        for (fines, category) in [(90.0, 1), (85.0, 2), (40.0, 2), (39.9, 3), (15.0, 3), (14.9, 4)] {
+            let base = soil(&[(0.001, 0.0), (0.075, fines), (0.5, 100.0)]);
+            assert_eq!(base.category, Some(category), "{fines}");
+        }
+        // A table that ends at 0.075 mm gives its fines; one that ends above gives an upper bound.
+        assert_eq!(soil(&[(0.075, 38.0), (0.5, 100.0)]).fines_percent, Some(38.0));
+        let few = soil(&[(0.2, 10.0), (0.5, 100.0)]);
+        assert_eq!((few.fines_percent, few.category), (None, Some(4)));
+        // Gravel alone.
+        let broad = soil(&[(5.0, 0.0), (10.0, 10.0), (30.0, 40.0), (60.0, 60.0), (80.0, 100.0)]);
+        assert_eq!((broad.regraded_at_mm, broad.category), (None, Some(4)));
+    }
 }

@@ -1,7 +1,6 @@
 //! Contents of a run folder, as types: `outcome.json`, `manifest.json` and the rows of the CSV files.
 //!
 //! The writer and the reader of a run folder share these types, so a name is spelt in one place.
-//! Nothing here computes.
 //!
 //! # Conventions
 //! - Sizes are diameters, in mm. When [`Inputs::scale_free`] is set they are multiples of D0F, the smallest
@@ -15,26 +14,25 @@
 
 mod answer;
 mod inputs;
-mod manifest;
-mod rows;
-mod varied;
-mod voids;
 
-use serde::{Deserialize, Serialize};
-use voidwalk_practice::{AppliedRule, Headline, IfDispersive, Note, Practice};
-
-pub use answer::{Model, ShortOf, Statistic, Stopping, Verdict};
+pub use super::left_out::{LeftOut, ModelLimit};
+pub use super::number_rows::{
+    BlockedRow, ConstrictionRow, FlowRow, LayerRow, RetainedRow, SeriesRow, SizeRow, VoidRow,
+};
+pub use answer::{
+    Classed, CurveEnd, CurveRange, Model, OfThickness, Sensitivity, ShortOf, Statistic, Stopping, Verdict,
+};
 pub use inputs::{
-    BaseRecord, ConstrictionsRecord, CurveOrigin, FilterRecord, Inputs, NetworkKind, NetworkRecord,
+    BaseRecord, BaseSize, ConstrictionsRecord, CurveOrigin, FilterRecord, Inputs, NetworkKind, NetworkRecord,
     NetworkSummary, Ratios, SampledBase,
 };
-pub use manifest::{Manifest, commit};
-pub use rows::{FlowRow, LayerRow, SeriesRow, SizeRow};
-pub use varied::{Classed, CurveEnd, CurveRange, OfThickness, Sensitivity};
-pub use voids::{BlockedRow, ConstrictionRow, RetainedRow, VoidRow};
 
-pub use super::left_out::LeftOut;
-pub use super::model_limit::ModelLimit;
+use super::left_out::Modelled;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use voidwalk_core::network::ExitRule;
+use voidwalk_practice::{AppliedRule, Decision, Headline, IfDispersive, InputFile, Note, Practice};
+use xxhash_rust::xxh3::Xxh3;
 
 /// The whole of `outcome.json`.
 ///
@@ -128,6 +126,26 @@ pub struct Outcome {
     pub digest: String,
     /// Wall time of everything, s; in a campaign beside other cases on the same threads.
     pub seconds: f64,
+}
+
+impl Outcome {
+    /// The decision of practice on its pair: without an answer if the record has none.
+    pub fn decision(&self) -> Decision {
+        let mut decision = Decision::new(&self.rules, self.if_dispersive, Some(self.inputs.filter.d15_mm));
+        decision.headline = self.headline.and(decision.headline);
+        decision
+    }
+
+    /// Features that its walk contained.
+    pub fn modelled(&self) -> Modelled {
+        let with_flow =
+            |exit: &str| ExitRule::ALL.iter().any(|rule| rule.name() == exit && rule.needs_flow());
+        Modelled {
+            flow: self.network.as_ref().is_some_and(|network| with_flow(&network.exit)),
+            arches: self.arching.is_some(),
+            openings: self.notes.contains(&Note::Openings {}),
+        }
+    }
 }
 
 /// A law by which particles arch in a constriction that they fit.
@@ -314,4 +332,138 @@ pub struct InfiltrationSize {
     pub layers_99: Option<f64>,
     /// Probability that it passes all layers.
     pub through: f64,
+}
+
+/// The commit from which this program was built, if known.
+pub fn commit() -> Option<String> {
+    option_env!("VOIDWALK_COMMIT").map(String::from)
+}
+
+/// The whole of `manifest.json`: what made the folder.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct Manifest {
+    /// Version of voidwalk.
+    pub version: String,
+    /// Commit it was built from, where known.
+    pub commit: Option<String>,
+    /// The user's seed.
+    pub seed: u64,
+    /// Every file that was read.
+    pub inputs: Vec<InputFile>,
+    /// Worker threads.
+    pub threads: u64,
+    /// Name of the machine.
+    pub host: String,
+    /// Kind of machine: system, processor, memory.
+    pub machine: String,
+    /// When the work began, RFC 3339.
+    pub started: String,
+    /// When it ended, RFC 3339.
+    pub finished: String,
+    /// The command line.
+    pub command: String,
+}
+
+/// The results of [`crate::run::walk_networks`]; the names are those of `outcome.json` where both have them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct NetworkWalkRecord {
+    /// The class that the replicates together support.
+    pub verdict: Verdict,
+    /// What else to know, in the order of every face.
+    pub notes: Vec<Note>,
+    /// The user's seed.
+    pub seed: u64,
+    /// Base particles inserted in each run.
+    pub n_base: u64,
+    /// Those that Eq. (2) gives, where the filter and its grains per void are known.
+    pub n_base_eq2: Option<u64>,
+    /// Filter grains per void, where they are known.
+    pub grains_per_void: Option<f64>,
+    /// Mass of the base over that of the filter, of Eq. (2).
+    pub mass_ratio: f64,
+    /// Equal parts in which they were inserted.
+    pub increments: u64,
+    /// Name of the engine that walked.
+    pub engine: String,
+    /// One per replicate, in order.
+    pub replicates: Vec<Replicate>,
+    /// One per run, in order: statistics over the replicates.
+    pub summary: Vec<RunSummary>,
+    /// Eroded mass fraction that divides the classes: 0.075.
+    pub threshold: f64,
+    /// Parts of the program that this walk did not need.
+    pub left_out: Vec<LeftOut>,
+    /// What the model does not contain.
+    pub model_leaves_out: Vec<ModelLimit>,
+    /// The base.
+    pub base: BaseRecord,
+    /// 15 % of the filter finer by mass (mm), where the filter is known.
+    pub d15f_mm: Option<f64>,
+    /// What was walked through.
+    pub network: GivenNetwork,
+    /// Version of the program.
+    pub version: String,
+}
+
+/// Networks that were given; where there are several, the numbers are those of the first.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct GivenNetwork {
+    /// Networks that the replicates took in turn.
+    pub networks: u64,
+    /// How particles chose among the exits of a void.
+    pub exit: String,
+    /// Voids.
+    pub voids: u64,
+    /// Constrictions, each counted once.
+    pub constrictions: u64,
+    /// Layers of voids.
+    pub layers: u64,
+    /// Rows of (diameter, percent smaller by number) of its open constrictions, diameters ascending (mm).
+    pub diameters: Vec<[f64; 2]>,
+}
+
+/// Fields that are not results.
+const LEFT_OUT: [&str; 2] = ["seconds", "studies_to_come"];
+
+/// Digest of every number, `true`, `false` and `null` of a record: XXH3 of one line `PLACE=VALUE` each, 128
+/// bits in hexadecimal. Fields are sorted by name, so their order in the file does not matter. Text is left
+/// out (names, sentences, classes that follow from the numbers, version), and so are wall times (`seconds`)
+/// and the progress of a run (`studies_to_come`).
+///
+/// ```
+/// use serde_json::json;
+/// use voidwalk_app::outcome::record::digest;
+/// let of_run = digest(&json!({ "eroded": 0.25, "engine": "counts", "seconds": 3.5 }))?;
+/// assert_eq!(of_run, digest(&json!({ "seconds": 7.1, "engine": "particles", "eroded": 0.25 }))?);
+/// assert_ne!(of_run, digest(&json!({ "eroded": 0.5, "engine": "counts", "seconds": 3.5 }))?);
+/// # Ok::<(), serde_json::Error>(())
+/// ```
+///
+/// # Errors
+/// A record that JSON cannot hold.
+pub fn digest(record: &impl Serialize) -> Result<String, serde_json::Error> {
+    let mut hash = Xxh3::new();
+    add(&mut hash, "", &serde_json::to_value(record)?);
+    Ok(format!("{:032x}", hash.digest128()))
+}
+
+fn add(hash: &mut Xxh3, place: &str, value: &Value) {
+    match value {
+        Value::Object(fields) => {
+            let mut results: Vec<_> =
+                fields.iter().filter(|(name, _)| !LEFT_OUT.contains(&name.as_str())).collect();
+            results.sort_by_key(|(name, _)| *name);
+            results.iter().for_each(|(name, value)| add(hash, &format!("{place}.{name}"), value));
+        }
+        Value::Array(items) => {
+            items.iter().enumerate().for_each(|(at, item)| add(hash, &format!("{place}[{at}]"), item));
+        }
+        Value::String(_) => {}
+        Value::Null | Value::Bool(_) | Value::Number(_) => {
+            hash.update(format!("{place}={value}\n").as_bytes());
+        }
+    }
 }

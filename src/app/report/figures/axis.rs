@@ -3,16 +3,13 @@
 /// Spacing of values along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// Even spacing.
     Linear,
-    /// Even spacing in the logarithm.
     Log,
 }
 
 /// A grid line, and the lines of text beside it; without text it is a minor one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
-    /// Value at which it is drawn.
     pub at: f64,
     /// Text beside it, one entry per line.
     pub text: Vec<String>,
@@ -21,22 +18,17 @@ pub struct Tick {
 }
 
 impl Tick {
-    /// A labelled tick.
     pub fn new(at: f64, text: &[&str]) -> Tick {
         Tick { at, text: text.iter().map(|line| (*line).to_owned()).collect(), rank: 0 }
     }
 }
 
-/// One axis of a figure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// Measured quantity, with the unit.
     pub label: String,
-    /// Spacing of values.
     pub scale: Scale,
-    /// Smallest value drawn.
     pub low: f64,
-    /// Largest value drawn.
     pub high: f64,
     /// Grid lines, minor ones included.
     pub ticks: Vec<Tick>,
@@ -107,13 +99,11 @@ impl Axis {
         Axis { label: label.to_owned(), scale: Scale::Log, low, high, ticks, downward: false }
     }
 
-    /// Keeps only these labelled ticks.
     pub fn with_ticks(mut self, ticks: Vec<Tick>) -> Axis {
         self.ticks = ticks;
         self
     }
 
-    /// Makes values grow downward, or to the left.
     pub fn downward(mut self) -> Axis {
         self.downward = true;
         self

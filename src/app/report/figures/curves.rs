@@ -2,9 +2,7 @@
 //! lines that represent a limit and named areas stay: a threshold, and the range in which a verdict holds,
 //! are never hidden.
 
-use super::colour::Colour;
-use super::figure::Figure;
-use super::marks::Mark;
+use super::figure::{Colour, Figure, Mark};
 
 /// Greatest number of curves that the style of a page can hide; a figure with more hides no curve.
 const MOST: usize = 16;
@@ -13,7 +11,12 @@ impl Figure {
     /// Names of the curves that a reader can hide, in the order of their classes `curve-1` ...; empty if
     /// there are fewer than two.
     pub fn curves(&self) -> Vec<String> {
-        let names = names(self);
+        let mut names = Vec::new();
+        for name in self.marks.iter().filter_map(|mark| curve_of(self, mark)) {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
         if (2..=MOST).contains(&names.len()) { names } else { Vec::new() }
     }
 }
@@ -29,24 +32,10 @@ pub(super) fn classes(figure: &Figure) -> Vec<String> {
     figure.marks.iter().map(|mark| class(mark).unwrap_or_default()).collect()
 }
 
-/// The name of every curve, once, in the order of drawing.
-fn names(figure: &Figure) -> Vec<String> {
-    let mut names = Vec::new();
-    for mark in &figure.marks {
-        match curve_of(figure, mark) {
-            Some(name) if !names.contains(&name) => names.push(name),
-            _ => {}
-        }
-    }
-    names
-}
-
-/// The curve to which a mark belongs.
 fn curve_of(figure: &Figure, mark: &Mark) -> Option<String> {
     let (label, colour) = look(mark)?;
-    let alone = |names: Vec<String>| if names.len() == 1 { names.into_iter().next() } else { None };
-    let line = || alone(of_colour(figure, colour, |mark| matches!(mark, Mark::Line(_))));
-    let any = || alone(of_colour(figure, colour, |_| true));
+    let line = || only_name(figure, colour, |mark| matches!(mark, Mark::Line(_)));
+    let any = || only_name(figure, colour, |_| true);
     match (mark, label) {
         // A value that is marked on a line is hidden with it.
         (Mark::Point(_), Some(name)) => line().or(Some(name)),
@@ -56,18 +45,12 @@ fn curve_of(figure: &Figure, mark: &Mark) -> Option<String> {
     }
 }
 
-/// Names that represent a colour, each once.
-fn of_colour(figure: &Figure, colour: Colour, is_meant: impl Fn(&Mark) -> bool) -> Vec<String> {
-    let mut names = Vec::new();
-    for mark in figure.marks.iter().filter(|mark| is_meant(mark)) {
-        if let Some((Some(name), other)) = look(mark)
-            && other == colour
-            && !names.contains(&name)
-        {
-            names.push(name);
-        }
-    }
-    names
+/// The name of a colour, if these marks have one alone.
+fn only_name(figure: &Figure, colour: Colour, is_meant: fn(&Mark) -> bool) -> Option<String> {
+    let looks = figure.marks.iter().filter(|mark| is_meant(mark)).filter_map(look);
+    let mut names = looks.filter(|(_, other)| *other == colour).filter_map(|(name, _)| name);
+    let first = names.next()?;
+    names.all(|name| name == first).then_some(first)
 }
 
 /// Name and colour of a mark that may be hidden.

@@ -1,21 +1,15 @@
 //! Turns a [`Figure`] into SVG: marks, and their names if there is room.
 
-use super::colour::Colour;
 use super::curves;
-use super::figure::{Figure, Naming, Size};
-use super::frame::{Frame, LABEL_TEXT, LINE_HEIGHT, TICK_TEXT, axis_labels, grid, roomy};
-use super::hover;
-use super::marks::{Across, Dash, Line, Mark, Point, Shape};
-use super::path::along;
-use super::place::{Canvas, GAP, Rect};
-use super::sieves;
-use super::svg::{Anchor, FONT, Svg, escape, short, width_of, wrap};
+use super::figure::{Across, Colour, Dash, Figure, Line, Mark, Point, Shape, Size};
+use super::frame::{self, Frame, LABEL_TEXT, LINE_HEIGHT, TICK_TEXT, axis_labels, grid, roomy};
+use super::svg::{Anchor, Canvas, FONT, GAP, Rect, Svg, along, escape, short, simplify, width_of, wrap};
+use voidwalk_practice::quantity::significant;
 
 /// Half the width of a symbol.
 const SYMBOL: f64 = 4.5;
 
 impl Figure {
-    /// Draws the figure as a file of its own.
     pub fn file(&self) -> String {
         let body = draw(self, Size::Wide, "figure", r#" xmlns="http://www.w3.org/2000/svg""#);
         format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{body}")
@@ -33,10 +27,7 @@ fn draw(figure: &Figure, size: Size, id: &str, namespace: &str) -> String {
         Size::Narrow => figure.narrow,
         Size::Sheet => figure.sheet.unwrap_or(figure.wide),
     };
-    let mut above = match figure.naming {
-        Naming::Above => named(figure),
-        Naming::Direct => Vec::new(),
-    };
+    let mut above = if figure.names_above { named(figure) } else { Vec::new() };
     // Marks without room for a name are named above the frame; this moves the frame, so all is drawn again.
     let (body, height) = loop {
         let (body, height, homeless) = body(figure, width, height, id, &above);
@@ -61,7 +52,6 @@ fn draw(figure: &Figure, size: Size, id: &str, namespace: &str) -> String {
     svg.finish()
 }
 
-/// Indices of the marks that have a name.
 fn named(figure: &Figure) -> Vec<usize> {
     (0..figure.marks.len()).filter(|&index| label_of(&figure.marks[index]).is_some()).collect()
 }
@@ -91,13 +81,13 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
     }
     top = key(&mut svg, figure, above, width, top);
     if figure.sieves {
-        top += sieves::HEIGHT;
+        top += frame::HEIGHT;
     }
     let (frame, height) = roomy(figure, width, height, top);
     grid(&mut svg, &frame);
     axis_labels(&mut svg, &frame, height);
     if figure.sieves {
-        sieves::draw(&mut svg, &frame.area, |size| frame.x_at(size));
+        frame::sieves(&mut svg, &frame);
     }
 
     let clip = format!("{}-clip", escape(id));
@@ -105,7 +95,7 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
     svg.raw(&format!("<clipPath id=\"{clip}\">\n"));
     svg.rect(left - 1.0, top - 1.0, right - left + 2.0, bottom - top + 2.0, "");
     svg.raw(&format!("</clipPath>\n<g clip-path=\"url(#{clip})\" stroke-linejoin=\"round\">\n"));
-    let mut canvas = Canvas { frame: inset(&frame.area), ink: Vec::new(), taken: Vec::new() };
+    let mut canvas = Canvas { frame: frame.area.grown(-3.0), ink: Vec::new(), taken: Vec::new() };
     let classes = curves::classes(figure);
     for (index, mark) in figure.marks.iter().enumerate() {
         in_group(&mut svg, &classes[index], |svg| draw_mark(svg, &mut canvas, &frame, mark, index));
@@ -117,12 +107,12 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
     // Narrow figures are for screens without a pointer.
     let is_pointed_at = width == figure.wide.0;
     if is_pointed_at {
-        hover::draw(&mut svg, figure, &classes, &frame.area, |point| frame.at(point));
+        spots(&mut svg, figure, &classes, &frame);
     }
     let mut symbols = Vec::new();
     for (index, mark) in figure.marks.iter().enumerate() {
         if let Mark::Point(point) = mark {
-            let title = is_pointed_at.then(|| hover::title(figure, point.label.as_deref(), point.at));
+            let title = is_pointed_at.then(|| title(figure, point.label.as_deref(), point.at));
             in_group(&mut svg, &classes[index], |svg| {
                 title.iter().for_each(|title| svg.raw(&format!("<g>{title}\n")));
                 symbols.extend(draw_point(svg, &mut canvas, &frame, point, index));
@@ -198,10 +188,6 @@ fn distance(rect: &Rect, point: (f64, f64)) -> f64 {
     let dx = (rect.left - point.0).max(point.0 - rect.right).max(0.0);
     let dy = (rect.top - point.1).max(point.1 - rect.bottom).max(0.0);
     libm::hypot(dx, dy)
-}
-
-fn inset(area: &Rect) -> Rect {
-    Rect { left: area.left + 3.0, top: area.top + 3.0, right: area.right - 3.0, bottom: area.bottom - 3.0 }
 }
 
 /// Draws the names above the frame, in as many rows as they need. Returns the top of the frame.
@@ -289,9 +275,7 @@ fn draw_point(
 ) -> Option<Rect> {
     let (x, y) = frame.at(point.at)?;
     let area = &frame.area;
-    let inside =
-        x >= area.left - 0.5 && x <= area.right + 0.5 && y >= area.top - 0.5 && y <= area.bottom + 0.5;
-    if !inside {
+    if !area.grown(0.5).reaches((x, y)) {
         return None;
     }
     let paint = format!("stroke=\"{}\" stroke-width=\"1.8\"", point.colour.line);
@@ -365,7 +349,7 @@ fn anchors(frame: &Frame<'_>, mark: &Mark) -> Vec<(f64, f64)> {
             [0.62, 0.7, 0.54, 0.78, 0.46, 0.86, 0.38, 0.92, 0.3, 0.22, 0.97, 0.14, 0.06]
                 .into_iter()
                 .filter_map(|share| along(&path, share))
-                .filter(|(x, y)| *x >= left && *x <= right && *y >= top && *y <= bottom)
+                .filter(|point| frame.area.reaches(*point))
                 .collect()
         }
         Mark::Area(area) => {
@@ -381,4 +365,71 @@ fn anchors(frame: &Frame<'_>, mark: &Mark) -> Vec<(f64, f64)> {
 fn reach(frame: &Frame<'_>, outline: &[(f64, f64)]) -> (f64, f64) {
     let seen = frame.seen(&frame.path(outline));
     seen.iter().fold((f64::MAX, f64::MIN), |(least, most), (x, _)| (least.min(*x), most.max(*x)))
+}
+
+/// Spots on a line, at most, and the space between two (pixels).
+const SPOTS: usize = 24;
+const APART: f64 = 14.0;
+
+/// Title that a pointer shows at a point.
+fn title(figure: &Figure, label: Option<&str>, (x, y): (f64, f64)) -> String {
+    let name = label.map_or(String::new(), |label| format!("{}: ", label.replace('\n', " ")));
+    // An axis of rows has no label: its value is a place. The text after a label's first clause describes the
+    // marks along the axis, not a value.
+    let value = |label: &str, value: f64| match label.split([';', '\n']).next().unwrap_or_default() {
+        "" => String::new(),
+        label => format!("{label} {}", significant(value)),
+    };
+    let values = [value(&figure.x.label, x), value(&figure.y.label, y)];
+    let values: Vec<&str> = values.iter().map(String::as_str).filter(|text| !text.is_empty()).collect();
+    format!("<title>{}</title>", escape(&format!("{name}{}", values.join("; "))))
+}
+
+/// Draws the spots that show values to a pointer, each mark's in a group of its class.
+fn spots(svg: &mut Svg, figure: &Figure, classes: &[String], frame: &Frame<'_>) {
+    for (mark, class) in figure.marks.iter().zip(classes) {
+        let Mark::Line(line) = mark else { continue };
+        let Some(label) = line.label.as_deref() else { continue };
+        let drawn =
+            |&point: &(f64, f64)| Some((point, frame.at(point).filter(|pixel| frame.area.reaches(*pixel))?));
+        let seen: Vec<((f64, f64), (f64, f64))> = line.points.iter().filter_map(drawn).collect();
+        let few = simplify(seen.iter().map(|(_, pixel)| *pixel)).len().clamp(2, SPOTS);
+        let stride = seen.len().div_ceil(few).max(1);
+        let mut last: Option<(f64, f64)> = None;
+        svg.raw(&format!("<g{class}>\n"));
+        for (point, (x, y)) in seen.into_iter().step_by(stride) {
+            if last.is_some_and(|(a, b)| libm::hypot(x - a, y - b) < APART) {
+                continue;
+            }
+            last = Some((x, y));
+            svg.raw(&format!(
+                "<circle cx=\"{}\" cy=\"{}\" r=\"7\" fill=\"none\" pointer-events=\"all\">{}</circle>\n",
+                short(x),
+                short(y),
+                title(figure, Some(label), point)
+            ));
+        }
+        svg.raw("</g>\n");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Axis, BLUE, Line, Point, Shape, Size};
+    use super::*;
+
+    /// The words are the first line of the axis label.
+    #[test]
+    fn a_pointer_shows_the_place_of_a_mark() {
+        let x = Axis::log("Times the grains; below, grains per void", 0.5, 2.0);
+        let mut figure = Figure::new("title", "what", "", x, Axis::linear("Eroded (%)", 0.0, 100.0));
+        let line = Line::new(vec![(1.0, 20.0), (2.0, 60.0)], BLUE);
+        figure.add(line.label("first"));
+        figure.add(Point::new(1.0, 20.0, BLUE, Shape::Circle));
+        let drawn = figure.inline("one", Size::Wide);
+        for values in ["Times the grains 1.00; Eroded (%) 20.0", "Times the grains 2.00; Eroded (%) 60.0"] {
+            assert!(drawn.contains(&format!("<title>first: {values}</title>")), "{values}: {drawn}");
+        }
+        assert!(drawn.contains("<title>Times the grains 1.00; Eroded (%) 20.0</title>"), "{drawn}");
+    }
 }

@@ -1,7 +1,6 @@
-//! A figure: axes, and the marks between them.
+//! A figure: axes, and the marks between them, in colours that colour-blind readers tell apart.
 
 use super::axis::Axis;
-use super::marks::{Mark, Point};
 
 /// Room for a figure. Text has the same size in both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,15 +13,6 @@ pub enum Size {
     Sheet,
 }
 
-/// Placement of the names of curves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Naming {
-    /// Each name beside its curve; names without room go above the frame.
-    Direct,
-    /// All names above the frame.
-    Above,
-}
-
 /// Axes and the marks between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
@@ -32,7 +22,8 @@ pub struct Figure {
     pub(super) x: Axis,
     pub(super) y: Axis,
     pub(super) marks: Vec<Mark>,
-    pub(super) naming: Naming,
+    /// True if all names are above the frame; else each is beside its curve if there is room.
+    pub(super) names_above: bool,
     pub(super) square: bool,
     pub(super) sieves: bool,
     pub(super) wide: (f64, f64),
@@ -51,7 +42,7 @@ impl Figure {
             x,
             y,
             marks: Vec::new(),
-            naming: Naming::Direct,
+            names_above: false,
             square: false,
             sieves: false,
             wide: (720.0, 440.0),
@@ -89,9 +80,8 @@ impl Figure {
         self
     }
 
-    /// Puts all names above the frame.
     pub fn names_above(mut self) -> Figure {
-        self.naming = Naming::Above;
+        self.names_above = true;
         self
     }
 
@@ -110,5 +100,243 @@ impl Figure {
     /// Tells if it is higher than wide, so that it needs a printed page for itself.
     pub fn is_tall(&self) -> bool {
         self.wide.1 > 1.1 * self.wide.0
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dash {
+    Solid,
+    Dashed,
+    Dotted,
+}
+
+/// A line through points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    pub(super) points: Vec<(f64, f64)>,
+    pub(super) colour: Colour,
+    pub(super) width: f64,
+    pub(super) dash: Dash,
+    pub(super) opacity: f64,
+    pub(super) stays: bool,
+    pub(super) label: Option<String>,
+}
+
+impl Line {
+    /// A solid line, 2 pixels wide.
+    pub fn new(points: Vec<(f64, f64)>, colour: Colour) -> Line {
+        let (width, dash, opacity) = (2.0, Dash::Solid, 1.0);
+        Line { points, colour, width, dash, opacity, stays: false, label: None }
+    }
+
+    /// A solid line through rows as records hold them: x, y.
+    pub fn of_rows(rows: &[[f64; 2]], colour: Colour) -> Line {
+        Line::new(rows.iter().map(|&[x, y]| (x, y)).collect(), colour)
+    }
+
+    /// Sets the width in pixels.
+    pub fn width(mut self, width: f64) -> Line {
+        self.width = width;
+        self
+    }
+
+    pub fn dash(mut self, dash: Dash) -> Line {
+        self.dash = dash;
+        self
+    }
+
+    /// Sets the opacity: 1 is opaque.
+    pub fn opacity(mut self, opacity: f64) -> Line {
+        self.opacity = opacity;
+        self
+    }
+
+    /// Marks the line as a limit, which no reader of a page can hide.
+    pub fn stays(mut self) -> Line {
+        self.stays = true;
+        self
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Area {
+    pub(super) outline: Vec<(f64, f64)>,
+    pub(super) colour: Colour,
+    pub(super) opacity: f64,
+    pub(super) label: Option<String>,
+}
+
+impl Area {
+    pub fn new(outline: Vec<(f64, f64)>, colour: Colour, opacity: f64) -> Area {
+        Area { outline, colour, opacity, label: None }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    Circle,
+    Square,
+    Diamond,
+    Triangle,
+}
+
+/// A symbol, with error bars and a name if wanted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    pub(super) at: (f64, f64),
+    pub(super) colour: Colour,
+    pub(super) shape: Shape,
+    pub(super) filled: bool,
+    pub(super) x_interval: Option<(f64, f64)>,
+    pub(super) y_interval: Option<(f64, f64)>,
+    pub(super) drop: bool,
+    pub(super) label: Option<String>,
+}
+
+impl Point {
+    pub fn new(x: f64, y: f64, colour: Colour, shape: Shape) -> Point {
+        let (x_interval, y_interval) = (None, None);
+        Point { at: (x, y), colour, shape, filled: true, x_interval, y_interval, drop: false, label: None }
+    }
+
+    pub fn hollow(mut self) -> Point {
+        self.filled = false;
+        self
+    }
+
+    /// Adds a bar along x from low to high.
+    pub fn x_interval(mut self, interval: Option<(f64, f64)>) -> Point {
+        self.x_interval = interval;
+        self
+    }
+
+    /// Adds a bar along y from low to high.
+    pub fn y_interval(mut self, interval: Option<(f64, f64)>) -> Point {
+        self.y_interval = interval;
+        self
+    }
+
+    /// Adds a dotted line down to the x axis, where its value is read.
+    pub fn dropped(mut self) -> Point {
+        self.drop = true;
+        self
+    }
+}
+
+/// The axis that a [`Rule`] crosses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Across {
+    /// At one x, vertical.
+    X,
+    /// At one y, horizontal.
+    Y,
+}
+
+/// A straight line at one value, from edge to edge.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rule {
+    pub(super) across: Across,
+    pub(super) at: f64,
+    pub(super) colour: Colour,
+    pub(super) dash: Dash,
+    pub(super) label: Option<String>,
+}
+
+impl Rule {
+    pub fn new(across: Across, at: f64, colour: Colour) -> Rule {
+        Rule { across, at, colour, dash: Dash::Solid, label: None }
+    }
+
+    pub fn dash(mut self, dash: Dash) -> Rule {
+        self.dash = dash;
+        self
+    }
+}
+
+/// A circle to scale; its diameter is a length on the x axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Disc {
+    pub centre: (f64, f64),
+    pub diameter: f64,
+    pub colour: Colour,
+}
+
+/// Anything that is drawn between the axes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mark {
+    Line(Line),
+    Area(Area),
+    Point(Point),
+    Rule(Rule),
+    Disc(Disc),
+}
+
+macro_rules! marks {
+    ($($kind:ident),*) => { $(
+        impl From<$kind> for Mark {
+            fn from(mark: $kind) -> Mark {
+                Mark::$kind(mark)
+            }
+        }
+    )* };
+}
+marks!(Line, Area, Point, Rule, Disc);
+
+macro_rules! labels {
+    ($($kind:ident),*) => { $(
+        impl $kind {
+            /// Sets the name, of an area at its upper edge.
+            pub fn label(mut self, label: &str) -> $kind {
+                self.label = Some(label.to_owned());
+                self
+            }
+        }
+    )* };
+}
+labels!(Line, Area, Point, Rule);
+
+/// A colour for lines, and a darker one for text that names them on white.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Colour {
+    /// For lines, areas and symbols.
+    pub line: &'static str,
+    /// For text, with a contrast of at least 4.5 on white.
+    pub text: &'static str,
+}
+
+// Colours of Okabe and Ito.
+pub const BLACK: Colour = Colour { line: "#000000", text: "#000000" };
+pub const BLUE: Colour = Colour { line: "#0072B2", text: "#00598C" };
+pub const GREEN: Colour = Colour { line: "#009E73", text: "#00684C" };
+pub const ORANGE: Colour = Colour { line: "#E69F00", text: "#855C00" };
+pub const VERMILLION: Colour = Colour { line: "#D55E00", text: "#A34700" };
+pub const PURPLE: Colour = Colour { line: "#CC79A7", text: "#8E3F6C" };
+pub const GREY: Colour = Colour { line: "#767676", text: "#555555" };
+
+/// A ramp from light to dark blue, for curves in an order.
+pub fn ramp(index: usize, count: usize) -> Colour {
+    const BLUES: [Colour; 6] = [
+        Colour { line: "#8CC5E3", text: "#1F6F9C" },
+        Colour { line: "#5BA7D1", text: "#1F6F9C" },
+        Colour { line: "#2E86BC", text: "#1B6799" },
+        Colour { line: "#11679E", text: "#11679E" },
+        Colour { line: "#0A4B77", text: "#0A4B77" },
+        Colour { line: "#052D49", text: "#052D49" },
+    ];
+    if count < 2 {
+        return BLUES[3];
+    }
+    BLUES[(index * (BLUES.len() - 1) / (count - 1)).min(BLUES.len() - 1)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn curves_in_an_order_get_darker() {
+        assert_eq!(ramp(0, 2).line, "#8CC5E3");
+        assert_eq!(ramp(1, 2).line, "#052D49");
+        assert_eq!(ramp(0, 1).line, "#11679E");
     }
 }

@@ -5,34 +5,19 @@
 //! curve) and pages that forbid everything but themselves: only presentation attributes, no script, no style
 //! element, no font or image from elsewhere. Colours are from Okabe and Ito, which colour-blind readers tell
 //! apart, and never the only difference between two curves: dashes, widths and symbols differ as well.
-//!
-//! ```
-//! use voidwalk_app::report::figures::{Axis, BLUE, Figure, Line, Size};
-//! let mut figure = Figure::new("Base soil", "Percent finer by mass against size", "",
-//!     Axis::log("Size (mm)", 0.1, 2.0), Axis::percent("Percent finer by mass (%)"));
-//! figure.add(Line::new(vec![(0.1, 0.0), (2.0, 100.0)], BLUE).label("base"));
-//! assert!(figure.file().contains(">base</text>"));
-//! assert!(figure.inline("base", Size::Narrow).starts_with("<svg"));
-//! ```
 
 mod axis;
-mod colour;
 mod curves;
 mod draw;
 mod figure;
 mod frame;
-mod hover;
-mod marks;
-mod path;
-mod place;
-mod sieves;
 mod svg;
 
-pub use axis::{Axis, Scale, Tick, positive_range};
-pub use colour::{BLACK, BLUE, Colour, GREEN, GREY, ORANGE, PURPLE, VERMILLION, ramp};
-pub use figure::{Figure, Naming, Size};
-pub use marks::{Across, Area, Dash, Disc, Line, Mark, Point, Rule, Shape};
-pub use svg::escape;
+pub use axis::{Axis, Tick, positive_range};
+pub use figure::{
+    Across, Area, BLACK, BLUE, Colour, Dash, Disc, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Point, Rule,
+    Shape, Size, VERMILLION, ramp,
+};
 pub use voidwalk_core::text::shorten;
 
 #[cfg(test)]

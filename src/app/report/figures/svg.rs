@@ -1,4 +1,5 @@
-//! SVG text: elements, numbers, escaping, and the estimated width of a text.
+//! SVG text: elements, numbers, escaping, and the estimated width of a text; paths with few points; and
+//! places for labels beside their own curve, and on nothing else.
 
 use std::fmt::Write;
 
@@ -106,7 +107,6 @@ impl Svg {
         self.raw(&format!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {paint}/>\n"));
     }
 
-    /// A path through the points, closed or not.
     pub(super) fn path(&mut self, points: &[(f64, f64)], closed: bool, paint: &str) {
         let Some((first, rest)) = points.split_first() else { return };
         let _ = write!(self.text, r#"<path d="M{} {}"#, short(first.0), short(first.1));
@@ -125,6 +125,179 @@ impl Svg {
 
     pub(super) fn finish(self) -> String {
         self.text
+    }
+}
+
+/// The point at a share of a path's length.
+pub(super) fn along(path: &[(f64, f64)], share: f64) -> Option<(f64, f64)> {
+    let length = |pair: &[(f64, f64)]| libm::hypot(pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
+    let mut left = share * path.windows(2).map(length).sum::<f64>();
+    for pair in path.windows(2) {
+        let here = length(pair);
+        if left <= here && here > 0.0 {
+            let part = left / here;
+            let [from, to] = [pair[0], pair[1]];
+            return Some((from.0 + part * (to.0 - from.0), from.1 + part * (to.1 - from.1)));
+        }
+        left -= here;
+    }
+    path.last().copied()
+}
+
+/// The path with as few points as keep it within a third of a pixel (Douglas and Peucker), after points that
+/// coincide with their predecessor are left out.
+pub(super) fn simplify(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
+    const NEAR: f64 = 0.3;
+    let mut path: Vec<(f64, f64)> = Vec::new();
+    let mut last = None;
+    for point in points {
+        match path.last() {
+            Some(before) if libm::hypot(point.0 - before.0, point.1 - before.1) < NEAR => last = Some(point),
+            _ => {
+                path.push(point);
+                last = None;
+            }
+        }
+    }
+    path.extend(last);
+    if path.len() < 3 {
+        return path;
+    }
+    let mut keep = vec![false; path.len()];
+    keep[0] = true;
+    keep[path.len() - 1] = true;
+    let mut spans = vec![(0, path.len() - 1)];
+    while let Some((from, to)) = spans.pop() {
+        let away = |index: usize| off_chord(path[index], path[from], path[to]);
+        let farthest = (from + 1..to).max_by(|a, b| away(*a).total_cmp(&away(*b)));
+        if let Some(index) = farthest
+            && away(index) > NEAR
+        {
+            keep[index] = true;
+            spans.push((from, index));
+            spans.push((index, to));
+        }
+    }
+    path.into_iter().zip(keep).filter_map(|(point, kept)| kept.then_some(point)).collect()
+}
+
+/// Distance of a point from the segment between two others.
+fn off_chord(point: (f64, f64), from: (f64, f64), to: (f64, f64)) -> f64 {
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    let (px, py) = (point.0 - from.0, point.1 - from.1);
+    let square = dx * dx + dy * dy;
+    let share = if square > 0.0 { ((px * dx + py * dy) / square).clamp(0.0, 1.0) } else { 0.0 };
+    libm::hypot(px - share * dx, py - share * dy)
+}
+
+/// Pixels between an anchor and its label.
+pub(super) const GAP: f64 = 9.0;
+
+/// A rectangle: left, top, right, bottom, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Rect {
+    pub left: f64,
+    pub top: f64,
+    pub right: f64,
+    pub bottom: f64,
+}
+
+impl Rect {
+    fn meets(&self, other: &Rect) -> bool {
+        self.left < other.right
+            && other.left < self.right
+            && self.top < other.bottom
+            && other.top < self.bottom
+    }
+
+    fn holds(&self, point: (f64, f64)) -> bool {
+        point.0 > self.left && point.0 < self.right && point.1 > self.top && point.1 < self.bottom
+    }
+
+    /// Tells if a point is inside or on the edge.
+    pub(super) fn reaches(&self, (x, y): (f64, f64)) -> bool {
+        (self.left..=self.right).contains(&x) && (self.top..=self.bottom).contains(&y)
+    }
+
+    fn within(&self, frame: &Rect) -> bool {
+        self.left >= frame.left
+            && self.right <= frame.right
+            && self.top >= frame.top
+            && self.bottom <= frame.bottom
+    }
+
+    pub(super) fn grown(&self, by: f64) -> Rect {
+        Rect { left: self.left - by, top: self.top - by, right: self.right + by, bottom: self.bottom + by }
+    }
+}
+
+/// The drawn points, and the free space for labels.
+pub(super) struct Canvas {
+    pub frame: Rect,
+    /// Points on the drawn marks, a few pixels apart, each with the index of its mark.
+    pub ink: Vec<((f64, f64), usize)>,
+    /// Labels and symbols that were placed.
+    pub taken: Vec<Rect>,
+}
+
+impl Canvas {
+    /// Adds points every 3 pixels along a path, so that no label can slip between two of them.
+    pub(super) fn draw(&mut self, path: &[(f64, f64)], mark: usize) {
+        for pair in path.windows(2) {
+            let (dx, dy) = (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
+            let steps = (libm::hypot(dx, dy) / 3.0).ceil().clamp(1.0, 2000.0) as usize;
+            for step in 0..steps {
+                let share = step as f64 / steps as f64;
+                self.ink.push(((pair[0].0 + share * dx, pair[0].1 + share * dy), mark));
+            }
+        }
+        self.ink.extend(path.last().map(|end| (*end, mark)));
+    }
+
+    /// Takes and returns a free box of this size near one of the anchors (tried in order), or `None`. Other
+    /// marks are kept at a greater distance, so that a name is on its own curve's side of a neighbour.
+    pub(super) fn place(
+        &mut self,
+        anchors: &[(f64, f64)],
+        width: f64,
+        height: f64,
+        mark: usize,
+    ) -> Option<Rect> {
+        let mut best: Option<(f64, Rect)> = None;
+        for (order, &(x, y)) in anchors.iter().enumerate() {
+            let beside = y - height / 2.0;
+            let corners = [
+                (x + GAP, beside),
+                (x - GAP - width, beside),
+                (x + GAP, y - GAP - height),
+                (x - GAP - width, y - GAP - height),
+                (x + GAP, y + GAP),
+                (x - GAP - width, y + GAP),
+                (x - width / 2.0, y - GAP - height),
+                (x - width / 2.0, y + GAP),
+            ];
+            for (rank, (left, top)) in corners.into_iter().enumerate() {
+                let candidate = Rect { left, top, right: left + width, bottom: top + height };
+                if !candidate.within(&self.frame) || self.covers(&candidate.grown(1.0)) {
+                    continue;
+                }
+                let near = candidate.grown(12.0);
+                let crowd = self.ink.iter().filter(|(point, _)| near.holds(*point));
+                let crowd: f64 = crowd.map(|(_, other)| if *other == mark { 0.5 } else { 2.0 }).sum();
+                let cost = crowd + 1.5 * order as f64 + 0.5 * rank as f64;
+                if best.is_none_or(|(least, _)| cost < least) {
+                    best = Some((cost, candidate));
+                }
+            }
+        }
+        let (_, free) = best?;
+        self.taken.push(free);
+        Some(free)
+    }
+
+    fn covers(&self, candidate: &Rect) -> bool {
+        self.taken.iter().any(|taken| taken.meets(candidate))
+            || self.ink.iter().any(|(point, _)| candidate.holds(*point))
     }
 }
 
@@ -151,5 +324,55 @@ mod tests {
     fn labels_are_wrapped() {
         assert_eq!(wrap("one two three", 10.0, 40.0), ["one two", "three"]);
         assert_eq!(wrap("", 10.0, 40.0), Vec::<String>::new());
+    }
+
+    #[test]
+    fn a_simplified_path_stays_within_a_pixel_and_keeps_its_ends() {
+        let full: Vec<(f64, f64)> =
+            (0..5000).map(|i| (f64::from(i) * 0.1, 50.0 * libm::sin(f64::from(i) * 0.01))).collect();
+        let few = simplify(full.iter().copied());
+        assert!(few.len() < 300, "{}", few.len());
+        assert_eq!((few[0], few[few.len() - 1]), (full[0], full[4999]));
+        for point in full {
+            let near = few.windows(2).map(|pair| off_chord(point, pair[0], pair[1])).fold(f64::MAX, f64::min);
+            assert!(near < 1.0, "{point:?} is {near} off");
+        }
+    }
+
+    #[test]
+    fn a_share_of_a_path_is_a_share_of_its_length() {
+        let path = [(0.0, 0.0), (10.0, 0.0), (10.0, 30.0)];
+        assert_eq!(along(&path, 0.25), Some((10.0, 0.0)));
+        assert_eq!(along(&path, 0.5), Some((10.0, 10.0)));
+        assert_eq!(along(&[], 0.5), None);
+    }
+
+    fn canvas() -> Canvas {
+        let frame = Rect { left: 0.0, top: 0.0, right: 100.0, bottom: 100.0 };
+        Canvas { frame, ink: Vec::new(), taken: Vec::new() }
+    }
+
+    #[test]
+    fn a_label_covers_no_curve_and_no_other_label() {
+        let mut canvas = canvas();
+        canvas.draw(&[(0.0, 100.0), (100.0, 0.0)], 0);
+        let anchors: Vec<_> = (1..10).map(|i| (10.0 * f64::from(i), 100.0 - 10.0 * f64::from(i))).collect();
+        let first = canvas.place(&anchors, 30.0, 12.0, 0).unwrap();
+        let second = canvas.place(&anchors, 30.0, 12.0, 0).unwrap();
+        assert!(!first.meets(&second));
+        for label in [first, second] {
+            assert!(label.within(&canvas.frame));
+            assert!(!canvas.ink.iter().any(|(point, _)| label.holds(*point)), "{label:?} covers the curve");
+        }
+    }
+
+    #[test]
+    fn a_label_stands_on_its_own_side_of_a_neighbour() {
+        let mut canvas = canvas();
+        canvas.draw(&[(46.0, 0.0), (46.0, 100.0)], 0);
+        canvas.draw(&[(54.0, 0.0), (54.0, 100.0)], 1);
+        assert!(canvas.place(&[(46.0, 50.0)], 30.0, 12.0, 0).unwrap().right < 46.0);
+        assert!(canvas.place(&[(54.0, 50.0)], 30.0, 12.0, 1).unwrap().left > 54.0);
+        assert_eq!(canvas.place(&[(50.0, 50.0)], 120.0, 12.0, 0), None, "no room");
     }
 }

@@ -12,20 +12,15 @@
 //! A base that is twice as large takes a filter twice as large, to the bit, for a thickness in layers or
 //! multiples of D50F.
 
-mod judged;
-#[cfg(test)]
-mod note_tests;
-mod options;
 mod plan;
 #[cfg(test)]
 mod range_tests;
 mod row;
 mod search;
-mod spared;
-mod steadiness;
 mod summary;
 #[cfg(test)]
 mod tests;
+mod trials;
 
 use std::sync::{Mutex, MutexGuard};
 use std::time::Instant;
@@ -33,25 +28,25 @@ use std::time::Instant;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-pub use options::{BoundaryOptions, Thickness, ThicknessList};
-
 use super::specified::{NO_BASE_MM, no_base};
+use crate::case::CaseError;
 use crate::cases::kept::{self, Kept};
 use crate::cases::plan::PlannedCase;
-use crate::outcome::boundary::Boundaries;
+use crate::outcome::boundary::{Beyond, Boundaries};
 use crate::run::callbacks::{Callbacks, Event};
-use crate::run::error::{Exit, RunError};
 use crate::run::folder::{FolderKind, claim};
 use crate::run::machine::on_threads;
 use crate::run::pack::provide;
 use crate::run::prepare::Draft;
 use crate::run::replicates::have_networks;
+use crate::run::{Exit, RunError};
 use crate::scene::{BaseGradation, D85};
 use plan::{plan, with_any_base};
 use row::Row;
 use search::{Done, Found, Hint, METHOD};
-use spared::{clear_of, holding_less};
 use voidwalk_core::schema::setting_name;
+
+pub use plan::{BoundaryOptions, Thickness, ThicknessList};
 
 /// Finds the boundaries and writes `boundary.csv` and, last, `boundary.json`.
 ///
@@ -63,9 +58,6 @@ pub fn run(options: &BoundaryOptions, callbacks: &Callbacks) -> Result<Boundarie
 }
 
 /// Finds whatever is wrong, as [`run`] would before any work; claims and writes nothing.
-///
-/// # Errors
-/// See [`run`].
 pub fn check(options: &BoundaryOptions) -> Result<(), RunError> {
     on_threads(options.prepare.threads, || drafts(options, BRACKET).map(drop))
 }
@@ -112,8 +104,7 @@ impl DraftedRow {
         let mut draft = Draft::new(with_any_base(&scene))?;
         let case = &mut draft.case;
         let stated = case.base_of(&scene)?;
-        let refuse =
-            |problem: String| Err(RunError::from(crate::case::CaseError::from(scene.clash(problem))));
+        let refuse = |problem: String| Err(RunError::from(CaseError::from(scene.clash(problem))));
         let Some(d85) = stated.base.gradation.d(85.0) else {
             return refuse(
                 "the base's D85 lies in the pan fraction (finer than the finest sieve): add finer sieves, or \
@@ -138,8 +129,9 @@ impl DraftedRow {
                     .into(),
             );
         }
-        let base = stated.base.gradation.scaled(1.0 / d85).map_err(crate::case::CaseError::from)?;
-        case.place(&limits(options), rayon::current_num_threads() as u64, &options.out)?;
+        let base = stated.base.gradation.scaled(1.0 / d85).map_err(CaseError::from)?;
+        let limits = options.prepare.limits(&options.out);
+        case.place(&limits, rayon::current_num_threads() as u64, &options.out)?;
         have_networks(case, &Callbacks::default())?;
         let row = Row {
             density,
@@ -149,7 +141,7 @@ impl DraftedRow {
             base,
             d85_mm: has_size.then_some(d85),
             filter_has_size,
-            limits: limits(options),
+            limits,
             end_of: None,
             ends: Vec::new(),
         };
@@ -161,12 +153,9 @@ impl DraftedRow {
         Ok(Self { draft, row })
     }
 
-    /// With its filter packed.
     fn packed(self, options: &BoundaryOptions, callbacks: &Callbacks) -> Result<Row, RunError> {
-        let packed = match &self.draft.packing {
-            Some(plan) => Some(provide(plan, &options.prepare.packings, callbacks)?),
-            None => None,
-        };
+        let provided = |plan| provide(plan, &options.prepare.packings, callbacks);
+        let packed = self.draft.packing.as_ref().map(provided).transpose()?;
         Ok(Row { case: self.draft.finished(packed)?, ..self.row })
     }
 }
@@ -186,10 +175,6 @@ fn with_curve_ends(rows: Vec<Row>) -> Vec<Row> {
         all.extend(ends);
     }
     all
-}
-
-fn limits(options: &BoundaryOptions) -> crate::case::ResourceLimits {
-    options.prepare.limits(&options.out)
 }
 
 /// Hash of everything that the results follow from.
@@ -293,7 +278,8 @@ impl Searching<'_> {
             },
             || {
                 others.par_iter().try_for_each(|&network| {
-                    self.keep(row, network, settings.search(network, with(hint), self.callbacks)?)
+                    let begun = settings.begun(network, with(hint), self.callbacks)?;
+                    self.keep(row, network, begun.ended(hint.boundaries[1])?)
                 })
             },
         );
@@ -320,7 +306,6 @@ impl Searching<'_> {
         }
     }
 
-    /// Keeps a network that is done.
     fn keep(&self, row: usize, network: u64, found: Found) -> Result<(), RunError> {
         let settings = &self.rows[row];
         let words = |ratio: Option<f64>| ratio.map_or("beyond the search".into(), |r| format!("{r:.3}"));
@@ -360,5 +345,58 @@ impl Searching<'_> {
 
     fn done(&self) -> MutexGuard<'_, Vec<Done>> {
         self.done.lock().expect("no search panics while it keeps")
+    }
+}
+
+/// The first network of an end must hold at least this multiple of the greatest ratio among the networks of
+/// the end that holds least, or the square of the spread of those networks, if that is more. So even a
+/// network of the end that lies twice as far below its first as that spread holds more than the least of
+/// them.
+const CLEAR: f64 = 1.1;
+
+/// The ends of the same ranges that hold less than row `at` by the closed form for a lone particle: one for
+/// each row that it is an end of. Empty if it holds least itself, was asked for, or is an end of a row that
+/// is searched itself.
+fn holding_less(rows: &[Row], at: usize) -> Vec<usize> {
+    let row = &rows[at];
+    if row.end_of.is_none() {
+        return Vec::new();
+    }
+    let is_end_of =
+        |parent: &Row, end: &Row| parent.thickness == end.thickness && parent.ends.contains(&end.density);
+    let parents = || rows.iter().filter(|parent| is_end_of(parent, row));
+    if parents().any(|parent| parent.networks() > 0) {
+        return Vec::new();
+    }
+    let least = parents().map(|parent| {
+        let ends = (0..rows.len()).filter(|&end| is_end_of(parent, &rows[end]));
+        ends.min_by(|&a, &b| rows[a].start().total_cmp(&rows[b].start())).expect("the row is one")
+    });
+    let least: Vec<usize> = least.collect();
+    if least.contains(&at) { Vec::new() } else { least }
+}
+
+/// The ratio that the first network of an end must hold, so that it cannot set the answer beside rows that
+/// hold less, once all networks of those rows are done; `None` if the end is searched in any case.
+fn clear_of(done: &[Done], holding_less: &[(usize, u64)]) -> Option<f64> {
+    let ratio = |&(row, networks): &(usize, u64)| {
+        let of_row = done.iter().filter(|done| done.row == row);
+        let held: Option<Vec<f64>> = of_row.map(|done| holds_to(&done.found)).collect();
+        let held = held.filter(|held| held.len() as u64 == networks)?;
+        let greatest = held.iter().copied().reduce(f64::max)?;
+        let apart = greatest / held.into_iter().reduce(f64::min)?;
+        Some(greatest * CLEAR.max(apart * apart))
+    };
+    let ratios: Option<Vec<f64>> = holding_less.iter().map(ratio).collect();
+    ratios?.into_iter().reduce(f64::max).filter(|ratio| ratio.is_finite() && *ratio > 0.0)
+}
+
+/// The ratio up to which a network holds; 0 if it erodes at every ratio of the search, `None` if it is
+/// unknown.
+fn holds_to(found: &Found) -> Option<f64> {
+    match (found.no_erosion, &found.no_erosion_beyond) {
+        (Some(ratio), _) => Some(ratio),
+        (None, Some((Beyond::Below, _))) => Some(0.0),
+        (None, _) => None,
     }
 }

@@ -1,16 +1,17 @@
-//! The plan of the boundaries that are asked for: a case for each density and thickness.
+//! Options of a search of boundaries, and its plan: a case for each density and thickness.
 
 use std::path::{Path, PathBuf};
 
-use super::options::{BoundaryOptions, Thickness};
 use crate::case::end_of_guess;
 use crate::cases::plan::{CasePlan, PlannedCase, crossed};
 use crate::outcome::stopping::StopRule;
-use crate::run::error::RunError;
+use crate::run::RunError;
+use crate::run::prepare::PrepareOptions;
 use crate::scene::{
-    Base, BaseGradation, D85, Density, Extent, LibraryDensity, NetworkSource, Regrade, Scene, TableOptions,
-    USUAL_LAYERS, keep_soils, quoted,
+    Base, BaseGradation, CurveSource, D85, Density, Extent, LibraryDensity, NetworkKeys, NetworkSource,
+    Regrade, Scene, TableOptions, USUAL_LAYERS, keep_soils, quoted,
 };
+use voidwalk_core::schema::length::{LENGTHS, millimetres};
 use voidwalk_core::schema::setting_name;
 use voidwalk_core::walk::Engine;
 
@@ -24,10 +25,146 @@ const NETWORKS: u64 = 5;
 const THICKNESSES: [&str; 4] =
     ["network.nz", "network.copies", "network.thickness_mm", "network.thickness_d50f"];
 
+/// Options of a search of boundaries, and the place of its results.
+#[derive(Clone, Debug)]
+pub struct BoundaryOptions {
+    /// Sieve table of the base; without it the settings define the base.
+    pub base: Option<PathBuf>,
+    /// The filter's shape: a sieve table, a Cu, or a shipped curve's name; without it the settings define it.
+    pub filter: Option<String>,
+    /// Densities: a word, `friction=F` or `estimate=D`.
+    pub densities: Vec<String>,
+    /// True if this very filter is packed; otherwise the library of packings gives its constrictions.
+    pub pack: bool,
+    /// Thicknesses.
+    pub thicknesses: Vec<Thickness>,
+    /// Settings of the built-in scene, as `base.cu=3`.
+    pub settings: Vec<String>,
+    /// True if the base is walked as it was sampled. Otherwise a base with a size of its own is walked as
+    /// filter practice regrades it, unless `settings` contain `base.regrade`.
+    pub as_sampled: bool,
+    /// True if base and filter are taken as they are given, though their sizes look exchanged.
+    pub as_given: bool,
+    /// Folder for the results.
+    pub out: PathBuf,
+    /// True if earlier results there are replaced.
+    pub overwrite: bool,
+    /// Threads, memory and the folder of packings.
+    pub prepare: PrepareOptions,
+}
+
+impl Default for BoundaryOptions {
+    fn default() -> Self {
+        Self {
+            base: None,
+            filter: None,
+            densities: Vec::new(),
+            pack: false,
+            thicknesses: Vec::new(),
+            settings: Vec::new(),
+            as_sampled: false,
+            as_given: false,
+            out: "voidwalk-boundary".into(),
+            overwrite: false,
+            prepare: PrepareOptions::default(),
+        }
+    }
+}
+
+/// Unit of a filter's thickness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Thickness {
+    /// Layers of voids.
+    Layers(u64),
+    /// Millimetres.
+    Mm(f64),
+    /// Multiples of D50F by mass.
+    D50F(f64),
+}
+
+impl Thickness {
+    pub(super) fn of(network: &NetworkKeys) -> Self {
+        match network.extent() {
+            Extent::Mm(mm) => Self::Mm(mm),
+            Extent::D50F(multiple) => Self::D50F(multiple),
+            Extent::Copies(_) | Extent::Usual => {
+                Self::Layers(network.source().shape().map_or(USUAL_LAYERS, |[_, _, nz]| nz.into()))
+            }
+        }
+    }
+
+    pub(super) fn setting(self) -> String {
+        match self {
+            Self::Layers(layers) => format!("network.nz={layers}"),
+            Self::D50F(multiple) => format!("network.thickness_d50f={multiple:?}"),
+            Self::Mm(mm) => format!("network.thickness_mm={mm:?}"),
+        }
+    }
+}
+
+impl std::str::FromStr for Thickness {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let lower = text.trim().to_lowercase();
+        let refused = || {
+            format!(
+                "--thickness {text}: allowed: layers of voids as 60layers, a multiple of D50F as 75D50F, or \
+                 {LENGTHS}"
+            )
+        };
+        let number = |rest: &str| rest.trim().parse::<f64>().ok().filter(|v| v.is_finite() && *v > 0.0);
+        if let Some(rest) = lower.strip_suffix("d50f") {
+            return number(rest).map(Self::D50F).ok_or_else(refused);
+        }
+        if let Some(rest) = lower.strip_suffix("layers") {
+            let layers = rest.trim().parse().ok().filter(|n| (1..=1_000_000).contains(n));
+            return layers.map(Self::Layers).ok_or_else(refused);
+        }
+        millimetres(&lower).map(Self::Mm).ok_or_else(refused)
+    }
+}
+
+/// Thicknesses with commas between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ThicknessList(pub Vec<Thickness>);
+
+impl std::str::FromStr for ThicknessList {
+    type Err = String;
+
+    /// Reads a list. `1,5m` may be one thickness with a decimal comma: a list has no number without a unit if
+    /// another has one.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let items: Vec<&str> = text.split(',').collect();
+        let is_bare = |item: &&str| item.trim().parse::<f64>().is_ok();
+        if let Some(at) = items.iter().position(&is_bare)
+            && !items.iter().all(is_bare)
+        {
+            let bare = items[at].trim();
+            let follows = items.get(at + 1).map(|next| next.trim());
+            let follows = follows.filter(|next| next.starts_with(|c: char| c.is_ascii_digit()));
+            let point = follows
+                .map_or(String::new(), |next| format!("; or a decimal point, not a comma: {bare}.{next}"));
+            return Err(format!(
+                "--thickness {text}: {bare} has no unit, though another of the list has one; allowed: \
+                 {bare}mm or {bare}layers{point}"
+            ));
+        }
+        items.into_iter().map(str::parse).collect::<Result<_, _>>().map(Self)
+    }
+}
+
+impl std::fmt::Display for Thickness {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Layers(n) => write!(f, "{n} layers"),
+            Self::Mm(mm) => write!(f, "{mm} mm"),
+            Self::D50F(multiple) => write!(f, "{multiple} D50F"),
+        }
+    }
+}
+
 /// Every density with every thickness.
-///
-/// # Errors
-/// Settings that are refused.
 pub(super) fn plan(options: &BoundaryOptions) -> Result<CasePlan, RunError> {
     let common = common(options)?;
     let (densities, thicknesses) = (densities(options)?, thicknesses(options)?);
@@ -51,7 +188,6 @@ pub(super) fn plan(options: &BoundaryOptions) -> Result<CasePlan, RunError> {
     Ok(plan)
 }
 
-/// The settings of every case.
 fn common(options: &BoundaryOptions) -> Result<Vec<String>, RunError> {
     let BoundaryOptions { base, filter, settings, .. } = options;
     let base_name = base.as_ref().map(|base| base.display().to_string());
@@ -121,7 +257,6 @@ fn shape_setting(shape: &str) -> String {
     }
 }
 
-/// The setting that states a density.
 fn density_setting(density: &str, pack: bool) -> Result<Option<String>, RunError> {
     let word = Density::named(density);
     match density.split_once('=') {
@@ -199,22 +334,16 @@ pub(super) fn with_any_base(scene: &Scene) -> Scene {
 
 /// Refuses settings of a scene that a search of boundaries cannot use.
 fn refuse(scene: &Scene) -> Result<(), RunError> {
-    if scene.stop != StopRule::default() {
-        let problem = "stop.target_error_pp and stop.decide_percent do not go with `boundary`: replicates \
-                       says how many networks its bands are taken over";
-        return Err(RunError::refused(problem));
-    }
-    if scene.record.voids.is_some() {
-        let problem =
-            "record.voids does not go with `boundary`, which keeps no walk: set it in the scene of a run";
-        return Err(RunError::refused(problem));
-    }
-    if scene.walk.runs != 2 {
-        let problem =
-            "runs = 1 does not go with `boundary`: continuing erosion is what the second run erodes";
-        return Err(RunError::refused(problem));
-    }
-    Ok(())
+    Err(RunError::refused(if scene.stop != StopRule::default() {
+        "stop.target_error_pp and stop.decide_percent do not go with `boundary`: replicates says how many \
+         networks its bands are taken over"
+    } else if scene.record.voids.is_some() {
+        "record.voids does not go with `boundary`, which keeps no walk: set it in the scene of a run"
+    } else if scene.walk.runs != 2 {
+        "runs = 1 does not go with `boundary`: continuing erosion is what the second run erodes"
+    } else {
+        return Ok(());
+    }))
 }
 
 /// Density of the packing of a scene's filter, in words.
@@ -229,16 +358,12 @@ fn density_words(scene: &Scene) -> String {
         (.., Some(estimate), _) => {
             end_of_guess(estimate).map_or_else(|| format!("estimate {estimate}"), str::to_owned)
         }
-        (.., Some(crate::scene::CurveSource::Shipped(name))) => {
-            name.rsplit('-').next().unwrap_or(name).to_owned()
+        (.., Some(CurveSource::Shipped(name))) => name.rsplit('-').next().unwrap_or(name).to_owned(),
+        (.., Some(CurveSource::File(path))) => {
+            format!("of the curve {}", path.file_name().map_or_else(PathBuf::new, PathBuf::from).display())
         }
-        (.., Some(crate::scene::CurveSource::File(path))) => file_words("of the curve", path),
         _ => "as given".into(),
     }
-}
-
-fn file_words(what: &str, path: &Path) -> String {
-    format!("{what} {}", path.file_name().map_or_else(PathBuf::new, PathBuf::from).display())
 }
 
 #[cfg(test)]
@@ -270,7 +395,6 @@ mod tests {
             ("3", "base.sieve=other.csv", "in the place of the base, b.csv"),
             ("3", "filter.cu=1.5", "in the place of the filter, 3"),
             ("f.csv", "filter.sieve=g.csv", "in the place of the filter, f.csv"),
-            ("cu3-loose", "filter.curve=cu6-loose", "say the same thing twice"),
         ] {
             let error = refused(filter, setting);
             assert!(error.contains(said), "{error}");
@@ -323,9 +447,31 @@ mod tests {
         let voids = BoundaryOptions { settings: vec!["record.voids=[1]".into()], ..options(&[], &[]) };
         let refused = plan(&voids).unwrap_err();
         assert!(refused.to_string().contains("record.voids does not go") && refused.exit().code() == 2);
-        let wrong = plan(&options(&["2"], &[])).unwrap_err().to_string();
-        assert!(wrong.contains("dense, medium (or intermediate) or loose"), "{wrong}");
         let wrong = plan(&options(&["estimate=1.5"], &[])).unwrap_err().to_string();
         assert!(wrong.contains("relative density from 0 (loose) to 1"), "{wrong}");
+    }
+
+    #[test]
+    fn a_thickness_says_what_it_is_in() {
+        let read = |text: &str| text.parse::<Thickness>();
+        assert_eq!(read("60layers"), Ok(Thickness::Layers(60)));
+        assert_eq!((read("500mm"), read("500")), (Ok(Thickness::Mm(500.0)), Ok(Thickness::Mm(500.0))));
+        assert_eq!((read("2ft"), read("24in")), (Ok(Thickness::Mm(609.6)), Ok(Thickness::Mm(609.6))));
+        assert_eq!(read("75 D50F"), Ok(Thickness::D50F(75.0)));
+        for wrong in ["0", "0mm", "-3mm", "0layers", "2.5layers", "nanmm", "inf", "thick", ""] {
+            assert!(read(wrong).unwrap_err().contains("or a length above 0"), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_decimal_comma_is_no_list_of_two_thicknesses() {
+        let read = |text: &str| text.parse::<ThicknessList>();
+        let two = ThicknessList(vec![Thickness::Layers(12), Thickness::Mm(15.0)]);
+        assert_eq!(read("12layers,15mm"), Ok(two.clone()));
+        assert_eq!(read("12layers, 1.5cm"), Ok(two));
+        assert_eq!(read("100,200"), Ok(ThicknessList(vec![Thickness::Mm(100.0), Thickness::Mm(200.0)])));
+        assert!(read("1,5m").unwrap_err().contains("; or a decimal point, not a comma: 1.5m"));
+        assert!(read("60layers,500").unwrap_err().ends_with("allowed: 500mm or 500layers"));
+        assert!(read("12layers,thick").unwrap_err().contains("--thickness thick: allowed: "));
     }
 }

@@ -1,21 +1,26 @@
 //! One density and thickness, ready to be walked at any ratio.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::options::Thickness;
-use super::search::{Begun, Found, Hint, Start, Trial, USUAL_ACROSS, Walker, holding, search};
-use crate::case::{Case, CaseError, OtherCurve, ResourceLimits, StatedBase, replicate_seed};
+use super::plan::Thickness;
+use super::search::{Begun, Found, Hint, Start, holding};
+use super::trials::{Trial, USUAL_ACROSS, Walker};
+use crate::case::{
+    Case, CaseBase, CaseError, CaseSupply, OtherCurve, ResourceLimits, StatedBase, replicate_seed,
+};
+use crate::outcome::Eroded;
 use crate::outcome::boundary::Beyond;
 use crate::outcome::verdict::THRESHOLD;
+use crate::run::RunError;
 use crate::run::callbacks::Callbacks;
-use crate::run::erosion::eroded;
-use crate::run::error::RunError;
-use crate::scene::{Amount, LibraryDensity};
+use crate::run::replicates::plan;
+use crate::scene::{Amount, BaseGradation, D85, LibraryDensity};
 use voidwalk_core::gradation::Gradation;
 use voidwalk_core::network::{Network, Passage};
-use voidwalk_core::walk::{Clogged, PlainExits};
-use voidwalk_practice::Note;
+use voidwalk_core::walk::{Clogged, PlainExits, SizeClasses, State, Walk, WalkControl};
+use voidwalk_practice::{Mistake, Note, ordered};
 
 /// Ratio at which a first guess takes the layers of a thickness in mm.
 const USUAL_RATIO: f64 = 5.0;
@@ -23,13 +28,10 @@ const USUAL_RATIO: f64 = 5.0;
 /// One density and thickness with its filter packed.
 #[derive(Clone)]
 pub(super) struct Row {
-    /// The density in words.
     pub density: String,
-    /// The thickness.
     pub thickness: Thickness,
     /// The filter and its network, with some base.
     pub case: Case,
-    /// The base as it is stated.
     pub stated: StatedBase,
     /// The base in units of its D85.
     pub base: Gradation,
@@ -37,7 +39,6 @@ pub(super) struct Row {
     pub d85_mm: Option<f64>,
     /// True if the filter has a size of its own.
     pub filter_has_size: bool,
-    /// Limits of the walks.
     pub limits: ResourceLimits,
     /// The density whose constriction curve is known only within a range with this row as an end.
     pub end_of: Option<String>,
@@ -107,9 +108,6 @@ impl Row {
     }
 
     /// The case at a ratio.
-    ///
-    /// # Errors
-    /// It cannot be walked.
     pub fn at(&self, ratio: f64) -> Result<Case, CaseError> {
         let base = self.base.scaled(self.d15f() / ratio)?;
         let mut case = self.case.with_base(base, self.layers(ratio))?;
@@ -118,9 +116,6 @@ impl Row {
     }
 
     /// Refuses more layers, or more memory, than there is, at a ratio near which the search begins.
-    ///
-    /// # Errors
-    /// The number that is too large.
     pub fn check_room(&self, bracket: [f64; 2]) -> Result<(), RunError> {
         let ratio = self.start().clamp(bracket[0], bracket[1]);
         match self.at(ratio) {
@@ -139,10 +134,8 @@ impl Row {
             let base = self.base.scaled(self.d15f() / ratio).ok()?;
             let per_grain =
                 base.particles_per_unit_volume() / self.case.filter.gradation.particles_per_unit_volume();
-            Some(
-                mass_ratio * self.case.filter.grains_per_void? * self.case.network.voids as f64 * per_grain
-                    < 1.0,
-            )
+            let grains = mass_ratio * self.case.filter.grains_per_void? * self.case.network.voids as f64;
+            Some(grains * per_grain < 1.0)
         };
         if too_few() == Some(true) { Beyond::Below } else { Beyond::Above }
     }
@@ -159,23 +152,8 @@ impl Row {
         if self.case.scene.is_lattice_by_area() { self.case.network.start_nodes } else { USUAL_ACROSS }
     }
 
-    /// Searches the boundaries of network `number`, counted from 1.
-    ///
-    /// # Errors
-    /// A walk that goes wrong, or was stopped.
-    pub fn search(
-        &self,
-        number: u64,
-        (bracket, hint): ([f64; 2], Hint),
-        callbacks: &Callbacks,
-    ) -> Result<Found, RunError> {
-        search(self.network(number, callbacks), bracket, self.from(hint))
-    }
-
-    /// Searches the boundary of the first run of network `number`, counted from 1.
-    ///
-    /// # Errors
-    /// A walk that goes wrong, or was stopped.
+    /// Searches the boundary of the first run of network `number`, counted from 1. Errors: a walk that goes
+    /// wrong, or was stopped.
     pub fn begun<'a>(
         &'a self,
         number: u64,
@@ -185,10 +163,7 @@ impl Row {
         Begun::new(self.network(number, callbacks), bracket, self.from(hint))
     }
 
-    /// The first network, if it holds this ratio.
-    ///
-    /// # Errors
-    /// A walk that goes wrong, or was stopped.
+    /// The first network, if it holds this ratio. Errors: a walk that goes wrong, or was stopped.
     pub fn holding(
         &self,
         ratio: f64,
@@ -225,8 +200,7 @@ pub(super) struct OneNetwork<'a> {
     callbacks: &'a Callbacks<'a>,
 }
 
-impl OneNetwork<'_> {
-    /// Run `run` at a ratio.
+impl Walker for OneNetwork<'_> {
     fn walk(&mut self, run: u64, step: i64, ratio: f64) -> Result<Trial, RunError> {
         let case = match self.row.at(ratio) {
             Ok(case) => case,
@@ -262,12 +236,162 @@ impl OneNetwork<'_> {
     }
 }
 
-impl Walker for OneNetwork<'_> {
-    fn first(&mut self, step: i64, ratio: f64) -> Result<Trial, RunError> {
-        self.walk(1, step, ratio)
+/// Number of size classes of a run whose record is not wanted: one class or two serve as well.
+const SIZE_CLASSES: usize = 2;
+
+/// Walks run `run` (1 or 2) of a case on the network of the replicate with this seed, from constrictions that
+/// are `clogged` at its start: the same bits as [`crate::run::walk_case`] gives. `open` are the network's
+/// exits, if they are known. Returns the eroded mass and the constrictions at the end. Errors: a walk that
+/// goes wrong, or that was stopped; particles that do not fit.
+fn eroded(
+    case: &Case,
+    (network, open): (&Arc<Network>, Option<&PlainExits>),
+    (seed, run): (u64, u64),
+    clogged: Clogged,
+    callbacks: &Callbacks,
+) -> Result<(Eroded, Clogged), RunError> {
+    let plan = plan(case, network, &clogged.blocked, case.supply.n_base);
+    let supply = plan.supply(case.supply.sampler.clone(), case.supply.n_base, case.increments(), seed, run);
+    let (smallest, largest) = (case.supply.sampler.smallest(), case.supply.sampler.largest());
+    let classes = SizeClasses::logarithmic(smallest, largest, SIZE_CLASSES);
+    let state = State::placed(&case.placement, network, &supply, classes, clogged, seed, run);
+    let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
+    let mut walk = Walk::with_exits(network, &supply, &state, open.map(Cow::Borrowed));
+    walk.run(&mut state, &mut |_| {
+        if callbacks.is_stopped() { WalkControl::Stop } else { WalkControl::Continue }
+    })?;
+    walk.end(&state)?;
+    Ok((Eroded::of(&state, case.pan_by_mass_only()), state.into_clogged()))
+}
+
+/// Fewer networks than these give no percentiles.
+const FEW_NETWORKS: u64 = 5;
+
+/// A base coarser than this (D85, mm) gets a note.
+const COARSE_BASE_MM: f64 = 10.0;
+
+/// Note on a number of base particles, which may differ from Eq. (2) at some ratios.
+fn of_amount(row: &Row) -> Option<Note> {
+    match row.case.scene.base.amount() {
+        Amount::Number(n) | Amount::MassRatio(_, Some(n)) => Some(Note::AmountHeld { particles: n }),
+        Amount::MassRatio(_, None) => None,
+    }
+}
+
+/// A row at one ratio with the sizes that it has there.
+pub(super) struct Judged {
+    /// The case with the sizes that filter and base have there; without a unit, sizes in units of D85B.
+    pub case: Case,
+    d85_mm: Option<f64>,
+    pub base_name: String,
+    /// Thickness of the real filter (mm), if nothing here has a size to compare it with.
+    real_thickness: Option<f64>,
+}
+
+impl Judged {
+    pub fn new(row: &Row, ratio: f64) -> Result<Self, RunError> {
+        let (has_size, d85) = (row.d85_mm.is_some(), row.d85_mm.unwrap_or(1.0));
+        let mut stated = row.stated.clone();
+        if !has_size {
+            let factor = d85 / stated.base.gradation.d(85.0).unwrap_or(d85);
+            let sizes = |gradation: &Gradation| gradation.scaled(factor).map_err(CaseError::from);
+            let regraded_from = match &stated.base.regraded_from {
+                Some((given, at)) => Some((sizes(given)?, at * factor)),
+                None => None,
+            };
+            stated.base = CaseBase { gradation: sizes(&stated.base.gradation)?, regraded_from };
+        }
+        let mut case = row.case.enlarged(ratio * d85 / row.d15f(), &stated)?;
+        if let Ok(walked) = row.at(ratio) {
+            let CaseSupply { n_base, n_base_eq2, capped, .. } = walked.supply;
+            case.network = walked.network;
+            case.supply = CaseSupply { n_base, n_base_eq2, capped, ..case.supply };
+        }
+        let base_name = case.record().base.name;
+        let mut real_thickness = None;
+        if !has_size {
+            real_thickness = case.scene.filter.thickness_mm.take();
+            // In multiples of an unknown size, neither soil has fines.
+            (case.scene.filter.d0_mm, case.scene.base) = (Some(1.0), row.case.scene.base.clone());
+        } else if let BaseGradation::Linear { d85: D85::AtDc(..) | D85::Ratio(_), .. } =
+            case.scene.base.gradation()
+        {
+            // The filter's size decides the base's.
+            let keys = &mut case.scene.base;
+            (keys.d85_mm, keys.d85_at_dc, keys.dc_curve, keys.d15f_over_d85b) = (Some(d85), None, None, None);
+        }
+        let (base, filter) = (case.base.as_given(), &case.filter.gradation);
+        case.mistake = Mistake::find(base, filter, case.is_scale_free()).map(|mistake| mistake.note);
+        Ok(Self { case, d85_mm: row.d85_mm, base_name, real_thickness })
     }
 
-    fn second(&mut self, step: i64, ratio: f64) -> Result<Trial, RunError> {
-        self.walk(2, step, ratio)
+    /// Notes on the model for a reader, with `others`.
+    pub fn notes(&self, row: &Row, others: Vec<Note>) -> Vec<Note> {
+        // Repeated for every ratio below.
+        let of_one = self.case.too_little_base().filter(|_| of_amount(row).is_some());
+        let coarse =
+            self.d85_mm.filter(|d85| *d85 > COARSE_BASE_MM).map(|d85_mm| Note::CoarseBase { d85_mm });
+        let not_compared =
+            self.real_thickness.map(|real_mm| Note::ThicknessWithoutUnit { real_mm, unit: "D85B".into() });
+        let networks = row.case.scene.walk.replicates;
+        let of_case = self.case.notes().into_iter();
+        let notes = of_case.filter(|note| Some(note) != of_one.as_ref());
+        let notes = notes
+            .chain(self.case.unchecked_clogging())
+            .chain(coarse)
+            .chain(not_compared)
+            .chain((networks < FEW_NETWORKS).then_some(Note::FewNetworks { networks }))
+            .chain(of_amount(row))
+            .chain(others);
+        ordered(notes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::{case_of, walk_case};
+
+    const SMALL: [&str; 4] = ["network.nx=8", "network.ny=8", "network.nz=10", "base.n_base=30000"];
+
+    #[test]
+    fn what_erodes_is_to_the_bit_what_a_run_of_the_scene_says() {
+        for base in ["base.cu=3", "base.single_mm=0.19"] {
+            let case = case_of(&[&SMALL[..], &["replicates=1", "record.sensitivity=[]", base]].concat());
+            let outcome = walk_case(&case, &Callbacks::default()).unwrap();
+            let seed = replicate_seed(case.scene.walk.seed, 1);
+            let network = Arc::new(case.network(seed).unwrap());
+            let mut clogged = Clogged::none(&network);
+            for run in &outcome.replicates[0].runs {
+                let open = PlainExits::unblocked(&network);
+                let known = (&network, (base != "base.cu=3").then_some(&open));
+                let result = eroded(&case, known, (seed, run.run), clogged, &Callbacks::default()).unwrap();
+                assert_eq!(result.0.mass_fraction.to_bits(), run.eroded_mass_fraction.to_bits(), "{base}");
+                assert!(run.eroded_mass_fraction > 0.0);
+                clogged = result.1;
+            }
+        }
+    }
+
+    /// If particles arch, or leave openings, their moves depend on more than the network.
+    #[test]
+    fn known_exits_are_left_alone_where_others_are_needed() {
+        for (other, engines) in [
+            ("walk.arching=zuriguel-2005", ["engine=counts", "engine=expected"]),
+            ("walk.blocked=open", ["engine=auto", "engine=particles"]),
+        ] {
+            for engine in engines {
+                let case = case_of(&[&SMALL[..], &[other, engine]].concat());
+                assert!(!case.begins_with_plain_exits());
+                let network = Arc::new(case.network(5).unwrap());
+                let known = PlainExits::unblocked(&network);
+                let [a, b] = [None, Some(&known)].map(|open| {
+                    let clogged = Clogged::none(&network);
+                    eroded(&case, (&network, open), (5, 1), clogged, &Callbacks::default()).unwrap()
+                });
+                assert_eq!(a.0.mass_fraction.to_bits(), b.0.mass_fraction.to_bits(), "{other} {engine}");
+                assert_eq!(a.1.blocked, b.1.blocked, "{other} {engine}");
+            }
+        }
     }
 }

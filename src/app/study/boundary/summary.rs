@@ -2,13 +2,11 @@
 
 use std::cmp::Ordering;
 
-use super::judged::Judged;
-use super::options::{BoundaryOptions, Thickness};
-use super::row::Row;
-use super::search::{Beside, Done, Ended};
-use super::steadiness;
+use super::plan::{BoundaryOptions, Thickness};
+use super::row::{Judged, Row};
+use super::search::{Beside, Done, Found};
 use crate::case::Input;
-use crate::cases::days::today;
+use crate::cases::kept::today;
 use crate::outcome::boundary::{
     BETWEEN_STEPS, BaseStated, Beyond, Boundaries, Boundary, BoundaryRow, NetworkBoundaries, WalkRow, spread,
 };
@@ -16,7 +14,7 @@ use crate::outcome::leaves_out;
 use crate::outcome::record::commit;
 use crate::outcome::table::csv_of;
 use crate::outcome::verdict::THRESHOLD;
-use crate::run::error::RunError;
+use crate::run::RunError;
 use crate::words::grading;
 use voidwalk_practice::design::RowNote;
 use voidwalk_practice::{InputFile, Note};
@@ -25,9 +23,6 @@ use voidwalk_practice::{InputFile, Note};
 const USUAL_RATIO: f64 = 4.0;
 
 /// The record.
-///
-/// # Errors
-/// Sizes out of range.
 pub(super) fn boundaries(
     (rows, bracket): (&[Row], [f64; 2]),
     done: &[Done],
@@ -43,24 +38,22 @@ pub(super) fn boundaries(
     // A row without networks is as the worst of its ends.
     let as_end = |row: &Row| {
         let ends = rows.iter().zip(&searched).filter(|(end, _)| is_in_range(row, end));
-        let worst = ends.filter_map(|(_, result)| result.as_ref()).filter(|result| !result.is_spared());
-        let worst = worst.min_by(|a, b| holds_less(a, b));
-        worst.expect("a row without networks has ends").named(row)
+        let worst =
+            ends.filter_map(|(_, result)| result.as_ref()).filter(|result| result.spared_at.is_none());
+        let worst = worst.min_by(|a, b| holds_less(a, b)).expect("a row without networks has ends").clone();
+        let (density, as_end) = (row.density.clone(), Some(worst.record.density.clone()));
+        FoundRow { record: BoundaryRow { density, as_end, end_of: None, ..worst.record }, ..worst }
     };
     let results =
         rows.iter().zip(&searched).map(|(row, result)| result.clone().unwrap_or_else(|| as_end(row)));
     let mut results: Vec<FoundRow> = results.collect();
-    let held: Vec<Option<f64>> = rows.iter().map(|row| held_over_range(row, rows, &results)).collect();
     // An end of a range is not a filter on offer: it is judged with the row that it is an end of.
-    let asked = || (0..rows.len()).filter(|&at| rows[at].end_of.is_none());
     let mut judgements = Vec::new();
-    for at in asked() {
-        let row = &rows[at];
-        let unbounded = unbounded(row, rows, &results);
+    for (at, row) in rows.iter().enumerate().filter(|(_, row)| row.end_of.is_none()) {
+        let name = format!("{}, {}", row.density, row.thickness);
+        judgements.push((name, judged(row, (&results[at].record, rows, &results))?));
         let spared = spared_ends(row, rows, &results);
         results[at].record.no_erosion_notes.extend(spared);
-        let name = format!("{}, {}", row.density, row.thickness);
-        judgements.push((name, judged(row, (&results[at], rows, &results), held[at], unbounded)?));
     }
     // The worst end of a row without networks replaces that row, unless another row shares it as an end.
     let is_shown = |(result, row): &(&FoundRow, &Row)| {
@@ -68,7 +61,7 @@ pub(super) fn boundaries(
         let has_it = |other: &Row| other.thickness == row.thickness && other.ends.contains(density);
         let all: Vec<_> = results.iter().zip(rows).filter(|(_, other)| has_it(other)).collect();
         let only = if let [(only, _)] = all[..] { only.record.as_end.as_ref() } else { None };
-        !result.is_spared() && (result.record.end_of.is_none() || only != Some(density))
+        result.spared_at.is_none() && (result.record.end_of.is_none() || only != Some(density))
     };
     let shown = results.iter().zip(rows).filter(is_shown);
     let boundaries: Vec<BoundaryRow> = shown.map(|(result, _)| result.record.clone()).collect();
@@ -105,22 +98,13 @@ pub(super) fn boundaries(
 #[derive(Clone)]
 struct FoundRow {
     record: BoundaryRow,
-    /// Number of networks that put its boundary in doubt, and number that erode.
-    unsteady: Option<[u64; 2]>,
     /// Networks that erode at every ratio of the search.
     eroding: u64,
-    /// Notes on its boundary of no erosion.
-    of_boundary: Vec<Note>,
     /// For an end that cannot set the answer: the ratio that its first network holds; nothing more is known.
     spared_at: Option<f64>,
 }
 
 impl FoundRow {
-    /// True if it is an end that cannot set the answer.
-    fn is_spared(&self) -> bool {
-        self.spared_at.is_some()
-    }
-
     /// Why no ratio is known that holds.
     fn unheld(&self) -> Option<Note> {
         let networks = self.record.networks.len() as u64;
@@ -128,14 +112,6 @@ impl FoundRow {
             0 => Note::NothingWalked {},
             networks_eroding => Note::ErodesEverywhere { networks_eroding, networks },
         })
-    }
-
-    /// Result under the name of a row, for which this is the end that holds least.
-    fn named(&self, row: &Row) -> Self {
-        let as_end = Some(self.record.density.clone());
-        let record =
-            BoundaryRow { density: row.density.clone(), as_end, end_of: None, ..self.record.clone() };
-        Self { record, ..self.clone() }
     }
 }
 
@@ -156,7 +132,7 @@ fn is_in_range(row: &Row, other: &Row) -> bool {
 /// Results of the row itself, if it was searched, and of the ends of its range.
 fn range<'a>(row: &'a Row, rows: &'a [Row], results: &'a [FoundRow]) -> impl Iterator<Item = &'a FoundRow> {
     let in_range = rows.iter().zip(results).filter(move |(other, _)| is_in_range(row, other));
-    in_range.map(|(_, result)| result).filter(|result| !result.is_spared())
+    in_range.map(|(_, result)| result).filter(|result| result.spared_at.is_none())
 }
 
 /// Notes on ends of a row's range that were not searched.
@@ -213,23 +189,19 @@ fn all_notes(rows: Vec<(String, Vec<Note>)>, boundaries: &[BoundaryRow]) -> Vec<
 /// Notes on "no erosion" for a row, at the ratio that nearly all networks hold over the range of its curve.
 fn judged(
     row: &Row,
-    (result, rows, results): (&FoundRow, &[Row], &[FoundRow]),
-    held: Option<f64>,
-    unbounded: Option<Note>,
+    (record, rows, results): (&BoundaryRow, &[Row], &[FoundRow]),
 ) -> Result<Vec<Note>, RunError> {
-    let record = &result.record;
-    let Some(held) = held else {
-        let why = unbounded.into_iter().chain(result.of_boundary.iter().cloned());
+    let unbounded = unbounded(row, rows, results);
+    let Some(held) = held_over_range(row, rows, results) else {
+        let why = unbounded.into_iter().chain(record.no_erosion_notes.iter().cloned());
         return Ok(Judged::new(row, USUAL_RATIO)?.notes(row, why.collect()));
     };
     let judged = Judged::new(row, held)?;
     let least = range(row, rows, results).min_by(|a, b| holds_less(a, b));
-    let unsteady = least.and_then(|end| end.unsteady);
-    let unsteady =
-        unsteady.map(|[networks_held, networks_eroding]| Note::Unsteady { networks_held, networks_eroding });
+    let unsteady = least.and_then(|end| end.record.unsteady.clone());
     let of_boundary = match &record.no_erosion {
         Some(boundary) => Vec::from_iter(row.thicker(boundary.high.unwrap_or(boundary.median).max(held))),
-        None => result.of_boundary.clone(),
+        None => record.no_erosion_notes.clone(),
     };
     let why = [unsteady, unbounded].into_iter().flatten();
     Ok(judged.notes(row, why.chain(of_boundary).collect()))
@@ -295,24 +267,25 @@ fn base(row: &Row, name: &str) -> BaseStated {
 
 /// One row of the record.
 fn found_row(row: &Row, done: &[&Done]) -> FoundRow {
-    let networks = |value: fn(&Done) -> Option<f64>, beyond: fn(&Done) -> Option<Beyond>| {
-        let one = |done: &&Done| value(done).ok_or(beyond(done).unwrap_or(Beyond::Above));
-        done.iter().map(one).collect::<Vec<_>>()
+    type End = fn(&Found) -> (Option<f64>, &Option<Beside>);
+    let [first, second]: [End; 2] = [
+        |found| (found.no_erosion, &found.no_erosion_beyond),
+        |found| (found.continuing, &found.continuing_beyond),
+    ];
+    let networks = |end: End| -> Vec<Result<f64, Beyond>> {
+        let one = |done: &&Done| match end(&done.found) {
+            (Some(ratio), _) => Ok(ratio),
+            (None, beside) => Err(beside.as_ref().map_or(Beyond::Above, |(beyond, _)| *beyond)),
+        };
+        done.iter().map(one).collect()
     };
-    let first = networks(
-        |done| done.found.no_erosion,
-        |done| done.found.no_erosion_beyond.as_ref().map(|(beyond, _)| *beyond),
-    );
-    let second = networks(
-        |done| done.found.continuing,
-        |done| done.found.continuing_beyond.as_ref().map(|(beyond, _)| *beyond),
-    );
     // Reason why some networks have no boundary, taken from the first of them.
-    let ended = |beside: fn(&Done) -> Option<&Beside>| {
-        let all: Vec<&Ended> = done.iter().filter_map(|done| Some(&beside(done)?.1)).collect();
+    let ended = |end: End| {
+        let all: Vec<_> = done.iter().filter_map(|done| Some(&end(&done.found).1.as_ref()?.1)).collect();
         all.first().map(|why| why.note(all.len() as u64))
     };
-    let [no_erosion, continuing] = [&first, &second].map(|networks| Boundary::of(networks, row.d85_mm));
+    let (of_first, of_second) = (networks(first), networks(second));
+    let [no_erosion, continuing] = [&of_first, &of_second].map(|networks| Boundary::of(networks, row.d85_mm));
     let holds_to = if no_erosion.is_none() { holds_to(done) } else { None };
     let ratio = no_erosion.as_ref().map_or(holds_to.unwrap_or(USUAL_RATIO), |boundary| boundary.median);
     let layers = row.layers(ratio).unwrap_or(row.case.network.layers);
@@ -327,11 +300,11 @@ fn found_row(row: &Row, done: &[&Done]) -> FoundRow {
         let greatest = boundary.as_ref().map(|boundary| boundary.high.unwrap_or(boundary.median));
         row.thicker(greatest.or(holds_to)?)
     };
-    let of_first = ended(|done| done.found.no_erosion_beyond.as_ref());
-    let of_pan = of_first.as_ref().and_then(|_| of_pan(row));
-    let of_boundary: Vec<Note> = [of_first, of_pan, thicker(&no_erosion)].into_iter().flatten().collect();
-    let of_second = [ended(|done| done.found.continuing_beyond.as_ref()), thicker(&continuing)];
-    let unsteady = no_erosion.as_ref().and_then(|_| steadiness::doubt(done));
+    let ended_first = ended(first);
+    let of_pan = ended_first.as_ref().and_then(|_| of_pan(row));
+    let no_erosion_notes = [ended_first, of_pan, thicker(&no_erosion)].into_iter().flatten().collect();
+    let continuing_notes = [ended(second), thicker(&continuing)].into_iter().flatten().collect();
+    let unsteady = no_erosion.as_ref().and_then(|_| doubt(done));
     let record = BoundaryRow {
         density: row.density.clone(),
         thickness: row.thickness.to_string(),
@@ -342,10 +315,10 @@ fn found_row(row: &Row, done: &[&Done]) -> FoundRow {
         },
         grains_per_void: row.case.filter.grains_per_void,
         no_erosion,
-        no_erosion_notes: of_boundary.clone(),
+        no_erosion_notes,
         holds_to,
         continuing,
-        continuing_notes: of_second.into_iter().flatten().collect(),
+        continuing_notes,
         unsteady: unsteady
             .map(|[networks_held, networks_eroding]| Note::Unsteady { networks_held, networks_eroding }),
         not_monotone: done.iter().filter(|done| done.found.is_not_monotone).count() as u64,
@@ -360,9 +333,8 @@ fn found_row(row: &Row, done: &[&Done]) -> FoundRow {
         as_end: None,
         end_of: row.end_of.clone(),
     };
-    let eroding = first.iter().filter(|end| **end == Err(Beyond::Below)).count() as u64;
-    let spared_at = done.iter().find_map(|done| done.found.spared_at);
-    FoundRow { record, unsteady, eroding, of_boundary, spared_at }
+    let eroding = of_first.iter().filter(|end| **end == Err(Beyond::Below)).count() as u64;
+    FoundRow { record, eroding, spared_at: done.iter().find_map(|done| done.found.spared_at) }
 }
 
 /// The ratio that nearly all networks hold if their median lies above all ratios of the search: a network
@@ -381,4 +353,62 @@ fn holds_to(done: &[&Done]) -> Option<f64> {
 fn of_pan(row: &Row) -> Option<Note> {
     let pan = row.stated.base.gradation.pan_fraction();
     (pan >= THRESHOLD).then_some(Note::PanErodes { finest_percent: 100.0 * pan })
+}
+
+/// Networks whose no-erosion boundary is in doubt: the number that hold a ratio above an eroding one, if that
+/// is half or more of the networks that erode, and the number that erode.
+fn doubt(done: &[&Done]) -> Option<[u64; 2]> {
+    let eroding: Vec<&&Done> = done.iter().filter(|network| network.found.no_erosion.is_some()).collect();
+    let unsteady = eroding.iter().filter(|network| comes_and_goes(&network.found.walks)).count();
+    (unsteady > 0 && 2 * unsteady >= eroding.len()).then_some([unsteady as u64, eroding.len() as u64])
+}
+
+/// True if some ratio holds in the first run above one that erodes, for walks in the order of their ratios.
+fn comes_and_goes(walks: &[(f64, f64, Option<f64>)]) -> bool {
+    let mut of_first = walks.iter().map(|walk| walk.1);
+    of_first.any(|eroded| eroded >= THRESHOLD) && of_first.any(|eroded| eroded < THRESHOLD)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::boundary::search::Ended;
+
+    /// A network whose first run erodes these percentages at ratios 1, 2 and on, and whose second run does at
+    /// 4.
+    fn network(first: &[f64]) -> Done {
+        let walks: Vec<_> = (1u32..).zip(first).map(|(s, e)| (f64::from(s), e / 100.0, Some(0.0))).collect();
+        let no_erosion = walks.iter().find(|walk| walk.1 >= THRESHOLD).map(|walk| walk.0);
+        let beyond = no_erosion.is_none().then_some((Beyond::Above, Ended::Holds(1, 4.0)));
+        let result = Found { no_erosion, no_erosion_beyond: beyond, walks, ..Found::default() };
+        Done { row: 0, network: 1, found: result }
+    }
+
+    fn doubt_of(networks: &[&[f64]]) -> Option<[u64; 2]> {
+        let done: Vec<Done> = networks.iter().map(|first| network(first)).collect();
+        doubt(&done.iter().collect::<Vec<_>>())
+    }
+
+    const STEADY: &[f64] = &[1.0, 5.0, 8.0, 20.0];
+    const UNSTEADY: &[f64] = &[1.0, 7.5, 7.4, 20.0];
+    const HOLDING: &[f64] = &[1.0, 2.0, 3.0, 4.0];
+
+    #[test]
+    fn half_of_the_networks_that_erode_are_enough() {
+        assert_eq!(doubt_of(&[STEADY, STEADY, UNSTEADY]), None);
+        assert_eq!(doubt_of(&[STEADY, UNSTEADY]), Some([1, 2]));
+        assert_eq!(doubt_of(&[STEADY, UNSTEADY, HOLDING]), Some([1, 2]));
+        assert_eq!(doubt_of(&[UNSTEADY]), Some([1, 1]));
+        assert_eq!(doubt_of(&[STEADY]), None);
+    }
+
+    #[test]
+    fn the_second_run_says_nothing_of_the_boundary_of_no_erosion() {
+        let mut second = network(STEADY);
+        for (walk, eroded) in second.found.walks.iter_mut().zip([0.0, 0.08, 0.01, 0.02]) {
+            walk.2 = Some(eroded);
+        }
+        second.found.is_not_monotone = true;
+        assert_eq!(doubt(&[&second]), None);
+    }
 }

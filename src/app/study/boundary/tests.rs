@@ -3,12 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::search::Ended;
 use super::*;
-use crate::case::Case;
 use crate::outcome::boundary::BoundaryRow;
 use crate::run::prepare::PrepareOptions;
-use crate::run::walk_case;
-use crate::scene::Scene;
+use crate::run::{case_of, walk_case};
 use voidwalk_core::gradation::Gradation;
 use voidwalk_practice::design::RowNote;
 
@@ -139,10 +138,7 @@ fn three_boundaries_are_those_of_scans_by_hand() {
             let of_ratio = format!("base.d15f_over_d85b={ratio}");
             // With the engine of a search.
             let of_scene = [&wide[..], &[&of_ratio, "record.sensitivity=[]", "engine=expected"]];
-            let scene =
-                Scene::built_in(&of_scene.concat().iter().map(ToString::to_string).collect::<Vec<_>>())
-                    .unwrap();
-            let outcome = walk_case(&Case::new(scene).unwrap(), &Callbacks::default()).unwrap();
+            let outcome = walk_case(&case_of(&of_scene.concat()), &Callbacks::default()).unwrap();
             for (network, replicate) in outcome.replicates.iter().enumerate() {
                 let erodes = replicate.runs[..=run].iter().all(|record| record.eroded_mass_fraction >= 0.075);
                 if erodes && by_hand[network].is_none() {
@@ -393,4 +389,46 @@ fn a_boundary_below_the_bracket_leaves_no_ratio_that_holds() {
     assert!(row.no_erosion.as_ref().unwrap().cautious().is_none(), "{row:?}");
     assert!(beside.least_held().is_none(), "{beside:?}");
     assert!(beside.notes.iter().any(|row| row.note.id() == "erodes_everywhere"), "{:?}", beside.notes);
+}
+
+fn done(row: usize, network: u64, found: Found) -> Done {
+    Done { row, network, found }
+}
+
+fn at(ratio: f64) -> Found {
+    Found { no_erosion: Some(ratio), ..Found::default() }
+}
+
+fn beyond(side: Beyond, why: Ended) -> Found {
+    Found { no_erosion_beyond: Some((side, why)), ..Found::default() }
+}
+
+#[test]
+fn an_end_has_to_hold_clearly_more() {
+    let wanted = |less: &[Found]| {
+        let done: Vec<Done> =
+            (1..).zip(less).map(|(network, result)| done(1, network, result.clone())).collect();
+        clear_of(&done, &[(1, less.len() as u64)])
+    };
+    let near = |ratio: Option<f64>, wanted: f64| ratio.is_some_and(|ratio| (ratio - wanted).abs() < 1e-12);
+    assert!(near(wanted(&[at(4.0)]), 4.4));
+    // 4 % apart, and 25 %.
+    assert!(near(wanted(&[at(4.0), at(4.16)]), 4.16 * 1.1));
+    assert!(near(wanted(&[at(5.0), at(4.0)]), 5.0 * 1.5625));
+    let erodes = beyond(Beyond::Below, Ended::Erodes(0.5));
+    let holds = beyond(Beyond::Above, Ended::Holds(1, 100.0));
+    let unknown = beyond(Beyond::Above, Ended::NotWalked("too fine".into()));
+    for less in [erodes, holds, unknown] {
+        assert_eq!(wanted(&[at(4.0), less.clone()]), None, "{less:?}");
+        assert_eq!(wanted(std::slice::from_ref(&less)), None, "{less:?}");
+    }
+}
+
+#[test]
+fn all_networks_of_the_worse_end_and_every_range_count() {
+    let all = [done(1, 2, at(4.1)), done(1, 1, at(4.0)), done(3, 1, at(5.0))];
+    assert_eq!(clear_of(&all, &[(1, 2)]), Some(4.1 * CLEAR));
+    assert_eq!(clear_of(&all, &[(1, 2), (3, 1)]), Some(5.0 * CLEAR));
+    assert_eq!(clear_of(&all, &[(1, 3)]), None);
+    assert_eq!(clear_of(&all, &[]), None);
 }

@@ -4,14 +4,18 @@
 //! on the torus, where a grain represents all its images at once. The torus is right as long as the cavity of
 //! a grain neither overlaps nor touches, facet to facet, the cavities of its own images; a violation is
 //! detected ([`Wrapped`]).
+//!
+//! # Order
+//! Coarse to fine, each level along a Hilbert curve. Neighbours on the curve are neighbours in space, so a
+//! walk from the grain before is short; and each level is an even sample of the whole, so no cavity grows
+//! long (the purpose of the biased randomised order of Amenta, Choi & Rote, doi:10.1145/777792.777824,
+//! without the random numbers).
 
-use super::mesh::{Corner, INFINITE, Mesh, NONE, Positions, Shift, corner, grain, image};
-use super::points::GrainPoint;
+use super::mesh::{Corner, GrainPoint, INFINITE, Mesh, NONE, Points, Shift, corner, grain, image};
 use super::predicates::{facets, in_conflict, orientation};
 use std::cmp::Ordering;
 
 /// The cavity of a grain met the cavity of one of its images.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Wrapped;
 
 /// State of a tetrahedron in the insertion that numbered it.
@@ -47,10 +51,14 @@ struct Edge {
     facet: u32,
 }
 
+impl Edge {
+    const UNUSED: Self = Self { insertion: 0, ends: [(0, Shift::ZERO); 2], tetrahedron: 0, facet: 0 };
+}
+
 /// A triangulation that grows.
 pub(super) struct Builder<'a> {
     pub(super) mesh: Mesh,
-    positions: Positions<'a>,
+    points: &'a Points,
     /// Grain behind each point and its images, which breaks ties between coincident centres.
     identity: &'a [u32],
     marks: Vec<Mark>,
@@ -66,13 +74,12 @@ pub(super) struct Builder<'a> {
 
 impl<'a> Builder<'a> {
     /// Continues from a mesh, which must not be empty.
-    pub(super) fn new(mesh: Mesh, positions: Positions<'a>, identity: &'a [u32]) -> Self {
+    pub(super) fn new(mesh: Mesh, points: &'a Points, identity: &'a [u32]) -> Self {
         let marks = vec![Mark { insertion: 0, state: 0 }; mesh.corners.len()];
         let last = (mesh.corners.iter().position(|c| c[0] != NONE).unwrap_or(0) as u32, Shift::ZERO);
-        let unused = Edge { insertion: 0, ends: [(0, Shift::ZERO); 2], tetrahedron: 0, facet: 0 };
         Self {
             mesh,
-            positions,
+            points,
             identity,
             marks,
             insertion: 0,
@@ -81,20 +88,20 @@ impl<'a> Builder<'a> {
             stack: Vec::new(),
             stands: Vec::new(),
             new: Vec::new(),
-            edges: vec![unused; 256],
+            edges: vec![Edge::UNUSED; 256],
         }
     }
 
     /// Makes a free triangulation of the first four points of `order` that span space: these points come
     /// first in `order` afterwards. `None` if all lie in one plane.
-    pub(super) fn first(positions: Positions<'a>, identity: &'a [u32], order: &mut [u32]) -> Option<Self> {
-        let spanning = spanning(positions.at, order)?;
+    pub(super) fn first(points: &'a Points, identity: &'a [u32], order: &mut [u32]) -> Option<Self> {
+        let spanning = spanning(&points.at, order)?;
         for (place, at) in spanning.into_iter().enumerate() {
             // Later places hold later positions, so no placed point moves.
             order[place..=at].rotate_right(1);
         }
         let mut corners = [order[0], order[1], order[2], order[3]];
-        if orientation(&corners.map(|p| positions.at[p as usize])) < 0 {
+        if orientation(&corners.map(|p| points.at[p as usize])) < 0 {
             corners.swap(2, 3);
         }
         let mut mesh = Mesh::default();
@@ -117,7 +124,7 @@ impl<'a> Builder<'a> {
                 mesh.link((outer[i], a), (outer[j], b), Shift::ZERO);
             }
         }
-        Some(Self::new(mesh, positions, identity))
+        Some(Self::new(mesh, points, identity))
     }
 
     /// Tells if point `p` at `at` removes tetrahedron `t`, in the translate `shift`.
@@ -131,7 +138,7 @@ impl<'a> Builder<'a> {
         if !PERIODIC && let Some(i) = self.mesh.infinite_corner(t) {
             return self.infinite_conflict(t, i, p, at);
         }
-        in_conflict(&self.positions.corners::<PERIODIC>(corners, shift), at, tie)
+        in_conflict(&self.points.corners::<PERIODIC>(corners, shift), at, tie)
     }
 
     /// Tells if a point is beyond a facet of the hull; in its plane, the tetrahedron behind it decides.
@@ -139,7 +146,7 @@ impl<'a> Builder<'a> {
     fn infinite_conflict(&self, t: u32, infinite: usize, p: u32, at: &GrainPoint) -> bool {
         let mut corners = self.mesh.corners[t as usize];
         corners[infinite] = p;
-        match orientation(&corners.map(|c| self.positions.at[c as usize])) {
+        match orientation(&corners.map(|c| self.points.at[c as usize])) {
             0 => self.conflict::<false>(self.mesh.neighbours[t as usize][infinite] / 4, Shift::ZERO, p, at),
             side => side > 0,
         }
@@ -156,7 +163,7 @@ impl<'a> Builder<'a> {
             if !PERIODIC && self.mesh.infinite_corner(t).is_some() {
                 return (t, shift);
             }
-            let corners = self.positions.corners::<PERIODIC>(&self.mesh.corners[t as usize], shift);
+            let corners = self.points.corners::<PERIODIC>(&self.mesh.corners[t as usize], shift);
             let Some(i) = facets(&corners, at) else { return (t, shift) };
             if PERIODIC {
                 shift = shift.plus(self.mesh.shifts[t as usize][i]);
@@ -165,17 +172,16 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Inserts point `p`; false if it is hidden by the others.
-    pub(super) fn insert<const PERIODIC: bool>(&mut self, p: u32) -> Result<bool, Wrapped> {
-        let at = self.positions.at[p as usize];
+    /// Inserts point `p`, unless the others hide it.
+    pub(super) fn insert<const PERIODIC: bool>(&mut self, p: u32) -> Result<(), Wrapped> {
+        let at = self.points.at[p as usize];
         let start = self.locate::<PERIODIC>(&at);
         if !self.conflict::<PERIODIC>(start.0, start.1, p, &at) {
             self.last = start;
-            return Ok(false);
+            return Ok(());
         }
         self.carve::<PERIODIC>(start, p, &at)?;
-        self.fill::<PERIODIC>()?;
-        Ok(true)
+        self.fill::<PERIODIC>()
     }
 
     /// Collects the cavity in `dead` and its surface in `stands`.
@@ -240,7 +246,6 @@ impl<'a> Builder<'a> {
 
     /// Replaces the cavity by tetrahedra from its surface to the new grain.
     fn fill<const PERIODIC: bool>(&mut self) -> Result<(), Wrapped> {
-        let insertion = self.insertion;
         for stand in &self.stands {
             let mark = self.marks[(stand.outside / 4) as usize];
             if PERIODIC && mark.state & IN_CAVITY != 0 {
@@ -255,7 +260,7 @@ impl<'a> Builder<'a> {
         for stand in &self.stands {
             let (mut corners, mut shift) = (stand.grains, Shift::ZERO);
             if PERIODIC {
-                (corners, shift) = stored(&stand.grains, &stand.images)?;
+                (corners, shift) = stored(&stand.grains, &stand.images).ok_or(Wrapped)?;
             }
             let t = match self.dead.pop() {
                 Some(t) => {
@@ -273,8 +278,7 @@ impl<'a> Builder<'a> {
         }
         let wanted = (self.stands.len() * 4).next_power_of_two();
         if self.edges.len() < wanted {
-            let unused = Edge { insertion: 0, ends: [(0, Shift::ZERO); 2], tetrahedron: 0, facet: 0 };
-            self.edges = vec![unused; wanted];
+            self.edges = vec![Edge::UNUSED; wanted];
         }
         for k in 0..self.stands.len() {
             let stand = self.stands[k];
@@ -283,7 +287,7 @@ impl<'a> Builder<'a> {
                 // The two corners of that facet beside the new grain.
                 let others = [(stand.apex + 1 + i % 3) % 4, (stand.apex + 1 + (i + 1) % 3) % 4];
                 let ends = others.map(|c| (stand.grains[c], stand.images[c]));
-                self.pair(insertion, ends, k as u32, facet as u32);
+                self.pair(ends, k as u32, facet as u32);
             }
         }
         self.last = self.new[0];
@@ -292,11 +296,11 @@ impl<'a> Builder<'a> {
 
     /// Links the two new tetrahedra that share an edge of the cavity's surface, once both are known.
     #[inline(always)]
-    fn pair(&mut self, insertion: u32, mut ends: [(u32, Shift); 2], k: u32, facet: u32) {
+    fn pair(&mut self, mut ends: [(u32, Shift); 2], k: u32, facet: u32) {
         if ends[1] < ends[0] {
             ends.swap(0, 1);
         }
-        let mask = self.edges.len() - 1;
+        let (insertion, mask) = (self.insertion, self.edges.len() - 1);
         let mixed = (u64::from(ends[0].0) << 32 | u64::from(ends[1].0)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let mut slot = (mixed >> 40) as usize & mask;
         loop {
@@ -315,17 +319,12 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Corners brought to their stored translate, and the shift from there to where they are.
-#[inline(always)]
-fn stored(grains: &[u32; 4], images: &[Shift; 4]) -> Result<([Corner; 4], Shift), Wrapped> {
+/// Corners brought to their stored translate, and the shift from there to where they are; `None` if the
+/// images reach over more than four cells.
+pub(super) fn stored(grains: &[u32; 4], images: &[Shift; 4]) -> Option<([Corner; 4], Shift)> {
     if images.iter().all(|&i| i == Shift::ZERO) {
-        return Ok((*grains, Shift::ZERO));
+        return Some((*grains, Shift::ZERO));
     }
-    normalised(grains, images).ok_or(Wrapped)
-}
-
-/// Does the work of [`stored`]; `None` if the images reach over more than four cells.
-pub(super) fn normalised(grains: &[u32; 4], images: &[Shift; 4]) -> Option<([Corner; 4], Shift)> {
     let cells = images.map(Shift::cells);
     let least = Shift::new(std::array::from_fn(|axis| cells.iter().fold(i32::MAX, |m, c| m.min(c[axis]))));
     let mut corners = [0; 4];
@@ -355,4 +354,119 @@ fn spanning(at: &[GrainPoint], order: &[u32]) -> Option<[usize; 4]> {
     let c = point(chosen[2]);
     chosen[3] = (chosen[2] + 1..order.len()).find(|&i| orientation(&[a, b, c, point(i)]) != 0)?;
     Some(chosen)
+}
+
+/// Order of insertion for a free triangulation.
+pub(super) fn free_order(at: &[GrainPoint]) -> Vec<u32> {
+    let values = |axis: usize| at.iter().map(move |p| p[axis]);
+    let low: [f64; 3] = std::array::from_fn(|axis| values(axis).fold(f64::INFINITY, f64::min));
+    let high = |axis: usize| values(axis).fold(f64::NEG_INFINITY, f64::max);
+    let extent = (0..3).map(|axis| high(axis) - low[axis]).fold(1.0, f64::max);
+    levels(&sorted(at, low, extent), (at.len() / 64).max(1))
+}
+
+/// Bits per axis of a place on the curve.
+const BITS: u32 = 16;
+
+/// Growth of the number of grains from one level to the next, about.
+const GROWTH: usize = 8;
+
+/// Distance along the Hilbert curve of a cell of a grid of 2^[`BITS`] cells a side (Skilling,
+/// *Programming the Hilbert curve*, doi:10.1063/1.1751381).
+fn along_curve(mut x: [u32; 3]) -> u64 {
+    let mut q = 1 << (BITS - 1);
+    while q > 1 {
+        let p = q - 1;
+        for i in 0..3 {
+            if x[i] & q != 0 {
+                x[0] ^= p;
+            } else {
+                let t = (x[0] ^ x[i]) & p;
+                x[0] ^= t;
+                x[i] ^= t;
+            }
+        }
+        q >>= 1;
+    }
+    x[1] ^= x[0];
+    x[2] ^= x[1];
+    let mut t = 0;
+    q = 1 << (BITS - 1);
+    while q > 1 {
+        if x[2] & q != 0 {
+            t ^= q - 1;
+        }
+        q >>= 1;
+    }
+    let spread = |value: u32| -> u64 {
+        let mut v = u64::from(value ^ t);
+        v = (v | v << 32) & 0x001f_0000_0000_ffff;
+        v = (v | v << 16) & 0x001f_0000_ff00_00ff;
+        v = (v | v << 8) & 0x100f_00f0_0f00_f00f;
+        v = (v | v << 4) & 0x10c3_0c30_c30c_30c3;
+        (v | v << 2) & 0x1249_2492_4924_9249
+    };
+    spread(x[0]) << 2 | spread(x[1]) << 1 | spread(x[2])
+}
+
+/// Sorts all points along the curve through the box from `low` to `low + extent`.
+pub(super) fn sorted(at: &[GrainPoint], low: [f64; 3], extent: f64) -> Vec<u32> {
+    let scale = f64::from(1u32 << BITS) / extent;
+    let mut keyed: Vec<(u64, u32)> = at
+        .iter()
+        .zip(0u32..)
+        .map(|(point, i)| {
+            let cell = |axis: usize| (((point[axis] - low[axis]) * scale) as u32).min((1 << BITS) - 1);
+            (along_curve([cell(0), cell(1), cell(2)]), i)
+        })
+        .collect();
+    keyed.sort_unstable();
+    keyed.into_iter().map(|(_, i)| i).collect()
+}
+
+/// Reorders the points: every `stride`th first, then level by level the rest.
+pub(super) fn levels(sorted: &[u32], mut stride: usize) -> Vec<u32> {
+    let mut placed = vec![false; sorted.len()];
+    let mut order = Vec::with_capacity(sorted.len());
+    loop {
+        for i in (0..sorted.len()).step_by(stride) {
+            if !std::mem::replace(&mut placed[i], true) {
+                order.push(sorted[i]);
+            }
+        }
+        if stride == 1 {
+            return order;
+        }
+        stride = (stride / GROWTH).max(1);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_curve_steps_from_cell_to_neighbouring_cell() {
+        let mut cells = Vec::new();
+        for x in 0..8u32 {
+            for y in 0..8 {
+                for z in 0..8 {
+                    cells.push((along_curve([x, y, z]), [x as i32, y as i32, z as i32]));
+                }
+            }
+        }
+        cells.sort_unstable();
+        for pair in cells.windows(2) {
+            let step: i32 = (0..3).map(|axis| (pair[0].1[axis] - pair[1].1[axis]).abs()).sum();
+            assert_eq!(step, 1, "{pair:?}");
+        }
+    }
+
+    #[test]
+    fn every_point_has_one_place() {
+        let mut order = levels(&(0..1000).collect::<Vec<_>>(), 77);
+        assert_eq!(order[..3], [0, 77, 154]);
+        order.sort_unstable();
+        assert!(order.into_iter().eq(0..1000));
+    }
 }

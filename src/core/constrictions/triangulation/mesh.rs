@@ -1,36 +1,300 @@
-//! Topology: tetrahedra as columns, in space or on the torus.
+//! Grain centres on an integer grid, and the tetrahedra between them, in space or on the torus.
 //!
+//! # Grid
+//! `x + L` rounds, and a rounded image no longer lies on exactly the grain's sphere: facets then fail to pair
+//! across the boundary of a lattice. So centres, radii and cell lengths are first rounded to multiples of one
+//! power of two, 2^-50 of the largest length (a grain of a thousandth of the cell moves by 1e-12 of its size
+//! at most; centres that are already such multiples do not move). From there on every coordinate, every image
+//! up to seven cells away and every difference of two is an integer held exactly by an f64, every predicate
+//! has one exact answer, and that answer is the same for all images. A factor of two on all lengths changes
+//! the grid with them, hence no bit.
+//!
+//! # Tetrahedra
 //! Tetrahedron `t` is entry `t` of each column. Its corners are stored in one of its periodic translates; a
 //! walk that crosses a facet carries along the shift, in cells, of its present translate from the stored one.
 //! Without a cell all shifts are zero.
 
-use super::points::{GrainPoint, MOST_GRAINS, Points};
+use crate::packing::{Cell, Packing};
+
+/// Centre x, y, z and radius in grid units: integers, exact in f64.
+pub type GrainPoint = [f64; 4];
+
+/// Vector from one point to another.
+#[inline(always)]
+pub fn offset(from: &[f64], to: &[f64]) -> [f64; 3] {
+    [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
+}
+
+/// Inner product.
+#[inline(always)]
+pub fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Cross product.
+#[inline(always)]
+pub fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// Facet opposite a corner of a tetrahedron.
+pub fn facet(corners: &[GrainPoint; 4], corner: usize) -> [GrainPoint; 3] {
+    [1, 2, 3].map(|k| corners[(corner + k) % 4])
+}
+
+/// Edges of a tetrahedron from a corner to the others.
+pub fn edges(corners: &[GrainPoint; 4], corner: usize) -> [[f64; 3]; 3] {
+    facet(corners, corner).map(|other| offset(&corners[corner], &other))
+}
+
+/// Six times the volume between three edges.
+pub fn six_volume([e, f, g]: &[[f64; 3]; 3]) -> f64 {
+    dot(e, &cross(f, g)).abs()
+}
+
+/// Largest number of grains that a [`Corner`] can name.
+pub(super) const MOST_GRAINS: usize = (1 << GRAIN_BITS) - 1;
+
+/// Thickness of grains that lie in one plane, over the largest diameter.
+const FLAT: f64 = 1e-6;
+
+/// Bits of the largest length in grid units.
+const BITS: i32 = 50;
+
+/// The grains of a packing on the grid.
+#[derive(Clone, Debug)]
+pub(super) struct Points {
+    /// Centre, wrapped into the cell, and radius by grain.
+    pub(super) at: Vec<GrainPoint>,
+    /// Cell lengths in grid units; `None` for free boundaries.
+    pub(super) cell: Option<[f64; 3]>,
+    /// Displacement along each axis by a cell; zero for free boundaries.
+    period: [f64; 3],
+    /// Displacement by the six image bits of a corner.
+    images: [[f64; 3]; 64],
+    /// Length of a grid unit (mm), a power of two.
+    pub(super) unit_mm: f64,
+    /// Origin that was subtracted from the coordinates before rounding (mm).
+    pub(super) origin_mm: [f64; 3],
+}
+
+impl Points {
+    /// Checks a packing and puts it on the grid.
+    pub(super) fn new(packing: &Packing) -> Result<Self, TriangulationError> {
+        let columns = [&packing.x, &packing.y, &packing.z];
+        let (grains, largest_mm) = check(packing)?;
+        let (origin_mm, extent_mm) = match packing.cell {
+            Cell::Periodic(lengths) => ([0.0; 3], lengths.iter().fold(0.0, |a: f64, &b| a.max(b))),
+            Cell::Free => {
+                let low = columns.map(|c| c.iter().fold(f64::INFINITY, |a, &b| a.min(b)));
+                let high = columns.map(|c| c.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b)));
+                (low, (0..3).fold(largest_mm, |a, axis| a.max(high[axis] - low[axis])))
+            }
+        };
+        let exponent = libm::frexp(extent_mm).1 - BITS;
+        if !extent_mm.is_finite() || !(-900..900).contains(&exponent) {
+            return Err(TriangulationError::Extent(extent_mm));
+        }
+        let (unit_mm, scale) = (libm::ldexp(1.0, exponent), libm::ldexp(1.0, -exponent));
+        let cell = match packing.cell {
+            Cell::Periodic(lengths) => Some(lengths.map(|length| libm::rint(length * scale))),
+            Cell::Free => None,
+        };
+        let place = |axis: usize, value: f64| match (packing.cell, cell) {
+            (Cell::Periodic(lengths), Some(cell)) => wrapped(value, lengths[axis], scale, cell[axis]),
+            _ => libm::rint((value - origin_mm[axis]) * scale),
+        };
+        let at = (0..grains).map(|i| {
+            let [x, y, z] = [0, 1, 2].map(|axis| place(axis, columns[axis][i]));
+            [x, y, z, libm::rint(0.5 * packing.diameter[i] * scale)]
+        });
+        Ok(Self { unit_mm, origin_mm, ..Self::of(at.collect(), cell) })
+    }
+
+    /// Points that are on a grid already.
+    pub(super) fn of(at: Vec<GrainPoint>, cell: Option<[f64; 3]>) -> Self {
+        let period = cell.unwrap_or([0.0; 3]);
+        let along = |bits: usize, axis: usize| ((bits >> (2 * axis)) & 3) as f64 * period[axis];
+        let images = std::array::from_fn(|bits| std::array::from_fn(|axis| along(bits, axis)));
+        Self { at, cell, period, images, unit_mm: 1.0, origin_mm: [0.0; 3] }
+    }
+
+    /// Displacement by whole cells, exact.
+    #[inline(always)]
+    pub(super) fn displacement(&self, shift: Shift) -> [f64; 3] {
+        let [x, y, z] = shift.cells();
+        [f64::from(x) * self.period[0], f64::from(y) * self.period[1], f64::from(z) * self.period[2]]
+    }
+
+    /// Position of a corner in the translate `shift`.
+    #[inline(always)]
+    pub(super) fn corner(&self, corner: Corner, shift: Shift) -> GrainPoint {
+        let (at, by) = (&self.at[grain(corner) as usize], self.displacement(shift));
+        let image = &self.images[(corner >> GRAIN_BITS) as usize];
+        [at[0] + (image[0] + by[0]), at[1] + (image[1] + by[1]), at[2] + (image[2] + by[2]), at[3]]
+    }
+
+    /// Corners of a tetrahedron in the translate `shift`.
+    #[inline(always)]
+    pub(super) fn corners<const PERIODIC: bool>(
+        &self,
+        corners: &[Corner; 4],
+        shift: Shift,
+    ) -> [GrainPoint; 4] {
+        // Written out: the map of an array is not reliably unrolled.
+        let [a, b, c, d] = *corners;
+        let point = |c: Corner| match PERIODIC {
+            true => self.corner(c, shift),
+            false => self.at[grain(c) as usize],
+        };
+        [point(a), point(b), point(c), point(d)]
+    }
+
+    /// Tells if the centres lie in one plane, or on one line.
+    pub(super) fn is_flat(&self) -> bool {
+        let from = self.at[0];
+        let offsets: Vec<[f64; 3]> = self.at.iter().map(|p| offset(&from, p)).collect();
+        let square = |v: &[f64; 3]| dot(v, v);
+        let longest = |all: &mut dyn Iterator<Item = [f64; 3]>| {
+            all.max_by(|a, b| square(a).total_cmp(&square(b))).unwrap_or_default()
+        };
+        let along = longest(&mut offsets.iter().copied());
+        let normal = longest(&mut offsets.iter().map(|offset| cross(&along, offset)));
+        let flat = FLAT * 2.0 * self.at.iter().map(|p| p[3]).fold(0.0, f64::max);
+        let heights = || offsets.iter().map(|v| dot(v, &normal));
+        let thickness = heights().fold(0.0, f64::max) - heights().fold(0.0, f64::min);
+        square(&normal).sqrt() <= flat * square(&along).sqrt() || thickness <= flat * square(&normal).sqrt()
+    }
+}
+
+/// Converts `value` to grid units, brought into `0 .. cell`.
+fn wrapped(value: f64, length: f64, scale: f64, cell: f64) -> f64 {
+    let inside = libm::rint((value - libm::floor(value / length) * length) * scale);
+    if inside >= cell {
+        inside - cell
+    } else if inside < 0.0 {
+        inside + cell
+    } else {
+        inside
+    }
+}
+
+/// Number of grains and largest diameter of a packing that can be triangulated.
+fn check(packing: &Packing) -> Result<(usize, f64), TriangulationError> {
+    let grains = packing.diameter.len();
+    let columns = [("x", &packing.x), ("y", &packing.y), ("z", &packing.z)];
+    for (name, column) in columns {
+        if column.len() != grains {
+            return Err(TriangulationError::Columns { column: name, rows: column.len(), grains });
+        }
+        if let Some(grain) = column.iter().position(|value| !value.is_finite()) {
+            return Err(TriangulationError::Centre { grain, column: name, value: column[grain] });
+        }
+    }
+    if let Some(grain) = packing.diameter.iter().position(|d| !(d.is_finite() && *d > 0.0)) {
+        return Err(TriangulationError::Diameter(grain, packing.diameter[grain]));
+    }
+    if grains < 4 {
+        return Err(TriangulationError::TooFew(grains));
+    }
+    if grains > MOST_GRAINS {
+        return Err(TriangulationError::TooMany(grains));
+    }
+    let largest_mm = packing.diameter.iter().fold(0.0, |a: f64, &b| a.max(b));
+    if let Cell::Periodic(lengths) = packing.cell {
+        for (axis, length_mm) in ["x", "y", "z"].into_iter().zip(lengths) {
+            // This form refuses NaN as well.
+            if !(length_mm.is_finite() && length_mm >= 2.0 * largest_mm) {
+                return Err(TriangulationError::Narrow { axis, length_mm, largest_mm });
+            }
+        }
+    }
+    Ok((grains, largest_mm))
+}
+
+/// Reasons why a packing has no triangulation.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum TriangulationError {
+    /// Fewer than four grains.
+    #[error("{0} grains: a triangulation needs at least 4")]
+    TooFew(usize),
+    /// More grains than a corner can name.
+    #[error("{0} grains: at most 67108863 can be triangulated")]
+    TooMany(usize),
+    /// Columns of different lengths.
+    #[error("column {column} has {rows} rows, but there are {grains} diameters")]
+    Columns {
+        /// Name of the column.
+        column: &'static str,
+        /// Its rows.
+        rows: usize,
+        /// Rows of the diameter column.
+        grains: usize,
+    },
+    /// A coordinate that is not a number.
+    #[error("grain {grain}: {column} = {value} mm, but a centre must be finite")]
+    Centre {
+        /// Index of the grain, from 0.
+        grain: usize,
+        /// Name of the column.
+        column: &'static str,
+        /// Value of the column.
+        value: f64,
+    },
+    /// A diameter that is not a size.
+    #[error("grain {0}: diameter = {1} mm, but it must be finite and above 0")]
+    Diameter(usize, f64),
+    /// Lengths (mm) so large or so small that their products leave the range of f64.
+    #[error("the largest length is {0} mm, but it must lie between 1e-250 and 1e250")]
+    Extent(f64),
+    /// A cell in which a grain meets its own image.
+    #[error(
+        "the cell is {length_mm} mm along {axis}, but it must be at least twice the largest grain \
+         ({largest_mm} mm)"
+    )]
+    Narrow {
+        /// Axis of the cell.
+        axis: &'static str,
+        /// Its length.
+        length_mm: f64,
+        /// The largest diameter.
+        largest_mm: f64,
+    },
+    /// Free grains whose centres lie in one plane.
+    #[error("the centres of all {0} grains lie in one plane: there is nothing to triangulate")]
+    Coplanar(usize),
+    /// A periodic packing so empty that its tetrahedra reach across several cells.
+    #[error(
+        "{0} grains are too few to fill this periodic cell: tetrahedra reach across several images of it"
+    )]
+    Sparse(usize),
+}
 
 /// Whole cells along x, y, z: one signed byte each, x lowest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(in crate::constrictions) struct Shift(pub(super) u32);
+pub struct Shift(pub(super) u32);
 
 impl Shift {
-    pub(in crate::constrictions) const ZERO: Self = Self(0);
+    pub const ZERO: Self = Self(0);
 
-    pub(in crate::constrictions) fn new(cells: [i32; 3]) -> Self {
+    pub fn new(cells: [i32; 3]) -> Self {
         Self(cells.iter().rev().fold(0, |word, &c| (word << 8) | (c as u32 & 0xff)))
     }
 
     #[inline(always)]
-    pub(in crate::constrictions) fn cells(self) -> [i32; 3] {
+    pub fn cells(self) -> [i32; 3] {
         [self.0 as i8, (self.0 >> 8) as i8, (self.0 >> 16) as i8].map(i32::from)
     }
 
     /// Adds bytewise, without carries from one axis into the next.
     #[inline(always)]
-    pub(in crate::constrictions) fn plus(self, other: Self) -> Self {
+    pub fn plus(self, other: Self) -> Self {
         const LOW: u32 = 0x7f7f_7f7f;
         Self(((self.0 & LOW) + (other.0 & LOW)) ^ ((self.0 ^ other.0) & !LOW))
     }
 
     #[inline(always)]
-    pub(in crate::constrictions) fn minus(self, other: Self) -> Self {
+    pub fn minus(self, other: Self) -> Self {
         const HIGH: u32 = 0x8080_8080;
         Self(((self.0 | HIGH) - (other.0 & !HIGH)) ^ ((self.0 ^ !other.0) & HIGH))
     }
@@ -97,6 +361,15 @@ impl Mesh {
         self.shifts[u as usize][j] = Shift::ZERO.minus(shift);
     }
 
+    /// Tells if a facet meets exactly one other, which meets it.
+    pub(super) fn is_paired(&self, t: usize, i: usize) -> bool {
+        let across = self.neighbours[t][i];
+        let (u, j) = ((across / 4) as usize, (across % 4) as usize);
+        across != NONE
+            && self.neighbours[u][j] == (4 * t + i) as u32
+            && self.shifts[u][j] == Shift::ZERO.minus(self.shifts[t][i])
+    }
+
     /// Index of the corner at infinity, if any.
     #[inline(always)]
     pub(super) fn infinite_corner(&self, t: u32) -> Option<usize> {
@@ -104,7 +377,7 @@ impl Mesh {
     }
 
     /// Drops dead and infinite tetrahedra; facets towards infinity get [`NONE`].
-    pub(super) fn compact(&mut self) {
+    pub(super) fn compact(mut self) -> Self {
         let mut renumber = vec![NONE; self.corners.len()];
         let mut kept = 0;
         for (t, new) in renumber.iter_mut().enumerate() {
@@ -123,59 +396,7 @@ impl Mesh {
             let new = renumber[(*neighbour / 4) as usize];
             *neighbour = if new == NONE { NONE } else { 4 * new + *neighbour % 4 };
         }
-    }
-}
-
-/// Positions of the corners.
-#[derive(Clone, Debug)]
-pub(in crate::constrictions) struct Positions<'a> {
-    pub(super) at: &'a [GrainPoint],
-    cell: [f64; 3],
-    /// Displacement by the six image bits of a corner.
-    images: [GrainPoint; 64],
-}
-
-impl<'a> Positions<'a> {
-    pub(super) fn new(points: &'a Points) -> Self {
-        let cell = points.cell.unwrap_or([0.0; 3]);
-        let images = std::array::from_fn(|bits| {
-            let along = |axis: usize| ((bits >> (2 * axis)) & 3) as f64 * cell[axis];
-            [along(0), along(1), along(2), 0.0]
-        });
-        Self { at: &points.at, cell, images }
-    }
-
-    /// Displacement by whole cells, exact.
-    #[inline(always)]
-    pub(in crate::constrictions) fn displacement(&self, shift: Shift) -> [f64; 3] {
-        let [x, y, z] = shift.cells();
-        [f64::from(x) * self.cell[0], f64::from(y) * self.cell[1], f64::from(z) * self.cell[2]]
-    }
-
-    /// Position of a corner in the translate `shift`.
-    #[inline(always)]
-    pub(super) fn corner(&self, corner: Corner, shift: Shift) -> GrainPoint {
-        let (at, by) = (&self.at[grain(corner) as usize], self.displacement(shift));
-        let image = &self.images[(corner >> GRAIN_BITS) as usize];
-        [at[0] + (image[0] + by[0]), at[1] + (image[1] + by[1]), at[2] + (image[2] + by[2]), at[3]]
-    }
-
-    /// Corners of a tetrahedron in the translate `shift`.
-    #[inline(always)]
-    pub(super) fn corners<const PERIODIC: bool>(
-        &self,
-        corners: &[Corner; 4],
-        shift: Shift,
-    ) -> [GrainPoint; 4] {
-        // Written out: the map of an array is not reliably unrolled.
-        let [a, b, c, d] = *corners;
-        if PERIODIC {
-            let point = |c: Corner| self.corner(c, shift);
-            [point(a), point(b), point(c), point(d)]
-        } else {
-            let point = |c: Corner| self.at[grain(c) as usize];
-            [point(a), point(b), point(c), point(d)]
-        }
+        self
     }
 }
 

@@ -1,31 +1,31 @@
 //! The periodic regular (power, weighted Delaunay) triangulation of a packing.
-
 //!
-//! Its layers: [`points`] (grain centres on an integer grid, so that images are exact), [`predicates`] (exact
-//! answers, ties broken), [`mesh`] (tetrahedra and their adjacency), [`insertion`] (grain after grain, in the
-//! order of [`order`]), [`images`] (the first triangulation of the torus), [`sanity`] (checks of the result).
+//! Its layers: [`mesh`] (grain centres on an integer grid, so that images are exact; tetrahedra and their
+//! adjacency), [`predicates`] (exact answers, ties broken), [`insertion`] (grain after grain, coarse to
+//! fine), here the first triangulation of the torus, [`sanity`] (checks of the result).
+//!
+//! # The torus
+//! A few grains are triangulated first, in space, with their images within a margin around the cell; one
+//! tetrahedron of each class of translates is kept. If then every facet meets exactly one other and the
+//! volumes add up to the cell (both exact), this is a triangulation of the torus; and since tetrahedra that
+//! meet on it met in the free one, it is locally regular everywhere, hence the regular one. If not, the
+//! margin was too narrow. The other grains are inserted on the torus.
 
-mod error;
-mod images;
 mod insertion;
 mod mesh;
-mod order;
-mod points;
 mod predicates;
 mod sanity;
-#[cfg(test)]
-mod tests;
-mod wide;
 
-pub use error::TriangulationError;
+pub use mesh::TriangulationError;
 pub use sanity::SanityError;
 
+pub(super) use mesh::{GrainPoint, Shift, cross, dot, edges, facet, offset, six_volume};
+
 use crate::packing::Packing;
-use insertion::Builder;
-use mesh::{Mesh, NONE, grain, image};
-pub(super) use mesh::{Positions, Shift};
-pub(super) use points::GrainPoint;
-use points::Points;
+use insertion::{Builder, free_order, levels, sorted, stored};
+use mesh::{MOST_GRAINS, Mesh, NONE, Points, grain, image};
+use predicates::{Wide, volume};
+use std::collections::HashMap;
 
 /// Sizes of the first sample of grains on the torus; if cavities wrap around the cell, the next size is
 /// tried.
@@ -36,39 +36,12 @@ const SAMPLES: [usize; 3] = [128, 1_024, 8_192];
 /// On a periodic packing every tetrahedron represents all its translates: the triangulation covers the torus,
 /// and its corners name a grain and the shift of that grain's image in cells. On a free packing it fills the
 /// convex hull of the centres.
-///
-/// ```
-/// use voidwalk_core::constrictions::Triangulation;
-/// use voidwalk_core::packing::{Cell, Packing};
-/// // Simple cubic: 3 x 3 x 3 touching grains of 1 mm.
-/// let along = |stride: usize| (0..27).map(|i| (i / stride % 3) as f64).collect();
-/// let packing = Packing {
-///     cell: Cell::Periodic([3.0; 3]),
-///     x: along(1), y: along(3), z: along(9),
-///     diameter: vec![1.0; 27],
-/// };
-/// let triangulation = Triangulation::new(&packing)?;
-/// assert!(triangulation.hidden().is_empty());
-/// assert!(triangulation.sanity_check().is_ok());
-/// # Ok::<(), voidwalk_core::constrictions::TriangulationError>(())
-/// ```
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Triangulation {
     points: Points,
     mesh: Mesh,
     hidden: Vec<u32>,
     duplicates: Vec<[u32; 2]>,
-}
-
-impl std::fmt::Debug for Triangulation {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Triangulation")
-            .field("grains", &self.grains())
-            .field("tetrahedra", &self.tetrahedra())
-            .field("hidden", &self.hidden)
-            .field("duplicates", &self.duplicates)
-            .finish_non_exhaustive()
-    }
 }
 
 impl Triangulation {
@@ -84,10 +57,17 @@ impl Triangulation {
     /// Triangulates like [`Triangulation::new`], with the sizes of the first samples to try.
     pub(super) fn with_samples(packing: &Packing, samples: &[usize]) -> Result<Self, TriangulationError> {
         let points = Points::new(packing)?;
+        let grains = points.at.len();
+        let identity: Vec<u32> = (0..grains as u32).collect();
         let mesh = match points.cell {
-            None => free(&points),
-            Some(cell) => periodic(&points, cell, samples),
-        }?;
+            None => Some(&points)
+                .filter(|points| !points.is_flat())
+                .and_then(|points| free(points, &identity))
+                .ok_or(TriangulationError::Coplanar(grains))?,
+            Some(cell) => {
+                periodic(&points, cell, samples, &identity).ok_or(TriangulationError::Sparse(grains))?
+            }
+        };
         let mut seen = vec![false; points.at.len()];
         for &corner in mesh.corners.iter().flatten() {
             seen[grain(corner) as usize] = true;
@@ -107,11 +87,6 @@ impl Triangulation {
         self.points.at.len()
     }
 
-    /// Tells if the triangulation has a periodic cell.
-    pub fn is_periodic(&self) -> bool {
-        self.points.cell.is_some()
-    }
-
     /// Grains at the four corners of a tetrahedron, positively oriented.
     pub fn corners(&self, tetrahedron: usize) -> [u32; 4] {
         self.mesh.corners[tetrahedron].map(grain)
@@ -120,12 +95,6 @@ impl Triangulation {
     /// Shift of the image of each corner, in cells along x, y, z.
     pub fn images(&self, tetrahedron: usize) -> [[i32; 3]; 4] {
         self.mesh.corners[tetrahedron].map(|corner| image(corner).cells())
-    }
-
-    /// Tetrahedron across the facet opposite a corner; `None` on the hull of a free packing.
-    pub fn neighbour(&self, tetrahedron: usize, corner: usize) -> Option<usize> {
-        let across = self.mesh.neighbours[tetrahedron][corner];
-        (across != NONE).then_some((across / 4) as usize)
     }
 
     /// Grains that are no corner, ascending: each lies inside others (by power distance).
@@ -141,11 +110,6 @@ impl Triangulation {
     /// Length of a grid unit (mm), a power of two.
     pub(super) fn unit_mm(&self) -> f64 {
         self.points.unit_mm
-    }
-
-    /// Origin of the grid (mm).
-    pub(super) fn origin_mm(&self) -> [f64; 3] {
-        self.points.origin_mm
     }
 
     /// Cell lengths in grid units; `None` for free boundaries.
@@ -167,67 +131,82 @@ impl Triangulation {
         (across != NONE).then_some(((across / 4) as usize, (across % 4) as usize, shift))
     }
 
-    /// Positions of the corners, in grid units.
-    pub(super) fn positions(&self) -> Positions<'_> {
-        Positions::new(&self.points)
+    /// Displacement by whole cells, in grid units.
+    pub(super) fn displacement(&self, shift: Shift) -> [f64; 3] {
+        self.points.displacement(shift)
+    }
+
+    /// A point in mm.
+    pub(super) fn in_mm(&self, p: [f64; 3]) -> [f64; 3] {
+        std::array::from_fn(|axis| p[axis] * self.points.unit_mm + self.points.origin_mm[axis])
+    }
+
+    /// A point in mm, inside the cell.
+    pub(super) fn inside_mm(&self, p: [f64; 3]) -> [f64; 3] {
+        self.in_mm(match self.points.cell {
+            Some(cell) => {
+                std::array::from_fn(|axis| p[axis] - libm::floor(p[axis] / cell[axis]) * cell[axis])
+            }
+            None => p,
+        })
+    }
+
+    /// Distance of the nearest images of two points in mm.
+    pub(super) fn distance_mm(&self, a: &[f64; 3], b: &[f64; 3]) -> f64 {
+        let d: [f64; 3] = std::array::from_fn(|axis| {
+            let d = (a[axis] - b[axis]).abs();
+            let cell = self.points.cell;
+            cell.map_or(d, |cell| d.min((cell[axis] * self.points.unit_mm - d).abs()))
+        });
+        dot(&d, &d).sqrt()
     }
 
     /// One corner of a stored tetrahedron in the translate `shift`, in grid units.
     #[inline]
-    pub(super) fn corner_at(
-        &self,
-        positions: &Positions<'_>,
-        tetrahedron: usize,
-        i: usize,
-        shift: Shift,
-    ) -> GrainPoint {
-        positions.corner(self.mesh.corners[tetrahedron][i], shift)
+    pub(super) fn corner_at(&self, tetrahedron: usize, i: usize, shift: Shift) -> GrainPoint {
+        self.points.corner(self.mesh.corners[tetrahedron][i], shift)
     }
 
     /// Corners of a stored tetrahedron in the translate `shift`, in grid units.
-    pub(super) fn at(&self, positions: &Positions<'_>, tetrahedron: usize, shift: Shift) -> [GrainPoint; 4] {
-        positions.corners::<true>(&self.mesh.corners[tetrahedron], shift)
+    pub(super) fn at(&self, tetrahedron: usize, shift: Shift) -> [GrainPoint; 4] {
+        self.points.corners::<true>(&self.mesh.corners[tetrahedron], shift)
+    }
+
+    /// Corners of a stored tetrahedron, in grid units.
+    pub(super) fn stored(&self, tetrahedron: usize) -> [GrainPoint; 4] {
+        self.at(tetrahedron, Shift::ZERO)
     }
 }
 
-fn free(points: &Points) -> Result<Mesh, TriangulationError> {
-    let flat = TriangulationError::Coplanar { grains: points.at.len() };
-    if points.is_flat() {
-        return Err(flat);
-    }
-    let identity: Vec<u32> = (0..points.at.len() as u32).collect();
-    let mut order = images::free_order(&points.at);
-    let mut builder = Builder::first(Positions::new(points), &identity, &mut order).ok_or(flat)?;
+/// Triangulates in space; `identity` names the grain behind each point. `None` if all lie in one plane.
+fn free(points: &Points, identity: &[u32]) -> Option<Mesh> {
+    let mut order = free_order(&points.at);
+    let mut builder = Builder::first(points, identity, &mut order)?;
     for &p in &order[4..] {
         // A cavity in space meets no image of itself.
         let _ = builder.insert::<false>(p);
     }
-    let mut mesh = builder.mesh;
-    mesh.compact();
-    Ok(mesh)
+    Some(builder.mesh.compact())
 }
 
-fn periodic(points: &Points, cell: [f64; 3], samples: &[usize]) -> Result<Mesh, TriangulationError> {
+fn periodic(points: &Points, cell: [f64; 3], samples: &[usize], identity: &[u32]) -> Option<Mesh> {
     let grains = points.at.len();
-    let identity: Vec<u32> = (0..grains as u32).collect();
     let extent = cell.iter().fold(1.0, |a: f64, &b| a.max(b));
-    let sorted = order::sorted(&points.at, [0.0; 3], extent);
+    let sorted = sorted(&points.at, [0.0; 3], extent);
     for &size in samples {
         let stride = grains / size;
         if stride < 2 {
             break;
         }
-        let order = order::levels(&sorted, stride);
+        let order = levels(&sorted, stride);
         let (sample, rest) = order.split_at(grains.div_ceil(stride));
-        let Some(mesh) = images::triangulate(points, cell, sample) else { continue };
-        let mut builder = Builder::new(mesh, Positions::new(points), &identity);
+        let Some(mesh) = of_images(points, cell, sample) else { continue };
+        let mut builder = Builder::new(mesh, points, identity);
         if rest.iter().all(|&p| builder.insert::<true>(p).is_ok()) {
-            let mut mesh = builder.mesh;
-            mesh.compact();
-            return Ok(mesh);
+            return Some(builder.mesh.compact());
         }
     }
-    images::triangulate(points, cell, &sorted).ok_or(TriangulationError::Sparse { grains })
+    of_images(points, cell, &sorted)
 }
 
 /// Pairs of a hidden grain and another with the same centre.
@@ -244,4 +223,120 @@ fn duplicates(at: &[GrainPoint], hidden: &[u32]) -> Vec<[u32; 2]> {
         .collect();
     pairs.sort_unstable();
     pairs
+}
+
+/// Margins to try, in cells.
+const MARGINS: [f64; 4] = [0.5, 1.0, 2.0, 3.0];
+
+/// Beyond this many images a wider margin is not tried.
+const MOST_IMAGES: usize = 20_000_000;
+
+/// A class of translates: its corners relative to the least of them, ascending.
+type Class = [(u32, Shift); 4];
+
+/// Finds the periodic mesh of the grains in `sample`; `None` if they are too few to fill the cell.
+fn of_images(points: &Points, cell: [f64; 3], sample: &[u32]) -> Option<Mesh> {
+    MARGINS.into_iter().find_map(|margin| {
+        let reach = libm::ceil(margin) as i32;
+        let (mut at, mut images) = (Vec::new(), Images::default());
+        for &grain in sample {
+            for z in -reach..=reach {
+                for y in -reach..=reach {
+                    for x in -reach..=reach {
+                        let (mut p, shift) = (points.at[grain as usize], [x, y, z]);
+                        (0..3).for_each(|axis| p[axis] += f64::from(shift[axis]) * cell[axis]);
+                        let within = |axis: usize| {
+                            p[axis] >= -margin * cell[axis] && p[axis] <= (1.0 + margin) * cell[axis]
+                        };
+                        if (0..3).all(within) {
+                            at.push(p);
+                            images.grain.push(grain);
+                            images.shift.push(Shift::new(shift));
+                        }
+                    }
+                }
+            }
+            if at.len() > MOST_IMAGES.min(MOST_GRAINS) {
+                return None;
+            }
+        }
+        images.fold(&free(&Points::of(at, None), &images.grain)?, points, cell)
+    })
+}
+
+/// Images of grains as columns.
+#[derive(Default)]
+struct Images {
+    grain: Vec<u32>,
+    shift: Vec<Shift>,
+}
+
+impl Images {
+    /// Grain and shift of the corners of a tetrahedron.
+    fn corners(&self, mesh: &Mesh, t: u32) -> [(u32, Shift); 4] {
+        mesh.corners[t as usize].map(|c| (self.grain[grain(c) as usize], self.shift[grain(c) as usize]))
+    }
+
+    /// One tetrahedron of each class, linked on the torus.
+    fn fold(&self, mesh: &Mesh, points: &Points, cell: [f64; 3]) -> Option<Mesh> {
+        let mut folded = Mesh::default();
+        // Origin of each kept tetrahedron, and the shift from its stored translate.
+        let (mut origin, mut least) = (Vec::new(), Vec::new());
+        let mut kept: HashMap<Class, u32> = HashMap::new();
+        for t in 0..mesh.corners.len() as u32 {
+            let corners = self.corners(mesh, t);
+            let (class, anchor) = class(&corners);
+            if anchor == Shift::ZERO {
+                let (stored, shift) = stored(&corners.map(|c| c.0), &corners.map(|c| c.1))?;
+                kept.insert(class, folded.push(stored));
+                origin.push(t);
+                least.push(shift);
+            }
+        }
+        for t in 0..origin.len() {
+            for i in 0..4 {
+                let across = mesh.neighbours[origin[t] as usize][i];
+                if across == NONE {
+                    return None;
+                }
+                let corners = self.corners(mesh, across / 4);
+                let (class, anchor) = class(&corners);
+                let &u = kept.get(&class)?;
+                let (opposite, shift) = corners[(across % 4) as usize];
+                let wanted = (opposite, shift.minus(anchor));
+                let j = self.corners(mesh, origin[u as usize]).iter().position(|&c| c == wanted)?;
+                folded.neighbours[t][i] = 4 * u + j as u32;
+                folded.shifts[t][i] = least[u as usize].plus(anchor).minus(least[t]);
+            }
+        }
+        let is_paired = (0..origin.len()).all(|t| (0..4).all(|i| folded.is_paired(t, i)));
+        (is_paired && six_volumes(&folded, points) == Ok(six_cells(cell))).then_some(folded)
+    }
+}
+
+/// Class of a tetrahedron, and the shift of its reference corner.
+fn class(corners: &[(u32, Shift); 4]) -> (Class, Shift) {
+    let mut class = *corners;
+    class.sort_unstable_by_key(|&(grain, shift)| (grain, shift.cells()));
+    let anchor = class[0].1;
+    (class.map(|(grain, shift)| (grain, shift.minus(anchor))), anchor)
+}
+
+/// Six times the sum of all volumes, exactly, or the first tetrahedron that is not positive.
+fn six_volumes(mesh: &Mesh, points: &Points) -> Result<Wide, usize> {
+    let mut sum = Wide::ZERO;
+    for (t, corners) in mesh.corners.iter().enumerate() {
+        let six = volume(&points.corners::<true>(corners, Shift::ZERO));
+        if six.sign() <= 0 {
+            return Err(t);
+        }
+        sum = sum + six;
+    }
+    Ok(sum)
+}
+
+/// Six times the volume of the cell, exactly.
+fn six_cells(cell: [f64; 3]) -> Wide {
+    let [x, y, z] = cell.map(|length| Wide::from(length as i128));
+    Wide::from(6) * x * y * z
 }

@@ -5,9 +5,9 @@
 //! opposite it?), and [`in_conflict`] tells if `p` lies closer, by power distance, than the corners allow:
 //! with heights `h = |x|^2 - r^2`, if `p` lies below the plane through the four lifted corners.
 //!
-//! Both are determinants of differences, which are exact on the grid ([`super::points`]). They are evaluated
+//! Both are determinants of differences, which are exact on the grid ([`super::mesh`]). They are evaluated
 //! in f64 with a bound on the rounding error that follows from the sizes of the differences; if the bound
-//! does not decide, in integers of 320 bits.
+//! does not decide, in integers of 320 bits: a determinant is an integer below 2^272.
 //!
 //! # Ties
 //! Five centres on one sphere (every lattice) are separated by raising each height by a symbolic
@@ -17,9 +17,9 @@
 //! of two points is the same for all their images, so facets pair across the boundary of the cell,
 //! and since only heights are moved no flat tetrahedron ever arises.
 
-use super::points::GrainPoint;
-use super::wide::Wide;
+use super::mesh::{GrainPoint, dot, offset};
 use std::cmp::Ordering;
+use std::ops::{Add, Mul, Neg, Sub};
 
 /// Half an ulp of 1.
 const U: f64 = f64::EPSILON / 2.0;
@@ -36,22 +36,29 @@ const POWER_BOUND: f64 = 320.0 * U;
 /// Differences corner - p.
 #[inline(always)]
 fn differences(corners: &[GrainPoint; 4], p: &GrainPoint) -> [[f64; 3]; 4] {
-    [row(&corners[0], p), row(&corners[1], p), row(&corners[2], p), row(&corners[3], p)]
+    [offset(p, &corners[0]), offset(p, &corners[1]), offset(p, &corners[2]), offset(p, &corners[3])]
 }
 
-/// The four 3 x 3 minors, signed: six times the volume of the tetrahedron with corner `i` replaced.
+/// The four 3 x 3 minors, signed, from the 2 x 2 minors of x and y and from z: six times the volume of the
+/// tetrahedron with corner `i` replaced.
 #[inline(always)]
-fn minors(d: &[[f64; 3]; 4]) -> [f64; 4] {
-    let pair = |i: usize, j: usize| d[i][0] * d[j][1] - d[j][0] * d[i][1];
+fn minors_of<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T>>(
+    pair: impl Fn(usize, usize) -> T,
+    [z0, z1, z2, z3]: [T; 4],
+) -> [T; 4] {
     let (m01, m02, m03) = (pair(0, 1), pair(0, 2), pair(0, 3));
     let (m12, m13, m23) = (pair(1, 2), pair(1, 3), pair(2, 3));
-    let [z0, z1, z2, z3] = [d[0][2], d[1][2], d[2][2], d[3][2]];
     [
         z1 * m23 - z2 * m13 + z3 * m12,
         z2 * m03 - z0 * m23 - z3 * m02,
         z0 * m13 - z1 * m03 + z3 * m01,
         z1 * m02 - z0 * m12 - z2 * m01,
     ]
+}
+
+#[inline(always)]
+fn minors(d: &[[f64; 3]; 4]) -> [f64; 4] {
+    minors_of(|i, j| d[i][0] * d[j][1] - d[j][0] * d[i][1], [d[0][2], d[1][2], d[2][2], d[3][2]])
 }
 
 /// Product over the axes of the largest difference.
@@ -68,15 +75,7 @@ fn exact_minors(d: &[[f64; 3]; 4]) -> [Wide; 4] {
     // Differences are integers below 2^53, their 2 x 2 minors below 2^107.
     let n = d.map(|row| row.map(|value| value as i128));
     let pair = |i: usize, j: usize| Wide::from(n[i][0] * n[j][1] - n[j][0] * n[i][1]);
-    let (m01, m02, m03) = (pair(0, 1), pair(0, 2), pair(0, 3));
-    let (m12, m13, m23) = (pair(1, 2), pair(1, 3), pair(2, 3));
-    let [z0, z1, z2, z3] = [n[0][2], n[1][2], n[2][2], n[3][2]].map(Wide::from);
-    [
-        z1 * m23 - z2 * m13 + z3 * m12,
-        z2 * m03 - z0 * m23 - z3 * m02,
-        z0 * m13 - z1 * m03 + z3 * m01,
-        z1 * m02 - z0 * m12 - z2 * m01,
-    ]
+    minors_of(pair, [n[0][2], n[1][2], n[2][2], n[3][2]].map(Wide::from))
 }
 
 /// Finds the facet that a walk towards `p` should cross: the opposite corner of a facet that `p` lies
@@ -103,22 +102,16 @@ pub(super) fn facets(corners: &[GrainPoint; 4], p: &GrainPoint) -> Option<usize>
 
 /// Orientation of four points: positive, negative, or zero in one plane.
 pub(super) fn orientation(corners: &[GrainPoint; 4]) -> i32 {
-    let p = corners[0];
-    let d = [[1.0; 3], row(&corners[1], &p), row(&corners[2], &p), row(&corners[3], &p)];
-    // The first difference enters the other three minors only.
+    // The first difference, zero, enters the other three minors only.
+    let mut d = differences(corners, &corners[0]);
+    d[0] = [1.0; 3];
     let (volume, bound) = (minors(&d)[0], MINOR_BOUND * magnitude(&d));
     if volume.abs() > bound { if volume > 0.0 { 1 } else { -1 } } else { exact_minors(&d)[0].sign() }
 }
 
 /// Six times the signed volume of four points, exactly.
 pub(super) fn volume(corners: &[GrainPoint; 4]) -> Wide {
-    let p = corners[0];
-    exact_minors(&[[0.0; 3], row(&corners[1], &p), row(&corners[2], &p), row(&corners[3], &p)])[0]
-}
-
-#[inline(always)]
-fn row(a: &GrainPoint, p: &GrainPoint) -> [f64; 3] {
-    [a[0] - p[0], a[1] - p[1], a[2] - p[2]]
+    exact_minors(&differences(corners, &corners[0]))[0]
 }
 
 /// Tells if `p` removes the positively oriented tetrahedron. `order` compares corners (0..3) and `p` (4) if
@@ -134,7 +127,7 @@ pub(super) fn in_conflict(
     let mut sum = 0.0;
     let mut scale = 0.0f64;
     for i in 0..4 {
-        let square = d[i][0] * d[i][0] + d[i][1] * d[i][1] + d[i][2] * d[i][2];
+        let square = dot(&d[i], &d[i]);
         let weight = (corners[i][3] - p[3]) * (corners[i][3] + p[3]);
         sum += (square - weight) * volume[i];
         scale = scale.max(square + weight.abs());
@@ -195,4 +188,105 @@ fn perturbed_conflict(
         }
     }
     false
+}
+
+const LIMBS: usize = 5;
+
+/// A signed integer of 320 bits, least significant limb first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Wide([u64; LIMBS]);
+
+impl Wide {
+    pub(super) const ZERO: Self = Self([0; LIMBS]);
+
+    /// -1, 0 or 1.
+    pub(super) fn sign(self) -> i32 {
+        if self.0[LIMBS - 1] >> 63 == 1 { -1 } else { i32::from(self != Self::ZERO) }
+    }
+
+    /// Nearest f64 to within a few units in the last place (for reports, never for decisions).
+    pub(super) fn to_f64(self) -> f64 {
+        let magnitude = if self.sign() < 0 { -self } else { self };
+        let value =
+            magnitude.0.iter().rev().fold(0.0, |sum, &limb| sum * 18_446_744_073_709_551_616.0 + limb as f64);
+        if self.sign() < 0 { -value } else { value }
+    }
+}
+
+impl From<i128> for Wide {
+    fn from(value: i128) -> Self {
+        let fill = (value >> 127) as u64;
+        Self([value as u64, (value >> 64) as u64, fill, fill, fill])
+    }
+}
+
+impl Add for Wide {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        let mut sum = [0; LIMBS];
+        let mut carry = false;
+        for (slot, (&a, &b)) in sum.iter_mut().zip(self.0.iter().zip(&other.0)) {
+            let (low, first) = a.overflowing_add(b);
+            let (low, second) = low.overflowing_add(u64::from(carry));
+            *slot = low;
+            carry = first || second;
+        }
+        Self(sum)
+    }
+}
+
+impl Neg for Wide {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self(self.0.map(|limb| !limb)) + Self([1, 0, 0, 0, 0])
+    }
+}
+
+impl Sub for Wide {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Wide {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        let mut product = [0u64; LIMBS];
+        for i in 0..LIMBS {
+            let mut carry = 0u128;
+            for j in 0..LIMBS - i {
+                let term =
+                    u128::from(self.0[i]) * u128::from(other.0[j]) + u128::from(product[i + j]) + carry;
+                product[i + j] = term as u64;
+                carry = term >> 64;
+            }
+        }
+        Self(product)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use num_bigint::BigInt;
+    use proptest::prelude::*;
+
+    fn big(value: Wide) -> BigInt {
+        let bytes: Vec<u8> = value.0.iter().flat_map(|limb| limb.to_le_bytes()).collect();
+        BigInt::from_signed_bytes_le(&bytes)
+    }
+
+    proptest! {
+        #[test]
+        fn agrees_with_a_big_integer(a: i128, b: i128, c in -(1i128 << 60)..1i128 << 60) {
+            let (wide, exact) = (Wide::from, |v: i128| BigInt::from(v));
+            prop_assert_eq!(big(wide(a) * wide(b) + wide(c)), exact(a) * exact(b) + exact(c));
+            prop_assert_eq!(big(wide(a) * wide(b) * wide(c)), exact(a) * exact(b) * exact(c));
+            prop_assert_eq!(big(wide(a) - wide(b)), exact(a) - exact(b));
+            prop_assert_eq!(wide(a).sign(), a.signum() as i32);
+            prop_assert_eq!((wide(a) * wide(b)).sign(), (a.signum() * b.signum()) as i32);
+            prop_assert!((wide(a).to_f64() - a as f64).abs() <= 1e-15 * (a as f64).abs());
+        }
+    }
 }

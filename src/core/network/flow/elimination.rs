@@ -15,8 +15,6 @@
 
 use std::ops::Range;
 
-use super::rest::{Link, Meeting, Rest};
-
 /// An approximate factor of a system of conductances: the preconditioner of its conjugate gradients.
 pub(super) struct Factor {
     /// Row of the system by place in the order of elimination.
@@ -45,7 +43,6 @@ struct Parts {
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 const GOLDEN_32: u32 = 0x9e37_79b9;
 
-/// Turns, as a power of two.
 const TURNS: u32 = 6;
 
 /// Most sums that are counted without a branch: those of stars whose number of arms is known.
@@ -68,7 +65,6 @@ impl Factor {
         Self { row, parts, pivot, choices: 0 }
     }
 
-    /// Eliminates these places, one after another, from the rest of the system.
     fn eliminate(&mut self, rest: &mut Rest, places: Range<u32>) {
         let mut meeting = Meeting::new(self.row.len());
         for place in places {
@@ -87,7 +83,6 @@ impl Factor {
         }
     }
 
-    /// Eliminates a place with this many neighbours.
     #[inline(always)]
     fn take_few<const N: usize>(
         &mut self,
@@ -100,7 +95,6 @@ impl Factor {
         self.give_way(rest, place, ground, &sorted(neighbours), &mut [0.0; N]);
     }
 
-    /// Eliminates a place with any number of neighbours.
     #[inline(never)]
     fn take_many(&mut self, rest: &mut Rest, place: u32, ground: f64, neighbours: &mut [(u32, f64)]) {
         neighbours.sort_by_key(|&(_, conductance)| rising(conductance));
@@ -182,7 +176,6 @@ fn passed(sums: &[f64], share: f64) -> usize {
     }
 }
 
-/// Rows in the order of elimination.
 fn order(rows: usize, links: &[Link]) -> Vec<u32> {
     // By row: the number of links left, and their other rows by exclusive or: once one is left, its row.
     let mut left = vec![(0u32, 0u32); rows];
@@ -220,9 +213,138 @@ fn order(rows: usize, links: &[Link]) -> Vec<u32> {
     order
 }
 
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Link {
+    pub one: u32,
+    pub other: u32,
+    pub conductance: f64,
+}
+
+/// Places that meet one place, each once. Serves one place after another.
+struct Meeting {
+    /// With their conductances, in the order in which they were found.
+    pub neighbours: Vec<(u32, f64)>,
+    /// By place: the place that it met last, and its position in `neighbours` then.
+    met: Vec<(u32, u32)>,
+}
+
+impl Meeting {
+    pub(super) fn new(places: usize) -> Self {
+        Self { neighbours: Vec::new(), met: vec![(NONE, 0); places] }
+    }
+
+    fn add(&mut self, place: u32, to: u32, conductance: f64) {
+        let (met, at) = &mut self.met[to as usize];
+        if *met == place {
+            self.neighbours[*at as usize].1 += conductance;
+        } else {
+            (*met, *at) = (place, self.neighbours.len() as u32);
+            self.neighbours.push((to, conductance));
+        }
+    }
+}
+
+/// No handful, and no place.
+const NONE: u32 = u32::MAX;
+
+const HANDFUL: usize = 6;
+
+/// Links of one place: the last that it was given, and where those before them are. A cache line; single
+/// precision is enough for an approximation, and a conductance that it cannot tell from 0 becomes the least
+/// that it can.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Head {
+    conductance: [f32; HANDFUL],
+    to: [u32; HANDFUL],
+    /// Conductance to pressures that are known.
+    ground: f64,
+    count: u32,
+    before: u32,
+}
+
+/// Links of one place that precede others.
+#[derive(Clone, Copy)]
+struct Handful {
+    conductance: [f32; HANDFUL],
+    to: [u32; HANDFUL],
+    before: u32,
+}
+
+/// The rest of the system while rows are eliminated, by place: a link is kept with the one of its two places
+/// that is eliminated first.
+struct Rest {
+    head: Vec<Head>,
+    handfuls: Vec<Handful>,
+    /// First handful of those that are free again.
+    free: u32,
+}
+
+impl Rest {
+    /// Builds the system with places in this order of rows.
+    pub(super) fn new(order: &[u32], ground: &[f64], links: &[Link]) -> Self {
+        let mut place_of: Vec<u32> = vec![0; order.len()];
+        order.iter().zip(0u32..).for_each(|(&row, place)| place_of[row as usize] = place);
+        let head = |&row: &u32| Head {
+            conductance: [0.0; HANDFUL],
+            to: [0; HANDFUL],
+            ground: ground[row as usize],
+            count: 0,
+            before: NONE,
+        };
+        let mut rest = Self { head: order.iter().map(head).collect(), handfuls: Vec::new(), free: NONE };
+        for &Link { one, other, conductance } in links {
+            rest.join(place_of[one as usize], place_of[other as usize], conductance);
+        }
+        rest
+    }
+
+    #[inline]
+    pub(super) fn join(&mut self, one: u32, other: u32, conductance: f64) {
+        let (from, to) = (one.min(other), one.max(other));
+        let head = &mut self.head[from as usize];
+        if head.count as usize == HANDFUL {
+            let full = Handful { conductance: head.conductance, to: head.to, before: head.before };
+            head.count = 0;
+            head.before = if self.free == NONE {
+                self.handfuls.push(full);
+                u32::try_from(self.handfuls.len() - 1).expect("fewer links than a factor has bits for")
+            } else {
+                let at = self.free;
+                self.free = std::mem::replace(&mut self.handfuls[at as usize], full).before;
+                at
+            };
+        }
+        let at = head.count as usize;
+        (head.to[at], head.conductance[at]) = (to, (conductance as f32).max(f32::MIN_POSITIVE));
+        head.count += 1;
+    }
+
+    /// Removes a place: its neighbours go to `meeting`, and its conductance to known pressures is returned.
+    pub(super) fn take(&mut self, place: u32, meeting: &mut Meeting) -> f64 {
+        meeting.neighbours.clear();
+        let Head { conductance, to, ground, count, before } = self.head[place as usize];
+        (0..count as usize).for_each(|i| meeting.add(place, to[i], f64::from(conductance[i])));
+        let mut next = before;
+        while next != NONE {
+            let handful = &mut self.handfuls[next as usize];
+            (0..HANDFUL).for_each(|i| meeting.add(place, handful.to[i], f64::from(handful.conductance[i])));
+            let after = std::mem::replace(&mut handful.before, self.free);
+            self.free = std::mem::replace(&mut next, after);
+        }
+        ground
+    }
+
+    pub(super) fn hold(&mut self, place: u32, conductance: f64) {
+        self.head[place as usize].ground += conductance;
+    }
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::system::System;
     use super::*;
+    use std::collections::BTreeSet;
 
     /// A tree has nothing to approximate: a star of chains, one end of which leads to a known pressure.
     #[test]
@@ -245,8 +367,8 @@ mod tests {
         }
     }
 
-    /// Conjugate gradients on a lattice of 16 x 16 x 16 rows between known pressures above and below: links
-    /// over six orders of magnitude, three in ten blocked. Without a factor they take thousands of rounds.
+    /// A lattice of 16 x 16 x 16 rows between known pressures above and below: links over six orders of
+    /// magnitude, three in ten blocked. Without a factor it takes thousands of rounds.
     #[test]
     fn few_rounds_do_on_a_lattice_that_clogs() {
         const N: usize = 16;
@@ -255,50 +377,27 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (state >> 11) as f64 / (1u64 << 53) as f64
         };
-        let mut links = Vec::new();
-        let mut ground = vec![0.0; N * N * N];
-        for (i, ground) in ground.iter_mut().enumerate() {
-            let [x, y, z] = [i % N, i / N % N, i / (N * N)];
-            if z == 0 || z == N - 1 {
-                *ground = 1.0;
-            }
-            let ahead = [
-                (x + 1 < N).then_some(i + 1),
-                (y + 1 < N).then_some(i + N),
-                (z + 1 < N).then_some(i + N * N),
-            ];
-            for j in ahead.into_iter().flatten() {
-                let g = libm::pow(10.0, 6.0 * draw() - 3.0);
-                if draw() > 0.3 {
-                    links.push(Link { one: i as u32, other: j as u32, conductance: g });
+        let fill = |system: &mut System| {
+            for i in 0..N * N * N {
+                let [x, y, z] = [i % N, i / N % N, i / (N * N)];
+                if z == 0 || z == N - 1 {
+                    system.hold(i as u32, 1.0, if z == 0 { 1.0 } else { 0.0 });
+                }
+                for (at, step) in [(x, 1), (y, N), (z, N * N)] {
+                    if at + 1 < N {
+                        let g = libm::pow(10.0, 6.0 * draw() - 3.0);
+                        if draw() > 0.3 {
+                            system.join(i as u32, (i + step) as u32, g);
+                        }
+                    }
                 }
             }
-        }
-        let factor = Factor::new(&ground, &links);
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let mut residual: Vec<f64> = (0..ground.len()).map(|i| if i < N * N { 1.0 } else { 0.0 }).collect();
-        let (first, mut scratch) = (dot(&residual, &residual).sqrt(), vec![0.0; ground.len()]);
-        let (mut solved, mut direction) = (vec![0.0; ground.len()], vec![0.0; ground.len()]);
-        let (mut before, mut rounds) = (0.0, 0);
-        let size = |residual: &[f64]| dot(residual, residual).sqrt();
-        while size(&residual) > 1e-8 * first {
-            assert!(size(&residual).is_finite());
-            factor.solve(&residual, &mut scratch, &mut solved);
-            let now = dot(&residual, &solved);
-            let kept = if rounds == 0 { 0.0 } else { now / before };
-            direction.iter_mut().zip(&solved).for_each(|(d, s)| *d = s + kept * *d);
-            let mut product: Vec<f64> = ground.iter().zip(&direction).map(|(g, d)| g * d).collect();
-            for &Link { one, other, conductance } in &links {
-                let (one, other) = (one as usize, other as usize);
-                let flow = conductance * (direction[one] - direction[other]);
-                (product[one], product[other]) = (product[one] + flow, product[other] - flow);
-            }
-            let step = now / dot(&direction, &product);
-            residual.iter_mut().zip(&product).for_each(|(r, p)| *r -= step * p);
-            (before, rounds) = (now, rounds + 1);
-            // 23; without the order 32, with links that are too large 42.
-            assert!(rounds <= 28, "{rounds} rounds");
-        }
+        };
+        let (mut pressure, mut kept) = (vec![0.0; N * N * N], None);
+        System::new(N * N * N, |_| true, fill).solve(&mut pressure, N, 1e-8, &mut kept).unwrap();
+        // 23; without the order 32, with links that are too large 42.
+        let rounds = kept.unwrap().rounds;
+        assert!(rounds <= 28, "{rounds} rounds");
     }
 
     /// Links among the four neighbours of an eliminated row conduct on average, over choices, as the star
@@ -353,26 +452,18 @@ mod tests {
     #[test]
     fn neighbours_are_sorted() {
         const CONDUCTANCES: [f64; 5] = [1e-300, 0.25, 0.25 * (1.0 + 1e-9), 0.75, 1.0];
-        let mut neighbours: [(u32, f64); 5] = std::array::from_fn(|i| (i as u32, CONDUCTANCES[i]));
-        // Every order by exchanges (Heap 1963).
-        let (mut turns, mut at, mut orders) = ([0; 5], 0, 0);
-        loop {
-            let by_hand = {
-                let mut all = neighbours.to_vec();
-                all.sort_by_key(|&(_, conductance)| rising(conductance));
-                all
-            };
+        let mut orders = 0;
+        for code in 0..5u32.pow(5) {
+            let order: [u32; 5] = std::array::from_fn(|i| code / 5u32.pow(i as u32) % 5);
+            if BTreeSet::from(order).len() < 5 {
+                continue;
+            }
+            let neighbours = order.map(|at| (at, CONDUCTANCES[at as usize]));
+            let mut by_hand = neighbours.to_vec();
+            by_hand.sort_by_key(|&(_, conductance)| rising(conductance));
             assert_eq!(sorted(&neighbours), by_hand[..], "{neighbours:?}");
             assert_eq!([0, 3, 4].map(|i| sorted(&neighbours)[i].0), [0, 3, 4]);
             orders += 1;
-            while at < 5 && turns[at] == at {
-                (turns[at], at) = (0, at + 1);
-            }
-            if at == 5 {
-                break;
-            }
-            neighbours.swap(if at % 2 == 0 { 0 } else { turns[at] }, at);
-            (turns[at], at) = (turns[at] + 1, 0);
         }
         assert_eq!(orders, 120);
     }
@@ -410,5 +501,39 @@ mod tests {
                 );
             }
         }
+    }
+
+    /// Thousands of links come and go in the room of the first.
+    #[test]
+    fn room_of_links_is_used_again() {
+        let links: Vec<Link> =
+            (1..200).map(|other| Link { one: 0, other, conductance: f64::from(other) }).collect();
+        let order: Vec<u32> = (0..200).collect();
+        let mut rest = Rest::new(&order, &[0.0; 200], &links);
+        let room = rest.handfuls.len();
+        for _ in 0..20 {
+            let mut meeting = Meeting::new(200);
+            rest.take(0, &mut meeting);
+            assert_eq!(meeting.neighbours.iter().map(|&(to, _)| to).sum::<u32>(), 199 * 100);
+            (rest.head[0].count, rest.head[0].before) = (0, NONE);
+            links.iter().for_each(|link| rest.join(link.one, link.other, link.conductance));
+            assert_eq!(rest.handfuls.len(), room);
+        }
+    }
+
+    /// A place that is met again and again is one neighbour, with all that leads to it.
+    #[test]
+    fn links_between_two_places_are_one() {
+        let joined = [(0, 1, 1.0), (2, 0, 2.0), (0, 1, 4.0), (1, 2, 8.0), (1, 0, 16.0), (2, 0, 32.0)];
+        let links = joined.map(|(one, other, conductance)| Link { one, other, conductance });
+        let mut rest = Rest::new(&[0, 1, 2], &[0.5, 0.0, 0.0], &links);
+        let mut meeting = Meeting::new(3);
+        rest.hold(0, 0.25);
+        assert_eq!(rest.take(0, &mut meeting), 0.75);
+        // The first links that it was given follow those that came last.
+        meeting.neighbours.sort_by_key(|neighbour| neighbour.0);
+        assert_eq!(meeting.neighbours, [(1, 21.0), (2, 34.0)]);
+        rest.take(1, &mut meeting);
+        assert_eq!(meeting.neighbours, [(2, 8.0)]);
     }
 }

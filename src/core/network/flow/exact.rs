@@ -9,15 +9,13 @@
 //! conductance. A fall times a conductance is a part of the whole flow, and so no flux is wrong by more than
 //! some roundings of the whole.
 
+use super::system::PAIRS;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
-
-use super::thresholds::PAIRS;
 
 /// Turn of a node that is not eliminated.
 const LAST: u32 = u32::MAX;
 
-/// A neighbour of a void when it was eliminated.
 #[derive(Clone, Copy, Debug)]
 struct Neighbour {
     node: u32,
@@ -33,7 +31,6 @@ struct Neighbour {
 pub(super) struct Eliminated {
     /// By node: its neighbours when it was eliminated, in rising order.
     rows: Vec<Vec<Neighbour>>,
-    /// By node: when it was eliminated.
     turn: Vec<u32>,
     /// By node, the known ones at last.
     pub pressure: Vec<f64>,
@@ -51,15 +48,13 @@ impl Eliminated {
         let mut met: Vec<Vec<(u32, f64)>> = vec![Vec::new(); nodes];
         let mut conductance = 0.0;
         for (one, other, g) in links.filter(|(one, other, _)| one != other) {
-            match (is_known(one), is_known(other)) {
-                (true, true) => conductance += g,
-                (one_known, other_known) => {
-                    if !one_known {
-                        met[one as usize].push((other, g));
-                    }
-                    if !other_known {
-                        met[other as usize].push((one, g));
-                    }
+            if is_known(one) && is_known(other) {
+                conductance += g;
+            }
+            for (node, met_by) in [(one, other), (other, one)] {
+                // Known nodes have no row.
+                if let Some(row) = met.get_mut(node as usize) {
+                    row.push((met_by, g));
                 }
             }
         }

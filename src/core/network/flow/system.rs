@@ -1,31 +1,98 @@
-//! The equations of pressures in a network of conductances, and their solution by conjugate gradients.
+//! The equations of pressures in a network of conductances, their solution by conjugate gradients, and every
+//! number that decides when a flow counts as solved, with the error from which it protects.
 //!
 //! Sums run in a fixed order, so that a solution is the same to the bit with any instructions.
 
+use super::elimination::{Factor, Link};
 use std::ops::Range;
 
-use super::elimination::Factor;
-use super::rest::Link;
-use super::thresholds::{BEST_OF_ROUNDING, ROUNDING, ROUNDS, ROUNDS_OF_ANOTHER};
+/// Reason why no flow is known.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FlowError {
+    /// Conductances so far apart that pressures cannot be resolved.
+    #[error(
+        "the flow through the network cannot be solved: after {rounds} rounds the residual is \
+         still {residual:.1e} \
+         of the inflow; constrictions whose conductances lie many orders apart do that"
+    )]
+    NotConverged {
+        /// Rounds.
+        rounds: usize,
+        /// Residual over inflow.
+        residual: f64,
+    },
+    /// Conductances so far apart that the flow is lost in their rounding.
+    #[error(
+        "the flow through the network cannot be told: as close as rounding lets pressures come, voids take \
+         in {off:.1e} of what passes the network more or less than they let out. Conductances lie too many \
+         orders apart: leave out constrictions that conduct many orders more than the ways through, blind \
+         ones too, since a way in that nothing can block conducts as constrictions do on average"
+    )]
+    Unresolved {
+        /// Sum of the imbalances of all voids, over the flow through the filter.
+        off: f64,
+    },
+}
+
+/// Residual of conjugate gradients, as part of the inflow. Protects from pressures that are not the
+/// network's: fluxes then differ in the tenth digit.
+pub(in crate::network) const CONVERGED: f64 = 1e-10;
+
+/// Residual where fluxes are small beside the inflow: the least that rounding allows.
+pub(super) const CLOSEST: f64 = f64::EPSILON / 4.0;
+
+/// Possible loss of the sums of each row in rounding, as part of the flow through its known pressures.
+pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Residual that is taken, as part of the inflow, if rounding lets it come no closer.
+const BEST_OF_ROUNDING: f64 = 1e-6;
+
+/// Mean flux of an inlet over the flux that the residual may account for, below which pressures are looked
+/// for more closely, and finally by elimination. Protects from fluxes of a clogging filter that are mostly
+/// residual.
+pub(super) const CLEAR: f64 = 1e4;
+
+/// Least such ratio where neither is possible: below it the flow is refused. Protects from a filter that
+/// seems to hold because no flux tells where particles go.
+pub(super) const RESOLVED: f64 = 30.0;
+
+/// Possible error of fluxes, over the largest conductance found for the network; beyond it the flow is
+/// refused.
+pub(super) const KNOWN: f64 = 5e-7;
+
+/// Possible error of fluxes, over the present flow, for a reader of every flux.
+pub(super) const CLOSELY: f64 = 1e-8;
+
+/// Fluxes below this fraction of the mean inlet flux count as zero, except the largest flux out of a void.
+/// Protects from ways that only the residual opens.
+pub(super) const NO_FLUX: f64 = 1e-8;
+
+/// Possible error of a flux found by elimination, over the flow through the filter.
+pub(super) const ELIMINATED: f64 = 1e-12;
+
+/// Rounds of conjugate gradients, for each layer and a hundred besides, after which the flow is refused or
+/// found by elimination. Protects from a search without end.
+pub(super) const ROUNDS: usize = 100;
+
+/// Most rounds with a factor of another system: this number, or this multiple of the rounds that its own
+/// system took, whichever is more. Protects from a factor that no longer fits.
+const ROUNDS_OF_ANOTHER: [usize; 2] = [60, 3];
+
+/// A factor is kept until more than one in this many exits have closed: so it serves while little closes from
+/// one solution to the next, and costs fewer rounds then than making another would.
+pub(super) const KEPT_UNTIL: usize = 100;
+
+/// Pairs of neighbours that an elimination looks at before it is given up: some seconds.
+pub(super) const PAIRS: usize = 50_000_000;
 
 /// Sums that are made side by side: fixed, so that instructions change nothing.
 const SIDE_BY_SIDE: usize = 8;
 
-/// No row.
 const NONE: u32 = u32::MAX;
-
-/// Conductances so far apart that pressures cannot be resolved.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct NotConverged {
-    /// Rounds.
-    pub rounds: usize,
-    /// Residual over inflow.
-    pub residual: f64,
-}
 
 /// Quality of the fit of pressures to their equations.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Fit {
+pub(in crate::network) struct Fit {
     /// Residual over the inflow, both as roots of sums of squares.
     pub residual: f64,
     /// Sum of the imbalances of all voids, rounding included. No flux, and no sum of fluxes through a cut,
@@ -35,7 +102,7 @@ pub(super) struct Fit {
 }
 
 /// A factor that serves one system after another of the same rows.
-pub(super) struct Kept {
+pub(in crate::network) struct Kept {
     factor: Factor,
     /// Rounds of the system that the factor was made for.
     pub rounds: usize,
@@ -44,12 +111,10 @@ pub(super) struct Kept {
 }
 
 /// The equations of the voids inside: a row for each.
-pub(super) struct System {
-    /// Void by row.
+pub(in crate::network) struct System {
     void: Vec<u32>,
     /// Row by void, or [`NONE`].
     row_of: Vec<u32>,
-    /// Conductances between rows.
     links: Vec<Link>,
     /// By row: conductance to pressures that are known.
     ground: Vec<f64>,
@@ -62,7 +127,6 @@ struct Columns {
     pressure: Vec<f64>,
     /// Missing part of the right side.
     residual: Vec<f64>,
-    /// Direction of the next step.
     direction: Vec<f64>,
     /// The matrix times one of these columns.
     product: Vec<f64>,
@@ -73,7 +137,11 @@ struct Columns {
 
 impl System {
     /// Builds the equations of the voids `inside`, out of this many, which `fill` joins.
-    pub(super) fn new(voids: usize, inside: impl Fn(u32) -> bool, fill: impl FnOnce(&mut Self)) -> Self {
+    pub(in crate::network) fn new(
+        voids: usize,
+        inside: impl Fn(u32) -> bool,
+        fill: impl FnOnce(&mut Self),
+    ) -> Self {
         let void: Vec<u32> = (0..voids as u32).filter(|&void| inside(void)).collect();
         let mut row_of = vec![NONE; voids];
         void.iter().zip(0..).for_each(|(&void, row)| row_of[void as usize] = row);
@@ -89,7 +157,7 @@ impl System {
 
     /// Joins two voids. One that is not inside has pressure 0; links between two of these, and from a void to
     /// itself, are ignored.
-    pub(super) fn join(&mut self, one: u32, other: u32, conductance: f64) {
+    pub(in crate::network) fn join(&mut self, one: u32, other: u32, conductance: f64) {
         match [one, other].map(|void| self.row(void)) {
             [None, None] => {}
             [Some(row), None] | [None, Some(row)] => self.ground[row as usize] += conductance,
@@ -106,7 +174,7 @@ impl System {
     }
 
     /// Adds an inflow into a void, if it is inside.
-    pub(super) fn feed(&mut self, void: u32, inflow: f64) {
+    pub(in crate::network) fn feed(&mut self, void: u32, inflow: f64) {
         if let Some(row) = self.row(void) {
             self.inflow[row as usize] += inflow;
         }
@@ -134,13 +202,13 @@ impl System {
     /// that they carry along has left the true one, until the true one is about `within` of the inflow or
     /// rounding lets it come no closer. `kept` holds a factor of nearly this system; if it is empty, or takes
     /// too many rounds, a factor of this system is made and left there.
-    pub(super) fn solve(
+    pub(in crate::network) fn solve(
         mut self,
         pressure: &mut [f64],
         layers: usize,
         within: f64,
         kept: &mut Option<Kept>,
-    ) -> Result<Fit, NotConverged> {
+    ) -> Result<Fit, FlowError> {
         let unit = self.normalise();
         let in_unit = |fit: Fit| Fit { missing: fit.missing / unit, ..fit };
         let scale = dot(&self.inflow, &self.inflow).sqrt();
@@ -150,7 +218,7 @@ impl System {
             return Ok(in_unit(self.fit(&columns, 0.0)));
         }
         if !scale.is_finite() {
-            return Err(NotConverged { rounds: 0, residual: f64::INFINITY });
+            return Err(FlowError::NotConverged { rounds: 0, residual: f64::INFINITY });
         }
         if let Some(Kept { factor, rounds, closed }) = kept.take() {
             let [least, times] = ROUNDS_OF_ANOTHER;
@@ -168,7 +236,6 @@ impl System {
         Ok(in_unit(fit))
     }
 
-    /// Columns that begin with these pressures, by void.
     fn columns(&self, pressure: &[f64]) -> Columns {
         let zeros = || vec![0.0; self.void.len()];
         Columns {
@@ -197,7 +264,7 @@ impl System {
         within: f64,
         factor: &mut Option<Factor>,
         most: usize,
-    ) -> Result<(Fit, usize), NotConverged> {
+    ) -> Result<(Fit, usize), FlowError> {
         let mut columns = self.columns(pressure);
         let (mut rounds, mut before) = (0, f64::INFINITY);
         loop {
@@ -210,7 +277,7 @@ impl System {
                 return Ok((self.fit(&columns, size / scale), rounds));
             }
             if size > 0.5 * before {
-                return Err(NotConverged { rounds, residual: size / scale });
+                return Err(FlowError::NotConverged { rounds, residual: size / scale });
             }
             before = size;
             let factor = factor.get_or_insert_with(|| Factor::new(&self.ground, &self.links));
@@ -246,7 +313,7 @@ impl System {
         columns: &mut Columns,
         [mut size, scale, within]: [f64; 3],
         allowed: Range<usize>,
-    ) -> Result<usize, NotConverged> {
+    ) -> Result<usize, FlowError> {
         let Columns { pressure, residual, direction, product, solved, scratch } = columns;
         direction.fill(0.0);
         let mut before = 0.0;
@@ -255,7 +322,7 @@ impl System {
                 return Ok(round);
             }
             if round >= allowed.end || !size.is_finite() {
-                return Err(NotConverged { rounds: round, residual: size / scale });
+                return Err(FlowError::NotConverged { rounds: round, residual: size / scale });
             }
             factor.solve(residual, scratch, solved);
             let now = dot(residual, solved);
@@ -272,7 +339,6 @@ impl System {
     }
 }
 
-/// Sum of products.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; SIDE_BY_SIDE];
     for (a, b) in a.chunks(SIDE_BY_SIDE).zip(b.chunks(SIDE_BY_SIDE)) {
@@ -281,81 +347,114 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum()
 }
 
+/// Members in groups, each known by its smallest member. Ways are halved as they are followed, which keeps
+/// them short without a count of members (a logarithm on average).
+pub(in crate::network) struct Together {
+    /// A member of the same group that is no larger: the smallest points at itself.
+    towards: Vec<u32>,
+}
+
+impl Together {
+    pub(in crate::network) fn new(members: usize) -> Self {
+        Self { towards: (0..members as u32).collect() }
+    }
+
+    /// Smallest member of the group of this one.
+    pub(in crate::network) fn root(&mut self, mut member: u32) -> u32 {
+        loop {
+            let next = self.towards[member as usize];
+            if next == member {
+                return member;
+            }
+            // Halves the way for the next time.
+            let after = self.towards[next as usize];
+            self.towards[member as usize] = after;
+            member = after;
+        }
+    }
+
+    pub(in crate::network) fn join(&mut self, one: u32, other: u32) {
+        let (one, other) = (self.root(one), self.root(other));
+        self.towards[one.max(other) as usize] = one.min(other);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::flow::thresholds::CONVERGED;
+
+    /// Fit and pressures of this many voids, from this pressure on, that `fill` joins.
+    fn solved(
+        voids: u32,
+        from: f64,
+        kept: &mut Option<Kept>,
+        fill: impl FnOnce(&mut System),
+    ) -> (Fit, Vec<f64>) {
+        let mut pressure = vec![from; voids as usize];
+        let system = System::new(voids as usize, |_| true, fill);
+        (system.solve(&mut pressure, voids as usize, CONVERGED, kept).unwrap(), pressure)
+    }
+
+    /// Joins voids one behind the other between known pressures.
+    fn chain(system: &mut System, voids: u32) {
+        system.hold(0, 1.0, 1.0);
+        system.hold(voids - 1, 2.0, 0.0);
+        (0..voids - 1).for_each(|void| system.join(void, void + 1, 1.0 + f64::from(void % 7)));
+    }
 
     /// A column of voids that each also meet themselves: the same bits; if the factor knew of loops it would
     /// take hundreds of rounds.
     #[test]
     fn nothing_flows_from_a_void_to_itself() {
         const VOIDS: u32 = 500;
-        let solved = |loops: bool| {
-            let system = System::new(
-                VOIDS as usize,
-                |_| true,
-                |system| {
-                    system.hold(0, 1.0, 1.0);
-                    system.hold(VOIDS - 1, 2.0, 0.0);
-                    for void in 0..VOIDS - 1 {
-                        system.join(void, void + 1, 1.0 + f64::from(void % 7));
-                        if loops {
-                            system.join(void, void, 50.0);
-                        }
-                    }
-                },
-            );
-            let mut pressure = vec![0.0; VOIDS as usize];
-            system.solve(&mut pressure, VOIDS as usize, CONVERGED, &mut None).unwrap();
-            pressure
-        };
-        assert_eq!(solved(true), solved(false));
-        assert!(solved(true).is_sorted_by(|above, below| above > below));
+        let [with_loops, without] = [50.0, 0.0].map(|loops| {
+            let fill = |system: &mut System| {
+                chain(system, VOIDS);
+                (0..VOIDS).filter(|_| loops > 0.0).for_each(|void| system.join(void, void, loops));
+            };
+            solved(VOIDS, 0.0, &mut None, fill).1
+        });
+        assert_eq!(with_loops, without);
+        assert!(without.is_sorted_by(|above, below| above > below));
     }
 
     /// A factor of a network that conducts elsewhere makes way for one that fits.
     #[test]
     fn a_factor_that_does_not_serve_is_replaced() {
         const SIDE: u32 = 40;
-        let solved = |wide: u32, kept: &mut Option<Kept>| {
-            let system = System::new(
-                (SIDE * SIDE) as usize,
-                |_| true,
-                |system| {
-                    for v in 0..SIDE * SIDE {
-                        let [x, y] = [v % SIDE, v / SIDE];
-                        let conductance = |turn: u32| if (v + turn) % 3 == wide { 1e4 } else { 1.0 };
-                        if x + 1 < SIDE {
-                            system.join(v, v + 1, conductance(0));
-                        }
-                        if y + 1 < SIDE {
-                            system.join(v, v + SIDE, conductance(1));
-                        } else {
-                            system.hold(v, 1.0, 0.0);
-                        }
-                        if y == 0 {
-                            system.hold(v, 1.0, 1.0);
-                        }
+        let solved_for = |wide: u32, kept: &mut Option<Kept>| {
+            let fill = |system: &mut System| {
+                for v in 0..SIDE * SIDE {
+                    let [x, y] = [v % SIDE, v / SIDE];
+                    let conductance = |turn: u32| if (v + turn) % 3 == wide { 1e4 } else { 1.0 };
+                    if x + 1 < SIDE {
+                        system.join(v, v + 1, conductance(0));
                     }
-                },
-            );
-            let mut pressure = vec![0.5; (SIDE * SIDE) as usize];
-            let fit = system.solve(&mut pressure, SIDE as usize, CONVERGED, kept).unwrap();
+                    if y + 1 < SIDE {
+                        system.join(v, v + SIDE, conductance(1));
+                    } else {
+                        system.hold(v, 1.0, 0.0);
+                    }
+                    if y == 0 {
+                        system.hold(v, 1.0, 1.0);
+                    }
+                }
+            };
+            let (fit, pressure) = solved(SIDE * SIDE, 0.5, kept, fill);
             assert!(fit.residual < 2.0 * CONVERGED, "{fit:?}");
             pressure
         };
         let (mut same, mut other) = (None, None);
-        let pressure = solved(0, &mut same);
-        solved(1, &mut other);
+        let pressure = solved_for(0, &mut same);
+        solved_for(1, &mut other);
         for kept in [&mut same, &mut other] {
             kept.as_mut().unwrap().closed = 7;
         }
         // Equal to the bit, since it starts again from the same pressures, with the factor that it would have
         // made.
-        assert_eq!(solved(0, &mut other), pressure);
+        assert_eq!(solved_for(0, &mut other), pressure);
         assert_eq!(other.unwrap().closed, 0);
-        assert_eq!(solved(0, &mut same), pressure);
+        assert_eq!(solved_for(0, &mut same), pressure);
         assert_eq!(same.unwrap().closed, 7, "one that serves stays");
     }
 
@@ -364,19 +463,21 @@ mod tests {
     #[test]
     fn conductances_that_single_precision_does_not_tell_apart_are_solved() {
         const VOIDS: u32 = 300;
-        let system = System::new(
-            VOIDS as usize + 1,
-            |_| true,
-            |system| {
-                system.hold(0, 1.0, 1.0);
-                system.hold(VOIDS - 1, 2.0, 0.0);
-                (0..VOIDS - 1).for_each(|void| system.join(void, void + 1, 1.0 + f64::from(void % 7)));
-                system.join(VOIDS / 2, VOIDS, 1e50);
-            },
-        );
-        let mut pressure = vec![0.0; VOIDS as usize + 1];
-        system.solve(&mut pressure, VOIDS as usize, CONVERGED, &mut None).unwrap();
+        let (_, pressure) = solved(VOIDS + 1, 0.0, &mut None, |system| {
+            chain(system, VOIDS);
+            system.join(VOIDS / 2, VOIDS, 1e50);
+        });
         assert!(pressure[..VOIDS as usize].is_sorted_by(|above, below| above > below));
         assert!((pressure[VOIDS as usize] - pressure[VOIDS as usize / 2]).abs() < 1e-6);
+    }
+
+    #[test]
+    fn what_is_joined_has_one_root() {
+        let mut together = Together::new(9);
+        for (one, other) in [(8, 3), (3, 5), (5, 8), (2, 7), (7, 4), (6, 4)] {
+            together.join(one, other);
+        }
+        let roots: Vec<u32> = (0..9).map(|void| together.root(void)).collect();
+        assert_eq!(roots, [0, 1, 2, 3, 2, 3, 2, 2, 3]);
     }
 }

@@ -4,12 +4,326 @@
 //! `diameter_mm`. [`legacy`] reads files before XML (`.vtk`, ASCII and binary), [`xml`] reads `.vtp` and
 //! `.vtu`. Neither format tells if boundaries are periodic.
 
-mod legacy;
-mod number;
-mod points;
-#[cfg(test)]
-mod tests;
-mod xml;
+pub(super) mod xml;
 
-pub(super) use legacy::legacy;
-pub(super) use xml::xml;
+use crate::packing::fields::{FileCell, FileGrains, ImportError, LengthUnit, NAMES, ended, refused};
+use crate::packing::tables::{DIAMETER, Named, RADIUS};
+
+/// Points of a file and their numbers.
+pub struct Points {
+    /// The line that names them, for messages.
+    pub line: usize,
+    /// x, y and z of each point in turn.
+    pub places: Vec<f64>,
+    pub arrays: Vec<PointArray>,
+}
+
+/// One array of numbers.
+pub struct PointArray {
+    pub line: usize,
+    pub name: String,
+    pub values: Vec<f64>,
+}
+
+/// Turns the points into grains.
+pub fn grains(file: &str, points: Points) -> Result<FileGrains, ImportError> {
+    let named = |called: &[&str]| -> Vec<(&PointArray, Named)> {
+        let all = points.arrays.iter().map(|array| (array, Named::of(&array.name)));
+        all.filter(|(_, named)| called.contains(&named.name.as_str())).collect()
+    };
+    let (mut sizes, factor) = match named(DIAMETER) {
+        diameters if diameters.is_empty() => (named(RADIUS), 2.0),
+        diameters => (diameters, 1.0),
+    };
+    let (Some((size, name)), true) = (sizes.pop(), sizes.is_empty()) else {
+        let names: Vec<&str> = points.arrays.iter().map(|array| array.name.as_str()).collect();
+        let allowed = "points with one array called diameter or radius";
+        return Err(refused(file, points.line, "arrays of the points", &names.join(", "), allowed));
+    };
+    let count = points.places.len() / 3;
+    if size.values.len() != count {
+        let allowed = format!("{count} numbers, one for each point");
+        return Err(refused(file, size.line, NAMES[3], &format!("{} numbers", size.values.len()), allowed));
+    }
+    if count == 0 {
+        return Err(ended(file, points.line, "at least one point"));
+    }
+    if let Some((at, value)) = points.places.iter().enumerate().find(|(_, value)| !value.is_finite()) {
+        return Err(refused(file, points.line, NAMES[at % 3], &value.to_string(), "a finite number"));
+    }
+    if let Some(value) = size.values.iter().find(|value| !(value.is_finite() && **value > 0.0)) {
+        return Err(refused(file, size.line, NAMES[3], &value.to_string(), "a finite number above 0"));
+    }
+    let places = points.places.chunks_exact(3).zip(&size.values);
+    let grains = places.map(|(p, value)| [p[0], p[1], p[2], factor * value]).collect();
+    let of_unit = |unit: LengthUnit| {
+        let (array, unit) = (&size.name, unit.words());
+        format!("{file}: the array {array} is in {unit}, and so are the coordinates taken to be")
+    };
+    let notes = name.unit.map(of_unit).into_iter().collect();
+    Ok(FileGrains { grains, unit: name.unit, cell: FileCell::Unsaid, line: points.line, notes })
+}
+
+/// Type of the numbers of an array.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Number {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    I64,
+    U64,
+    F32,
+    F64,
+}
+
+/// Types of numbers with their names in XML and before XML.
+const NUMBERS: [(Number, &str, &[&str]); 10] = [
+    (Number::I8, "Int8", &["char"]),
+    (Number::U8, "UInt8", &["unsigned_char"]),
+    (Number::I16, "Int16", &["short"]),
+    (Number::U16, "UInt16", &["unsigned_short"]),
+    (Number::I32, "Int32", &["int", "vtkIdType"]),
+    (Number::U32, "UInt32", &["unsigned_int"]),
+    (Number::I64, "Int64", &["long", "vtktypeint64"]),
+    (Number::U64, "UInt64", &["unsigned_long", "vtktypeuint64"]),
+    (Number::F32, "Float32", &["float"]),
+    (Number::F64, "Float64", &["double"]),
+];
+
+impl Number {
+    /// Size in bytes.
+    pub fn bytes(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::I64 | Self::U64 | Self::F64 => 8,
+        }
+    }
+
+    /// All numbers in a run of bytes; an incomplete rest is ignored.
+    pub fn all(self, bytes: &[u8], is_big_endian: bool) -> Vec<f64> {
+        bytes.chunks_exact(self.bytes()).map(|bytes| self.one(bytes, is_big_endian)).collect()
+    }
+
+    pub fn one(self, bytes: &[u8], is_big_endian: bool) -> f64 {
+        let mut little = [0; 8];
+        for (k, slot) in little.iter_mut().take(bytes.len()).enumerate() {
+            *slot = if is_big_endian { bytes[bytes.len() - 1 - k] } else { bytes[k] };
+        }
+        let whole = u64::from_le_bytes(little);
+        match self {
+            Self::I8 => f64::from(whole as i8),
+            Self::U8 | Self::U16 | Self::U32 | Self::U64 => whole as f64,
+            Self::I16 => f64::from(whole as i16),
+            Self::I32 => f64::from(whole as i32),
+            Self::I64 => whole as i64 as f64,
+            Self::F32 => f64::from(f32::from_bits(whole as u32)),
+            Self::F64 => f64::from_bits(whole),
+        }
+    }
+}
+
+/// Reads the grains of a file that begins with `# vtk DataFile`.
+pub fn legacy(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
+    let mut cursor = Cursor { file, content, at: 0, line: 0, is_binary: false };
+    let heading = [cursor.raw_line(), cursor.raw_line()];
+    if heading.iter().any(Option::is_none) {
+        return Err(cursor.ended("a title, ASCII or BINARY, and DATASET"));
+    }
+    cursor.is_binary = match cursor.words()?.first().map(String::as_str) {
+        Some("ASCII") => false,
+        Some("BINARY") => true,
+        other => return Err(cursor.refused("form", other.unwrap_or(""), "ASCII or BINARY")),
+    };
+    let (mut points, mut arrays, mut of_points) = (None, Vec::new(), false);
+    while let Some(words) = cursor.next_words() {
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        match words[..] {
+            ["DATASET", "POLYDATA" | "UNSTRUCTURED_GRID"] => {}
+            ["DATASET", other, ..] => {
+                return Err(cursor.refused("dataset", other, "POLYDATA or UNSTRUCTURED_GRID"));
+            }
+            ["POINTS", count, kind] => {
+                let line = cursor.line;
+                points = Some((line, cursor.numbers(count, 3, kind)?));
+            }
+            ["VERTICES" | "LINES" | "POLYGONS" | "TRIANGLE_STRIPS" | "CELLS", count, size] => {
+                cursor.cells(count, size)?;
+            }
+            ["CELL_TYPES", count] => drop(cursor.numbers(count, 1, "int")?),
+            ["POINT_DATA", _] => of_points = true,
+            ["CELL_DATA", _] => of_points = false,
+            ["SCALARS", name, kind, ref components @ ..] => {
+                let components = components.first().copied().unwrap_or("1");
+                let array = cursor.array(name, points.as_ref(), components, kind)?;
+                if of_points {
+                    arrays.push(array);
+                }
+            }
+            ["VECTORS" | "NORMALS", name, kind] => drop(cursor.array(name, points.as_ref(), "3", kind)?),
+            ["TENSORS", name, kind] => drop(cursor.array(name, points.as_ref(), "9", kind)?),
+            ["FIELD", _, count] => {
+                let count = cursor.count(count)?;
+                for _ in 0..count {
+                    let words = cursor.words()?;
+                    let [name, components, tuples, kind] = &words[..] else {
+                        let allowed = "an array's name, components, number and type";
+                        return Err(cursor.refused("field", &words.join(" "), allowed));
+                    };
+                    let (line, components) = (cursor.line, cursor.count(components)?);
+                    let values = cursor.numbers(tuples, components, kind)?;
+                    if of_points && components == 1 {
+                        arrays.push(PointArray { line, name: name.clone(), values });
+                    }
+                    cursor.metadata();
+                }
+            }
+            ["METADATA"] => cursor.pass_blank_line(),
+            _ => {
+                let allowed = "a section of points with numbers, as POINTS, VERTICES, SCALARS or FIELD";
+                return Err(cursor.refused("section", &words.join(" "), allowed));
+            }
+        }
+    }
+    let (line, places) = points.ok_or_else(|| cursor.ended("POINTS"))?;
+    grains(file, Points { line, places, arrays })
+}
+
+/// A position in the file.
+struct Cursor<'a> {
+    file: &'a str,
+    content: &'a [u8],
+    at: usize,
+    /// Number of lines begun, counted by line ends in a binary file too.
+    line: usize,
+    is_binary: bool,
+}
+
+impl<'a> Cursor<'a> {
+    fn refused(&self, field: &'static str, value: &str, allowed: &str) -> ImportError {
+        refused(self.file, self.line, field, value, allowed)
+    }
+
+    fn ended(&self, expected: &str) -> ImportError {
+        ended(self.file, self.line, expected)
+    }
+
+    /// The next line without its end.
+    fn raw_line(&mut self) -> Option<String> {
+        let rest = self.content.get(self.at..).filter(|rest| !rest.is_empty())?;
+        let length = rest.iter().position(|&byte| byte == b'\n').unwrap_or(rest.len());
+        self.at += (length + 1).min(rest.len());
+        self.line += 1;
+        Some(String::from_utf8_lossy(&rest[..length]).trim().to_owned())
+    }
+
+    /// The words of the next line that is not blank.
+    fn next_words(&mut self) -> Option<Vec<String>> {
+        loop {
+            let line = self.raw_line()?;
+            if !line.is_empty() {
+                return Some(line.split_whitespace().map(str::to_owned).collect());
+            }
+        }
+    }
+
+    fn words(&mut self) -> Result<Vec<String>, ImportError> {
+        self.next_words().ok_or_else(|| self.ended("further lines"))
+    }
+
+    /// Passes over the next line if it is one of these, or else does not move.
+    fn skip_if(&mut self, is: impl Fn(&str) -> bool) -> bool {
+        let before = (self.at, self.line);
+        let is_skipped = self.next_words().is_some_and(|words| is(&words[0]));
+        if !is_skipped {
+            (self.at, self.line) = before;
+        }
+        is_skipped
+    }
+
+    fn metadata(&mut self) {
+        if self.skip_if(|word| word == "METADATA") {
+            self.pass_blank_line();
+        }
+    }
+
+    fn pass_blank_line(&mut self) {
+        while self.raw_line().is_some_and(|line| !line.is_empty()) {}
+    }
+
+    fn count(&self, text: &str) -> Result<usize, ImportError> {
+        text.parse().map_err(|_| self.refused("number", text, "a whole number"))
+    }
+
+    fn array(
+        &mut self,
+        name: &str,
+        points: Option<&(usize, Vec<f64>)>,
+        components: &str,
+        kind: &str,
+    ) -> Result<PointArray, ImportError> {
+        let line = self.line;
+        let Some((_, places)) = points else { return Err(self.refused("section", name, "POINTS first")) };
+        let tuples = (places.len() / 3).to_string();
+        self.skip_if(|word| word == "LOOKUP_TABLE");
+        let values = self.numbers(&tuples, self.count(components)?, kind)?;
+        self.metadata();
+        Ok(PointArray { line, name: name.to_owned(), values })
+    }
+
+    /// Passes over the lists of the points of each cell: since VTK 9 as offsets and points.
+    fn cells(&mut self, count: &str, size: &str) -> Result<(), ImportError> {
+        let before = (self.at, self.line);
+        for (place, count) in [count, size].into_iter().enumerate() {
+            let words = self.words()?;
+            if place == 0 && words[0] != "OFFSETS" {
+                (self.at, self.line) = before;
+                return self.numbers(size, 1, "int").map(drop);
+            }
+            self.numbers(count, 1, words.get(1).map_or("", String::as_str))?;
+        }
+        Ok(())
+    }
+
+    /// Reads `tuples` tuples of numbers.
+    fn numbers(&mut self, tuples: &str, components: usize, kind: &str) -> Result<Vec<f64>, ImportError> {
+        let count = self.count(tuples)?.checked_mul(components);
+        let left = self.content.len() - self.at;
+        // A number takes a byte at least, so a file can never ask for more memory than its own size.
+        let Some(count) = count.filter(|&count| count <= left) else {
+            return Err(self.ended(&format!("{tuples} times {components} numbers")));
+        };
+        let Some(&(number, ..)) = NUMBERS.iter().find(|(_, _, names)| names.contains(&kind)) else {
+            let allowed = "a number's type, as float, double, int or vtktypeint64";
+            return Err(self.refused("type", kind, allowed));
+        };
+        if self.is_binary {
+            let end = count.checked_mul(number.bytes()).filter(|&bytes| bytes <= left);
+            let Some(bytes) = end else { return Err(self.ended(&format!("{count} numbers of type {kind}"))) };
+            let run = &self.content[self.at..self.at + bytes];
+            self.at += bytes;
+            self.line += run.iter().filter(|&&byte| byte == b'\n').count();
+            return Ok(number.all(run, true));
+        }
+        (0..count).map(|_| self.number()).collect()
+    }
+
+    /// The next number in text.
+    fn number(&mut self) -> Result<f64, ImportError> {
+        let rest = &self.content[self.at..];
+        let begin = rest.iter().position(|byte| !byte.is_ascii_whitespace()).unwrap_or(rest.len());
+        let word = &rest[begin..];
+        let length = word.iter().position(u8::is_ascii_whitespace).unwrap_or(word.len());
+        self.line += rest[..begin].iter().filter(|&&byte| byte == b'\n').count();
+        self.at += begin + length;
+        let text = String::from_utf8_lossy(&word[..length]);
+        if text.is_empty() {
+            return Err(self.ended("further numbers"));
+        }
+        text.parse().map_err(|_| refused(self.file, self.line + 1, "number", &text, "a number"))
+    }
+}

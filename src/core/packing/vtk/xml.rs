@@ -1,17 +1,13 @@
 //! VTK files in XML, `.vtp` and `.vtu`: numbers in text, in Base64, or appended behind the XML in Base64 or
 //! raw; compressed by zlib or not.
 
-use std::io::Read;
-
+use super::{NUMBERS, Number, PointArray, Points, grains};
+use crate::packing::fields::{FileGrains, ImportError, PACKING_FILE_LIMIT_BYTES, ended, in_utf8, refused};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
-
-use super::number::Number;
-use super::points::{PointArray, Points, grains};
-use crate::packing::fields::{ImportError, PACKING_FILE_LIMIT_BYTES, refused};
-use crate::packing::found::FileGrains;
+use std::io::Read;
 
 /// Types of files that are read.
 const TYPES: [&str; 2] = ["PolyData", "UnstructuredGrid"];
@@ -86,8 +82,7 @@ pub fn xml(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
         }
     }
     if !is_whole {
-        let (file, line) = (file.into(), form.line);
-        return Err(ImportError::Truncated { file, line, expected: "</VTKFile>".into() });
+        return Err(ended(file, form.line, "</VTKFile>"));
     }
     if point_count.checked_mul(3) != Some(points.places.len()) {
         let actual = format!("{} numbers", points.places.len());
@@ -132,18 +127,13 @@ fn split<'a>(file: &str, content: &'a [u8]) -> Result<(&'a str, Option<Appended<
     const OPENS: &[u8] = b"<AppendedData";
     let appended_at = content.windows(OPENS.len()).position(|window| window == OPENS);
     let end = appended_at.unwrap_or(content.len());
-    let head = std::str::from_utf8(&content[..end]).map_err(|error| {
-        let good = error.valid_up_to();
-        let line = 1 + content[..good].iter().filter(|&&byte| byte == b'\n').count();
-        ImportError::Encoding { file: file.into(), line, byte: content[good] }
-    })?;
+    let head = in_utf8(file, &content[..end])?;
     let Some(begin) = appended_at else { return Ok((head, None)) };
     let line = 1 + head.bytes().filter(|&byte| byte == b'\n').count();
     let tag = &content[begin..];
     let marks = |mark: u8, from: usize| tag[from..].iter().position(|&byte| byte == mark).map(|at| from + at);
     let Some((close, data)) = marks(b'>', 0).and_then(|close| Some((close, marks(b'_', close)?))) else {
-        let expected = "an underscore and the appended numbers".into();
-        return Err(ImportError::Truncated { file: file.into(), line, expected });
+        return Err(ended(file, line, "an underscore and the appended numbers"));
     };
     let is_raw = match String::from_utf8_lossy(&tag[..close]) {
         tag if tag.contains("\"raw\"") => true,
@@ -227,8 +217,9 @@ enum Place {
 impl Declared {
     fn read(e: &BytesStart<'_>, form: &Form<'_>) -> Result<Self, ImportError> {
         let kind = attribute(e, "type").unwrap_or_default();
-        let number = number(&kind)
-            .ok_or_else(|| form.refused("type", &kind, "a number's type, as Float32, Float64 or Int32"))?;
+        let Some(&(number, ..)) = NUMBERS.iter().find(|(_, name, _)| *name == kind) else {
+            return Err(form.refused("type", &kind, "a number's type, as Float32, Float64 or Int32"));
+        };
         let place = match attribute(e, "format").as_deref() {
             Some("ascii") => Place::Text,
             Some("binary") => Place::Base64,
@@ -250,10 +241,8 @@ impl Declared {
     }
 
     fn values(&self, form: &Form<'_>) -> Result<Vec<f64>, ImportError> {
-        let broken = |expected: &str| {
-            let expected = format!("{expected} of the array {}", self.name);
-            ImportError::Truncated { file: form.file.into(), line: self.line, expected }
-        };
+        let broken =
+            |expected: &str| ended(form.file, self.line, format!("{expected} of the array {}", self.name));
         let bytes = match (&self.place, &form.appended) {
             (Place::Text, _) => {
                 let one = |word: &str| {
@@ -331,20 +320,4 @@ fn block(coded: &Coded<'_>, form: &Form<'_>) -> Option<Vec<u8>> {
         at = end;
     }
     Some(bytes)
-}
-
-fn number(kind: &str) -> Option<Number> {
-    Some(match kind {
-        "Int8" => Number::I8,
-        "UInt8" => Number::U8,
-        "Int16" => Number::I16,
-        "UInt16" => Number::U16,
-        "Int32" => Number::I32,
-        "UInt32" => Number::U32,
-        "Int64" => Number::I64,
-        "UInt64" => Number::U64,
-        "Float32" => Number::F32,
-        "Float64" => Number::F64,
-        _ => return None,
-    })
 }

@@ -1,15 +1,13 @@
-//! The header of a checkpoint: its fixed fields, the table of its sections, and checksums.
+//! The header of a checkpoint (its label, the table of its sections, and checksums), and the reasons for
+//! refusing it.
 
-use std::io::Read;
-use std::path::Path;
-
-use bytemuck::{Pod, Zeroable};
-use xxhash_rust::xxh3::xxh3_64;
-
-use super::error::CheckpointError;
-use super::label::{Identity, Label};
-use super::section::{PIECE, Section};
 use crate::store::disk::{Call, ask};
+use bytemuck::{Pod, Zeroable};
+use rayon::prelude::*;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::{fmt, io};
+use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 const MAGIC: [u8; 8] = *b"vwcheckp";
 const VERSION: u32 = 1;
@@ -181,16 +179,187 @@ fn entries(table: &[u8], number: u64, length: u64) -> Result<Vec<Entry>, String>
     Ok(sections)
 }
 
-/// Writes text into a field of fixed length.
 fn field<const N: usize>(text: &str) -> [u8; N] {
     let mut field = [0; N];
     field[..text.len()].copy_from_slice(text.as_bytes());
     field
 }
 
-/// Reads the text in a field.
 fn text(field: &[u8]) -> Result<String, String> {
     let end = field.iter().position(|&b| b == 0).unwrap_or(field.len());
     let text = std::str::from_utf8(&field[..end]).map_err(|_| "a name in its header is no text")?;
     Ok(text.to_owned())
+}
+
+/// Subject of a checkpoint: a checkpoint of anything else is refused, even of another walk of the same scene.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Identity {
+    /// Fingerprint of the scene, or of the plan of a packing; at most 32 characters.
+    pub scene: String,
+    /// 0: the walks of the scene itself; from 1: the walks of the sensitivity study.
+    pub part: u64,
+    /// Replicate, counted from 1.
+    pub replicate: u64,
+    /// Seed of the replicate.
+    pub seed: u64,
+    /// Base particles of each run.
+    pub n_base: u64,
+}
+
+impl fmt::Display for Identity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { part, replicate, seed, n_base, .. } = self;
+        write!(f, "replicate {replicate} of part {part}, seed {seed}, {n_base} base particles")
+    }
+}
+
+/// Subject and progress of a checkpoint.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Label {
+    /// Subject of the checkpoint.
+    pub identity: Identity,
+    /// Fingerprint of the network.
+    pub network: u64,
+    /// Run, counted from 1.
+    pub run: u64,
+    /// Last whole increment.
+    pub increment: u64,
+    /// Number of the checkpoint under its name, counted from 1.
+    pub generation: u64,
+}
+
+/// Bytes of a section that have a checksum of their own.
+pub(super) const PIECE: usize = 1 << 20;
+
+/// A column to be saved, in one or more parts.
+pub struct Section<'a> {
+    /// Name, at most 32 bytes.
+    pub name: &'static str,
+    pub(super) element: usize,
+    pub(super) parts: Vec<&'a [u8]>,
+}
+
+impl<'a> Section<'a> {
+    /// Makes a section of a whole column.
+    pub fn new<T: Pod>(name: &'static str, column: &'a [T]) -> Self {
+        Self::parts(name, [column])
+    }
+
+    /// Makes a section of a column from its parts, one after another.
+    pub fn parts<T: Pod>(name: &'static str, parts: impl IntoIterator<Item = &'a [T]>) -> Self {
+        Self { name, element: size_of::<T>(), parts: parts.into_iter().map(bytemuck::cast_slice).collect() }
+    }
+
+    pub(super) fn bytes(&self) -> u64 {
+        self.parts.iter().map(|part| part.len() as u64).sum()
+    }
+
+    /// XXH3 of each piece, on all available threads.
+    pub(super) fn sums(&self) -> Vec<u64> {
+        let mut pieces: Vec<Vec<&[u8]>> = Vec::new();
+        let mut room = 0;
+        for part in &self.parts {
+            let mut rest = *part;
+            while !rest.is_empty() {
+                if room == 0 {
+                    pieces.push(Vec::new());
+                    room = PIECE;
+                }
+                let (now, later) = rest.split_at(rest.len().min(room));
+                pieces.last_mut().expect("one was pushed").push(now);
+                (room, rest) = (room - now.len(), later);
+            }
+        }
+        let sum = |piece: Vec<&[u8]>| {
+            let mut hash = Xxh3::new();
+            piece.iter().for_each(|part| hash.update(part));
+            hash.digest()
+        };
+        pieces.into_par_iter().map(sum).collect()
+    }
+}
+
+/// Reasons for refusing a checkpoint. The remedy depends on the command, which names it.
+#[derive(Debug, thiserror::Error)]
+pub enum CheckpointError {
+    /// The content of the file differs from what was written.
+    #[error("{}: corrupt: {problem}", file.display())]
+    Corrupt {
+        /// The file.
+        file: PathBuf,
+        /// Description of the damage.
+        problem: String,
+    },
+    /// The system fails to read the file, which may be whole.
+    #[error(
+        "{}: cannot be read: {source}; it is left as it is, and nothing was taken in its place",
+        file.display()
+    )]
+    Unreadable {
+        /// The file.
+        file: PathBuf,
+        /// Error of the system.
+        source: io::Error,
+    },
+    /// The file is of another version of the format.
+    #[error(
+        "{}: was written by another version of voidwalk (checkpoint format {found}; this one reads \
+         {expected}), which can finish it",
+        file.display()
+    )]
+    OtherVersion {
+        /// The file.
+        file: PathBuf,
+        /// Version of the file's format.
+        found: u32,
+        /// Version that is read.
+        expected: u32,
+    },
+    /// The file was written on a machine of another kind.
+    #[error("{}: was written by a machine with another byte order", file.display())]
+    OtherByteOrder {
+        /// The file.
+        file: PathBuf,
+    },
+    /// The scene, or the plan of the packing, is another one.
+    #[error("{}: is of another scene, or of another version of voidwalk", file.display())]
+    OtherScene {
+        /// The file.
+        file: PathBuf,
+    },
+    /// The scene is the same, but the walk is another one.
+    #[error("{}: is of another walk of this scene: {found}; expected: {expected}", file.display())]
+    OtherWalk {
+        /// The file.
+        file: PathBuf,
+        /// Walk of the file.
+        found: String,
+        /// Walk asked for.
+        expected: String,
+    },
+    /// The walk is the same, but the network is another one.
+    #[error("{}: is of another network", file.display())]
+    OtherNetwork {
+        /// The file.
+        file: PathBuf,
+    },
+}
+
+impl CheckpointError {
+    /// Tells if the system failed to read the file, which may then be whole.
+    pub fn is_unreadable(&self) -> bool {
+        matches!(self, Self::Unreadable { .. })
+    }
+
+    /// Turns an error of reading into one of the checkpoint: a file that ends too early is corrupt.
+    pub(super) fn from_io(file: &Path, source: io::Error) -> Self {
+        match source.kind() {
+            io::ErrorKind::UnexpectedEof => Self::corrupt(file, "ends early"),
+            _ => Self::Unreadable { file: file.to_owned(), source },
+        }
+    }
+
+    pub(super) fn corrupt(file: &Path, problem: impl Into<String>) -> Self {
+        Self::Corrupt { file: file.to_owned(), problem: problem.into() }
+    }
 }

@@ -1,19 +1,10 @@
-//! Processors, memory and blocks of files on macOS.
+//! Processors and memory on macOS.
 //!
 //! Facts about the machine come from the output of its own commands, which needs no call of the system that
 //! only a Mac could try; tests on every system read such output.
 
 #[cfg(target_os = "macos")]
-use super::{Memory, write_zeros};
-
-/// Makes a file `bytes` long with every block allocated: by the file system, or else by writing.
-#[cfg(target_os = "macos")]
-pub fn allocate(file: &std::fs::File, bytes: u64) -> std::io::Result<()> {
-    match rustix::fs::fallocate(file, rustix::fs::FallocateFlags::empty(), 0, bytes) {
-        Err(rustix::io::Errno::OPNOTSUPP) => write_zeros(file, bytes),
-        other => Ok(other?),
-    }
-}
+use super::Memory;
 
 /// Empty: the system keeps no thread on one processor.
 #[cfg(target_os = "macos")]

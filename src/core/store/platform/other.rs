@@ -7,12 +7,10 @@ use std::path::Path;
 
 use super::Memory;
 
-/// Opens a file of the program's own.
 pub fn open_own(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
     options.open(path)
 }
 
-/// Opens a file of a user.
 pub fn open_any(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
     options.open(path)
 }
@@ -22,7 +20,6 @@ pub fn has_other_names(_file: &File) -> io::Result<bool> {
     Err(io::ErrorKind::Unsupported.into())
 }
 
-/// Fills `bytes` from this place of a file on.
 pub fn read_exact_at(mut file: &File, bytes: &mut [u8], offset: u64) -> io::Result<()> {
     file.seek(SeekFrom::Start(offset))?;
     file.read_exact(bytes)
@@ -33,7 +30,6 @@ pub fn try_lock(file: &File, shared: bool) -> Result<(), TryLockError> {
     if shared { file.try_lock_shared() } else { file.try_lock() }
 }
 
-/// Sends the names in a folder to the disk, if a folder can be opened.
 pub fn sync_folder(folder: &Path) -> io::Result<()> {
     File::open(folder)?.sync_all()
 }

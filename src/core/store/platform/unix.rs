@@ -5,7 +5,8 @@ use std::io;
 use std::os::unix::fs::{FileExt, MetadataExt, OpenOptionsExt};
 use std::path::Path;
 
-use rustix::fs::OFlags;
+use super::write_zeros;
+use rustix::fs::{FallocateFlags, OFlags};
 use rustix::time::{ClockId, clock_gettime};
 
 /// Opens a file of the program's own: a link is an error, and a pipe or the like is not waited for.
@@ -36,6 +37,14 @@ pub fn try_lock(file: &File, shared: bool) -> Result<(), TryLockError> {
 /// Sends the names in a folder to the disk.
 pub fn sync_folder(folder: &Path) -> io::Result<()> {
     File::open(folder)?.sync_all()
+}
+
+/// Makes a file `bytes` long with every block allocated: by the file system, or else by writing.
+pub fn allocate(file: &File, bytes: u64) -> io::Result<()> {
+    match rustix::fs::fallocate(file, FallocateFlags::empty(), 0, bytes) {
+        Err(rustix::io::Errno::OPNOTSUPP) => write_zeros(file, bytes),
+        other => Ok(other?),
+    }
 }
 
 /// Bytes that this user may still write on the disk of a folder; `None` if unknown.

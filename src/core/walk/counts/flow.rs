@@ -7,6 +7,13 @@
 //! A few particles in a void of three exits choose each by themselves, with one random word for both
 //! thresholds. More of them are split exit by exit, and draws for many voids are made at once.
 
+use super::binomial::{CERTAIN, Draws, FEW, FewTrials, Portable, fill, one};
+use super::passive::fraction;
+use super::shares::{Shares, Way};
+use crate::network::{END, Network};
+use crate::stream::{Key, below};
+use crate::walk::Isa;
+use rayon::prelude::*;
 #[cfg(target_arch = "x86_64")]
 use std::hint::black_box;
 #[cfg(target_arch = "x86_64")]
@@ -14,16 +21,8 @@ use std::mem::MaybeUninit;
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rayon::prelude::*;
-
 #[cfg(target_arch = "x86_64")]
 use super::binomial::{Avx2, Avx512};
-use super::binomial::{CERTAIN, Draws, FEW, FewTrials, Portable, fill, one};
-use super::shares::{Shares, Way};
-use super::sizes::fraction;
-use crate::network::{END, Network};
-use crate::stream::{Key, below};
-use crate::walk::Isa;
 
 /// Voids that share a stream. Part of the definition of every stream: changing it changes results.
 const BLOCK: usize = 1 << 10;
@@ -37,11 +36,8 @@ const ALONE: usize = 4;
 /// Result of one increment for the passive particles.
 #[derive(Debug, Default)]
 pub(super) struct Moved {
-    /// Particles that attempted a move and made it.
     pub moves: u64,
-    /// Particles that wait where they are.
     pub waiting: u64,
-    /// Particles that left the filter.
     pub eroded: u64,
     /// Void and number of particles without an open exit.
     pub stranded: Vec<(u32, u64)>,
@@ -51,13 +47,11 @@ pub(super) struct Moved {
 pub(super) struct Flow {
     /// By block: the blocks that exits of its voids lead to.
     downstream: Vec<Vec<u32>>,
-    /// By block: true if it holds a particle.
     occupied: Vec<bool>,
     workers: Vec<Worker>,
     /// Particles that move: those inserted are added, and all are counted afresh in every step.
-    moving: u64,
-    /// Instructions that it uses.
-    isa: Isa,
+    pub moving: u64,
+    pub isa: Isa,
 }
 
 struct Worker {
@@ -98,15 +92,6 @@ impl Flow {
         }
     }
 
-    pub fn set_isa(&mut self, isa: Isa) {
-        self.isa = isa;
-    }
-
-    /// Particles that move.
-    pub fn moving(&self) -> u64 {
-        self.moving
-    }
-
     /// Puts `count` particles on start nodes, each drawn uniformly, or `evenly`: the same number on each, and
     /// the rest on nodes of as many equal parts of them.
     pub fn insert(&mut self, network: &Network, count: u64, evenly: bool, key: Key, moving: &mut [u64]) {
@@ -140,7 +125,6 @@ impl Flow {
         }
     }
 
-    /// Every particle attempts one move.
     pub fn step(&mut self, network: &Network, shares: &Shares, key: Key, moving: &mut [u64]) -> Moved {
         let occupied: Vec<usize> = (0..self.occupied.len()).filter(|&b| self.occupied[b]).collect();
         let next_block = AtomicUsize::new(0);
@@ -202,7 +186,6 @@ impl Flow {
     }
 }
 
-/// A block of voids in one increment: all that its step reads.
 struct Block<'a> {
     network: &'a Network,
     shares: &'a Shares,
@@ -226,7 +209,6 @@ fn step(isa: Isa, worker: &mut Worker, block: Block) {
     }
 }
 
-/// Size and alignment of a line of the cache.
 #[cfg(target_arch = "x86_64")]
 #[repr(align(64))]
 struct CacheLine {
@@ -368,7 +350,6 @@ impl SplitBatch {
         row + 1
     }
 
-    /// Draws the number that takes the exit it faces; the others face the next.
     #[inline(always)]
     fn round(&mut self, draws: &mut Draws, shares: &Shares, arrive: &mut impl FnMut(usize, u64)) {
         let rows = self.rows;

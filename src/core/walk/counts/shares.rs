@@ -30,7 +30,6 @@ pub(in crate::walk) struct Shares {
     probability: Vec<u64>,
     /// By constriction: number of exits to the next open one of its void; no open one is passed over.
     on: Vec<u8>,
-    /// By void.
     route: Vec<Way>,
     /// A bit for each void without an open exit.
     shut: Vec<u64>,
@@ -41,14 +40,12 @@ pub(in crate::walk) struct Shares {
 }
 
 impl Shares {
-    /// The shares of the constrictions that are open.
     pub fn new(network: &Network, ways: Ways) -> Self {
         let mut shares = Self::empty(network);
         exits::of_each(network, ways, 0..network.voids() as u32, |exits| shares.set(network, exits));
         shares
     }
 
-    /// Shares with no void set yet.
     pub fn empty(network: &Network) -> Self {
         Self {
             probability: vec![0; network.constrictions()],
@@ -105,7 +102,6 @@ impl Shares {
         }
     }
 
-    /// Probability of each constriction.
     pub fn probability(&self) -> &[u64] {
         &self.probability
     }
@@ -137,7 +133,6 @@ impl Shares {
         [first, first.wrapping_add(of_rest)]
     }
 
-    /// Way that the particles of a void go.
     #[inline(always)]
     pub fn route(&self, void: usize) -> Way {
         self.route[void]
@@ -160,7 +155,6 @@ impl Shares {
         self.route[void] == Way::Wait
     }
 
-    /// Tells if a void has an open exit.
     #[inline]
     pub fn leads_on(&self, void: usize) -> bool {
         !matches!(self.route[void], Way::None | Way::Wait)
@@ -191,6 +185,9 @@ mod tests {
         assert_eq!(shares_of([1.0; 3], [false, true, false]).0[..2], [1 << 63, 0]);
         assert!(!shares_of([1.0; 3], [true; 3]).1);
         assert!(!shares_of([0.0; 3], [false; 3]).1);
+        // An exit with 1e24 times the area leaves the others possible.
+        assert_eq!(shares_of([1e12, 1.0, 1.0], [false; 3]).0[0], CERTAIN - 1);
+        assert_eq!(shares_of([1e12, 1.0, 1.0], [true, false, false]).0[1], 1 << 63);
     }
 
     /// Up to the last exit the thresholds agree with the walk one by one, to a unit; the value beside a
@@ -219,22 +216,9 @@ mod tests {
     fn the_next_open_exit_is_found_beyond_any_number_of_closed_ones() {
         let open = [0, 1, 256, 257, 600, 1111];
         for open in [&open[..], &open[2..], &open[4..5]] {
-            let links: Vec<Link> = (0..1200)
-                .map(|_| Link {
-                    from: LinkEnd::Void(0),
-                    to: LinkEnd::Outside,
-                    diameter: 1.0,
-                    conductance: 1.0,
-                    rise: 1.0,
-                })
-                .chain([Link {
-                    from: LinkEnd::Outside,
-                    to: LinkEnd::Void(0),
-                    diameter: 1.0,
-                    conductance: 1.0,
-                    rise: 1.0,
-                }])
-                .collect();
+            let link = |from, to| Link { from, to, diameter: 1.0, conductance: 1.0, rise: 1.0 };
+            let mut links = vec![link(LinkEnd::Void(0), LinkEnd::Outside); 1200];
+            links.push(link(LinkEnd::Outside, LinkEnd::Void(0)));
             let voids = LinkedVoids {
                 layer: vec![0],
                 unit_mm: 1.0,
@@ -280,12 +264,5 @@ mod tests {
         blocked.set(3 * 68 + 2, false);
         exits::of_each(&network, Ways::Unblocked(&blocked), [68], |exits| shares.set(&network, exits));
         assert_eq!((shares.route(68), shares.tops(68)), (Way::Three, open.tops(68)));
-    }
-
-    /// An exit with 1e24 times the area leaves the others possible.
-    #[test]
-    fn a_giant_is_not_certain() {
-        assert_eq!(shares_of([1e12, 1.0, 1.0], [false; 3]).0[0], CERTAIN - 1);
-        assert_eq!(shares_of([1e12, 1.0, 1.0], [true, false, false]).0[1], 1 << 63);
     }
 }

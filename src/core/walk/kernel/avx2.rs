@@ -2,14 +2,12 @@
 //!
 //! Both thresholds of a void are compared with the draw in one instruction, as halves of the table's word.
 
-use std::arch::x86_64::*;
-
 use super::lattice::{BLOCK, CLASS_UP, Draws, LatticeChunk, PAST_FIRST, fits_gathers};
 use crate::stream::{LANES, Lanes, next_of_four};
 use crate::walk::Isa;
 use crate::walk::arching::{CLASS_OF_ONE, Reach};
-use crate::walk::exits::{CLASS, Lattice};
-use crate::walk::reads::Reads;
+use crate::walk::exits::{CLASS, Lattice, Reads};
+use std::arch::x86_64::*;
 
 const WIDTH: usize = 8;
 
@@ -148,7 +146,6 @@ fn predict<R: Reads>(
     rare
 }
 
-/// Reach of draws, in registers.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn load_reach(reach: &Reach) -> [__m256; 4] {

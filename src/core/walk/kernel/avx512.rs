@@ -5,15 +5,13 @@
 //! stored as whole vectors: the entries behind them have been read. Only draws that tie with a threshold are
 //! looked at one by one.
 
-use std::arch::x86_64::*;
-
 use super::avx2;
 use super::lattice::{BLOCK, CLASS_UP, LatticeChunk, PAST_FIRST, PAST_SECOND, fits_gathers};
 use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
 use crate::walk::Isa;
 use crate::walk::arching::{CLASS_OF_ONE, Reach};
-use crate::walk::exits::{CLASS, Lattice};
-use crate::walk::reads::Reads;
+use crate::walk::exits::{CLASS, Lattice, Reads};
+use std::arch::x86_64::*;
 
 const WIDTH: usize = 16;
 
@@ -179,7 +177,6 @@ fn decide(
     unsafe { _mm512_loadu_si512(indices.as_ptr().cast()) }
 }
 
-/// Reach of draws, in registers.
 #[inline]
 #[target_feature(enable = "avx512f")]
 fn load_reach(reach: &Reach) -> [__m512; 2] {

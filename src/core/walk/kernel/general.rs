@@ -1,13 +1,11 @@
 //! The step on any network: exits and targets by look-up.
 
+use super::lattice::fetch;
 use crate::network::{END, Network};
 use crate::stream::{DRAWS_PER_BLOCK, Extension, Key, LANES, Lanes, draw16};
 use crate::walk::Arching;
-use crate::walk::arches::Jam;
+use crate::walk::chunks::{Events, Jam};
 use crate::walk::exits::{General, NONE, WAIT};
-use crate::walk::merge::Events;
-
-use super::fetch::fetch;
 
 /// Particles between one that chooses and the one whose exits are asked for then.
 const AHEAD: usize = 24;
@@ -29,7 +27,6 @@ pub(super) fn step(
     }
 }
 
-/// Jams of the particles of a chunk, and their stream.
 pub(super) struct Jams<'a> {
     arching: &'a Arching,
     lanes: Lanes,
@@ -38,7 +35,6 @@ pub(super) struct Jams<'a> {
 }
 
 impl<'a> Jams<'a> {
-    /// Prepares for the first particle.
     pub fn new(arching: &'a Arching, lanes: Lanes) -> Self {
         Self { arching, extension: lanes.extension(), lanes, block: [0; LANES] }
     }
@@ -142,9 +138,7 @@ fn step_all(
 enum Chosen {
     /// Through this exit, where it fits.
     Exit(u32),
-    /// No exit is open.
     None,
-    /// No exit is open until the flow is solved again.
     Wait,
 }
 

@@ -16,21 +16,15 @@
 //! ([`Arching::reach`]): a particle that is then no finer than that width goes the long way, where the law
 //! decides.
 
+use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
+use crate::walk::arching::{Arching, Reach};
+use crate::walk::chunks::{Events, Jam};
+use crate::walk::exits;
+use crate::walk::exits::{CLASS, CLASS_SHIFT, Lattice, OpenExits, Plain, Reads};
 use std::ops::Range;
 
-use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
-use crate::walk::arches::Jam;
-use crate::walk::arching::{Arching, Reach};
-use crate::walk::exits::{self, CLASS, CLASS_SHIFT, Lattice, OpenExits};
-use crate::walk::merge::Events;
-use crate::walk::reads::{Plain, Reads};
-
-use super::fetch::fetch;
-
-/// Particles of a block.
 pub(super) const BLOCK: usize = 2 * DRAWS_PER_BLOCK;
 
-/// The draws of a block of particles, as they come.
 pub(super) type Draws = [u64; 2 * LANES];
 
 /// Shift from a class at its place in a word to its place in the bits of a diameter.
@@ -87,7 +81,6 @@ pub(super) fn fits_gathers(table: &Lattice) -> bool {
 pub(super) struct LatticeChunk<'a> {
     pub exits: &'a OpenExits<'a>,
     pub table: &'a Lattice,
-    /// The stream of this chunk and increment.
     pub lanes: Lanes,
     /// Law by which its particles arch, and their stream; only if they arch.
     pub jams: Option<(&'a Arching, Lanes)>,
@@ -127,7 +120,6 @@ pub(super) fn step<R: Reads>(mut chunk: LatticeChunk) -> usize {
 /// registers do not hold the passes.
 const PART: usize = 16;
 
-/// A bit for each of them.
 static BITS: [u32; PART] = {
     let mut bits = [1; PART];
     let mut j = 0;
@@ -369,4 +361,17 @@ impl Lattice {
         let index = word & 3 | [0, PAST_FIRST, PAST_FIRST | PAST_SECOND][exit as usize];
         from.wrapping_add(self.moves[index as usize])
     }
+}
+
+/// Asks for an entry of a column, or of the memory behind it, before it is read.
+#[inline(always)]
+pub(super) fn fetch<T>(column: &[T], at: usize) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: nothing is read, whatever the address.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(column.as_ptr().wrapping_add(at).cast()) };
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (column, at);
 }

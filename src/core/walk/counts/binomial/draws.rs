@@ -1,12 +1,7 @@
-//! The random words of binomial draws, and probabilities as 64-bit fractions.
+//! The random words of binomial draws, and few trials by them, each made.
 
-use super::normal::Normal;
-use crate::stream::{Key, LANES, Lanes};
-
-/// The probability 1.
-pub(in crate::walk::counts) const CERTAIN: u64 = u64::MAX;
-
-pub(super) const TWO_TO_MINUS_64: f64 = 1.0 / 18_446_744_073_709_551_616.0;
+use super::quantile::Normal;
+use crate::stream::{DRAWS_PER_BLOCK, Key, LANES, Lanes};
 
 /// The random words of one stream, one after another or a block at a time.
 pub(in crate::walk::counts) struct Draws {
@@ -31,7 +26,6 @@ impl Draws {
         self.block[self.used - 1]
     }
 
-    /// State word by lane of the stream's generators.
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub(super) fn state(&self) -> &[[u64; LANES]; 4] {
@@ -52,20 +46,320 @@ impl Draws {
     }
 }
 
-/// Successes, if the rarer outcome turned up `drawn` times.
+/// Number of `n` uniform 64-bit words that are below each of two thresholds.
+///
+/// Sixteen bits of each are drawn, and the other 48 where those are equal to a threshold's.
 #[inline(always)]
-pub(super) fn turned(n: u64, p: u64, drawn: u64) -> u64 {
-    if p > 1 << 63 { n.wrapping_sub(drawn) } else { drawn }
+pub(in crate::walk::counts) fn below_both(draws: &mut Draws, n: u64, thresholds: [u64; 2]) -> [u64; 2] {
+    let [first, second] = thresholds.map(|t| (t >> 48) as u16);
+    let (mut below, mut left) = ([0, 0], n);
+    while left > 0 {
+        let sixteens: [u16; DRAWS_PER_BLOCK] = bytemuck::cast(draws.block().map(u64::to_le));
+        let counted = left.min(DRAWS_PER_BLOCK as u64) as u16;
+        let (mut less, mut less_second, mut same) = (0u16, 0u16, 0u16);
+        for (j, &draw) in sixteens.iter().enumerate() {
+            let draw = u16::from_le(draw);
+            let counts = (j as u16) < counted;
+            less += u16::from(counts & (draw < first));
+            less_second += u16::from(counts & (draw < second));
+            same += u16::from(counts & ((draw == first) | (draw == second)));
+        }
+        below[0] += u64::from(less);
+        below[1] += u64::from(less_second);
+        if same > 0 {
+            complete(draws, &sixteens[..counted as usize], thresholds, &mut below);
+        }
+        left -= u64::from(counted);
+    }
+    below
 }
 
-/// Probability of the rarer outcome.
-#[inline(always)]
-pub(super) fn rarer(p: u64) -> u64 {
-    p.min(p.wrapping_neg())
+/// Adds the words whose sixteen bits are equal to a threshold's, and that are below it.
+#[cold]
+#[inline(never)]
+pub(super) fn complete(draws: &mut Draws, sixteens: &[u16], thresholds: [u64; 2], below: &mut [u64; 2]) {
+    let top = |word: u64| (word >> 48) as u16;
+    for draw in sixteens.iter().map(|&draw| u16::from_le(draw)) {
+        if thresholds.iter().any(|&t| draw == top(t)) {
+            let whole = u64::from(draw) << 48 | draws.word() >> 16;
+            for (below, &t) in below.iter_mut().zip(&thresholds) {
+                *below += u64::from(draw == top(t) && whole < t);
+            }
+        }
+    }
 }
 
-/// A share of 2^64 as a number; 1 for [`CERTAIN`].
-#[inline(always)]
-pub(in crate::walk::counts) fn as_unit(p: u64) -> f64 {
-    p as f64 * TWO_TO_MINUS_64
+/// Compares `n` uniform words with `p`, bit by bit; returns the number below.
+pub(super) fn by_bits(draws: &mut Draws, n: u64, p: u64) -> u64 {
+    let (mut undecided, mut below, mut bits) = (n, 0, p);
+    // Once the rest of `p` is zero, words equal so far are not below.
+    while undecided > 0 && bits != 0 {
+        let ones = ones_among(draws, undecided);
+        let zeros = undecided - ones;
+        if bits >> 63 == 1 {
+            below += zeros;
+            undecided = ones;
+        } else {
+            undecided = zeros;
+        }
+        bits <<= 1;
+    }
+    below
+}
+
+fn ones_among(draws: &mut Draws, m: u64) -> u64 {
+    let mut ones = 0;
+    let mut left = m;
+    while left > 64 {
+        ones += draws.word().count_ones();
+        left -= 64;
+    }
+    u64::from(ones + (draws.word() >> (64 - left)).count_ones())
+}
+
+/// Small numbers of trials, for void after void of one stream; the same bits as [`below_both`] with the
+/// instructions of any machine.
+pub(in crate::walk::counts) trait FewTrials {
+    /// Takes the stream's generators from where they are.
+    ///
+    /// # Safety
+    /// The machine has the instructions that this is made with.
+    unsafe fn begin(draws: &Draws) -> Self;
+
+    /// Counts the `n` uniform 64-bit words that are below each of two thresholds, whose upper sixteen bits
+    /// are `tops`; the whole is asked for where they do not decide.
+    fn below_both(
+        &mut self,
+        draws: &mut Draws,
+        n: u64,
+        tops: [u16; 2],
+        thresholds: impl Fn() -> [u64; 2],
+    ) -> [u64; 2];
+
+    fn end(self, draws: &mut Draws);
+}
+
+pub(in crate::walk::counts) struct Portable;
+
+impl FewTrials for Portable {
+    #[inline(always)]
+    unsafe fn begin(_: &Draws) -> Self {
+        Self
+    }
+
+    #[inline(always)]
+    fn below_both(
+        &mut self,
+        draws: &mut Draws,
+        n: u64,
+        tops: [u16; 2],
+        thresholds: impl Fn() -> [u64; 2],
+    ) -> [u64; 2] {
+        debug_assert_eq!(tops, thresholds().map(|t| (t >> 48) as u16));
+        below_both(draws, n, thresholds())
+    }
+
+    #[inline(always)]
+    fn end(self, _: &mut Draws) {}
+}
+
+#[cfg(target_arch = "x86_64")]
+pub(in crate::walk::counts) use x86::{Avx2, Avx512};
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use std::arch::x86_64::*;
+
+    use super::{Draws, FewTrials, complete};
+    use crate::stream::{DRAWS_PER_BLOCK, next_of_four};
+
+    /// With AVX-512: the generators' state words.
+    pub(in crate::walk::counts) struct Avx512([__m512i; 4]);
+
+    /// With AVX2: the state words of the lower and the upper four generators.
+    pub(in crate::walk::counts) struct Avx2([[__m256i; 4]; 2]);
+
+    /// Number of draws of a block below each threshold, and the block if a draw equals the top of a
+    /// threshold.
+    pub(in crate::walk::counts) type Counted = ([u32; 2], Option<[u16; DRAWS_PER_BLOCK]>);
+
+    /// Generators that stay in vector registers from void to void; in memory, every void would wait for the
+    /// store of the one before it.
+    trait InRegisters: Sized {
+        /// Takes them from where `draws` has them.
+        ///
+        /// # Safety
+        /// The machine has the instructions that this is made with.
+        unsafe fn load(draws: &Draws) -> Self;
+
+        /// The first `counted` draws of the next block.
+        ///
+        /// # Safety
+        /// The machine has the instructions that this is made with.
+        unsafe fn block(&mut self, counted: u64, tops: [u16; 2]) -> Counted;
+
+        fn store(&self, draws: &mut Draws);
+    }
+
+    impl<V: InRegisters> FewTrials for V {
+        #[inline(always)]
+        unsafe fn begin(draws: &Draws) -> Self {
+            // SAFETY: as the caller promises.
+            unsafe { V::load(draws) }
+        }
+
+        /// Block by block; a block with a draw that equals the top of a threshold is completed with more
+        /// bits.
+        #[inline(always)]
+        fn below_both(
+            &mut self,
+            draws: &mut Draws,
+            n: u64,
+            tops: [u16; 2],
+            thresholds: impl Fn() -> [u64; 2],
+        ) -> [u64; 2] {
+            let (mut below, mut left) = ([0, 0], n);
+            while left > 0 {
+                let counted = left.min(DRAWS_PER_BLOCK as u64);
+                // SAFETY: whoever began has promised the instructions.
+                let (less, block) = unsafe { self.block(counted, tops) };
+                if let Some(block) = block {
+                    self.store(draws);
+                    complete(draws, &block[..counted as usize], thresholds(), &mut below);
+                    // SAFETY: as above.
+                    *self = unsafe { V::load(draws) };
+                }
+                below = [below[0] + u64::from(less[0]), below[1] + u64::from(less[1])];
+                left -= counted;
+            }
+            below
+        }
+
+        #[inline(always)]
+        fn end(self, draws: &mut Draws) {
+            self.store(draws);
+        }
+    }
+
+    impl InRegisters for Avx512 {
+        #[inline(always)]
+        unsafe fn load(draws: &Draws) -> Self {
+            // SAFETY: each state word has eight lanes; the machine has AVX-512.
+            Self(draws.state().map(|row| unsafe { _mm512_loadu_si512(row.as_ptr().cast()) }))
+        }
+
+        #[inline(always)]
+        unsafe fn block(&mut self, counted: u64, tops: [u16; 2]) -> Counted {
+            // SAFETY: as the caller promises.
+            unsafe { block_avx512(&mut self.0, counted, tops) }
+        }
+
+        #[inline(always)]
+        fn store(&self, draws: &mut Draws) {
+            for (row, state) in draws.state_mut().iter_mut().zip(self.0) {
+                // SAFETY: each state word has eight lanes; the machine has AVX-512.
+                unsafe { _mm512_storeu_si512(row.as_mut_ptr().cast(), state) };
+            }
+        }
+    }
+
+    /// Counts the first `counted` draws of the next block that are below each threshold; also returns the
+    /// block if one of them equals the top of a threshold.
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
+    #[inline]
+    fn block_avx512(state: &mut [__m512i; 4], counted: u64, tops: [u16; 2]) -> Counted {
+        let [s0, s1, s2, s3] = *state;
+        let block = _mm512_add_epi64(_mm512_rol_epi64::<23>(_mm512_add_epi64(s0, s3)), s0);
+        let (t, s2, s3) = (_mm512_slli_epi64::<17>(s1), _mm512_xor_si512(s2, s0), _mm512_xor_si512(s3, s1));
+        let (s1, s0) = (_mm512_xor_si512(s1, s2), _mm512_xor_si512(s0, s3));
+        *state = [s0, s1, _mm512_xor_si512(s2, t), _mm512_rol_epi64::<45>(s3)];
+        let mask = ((1u64 << counted) - 1) as u32;
+        let [first, second] = tops.map(|top| _mm512_set1_epi16(top as i16));
+        let less = [
+            _mm512_mask_cmplt_epu16_mask(mask, block, first).count_ones(),
+            _mm512_mask_cmplt_epu16_mask(mask, block, second).count_ones(),
+        ];
+        let same = _mm512_mask_cmpeq_epu16_mask(mask, block, first)
+            | _mm512_mask_cmpeq_epu16_mask(mask, block, second);
+        let block = (same != 0).then(|| {
+            let mut sixteens = [0; DRAWS_PER_BLOCK];
+            // SAFETY: as many sixteens as the vector has.
+            unsafe { _mm512_storeu_si512(sixteens.as_mut_ptr().cast(), block) };
+            sixteens
+        });
+        (less, block)
+    }
+
+    impl InRegisters for Avx2 {
+        #[inline(always)]
+        unsafe fn load(draws: &Draws) -> Self {
+            let half = |half: usize| {
+                // SAFETY: four lanes from `4 half` on are within the eight; the machine has AVX2.
+                draws.state().map(|row| unsafe { _mm256_loadu_si256(row[4 * half..][..4].as_ptr().cast()) })
+            };
+            Self([half(0), half(1)])
+        }
+
+        #[inline(always)]
+        unsafe fn block(&mut self, counted: u64, tops: [u16; 2]) -> Counted {
+            // SAFETY: as the caller promises.
+            unsafe { block_avx2(&mut self.0, counted, tops) }
+        }
+
+        #[inline(always)]
+        fn store(&self, draws: &mut Draws) {
+            for (at, half) in self.0.iter().enumerate() {
+                for (row, state) in draws.state_mut().iter_mut().zip(half) {
+                    // SAFETY: four lanes from `4 at` on are within the eight; the machine has AVX2.
+                    unsafe { _mm256_storeu_si256(row[4 * at..][..4].as_mut_ptr().cast(), *state) };
+                }
+            }
+        }
+    }
+
+    /// By number of draws that count: a bit for each, where packing two halves puts it (eight of the lower
+    /// half of the draws, eight of the upper one, then the others of each).
+    const MASKS: [u32; DRAWS_PER_BLOCK + 1] = {
+        let (mut masks, mut n) = ([0; DRAWS_PER_BLOCK + 1], 0);
+        while n <= DRAWS_PER_BLOCK {
+            let first = ((1u64 << n) - 1) as u32;
+            masks[n] = first & 0xff00_00ff | first >> 8 & 0xff00 | first << 8 & 0xff_0000;
+            n += 1;
+        }
+        masks
+    };
+
+    /// [`block_avx512`] in two halves.
+    #[target_feature(enable = "avx2,popcnt")]
+    #[inline]
+    fn block_avx2(state: &mut [[__m256i; 4]; 2], counted: u64, tops: [u16; 2]) -> Counted {
+        // Unsigned numbers are compared as signed, less 2^15.
+        let sign = _mm256_set1_epi16(i16::MIN);
+        let counts = MASKS[counted as usize];
+        let blocks = [next_of_four(&mut state[0]), next_of_four(&mut state[1])];
+        let [low, high] = [_mm256_xor_si256(blocks[0], sign), _mm256_xor_si256(blocks[1], sign)];
+        let (mut less, mut same) = ([0; 2], 0);
+        for (less, top) in less.iter_mut().zip(tops) {
+            let top = _mm256_set1_epi16((top ^ 0x8000) as i16);
+            let below = packed(_mm256_cmpgt_epi16(top, low), _mm256_cmpgt_epi16(top, high));
+            *less = (below & counts).count_ones();
+            same |= packed(_mm256_cmpeq_epi16(top, low), _mm256_cmpeq_epi16(top, high)) & counts;
+        }
+        let block = (same != 0).then(|| {
+            let mut sixteens = [0; DRAWS_PER_BLOCK];
+            for (sixteens, block) in sixteens.chunks_exact_mut(DRAWS_PER_BLOCK / 2).zip(blocks) {
+                // SAFETY: as many sixteens as the vector has.
+                unsafe { _mm256_storeu_si256(sixteens.as_mut_ptr().cast(), block) };
+            }
+            sixteens
+        });
+        (less, block)
+    }
+
+    /// A bit for each sixteen of two halves that is negative, eight of one and of the other in turn.
+    #[target_feature(enable = "avx2,popcnt")]
+    #[inline]
+    fn packed(low: __m256i, high: __m256i) -> u32 {
+        _mm256_movemask_epi8(_mm256_packs_epi16(low, high)) as u32
+    }
 }

@@ -6,18 +6,16 @@
 //! is off by less than half of that for every count and probability that [`holds`] admits, and the tests look
 //! at each. Where the crossing is farther than the margin from the middle between two whole numbers, the
 //! nearer one is the draw. Else, in one draw of a hundred or a thousand, `F` itself decides, summed from
-//! [`super::saddle`]. So the draw follows from `F` alone, not from the expansion.
+//! [`super::quantile`]. So the draw follows from `F` alone, not from the expansion.
 //!
 //! Only `+ - * /` and `sqrt` touch a float before `F` is asked, in loops over eight lanes that the compiler
 //! turns into vector instructions, and they round alike everywhere.
 
-use super::draws::{CERTAIN, TWO_TO_MINUS_64, as_unit, rarer, turned};
-use super::normal::{FAR, MANTISSA, Normal, ROUNDER};
-use super::saddle::ln_probability;
 use crate::stream::LANES;
+use std::sync::OnceLock;
 
 /// Least variance for which the margin is known to hold.
-pub(super) const LEAST_VARIANCE: f64 = 6.0;
+const LEAST_VARIANCE: f64 = 6.0;
 
 /// Most trials: `F` is a sum over some standard deviations, which is to stay short.
 pub(super) const MOST_TRIALS: u64 = 1 << 32;
@@ -94,7 +92,6 @@ struct Row {
     skew: f64,
     /// Fourth cumulant over the variance.
     kurtosis: f64,
-    /// True if the variance is large enough.
     holds: bool,
 }
 
@@ -193,9 +190,179 @@ fn distribution(n: f64, p: f64, q: f64, k: f64, pmf: f64) -> f64 {
     sum
 }
 
+/// 2^52: adding it rounds a smaller float to a whole number.
+pub(super) const ROUNDER: f64 = 4_503_599_627_370_496.0;
+const MANTISSA: u64 = (1 << 52) - 1;
+
+const ONE: u64 = 1023 << 52;
+
+/// Cells of the quantile table in each halving of the tail.
+const CELL_BITS: u32 = 5;
+
+/// Halvings of the tail that the table covers, from 1/2 on.
+const HALVINGS: u64 = 14;
+
+/// The table begins at this tail, 4 standard deviations out.
+const FAR: f64 = 1.0 / 32768.0;
+
+/// Place of the first cell among all floats.
+const FIRST_CELL: u64 = (1023 - 1 - HALVINGS) << CELL_BITS;
+
+/// Cells, and some beyond them that are never used: an index cut to nine bits needs no check.
+const CELLS: usize = 512;
+
+/// Cubic polynomials for the distance from the middle of a normal distribution beyond which a tail lies, by
+/// cells of the tail; the variable runs from 0 to 1 over a cell.
+pub(super) struct Normal {
+    cells: [[f64; 4]; CELLS],
+}
+
+impl Normal {
+    pub fn table() -> &'static Self {
+        static TABLE: OnceLock<Box<Normal>> = OnceLock::new();
+        TABLE.get_or_init(|| Box::new(Self::new()))
+    }
+
+    fn new() -> Self {
+        let mut cells = [[0.0; 4]; CELLS];
+        for (cell, polynomial) in cells.iter_mut().enumerate().take((HALVINGS as usize) << CELL_BITS) {
+            let begin = f64::from_bits((cell as u64 + FIRST_CELL) << (52 - CELL_BITS));
+            let end = f64::from_bits((cell as u64 + 1 + FIRST_CELL) << (52 - CELL_BITS));
+            *polynomial = cubic(|x| beyond(begin + (end - begin) * x));
+        }
+        Self { cells }
+    }
+
+    /// Where the tail `t` begins, for `t` from [`FAR`] to 1/2.
+    #[inline(always)]
+    pub(super) fn quantile(&self, t: f64) -> f64 {
+        let bits = t.to_bits();
+        let cell = ((bits >> (52 - CELL_BITS)) - FIRST_CELL) as usize % CELLS;
+        let along = f64::from_bits((bits << CELL_BITS) & MANTISSA | ONE) - 1.0;
+        let [a, b, c, d] = self.cells[cell];
+        a + along * (b + along * (c + along * d))
+    }
+}
+
+/// The cubic through four values of `f` between 0 and 1, at the places where its error is least
+/// (Chebyshev's).
+fn cubic(f: impl Fn(f64) -> f64) -> [f64; 4] {
+    let x = [
+        -0.923_879_532_511_286_7,
+        -0.382_683_432_365_089_8,
+        0.382_683_432_365_089_8,
+        0.923_879_532_511_286_7,
+    ]
+    .map(|node| 0.5 + 0.5 * node);
+    let y = x.map(f);
+    // Divided differences.
+    let slope = |a: f64, b: f64, i: usize, j: usize| (b - a) / (x[j] - x[i]);
+    let first: [f64; 3] = std::array::from_fn(|i| slope(y[i], y[i + 1], i, i + 1));
+    let second: [f64; 2] = std::array::from_fn(|i| slope(first[i], first[i + 1], i, i + 2));
+    let third = slope(second[0], second[1], 0, 3);
+    let products = [x[0] * x[1], x[0] * x[2] + x[1] * x[2], x[0] * x[1] * x[2]];
+    [
+        y[0] - first[0] * x[0] + second[0] * products[0] - third * products[2],
+        first[0] - second[0] * (x[0] + x[1]) + third * (products[0] + products[1]),
+        second[0] - third * (x[0] + x[1] + x[2]),
+        third,
+    ]
+}
+
+fn density(z: f64) -> f64 {
+    0.398_942_280_401_432_7 * libm::exp(-0.5 * z * z)
+}
+
+/// Where the tail `t <= 1/2` of the normal distribution begins, by Newton's method.
+pub(super) fn beyond(t: f64) -> f64 {
+    let mut z = 0.0;
+    loop {
+        // From the left of a convex function: every step goes right, until rounding ends it.
+        let step = (0.5 * libm::erfc(z * std::f64::consts::FRAC_1_SQRT_2) - t) / density(z);
+        if step <= 1e-15 * z {
+            return z;
+        }
+        z += step;
+    }
+}
+
+/// Half of `ln(2 pi)`.
+const HALF_LN_TWO_PI: f64 = 0.918_938_533_204_672_8;
+
+/// `ln k! - ((k + 1/2) ln k - k + ln(2 pi) / 2)`, the error of Stirling's formula; `k` is whole and at least
+/// 1.
+fn stirling_error(k: f64) -> f64 {
+    if k < 16.0 {
+        return libm::lgamma(k + 1.0) - ((k + 0.5) * libm::log(k) - k + HALF_LN_TWO_PI);
+    }
+    let kk = k * k;
+    let tail = 1.0 / 1188.0 / kk;
+    (1.0 / 12.0 - (1.0 / 360.0 - (1.0 / 1260.0 - (1.0 / 1680.0 - tail) / kk) / kk) / kk) / k
+}
+
+/// `x ln(x / m) + m - x` without cancellation near `x = m`.
+fn deviance(x: f64, m: f64) -> f64 {
+    let difference = x - m;
+    if difference.abs() >= 0.1 * (x + m) {
+        return x * libm::log(x / m) + m - x;
+    }
+    let v = difference / (x + m);
+    let mut sum = difference * v;
+    let mut power = 2.0 * x * v;
+    let mut odd = 1.0;
+    loop {
+        power *= v * v;
+        odd += 2.0;
+        let next = sum + power / odd;
+        if next == sum {
+            return sum;
+        }
+        sum = next;
+    }
+}
+
+/// `ln P(k)` of `n` trials with probability `p`, where `q = 1 - p` is handed over to full precision; all of
+/// `n`, `k` are whole, `0 <= k <= n` and `0 < p < 1`. By the saddle-point expansion (C. Loader 2000, *Fast
+/// and accurate computation of binomial probabilities*): terms that cancel are never formed, so it is good to
+/// about 1e-15 of what matters however large `n` is.
+pub(super) fn ln_probability(n: f64, p: f64, q: f64, k: f64) -> f64 {
+    if k == 0.0 {
+        return n * libm::log1p(-p);
+    }
+    if k == n {
+        return n * libm::log1p(-q);
+    }
+    let rest = n - k;
+    let errors = stirling_error(n) - stirling_error(k) - stirling_error(rest);
+    let exponent = errors - deviance(k, n * p) - deviance(rest, n * q);
+    exponent - HALF_LN_TWO_PI - 0.5 * libm::log(k / n * rest)
+}
+
+/// The probability 1.
+pub(in crate::walk::counts) const CERTAIN: u64 = u64::MAX;
+
+const TWO_TO_MINUS_64: f64 = 1.0 / 18_446_744_073_709_551_616.0;
+
+/// Successes, if the rarer outcome turned up `drawn` times.
+#[inline(always)]
+pub(super) fn turned(n: u64, p: u64, drawn: u64) -> u64 {
+    if p > 1 << 63 { n.wrapping_sub(drawn) } else { drawn }
+}
+
+/// Probability of the rarer outcome.
+#[inline(always)]
+pub(super) fn rarer(p: u64) -> u64 {
+    p.min(p.wrapping_neg())
+}
+
+/// A share of 2^64 as a number; 1 for [`CERTAIN`].
+#[inline(always)]
+pub(in crate::walk::counts) fn as_unit(p: u64) -> f64 {
+    p as f64 * TWO_TO_MINUS_64
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::normal::beyond;
     use super::*;
 
     /// `F(k)` and `1 - F(k)` for all `k` within 4.5 standard deviations, summed from both ends.
@@ -288,6 +455,50 @@ mod tests {
                 [0, u64::MAX, 1 << 63, (1 << 63) - 1, 1 << 40].map(|word| draw(Normal::table(), n, p, word));
             assert!(ends.iter().all(|&k| k <= n) && ends[0] <= ends[4] && ends[4] < ends[3] + 1);
             assert!(ends[3] <= ends[2] && ends[2] < ends[1]);
+        }
+    }
+
+    /// The table against Newton's method, at the ends of every cell and between: to less than half of what
+    /// the margin allows.
+    #[test]
+    fn the_table_is_the_normal_quantile() {
+        let normal = Normal::table();
+        let mut worst = 0f64;
+        for i in 0..(HALVINGS << CELL_BITS) * 8 {
+            let t = f64::from_bits((FIRST_CELL << (52 - CELL_BITS)) + (i << (49 - CELL_BITS)) + 12345);
+            worst = worst.max((normal.quantile(t) - beyond(t)).abs());
+        }
+        assert!(worst < 0.5 / (1u64 << 29) as f64, "{worst:e}");
+        assert!((beyond(0.5)).abs() < 1e-15 && (beyond(0.158_655_253_931_457_05) - 1.0).abs() < 1e-14);
+        assert!((beyond(FAR) - 4.008).abs() < 1e-2);
+    }
+
+    /// Against products formed term by term, which lose about `k` roundings.
+    #[test]
+    fn small_cases_are_products() {
+        for (n, p) in [(1u64, 0.3), (7, 0.5), (40, 0.01), (300, 0.37), (1000, 0.499)] {
+            let mut sum = 0.0;
+            let mut ln = n as f64 * libm::log1p(-p);
+            for k in 0..=n {
+                let logarithm = ln_probability(n as f64, p, 1.0 - p, k as f64);
+                assert!((logarithm - ln).abs() < 1e-9, "{n} {p} {k}: {logarithm} {ln}");
+                sum += libm::exp(logarithm);
+                ln += libm::log((n - k).max(1) as f64 / (k + 1) as f64 * p / (1.0 - p));
+            }
+            assert!((sum - 1.0).abs() < 1e-13, "{n} {p}: {sum}");
+        }
+    }
+
+    /// Neighbouring probabilities of huge `n` keep their exact ratio, which a difference of `ln n!` would
+    /// lose.
+    #[test]
+    fn neighbours_of_huge_counts_keep_their_ratio() {
+        for n in [1e6f64, 1e9, 1e12, 1e15] {
+            let (p, q) = (0.25, 0.75);
+            let k = n / 4.0 + (n * p * q).sqrt().floor();
+            let ratio = ln_probability(n, p, q, k + 1.0) - ln_probability(n, p, q, k);
+            let expected = libm::log1p(((n - k) * p - (k + 1.0) * q) / ((k + 1.0) * q));
+            assert!((ratio - expected).abs() < 1e-13 + 1e-6 * expected.abs(), "{n}: {ratio} {expected}");
         }
     }
 }

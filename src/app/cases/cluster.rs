@@ -1,0 +1,456 @@
+//! A plan on a cluster whose scheduler is Slurm: job scripts, with the time and memory that the cases are
+//! estimated to take, and the reliability of the locks of the campaign's file system.
+//!
+//! An array of jobs packs filters, an array walks, a job collects. The scheduler only starts processes.
+//! Finished cases, and claims on others, are in the campaign's folder, so that a task which is lost, doubled
+//! or begun again changes no result. Scripts are templates of `src/app/data/slurm`, filled in: paths and
+//! other words of the user in single quotes, and no names of cases, only the number of a task.
+
+use std::path::{Path, PathBuf};
+
+use super::plan::CasePlan;
+use super::prepared::{self, CasePart, Drafts, PreparedCase, named, wanted};
+use super::run::CaseOptions;
+use crate::case::{Case, CaseError, PackedFilter};
+use crate::run::RunError;
+use crate::run::callbacks::Callbacks;
+use crate::run::cost::{self, duration};
+use crate::run::folder::{FolderKind, claim};
+use crate::run::machine::{CasesAtOnce, MEMORY_MARGIN};
+use voidwalk_core::store::{make_folder, platform, write_whole};
+use voidwalk_core::text::quoted;
+
+/// Default number of processors of a task.
+const PROCESSORS: u64 = 4;
+
+/// Target time of a task, if the user gives no number of tasks (s).
+const TASK_S: f64 = 600.0;
+
+/// Options of the job scripts.
+#[derive(Clone, Debug)]
+pub struct JobOptions {
+    /// The program.
+    pub program: PathBuf,
+    /// The words between it and its command: `-m voidwalk` if the program is Python.
+    pub words: Vec<String>,
+    /// The plan's file.
+    pub plan: PathBuf,
+    /// Tasks of the array; by default enough that one takes about ten minutes.
+    pub tasks: Option<usize>,
+}
+
+/// The scripts that were written.
+#[derive(Clone, Debug)]
+pub struct WrittenJobs {
+    /// Cases of the plan that are done already; nothing is written if all are.
+    pub done: usize,
+    /// Cases that the array walks.
+    pub cases: usize,
+    /// Tasks of the array.
+    pub tasks: usize,
+    /// Packings that are made first, and the needs of the largest.
+    pub packings: (usize, TaskNeeds),
+    /// Needs of the largest task.
+    pub walk: TaskNeeds,
+    /// Processors of a task.
+    pub processors: u64,
+    /// The script that submits the jobs.
+    pub submit: PathBuf,
+}
+
+/// Writes job scripts for the cases of a plan that are not done into the campaign's folder.
+///
+/// # Errors
+/// A plan or case that is wrong, a folder that cannot be claimed or written, a path that no script can hold.
+pub fn write_job_scripts(
+    plan: &CasePlan,
+    options: &CaseOptions,
+    jobs: &JobOptions,
+    callbacks: &Callbacks,
+) -> Result<WrittenJobs, RunError> {
+    let drafts = Drafts::new(wanted(plan, &CasePart::All)?)?;
+    let out = claim(&options.out, FolderKind::Campaign, false)?;
+    let processors = options.threads.map_or(PROCESSORS, |threads| threads as u64);
+    let packings = packings(&drafts, options)?;
+    let measuring_s = if drafts.packings().is_empty() { 0.0 } else { cost::MEASURING_S };
+    let cases = open_cases(drafts, options, out.path())?;
+    let folder = out.path().join(FOLDER);
+    let mut written = WrittenJobs {
+        done: plan.cases.len() - cases.len(),
+        cases: cases.len(),
+        tasks: 0,
+        packings,
+        walk: TaskNeeds::default(),
+        processors,
+        submit: folder.join("submit.sh"),
+    };
+    if cases.is_empty() {
+        return Ok(written);
+    }
+    let seconds: Vec<f64> = cases.iter().map(|case| cost::seconds_on(&case.case, processors)).collect();
+    let ten_minutes = || (seconds.iter().sum::<f64>() / TASK_S).ceil() as usize;
+    let bundles = prepared::bundle(&seconds, jobs.tasks.unwrap_or_else(ten_minutes));
+    for bundle in &bundles {
+        let of_bundle: Vec<&Case> = bundle.iter().map(|case| &cases[*case].case).collect();
+        written.walk = written.walk.or_more(TaskNeeds {
+            seconds: bundle.iter().map(|case| seconds[*case] + measuring_s).sum(),
+            bytes: CasesAtOnce::of_job(&of_bundle, processors).bytes.max(packings.1.bytes),
+        });
+    }
+    let (seconds, bytes) = cost::collecting(plan.cases.len(), measuring_s);
+    let scripts = Jobs {
+        job: jobs,
+        out: out.path(),
+        words: command_words(options),
+        processors,
+        packings,
+        tasks: bundles.iter().map(|b| b.iter().map(|i| cases[*i].planned.name.as_str()).collect()).collect(),
+        walk: written.walk,
+        collect: TaskNeeds { seconds, bytes: packings.1.bytes.max(bytes) },
+    };
+    let files = scripts.files()?;
+    make_folder(&folder)?;
+    for (name, text) in &files {
+        write_whole(&folder.join(name), text.as_bytes())?;
+    }
+    if let Some(warning) = warning(out.path()) {
+        (callbacks.warn)(&warning);
+    }
+    written.tasks = bundles.len();
+    Ok(written)
+}
+
+/// The packings to be made first, all of the plan if one is missing, and the needs of the largest.
+fn packings(drafts: &Drafts, options: &CaseOptions) -> Result<(usize, TaskNeeds), RunError> {
+    let all = drafts.packings();
+    let (mut missing, mut needs) = (false, TaskNeeds::default());
+    for packing in &all {
+        missing |= options.packed(packing)?.is_none();
+        needs = needs.or_more(TaskNeeds { seconds: packing.core_seconds(), bytes: packing.program_bytes() });
+    }
+    Ok((if missing { all.len() } else { 0 }, needs))
+}
+
+/// The cases that are not done, with guesses at filters that are still to be packed.
+fn open_cases<'a>(
+    drafts: Drafts<'a>,
+    options: &CaseOptions,
+    out: &Path,
+) -> Result<Vec<PreparedCase<'a>>, RunError> {
+    let (mut cases, failed) = drafts.finish(
+        |packing| match options.packed(packing)? {
+            Some(filter) => Ok(filter),
+            None => Ok(PackedFilter::placeholder(packing).map_err(CaseError::from)?),
+        },
+        |case| {
+            case.memory = options.memory.unwrap_or(u64::MAX);
+            Ok(())
+        },
+    )?;
+    if !failed.is_empty() {
+        return Err(RunError::Refused(named(&failed)));
+    }
+    cases.retain(|case| case.line(out).is_none());
+    Ok(cases)
+}
+
+/// Further words of the program's command lines that walk and that collect.
+fn command_words(options: &CaseOptions) -> [Vec<String>; 2] {
+    let mut words = Vec::new();
+    if let Some(packings) = &options.packings {
+        let absolute = std::path::absolute(packings).unwrap_or_else(|_| packings.clone());
+        words.extend(["--packings".to_owned(), absolute.display().to_string()]);
+    }
+    let collecting = words.clone();
+    words.extend(["--checkpoint-every".to_owned(), options.checkpoint_interval.to_string()]);
+    words.extend(options.memory.iter().flat_map(|bytes| ["--memory".to_owned(), bytes.to_string()]));
+    [words, collecting]
+}
+
+/// Folder of the scripts and logs, inside the campaign's.
+const FOLDER: &str = "slurm";
+
+/// Asked for by this factor more than estimated: time.
+const TIME_MARGIN: f64 = 4.0;
+
+/// Greatest time that is asked for (minutes): a task that is not done by then is stopped, and continues in
+/// another attempt.
+const LONGEST_MIN: u64 = 24 * 60;
+
+/// Time for delays that no estimate includes: a busy file system, the start of the program (minutes).
+const SLACK_MIN: u64 = 10;
+
+/// Needs of one task of a job.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TaskNeeds {
+    /// Seconds of the longest task, on its threads.
+    pub seconds: f64,
+    /// Memory (bytes).
+    pub bytes: u64,
+}
+
+impl TaskNeeds {
+    /// The larger of each of two needs.
+    fn or_more(self, other: Self) -> Self {
+        Self { seconds: self.seconds.max(other.seconds), bytes: self.bytes.max(other.bytes) }
+    }
+
+    /// Minutes to ask for.
+    pub fn minutes(&self) -> u64 {
+        let minutes = (TIME_MARGIN * self.seconds / 60.0).ceil() as u64 + SLACK_MIN;
+        (minutes.div_ceil(5) * 5).min(LONGEST_MIN)
+    }
+
+    /// Megabytes (2^20 bytes) to ask for.
+    pub fn megabytes(&self) -> u64 {
+        let megabytes = MEMORY_MARGIN * self.bytes as f64 / f64::from(1 << 20);
+        (megabytes.ceil() as u64).div_ceil(100) * 100
+    }
+
+    fn in_words(&self) -> String {
+        format!(
+            "{} of a task and {:.0} MB; {} times the time and {SLACK_MIN} minutes, and {} times the memory, \
+             are asked for",
+            duration(self.seconds),
+            self.bytes as f64 / f64::from(1 << 20),
+            TIME_MARGIN,
+            MEMORY_MARGIN
+        )
+    }
+}
+
+/// Jobs to be submitted.
+struct Jobs<'a> {
+    job: &'a JobOptions,
+    out: &'a Path,
+    /// Further words of the command line that walks or packs, and of the one that collects.
+    words: [Vec<String>; 2],
+    processors: u64,
+    /// Filters to pack, and the needs of the largest.
+    packings: (usize, TaskNeeds),
+    /// Names of the cases of each task.
+    tasks: Vec<Vec<&'a str>>,
+    walk: TaskNeeds,
+    collect: TaskNeeds,
+}
+
+impl Jobs<'_> {
+    /// Files of the scripts, by their name inside [`FOLDER`].
+    fn files(&self) -> Result<Vec<(String, String)>, RunError> {
+        let list = prepared::task_list(&self.tasks);
+        // Scripts that wait in a queue name the list that they were written with.
+        let list_name = format!("tasks-{:08x}.tsv", xxhash_rust::xxh3::xxh3_64(list.as_bytes()) as u32);
+        let cases: usize = self.tasks.iter().map(Vec::len).sum();
+        let words = |all: &[String]| all.iter().map(|word| format!(" {}", quoted(word))).collect::<String>();
+        let common = [
+            ("OUT", path(self.out)?),
+            ("PLAN", path(&self.job.plan)?),
+            ("PROGRAM", path(&self.job.program)? + &words(&self.job.words)),
+            ("FILE", list_name.clone()),
+            ("CASES", cases.to_string()),
+        ];
+        let job = |template: &str, options: &[String], tasks: usize, need: &TaskNeeds| {
+            let of_job = [
+                ("OPTIONS", words(options)),
+                ("TASKS", tasks.to_string()),
+                ("PROCESSORS", self.processors.to_string()),
+                ("MEGABYTES", need.megabytes().to_string()),
+                ("MINUTES", need.minutes().to_string()),
+                ("ESTIMATE", need.in_words()),
+            ];
+            fill(template, &[&common[..], &of_job[..]].concat())
+        };
+        let walks = format!("{cases} cases in {} tasks, then the ledger and the page", self.tasks.len());
+        let (packings, pack) = &self.packings;
+        let (jobs, first, after) = match packings {
+            0 => (walks, "", ""),
+            _ => (
+                format!("{packings} packings, then {walks}"),
+                "submit \"$@\" slurm/pack.sh\n",
+                // After any end of the packing job: cases whose packings exist are walked.
+                "--dependency=\"afterany:$number\" ",
+            ),
+        };
+        let submit = [
+            ("JOBS", jobs),
+            ("PACK", first.to_owned()),
+            ("AFTER_PACK", after.to_owned()),
+            ("OUT", path(self.out)?),
+        ];
+        let mut files = vec![
+            ("attempt.sh".to_owned(), include_str!("../data/slurm/attempt.sh").to_owned()),
+            (list_name, list),
+            (
+                "array.sh".to_owned(),
+                job(include_str!("../data/slurm/array.sh"), &self.words[0], self.tasks.len(), &self.walk),
+            ),
+            (
+                "collect.sh".to_owned(),
+                job(include_str!("../data/slurm/collect.sh"), &self.words[1], 1, &self.collect),
+            ),
+            ("submit.sh".to_owned(), fill(include_str!("../data/slurm/submit.sh"), &submit)),
+        ];
+        if *packings > 0 {
+            let text = job(include_str!("../data/slurm/pack.sh"), &self.words[0], *packings, pack);
+            files.push(("pack.sh".to_owned(), text));
+        }
+        Ok(files)
+    }
+}
+
+/// Replaces `@NAME@`, once: inserted text is not searched again.
+fn fill(template: &str, values: &[(&str, String)]) -> String {
+    let mut text = String::new();
+    let mut rest = template;
+    while let Some((before, after)) = rest.split_once('@') {
+        text.push_str(before);
+        let known = values.iter().find_map(|(name, value)| {
+            after.strip_prefix(name)?.strip_prefix('@').map(|after| (value.as_str(), after))
+        });
+        let (value, after) = known.unwrap_or(("@", after));
+        text.push_str(value);
+        rest = after;
+    }
+    text + rest
+}
+
+/// An absolute path in quotes.
+fn path(path: &Path) -> Result<String, RunError> {
+    let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    match absolute.to_str().filter(|text| !text.chars().any(char::is_control)) {
+        Some(text) => Ok(quoted(text)),
+        None => Err(RunError::Refused(format!(
+            "{}: a path that is to stand in a job script must be UTF-8 text without line ends",
+            absolute.display()
+        ))),
+    }
+}
+
+/// Mount of a file system. On most that clusters share, a lock that one node holds keeps the others out; on
+/// some, or mounted in some ways, every node sees its own locks only, without any sign of it. Then several
+/// tasks may walk one case: the same results, at more cost.
+struct Mount {
+    point: PathBuf,
+    kind: String,
+    options: Vec<String>,
+}
+
+/// Warning about the locks in this folder; `None` if they hold on every node.
+fn warning(folder: &Path) -> Option<String> {
+    let folder = folder.canonicalize().ok()?;
+    mount_of(&folder, &platform::mounts()?)?.doubt()
+}
+
+/// The mount that holds a path: the longest mount point above it, the last of equal ones.
+fn mount_of(path: &Path, mounts: &str) -> Option<Mount> {
+    let all = mounts.lines().filter_map(Mount::read);
+    all.filter(|mount| path.starts_with(&mount.point)).max_by_key(|mount| mount.point.components().count())
+}
+
+impl Mount {
+    /// A line of `/proc/self/mountinfo`.
+    fn read(line: &str) -> Option<Self> {
+        let (left, right) = line.split_once(" - ")?;
+        let left: Vec<&str> = left.split(' ').collect();
+        let right: Vec<&str> = right.split(' ').collect();
+        let options = [*left.get(5)?, right.get(2).copied().unwrap_or("")];
+        Some(Self {
+            point: PathBuf::from(unescaped(left.get(4)?)),
+            kind: (*right.first()?).to_owned(),
+            options: options.iter().flat_map(|list| list.split(',')).map(str::to_owned).collect(),
+        })
+    }
+
+    fn has(&self, option: &str) -> bool {
+        self.options.iter().any(|o| o == option)
+    }
+
+    fn doubt(&self) -> Option<String> {
+        let one_node = "locks hold on one node only";
+        let why = match self.kind.as_str() {
+            "nfs" | "nfs4" if self.has("nolock") => format!("it is mounted with `nolock`: {one_node}"),
+            "nfs" | "nfs4" if self.has("local_lock=all") || self.has("local_lock=flock") => {
+                format!("it is mounted with `local_lock`: {one_node}")
+            }
+            "lustre" if self.has("localflock") => format!("it is mounted with `localflock`: {one_node}"),
+            "lustre" if !self.has("flock") => "it is mounted without `flock`: there are no locks".to_owned(),
+            "beegfs" => format!(
+                "unless `tuneUseGlobalFileLocks = true` stands in its client's configuration, {one_node}"
+            ),
+            "cifs" | "smb3" if self.has("nobrl") => format!("it is mounted with `nobrl`: {one_node}"),
+            "fuse.sshfs" | "9p" => one_node.to_owned(),
+            "tmpfs" | "overlay" | "ramfs" => "it is this machine's own: other nodes do not see it".to_owned(),
+            _ => return None,
+        };
+        Some(format!("this folder lies on {} ({}): {why}", self.kind, self.point.display()))
+    }
+}
+
+/// Spaces and the like are written as three octal digits.
+fn unescaped(field: &str) -> String {
+    let mut parts = field.split('\\');
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        match part.get(..3).and_then(|digits| u8::from_str_radix(digits, 8).ok()) {
+            Some(byte) => text.extend([&*String::from(char::from(byte)), &part[3..]]),
+            None => text.extend(["\\", part]),
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_is_asked_for_than_is_estimated_and_never_for_ever() {
+        let need = |seconds, bytes| TaskNeeds { seconds, bytes };
+        assert_eq!(need(1.0, 100 << 20).minutes(), 15);
+        assert_eq!(need(600.0, 100 << 20).minutes(), 50);
+        assert_eq!(need(1e7, 0).minutes(), LONGEST_MIN);
+        assert_eq!(need(0.0, 100 << 20).megabytes(), 200);
+        assert_eq!(need(0.0, 1000 << 20).megabytes(), 1500);
+    }
+
+    #[test]
+    fn what_is_filled_in_is_no_template() {
+        let values = [("A", "@B@".to_string()), ("B", "b".to_string())];
+        assert_eq!(fill("x@A@y@B@ TERM@120 @C@", &values), "x@B@yb TERM@120 @C@");
+    }
+
+    const MOUNTS: &str = "22 1 8:1 / / rw,relatime shared:1 - ext4 /dev/sda1 rw\n\
+        40 22 0:40 / /home rw shared:2 - nfs4 server:/home rw,vers=4.2,local_lock=none,addr=10.0.0.1\n\
+        41 22 0:41 / /old rw - nfs server:/old rw,vers=3,nolock,local_lock=all\n\
+        42 22 0:42 / /scratch/a\\040b rw - lustre 10.0.0.2@tcp:/s rw,checksum,localflock\n\
+        43 22 0:43 / /scratch/c rw - lustre 10.0.0.2@tcp:/s rw,flock,lazystatfs\n\
+        44 22 0:44 / /scratch/d rw - lustre 10.0.0.2@tcp:/s rw\n\
+        45 22 0:45 / /bee rw - beegfs beegfs_nodev rw\n\
+        46 22 0:46 / /tmp rw - tmpfs tmpfs rw\n\
+        47 22 0:47 / /gpfs rw - gpfs gpfs0 rw\n";
+
+    #[test]
+    fn mounts_whose_locks_reach_one_node_are_named() {
+        let doubt = |path: &str| mount_of(Path::new(path), MOUNTS).unwrap().doubt();
+        for path in ["/home/x/campaign", "/srv/x", "/scratch/c/x", "/gpfs/x", "/homely"] {
+            assert_eq!(doubt(path), None, "{path}");
+        }
+        for (path, words) in [
+            ("/old/x", "`nolock`"),
+            ("/scratch/a b/x", "`localflock`"),
+            ("/scratch/d", "without `flock`"),
+            ("/bee/x", "tuneUseGlobalFileLocks"),
+            ("/tmp/x", "other nodes do not see it"),
+        ] {
+            let warning = doubt(path).unwrap();
+            assert!(warning.contains(words), "{path}: {warning}");
+        }
+    }
+
+    #[test]
+    #[cfg(target_os = "linux")]
+    fn this_machine_says_how_its_folders_are_mounted() {
+        let mounts = platform::mounts().unwrap();
+        assert!(mount_of(Path::new("/proc/self"), &mounts).is_some());
+    }
+}

@@ -1,0 +1,431 @@
+//! Boundaries of the model: the contents of `boundary.json` and `boundary.csv`, and the merging of networks.
+//!
+//! A boundary is the D15F/D85B from which a network erodes 7.5 % of the base: in the first run (no erosion
+//! turns into some), or in the second as well (some turns into continuing). Each shape and density has one
+//! packing; the filter is scaled, which needs no new packing.
+
+use crate::outcome::BaseSize;
+use crate::outcome::record::ModelLimit;
+use serde::{Deserialize, Serialize};
+use voidwalk_core::walk::Engine;
+use voidwalk_practice::design::RowNote;
+use voidwalk_practice::{InputFile, Note, SheetCover};
+
+/// Step of the scale of ratios on which boundaries are found: half a percent, in ln(D15F/D85B).
+pub const BETWEEN_STEPS: f64 = 0.005;
+
+/// The whole of `boundary.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct Boundaries {
+    /// Version of voidwalk.
+    pub version: String,
+    /// The commit that it was built from; `None` where that is not known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
+    /// The boundaries of the model, one row per density and thickness, in the order in which they were asked
+    /// for.
+    pub boundaries: Vec<BoundaryRow>,
+    /// The base.
+    pub base: BaseStated,
+    /// The filter's shape, as the user calls it.
+    pub filter: String,
+    /// Name of its constriction curve.
+    pub curve_name: String,
+    /// Cu of the filter.
+    pub filter_cu: Option<f64>,
+    /// The filter's own D15F (mm), where its sizes are given.
+    pub filter_d15_mm: Option<f64>,
+    /// Every file that was read.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub inputs: Vec<InputFile>,
+    /// Mass eroded from which a run erodes.
+    pub threshold: f64,
+    /// Networks of each boundary.
+    pub replicates: u64,
+    /// The user's seed.
+    pub seed: u64,
+    /// Engine that walked; `expected` moves the base particles that can block nothing as their expectation.
+    pub engine: String,
+    /// D15F/D85B between which boundaries were searched.
+    pub bracket: [f64; 2],
+    /// Steps of the search, as a part of D15F/D85B.
+    pub step: f64,
+    /// What a reader must know of the model's boundaries, the weightiest first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<RowNote>,
+    /// What the model does not contain.
+    pub model_leaves_out: Vec<ModelLimit>,
+    /// Settings that were given, as on the command line.
+    pub settings: Vec<String>,
+    /// What the sheet says of itself.
+    #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
+    pub cover: SheetCover,
+    /// Whether inches stand beside mm on its page.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub inches: bool,
+    /// Wall time (s).
+    pub seconds: f64,
+}
+
+impl Boundaries {
+    /// True if the base particles that can block nothing moved as their expectation.
+    pub fn moves_expectation(&self) -> bool {
+        self.engine == Engine::Expected.name()
+    }
+
+    /// The row that holds least, and the ratio that nearly all of its networks hold; `None` if no row has a
+    /// known ratio that it holds.
+    pub fn least_held(&self) -> Option<(&BoundaryRow, f64)> {
+        let held = |row| Some((row, BoundaryRow::held(row)?));
+        let all: Vec<_> = self.boundaries.iter().map(held).collect::<Option<_>>()?;
+        all.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+/// What is known of the base.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct BaseStated {
+    /// Its name.
+    pub name: String,
+    /// D60/D10.
+    pub cu: Option<f64>,
+    /// D15 (mm) before regrading; `None` without a size of its own.
+    pub d15_mm: Option<f64>,
+    /// D85 (mm) as walked; `None` without a size of its own.
+    pub d85_mm: Option<f64>,
+    /// D95/D85.
+    pub d95_over_d85: Option<f64>,
+    /// The size (mm) that it was regraded on before it was walked; `None` where it was walked as sampled.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub regraded_at_mm: Option<f64>,
+    /// The part of its mass that is finer than its finest sieve, as it was walked.
+    pub tail_mass_fraction: f64,
+    /// D85 (mm) before regrading, where it was regraded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub d85_as_sampled_mm: Option<f64>,
+}
+
+impl BaseStated {
+    /// D85 and the base that it belongs to; `None` without a size of its own.
+    pub fn size(&self) -> Option<BaseSize> {
+        let (regraded_at_mm, as_sampled_mm) = (self.regraded_at_mm, self.d85_as_sampled_mm);
+        Some(BaseSize { d85_mm: self.d85_mm?, regraded_at_mm, as_sampled_mm })
+    }
+}
+
+/// The boundaries of one density and thickness.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct BoundaryRow {
+    /// How densely the filter is packed.
+    pub density: String,
+    /// The thickness that was asked for, in words.
+    pub thickness: String,
+    /// Layers of voids, at the no-erosion boundary where the thickness is in mm.
+    pub layers: u64,
+    /// Thickness (mm), at the no-erosion boundary where it is in layers; `None` where sizes have no unit.
+    pub thickness_mm: Option<f64>,
+    /// Filter grains per void, Eq. (2).
+    pub grains_per_void: Option<f64>,
+    /// Where no erosion turns into some; `None` where that lies beyond what can be walked.
+    pub no_erosion: Option<Boundary>,
+    /// Why there is none, or what else is to be said of it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub no_erosion_notes: Vec<Note>,
+    /// D15F/D85B to which nearly all networks hold where more than half of them hold all that was searched,
+    /// so that there is no boundary.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub holds_to: Option<f64>,
+    /// Where some erosion turns into continuing.
+    pub continuing: Option<Boundary>,
+    /// Why there is none, or what else is to be said of it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub continuing_notes: Vec<Note>,
+    /// The note on a boundary that few particles decide.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unsteady: Option<Note>,
+    /// Networks on which a larger ratio was seen to hold than one that erodes, in either run: their smallest
+    /// that erodes counts.
+    pub not_monotone: u64,
+    /// What each network says.
+    pub networks: Vec<NetworkBoundaries>,
+    /// The end of its range whose boundaries these are: the one that holds least. A filter of unknown density
+    /// is searched at its ends only, loose and dense.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub as_end: Option<String>,
+    /// The density of which this is an end of the range in which its constriction curve is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub end_of: Option<String>,
+}
+
+impl BoundaryRow {
+    /// The density in words, with the range that it is an end of, or with its worse end.
+    pub fn name(&self) -> String {
+        match (&self.end_of, &self.as_end) {
+            (Some(range), _) => format!("{} (an end of the range of {range})", self.density),
+            (None, Some(end)) => format!("density {} (its worse end: {end})", self.density),
+            (None, None) => self.density.clone(),
+        }
+    }
+
+    /// The density whose networks were searched.
+    pub fn searched(&self) -> &str {
+        self.as_end.as_ref().unwrap_or(&self.density)
+    }
+
+    /// The ratio that nearly all networks hold; `None` where it is unknown.
+    pub fn held(&self) -> Option<f64> {
+        self.no_erosion.as_ref().map_or(self.holds_to, Boundary::cautious)
+    }
+
+    /// Boundaries of no and of continuing erosion with the ends that are shown. For few networks the ends are
+    /// the least and the most, because the percentiles lie between two networks.
+    pub fn shown(&self) -> [Option<Boundary>; 2] {
+        let by_network =
+            |read: fn(&NetworkBoundaries) -> Option<f64>| self.networks.iter().map(read).collect::<Vec<_>>();
+        let both = [
+            (&self.no_erosion, by_network(|network| network.no_erosion)),
+            (&self.continuing, by_network(|network| network.continuing)),
+        ];
+        both.map(|(boundary, networks)| Some(boundary.as_ref()?.with_shown_ends(&networks)))
+    }
+
+    /// Number of networks that were found to erode at some ratio of the search.
+    pub fn eroding_networks(&self) -> usize {
+        self.networks.iter().filter(|network| network.no_erosion.is_some()).count()
+    }
+}
+
+/// A boundary over networks: D15F/D85B, and the same in mm.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct Boundary {
+    /// Median over networks.
+    pub median: f64,
+    /// 5 % of networks lie below; `None` where that hangs on networks beyond the search, and of one network.
+    pub low: Option<f64>,
+    /// 5 % of networks lie above; `None` likewise.
+    pub high: Option<f64>,
+    /// On which side of the search the 5 percentile lies, where it lies beyond: below, networks erode at
+    /// every ratio that was searched.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub low_beyond: Option<Beyond>,
+    /// D15F (mm) of the filter, where the base has a size.
+    pub d15f_mm: Option<Range>,
+}
+
+impl Boundary {
+    /// Combines networks; `None` if their median lies beyond the search. `d85b_mm` is the base's size, if the
+    /// filter is scaled.
+    pub fn of(networks: &[Result<f64, Beyond>], d85b_mm: Option<f64>) -> Option<Self> {
+        let [low, median, high] = spread(networks);
+        let median = median.ok()?;
+        let low_beyond = low.err();
+        // One network has no percentiles.
+        let [low, high] = [low, high].map(|end| end.ok().filter(|_| networks.len() > 1));
+        let mm = |d85| Range { median: median * d85, low: low.map(|r| r * d85), high: high.map(|r| r * d85) };
+        Some(Self { median, low, high, low_beyond, d15f_mm: d85b_mm.map(mm) })
+    }
+
+    /// Takes the least and the most of these networks as ends if they are few. An end that depends on
+    /// networks beyond the search stays unknown.
+    fn with_shown_ends(&self, networks: &[Option<f64>]) -> Self {
+        if !are_few(networks.len() as u64) {
+            return self.clone();
+        }
+        let end = |end: Option<f64>, outer: fn(f64, f64) -> f64| {
+            end.map(|end| networks.iter().flatten().copied().fold(end, outer))
+        };
+        let (low, high) = (end(self.low, f64::min), end(self.high, f64::max));
+        let d15f_mm = self.d15f_mm.map(|range| {
+            let d85 = range.median / self.median;
+            Range { low: low.map(|ratio| ratio * d85), high: high.map(|ratio| ratio * d85), ..range }
+        });
+        Self { low, high, d15f_mm, ..self.clone() }
+    }
+
+    /// The ratio that all but a few networks hold: the 5 percentile, or the median of a single network;
+    /// `None` if more than a few erode at every ratio that was searched, so that the ratio is unknown.
+    pub fn cautious(&self) -> Option<f64> {
+        let median = (self.low_beyond != Some(Beyond::Below)).then_some(self.median);
+        self.low.or(median)
+    }
+}
+
+/// Median and band of a size (mm).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct Range {
+    /// Median over networks.
+    pub median: f64,
+    /// 5 percentile.
+    pub low: Option<f64>,
+    /// 95 percentile.
+    pub high: Option<f64>,
+}
+
+/// What one network says; `None` where its boundary lies beyond the search.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct NetworkBoundaries {
+    /// Network, counted from 1.
+    pub network: u64,
+    /// D15F/D85B from which its first run erodes.
+    pub no_erosion: Option<f64>,
+    /// D15F/D85B from which its second run does.
+    pub continuing: Option<f64>,
+}
+
+/// A row of `boundary.csv`: every ratio that was walked.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct WalkRow {
+    /// Density, as in `boundary.json`.
+    pub density: String,
+    /// Thickness, as in `boundary.json`.
+    pub thickness: String,
+    /// Network, counted from 1.
+    pub network: u64,
+    /// The ratio D15F/D85B.
+    pub d15f_over_d85b: f64,
+    /// Mass eroded in the first run, over the mass inserted.
+    pub eroded_first: f64,
+    /// The same in the second run; empty where it was not walked.
+    pub eroded_second: Option<f64>,
+    /// Which base D85B is of: `as sampled`, or the size that it was regraded on; empty without a size.
+    pub d85b_of: String,
+}
+
+/// On which side of all that was searched something lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum Beyond {
+    /// At smaller ratios.
+    Below,
+    /// At larger ratios.
+    Above,
+}
+
+/// Percentiles of a boundary over networks (percent).
+const PERCENTILES: [f64; 3] = [5.0, 50.0, 95.0];
+
+/// Tells if the least and the most of this number of networks are shown: a percentile would be read between
+/// the last two.
+pub fn are_few(networks: u64) -> bool {
+    networks < 20
+}
+
+/// The 5, 50 and 95 percentile of values, some of which are only known to lie above or below the whole
+/// search. A percentile that depends on such values gives their side instead (below if it depends on both
+/// sides: the cautious one). Between two values a percentile is linear in its rank, from the least at 0 to
+/// the greatest at 100 (Hyndman and Fan's seventh definition).
+///
+/// # Panics
+/// Panics if there is no value.
+pub fn spread(values: &[Result<f64, Beyond>]) -> [Result<f64, Beyond>; 3] {
+    let place = |value: &Result<f64, Beyond>| match value {
+        Ok(value) => *value,
+        Err(Beyond::Below) => f64::NEG_INFINITY,
+        Err(Beyond::Above) => f64::INFINITY,
+    };
+    let mut sorted: Vec<f64> = values.iter().map(place).collect();
+    sorted.sort_by(f64::total_cmp);
+    PERCENTILES.map(|percent| {
+        let rank = percent / 100.0 * (sorted.len() - 1) as f64;
+        let (low, part) = (rank.floor() as usize, rank - rank.floor());
+        let at = sorted[low];
+        let value = match sorted.get(low + 1).filter(|next| part > 0.0 && **next != at) {
+            Some(next) => at + part * (next - at),
+            None => at,
+        };
+        match value {
+            f64::INFINITY => Err(Beyond::Above),
+            value if value.is_finite() => Ok(value),
+            _ => Err(Beyond::Below),
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn networks_that_erode_at_every_ratio_leave_no_ratio_that_nearly_all_hold() {
+        let boundary_of = |networks: &[Result<f64, Beyond>]| Boundary::of(networks, Some(0.2)).unwrap();
+        let below = Err(Beyond::Below);
+        let eroding = boundary_of(&[below, Ok(2.1), Ok(2.2), below, Ok(2.3), Ok(2.4), Ok(2.5)]);
+        assert_eq!((eroding.low, eroding.low_beyond), (None, Some(Beyond::Below)));
+        assert_eq!((eroding.median, eroding.cautious()), (2.2, None));
+        assert_eq!(eroding.d15f_mm.unwrap().low, None);
+        // Networks that hold to the end of the search keep the lower end.
+        let holding = boundary_of(&[Ok(2.0), Ok(2.2), Err(Beyond::Above)]);
+        assert!((holding.cautious().unwrap() - 2.02).abs() < 1e-12 && holding.high.is_none());
+    }
+
+    #[test]
+    fn one_network_has_a_boundary_and_no_band() {
+        let alone = Boundary::of(&[Ok(0.901)], None).unwrap();
+        assert_eq!((alone.median, alone.low, alone.high), (0.901, None, None));
+        assert_eq!(alone.cautious(), Some(0.901));
+    }
+
+    #[test]
+    fn of_few_networks_least_and_most_are_shown() {
+        let ratios = [4.0, 4.4, 4.8, 5.0, 6.0];
+        let over =
+            |n: usize| -> Vec<Result<f64, Beyond>> { ratios.into_iter().cycle().take(n).map(Ok).collect() };
+        let known =
+            |networks: &[Result<_, _>]| networks.iter().map(|network| network.ok()).collect::<Vec<_>>();
+        let few = over(5);
+        let boundary = Boundary::of(&few, Some(0.5)).unwrap();
+        assert!(boundary.low.unwrap() > 4.0 && boundary.high.unwrap() < 6.0);
+        let shown = boundary.with_shown_ends(&known(&few));
+        assert_eq!((shown.low, shown.high, shown.median), (Some(4.0), Some(6.0), 4.8));
+        let mm = shown.d15f_mm.unwrap();
+        let is = |value: Option<f64>, by_hand: f64| (value.unwrap() - by_hand).abs() < 1e-12;
+        assert!(is(mm.low, 2.0) && is(mm.high, 3.0), "{mm:?}");
+        // The ratio that the walk holds is still read from the percentile.
+        assert!(boundary.cautious().unwrap() > 4.0);
+        let many = Boundary::of(&over(20), Some(0.5)).unwrap();
+        assert_eq!(many.with_shown_ends(&known(&over(20))), many);
+        let beyond = [Ok(4.0), Ok(4.4), Err(Beyond::Above)];
+        let shown = Boundary::of(&beyond, None).unwrap().with_shown_ends(&known(&beyond));
+        assert_eq!((shown.low, shown.high), (Some(4.0), None));
+        let alone = Boundary::of(&[Ok(4.0)], None).unwrap().with_shown_ends(&[Some(4.0)]);
+        assert_eq!((alone.low, alone.high), (None, None));
+    }
+
+    #[test]
+    fn a_record_is_read_as_it_was_written() {
+        let boundary = Boundary::of(&[Ok(4.37), Err(Beyond::Above), Ok(4.41)], Some(0.17)).unwrap();
+        assert!(boundary.high.is_none());
+        let text = serde_json::to_string(&boundary).unwrap();
+        assert!(text.contains("\"high\":null,\"d15f_mm\":{\"median\":"), "{text}");
+        assert_eq!(serde_json::from_str::<Boundary>(&text).unwrap(), boundary);
+    }
+
+    #[test]
+    fn percentiles_by_hand() {
+        let eleven: Vec<_> = (0..=10).rev().map(|k| Ok(f64::from(k))).collect();
+        assert_eq!(spread(&eleven), [Ok(0.5), Ok(5.0), Ok(9.5)]);
+        assert_eq!(spread(&[Ok(3.0)]), [Ok(3.0); 3]);
+        // The ends of the band of five networks are not the least and the most.
+        let five: Vec<_> = (0..5).map(|k| Ok(f64::from(k))).collect();
+        let [low, _, high] = spread(&five).map(Result::unwrap);
+        assert!(low > 0.0 && low < 1.0 && high > 3.0 && high < 4.0, "{low} {high}");
+        assert_eq!([19, 20].map(are_few), [true, false]);
+    }
+
+    #[test]
+    fn what_hangs_on_a_network_beyond_the_search_has_no_number() {
+        let some = [Ok(1.0), Ok(2.0), Ok(3.0), Err(Beyond::Above), Err(Beyond::Below)];
+        assert_eq!(spread(&some), [Err(Beyond::Below), Ok(2.0), Err(Beyond::Above)]);
+        assert_eq!(spread(&[Err(Beyond::Above), Ok(1.0)]), [Err(Beyond::Above); 3]);
+        assert_eq!(spread(&[Err(Beyond::Above); 2]), [Err(Beyond::Above); 3]);
+        assert_eq!(spread(&[Err(Beyond::Above), Err(Beyond::Below)]), [Err(Beyond::Below); 3]);
+    }
+}

@@ -1,0 +1,346 @@
+//! Forms in which a draw reads the exits of a void: two words on a cubic lattice, and a record of few exits
+//! on other networks.
+
+use bitvec::slice::BitSlice;
+
+/// Thresholds of a cubic lattice, two words a void, and its shape.
+///
+/// A step reads the words that suit the particles of its chunk: both kinds say the same, but the one that
+/// says it with fewer bits leaves more draws open.
+#[derive(Clone)]
+pub(in crate::walk) struct Lattice {
+    /// For particles that are nearly all as fine as the finest open exit of the network. Bits 16..32: top
+    /// sixteen bits of the second threshold. Bits 2..16: top fourteen bits of the first. Bit 1: +y wraps. Bit
+    /// 0: +x wraps. A void without open exits has the first above the second.
+    pub plain: Vec<u32>,
+    /// For coarser ones, unless widths are read: like `plain`, but bits 21..32: top eleven bits of the second
+    /// threshold, and bits 16..21: class of the void's finest open exit.
+    pub classed: Vec<u32>,
+    /// Number that a move adds to the void, modulo 2^32. Bits 0 and 1 of the index: those of a word. Bit 2:
+    /// not the first exit. Bit 3: the third exit. With the latter alone there is no open exit: a void that
+    /// does not exist.
+    pub moves: [u32; 16],
+    /// Bits, as an integer, of a diameter that no open exit is finer than. Particles up to
+    /// `finest + (class << CLASS_SHIFT)`, compared as bits, pass every open exit of a void of that class.
+    pub finest: u32,
+    /// True if particles are held against widths: there are no words with classes.
+    pub by_widths: bool,
+    nx: u32,
+    plane: u32,
+}
+
+/// Bits of a diameter below its class: 32 classes in a factor of two.
+pub(in crate::walk) const CLASS_SHIFT: u32 = 18;
+
+/// Bits of the class in a word of [`Lattice::classed`].
+pub(in crate::walk) const CLASS: u32 = 0x001f_0000;
+
+/// Class of a void whose finest open exit is this, at its place in a word.
+#[inline]
+fn class_of(finest: f32, of_all: u32) -> u32 {
+    // Nothing opens again.
+    let class = finest.to_bits().checked_sub(of_all).expect("no open exit is finer") >> CLASS_SHIFT;
+    (class << 16).min(CLASS)
+}
+
+impl Lattice {
+    pub fn new(voids: usize, nx: u32, plane: u32, finest: u32) -> Self {
+        let moves = std::array::from_fn(|index| match index {
+            0 | 2 => 1,
+            1 | 3 => 1u32.wrapping_sub(nx),
+            4 | 5 => nx,
+            6 | 7 => nx.wrapping_sub(plane),
+            8..12 => 1 << 31,
+            _ => plane,
+        });
+        Self { plain: vec![0; voids], classed: vec![0; voids], moves, finest, by_widths: false, nx, plane }
+    }
+
+    pub fn set(&mut self, void: u32, thresholds: &[u64], last_open: Option<usize>, finest: f32) {
+        self.set_plain(void, thresholds, last_open);
+        let (class, plain) = (class_of(finest, self.finest), self.plain[void as usize]);
+        self.classed[void as usize] = (plain >> 21) << 21 | class | plain & 0xffff;
+    }
+
+    /// Recomputes the class of every void; no open exit is finer than `finest`.
+    pub fn class_anew(&mut self, diameters: &[f32], blocked: &BitSlice, finest: f32) {
+        self.finest = finest.to_bits();
+        let of_voids = diameters.as_chunks::<3>().0.iter().zip(&mut self.classed);
+        for (void, (diameters, word)) in of_voids.enumerate() {
+            let open = diameters.iter().zip(3 * void..).filter(|&(&d, c)| d > 0.0 && !blocked[c]);
+            let finest = open.map(|(&d, _)| d).fold(f32::INFINITY, f32::min);
+            *word = *word & !CLASS | class_of(finest, self.finest);
+        }
+    }
+
+    pub fn set_plain(&mut self, void: u32, thresholds: &[u64], last_open: Option<usize>) {
+        let (x, row) = (void % self.nx, void % self.plane);
+        let wraps = u32::from(x + 1 == self.nx) | u32::from(row + self.nx >= self.plane) << 1;
+        let [first, second] = match last_open {
+            Some(_) => [thresholds[0] >> 50, thresholds[1] >> 48],
+            None => [0x3fff, 0],
+        };
+        self.plain[void as usize] = (second as u32) << 16 | (first as u32) << 2 | wraps;
+    }
+
+    /// The words with or without classes.
+    pub fn words<R: Reads>(&self) -> &[u32] {
+        if R::CLASSED { &self.classed } else { &self.plain }
+    }
+
+    /// Bits of a word that belong to no threshold.
+    pub const fn below<R: Reads>() -> u32 {
+        if R::CLASSED { CLASS | 3 } else { 3 }
+    }
+
+    /// Tells if no exit is open, by a plain word: thresholds of open ones rise.
+    #[inline(always)]
+    pub fn has_no_exit(plain: u32) -> bool {
+        plain & 0xfffc > plain >> 16
+    }
+
+    /// Exit that a draw picks by a word, unless it equals a threshold as far as the word goes, or no exit is
+    /// open.
+    #[inline(always)]
+    pub fn pick<R: Reads>(word: u32, draw: u16) -> Option<u32> {
+        let below = Self::below::<R>();
+        let [first, second] = [word | below, (word | below) >> 16].map(|half| half as u16);
+        let [to_first, to_second] = [draw | below as u16, draw | (below >> 16) as u16];
+        match (to_first > first, to_second > second) {
+            _ if to_first == first || to_second == second => None,
+            (false, true) => None,
+            (past_first, past_second) => Some(u32::from(past_first) + u32::from(past_second)),
+        }
+    }
+}
+
+/// Ways in which a kernel of the lattice finds out which particles a constriction stops.
+pub(in crate::walk) trait Reads {
+    /// By classes of the finest open exit of each void; else, and without widths, by the finest open exit of
+    /// the network.
+    const CLASSED: bool = false;
+    /// By the width of the very exit that a particle has chosen.
+    const WIDTHS: bool = false;
+    /// Particles that fit may jam.
+    const JAMS: bool = false;
+}
+
+/// Nearly all particles are as fine as the finest open exit of the network.
+pub(in crate::walk) struct Plain;
+
+pub(in crate::walk) struct Classed;
+
+/// Blocked constrictions leave openings, whose widths change.
+pub(in crate::walk) struct Widths;
+
+/// Particles arch; blocked constrictions may leave openings, too.
+pub(in crate::walk) struct Jamming;
+
+impl Reads for Plain {}
+
+impl Reads for Classed {
+    const CLASSED: bool = true;
+}
+
+impl Reads for Widths {
+    const WIDTHS: bool = true;
+}
+
+impl Reads for Jamming {
+    const WIDTHS: bool = true;
+    const JAMS: bool = true;
+}
+
+/// Open exits of a void, if they are few; else the place of its exits.
+#[derive(Clone, Copy)]
+#[repr(align(32))]
+pub struct FewExits {
+    /// Top sixteen bits of the threshold of each open exit but the last; the largest number after them.
+    pub top: [u16; FEW_EXITS],
+    /// Position of each open exit among all.
+    pub position: [u8; FEW_EXITS],
+    pub begin: u32,
+    /// Exits of a void whose open ones do not fit in here; 0 if they fit, all are closed, or there are more
+    /// exits than this can say.
+    pub exits: u16,
+    /// True if it has an open exit, and no more than fit in here.
+    pub is_few: bool,
+}
+
+pub const FEW_EXITS: usize = 8;
+
+/// Most exits that are counted without a branch.
+const COUNTED: usize = 64;
+
+impl FewExits {
+    pub const NONE: Self =
+        Self { top: [u16::MAX; FEW_EXITS], position: [0; FEW_EXITS], begin: 0, exits: 0, is_few: false };
+
+    /// Builds it for a void whose exits from `begin` on have these thresholds, which rise where an exit is
+    /// open; `last` is the position of its last open one.
+    pub fn new(begin: u32, thresholds: &[u64], last: usize) -> Self {
+        // It cannot be foreseen which exits are open: one that is closed leaves its place to the next.
+        let (mut top, mut position) = ([u16::MAX; FEW_EXITS + 1], [0; FEW_EXITS + 1]);
+        let (mut before, mut open) = (0, 0);
+        for (place, &threshold) in thresholds[..last].iter().enumerate() {
+            (top[open], position[open]) = ((threshold >> 48) as u16, place as u8);
+            open = (open + usize::from(threshold != before)).min(FEW_EXITS);
+            before = threshold;
+        }
+        (top[open], position[open]) = (u16::MAX, last as u8);
+        let is_few = open < FEW_EXITS && last <= usize::from(u8::MAX);
+        Self {
+            top: std::array::from_fn(|i| top[i]),
+            position: std::array::from_fn(|i| position[i]),
+            begin,
+            exits: if is_few { 0 } else { u16::try_from(thresholds.len()).unwrap_or(0) },
+            is_few,
+        }
+    }
+
+    /// The exit that a draw picks by its top sixteen bits, unless they do not decide.
+    #[inline(always)]
+    pub fn chosen(&self, draw: u16) -> Option<usize> {
+        let passed: u16 = self.top.iter().map(|&top| u16::from(top < draw)).sum();
+        let is_tie = self.top.iter().fold(false, |tie, &top| tie | (top == draw));
+        // Thresholds rise, and the last exit has no threshold.
+        (!is_tie).then(|| self.begin as usize + usize::from(self.position[usize::from(passed)]))
+    }
+
+    /// Exit that a draw picks if more are open than fit in here, by the upper sixteen bits of all thresholds
+    /// of the network.
+    #[inline(always)]
+    pub fn chosen_of(&self, tops: &[u16], draw: u16) -> Option<usize> {
+        let tops = &tops[self.begin as usize..][..usize::from(self.exits)];
+        let passed = if tops.len() <= COUNTED {
+            tops.iter().map(|&top| u16::from(top < draw)).sum::<u16>().into()
+        } else {
+            // A reservoir has thousands.
+            tops.partition_point(|&top| top < draw)
+        };
+        // Thresholds rise, so an equal one comes first of those that are not passed.
+        tops.get(passed).filter(|&&top| top != draw).map(|_| self.begin as usize + passed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::TWO_TO_64;
+    use super::*;
+
+    /// Numbers of a plain congruence.
+    fn numbers(mut word: u64) -> impl FnMut() -> u64 {
+        move || {
+            word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            word >> 33
+        }
+    }
+
+    fn thresholds_of(weight: &[f64]) -> Vec<u64> {
+        let total: f64 = weight.iter().sum();
+        let sums = weight.iter().scan(0.0, |sum, w| {
+            *sum += w;
+            Some(*sum)
+        });
+        sums.map(|sum| (sum / total * TWO_TO_64) as u64).collect()
+    }
+
+    /// Any number of exits, closed ones among them, and every sixteen-bit draw: the exit by the definition,
+    /// whatever the other bits, or no exit if these decide.
+    #[test]
+    fn few_exits_are_chosen_as_by_the_definition() {
+        let mut next = numbers(1);
+        for _ in 0..300 {
+            let exits = 1 + next() % 14;
+            let weight_by = |next: u64| match next % 5 {
+                0 | 1 => 0.0,
+                2 => 1e-9,
+                _ => (next % 97) as f64,
+            };
+            let weight: Vec<f64> = (0..exits).map(|_| weight_by(next())).collect();
+            let Some(last) = weight.iter().rposition(|&w| w > 0.0) else { continue };
+            let thresholds = thresholds_of(&weight);
+            let few = FewExits::new(100, &thresholds, last);
+            let open = weight.iter().filter(|&&w| w > 0.0).count();
+            assert!(few.is_few || open > FEW_EXITS, "{weight:?}");
+            for draw in (0..=u16::MAX).filter(|_| few.is_few) {
+                let by = |low: u64| {
+                    let draw = u64::from(draw) << 48 | low;
+                    100 + thresholds.iter().position(|&t| draw < t).unwrap_or(last)
+                };
+                match few.chosen(draw) {
+                    Some(exit) => assert_eq!([exit; 2], [by(0), by((1 << 48) - 1)], "{weight:?} {draw}"),
+                    None => assert!(
+                        draw == u16::MAX || thresholds.iter().any(|&t| (t >> 48) as u16 == draw),
+                        "{weight:?} {draw}"
+                    ),
+                }
+            }
+        }
+    }
+
+    /// Many exits, some of them closed, at the end too: the exit that the definition picks for every draw
+    /// whose upper bits decide; other draws, and voids of more exits than can be counted, are left to the
+    /// long way.
+    #[test]
+    fn many_exits_are_chosen_as_by_looking_at_each() {
+        let mut next = numbers(5);
+        for exits in [9, 40, 64, 65, 300, 3000, 65_535, 65_536] {
+            let weight: Vec<f64> =
+                (0..exits)
+                    .map(|e| {
+                        if e + 3 > exits || next().is_multiple_of(4) { 0.0 } else { (1 + next() % 97) as f64 }
+                    })
+                    .collect();
+            let last = weight.iter().rposition(|&w| w > 0.0).unwrap();
+            let thresholds = thresholds_of(&weight);
+            let few = FewExits::new(7, &thresholds, last);
+            if few.is_few {
+                continue;
+            }
+            // Seven exits of other voids come before.
+            let tops: Vec<u16> =
+                [9; 7].into_iter().chain(thresholds.iter().map(|t| (t >> 48) as u16)).collect();
+            let mut decided = 0;
+            for draw in 0..=u16::MAX {
+                let by = |low: u64| {
+                    let draw = u64::from(draw) << 48 | low;
+                    7 + thresholds.iter().position(|&t| draw < t).unwrap_or(last)
+                };
+                match few.chosen_of(&tops, draw) {
+                    Some(exit) if exits <= 300 || draw % 61 == 0 => {
+                        assert_eq!([exit; 2], [by(0), by((1 << 48) - 1)], "{exits} {draw}");
+                        decided += 1;
+                    }
+                    Some(_) => decided += 1,
+                    None => {
+                        assert!(
+                            exits > 65_535 || draw == u16::MAX || tops[7..].contains(&draw),
+                            "{exits} {draw}"
+                        )
+                    }
+                }
+            }
+            let all = 1 << 16;
+            match exits {
+                65_536 => assert_eq!(decided, 0),
+                65_535 => assert!(decided > all / 8, "{decided}"),
+                _ => assert!(decided > all - 2 * exits, "{exits}: {decided}"),
+            }
+        }
+        assert_eq!(FewExits::NONE.chosen_of(&[], 9), None);
+    }
+
+    #[test]
+    fn exits_beyond_a_byte_are_not_few() {
+        for (last, is_few) in [(255, true), (256, false), (299, false)] {
+            let thresholds: Vec<u64> = (0..300).map(|e| if e < last { 1 << 62 } else { u64::MAX }).collect();
+            let few = FewExits::new(7, &thresholds, last);
+            assert_eq!(
+                (few.is_few, few.chosen(1 << 15).filter(|_| is_few)),
+                (is_few, is_few.then_some(7 + last))
+            );
+            assert_eq!(few.chosen(1), Some(7));
+        }
+    }
+}
