@@ -24,12 +24,12 @@
 //! voidwalk-app        Scene -> Case -> run, cases, study -> words, report, serve, cli
 //! ```
 //!
-//! [`docs`] has the pages for users, `CONTRIBUTING.md` the map for those who extend it. The model is that of
-//! Shire & O'Sullivan, *A network model to assess base-filter combinations*.
+//! [`docs`] holds the pages for users, `CONTRIBUTING.md` the map for developers. The model follows Shire &
+//! O'Sullivan, *A network model to assess base-filter combinations*.
 //!
 //! # Features
 //! `report`: pages and figures. `serve`: the page on this machine. `cli`: the command line. All are on by
-//! default; without them the crate is the library that every face calls.
+//! default; without them the crate is the library that every interface calls.
 
 pub mod docs;
 

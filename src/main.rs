@@ -1,4 +1,4 @@
-//! The command line of voidwalk; see the library for what it does.
+//! Command line of voidwalk, a call of the library.
 
 fn main() -> std::process::ExitCode {
     voidwalk::cli::main()

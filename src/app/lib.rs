@@ -1,4 +1,4 @@
-//! Scenes, runs, campaigns, answers and pages: everything of voidwalk that a user meets.
+//! Application layer of voidwalk: scenes, runs, campaigns, answers and pages.
 //!
 //! ```
 //! use voidwalk_app::{Callbacks, Case, Scene, walk_case};
@@ -16,9 +16,9 @@
 //!
 //! The modules are in the order in which data flows, and each uses only those before it:
 //!
-//! - [`outcome`]: the records of a run and its statistics; [`verdict`]: what they say of a case.
-//! - [`words`]: the sentences of every face.
-//! - [`scene`]: what a user sets; [`case`]: a scene resolved to filter, base and network.
+//! - [`outcome`]: the records of a run and its statistics; [`verdict`]: the conclusions on a case.
+//! - [`words`]: the sentences of every interface.
+//! - [`scene`]: the settings of a user; [`case`]: a scene resolved to filter, base and network.
 //! - [`run`]: one case, its checkpoints and its folder; [`cases`]: many cases by a plan and a ledger;
 //!   [`study`]: boundaries, specifications, percolation.
 //! - `report`, `serve`, `cli`: pages, the page on this machine, the command line.

@@ -26,16 +26,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! - [`gradation`]: sieve curves by mass and by number, and how particles are drawn from them.
+//! - [`gradation`]: sieve curves by mass and by number, and particles drawn from them.
 //! - [`packing`]: spheres of a gradation in a periodic cell, loose or dense.
 //! - [`constrictions`]: Delaunay triangulation, constriction sizes, voids, and the library of filters.
 //! - [`network`]: voids and constrictions as arrays, the flow of water through them, percolation.
-//! - [`walk`]: increments of moving particles, as particles or as counts, with a deterministic merge.
-//! - [`stream`]: every random number, by one key. One seed gives the same bits for any thread count.
+//! - [`walk`]: increments of moving particles, singly or as counts, merged deterministically.
+//! - [`stream`]: all random numbers, by key. One seed gives the same bits for any thread count.
 //! - [`store`]: folders, columns in memory or mapped files, and checkpoints that survive a kill.
 //! - [`schema`]: settings, each declared once with its type, default and allowed values.
 //!
-//! The model is the one of Shire & O'Sullivan, *A network model to assess base-filter combinations*.
+//! The model is by Shire & O'Sullivan, *A network model to assess base-filter combinations*.
 
 extern crate self as voidwalk_core;
 

@@ -1,8 +1,8 @@
-//! Random streams: the one place in the program that makes a generator.
+//! Random streams: the only place in the program that makes a generator.
 //!
-//! Every stream is named by a [`Key`]: the user's seed, what the stream is for, and where in the
-//! simulation it is used (run, increment, chunk). The same key gives the same numbers on every
-//! machine, for any number of threads and after any resume; no generator state is ever stored.
+//! Every stream is named by a [`Key`]: the user's seed, its purpose, and the place in the simulation
+//! where it is used (run, increment, chunk). The same key gives the same numbers on every machine, for
+//! any number of threads and after any resume; no generator state is ever stored.
 //!
 //! # Kinds of stream
 //! - [`Key::generator`] is one xoshiro256++ generator, for work that draws numbers one after another
@@ -10,7 +10,7 @@
 //! - [`Key::lanes`] is [`Lanes`]: eight xoshiro256++ generators side by side, for chunked columns.
 //!   Its output is a sequence of blocks of eight words; word `w` of the whole stream is word
 //!   `w / 8` of generator `w % 8`. Sixteen-bit draw `j` is bits `16 (j % 4) ..` of word `j / 4`.
-//! - [`Key::words`] is [`Words`]: words by index, for what is asked for in no order (permutations).
+//! - [`Key::words`] is [`Words`]: words by index, for use in any order (permutations).
 //!
 //! # How a key becomes a state
 //! The five key words are hashed by XXH3 to 128 bits `(a, b)`; state word `i` is
@@ -27,7 +27,7 @@
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// Generators side by side in [`Lanes`].
+/// Number of generators side by side in [`Lanes`].
 pub const LANES: usize = 8;
 
 /// Sixteen-bit draws in one block of [`Lanes`].
@@ -53,7 +53,7 @@ pub enum Purpose {
     CoarseShare = 5,
     /// Start nodes and binomial splits of passive particles kept as counts.
     Passive = 6,
-    /// Sizes of passive particles kept as counts, drawn when they are asked for.
+    /// Sizes of passive particles kept as counts, drawn on demand.
     PassiveSize = 7,
     /// Grain sizes and start positions of a packing.
     Packing = 8,
@@ -67,7 +67,7 @@ pub enum Purpose {
     Strata = 12,
     /// Jams of particles.
     Arching = 13,
-    /// Circles inscribed between grains, to guess constrictions.
+    /// Circles inscribed between grains, to estimate constrictions.
     Inscribed = 14,
 }
 
@@ -78,15 +78,15 @@ pub struct Key {
     pub seed: u64,
     /// Purpose of the stream.
     pub purpose: Purpose,
-    /// Run, counted from 1; 0 where no run is under way.
+    /// Run, counted from 1; 0 outside runs.
     pub run: u64,
-    /// Increment, counted from 1; 0 where no increment is under way.
+    /// Increment, counted from 1; 0 outside increments.
     pub increment: u64,
     /// Chunk of particles or block of voids, counted from 0.
     pub chunk: u64,
 }
 
-/// SplitMix64's finaliser: a bijection of 64 bits in which every input bit reaches every output bit.
+/// SplitMix64's finaliser: a bijection of 64 bits in which every input bit affects every output bit.
 #[inline(always)]
 const fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -106,7 +106,7 @@ impl Key {
         (hash as u64, (hash >> 64) as u64)
     }
 
-    /// One xoshiro256++ generator.
+    /// Makes one xoshiro256++ generator.
     pub fn generator(&self) -> Xoshiro256PlusPlus {
         let (a, b) = self.digest();
         let mut state = [0u8; 32];
@@ -116,14 +116,14 @@ impl Key {
         Xoshiro256PlusPlus::from_seed(state)
     }
 
-    /// Words that can be had in any order.
+    /// Makes words that can be read in any order.
     #[inline]
     pub fn words(&self) -> Words {
         let (a, b) = self.digest();
         Words { a, b }
     }
 
-    /// Eight xoshiro256++ generators side by side.
+    /// Makes eight xoshiro256++ generators side by side.
     #[inline]
     pub fn lanes(&self) -> Lanes {
         let (a, b) = self.digest();
@@ -150,7 +150,7 @@ pub struct Lanes {
     extension: Extension,
 }
 
-/// Words by index: a hash of the key and the index, so that any of them costs the same.
+/// Words by index: a hash of the key and the index, so that each costs the same.
 #[derive(Clone, Copy, Debug)]
 pub struct Words {
     a: u64,
@@ -165,17 +165,17 @@ impl Words {
     }
 }
 
-/// Low 48 bits that complete a sixteen-bit draw where sixteen bits do not decide.
+/// Low 48 bits that complete a sixteen-bit draw if sixteen bits do not decide.
 ///
-/// A function of the key and the draw's index, so that it costs nothing unless it is asked for and
-/// leaves the stream where it is.
+/// A function of the key and the index of the draw: it costs nothing until it is called, and leaves the
+/// stream unchanged.
 #[derive(Clone, Copy, Debug)]
 pub struct Extension {
     words: Words,
 }
 
 impl Extension {
-    /// The whole 64-bit draw whose top sixteen bits are draw `index` of the stream.
+    /// Completes draw `index` of the stream to 64 bits; `draw` is the top sixteen.
     #[inline]
     pub fn complete(&self, draw: u16, index: u64) -> u64 {
         let low = self.words.at(index) >> 16;
@@ -184,7 +184,7 @@ impl Extension {
 }
 
 impl Lanes {
-    /// Next word of each lane.
+    /// Returns the next word of each lane.
     #[inline(always)]
     pub fn next_block(&mut self) -> [u64; LANES] {
         let [s0, s1, s2, s3] = &mut self.state;
@@ -204,8 +204,8 @@ impl Lanes {
 
     /// Returns the next `N` blocks.
     ///
-    /// A call, so that the generators stay in memory: a machine has no registers for all of them beside the
-    /// caller's own, and would move their words to and fro.
+    /// Not inlined, so that the generators stay in memory: no machine has registers for all of them and
+    /// for the caller's own values, and their words would be moved to and fro.
     #[inline(never)]
     #[cfg(target_arch = "x86_64")]
     pub fn next_blocks<const N: usize>(&mut self) -> [[u64; LANES]; N] {
@@ -221,7 +221,7 @@ impl Lanes {
         out
     }
 
-    /// Returns the next `N` blocks with AVX2: four generators a register.
+    /// Returns the next `N` blocks with AVX2: four generators per register.
     #[cfg(target_arch = "x86_64")]
     #[inline]
     #[target_feature(enable = "avx2")]
@@ -261,15 +261,15 @@ impl Lanes {
         &self.state
     }
 
-    /// State word by lane, for a kernel to put back after drawing from it.
+    /// State word by lane, for a kernel that draws from it and writes it back.
     #[cfg(target_arch = "x86_64")]
     pub(crate) fn state_mut(&mut self) -> &mut [[u64; LANES]; 4] {
         &mut self.state
     }
 }
 
-/// Next word of two generators; their state by word and generator. Uses vector registers; the compiler by
-/// itself would turn each word in a register of its own.
+/// Returns the next word of two generators, given their state by word and generator. Uses vector
+/// registers; the compiler alone would put each word in a register of its own.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
 fn next_of_pair(state: &mut [[u64; 2]; 4]) -> [u64; 2] {
@@ -294,7 +294,7 @@ fn next_of_registers(state: &mut [[u64; 2]; 4]) -> [u64; 2] {
     bytemuck::cast(out)
 }
 
-/// Next word of four generators; their state by word.
+/// Returns the next word of four generators, given their state by word.
 #[cfg(target_arch = "x86_64")]
 #[inline]
 #[target_feature(enable = "avx2")]
@@ -316,24 +316,24 @@ pub fn draw16(block: &[u64; LANES], j: usize) -> u16 {
     (block[j / 4] >> (16 * (j % 4))) as u16
 }
 
-/// `word` mapped to `0 .. n`, each value with the same probability to within `n / 2^64`.
+/// Maps `word` to `0 .. n`, each value with the same probability to within `n / 2^64`.
 #[inline(always)]
 pub fn below(word: u64, n: u64) -> u64 {
     ((u128::from(word) * u128::from(n)) >> 64) as u64
 }
 
-/// [`below`] for fewer than 2^32 values, by products that vector code has.
+/// Maps like [`below`] for fewer than 2^32 values, by products that vector code has.
 #[inline(always)]
 pub fn below_32(word: u64, n: u32) -> u32 {
     let (high, low) = (word >> 32, word & u64::from(u32::MAX));
     ((high * u64::from(n) + ((low * u64::from(n)) >> 32)) >> 32) as u32
 }
 
-/// `word` as an f64 strictly between 0 and 1 (its upper 52 bits, centred).
+/// Maps `word` to an f64 strictly between 0 and 1 (its upper 52 bits, centred).
 #[inline(always)]
 pub fn unit(word: u64) -> f64 {
-    // Taken as the mantissa of a number from 1 to 2, less 1, with half of the last bit added: exact, and many
-    // machines have no instruction that makes floats of several 64-bit integers.
+    // Mantissa of a number from 1 to 2, less 1, plus half of the last bit: exact, and many machines have
+    // no instruction that converts several 64-bit integers to floats.
     f64::from_bits(1.0f64.to_bits() | (word >> 12)) - (1.0 - f64::EPSILON / 2.0)
 }
 
@@ -455,7 +455,7 @@ mod tests {
         assert_ne!(extension.complete(0xabcd, 5), extension.complete(0xabcd, 6));
     }
 
-    /// The numbers themselves, so that no upgrade changes them unnoticed.
+    /// Pins the numbers themselves, so that no upgrade changes them unnoticed.
     #[test]
     fn streams_are_pinned() {
         let block = key(1, 0).lanes().next_block();

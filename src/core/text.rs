@@ -1,24 +1,24 @@
-//! Names in a form fit to show: short, and without characters that are invisible or change how others look,
-//! which no page and no terminal gets. Moments in written form.
+//! Names in a form that can be shown: short, and without characters that are invisible or change how
+//! others look. Times in written form.
 
 use std::ops::RangeInclusive;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// Last moment that has a year of four digits (seconds after 1970).
+/// Last time whose year has four digits (seconds after 1970).
 const LAST_MOMENT: u64 = 253_402_300_799;
 
-/// Writes a moment as `2026-11-25T23:59:59Z`. A wrong clock, as on a board without a battery, may give any
-/// moment: one before 1970 is written as the first of 1970, one after 9999 as the last of 9999.
+/// Writes a time as `2026-11-25T23:59:59Z`. A wrong clock, as on a board without a battery, may give any
+/// time: one before 1970 is written as the first of 1970, one after 9999 as the last of 9999.
 pub fn moment(at: SystemTime) -> String {
     let last = UNIX_EPOCH + Duration::from_secs(LAST_MOMENT);
     humantime::format_rfc3339_seconds(at.clamp(UNIX_EPOCH, last)).to_string()
 }
 
-/// Characters that turn the direction of writing.
+/// Characters that change the direction of writing.
 const TURNING: [RangeInclusive<char>; 4] =
     ['\u{061c}'..='\u{061c}', '\u{200e}'..='\u{200f}', '\u{202a}'..='\u{202e}', '\u{2066}'..='\u{2069}'];
 
-/// Characters without a width, other line ends, and tags. Some scripts join letters by them.
+/// Characters without width, other line ends, and tags. Some scripts use them to join letters.
 const WITHOUT_WIDTH: [RangeInclusive<char>; 10] = [
     '\u{00ad}'..='\u{00ad}',
     '\u{034f}'..='\u{034f}',
@@ -32,20 +32,20 @@ const WITHOUT_WIDTH: [RangeInclusive<char>; 10] = [
     '\u{e0000}'..='\u{e0fff}',
 ];
 
-/// Tells if a character turns the direction of writing of those around it.
+/// Tells if a character changes the direction of writing around it.
 pub fn turns_direction(character: char) -> bool {
     TURNING.iter().any(|range| range.contains(&character))
 }
 
-/// Tells if a character is invisible: control characters, those without a width, and those that turn the
+/// Tells if a character is invisible: a control character, one without width, or one that changes the
 /// direction of writing.
 pub fn is_hidden(character: char) -> bool {
     let without_width = || WITHOUT_WIDTH.iter().any(|range| range.contains(&character));
     character.is_control() || turns_direction(character) || without_width()
 }
 
-/// Returns the character, or U+FFFD for one that is hidden, other than tab and line feed, or that XML 1.0
-/// forbids.
+/// Returns the character, or U+FFFD if it is hidden (other than tab and line feed) or forbidden by XML
+/// 1.0.
 pub fn visible(character: char) -> char {
     match character {
         '\t' | '\n' => character,
@@ -60,7 +60,7 @@ pub fn plain(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { visible(c) }).collect()
 }
 
-/// Makes a word that can be pasted into a shell (POSIX, fish), with quotes if it needs them.
+/// Makes a word that can be pasted into a shell (POSIX, fish), quoted if necessary.
 pub fn shell_word(word: &str) -> String {
     let needs_none = |c: char| c.is_ascii_alphanumeric() || "/._-+=,:@".contains(c);
     if !word.is_empty() && word.chars().all(needs_none) { word.to_owned() } else { quoted(word) }
@@ -78,13 +78,12 @@ pub fn is_plain(character: char) -> bool {
     character.is_ascii_alphanumeric() || "=.,-_".contains(character)
 }
 
-/// Tells if a part of a path leads down into a folder or to a file, by plain characters alone: no hidden
-/// file, and not up.
+/// Tells if a part of a path has plain characters only and is neither hidden nor the parent folder.
 pub fn is_plain_part(part: &str) -> bool {
     !part.is_empty() && !part.starts_with('.') && part.chars().all(is_plain)
 }
 
-/// Cuts the text to `most` characters, with an ellipsis in place of the rest.
+/// Cuts the text to `most` characters, with an ellipsis for the rest.
 pub fn shorten(text: &str, most: usize) -> String {
     if text.chars().count() <= most {
         return text.to_owned();
@@ -127,7 +126,7 @@ mod tests {
         assert!(all.chars().map(visible).all(|c| !is_hidden(c) || "\t\n".contains(c)));
     }
 
-    /// Bidi_Control of Unicode: all twelve.
+    /// Checks the twelve characters of Unicode's Bidi_Control.
     #[test]
     fn every_character_that_turns_the_direction_is_known() {
         let turning: Vec<char> = ('\u{0}'..=char::MAX).filter(|c| turns_direction(*c)).collect();

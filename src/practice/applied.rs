@@ -1,85 +1,85 @@
-//! Rules of practice applied to two soils, as they are recorded.
+//! Rules of practice as applied to two soils and recorded.
 
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::fmt;
 
-/// A filter rule, applied.
+/// A filter rule as applied.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct AppliedRule {
-    /// Its name for programs, as `sherard-dunnigan`.
+    /// Identifier of the rule, such as `sherard-dunnigan`.
     pub id: String,
-    /// Whose rule it is, and what it says.
+    /// Author and statement of the rule.
     pub name: String,
-    /// Whose rule it is; empty where nobody is cited.
+    /// Author of the rule; empty if nobody is cited.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub authority: String,
-    /// Authorities whose texts state it besides; may be empty.
+    /// Further authorities whose texts state the rule; may be empty.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stated_by: Vec<String>,
-    /// What it is a rule of.
+    /// Role of the rule.
     pub role: RuleRole,
-    /// Whether it was made for these soils.
+    /// True if the rule was made for these soils.
     pub applies: bool,
-    /// What it limits, as `D15F/D85B`.
+    /// Quantity that the rule limits, such as `D15F/D85B`.
     pub quantity: RuleQuantity,
-    /// Its value for these inputs; `None` where they do not give it.
+    /// Value of the quantity for these inputs; `None` if they do not give it.
     pub value: Option<f64>,
-    /// On which side of `value` the true one lies, where sieves give only a bound; `None` where it is the
-    /// value itself.
+    /// Side of `value` on which the true value lies, if the sieves give only a bound; `None` if the value
+    /// is exact.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub value_bound: Option<ValueBound>,
-    /// The most, or the least, that the rule allows; `None` where no number is known.
+    /// Maximum or minimum that the rule allows; `None` if no number is known.
     pub limit: Option<f64>,
-    /// Unit of value and limit: `mm`, `D0F`, `%`; empty for a ratio.
+    /// Unit of value and limit: `mm`, `D0F` or `%`; empty for a ratio.
     #[cfg_attr(feature = "schemas", schemars(with = "String"))]
     pub unit: RuleUnit,
-    /// Whether `limit` is the least that the rule allows instead of the most.
+    /// True if `limit` is a minimum, false if it is a maximum.
     pub at_least: bool,
-    /// Whether the true limit is not known, and is at most `limit`; on either side of it where `needs` names
-    /// sieves that stand far apart.
+    /// True if the limit is not known exactly and is at most `limit`; it may lie on either side of
+    /// `limit` if `needs` names two widely spaced sieves.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub limit_at_most: bool,
-    /// Whether the value keeps the limit; `None` where the rule has no result. Of a rule of continuing
-    /// erosion `true` says only that this is not reached: some or excessive erosion is not excluded.
+    /// True if the value keeps the limit; `None` if the rule has no result. For a rule of continuing
+    /// erosion `true` only excludes continuing erosion, not some or excessive erosion.
     pub met: Option<bool>,
-    /// What is missing for a result; may be empty.
+    /// Inputs missing for a result; may be empty.
     pub needs: Vec<RuleNote>,
-    /// Where the value is, why the rule was not made for these soils; may be empty.
+    /// Notes on the value and on why the rule does not apply; may be empty.
     pub notes: Vec<RuleNote>,
-    /// What the rule was made for.
+    /// Soils that the rule was made for.
     pub applies_to: String,
-    /// Its limit in words.
+    /// Limit in words.
     pub formula: String,
-    /// Where the rule is published.
+    /// Publication of the rule.
     pub source: String,
-    /// What is left of the filter without the greatest part that it may lose by a rule of internal stability;
-    /// `None` of other rules.
+    /// Remainder of the filter without the largest finer part that it may lose by a rule of internal
+    /// stability; `None` for other rules.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub without_finer: Option<WithoutFiner>,
-    /// Which curve of the filter it read, where that is an envelope of several.
+    /// Curve of the filter that was read, if the filter is an envelope.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub filter_curve: String,
-    /// Which curve of the base it read, where that is an envelope of several.
+    /// Curve of the base that was read, if the base is an envelope.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub base_curve: String,
 }
 
 impl AppliedRule {
-    /// Authorities that state the rule: its own first; empty for a check of this program.
+    /// Authorities that state the rule, its author first; empty for a check of this program.
     pub fn authorities(&self) -> Vec<&str> {
         let stated_by = self.stated_by.iter().map(String::as_str);
         std::iter::once(self.authority.as_str()).chain(stated_by).filter(|name| !name.is_empty()).collect()
     }
 
-    /// True for a rule of practice that was made for these soils and is not kept.
+    /// True for a rule that applies to these soils and is not kept.
     pub fn is_broken(&self) -> bool {
         self.applies && self.met == Some(false) && self.role != RuleRole::Walk
     }
 }
 
-/// The unit of a rule's value and limit.
+/// Unit of a rule's value and limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RuleUnit {
     /// Sizes in mm.
@@ -91,13 +91,13 @@ pub enum RuleUnit {
     /// A ratio.
     #[serde(rename = "")]
     One,
-    /// Percent of the mass.
+    /// Percent by mass.
     #[serde(rename = "%")]
     Percent,
 }
 
 impl RuleUnit {
-    /// Name of the unit as written.
+    /// Name of the unit in files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Mm => "mm",
@@ -108,52 +108,52 @@ impl RuleUnit {
     }
 }
 
-/// On which side of a value the true one lies.
+/// Side of a value on which the true value lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub enum ValueBound {
-    /// It is no more than the value.
+    /// The true value is at most the value.
     #[serde(rename = "at most")]
     AtMost,
-    /// It is no less than the value.
+    /// The true value is at least the value.
     #[serde(rename = "at least")]
     AtLeast,
 }
 
-/// What is left of a filter without its finer part.
+/// Remainder of a filter without its finer part.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct WithoutFiner {
-    /// The part that is taken out (% of the filter's mass).
+    /// Finer part removed (percent of the filter's mass).
     pub percent: f64,
-    /// 15 % finer of what is left (mm, or D0F where sizes have no unit).
+    /// D15 of the remainder (mm, or multiples of D0F if sizes have no unit).
     pub d15f: f64,
 }
 
-/// What a rule limits.
+/// Quantity that a rule limits.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub enum RuleQuantity {
-    /// A size of the filter.
+    /// D15 of the filter.
     D15F,
-    /// The filter's size over one of the base.
+    /// D15 of the filter over D85 of the base.
     #[serde(rename = "D15F/D85B")]
     D15FOverD85B,
-    /// The filter's size over one of the base.
+    /// D15 of the filter over D95 of the base.
     #[serde(rename = "D15F/D95B")]
     D15FOverD95B,
-    /// Anything that is no limit of D15F, by its name.
+    /// Any quantity that does not limit D15F, by its name.
     #[serde(untagged)]
     Named(Cow<'static, str>),
 }
 
 impl RuleQuantity {
-    /// A quantity that is not a limit of D15F, by a name of its own.
+    /// A quantity that does not limit D15F, by its name.
     pub const fn named(name: &'static str) -> Self {
         Self::Named(Cow::Borrowed(name))
     }
 
-    /// Name for a reader.
+    /// Name for readers.
     pub fn name(&self) -> &str {
         match self {
             Self::D15F => "D15F",
@@ -170,22 +170,22 @@ impl fmt::Display for RuleQuantity {
     }
 }
 
-/// What a rule is a rule of.
+/// Role of a rule.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum RuleRole {
     /// The filter retains the base without erosion.
     Retention,
-    /// A coarser filter: erosion ends.
+    /// Erosion into a coarser filter stops.
     Continuation,
     /// The filter drains the base.
     Drainage,
-    /// The filter can be placed without segregating.
+    /// The filter does not segregate when placed.
     Placing,
     /// The filter holds its own fines.
     Stability,
-    /// The walk itself: it is checked by this, not the filter.
+    /// The walk agrees with tests; the rule checks the model, not the filter.
     Walk,
 }
 
@@ -210,18 +210,18 @@ macro_rules! notes {
 
         #[cfg(feature = "schemas")]
         mod schema {
-            /// What a rule says beside its result.
+            /// Note of a rule beside its result.
             #[derive(schemars::JsonSchema)]
             #[allow(dead_code)]
             pub(super) struct RuleNote {
-                /// Its name.
+                /// Name of the note.
                 id: RuleNoteId,
-                /// Its number, or its numbers in order; missing without any.
+                /// Number of the note, or its numbers in order; absent if it has none.
                 #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
                 numbers: serde_json::Value,
             }
 
-            /// The name of what a rule says.
+            /// Name of a rule's note.
             #[derive(schemars::JsonSchema)]
             #[schemars(rename_all = "snake_case")]
             #[allow(dead_code)]
@@ -240,28 +240,28 @@ notes! {
     NeedsD95B,
     /// D15 of the base.
     NeedsD15B,
-    /// D15 of the filter, of which D0F would tell, too.
+    /// D15 of the filter, which D0F would also give.
     NeedsD15F,
-    /// D15 of the filter, of which only sieves tell.
+    /// D15 of the filter, which only sieves give.
     NeedsD15FSieved,
     /// D10 of the filter.
     NeedsD10F,
     /// The fines of the filter.
     NeedsFinesOfFilter,
-    /// Sieves of the filter where the curves of a band are compared.
+    /// Sieves of the filter over the range in which the curves of a band are compared.
     NeedsSievesOfFilter,
-    /// The finest part of the filter, for its shape.
+    /// Gradation of the filter's finest part, for an index of its shape.
     NeedsFinestPartOfFilter,
     /// A sieve curve of the filter.
     NeedsCurveOfFilter,
     /// A sieve curve of the filter with a unit.
     NeedsCurveOfFilterInMm,
-    /// A test of a dispersive base with 15 to 40 % fines.
+    /// A dispersion test of a base with 15 to 40 % fines.
     NeedsTestOfDispersive,
-    /// A first run that erodes something.
+    /// A first run with some erosion.
     NeedsErosion,
 
-    // Sizes between two sieves (mm) that stand far apart.
+    // Openings (mm) of two widely spaced sieves around a size.
     /// D15 of the filter.
     D15FBetween(f64, f64),
     /// D15 of the base.
@@ -276,71 +276,71 @@ notes! {
     BaseBetween(f64, f64),
 
     // Readings of the base.
-    /// The other limit (mm) of a base whose curve is flat, which may be a gap.
+    /// The other limit (mm) of a base with a flat part, which may be a gap.
     FlatBase(f64),
-    /// It is dispersive.
+    /// The base is dispersive.
     Dispersive,
-    /// Its category of NRCS.
+    /// NRCS category of the base.
     Category(u8),
-    /// It was regraded on this size (mm).
+    /// The base was regraded on this size (mm).
     RegradedOn(f64),
-    /// It was not regraded, for a rule that reads it as it is.
+    /// The rule reads the base as sampled, without regrading.
     BeforeRegrading,
-    /// Sizes have no unit: a sand without fines.
+    /// Sizes have no unit: the base is taken as a sand without fines.
     TakenAsSand,
-    /// It is walked as it is.
+    /// The model walked the base as it is.
     ResultOfModel,
 
     // Facts on a limit or a value.
-    /// The filter is coarser than any limit that the base can have.
+    /// The filter is coarser than any possible limit of the base.
     BeyondAnyLimit,
-    /// Tests found no clear boundary for such bases: it is not a limit.
+    /// Tests found no clear boundary for such bases, so the number is no limit.
     NoClearBoundary,
-    /// It is not kept, though tests found no clear boundary for such bases.
+    /// The filter is beyond the boundary, though tests found no clear one for such bases.
     BeyondUnclearBoundary,
-    /// The filter is finer than that, but nobody judges whether the erosion is excessive.
+    /// The filter is within the boundary of continuing erosion; excessive erosion is not judged.
     ExcessiveNotJudged,
-    /// Formula of the limit by fines and D85B: a multiple of the one that ends at this share of fines (%),
-    /// for this share (%).
+    /// Formula of the limit from fines and D85B: its factor, the fines content (%) at which it ends, and
+    /// the fines content of the base (%).
     ByFines(f64, f64, f64),
-    /// The limit of design is its floor: this multiple of D85B is less (mm).
+    /// The limit of design is its floor, because this multiple of D85B is smaller (mm).
     FloorGoverns(f64, f64),
-    /// D15B lies in the base's finest part, and this multiple of it is less (mm) than the least that any
-    /// filter is asked for.
+    /// D15B is finer than the finest sieve, and this multiple of it is smaller (mm) than the minimum for
+    /// any filter.
     LeastGoverns(f64, f64),
-    /// D15F lies in the filter's finest part, and is at most the value.
+    /// D15F is finer than the filter's finest sieve and at most the value.
     D15FAtMost,
-    /// D15B lies in the base's finest part: the limit is at most the one given.
+    /// D15B is finer than the base's finest sieve: the limit is at most the one given.
     LimitAtMost,
-    /// D15B lies in the base's finest part: the limit is at least the one given.
+    /// D15B is finer than the base's finest sieve: the limit is at least the one given.
     LimitAtLeast,
-    /// D10 lies in the filter's finest part: Cu is at least the value.
+    /// D10 is finer than the filter's finest sieve: Cu is at least the value.
     CuAtLeast,
-    /// No sieve of the filter is finer than this (mm): the value is at most what passes it.
+    /// Finest sieve of the filter (mm): the value is at most the percent that passes it.
     FinestSieveOfFilter(f64),
-    /// The percent finer at which a band is widest.
+    /// Percent finer at which a band is widest.
     AtPercentFiner(f64),
-    /// A band is compared from this percent finer, below which no sieve tells.
+    /// Percent finer from which a band is compared; no sieve gives the sizes below it.
     BandFrom(f64),
     /// Width of a joint (mm), D95B (mm), and their ratio.
     Joint(f64, f64, f64),
-    /// A probability below the least that the source states.
+    /// The probability is below the smallest that the source states.
     LessThanSource,
-    /// A largest particle that the tests of others know.
+    /// The largest particle that passed is compared with published tests.
     ChecksWalk,
-    /// Factor by which the largest particle that passes is finer than in tests, where coarser ones stay.
+    /// Factor by which the largest passing particle is finer than in tests, though coarser ones stay.
     FarFinerThanTests(f64),
 
-    // Facts on the filter's own stability.
-    /// The split (%) of Kezdi's ratio, D'15 of the coarser part and d'85 of the finer part.
+    // Facts on the filter's internal stability.
+    /// The split (%) at Kezdi's ratio, D'15 of the coarser part and d'85 of the finer part.
     KezdiAt(f64, f64, f64),
-    /// The splits that were judged (%).
+    /// First and last split that were judged (%).
     KezdiSplits(f64, f64),
-    /// The share (%) of the filter that hides something of Kezdi's ratio.
+    /// Percent of the filter finer than its finest sieve, where Kezdi's ratio is not known.
     KezdiHidden(f64),
-    /// F (%) of an index of shape, and the most that F can be (%).
+    /// F (%) of an index of shape, and the maximum F (%).
     ShapeAt(f64, f64),
-    /// F (%) of an index of shape, the finest that sieves tell (%), and the most that F can be (%).
+    /// F (%) of an index of shape, the smallest F that the sieves give (%), and the maximum F (%).
     ShapeAbovePan(f64, f64, f64),
     /// D90/D15, and the range of D90/D60 that is stable by Burenkova.
     BurenkovaRange(f64, f64, f64),
@@ -348,13 +348,13 @@ notes! {
     WanFellSand,
     /// Silt, sand and gravel with some clay, by Wan and Fell.
     WanFellSilt,
-    /// The source states contours of its probability.
+    /// The source states contours of the probability of instability.
     WanFellContours,
 
-    // Reasons for which a rule was not made for these soils.
-    /// The base has this share of fines (%).
+    // Reasons why a rule does not apply to these soils.
+    /// Fines content of the base (%), for which other limits apply.
     LimitsByFines(f64),
-    /// The filter is coarser or broader than Burenkova's.
+    /// The filter is coarser or broader than the soils that Burenkova tested.
     BurenkovaSoils,
     /// The filter is in Burenkova's third zone, above this D90/D60.
     BurenkovaThirdZone(f64),
@@ -363,7 +363,7 @@ notes! {
 }
 
 impl RuleNote {
-    /// Openings (mm) of two sieves far apart, if the result depends on the sizes between them.
+    /// Openings (mm) of two widely spaced sieves, if the result depends on the sizes between them.
     pub(crate) fn sieves_between(self) -> Option<[f64; 2]> {
         match self {
             Self::D15FBetween(from, to)
@@ -377,7 +377,7 @@ impl RuleNote {
     }
 }
 
-/// Openings (mm) of the two sieves around D15F, if they lie far apart.
+/// Openings (mm) of the two sieves around D15F, if they are widely spaced.
 pub(crate) fn d15f_between(notes: &[RuleNote]) -> Option<[f64; 2]> {
     notes.iter().find_map(|note| match *note {
         RuleNote::D15FBetween(from, to) => Some([from, to]),
@@ -392,7 +392,7 @@ mod tests {
 
     #[test]
     fn a_quantity_is_written_by_its_name_and_read_back() {
-        // No name of a rule's quantity is the name of a limit of D15F.
+        // No named quantity has the name of a limit of D15F.
         for quantity in RULES.iter().map(|rule| &rule.quantity) {
             let text = serde_json::to_string(quantity).unwrap();
             assert_eq!(text, format!("\"{quantity}\""));

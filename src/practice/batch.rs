@@ -1,5 +1,5 @@
-//! Many samples of a base against filters: the answer of practice for each pair, one row each, and the
-//! samples that govern.
+//! Many samples of a base against filters: one row for each pair with the answer of practice, and the
+//! governing samples.
 
 use super::pair::{Mistake, PairOptions, PairRules};
 use super::rule_result::credit;
@@ -16,84 +16,84 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use voidwalk_sheets::SoilSample;
 
-/// Number of governing samples that are named, to be walked in full.
+/// Number of governing samples named for a full walk.
 pub const NAMED: usize = 3;
 
-/// What practice says of one sample and one filter. Sizes are in mm.
+/// Answer of practice for one sample and one filter. Sizes are in mm.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct BatchRow {
-    /// The sample.
+    /// Name of the sample.
     pub sample: String,
-    /// What names the sample on a command line.
+    /// Path of the sample on a command line.
     pub path: PathBuf,
-    /// The filter.
+    /// Name of the filter.
     pub filter: String,
-    /// Group by ASTM D2487 of the sample; `None` where the sieves do not tell.
+    /// ASTM D2487 group of the sample; `None` if the sieves do not give it.
     pub group: Option<String>,
-    /// Category of NRCS, 1 to 4; `None` where the fines are not known closely enough.
+    /// NRCS category, 1 to 4; `None` if the fines are not known closely enough.
     pub category: Option<u8>,
     /// Percent finer than 0.075 mm after regrading.
     pub fines_percent: Option<f64>,
-    /// The size on which the sample was regraded.
+    /// Size on which the sample was regraded.
     pub regraded_at_mm: Option<f64>,
-    /// 85 % finer, after regrading.
+    /// D85 after regrading.
     pub d85b_mm: Option<f64>,
-    /// 15 % finer of the filter, of its coarsest curve; `None` where the result hangs on it and its sieves
-    /// leave it open.
+    /// D15 of the filter, of its coarsest curve; `None` if the sieves leave it open and the result
+    /// depends on it.
     pub d15f_mm: Option<f64>,
-    /// The strictest limit of D15F by which the filter retains the sample; the least that it can be where
-    /// sieves of the sample stand far apart.
+    /// Strictest limit of D15F for retention of the sample; its lower bound if sieves of the sample are
+    /// widely spaced.
     pub limit_mm: Option<f64>,
-    /// Whether the true limit is not known, and is at most that.
+    /// True if the limit is not known exactly and is at most `limit_mm`.
     pub limit_at_most: bool,
-    /// Whose limit it is.
+    /// Author of the limit.
     pub rule: String,
-    /// Whether the filter keeps every rule of retention, as placed and without the finer part that it may
-    /// lose; `None` where that is not known.
+    /// True if the filter keeps every rule of retention, as placed and without the finer part that it may
+    /// lose; `None` if this is not known.
     pub met: Option<bool>,
-    /// The class by the boundaries of Foster and Fell.
+    /// Class by the boundaries of Foster and Fell.
     pub tests: TestedClass,
-    /// Whether the filter is coarser than any for which their tests found no erosion.
+    /// True if the filter is coarser than any for which their tests found no erosion.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_beyond_tests: bool,
-    /// Whether the filter keeps every rule of drainage; `None` where that is not known.
+    /// True if the filter keeps every rule of drainage; `None` if this is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drains: Option<bool>,
-    /// The minimum D15F that drains the sample.
+    /// Minimum D15F that drains the sample.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub d15f_min_mm: Option<f64>,
-    /// Whether the true least is not known, and is at most that.
+    /// True if the minimum is not known exactly and is at most `d15f_min_mm`.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub d15f_min_at_most: bool,
-    /// What may be wrong with the two tables.
+    /// Warnings about the two tables.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<Note>,
-    /// The sizes between two sieves that stand far apart, which leave the result open.
+    /// Two widely spaced sieves that leave the result open.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub open_sieves: Option<RuleNote>,
-    /// The part of the filter (%) without which it is too coarse, and which it may lose.
+    /// Finer part of the filter (%) that it may lose, and without which it is too coarse.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub too_coarse_without_percent: Option<f64>,
-    /// Whether the filter may segregate.
+    /// True if the filter may segregate.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub may_segregate: bool,
-    /// Whether a rule of drainage was applied.
+    /// True if a rule of drainage was applied.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_drainage_judged: bool,
-    /// The rule of an open joint, where one is asked about.
+    /// Result for an open joint, if one was given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joint: Option<JointErosion>,
-    /// Whether the filter may lose its own fines.
+    /// True if the filter may lose its own fines.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub may_lose_fines: bool,
-    /// The limit if the sample is dispersive, where nobody has said whether it is and it has fines enough.
+    /// Limit if the sample is dispersive, for a sample with enough fines and no statement about dispersion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub if_dispersive: Option<IfDispersive>,
-    /// Whether the limit is met, and is broken if the base is dispersive, which is not stated.
+    /// True if the limit is met but would be broken by a dispersive base, and dispersion is not stated.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub breaks_if_dispersive: bool,
-    /// Whether the two look exchanged, and nothing was applied.
+    /// True if the two tables look exchanged and no rule was applied.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_refused: bool,
 }
@@ -102,20 +102,20 @@ pub struct BatchRow {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct JointErosion {
-    /// Its probability (%); `None` where it is not known, or below the least that the source states.
+    /// Probability (%); `None` if it is not known, or below the smallest that the source states.
     pub percent: Option<f64>,
-    /// Whether it is below the least that the source states.
+    /// True if it is below the smallest probability that the source states.
     pub is_below_source: bool,
 }
 
 impl BatchRow {
-    /// True if the limit is not known, or is only known to be at most a number.
+    /// True if the limit is not known or is only an upper bound.
     pub fn limit_is_open(&self) -> bool {
         self.limit_mm.is_none() || self.limit_at_most
     }
 
-    /// Applies practice to one sample and one filter. A pair that looks exchanged has no result, unless
-    /// `options` say that it is as given.
+    /// Applies practice to one sample and one filter. A pair that looks exchanged has no result unless
+    /// `options` says it is as given.
     ///
     /// ```
     /// use voidwalk_core::Gradation;
@@ -158,7 +158,7 @@ impl BatchRow {
         let strictest = decision.strictest().map(|(rule, limit)| (rule, limit, rule.limit_at_most));
         let is_open = base.open_steps().into_iter().any(|step| step.is_wide());
         let open_base = is_open.then(|| OpenBase::of(base, false));
-        // The strictest value of a limit that depends on sieves of the base far apart.
+        // The strictest limit over all readings of the base between widely spaced sieves.
         let strictest_by_sieves = |rule: &AppliedRule| {
             let limit = sieved_limit(&rule.id, base, open_base.as_ref()?, options.dispersive)?;
             limit.depends_on.map(|_| limit.strictest)
@@ -169,7 +169,7 @@ impl BatchRow {
         let strictest = strictest.into_iter().chain(least).min_by(|a, b| a.1.total_cmp(&b.1));
         let is_size = |rule: &&AppliedRule| rule.applies && rule.quantity != RuleQuantity::D15FOverD85B;
         let judged = decision.applied(DESIGN).and_then(|rule| rule.value).or(row.d15f_mm);
-        // The remainder of a filter that may lose its own fines is unknown, like on the page of the pair.
+        // The remainder of a filter that may lose its own fines is unknown, as on the page of the pair.
         let unknown = decision.standing.class() == PracticeClass::NotKnown
             || retaining(rules).filter(is_size).any(|rule| rule.met.is_none());
         let met = match decision.breaks(RuleRole::Retention) || decision.breaks(RuleRole::Continuation) {
@@ -212,8 +212,8 @@ impl BatchRow {
     }
 }
 
-/// Authority of the limit; among rules with equal limits, such as design and Terzaghi for a clean sand, the
-/// first.
+/// Author of the limit; the first rule counts if limits are equal, such as design and Terzaghi for a
+/// clean sand.
 fn whose(rules: &[AppliedRule], strictest: &AppliedRule, limit: f64) -> String {
     let is_same = |rule: &&AppliedRule| {
         let is_limit = rule.limit.is_some_and(|own_limit| (own_limit - limit).abs() <= 1e-9 * limit);
@@ -222,8 +222,8 @@ fn whose(rules: &[AppliedRule], strictest: &AppliedRule, limit: f64) -> String {
     credit(rules.iter().find(is_same).unwrap_or(strictest)).to_owned()
 }
 
-/// Samples that govern a filter: at most `most` of those with the least limit, the strictest first. Among
-/// equal limits the smaller D85B comes first, which is the finer base.
+/// Samples that govern a filter, strictest first: at most `most` of those with the lowest limit. Equal
+/// limits are ordered by D85B, smallest first.
 pub fn governing<'r>(rows: &'r [BatchRow], filter: &str, most: usize) -> Vec<&'r BatchRow> {
     let of_filter = rows.iter().filter(|row| row.filter == filter);
     let mut limits: Vec<(f64, &BatchRow)> = of_filter.filter_map(|row| Some((row.limit_mm?, row))).collect();
@@ -232,7 +232,7 @@ pub fn governing<'r>(rows: &'r [BatchRow], filter: &str, most: usize) -> Vec<&'r
     limits.into_iter().map(|(_, row)| row).take(most).collect()
 }
 
-/// Number of further samples with the limit of the last governing one.
+/// Number of further samples whose limit equals the last governing one.
 pub fn more_with_that_limit(rows: &[BatchRow], filter: &str, named: &[&BatchRow]) -> usize {
     let Some(limit) = named.last().and_then(|row| row.limit_mm) else { return 0 };
     let is_same = |row: &&BatchRow| {
@@ -243,8 +243,8 @@ pub fn more_with_that_limit(rows: &[BatchRow], filter: &str, named: &[&BatchRow]
     rows.iter().filter(is_same).count() - of_named
 }
 
-/// Samples of a filter whose limit is not known, or known to be at most a number: any of them may govern.
-/// Leaves out samples named as governing and samples that look exchanged with the filter.
+/// Samples of a filter whose limit is unknown or only bounded above: any of them may govern. Excludes
+/// samples named as governing and samples that look exchanged with the filter.
 pub fn may_govern<'r>(rows: &'r [BatchRow], filter: &str) -> Vec<&'r BatchRow> {
     let named = governing(rows, filter, NAMED);
     let is_named = |row: &BatchRow| named.iter().any(|other| std::ptr::eq(*other, row));
@@ -253,36 +253,36 @@ pub fn may_govern<'r>(rows: &'r [BatchRow], filter: &str) -> Vec<&'r BatchRow> {
     rows.iter().filter(is_open).collect()
 }
 
-/// A filter of a batch.
+/// Filter of a batch.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct BatchFilter {
-    /// As it was named, and as the rows name it.
+    /// Name of the filter as given and as used in the rows.
     pub name: String,
-    /// What its curves are called; several are an envelope.
+    /// Names of its curves; several form an envelope.
     pub curves: Vec<String>,
-    /// D15F (mm), of its coarsest curve; `None` where the table does not reach it.
+    /// D15F (mm) of its coarsest curve; `None` if the table does not reach it.
     pub d15f_mm: Option<f64>,
     /// Each curve: rows of (size in mm, percent finer by mass), sizes ascending.
     pub gradations: Vec<Vec<[f64; 2]>>,
 }
 
-/// Answers of practice for every sample and filter, filter by filter.
+/// Answers of practice for every filter and sample, grouped by filter.
 #[derive(Clone, Debug)]
 pub struct BatchTable {
-    /// A row for each filter and sample.
+    /// One row for each filter and sample.
     pub rows: Vec<BatchRow>,
     /// Filters of the batch.
     pub filters: Vec<BatchFilter>,
-    /// Curve of the base as sampled, in rows of (size in mm, percent finer by mass); empty for several
-    /// samples.
+    /// Curve of the base as sampled, in rows of (size in mm, percent finer by mass); empty if there are
+    /// several samples.
     pub base: Vec<[f64; 2]>,
-    /// Assumptions on the files, a sentence each.
+    /// Assumptions about the files, one sentence each.
     pub notes: Vec<String>,
 }
 
 impl BatchTable {
-    /// Table of these samples and of named filters, each with the curves of its envelope.
+    /// Builds the table of these samples and named filters, each with the curves of its envelope.
     pub fn new(
         samples: &[SoilSample],
         filters: Vec<(String, Vec<NamedCurve>)>,
@@ -307,85 +307,85 @@ impl BatchTable {
     }
 }
 
-/// The whole of `designs.json`.
+/// Contents of `designs.json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct DesignedSamples {
     /// Version of the program.
     pub version: String,
-    /// The commit that it was built from; `None` where that is not known.
+    /// Commit that the program was built from; `None` if it is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub commit: Option<String>,
-    /// The samples, as they were named.
+    /// Samples as named by the user.
     pub samples: String,
-    /// Whether the samples were said to be dispersive.
+    /// True if the samples were stated to be dispersive.
     pub dispersive: bool,
-    /// Whether inches stand beside mm on page and terminal.
+    /// True if page and terminal show inches beside mm.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub inches: bool,
-    /// What the sheet says of itself.
+    /// Cover of the sheet.
     #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
     pub cover: SheetCover,
-    /// Every file that was read.
+    /// Files that were read.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub inputs: Vec<InputFile>,
-    /// A row for each sample.
+    /// One row for each sample.
     pub rows: Vec<DesignedSample>,
-    /// What was assumed of the files, a sentence each.
+    /// Assumptions about the files, one sentence each.
     pub notes: Vec<String>,
 }
 
-/// How coarse a filter may be for one sample. Sizes are in mm.
+/// Limits of a filter for one sample. Sizes are in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct DesignedSample {
-    /// The sample.
+    /// Name of the sample.
     pub sample: String,
-    /// What names the sample on a command line.
+    /// Path of the sample on a command line.
     pub path: PathBuf,
     /// Size (mm) and percent finer by mass, as sampled.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub gradation: Vec<[f64; 2]>,
-    /// The same after regrading; empty where the rules do not regrade it.
+    /// Size (mm) and percent finer by mass after regrading; empty if the rules do not regrade the sample.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub regraded: Vec<[f64; 2]>,
-    /// Group by ASTM D2487; `None` where the sieves do not tell.
+    /// ASTM D2487 group; `None` if the sieves do not give it.
     pub group: Option<String>,
-    /// Category of NRCS, 1 to 4; `None` where the fines are not known closely enough.
+    /// NRCS category, 1 to 4; `None` if the fines are not known closely enough.
     pub category: Option<u8>,
     /// Percent finer than 0.075 mm after regrading.
     pub fines_percent: Option<f64>,
-    /// The size on which the sample was regraded.
+    /// Size on which the sample was regraded.
     pub regraded_at_mm: Option<f64>,
-    /// 85 % finer, after regrading.
+    /// D85 after regrading.
     pub d85b_mm: Option<f64>,
-    /// Maximum D15F by which practice retains the sample; `None` where it is not known.
+    /// Maximum D15F that retains the sample by practice; `None` if it is not known.
     pub d15f_max_mm: Option<f64>,
-    /// Whose limit it is.
+    /// Author of the maximum.
     pub rule: String,
-    /// The minimum D15F that drains the sample.
+    /// Minimum D15F that drains the sample.
     pub d15f_min_mm: Option<f64>,
-    /// Whether the true least is not known, and is at most that.
+    /// True if the minimum is not known exactly and is at most `d15f_min_mm`.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub d15f_min_at_most: bool,
-    /// What practice allows if the sample is dispersive; `None` where somebody has said whether it is, and
-    /// where it has few fines.
+    /// Limit of practice if the sample is dispersive; `None` if dispersion is stated or the sample has
+    /// few fines.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub if_dispersive: Option<IfDispersive>,
-    /// D15F of both sides of the band of its specification; `None` without a band.
+    /// D15F of both sides of the specified band; `None` without a band.
     pub band_d15f_mm: Option<[f64; 2]>,
-    /// What a reader must know of the sample itself, as for a filter of its own.
+    /// Notes on the sample itself.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<Note>,
-    /// Why the sample has no band of its own, though both limits may be known; `None` where it has one.
+    /// Reason why the sample has no band, though both limits may be known; `None` if it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub no_band: Option<NoBand>,
-    /// 1 for the sample that governs, 2 and 3 for those next to it: by `d15f_max_mm`.
+    /// Rank by `d15f_max_mm`: 1 for the governing sample, 2 and 3 for the next.
     pub governs: Option<u64>,
 }
 
 impl DesignedSample {
-    /// Answer of practice for a sample.
+    /// Records the answer of practice for a sample.
     pub fn of(sample: &SoilSample, practice: &Specification) -> Self {
         let curve = &practice.curves[0];
         Self {
@@ -417,8 +417,8 @@ impl DesignedSample {
 }
 
 impl DesignedSamples {
-    /// Table of these rows, with the samples that govern: the least maximum D15F first, and among equal ones
-    /// the finer base.
+    /// Table of these rows with the governing samples: lowest maximum D15F first, and the finer base
+    /// first if equal.
     pub fn new(samples: String, mut rows: Vec<DesignedSample>) -> Self {
         let mut order: Vec<usize> = (0..rows.len()).filter(|&at| rows[at].d15f_max_mm.is_some()).collect();
         let key = |row: &DesignedSample| [row.d15f_max_mm, row.d85b_mm].map(|mm| mm.unwrap_or(f64::INFINITY));
@@ -430,7 +430,7 @@ impl DesignedSamples {
         Self { version: env!("CARGO_PKG_VERSION").into(), samples, rows, ..Self::default() }
     }
 
-    /// Samples that govern, the strictest first.
+    /// Governing samples, strictest first.
     pub fn governing(&self) -> Vec<&DesignedSample> {
         let mut rows: Vec<&DesignedSample> = self.rows.iter().filter(|row| row.governs.is_some()).collect();
         rows.sort_by_key(|row| row.governs);

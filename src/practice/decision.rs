@@ -1,4 +1,4 @@
-//! The decision of filter practice on a pair: made once from its rules, for records, notes and every face.
+//! Decision of filter practice on a pair, made once from its rules for records, notes and every face.
 
 use crate::applied::d15f_between;
 use crate::dispersion::BeyondDispersive;
@@ -9,12 +9,12 @@ use crate::{AppliedRule, IfDispersive, Note, RuleNote, RuleQuantity, RuleRole};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// All decisions of practice on a pair by its rules.
+/// All decisions of practice on a pair.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Decision {
     /// Every rule.
     pub rules: Vec<AppliedRule>,
-    /// D15F in the unit of the rules, or 1.
+    /// D15F in the unit of the rules, or 1 if it is not known.
     d15f: f64,
     /// Standing of the filter.
     pub standing: Standing,
@@ -29,33 +29,32 @@ pub struct Decision {
     pub is_beyond_unclear: bool,
     /// Remainder of a filter that is too coarse without its finer part.
     pub washout: Option<Washout>,
-    /// True if the strictest limit may be lower than stated and is not known.
+    /// True if a limit of retention is only an upper bound, so that the strictest limit is not known.
     pub is_strictest_open: bool,
-    /// Limit of D15F for a dispersive base, if nobody has said whether this base is dispersive.
+    /// Limit of D15F for a dispersive base, if dispersion is not stated.
     pub if_dispersive: Option<IfDispersive>,
     /// D15F that breaks this limit, if the filter keeps the others.
     pub beyond_dispersive: Option<BeyondDispersive>,
-    /// Sizes between two sieves far apart that decide the limit of design or the stability of the filter.
+    /// Openings of two widely spaced sieves that decide the limit of design or the stability of the filter.
     pub open_sieves: Option<RuleNote>,
     /// True if the rule of drainage has no result.
     pub is_drainage_unknown: bool,
 }
 
-/// Standing of a filter by practice, the worst first.
+/// Standing of a filter by practice, worst first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Standing {
-    /// A rule of retention or of coarser filters is not kept, and no test held either.
+    /// A rule of retention or of continuing erosion is not kept, and tests do not excuse it.
     Fails,
-    /// No test speaks against the filter as placed, but it breaks a limit without the finer part that it may
-    /// lose.
+    /// The filter as placed does not fail, but it breaks a limit without the finer part that it may lose.
     WashedOut,
     /// The limit of design is not kept, but the filter is within the tests' boundary of no erosion.
     NoMargin,
     /// The limits are kept, but the filter may lose its own fines.
     Unstable,
-    /// The limit of design has no result: the input that is missing.
+    /// The limit of design has no result because this input is missing.
     Unknown(Option<RuleNote>),
-    /// A result depends on sizes between two sieves far apart.
+    /// A result depends on sizes between two widely spaced sieves.
     Open(RuleNote),
     /// The limit of design is kept.
     Met,
@@ -75,14 +74,14 @@ impl Standing {
 }
 
 impl Decision {
-    /// Decides by the rules of a pair, by the limit of a base that may be dispersive, and by D15F (mm);
-    /// `None` where D15F lies in the filter's finest part.
+    /// Decides from the rules of a pair, the limit if the base may be dispersive, and D15F (mm; `None` if
+    /// it is finer than the finest sieve).
     pub fn new(rules: &[AppliedRule], if_dispersive: Option<IfDispersive>, d15f_mm: Option<f64>) -> Self {
         let [no_erosion, continuing] = [TESTS_NO_EROSION, TESTS_CONTINUING].map(|id| met_of(rules, id));
         let is_unclear = |rule: &AppliedRule| rule.notes.contains(&RuleNote::BeyondUnclearBoundary);
         let facts = Self {
             rules: rules.to_vec(),
-            // With D15F in a finest tail, the limits are still in mm.
+            // Without a known D15F the limits are still in mm.
             d15f: d15f_mm.unwrap_or(1.0),
             standing: Standing::NoRules,
             headline: None,
@@ -110,28 +109,28 @@ impl Decision {
         Self { headline: facts.answer(), ..facts }
     }
 
-    /// The rule of this name if it was made for these soils.
+    /// Returns the rule with this id if it was made for these soils.
     pub fn applied(&self, id: &str) -> Option<&AppliedRule> {
         self.rules.iter().find(|rule| rule.id == id && rule.applies)
     }
 
-    /// Rules in the form of a sheet's list.
+    /// Rules as a sheet lists them.
     pub fn listed(&self) -> Vec<Cow<'_, AppliedRule>> {
         listed(&self.rules)
     }
 
-    /// The limit of design of a dispersive base, if the boundary of no erosion is the same number.
+    /// Limit of design of a dispersive base, if the boundary of no erosion is the same number.
     pub fn without_margin(&self) -> Option<&AppliedRule> {
         without_margin(&self.rules)
     }
 
-    /// The strictest rule of retention with its limit of D15F, in the unit of the rules.
+    /// Strictest rule of retention with its limit of D15F, in the unit of the rules.
     pub fn strictest(&self) -> Option<(&AppliedRule, f64)> {
         retention(&self.rules, self.d15f)
     }
 
-    /// Rules of a role that were made for these soils and are not kept; among rules of retention, only those
-    /// that practice goes by.
+    /// Rules of a role that apply to these soils and are not kept. Among rules of retention, only those
+    /// that practice uses count.
     pub fn broken(&self, role: RuleRole) -> impl Iterator<Item = &AppliedRule> {
         let others = self.rules.iter().filter(|rule| rule.role != RuleRole::Retention);
         let broken = retaining(&self.rules).chain(others).filter(|rule| rule.is_broken());
@@ -145,7 +144,7 @@ impl Decision {
 
     fn stand(&self) -> Standing {
         let Some(design) = self.applied(DESIGN) else { return Standing::NoRules };
-        // Beyond the limit of design alone; Terzaghi's ratio is the limit of design for a sand.
+        // A filter within the tests' boundary may break design alone; for a sand, design is Terzaghi's ratio.
         let is_within_tests = met_of(&self.rules, TESTS_NO_EROSION) == Some(true);
         let is_excused = |rule: &AppliedRule| is_within_tests && [DESIGN, "terzaghi"].contains(&&*rule.id);
         let fails = self.broken(RuleRole::Retention).any(|rule| !is_excused(rule));
@@ -177,8 +176,8 @@ impl Decision {
         })
     }
 
-    /// The boundary of tests that adds to the limit of design: the one of continuing erosion if the filter is
-    /// beyond it, or the one of no erosion if it is stricter than design or design is not kept.
+    /// Boundary of tests that adds to the limit of design: continuing erosion if the filter is beyond it,
+    /// or no erosion if that is stricter than design or design is not kept.
     pub fn boundary(&self) -> Option<&AppliedRule> {
         let (design, no_erosion) = (self.applied(DESIGN), self.applied(TESTS_NO_EROSION));
         let limits = no_erosion.and_then(|rule| rule.limit).zip(design.and_then(|rule| rule.limit));
@@ -189,7 +188,7 @@ impl Decision {
         }
     }
 
-    /// The decision for programs; `None` if no rule of design was applied.
+    /// Decision as a record; `None` if no rule of design was applied.
     pub fn record(&self, range_of_tests_mm: Option<[f64; 2]>) -> Option<Practice> {
         let design = self.applied(DESIGN)?;
         Some(Practice {
@@ -202,8 +201,8 @@ impl Decision {
         })
     }
 
-    /// Notes on rules of stability, drainage and placing that are not kept, and on a limit without a margin.
-    /// The line of practice covers rules of retention.
+    /// Notes on rules of stability, drainage and placing that are not kept, and on a limit without a
+    /// margin. The line of practice covers rules of retention.
     pub fn notes(&self) -> impl Iterator<Item = Note> {
         let limit = |of_size: bool| {
             let is_wanted = |rule: &&AppliedRule| (rule.quantity == RuleQuantity::D15F) == of_size;
@@ -225,7 +224,7 @@ impl Decision {
         .flatten()
     }
 
-    /// A limit of design (mm) that is not broken and has no margin.
+    /// Limit of design (mm), if it is not broken and has no margin.
     fn limit_without_margin(&self) -> Option<f64> {
         let design = self.applied(DESIGN)?;
         design.limit.filter(|_| design.met != Some(false) && has_no_margin(&self.rules))
@@ -240,39 +239,39 @@ fn open_sieves(rules: &[AppliedRule]) -> Option<RuleNote> {
     open.flat_map(|rule| &rule.needs).copied().find(|need| need.sieves_between().is_some())
 }
 
-/// What filter practice says of a pair, for programs.
+/// Answer of filter practice for a pair, for programs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct Practice {
-    /// All of it, as the headline has it.
+    /// Class of the headline.
     pub class: PracticeClass,
-    /// D15F (mm), twice; of one that lies between two sieves that stand far apart their openings. `None`
-    /// where it lies in the filter's finest part.
+    /// D15F (mm), twice; the openings of the two sieves around it if they are widely spaced. `None` if it
+    /// is finer than the filter's finest sieve.
     pub d15f_mm: Option<[f64; 2]>,
-    /// The limit of design (mm): the most that D15F may be; `None` where that is not known.
+    /// Limit of design (mm): the maximum D15F; `None` if it is not known.
     pub limit_mm: Option<f64>,
-    /// Whether the true limit is not known, and is at most `limit_mm`.
+    /// True if the limit is not known exactly and is at most `limit_mm`.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub limit_at_most: bool,
     /// Class of such pairs in tests, by the boundaries of Foster and Fell.
     pub tests: TestedClass,
-    /// D15F (mm) between which tests of bases with such fines began to erode (Fell et al., Table 9.2); `None`
-    /// of a dispersive base, which had other tests, and where fines or D85B are not known.
+    /// Range of D15F (mm) in which erosion began in tests of bases with such fines (Fell et al., Table
+    /// 9.2); `None` for a dispersive base, which had other tests, and if fines or D85B are not known.
     pub range_of_tests_mm: Option<[f64; 2]>,
 }
 
-/// Whether a filter meets the rules checked.
+/// Result of a filter under the rules checked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub enum PracticeClass {
-    /// The limit of design is kept, and the filter holds its own finer part. Whether it drains, and holds a
-    /// base that may be dispersive, is said beside it.
+    /// The limit of design is kept, and the filter holds its own finer part. Drainage and retention of a
+    /// base that may be dispersive are reported separately.
     #[serde(rename = "meets")]
     Meets,
     /// A limit is not kept.
     #[serde(rename = "does not meet")]
     DoesNotMeet,
-    /// A limit or a size that is needed is not known, or the filter may lose its finer part.
+    /// A required limit or size is not known, or the filter may lose its finer part.
     #[serde(rename = "not known")]
     NotKnown,
 }
@@ -280,7 +279,7 @@ pub enum PracticeClass {
 /// Declares the headlines, each with its words and its class.
 macro_rules! headlines {
     ($($(#[$doc:meta])* $name:ident $words:literal $class:ident;)*) => {
-        /// The answer of filter practice, with which every face begins.
+        /// Answer of filter practice, the first line of every face.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
         #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
         pub enum Headline {
@@ -308,9 +307,9 @@ macro_rules! headlines {
 headlines! {
     /// The limit of design is kept, and no other rule of retention, stability, drainage or placing is broken.
     Meets "meets the rules checked" Meets;
-    /// The same, unless the base is dispersive, of which nobody has said whether it is.
+    /// As `Meets`, unless the base is dispersive, which is not stated.
     MeetsUnlessDispersive "meets the rules checked unless the base is dispersive" Meets;
-    /// The limit of design is kept; whether the filter drains the base is not known.
+    /// The limit of design is kept; it is not known if the filter drains the base.
     DrainageNotKnown "meets the limit of retention, drainage not known" Meets;
     /// The limit of design is kept by a filter that breaks a rule of drainage.
     MayNotDrain "meets the limit of retention, but may not drain" Meets;
@@ -325,32 +324,32 @@ headlines! {
         "does not meet practice: it may lose its finer part, and is too coarse without it" DoesNotMeet;
     /// Not internally stable.
     MayLoseFiner "not known: the filter may lose its finer part" NotKnown;
-    /// A result depends on sizes between two sieves that lie far apart.
+    /// A result depends on sizes between two widely spaced sieves.
     SievesMissing "not known: sieves are missing" NotKnown;
     /// A limit that decides is not known.
     TestMissing "not known: a test is missing" NotKnown;
 }
 
-/// What filter tests showed, by the boundaries of Foster and Fell.
+/// Class of a pair in filter tests, by the boundaries of Foster and Fell.
 ///
-/// Their boundary of excessive erosion stands in figures whose numbers no text gives, so what lies between
-/// the boundaries of no and of continuing erosion is "some erosion" here, though it may be excessive.
+/// Their boundary of excessive erosion appears only in figures without numbers. Erosion between the
+/// boundaries of no and continuing erosion is therefore called "some erosion", though it may be excessive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub enum TestedClass {
     /// Within the boundary of no erosion.
     #[serde(rename = "no erosion")]
     None,
-    /// Beyond that of no erosion, within that of continuing erosion.
+    /// Beyond the boundary of no erosion, within the boundary of continuing erosion.
     #[serde(rename = "some erosion")]
     Some,
-    /// Beyond that of excessive erosion: never said until its numbers can be read.
+    /// Beyond the boundary of excessive erosion; never reported until its numbers can be read.
     #[serde(rename = "excessive erosion")]
     Excessive,
     /// Beyond the boundary of continuing erosion.
     #[serde(rename = "continuing erosion")]
     Continuing,
-    /// A boundary that is needed is not known for these soils.
+    /// A required boundary is not known for these soils.
     #[default]
     #[serde(rename = "unknown")]
     Unknown,
@@ -363,7 +362,7 @@ mod tests {
     use crate::{BatchRow, PairOptions, PairRules};
     use voidwalk_sheets::SoilSample;
 
-    /// Sherard and Dunnigan allow 0.2 and 1.28 mm, Foster and Fell 0.166 and 0.7 mm.
+    /// Limits of Sherard and Dunnigan: 0.2 and 1.28 mm; of Foster and Fell: 0.166 and 0.7 mm.
     #[test]
     fn practice_goes_by_design_where_tests_are_stricter() {
         for (base, d15f, [design, tests]) in [(&CLAY, 0.178, [0.2, 0.166]), (&SILTY, 0.85, [1.28, 0.7])] {
@@ -385,9 +384,9 @@ mod tests {
         }
     }
 
-    /// Excessive erosion damages a dam: unjudged erosion is never reported as less. 7 D85B and 9 D95B of this
-    /// sand are 3.56 and 5.11 mm; with 38 % fines and a D95B of 2.6 mm tests identified no boundary of
-    /// continuing erosion.
+    /// Excessive erosion damages a dam: erosion that is not judged is never reported as less. For this
+    /// sand 7 D85B and 9 D95B are 3.56 and 5.11 mm; with 38 % fines and a D95B of 2.6 mm tests identified
+    /// no boundary of continuing erosion.
     #[test]
     fn beyond_no_erosion_worse_erosion_is_never_left_out() {
         for (base, d15f, class, excluded) in [

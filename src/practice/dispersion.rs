@@ -1,7 +1,7 @@
-//! Answer for a base if nobody has said whether it is dispersive.
+//! Answer for a base if dispersion is not stated.
 //!
-//! A sieve table does not show dispersion. Tests of dispersive soils had other boundaries, and practice has
-//! other limits for them.
+//! A sieve table does not show dispersion. Dispersive soils have other boundaries in tests and other
+//! limits in practice.
 
 use crate::retention::{lost_beyond, open_retention, retention, washout};
 use crate::rules::{NamedCurve, RuleInputs, apply};
@@ -9,38 +9,38 @@ use crate::{AppliedRule, Note};
 use serde::{Deserialize, Serialize};
 use voidwalk_core::gradation::{FEW_FINES, Gradation};
 
-/// What practice allows if a base is dispersive, of which nobody has said whether it is.
+/// Limit of practice if a base is dispersive, for a base without a statement about dispersion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct IfDispersive {
-    /// The most that D15F (mm) may be then.
+    /// Maximum D15F (mm) for a dispersive base.
     pub d15f_max_mm: f64,
-    /// Whether the true limit is not known, and is at most that.
+    /// True if the limit is not known exactly and is at most `d15f_max_mm`.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub at_most: bool,
-    /// Why it is not known; `None` where it is.
+    /// Reason why the limit is not known; `None` if it is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lacks: Option<DispersiveLack>,
 }
 
-/// Why the limit of a dispersive base is not known.
+/// Reason why the limit of a dispersive base is not known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub enum DispersiveLack {
-    /// No source that was read gives a limit of design for such fines: at most that of no erosion.
+    /// No available source gives a limit of design for such fines; that of no erosion is an upper bound.
     #[serde(rename = "limit of design")]
     LimitOfDesign,
-    /// No source that was read gives any limit for such fines: the most is the limit of bases that are not
-    /// dispersive.
+    /// No source that was read gives any limit for such fines; the limit of other bases is an upper
+    /// bound.
     #[serde(rename = "any limit")]
     AnyLimit,
-    /// No sieve tells the base's D85.
+    /// The sieves do not give the base's D85.
     #[serde(rename = "D85B")]
     D85B,
 }
 
 impl IfDispersive {
-    /// Limit for a pair whose base is taken as dispersive; `None` if it has few fines, or they are not known.
+    /// Limit for a pair whose base is taken as dispersive; `None` if its fines are few or not known.
     pub fn of(if_dispersive: &RuleInputs) -> Option<Self> {
         if if_dispersive.base_soil.fines_percent? < FEW_FINES {
             return None;
@@ -57,7 +57,7 @@ impl IfDispersive {
         Some(Self { d15f_max_mm, at_most: lacks.is_some(), lacks })
     }
 
-    /// The strictest among the curves of a base with one filter.
+    /// Strictest limit among the curves of a base with one filter.
     pub(crate) fn of_bases(bases: &[NamedCurve], filter: &Gradation) -> Option<Self> {
         let limit = |(_, base): &NamedCurve| {
             Self::of(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(base, filter) })
@@ -65,7 +65,7 @@ impl IfDispersive {
         Self::strictest(&bases.iter().filter_map(limit).collect::<Vec<_>>())
     }
 
-    /// The strictest of several curves of one base; `None` without one.
+    /// Strictest of several limits of one base; `None` if there are none.
     pub fn strictest(all: &[Self]) -> Option<Self> {
         let least = all.iter().min_by(|a, b| a.d15f_max_mm.total_cmp(&b.d15f_max_mm))?;
         let at_most = all.iter().any(|limit| limit.at_most);
@@ -77,9 +77,9 @@ impl IfDispersive {
         Some(Self { at_most, lacks: least.lacks.or_else(of_another), ..*least })
     }
 
-    /// D15F of a filter that would break the limit of a dispersive base, as placed or without the finer part
-    /// that it may lose, if it keeps `rules` as they are: a filter that fails anyway gains no further
-    /// failure.
+    /// D15F of a filter that would break the limit of a dispersive base, as placed or without the finer
+    /// part that it may lose, if it keeps `rules` otherwise. A filter that fails anyway is not reported
+    /// again.
     pub(super) fn broken_by(&self, rules: &[AppliedRule], d15f_mm: Option<f64>) -> Option<BeyondDispersive> {
         let is_kept = |d15f: f64| retention(rules, d15f).is_none_or(|(_, limit)| d15f <= limit);
         if !d15f_mm.is_none_or(is_kept) {
@@ -93,7 +93,7 @@ impl IfDispersive {
         Some(BeyondDispersive { limit: *self, d15f_mm: left.d15f, without_percent })
     }
 
-    /// True if a filter of this D15F (mm) is known to be too coarse for a dispersive base.
+    /// True if a filter with this D15F (mm) is known to be too coarse for a dispersive base.
     pub fn is_broken_by(&self, d15f_mm: f64) -> bool {
         d15f_mm > self.d15f_max_mm * (1.0 + 1e-9)
     }
@@ -106,11 +106,11 @@ pub struct BeyondDispersive {
     pub limit: IfDispersive,
     /// D15F of the filter (mm).
     pub d15f_mm: f64,
-    /// Part (% of its mass) whose loss leaves this D15F; `None` for the filter as placed.
+    /// Finer part (percent by mass) whose loss leaves this D15F; `None` for the filter as placed.
     pub without_percent: Option<f64>,
 }
 
-/// Note on a base if nobody has said whether it is dispersive.
+/// Note on a base if dispersion is not stated.
 pub fn note(if_dispersive: IfDispersive) -> Note {
     let most_d15f_mm = if_dispersive.d15f_max_mm;
     if if_dispersive.at_most {
@@ -130,14 +130,14 @@ mod tests {
         [(0.01, 0.0), (0.075, fines), (0.3, 92.0), (0.6, 100.0)]
     }
 
-    /// True if a filter of this D15 breaks the limit of a dispersive base alone, and this limit.
+    /// Returns true if a filter with this D15 breaks only the limit of a dispersive base, and this limit.
     fn broken(base: &[(f64, f64)], d15f: f64) -> Option<(bool, IfDispersive)> {
         let pair = PairRules::of(&curve(base), &filter(d15f)[0].1);
         let limit = pair.if_dispersive?;
         Some((limit.broken_by(&pair.rules, Some(d15f)).is_some(), limit))
     }
 
-    /// Practice has 0.7 mm for such soils, 0.5 mm if they are dispersive.
+    /// The limit for such soils is 0.7 mm, or 0.5 mm if they are dispersive.
     #[test]
     fn a_filter_that_a_dispersive_base_would_have_finer_is_told_from_one_that_holds_it() {
         for fines in [36.0, 45.0, 80.0] {
@@ -146,17 +146,17 @@ mod tests {
                 let (breaks, limit) = broken(&base, d15f).unwrap();
                 assert_eq!((breaks, limit.is_broken_by(d15f)), (is_beyond, is_beyond));
                 assert!((limit.d15f_max_mm - 0.5).abs() < 1e-9, "{limit:?}");
-                // Below 40 % fines no source was read that gives a limit of design for such a soil; it may be
-                // less.
+                // Below 40 % fines, no source that was read gives a limit of design for such a soil; it
+                // may be lower.
                 assert_eq!(limit.at_most, fines < 40.0);
             }
-            // A filter that fails anyway gains no further failure.
+            // A filter that fails anyway is not reported again.
             assert!(!broken(&base, 0.9).unwrap().0);
         }
     }
 
-    /// A clay whose table ends at No. 200 lacks only its D85: practice has a limit for such fines. This holds
-    /// for filters finer and coarser than the greatest possible limit, 6.4 times 0.075 mm.
+    /// A clay whose table ends at No. 200 lacks only its D85: practice has a limit for such fines. This
+    /// holds for filters finer and coarser than the maximum possible limit, 6.4 times 0.075 mm.
     #[test]
     fn a_clay_that_no_hydrometer_tested_lacks_its_d85_and_no_source() {
         let clay = [(0.075, 97.0), (0.15, 99.0), (0.3, 100.0)];
@@ -165,7 +165,7 @@ mod tests {
             assert_eq!(limit.lacks, Some(DispersiveLack::D85B));
         }
         assert!(!broken(&clay, 0.4).unwrap().0);
-        // With a curve that lacks a limit of design and a finer one that lacks nothing.
+        // One curve lacks a limit of design, and a finer one lacks nothing.
         let limit_of =
             |d15f_max_mm, lacks: Option<_>| IfDispersive { d15f_max_mm, at_most: lacks.is_some(), lacks };
         let open = limit_of(0.9, Some(DispersiveLack::LimitOfDesign));
@@ -177,8 +177,8 @@ mod tests {
         assert_eq!(IfDispersive::strictest(&[any, limit_of(1.0, open.lacks)]).unwrap(), any);
     }
 
-    /// A filter of 0.40 mm is within 0.500 mm as placed, and within 0.700 mm without the part that it may
-    /// lose; then it is beyond 0.500 mm.
+    /// A filter of 0.40 mm is within 0.500 mm as placed, and within 0.700 mm after losing its finer part,
+    /// but then beyond 0.500 mm.
     #[test]
     fn what_is_left_of_an_unstable_filter_is_judged_by_the_limit_of_a_dispersive_base_too() {
         let base = curve(&with_fines(45.0));
@@ -191,7 +191,7 @@ mod tests {
         let (limit, rules, d15f) = of_gap(0.2);
         assert!(!limit.is_broken_by(d15f.unwrap()));
         assert!(limit.broken_by(&rules, d15f).unwrap().without_percent.is_some());
-        // Beyond 0.700 mm it does not hold in any case.
+        // Beyond 0.700 mm the filter does not hold the base in any case.
         let (limit, rules, d15f) = of_gap(0.3);
         assert!(washout(&rules).is_some() && limit.broken_by(&rules, d15f).is_none());
         let (limit, rules, d15f) = of_gap(0.1);
@@ -202,7 +202,7 @@ mod tests {
     fn with_fewer_fines_no_limit_is_known_and_sands_need_no_statement() {
         let (breaks, limit) = broken(&with_fines(25.0), 0.6).unwrap();
         assert_eq!((breaks, limit.lacks), (false, Some(DispersiveLack::AnyLimit)));
-        // For other bases the limit is 0.902 mm, a size that a dispersive base cannot have.
+        // For other bases the limit is 0.902 mm, which a dispersive base cannot have.
         assert!((limit.d15f_max_mm - 0.902).abs() < 1e-3, "{limit:?}");
         assert!(broken(&with_fines(10.0), 0.6).is_none());
     }

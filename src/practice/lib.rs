@@ -17,11 +17,11 @@
 //! ```
 //!
 //! - [`rules`]: each rule with its limit, the soils that it was made for, and its source.
-//! - [`Decision`]: the decision of practice on a pair; [`PairRules`]: two soils; [`batch`]: many samples.
+//! - [`Decision`]: decision of practice on a pair; [`PairRules`]: two soils; [`batch`]: many samples.
 //! - [`design`]: the specification of a filter, step by step, with standard products.
-//! - [`retention`]: limits of D15F, also of the remainder of an unstable filter; [`dispersion`].
-//! - [`note`]: notes, as names and numbers; [`quantity`]: the way from a number to text; [`page`]: what every
-//!   page shows of its author and its soils.
+//! - [`retention`]: limits of D15F, also for the remainder of an unstable filter; [`dispersion`].
+//! - [`note`]: notes, as names and numbers; [`quantity`]: numbers as text; [`page`]: author and soils as
+//!   shown on every page.
 
 mod applied;
 pub mod batch;

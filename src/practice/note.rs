@@ -1,20 +1,20 @@
-//! Notes on an answer: the table of all notes, each with its numbers and its sentence.
+//! Notes on an answer: a table of all notes with their numbers and sentences.
 //!
-//! A row makes a variant of [`Note`]. A name that ends in `_mm`, `_percent` or `_pp` (percentage points) has
-//! that unit. A name that begins with `least_` or `most_` is a limit of that side, with `over_` a lower
-//! bound, and a whole number is a count. No sentence depends on another note. Faces fill in the sentences;
-//! nothing else reads them.
+//! A row makes a variant of [`Note`]. A name ending in `_mm`, `_percent` or `_pp` (percentage points) has
+//! that unit. A name beginning with `least_` or `most_` is a minimum or maximum, one with `over_` a lower
+//! bound, and a whole number is a count. No sentence depends on another note. Only faces fill in the
+//! sentences and read them.
 
 use serde::{Deserialize, Serialize};
 
 /// Row of a note in the table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
-    /// Subject in a word or two.
+    /// Subject in one or two words.
     pub label: &'static str,
     /// Page of `src/docs` that explains the note.
     pub page: &'static str,
-    /// Sentence, with the names of its numbers in braces.
+    /// Sentence with the names of its numbers in braces.
     pub sentence: &'static str,
     /// Setting that changes the note; empty without one.
     pub setting: &'static str,
@@ -59,7 +59,7 @@ macro_rules! notes {
                 }
             }
 
-            /// True if the note says that a table may be another than meant.
+            /// True if the note says that a table may not be the intended one.
             pub fn is_of_a_mistake(&self) -> bool {
                 matches!(
                     self,
@@ -102,7 +102,7 @@ macro_rules! notes {
 }
 
 notes! {
-    // Open questions of replicates.
+    // Uncertainty left by the replicates.
     ReplicatesLeaveOpen {} "replicates" "uncertainty.md"
         "The replicates do not separate the classes."
         "--decide-percent 99 adds replicates until the class is that certain.";
@@ -137,7 +137,7 @@ notes! {
         "The base is internally unstable by Kenney and Lau (H/F {index} at {finer_percent} finer): decide \
          whether the filter is to hold its finer part.";
 
-    // The search of a boundary.
+    // Search for a boundary.
     LayerThicker { ratio: f64, layer_mm: f64, thickness: String } "thickness" "boundary.md"
         "At D15F/D85B {ratio} one layer of voids is {layer_mm} thick; a filter of {thickness} holds less.";
     Unsteady { networks_held: u64, networks_eroding: u64 } "scatter" "boundary.md"

@@ -1,21 +1,21 @@
-//! Parts of every page: the cover of a sheet that is handed in, files that were read, and sizes of a soil.
+//! Parts of every page: the cover of the sheet, the files that were read, and the sizes of a soil.
 
 use crate::quantity::{SizeUnit, length, significant};
 use serde::{Deserialize, Serialize};
 use voidwalk_core::gradation::{FINES_MM, Gradation};
 
-/// The page of a run, as its author states it.
+/// Page of a run as its author states it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AboutPage {
     /// Cover of the sheet, without a date unless one is stated.
     pub cover: SheetCover,
     /// True to draw gradations with coarse sizes on the left.
     pub coarse_left: bool,
-    /// The unit of sizes in words and on the first sheet.
+    /// Unit of sizes in words and on the first sheet.
     pub unit: SizeUnit,
 }
 
-/// The cover of a sheet, as its author states it.
+/// Cover of a sheet as its author states it.
 ///
 /// ```
 /// use voidwalk_practice::SheetCover;
@@ -28,28 +28,28 @@ pub struct AboutPage {
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 #[serde(default)]
 pub struct SheetCover {
-    /// The project.
+    /// Name of the project.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub project: Option<String>,
-    /// The number of the project.
+    /// Number of the project.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub number: Option<String>,
-    /// What the sheet is for.
+    /// Purpose of the sheet.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub purpose: Option<String>,
-    /// The client.
+    /// Name of the client.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub client: Option<String>,
-    /// The author.
+    /// Name of the author.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub author: Option<String>,
-    /// Who checked it.
+    /// Name of the checker.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub checker: Option<String>,
-    /// The revision of the sheet.
+    /// Revision of the sheet.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub revision: Option<String>,
-    /// The date on the sheet: the one that is stated, else the day of its results.
+    /// Date on the sheet: the date stated, or else the day of its results.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub date: Option<String>,
 }
@@ -66,25 +66,25 @@ impl SheetCover {
     }
 }
 
-/// A file that was read.
+/// File that was read.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct InputFile {
-    /// Its name as given.
+    /// Name of the file as given.
     pub name: String,
-    /// XXH3 of its bytes, hexadecimal. Finds accidents, not attackers.
+    /// XXH3 of its bytes, in hexadecimal. Detects accidents, not attackers.
     pub xxh3: String,
 }
 
 impl InputFile {
-    /// A file with these bytes.
+    /// Describes a file with these bytes.
     pub fn of(name: impl Into<String>, bytes: &[u8]) -> Self {
         Self { name: name.into(), xxh3: format!("{:016x}", xxhash_rust::xxh3::xxh3_64(bytes)) }
     }
 }
 
-/// Sizes of a soil that engineers look for, by name: `None` if the sieves do not give one. Without a unit,
-/// fines and group are left out.
+/// Usual sizes of a soil by name; `None` if the sieves do not give one. Without a unit, fines and group
+/// are omitted.
 pub fn sizes_of(rows: &[[f64; 2]], unit: SizeUnit) -> Vec<(&'static str, Option<String>)> {
     const SIZES: [(&str, f64); 9] = [
         ("D5", 5.0),

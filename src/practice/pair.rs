@@ -6,7 +6,7 @@ use crate::{AppliedRule, Decision, Headline, IfDispersive, Note, Practice};
 use serde::Serialize;
 use voidwalk_core::gradation::{Gradation, RegradeReason};
 
-/// What is said of two sieve curves by the rules of practice alone.
+/// Result of the rules of practice for two sieve curves, without a walk.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct PairRules {
@@ -16,14 +16,14 @@ pub struct PairRules {
     pub base: BaseSizes,
     /// Every rule.
     pub rules: Vec<AppliedRule>,
-    /// The answer of practice; `None` where the limit of design was not applied.
+    /// Answer of practice; `None` if the limit of design was not applied.
     pub headline: Option<Headline>,
-    /// What practice says of the pair; `None` likewise.
+    /// Decision of practice as a record; `None` if the limit of design was not applied.
     pub practice: Option<Practice>,
-    /// The limit of D15F if the base is dispersive, where it was not said to be and has fines enough.
+    /// Limit of D15F if the base is dispersive, for a base with enough fines that was not stated to be.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub if_dispersive: Option<IfDispersive>,
-    /// What may be wrong with the two tables, and what was taken for what.
+    /// Warnings about the two tables, and assumptions made about them.
     pub notes: Vec<Note>,
 }
 
@@ -34,25 +34,25 @@ pub struct PairOptions {
     pub dispersive: bool,
     /// Width of an open joint at the exit (mm).
     pub joint_mm: Option<f64>,
-    /// True to take base and filter as given, though they look exchanged.
+    /// True to accept base and filter as given, though they look exchanged.
     pub as_given: bool,
 }
 
-/// Sizes of a filter (mm), of the curve that keeps the limit of design worst where it is an envelope; `None`
-/// where they lie in a finest tail of unknown size.
+/// Sizes of a filter (mm); of an envelope, the curve that keeps the limit of design worst. `None` if a
+/// size is finer than the finest sieve.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct FilterSizes {
-    /// Its curves, where there are several.
+    /// Names of its curves, if there are several.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub curves: Vec<String>,
-    /// The curve that these sizes are of.
+    /// Curve with these sizes.
     pub curve: String,
-    /// 15 % finer.
+    /// D15.
     pub d15_mm: Option<f64>,
-    /// 50 % finer.
+    /// D50.
     pub d50_mm: Option<f64>,
-    /// 85 % finer.
+    /// D85.
     pub d85_mm: Option<f64>,
     /// D60 / D10.
     pub cu: Option<f64>,
@@ -60,35 +60,35 @@ pub struct FilterSizes {
     pub cc: Option<f64>,
 }
 
-/// A base as practice describes it (mm), of the curve that keeps the limit of design worst where it is an
-/// envelope; `None` where a size lies in a finest tail of unknown size.
+/// A base as practice describes it (mm); of an envelope, the curve that keeps the limit of design worst.
+/// `None` if a size is finer than the finest sieve.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct BaseSizes {
-    /// Its curves, where there are several.
+    /// Names of its curves, if there are several.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub curves: Vec<String>,
-    /// The curve that these sizes are of.
+    /// Curve with these sizes.
     pub curve: String,
-    /// Whether it was said to be dispersive.
+    /// True if the base was stated to be dispersive.
     pub dispersive: bool,
-    /// Category of NRCS, 1 to 4; `None` where the fines are not known closely enough.
+    /// NRCS category, 1 to 4; `None` if the fines are not known closely enough.
     pub category: Option<u8>,
     /// Percent finer than 0.075 mm after regrading.
     pub fines_percent: Option<f64>,
-    /// Whether it was regraded.
+    /// True if the base was regraded.
     pub regraded: bool,
-    /// The size on which it was regraded.
+    /// Size on which the base was regraded.
     pub regraded_at_mm: Option<f64>,
-    /// Why it was regraded, or not.
+    /// Reason for regrading or not.
     pub why: RegradeReason,
-    /// 15 % finer, before regrading.
+    /// D15 before regrading.
     pub d15_mm: Option<f64>,
-    /// 85 % finer, after regrading.
+    /// D85 after regrading.
     pub d85_mm: Option<f64>,
-    /// 85 % finer, before regrading.
+    /// D85 before regrading.
     pub d85_as_sampled_mm: Option<f64>,
-    /// 95 % finer, after regrading.
+    /// D95 after regrading.
     pub d95_mm: Option<f64>,
     /// D60 / D10, before regrading.
     pub cu: Option<f64>,
@@ -97,7 +97,7 @@ pub struct BaseSizes {
 }
 
 impl PairRules {
-    /// Every rule on a base and a filter of one curve each, both in mm.
+    /// Applies every rule to a base and a filter of one curve each, both in mm.
     ///
     /// ```
     /// use voidwalk_core::Gradation;
@@ -115,10 +115,10 @@ impl PairRules {
         Self::of_envelopes(&one("base", base), &one("filter", filter), PairOptions::default())
     }
 
-    /// Applies every rule to two envelopes, after a check of their sizes for an exchange.
+    /// Applies every rule to two envelopes after checking that they are not exchanged.
     ///
     /// # Errors
-    /// The two can hardly be a base and its filter, and `options` do not say that they are as given.
+    /// The two can hardly be a base and its filter, and `options` does not say they are as given.
     ///
     /// # Panics
     /// Either envelope has no curve.
@@ -133,7 +133,7 @@ impl PairRules {
         }
     }
 
-    /// Every rule on the curves of a base and of a filter, all in mm, each for the curves that keep it worst.
+    /// Applies every rule to the curves of a base and of a filter, all in mm; the worst curves count.
     ///
     /// # Panics
     /// Either envelope has no curve.
@@ -141,7 +141,7 @@ impl PairRules {
         Self::with_mistake(bases, filters, options, Mistake::of_envelopes(bases, filters).as_ref())
     }
 
-    /// Applies every rule, given the mistake found in the two soils.
+    /// Applies every rule, given a mistake found in the two soils.
     pub(super) fn with_mistake(
         bases: &[NamedCurve],
         filters: &[NamedCurve],
@@ -212,12 +212,12 @@ impl PairRules {
     }
 }
 
-/// Two tables that can hardly be a base and its filter.
+/// Two tables that are unlikely to be a base and its filter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mistake {
-    /// The error, if the two are refused.
+    /// Error text if the two are refused.
     pub sentence: String,
-    /// The note, if they are not refused.
+    /// Note if they are not refused.
     pub note: Note,
     /// Kind of mistake.
     pub kind: MistakeKind,
@@ -226,7 +226,7 @@ pub struct Mistake {
 /// Kind of mistake in two tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MistakeKind {
-    /// Sizes so far apart that a unit must be wrong, or the files are exchanged.
+    /// Sizes so far apart that a unit is wrong or the files are exchanged.
     Unit,
     /// The D15 of the base is far above the D15 of the filter.
     Exchanged,
@@ -236,7 +236,7 @@ pub enum MistakeKind {
     Boulders,
 }
 
-/// Bounds of the size that a percentage is finer than: two if it lies in a finest tail.
+/// Bounds of a size; they differ if the size is finer than the finest sieve.
 struct Bounds {
     least: f64,
     most: f64,
@@ -256,12 +256,12 @@ impl Bounds {
 }
 
 impl Mistake {
-    /// Looks for exchanged tables, and for micrometres where mm are meant.
+    /// Looks for exchanged tables and for micrometres instead of mm.
     ///
-    /// The D15 of both are compared as sampled, as for permeability: a broad till has a D50 above many
-    /// filters that hold it, and a D15 far below. The bounds of an open finest tail are compared. Two soils
-    /// that are close are told apart by the D50 of the regraded base, with a warning only. Sizes that are
-    /// multiples of D0F (`scale_free`) have no unit that could be wrong.
+    /// D15 of both soils is compared as sampled, as for permeability: a broad till has a D50 above that
+    /// of many filters that hold it, but a far smaller D15. Bounds are compared if D15 is finer than the
+    /// finest sieve. For similar soils the D50 of the regraded base is compared, with a warning only.
+    /// Sizes that are multiples of D0F (`scale_free`) have no unit that could be wrong.
     ///
     /// ```
     /// use voidwalk_core::Gradation;
@@ -273,10 +273,10 @@ impl Mistake {
     /// # Ok::<(), voidwalk_core::gradation::GradationError>(())
     /// ```
     pub fn find(base: &Gradation, filter: &Gradation, scale_free: bool) -> Option<Self> {
-        /// No soil is so much coarser than its filter (D50).
+        /// No base is coarser than its filter by this factor (D50).
         const HOPELESS: f64 = 50.0;
-        /// A filter whose D15 is this much finer than its base's drains less than the base does, and practice
-        /// asks for the contrary, four or five times: the other order of such a pair is the right one.
+        /// A filter whose D15 is finer than the base's by this factor drains less than the base, while
+        /// practice asks for four or five times more: the reversed order is the right one.
         const FINER: f64 = 2.0;
         /// No filter is coarser than this (D50, mm).
         const BOULDERS_MM: f64 = 300.0;
@@ -295,7 +295,7 @@ impl Mistake {
         }
         let BaseSoil { gradation, regraded_at_mm, .. } = BaseSoil::of(base, scale_free);
         let regraded = Bounds::of(&gradation, 50.0);
-        // In a base regraded at a gap, the part that practice looks at may be far finer than its D15.
+        // The part of a gap-graded base that practice uses may be far finer than its D15.
         let looked_at = Bounds::of(&gradation, 85.0);
         let is_fine = regraded_at_mm.is_some() && looked_at.most < d15f.least;
         let is_far = d15b.least > FINER * d15f.most && !is_fine;
@@ -324,7 +324,7 @@ impl Mistake {
         })
     }
 
-    /// Looks for mistakes in two envelopes, by every base and the coarsest filter, so that a single sensible
+    /// Looks for mistakes in two envelopes, with every base and the coarsest filter. A single sensible
     /// pair of curves prevents a refusal.
     pub fn of_envelopes(bases: &[NamedCurve], filters: &[NamedCurve]) -> Option<Self> {
         let d15 = |curve: &NamedCurve| curve.1.d(15.0).unwrap_or(0.0);
@@ -337,7 +337,7 @@ impl Mistake {
         all.into_iter().nth(refused)
     }
 
-    /// True if the two tables are refused, unless the user says that they are as given.
+    /// True if the two tables are refused unless the user says they are as given.
     pub fn is_refused(&self) -> bool {
         matches!(self.kind, MistakeKind::Unit | MistakeKind::Exchanged)
     }
@@ -363,7 +363,7 @@ mod tests {
     use crate::rules::DESIGN;
     use crate::test_soils::{TILL, curve};
 
-    /// The till with 35 % fines on a gravel with D15 6.3 mm, of the first trial.
+    /// The till of the first trial, with 35 % fines, on a gravel with a D15 of 6.3 mm.
     #[test]
     fn a_till_on_a_gravel_is_not_retained() {
         let pair = PairRules::of(&curve(&TILL), &Gradation::linear_from_dx(15.0, 6.3, 1.5).unwrap());
@@ -376,7 +376,7 @@ mod tests {
         assert!(pair.notes.is_empty());
     }
 
-    /// A sand is finer at 85 % than a clay with gravel, and allows a coarser filter.
+    /// A sand has a smaller D85 than a clay with gravel, and allows a coarser filter.
     #[test]
     fn the_curve_with_the_lower_limit_counts_though_its_d85_is_larger() {
         let soil = |name: &str, points: &[(f64, f64)]| (name.to_owned(), curve(points));
@@ -402,7 +402,7 @@ mod tests {
         assert_eq!(exchanged.kind, MistakeKind::Exchanged);
         assert!(exchanged.refusal().contains("are the two files exchanged?"));
         assert!(exchanged.refusal().ends_with("(--as-given)"));
-        // 318 um, read as mm.
+        // 318 um read as mm.
         let micrometres = mistake(200.0, 2.0).unwrap();
         assert!(micrometres.sentence.contains("micrometres under a header in mm"));
         assert_eq!(micrometres.kind, MistakeKind::Unit);
@@ -410,7 +410,7 @@ mod tests {
         assert!(boulders.sentence.contains("the filter's D50 is 800 mm") && !boulders.is_refused());
     }
 
-    /// A natural sand a little coarser than its filter sand gets a warning and is not refused.
+    /// A natural sand slightly coarser than its filter sand gets a warning and is not refused.
     #[test]
     fn two_soils_that_are_close_are_no_exchange() {
         let sand = |d15: f64| Gradation::linear_from_dx(15.0, d15, 2.0).unwrap();
@@ -419,8 +419,7 @@ mod tests {
         assert!(Mistake::find(&sand(0.37), &sand(0.18), false).unwrap().is_refused());
     }
 
-    /// A gravel with a gap, regraded on it: practice looks at the silt, which no filter can be exchanged
-    /// with.
+    /// A gravel regraded on a gap: practice uses its silt, which cannot be mistaken for a filter.
     #[test]
     fn a_base_that_is_regraded_at_a_gap_is_no_exchange() {
         let gravel =

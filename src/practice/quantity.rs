@@ -1,4 +1,4 @@
-//! The way from a number to text: a quantity has a value, a unit and a role, and every face shows it alike.
+//! Numbers as text: a quantity has a value, a unit and a role, and every face shows it alike.
 //!
 //! ```
 //! use voidwalk_practice::quantity::{NumberRole, SizeUnit, duration, length, percent, whole};
@@ -12,7 +12,7 @@
 
 use std::fmt;
 
-/// A narrow space without a line break: it groups thousands and precedes units. A terminal shows a plain one.
+/// Narrow no-break space: it groups thousands and precedes units. A terminal shows a plain space.
 pub const THIN: char = '\u{202f}';
 
 /// Length of an inch in millimetres.
@@ -25,7 +25,7 @@ pub enum SizeUnit {
     D0f,
     /// mm.
     Mm,
-    /// mm, and inches behind them.
+    /// mm, followed by inches.
     MmAndInches,
 }
 
@@ -39,7 +39,7 @@ impl SizeUnit {
         }
     }
 
-    /// Name of the unit behind a number.
+    /// Name of the unit after a number.
     pub fn short(self) -> &'static str {
         if self == Self::D0f { "D0F" } else { "mm" }
     }
@@ -65,14 +65,14 @@ pub enum Unit {
     Seconds,
 }
 
-/// Role of a number: a limit is rounded to its safe side.
+/// Role of a number: a limit is rounded to the safe side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NumberRole {
     /// A value.
     Value,
-    /// The least allowed value, rounded up.
+    /// Minimum allowed value, rounded up.
     Least,
-    /// The greatest allowed value, rounded down.
+    /// Maximum allowed value, rounded down.
     Greatest,
 }
 
@@ -83,16 +83,16 @@ impl NumberRole {
     }
 }
 
-/// Number of digits that are shown.
+/// Number of digits shown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Digits {
     /// Three significant digits; for a percentage one decimal, or two below 10 %.
     Usual,
-    /// At most this many significant digits, without zeros at the end.
+    /// At most this many significant digits, without trailing zeros.
     Few(u8),
     /// This many decimals.
     Decimals(u8),
-    /// The number as given.
+    /// Digits of the number as given.
     Given,
 }
 
@@ -108,12 +108,12 @@ pub struct Quantity {
     digits: Digits,
 }
 
-/// A number without a unit: three significant digits, without an exponent between 0.0001 and a million.
+/// Number without a unit: three significant digits, without an exponent between 0.0001 and a million.
 pub fn significant(value: f64) -> Quantity {
     Quantity { value, unit: Unit::None, role: NumberRole::Value, digits: Digits::Usual }
 }
 
-/// A number without a unit, in the digits given.
+/// Number without a unit, with its digits as given.
 pub fn given(value: f64) -> Quantity {
     Quantity { digits: Digits::Given, ..significant(value) }
 }
@@ -123,27 +123,27 @@ pub fn percent(fraction: f64) -> Quantity {
     Quantity { value: 100.0 * fraction, unit: Unit::Percent, ..significant(0.0) }
 }
 
-/// A whole number with its thousands apart.
+/// Whole number with its thousands grouped.
 pub fn whole(number: u64) -> Quantity {
     Quantity { value: number as f64, unit: Unit::Count, ..significant(0.0) }
 }
 
-/// A time in seconds.
+/// Time in seconds.
 pub fn duration(seconds: f64) -> Quantity {
     Quantity { unit: Unit::Seconds, ..significant(seconds) }
 }
 
-/// A size.
+/// Size in a unit.
 pub fn length(value: f64, unit: SizeUnit) -> Quantity {
     Quantity { unit: Unit::Size(unit), ..significant(value) }
 }
 
-/// A size that is the least allowed.
+/// Minimum allowed size.
 pub fn least_length(value: f64, unit: SizeUnit) -> Quantity {
     length(value, unit).role(NumberRole::Least)
 }
 
-/// A size that is the greatest allowed.
+/// Maximum allowed size.
 pub fn greatest_length(value: f64, unit: SizeUnit) -> Quantity {
     length(value, unit).role(NumberRole::Greatest)
 }
@@ -159,7 +159,7 @@ impl Quantity {
         Self { unit, ..self }
     }
 
-    /// Shows at most this many significant digits, without zeros at the end.
+    /// Shows at most this many significant digits, without trailing zeros.
     pub fn in_digits(self, digits: u8) -> Self {
         Self { digits: Digits::Few(digits), ..self }
     }
@@ -169,7 +169,7 @@ impl Quantity {
         Self { digits: Digits::Decimals(decimals), ..self }
     }
 
-    /// Range from this number to another of its unit.
+    /// Range from this number to another in the same unit.
     pub fn to(self, high: Self) -> Span {
         Span { low: self, high }
     }
@@ -192,13 +192,13 @@ impl Quantity {
         }
     }
 
-    /// Digits, with inches if the unit shows them, but without the name of the unit: for the cell of a table
-    /// whose head names the unit.
+    /// Digits, with inches if the unit shows them, but without the unit's name: for a table cell whose
+    /// head names the unit.
     pub fn in_cell(self) -> String {
         self.number() + &self.inches_text()
     }
 
-    /// A size for the cell of a table whose head names both units, with at most three digits.
+    /// Size for a table cell whose head names both units, with at most three digits.
     pub fn in_both_units(self) -> String {
         let few = self.in_digits(3);
         match self.unit {
@@ -209,7 +209,7 @@ impl Quantity {
         }
     }
 
-    /// The number as its text shows it: inches follow from the mm beside them wherever both appear.
+    /// Number as its text shows it: inches follow from the mm beside them wherever both appear.
     fn shown(self) -> f64 {
         self.number().parse().unwrap_or(self.value)
     }
@@ -227,7 +227,7 @@ impl Quantity {
         self.inches().map_or_else(String::new, |inches| bracket(&inches))
     }
 
-    /// Text behind the digits.
+    /// Text after the digits.
     fn unit_text(self) -> String {
         match self.unit {
             Unit::None | Unit::Count => String::new(),
@@ -244,7 +244,7 @@ impl fmt::Display for Quantity {
     }
 }
 
-/// A range between two numbers of the same unit: both numbers with the unit once, or a single number if they
+/// Range between two numbers of the same unit: both numbers with the unit once, or one number if they
 /// read alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
@@ -281,24 +281,24 @@ fn bracket(inches: &str) -> String {
     format!(" ({inches}{THIN}in)")
 }
 
-/// A least and a greatest size in mm, each rounded to its safe side.
+/// Minimum and maximum size in mm, each rounded to its safe side.
 pub fn limits(least: f64, greatest: f64, unit: SizeUnit) -> Span {
     least_length(least, unit).to(greatest_length(greatest, unit))
 }
 
-/// The range of sizes in mm in which tests located a boundary, with ends rounded outward.
+/// Range of sizes in mm in which tests located a boundary, with ends rounded outward.
 pub fn range_of_tests(low: f64, high: f64, unit: SizeUnit) -> Span {
     greatest_length(low, unit).to(least_length(high, unit))
 }
 
-/// A value and its limit, as far as they are known, with as many digits as tell the two apart: a value beyond
-/// a limit never reads as within it, nor the other way round. The limit is never shown more generous than it
-/// is. A ratio has no zeros at its end: 4.00 times D85B is four times.
+/// A value and its limit, if known, with enough digits to tell them apart: a value beyond a limit never
+/// reads as within it, nor the reverse. The limit is never shown more generous than it is. A ratio has no
+/// trailing zeros: 4.00 times D85B is shown as 4.
 pub fn beside_limit(numbers: [Option<f64>; 2], at_least: bool, unit: Unit) -> [Option<String>; 2] {
     both_beside(numbers, at_least, unit, Quantity::unit_text)
 }
 
-/// Like [`beside_limit`], for the cells of a table whose head names the unit.
+/// Does the same as [`beside_limit`] for table cells whose head names the unit.
 pub fn beside_limit_in_cells(numbers: [Option<f64>; 2], at_least: bool, unit: Unit) -> [Option<String>; 2] {
     both_beside(numbers, at_least, unit, |_| String::new())
 }
@@ -335,13 +335,13 @@ fn both_beside(
     [Some(of_value + &inches[0]), Some(of_limit + &inches[1])]
 }
 
-/// Digits of a value and a limit unless more are needed to tell them apart.
+/// Digits of a value and a limit, unless more are needed to tell them apart.
 const DIGITS: i32 = 3;
 
-/// Most digits tried to tell two numbers apart.
+/// Maximum number of digits tried to tell two numbers apart.
 const MOST_DIGITS: i32 = 9;
 
-/// A number without zeros at its end, unless it is a size.
+/// Removes trailing zeros from a number, unless it is a size.
 fn without_zeros(number: &str, unit: Unit) -> &str {
     match unit {
         Unit::None | Unit::Percent if number.contains('.') => {
@@ -351,15 +351,15 @@ fn without_zeros(number: &str, unit: Unit) -> &str {
     }
 }
 
-/// Rounds a limit to a whole number: a least upwards, a greatest downwards. A limit that is whole except for
-/// a rounding error of arithmetic keeps its value.
+/// Rounds a limit to a whole number: a minimum up, a maximum down. A limit that is whole except for a
+/// rounding error keeps its value.
 fn whole_within(limit: f64, at_least: bool) -> f64 {
     const HAIR: f64 = 1e-9;
     if at_least { (limit * (1.0 - HAIR)).ceil() } else { (limit * (1.0 + HAIR)).floor() }
 }
 
-/// A value and its limit with as many digits as tell them apart; two equal numbers get as many digits as give
-/// both one text.
+/// A value and its limit with enough digits to tell them apart; two equal numbers get enough digits to
+/// read the same.
 fn apart(value: f64, limit: f64, at_least: bool) -> [String; 2] {
     let pair = |digits| [digits_of(value, digits), digits_within(limit, digits, at_least)];
     let is_order =
@@ -374,7 +374,7 @@ fn apart(value: f64, limit: f64, at_least: bool) -> [String; 2] {
     apart.or_else(alike).unwrap_or_else(cut)
 }
 
-/// A number with this many significant digits, without an exponent.
+/// Number with this many significant digits, without an exponent.
 fn digits_of(value: f64, digits: i32) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
@@ -382,17 +382,17 @@ fn digits_of(value: f64, digits: i32) -> String {
     format!("{value:.*}", decimals_of(value, digits))
 }
 
-/// Decimals of a number with this many significant digits, up to the most that are shown.
+/// Decimals of a number with this many significant digits, up to the maximum shown.
 fn decimals_of(value: f64, digits: i32) -> usize {
     places(value, digits).clamp(0, digits + 4) as usize
 }
 
-/// Decimal place of the last of this many significant digits; digits before the point are never cut off.
+/// Decimal place of the last of this many significant digits; digits before the point are kept.
 fn places(value: f64, digits: i32) -> i32 {
     (digits - 1 - libm::floor(libm::log10(value.abs())) as i32).max(0)
 }
 
-/// Rounds a limit inward to this many digits: a greatest down, a least up.
+/// Rounds a limit inward to this many digits: a maximum down, a minimum up.
 fn within(limit: f64, digits: i32, at_least: bool) -> f64 {
     if limit <= 0.0 || !limit.is_finite() {
         return limit;
@@ -404,7 +404,7 @@ fn within(limit: f64, digits: i32, at_least: bool) -> f64 {
 /// Text of a limit rounded inward.
 fn digits_within(limit: f64, digits: i32, at_least: bool) -> String {
     let shown = within(limit, digits, at_least);
-    // Decimals of the unrounded limit: a number rounded up to the next power of ten keeps as many.
+    // Decimals are those of the unrounded limit: rounding up to a power of ten does not change them.
     if shown > 0.0 { format!("{shown:.*}", decimals_of(limit, digits)) } else { digits_of(shown, digits) }
 }
 
@@ -427,7 +427,7 @@ fn three_digits(value: f64) -> String {
     if size > magnitude { rounded(size) } else { text }
 }
 
-/// At most this many significant digits, without zeros at the end.
+/// At most this many significant digits, without trailing zeros.
 fn few_digits(value: f64, digits: u8) -> String {
     if !(1e-4..1e6).contains(&value.abs()) {
         return three_digits(value);
@@ -436,12 +436,12 @@ fn few_digits(value: f64, digits: u8) -> String {
     ((value * scale).round() / scale).to_string()
 }
 
-/// A fixed number of decimals.
+/// Number with a fixed number of decimals.
 fn fixed(value: f64, decimals: usize) -> String {
     if value.abs() < 1e7 { format!("{value:.decimals$}") } else { as_given(value) }
 }
 
-/// The number in the digits given.
+/// Number with its digits as given.
 fn as_given(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
@@ -451,7 +451,7 @@ fn as_given(value: f64) -> String {
     }
 }
 
-/// One decimal, two below 10. A part too small to show and a remainder too small to show are marked by `<`
+/// One decimal, two below 10. Values too small to show, and values too close to 100, are marked by `<`
 /// and `>`.
 fn percent_digits(percent: f64) -> String {
     match percent.abs() {
@@ -463,7 +463,7 @@ fn percent_digits(percent: f64) -> String {
     }
 }
 
-/// A whole number with its thousands grouped, from five digits on.
+/// Whole number with its thousands grouped, from five digits on.
 fn grouped(value: f64) -> String {
     let digits = format!("{value:.0}");
     if digits.len() < 5 {
@@ -517,7 +517,7 @@ mod tests {
         assert_eq!(down, ["0.700", "0.285", "12.3", "0.0700", "0"]);
         let up = texts([0.14, 0.2851, 0.9999, 12.31].map(rounded(NumberRole::Least)));
         assert_eq!(up, ["0.140", "0.286", "1.00", "12.4"]);
-        // A table and a sentence beside it have the same limit.
+        // A table and a sentence beside it show the same limit.
         for step in 0..4000 {
             let limit = 0.001 * libm::pow(1.003, f64::from(step));
             for at_least in [false, true] {
@@ -538,7 +538,7 @@ mod tests {
                 let inches = size.inches().unwrap().parse::<f64>().unwrap() * INCH_MM;
                 let hair = 1e-8 * limit;
                 assert!(sign * (inches - size.shown()) <= hair && sign * (inches - limit) <= hair, "{size}");
-                // Rounding the shown mm again gives the same text.
+                // Rounding the mm shown again gives the same text.
                 assert_eq!(length(size.shown(), unit).role(role).to_string(), size.to_string());
             }
         }
@@ -563,9 +563,9 @@ mod tests {
         assert_eq!(pair(4.0004, 4.0), ["4.0004", "4.0000"]);
         assert_eq!(pair(3.9996, 4.0), ["3.9996", "4.0000"]);
         assert_eq!(pair(3.52, 4.0), ["3.52", "4.00"]);
-        // Rounded to the nearest, the limit would also be 2.86.
+        // Rounded to nearest, the limit would also be 2.86.
         assert_eq!(pair(2.8572, 2.857), ["2.86", "2.85"]);
-        // If a limit is just reached, both have the digits with which neither is rounded up.
+        // If a limit is just reached, both numbers have enough digits that neither is rounded up.
         assert_eq!(pair(2.8571, 2.8571), ["2.857", "2.857"]);
         assert_eq!(pair(2.8579, 2.8579), ["2.8579", "2.8579"]);
         assert_eq!(pair(20.0 / 7.0 - 1e-9, 20.0 / 7.0 - 1e-9), ["2.857", "2.857"]);

@@ -1,19 +1,19 @@
-//! Properties over thousands of random soils: sizes that are not sieved and a worse soil never improve a
-//! filter, one curve in two notations is one curve, and an envelope is as bad as its worst curve.
+//! Properties over thousands of random soils: missing sieves and a worse soil never improve a filter, one
+//! curve in two notations gives the same answer, and an envelope is as bad as its worst curve.
 //!
-//! Exceptions for sizes that are not sieved: up to [`USUAL_STEP`] practice reads a straight line, so leaving
-//! out a sieve between two that lie no further apart may change an answer. A base hides a gap only between
-//! sieves further apart than [`WIDE_STEP`], and a filter hides nothing of its own stability where 5 % pass or
-//! less. Single sieves can decide if a curve is flat enough to be a gap, so this is not required of bases
-//! with fewer sieves.
+//! Exceptions for missing sieves: up to [`USUAL_STEP`] practice reads a straight line, so leaving out a
+//! sieve between two that are no further apart may change an answer. A base hides a gap only between
+//! sieves further apart than [`WIDE_STEP`], and a filter hides nothing of its own stability where 5 % or
+//! less pass. Single sieves can decide if a curve is flat enough to be a gap, so bases with fewer sieves
+//! are exempt.
 //!
 //! A worse soil:
-//! - a dispersive base breaks every rule that it breaks otherwise, and its limits are never wider;
-//! - an open joint takes nothing away;
+//! - a dispersive base breaks every rule that it would break otherwise, and its limits are never wider;
+//! - an open joint removes no result;
 //! - with more of its fines sieved, a base breaks every limit of D15F that it broke before, and keeps every
 //!   one that it kept before. Exceptions: Cu and fines decide if a base with gravel is regraded. Without
-//!   sieves for them it is regraded, which is the stricter reading; finer sieves may show that it need not
-//!   be, and widen its limits. Terzaghi's ratio gives way to limits by fines from 15 % of them.
+//!   sieves for them it is regraded, which is the stricter reading; finer sieves may show that regrading is
+//!   not needed, and widen its limits. From 15 % fines, limits by fines replace Terzaghi's ratio.
 
 use crate::decision::Standing;
 use crate::rules::{BaseSoil, NamedCurve, RuleInputs, apply};
@@ -32,12 +32,12 @@ impl Chance {
         ((self.0 >> 11) as f64) / (1u64 << 53) as f64
     }
 
-    /// A size (mm), equally likely in every decade.
+    /// Size (mm), equally likely in every decade.
     fn size(&mut self, low: f64, high: f64) -> f64 {
         low * (high / low).powf(self.next())
     }
 
-    /// A soil down to 0 %, with random gravel, gaps and fines.
+    /// Soil down to 0 %, with random gravel, gaps and fines.
     fn points(&mut self, low: f64, high: f64) -> Vec<(f64, f64)> {
         let count = 3 + (8.0 * self.next()) as usize;
         let mut sizes: Vec<f64> = (0..count).map(|_| self.size(low, high)).collect();
@@ -60,12 +60,12 @@ impl Chance {
         Gradation::linear_from_dx(15.0, d15, cu).unwrap()
     }
 
-    /// Number of the finest sieves missing from a table, with at least two left.
+    /// Number of finest sieves to remove from a table, with at least two left.
     fn missing(&mut self, points: &[(f64, f64)]) -> usize {
         (points.len().saturating_sub(1) as f64 * self.next()) as usize
     }
 
-    /// A table of 6 to 14 sieves down to 0 %, in steps of at most `step`.
+    /// Table of 6 to 14 sieves down to 0 %, in steps of at most `step`.
     fn table(&mut self, from_mm: f64, step: f64) -> Points {
         let count = 6 + (8.0 * self.next()) as usize;
         let (mut size, mut shares) = (from_mm, vec![0.0]);
@@ -82,7 +82,7 @@ impl Chance {
         points
     }
 
-    /// A base, and a filter with a D15F of 0.3 to 1.5 times the limit of design.
+    /// Base, and a filter with a D15F of 0.3 to 1.5 times the limit of design.
     fn pair(&mut self, step: f64) -> [Points; 2] {
         let finest = libm::pow(10.0, -3.0 + 2.0 * self.next());
         let [of_base, of_filter] = [0, 1].map(|_| 1.6 + (step - 1.6) * self.next());
@@ -92,7 +92,7 @@ impl Chance {
         [base, filter.into_iter().map(|(size, percent)| (size * factor, percent)).collect()]
     }
 
-    /// A table without some of its inner sieves, chosen so that steps of more than `step` remain.
+    /// Removes inner sieves of a table so that steps of more than `step` remain.
     fn leave_out(&mut self, points: &Points, step: f64) -> Points {
         let mut left = points.clone();
         for at in (1..points.len() - 1).rev() {
@@ -236,7 +236,7 @@ fn a_curve_is_one_curve_in_every_notation() {
     let mut chance = Chance(17);
     for round in 0..100 {
         let tables = chance.pair(2.6);
-        // Rounds to the digits of a sheet.
+        // Sizes and percents are rounded to the digits of a sheet.
         let tables = tables.map(|table| -> Points {
             table
                 .into_iter()
@@ -290,8 +290,8 @@ fn a_row_of_many_samples_meets_practice_only_where_the_pair_does() {
     assert!(met > 50 && open > 80, "{met} {open}");
 }
 
-/// Each case has a filling of its wide step, seen by hand, for which the filter does not meet practice: two
-/// parts with a gap, all of it just above 0.075 mm, a tie of two gaps, and percents that a sieve has exactly.
+/// In each case a filling of the wide step, found by hand, does not meet practice: two parts with a gap,
+/// all mass just above 0.075 mm, a tie of two gaps, and percents that fall exactly on a sieve.
 #[test]
 fn the_worst_of_a_wide_step_is_at_neither_end() {
     let uniform = |d15f: f64| vec![(0.85 * d15f, 0.0), (d15f, 15.0), (1.4 * d15f, 60.0), (2.0 * d15f, 100.0)];
@@ -318,7 +318,7 @@ fn the_worst_of_a_wide_step_is_at_neither_end() {
     assert!(rules.iter().all(|rule| !rule.name.contains("uniform enough") || rule.met != Some(true)));
 }
 
-/// A percent that misses 85 by the last digits of a sum is 85.
+/// A percent that differs from 85 by rounding errors of a sum is 85.
 #[test]
 fn the_last_digits_of_a_percent_move_no_size() {
     let at = |percent: f64| {
@@ -335,7 +335,7 @@ fn the_last_digits_of_a_percent_move_no_size() {
     assert_eq!(at(85.0).d(85.0), at(84.999_999_999_999_99).d(85.0));
 }
 
-/// The table of samples has D15F and limit of the rules if the filter is flat at 15 %.
+/// For a filter that is flat at 15 %, the table of samples has the D15F and the limit of the rules.
 #[test]
 fn a_row_has_the_limit_by_which_the_filter_was_judged() {
     let base = soil(&[(0.15, 0.0), (0.212, 1.0), (0.3, 10.0), (0.5, 85.0), (0.85, 100.0)]);
@@ -356,7 +356,7 @@ fn broken(rules: &[AppliedRule]) -> Vec<&str> {
     rules.iter().filter(|rule| rule.is_broken()).map(|rule| rule.id.as_str()).collect()
 }
 
-/// Asserts that if `than` does not meet practice, `worse` does not, either.
+/// Asserts that `worse` does not meet practice if `than` does not.
 #[track_caller]
 fn no_better(worse: &[AppliedRule], than: &[AppliedRule]) {
     let fails = |rules: &[AppliedRule]| {
@@ -406,12 +406,12 @@ fn testing_more_of_the_fines_never_takes_a_failure_back() {
         let (dispersive, missing) = (chance.next() < 0.3, chance.missing(&points));
         let soils = [&points[..], &points[missing..]].map(Gradation::from_lines);
         let [Ok(whole), Ok(open)] = soils else { continue };
-        // The size below which practice looks at the base.
+        // Size below which practice uses the base.
         let part = |base: &Gradation| {
             let soil = BaseSoil::of(base, false);
             soil.regraded_at_mm.or(soil.hidden_below_mm)
         };
-        // A flat part that finer sieves show may be a gap.
+        // A flat part shown by finer sieves may be a gap.
         let flat = |base: &Gradation| base.regraded_otherwise(base).and_then(|other| other.at_mm);
         let is_same = [part(&open), flat(&open)] == [part(&whole), flat(&whole)];
         let (before, after) = (part(&open), part(&whole));
@@ -424,7 +424,7 @@ fn testing_more_of_the_fines_never_takes_a_failure_back() {
             assert!(before.is_none() || before == after, "{id}: {points:?} from {missing}");
         }
         if before.is_some() && after.is_none() {
-            // Finer sieves showed that it need not be regraded.
+            // Finer sieves showed that regrading was not needed.
             other_part += 1;
             continue;
         }
@@ -467,7 +467,7 @@ fn curves(chance: &mut Chance, middle: [f64; 2], name: &str) -> Vec<NamedCurve> 
     (0..count).map(|at| (format!("{name}{at}"), curve(chance))).collect()
 }
 
-/// Rank of a result, the worst first: broken, not known, met, not made for these soils.
+/// Rank of a result, worst first: broken, not known, met, not made for these soils.
 fn rank(rule: &AppliedRule) -> u8 {
     match rule.met {
         Some(false) => 0,
@@ -487,7 +487,7 @@ fn rank_of_standing(standing: &Standing) -> u8 {
     }
 }
 
-/// An envelope is never better than the worst of its curves alone, and by each rule exactly as bad.
+/// An envelope is never better than its worst curve alone, and equally bad by each rule.
 #[test]
 fn an_envelope_is_as_bad_as_the_worst_of_its_curves() {
     let (mut chance, mut apart) = (Chance(57), 0);
@@ -517,10 +517,10 @@ fn an_envelope_is_as_bad_as_the_worst_of_its_curves() {
     assert!(apart > 50, "{apart} envelopes have curves of which not all are as bad");
 }
 
-/// A base, its filter, and true if the filter drains the base.
+/// Base and filter, and true if the filter drains the base.
 fn drained_pair(chance: &mut Chance) -> Option<(Gradation, Gradation, bool)> {
     let mut between = |low: f64, high: f64| low + (high - low) * chance.next();
-    // Three straight pieces over log size, of any breadth; two in five end at the No. 200 sieve.
+    // Three straight pieces over log size, of any breadth; two in five soils end at the No. 200 sieve.
     let d50 = libm::exp(between(libm::log(0.01), libm::log(2.0)));
     let widths = [between(0.2, 2.5), between(0.2, 2.0), between(0.1, 1.6), between(0.1, 1.2)];
     let size = |power: f64| d50 * libm::exp(power);
@@ -543,7 +543,7 @@ fn drained_pair(chance: &mut Chance) -> Option<(Gradation, Gradation, bool)> {
     Some((base, filter, drains))
 }
 
-/// 5000 pairs whose filter holds the base, or nearly: half to one and a half of the limit of design.
+/// 5000 pairs whose filter holds the base, or nearly: D15F is 0.5 to 1.5 times the limit of design.
 #[test]
 fn sensible_pairs_pass_in_their_order_and_are_refused_in_the_other() {
     let mut chance = Chance(20_261_124);

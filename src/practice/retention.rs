@@ -1,10 +1,10 @@
 //! Limits of D15F by which a filter retains its base, as placed and without the finer part that it may lose.
 //!
-//! Retention of a filter that is not internally stable is judged twice, as placed and after washout of its
-//! finer part (U.S. Army Corps of Engineers, Filter Evaluation manual, RMC-CPD-2023-04, chapter Filter
-//! Gradation). A single one of several published criteria that is not met is a doubt. Li and Fannin's
-//! criterion takes the milder of Kenney and Lau's and Kezdi's at every size. Practice is not met if the
-//! remainder breaks a limit of retention and Li and Fannin's criterion is not met, or has no result while one
+//! A filter that is not internally stable is judged twice, as placed and after washout of its finer part
+//! (U.S. Army Corps of Engineers, Filter Evaluation manual, RMC-CPD-2023-04, chapter Filter Gradation).
+//! One failed criterion among several published ones only raises doubt. Li and Fannin's criterion takes
+//! the milder of Kenney and Lau's and Kezdi's at every size. Practice is not met if the remainder breaks
+//! a limit of retention and Li and Fannin's criterion is not met, or if that criterion has no result, one
 //! of the other two is not met and neither is met.
 
 use crate::rule_result::met_of;
@@ -12,9 +12,9 @@ use crate::rules::{DESIGN, KENNEY_LAU, KEZDI, LI_FANNIN, TESTS_CONTINUING, TESTS
 use crate::{AppliedRule, RuleNote, RuleQuantity, RuleRole, RuleUnit, WithoutFiner};
 use voidwalk_core::gradation::{TIE, WIDE_LOOSE_PERCENT};
 
-/// The rules by which a filter retains its base. Practice goes by the limit of design. The boundary of no
-/// erosion that one author proposed from tests counts only if design is not known, and for dispersive bases,
-/// for which that author's limit is the recommended one.
+/// Rules by which a filter retains its base. Practice uses the limit of design. The boundary of no
+/// erosion, proposed by one author from tests, counts only if design is not known, and for dispersive
+/// bases, for which that author's limit is the recommended one.
 pub(super) fn retaining(rules: &[AppliedRule]) -> impl Iterator<Item = &AppliedRule> {
     let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies);
     let is_known = design.is_some_and(|rule| rule.limit.is_some() && !rule.limit_at_most);
@@ -24,39 +24,39 @@ pub(super) fn retaining(rules: &[AppliedRule]) -> impl Iterator<Item = &AppliedR
     rules.iter().filter(retains).filter(move |rule| rule.id != TESTS_NO_EROSION || counts(rule))
 }
 
-/// A rule of retention that was made for a base and whose limit is only known to be at most a number, which
-/// leaves the strictest limit of the base unknown.
+/// Rule of retention that was made for a base and has only an upper bound as its limit, so that the
+/// strictest limit of the base is unknown.
 pub(super) fn open_retention(rules: &[AppliedRule]) -> Option<&AppliedRule> {
     retaining(rules).find(|rule| rule.applies && rule.limit_at_most)
 }
 
-/// The strictest rule by which a filter retains a base, with its limit of D15F. The true limit may be lower
-/// if a limit of retention is only known to be at most a number.
+/// Strictest rule by which a filter retains a base, with its limit of D15F. The true limit may be lower
+/// if any limit of retention is only an upper bound.
 pub fn retention(rules: &[AppliedRule], d15f: f64) -> Option<(&AppliedRule, f64)> {
-    // Among limits that differ by rounding alone the first counts, which is the limit of design.
+    // Among limits that differ only by rounding the first counts, which is the limit of design.
     let stricter = |least: f64, limit: f64| limit < least * (1.0 - TIE);
     retaining_limits(rules, d15f).reduce(|least, next| if stricter(least.1, next.1) { next } else { least })
 }
 
-/// Limits of D15F by which a filter retains its base. They include the size beyond which tests saw continuing
-/// erosion, since no design goes beyond it.
+/// Limits of D15F by which a filter retains its base, including the boundary of continuing erosion, which
+/// no design exceeds.
 fn retaining_limits(rules: &[AppliedRule], d15f: f64) -> impl Iterator<Item = (&AppliedRule, f64)> {
     let d15f = judged_d15f(rules, d15f);
     let continues = rules.iter().filter(|rule| rule.role == RuleRole::Continuation && !rule.limit_at_most);
     retaining(rules).chain(continues).filter_map(move |rule| limit(rule, d15f))
 }
 
-/// D15F by which the filter was judged: the unsafe end if its curve is flat or its sieves lie far apart.
+/// D15F by which the filter was judged: the unsafe end if its curve is flat or its sieves are widely spaced.
 fn judged_d15f(rules: &[AppliedRule], d15f: f64) -> f64 {
     let design = rules.iter().find(|rule| rule.id == DESIGN && rule.applies);
     design.and_then(|rule| rule.value).unwrap_or(d15f)
 }
 
-/// The limit of D15F that a rule sets for a base it was made for, in the unit of the rules.
+/// Limit of D15F that a rule sets for a base it was made for, in the unit of the rules.
 ///
 /// `d15f` is the D15F of the judged filter. A limit on a ratio to a size of the base (Terzaghi) becomes
-/// `d15f` times the limit over the value. Only the rule knows this size, of the base as it is walked or as
-/// practice regrades it.
+/// `d15f` times the limit over the value. Only the rule knows if this size is that of the base as walked
+/// or as regraded by practice.
 fn limit(rule: &AppliedRule, d15f: f64) -> Option<(&AppliedRule, f64)> {
     let limit = rule.limit.filter(|limit| rule.applies && *limit > 0.0 && limit.is_finite())?;
     match rule.quantity {
@@ -69,14 +69,14 @@ fn limit(rule: &AppliedRule, d15f: f64) -> Option<(&AppliedRule, f64)> {
     }
 }
 
-/// A filter beyond a limit of retention once the finer part that it may lose is gone.
+/// A filter beyond a limit of retention after losing the finer part that it may lose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Washout {
     /// Remainder of the filter.
     pub left: WithoutFiner,
-    /// Criterion by which the greatest part fails.
+    /// Criterion by which the largest part is lost.
     pub by: AppliedRule,
-    /// The least limit of retention.
+    /// Lowest limit of retention.
     pub least: f64,
     /// Unit of sizes.
     pub unit: RuleUnit,
@@ -84,8 +84,8 @@ pub struct Washout {
     pub continues: bool,
 }
 
-/// Checks a filter that is not internally stable for a remainder beyond a limit of retention. Among several
-/// parts the part of Kezdi's split comes first, unless it is more than may lie loose.
+/// Checks if the remainder of an internally unstable filter is beyond a limit of retention. Among several
+/// parts the part at Kezdi's split comes first, unless it exceeds the maximum that can lie loose.
 pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout> {
     let unstable = unstable(rules);
     let d15f = rules.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.value);
@@ -102,7 +102,7 @@ pub(super) fn washout(rules: &[AppliedRule]) -> Option<Washout> {
     })
 }
 
-/// Remainder of a filter that is not internally stable, if it is beyond a limit of D15F.
+/// Remainder of an internally unstable filter, if it is beyond a limit of D15F.
 pub(super) fn lost_beyond(rules: &[AppliedRule], limit: f64) -> Option<WithoutFiner> {
     lost(&unstable(rules), limit).map(|(_, left)| left)
 }
@@ -132,7 +132,7 @@ fn unstable(rules: &[AppliedRule]) -> Vec<&AppliedRule> {
 }
 
 impl Washout {
-    /// True if the analysis stopped at the part that may lie loose, so that more may be lost.
+    /// True if the analysis stopped at the maximum that can lie loose, so that more may be lost.
     pub fn is_capped(&self) -> bool {
         self.left.percent >= WIDE_LOOSE_PERCENT * (1.0 - 1e-9)
     }
@@ -179,8 +179,8 @@ mod tests {
         assert!(washout(&rules).is_some());
     }
 
-    /// If sieves end at 14 % finer, Li and Fannin's and Kenney and Lau's index may be less than computed. If
-    /// neither has a result, Kezdi's alone judges.
+    /// If sieves end at 14 % finer, Li and Fannin's and Kenney and Lau's indices may be lower than
+    /// computed. If neither has a result, only Kezdi's counts.
     #[test]
     fn an_index_above_a_pan_is_no_veto() {
         let filter = [(2.36, 14.0), (2.6, 15.3), (16.0, 32.0), (20.0, 80.0), (31.5, 100.0)];
@@ -238,7 +238,7 @@ mod tests {
         assert_eq!(limit_of(&all, "filter-uniformity"), None);
     }
 
-    /// Terzaghi's limit of a ratio may be less than Sherard and Dunnigan's of a size by the last digit.
+    /// Terzaghi's limit on a ratio may be less than Sherard and Dunnigan's on a size by the last digit.
     #[test]
     fn limits_that_differ_by_rounding_are_those_of_design() {
         let mut all = rules_of_sand();
@@ -251,8 +251,8 @@ mod tests {
         }
     }
 
-    /// Practice takes four times the D85B of the part to which it regrades the base: much less than of the
-    /// whole for a gap-graded base, and for one with gravel.
+    /// Practice takes four times the D85B of the part to which it regrades the base. This is much less
+    /// than the whole base's D85B for a gap-graded base and for one with gravel.
     #[test]
     fn the_limit_of_a_ratio_is_of_the_base_that_its_rule_reads() {
         let gap = [(0.1, 0.0), (0.2, 20.0), (0.5, 50.0), (4.0, 55.0), (9.5, 80.0), (19.0, 100.0)];
@@ -264,7 +264,7 @@ mod tests {
             assert!(regraded.at_mm.is_some() && whole > 2.0 * part, "{whole} {part}");
             let all = rules_of(&base);
             assert!((limit_of(&all, "terzaghi").unwrap() / (4.0 * part) - 1.0).abs() < 1e-9);
-            // The model's limit is for the base as it is walked.
+            // The model's limit is for the base as walked.
             assert!((limit_of(&all, "paper-no-erosion").unwrap() / (5.0 * whole) - 1.0).abs() < 1e-9);
             let (_, practice) = retention(&all, D15F).unwrap();
             assert!(practice <= 4.0 * part * (1.0 + 1e-9), "{practice}");

@@ -6,14 +6,14 @@ use crate::rules::{
 use crate::{AppliedRule, RuleNote, RuleRole};
 use std::borrow::Cow;
 
-/// Result of a rule of practice: worked out here alone, and shown by faces.
+/// Result of a rule of practice, determined only here and shown by faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RuleResult {
     /// The limit is kept.
     Met,
     /// The limit is not kept.
     NotMet,
-    /// A boundary of continuing erosion is not reached: no good news by itself.
+    /// A boundary of continuing erosion is not reached, which alone is not favourable.
     NotReached,
     /// A boundary of continuing erosion is not reached, and erosion may be excessive.
     ExcessiveNotJudged,
@@ -28,7 +28,7 @@ pub enum RuleResult {
 }
 
 impl RuleResult {
-    /// Results of rules that are neither kept nor broken, in the order of a reader.
+    /// Results of rules that are neither kept nor broken, in reading order.
     pub const WITHOUT: [Self; 4] = [Self::NotALimit, Self::NoLimit, Self::NoResult, Self::DoesNotApply];
 }
 
@@ -50,8 +50,8 @@ pub fn result_of(rule: &AppliedRule) -> RuleResult {
     }
 }
 
-/// True if the limit is for a dispersive base, for which Fell et al. give one number: design has no limit of
-/// its own, and so no margin.
+/// True if the limit is for a dispersive base, for which Fell et al. give a single number: design has no
+/// separate limit and therefore no margin.
 fn is_of_dispersive(rule: &AppliedRule) -> bool {
     [DESIGN, TESTS_NO_EROSION].contains(&rule.id.as_str())
         && rule.applies
@@ -60,15 +60,15 @@ fn is_of_dispersive(rule: &AppliedRule) -> bool {
         && rule.limit != Some(DESIGN_FLOOR_MM)
 }
 
-/// The limit of design of a dispersive base, if the boundary of no erosion is the same number.
+/// Limit of design of a dispersive base, if the boundary of no erosion is the same number.
 pub(super) fn without_margin(rules: &[AppliedRule]) -> Option<&AppliedRule> {
     let find = |id: &str| rules.iter().find(|rule| rule.id == id && is_of_dispersive(rule));
     let (design, tests) = (find(DESIGN)?, find(TESTS_NO_EROSION)?);
     (design.limit == tests.limit).then_some(design)
 }
 
-/// True if the limit of design of a base has no margin: it is not below the boundary of no erosion, which is
-/// the lower end of the range in which erosion began in tests, or within that range.
+/// True if the limit of design has no margin: it is not below the boundary of no erosion, which is the
+/// lower end of the range in which erosion began in tests or lies within that range.
 pub(super) fn has_no_margin(rules: &[AppliedRule]) -> bool {
     let limit = |id: &str| {
         let rule = rules.iter().find(|rule| rule.id == id && rule.applies && !rule.limit_at_most)?;
@@ -77,13 +77,13 @@ pub(super) fn has_no_margin(rules: &[AppliedRule]) -> bool {
     limit(DESIGN).zip(limit(TESTS_NO_EROSION)).is_some_and(|(design, tests)| design >= tests * (1.0 - 1e-9))
 }
 
-/// Source of a rule's limit, as a sentence cites it.
+/// Source of a rule's limit as cited in a sentence.
 pub fn credit(rule: &AppliedRule) -> &str {
-    // One number for design and for no erosion.
+    // One number for both design and no erosion.
     if is_of_dispersive(rule) { "Fell et al., Table 9.2, note b" } else { authority(rule) }
 }
 
-/// Citation of a rule of retention: its author, and the rule among the author's.
+/// Citation of a rule of retention: its author, and which of the author's rules it is.
 pub(super) fn cited_rule(rule: &AppliedRule) -> String {
     let kind = match rule.id.as_str() {
         DESIGN => "limit of design",
@@ -103,9 +103,9 @@ pub(super) fn met_of(rules: &[AppliedRule], id: &str) -> Option<bool> {
     rules.iter().find(|rule| rule.id == id && rule.applies)?.met
 }
 
-/// Rules in the form of a sheet's list. Of two rules of drainage with one limit, their floor, the list has
-/// the first. The limit of a dispersive base, one number for design and for no erosion, appears once and
-/// under its own name.
+/// Rules as a sheet lists them. Two rules of drainage with the same limit, their floor, are listed once.
+/// The limit of a dispersive base, one number for both design and no erosion, appears once under its own
+/// name.
 pub(super) fn listed(rules: &[AppliedRule]) -> Vec<Cow<'_, AppliedRule>> {
     let repeats = |rule: &&AppliedRule| {
         let is_listed = |other: &AppliedRule| {
@@ -122,7 +122,7 @@ pub(super) fn listed(rules: &[AppliedRule]) -> Vec<Cow<'_, AppliedRule>> {
     .collect()
 }
 
-/// The limit of design of a dispersive base, under the name of its authors.
+/// Limit of design of a dispersive base, under the name of its authors.
 fn of_dispersive(design: &AppliedRule) -> AppliedRule {
     AppliedRule {
         name: "Fell et al.: no erosion of a highly dispersive base (taken for design, too, without a margin)"
@@ -149,7 +149,7 @@ mod tests {
         PairRules::of(&curve(base), &Gradation::linear_from_dx(15.0, d15f, 1.5).unwrap()).rules
     }
 
-    /// By Fell et al., Table 9.2: below 15 % fines tests begin at 6.8 D85B and design ends at 4; from 40 to
+    /// Fell et al., Table 9.2: below 15 % fines tests begin at 6.8 D85B and design ends at 4; from 40 to
     /// 85 % both have 0.7 mm; above 85 % both have 9 D85B, and tests begin at 6.4.
     #[test]
     fn a_limit_has_no_margin_where_design_is_not_below_the_tests() {
@@ -158,18 +158,18 @@ mod tests {
         for (percent, wanted) in [(5.0, false), (25.0, false), (38.0, true), (60.0, true), (90.0, true)] {
             assert_eq!(no_margin_of(&fines(percent)), wanted, "{percent} % fines");
         }
-        // Agrees with the range of tests, in which the limit of design is at or above the lower end.
+        // Agrees with the range of tests: the limit of design is at or above its lower end.
         for percent in [5.0, 25.0, 34.0, 34.9, 36.0, 38.0, 60.0, 90.0] {
             let all = rules(&fines(percent), 0.3);
             let design = all.iter().find(|rule| rule.id == DESIGN).and_then(|rule| rule.limit).unwrap();
             let [low, _] = range_of_tests(percent, curve(&fines(percent)).d(85.0).unwrap());
             assert_eq!(has_no_margin(&all), design >= low * (1.0 - 1e-9), "{percent} % fines");
         }
-        // Without known fines, only the greatest possible limits are known.
+        // Without known fines, only the maximum possible limits are known.
         assert!(!no_margin_of(&[(0.2, 30.0), (0.5, 85.0), (1.0, 100.0)]));
     }
 
-    /// A folder of a run that is read back has the same results.
+    /// A run folder that is read back has the same results.
     #[test]
     fn a_boundary_that_is_not_reached_is_never_met() {
         for (base, d15f, result) in [
@@ -186,7 +186,7 @@ mod tests {
         assert_eq!(result_of(&drains), RuleResult::Met);
     }
 
-    /// A clay has the floor of both rules of drainage; of a sand they ask for 5 and 3 times D15B.
+    /// For a clay both rules of drainage give the floor; for a sand they give 5 and 3 times D15B.
     #[test]
     fn a_limit_of_drainage_is_listed_once() {
         let filter = curve(&[(0.5, 0.0), (2.0, 100.0)]);

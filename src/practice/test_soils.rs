@@ -2,17 +2,17 @@
 
 use voidwalk_core::Gradation;
 
-/// A curve of these points: size (mm) and percent finer.
+/// Curve through these points: size (mm) and percent finer.
 pub fn curve(points: &[(f64, f64)]) -> Gradation {
     Gradation::from_lines(points).unwrap()
 }
 
-/// A soil of these points, as one curve.
+/// Soil with one curve through these points.
 pub fn soil(points: &[(f64, f64)]) -> Vec<(String, Gradation)> {
     vec![("soil".to_owned(), curve(points))]
 }
 
-/// A uniform filter with this D15F (mm).
+/// Uniform filter with this D15F (mm).
 pub fn filter(d15f: f64) -> Vec<(String, Gradation)> {
     soil(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)])
 }
@@ -58,8 +58,8 @@ pub const GRAVEL_0_32: [(f64, f64); 11] = [
     (37.5, 100.0),
 ];
 
-/// Li and Fannin's index is worst at F = 4 %, where a step in the curve leaves little to be lost. At 14 %,
-/// where it is 0.993, much more is lost, and the remainder has a D15F beyond 4.00 and 7.00 mm.
+/// Li and Fannin's index is worst at F = 4 %, where a step in the curve leaves little to be lost. At
+/// 14 %, where it is 0.993, much more is lost, and the D15F of the remainder exceeds 4.00 and 7.00 mm.
 pub const STEPPED: [(f64, f64); 8] =
     [(0.1, 0.0), (0.2, 4.0), (0.8, 4.0), (1.0, 4.5), (2.0, 14.0), (8.0, 27.9), (16.0, 60.0), (32.0, 100.0)];
 

@@ -1,5 +1,5 @@
-//! Tables on their side: the openings in a row, also within the headings of percents (`P#200`, `Passing
-//! 19 mm`), and below it a row for each soil, with its names to the left.
+//! Tables on their side: a row of openings, possibly within the headings of percents (`P#200`,
+//! `Passing 19 mm`), and below it one row per soil, with its names to the left.
 
 use super::content::{
     begins_with_words, holds_several, is_blank, is_data, is_text, is_value, is_words, percentage,
@@ -13,7 +13,7 @@ use super::size::{Opening, Unit, goes_one_way, opening};
 use std::collections::HashMap;
 use voidwalk_core::gradation::{TableError, percent_is_allowed, shortened};
 
-/// Fewest openings of a row: fewer bare numbers may be anything, and fewer named openings make no curve.
+/// Minimum number of openings: fewer bare numbers may mean anything, and fewer named openings make no curve.
 const LEAST_OPENINGS: usize = 3;
 const LEAST_NAMED: usize = 2;
 const MOST_NAMED: usize = 6;
@@ -23,14 +23,14 @@ struct Openings {
     columns: Vec<usize>,
     /// Openings as written, without the words around them.
     texts: Vec<String>,
-    /// Role of the values if the words around the openings say retained.
+    /// Role of the values, if the words around the openings say retained.
     retained: Option<Role>,
     /// True if all openings are numbers without a unit or a word.
     bare: bool,
 }
 
-/// Finds the table of a grid that lies on its side, and returns it upright with its layout; `None` without
-/// one.
+/// Finds the table of a grid that lies on its side, and returns it upright with its layout; `None` if
+/// there is none.
 pub(super) fn find(grid: &Grid) -> Result<Option<(Grid, Layout)>, TableError> {
     let upper = &grid.rows[..grid.rows.len().min(ROWS_OF_TITLES)];
     if upper.iter().any(|row| is_heading(row) && says_soil(row) && openings(row).is_none_or(|o| o.bare)) {
@@ -54,7 +54,7 @@ pub(super) fn find(grid: &Grid) -> Result<Option<(Grid, Layout)>, TableError> {
     Ok(Some(upright(grid, at, &openings, &soils)))
 }
 
-/// The openings of a row behind words, rising or falling, and the pan behind them.
+/// Finds the openings of a row after its words, rising or falling, and the pan after them.
 fn openings(row: &GridRow) -> Option<Openings> {
     let is_head = |c: usize| head(row.cell(c)).is_some();
     let first = row.filled().find(|&c| is_head(c)).filter(|&first| first > 0)?;
@@ -67,7 +67,7 @@ fn openings_from(row: &GridRow, first: usize) -> Option<Openings> {
     for c in first..row.cells.len() {
         let is_rest = matches!(opening(row.cell(c)), Some((Opening::Below(_), _)));
         let Some(head) = head(row.cell(c)) else { break };
-        // Behind openings without words `< 0.075` is the pan.
+        // After openings without words, `< 0.075` is the pan.
         if is_rest && heads.last().is_some_and(|last| last.role.is_none()) {
             break;
         }
@@ -96,14 +96,14 @@ fn openings_from(row: &GridRow, first: usize) -> Option<Openings> {
     Some(Openings { columns: (first..end).chain(rest).collect(), texts, retained, bare })
 }
 
-/// True if bare numbers lie beside openings with a unit, so that their order says nothing yet.
+/// True if there are both bare numbers and openings with a unit, so that their order says nothing yet.
 fn mixes_units(heads: &[Head]) -> bool {
     let is_bare = |head: &Head| matches!(opening(&head.text), Some((Opening::Bare(_), _)));
     heads.iter().any(|head| head.role.is_some()) && heads.iter().any(is_bare)
 }
 
-/// True if a row of bare numbers holds openings, by the words at its left or by its numbers, and is not a row
-/// of percents beside the name of a soil.
+/// True if a row of bare numbers contains openings, by the words to its left or by its numbers, and is
+/// not a row of percents beside the name of a soil.
 fn are_openings(grid: &Grid, at: usize, columns: &[usize]) -> bool {
     let row = &grid.rows[at];
     let labels: Vec<&str> = (0..columns[0]).map(|c| row.cell(c)).filter(|cell| !is_blank(cell)).collect();
@@ -119,10 +119,10 @@ fn are_openings(grid: &Grid, at: usize, columns: &[usize]) -> bool {
     labels.is_empty() || most > 100.0 || most > 1.0 && least < LEAST_PERCENT
 }
 
-/// Least value in a row of percents; openings (mm) may be smaller.
+/// Minimum value in a row of percents; openings (mm) may be smaller.
 const LEAST_PERCENT: f64 = 0.1;
 
-/// The row of words above numbers, such as percents under headings that are not understood.
+/// Returns the row of words above numbers, such as percents under headings that are not understood.
 fn text_above<'a>(grid: &'a Grid, at: usize, columns: &[usize]) -> Option<&'a GridRow> {
     let is_words = |row: &&GridRow| {
         let words = columns.iter().filter(|&&c| !row.cell(c).is_empty() && !is_value(row.cell(c))).count();
@@ -131,7 +131,7 @@ fn text_above<'a>(grid: &'a Grid, at: usize, columns: &[usize]) -> Option<&'a Gr
     grid.rows[..at].iter().rev().find(is_words)
 }
 
-/// Error for a row of percents beside the name of a soil whose openings nothing names.
+/// Makes the error for a row of percents beside the name of a soil without openings.
 fn refused_percents(grid: &Grid, at: usize, columns: &[usize]) -> TableError {
     let row = &grid.rows[at];
     let name = (0..columns[0]).map(|c| row.cell(c)).find(|cell| !is_blank(cell)).unwrap_or_default();
@@ -153,7 +153,7 @@ fn is_between(columns: &[usize], c: usize) -> bool {
     columns.first().is_some_and(|&first| first <= c) && columns.last().is_some_and(|&last| c <= last)
 }
 
-/// Refuses headings beside the openings that name more openings, or seem to.
+/// Refuses headings beside the openings that name more openings or seem to do so.
 fn refuse_other_openings(
     grid: &Grid,
     at: usize,
@@ -182,7 +182,7 @@ fn refuse_other_openings(
     }
 }
 
-/// Rows below that hold a soil each: words, then percents.
+/// Rows below that contain one soil each: words, then percents.
 fn soils(heading: &GridRow, below: &[GridRow], openings: &[usize]) -> Option<Vec<usize>> {
     // A number is a name only below a heading of names; below a heading of openings it is an opening.
     let of_names = |c: usize| !heading.cell(c).is_empty() && role(heading.cell(c)) == Role::Other;
@@ -208,7 +208,7 @@ fn soils(heading: &GridRow, below: &[GridRow], openings: &[usize]) -> Option<Vec
     (!soils.is_empty()).then_some(soils)
 }
 
-/// Refuses rows below the soils that also look like a table, instead of passing over them.
+/// Refuses rows below the soils that also look like a table, instead of ignoring them.
 fn refuse_second(grid: &Grid, at: usize, soils: &[usize], columns: &[usize]) -> Result<(), TableError> {
     let after = at + 1 + soils.last().map_or(0, |last| last + 1);
     let heading = &grid.rows[at];
@@ -226,7 +226,7 @@ fn refuse_second(grid: &Grid, at: usize, soils: &[usize], columns: &[usize]) -> 
     Ok(())
 }
 
-/// Refuses rows of soils that cannot be read, openings that would be passed over, and values without an
+/// Refuses rows of soils that cannot be read, openings that would be ignored, and values without an
 /// opening.
 fn refuse_lost(grid: &Grid, at: usize, soils: &[usize], openings: &[usize]) -> Result<(), TableError> {
     let (heading, last) = (&grid.rows[at], openings[openings.len() - 1]);
@@ -324,7 +324,7 @@ fn upright(grid: &Grid, at: usize, openings: &Openings, soils: &[usize]) -> (Gri
     if let Some(row) = grid.rows.get(after) {
         let begins = row.filled().find(|&c| is_words(row.cell(c))).map_or("", |c| row.cell(c));
         notes.push(format!(
-            "what stands from {} on (\"{}\") was left out",
+            "the rest from {} on (\"{}\") was left out",
             grid.row_label(row.line),
             shortened(begins)
         ));
@@ -341,7 +341,7 @@ fn upright(grid: &Grid, at: usize, openings: &Openings, soils: &[usize]) -> (Gri
     (Grid { left: 0, across: Some(lines), part: None, ..turned }, layout)
 }
 
-/// Words before or behind an opening that mean finer.
+/// Words before or after an opening that mean finer.
 const FINER: [&str; 17] = list(
     "p|pass|passing|passed|percent|percentage|pct|perc|finer|smaller|than|through|minus|cum|cumul|\
      cumulative|undersize",
@@ -352,11 +352,11 @@ const BETWEEN: [&str; 8] = ["on", "sieve", "sieves", "size", "the", "by", "mass"
 /// An opening as the heading of a column.
 struct Head {
     text: String,
-    /// Finer or retained, as the words say; `None` without words.
+    /// Finer or retained, according to the words; `None` without words.
     role: Option<Role>,
 }
 
-/// The heading without the words of percents at its edges, and the role that they name.
+/// Removes the words about percents from both ends of a heading, and returns the role that they name.
 fn without_words(heading: &str) -> (String, Option<Role>) {
     let small = heading.to_lowercase().replace('_', " ");
     let (mut rest, mut stated, mut retained, mut cumulative) = (small.as_str(), false, false, None);
@@ -412,7 +412,7 @@ fn is_size(text: &str) -> bool {
     }
 }
 
-/// The opening that a heading names, with or without words of percents around it.
+/// Returns the opening named by a heading, with or without words about percents around it.
 fn head(heading: &str) -> Option<Head> {
     if is_size(heading) && !heading.starts_with('+') {
         return Some(Head { text: heading.to_owned(), role: None });
@@ -421,7 +421,7 @@ fn head(heading: &str) -> Option<Head> {
     (role.is_some() && is_size(&text)).then_some(Head { text, role })
 }
 
-/// True if a heading seems to name an opening and does not: `P#4x`.
+/// True if a heading seems to name an opening but does not: `P#4x`.
 fn is_broken(heading: &str) -> bool {
     let (text, role) = without_words(heading);
     role.is_some() && text.contains(|c: char| c.is_ascii_digit()) && !is_size(&text)
@@ -434,7 +434,7 @@ fn is_misspelt(heading: &str) -> bool {
     has_digit && (!is_words(heading) || head(&mended).is_some())
 }
 
-/// True if a heading says that names lie below it, and is no name itself: `Sample no.`, `Hole`.
+/// True if a heading announces names below it and is not itself a name: `Sample no.`, `Hole`.
 fn is_of_names(heading: &str) -> bool {
     const BESIDE: [&str; 18] = list(
         "no|nr|number|id|ref|reference|type|test|trial|hole|bore|location|station|description|bh|tp|\
@@ -444,11 +444,11 @@ fn is_of_names(heading: &str) -> bool {
     !words.is_empty() && words.iter().all(|word| says_sample(word) || BESIDE.contains(&word.as_str()))
 }
 
-/// Names of the soils in `rows` below `headings`, whose openings begin in column `end`, and the columns that
-/// appear in no name. A name takes the first column and those whose heading says so; a depth and the others
-/// only if names would otherwise be equal.
+/// Names of the soils in `rows` below `headings`, whose openings begin in column `end`, and the columns
+/// that are not used for names. A name consists of the first column and those announced as names; a
+/// depth and other columns are added only if names would otherwise be equal.
 fn names(headings: &[GridRow], rows: &[&GridRow], end: usize) -> (Vec<String>, Vec<usize>) {
-    /// Most further columns used to tell soils of one name apart.
+    /// Maximum number of additional columns used to tell soils with the same name apart.
     const MOST_MORE: usize = 8;
     let head = |c: usize| {
         let near = headings.iter().rev().take(3).map(|row| row.cell(c));
@@ -489,7 +489,7 @@ fn names(headings: &[GridRow], rows: &[&GridRow], end: usize) -> (Vec<String>, V
     (names, unused)
 }
 
-/// True if a word of a heading says that depths lie below it.
+/// True if a word of a heading announces depths below it.
 pub(super) fn says_depth(word: &str) -> bool {
     ["depth", "tiefe", "profondeur", "profundidad", "prof", "from", "top", "elevation"].contains(&word)
 }

@@ -1,4 +1,4 @@
-//! AGS4, the exchange format of ground investigations. Its group GRAT holds a row for each opening; its group
+//! AGS4, the exchange format of ground investigations. Its group GRAT has one row per opening; its group
 //! GRAG summarises a grading (percents of gravel, sand, silt and clay, Cu) and has no curve.
 
 use super::grid::{Grid, GridRow, listed};
@@ -12,11 +12,11 @@ use voidwalk_core::gradation::{TableError, number, shortened};
 /// Columns of size and percent of a group, and the unit of its sizes.
 type Written = ([usize; 2], Option<Unit>);
 
-/// Headings that tell one specimen from another.
+/// Headings that distinguish specimens.
 const KEYS: [&str; 7] = ["LOCA_ID", "SAMP_TOP", "SAMP_REF", "SAMP_TYPE", "SAMP_ID", "SPEC_REF", "SPEC_DPTH"];
 
-/// True if a text is AGS4, in its own form or as a spreadsheet saves it; `group` may also head a column of
-/// other files.
+/// True if a text is AGS4, in its own form or as saved by a spreadsheet; `group` may also be a column
+/// heading in other files.
 pub(super) fn is_ags(text: &str) -> bool {
     let kind =
         |line: &str| line.split(',').next().unwrap_or_default().trim_matches([' ', '"']).to_uppercase();
@@ -39,7 +39,7 @@ pub(super) fn soils(file: &str, text: &str) -> Result<Vec<(String, Grid, Layout)
     soils_of_rows(file, None, rows)
 }
 
-/// Soils of a sheet that bears the name of its group, or names the group in a row.
+/// Soils of a sheet whose name is its group, or that names the group in a row.
 pub(super) fn soils_of_sheet(grid: &Grid) -> Result<Vec<(String, Grid, Layout)>, TableError> {
     let named = |name: &str| vec!["GROUP".to_owned(), name.trim().to_uppercase()];
     let group = grid.sheet.iter().map(|name| (0, named(name), false));
@@ -146,8 +146,8 @@ fn soils_of_rows(
         }
     }
     if let Some(line) = summary.filter(|_| soils.is_empty()) {
-        let allowed = "a group GRAT with a row for each opening: GRAG only sums a grading up, and its \
-                       percents of gravel, sand, silt and clay are no sieve curve";
+        let allowed = "a group GRAT with a row for each opening: GRAG only summarises a grading, and its \
+                       percents of gravel, sand, silt and clay are not a sieve curve";
         return Err(refused(line, "GRAG", allowed));
     }
     if soils.is_empty() {
@@ -167,7 +167,7 @@ fn soils_of_rows(
         }
         if summary.is_some() {
             grid.notes
-                .push("the group GRAG, which sums gradings up, was passed over: sizes are of GRAT".into());
+                .push("the group GRAG, which summarises gradings, was ignored: sizes are from GRAT".into());
         }
         let soil = SoilColumn { column: columns[1], heading: name.clone(), role: Role::Finer, end: None };
         // The headings of AGS4 define the other columns.
@@ -179,8 +179,8 @@ fn soils_of_rows(
     Ok(soils.collect())
 }
 
-/// Sorts the rows by size: sieves and hydrometer may follow each other in any order. A repeated row counts
-/// once.
+/// Sorts the rows by size: sieves and hydrometer may follow each other in any order. Repeated rows are
+/// dropped.
 fn in_order(grid: &mut Grid, columns: [usize; 2]) {
     let size = |row: &GridRow| number(row.cell(columns[0])).unwrap_or(f64::INFINITY);
     grid.rows.sort_by(|a, b| size(b).total_cmp(&size(a)));

@@ -1,5 +1,5 @@
-//! Cuts a grid into its tables, side by side, below each other, or for each sample that its rows name. Each
-//! part has its own headings and its own openings, and is read by itself.
+//! Cuts a grid into its tables: side by side, one below another, or one for each sample named by its
+//! rows. Each part has its own headings and its own openings, and is read separately.
 
 use super::across::says_depth;
 use super::content::{begins_with_words, is_blank, is_data, is_text, is_value, percentage, whole_row};
@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 use voidwalk_core::gradation::TableError;
 
-/// Most tables of a sheet. A sheet of soils has some tens of tables; their columns may be many more.
+/// Maximum number of tables in a sheet of soils, which has some tens, but may have many more columns.
 const MOST_TABLES: usize = 10_000;
 
 /// A part of a grid that holds one table.
@@ -21,7 +21,7 @@ pub(super) struct Block {
     pub(super) layout: Layout,
     /// Columns of the table in the file.
     pub(super) columns: Range<usize>,
-    /// Name of the sample if the rows give one.
+    /// Name of the sample, if the rows give one.
     pub(super) sample: Option<String>,
 }
 
@@ -60,8 +60,8 @@ pub(super) fn blocks(grid: Grid) -> Result<Vec<Block>, TableError> {
     Ok(blocks)
 }
 
-/// True if a sheet seems to hold a table: headings of openings, or rows of numbers. A cover has few numbers,
-/// and those behind words.
+/// True if a sheet seems to contain a table: headings of openings, or rows of numbers. A cover has few
+/// numbers, and they follow words.
 pub(super) fn has_table(grid: &Grid) -> bool {
     const LEAST_ROWS: usize = 2;
     const LEAST_VALUES: usize = 3;
@@ -85,8 +85,8 @@ fn is_size_heading(cell: &str) -> bool {
         && opening(cell).is_none()
 }
 
-/// Runs of columns without an empty column between them, each with a heading of openings, together with the
-/// columns to the right of each run.
+/// Runs of columns without an empty column, each with a heading of openings; each is returned with the
+/// columns to its right.
 fn regions(grid: &Grid, width: usize) -> Vec<Range<usize>> {
     let mut anchors = vec![false; width];
     let mut top = None;
@@ -124,7 +124,7 @@ fn regions(grid: &Grid, width: usize) -> Vec<Range<usize>> {
     if regions.is_empty() { std::iter::once(0..width).collect() } else { regions }
 }
 
-/// Rows of each of the tables below each other, with the titles above it.
+/// Rows of each of the tables one below another, with the titles above it.
 fn bands(grid: &Grid) -> Vec<Range<usize>> {
     let rows = &grid.rows;
     let whole = || std::iter::once(0..rows.len()).collect();
@@ -165,7 +165,7 @@ fn title_above(rows: &[GridRow], least: usize) -> usize {
     }
 }
 
-/// True if the headings repeat and the numbers below continue those above: one table.
+/// True if the headings repeat and the numbers below continue those above: it is one table.
 fn goes_on(above: &[GridRow], next: &GridRow, below: &[GridRow]) -> bool {
     let head = &above[0];
     let roles = |row: &GridRow| -> Vec<(usize, Role)> {
@@ -194,7 +194,7 @@ fn goes_on(above: &[GridRow], next: &GridRow, below: &[GridRow]) -> bool {
     last.0 >= 0.0 && (falls && (!is_finer || after.1 <= last.1) || rises && (!is_finer || after.1 >= last.1))
 }
 
-/// Tables of a band: one, or several without an empty column between them, each beginning with its openings.
+/// Splits a band into tables: one, or several without an empty column between, each led by its openings.
 fn side_by_side(band: Grid, several: bool) -> Result<Vec<Block>, TableError> {
     let (groups, line) = match headings(&band) {
         (Some(headings), _) => (groups(&band, &headings)?, Some(band.rows[headings.at].line)),
@@ -248,7 +248,7 @@ fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableEr
     };
     let kinds: Vec<(usize, bool)> = (0..roles.len()).filter_map(|c| Some((c, kind(c)?))).collect();
     let (Some(&(_, begins)), Some(&(_, ends))) = (kinds.first(), kinds.last()) else { return Ok(Vec::new()) };
-    // In all of the tables, values may lie to the left of their openings.
+    // In all of the tables, the values may be to the left of their openings.
     let swapped = !begins && ends;
     let mut starts = vec![0];
     for pair in kinds.windows(2) {
@@ -263,7 +263,7 @@ fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableEr
         return Err(grid.refused(grid.rows[*at].line, c, "heading", grid.rows[*at].cell(c), allowed));
     }
     let mut groups: Vec<Range<usize>> = Vec::new();
-    // First openings of the last group, and true if all of its values are retained.
+    // First openings of the last group; true if all of its values are retained.
     let (mut openings_before, mut retained_before) = (None, false);
     let mut rest = &kinds[..];
     for (place, &start) in starts.iter().enumerate() {
@@ -278,7 +278,7 @@ fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableEr
             _ => false,
         };
         match groups.last_mut() {
-            // The openings repeat behind the percents, or the table repeats with more columns.
+            // The openings repeat after the percents, or the table repeats with more columns.
             Some(last) if !some && agrees() || some && all_finer && retained_before && agrees() => {
                 last.end = end;
             }
@@ -297,7 +297,7 @@ fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableEr
     Ok(groups)
 }
 
-/// Refuses values behind an empty column if several adjacent tables could own them.
+/// Refuses values after an empty column if they could belong to several adjacent tables.
 fn refuse_far_values(grid: &Grid, layout: &Layout) -> Result<(), TableError> {
     let columns: Vec<usize> = layout.soils.iter().map(|soil| soil.column).collect();
     let mut filled = vec![false; columns.last().map_or(0, |last| last + 1)];
@@ -319,14 +319,14 @@ fn refuse_far_values(grid: &Grid, layout: &Layout) -> Result<(), TableError> {
     Ok(())
 }
 
-/// Refuses headings of a table amid the rows of another, below the line of its own.
+/// Refuses headings of a table among the rows of another, below that table's headings.
 fn refuse_other_headings(grid: &Grid, line: usize) -> Result<(), TableError> {
     for row in grid.rows.iter().filter(|row| row.line > line && !is_text(row)) {
         let Some(size) = row.filled().find(|&c| is_size_heading(row.cell(c))) else { continue };
         let mut right = row.filled().filter(|&c| c > size).take(3);
         let of_soil = |c: usize| matches!(role(row.cell(c)), Role::Finer | Role::Retained(_));
         if right.any(|c| !is_value(row.cell(c)) && of_soil(c)) {
-            let allowed = "a table whose headings stand in a row with those of the tables beside it, or \
+            let allowed = "a table whose headings are in one row with those of the tables beside it, or \
                            below the numbers of the one above it";
             return Err(grid.refused(row.line, size, "heading", row.cell(size), allowed));
         }
@@ -334,10 +334,10 @@ fn refuse_other_headings(grid: &Grid, line: usize) -> Result<(), TableError> {
     Ok(())
 }
 
-/// Most places of the headings of all parts.
+/// Maximum number of cells in the headings of all parts.
 const MOST_PLACES: usize = 1_000_000;
 
-/// Parts of a table whose rows name their samples, with these names; empty for fewer than two names.
+/// Splits a table whose rows name their samples into parts with these names; empty for fewer than two names.
 fn by_sample(grid: &Grid, layout: &Layout) -> Result<Vec<(String, Grid)>, TableError> {
     let headings = &grid.rows[layout.at..layout.first];
     if !layout.headed || layout.soils.len() != 1 {
@@ -354,7 +354,7 @@ fn by_sample(grid: &Grid, layout: &Layout) -> Result<Vec<(String, Grid)>, TableE
     let samples: Vec<usize> = (0..width).filter(|&c| is_free(c) && of_samples(c)).collect();
     let depths: Vec<usize> =
         (0..width).filter(|&c| is_free(c) && !samples.contains(&c) && of_depths(c)).collect();
-    // A name that is merged over rows lies in the first of them.
+    // A name merged over several rows is in the first of them.
     let mut last: Vec<String> = vec![String::new(); width];
     let mut rows: Vec<(String, String, &GridRow)> = Vec::new();
     for row in grid.rows[layout.first..].iter().filter(|row| opening(row.cell(layout.size)).is_some()) {
@@ -418,13 +418,13 @@ fn by_sample(grid: &Grid, layout: &Layout) -> Result<Vec<(String, Grid)>, TableE
                 }
             }
         }
-        // Rows between the rows of samples go with the sample above them.
+        // Rows between the rows of samples belong to the sample above them.
         parts[last].1.rows.push(row);
     }
     Ok(parts)
 }
 
-/// True if a heading of names may name the fractions of one soil.
+/// True if the names below a heading may be those of the fractions of one soil.
 fn may_be_of_fractions(heading: &str) -> bool {
     words(heading).iter().any(|word| ["material", "soil", "name", "source"].contains(&word.as_str()))
 }

@@ -1,5 +1,5 @@
-//! Content of a cell (a percentage, a range, a date, words, nothing), of a row and of a column of such cells,
-//! and rows that a mistake has run together in one cell or cut short.
+//! Content of a cell (a percentage, a range, a date, words, nothing), of a row and of a column of such
+//! cells. Rows that a mistake has merged into one cell or cut short.
 
 use super::grid::{Grid, GridRow};
 use super::size::{Form, Opening, opening, unmarked, with_thousands};
@@ -19,7 +19,7 @@ pub(super) fn bound(cell: &str) -> Option<f64> {
     percentage(cell.strip_prefix(['<', '≤'])?.trim())
 }
 
-/// The least and the most that a specification allows, as in `95-100`, `95 to 100 %`.
+/// The minimum and the maximum allowed by a specification, as in `95-100`, `95 to 100 %`.
 pub(super) fn range(cell: &str) -> Option<(f64, f64)> {
     const SIGNS: [&str; 7] = ["-", "–", "—", " to ", " bis ", " à ", " a "];
     let ends = SIGNS.iter().find_map(|sign| cell.split_once(sign));
@@ -31,13 +31,13 @@ pub(super) fn is_value(cell: &str) -> bool {
     percentage(cell).is_some() || range(cell).is_some()
 }
 
-/// True if a cell says that it holds no value.
+/// True if a cell states that it has no value.
 pub(super) fn is_blank(cell: &str) -> bool {
     ["", "-", "–", "—", "n/a", "n.a.", "na", "N/A", "n.d.", "nd"].contains(&cell)
 }
 
-/// True for a date: spreadsheets turn `3/8` into one, and a date cell of a workbook ends in a mark of its
-/// own.
+/// True for a date: spreadsheets turn `3/8` into one, and a date cell of a workbook ends in a special
+/// mark.
 pub(super) fn is_date(cell: &str) -> bool {
     const MONTHS: [&str; 12] =
         ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
@@ -52,7 +52,7 @@ pub(super) fn is_date(cell: &str) -> bool {
             && parts.iter().all(|part| is_number(part) || is_month(part))
 }
 
-/// `Dry mass (g)`, `D10`, `Cu`: words at the beginning of a row below a table, rather than an opening with a
+/// `Dry mass (g)`, `D10`, `Cu`: words at the beginning of a row below a table, not an opening with a
 /// typing error.
 pub(super) fn is_words(cell: &str) -> bool {
     const OF_SIEVES: [&str; 14] = [
@@ -79,7 +79,7 @@ pub(super) fn is_short_opening(cell: &str) -> bool {
     matches!(opening(cell), Some((Opening::Mm(_), Form::UsNumber | Form::Inches)))
 }
 
-/// True for an opening in one cell and a value in another, without words before them.
+/// True for an opening in one cell and a value in another, with no words before them.
 pub(super) fn is_data(row: &GridRow) -> bool {
     let is_size = |cell: &str| {
         matches!(opening(cell), Some((Opening::Mm(_) | Opening::Bare(_) | Opening::Class(..), _)))
@@ -89,12 +89,12 @@ pub(super) fn is_data(row: &GridRow) -> bool {
     row.filled().any(|c| (more || c != first) && is_value(row.cell(c)))
 }
 
-/// True for numbers behind words, as in `Depth (m) | 3.5 | 4.5`, which may lie above a table or below it.
+/// True for numbers after words, as in `Depth (m) | 3.5 | 4.5`, which may be above a table or below it.
 pub(super) fn begins_with_words(row: &GridRow) -> bool {
     row.filled().next().is_some_and(|c| is_words(row.cell(c)))
 }
 
-/// True if a row holds neither numbers nor openings nor dates.
+/// True if a row contains neither numbers nor openings nor dates.
 pub(super) fn is_text(row: &GridRow) -> bool {
     row.filled().all(|c| {
         let cell = row.cell(c);
@@ -103,18 +103,18 @@ pub(super) fn is_text(row: &GridRow) -> bool {
     })
 }
 
-/// Facts of a column.
+/// Properties of a column.
 #[derive(Clone, Default)]
 pub(super) struct Column {
-    /// True if any cell is a number, bare of signs.
+    /// True if any cell is a number without signs.
     pub(super) with_numbers: bool,
     pub(super) with_values: bool,
     pub(super) with_ranges: bool,
-    /// Values less other cells, rows of text apart: above 0, a cell that is no value is refused by name.
+    /// Values minus other cells, without rows of text. Above 0, a cell without a value is refused by name.
     pub(super) balance: i64,
 }
 
-/// Facts of each column of some rows, at least `width` columns.
+/// Properties of each column of some rows, at least `width` columns.
 pub(super) fn columns(rows: &[GridRow], width: usize) -> Vec<Column> {
     let width = rows.iter().map(|row| row.cells.len()).max().unwrap_or(0).max(width);
     let mut columns = vec![Column::default(); width];
@@ -132,7 +132,7 @@ pub(super) fn columns(rows: &[GridRow], width: usize) -> Vec<Column> {
     columns
 }
 
-/// A cell without the values at its end, and their number, read as if other separators were spaces.
+/// Splits the values off the end of a cell and counts them, as if other separators were spaces.
 fn parted(cell: &str) -> [(String, usize); 2] {
     let signs: &[char] = &[';', '\t', '|', '"'];
     let spaced = cell.replace(signs, " ");
@@ -146,7 +146,7 @@ fn parted(cell: &str) -> [(String, usize); 2] {
     })
 }
 
-/// True if a cell holds an opening and values, behind another separator or in quotes around the whole row.
+/// True if a cell contains an opening and values, with another separator or in quotes around the whole row.
 fn is_whole_row(cell: &str) -> bool {
     parted(cell).iter().any(|(rest, values)| match rest.is_empty() {
         true => *values > 1,
@@ -154,7 +154,7 @@ fn is_whole_row(cell: &str) -> bool {
     })
 }
 
-/// True if a cell ends in several values or holds several openings: a row of a table on its side.
+/// True if a cell ends in several values or contains several openings: a row of a table on its side.
 pub(super) fn holds_several(cell: &str) -> bool {
     let spaced = cell.replace("  ", ";");
     let parts = spaced.split([';', '\t', '|', '"', ',']).map(str::trim);
@@ -203,7 +203,7 @@ fn holds_pair(cell: &str) -> bool {
     words.windows(2).any(|pair| pair.iter().all(is_number))
 }
 
-/// The cell of a row of text that may be a row of numbers, amid a table or at its end.
+/// Finds the cell of a row of text that may be a row of numbers, inside a table or at its end.
 pub(super) fn whole_row(row: &GridRow, amid: bool) -> Option<usize> {
     let ends_in_number = |cell: &str| split_words(cell).last().is_some_and(|word| is_value(word));
     let holds_number = |cell: &str| {
@@ -215,20 +215,20 @@ pub(super) fn whole_row(row: &GridRow, amid: bool) -> Option<usize> {
     (is_text(row) && (alone || !amid)).then(|| row.filled().find(|&c| is_it(row.cell(c)))).flatten()
 }
 
-/// The only cell of a row of text that may be a row of numbers, directly below a table.
+/// Finds the only cell of a row of text that may be a row of numbers, directly below a table.
 pub(super) fn row_below(row: &GridRow) -> Option<usize> {
     let only = row.filled().next().filter(|_| row.filled().count() == 1 && is_text(row))?;
     holds_pair(row.cell(only)).then_some(only)
 }
 
 pub(super) fn refused_row(grid: &Grid, row: &GridRow, column: usize) -> TableError {
-    let allowed = "a row of the table, its openings and percents parted as in the other rows and not quoted \
+    let allowed = "a row of the table, its openings and percents split as in the other rows and not quoted \
                    as a whole";
     grid.refused(row.line, column, FIELDS[0], row.cell(column), allowed)
 }
 
-/// Refuses a row of a text that ends before the column `last`: any of its values may be the missing one. The
-/// pan and the sum have fewer.
+/// Refuses a row of a text that ends before the column `last`: any of its values may be missing. The pan
+/// and the sum may have fewer.
 pub(super) fn refuse_short(grid: &Grid, row: &GridRow, size: &str, last: usize) -> Result<(), TableError> {
     let Some(line) = &row.text else { return Ok(()) };
     if line.cells > grid.left + last

@@ -1,5 +1,5 @@
-//! Rows of the table below the headings, without its remarks, repeated headings and notes of the laboratory
-//! below it; and checks that each of its numbers is read and that its commas have one meaning.
+//! Rows of the table below the headings, without remarks, repeated headings and laboratory notes below
+//! it. Checks that each of its numbers is read and that its commas have one meaning.
 
 use super::content::{is_blank, is_text, is_value, is_words, percentage, refused_row, row_below, whole_row};
 use super::grid::{Grid, GridRow, listed};
@@ -15,14 +15,14 @@ pub(super) struct Below {
     pub(super) line: usize,
     pub(super) column: usize,
     pub(super) words: String,
-    /// The first number behind the words, and its column.
+    /// First number after the words, and its column.
     pub(super) value: Option<(usize, f64)>,
 }
 
 pub(super) struct Extent {
     /// Indices of the rows, counted from the first below the headings.
     table: Vec<usize>,
-    /// Rows below the table, which are left out.
+    /// Rows below the table, which are ignored.
     pub(super) below: Vec<Below>,
     pub(super) notes: Vec<String>,
     first_value: usize,
@@ -73,18 +73,18 @@ impl Extent {
         self.table.iter().map(move |index| &grid.rows[first + index])
     }
 
-    /// The column that holds the opening of a row.
+    /// Finds the column with the opening of a row.
     pub(super) fn column_of_size(&self, layout: &Layout, row: &GridRow) -> usize {
         let other = layout.other_size.filter(|&c| !row.cell(c).is_empty());
         match is_blank(row.cell(layout.size)) {
-            // With words in another column, the row is refused at that column.
+            // If there are words in another column, the row is refused at that column.
             true => other.or(self.column_of_words(layout, row)).unwrap_or(layout.size),
             false => layout.size,
         }
     }
 
-    /// Index at which the table ends: the first row of words below its numbers, unless the numbers below it
-    /// continue those above, so that a row with a percent is refused.
+    /// Index of the end of the table: the first row of words below its numbers. If the numbers below
+    /// continue those above, the table goes on, so that a row with a percent is refused.
     fn end(&self, rows: &[GridRow], layout: &Layout) -> usize {
         let is_data = |row: &GridRow| {
             let column = self.column_of_size(layout, row);
@@ -107,8 +107,8 @@ impl Extent {
         (begun..rows.len()).find(ends).unwrap_or(rows.len())
     }
 
-    /// True if any of the rows `below` may continue those `above`: a size beyond the last of them, and a
-    /// percent finer that goes in the same direction.
+    /// True if any of the rows `below` may continue those `above`: it has a size beyond the last one,
+    /// and its percent finer goes in the same direction.
     fn continues(&self, above: &[GridRow], below: &[GridRow], layout: &Layout) -> bool {
         let Some(soil) = layout.soils.first() else { return true };
         let numbers = |row: &GridRow| match opening(row.cell(self.column_of_size(layout, row)))?.0 {
@@ -132,7 +132,7 @@ impl Extent {
         })
     }
 
-    /// The column of the words with which a row begins in place of an opening.
+    /// Finds the column of the words that begin a row in place of an opening.
     fn column_of_words(&self, layout: &Layout, row: &GridRow) -> Option<usize> {
         let sizes = [Some(layout.size), layout.other_size];
         let of_size = |c: usize| sizes.contains(&Some(c));
@@ -165,7 +165,7 @@ impl Extent {
     }
 }
 
-/// Refuses a table that holds a number found in no curve and named by no note.
+/// Refuses a table with a number that is in no curve and in no note.
 pub(super) fn refuse_lost(
     grid: &Grid,
     layout: &Layout,
@@ -173,7 +173,7 @@ pub(super) fn refuse_lost(
     soils: &[Result<Soil, TableError>],
 ) -> Result<(), TableError> {
     let lost = |line: usize, column: usize, cell: &str| {
-        let allowed = "numbers that are read, or stand in a column of their own beside the table";
+        let allowed = "numbers that are read, or are in a column of their own beside the table";
         Err(grid.refused(line, column, FIELDS[1], cell, allowed))
     };
     let is_rest = |row: &GridRow| {
@@ -184,7 +184,7 @@ pub(super) fn refuse_lost(
     };
     let mut read: HashSet<usize> = HashSet::new();
     for (column, soil) in layout.soils.iter().zip(soils) {
-        // A refused soil carries its own reason.
+        // A refused soil has its own reason.
         let Ok(soil) = soil else { return Ok(()) };
         let lines: HashSet<usize> = soil.rows.iter().map(|row| row.line).collect();
         for row in extent.rows(grid, layout).filter(|row| !lines.contains(&row.line)) {
@@ -210,7 +210,7 @@ pub(super) fn refuse_lost(
     Ok(())
 }
 
-/// Refuses a table whose numbers have points and commas, and one in which every comma may separate thousands.
+/// Refuses a table whose numbers contain points and commas, or in which every comma may separate thousands.
 pub(super) fn check_commas(
     grid: &Grid,
     layout: &Layout,
@@ -232,7 +232,7 @@ pub(super) fn check_commas(
             if is_number && cell.contains(',') {
                 other = other.or(Some((row.line, cell)));
             }
-            // No percentage is a thousand.
+            // No percentage reaches a thousand.
             let is_percent = c != at && !matches!(column.role, Role::Retained(_));
             match comma(cell) {
                 Some(Comma::Decimal) => decimal = true,
@@ -263,7 +263,7 @@ pub(super) fn check_commas(
     Ok(())
 }
 
-/// Refuses `1.100` among whole masses of hundreds of grams: the point may separate thousands.
+/// Refuses `1.100` among whole masses of hundreds of grams: its point may separate thousands.
 fn refuse_points_of_thousands(
     grid: &Grid,
     layout: &Layout,

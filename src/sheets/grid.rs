@@ -1,4 +1,4 @@
-//! Rows of cells: the common form of every kind of file before its soils are looked for.
+//! Rows of cells: the common form of all kinds of file, before soils are searched for.
 
 use std::ops::Range;
 use std::rc::Rc;
@@ -16,9 +16,9 @@ pub(super) struct Grid {
     /// Rows of numbers that are commented out: their lines and texts.
     pub(super) commented: Vec<(usize, String)>,
     pub(super) notes: Vec<String>,
-    /// Columns of the file to the left of this grid, where it is a part of one.
+    /// Number of columns of the file to the left of this grid, if it is a part of one.
     pub(super) left: usize,
-    /// For a grid whose rows are columns of the file: the line of the file that each column is.
+    /// For a grid whose rows are columns of the file: the line of the file for each column.
     pub(super) across: Option<Vec<usize>>,
     /// Name of the columns if a text file holds several tables side by side.
     pub(super) part: Option<String>,
@@ -34,7 +34,7 @@ pub(super) struct Place {
 #[derive(Debug)]
 pub(super) struct Line {
     pub(super) text: String,
-    /// Number of cells, empty ones at the end included.
+    /// Number of cells, including empty ones at the end.
     pub(super) cells: usize,
 }
 
@@ -45,24 +45,24 @@ pub(super) struct GridRow {
     /// Cells, trimmed, without empty ones at the end.
     pub(super) cells: Vec<String>,
     pub(super) text: Option<Rc<Line>>,
-    /// True if a quote is left open in the row.
+    /// True if a quote in the row is not closed.
     pub(super) open: bool,
 }
 
 impl GridRow {
-    /// The cell in this column; an empty text beyond the last cell.
+    /// Returns the cell in this column; an empty text beyond the last cell.
     pub(super) fn cell(&self, column: usize) -> &str {
         self.cells.get(column).map_or("", String::as_str)
     }
 
-    /// Columns that are not empty.
+    /// Lists the columns that are not empty.
     pub(super) fn filled(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.cells.len()).filter(|&column| !self.cells[column].is_empty())
     }
 }
 
 impl Grid {
-    /// Place in the file of the cell in this row and column of the grid.
+    /// Returns the place in the file of the cell in this row and column of the grid.
     pub(super) fn place_of(&self, line: usize, column: usize) -> Place {
         match &self.across {
             Some(lines) => {
@@ -105,7 +105,7 @@ impl Grid {
         self.rows.iter().map(|row| row.cells.len()).max().unwrap_or(0)
     }
 
-    /// Part of the same file with these rows.
+    /// Makes a part of the same file from these rows.
     pub(super) fn with_rows(&self, rows: Vec<GridRow>) -> Grid {
         Grid {
             file: self.file.clone(),
@@ -120,8 +120,8 @@ impl Grid {
         }
     }
 
-    /// Parts of the grid in these columns, which follow each other; each part leaves out the rows that are
-    /// empty in it.
+    /// Splits the grid into these adjacent ranges of columns; each part omits the rows that are empty in
+    /// it.
     pub(super) fn columns(&self, ranges: &[Range<usize>]) -> Vec<Grid> {
         let part = |range: &Range<usize>| {
             let left = self.left + range.start;
@@ -146,7 +146,7 @@ impl Grid {
         parts
     }
 
-    /// Error for a cell whose `value` is refused as a value of `field`.
+    /// Makes the error for a cell whose `value` is refused as a value of `field`.
     pub(super) fn refused(
         &self,
         line: usize,
@@ -188,7 +188,7 @@ pub(super) fn listed<T>(word: &str, all: &[T], name: impl Fn(&T) -> String) -> S
     }
 }
 
-/// Names of soils, shortened; of many, the first ones.
+/// Names of soils, shortened; if there are many, only the first ones.
 pub(super) fn names_listed(names: &[String]) -> String {
     const MOST: usize = 12;
     let mut shown: Vec<String> = names.iter().take(MOST).map(|name| shortened(&plain(name))).collect();

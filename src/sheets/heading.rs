@@ -1,4 +1,4 @@
-//! Meaning of the heading of a column.
+//! Meaning of a column's heading.
 
 use super::languages::{
     any, list, say_cumulative, say_finer, say_inches, say_individual, say_micrometres, say_millimetres,
@@ -6,7 +6,7 @@ use super::languages::{
 };
 use super::size::Unit;
 
-/// Content of a column by its heading.
+/// Content of a column, according to its heading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Role {
     Size,
@@ -19,10 +19,10 @@ pub(super) enum Role {
 /// Form in which retained values are given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Retained {
-    /// True for percents, whose total is 100; false for masses.
+    /// True for percents, which total 100; false for masses.
     pub(super) percent: bool,
-    /// True for values on this sieve and all coarser ones, false for values on this one alone; `None` if the
-    /// heading does not say.
+    /// True for values on this sieve and all coarser ones, false for values on this one only; `None` if
+    /// the heading does not say.
     pub(super) cumulative: Option<bool>,
 }
 
@@ -51,8 +51,8 @@ pub(super) fn words(name: &str) -> Vec<String> {
     name.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).map(str::to_lowercase).collect()
 }
 
-/// True if a heading says cumulative. `of total`, `total mass`, `total sample` name only the whole of the
-/// percents.
+/// True if a heading says cumulative. `of total`, `total mass`, `total sample` only name the whole to
+/// which the percents refer.
 fn is_cumulative(words: &[String]) -> bool {
     const OF: [&str; 8] = ["of", "the", "du", "del", "do", "von", "vom", "der"];
     const WHOLE: [&str; 10] =
@@ -65,7 +65,7 @@ fn is_cumulative(words: &[String]) -> bool {
     })
 }
 
-/// `D10`, `D 85 (mm)`: a size that was read off a curve, not a column of openings.
+/// `D10`, `D 85 (mm)`: a size read off a curve, not a column of openings.
 fn is_characteristic(words: &[String]) -> bool {
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
     match words {
@@ -86,7 +86,7 @@ fn words_of_column(name: &str) -> Vec<String> {
     words
 }
 
-/// `Sample D`, `Zone G (%)`: a letter behind a name that means neither diameters nor grams.
+/// `Sample D`, `Zone G (%)`: a letter after a name, which means neither diameters nor grams.
 fn is_letter_of_sample(name: &str, words: &[String], letter: &str) -> bool {
     let is_bracketed = ['(', '['].iter().any(|sign| name.to_lowercase().contains(&format!("{sign}{letter}")));
     let others = || words.iter().filter(|word| *word != letter);
@@ -101,8 +101,8 @@ fn is_length(name: &str) -> bool {
     matches!(unit(name), Ok(Some(Unit::Mm | Unit::Micrometre | Unit::Cm | Unit::Inch)))
 }
 
-/// True if a text says that a table goes on from the finest sieve: a hydrometer or another sedimentation
-/// test.
+/// True if a text says that a table continues below the finest sieve, with a hydrometer or another
+/// sedimentation test.
 pub(super) fn says_sedimentation(text: &str) -> bool {
     const STEMS: [&str; 10] =
         list("hydrom|sediment|sédiment|areom|aräom|aréom|schlämm|schlaemm|densim|pipette");
@@ -121,7 +121,7 @@ pub(super) fn says_limit(name: &str) -> bool {
     any(&words(name), &LIMIT)
 }
 
-/// `Sample no.`, `Borehole:`: words before the name of a soil.
+/// `Sample no.`, `Borehole:`: words that precede the name of a soil.
 pub(super) fn says_sample(text: &str) -> bool {
     const SAMPLE: [&str; 15] = list(
         "sample|samples|specimen|soil|material|probe|borehole|boring|bohrung|name|échantillon|\
@@ -130,7 +130,7 @@ pub(super) fn says_sample(text: &str) -> bool {
     any(&words(text), &SAMPLE)
 }
 
-/// True if the heading of percents says that they refer to the fines alone.
+/// True if the heading of percents says that they refer to the fines only.
 pub(super) fn says_of_fines(text: &str) -> bool {
     let small = text.to_lowercase();
     let of_part =
@@ -138,8 +138,8 @@ pub(super) fn says_of_fines(text: &str) -> bool {
     of_part.iter().any(|part| small.contains(part)) || small.contains("200") && !small.contains("2000")
 }
 
-/// True if a heading of percents says that they are finer, without limiting them to the whole or to
-/// cumulative.
+/// True if a heading says that its percents are finer, and restricts them neither to the whole nor to
+/// cumulative ones.
 pub(super) fn says_finer(name: &str) -> bool {
     const VAGUE: [&str; 6] = ["percent", "pct", "percentage", "cumulative", "massenanteil", "perp"];
     let words = words(name);
@@ -147,7 +147,7 @@ pub(super) fn says_finer(name: &str) -> bool {
         || words.iter().any(|word| FINER.contains(&word.as_str()) && !VAGUE.contains(&word.as_str()))
 }
 
-/// True if a heading says cumulative, for percents finer or retained.
+/// True if a heading says that percents finer or retained are cumulative.
 pub(super) fn says_cumulative(name: &str) -> bool {
     let words = words(name);
     words.iter().any(|word| word.starts_with("cum")) || say_cumulative(&words)
@@ -192,7 +192,7 @@ pub(super) fn role(name: &str) -> Role {
     let has_digit = name.contains(|c: char| c.is_ascii_digit());
     let is_bound = ["passing", "pass", "passed", "retained", "oversize", "undersize"];
     if is_length(name) && any(&words, &is_bound) && !percent && !mass && !has_digit {
-        // `Passing (mm)`, `Retained on (mm)`: the bounds of a class.
+        // `Passing (mm)`, `Retained on (mm)`: bounds of a class.
         return Role::Size;
     }
     // `Ref. cum. (%)`, but not `Sample ref.`.
@@ -206,13 +206,13 @@ pub(super) fn role(name: &str) -> Role {
     }
     match (size, mass) {
         (true, _) => Role::Size,
-        // `mass` alone may mean the mass that passes; grams are weighed.
+        // `mass` alone may mean the mass that passes; grams are weighed on the sieves.
         (false, true) if any(&words, &GRAMS) => Role::Retained(Retained { percent: false, cumulative }),
         _ => Role::Other,
     }
 }
 
-/// The unit that the heading of a column of openings names; an error for a unit that is not understood.
+/// Returns the unit named by the heading of a column of openings; an error for an unknown unit.
 pub(super) fn unit(name: &str) -> Result<Option<Unit>, ()> {
     // `SizeUm`
     let mut parted = String::new();
@@ -246,7 +246,7 @@ pub(super) fn unit(name: &str) -> Result<Option<Unit>, ()> {
     }))
 }
 
-/// True if a heading of openings ends in a word in brackets that names neither a unit nor sieves.
+/// True if a heading of openings ends with a word in brackets that names neither a unit nor sieves.
 fn is_unknown(name: &str) -> bool {
     const OTHER: [&str; 14] = [
         "us", "uss", "astm", "aashto", "iso", "din", "en", "standard", "nominal", "square", "round", "x",

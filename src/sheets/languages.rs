@@ -1,7 +1,7 @@
-//! Words of laboratories in languages other than English, in small letters; some words of the larger
+//! Words of laboratories in languages other than English, in lower case; some words of the major
 //! languages are with the English ones in `heading`.
 
-/// The `N` words of a text, parted by `|`, when the program is compiled.
+/// Splits a text at `|` into `N` words, at compile time.
 pub(super) const fn list<const N: usize>(text: &'static str) -> [&'static str; N] {
     let (mut words, mut rest, mut at) = ([""; N], text, 0);
     while at < N {
@@ -97,7 +97,7 @@ pub(super) fn say_millimetres(words: &[String]) -> bool {
     any(words, &MILLIMETRE)
 }
 
-/// True if a name, or its words, say micrometres and not mm.
+/// True if a name or its words mean micrometres rather than mm.
 pub(super) fn say_micrometres(name: &str, words: &[String]) -> bool {
     let begins = |word: &String| MICROMETRES.iter().any(|stem| word.starts_with(stem));
     MICROMETRE_WITHIN.iter().any(|part| name.contains(part))

@@ -1,4 +1,4 @@
-//! Place of the openings in a grid with one table, and the columns that hold a soil each.
+//! Position of the openings in a grid with one table, and the columns with one soil each.
 
 use super::content::{
     Column, begins_with_words, columns, is_data, is_short_opening, is_text, is_value, percentage, whole_row,
@@ -13,15 +13,15 @@ pub(super) const ROWS_OF_TITLES: usize = 60;
 /// Allowed headings of openings, in words.
 const UNITS: &str = "openings in mm (opening_mm), or in cm, um, inches or phi";
 
-/// Most places of a table, filled or empty.
+/// Maximum number of cells of a table, filled or empty.
 const MOST_PLACES: usize = 40_000_000;
 
 #[derive(Debug, Default)]
 pub(super) struct Layout {
     pub(super) size: usize,
-    /// Another column with openings or their names, for rows without an opening in the first.
+    /// Another column of openings or their names, for rows without an opening in the first.
     pub(super) other_size: Option<usize>,
-    /// Unit that the heading gives to openings without one.
+    /// Unit given by the heading for openings without one.
     pub(super) unit: Option<Unit>,
     pub(super) soils: Vec<SoilColumn>,
     /// Index of the row of headings.
@@ -29,18 +29,18 @@ pub(super) struct Layout {
     /// Index of the first row below the headings.
     pub(super) first: usize,
     pub(super) headed: bool,
-    /// Further columns, whose numbers agree with those read or are named in a note.
+    /// Other columns, whose numbers agree with those read or are named in a note.
     pub(super) accounted: Vec<usize>,
     pub(super) notes: Vec<String>,
 }
 
-/// A column that holds a soil, or one end of a specification.
+/// A column with a soil, or with one end of a specification.
 #[derive(Clone, Debug)]
 pub(super) struct SoilColumn {
     pub(super) column: usize,
     pub(super) heading: String,
     pub(super) role: Role,
-    /// The end that is read of ranges such as `95-100`.
+    /// End of ranges such as `95-100` that is read.
     pub(super) end: Option<End>,
 }
 
@@ -61,7 +61,7 @@ pub(super) fn says_soil(row: &GridRow) -> bool {
     row.filled().any(|c| !matches!(role(row.cell(c)), Role::Size | Role::Other))
 }
 
-/// True for a repetition of a table's headings, as above the rows of a hydrometer.
+/// True for a repetition of a table's headings, as before the rows of a hydrometer.
 pub(super) fn repeats_headings(row: &GridRow, layout: &Layout) -> bool {
     is_text(row)
         && role(row.cell(layout.size)) == Role::Size
@@ -72,13 +72,13 @@ pub(super) fn repeats_headings(row: &GridRow, layout: &Layout) -> bool {
 pub(super) struct Headings {
     /// Index of the row of headings.
     pub(super) at: usize,
-    /// Index of the first row below the headings and the cells that belong to them.
+    /// Index of the first row below the headings and their additional cells.
     pub(super) first: usize,
     pub(super) heads: Vec<String>,
     pub(super) roles: Vec<Role>,
 }
 
-/// Headings of the first table of a grid, and the index of the first row of its numbers.
+/// Finds the headings of the first table of a grid, and the index of the first row of its numbers.
 pub(super) fn headings(grid: &Grid) -> (Option<Headings>, Option<usize>) {
     let rows = &grid.rows;
     let upper = &rows[..rows.len().min(ROWS_OF_TITLES)];
@@ -87,7 +87,7 @@ pub(super) fn headings(grid: &Grid) -> (Option<Headings>, Option<usize>) {
         let headings = above.iter().rposition(|row| is_heading(row) && says_soil(row));
         headings.or_else(|| above.iter().rposition(is_heading))
     };
-    // Numbers behind words may be a depth above the table.
+    // Numbers after words may be a depth above the table.
     let plain = upper.iter().position(|row| is_data(row) && !begins_with_words(row));
     let any = upper.iter().position(is_data);
     let (at, data) = match above(plain) {
@@ -95,7 +95,7 @@ pub(super) fn headings(grid: &Grid) -> (Option<Headings>, Option<usize>) {
         None => (above(any), any),
     };
     let Some(at) = at else { return (None, any) };
-    // Rows below the headings may hold units or the names of soils.
+    // Rows below the headings may contain units or the names of soils.
     let sizes: Vec<usize> = rows[at].filled().filter(|&c| role(rows[at].cell(c)) == Role::Size).collect();
     let belongs = |row: &&GridRow| {
         is_text(row)
@@ -113,7 +113,7 @@ pub(super) fn headings(grid: &Grid) -> (Option<Headings>, Option<usize>) {
     (Some(Headings { at, first: at + 1 + below, heads, roles }), data)
 }
 
-/// True if a cell below the heading of openings is a part of it, such as a unit; `4..75` is not.
+/// True if a cell below the heading of openings belongs to it, such as a unit; `4..75` does not.
 fn belongs_to_heading(cell: &str) -> bool {
     !cell.contains(|c: char| c.is_ascii_digit()) || cell.starts_with(char::is_alphabetic)
 }
@@ -203,7 +203,7 @@ fn with_headings(grid: &Grid, headings: Headings) -> Result<Layout, TableError> 
     Ok(layout)
 }
 
-/// Columns of openings or of their names; the one to be read comes first.
+/// Columns of openings or their names; the one to be read comes first.
 fn sizes(heads: &[String], roles: &[Role], columns: &[Column]) -> Vec<usize> {
     let mut sizes: Vec<usize> = (0..heads.len()).filter(|&c| roles[c] == Role::Size).collect();
     let rank = |c: usize| match unit(&heads[c]) {
@@ -217,7 +217,7 @@ fn sizes(heads: &[String], roles: &[Role], columns: &[Column]) -> Vec<usize> {
     sizes
 }
 
-/// Columns that are read as soils: percents finer, or else retained, or else the other numbers.
+/// Columns that are read as soils: percents finer, or else retained values, or else the other numbers.
 fn value_columns(roles: &[Role], columns: &[Column]) -> Vec<usize> {
     let with_values = |wanted: &dyn Fn(usize) -> bool| -> Vec<usize> {
         (0..roles.len()).filter(|&c| columns[c].with_values && wanted(c)).collect()
@@ -241,8 +241,8 @@ fn value_columns(roles: &[Role], columns: &[Column]) -> Vec<usize> {
     .unwrap_or_default()
 }
 
-/// Refuses numbers between two columns of percents that only rise or only fall: they may be the openings of
-/// the second.
+/// Refuses numbers between two columns of percents that only rise or only fall: they may be the openings
+/// of the second column.
 fn refuse_unnamed_openings(
     grid: &Grid,
     heads: &[String],
@@ -272,7 +272,7 @@ fn refuse_unnamed_openings(
     Err(grid.refused(line, column, "heading", &heads[column], allowed))
 }
 
-/// A note of the columns that hold numbers and are not read.
+/// Makes a note of the columns with numbers that are not read.
 fn not_used(grid: &Grid, heads: &[String], unused: &[usize]) -> Option<String> {
     const MOST: usize = 6;
     let name = |&c: &usize| match heads.get(c).map(String::as_str).unwrap_or_default() {
@@ -286,15 +286,15 @@ fn not_used(grid: &Grid, heads: &[String], unused: &[usize]) -> Option<String> {
     (!named.is_empty()).then(|| format!("not used: {}", named.join(", ")))
 }
 
-/// True if a table has the header of a constriction curve: percents by number of constrictions, not by mass.
+/// True if a table has the header of a constriction curve: percents by number of constrictions.
 fn is_constriction_curve(heads: &[String]) -> bool {
     let named = |name: &str| heads.iter().any(|head| words(head).join("_") == name);
     let is_diameter = named("diameter_mm") || named("diameter_over_d0f");
     heads.len() == 2 && named("percent_smaller") && is_diameter
 }
 
-/// Spreads a heading that is merged over several columns and lies in the first of them; the rows below name
-/// each column, or a row of samples above does.
+/// Spreads a heading that is merged over several columns, and so is in the first of them, if the rows
+/// below or a row of samples above name each column.
 fn spread(rows: &[GridRow], samples: Option<&GridRow>, mut heads: Vec<String>) -> (Vec<String>, Vec<Role>) {
     let mut roles: Vec<Role> = heads.iter().map(|name| role(name)).collect();
     let (top, below) = (&rows[0], &rows[1..]);
@@ -325,7 +325,7 @@ fn spread(rows: &[GridRow], samples: Option<&GridRow>, mut heads: Vec<String>) -
     (heads, roles)
 }
 
-/// True if a `D` is the name of a sample: behind the openings, and beside a `C` or an `E`.
+/// True if a `D` is the name of a sample: after the openings, and beside a `C` or an `E`.
 fn is_sample_d(heads: &[String], roles: &[Role], column: usize) -> bool {
     let is = |at: usize, name: &str| {
         heads.get(at).is_some_and(|head| head.trim().eq_ignore_ascii_case(name)) && roles[at] != Role::Size
@@ -336,8 +336,8 @@ fn is_sample_d(heads: &[String], roles: &[Role], column: usize) -> bool {
         && (is(column - 1, "c") || is(column + 1, "e"))
 }
 
-/// Layout of a table whose openings no row names: the first row of numbers begins it, and places decide the
-/// rest.
+/// Layout of a table without a row that names the openings: it begins with the first row of numbers, and
+/// the positions of the columns decide the rest.
 fn without_headings(grid: &Grid, data: Option<usize>) -> Result<Layout, TableError> {
     let begins = |row: &GridRow| {
         row.filled().any(|c| is_value(row.cell(c)) || is_short_opening(row.cell(c)))
@@ -345,7 +345,7 @@ fn without_headings(grid: &Grid, data: Option<usize>) -> Result<Layout, TableErr
     };
     let start = grid.rows.iter().position(begins);
     let start = match (start, data) {
-        // Titles hold numbers too; a title can be taken for a broken row only if it has two cells.
+        // Titles contain numbers too; a title can be mistaken for a broken row only if it has two cells.
         (Some(start), Some(data))
             if grid.rows[start..data].iter().all(|row| {
                 row.filled().count() == 1
@@ -396,7 +396,7 @@ fn without_headings(grid: &Grid, data: Option<usize>) -> Result<Layout, TableErr
     Ok(Layout { size, other_size: other, unit, soils, at, first: start, headed, ..Layout::default() })
 }
 
-/// Error for a row whose number of cells differs from the table's number of columns.
+/// Makes the error for a row whose number of cells differs from the table's number of columns.
 pub(super) fn fields(grid: &Grid, row: &GridRow) -> TableError {
     let count = row.cells.len();
     let allowed = if count > 2 && grid.delimiter == ',' {

@@ -1,13 +1,12 @@
-//! Soils as laboratories write them down: from the bytes of a file to tables of openings and percents
-//! finer.
+//! Soils as laboratories record them: from the bytes of a file to tables of openings and percents finer.
 //!
 //! Bytes become text (`text`, `ags`) or sheets (`workbook`, with `xlsx` and `ods`). Both become rows of
 //! cells (`grid`), which are cut into parts with one table each (`blocks`; `across` turns a table that
 //! lies on its side). In each part the table is located (`layout`, by `heading` and `languages`;
 //! `extent` gives its end) and read (`points`, `size`, `units`, `roles`, `retained`). `names` joins a
 //! table that continues another and names the soils. `read` runs all steps. An assumption about
-//! something that the file does not spell out becomes a note; an ambiguity is refused. A function that
-//! reads a file has the errors of [`read_gradation`].
+//! something that the file does not state becomes a note; an ambiguity is refused. A function that reads
+//! a file has the errors of [`read_gradation`].
 
 mod across;
 mod ags;

@@ -1,5 +1,5 @@
-//! Tables of one file: their names, from the titles above them and from a row of samples above their
-//! headings, and the part of a curve below the finest sieve that a table of its own gives.
+//! Names of the tables of a file, from titles above them and from a row of samples above their headings.
+//! Joins a separate table with the part of a curve below the finest sieve.
 
 use super::blocks::Block;
 use super::content::{is_data, is_value};
@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use voidwalk_core::gradation::{FIELDS, Row, TableError};
 use voidwalk_core::text::plain;
 
-/// Refuses to count soils whose names say that they are no samples, such as the mean of others.
+/// Refuses to count soils whose names say that they are not samples, such as the mean of others.
 pub(super) fn ask_about(
     file: &str,
     names: &[&str],
@@ -30,7 +30,7 @@ pub(super) fn ask_about(
     Err(TableError::SeveralSoils { file: file.to_owned(), soils, first })
 }
 
-/// Beginnings of lines above a table that name no soil.
+/// Beginnings of lines above a table that do not name a soil.
 const NO_NAME: [&str; 14] =
     list("date|datum|project|projekt|projet|client|depth|tiefe|tested|laboratory|lab|job|astm|page");
 
@@ -49,7 +49,7 @@ fn title_in(row: &GridRow) -> Option<&str> {
     }
 }
 
-/// Titles of the tables, in their order; an empty text for a table without one.
+/// Titles of the tables, in order; an empty text for a table without one.
 pub(super) fn titles(blocks: &[Block]) -> Vec<String> {
     let mut beside: HashMap<usize, usize> = HashMap::new();
     let mut given: HashMap<(usize, usize), usize> = HashMap::new();
@@ -65,7 +65,7 @@ pub(super) fn titles(blocks: &[Block]) -> Vec<String> {
             *given.entry((block.line(), *line)).or_default() += 1;
         }
     }
-    // With several tables side by side, a row that names only one is a title of the sheet.
+    // With several tables side by side, a row that names only one table is a title of the sheet.
     let title_of = |(block, candidates): (&Block, &Vec<(usize, String)>)| {
         let all = beside[&block.line()];
         let names = |least: usize| {
@@ -79,7 +79,7 @@ pub(super) fn titles(blocks: &[Block]) -> Vec<String> {
     blocks.iter().zip(&candidates).map(title_of).collect()
 }
 
-/// Names the columns of a table by a row of samples above its headings.
+/// Names the columns of a table from a row of samples above its headings.
 pub(super) fn name_columns(block: &mut Block) {
     let layout = &block.layout;
     let columns: Vec<usize> = layout.soils.iter().map(|soil| soil.column).collect();
@@ -113,8 +113,8 @@ pub(super) fn name_columns(block: &mut Block) {
     }
 }
 
-/// Names of soils in a row of the headings, or directly above them, each in the first of the columns over
-/// which it is merged.
+/// Names of soils in a row of headings or directly above it, each in the first of the columns over which
+/// it is merged.
 fn merged_names(block: &Block, columns: &[usize]) -> Option<Vec<String>> {
     let (rows, layout) = (&block.grid.rows, &block.layout);
     let near = layout.at.saturating_sub(1)..layout.first.min(rows.len());
@@ -130,7 +130,7 @@ fn merged_names(block: &Block, columns: &[usize]) -> Option<Vec<String>> {
     })
 }
 
-/// A table that ends below this size (mm) is from a hydrometer.
+/// Maximum coarsest size (mm) of a table that seems to come from a hydrometer.
 const HYDROMETER_MM: f64 = 0.08;
 
 pub(super) struct Read {
@@ -158,7 +158,7 @@ fn ends(soil: &Soil) -> Option<[(f64, f64); 2]> {
     Some([(top.size, top.percent), (low.size, low.percent)])
 }
 
-/// Joins each table that continues an earlier one to that table; the others remain as they are.
+/// Joins each table that continues an earlier one to that table; the others are unchanged.
 pub(super) fn joined(tables: Vec<Read>) -> Result<Vec<Read>, TableError> {
     let mut done: Vec<Read> = Vec::new();
     for table in tables {
@@ -170,7 +170,7 @@ pub(super) fn joined(tables: Vec<Read>) -> Result<Vec<Read>, TableError> {
     Ok(done)
 }
 
-/// The earlier table that this one may continue: the one above it, or else the last to its left.
+/// Finds the earlier table that this one may continue: the one above it, or else the last one to its left.
 fn before(done: &[Read], table: &Read) -> Option<usize> {
     // A sheet has few tables side by side, so only the last ones are considered.
     const NEAR: usize = 40;
@@ -190,7 +190,7 @@ fn before(done: &[Read], table: &Read) -> Option<usize> {
     above.or_else(left).map(|(at, _)| at)
 }
 
-/// True if a table continues an earlier one; an error if it says so or seems to, and does not.
+/// True if a table continues an earlier one; an error if it says or seems so but does not.
 fn continues(sieves: &Read, table: &Read) -> Result<bool, TableError> {
     let (Some(above), Some(below)) = (sieves.curves(), table.curves()) else { return Ok(false) };
     let says = table.says_sedimentation() && !sieves.says_sedimentation();
@@ -245,7 +245,7 @@ fn join(sieves: &mut Read, table: Read) {
             lower.rows.reverse();
             lower.places.reverse();
         }
-        // The finest sieve may be given in both.
+        // The finest sieve may be in both.
         let shared = |lower: &Soil| {
             let row = if descends { lower.rows.first() } else { lower.rows.last() };
             row.is_some_and(|row| upper.rows.iter().any(|u| u.size == row.size))

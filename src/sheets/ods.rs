@@ -9,7 +9,7 @@ use quick_xml::events::{BytesStart, Event};
 use std::collections::{HashMap, HashSet};
 use voidwalk_core::gradation::TableError;
 
-/// Most equal cells or rows that one filled cell or row may repeat.
+/// Maximum number of repetitions of a filled cell or row.
 const MOST_REPEATS: usize = 1000;
 
 pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, TableError> {
@@ -17,7 +17,7 @@ pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, Table
     let mut reader = Reader::from_str(&text);
     reader.config_mut().expand_empty_elements = true;
     let (mut sheets, mut budget) = (Vec::new(), Budget::new());
-    // Styles come before the sheets; a style that is not displayed hides the sheets that use it.
+    // Styles come before the sheets; a hidden style hides the sheets that use it.
     let (mut hidden, mut style) = (HashSet::new(), String::new());
     let mut kinds = HashMap::new();
     loop {
@@ -135,7 +135,7 @@ fn read_row(
                 let formula = attribute(&e, "table:formula").is_some();
                 let is_error = attribute(&e, "calcext:value-type").is_some_and(|kind| kind == "error");
                 let shown = paragraphs(file, kinds, reader, &end)?;
-                // The value of a formula that failed is 0.
+                // The stored value of a failed formula is 0.
                 let failed = is_error || shown.starts_with('#') || shown.starts_with("Err:");
                 let text = match (kind.as_str(), value) {
                     ("percentage" | "float" | "currency", Some(_)) if failed => shown,
@@ -168,7 +168,7 @@ fn read_row(
     }
 }
 
-/// A fraction as the percents that the sheet displays.
+/// Converts a fraction to the percents that the sheet displays.
 fn percents(value: &str) -> Option<String> {
     let percent = value.parse::<f64>().ok()? * 100.0;
     Some(format!("{}%", (percent * 1e9).round() / 1e9))
@@ -196,7 +196,7 @@ fn paragraphs(
             }
             Event::End(e) if e.name().as_ref() == "text:span" => drop(spans.pop()),
             Event::Start(e) if e.name().as_ref() == "table:table" => {
-                return Err(unreadable(file, "a cell holds a table of its own"));
+                return Err(unreadable(file, "a cell contains a table"));
             }
             Event::Start(e) if SPACES.contains(&e.name().as_ref()) => runs.push(" ", Kind::Plain, ""),
             Event::End(e) if e.name().as_ref() == end => return Ok(runs.text().trim().to_owned()),

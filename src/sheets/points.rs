@@ -1,4 +1,4 @@
-//! Conversion of a column of a table to openings in mm and percents finer.
+//! Converts a column of a table to openings in mm and percents finer.
 
 use super::content::{bound, is_blank, is_date, is_value, is_words, percentage, range, refuse_short};
 use super::extent::{Extent, check_commas, refuse_lost};
@@ -14,9 +14,9 @@ use voidwalk_core::gradation::{
     FIELDS, Row, TableError, allowed_percent, allowed_size, percent_is_allowed, size_is_allowed,
 };
 
-/// Percents from here on at the coarsest size are 100 % rounded by a laboratory.
+/// Minimum percent at the coarsest size that counts as 100 % rounded by a laboratory.
 const ALL_PERCENT: f64 = 99.9;
-/// A percent below a bound of at most this much is read as the bound: no more of the mass is uncertain.
+/// Maximum bound for which a percent below it is read as the bound: no more of the mass is uncertain.
 const LEAST_BOUND: f64 = 1.0;
 
 /// Soils of a table, column by column.
@@ -32,7 +32,7 @@ pub(super) fn soils(grid: &Grid, layout: &Layout) -> Result<Vec<Result<Soil, Tab
     Ok(soils)
 }
 
-/// The last column that holds a value in most of the rows.
+/// Finds the last column that has a value in most of the rows.
 fn last_column(grid: &Grid, layout: &Layout, extent: &Extent) -> usize {
     let mut values: Vec<usize> = Vec::new();
     let mut rows = 0;
@@ -97,9 +97,7 @@ fn soil(grid: &Grid, layout: &Layout, extent: &Extent, column: &SoilColumn) -> R
     }
     if let Some(end) = column.end {
         let side = if end == End::Least { "least" } else { "most" };
-        notes.push(format!(
-            "ranges such as 95-100 are two curves; this is that of the {side} that is allowed"
-        ));
+        notes.push(format!("ranges such as 95-100 are two curves; this is the curve of the {side} allowed"));
     }
     let elsewhere: HashMap<usize, usize> =
         entries.iter().filter(|e| e.column != layout.size).map(|e| (e.line, e.column)).collect();
@@ -112,7 +110,7 @@ fn soil(grid: &Grid, layout: &Layout, extent: &Extent, column: &SoilColumn) -> R
     Ok(Soil { name, file, rows, places, kind, notes })
 }
 
-/// Rows of the table as written, and the lines of openings whose value cell is empty.
+/// Rows of the table as written, and the lines of openings with an empty value cell.
 fn entries(
     grid: &Grid,
     layout: &Layout,
@@ -167,10 +165,7 @@ fn entries(
             return Err(grid.refused(line, column.column, FIELDS[1], value, allowed));
         }
         if let Some(most) = bound {
-            notes.push(format!(
-                "{value} in {} read as {most} %, the most that it may be",
-                grid.row_label(line)
-            ));
+            notes.push(format!("{value} in {} read as {most} %, its upper bound", grid.row_label(line)));
         }
         let value_read = percentage(value)
             .or(bound)
@@ -207,7 +202,7 @@ fn entries(
     Ok((entries, missing))
 }
 
-/// Text on the allowed forms of an opening; spreadsheets turn `3/8` into a date.
+/// Describes the allowed forms of an opening; spreadsheets turn `3/8` into a date.
 fn allowed_opening(text: &str) -> String {
     let date = "an opening; this is a date, into which spreadsheets turn fractions such as 3/8: write 3/8 in";
     if is_date(text) { date.into() } else { allowed_size() }
@@ -253,7 +248,7 @@ fn finer(
                 continue;
             }
             Opening::Pan if Some(entry.value) == finest => {
-                notes.push("the percent of the pan, that of the finest sieve again, was left out".into());
+                notes.push("the percent of the pan, equal to that of the finest sieve, was left out".into());
                 continue;
             }
             Opening::Pan | Opening::Bare(_) | Opening::Class(..) => {
@@ -267,14 +262,14 @@ fn finer(
     let falls = |rows: &[Row]| rows.is_sorted_by(|a, b| a.size >= b.size);
     let rises = rows.is_sorted_by(|a, b| a.size <= b.size);
     if !falls(&rows) && !rises && entries.iter().all(|entry| entry.form > Form::Plain) {
-        let note = "rows in no order of their sizes, each with its unit or the name of its sieve, sorted";
+        let note = "rows not in order of size, each with its unit or the name of its sieve, sorted";
         notes.push(note.into());
         rows.sort_by(|a, b| b.size.total_cmp(&a.size));
     }
     Ok(rows)
 }
 
-/// Factor that brings values to percents: 100 for fractions of 1.
+/// Factor that converts values to percents: 100 for fractions of 1.
 fn fractions(
     grid: &Grid,
     column: &SoilColumn,

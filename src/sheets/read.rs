@@ -1,4 +1,4 @@
-//! The way from a file to its soils, and from many files to samples.
+//! Steps from a file to its soils, and from many files to samples.
 
 use super::blocks::Block;
 use super::content::whole_row;
@@ -18,7 +18,7 @@ use voidwalk_core::gradation::{
 use voidwalk_core::text::plain;
 
 impl Soil {
-    /// All soils in a file, called `file` in messages.
+    /// Reads all soils in a file; messages call it `file`.
     ///
     /// # Errors
     /// No table, or one that cannot be understood or could be understood in two ways.
@@ -27,11 +27,11 @@ impl Soil {
         Ok(soils.into_iter().map(|(_, soil)| soil).collect::<Result<_, _>>()?)
     }
 
-    /// The only soil in a file, or the one of this name: the name of a sheet, of a column, or both as
-    /// `sheet/column`.
+    /// Reads the only soil in a file, or the one with this name: the name of a sheet, of a column, or
+    /// both as `sheet/column`.
     ///
     /// # Errors
-    /// Errors of [`Soil::all`], for this soil; several soils, or no soil of this name.
+    /// Errors of [`Soil::all`] for this soil; several soils, or no soil with this name.
     pub fn one(file: &str, bytes: &[u8], name: Option<&str>) -> Result<Soil, GradationError> {
         let mut soils = tables(file, bytes, name)?;
         if let Some(name) = name {
@@ -54,9 +54,9 @@ impl Soil {
     }
 }
 
-/// Splits a scene's `path` into its file and the name of the soil in it: `site.xlsx#Filter A`. Files and
-/// soils may have a `#` in their names: the first one behind the name of an existing file counts, and without
-/// such a file the last.
+/// Splits a scene's `path` into its file and the name of the soil in it: `site.xlsx#Filter A`. Names of
+/// files and soils may contain a `#`: the path is split at the first one after the name of an existing
+/// file, or at the last one if there is no such file.
 pub fn file_and_soil(path: &Path) -> (PathBuf, Option<String>) {
     let Some(text) = path.to_str().filter(|_| !path.exists()) else { return (path.to_owned(), None) };
     let is_named = |(file, soil): &(&str, &str)| !file.is_empty() && !soil.trim().is_empty();
@@ -69,7 +69,7 @@ pub fn file_and_soil(path: &Path) -> (PathBuf, Option<String>) {
     }
 }
 
-/// A name in its displayed form, without the differences that two spellings of it may have.
+/// Returns a name as displayed, without the differences between two spellings of it.
 fn folded(name: &str) -> String {
     plain(name).split_whitespace().collect::<Vec<_>>().join(" ").to_lowercase()
 }
@@ -96,7 +96,7 @@ fn tables(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, 
         if grid.rows.is_empty() {
             return Err(TableError::NoRows { file: file.into(), header: false });
         }
-        // Text that the first separator does not turn into a table may become one with another.
+        // A text that is no table with the first separator may become one with another.
         match soils_of(grid) {
             Ok(soils) if soils.iter().any(|(_, soil)| soil.is_ok()) => {
                 refuse_commented_unit(file, &text, &soils)?;
@@ -134,8 +134,8 @@ fn of_ags(tables: Vec<(String, Grid, Layout)>) -> Result<Vec<Named>, TableError>
     Ok(named)
 }
 
-/// Soils of every sheet. A sheet without a table, such as a cover, is skipped with a note if others have one;
-/// if it was asked for by name, its error is returned.
+/// Reads the soils of every sheet. A sheet without a table, such as a cover, is skipped with a note if
+/// other sheets have one; if it was requested by name, its error is returned.
 fn of_workbook(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, TableError> {
     let (mut soils, mut refusals) = (Vec::new(), Vec::new());
     let sheets = sheets(file, bytes)?;
@@ -144,7 +144,7 @@ fn of_workbook(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Nam
     }
     for grid in sheets {
         let sheet = grid.sheet.clone().unwrap_or_default();
-        // Rows that are each in one cell also belong to a table.
+        // Rows that are each in one cell also count as a table.
         let torn = grid.rows.iter().filter(|row| whole_row(row, false).is_some()).count();
         let (place, has_table) = (grid.place(), blocks::has_table(&grid) || torn > 1);
         let read = match ags::is_ags_sheet(&grid) {
@@ -156,7 +156,7 @@ fn of_workbook(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Nam
                 refusals.push((sheet, TableError::NoRows { file: place, header: false }));
             }
             Ok(tables) => soils.extend(tables),
-            // A table that is present but cannot be read is not skipped.
+            // A table that exists but cannot be read is not skipped.
             Err(error @ (TableError::Value { .. } | TableError::Header { .. })) if has_table => {
                 soils.push((vec![sheet], Err(error)));
             }
@@ -201,7 +201,7 @@ fn soils_of(grid: Grid) -> Result<Vec<Named>, TableError> {
     Ok(named(tables))
 }
 
-/// Soils with their names: the title of their table, the heading of their column, or both, and the sheet.
+/// Names the soils: by the title of their table, the heading of their column, or both, and the sheet.
 fn named(tables: Vec<Read>) -> Vec<Named> {
     let single = tables.iter().map(|table| table.soils.len()).sum::<usize>() == 1;
     let several = tables.len() > 1;
@@ -225,7 +225,7 @@ fn named(tables: Vec<Read>) -> Vec<Named> {
             .map(|column| {
                 let mut name = own_name(&table, column);
                 if single && grid.sheet.is_none() && column.role != Role::Other {
-                    // `% passing` is no name.
+                    // `% passing` is not a name.
                     name.clear();
                 } else if name.is_empty() || times[&folded(&name)] > 1 {
                     let place = grid.place_of(table.block.line(), column.column);
@@ -260,8 +260,8 @@ fn named(tables: Vec<Read>) -> Vec<Named> {
     soils
 }
 
-/// Soils of a file, or the one that `path` names after a `#`; a soil without a name takes the name of its
-/// file.
+/// Reads the soils of a file, or the one that `path` names after a `#`; a soil without a name gets that
+/// of its file.
 fn soils_of_file(path: &Path) -> Result<Vec<Soil>, GradationError> {
     let (path, name) = file_and_soil(path);
     let (file, bytes) = (path.display().to_string(), bytes_of(&path)?);
@@ -277,33 +277,33 @@ fn soils_of_file(path: &Path) -> Result<Vec<Soil>, GradationError> {
     Ok(soils)
 }
 
-/// Soils of a file as samples; the mean of others is refused with a question.
+/// Reads the soils of a file as samples; the mean of others is refused with a question.
 fn samples_of_file(path: &Path) -> Result<Vec<Soil>, GradationError> {
     let soils = soils_of_file(path)?;
     let names: Vec<&str> = soils.iter().map(Soil::name).collect();
-    names::ask_about(&path.display().to_string(), &names, says_mean, "means, which are no samples")?;
+    names::ask_about(&path.display().to_string(), &names, says_mean, "means, which are not samples")?;
     Ok(soils)
 }
 
-/// Summaries of the soils of a file, or of the one that `path` names after a `#`.
+/// Reads summaries of the soils of a file, or of the one that `path` names after a `#`.
 pub fn soils_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<SoilSummary>, GradationError> {
     samples_of_file(path)?.iter().map(|soil| SoilSummary::of(soil, d0_mm)).collect()
 }
 
-/// Names and sieve curves of the soils of a file, or of the one that `path` names after a `#`.
+/// Reads names and sieve curves of the soils of a file, or of the one that `path` names after a `#`.
 pub fn curves_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<(String, Gradation)>, GradationError> {
     let named = |soil: &Soil| Ok((soil.name.clone(), soil.gradation(d0_mm)?));
     samples_of_file(path)?.iter().map(named).collect()
 }
 
-/// Curves as in [`curves_in_file`], with those of soils that are no samples.
+/// Reads curves like [`curves_in_file`], including soils that are not samples.
 fn all_in_file(path: &Path) -> Result<Vec<(String, Gradation)>, GradationError> {
     let named = |soil: &Soil| Ok((soil.name.clone(), soil.gradation(None)?));
     soils_of_file(path)?.iter().map(named).collect()
 }
 
-/// Assumptions about the soils of a file, or about the one that `path` names after a `#`, without
-/// repetitions.
+/// Lists the assumptions about the soils of a file, or about the one that `path` names after a `#`,
+/// without repetition.
 pub fn notes_in_file(path: &Path) -> Result<Vec<String>, GradationError> {
     let mut seen = HashSet::new();
     let mut notes: Vec<String> = soils_of_file(path)?.into_iter().flat_map(|soil| soil.notes).collect();
@@ -311,33 +311,33 @@ pub fn notes_in_file(path: &Path) -> Result<Vec<String>, GradationError> {
     Ok(notes)
 }
 
-/// A sieve table from a file: `site.csv`, or `site.xlsx#Filter A` where it holds several soils.
+/// Reads a sieve table from a file: `site.csv`, or `site.xlsx#Filter A` if it contains several soils.
 ///
-/// `docs::soils` says which tables are understood. In a plain table, `opening_mm,percent_finer`, the header
-/// may be left out, the columns may come in either order, and sizes may rise or fall.
+/// `docs::soils` describes the tables that are understood. In a plain table, `opening_mm,percent_finer`,
+/// the header may be left out, the columns may be in either order, and sizes may rise or fall.
 ///
 /// # Errors
-/// A file that cannot be read, is a folder, is larger than [`FILE_LIMIT_BYTES`] or holds no table; no rows; a
-/// row that cannot be read; a value that is not a finite number in range; sizes that repeat or go both ways;
-/// percent that falls as size rises; a coarsest size below 100 %; a single row without `d0_mm` (all of its
-/// mass is of unknown size); a `d0_mm` that is not below the finest opening, or that nothing is left for.
+/// A file that cannot be read, is a folder, is larger than [`FILE_LIMIT_BYTES`] or contains no table; no
+/// rows; a row that cannot be read; a value that is not a finite number in range; sizes that repeat or both
+/// rise and fall; percent that falls as size rises; a coarsest size below 100 %; a single row without `d0_mm`
+/// (all of its mass is of unknown size); a `d0_mm` that is not below the finest opening, or is not needed.
 pub fn read_gradation(path: impl AsRef<Path>, d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
     let (path, name) = file_and_soil(path.as_ref());
     let (file, bytes) = (path.display().to_string(), bytes_of(&path)?);
     Soil::one(&file, &bytes, name.as_deref())?.gradation(d0_mm)
 }
 
-/// Reads the content of a file as [`read_gradation`] does; messages call it `name`.
+/// Reads the content of a file like [`read_gradation`]; messages call it `name`.
 pub fn parse_gradation(name: &str, content: &[u8], d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
     Soil::one(name, content, None)?.gradation(d0_mm)
 }
 
-/// True if a file is a zip, like workbooks.
+/// True if a file is a zip, as workbooks are.
 fn is_zip(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06")
 }
 
-/// Sheets that are not empty.
+/// Reads the sheets that are not empty.
 fn sheets(file: &str, bytes: &[u8]) -> Result<Vec<Grid>, TableError> {
     let mut zipped = Zipped::open(file, bytes)?;
     let sheets = if zipped.has("xl/workbook.xml") {
@@ -353,10 +353,10 @@ fn sheets(file: &str, bytes: &[u8]) -> Result<Vec<Grid>, TableError> {
 /// One of many samples.
 #[derive(Clone, Debug)]
 pub struct SoilSample {
-    /// Name of the sample: its name in the file, preceded by the file's name if a folder has several files.
-    /// The file's name includes its ending if two files of a folder differ in that alone.
+    /// Name of the sample: its name in the file, after the file's name if a folder has several files.
+    /// The file's name includes its ending if two files in a folder differ only in that.
     pub name: String,
-    /// Path on a command line: `site.ags#BH1 1.50`, or the file alone if it holds no other soil.
+    /// Path on a command line: `site.ags#BH1 1.50`, or the file alone if it contains no other soil.
     pub path: PathBuf,
     /// Sieve curve.
     pub curve: Gradation,
@@ -364,28 +364,28 @@ pub struct SoilSample {
 
 const ENDINGS: [&str; 5] = ["csv", "txt", "xlsx", "ods", "ags"];
 
-/// Every sample of a file, or the one that `path` names after a `#`. For a folder, the samples of every table
-/// in it, file by file in the order of their names; folders within it are not searched.
+/// Reads every sample of a file, or the one that `path` names after a `#`. For a folder, reads the
+/// samples of every table in it, by file in the order of their names; subfolders are not searched.
 ///
 /// # Errors
-/// A folder without a table; a file that cannot be read as one, with the errors of [`curves_in_file`]; limits
-/// of a specification, or the mean of others, beside the samples.
+/// A folder without a table; a file that cannot be read as one, with the errors of [`curves_in_file`];
+/// limits of a specification, or a mean, among the samples.
 pub fn samples_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
     in_files(path, &|file| {
         let curves = curves_in_file(file, None)?;
         let names: Vec<&str> = curves.iter().map(|(name, _)| name.as_str()).collect();
-        let what = "limits, which are no samples";
+        let what = "limits, which are not samples";
         names::ask_about(&file.display().to_string(), &names, says_limit, what)?;
         Ok(curves)
     })
 }
 
-/// Curves of an envelope: every soil of a file, or the one that `path` names after a `#`.
+/// Reads the curves of an envelope: every soil of a file, or the one that `path` names after a `#`.
 pub fn envelope_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
     in_file(path, &|file| curves_in_file(file, None))
 }
 
-/// Every soil of a file or a folder, like [`samples_in`], together with soils that are no samples.
+/// Reads every soil of a file or a folder like [`samples_in`], including soils that are not samples.
 ///
 /// # Errors
 /// A folder without a table; a file that cannot be read as one.
@@ -414,7 +414,7 @@ fn in_files(path: &Path, curves: Curves) -> Result<Vec<SoilSample>, GradationErr
         return Err(TableError::NoTables { folder: folder(), endings: ENDINGS.join(", .") }.into());
     }
     files.sort();
-    // Names that some disks and some readers take as equal count as equal.
+    // Names that some disks and some readers treat as equal count as equal.
     let lower = |stem: &str| stem.to_lowercase();
     let stem = |file: &PathBuf| file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let stems: Vec<String> = files.iter().map(stem).collect();
@@ -457,7 +457,7 @@ mod tests {
         samples.iter().map(|sample| sample.name.as_str()).collect()
     }
 
-    /// Every sample is read again by its path.
+    /// Checks that every sample can be read again by its path.
     fn read_again(samples: &[SoilSample]) {
         for sample in samples {
             let again = read_gradation(&sample.path, None).unwrap();
@@ -492,13 +492,15 @@ mod tests {
         let one = |name: &str| read_gradation(root.path().join(format!("a.csv#{name}")), None);
         write("Min,Result,Max");
         assert!(
-            samples_in(&path).unwrap_err().to_string().contains("limits, which are no samples: Min, Max")
+            samples_in(&path).unwrap_err().to_string().contains("limits, which are not samples: Min, Max")
         );
         assert_eq!(curves_in_file(&path, None).unwrap().len(), 3);
         assert_eq!(named_soils_in(&path).unwrap().len(), 3);
         assert_eq!(samples_in(&root.path().join("a.csv#Result")).unwrap().len(), 1);
         write("Test 1 % passing,Average % passing,Test 2 % passing");
-        assert!(curves_in_file(&path, None).unwrap_err().to_string().contains("means, which are no samples"));
+        assert!(
+            curves_in_file(&path, None).unwrap_err().to_string().contains("means, which are not samples")
+        );
         assert!(samples_in(&path).is_err() && named_soils_in(&path).is_ok());
         assert_eq!(one("Average % passing").unwrap().percent_finer_if_known(0.5), Some(45.0));
         write("Upper shell,Lower shell,Core");
@@ -522,8 +524,8 @@ mod tests {
         assert_eq!(names("D,C,E\n2,100,100\n0.5,40,10\n0.1,0,0\n"), ["C", "E"]);
     }
 
-    /// Two files of one stem, and a `#` in the names of files and soils: every sample is read again by its
-    /// path.
+    /// Two files with the same stem, and a `#` in the names of files and soils: every sample can be read
+    /// again by its path.
     #[test]
     fn names_that_look_alike_are_told_apart() {
         let root = tempfile::tempdir().unwrap();

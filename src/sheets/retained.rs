@@ -1,4 +1,4 @@
-//! Retained values, by mass or in percent: turned into percents finer, or compared with those that are read.
+//! Retained values, by mass or in percent: converted to percents finer, or compared with those that are read.
 
 use super::content::{is_words, percentage};
 use super::extent::{Below, Extent};
@@ -11,10 +11,10 @@ use super::soil::Soil;
 use std::collections::HashMap;
 use voidwalk_core::gradation::{FIELDS, Row, TableError};
 
-/// Percents that are weighed one by one sum to 100 within this.
+/// Tolerance within which separately weighed percents sum to 100.
 const ROUNDED: f64 = 0.6;
 
-/// Percents retained that end below this, under a heading that does not say percent, may be grams.
+/// Percent below which retained values may be grams if their heading does not say percent.
 const NEARLY_ALL: f64 = 95.0;
 
 pub(super) fn says_percent(heading: &str) -> bool {
@@ -66,7 +66,7 @@ impl Weighed<'_> {
         Ok(())
     }
 
-    /// Refuses values without a pan that end far below 100 under `Retained` alone: they may be grams.
+    /// Refuses values without a pan that end far below 100 under a plain `Retained`: they may be grams.
     fn refuse_unsaid(&self, line: usize, end: f64) -> Result<(), TableError> {
         let is_stated = |cell: &str| says_percent(cell) || says_fraction(cell);
         let any_cell = || self.grid.rows.iter().any(|row| is_stated(row.cell(self.column)));
@@ -78,8 +78,8 @@ impl Weighed<'_> {
         Err(self.refused(line, end, allowed))
     }
 
-    /// Checks stated masses: mass washed out or lost is a part of the whole, and a mass above, beside or
-    /// below the table that differs from the mass in all rows is refused or noted.
+    /// Checks stated masses. Mass washed out or lost is a part of the whole; a mass above, beside or
+    /// below the table that differs from the mass of all rows is refused or noted.
     fn check_stated(&self, whole: f64, notes: &mut Vec<String>) -> Result<(), TableError> {
         const LOST: [&str; 12] = [
             "wash", "washed", "washing", "loss", "losses", "lost", "fines", "minus", "through", "decanted",
@@ -101,7 +101,7 @@ impl Weighed<'_> {
                                lost: it is a part of the whole";
                 return Err(self.grid.refused(row.line, row.column, FIELDS[0], &row.words, allowed));
             }
-            // A row of masses holds one for each column of masses behind its words.
+            // A row of masses has one for each column of masses after its words.
             let is_before = row.column < self.column;
             let of_soil = self.grid.rows.iter().find(|other| is_before && other.line == row.line);
             let in_column = of_soil.and_then(|row| percentage(row.cell(self.column)));
@@ -137,7 +137,7 @@ impl Weighed<'_> {
         Ok(())
     }
 
-    /// Words and the number behind them, above the table or beside it.
+    /// Words and the number after them, above the table or beside it.
     fn stated(&self) -> Vec<Below> {
         let mut stated = Vec::new();
         for row in self.grid.rows.iter().filter(|row| self.below.iter().all(|below| below.line != row.line)) {
@@ -159,7 +159,7 @@ fn mass(cell: &str) -> Option<f64> {
     percentage(cell.trim_end_matches("kg").trim_end_matches('g').trim())
 }
 
-/// A sum of decimals without its rounding error.
+/// Removes the rounding error from a sum of decimals.
 fn tidy(sum: f64) -> f64 {
     (sum * 1e6).round() / 1e6
 }
@@ -234,7 +234,7 @@ pub(super) fn percents_finer(
         (Some(false), true, _) | (None, true, false) => false,
         (None, true, true) => {
             let allowed =
-                "a heading that says whether each value is `cumulative` or `individual`: both would do";
+                "a heading that says whether each value is `cumulative` or `individual`: both fit the values";
             return Err(weighed.refused(first_line, first, allowed));
         }
         _ if whole.is_none() && pan.is_none() => {
@@ -303,7 +303,7 @@ pub(super) fn percents_finer(
     Ok(rows)
 }
 
-/// Percents that were rounded to whole ones differ by less than this.
+/// Upper limit of the difference between percents that were rounded to whole ones.
 const ROUNDED_TO_WHOLE: f64 = 1.5;
 
 /// Refuses a retained column that agrees with no soil.
@@ -352,7 +352,7 @@ pub(super) fn refuse_contradiction(
     Ok(())
 }
 
-/// The first line in which masses with a pan, on each sieve or cumulative, differ from the curve.
+/// Finds the first line in which masses with a pan, on each sieve or cumulative, differ from the curve.
 fn masses_differ(soil: &Soil, masses: &HashMap<usize, f64>, pans: &[usize]) -> Option<usize> {
     let mut rows: Vec<_> = soil.rows.iter().filter(|row| masses.contains_key(&row.line)).collect();
     rows.sort_by(|a, b| b.size.total_cmp(&a.size));
@@ -363,7 +363,7 @@ fn masses_differ(soil: &Soil, masses: &HashMap<usize, f64>, pans: &[usize]) -> O
     let most = masses.values().fold(0.0, |most: f64, &mass| most.max(mass));
     let coarser = 1.0 - finest.percent / 100.0;
     let pan = of_pans.iter().sum::<f64>();
-    // Mass washed out may be in the percents and not in the pan.
+    // Mass washed out may be included in the percents but not in the pan.
     let whole = [on_sieves + pan, most, on_sieves / coarser, masses[&finest.line] / coarser];
     let line_of = |(at, &whole): (usize, &f64)| {
         let mut sum = 0.0;
@@ -379,7 +379,7 @@ fn masses_differ(soil: &Soil, masses: &HashMap<usize, f64>, pans: &[usize]) -> O
     lines.first().copied().filter(|_| lines.len() == whole.len())
 }
 
-/// The first line in which percents retained, on each sieve or cumulative, differ from the curve.
+/// Finds the first line in which percents retained, on each sieve or cumulative, differ from the curve.
 fn differs(soil: &Soil, retained: &HashMap<usize, f64>, pans: &[usize]) -> Option<usize> {
     let mut rows: Vec<_> = soil.rows.iter().filter(|row| retained.contains_key(&row.line)).collect();
     rows.sort_by(|a, b| b.size.total_cmp(&a.size));
@@ -394,7 +394,7 @@ fn differs(soil: &Soil, retained: &HashMap<usize, f64>, pans: &[usize]) -> Optio
         (sum - (100.0 - row.percent)).abs() > ROUNDED_TO_WHOLE
     });
     let single = single.map(|row| row.line);
-    // Mass washed out is a part of the pan.
+    // Mass washed out belongs to the pan.
     let of_pans: Vec<f64> = pans.iter().filter_map(|line| Some(factor * retained.get(line)?)).collect();
     let rest = pans.first().copied().filter(|_| {
         let finest = rows.last().filter(|row| !pans.contains(&row.line) && !of_pans.is_empty());

@@ -1,4 +1,4 @@
-//! Role of a column whose heading leaves it open and whose rows decide it: classes, percents that rise
+//! Role of a column that its heading does not determine and its rows decide: classes, percents that rise
 //! towards the finer sieves, and a second column of openings (the same in another unit, or the bounds of
 //! classes).
 
@@ -10,7 +10,7 @@ use super::size::{Entry, Form, Opening, Unit, near, opening};
 use std::collections::HashSet;
 use voidwalk_core::gradation::{FIELDS, TableError, shortened};
 
-/// Settles the role of a column. Classes among its rows, whose bounds are in mm, become the sieves below
+/// Determines the role of a column. Classes among its rows, with bounds in mm, become the sieves below
 /// them.
 pub(super) fn settle(
     grid: &Grid,
@@ -34,7 +34,7 @@ pub(super) fn settle(
     }
 }
 
-/// A class holds what is retained between two sieves.
+/// A class contains the mass retained between two sieves.
 fn of_classes(
     grid: &Grid,
     layout: &Layout,
@@ -58,7 +58,7 @@ fn of_classes(
     Ok(Role::Retained(Retained { percent: true, cumulative: Some(false) }))
 }
 
-/// Replaces each class by its lower sieve, and adds above the coarsest class the sieve that all mass passes.
+/// Replaces each class by its lower sieve, and adds above the coarsest class the sieve that all passes.
 fn as_sieves(grid: &Grid, entries: &mut Vec<Entry>) -> Result<(), TableError> {
     let bounds = |entry: &Entry| match entry.opening {
         Opening::Class(upper, lower) => Some((upper, lower)),
@@ -97,8 +97,8 @@ fn as_sieves(grid: &Grid, entries: &mut Vec<Entry>) -> Result<(), TableError> {
     Ok(())
 }
 
-/// True if cumulative percents under a heading that says no more are retained: their sizes, whose unit is
-/// given, fall while they rise.
+/// True if percents headed only as cumulative are retained: their sizes, whose unit is given, fall while
+/// they rise.
 fn rises_in_known_sizes(layout: &Layout, column: &SoilColumn, entries: &[Entry]) -> bool {
     let is_known = |entry: &Entry| match layout.unit {
         Some(unit) => unit != Unit::SieveNumber,
@@ -120,7 +120,7 @@ fn rises_in_known_sizes(layout: &Layout, column: &SoilColumn, entries: &[Entry])
     sizes.windows(2).all(|w| w[0].1 <= w[1].1) && ends.0 < ends.1
 }
 
-/// Fewest shared bounds: fewer under a heading that does not mention openings may be by chance.
+/// Minimum number of shared bounds: fewer may be a coincidence if the heading does not mention openings.
 const LEAST_SHIFTED: usize = 2;
 
 struct Pair {
@@ -129,8 +129,8 @@ struct Pair {
     second: f64,
 }
 
-/// Reads the bounds of classes as the openings of their lower sieves, and refuses a second column of openings
-/// that is neither these nor the same sieves in another unit.
+/// Reads the bounds of classes as the openings of their lower sieves, and refuses a second column of
+/// openings that is neither this nor the same sieves in another unit.
 pub(super) fn settle_bounds(grid: &mut Grid, layout: &mut Layout) -> Result<(), TableError> {
     if grid.across.is_some() {
         return Ok(());
@@ -182,12 +182,12 @@ fn heading(grid: &Grid, layout: &Layout, column: usize) -> String {
     head(rows, column)
 }
 
-/// Opening of a cell in mm, if it is a size.
+/// Opening of a cell in mm, if the cell is a size.
 fn in_mm(cell: &str, unit: Option<Unit>) -> Option<f64> {
     any_in_mm(cell, unit).filter(|mm| *mm > 0.0 && mm.is_finite())
 }
 
-/// True if two columns hold the same openings in every row, each in its own unit.
+/// True if two columns contain the same openings in every row, each in its own unit.
 fn is_same(rows: &[&GridRow], size: usize, column: usize, first: Option<Unit>, second: Option<Unit>) -> bool {
     const UNITS: [Unit; 6] = [Unit::Mm, Unit::Inch, Unit::SieveNumber, Unit::Micrometre, Unit::Cm, Unit::Phi];
     let all = |cell: &str, unit: Option<Unit>| -> Vec<f64> {
@@ -216,8 +216,8 @@ fn pairs(
     rows.iter().filter_map(pair).collect()
 }
 
-/// Number of neighbours, and number of them that share a bound: the second of one row is the first of the
-/// next, or the reverse.
+/// Number of neighbouring rows, and number of them that share a bound: the second bound of one row is
+/// the first of the next, or the reverse.
 fn shifted(pairs: &[Pair]) -> (usize, usize) {
     let is_shared = |a: f64, b: f64| (a - b).abs() <= 1e-3 * a;
     let count =
@@ -227,7 +227,7 @@ fn shifted(pairs: &[Pair]) -> (usize, usize) {
     (pairs.len().saturating_sub(1), down.max(up))
 }
 
-/// True if a column numbers its sieves from 1 on.
+/// True if a column numbers its sieves starting at 1.
 fn is_count(rows: &[&GridRow], column: usize, unit: Option<Unit>) -> bool {
     let values: Vec<f64> = rows
         .iter()
@@ -250,7 +250,7 @@ fn refused(grid: &Grid, rows: &[&GridRow], column: usize, pairs: &[Pair]) -> Tab
     grid.refused(line, column, FIELDS[0], cell, allowed)
 }
 
-/// Turns classes into a table of sieves: the mass in a class stays on its lower sieve, and all mass passes
+/// Turns classes into a table of sieves: the mass in a class is on its lower sieve, and all mass passes
 /// the upper bound of the coarsest class.
 fn read_classes(
     grid: &mut Grid,
@@ -318,7 +318,7 @@ pub(super) fn agree(grid: &Grid, headings: &Headings, a: usize, b: usize) -> boo
     both > 0
 }
 
-/// Opening of a cell in mm, whether or not its heading names a unit.
+/// Opening of a cell in mm, even if its heading names no unit.
 fn any_in_mm(cell: &str, unit: Option<Unit>) -> Option<f64> {
     match opening(cell)?.0 {
         Opening::Mm(mm) => Some(mm),

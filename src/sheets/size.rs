@@ -65,7 +65,7 @@ const BY_INCHES: [(f64, f64); 19] = [
     (12.0, 300.0),
 ];
 
-/// Unit of numbers that have none.
+/// Unit of numbers without one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Unit {
     Mm,
@@ -76,14 +76,14 @@ pub(super) enum Unit {
     SieveNumber,
 }
 
-/// Meaning of an opening's cell.
+/// Meaning of a cell with an opening.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Opening {
     /// An opening in mm.
     Mm(f64),
-    /// A number in the unit of its column.
+    /// A number in the column's unit.
     Bare(f64),
-    /// Finer than this opening (mm), as in `< 0.075`: the pan below it, or the share that passes it.
+    /// Finer than this opening (mm), as in `< 0.075`: the pan below it, or the fraction that passes it.
     Below(f64),
     /// Between two openings, as in `9.5-4.75`: the larger, infinite for `> 9.5`, and the smaller.
     Class(f64, f64),
@@ -129,7 +129,7 @@ fn is_sum(text: &str) -> bool {
         && words.all(|word| MORE.contains(&word))
 }
 
-/// Opening that a cell names; `None` for anything else.
+/// Reads the opening named by a cell; `None` for anything else.
 pub(super) fn opening(text: &str) -> Option<(Opening, Form)> {
     if let Some(value) = number(text) {
         return Some((Opening::Bare(value), Form::Plain));
@@ -182,7 +182,7 @@ fn class(text: &str) -> Option<(Opening, Form)> {
     });
     let (first, second) = ends?;
     let (lower, form) = sieve(second)?;
-    // The unit may appear once, at the end.
+    // The unit may appear only once, at the end.
     let unit = second.trim_start_matches(|c: char| !c.is_alphabetic());
     let with_unit = || if form > Form::Plain { sieve(&format!("{first} {unit}")) } else { None };
     let is_bare = |form: Form| form == Form::Plain;
@@ -190,7 +190,7 @@ fn class(text: &str) -> Option<(Opening, Form)> {
     (upper != lower).then_some((Opening::Class(upper.max(lower), upper.min(lower)), form))
 }
 
-/// Openings of old and new standards, such as 4.76 and 4.75 mm, differ by less than this.
+/// Relative difference below which openings of old and new standards are equal, such as 4.76 and 4.75 mm.
 const NEAR: f64 = 0.07;
 
 /// True if two openings (mm) belong to one sieve.
@@ -202,7 +202,7 @@ pub(super) fn goes_one_way(sizes: &[f64]) -> bool {
     sizes.is_sorted_by(|a, b| a > b) || sizes.is_sorted_by(|a, b| a < b)
 }
 
-/// Most bytes of the other name of a sieve, as `US Standard Sieve No. 4`.
+/// Maximum length in bytes of another name of a sieve, such as `US Standard Sieve No. 4`.
 const LONGEST_NAME: usize = 32;
 
 /// `9.5 mm`, also within `No. 4 (4.75 mm)`, if both names belong to one sieve; `75 um`.
@@ -284,7 +284,7 @@ fn us(text: &str) -> Option<(Opening, Form)> {
     Some((Opening::Mm(of_inches(inches)), Form::Inches))
 }
 
-/// Inches as decimals or a fraction; `11/2` may be 1 1/2 without its space.
+/// Inches as decimals or a fraction; `11/2` may mean 1 1/2 without its space.
 fn inches_of(text: &str) -> Option<f64> {
     let is_run_together = text.split_once('/').is_some_and(|(above, _)| {
         let above = above.trim_start_matches(['-', ' ']);
@@ -293,7 +293,7 @@ fn inches_of(text: &str) -> Option<f64> {
     fraction(text, number).filter(|&inches| !is_run_together || inches < 1.0)
 }
 
-/// The name of the US sieve with this opening (mm), by ASTM E11: `No. 4`, `3/8 in`; `None` for any other.
+/// Name of the US sieve with this opening (mm), by ASTM E11: `No. 4`, `3/8 in`; `None` if there is none.
 ///
 /// ```
 /// use voidwalk_sheets::us_sieve;
@@ -317,7 +317,7 @@ pub fn us_sieve(mm: f64) -> Option<String> {
     })
 }
 
-/// Opening (mm) of the US sieve of this number.
+/// Opening (mm) of the US sieve with this number.
 pub(super) fn us_sieve_number(text: &str) -> Option<f64> {
     BY_NUMBER.iter().find(|(name, _)| *name == text).map(|(_, mm)| *mm)
 }
@@ -328,13 +328,13 @@ fn of_inches(inches: f64) -> f64 {
     standard.map_or(inches * 25.4, |(_, mm)| *mm)
 }
 
-/// True if an opening (mm) that was given in inches belongs to a US sieve.
+/// True if an opening (mm) given in inches is that of a US sieve.
 pub(super) fn is_us_sieve_of_inches(mm: f64) -> bool {
     BY_INCHES.iter().any(|(_, opening)| *opening == mm)
 }
 
 impl Unit {
-    /// Size in mm of a number without a unit.
+    /// Converts a number without a unit to a size in mm.
     pub(super) fn mm(self, value: f64) -> Option<f64> {
         match self {
             Unit::Mm => Some(value),
@@ -347,7 +347,7 @@ impl Unit {
     }
 }
 
-/// A number in which one sign separates thousands and the other decimals: `1,254.6`, `1.254,6`.
+/// Reads a number with one sign for thousands and another for decimals: `1,254.6`, `1.254,6`.
 pub(super) fn with_thousands(text: &str) -> Option<f64> {
     let at = text.rfind(['.', ','])?;
     let (whole, decimals) = (&text[..at], &text[at + 1..]);
@@ -362,7 +362,7 @@ pub(super) fn with_thousands(text: &str) -> Option<f64> {
         .then(|| format!("{first}{}.{decimals}", rest.concat()).parse().ok())?
 }
 
-/// A cell without the mark of a footnote behind it: `0.075*`, `22.7 (1)`, `11.3 (a)`.
+/// Removes a footnote mark from the end of a cell: `0.075*`, `22.7 (1)`, `11.3 (a)`.
 pub(super) fn unmarked(cell: &str) -> &str {
     let bare = cell.trim_end_matches(['*', '†', '‡']).trim_end();
     let is_mark = |mark: &str| mark.len() == 1 && mark.bytes().all(|b| b.is_ascii_alphanumeric());

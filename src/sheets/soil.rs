@@ -1,4 +1,4 @@
-//! A soil as given in a file: its table, and the assumptions made in reading it.
+//! A soil as given in a file: its table, and the assumptions made when reading it.
 
 use super::grid::{Grid, Place};
 use serde::Serialize;
@@ -22,7 +22,7 @@ pub struct Soil {
 pub(super) enum Kind {
     Lines,
     Rows,
-    /// Across, with a column for each sieve, in a sheet or a text.
+    /// Across: one column per sieve, in a sheet or a text.
     Across {
         sheet: bool,
     },
@@ -39,7 +39,7 @@ impl Kind {
 }
 
 impl Soil {
-    /// Name given by the sheet or the column; empty without one.
+    /// Name from the sheet or the column; empty if there is none.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -49,12 +49,12 @@ impl Soil {
         &self.notes
     }
 
-    /// Sieve curve; `d0_mm` is the size at which an open finest tail ends.
+    /// Sieve curve; `d0_mm` is the smallest size of a pan fraction.
     ///
     /// # Errors
     /// A table that is not a sieve curve, with the errors of [`read_gradation`](crate::read_gradation).
     pub fn gradation(&self, d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
-        // Counts rows from 1: lines of the file repeat in parts that lie side by side.
+        // Counts rows from 1: lines of the file repeat in parts that are side by side.
         let counted = |(index, row): (usize, &Row)| Row { line: index + 1, ..*row };
         let rows = self.rows.iter().enumerate().map(counted).collect();
         let in_sheet = matches!(self.kind, Kind::Rows | Kind::Across { sheet: true });
@@ -82,16 +82,16 @@ impl Soil {
     }
 }
 
-/// What was understood of a soil, and what follows from its curve.
+/// A soil as read from a file, and values from its curve.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct SoilSummary {
-    /// What its sheet or column calls it, or the file.
+    /// Name of its sheet or column, or of the file.
     pub name: String,
     /// Opening (mm) and percent finer by mass; sizes rise.
     #[cfg_attr(feature = "schemas", schemars(with = "Vec<[f64; 2]>"))]
     pub points: Vec<CurvePoint>,
-    /// D5 (mm); this and the others are `None` where they lie below the finest opening.
+    /// D5 (mm); this and the others are `None` if they lie below the finest opening.
     pub d5_mm: Option<f64>,
     /// D10 (mm).
     pub d10_mm: Option<f64>,
@@ -119,14 +119,14 @@ pub struct SoilSummary {
     pub fines_percent: Option<f64>,
     /// Percent coarser than 4.75 mm.
     pub gravel_percent: Option<f64>,
-    /// Group of ASTM D2487, as far as a sieve curve tells it.
+    /// Group of ASTM D2487, as far as a sieve curve determines it.
     pub class: Option<String>,
-    /// What was assumed when it was read.
+    /// Assumptions made when it was read.
     pub notes: Vec<String>,
 }
 
 impl SoilSummary {
-    /// Summarises `soil`, whose open finest tail ends at `d0_mm`.
+    /// Summarises `soil`; `d0_mm` is the smallest size of a pan fraction.
     ///
     /// # Errors
     /// A table that is not a sieve curve.

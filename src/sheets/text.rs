@@ -1,4 +1,4 @@
-//! Bytes to text, by the encoding of the file, and text to rows of cells.
+//! Bytes to text, by the encoding of the file; text to rows of cells.
 
 use super::content::{is_blank, is_value};
 use super::grid::{Grid, GridRow, Line, listed};
@@ -6,10 +6,10 @@ use super::size::{opening, us_sieve_number};
 use std::rc::Rc;
 use voidwalk_core::gradation::TableError;
 
-/// The text in `bytes`, and the assumed encoding if it is not plain UTF-8.
+/// Decodes `bytes`; also returns the assumed encoding if it is not plain UTF-8.
 ///
-/// UTF-8 and UTF-16 are understood, with or without a byte order mark. Anything else is Windows-1252, in
-/// which spreadsheets of western countries save, unless it is no text at all.
+/// UTF-8 and UTF-16 are understood, with or without a byte order mark. Anything else is read as
+/// Windows-1252, as saved by spreadsheets in western countries, unless it is not text at all.
 pub(super) fn decoded(file: &str, bytes: &[u8]) -> Result<(String, Option<String>), TableError> {
     refuse_other_formats(file, bytes)?;
     if let Some((is_big, skip)) = utf16(bytes) {
@@ -33,7 +33,7 @@ pub(super) fn decoded(file: &str, bytes: &[u8]) -> Result<(String, Option<String
     Ok((unified(text), note))
 }
 
-/// A file without a single line feed has the carriage returns of an old Mac.
+/// Converts line ends. A file without any line feed has the carriage returns of an old Mac.
 fn unified(text: String) -> String {
     if text.contains('\n') || !text.contains('\r') { text } else { text.replace('\r', "\n") }
 }
@@ -46,8 +46,8 @@ fn windows_1252(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| character(byte).unwrap_or(char::from(*byte))).collect()
 }
 
-/// Recognises UTF-16 by its mark or by the zeros in every other byte. Returns true if the larger byte comes
-/// first, and the length of the mark.
+/// Recognises UTF-16 by its mark, or by the zeros in every other byte. Returns true if the high byte
+/// comes first, and the length of the mark.
 fn utf16(bytes: &[u8]) -> Option<(bool, usize)> {
     match bytes {
         [0xff, 0xfe, ..] => return Some((false, 2)),
@@ -64,7 +64,7 @@ fn utf16(bytes: &[u8]) -> Option<(bool, usize)> {
     }
 }
 
-/// Refuses formats of other programs, by their first bytes.
+/// Refuses formats of other programs by their first bytes.
 fn refuse_other_formats(file: &str, bytes: &[u8]) -> Result<(), TableError> {
     const KNOWN: [(&[u8], &str); 4] = [
         (&[0xd0, 0xcf, 0x11, 0xe0], "an Excel workbook of the old kind (.xls), or one with a password"),
@@ -86,11 +86,11 @@ fn other(file: &str, is: String) -> TableError {
     TableError::Format { file: file.into(), is }
 }
 
-/// A quoted cell may go on over this many lines.
+/// Maximum number of lines in a quoted cell.
 const LINES_OF_A_CELL: usize = 6;
 
-/// Separators that a text may have, the likeliest first: `sep=` in its first line, or else the first of
-/// semicolon, tab and comma in the first line that has any; then the others.
+/// Possible separators of a text, the most likely first: `sep=` in its first line, or else the first of
+/// semicolon, tab and comma in the first line that has one; then the others.
 pub(super) fn separators(text: &str) -> Vec<char> {
     if let Some(sign) = stated_separator(text) {
         return vec![sign];
@@ -102,7 +102,7 @@ pub(super) fn separators(text: &str) -> Vec<char> {
     std::iter::once(first).chain(others).collect()
 }
 
-/// Separator that Excel states above a table, as in `sep=;`.
+/// Separator stated by Excel above a table, as in `sep=;`.
 fn stated_separator(text: &str) -> Option<char> {
     let first = text.lines().next()?.trim().trim_matches('"').to_lowercase();
     let sign = first.strip_prefix("sep=")?;
@@ -131,7 +131,7 @@ pub(super) fn grid(file: &str, text: &str, delimiter: char) -> Grid {
             }
             continue;
         }
-        // A quoted heading may hold line breaks.
+        // A quoted heading may contain line breaks.
         let ends = (0..LINES_OF_A_CELL).map(|k| at + k).take_while(|&end| end < lines.len());
         if all_cells(&content, delimiter).1
             && let Some(end) =
@@ -164,7 +164,7 @@ enum Marked {
     Sieve,
     /// Another number and numbers, such as a row that is commented out.
     Numbers,
-    /// A number beside words: amid a table, a row that is commented out.
+    /// A number with words: inside a table, a row that is commented out.
     Number,
     Comment,
 }
@@ -200,8 +200,8 @@ fn filled(cells: &[String]) -> usize {
     cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1)
 }
 
-/// Cells of one line, trimmed and without their quotes, with empty cells at the end; and true if a quote is
-/// left open. A quote counts only at the beginning of a cell: elsewhere it means inches.
+/// Cells of one line, trimmed and unquoted, including empty cells at the end; true if a quote is not
+/// closed. A quote counts only at the beginning of a cell: elsewhere it means inches.
 pub(super) fn all_cells(line: &str, delimiter: char) -> (Vec<String>, bool) {
     let mut cells = vec![String::new()];
     let (mut quoted, mut was_quoted) = (false, false);

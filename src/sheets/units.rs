@@ -1,4 +1,4 @@
-//! Unit of openings that have none of their own: by the numbers, by a column or a row of units, by a title.
+//! Unit of openings that have none: from the numbers, from a column or a row of units, or from a title.
 
 use super::grid::{Grid, GridRow};
 use super::heading::{Retained, Role, role, unit, words};
@@ -8,8 +8,8 @@ use super::size::{Entry, Form, Opening, Unit, goes_one_way, is_us_sieve_of_inche
 use std::collections::HashMap;
 use voidwalk_core::gradation::{FIELDS, TableError};
 
-/// US sieves in decimals of an inch, with the usual roundings, that are the openings of no metric sieve. The
-/// first few may be chosen in mm, too: one of them alone says nothing.
+/// US sieves in decimal inches, with the usual roundings, that are not the opening of a metric sieve.
+/// The first few are also used in mm: one of them alone proves nothing.
 const ONLY_INCHES: [f64; 70] = [
     3.5, 1.75, 1.5, 0.75, 0.875, 0.625, 0.53, 0.4375, 0.4380, 0.438, 0.44, 0.375, 0.38, 0.3125, 0.313, 0.312,
     0.265, 0.223, 0.187, 0.1870, 0.1875, 0.19, 0.157, 0.132, 0.1319, 0.111, 0.1102, 0.1110, 0.0937, 0.0938,
@@ -18,7 +18,7 @@ const ONLY_INCHES: [f64; 70] = [
     0.0116, 0.0098, 0.0083, 0.007, 0.0059, 0.0058, 0.0049, 0.0041, 0.0035, 0.0029, 0.0025, 0.0021, 0.0017,
     0.0015,
 ];
-/// US sieves in decimals of an inch that could be metric ones as well.
+/// US sieves in decimal inches that could also be metric sieves.
 const ALSO_MM: [f64; 22] = [
     12.0, 6.0, 5.0, 4.0, 3.0, 2.5, 2.0, 1.25, 1.0, 0.5, 0.25, 0.033, 0.028, 0.023, 0.017, 0.012, 0.006,
     0.003, 0.01, 0.004, 0.002, 0.125,
@@ -27,8 +27,8 @@ const ALSO_MM: [f64; 22] = [
 /// Note on bare openings without a known unit.
 pub(super) const TAKEN_AS_MM: &str = "openings without a unit taken as mm";
 
-/// Unit of openings that are bare numbers: the unit of the heading; mm if nothing else has inches; otherwise
-/// the unit in which the openings go one way.
+/// Unit of openings that are bare numbers: the unit of the heading; mm if no other opening is in inches;
+/// otherwise the unit in which the openings only rise or only fall.
 pub(super) fn of_bare(
     grid: &Grid,
     layout: &Layout,
@@ -61,7 +61,7 @@ pub(super) fn of_bare(
         |allowed: &str| Err(grid.refused(first.line, first.column, FIELDS[0], &first.text, allowed));
     if let Some(entry) = first_sieve_number(entries, role) {
         if layout.unit == Some(Unit::SieveNumber) {
-            // An opening that is not a sieve number is refused on its own.
+            // An opening that is not a sieve number is refused separately.
             return Ok(Unit::SieveNumber);
         }
         let text = &entry.text;
@@ -100,11 +100,11 @@ pub(super) fn of_bare(
     Ok(Unit::Mm)
 }
 
-/// No sieve is finer than this, and larger openings in mm are rare.
+/// Minimum number that is read as micrometres: no sieve is finer, and larger openings in mm are rare.
 const LEAST_MICROMETRES: f64 = 25.0;
 
-/// Refuses openings whose finer part seems to be in micrometres and whose coarser part in mm: they go one way
-/// only if the finer ones are divided by a thousand.
+/// Refuses openings whose finer part seems to be in micrometres and whose coarser part in mm: they only
+/// rise or only fall if the finer ones are divided by a thousand.
 fn refuse_micrometres(grid: &Grid, entries: &[Entry]) -> Result<(), TableError> {
     let sizes: Vec<(f64, &Entry)> = entries
         .iter()
@@ -122,7 +122,7 @@ fn refuse_micrometres(grid: &Grid, entries: &[Entry]) -> Result<(), TableError> 
         (0..sizes.len()).map(mm).collect()
     };
     let steps: Vec<bool> = sizes.windows(2).map(|pair| pair[0].0 > pair[1].0).collect();
-    // A single step against the others marks the change of unit.
+    // A single step against the direction of the others marks the change of unit.
     let alone = |falls: bool| {
         let mut places = (0..steps.len()).filter(|&at| steps[at] == falls);
         places.next().filter(|_| places.next().is_none() && steps.len() > 1)
@@ -144,7 +144,7 @@ fn refuse_micrometres(grid: &Grid, entries: &[Entry]) -> Result<(), TableError> 
     Ok(())
 }
 
-/// True if the openings only rise or only fall once those without a unit are read in this one.
+/// True if the openings only rise or only fall when those without a unit are read in this one.
 fn goes_one_way_in(entries: &[Entry], unit: Unit) -> bool {
     let size = |entry: &Entry| match entry.opening {
         Opening::Mm(mm) => Some(mm),
@@ -156,7 +156,7 @@ fn goes_one_way_in(entries: &[Entry], unit: Unit) -> bool {
 
 const ROUND: usize = 4;
 
-/// True if all openings without a unit are US sieves in decimals of an inch and not metric sieves. The
+/// True if all openings without a unit are US sieves in decimal inches and not metric sieves. The
 /// ordinary series in mm, such as 4, 2, 1, 0.5, 0.25, 0.125, does not count.
 fn is_series_of_inches(entries: &[Entry]) -> bool {
     let (mut only, mut round) = (false, 0);
@@ -186,8 +186,8 @@ fn is_whole_sieve_number(value: f64) -> bool {
     value.fract() == 0.0 && Unit::SieveNumber.mm(value).is_some()
 }
 
-/// The first opening of a table whose bare openings are US sieves by number: whole numbers up to No. 100 or
-/// more, the larger number for the finer sieve. Sizes in mm may be the same numbers, such as 4, 8, 20, 100.
+/// First opening of a table whose bare openings are numbers of US sieves: whole numbers up to at least
+/// No. 100, larger for finer sieves. Sizes in mm may be the same numbers, such as 4, 8, 20, 100.
 fn first_sieve_number(entries: &[Entry], role: Role) -> Option<&Entry> {
     let is_inches =
         |value: f64| ONLY_INCHES.iter().chain(&ALSO_MM).any(|inches| (inches - value).abs() < 1e-9);
@@ -213,7 +213,7 @@ fn first_sieve_number(entries: &[Entry], role: Role) -> Option<&Entry> {
     let is_it = match role {
         Role::Retained(Retained { cumulative: Some(true), .. }) => rises,
         Role::Retained(Retained { cumulative: None, .. }) if rises => true,
-        // Values on each sieve alone go neither way; the pan lies beside the finest sieve.
+        // Values on each sieve have no direction; the pan is next to the finest sieve.
         Role::Retained(_) => match beside_pan(entries) {
             Some(value) => value == largest,
             None => all && numbers.iter().any(|(n, _)| *n >= 200.0 || NO_METRIC_SIEVE.contains(n)),
@@ -237,7 +237,7 @@ fn beside_pan(entries: &[Entry]) -> Option<f64> {
     })
 }
 
-/// Adds a note of the names of openings that were translated.
+/// Adds a note about converted names of openings.
 pub(super) fn say_names(entries: &[Entry], unit: Unit, notes: &mut Vec<String>) {
     let any = |form: Form| entries.iter().any(|entry| entry.form == form);
     let number = any(Form::UsNumber) || unit == Unit::SieveNumber;
@@ -267,10 +267,10 @@ pub(super) fn say_names(entries: &[Entry], unit: Unit, notes: &mut Vec<String>) 
     }
 }
 
-/// Allowed text of the error for openings without a unit beside them.
+/// Allowed values in the error for openings without a unit beside them.
 const ALLOWED: &str = "openings whose heading names their unit, as Size (mm) or Size (um)";
 
-/// Unit of bare openings as stated beside them, in the heading or in a column of units.
+/// Unit of bare openings as stated beside them: in the heading or in a column of units.
 fn beside(grid: &Grid, layout: &Layout, entries: &[Entry]) -> Result<Option<Unit>, TableError> {
     let bare: HashMap<usize, &Entry> =
         entries.iter().filter(|e| matches!(e.opening, Opening::Bare(_))).map(|e| (e.line, e)).collect();
@@ -279,7 +279,7 @@ fn beside(grid: &Grid, layout: &Layout, entries: &[Entry]) -> Result<Option<Unit
     for row in &grid.rows[layout.first..] {
         let Some(entry) = bare.get(&row.line) else { continue };
         rows += 1;
-        // The unit lies near the openings, outside the columns of soils.
+        // The unit is near the openings, outside the columns of soils.
         let near = entry.column.saturating_sub(2)..=entry.column + 2;
         let Some((cell, unit)) = near.filter(|&c| c != entry.column).find_map(|c| unit_alone(row.cell(c)))
         else {
@@ -299,8 +299,8 @@ fn beside(grid: &Grid, layout: &Layout, entries: &[Entry]) -> Result<Option<Unit
     }
 }
 
-/// Refuses bare openings if a title or a row of units states their unit, or if they are sieves in another
-/// unit than the one taken.
+/// Refuses bare openings if a title or a row of units states their unit, or if they are sieves in
+/// another unit than the assumed one.
 fn refuse_other_unit(
     grid: &Grid,
     layout: &Layout,
@@ -311,7 +311,7 @@ fn refuse_other_unit(
         45.0, 53.0, 63.0, 75.0, 90.0, 106.0, 125.0, 150.0, 180.0, 212.0, 250.0, 300.0, 355.0, 425.0, 500.0,
         600.0, 710.0, 850.0,
     ];
-    /// Fewer may be chosen in any unit.
+    /// Minimum number of openings; fewer may fit any unit.
     const LEAST: usize = 4;
     let bare = |entry: &Entry| match entry.opening {
         Opening::Bare(value) if value > 0.0 => Some(value),
@@ -354,7 +354,7 @@ fn refuse_other_unit(
     }
 }
 
-/// Refuses sieves by number if the sheet names a series other than the United States one.
+/// Refuses numbers of sieves if the sheet names a series that is not the United States one.
 fn refuse_other_series(grid: &Grid, layout: &Layout, entries: &[Entry]) -> Result<(), TableError> {
     let (mut numbered, mut bare, mut whole, mut largest) = (None, None, true, 0.0f64);
     for entry in entries {
@@ -378,7 +378,7 @@ fn titles<'a>(grid: &'a Grid, layout: &Layout) -> impl Iterator<Item = &'a GridR
     grid.rows[..layout.first.min(grid.rows.len())].iter()
 }
 
-/// Series of sieves that a text names, other than the United States one.
+/// Series of sieves named by a text, if it is not the United States one.
 fn other_series(text: &str) -> Option<String> {
     const NAMES: [&str; 5] = ["TYLER", "JIS", "AFNOR", "GOST", "ГОСТ"];
     let parts: Vec<&str> =
@@ -393,13 +393,13 @@ fn other_series(text: &str) -> Option<String> {
         let is_it = NAMES.contains(&part.to_uppercase().as_str())
             || ["BS", "BSS"].contains(part)
             || *part == "B" && next == Some(&"S") && text.contains("B.S")
-            // `IS` is also a word.
+            // `IS` is also an ordinary word.
             || *part == "IS" && (parts.len() == 1 || next.is_some_and(is_sieve));
         is_it.then(|| (*part).to_owned())
     })
 }
 
-/// A cell that holds nothing but a unit of length.
+/// True for a cell that contains only a unit of length; returns it.
 fn unit_alone(cell: &str) -> Option<(&str, Unit)> {
     const LONGEST: usize = 16;
     let bare = cell.trim_matches(['(', ')', '[', ']', '.', ' ']);
@@ -409,7 +409,7 @@ fn unit_alone(cell: &str) -> Option<(&str, Unit)> {
     unit.filter(|unit| *unit != Unit::SieveNumber && role(bare) != Role::Finer).map(|unit| (cell, unit))
 }
 
-/// True if a title or a remark names a unit of openings other than mm; `below 63 µm` names a size.
+/// True if a title or a remark names a unit of openings that is not mm; `below 63 µm` names a size.
 pub(super) fn states_unit(text: &str) -> bool {
     let all = words(text);
     let behind_number = |word: &str| {

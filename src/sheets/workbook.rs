@@ -1,5 +1,5 @@
-//! What both kinds of workbook have: files in a zip and cells, read within bounds; texts of cells in several
-//! formats; and number formats that write text around a number, such as the unit in `0" µm"`.
+//! Code shared by both kinds of workbook: files in a zip and cells, read within bounds; cell texts in
+//! several formats; and number formats that write text around a number, such as the unit in `0" µm"`.
 
 use super::grid::{Grid, GridRow, listed};
 use quick_xml::events::{BytesStart, Event};
@@ -10,9 +10,9 @@ use std::ops::Range;
 use voidwalk_core::gradation::{TableError, letters};
 use zip::ZipArchive;
 
-/// Limit on the unpacked size of all parts of a workbook (bytes).
+/// Maximum unpacked size of all parts of a workbook (bytes).
 const UNPACKED_LIMIT: u64 = 64 << 20;
-/// Limit on the size of a part that is read into memory (bytes).
+/// Maximum size of a part that is read into memory (bytes).
 const PART_LIMIT: u64 = 24 << 20;
 const PARTS_LIMIT: usize = 2000;
 
@@ -23,7 +23,7 @@ pub(super) struct Zipped<'a> {
 }
 
 impl<'a> Zipped<'a> {
-    /// Opens a zip; refuses one that unpacks to more than a workbook of soils holds.
+    /// Opens a zip; refuses one that unpacks to more than a workbook of soils.
     pub(super) fn open(file: &str, bytes: &'a [u8]) -> Result<Zipped<'a>, TableError> {
         let broken = |_| unreadable(file, "its zip cannot be read");
         let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(broken)?;
@@ -53,7 +53,7 @@ impl<'a> Zipped<'a> {
         self.names.iter().any(|part| part == name)
     }
 
-    /// Text of a part. The limit holds for the unpacked bytes, whatever size the zip declares.
+    /// Reads the text of a part. The limit applies to the unpacked bytes, whatever size the zip declares.
     pub(super) fn text(&mut self, name: &str) -> Result<String, TableError> {
         let file = self.file.clone();
         let part = self.archive.by_name(name);
@@ -72,7 +72,7 @@ pub(super) fn unreadable(file: &str, why: &str) -> TableError {
     TableError::Workbook { file: file.into(), why: why.into() }
 }
 
-/// Error for a workbook that is larger than any workbook of soils.
+/// Makes the error for a workbook that is larger than any workbook of soils.
 pub(super) fn too_large(file: &str, how: &str) -> TableError {
     unreadable(file, &format!("it is too large ({how}); keep the sheet with the soils alone"))
 }
@@ -87,7 +87,7 @@ pub(super) fn attribute(element: &BytesStart, name: &str) -> Option<String> {
     Some(value.into_owned())
 }
 
-/// Characters that an event within an element represents.
+/// Returns the characters represented by an event within an element.
 pub(super) fn characters(event: &Event) -> Option<String> {
     match event {
         Event::Text(text) => Some((**text).to_owned()),
@@ -102,16 +102,16 @@ pub(super) fn characters(event: &Event) -> Option<String> {
     }
 }
 
-/// Most columns and rows that are kept; a sheet of soils has some tens.
+/// Maximum number of columns and of rows that are kept; a sheet of soils has some tens.
 const MOST_COLUMNS: usize = 500;
 const MOST_ROWS: usize = 20_000;
-/// Most places for cells, and most characters, of a whole workbook.
+/// Maximum number of cells and of characters in a whole workbook.
 const MOST_PLACES: usize = 500_000;
 const MOST_CHARACTERS: usize = 4_000_000;
-/// Longest text of a cell that is kept.
+/// Maximum length of a cell's text that is kept.
 const LONGEST: usize = 200;
 
-/// Places and characters that the sheets of a workbook may still take.
+/// Cells and characters that the sheets of a workbook may still use.
 pub(super) struct Budget {
     places: usize,
     characters: usize,
@@ -123,7 +123,7 @@ impl Budget {
     }
 }
 
-/// The text of a cell on one line, shortened.
+/// Puts the text of a cell on one line, shortened.
 pub(super) fn tidy(text: &str) -> String {
     let mut tidy = String::new();
     for word in text.split_whitespace() {
@@ -151,7 +151,7 @@ impl<'a> Cells<'a> {
         Cells { grid, budget, hidden_rows: Vec::new(), hidden_columns: Vec::new() }
     }
 
-    /// Takes a cell behind all that came before; row and column are counted from 0.
+    /// Adds a cell after all previous ones; row and column are counted from 0.
     pub(super) fn put(&mut self, row: usize, column: usize, text: &str) -> Result<(), TableError> {
         let text = tidy(text);
         if text.is_empty() {
@@ -177,7 +177,7 @@ impl<'a> Cells<'a> {
         *self.budget = Budget { places, characters };
         if !last.cell(column).is_empty() {
             let name = format!("{}{line}", letters(column as u32));
-            return Err(unreadable(file, &format!("its cell {name} stands in it twice")));
+            return Err(unreadable(file, &format!("its cell {name} occurs twice")));
         }
         if more > 0 {
             last.cells.resize(column + 1, String::new());
@@ -200,7 +200,7 @@ impl<'a> Cells<'a> {
         }
     }
 
-    /// Returns all cells as a grid, with a note of those hidden from a reader of the sheet.
+    /// Returns all cells as a grid, with a note about those hidden in the sheet.
     pub(super) fn done(mut self, hidden: bool) -> Grid {
         let grid = &mut self.grid;
         if hidden {
@@ -231,7 +231,7 @@ pub(super) enum Kind {
     Struck,
 }
 
-/// Text so far, and the part that may still go on.
+/// Text so far, and the part that may still continue.
 #[derive(Default)]
 pub(super) struct Runs {
     text: String,
@@ -263,15 +263,15 @@ impl Runs {
             _ if part.trim().is_empty() => part,
             Kind::Struck => format!("[struck out: {}]", part.trim()),
             Kind::Raised if is_mark => format!(" ({})", part.trim()),
-            // Digits of two formats may be two numbers.
+            // Digits in two formats may be two numbers.
             _ if follows_digit && part.starts_with(|c: char| c.is_ascii_digit()) => format!("[{part}]"),
             _ => part,
         };
     }
 }
 
-/// A number with the text around it, which may be its unit or a sign such as `<`; grams and percents are left
-/// out.
+/// A number with the text around it, which may be its unit or a sign such as `<`; grams and percents are
+/// omitted.
 pub(super) fn as_shown(before: &str, number: &str, after: &str) -> String {
     const USUAL: [&str; 11] = ["", "g", "gr", "gm", "gms", "gram", "grams", "gramm", "kg", "%", "pct"];
     let after = match after.trim().trim_end_matches('.').to_lowercase() {
@@ -281,7 +281,7 @@ pub(super) fn as_shown(before: &str, number: &str, after: &str) -> String {
     format!("{before}{number}{after}").trim().to_owned()
 }
 
-/// Text before the first digit of a number as it is shown, and behind the last.
+/// Text before the first digit of a displayed number, and after the last.
 pub(super) fn around(shown: &str) -> (&str, &str) {
     let is_digit = |c: char| c.is_ascii_digit();
     match (shown.find(is_digit), shown.rfind(is_digit)) {
@@ -293,8 +293,8 @@ pub(super) fn around(shown: &str) -> (&str, &str) {
     }
 }
 
-/// Text that the code of a format writes before a positive number and behind it, and the rest of the code
-/// without quoted text, colours and spaces of a character's width.
+/// Text that a format's code writes before and after a positive number, and the rest of the code without
+/// quoted text, colours and spaces as wide as a character.
 pub(super) fn parts_of(code: &str) -> (String, String, String) {
     let (mut before, mut after, mut plain) = (String::new(), String::new(), String::new());
     let (mut chars, mut quoted, mut is_first) = (code.chars(), false, true);

@@ -1,4 +1,4 @@
-//! Sheets of Office Open XML: the workbook's list, its shared strings, its number formats and its sheets.
+//! Sheets of Office Open XML: the workbook's list of sheets, shared strings, number formats, and the sheets.
 
 use super::grid::Grid;
 use super::workbook::{
@@ -9,7 +9,7 @@ use quick_xml::events::{BytesStart, Event};
 use std::collections::HashMap;
 use voidwalk_core::gradation::{Position, TableError};
 
-/// Most shared strings, and most sheets.
+/// Maximum number of shared strings, and of sheets.
 const MOST_STRINGS: usize = 200_000;
 const MOST_SHEETS: usize = 200;
 
@@ -44,7 +44,7 @@ pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, Table
             Some(absolute) => absolute.to_owned(),
             None => format!("xl/{target}"),
         };
-        // The sheet of a chart holds no cells.
+        // The sheet of a chart has no cells.
         if path.contains("worksheets/") {
             let context = Context { file, sheet: &name, hidden, strings: &strings, styles: &styles };
             sheets.push(context.sheet(&zipped.text(&path)?, &mut budget)?);
@@ -83,7 +83,7 @@ fn shared_strings(file: &str, text: &str) -> Result<Vec<String>, TableError> {
             Event::Start(e) if e.local_name().as_ref() == "rPh" => phonetic = true,
             Event::End(e) if e.local_name().as_ref() == "rPh" => phonetic = false,
             Event::End(e) if e.local_name().as_ref() == "si" => {
-                // Shortened once: a sheet may name one long text many times.
+                // Shortened once: a sheet may use one long text many times.
                 strings.push(tidy(&rich.runs.text()));
                 if strings.len() > MOST_STRINGS {
                     return Err(too_large(file, &format!("more than {MOST_STRINGS} texts")));
@@ -100,7 +100,7 @@ fn shared_strings(file: &str, text: &str) -> Result<Vec<String>, TableError> {
     }
 }
 
-/// A text in runs of different formats.
+/// A text of runs in different formats.
 #[derive(Default)]
 struct Rich {
     runs: Runs,
@@ -128,7 +128,7 @@ impl Rich {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Style {
-    /// With the text before it and behind it.
+    /// A number format, with the text before and after the number.
     Number(String, String),
     Percent,
     Date,
@@ -173,7 +173,7 @@ fn of_format(code: &str) -> Style {
     }
 }
 
-/// True if a format's code has hours, minutes or seconds that go on counting: `[h]`, `[mm]`, `[ss]`.
+/// True if a format's code has hours, minutes or seconds that continue counting: `[h]`, `[mm]`, `[ss]`.
 fn counts_time(code: &str) -> bool {
     let within = code.split('[').skip(1).filter_map(|rest| rest.split_once(']'));
     within.map(|(unit, _)| unit.to_lowercase()).any(|unit| {
@@ -212,7 +212,7 @@ impl Context<'_> {
                     row = given.map_or(row, |r| r.saturating_sub(1));
                     column = 0;
                     if before.replace(row) == Some(row) {
-                        let why = format!("its row {} stands in sheet \"{}\" twice", row + 1, self.sheet);
+                        let why = format!("its row {} occurs twice in sheet \"{}\"", row + 1, self.sheet);
                         return Err(unreadable(self.file, &why));
                     }
                     if is_hidden(&e) {
@@ -230,7 +230,7 @@ impl Context<'_> {
                     cells.put(row, column, &text)?;
                     column += 1;
                 }
-                // A part that was cut off lacks rows.
+                // A truncated part lacks rows.
                 Event::Eof if within => return Err(broken(self.file)),
                 Event::Eof => return Ok(cells.done(self.hidden)),
                 _ => {}
@@ -283,7 +283,7 @@ impl Context<'_> {
         Ok(match kind {
             "s" => {
                 let text = value.parse().ok().and_then(|n: usize| self.strings.get(n)).cloned();
-                text.ok_or_else(|| unreadable(self.file, "a cell names a text that is not there"))?
+                text.ok_or_else(|| unreadable(self.file, "a cell refers to a missing text"))?
             }
             "inlineStr" => inline.runs.text(),
             "str" | "e" => value,
@@ -293,10 +293,10 @@ impl Context<'_> {
         })
     }
 
-    /// A number as the sheet displays it: with its percent sign, or as a date.
+    /// Formats a number as the sheet displays it: with its percent sign, or as a date.
     fn number(&self, value: &str, style: usize) -> String {
         let Ok(number) = value.parse::<f64>() else { return value.to_owned() };
-        // Spreadsheets display fifteen digits of a number that was summed up.
+        // Spreadsheets display fifteen digits of a computed number.
         let rounded = format!("{:.14e}", number).parse::<f64>().map_or(value.to_owned(), |n| n.to_string());
         match self.styles.get(style) {
             Some(Style::Percent) => format!("{}%", (number * 100.0 * 1e9).round() / 1e9),
@@ -307,7 +307,7 @@ impl Context<'_> {
     }
 }
 
-/// Row and column of a cell called `B7`, counted from 0.
+/// Row and column of a cell named like `B7`, counted from 0.
 fn place_of(name: &str) -> Option<(usize, usize)> {
     let at = name.find(|c: char| c.is_ascii_digit())?;
     let (letters, digits) = name.split_at(at);

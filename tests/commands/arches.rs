@@ -134,7 +134,7 @@ fn what_cannot_be_is_refused() {
         let set = format!("walk.concentration={wrong}");
         refusal(&["--set", "walk.arching=marin-2018", "--set", &set], "a number above 0 and up to 0.64");
     }
-    refusal(&["--set", "walk.arching=marin-2018", "--set", "walk.concentration=2%"], "as a part of 1");
+    refusal(&["--set", "walk.arching=marin-2018", "--set", "walk.concentration=2%"], "as a fraction");
 }
 
 /// A law that depends on the concentration says what is missing, wherever the law is named, before any work.

@@ -286,7 +286,7 @@ fn a_corrupt_checkpoint_is_passed_over_or_refused_and_never_lost() {
     let output = call(&at, &["resume", "run", "--checkpoint-every", "10min"]);
     let stderr = String::from_utf8_lossy(&output.stderr).into_owned();
     if both {
-        assert!(output.status.success() && stderr.contains("the checkpoint before it was taken"), "{stderr}");
+        assert!(output.status.success() && stderr.contains("the checkpoint before it was used"), "{stderr}");
         assert_eq!(lasting(&at.join("whole")), lasting(&run));
     } else {
         assert_eq!(output.status.code(), Some(2), "{stderr}");

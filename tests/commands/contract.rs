@@ -84,7 +84,7 @@ fn files_without_a_beginning_or_in_another_form_are_refused() {
     let mut bare: Value = serde_json::from_str(&whole).unwrap();
     bare.as_object_mut().unwrap().retain(|name, _| !["format", "voidwalk"].contains(&name.as_str()));
     let (code, said) = report(&bare.to_string());
-    assert!(code == 2 && said.contains("does not begin with the name and number of its form"), "{said}");
+    assert!(code == 2 && said.contains("does not begin with the name and number of its format"), "{said}");
     let version = format!("\"voidwalk\": \"{}\"", env!("CARGO_PKG_VERSION"));
     for number in ["0", "2"] {
         let form = format!("voidwalk-outcome/{number}");

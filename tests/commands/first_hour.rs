@@ -95,14 +95,14 @@ fn every_mistake_is_answered_with_a_way_out() {
         ("campaign sand.csv", 2, &["sand.csv: is a table of numbers, not the plan of a campaign"]),
         ("run pipe", 2, &["pipe: is a pipe, a device or a socket; allowed: a regular file of at most 1 MB"]),
         ("campaign pipe", 2, &["pipe: is a pipe, a device or a socket; allowed: "]),
-        ("constrictions pipe", 2, &["pipe: cannot be read: is no regular file"]),
+        ("constrictions pipe", 2, &["pipe: cannot be read: is not a regular file"]),
         ("check --set base.sieve=pipe", 2, &["refused: pipe: is a pipe, a device or a socket; allowed: "]),
         ("check --set filter.curve=pipe.csv", 2, &["pipe.csv, named by filter.curve: No such file"]),
         ("constrictions three.csv --out c", 2, &["three.csv: 3 grains: a triangulation needs at least 4"]),
         (
             "constrictions four.csv --out c",
             2,
-            &["four.csv: no grain has others all around it", "at least three grains along each axis"],
+            &["four.csv: no grain is surrounded by others", "at least three grains along each axis"],
         ),
         ("constrictions flat.csv --out c", 2, &["flat.csv: the centres of all 5 grains lie in one plane"]),
         (
@@ -415,7 +415,7 @@ fn examples_are_written_once_and_every_short_one_runs() {
     let again = voidwalk(root.path(), &["examples", "try"]);
     assert_eq!(again.status.code(), Some(2));
     let said = String::from_utf8_lossy(&again.stderr);
-    assert!(said.contains("base.csv: is there already; nothing was written. Name another folder"), "{said}");
+    assert!(said.contains("base.csv: exists already; nothing was written. Name another folder"), "{said}");
     let folder = root.path().join("try");
     let small = ["network.nx=5", "network.ny=5", "network.nz=5", "replicates=1"];
     let small: Vec<&str> = small.iter().flat_map(|set| ["--set", set]).collect();

@@ -104,7 +104,7 @@ fn one_packing_in_six_formats_gives_one_curve() {
         let output = call(root.path(), &args);
         done(&output);
         let stderr = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(stderr.contains("are turned into mm"), name != "own.csv", "{name}: {stderr}");
+        assert_eq!(stderr.contains("converted to mm"), name != "own.csv", "{name}: {stderr}");
         assert_eq!(stderr.matches(&format!("{name}: lengths are")).count(), usize::from(name != "own.csv"));
         let found = numbers(&root.path().join(&out).join("constrictions.csv"));
         assert!(found.len() > 600, "{name}: {}", found.len());
@@ -134,7 +134,7 @@ fn a_file_without_its_unit_or_its_boundaries_is_refused() {
     for name in ["yade.txt", "mercury.data", "paraview.csv"] {
         said(&[name, "--unit", "m"], &format!("{name} does not say whether its boundaries are periodic"));
     }
-    said(&["lammps.dump", "--unit", "mm"], "the file says the unit of its lengths itself");
+    said(&["lammps.dump", "--unit", "mm"], "the file states the unit of its lengths");
     assert!(!root.path().join("voidwalk-constrictions").exists());
 }
 

@@ -116,7 +116,7 @@ fn a_graph_and_its_exits_are_refused_by_name_where_they_do_not_go_together() {
     for (set, message) in [
         ("walk.exit=area", "walk.exit: `area` is not allowed; \"flux\", \"area-along-flow\", \"height\""),
         ("walk.exit=up", "walk.exit: `up` is not allowed"),
-        ("walk.rho=2", "walk.rho: `2` is not allowed; a part from 0 to 1"),
+        ("walk.rho=2", "walk.rho: `2` is not allowed; a fraction from 0 to 1"),
         ("network.copies=0", "network.copies: `0` is not allowed"),
         ("walk.conductance_exponent=3", "is for a lattice"),
         ("network.packing=none.csv", "none.csv"),

@@ -65,7 +65,7 @@ fn a_folder_a_missing_file_and_a_huge_file_are_refused() {
     assert!(Curve::from_csv(&huge).unwrap_err().to_string().contains("larger than 16 MB"));
 }
 
-/// A file that never ends is no regular file, and is not read at all.
+/// A file that never ends is not a regular file, and is not read at all.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_endless_file_is_refused() {

@@ -63,7 +63,7 @@ fn numbers_of_no_walk_are_refused() {
             assert!(restored(&run, folder.path(), increment, |_| ()).is_ok(), "{engine:?}, {increment}");
             let refused = restored(&run, folder.path(), increment, forge).unwrap_err();
             assert!(refused.contains(what), "{engine:?}, {what}: {refused}");
-            assert!(refused.ends_with("cannot be of this run"), "{refused}");
+            assert!(refused.ends_with("cannot belong to this run"), "{refused}");
         }
     }
 }

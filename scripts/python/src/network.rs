@@ -172,7 +172,7 @@ impl Network {
         let name = path.display().to_string();
         // A pipe is not waited for.
         let bytes = read_regular(&path, u64::MAX).map_err(|error| refused(format!("{name}: {error}")))?;
-        let bytes = bytes.ok_or_else(|| refused(format!("{name}: is no regular file")))?;
+        let bytes = bytes.ok_or_else(|| refused(format!("{name}: is not a regular file")))?;
         let read = py.detach(|| network::Network::from_csv(&bytes, &name, unit_mm));
         Ok(read.map_err(|error| of_network(&error))?.into())
     }

@@ -40,7 +40,7 @@ def test_a_walk_with_water_has_a_page(tmp_path: Path) -> None:
     ring = vw.Network([[0, 1], [1, 2], [0, 3], [3, 2]], [1.0, 1.0, 0.4, 0.4], inlets=[0], outlets=[2])
     result = vw.walk(ring, 0.5, n_base=1000, replicates=2, runs=1)
     text = result.report(tmp_path / "ring.html").read_text(encoding="utf-8")
-    assert "hydraulics but for the direction" in text and "4, 4, 3" in text
+    assert "hydraulics except direction" in text and "4, 4, 3" in text
 
 
 def test_a_run_in_memory_has_the_page_of_its_folder(small: Dict[str, Any], tmp_path: Path) -> None:

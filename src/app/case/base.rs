@@ -1,5 +1,5 @@
-//! The base of a case: as given, as walked (regraded by filter practice, if the scene asks for it), and the
-//! particles that it is walked as.
+//! Base of a case: as given, as walked (regraded by filter practice if the scene requests it), and its
+//! particles in the walk.
 
 use super::error::CaseError;
 use super::files::Files;
@@ -8,20 +8,20 @@ use crate::scene::{Amount, BaseGradation, D85, FilterGradation, Regrade, Scene, 
 use voidwalk_core::gradation::{BaseSupply, Gradation, GradationError, SizeSampler, base_particles};
 use voidwalk_practice::{Mistake, MistakeKind};
 
-/// A base, worked out.
+/// Base with its derived values.
 #[derive(Clone, Debug)]
 pub struct CaseBase {
-    /// Its gradation, as it is walked.
+    /// Gradation as walked.
     pub gradation: Gradation,
-    /// The base as it was given, and the size (mm) on which it was regraded, if it is walked regraded.
+    /// Base as given, and the size (mm) on which it was regraded, if it is walked regraded.
     pub regraded_from: Option<(Gradation, f64)>,
 }
 
 impl CaseBase {
-    /// The base that a scene states, beside this filter.
+    /// Reads the base that a scene states, with this filter.
     ///
     /// # Errors
-    /// A file that is refused; a request to regrade sizes that are multiples of D0F.
+    /// A file is refused, or regrading is requested for sizes that are multiples of D0F.
     pub(super) fn read(scene: &Scene, filter: &CaseFilter, files: &mut Files) -> Result<Self, CaseError> {
         let given = given(scene, filter, files)?;
         if scene.base.regrade != Some(Regrade::Practice) {
@@ -43,13 +43,13 @@ impl CaseBase {
         })
     }
 
-    /// Its gradation as it was given, before any regrading.
+    /// Gradation as given, before any regrading.
     pub fn as_given(&self) -> &Gradation {
         self.regraded_from.as_ref().map_or(&self.gradation, |(given, _)| given)
     }
 
-    /// The mistake that two soils look like and are not refused for. A sieve table is refused whose sizes
-    /// must be in another unit; of a pair that is guarded also one that must be exchanged.
+    /// Mistake that two soils suggest without being refused for it. A sieve table is refused if its sizes
+    /// must be in another unit; a guarded pair also if it must be exchanged.
     pub(super) fn mistake(
         &self,
         scene: &Scene,
@@ -94,29 +94,29 @@ fn given(scene: &Scene, filter: &CaseFilter, files: &mut Files) -> Result<Gradat
     Ok(Gradation::linear_from_dx(85.0, d85_mm, cu)?)
 }
 
-/// The mass ratio for Eq. (2) if the scene gives a number of particles: the paper's 5 %.
+/// Mass ratio of Eq. (2) if the scene gives a number of particles: the paper's 5 %.
 pub const PAPER_MASS_RATIO: f64 = 0.05;
 
-/// The particles that a base is walked as.
+/// Particles of a base in the walk.
 #[derive(Clone)]
 pub struct CaseSupply {
-    /// The base's pan fraction is walked as particles just finer than every constriction, not counted by mass
-    /// only.
+    /// True if the base's pan fraction is walked as particles just finer than every constriction, false
+    /// if it is counted by mass only.
     pub pan_is_walked: bool,
-    /// Draws their sizes, in units of the reference length.
+    /// Sampler of particle sizes, in units of the reference length.
     pub sampler: SizeSampler,
-    /// Base particles of a run, by Eq. (2) or as given.
+    /// Number of base particles in a run, by Eq. (2) or as given.
     pub n_base: u64,
-    /// Base particles by Eq. (2); `None` if the grains per void are not given.
+    /// Number of base particles by Eq. (2); `None` if the grains per void are not given.
     pub n_base_eq2: Option<u64>,
-    /// True if a cap made `n_base` smaller than Eq. (2).
+    /// True if a cap made `n_base` smaller than by Eq. (2).
     pub capped: bool,
     /// Mass of base over mass of filter for `n_base` particles; `None` if the grains per void are not given.
     pub mass_ratio: Option<f64>,
 }
 
 impl CaseSupply {
-    /// The particles of a base behind this filter, on a network of `voids`: a pan fraction that need not be
+    /// Particles of a base for this filter, on a network of `voids`: a pan fraction that may not be
     /// passive is walked as passive particles. A filter that `is_packed` can no longer be refused.
     pub(super) fn new(
         scene: &Scene,
@@ -130,7 +130,7 @@ impl CaseSupply {
             true => &as_passive(base, filter.finest_mm, scene)?,
             false => base,
         };
-        // A number that the user gives counts particles whose sizes are known; the mass stays the same. A cap
+        // A number given by the user counts particles of known size; the mass stays the same. A cap
         // limits the work, to which passive particles add little.
         let more = taken.particles_per_unit_volume() / base.particles_per_unit_volume();
         let times = |n: u64| match n as f64 * more {
@@ -164,7 +164,7 @@ impl CaseSupply {
         let BaseSupply { mut n_base, n_base_eq2, capped } =
             base_particles(ratio, grains, voids, taken, &filter.gradation, cap)?;
         if n_base == 0 && is_packed {
-            // The grains per void that were guessed gave one, just so.
+            // The guessed grains per void gave barely one.
             n_base = 1;
         }
         if n_base == 0 {
@@ -179,19 +179,18 @@ impl CaseSupply {
     }
 }
 
-/// Passive particles are walked this much finer than the finest size that is stopped, and with sizes that
-/// span as much: a passive particle is never stopped by a constriction, so that its size matters to nothing
-/// else.
+/// Factor by which passive particles are finer than the finest size that is stopped, and range of their
+/// sizes: a passive particle is never stopped by a constriction, so its size has no other effect.
 const FINER: f64 = 0.99;
 
-/// True if a pan fraction may hold particles that are not passive: if the finest sieve is coarser than the
-/// finest constriction. All of it is then walked as passive particles of the same mass, just finer than every
-/// constriction, or than every size that arches in one: of all sizes that it may have these erode most.
+/// True if a pan fraction may hold particles that are not passive, because the finest sieve is coarser than
+/// the finest constriction. All of it is then walked as passive particles of the same mass, just finer than
+/// every constriction and every size that arches in one: of all possible sizes these erode most.
 fn may_block(base: &Gradation, finest_mm: f64) -> bool {
     base.pan_fraction() > 0.0 && base.smallest_mm() > finest_mm
 }
 
-/// The base with all of its pan fraction just finer than the finest size that a constriction stops.
+/// Base with all of its pan fraction just finer than the finest size that a constriction stops.
 pub(super) fn as_passive(
     base: &Gradation,
     finest_mm: f64,

@@ -1,4 +1,4 @@
-//! Why a scene cannot be walked.
+//! Reasons why a scene cannot be walked.
 
 use super::packed_filter::{PackedError, PackingPlan};
 use crate::scene::SceneError;
@@ -6,54 +6,54 @@ use voidwalk_core::constrictions::CurveError;
 use voidwalk_core::gradation::{GradationError, NumberError};
 use voidwalk_core::network::NetworkError;
 
-/// Why a scene cannot be walked.
+/// Reason why a scene cannot be walked.
 #[derive(Debug, thiserror::Error)]
 pub enum CaseError {
-    /// The scene itself.
+    /// The scene is refused.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// A gradation.
+    /// A gradation is invalid.
     #[error(transparent)]
     Gradation(#[from] GradationError),
-    /// A constriction curve.
+    /// A constriction curve is invalid.
     #[error(transparent)]
     Curve(#[from] CurveError),
-    /// A number worked out from the scene.
+    /// A number derived from the scene is out of range.
     #[error(transparent)]
     Number(#[from] NumberError),
-    /// The network.
+    /// The network is invalid.
     #[error(transparent)]
     Network(#[from] NetworkError),
-    /// The packing.
+    /// The packing cannot be used.
     #[error(transparent)]
     Packed(#[from] PackedError),
-    /// The filter has to be packed first.
+    /// The filter must be packed first.
     #[error("{file}: the filter has not been packed yet")]
     NotPacked {
-        /// The scene.
+        /// Name of the scene.
         file: String,
     },
-    /// So few grains that the cell would be no wider than two of the largest.
+    /// There are so few grains that the cell would be no wider than two of the largest.
     #[error("{file}: {problem}")]
     NarrowCell {
-        /// The scene.
+        /// Name of the scene.
         file: String,
         /// Description of the problem.
         problem: String,
-        /// The plan with enough grains.
+        /// Plan with enough grains.
         would_do: Box<PackingPlan>,
     },
-    /// More memory, or more disk, than there is.
+    /// More memory or disk is needed than is available.
     #[error(
         "{n_base} base particles walked one by one{study} on {voids} voids need {needed} of memory, but \
          {available} are available{disk}; set base.cap or base.n_base lower, or a smaller network"
     )]
     Memory {
-        /// Base particles.
+        /// Number of base particles.
         n_base: u64,
-        /// The study that asks for them, unless it is the scene itself.
+        /// Study that requires them; empty for the scene itself.
         study: String,
-        /// Voids.
+        /// Number of voids.
         voids: u64,
         /// Bytes needed, in words.
         needed: String,

@@ -1,4 +1,4 @@
-//! The files of a scene: each is read once, and its contents are kept for the run folder.
+//! Files of a scene: each is read once, and its contents are kept for the run folder.
 
 use super::error::CaseError;
 use super::packed_filter::{GRAINS, Input, PackedError, PackedFilter, RECORD};
@@ -13,18 +13,18 @@ use voidwalk_core::packing::{PACKING_FILE_LIMIT_BYTES, Packing, ReadOptions};
 use voidwalk_core::store::{read_regular, why_not_read};
 use voidwalk_sheets::{Soil, file_and_soil};
 
-/// A larger sieve table or curve is refused before it is read (bytes).
+/// Maximum size of a sieve table or curve (bytes); a larger one is refused before it is read.
 const LARGEST_TABLE: u64 = 16 << 20;
-/// Likewise a network.
+/// Maximum size of a network file (bytes).
 const LARGEST_NETWORK: u64 = 1 << 36;
 
-/// Folder of the files that went in, inside a run's.
+/// Folder of the input files inside a run folder.
 const INPUTS: &str = "inputs";
 
-/// File of the user's names for the files in that folder, by their names there.
+/// File with the user's names for the files in that folder, by their names there.
 pub const INPUT_NAMES: &str = "inputs/names.json";
 
-/// Every file that may be kept there.
+/// All files that may be kept there.
 pub const INPUT_FILES: [&str; 15] = [
     RECORD,
     "filter-curve.csv",
@@ -43,7 +43,7 @@ pub const INPUT_FILES: [&str; 15] = [
     "names.json",
 ];
 
-/// The user's name for a file: from the list beside it in a run's folder, else its path.
+/// Name given by the user to a file: from the list beside it in a run folder, or else its path.
 fn first_name(path: &Path, soil: Option<&str>) -> Result<String, CaseError> {
     let part = soil.map(|soil| format!("#{soil}")).unwrap_or_default();
     let path_name = format!("{}{part}", path.display());
@@ -62,7 +62,7 @@ fn first_name(path: &Path, soil: Option<&str>) -> Result<String, CaseError> {
     Ok(path.file_name().and_then(|name| names.remove(name.to_str()?)).unwrap_or(path_name))
 }
 
-/// The name under which a run keeps the file of a setting: workbooks and arrays keep their ending.
+/// Name under which a run keeps the file of a setting: workbooks and arrays keep their ending.
 fn kept_name(setting: &str, path: &Path) -> String {
     let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     match setting {
@@ -76,8 +76,8 @@ fn kept_name(setting: &str, path: &Path) -> String {
     }
 }
 
-/// A hint for a path with a backslash as separator on a system that takes none, or with a character that a
-/// backslash and the letter after it become in double quotes.
+/// Hint for a path with a backslash as separator on a system that does not use it, or with a character
+/// formed by a backslash and the next letter in double quotes.
 fn of_windows(path: &Path) -> &'static str {
     let text = path.to_string_lossy();
     let escaped = text.contains(['\t', '\n', '\r', '\u{8}', '\u{c}', '\u{1b}']);
@@ -87,20 +87,20 @@ fn of_windows(path: &Path) -> &'static str {
     }
 }
 
-/// The settings that name a soil.
+/// Settings that name a soil.
 const SIEVES: [&str; 2] = ["base.sieve", "filter.sieve"];
 
-/// Reads the files of a scene, and remembers them.
+/// Reads and remembers the files of a scene.
 #[derive(Default)]
 pub struct Files {
-    /// Files that were read, in their order.
+    /// Files that were read, in order.
     pub inputs: Vec<Input>,
-    /// Files that were read before, for the same settings, and are not read again.
+    /// Files read before for the same settings, which are not read again.
     pub known: Vec<Input>,
 }
 
 impl Files {
-    /// Reads a regular file once, and keeps its contents.
+    /// Reads a regular file once and keeps its contents.
     fn read(
         &mut self,
         setting: &'static str,
@@ -114,7 +114,7 @@ impl Files {
             self.inputs.push(known);
             return Ok((file, &self.inputs[self.inputs.len() - 1].bytes));
         }
-        // A soil of the built-in scene was named on the command line, as a rule without its setting.
+        // A soil of the built-in scene was named on the command line, usually without its setting.
         let is_plain = scene == BUILT_IN_NAME && SIEVES.contains(&setting);
         let by = if is_plain { String::new() } else { format!(", named by {setting}") };
         let named = format!("{file}{by}{}", of_windows(path));
@@ -157,7 +157,7 @@ impl Files {
         }
     }
 
-    /// The curve of a filter that was packed; kept as if it had been given, with the packing's record.
+    /// Curve of a packed filter; kept as if it had been given, with the packing's record.
     pub fn packed(&mut self, packed: &PackedFilter) -> Result<Curve, CaseError> {
         if let Some([curve, record]) = &packed.files {
             self.keep("filter.curve", curve, packed.curve_csv.clone().into_bytes())?;
@@ -185,7 +185,7 @@ impl Files {
         Ok(gradation)
     }
 
-    /// The grains of a file, and its name for users.
+    /// Grains of a file, and its name for users.
     pub fn packing(&mut self, path: &Path, scene: &Scene) -> Result<(String, Packing), CaseError> {
         let (name, bytes) = self.read("network.packing", path, PACKING_FILE_LIMIT_BYTES, &scene.name)?;
         let options = ReadOptions { unit: scene.network.unit, cell: scene.network.cell };
@@ -197,7 +197,7 @@ impl Files {
         Ok((name, packing))
     }
 
-    /// The grains of a filter that was packed; kept as if they had been given.
+    /// Grains of a packed filter; kept as if they had been given.
     pub fn packed_grains(&mut self, grains: &[u8]) -> Result<(String, Packing), CaseError> {
         self.keep("network.packing", Path::new(GRAINS), grains.to_vec())?;
         Ok((GRAINS.into(), Packing::parse(GRAINS, grains).map_err(PackedError::from)?))

@@ -1,5 +1,5 @@
-//! The filter of a case: as the scene and its files state it, then its gradation, its constrictions in mm and
-//! how far they may be off, and the network that all replicates walk, if it brings one.
+//! Filter of a case: as stated by the scene and its files, then its gradation, its constrictions in mm
+//! with their possible error, and the network that all replicates walk, if it has one.
 
 use super::error::CaseError;
 use super::files::Files;
@@ -17,34 +17,34 @@ use voidwalk_core::gradation::Gradation;
 use voidwalk_core::network::{GraphShape, Network, WIDE};
 use voidwalk_core::packing::Packing;
 
-/// A filter, worked out.
+/// Filter with all its derived values.
 #[derive(Clone)]
 pub struct CaseFilter {
-    /// Its gradation.
+    /// Gradation of the filter.
     pub gradation: Gradation,
-    /// The reference length: its smallest grain (mm).
+    /// Reference length: the smallest grain (mm).
     pub unit_mm: f64,
-    /// Its constriction curve (mm).
+    /// Constriction curve (mm).
     pub curve: Curve,
-    /// Further curves that are walked: the ends of the range in which its own is known.
+    /// Further curves that are walked: the ends of the range of its own curve.
     pub curve_ends: Vec<OtherCurve>,
-    /// The finest constriction (mm) of every curve that is walked, the ends of its range included: finer
+    /// Finest constriction (mm) of all curves that are walked, including the ends of its range: finer
     /// particles block nothing in any of them.
     pub finest_mm: f64,
-    /// Filter grains per void, if they are known or guessed.
+    /// Filter grains per void, known or guessed.
     pub grains_per_void: Option<f64>,
-    /// The shipped filter that the curve is, if it is one.
+    /// Shipped filter that the curve comes from, if any.
     pub shipped: Option<&'static ShippedFilter>,
-    /// The packing that the curve was measured on, if the program made it.
+    /// Packing on which the curve was measured, if made by the program.
     pub packed: Option<PackedFilter>,
     /// Entry of the library of packings, if the curve comes from there.
     pub library: Option<LibraryFilter>,
-    /// Relative density, 0 loose to 1 dense, of a curve that is guessed from the gradation.
+    /// Relative density, from 0 (loose) to 1 (dense), of a curve guessed from the gradation.
     pub guessed_density: Option<f64>,
 }
 
 impl CaseFilter {
-    /// Takes a filter as it is stated; `fixed` is its network if all replicates walk one network.
+    /// Builds a filter as stated; `fixed` is its network if all replicates walk one network.
     pub(super) fn new(
         scene: &Scene,
         stated: StatedFilter,
@@ -74,7 +74,7 @@ impl CaseFilter {
             }
         };
         if scene.filter.grains_per_void.is_some() {
-            // A value stated by the user holds for every curve.
+            // A value stated by the user applies to every curve.
             curve_ends.iter_mut().for_each(|end| end.times_grains = 1.0);
         }
         let finest_mm = curve_ends.iter().map(|end| end.curve.smallest()).fold(curve.smallest(), f64::min);
@@ -103,7 +103,7 @@ impl CaseFilter {
             )
     }
 
-    /// Enlarges all sizes of the filter by `factor`, and keeps its own curve alone.
+    /// Multiplies all sizes of the filter by `factor`, and keeps only its own curve.
     pub(super) fn enlarged(self, factor: f64) -> Result<Self, CaseError> {
         let gradation = self.gradation.scaled(factor)?;
         Ok(Self {
@@ -117,18 +117,18 @@ impl CaseFilter {
     }
 }
 
-/// True if Eq. (2) needs grains per void that are not given: if the constrictions are a guess.
+/// True if the constrictions are a guess and Eq. (2) needs grains per void that are not given.
 pub(super) fn needs_grains_per_void(scene: &Scene, guessed_density: Option<f64>) -> bool {
     guessed_density.is_some()
         && scene.filter.grains_per_void.is_none()
         && matches!(scene.base.amount(), Amount::MassRatio(..))
 }
 
-/// Filter grains per void: as given, as measured on the packing of the voids or constrictions, or a guess.
+/// Filter grains per void: given, measured on the packing of the voids or constrictions, or guessed.
 fn grains_per_void(scene: &Scene, stated: &StatedFilter, fixed: Option<&FixedNetwork>) -> Option<f64> {
-    // The grains per void of a shipped packing do not apply to a network from elsewhere.
+    // The grains per void of a shipped packing do not apply to a network from another source.
     let of_shipped = stated.shipped.filter(|_| fixed.is_none()).map(|shipped| shipped.grains_per_void);
-    // Eq. (2) gives the base its share of the mass of the grains of a graph.
+    // By Eq. (2) the mass of base is a fraction of the mass of a graph's grains.
     let of_graph = stated.graph.as_ref().map(|graph| {
         let solid = std::f64::consts::FRAC_PI_6 * graph.graph.cubes_mm3;
         solid * stated.gradation.particles_per_unit_volume() / graph.graph.voids() as f64
@@ -140,10 +140,10 @@ fn grains_per_void(scene: &Scene, stated: &StatedFilter, fixed: Option<&FixedNet
     known.or(is_guessed.then_some(GUESSED_GRAINS_PER_VOID))
 }
 
-/// A filter as it is stated, with the fields of [`CaseFilter`].
+/// Filter as stated, with the fields of [`CaseFilter`].
 pub(super) struct StatedFilter {
     pub gradation: Gradation,
-    /// Its constriction curve, in the unit in which it is stated; `None` if the network defines it.
+    /// Constriction curve in the unit in which it is stated; `None` if the network defines it.
     pub curve: Option<Curve>,
     pub shipped: Option<&'static ShippedFilter>,
     pub packed: Option<PackedFilter>,
@@ -154,8 +154,8 @@ pub(super) struct StatedFilter {
 }
 
 impl StatedFilter {
-    /// Reads the files of a filter; `packed` and `measured` are its packing and that packing's voids, if they
-    /// exist already.
+    /// Reads the files of a filter; `packed` and `measured` are its packing and that packing's voids, if
+    /// they already exist.
     pub fn read(
         scene: &Scene,
         packed: Option<PackedFilter>,
@@ -188,7 +188,7 @@ impl StatedFilter {
             Some(density) => LibraryFilter::find(&gradation, density)?,
             None => None,
         };
-        // The constrictions of a filter are guessed if no library filter is like it.
+        // The constrictions of a filter are guessed if no library filter is similar.
         let of_library = scene.filter.library.filter(|_| library.is_none());
         let guessed_density = scene.filter.estimate.or(of_library.map(LibraryDensity::relative));
         let curve = match (&library, guessed_density) {
@@ -200,7 +200,7 @@ impl StatedFilter {
     }
 }
 
-/// The gradation: of the packing or of the shipped filter if the scene does not state it.
+/// Gradation of the packing or of the shipped filter, unless the scene states one.
 fn gradation(
     scene: &Scene,
     shipped: Option<&ShippedFilter>,
@@ -224,31 +224,31 @@ fn gradation(
     }
 }
 
-/// A network that all replicates walk.
+/// Network that all replicates walk.
 #[derive(Clone)]
 pub struct FixedNetwork {
     /// The network.
     pub network: Network,
-    /// Its finest constriction, in units of the reference length.
+    /// Finest constriction, in units of the reference length.
     pub(super) finest: f32,
-    /// The packing whose voids it is; `None` for a network from a file.
+    /// Packing whose voids form it; `None` for a network from a file.
     pub packing: Option<CopiedPacking>,
 }
 
-/// A packing whose voids are a network, repeated along the flow.
+/// Packing whose voids form a network, repeated along the flow.
 #[derive(Clone)]
 pub struct CopiedPacking {
-    /// Copies.
+    /// Number of copies.
     pub copies: u32,
-    /// Their thickness together (mm).
+    /// Total thickness of the copies (mm).
     pub thickness_mm: f64,
     /// Measurements on the packing.
     pub(super) graph: Arc<GraphPacking>,
 }
 
 impl FixedNetwork {
-    /// Reads the network of a scene; `None` if each replicate builds its own, or if the packing is still to
-    /// be made.
+    /// Reads the network of a scene; `None` if each replicate builds its own, or if the packing does not
+    /// exist yet.
     pub(super) fn read(
         scene: &Scene,
         filter: &StatedFilter,
@@ -269,7 +269,7 @@ impl FixedNetwork {
         Ok(Some(Self { finest: network.finest_open(|_| false), network, packing }))
     }
 
-    /// Its constriction curve (mm): its open diameters by number, at most a thousand points.
+    /// Constriction curve (mm): its open diameters by number, at most a thousand points.
     pub(super) fn curve(&self) -> Result<Curve, CaseError> {
         let unit_mm = self.network.unit_mm();
         let open = self.network.diameters().iter().filter(|&&d| d > 0.0 && d != WIDE);
@@ -287,14 +287,14 @@ impl FixedNetwork {
 /// Measurements on the grains of a graph's packing.
 pub(super) struct GraphPacking {
     pub graph: VoidGraph,
-    /// In mm.
+    /// Constriction curve in mm.
     pub curve: Curve,
     pub gradation: Gradation,
 }
 
 impl GraphPacking {
-    /// Reads the file that the scene names, or measures the filter's own packing; `None` if that is still to
-    /// be made.
+    /// Reads the file named by the scene, or measures the filter's own packing; `None` if that does not
+    /// exist yet.
     pub fn read(
         scene: &Scene,
         file: Option<&PathBuf>,
@@ -317,19 +317,19 @@ impl GraphPacking {
         Ok(Some(Self { graph, curve: constrictions.curve()?, gradation }))
     }
 
-    /// Copies of the packing that a scene asks for.
+    /// Number of copies of the packing for this extent.
     pub fn copies(&self, extent: Extent, d50f_mm: f64) -> u32 {
         let cell = self.graph.cell_mm[2];
         let thickness = match extent {
             Extent::Copies(copies) => return copies,
             other => other.thickness_mm(d50f_mm).unwrap_or(USUAL_LAYERS as f64 * self.graph.spacing_mm()),
         };
-        // A cell that fits but for rounding is enough.
+        // A thickness that exceeds a whole number of cells only by rounding needs no further cell.
         libm::ceil(thickness / cell - 1e-9).clamp(1.0, 1e6) as u32
     }
 }
 
-/// The gradation by mass of grains, at about 200 points.
+/// Gradation of grains by mass, at about 200 points.
 fn of_grains(packing: &Packing) -> Result<Gradation, CaseError> {
     let mut sizes = packing.diameter.clone();
     sizes.sort_by(f64::total_cmp);

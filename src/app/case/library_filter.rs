@@ -1,5 +1,5 @@
-//! A filter's constrictions from the library of packings, and the curves that are walked since it or a guess
-//! may be off.
+//! Constrictions of a filter from the library of packings, and the further curves that are walked because
+//! these or a guess may be in error.
 
 use super::recipe::{GRAINS_OF_PART, LEAST_WIDTH, that_can_be_packed, width_by_largest};
 use crate::outcome::packing::PackedPart;
@@ -7,28 +7,28 @@ use crate::scene::LibraryDensity;
 use voidwalk_core::constrictions::{Curve, CurveError, FromLibrary, from_library, inscribed};
 use voidwalk_core::gradation::Gradation;
 
-/// Least error of the grains per void if only the finer part of a filter was looked up: for C33 sand, which
-/// then lacks the coarsest 4.3 %, they were 12.6 % off (`results/library.md`).
+/// Minimum error of the grains per void if only the finer part of a filter was looked up: for C33 sand
+/// without its coarsest 4.3 %, they were 12.6 % off (`results/library.md`).
 const GRAINS_ERROR_OF_PART: f64 = 0.25;
 
-/// A filter as the library knows it.
+/// Filter as found in the library.
 #[derive(Clone)]
 pub struct LibraryFilter {
-    /// Its constrictions; the loose filter's if its density is unknown.
+    /// Constrictions found; those of the loose filter if its density is unknown.
     pub found: FromLibrary,
-    /// The finer part that was looked up, if the whole is too broad.
+    /// Finer part that was looked up, if the whole is too broad.
     pub part: Option<PackedPart>,
-    /// The ends of the range in which its curve is known.
+    /// Ends of the range of its curve.
     pub ends: Vec<OtherCurve>,
 }
 
 impl LibraryFilter {
-    /// Looks a filter up; `None` if no filter of the library is like it.
+    /// Looks up a filter; `None` if no filter of the library is similar.
     ///
     /// # Errors
     /// Cannot fail for a gradation with a known size.
     pub fn find(filter: &Gradation, density: LibraryDensity) -> Result<Option<Self>, CurveError> {
-        // The finer part that would be packed, if the whole could not be.
+        // Looks up the finer part that would be packed, if the whole could not be.
         let width = |gradation: &Gradation| width_by_largest(gradation, GRAINS_OF_PART, 1.0);
         let (looked_up, part) = match width(filter) < LEAST_WIDTH {
             false => (filter.clone(), None),
@@ -52,7 +52,7 @@ impl LibraryFilter {
         };
         let Some(first) = find(loose)? else { return Ok(None) };
         let at_dense = if loose == dense { Some(first.clone()) } else { find(dense)? };
-        // Leaving the coarser grains out makes all constrictions finer.
+        // Omitting the coarser grains makes all constrictions finer.
         let finer_by = part.as_ref().map_or(0.0, |part| part.finer_by);
         let coarsest = 1.0 / ((1.0 - first.curve_error) * (1.0 - finer_by));
         let end = |density: LibraryDensity, at_density: Option<&FromLibrary>, factor: f64| {
@@ -62,9 +62,9 @@ impl LibraryFilter {
             };
             let name = format!("{}, constrictions {by} % {direction}", density.name());
             let at_density = at_density?;
-            // With less base a larger fraction erodes: the coarsest curve goes with the fewest grains. The
-            // fine end offers no more base than the library states, so that base that may be absent does not
-            // seal it.
+            // With less base a larger fraction erodes, so the coarsest curve has the fewest grains. The
+            // fine end offers no more base than the library states, so that it is not sealed by base that
+            // may be absent.
             let error = if factor > 1.0 { at_density.grains_error } else { 0.0 };
             let times_grains = at_density.grains_per_void / (1.0 + error) / first.grains_per_void;
             Some(OtherCurve { name, curve: at_density.curve.scaled(factor).ok()?, times_grains })
@@ -75,19 +75,19 @@ impl LibraryFilter {
     }
 }
 
-/// Another curve that the filter may have.
+/// Other possible curve of the filter.
 #[derive(Clone)]
 pub struct OtherCurve {
-    /// Its description in words.
+    /// Description of the curve.
     pub name: String,
-    /// The curve (mm).
+    /// Constriction curve (mm).
     pub curve: Curve,
-    /// Grains per void of such a filter over the grains per void of the case's own curve: the base is
+    /// Grains per void of such a filter over those of the case's own curve; the amount of base is
     /// multiplied by it.
     pub times_grains: f64,
 }
 
-/// The ends of a guess, by relative density.
+/// Ends of a guess by relative density.
 const END_GUESSES: [(f64, &str); 2] = [(1.0, "densest guess"), (0.0, "loosest guess")];
 
 /// Name of the guess at this relative density if it is an end.
@@ -95,9 +95,9 @@ pub fn end_of_guess(relative_density: f64) -> Option<&'static str> {
     END_GUESSES.iter().find(|(density, _)| *density == relative_density).map(|(_, name)| *name)
 }
 
-/// The ends of the range in which a constriction curve is known: for a filter whose finer part was packed,
-/// the constrictions made coarser by the greatest error of leaving the others out; for a guess, the densest
-/// and the loosest. Empty for a curve that was given, or measured on the whole.
+/// Ends of the range of a constriction curve. If only the finer part was packed: its constrictions made
+/// coarser by the maximum error of omitting the other grains. For a guess: the densest and the loosest
+/// guess. Empty for a curve that was given or measured on the whole filter.
 pub(super) fn curve_ends(
     curve: &Curve,
     filter: &Gradation,
@@ -133,11 +133,11 @@ mod tests {
         let [coarse, fine] = [&unknown.ends[0], &unknown.ends[1]].map(|end| dc50(&end.curve));
         assert!(coarse > dc50(&loose.found.curve) && fine < dc50(&dense.found.curve));
         assert_eq!(unknown.found, loose.found);
-        // A dense filter has fewer grains a void, and is offered less base.
+        // A dense filter has fewer grains per void, and is offered less base.
         let [of_loose, of_dense] = [&unknown.ends[0], &unknown.ends[1]].map(|end| end.times_grains);
         let at_dense = dense.found.grains_per_void / loose.found.grains_per_void;
         assert!(at_dense < 0.85, "{at_dense}");
-        // 6 % is the error of grains per void near a shape of the library.
+        // The error of grains per void near a shape of the library is 6 %.
         assert!((of_loose * 1.06 - 1.0).abs() < 1e-12 && (of_dense / at_dense - 1.0).abs() < 1e-12);
         assert!(unknown.ends[0].name.starts_with("loose, constrictions"), "{}", unknown.ends[0].name);
     }

@@ -1,4 +1,4 @@
-//! Particles of a case that are walked one by one, the memory that it takes, and the place of their columns.
+//! Particles of a case that are walked one by one, memory that it requires, and location of their columns.
 
 use super::{Case, CaseError, CaseNetwork};
 use std::path::Path;
@@ -6,35 +6,35 @@ use voidwalk_core::network::ExitRule;
 use voidwalk_core::store::{Placement, platform};
 use voidwalk_core::walk::{CHUNK, Engine};
 
-/// Replicates walk side by side only while all of them together stay below this, so that memory does not grow
-/// with the number of threads.
+/// Maximum total memory of replicates that walk side by side, so that memory does not grow with the
+/// number of threads.
 const SIDE_BY_SIDE_BYTES: u64 = 1 << 30;
 
-/// Bytes of the events of a chunk's particles in an increment, and of their size classes (measured).
+/// Bytes for the events of a chunk's particles in an increment, and for their size classes (measured).
 const EVENT_BYTES: u64 = 16 << 10;
 
 /// Bytes that a worker keeps to move counts: for a void, its particles there; and for a batch of voids.
 const COUNTS_A_WORKER: (u64, u64) = (8, 32 << 10);
 
-/// Bytes for a constriction if water flows: two exits of 28 in the network and in its copy, 12 of the flow
-/// and 34 of tables each; 24 of the flow; and links, a factor, and the remains of reading a file (measured:
-/// at most 523 in all, a million throats of a file).
+/// Bytes for a constriction if water flows: two exits of 28 in the network and in its copy, 12 of the
+/// flow and 34 of tables each; 24 of the flow; and links, a factor, and leftovers from reading a file
+/// (measured: at most 523 in total, for a file with a million throats).
 const FLOW_BYTES: u64 = 2 * (2 * 28 + 12 + 34) + 24 + 300;
 
-/// Bytes for an exit if blocked constrictions leave openings: its width now, at the last solution of the flow
-/// and before the next run, and the part that it conducts.
+/// Bytes for an exit if blocked constrictions leave openings: its width now, at the last solution of the
+/// flow and before the next run, and its conducting fraction.
 const OPENING_BYTES: u64 = 3 * 4 + 8;
 
-/// Bytes of a narrowing, and of its columns while they are saved.
+/// Bytes for a narrowing, and for its columns while they are saved.
 const NARROWING_BYTES: u64 = 2 * 24;
 
-/// Narrowings of an exit in a run for which there is room, on average: the finest particle so far is a rarer
-/// event each time.
+/// Average number of narrowings of an exit in a run for which there is room: a new finest particle
+/// becomes rarer each time.
 const NARROWINGS: u64 = 8;
 
-/// Bytes that `record.voids` keeps while it is written: for a void that holds particles at a moment its row
-/// in two copies, in room that grows, and its line (measured: up to 184); for a void its place, row and line;
-/// for a constriction its row, its line, and the time when it was blocked.
+/// Bytes that `record.voids` keeps while it is written. For a void with particles after an increment: its
+/// row in two copies, in growing room, and its line (measured: up to 184). For a void: its position, row
+/// and line. For a constriction: its row, its line, and the time at which it was blocked.
 const KEPT_BYTES: [u64; 3] = [200, 240, 420];
 
 /// Bytes of a network: for a void, and for a constriction (its target and diameter).
@@ -54,8 +54,8 @@ pub struct ResourceLimits {
 }
 
 impl ResourceLimits {
-    /// Takes the memory that was asked for, else 80 % of the available memory, and never more than that; and
-    /// the disk that is free at `folder`.
+    /// Takes the memory requested, or else 80 % of the available memory, and never more than that; and
+    /// the free disk at `folder`.
     pub fn new(asked: Option<u64>, available: u64, folder: &Path) -> Self {
         let share = available / 5 * 4;
         let there = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
@@ -67,8 +67,8 @@ impl ResourceLimits {
 }
 
 impl Case {
-    /// Base particles of a run of `n_base` that are walked one by one: all, or those that may be coarser than
-    /// the finest constriction.
+    /// Number of base particles in a run of `n_base` that are walked one by one: all, or those that may
+    /// be coarser than the finest constriction.
     pub fn one_by_one(&self, n_base: u64) -> u64 {
         if self.takes_each(n_base) {
             return n_base;
@@ -77,14 +77,14 @@ impl Case {
         (n_base as f64 * (1.0 - passive)).ceil() as u64
     }
 
-    /// True if all of `n_base` particles are walked one by one, whatever their sizes, on a network that has
+    /// True if all of `n_base` particles are walked one by one, whatever their sizes, on a network with
     /// its finest constriction.
     pub fn takes_each(&self, n_base: u64) -> bool {
         let passive = Engine::passive_share(n_base / self.increments(), self.passive_words());
         self.scene.walk.engine.takes_each(passive, self.network.start_nodes)
     }
 
-    /// The first random word that draws one of those particles.
+    /// First random word that draws one of these particles.
     pub fn first_word(&self, n_base: u64) -> u128 {
         if self.takes_each(n_base) { 0 } else { self.passive_words() }
     }
@@ -99,33 +99,33 @@ impl Case {
         self.supply.sampler.word_limit(self.scene.law().map_or(finest, |law| law.passive_limit(finest)))
     }
 
-    /// Bytes of the columns of a walk of `n_base` particles.
+    /// Bytes for the columns of a walk of `n_base` particles.
     fn column_bytes(&self, n_base: u64) -> u64 {
-        // A void and a diameter; one size needs no column.
+        // Columns of voids and diameters; a single size needs no column of diameters.
         let bytes = if self.supply.sampler.smallest() == self.supply.sampler.largest() { 4 } else { 8 };
         self.one_by_one(n_base).div_ceil(CHUNK as u64).saturating_mul(bytes * CHUNK as u64)
     }
 
-    /// Further bytes of walking `n_base` particles on this many threads: network, tallies, book-keeping.
+    /// Further bytes to walk `n_base` particles on this many threads: network, tallies, bookkeeping.
     fn other_bytes(&self, n_base: u64, threads: u64) -> u64 {
         let CaseNetwork { voids, constrictions, .. } = self.network;
         let one_by_one = self.one_by_one(n_base);
-        // Without a direction of its own each constriction is two exits with conductance, weight and flow, in
-        // the network, in a copy of it that the walk directs, and in the system.
+        // A constriction without a direction is two exits with conductance, weight and flow, in the
+        // network, in the copy that the walk directs, and in the system of equations.
         let (flow, exits) = match self.scene.exit_rule() {
             ExitRule::Area => (0, constrictions),
             _ => (constrictions.saturating_mul(FLOW_BYTES), constrictions.saturating_mul(2)),
         };
         let openings = match self.scene.leaves_openings() {
             true => {
-                // A particle narrows one at most.
+                // A particle narrows at most one.
                 let narrowings = exits.saturating_mul(NARROWINGS).min(n_base);
                 exits.saturating_mul(OPENING_BYTES).saturating_add(narrowings.saturating_mul(NARROWING_BYTES))
             }
             false => 0,
         };
-        // With counts each thread keeps a column of the whole network, into which it moves particles; one
-        // thread alone moves the expectation, and particles move in place.
+        // With counts each thread keeps a column of the whole network for the particles that it moves; a
+        // single thread moves the expectation, and particles move in place.
         let is_counted = matches!(self.scene.walk.engine, Engine::Auto | Engine::Counts)
             && !self.takes_each(n_base)
             && one_by_one < n_base;
@@ -140,15 +140,15 @@ impl Case {
             .saturating_add(threads.max(1).saturating_mul(of_worker))
     }
 
-    /// Bytes of the records of each void of the first replicate, if `record.voids` keeps them: at most a row
-    /// for each void, or for each particle so far, after each increment of the list and at the end of each
-    /// run.
+    /// Bytes for the records of each void of the first replicate, if `record.voids` keeps them: at most
+    /// one row for each void, or for each particle so far, after each increment of the list and at the
+    /// end of each run.
     pub fn kept_bytes(&self) -> u64 {
         let Some(increments) = &self.scene.record.voids else { return 0 };
         let CaseNetwork { voids, constrictions, .. } = self.network;
         let [of_row, of_void, of_constriction] = KEPT_BYTES;
         let an_increment = self.supply.n_base.div_ceil(self.increments());
-        // Void 0 has a row always.
+        // Void 0 always has a row.
         let rows_after = |increment: u64| voids.min(an_increment.saturating_mul(increment).saturating_add(1));
         let rows: u64 = increments.iter().copied().chain([self.increments()]).map(rows_after).sum();
         rows.saturating_mul(self.scene.walk.runs)
@@ -157,8 +157,8 @@ impl Case {
             .saturating_add(constrictions.saturating_mul(of_constriction))
     }
 
-    /// About the bytes of one of its networks, and of the exits that first runs on it may begin with, be they
-    /// of this case or of another with the network.
+    /// Approximate bytes of one of its networks, and of the exits with which first runs on it may begin,
+    /// in this case or another one with the same network.
     pub fn shared_network_bytes(&self) -> [u64; 2] {
         let CaseNetwork { voids, constrictions, .. } = self.network;
         let bytes = |[of_void, of_constriction]: [u64; 2]| {
@@ -168,18 +168,18 @@ impl Case {
         [bytes(NETWORK_BYTES), bytes(exits)]
     }
 
-    /// Bytes that walking `n_base` particles on this many threads takes, network and tallies included.
+    /// Bytes to walk `n_base` particles on this many threads, including network and tallies.
     pub fn bytes(&self, n_base: u64, threads: u64) -> u64 {
         self.column_bytes(n_base).saturating_add(self.other_bytes(n_base, threads))
     }
 
-    /// The most base particles of any run of the case.
+    /// Maximum number of base particles in any run of the case.
     fn most_particles(&self) -> u64 {
         let largest = self.sensitivity_factors().into_iter().fold(1.0, f64::max);
         (self.supply.n_base as f64 * largest) as u64
     }
 
-    /// The case with the thickest lattice of the study of its thickness, if that is thicker than its own. A
+    /// Case with the thickest lattice of the study of its thickness, if it is thicker than its own. A
     /// graph's packing is not measured again for this.
     fn thickest(&self) -> Option<Case> {
         let factor = self.thickness_factors().into_iter().fold(1.0, f64::max);
@@ -187,7 +187,7 @@ impl Case {
         (factor > 1.0 && is_lattice).then(|| self.of_thickness(factor).ok()).flatten()
     }
 
-    /// The most bytes that the whole case takes at once on this many threads, all columns in memory.
+    /// Maximum bytes of the whole case at any time on this many threads, with all columns in memory.
     pub fn peak_bytes(&self, threads: u64) -> u64 {
         let peak = |case: &Case| {
             let n_base = case.most_particles();
@@ -198,25 +198,25 @@ impl Case {
         peak(self).max(self.thickest().as_ref().map_or(0, peak))
     }
 
-    /// Replicates of `n_base` particles that walk at the same time on this many threads: one, unless they are
-    /// small.
+    /// Number of replicates of `n_base` particles that walk at the same time on this many threads: one,
+    /// unless they are small.
     pub fn side_by_side(&self, n_base: u64, threads: u64) -> u64 {
         let all = self.bytes(n_base, threads).saturating_mul(threads);
         if all <= SIDE_BY_SIDE_BYTES.min(self.memory) { threads.max(1) } else { 1 }
     }
 
-    /// True if the particles of the scene itself fit, in memory or on the disk.
+    /// True if the particles of the scene itself fit in memory or on the disk.
     fn has_room(&self, room: &ResourceLimits, threads: u64) -> bool {
         let columns = self.column_bytes(self.supply.n_base);
         let besides = self.other_bytes(self.supply.n_base, threads).saturating_add(self.kept_bytes());
         besides <= room.memory && (columns <= room.memory - besides || columns <= room.disk)
     }
 
-    /// Decides the place of the columns of the particles: in memory if they fit, else in files in `folder`
+    /// Sets the location of the particles' columns: in memory if they fit, or else in files in `folder`
     /// that are mapped into memory.
     ///
     /// # Errors
-    /// [`CaseError::Memory`]: they fit into neither.
+    /// [`CaseError::Memory`]: they fit in neither.
     pub fn place(&mut self, room: &ResourceLimits, threads: u64, folder: &Path) -> Result<(), CaseError> {
         self.memory = room.memory;
         let has_room = self.has_room(room, threads);
@@ -228,7 +228,7 @@ impl Case {
         let needed = walks.saturating_add(kept);
         let without_columns = self.other_bytes(n_base, threads).saturating_add(kept);
         if needed <= room.memory {
-            // Where the thickest filter of its study needs files, it and its like get them.
+            // If the thickest filter of the study needs files, the whole case uses them.
             self.placement = thickest.unwrap_or(Placement::Memory);
             Ok(())
         } else if without_columns <= room.memory && self.column_bytes(n_base) <= room.disk {
@@ -239,7 +239,7 @@ impl Case {
         }
     }
 
-    /// Place of the columns of the thickest filter of its study, if there is one.
+    /// Location of the columns of the thickest filter of the study, if there is one.
     fn place_thickest(
         &self,
         room: &ResourceLimits,
@@ -258,7 +258,7 @@ impl Case {
         }
     }
 
-    /// Error of `n_base` particles that need more memory than there is, with the study that asks for them.
+    /// Error for `n_base` particles that need more memory than is available, with the study that needs them.
     fn no_room(&self, room: &ResourceLimits, n_base: u64, needed: u64, without_columns: u64) -> CaseError {
         let disk = match without_columns <= room.memory {
             true => format!(" and the disk has {} for the particles", in_words(room.disk)),
@@ -286,7 +286,7 @@ impl Case {
         }
     }
 
-    /// Place of the particles of a walk on this many threads, for a reader.
+    /// Location of the particles of a walk on this many threads, in words.
     pub fn memory_in_words(&self, threads: u64) -> String {
         let bytes = in_words(self.bytes(self.supply.n_base, threads));
         let limit = in_words(self.memory);
@@ -306,7 +306,7 @@ impl Case {
     }
 }
 
-/// Bytes in words: `1.6 GB`.
+/// Bytes in words, such as `1.6 GB`.
 pub fn in_words(bytes: u64) -> String {
     let (mut value, mut unit) = (bytes as f64, "bytes");
     for larger in ["kB", "MB", "GB", "TB", "PB", "EB"] {
@@ -327,7 +327,7 @@ mod tests {
         Case::built_in(&[&small, set].concat()).unwrap()
     }
 
-    /// Holds at the ends of a guessed curve's range.
+    /// The ends of a guessed curve's range have other finest constrictions.
     #[test]
     fn another_curve_has_another_finest_constriction() {
         let coarse = case(&["base.n_base=1e9"]);
@@ -345,7 +345,7 @@ mod tests {
         let auto = case(&["base.single_mm=0.1", "base.n_base=1e11"]);
         assert_eq!(bytes(&auto, 64), bytes(&counts, 64));
         for set in [
-            // One by one by engine, or because they are few; an expectation; without passive particles.
+            // One by one by engine, or because they are few; an expectation; no passive particles.
             vec!["engine=particles", "base.n_base=1e6"],
             vec!["base.n_base=1e6"],
             vec!["engine=expected", "base.single_mm=0.1", "base.n_base=1e11"],
@@ -354,7 +354,7 @@ mod tests {
             let other = case(&set);
             assert_eq!(bytes(&other, 256), bytes(&other, 1), "{set:?}");
         }
-        // Replicates side by side have columns each, so that there are fewer of them.
+        // Replicates that run side by side each have columns, so fewer of them do.
         let small =
             case(&["network.nx=40", "network.ny=40", "network.nz=60", "base.single_mm=0.1", "engine=counts"]);
         assert_eq!([4, 64].map(|threads| small.side_by_side(small.supply.n_base, threads)), [4, 1]);
@@ -383,17 +383,17 @@ mod tests {
         let many = |set: &[&str]| with_base("base.n_base=1e9", set);
         let (none, more) = (many(&["record.voids=[]"]), many(&["record.voids=[1, 5, 10]"]));
         assert_eq!(many(&[]).kept_bytes(), 0);
-        // Three more moments of two runs, of a row in two copies at least.
+        // Three more increments in two runs, with at least two copies of a row.
         let rows = more.kept_bytes() - none.kept_bytes();
         let row = size_of::<crate::outcome::record::RetainedRow>() as u64;
         assert!(rows >= none.network.voids * 3 * 2 * 2 * row, "{rows}");
         let one_run = |list| many(&[list, "runs=1"]).kept_bytes();
         assert_eq!(rows, 2 * (one_run("record.voids=[1, 5, 10]") - one_run("record.voids=[]")));
-        // Few particles are in few voids.
+        // Few particles occupy few voids.
         let few = |list| with_base("base.n_base=1000", &[list]).kept_bytes();
         let bytes = few("record.voids=[1, 5, 10]") - few("record.voids=[]");
         assert!(bytes > 0 && bytes < rows / 100, "{bytes}");
-        // Case of memory for the one only.
+        // Only the case with more records runs short of memory.
         assert_eq!(more.peak_bytes(1) - none.peak_bytes(1), rows);
         let room = ResourceLimits { memory: none.peak_bytes(1) + rows / 2, disk: 0 };
         let place = |mut case: Case| case.place(&room, 1, Path::new("."));

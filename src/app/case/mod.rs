@@ -1,7 +1,7 @@
-//! A case: a scene with its files read and every number worked out, before any work is done.
+//! Case: a scene with its files read and every number determined, before any work is done.
 //!
-//! It is worked out in stages, each complete once it exists and made from those before it: the filter as it
-//! is stated, a network that all replicates walk, the filter, the base, the network, the particles of the
+//! It is built in stages, each complete once it exists and made from the previous ones: the filter as
+//! stated, a network that all replicates walk, the filter, the base, the network, the particles of the
 //! base.
 
 mod base;
@@ -44,7 +44,7 @@ use voidwalk_core::store::Placement;
 use voidwalk_core::walk::{Arching, DENSEST};
 use voidwalk_practice::Note;
 
-/// A scene, worked out.
+/// Scene with all its derived values.
 ///
 /// ```
 /// use voidwalk_app::{Case, Scene};
@@ -56,46 +56,46 @@ use voidwalk_practice::Note;
 /// ```
 #[derive(Clone)]
 pub struct Case {
-    /// The scene it comes from.
+    /// Scene of the case.
     pub scene: Scene,
     /// The filter.
     pub filter: CaseFilter,
     /// The base.
     pub base: CaseBase,
-    /// The note that base and filter look exchanged, or are in different units.
+    /// Note that base and filter look exchanged, or are in different units.
     pub mistake: Option<Note>,
-    /// The network that the filter makes.
+    /// Network of the filter.
     pub network: CaseNetwork,
-    /// The particles that the base is walked as.
+    /// Particles of the base in the walk.
     pub supply: CaseSupply,
     /// Files that were read.
     pub inputs: Vec<Input>,
-    /// Memory that the walks may take (bytes): no limit until [`Case::place`] sets one.
+    /// Maximum memory for the walks (bytes): no limit until [`Case::place`] sets one.
     pub memory: u64,
-    /// Place of the columns of the particles.
+    /// Location of the particles' columns.
     pub placement: Placement,
 }
 
 impl Case {
-    /// Reads the scene's files and works out every number; does no other work.
+    /// Reads the scene's files and determines every number; does no other work.
     ///
     /// # Errors
-    /// A file that is refused, or numbers that clash.
+    /// A file is refused, or numbers clash.
     pub fn new(scene: Scene) -> Result<Self, CaseError> {
         Self::with_graph(scene, None, None, Vec::new())
     }
 
-    /// The case of the built-in scene with these settings.
+    /// Case of the built-in scene with these settings.
     #[cfg(test)]
     pub(crate) fn built_in(set: &[&str]) -> Result<Self, CaseError> {
         let set: Vec<String> = set.iter().map(ToString::to_string).collect();
         Self::new(Scene::built_in(&set)?)
     }
 
-    /// The case of a scene whose filter has been packed, with these files read before.
+    /// Case of a scene whose filter has been packed, with these files read before.
     ///
     /// # Errors
-    /// See [`Case::new`]; also if the scene's filter is to be packed and has not been.
+    /// As for [`Case::new`]; also if the scene's filter is to be packed and has not been.
     pub fn with_packed(
         scene: Scene,
         packed: Option<PackedFilter>,
@@ -148,12 +148,12 @@ impl Case {
         Ok(case)
     }
 
-    /// Share of the base's mass that is passive and counted by mass only.
+    /// Mass fraction of the base that is passive and counted by mass only.
     pub fn pan_by_mass_only(&self) -> f64 {
         if self.supply.pan_is_walked { 0.0 } else { self.base.gradation.pan_fraction() }
     }
 
-    /// The base with all particles that are walked.
+    /// Base with all particles that are walked.
     pub fn base_as_walked(&self) -> Cow<'_, Gradation> {
         let (base, finest_mm) = (&self.base.gradation, self.filter.finest_mm);
         match self.supply.pan_is_walked {
@@ -162,11 +162,11 @@ impl Case {
         }
     }
 
-    /// The network of the replicate with this seed.
+    /// Network of the replicate with this seed.
     ///
     /// # Errors
-    /// No network with the scene's distribution of connectivity is found for this seed; [`Case::new`] has
-    /// found all other errors.
+    /// No network with the scene's distribution of connectivity is found for this seed; [`Case::new`]
+    /// reports all other errors.
     pub fn network(&self, seed: u64) -> Result<Network, NetworkError> {
         let network = self.clean_network(seed)?;
         Ok(match self.scene.exits.flow_tolerance {
@@ -187,7 +187,7 @@ impl Case {
         }
     }
 
-    /// A lattice as its exit rule needs it: without directions if water gives them.
+    /// Adapts a lattice to the exit rule: without directions if water sets them.
     fn with_directions(&self, lattice: Network) -> Result<Network, NetworkError> {
         let (rule, exits) = (self.scene.exit_rule(), &self.scene.exits);
         if rule == ExitRule::Area {
@@ -197,12 +197,12 @@ impl Case {
         lattice.undirected_lattice(rule, exits.rho.unwrap_or(0.0), exponent)
     }
 
-    /// Increments over which the base is inserted: a whole number, so that every part is equal.
+    /// Number of increments in which the base is inserted, a whole number so that all are equal.
     pub fn increments(&self) -> u64 {
         (1.0 / self.scene.walk.inject_share).round().max(1.0) as u64
     }
 
-    /// Constriction curves that are walked: its own, and the ends of its range.
+    /// Number of constriction curves that are walked: its own, and the ends of its range.
     pub fn curves(&self) -> usize {
         1 + self.filter.curve_ends.len()
     }
@@ -214,7 +214,7 @@ impl Case {
         Ratios { d15f_over_d85b: d15f / d(base, 85.0), d15f_over_d95b: d15f / d(base, 95.0) }
     }
 
-    /// The law of its arches at the concentration that the scene states; `None` if particles do not arch.
+    /// Law of its arches at the concentration stated by the scene; `None` if particles do not arch.
     pub fn arching(&self) -> Option<Arc<Arching>> {
         let concentration = self.scene.exits.concentration.unwrap_or(DENSEST);
         self.scene.law().map(|law| Arc::new(Arching::new(law, concentration)))
@@ -232,7 +232,7 @@ impl Case {
         })
     }
 
-    /// Mechanisms in its walks that others leave out.
+    /// Mechanisms in its walks that other walks omit.
     pub fn modelled(&self) -> Modelled {
         Modelled {
             flow: self.scene.exit_rule().needs_flow(),
@@ -241,7 +241,7 @@ impl Case {
         }
     }
 
-    /// Doubts about a verdict from arches and openings, which no test has checked.
+    /// Doubts about a verdict with arches and openings, which no test has checked.
     pub fn unchecked_clogging(&self) -> impl Iterator<Item = Note> {
         let arches = self.scene.law().map(|law| Note::Arches { law: law.name.into() });
         arches.into_iter().chain(self.scene.leaves_openings().then_some(Note::Openings {}))

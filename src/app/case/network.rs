@@ -1,4 +1,4 @@
-//! The network of a case: its size, and if all replicates walk the same one.
+//! Network of a case: its size, and the network itself if all replicates walk the same one.
 
 use super::error::CaseError;
 use super::filter::{CaseFilter, CopiedPacking, FixedNetwork};
@@ -10,14 +10,14 @@ use voidwalk_core::gradation::Gradation;
 use voidwalk_core::network::{Connectivity, Network, NetworkError};
 use voidwalk_core::stream::{Key, Purpose};
 
-/// A lattice with more voids than this is not built only to be counted: the counts of a smaller one are
+/// Number of voids above which a lattice is not built only to be counted: counts of a smaller one are
 /// scaled up.
 const MADE_FOR_COUNTS: u64 = 4_000_000;
 
-/// Voids along each side of that smaller one, at most.
+/// Maximum number of voids along each side of the smaller lattice.
 const SMALLER: u32 = 64;
 
-/// Seed of replicate `replicate`, counted from 1: a function of the user's seed and the replicate alone.
+/// Seed of replicate `replicate`, counted from 1; depends only on the user's seed and the replicate.
 pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
     Key { seed, purpose: Purpose::Replicate, run: 0, increment: 0, chunk: replicate }.generator().next_u64()
 }
@@ -25,17 +25,17 @@ pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
 /// Size of a network.
 #[derive(Clone)]
 pub struct CaseNetwork {
-    /// Voids.
+    /// Number of voids.
     pub voids: u64,
-    /// Constrictions, of the first replicate.
+    /// Number of constrictions in the first replicate.
     pub constrictions: u64,
-    /// Start nodes.
+    /// Number of start nodes.
     pub start_nodes: u64,
-    /// Layers.
+    /// Number of layers.
     pub layers: u64,
-    /// Connectivity and percent of the voids, if the voids differ.
+    /// Connectivity and percent of the voids, if they differ.
     pub connectivity: Vec<[f64; 2]>,
-    /// The network itself, if all replicates walk the same.
+    /// Network itself, if all replicates walk the same one.
     pub fixed: Option<FixedNetwork>,
 }
 
@@ -48,7 +48,7 @@ impl CaseNetwork {
     ) -> Result<Self, CaseError> {
         if let Some(fixed) = fixed {
             let network = &fixed.network;
-            // Exits that are passed both ways are not a connectivity of the paper's kind.
+            // Exits that are passed both ways have no connectivity in the sense of the paper.
             let passes_both_ways = fixed.packing.is_some() || network.reservoir().is_some();
             return Ok(Self {
                 voids: network.filter_voids() as u64,
@@ -78,8 +78,8 @@ impl CaseNetwork {
         Ok(Self { voids, constrictions, start_nodes, layers, connectivity: Vec::new(), fixed: None })
     }
 
-    /// Size of a lattice with this distribution of connectivity, and the distribution that is reached; so a
-    /// distribution that no network has is refused before any work.
+    /// Size of a lattice with this distribution of connectivity, and the distribution reached. An
+    /// impossible distribution is thus refused before any work.
     fn of_connected(
         shape: [u32; 3],
         wanted: &Connectivity,
@@ -94,18 +94,18 @@ impl CaseNetwork {
         Ok(Self { constrictions, connectivity: connectivity(&network), ..lattice })
     }
 
-    /// The packing whose voids it is.
+    /// Packing whose voids form it.
     pub(super) fn packing(&self) -> Option<&CopiedPacking> {
         self.fixed.as_ref()?.packing.as_ref()
     }
 
-    /// Copies of the packing whose voids it is.
+    /// Number of copies of the packing whose voids form it.
     pub fn copies(&self) -> Option<u32> {
         self.packing().map(|packing| packing.copies)
     }
 }
 
-/// Connectivity and percent of the voids, rising; empty if all voids agree.
+/// Connectivity and percent of the voids, ascending; empty if all voids agree.
 fn connectivity(network: &Network) -> Vec<[f64; 2]> {
     let mut counts = BTreeMap::new();
     network.connectivity().iter().for_each(|&k| *counts.entry(k).or_insert(0u64) += 1);
@@ -136,7 +136,7 @@ pub(super) fn set_layers_of_thickness(scene: &mut Scene, filter: &Gradation) -> 
     Ok(())
 }
 
-/// A lattice about as large as the graph of a packing that is still to be made.
+/// Lattice about as large as the graph of a packing that does not exist yet.
 pub(super) fn placeholder_shape(scene: &Scene, filter: &Gradation) -> [u32; 3] {
     let grains = scene.packing.as_ref().and_then(|packing| packing.filter.grains).unwrap_or(9_000);
     let across = libm::cbrt(grains as f64 / GUESSED_GRAINS_PER_VOID).ceil().clamp(1.0, 1000.0) as u32;

@@ -1,5 +1,5 @@
-//! Notes on a case before it is walked: where it leaves the range in which the model was checked, and other
-//! facts for a reader.
+//! Notes on a case before its walk: departures from the range in which the model was checked, and other
+//! facts for the user.
 
 use super::base::PAPER_MASS_RATIO;
 use super::filter::needs_grains_per_void;
@@ -15,17 +15,17 @@ use voidwalk_practice::Note;
 /// Number of moves of a particle that nothing stops above which a note is given.
 const MANY_MOVES: f64 = 1e5;
 
-/// Share of grains without load above which a note is given ...
+/// Fraction of grains without load above which a note is given ...
 const MANY_LOOSE: f64 = 0.5;
-/// ... and from this share on, coarse grains carry each other: with two sizes far apart 98 % were without
-/// load with 30 % of the mass in the finer one, 19 % with 40 % (`results/packing.md`).
+/// ... and above which coarse grains form a skeleton: with two widely different sizes 98 % were without
+/// load if the finer one was 30 % of the mass, and 19 % if it was 40 % (`results/packing.md`).
 const SKELETON: f64 = 0.9;
 
-/// Constrictions that are looked at to find that out, each as often as it is looked at.
+/// Maximum number of constrictions that are examined for this, with repetitions.
 const LOOKED_AT: u64 = 50_000_000;
 
 impl Case {
-    /// Notes before the walk, without those that the walk itself adds.
+    /// Notes before the walk, except those that the walk itself adds.
     pub fn notes(&self) -> Vec<Note> {
         let mut all = self.planned_walk().notes();
         all.extend(self.mistake.clone());
@@ -35,7 +35,7 @@ impl Case {
         all.extend(self.too_little_base());
         all.extend(self.other_filter());
         all.extend(self.guesses());
-        // The grains that were left out can only make constrictions coarser than those that were walked.
+        // The omitted grains can only make constrictions coarser than those that were walked.
         all.extend(self.filter.packed.as_ref().and_then(|packed| packed.part.as_ref()).map(packed_part));
         let loose = self.filter.packed.as_ref().and_then(|packed| packed.rattlers);
         match loose.filter(|loose| *loose >= MANY_LOOSE).map(|loose| 100.0 * loose) {
@@ -62,7 +62,7 @@ impl Case {
         all
     }
 
-    /// The soils and the network, as they are walked.
+    /// Soils and network as walked.
     fn planned_walk(&self) -> PlannedWalk<'_> {
         let (source, replicates) = (self.scene.network.source(), self.scene.walk.replicates);
         PlannedWalk {
@@ -77,7 +77,7 @@ impl Case {
             layers: self.network.layers,
             flows: self.scene.exit_rule().needs_flow(),
             increments: self.increments(),
-            // A rule that adds replicates reports itself if they suffice, unless it may add no replicate.
+            // A rule that adds replicates reports if they suffice, unless it may not add any.
             replicates: match self.scene.stop.is_set() {
                 true => self.scene.stop.replicates_at(replicates, 1),
                 false => replicates,
@@ -85,14 +85,14 @@ impl Case {
         }
     }
 
-    /// A shipped constriction curve of another filter.
+    /// Notes a shipped constriction curve of another filter.
     fn other_filter(&self) -> Option<Note> {
         let shipped = self.shipped_curve()?;
         let cu = self.filter.gradation.cu().filter(|cu| (cu / shipped.cu - 1.0).abs() > 0.05)?;
         Some(Note::OtherCurve { cu, curve: shipped.name.clone(), curve_cu: shipped.cu })
     }
 
-    /// Values that are guessed because the filter was not packed.
+    /// Notes values that are guessed because the filter was not packed.
     fn guesses(&self) -> Vec<Note> {
         if let Some(library) = &self.filter.library {
             let density = self.scene.filter.library.unwrap_or(LibraryDensity::Unknown);
@@ -113,7 +113,7 @@ impl Case {
         like_none.into_iter().chain([Note::GuessedConstrictions {}]).chain(grains).collect()
     }
 
-    /// Note on a base that offers less than the paper's Eq. (2) and mass ratio ask for.
+    /// Notes a base smaller than by the paper's Eq. (2) and mass ratio.
     pub fn too_little_base(&self) -> Option<Note> {
         let ratio = self.scene.base.mass_ratio.unwrap_or(PAPER_MASS_RATIO);
         let particles = self.supply.n_base;
@@ -128,8 +128,8 @@ impl Case {
         }
     }
 
-    /// A real filter layer that is thinner than the modelled one by more than half a layer of voids, to which
-    /// a thickness is rounded.
+    /// Notes a real filter layer thinner than the modelled one by more than half a layer of voids, to
+    /// which a thickness is rounded.
     fn too_thick(&self) -> Option<Note> {
         let real_mm = self.scene.filter.thickness_mm?;
         if self.is_scale_free() {
@@ -143,13 +143,13 @@ impl Case {
         })
     }
 
-    /// A base that is walked regraded, or that was to be.
+    /// Notes a base that is walked regraded, or that should have been.
     fn regrading(&self) -> Option<Note> {
         match (&self.base.regraded_from, self.scene.base.regrade) {
             (Some((given, at)), _) => {
                 Some(Note::Regraded { part_percent: given.percent_finer_by_mass(*at), sieve_mm: *at })
             }
-            // Regrading of a base without gravel is not expected.
+            // A base without gravel is not expected to be regraded.
             (None, Some(Regrade::Practice)) if self.base.gradation.largest_mm() > GRAVEL_MM => {
                 Some(Note::RegradingNotNeeded {})
             }
@@ -157,7 +157,7 @@ impl Case {
         }
     }
 
-    /// A tall cell whose number of grains leaves it narrow.
+    /// Notes a tall cell that is narrow because of its number of grains.
     fn narrow_cell(&self) -> Option<Note> {
         let plan = PackingPlan::new(&self.scene.packing_spec().ok()??).ok()?;
         let (width, usual) = plan.narrow_and_tall()?;
@@ -170,7 +170,7 @@ impl Case {
     fn moves_to_an_end(&self) -> Option<f64> {
         let widest = self.filter.curve.largest() / self.filter.curve.smallest();
         match self.network.fixed.as_ref().map(|fixed| &fixed.network) {
-            // Down the pressure there are no loops.
+            // Along falling pressure there are no loops.
             Some(network) if network.reservoir().is_some() => None,
             Some(network) => Some(network.moves_to_an_end(LOOKED_AT)),
             None if widest * widest > MANY_MOVES && self.scene.exit_rule() == ExitRule::Area => {

@@ -1,9 +1,8 @@
-//! A filter that has been packed: the data for a walk, read from the folder of the packing; and the plan of a
-//! packing.
+//! Packed filter: data for a walk, read from the folder of the packing; and the plan of a packing.
 //!
-//! The grains follow from the packing plan alone, so a packing is made once and kept under the fingerprint of
-//! its plan. Its constrictions are measured again for each use: that takes a second, and the overlap of voids
-//! may change.
+//! The grains follow from the packing plan alone, so a packing is made once and stored under the
+//! fingerprint of its plan. Its constrictions are measured again for each use: this takes a second, and
+//! the overlap of voids may change.
 
 use crate::outcome::packing::{PackedPart, PackingRecord, SameShape};
 use std::path::{Path, PathBuf};
@@ -17,12 +16,12 @@ use voidwalk_core::store::format::{self, from_json};
 use voidwalk_core::store::{StoreError, read_whole};
 use voidwalk_practice::InputFile;
 
-/// The packing's measures; a folder that holds it is whole.
+/// File of the packing's measurements; a folder with this file is complete.
 pub const RECORD: &str = "packing.json";
-/// The grains.
+/// File of the grains.
 pub const GRAINS: &str = "grains.csv";
 
-/// Filter grains per void if the constrictions are a guess and the user gives no number: the value of loose
+/// Filter grains per void if the constrictions are a guess and no number is given: the value of loose
 /// packings (`results/packing.md`).
 pub(super) const GUESSED_GRAINS_PER_VOID: f64 = 0.6;
 
@@ -31,67 +30,67 @@ const SLIDING_GRAINS_PER_VOID: f64 = 0.49;
 /// Filter grains per void at friction 0.3: 0.63 to 0.69 in linear gradations of Cu 1.5 to 6
 /// (`results/packing.md`).
 const ROUGH_GRAINS_PER_VOID: f64 = 0.65;
-/// Position of the constrictions of a packing with friction between circles of three and of four touching
-/// grains, from the 25th percentile on: 0.19 to 0.22 there in linear gradations and parts of C33 sand, 0.16
-/// to 0.36 in gap-graded ones; 0.19 to 0.37 at the median; 0.04 to 0.14 at the first percentile. About half
-/// as far without friction.
+/// Relative position of the constrictions of a packing with friction between circles of three and of four
+/// touching grains, from the 25th percentile on: 0.19 to 0.22 there in linear gradations and parts of C33
+/// sand, 0.16 to 0.36 in gap-graded ones; 0.19 to 0.37 at the median; 0.04 to 0.14 at the first
+/// percentile. Without friction it is about half as large.
 const OF_FOUR: f64 = 0.2;
 
-/// A filter that has been packed: the data for a walk.
+/// Packed filter: data for a walk.
 #[derive(Clone, Debug)]
 pub struct PackedFilter {
-    /// Its files: the curve, and the record; `None` for a placeholder.
+    /// Files of the curve and of the record; `None` for a placeholder.
     pub files: Option<[PathBuf; 2]>,
-    /// Its constriction curve (mm).
+    /// Constriction curve (mm).
     pub curve: Curve,
-    /// The constriction curve as CSV.
+    /// Constriction curve as CSV.
     pub curve_csv: String,
     /// Filter grains per void.
     pub grains_per_void: f64,
-    /// `packing.json`, as it is.
+    /// Bytes of `packing.json`.
     pub record: Vec<u8>,
-    /// Volume of the voids over the volume of the grains of the filter: known if the whole was packed.
+    /// Volume of the voids over the volume of the grains of the filter, known if the whole was packed.
     pub void_ratio: Option<f64>,
-    /// Part of the filter that was packed, if not the whole.
+    /// Part of the filter that was packed, if it is not the whole.
     pub part: Option<PackedPart>,
-    /// Source of the packing, if it was made for another filter of the same shape.
+    /// Origin of the packing, if it was made for another filter of the same shape.
     pub same_shape: Option<SameShape>,
-    /// Share of the grains, by number, that carry no load; `None` for a placeholder.
+    /// Fraction of the grains, by number, that carry no load; `None` for a placeholder.
     pub rattlers: Option<f64>,
-    /// The grains, as CSV; `None` for a placeholder, or if a run kept the curve alone.
+    /// Grains as CSV; `None` for a placeholder, or if a run kept only the curve.
     pub grains: Option<Vec<u8>>,
 }
 
-/// Why a packing's folder cannot be used.
+/// Reason why a packing's folder cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum PackedError {
-    /// The grains.
+    /// The grains cannot be read.
     #[error(transparent)]
     Grains(#[from] ImportError),
-    /// The record.
+    /// The record cannot be used.
     #[error("{file}: {problem}")]
     Record {
-        /// The file.
+        /// Name of the file.
         file: String,
         /// Description of the problem.
         problem: String,
     },
-    /// A file that the system fails to read.
+    /// The system fails to read a file.
     #[error(transparent)]
     Read(#[from] StoreError),
-    /// The constrictions.
+    /// The constrictions cannot be measured.
     #[error(transparent)]
     Constrictions(#[from] ConstrictionsError),
-    /// The constriction curve.
+    /// The constriction curve is invalid.
     #[error(transparent)]
     Curve(#[from] CurveError),
 }
 
 impl PackedFilter {
-    /// Takes a filter from the folder that it was packed into; `None` if it has not been packed yet.
+    /// Reads a filter from the folder of its packing; `None` if it has not been packed yet.
     ///
     /// # Errors
-    /// A folder that is damaged, or that holds another filter.
+    /// The folder is damaged or holds another filter.
     pub fn read(folder: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
         let Some((record, read)) = read_record(folder)? else { return Ok(None) };
         if read.fingerprint != order.fingerprint() {
@@ -104,11 +103,11 @@ impl PackedFilter {
         Self::measured(folder, order, read, 1.0, is_of_it.then_some(record)).map(Some)
     }
 
-    /// Takes a filter from a folder that holds packings: its own, or else one of the same shape; `None` if
-    /// there is neither.
+    /// Finds a filter in a folder of packings: its own packing, or one of the same shape; `None` if there
+    /// is neither.
     ///
     /// # Errors
-    /// A packing of it that is damaged.
+    /// A packing of the filter is damaged.
     pub fn find(packings: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
         match Self::read(&packings.join(order.folder_name()), order)? {
             Some(filter) => Ok(Some(filter)),
@@ -116,12 +115,11 @@ impl PackedFilter {
         }
     }
 
-    /// Takes a filter from a packing of the same shape, with all sizes larger or smaller by one factor, in a
-    /// folder that holds packings; `None` if the folder has no such packing. If there are several, takes the
-    /// first by name.
+    /// Finds a packing of the same shape in a folder of packings, with all sizes scaled by one factor;
+    /// `None` if there is none. If there are several, the first by name is used.
     ///
     /// # Errors
-    /// A packing of the same shape that is damaged.
+    /// A packing of the same shape is damaged.
     pub fn of_same_shape(packings: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
         let Ok(entries) = std::fs::read_dir(packings) else { return Ok(None) };
         let usual_folder = packings.join(order.folder_name());
@@ -143,7 +141,7 @@ impl PackedFilter {
         Ok(None)
     }
 
-    /// Measures the constrictions of the grains of a folder, times `factor`; `record` is the record's own
+    /// Measures the constrictions of the grains in a folder, times `factor`; `record` is the record's own
     /// bytes, if they agree with `read`.
     fn measured(
         folder: &Path,
@@ -184,10 +182,10 @@ impl PackedFilter {
         })
     }
 
-    /// The filter whose curve a run kept in its folder, with `packing.json` beside it.
+    /// Reads a filter whose curve a run kept in its folder, with `packing.json` beside it.
     ///
     /// # Errors
-    /// A file that is missing or damaged.
+    /// A file is missing or damaged.
     pub fn kept(curve: &Path, grains_per_void: f64) -> Result<Self, PackedError> {
         let record = curve.with_file_name(RECORD);
         let (curve_bytes, record_bytes) = (read(curve)?, read(&record)?);
@@ -206,13 +204,13 @@ impl PackedFilter {
         })
     }
 
-    /// A rough guess at a filter that has not been packed yet, for estimates and for finding faults of a
+    /// Rough estimate of a filter that has not been packed yet, to estimate work and to find faults of a
     /// scene early.
     ///
     /// # Errors
     /// Cannot fail for a gradation that can be packed.
     pub fn placeholder(order: &PackingPlan) -> Result<Self, CurveError> {
-        // Grains that slide settle closer.
+        // Without friction, grains settle more densely.
         let loose = (order.compression.friction / 0.3).min(1.0);
         let [dense_curve, loose_curve] = [1.0, 0.0].map(|density| inscribed(&order.gradation, density));
         let (dense_curve, loose_curve) = (dense_curve?, loose_curve?);
@@ -240,7 +238,7 @@ impl PackedFilter {
     }
 }
 
-/// A packing's record, as bytes and parsed; `None` if it is missing.
+/// Record of a packing, as bytes and parsed; `None` if it is missing.
 fn read_record(folder: &Path) -> Result<Option<(Vec<u8>, PackingRecord)>, PackedError> {
     let path = folder.join(RECORD);
     let Some(record) = read_if_there(&path)? else { return Ok(None) };
@@ -252,7 +250,7 @@ fn read(path: &Path) -> Result<Vec<u8>, StoreError> {
     read_whole(path).map_err(|source| StoreError::Io { path: path.to_owned(), action: "read", source })
 }
 
-/// The bytes of a file; `None` if it is missing.
+/// Bytes of a file; `None` if it is missing.
 fn read_if_there(path: &Path) -> Result<Option<Vec<u8>>, StoreError> {
     match read(path) {
         Err(StoreError::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => Ok(None),
@@ -264,44 +262,44 @@ fn refused(record: &Path, problem: impl ToString) -> PackedError {
     PackedError::Record { file: record.display().to_string(), problem: problem.to_string() }
 }
 
-/// Two gradations have one shape if their sizes, scaled, agree to within this ...
+/// Maximum relative difference between the scaled sizes of two gradations of the same shape.
 const SAME_SIZE: f64 = 1e-3;
-/// ... and their percentages as near as this.
+/// Maximum difference between their percentages.
 const SAME_PERCENT: f64 = 1e-2;
 
 /// Part of the definition of a packing: another number gives other grains from the same recipe.
 const PROTOCOL: u32 = 2;
-/// Protocol of gradations so wide that their most crowded grains are moved as heavier ones.
+/// Protocol of gradations so broad that grains with many contacts are moved as heavier ones.
 const WIDE_PROTOCOL: u32 = 3;
 
 /// Plan of a packing.
 #[derive(Clone, Debug)]
 pub struct PackingPlan {
-    /// The gradation that is packed: the filter's, or its finer part's.
+    /// Gradation that is packed: the filter's, or that of its finer part.
     pub gradation: Gradation,
-    /// The gradation in words.
+    /// Description of the gradation.
     pub name: String,
-    /// True if it is linear.
+    /// True if the gradation is linear.
     pub linear: bool,
-    /// Part of the filter that it is, if the whole is not packed.
+    /// Part of the filter that is packed, if it is not the whole.
     pub part: Option<PackedPart>,
-    /// Height of the cell by its width.
+    /// Height of the cell over its width.
     pub aspect: f64,
     /// Settings of the compression.
     pub compression: Compression,
-    /// Overlap of two inscribed spheres from which their tetrahedra are one void.
+    /// Overlap of two inscribed spheres above which their tetrahedra form one void.
     pub merge_overlap: f64,
     /// Files that were read.
     pub inputs: Vec<Input>,
 }
 
 impl PackingPlan {
-    /// Fingerprint of everything that the grains follow from.
+    /// Fingerprint of all inputs of the grains.
     pub fn fingerprint(&self) -> String {
         self.fingerprint_of(&pairs(&self.gradation))
     }
 
-    /// Fingerprint of a gradation with these points, compressed likewise.
+    /// Fingerprint of a gradation with these points and the same compression.
     fn fingerprint_of(&self, points: &[(f64, f64)]) -> String {
         let protocol = if packing::is_wide(&self.gradation) { WIDE_PROTOCOL } else { PROTOCOL };
         let mut text = format!("{protocol} {points:?} {:?}", self.compression);
@@ -311,7 +309,7 @@ impl PackingPlan {
         format!("{:016x}", xxhash_rust::xxh3::xxh3_64(text.as_bytes()))
     }
 
-    /// The factor from a gradation with these points to the plan's: `None` if no factor takes every size to
+    /// Factor from a gradation with these points to the plan's; `None` if no factor brings every size
     /// within a thousandth of its target.
     fn scale_from(&self, points: &[(f64, f64)]) -> Option<f64> {
         let planned = pairs(&self.gradation);
@@ -330,7 +328,7 @@ impl PackingPlan {
         self.scale_from(&points).is_some() && self.fingerprint_of(&points) == other.fingerprint()
     }
 
-    /// Name of the folder in which the packing is kept among others.
+    /// Name of the packing's folder among others.
     pub fn folder_name(&self) -> String {
         let cu = self.gradation.cu().map_or("graded".to_string(), |cu| format!("cu{:.3}", cu));
         let cu = cu.trim_end_matches('0').trim_end_matches('.');
@@ -338,30 +336,30 @@ impl PackingPlan {
     }
 }
 
-/// Size and percent of each point, as fingerprints hash them.
+/// Size and percent of each point, as used in fingerprints.
 fn pairs(gradation: &Gradation) -> Vec<(f64, f64)> {
     gradation.points().iter().map(|point| (point.size, point.percent)).collect()
 }
 
-/// A file that was read, and the name under which a run folder keeps it.
+/// File that was read, with its name in a run folder.
 #[derive(Clone, Debug)]
 pub struct Input {
-    /// The setting that names it.
+    /// Setting that names the file.
     pub setting: &'static str,
-    /// Its path as the user gave it first: a run that continues from the files in its folder reads it there.
+    /// Path as first given by the user: a run that continues from the files in its folder reads it there.
     pub name: String,
     /// Name inside the run folder.
     pub kept_as: String,
-    /// Its bytes, which copies of a case share.
+    /// Bytes of the file, shared by copies of a case.
     pub bytes: Arc<Vec<u8>>,
     /// Soil to use, if the file holds several.
     pub soil: Option<String>,
-    /// Assumptions made to understand it.
+    /// Assumptions made in reading the file.
     pub notes: Vec<String>,
 }
 
 impl Input {
-    /// Its name and its checksum.
+    /// Name and checksum of the file.
     pub fn file(&self) -> InputFile {
         InputFile::of(&self.name, &self.bytes)
     }

@@ -1,11 +1,11 @@
-//! A recipe worked out before any work is done: its files read, the part of the filter and the number of
-//! grains decided.
+//! Packing plan of a scene before any work is done: reads its files, and chooses the part of the filter
+//! and the number of grains.
 //!
-//! A cell must be wider than two of its largest grains, so that a broad gradation asks for millions of
-//! grains, most of them of the finest sizes. Its finer part is packed then: the constrictions are those
-//! between the finer grains; coarser ones are walls to them. The effect of leaving the coarser ones out was
-//! measured on filters that can be packed whole (`results/packing.md`): all constrictions become finer, from
-//! Dc5 to Dc90 by at most 0.6 times the share of the grains' surface that is left out.
+//! A cell must be wider than two of its largest grains, so a broad gradation requires millions of grains,
+//! most of them of the finest sizes. Only its finer part is packed in this case: the constrictions are
+//! those between the finer grains, for which coarser grains are walls. The effect of omitting the coarser
+//! grains was measured on filters that can be packed whole (`results/packing.md`): all constrictions
+//! become finer, from Dc5 to Dc90 by at most 0.6 times the omitted fraction of the grains' surface.
 
 use super::error::CaseError;
 use super::files::Files;
@@ -14,15 +14,15 @@ use crate::outcome::packing::{FLOATING_PERCENT, PackedPart};
 use crate::scene::{FilterGradation, PackingSpec, Scene, SceneError};
 use voidwalk_core::gradation::Gradation;
 
-/// Default width of a cell over the largest grain, if the user gives no number of grains ...
+/// Default width of a cell over the largest grain, if no number of grains is given ...
 const CELLS_WIDTH: f64 = 5.4;
-/// ... within these numbers of grains: fewer scatter, more cost a wide gradation hours.
+/// ... within these numbers of grains: fewer scatter, and more take hours for a wide gradation.
 const GRAINS: (usize, usize) = (9_000, 60_000);
-/// Grains for the finer part of a filter that cannot be packed whole, at most.
+/// Maximum number of grains for the finer part of a filter that cannot be packed whole.
 pub(super) const GRAINS_OF_PART: usize = 30_000;
-/// Least width of a cell over the largest grain: two, and a margin for the error of a guess.
+/// Minimum width of a cell over the largest grain: two, with a margin for the error of the estimate.
 pub(super) const LEAST_WIDTH: f64 = 2.2;
-/// Packing fraction by which the width of a cell is guessed.
+/// Packing fraction used to estimate the width of a cell.
 const FRACTION: f64 = 0.65;
 
 impl PackingPlan {
@@ -32,10 +32,10 @@ impl PackingPlan {
         spec.as_ref().map(Self::new).transpose()
     }
 
-    /// Reads the specification's files and works out its number of grains.
+    /// Reads the specification's files and determines its number of grains.
     ///
     /// # Errors
-    /// A file that is refused, a gradation that cannot be packed, a cell narrower than two of the largest
+    /// A file is refused, the gradation cannot be packed, or the cell is narrower than two of the largest
     /// grain.
     pub fn new(recipe: &PackingSpec) -> Result<Self, CaseError> {
         let mut files = Files::default();
@@ -63,8 +63,8 @@ impl PackingPlan {
         Ok(plan)
     }
 
-    /// Takes the part that is asked for, or the part that can be packed if the cell of the whole would be too
-    /// narrow; and decides on the number of grains.
+    /// Takes the requested part, or the part that can be packed if the cell of the whole would be too
+    /// narrow, and sets the number of grains.
     fn take_part(&mut self, recipe: &PackingSpec) -> Result<(), CaseError> {
         let (whole, grains) = (self.gradation.clone(), recipe.grains);
         let (aspect, mut usual) = (self.aspect, Self::usual_grains(&self.gradation));
@@ -93,7 +93,7 @@ impl PackingPlan {
         if width >= LEAST_WIDTH {
             return Ok(());
         }
-        // Grains with which the cell is wide enough, and a little more.
+        // Slightly more grains than make the cell wide enough.
         let of_cube = ((LEAST_WIDTH + 0.1) / width_by_largest(&self.gradation, 1, 1.0)).powi(3);
         let grains = self.tall(libm::ceil(of_cube) as usize);
         let problem = format!(
@@ -105,27 +105,27 @@ impl PackingPlan {
         Err(CaseError::NarrowCell { file: recipe.file.clone(), problem, would_do: Box::new(self.clone()) })
     }
 
-    /// Number of grains of a cell of this one's height, as wide as a cube of this many grains.
+    /// Number of grains of a cell of this height that is as wide as a cube of this many grains.
     fn tall(&self, grains: usize) -> usize {
         (grains as f64 * self.aspect).round() as usize
     }
 
-    /// Default number of grains of a gradation: enough for a cell 5.4 times as wide as the largest, 9,000 to
-    /// 60,000.
+    /// Default number of grains for a gradation: enough for a cell 5.4 times as wide as the largest
+    /// grain, 9,000 to 60,000.
     pub fn usual_grains(gradation: &Gradation) -> usize {
         let wanted = (CELLS_WIDTH / width_by_largest(gradation, 1, 1.0)).powi(3);
         (wanted as usize).clamp(GRAINS.0, GRAINS.1)
     }
 
-    /// Width of a tall cell as a multiple of the largest grain, about, and the usual multiple, if it is
-    /// narrower than usual because of a given number of grains or the most that the program takes.
+    /// Approximate width of a tall cell over its largest grain, and the usual ratio, if the cell is
+    /// narrower than usual because of a given number of grains or the program's maximum.
     pub fn narrow_and_tall(&self) -> Option<(f64, f64)> {
         let width = width_by_largest(&self.gradation, self.compression.grains, self.aspect);
         (self.aspect > 1.0 && width < 0.99 * CELLS_WIDTH).then_some((width, CELLS_WIDTH))
     }
 }
 
-/// Width of the cell of this many grains, by the largest grain; the cell is `aspect` times as tall.
+/// Width of the cell of this many grains over the largest grain; the cell is `aspect` times as tall.
 pub(super) fn width_by_largest(gradation: &Gradation, grains: usize, aspect: f64) -> f64 {
     let largest = gradation.largest_mm();
     let grain_mm3 = 1.0 / gradation.particles_per_unit_volume();
@@ -134,12 +134,12 @@ pub(super) fn width_by_largest(gradation: &Gradation, grains: usize, aspect: f64
 
 /// Width of a cell over the largest grain that is packed, if the program chooses it.
 const WIDTH_OF_PART: f64 = 2.5;
-/// Relative error of the constrictions, which come out finer than in the whole, per surface share left out.
+/// Relative error of the constrictions, which are finer than in the whole, over the omitted surface fraction.
 const ERROR_BY_SURFACE: f64 = 0.6;
-/// A part that leaves more in doubt than this is not chosen.
+/// Maximum error of the constrictions of a part that the program chooses.
 const LARGEST_ERROR: f64 = 0.05;
 
-/// The finer part of a filter, as a gradation of its own, with its description.
+/// Finer part of a filter as a separate gradation, with its description.
 fn finer_part(whole: &Gradation, percent: f64) -> Option<(Gradation, PackedPart)> {
     let largest_mm = whole.d(percent)?;
     let part = whole.passing(largest_mm)?;
@@ -154,7 +154,7 @@ fn finer_part(whole: &Gradation, percent: f64) -> Option<(Gradation, PackedPart)
     Some((part, packed))
 }
 
-/// The largest finer part of which this many grains make a wide enough cell; `None` if it leaves out so much
+/// Largest finer part for which this many grains give a wide enough cell; `None` if so much is omitted
 /// that the result is in doubt.
 pub(super) fn that_can_be_packed(
     whole: &Gradation,
@@ -168,7 +168,7 @@ pub(super) fn that_can_be_packed(
             _ => fits = percent,
         }
     }
-    // Percent rounded down to a tenth.
+    // Rounds the percent down to a tenth.
     let percent = libm::floor(10.0 * fits + 1e-6) / 10.0;
     finer_part(whole, percent)
         .filter(|(_, packed)| packed.finer_by <= LARGEST_ERROR && packed.percent >= FLOATING_PERCENT)
@@ -191,7 +191,7 @@ mod tests {
         let (part, packed) = finer_part(&c33(), 90.0).unwrap();
         assert!((part.largest_mm() - 2.36).abs() < 1e-9 && packed.percent == 90.0);
         assert!((part.percent_finer_by_mass(1.18) - 75.0).abs() < 1e-9);
-        // By hand: percent / ln(b/a) (1/a - 1/b) of each row.
+        // By hand: percent / ln(b/a) (1/a - 1/b) for each row.
         assert!((packed.surface_left_out - 0.015855).abs() < 1e-6, "{packed:?}");
         assert!((packed.finer_by - 0.6 * packed.surface_left_out).abs() < 1e-15);
         assert!(!packed.sizes_missing_above);
@@ -199,14 +199,14 @@ mod tests {
             panic!("{packed:?}")
         };
         assert!((part_percent - 90.0).abs() < 0.05 && (largest_mm - 2.36).abs() < 0.005, "{packed:?}");
-        // All of it leaves nothing out.
+        // The whole filter omits nothing.
         let (all, packed) = finer_part(&c33(), 100.0).unwrap();
         assert_eq!((all, packed.surface_left_out), (c33(), 0.0));
     }
 
     #[test]
     fn what_is_chosen_makes_a_wide_cell_and_no_more() {
-        // A cell of 8 mm, whatever is packed.
+        // A cell of 8 mm for any part.
         let width = |part: &Gradation| 8.0 / part.largest_mm();
         let (part, packed) = that_can_be_packed(&c33(), width).unwrap();
         assert!((width(&part) - WIDTH_OF_PART).abs() < 0.02, "{packed:?}");
@@ -220,7 +220,7 @@ mod tests {
         assert!(part.largest_mm() <= 0.5 && packed.percent > 39.8, "{packed:?}");
         assert!(packed.sizes_missing_above);
         assert!(matches!(packed_part(&packed), Note::FloatingPartPacked { .. }));
-        // Too few grains for a part that represents the whole, and fines that coarse grains do not float in.
+        // Too few grains for a representative part, and fines in which the coarse grains do not float.
         assert_eq!(that_can_be_packed(&c33(), |part| 1.0 / part.largest_mm()), None);
         assert_eq!(that_can_be_packed(&gap_at(20.0), width), None);
     }

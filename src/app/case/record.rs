@@ -1,4 +1,4 @@
-//! Inputs, as a run folder records them, and the positions of voids.
+//! Inputs as recorded in a run folder, and positions of voids.
 
 use super::{Case, CaseFilter, CaseNetwork, Input, RECORD};
 use crate::outcome::record;
@@ -9,41 +9,41 @@ use voidwalk_core::gradation::{CurvePoint, Gradation};
 use voidwalk_core::network::{ExitRule, FLOW_TOLERANCE, flow_error_pp};
 use voidwalk_practice::{AboutPage, InputFile};
 
-/// Kinematic viscosity of water of 10 C (m2/s).
+/// Kinematic viscosity of water at 10 C (m2/s).
 const KINEMATIC_VISCOSITY: f64 = 1.307e-6;
 
 /// Gravity (m/s2).
 const GRAVITY: f64 = 9.81;
 
 impl Case {
-    /// The page of its run.
+    /// Page of its run.
     pub fn about_page(&self) -> AboutPage {
         self.scene.about.page(self.is_scale_free())
     }
 
-    /// Files that were read, with their checksums.
+    /// Files that were read, with checksums.
     pub fn input_files(&self) -> Vec<InputFile> {
         self.inputs.iter().map(Input::file).collect()
     }
 
-    /// The record of the filter's packing, if it was packed.
+    /// Record of the filter's packing, if it was packed.
     pub fn packing_record(&self) -> Option<&Input> {
         self.inputs.iter().find(|input| input.kept_as.ends_with(RECORD))
     }
 
-    /// The user's name for the file of a setting.
+    /// Name given by the user to the file of a setting.
     fn name_of(&self, setting: &str) -> String {
         let input = self.inputs.iter().find(|input| input.setting == setting);
         input.map_or(String::new(), |input| input.name.clone())
     }
 
-    /// The user's name for each file, by its name in the folder of inputs.
+    /// Name given by the user to each file, by its name in the folder of inputs.
     pub fn input_names(&self) -> std::collections::BTreeMap<String, String> {
         let kept = |input: &Input| input.kept_as.rsplit('/').next().unwrap_or_default().to_owned();
         self.inputs.iter().map(|input| (kept(input), input.name.clone())).collect()
     }
 
-    /// Inputs, as a run folder records them.
+    /// Inputs as recorded in a run folder.
     pub fn record(&self) -> record::Inputs {
         let base_name = match &self.scene.base.gradation() {
             BaseGradation::Sieve(..) => self.name_of("base.sieve"),
@@ -143,7 +143,7 @@ impl Case {
         }
     }
 
-    /// Kind of the network, with a description in words.
+    /// Kind of the network, and its description.
     fn network_name(&self) -> (record::NetworkKind, String) {
         let cubic = |n: &[u32; 3]| format!("cubic {} x {} x {}", n[0], n[1], n[2]);
         match &self.scene.network.source() {
@@ -167,8 +167,8 @@ impl Case {
         }
     }
 
-    /// The network that was walked, if its constrictions have no direction of their own. `k0_mm2` is the
-    /// permeability of the clean filter, if known.
+    /// Summary of the network, if its constrictions have no direction. `k0_mm2` is the permeability of
+    /// the clean filter, if known.
     pub fn network_summary(&self, k0_mm2: Option<f64>) -> Option<record::NetworkSummary> {
         let rule = self.scene.exit_rule();
         if rule == ExitRule::Area {
@@ -213,7 +213,7 @@ impl Case {
         }
     }
 
-    /// True if the filter's gradation is a sieve curve, not a straight line.
+    /// True for a sieve curve of the filter, false for an assumed straight line.
     pub fn filter_is_measured(&self) -> bool {
         matches!(self.scene.filter.gradation(), FilterGradation::Sieve(..))
     }
@@ -228,7 +228,7 @@ impl Case {
         }
     }
 
-    /// The shipped filter whose constrictions and voids are walked, if they are one's.
+    /// Shipped filter whose constrictions and voids are walked, if any.
     pub(super) fn shipped_curve(&self) -> Option<&'static ShippedFilter> {
         self.filter.shipped.filter(|_| self.network.fixed.is_none())
     }
@@ -238,8 +238,8 @@ impl Case {
         self.network.fixed.is_none() && self.filter.is_scale_free(&self.scene)
     }
 
-    /// Positions of the voids of its network; `None` for a network from a file, which has no positions, and
-    /// for a packing that is still to be made.
+    /// Positions of the voids of its network; `None` for a network from a file, which has no positions,
+    /// and for a packing that does not exist yet.
     pub fn places(&self) -> Option<Places> {
         if let Some([nx, ny, nz]) = self.scene.network.source().shape() {
             let layer_mm = self.filter.gradation.d_by_number(50.0).unwrap_or(self.filter.unit_mm);
@@ -266,7 +266,7 @@ impl Case {
     }
 }
 
-/// A base, as records of results hold it.
+/// Base as recorded in results.
 pub fn base_record(name: String, base: &Gradation) -> record::BaseRecord {
     record::BaseRecord {
         name,
@@ -284,7 +284,7 @@ pub fn base_record(name: String, base: &Gradation) -> record::BaseRecord {
     }
 }
 
-/// A characteristic size (mm), if the gradation reaches down to it.
+/// Size at a percent finer (mm), if the gradation reaches it.
 fn d(gradation: &Gradation, percent: f64) -> f64 {
     gradation.d(percent).unwrap_or(f64::NAN)
 }
@@ -293,7 +293,7 @@ fn rows(points: Vec<CurvePoint>) -> Vec<[f64; 2]> {
     points.into_iter().map(CurvePoint::row).collect()
 }
 
-/// A coefficient of uniformity without the digits that rounding left.
+/// Coefficient of uniformity without the last digits left by rounding.
 fn rounded(cu: Option<f64>) -> f64 {
     cu.map_or(f64::NAN, |cu| (cu * 1e6).round() / 1e6)
 }
@@ -302,7 +302,7 @@ fn rounded(cu: Option<f64>) -> f64 {
 mod tests {
     use super::*;
 
-    /// By the layer in the network itself, and by its constrictions, which lead to a neighbour.
+    /// Compares with the layers in the network and with its constrictions, which lead to neighbours.
     #[test]
     fn the_voids_of_a_lattice_lie_in_their_layers_beside_their_neighbours() {
         let case = Case::built_in(&["network.nx=3", "network.ny=4", "network.nz=5"]).unwrap();

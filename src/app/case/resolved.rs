@@ -1,5 +1,5 @@
-//! Identity of a case: its scene with every number given and its files beside it, the fingerprint of both,
-//! and the key of its networks.
+//! Identity of a case: its scene with every number given and its files, the fingerprint of both, and the
+//! key of its networks.
 
 use super::Case;
 use super::filter::needs_grains_per_void;
@@ -7,18 +7,18 @@ use crate::scene::{About, CurveSource, NetworkSource, Scene};
 use std::path::PathBuf;
 use voidwalk_core::walk::Engine;
 
-/// Part of the fingerprint of every case: raised whenever the program gives other results for the same scene.
+/// Part of the fingerprint of every case: raised if the program's results for the same scene change.
 const PROTOCOL: u32 = 1;
 
 /// Protocol of cases in which water flows.
 const WATER_PROTOCOL: u32 = 2;
 
-/// Number added if particles arch: raised whenever the program gives other results for these alone.
+/// Number added if particles arch: raised if only the results of such cases change.
 const ARCHING_PROTOCOL: u32 = 20_000;
 
 impl Case {
-    /// The scene completed from its files and its filter's packing, with its files' names in a run folder:
-    /// run again from there, it gives the same bits.
+    /// Scene completed from its files and its filter's packing, with the files' names in a run folder.
+    /// Running it from there gives the same bits.
     pub fn resolved(&self) -> Scene {
         let mut scene = self.scene.clone();
         let kept = |setting: &str| {
@@ -50,7 +50,7 @@ impl Case {
         scene
     }
 
-    /// Fingerprint of everything that the results follow from: the resolved scene and its files.
+    /// Fingerprint of all inputs of the results: the resolved scene and its files.
     pub fn fingerprint(&self) -> String {
         // No result depends on the cover.
         let scene = Scene { about: About::default(), ..self.resolved() };
@@ -60,7 +60,7 @@ impl Case {
         }
         let mut text = format!("{protocol}\n{}", scene.to_toml()).into_bytes();
         if self.filter.library.is_some() || scene.filter.estimate.is_some() {
-            // Another library, another way through it, or other draws of circles give other curves, and other
+            // Another library, another lookup in it, or other random circles give other curves and other
             // amounts of base.
             let ends = &self.filter.curve_ends;
             let own_grains = self.filter.library.as_ref().map(|library| library.found.grains_per_void);
@@ -80,8 +80,8 @@ impl Case {
         format!("{:032x}", xxhash_rust::xxh3::xxh3_128(&text))
     }
 
-    /// A number that two cases share only if [`Case::network`] builds the same network for this seed; `None`
-    /// if a case has one network, which exists already.
+    /// Key that two cases share only if [`Case::network`] builds the same network for this seed; `None`
+    /// if a case has a single network, which already exists.
     pub fn network_key(&self, seed: u64) -> Option<u128> {
         let source = self.scene.network.source();
         if self.network.fixed.is_some() || matches!(source, NetworkSource::File(_)) {
@@ -94,8 +94,8 @@ impl Case {
         Some(xxhash_rust::xxh3::xxh3_128(made_of.as_bytes()))
     }
 
-    /// True if its first runs begin with exits that depend on the network alone, and passive particles take
-    /// them.
+    /// True if its first runs begin with exits that depend only on the network, and passive particles
+    /// take them.
     pub fn begins_with_plain_exits(&self) -> bool {
         let scene = &self.scene;
         let has_counts = matches!(scene.walk.engine, Engine::Counts | Engine::Expected);
@@ -107,7 +107,7 @@ impl Case {
 mod tests {
     use super::*;
 
-    /// Ends that differ in their amount of base alone give other results.
+    /// Ends that differ only in their amount of base give other results.
     #[test]
     fn the_grains_per_void_of_an_end_are_in_the_fingerprint() {
         let case = Case::built_in(&["filter.library=loose", "filter.cu=1.5", "filter.d0_mm=1"]).unwrap();

@@ -1,9 +1,9 @@
-//! A case with one thing changed: its constriction curve, its base, its sizes, the number of its base
-//! particles, its thickness; and what of this is not walked.
+//! Case with one thing changed: its constriction curve, base, sizes, number of base particles or
+//! thickness; and the changes that are not walked.
 //!
-//! A walk knows sizes as multiples of the finest filter grain alone. So a filter that is s times as large is
-//! walked as a base 1/s times as large, as a search of boundaries does: its network stays the same to the
-//! bit, and with it every random number that does not depend on the base.
+//! A walk uses only sizes as multiples of the finest filter grain. A filter s times as large is therefore
+//! walked with a base 1/s times as large, as in a search for boundaries: its network remains identical to
+//! the bit, and so does every random number that does not depend on the base.
 
 use super::files::Files;
 use super::{Case, CaseBase, CaseError, CaseNetwork, CaseSupply, Input};
@@ -16,10 +16,10 @@ use voidwalk_core::network::Network;
 /// Multiples of the thickness that are walked by default.
 const HALF_AND_TWICE: [f64; 2] = [0.5, 2.0];
 
-/// A base as a scene states it, with its sizes as they are.
+/// Base as a scene states it, with its sizes unchanged.
 #[derive(Clone, Debug)]
 pub struct StatedBase {
-    /// The scene that states it.
+    /// Scene that states it.
     pub scene: Scene,
     /// The base.
     pub base: CaseBase,
@@ -28,7 +28,7 @@ pub struct StatedBase {
 }
 
 impl Case {
-    /// Replaces the constriction curve alone: base and amount of base stay.
+    /// Replaces only the constriction curve: base and amount of base are unchanged.
     pub fn with_curve(&self, curve: Curve) -> Self {
         let mut case = self.clone();
         case.filter.finest_mm = self.filter.finest_mm.min(curve.smallest());
@@ -37,10 +37,10 @@ impl Case {
         case
     }
 
-    /// The base that another scene states, read beside this case's filter.
+    /// Reads the base of another scene with this case's filter.
     ///
     /// # Errors
-    /// A file that is refused.
+    /// A file is refused.
     pub fn base_of(&self, scene: &Scene) -> Result<StatedBase, CaseError> {
         let mut files = Files::default();
         let base = CaseBase::read(scene, &self.filter, &mut files)?;
@@ -50,12 +50,12 @@ impl Case {
         Ok(StatedBase { scene: scene.clone(), base, inputs: files.inputs })
     }
 
-    /// Replaces the base by one of this gradation, in this filter's own unit; filter and network stay, but a
-    /// lattice gets the number of layers in `layers`.
+    /// Replaces the base by one with this gradation, in this filter's unit. Filter and network are
+    /// unchanged, but a lattice gets the number of layers in `layers`.
     ///
     /// # Errors
-    /// A base that cannot be walked: Eq. (2) gives too few or too many particles, or sizes are out of range;
-    /// more constrictions than 32 bits can number.
+    /// The base cannot be walked: Eq. (2) gives too few or too many particles, sizes are out of range, or
+    /// there are more constrictions than 32 bits can number.
     pub fn with_base(&self, base: Gradation, layers: Option<u64>) -> Result<Self, CaseError> {
         let mut case = self.clone();
         if let (Some(layers), NetworkSource::Cubic([nx, ny, _])) = (layers, self.scene.network.source()) {
@@ -71,11 +71,11 @@ impl Case {
         Ok(case)
     }
 
-    /// Enlarges the filter of this case by `factor`, against a stated base at its own size: not to be walked,
-    /// but to be judged by rules in millimetres.
+    /// Multiplies the filter of this case by `factor`, with a stated base at its own size; not for walks,
+    /// but for rules in millimetres.
     ///
     /// # Errors
-    /// Sizes out of range.
+    /// Sizes are out of range.
     pub fn enlarged(&self, factor: f64, base: &StatedBase) -> Result<Self, CaseError> {
         let mut case = self.clone();
         (case.filter, case.base) = (case.filter.enlarged(factor)?, base.base.clone());
@@ -88,14 +88,14 @@ impl Case {
         Ok(case)
     }
 
-    /// True if a network of another base on the same filter has as many layers as this case's, so that both
-    /// share it.
+    /// True if a network of another base with the same filter has as many layers as this case's, so that
+    /// both can share it.
     pub fn has_layers_of(&self, network: &Network) -> bool {
         network.layers() as u64 == self.network.layers
     }
 
-    /// Multiples of N_base that the sensitivity study walks: those asked for, except those above a cap that
-    /// the user set, those that give the number of the case itself, and repeated numbers.
+    /// Multiples of N_base that the sensitivity study walks: those requested, except those above a cap
+    /// set by the user, those that give the case's own number, and repeated numbers.
     pub fn sensitivity_factors(&self) -> Vec<f64> {
         let (cap, n_base) = (self.cap(), self.supply.n_base);
         let mut factors = with_new_numbers(self.scene.record.sensitivity.clone(), n_base);
@@ -103,7 +103,7 @@ impl Case {
         factors
     }
 
-    /// Multiples that are asked for, but not walked, each with the reason.
+    /// Multiples that are requested but not walked, each with the reason.
     fn sensitivity_not_walked(&self) -> Vec<LeftOut> {
         let (walked, cap) = (self.sensitivity_factors(), self.cap());
         let not_walked =
@@ -115,13 +115,13 @@ impl Case {
         is_above.into_iter().chain(is_same).collect()
     }
 
-    /// The number of base particles times this factor, at least one.
+    /// Number of base particles times this factor, at least one.
     pub fn times_base(&self, factor: f64) -> u64 {
         times(self.supply.n_base, factor)
     }
 
-    /// Base particles with this many times the grains per void, up to a cap that the user set; unchanged if
-    /// the user states their number.
+    /// Number of base particles for this multiple of the grains per void, up to a cap set by the user;
+    /// unchanged if the user states the number.
     pub fn base_by_grains(&self, times_grains: f64) -> u64 {
         let is_by_mass = matches!(self.scene.base.amount(), Amount::MassRatio(..));
         let of_eq2 = self.supply.n_base_eq2.filter(|_| is_by_mass);
@@ -136,14 +136,14 @@ impl Case {
         }
     }
 
-    /// Multiples of the thickness that the study walks: those asked for, else half and twice if the study of
-    /// the number of base particles is walked. Leaves out all for a network from a file, whose thickness is
-    /// fixed, those that round to the layers or copies of the case itself, and repeated thicknesses.
+    /// Multiples of the thickness that the study walks: those requested, or else half and twice if the
+    /// number of base particles is studied. Excludes all for a network from a file, whose thickness is
+    /// fixed, those that round to the case's own layers or copies, and repeated thicknesses.
     pub fn thickness_factors(&self) -> Vec<f64> {
         with_new_numbers(self.thickness_wanted(), self.thickness_parts())
     }
 
-    /// Multiples that are asked for but not walked, each with the reason.
+    /// Multiples that are requested but not walked, each with the reason.
     fn thickness_not_walked(&self) -> Vec<LeftOut> {
         if matches!(self.scene.network.source(), NetworkSource::File(_)) {
             let asked = self.scene.record.thickness.as_ref().is_some_and(|factors| !factors.is_empty());
@@ -166,16 +166,16 @@ impl Case {
         }
     }
 
-    /// Number of parts of its network along the flow: copies of a packing, or layers.
+    /// Number of units of its network along the flow: copies of a packing, or layers.
     fn thickness_parts(&self) -> u64 {
         self.network.copies().map_or(self.network.layers, u64::from)
     }
 
-    /// Multiplies the thickness of the filter, to the nearest layer (of a lattice) or copy (of a packing);
-    /// Eq. (2) multiplies the base likewise, up to its cap, and a number that was given stays.
+    /// Multiplies the thickness of the filter, to the nearest layer (of a lattice) or copy (of a
+    /// packing); Eq. (2) multiplies the base likewise, up to its cap, and a given number is unchanged.
     ///
     /// # Errors
-    /// More constrictions than 32 bits can number, less than one base particle by Eq. (2).
+    /// There are more constrictions than 32 bits can number, or less than one base particle by Eq. (2).
     pub fn of_thickness(&self, factor: f64) -> Result<Self, CaseError> {
         let parts = times(self.thickness_parts(), factor);
         let mut scene = self.scene.clone();
@@ -219,12 +219,12 @@ impl Case {
     }
 }
 
-/// A number times this factor, at least one.
+/// Number times this factor, at least one.
 fn times(number: u64, factor: f64) -> u64 {
     ((number as f64 * factor).round() as u64).max(1)
 }
 
-/// The factors that give another number than `number` itself and than those before them.
+/// Factors that give a number other than `number` and other than the previous ones.
 fn with_new_numbers(factors: Vec<f64>, number: u64) -> Vec<f64> {
     let mut known = vec![number];
     let is_new = |factor: &f64| {
@@ -269,8 +269,8 @@ mod tests {
         assert_eq!(thick.network(7).unwrap().layers(), 120);
     }
 
-    /// A pan fraction that is walked blocks nothing at either end of a guess, so that a walk there
-    /// follows numbers and asks for no column of billions of particles.
+    /// A pan fraction that is walked blocks nothing at either end of a guess, so a walk there follows
+    /// numbers and needs no column of billions of particles.
     #[test]
     fn a_passive_pan_fraction_is_passive_at_the_ends_of_a_guess_too() {
         let folder = tempfile::tempdir().unwrap();

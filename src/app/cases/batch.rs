@@ -1,5 +1,5 @@
-//! Many samples against one or several filters: the answer of practice on each pair, each pair walked, and
-//! one table of both.
+//! Many samples against one or several filters: the decision of practice on each pair, a walk of each pair,
+//! and one table of both.
 //!
 //! The walks are the cases of a campaign inside the batch's folder, all with one seed: each has a run folder
 //! of its own, finished ones are kept, and stopped or killed ones continue. The table follows from samples,
@@ -31,41 +31,41 @@ use voidwalk_practice::quantity::SizeUnit;
 use voidwalk_practice::{BatchFilter, BatchRow, BatchTable, PairOptions, SheetCover};
 use voidwalk_sheets::curves_in_file;
 
-/// Folder of the campaign, inside the batch's.
+/// Folder of the campaign, inside the batch's folder.
 const WALKS: &str = "pairs";
 
-/// One row a sample and filter.
+/// Table with one row for each sample and filter.
 const TABLE: &str = "batch.csv";
 
 const KIND: FolderKind = FolderKind::Batch;
 
-/// Voids across the lattice of a first look, as `voidwalk boundary` searches.
+/// Voids across the lattice of a first look, as in a search by `voidwalk boundary`.
 const ACROSS: u64 = 20;
 
-/// Settings that give the lattice a size of the user's own.
+/// Settings by which a user chooses the size of the lattice.
 const OWN_LATTICE: [&str; 4] = ["network.nx", "network.ny", "network.file", "network.packing"];
 
-/// Which pairs are walked, and how.
+/// Pairs to walk, and the depth of their walks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BatchWalks {
-    /// A first look at every sample, and the three that govern each filter in full.
+    /// A first look at every sample, and full walks of the three that govern each filter.
     #[default]
     GoverningInFull,
     /// A first look at every sample.
     FirstLook,
-    /// The three that govern each filter alone, in full.
+    /// Full walks of only the three that govern each filter.
     GoverningAlone,
-    /// The one base against every filter, as the settings say.
+    /// The one base against every filter, by the settings.
     OneBase,
 }
 
-/// A batch, its pairs worked out.
+/// Batch with its pairs worked out.
 #[derive(Clone, Debug)]
 pub struct BatchPlan {
-    /// The samples, as they were named.
+    /// Path of the samples, as it was given.
     samples: PathBuf,
     filters: Vec<BatchFilter>,
-    /// The curve of the one base as sampled; empty if each soil is a sample.
+    /// Curve of the one base as sampled; empty if each soil is a sample.
     base: Vec<[f64; 2]>,
     rows: Vec<WalkedRow>,
     /// Name of the case of each row, walked or not.
@@ -77,12 +77,12 @@ pub struct BatchPlan {
 }
 
 impl BatchPlan {
-    /// The pairs of the samples of a file or a folder with filters. `tables` holds the further options of
-    /// each scene. A pair that cannot be walked stays in the table, with the reason.
+    /// Pairs the samples of a file or folder with filters. `tables` holds the further options of each scene.
+    /// A pair that cannot be walked stays in the table, with the reason.
     ///
     /// # Errors
     /// A file that cannot be read; a filter that is named twice; several soils in place of one base; cases
-    /// that do not fit the memory; no pair that can be walked.
+    /// that do not fit into memory; no pair that can be walked.
     pub fn new(
         samples: &Path,
         filters: &[PathBuf],
@@ -138,8 +138,8 @@ impl BatchPlan {
         Ok(plan)
     }
 
-    /// Replaces the paths of the samples and of each filter by these names, and notes that may hold paths by
-    /// the result of `reworded`.
+    /// Replaces the paths of the samples and of each filter by these names, and rewords notes, which may hold
+    /// paths, by `reworded`.
     #[must_use]
     pub fn named(mut self, samples: &str, filters: &[String], reworded: impl Fn(&str) -> String) -> Self {
         let of_filter = (self.rows.len() / self.filters.len().max(1)).max(1);
@@ -178,12 +178,12 @@ impl BatchPlan {
         Ok(())
     }
 
-    /// Cover of the sheet: all scenes of the walks agree on it.
+    /// Cover of the sheet, the same in all scenes of the walks.
     fn cover(&self) -> SheetCover {
         self.campaign.cases.first().map(|case| case.scene.about.cover()).unwrap_or_default()
     }
 
-    /// True if page and terminal show inches beside mm.
+    /// True if page and terminal show inches as well as mm.
     pub fn shows_inches(&self) -> bool {
         self.campaign.cases.first().is_some_and(|case| case.scene.about.shows_inches())
     }
@@ -194,7 +194,7 @@ impl BatchPlan {
     }
 }
 
-/// The rows of the samples of a file or a folder against filters, without `each` of one base; every soil of a
+/// Rows of the samples of a file or folder against filters; without `each`, of one base. Every soil in a
 /// filter's file is a curve of its envelope. Errors: a file that cannot be read; a filter that is named
 /// twice; several soils in place of one base.
 pub(crate) fn pairs_of(
@@ -218,7 +218,7 @@ pub(crate) fn pairs_of(
     Ok(BatchTable::new(&bases.soils, curves, bases.notes(filters)?, options))
 }
 
-/// The rows of a table, with those that govern.
+/// Rows of a table, with those that govern marked.
 fn governed(table: &BatchTable) -> Vec<WalkedRow> {
     let of_filters: Vec<Vec<&BatchRow>> =
         table.filters.iter().map(|filter| governing(&table.rows, &filter.name, NAMED)).collect();
@@ -235,7 +235,7 @@ fn governed(table: &BatchTable) -> Vec<WalkedRow> {
     table.rows.iter().map(walked).collect()
 }
 
-/// A name for each row, no two the same: sample and filter.
+/// Name for each row, made of sample and filter; all different.
 fn case_names(table: &BatchTable, filters: &[PathBuf]) -> Vec<String> {
     let samples = table.rows.len() / filters.len().max(1);
     let of_samples = table.rows[..samples].iter().map(|row| row.sample.clone());
@@ -248,7 +248,7 @@ fn case_names(table: &BatchTable, filters: &[PathBuf]) -> Vec<String> {
     of_filters.iter().flat_map(pair).collect()
 }
 
-/// The scene of a pair, or the reason why it has none.
+/// Scene of a pair, or the reason why it has none.
 fn scene(row: &WalkedRow, filters: &[BatchFilter], tables: &TableOptions) -> Result<Scene, String> {
     let filter = filters.iter().find(|filter| filter.name == row.rules.filter);
     if filter.is_some_and(|filter| filter.curves.len() > 1) {
@@ -257,17 +257,17 @@ fn scene(row: &WalkedRow, filters: &[BatchFilter], tables: &TableOptions) -> Res
     if row.rules.is_refused {
         return Err(EXCHANGED.into());
     }
-    // An exchange of base and filter is already known.
+    // Exchanged base and filter have already been noticed.
     let tables = TableOptions { as_given: true, ..tables.clone() };
     let filter = PathBuf::from(&row.rules.filter);
     Scene::of_tables(&row.rules.path, &filter, &tables).map_err(|problem| {
-        // A client knows of soils, not of the scene that they are put into.
+        // A client knows soils, not the scene made of them.
         let problem = problem.to_string();
         problem.strip_prefix("built-in scene: ").map_or(problem.clone(), str::to_owned)
     })
 }
 
-/// The settings of a first look: as `--quick`, on a lattice no wider than is needed for the class.
+/// Settings of a first look: those of `--quick`, on a lattice no wider than the class needs.
 fn first_look(tables: &TableOptions) -> TableOptions {
     let is_own = |change: &String| OWN_LATTICE.contains(&setting_name(change));
     let lattice = ["nx", "ny"].map(|side| format!("network.{side}={ACROSS}"));
@@ -276,13 +276,13 @@ fn first_look(tables: &TableOptions) -> TableOptions {
     TableOptions { quick: true, changes, ..tables.clone() }
 }
 
-/// Walks every pair that is not done, in a campaign inside the folder that the options name, and writes
-/// `batch.csv` and, last, `batch.json`. With `overwrite` an earlier batch there is replaced; its walks that
-/// are asked for again are kept.
+/// Walks every unfinished pair, in a campaign inside the folder that the options name, and writes `batch.csv`
+/// and, last, `batch.json`. With `overwrite` an earlier batch there is replaced, except those of its walks
+/// that are needed again.
 ///
 /// # Errors
-/// A folder that cannot be claimed is refused before any work; then as [`super::run()`], and a pair that
-/// cannot be walked to its end leaves no table. After a stop, the same call continues.
+/// A folder that cannot be claimed is refused before any work; then see [`super::run()`]. If a pair cannot be
+/// walked to its end, no table is written. After a stop, the same call continues.
 pub fn run(
     plan: &BatchPlan,
     options: &CaseOptions,
@@ -312,11 +312,11 @@ pub fn run(
     run_around(&plan.campaign, &of_walks, callbacks, study).map_err(stopped)
 }
 
-/// The batch that the folder holds already, if it is this very one; `None` if [`run`] without `overwrite`
-/// begins or continues there. Writes no result.
+/// Batch that the folder already holds, if it is this very one; `None` if [`run`] without `overwrite` begins
+/// or continues there. Writes no result.
 ///
 /// # Errors
-/// A folder that holds anything else, another batch too.
+/// The folder holds anything else, including another batch.
 pub fn found(plan: &BatchPlan, options: &CaseOptions) -> Result<Option<WalkedBatch>, RunError> {
     if options.out.symlink_metadata().is_err() {
         return Ok(None);
@@ -338,13 +338,13 @@ pub fn found(plan: &BatchPlan, options: &CaseOptions) -> Result<Option<WalkedBat
         return there.map_or_else(other, |there| Ok(Some(there)));
     }
     let Some(begun) = Unfinished::read(&folder)? else { return Ok(None) };
-    // A packing that was removed is made again, and other work is refused then.
+    // A packing that was removed is made again; other work is refused after that.
     let is_this = |cases: Option<&[PreparedCase]>| cases.is_none_or(|all| plan.has_work(all, &begun.work));
     if look(&plan.campaign, &of_walks, is_this)? { Ok(None) } else { other() }
 }
 
 impl BatchPlan {
-    /// The rows, with the walk of each pair that is done in this folder of the batch, to whatever end.
+    /// Rows, with the walk of each pair that has ended in this folder of the batch, successfully or not.
     pub fn so_far(&self, folder: &Path) -> Vec<WalkedRow> {
         let walked = |case: &String| {
             let planned = self.campaign.cases.iter().find(|planned| planned.name == *case)?;
@@ -357,21 +357,21 @@ impl BatchPlan {
         rows.map(|(row, case)| WalkedRow { walk: walked(case), ..row.clone() }).collect()
     }
 
-    /// The row of a case that was just done in this folder, and its place among all.
+    /// Row of a case that was just finished in this folder, and its position among all.
     pub fn walked_row(&self, folder: &Path, line: &LedgerLine) -> Option<(usize, WalkedRow)> {
         let at = self.cases.iter().position(|case| *case == line.case)?;
         let (walk, _) = self.walk(folder, format!("{WALKS}/{}", line.folder), &line.case).ok()?;
         Some((at, WalkedRow { walk: Some(walk), ..self.rows[at].clone() }))
     }
 
-    /// The walk of a case that is done, and its outcome.
+    /// Walk of a finished case, and its outcome.
     fn walk(&self, folder: &Path, place: String, case: &str) -> Result<(SampleWalk, Outcome), RunError> {
         let outcome: Outcome = kept::record(&folder.join(&place), FolderKind::Run)?;
         Ok((SampleWalk::of(&outcome, place, self.in_full.contains(case)), outcome))
     }
 
     /// Number of its walks in this folder that were kept from an earlier call with another cover; their own
-    /// pages have that cover.
+    /// pages show that cover.
     pub fn with_other_cover(&self, folder: &Path) -> usize {
         let is_other = |planned: &&PlannedCase| {
             let scene = folder.join(WALKS).join(CASES).join(planned.folder_name()).join("scene.toml");
@@ -380,7 +380,7 @@ impl BatchPlan {
         self.campaign.cases.iter().filter(is_other).count()
     }
 
-    /// Everything that the table follows from, as the record writes it; fields that the record leaves out are
+    /// Everything that determines the table, in the form of the record; fields that the record leaves out are
     /// left out here, too. Errors: a name that is not UTF-8.
     fn work(&self, cases: &[PreparedCase]) -> Result<String, RunError> {
         let cases: Vec<_> = cases.iter().map(|case| (&case.planned.name, &case.fingerprint)).collect();

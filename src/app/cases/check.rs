@@ -15,11 +15,11 @@ use crate::run::machine::{CasesAtOnce, threads};
 use crate::run::prepare::Draft;
 use crate::run::replicates::{have_networks, runs_to_walk};
 
-/// What the cases of a plan would take; sizes and times are estimates.
+/// Forecast of the cases of a plan; sizes and times are estimates.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct PlanCheck {
-    /// The plan's file.
+    /// File of the plan.
     pub plan: String,
     /// Its title.
     pub title: String,
@@ -29,7 +29,7 @@ pub struct PlanCheck {
     pub cases: Vec<CaseCheck>,
     /// Packings of filters that the cases need, each once.
     pub packings: u64,
-    /// How many of them are still to be made; until then sizes and times of their cases are guesses.
+    /// Number of these still to be made; until then sizes and times of their cases are guesses.
     pub packings_to_make: u64,
     /// Seconds of one core of this machine for these packings.
     pub packing_core_seconds: f64,
@@ -39,13 +39,13 @@ pub struct PlanCheck {
     pub bytes: u64,
     /// Cases that this machine walks at the same time.
     pub cases_at_once: u64,
-    /// Memory that the program takes then (bytes).
+    /// Memory that the program then takes (bytes).
     pub bytes_at_once: u64,
     /// Memory that a case may take (bytes).
     pub bytes_allowed: u64,
 }
 
-/// What one case would take.
+/// Forecast of one case.
 #[derive(Clone, Debug, Default, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CaseCheck {
@@ -59,7 +59,7 @@ pub struct CaseCheck {
     pub bytes: u64,
     /// Seconds of one core of this machine for its walks.
     pub core_seconds: f64,
-    /// What is wrong with it; empty for a sound case, whose other fields are 0 otherwise.
+    /// Problem of the case; empty for a sound case, whose other fields are 0 otherwise.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub problem: String,
 }
@@ -74,11 +74,11 @@ impl PlanCheck {
     }
 }
 
-/// Forecasts the cases of a plan, here and with these options, and reports the mistakes in each; packs
-/// nothing, claims nothing and writes nothing.
+/// Forecasts the cases of a plan, here and with these options, and reports the mistakes in each. Packs,
+/// claims and writes nothing.
 ///
 /// # Errors
-/// There is no such part of the plan, or no such folder of packings.
+/// The plan has no such part, or there is no such folder of packings.
 pub fn check_plan(plan: &CasePlan, options: &CaseOptions) -> Result<PlanCheck, RunError> {
     let wanted = wanted(plan, &options.part)?;
     let (limits, _) = options.rooms(&options.out, &wanted);

@@ -1,10 +1,10 @@
-//! A plan on a cluster whose scheduler is Slurm: job scripts, with the time and memory that the cases are
-//! estimated to take, and the reliability of the locks of the campaign's file system.
+//! A plan on a cluster that uses Slurm: job scripts with the estimated time and memory of the cases, and a
+//! check of the file locks in the campaign's folder.
 //!
 //! An array of jobs packs filters, an array walks, a job collects. The scheduler only starts processes.
-//! Finished cases, and claims on others, are in the campaign's folder, so that a task which is lost, doubled
-//! or begun again changes no result. Scripts are templates of `src/app/data/slurm`, filled in: paths and
-//! other words of the user in single quotes, and no names of cases, only the number of a task.
+//! Finished cases and claims on others are in the campaign's folder, so a task that is lost, duplicated or
+//! restarted changes no result. Scripts are filled-in templates of `src/app/data/slurm`: words of the user
+//! are in single quotes, and cases are given by the number of a task, not by name.
 
 use std::path::{Path, PathBuf};
 
@@ -31,18 +31,18 @@ const TASK_S: f64 = 600.0;
 pub struct JobOptions {
     /// The program.
     pub program: PathBuf,
-    /// The words between it and its command: `-m voidwalk` if the program is Python.
+    /// Words between the program and its command: `-m voidwalk` if the program is Python.
     pub words: Vec<String>,
     /// The plan's file.
     pub plan: PathBuf,
-    /// Tasks of the array; by default enough that one takes about ten minutes.
+    /// Tasks of the array; by default as many as take about ten minutes each.
     pub tasks: Option<usize>,
 }
 
 /// The scripts that were written.
 #[derive(Clone, Debug)]
 pub struct WrittenJobs {
-    /// Cases of the plan that are done already; nothing is written if all are.
+    /// Number of cases already done; if all are, nothing is written.
     pub done: usize,
     /// Cases that the array walks.
     pub cases: usize,
@@ -58,10 +58,10 @@ pub struct WrittenJobs {
     pub submit: PathBuf,
 }
 
-/// Writes job scripts for the cases of a plan that are not done into the campaign's folder.
+/// Writes job scripts for the unfinished cases of a plan into the campaign's folder.
 ///
 /// # Errors
-/// A plan or case that is wrong, a folder that cannot be claimed or written, a path that no script can hold.
+/// A wrong plan or case, a folder that cannot be claimed or written, a path that no script can hold.
 pub fn write_job_scripts(
     plan: &CasePlan,
     options: &CaseOptions,
@@ -120,7 +120,7 @@ pub fn write_job_scripts(
     Ok(written)
 }
 
-/// The packings to be made first, all of the plan if one is missing, and the needs of the largest.
+/// Packings to make first (all of the plan if one is missing), and the needs of the largest.
 fn packings(drafts: &Drafts, options: &CaseOptions) -> Result<(usize, TaskNeeds), RunError> {
     let all = drafts.packings();
     let (mut missing, mut needs) = (false, TaskNeeds::default());
@@ -131,7 +131,7 @@ fn packings(drafts: &Drafts, options: &CaseOptions) -> Result<(usize, TaskNeeds)
     Ok((if missing { all.len() } else { 0 }, needs))
 }
 
-/// The cases that are not done, with guesses at filters that are still to be packed.
+/// Unfinished cases, with guesses for filters that are still to be packed.
 fn open_cases<'a>(
     drafts: Drafts<'a>,
     options: &CaseOptions,
@@ -154,7 +154,7 @@ fn open_cases<'a>(
     Ok(cases)
 }
 
-/// Further words of the program's command lines that walk and that collect.
+/// Additional words of the command lines that walk and that collect.
 fn command_words(options: &CaseOptions) -> [Vec<String>; 2] {
     let mut words = Vec::new();
     if let Some(packings) = &options.packings {
@@ -167,14 +167,13 @@ fn command_words(options: &CaseOptions) -> [Vec<String>; 2] {
     [words, collecting]
 }
 
-/// Folder of the scripts and logs, inside the campaign's.
+/// Folder of the scripts and logs, inside the campaign's folder.
 const FOLDER: &str = "slurm";
 
-/// Asked for by this factor more than estimated: time.
+/// Factor on the estimated time in the request of a job script.
 const TIME_MARGIN: f64 = 4.0;
 
-/// Greatest time that is asked for (minutes): a task that is not done by then is stopped, and continues in
-/// another attempt.
+/// Maximum time to request (minutes): a task that takes longer is stopped, and continues in another attempt.
 const LONGEST_MIN: u64 = 24 * 60;
 
 /// Time for delays that no estimate includes: a busy file system, the start of the program (minutes).
@@ -190,18 +189,18 @@ pub struct TaskNeeds {
 }
 
 impl TaskNeeds {
-    /// The larger of each of two needs.
+    /// Larger time and larger memory of two needs.
     fn or_more(self, other: Self) -> Self {
         Self { seconds: self.seconds.max(other.seconds), bytes: self.bytes.max(other.bytes) }
     }
 
-    /// Minutes to ask for.
+    /// Time to request (minutes).
     pub fn minutes(&self) -> u64 {
         let minutes = (TIME_MARGIN * self.seconds / 60.0).ceil() as u64 + SLACK_MIN;
         (minutes.div_ceil(5) * 5).min(LONGEST_MIN)
     }
 
-    /// Megabytes (2^20 bytes) to ask for.
+    /// Memory to request (megabytes of 2^20 bytes).
     pub fn megabytes(&self) -> u64 {
         let megabytes = MEMORY_MARGIN * self.bytes as f64 / f64::from(1 << 20);
         (megabytes.ceil() as u64).div_ceil(100) * 100
@@ -223,7 +222,7 @@ impl TaskNeeds {
 struct Jobs<'a> {
     job: &'a JobOptions,
     out: &'a Path,
-    /// Further words of the command line that walks or packs, and of the one that collects.
+    /// Additional words of the command lines that walk or pack, and of the one that collects.
     words: [Vec<String>; 2],
     processors: u64,
     /// Filters to pack, and the needs of the largest.
@@ -235,10 +234,10 @@ struct Jobs<'a> {
 }
 
 impl Jobs<'_> {
-    /// Files of the scripts, by their name inside [`FOLDER`].
+    /// Files of the scripts, by their names inside [`FOLDER`].
     fn files(&self) -> Result<Vec<(String, String)>, RunError> {
         let list = prepared::task_list(&self.tasks);
-        // Scripts that wait in a queue name the list that they were written with.
+        // Scripts that wait in a queue name the list with which they were written.
         let list_name = format!("tasks-{:08x}.tsv", xxhash_rust::xxh3::xxh3_64(list.as_bytes()) as u32);
         let cases: usize = self.tasks.iter().map(Vec::len).sum();
         let words = |all: &[String]| all.iter().map(|word| format!(" {}", quoted(word))).collect::<String>();
@@ -267,7 +266,7 @@ impl Jobs<'_> {
             _ => (
                 format!("{packings} packings, then {walks}"),
                 "submit \"$@\" slurm/pack.sh\n",
-                // After any end of the packing job: cases whose packings exist are walked.
+                // However the packing job ends, cases whose packings exist are walked.
                 "--dependency=\"afterany:$number\" ",
             ),
         };
@@ -314,34 +313,34 @@ fn fill(template: &str, values: &[(&str, String)]) -> String {
     text + rest
 }
 
-/// An absolute path in quotes.
+/// Absolute path in quotes.
 fn path(path: &Path) -> Result<String, RunError> {
     let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     match absolute.to_str().filter(|text| !text.chars().any(char::is_control)) {
         Some(text) => Ok(quoted(text)),
         None => Err(RunError::Refused(format!(
-            "{}: a path that is to stand in a job script must be UTF-8 text without line ends",
+            "{}: a path in a job script must be UTF-8 text without line ends",
             absolute.display()
         ))),
     }
 }
 
-/// Mount of a file system. On most that clusters share, a lock that one node holds keeps the others out; on
-/// some, or mounted in some ways, every node sees its own locks only, without any sign of it. Then several
-/// tasks may walk one case: the same results, at more cost.
+/// Mount of a file system. On most file systems that clusters share, a lock held by one node keeps the others
+/// out; on some, or with some mount options, each node sees only its own locks, without any sign of it.
+/// Several tasks may then walk one case, with the same results at a higher cost.
 struct Mount {
     point: PathBuf,
     kind: String,
     options: Vec<String>,
 }
 
-/// Warning about the locks in this folder; `None` if they hold on every node.
+/// Warning about the locks in this folder; `None` if they work across nodes.
 fn warning(folder: &Path) -> Option<String> {
     let folder = folder.canonicalize().ok()?;
     mount_of(&folder, &platform::mounts()?)?.doubt()
 }
 
-/// The mount that holds a path: the longest mount point above it, the last of equal ones.
+/// Mount that holds a path: the longest mount point above it, and the last of several equal ones.
 fn mount_of(path: &Path, mounts: &str) -> Option<Mount> {
     let all = mounts.lines().filter_map(Mount::read);
     all.filter(|mount| path.starts_with(&mount.point)).max_by_key(|mount| mount.point.components().count())
@@ -375,7 +374,7 @@ impl Mount {
             "lustre" if self.has("localflock") => format!("it is mounted with `localflock`: {one_node}"),
             "lustre" if !self.has("flock") => "it is mounted without `flock`: there are no locks".to_owned(),
             "beegfs" => format!(
-                "unless `tuneUseGlobalFileLocks = true` stands in its client's configuration, {one_node}"
+                "unless `tuneUseGlobalFileLocks = true` is set in its client's configuration, {one_node}"
             ),
             "cifs" | "smb3" if self.has("nobrl") => format!("it is mounted with `nobrl`: {one_node}"),
             "fuse.sshfs" | "9p" => one_node.to_owned(),
@@ -386,7 +385,7 @@ impl Mount {
     }
 }
 
-/// Spaces and the like are written as three octal digits.
+/// Decodes spaces and similar characters, which are written as three octal digits.
 fn unescaped(field: &str) -> String {
     let mut parts = field.split('\\');
     let mut text = parts.next().unwrap_or_default().to_owned();

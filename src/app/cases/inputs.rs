@@ -1,5 +1,5 @@
-//! The soils that a command is given, read from their files, under short names, no two the same; notes on
-//! these files, and their checksums.
+//! Soils given to a command, read from their files, under short names that are all different; notes on these
+//! files, and their checksums.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -10,22 +10,22 @@ use voidwalk_core::gradation::{GradationError, bytes_of};
 use voidwalk_practice::InputFile;
 use voidwalk_sheets::{SoilSample, envelope_in, file_and_soil, notes_in_file, samples_in};
 
-/// Soils of files, each under a name of its own.
+/// Soils from files, each under a name of its own.
 pub(crate) struct InputSoils {
     pub soils: Vec<SoilSample>,
-    /// The tables by their names; a folder is replaced by its tables.
+    /// Tables, in the order in which they were named; a folder is replaced by its tables.
     files: Vec<PathBuf>,
     pub name: String,
 }
 
 impl InputSoils {
-    /// Reads every sample of files and folders, as [`samples_in`]. Errors: a file that cannot be read as a
-    /// table; a soil that is named twice.
+    /// Reads every sample in files and folders, as [`samples_in`] does. Errors: a file that cannot be read as
+    /// a table; a soil that is named twice.
     pub fn samples(paths: &[PathBuf]) -> Result<Self, RunError> {
         Self::read(paths, samples_in)
     }
 
-    /// Reads every curve of files, as [`envelope_in`]. Errors: also a path that is a folder.
+    /// Reads every curve in files, as [`envelope_in`] does. Errors: as above; a path that is a folder.
     pub fn envelope(paths: &[PathBuf]) -> Result<Self, RunError> {
         Self::read(paths, envelope_in)
     }
@@ -51,8 +51,8 @@ impl InputSoils {
         Ok(Self { soils, files, name: names(paths).join(", ") })
     }
 
-    /// Assumptions on their files and on these others, a sentence each, every file once. Errors: a file that
-    /// cannot be read as a table.
+    /// Assumptions made on these files and the others, one sentence each; every file occurs once. Errors: a
+    /// file that cannot be read as a table.
     pub fn notes(&self, others: &[PathBuf]) -> Result<Vec<String>, RunError> {
         let mut read = HashSet::new();
         let mut all = Vec::new();
@@ -64,14 +64,14 @@ impl InputSoils {
     }
 }
 
-/// The files of these soils, each once.
+/// Files of these soils, each once.
 fn files_of(soils: &[SoilSample]) -> Vec<PathBuf> {
     let mut read = HashSet::new();
     let files = soils.iter().map(|soil| file_and_soil(&soil.path).0);
     files.filter(|file| read.insert(file.clone())).collect()
 }
 
-/// The files of these soils, each once, with their checksums.
+/// Files of these soils, each once, with their checksums.
 pub(crate) fn input_files(soils: &[SoilSample]) -> Result<Vec<InputFile>, RunError> {
     let input = |file: PathBuf| {
         let bytes = bytes_of(&file).map_err(RunError::refused)?;
@@ -89,8 +89,8 @@ pub(crate) fn refuse_twice(files: &[PathBuf]) -> Result<(), RunError> {
     }
 }
 
-/// A table's file as the disk knows it, with the soil's name if it is given; missing files are told apart by
-/// their names alone.
+/// Canonical path of a table's file, with the soil's name if it is given; missing files are compared by their
+/// names only.
 fn real(file: &Path) -> PathBuf {
     let (path, soil) = file_and_soil(file);
     let path = path.canonicalize().unwrap_or(path);
@@ -100,11 +100,11 @@ fn real(file: &Path) -> PathBuf {
     }
 }
 
-/// Short names, all different: the file's name without its ending, with the soil's if it is one of several;
-/// the whole path if two would agree, with its number in front if even the paths agree.
+/// Short names, all different: the file's name without its ending, with the soil's name if the file has
+/// several; the whole path if two would agree, preceded by its number if even the paths agree.
 pub(super) fn names(files: &[PathBuf]) -> Vec<String> {
     let mut names: Vec<String> = files.iter().map(|file| short_name(file)).collect();
-    // A longer name can be another's short one.
+    // A longer name may equal the short name of another.
     for _ in files {
         let again = shared(&names);
         again.into_iter().for_each(|at| names[at] = shown(&files[at]));
@@ -112,7 +112,7 @@ pub(super) fn names(files: &[PathBuf]) -> Vec<String> {
     as_folders(names)
 }
 
-/// Names of folders, no two the same: a hidden one has its number in front.
+/// Folder names, all different; a hidden one is preceded by its number.
 pub(super) fn as_folders(mut names: Vec<String>) -> Vec<String> {
     let hidden = |name: &String| name.is_empty() || name.starts_with('.');
     for (at, name) in names.iter_mut().enumerate().filter(|(_, name)| hidden(name)) {
@@ -121,9 +121,9 @@ pub(super) fn as_folders(mut names: Vec<String>) -> Vec<String> {
     numbered(names)
 }
 
-/// Names, no two the same: those that are not alone have their number in front.
+/// Names, all different: those that occur more than once are preceded by their numbers.
 pub(crate) fn numbered(mut names: Vec<String>) -> Vec<String> {
-    // Those with a number in front differ from each other: this ends.
+    // Names with a number in front differ from each other, so the loop ends.
     loop {
         let again = shared(&names);
         if again.is_empty() {
@@ -133,7 +133,7 @@ pub(crate) fn numbered(mut names: Vec<String>) -> Vec<String> {
     }
 }
 
-/// Positions of names that occur more than once; some disks do not tell upper from lower case.
+/// Positions of names that occur more than once; some disks do not distinguish upper from lower case.
 pub(super) fn shared(names: &[String]) -> Vec<usize> {
     let lower: Vec<String> = names.iter().map(|name| name.to_lowercase()).collect();
     (0..names.len()).filter(|&at| lower.iter().filter(|name| **name == lower[at]).count() > 1).collect()
@@ -163,11 +163,11 @@ mod tests {
         assert_eq!(named(&["f.csv", "f.tsv", "f.csv.csv"]), ["f.csv", "f.tsv", "f.csv.csv"]);
         assert_eq!(named(&["a/F.csv", "b/f.csv"]), ["a/F.csv", "b/f.csv"]);
         assert_eq!(named(&["a/2 .f.csv", ".f"]), ["1 2 .f", "2 2 .f"]);
-        // No name may be a folder that exists already.
+        // A name must not be a folder that already exists.
         assert_eq!(named(&["...csv", ".f"]), ["1 ..", "2 .f"]);
     }
 
-    /// A name with a number in front can be another's own.
+    /// A name with a number in front may equal the original name of another.
     #[test]
     fn numbered_names_are_all_different() {
         let folders = |names: &[&str]| as_folders(names.iter().map(ToString::to_string).collect());

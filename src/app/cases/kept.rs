@@ -1,11 +1,11 @@
-//! Results so far of a study that is stopped or killed, from which the same command continues.
+//! Results so far of a stopped or killed study, from which the same command continues.
 //!
-//! It is a checkpoint of the folder ([`voidwalk_core::store::checkpoint`]): section `found`, a record, under
-//! a hash of all inputs of the study. Parts under way are started again; their results follow from the seed
-//! alone, so the whole equals an uninterrupted study. A batch keeps no such file: its cases are run folders,
-//! each of which continues by itself.
+//! They form a checkpoint in the folder ([`voidwalk_core::store::checkpoint`]): section `found`, a record,
+//! under a hash of all inputs of the study. Parts under way are started again; their results follow from the
+//! seed alone, so the whole equals an uninterrupted study. A batch keeps no such file: its cases are run
+//! folders, which are continued one by one.
 //!
-//! The day on a sheet is the day of the last walk behind it, or of its making if nothing was walked.
+//! The date on a sheet is the day of the last walk behind it, or the day of its making without walks.
 
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -28,8 +28,8 @@ pub(crate) fn hash_of(work: &str) -> String {
     format!("{:032x}", xxh3_128(work.as_bytes()))
 }
 
-/// Makes a study of this kind, identified by `work`, in its claimed folder: continues from the results of an
-/// earlier start, and reads the record instead if a study without cases lacks only its page. `study` writes
+/// Makes a study of this kind, identified by `work`, in its claimed folder. Continues from the results of an
+/// earlier start; if a study without cases lacks only its page, its record is read instead. `study` writes
 /// its tables; then its record and its page are written, and the checkpoint is removed. Errors: the folder
 /// holds another study; errors of the study and of the folder.
 pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
@@ -40,13 +40,12 @@ pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
 ) -> Result<R, RunError> {
     let mark = Unfinished::new(kind, work);
     let kept = Kept::new(kind, folder, &mark.work);
-    // The cases of a batch are checked again: each has files of its own.
+    // The cases of a batch are checked again, because each has files of its own.
     let whole = mark.whole(folder, kind.record())?.filter(|_| !overwrite && !kind.has_cases());
     let record = match whole {
         Some(record) => record,
         None => {
-            // Files that would be replaced belong to other work; a stopped start of this very work is
-            // continued.
+            // Files to be replaced belong to other work; a stopped start of this very work is continued.
             let begun = Unfinished::read(folder)?;
             let is_begun = begun.as_ref() == Some(&mark);
             let earlier = match overwrite {
@@ -55,7 +54,7 @@ pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
                 false => kept.newest(callbacks)?,
             };
             let has_cases = kind.has_cases();
-            // A corrupt mark tells nothing.
+            // A corrupt mark gives no information.
             if has_cases && !overwrite && !is_begun && begun.is_some_and(|begun| !begun.work.is_empty()) {
                 return Err(RunError::Refused(format!(
                     "{}: holds another {} that is unfinished, or was begun by another version of voidwalk; \
@@ -64,13 +63,13 @@ pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
                     kind.name()
                 )));
             }
-            // A study that continues always has its mark.
+            // A study that is continued always has its mark.
             if earlier.is_none() && !(has_cases && is_begun) {
                 clear(folder, kind)?;
             }
             mark.begin(folder)?;
             let record = study(&kept, earlier)?;
-            // The page is made of it.
+            // The page is made from the record.
             folder.write(kind.record(), &json(kind.format(), &record)?)?;
             record
         }
@@ -89,18 +88,18 @@ pub(crate) fn record<R: DeserializeOwned>(folder: &Path, kind: FolderKind) -> Re
     from_json(&bytes).map_err(|error| failed(&error))
 }
 
-/// Keeper of a study's results in a folder.
+/// Store of a study's results in a folder.
 pub(crate) struct Kept<'a> {
     kind: FolderKind,
     folder: &'a Folder,
     identity: Identity,
-    /// Name of the checkpoint, and of the parts that the study does one after the other and keeps when done.
+    /// Name of the checkpoint, and of the parts of the study, which are done and kept one after another.
     name: &'static str,
     files: &'static [&'static str],
 }
 
 impl<'a> Kept<'a> {
-    /// In a claimed folder, of the study that these words describe.
+    /// Store in a claimed folder, for the study described by `work`.
     fn new(kind: FolderKind, folder: &'a Folder, work: &str) -> Self {
         let scene = hash_of(work);
         let (name, files) = match kind {
@@ -110,8 +109,8 @@ impl<'a> Kept<'a> {
         Self { kind, folder, identity: Identity { scene, ..Identity::default() }, name, files }
     }
 
-    /// Results of an earlier start of this very study. Errors: the file belongs to another study, or cannot
-    /// be read.
+    /// Results of an earlier start of this very study. Errors: a file of another study, or one that cannot be
+    /// read.
     fn newest<T: DeserializeOwned>(&self, callbacks: &Callbacks) -> Result<Option<T>, RunError> {
         let refused = |error: CheckpointError| match error.is_unreadable() {
             true => RunError::Checkpoint(error),
@@ -124,12 +123,12 @@ impl<'a> Kept<'a> {
         };
         let (saved, passed_over) = newest(self.folder.path(), self.name, &self.identity).map_err(refused)?;
         for error in passed_over {
-            (callbacks.warn)(&format!("{error}; the checkpoint before it was taken"));
+            (callbacks.warn)(&format!("{error}; the checkpoint before it was used"));
         }
         saved.map(|saved| saved.read_record("found").map_err(refused)).transpose()
     }
 
-    /// Keeps the results of this many parts; the previous checkpoint stays until this one is whole.
+    /// Keeps the results of this many parts; the previous checkpoint stays until this one is complete.
     pub fn keep(&self, parts: usize, results: &impl Serialize) -> Result<(), RunError> {
         let label = Label { identity: self.identity.clone(), generation: parts as u64, ..Label::default() };
         let record = serde_json::to_vec(results)?;
@@ -146,22 +145,22 @@ impl<'a> Kept<'a> {
     }
 }
 
-/// Today, as `2026-11-25`.
+/// Today's date, as in `2026-11-25`.
 pub(crate) fn today() -> Option<String> {
     day(&moment(SystemTime::now()))
 }
 
-/// The last day on which one of these cases was done; `None` if no folder has a date.
+/// Last day on which one of these cases was finished; `None` if no folder has a date.
 pub(super) fn last_day(cases: impl IntoIterator<Item = PathBuf>) -> Option<String> {
     let finished = |case: PathBuf| {
         let bytes = read_whole(&case.join("manifest.json")).ok()?;
         day(&from_json::<Manifest>(&bytes).ok()?.finished)
     };
-    // Days of this form are in order as texts.
+    // Dates in this form sort as text.
     cases.into_iter().filter_map(finished).max()
 }
 
-/// The day of a moment.
+/// Date of a moment.
 fn day(moment: &str) -> Option<String> {
     moment.split('T').next().filter(|day| !day.is_empty()).map(str::to_owned)
 }

@@ -2,8 +2,8 @@
 //!
 //! ```toml
 //! seed = 1
-//! seeds = "common"                   # one for all cases, which share networks; each its own without it
-//! scene = "common.toml"              # settings that all cases start from; the built-in scene without it
+//! seeds = "common"                   # one for all cases, which share networks; default: one each
+//! scene = "common.toml"              # start of all cases; default: the built-in scene
 //! [set]
 //! replicates = 10
 //! [[factor]]                         # one setting, many values
@@ -23,8 +23,8 @@
 //! set = { "base.sieve" = "site.csv" }
 //! ```
 //!
-//! A case is called after its levels (`filter=loose,cu_b=3`). Unless `seeds = "common"`, its seed follows
-//! from the plan's seed and that name alone: a case that is added, left out or changed changes no other.
+//! A case is named after its levels (`filter=loose,cu_b=3`). Unless `seeds = "common"`, its seed follows from
+//! the plan's seed and that name alone: adding, removing or changing one case changes no other.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -37,13 +37,13 @@ use voidwalk_core::schema::{hints, setting_name};
 use voidwalk_core::store::{folder_name, read_regular, why_not_read};
 use voidwalk_core::text::is_hidden;
 
-/// More cases than this are a mistake.
+/// Maximum number of cases; more are taken for a mistake.
 const MOST_CASES: usize = 100_000;
 
-/// A larger plan is refused (bytes).
+/// Maximum size of a plan (bytes).
 const LARGEST_FILE: u64 = 1 << 20;
 
-/// Top-level keys of a scene that a plan takes only inside `set`.
+/// Top-level keys of a scene, which a plan accepts only inside `set`.
 const OF_A_SCENE: [&str; 10] =
     ["filter", "base", "network", "packing", "record", "stop", "about", "replicates", "runs", "engine"];
 
@@ -53,7 +53,7 @@ const SCENE: &str = "is a scene, not the plan of a campaign; walk it by `voidwal
 const NO_PLAN: &str = "is a table of numbers, not the plan of a campaign; two sieve tables are \
                       judged by `voidwalk judge BASE FILTER`";
 
-/// A plan as it is written.
+/// Plan as it is written.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Written {
@@ -78,15 +78,15 @@ fn one() -> u64 {
     1
 }
 
-/// Which seeds the cases have.
+/// Choice of the seeds of the cases.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Seeds {
-    /// Each its own.
+    /// A seed of its own for each case.
     #[default]
     Own,
-    /// All the plan's: cases that differ in one factor then share their random numbers, and so differ less by
-    /// chance. Cases whose filter and lattice are the same walk the same networks, each built once.
+    /// The plan's seed for all cases. Cases that differ in one factor then share their random numbers, and so
+    /// differ less by chance. Cases with the same filter and lattice walk the same networks, each built once.
     Common,
 }
 
@@ -102,7 +102,7 @@ struct Factor {
     levels: toml::Table,
 }
 
-/// Evenly spaced values of a setting, both ends among them.
+/// Evenly spaced values of a setting, including both ends.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Range {
@@ -119,7 +119,7 @@ impl Range {
         }
         let value = |index: usize| {
             let exact = from + (to - from) * index as f64 / (count - 1) as f64;
-            // Thirds and tenths without rounding errors.
+            // Gives thirds and tenths without rounding errors.
             let value: f64 = format!("{exact:.11e}").parse().unwrap_or(exact);
             match value.fract() == 0.0 && value.abs() < 1e15 {
                 true => toml::Value::Integer(value as i64),
@@ -149,7 +149,7 @@ pub struct PlannedCase {
     pub scene: Scene,
 }
 
-/// A plan, its cases worked out.
+/// Plan with its cases worked out.
 #[derive(Clone, Debug)]
 pub struct CasePlan {
     /// Name in errors.
@@ -158,23 +158,23 @@ pub struct CasePlan {
     pub title: String,
     /// Factors in the order of the plan.
     pub factors: Vec<String>,
-    /// Cases: the cross with the last factor running fastest, then the single ones.
+    /// Cases: the cross, with the last factor varying fastest, then the single ones.
     pub cases: Vec<PlannedCase>,
 }
 
-/// A level of a factor: its name and settings.
+/// Level of a factor: its name and settings.
 type Level = (String, Vec<String>);
 
 impl CasePlan {
     /// A plan to start from: every key with its meaning, as `voidwalk init --plan` prints it.
     pub const INIT_TEXT: &str = include_str!("../data/plan.toml");
 
-    /// True if a file has keys that only a plan has, whatever else is wrong with it.
+    /// True if a file has keys that only a plan has, even if it is otherwise wrong.
     pub fn is_plan(path: &Path) -> bool {
         let bytes = read_regular(path, LARGEST_FILE).ok().flatten().unwrap_or_default();
         hints::as_text(&bytes).is_ok_and(|text| match DeTable::parse(text) {
             Ok(table) => hints::is_plan(table.get_ref()),
-            // No scene has a list of tables.
+            // A scene has no list of tables.
             Err(_) => ["[[factor]]", "[[case]]"].iter().any(|head| text.contains(head)),
         })
     }
@@ -182,7 +182,7 @@ impl CasePlan {
     /// Reads a plan and every scene in it.
     ///
     /// # Errors
-    /// A file that cannot be read or is not a plan, two cases of one name, a case whose settings are refused.
+    /// A file that cannot be read or is not a plan, two cases of one name, a case with refused settings.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let file = path.display().to_string();
         let io = |source| SceneError::File { file: file.clone(), source };
@@ -193,7 +193,7 @@ impl CasePlan {
         Self::parse(&bytes, path)
     }
 
-    /// [`CasePlan::read`] on the content of a file; the files that its scenes name are looked for beside
+    /// Applies [`CasePlan::read`] to the content of a file; files named in its scenes are looked up beside
     /// `path`.
     pub fn parse(bytes: &[u8], path: &Path) -> Result<Self, SceneError> {
         let file = path.display().to_string();
@@ -282,7 +282,7 @@ impl CasePlan {
             return Err(SceneError::Clash { file: self.file.clone(), problem });
         }
         let folder = folder_name(&name);
-        // Large and small letters are the same to the disks of some systems.
+        // Some systems' disks do not distinguish upper from lower case.
         let lower = folder.to_lowercase();
         if let Some(other) = self.cases.iter().find(|case| case.folder_name().to_lowercase() == lower) {
             let problem = format!(
@@ -303,13 +303,13 @@ impl CasePlan {
         Ok(())
     }
 
-    /// Name of its file, without the folder: the same wherever the plan is walked.
+    /// Name of its file without the folder, the same wherever the plan is walked.
     pub fn file_name(&self) -> String {
         let name = Path::new(&self.file).file_name();
         name.map_or_else(|| self.file.clone(), |name| name.to_string_lossy().into_owned())
     }
 
-    /// The case called `name`.
+    /// Case with this name.
     pub fn case(&self, name: &str) -> Option<&PlannedCase> {
         self.cases.iter().find(|case| case.name == name)
     }
@@ -322,7 +322,7 @@ impl PlannedCase {
     }
 }
 
-/// Every combination of one level of each factor, the last factor running fastest.
+/// Every combination of one level of each factor, with the last factor varying fastest.
 pub(crate) fn crossed<'a, T>(factors: &[&'a [T]]) -> Vec<Vec<&'a T>> {
     factors.iter().fold(vec![Vec::new()], |begun, levels| {
         let with_levels =
@@ -441,7 +441,7 @@ mod tests {
         assert_eq!(seeds.len(), 4);
     }
 
-    /// Checks the printed plan, and the plan with every key that is commented out.
+    /// Checks the printed plan, also with every commented-out key enabled.
     #[test]
     fn the_plan_to_start_from_is_one_and_names_every_key() {
         let text = CasePlan::INIT_TEXT;
@@ -454,7 +454,7 @@ mod tests {
         };
         let whole: Vec<String> = text.lines().map(uncommented).collect();
         let whole = plan(&whole.join("\n")).unwrap();
-        // Without the combination that is left out, and with the case outside the cross.
+        // One combination is left out, and one case is outside the cross.
         assert_eq!((whole.cases.len(), whole.cases[3].name.as_str()), (4, "wide base"));
         assert!(whole.cases.iter().all(|case| case.scene.walk.seed == 1), "common seeds");
         let known = plan("no = 1").unwrap_err().to_string();

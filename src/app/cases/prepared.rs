@@ -1,8 +1,8 @@
-//! The cases of a plan, worked out: the wanted ones, the packings that they need, and the state of each; and
-//! the cases of each task of a job array.
+//! Cases of a plan, worked out: the wanted ones, the packings that they need, and their states; and the cases
+//! of each task of a job array.
 //!
-//! The list of tasks has one line a case: the task's number, a tab, the case's name. Names hold neither tabs
-//! nor line ends (the plan refuses them) and are read by the program alone, never by a shell.
+//! The list of tasks has one line per case: the task's number, a tab, the case's name. Names hold neither
+//! tabs nor line ends (the plan refuses them), and only the program reads them, never a shell.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -19,36 +19,36 @@ use crate::run::{Exit, RunError};
 use voidwalk_core::store::format::from_json;
 use voidwalk_core::store::{Folder, StoreError, read_regular, read_whole};
 
-/// A finished case.
+/// File of a finished case.
 pub(super) const LINE: &str = "case.json";
 
-/// Folder of the cases, inside the campaign's.
+/// Folder of the cases, inside the campaign's folder.
 pub(crate) const CASES: &str = "cases";
 
-/// Reason why a case could not be walked at the last attempt.
+/// File with the reason why a case could not be walked at the last attempt.
 pub(super) const PROBLEM: &str = "problem.txt";
 
-/// Size of the largest list of tasks that is accepted (bytes).
+/// Maximum size of a list of tasks (bytes).
 const LARGEST_LIST: u64 = 1 << 26;
 
-/// A message names no more cases than this.
+/// Maximum number of cases named in a message.
 const NAMED: usize = 30;
 
-/// Which cases of a plan a process sees to.
+/// Cases of a plan that a process handles.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum CasePart {
     /// All of them.
     #[default]
     All,
-    /// The one of this name.
+    /// The case of this name.
     Named(String),
-    /// The cases of a task of a list that [`write_job_scripts`](super::write_job_scripts) wrote: the file,
-    /// and the task's number.
+    /// The cases of one task: the list that [`write_job_scripts`](super::write_job_scripts) wrote, and the
+    /// task's number.
     Task(PathBuf, u64),
 }
 
 impl CasePart {
-    /// The cases of a task as a user writes it, a file and a number: `tasks.tsv:3`.
+    /// Parses the cases of a task as a user writes them, a file and a number: `tasks.tsv:3`.
     pub fn task(text: &str) -> Result<Self, String> {
         let parts = text.rsplit_once(':').filter(|(file, _)| !file.is_empty());
         let read = parts.and_then(|(file, number)| Some(Self::Task(file.into(), number.parse().ok()?)));
@@ -56,7 +56,7 @@ impl CasePart {
     }
 }
 
-/// A case that is not done, and why.
+/// Unfinished case, and the reason.
 #[derive(Clone, Debug)]
 pub struct FailedCase {
     /// The case.
@@ -65,7 +65,7 @@ pub struct FailedCase {
     pub problem: String,
 }
 
-/// Names the cases that are not done, one a line.
+/// Lists the unfinished cases, one per line.
 pub(super) fn named(failed: &[FailedCase]) -> String {
     let one = |failed: &FailedCase| format!("case {}: {}", failed.case, failed.problem.replace('\n', " "));
     let mut lines: Vec<String> = failed.iter().take(NAMED).map(one).collect();
@@ -75,7 +75,7 @@ pub(super) fn named(failed: &[FailedCase]) -> String {
     lines.join("\n")
 }
 
-/// The cases of a plan that a process has to walk.
+/// Cases of a plan that a process has to handle.
 pub fn wanted<'a>(plan: &'a CasePlan, part: &CasePart) -> Result<Vec<&'a PlannedCase>, RunError> {
     match part {
         CasePart::All => Ok(plan.cases.iter().collect()),
@@ -106,11 +106,11 @@ pub fn wanted<'a>(plan: &'a CasePlan, part: &CasePart) -> Result<Vec<&'a Planned
     }
 }
 
-/// Cases that have been found sound, before any work.
+/// Cases found sound, before any work.
 pub(super) struct Drafts<'a>(Vec<(&'a PlannedCase, Draft)>);
 
 impl<'a> Drafts<'a> {
-    /// Works every case out, with guesses at filters that are to be packed.
+    /// Works every case out, with guesses for filters that are still to be packed.
     pub fn new(wanted: Vec<&'a PlannedCase>) -> Result<Self, RunError> {
         let draft = |planned: &'a PlannedCase| match Draft::new(planned.scene.clone()) {
             Ok(draft) => Ok((planned, draft)),
@@ -119,7 +119,7 @@ impl<'a> Drafts<'a> {
         Ok(Self(wanted.into_iter().map(draft).collect::<Result<_, _>>()?))
     }
 
-    /// The packings that the cases need, each shape once, in the order of the cases.
+    /// Packings that the cases need, each shape once, in the order of the cases.
     pub fn packings(&self) -> Vec<&PackingPlan> {
         let mut all: Vec<&PackingPlan> = Vec::new();
         for plan in self.0.iter().filter_map(|(_, draft)| draft.packing.as_ref()) {
@@ -130,7 +130,7 @@ impl<'a> Drafts<'a> {
         all
     }
 
-    /// The cases with their filters, each filter had once; and those that cannot be walked.
+    /// Cases with their filters, each filter provided once; and cases that cannot be walked.
     pub fn finish(
         self,
         mut filter: impl FnMut(&PackingPlan) -> Result<PackedFilter, RunError>,
@@ -159,27 +159,27 @@ impl<'a> Drafts<'a> {
     }
 }
 
-/// Key of a filter: its grains, and the overlap of voids.
+/// Key of a filter: its grains, and the merging overlap of voids.
 fn key(plan: &PackingPlan) -> String {
     format!("{} {}", plan.fingerprint(), plan.merge_overlap)
 }
 
-/// A case of a plan, worked out.
+/// Case of a plan, worked out.
 pub struct PreparedCase<'a> {
     pub planned: &'a PlannedCase,
     pub case: Case,
-    /// Fingerprint of everything that its results follow from.
+    /// Fingerprint of everything that determines its results.
     pub fingerprint: String,
 }
 
 impl PreparedCase<'_> {
-    /// Folder of the results, inside the campaign's.
+    /// Folder of the results, inside the campaign's folder.
     pub fn folder(&self) -> PathBuf {
-        // Written into ledger and table in one form on every system.
+        // Ledger and table use this form on every system.
         PathBuf::from(format!("{CASES}/{}", self.planned.folder_name()))
     }
 
-    /// The finished case, if these very results are there.
+    /// Ledger line of the finished case, if exactly these results exist.
     pub fn line(&self, out: &Path) -> Option<LedgerLine> {
         self.read_line(out).ok().flatten()
     }
@@ -200,7 +200,7 @@ impl PreparedCase<'_> {
     }
 }
 
-/// State in words of a case that is not done, from its folder.
+/// State of an unfinished case in words, from its folder.
 pub(super) fn state(case: &PreparedCase, out: &Path) -> String {
     let path = out.join(case.folder());
     let not_walked = |problem: &str| format!("could not be walked: {problem}");
@@ -221,11 +221,11 @@ pub(super) fn state(case: &PreparedCase, out: &Path) -> String {
     }
 }
 
-/// Tasks that a job array may have: Slurm's own limit unless it is raised.
+/// Maximum number of tasks in a job array: Slurm's default limit.
 const MOST_TASKS: usize = 1000;
 
-/// Bundles cases into `tasks` tasks of about the same seconds each; every task has a case, and its cases are
-/// in the order of the plan. Cases are given by their seconds, tasks by the places of their cases.
+/// Bundles cases into `tasks` tasks of about equal time. Every task has a case, and its cases are in the
+/// order of the plan. Cases are given by their times (s), tasks by the positions of their cases.
 pub(super) fn bundle(seconds: &[f64], tasks: usize) -> Vec<Vec<usize>> {
     let tasks = tasks.clamp(1, MOST_TASKS).min(seconds.len());
     let mut longest_first: Vec<usize> = (0..seconds.len()).collect();
@@ -254,7 +254,7 @@ pub(super) fn task_list(tasks: &[Vec<&str>]) -> String {
     text
 }
 
-/// Names of the cases of a task, from the text of a file.
+/// Names of the cases of a task, from the text of a list.
 fn names_of_task<'a>(file: &str, text: &'a str, number: u64) -> Result<Vec<&'a str>, String> {
     let (mut names, mut tasks) = (Vec::new(), 0);
     for (line, words) in (1..).zip(text.lines()) {

@@ -24,16 +24,16 @@ use crate::words::ledger::columns;
 use voidwalk_core::store::format::{self, from_json, visible_json};
 use voidwalk_core::store::{files_in, read_whole, write_whole};
 
-/// Options of walking a campaign; no setting changes a result.
+/// Options of walking a campaign; no option changes a result.
 #[derive(Clone, Debug)]
 pub struct CaseOptions {
     /// Folder for the results, which several processes may share.
     pub out: PathBuf,
-    /// Which cases this process sees to.
+    /// Cases that this process handles.
     pub part: CasePart,
-    /// Folder in which the packings of filters are kept; `packings` in `out` without one.
+    /// Folder of packed filters; by default `packings` in `out`.
     pub packings: Option<PathBuf>,
-    /// Memory that the walks may take (bytes); 80 % of the available memory without it.
+    /// Memory that the walks may take (bytes); by default 80 % of the available memory.
     pub memory: Option<u64>,
     /// Worker threads; by default the number that a cluster's job has, else one per core.
     pub threads: Option<usize>,
@@ -58,7 +58,7 @@ impl Default for CaseOptions {
 }
 
 impl CaseOptions {
-    /// Folder of the packings; the campaign's own must not be a link to one elsewhere, which would then be
+    /// Folder of the packings. The campaign's own must not be a link to another place, which would then be
     /// written to.
     pub(super) fn packings(&self) -> Result<PathBuf, RunError> {
         if let Some(packings) = &self.packings {
@@ -74,13 +74,12 @@ impl CaseOptions {
         }
     }
 
-    /// The filter of a packing that exists.
+    /// Packed filter, if its packing exists.
     pub(super) fn packed(&self, plan: &PackingPlan) -> Result<Option<PackedFilter>, RunError> {
         Ok(PackedFilter::find(&self.packings()?, plan)?)
     }
 
-    /// Limits of one of these cases within the available resources, and the room for networks, which cases
-    /// with one seed may share.
+    /// Resource limits of one of these cases, and the room for networks, if cases share a seed.
     pub(super) fn rooms(&self, out: &Path, cases: &[&PlannedCase]) -> (ResourceLimits, Option<u64>) {
         let prepare = PrepareOptions { memory: self.memory, ..PrepareOptions::default() };
         let mut limits = prepare.limits(out);
@@ -91,9 +90,9 @@ impl CaseOptions {
     }
 }
 
-/// A campaign of which this process has done its part.
+/// Campaign after this process has done its part.
 pub struct FinishedCases {
-    /// Finished cases in the order of the plan; `None` if this process handled only a part of it.
+    /// Finished cases in the order of the plan; `None` if this process handled only part of the plan.
     pub lines: Option<Vec<LedgerLine>>,
     /// Cases that could not be walked.
     pub failed: Vec<FailedCase>,
@@ -102,7 +101,7 @@ pub struct FinishedCases {
 }
 
 impl FinishedCases {
-    /// Error that tells the user of cases that could not be walked.
+    /// Error that names the cases that could not be walked.
     pub fn problem(&self) -> Option<RunError> {
         let (failed, all) = (self.failed.len(), self.cases);
         if failed == 0 {
@@ -115,22 +114,22 @@ impl FinishedCases {
     }
 }
 
-/// The names of the cases that a process would walk, each found sound.
+/// Names of the cases that a process would walk, each found sound.
 ///
 /// # Errors
-/// There is no such part of the plan; a case that is wrong.
+/// The plan has no such part; a case is wrong.
 pub fn names(plan: &CasePlan, part: &CasePart) -> Result<Vec<String>, RunError> {
     let wanted = wanted(plan, part)?;
     Drafts::new(wanted.clone()).map(|_| wanted.iter().map(|case| case.name.clone()).collect())
 }
 
-/// Walks the cases of a plan that are not done, packing their filters first, and collects the whole plan.
-/// Several processes may work at once; each waits for cases that others have begun.
+/// Walks the unfinished cases of a plan, packing their filters first, and collects the whole plan. Several
+/// processes may work at once; each waits for cases that others have begun.
 ///
 /// # Errors
-/// A plan or case that is wrong and a folder that cannot be claimed are refused before any work; then errors
-/// that concern all cases. Errors of single cases are in [`FinishedCases::failed`]. After a stop, the same
-/// call continues.
+/// A wrong plan or case, or a folder that cannot be claimed, is refused before any work; then errors that
+/// concern all cases. Errors of single cases are in [`FinishedCases::failed`]. After a stop, the same call
+/// continues.
 pub fn run(
     plan: &CasePlan,
     options: &CaseOptions,
@@ -139,26 +138,26 @@ pub fn run(
     run_around(plan, options, callbacks, |_, walk| walk())
 }
 
-/// Finds the cases sound and placed, as far as that is known before their filters are packed; claims and
-/// writes nothing.
+/// Checks that the cases are sound and fit into memory, as far as that is known before their filters are
+/// packed; claims and writes nothing.
 ///
 /// # Errors
-/// The cases that are wrong, or that do not fit the memory.
+/// Cases that are wrong, or that do not fit into memory.
 pub fn check(plan: &CasePlan, options: &CaseOptions) -> Result<(), RunError> {
     let failed = unsound(plan, options)?;
     if failed.is_empty() { Ok(()) } else { Err(RunError::Refused(named(&failed))) }
 }
 
-/// The cases that are wrong in themselves, in the order of the plan; claims and writes nothing.
+/// Cases that are wrong in themselves, in the order of the plan; claims and writes nothing.
 ///
 /// # Errors
-/// Cases that are sound and do not fit the memory.
+/// Sound cases that do not fit into memory.
 pub fn unsound(plan: &CasePlan, options: &CaseOptions) -> Result<Vec<FailedCase>, RunError> {
     let wanted = wanted(plan, &options.part)?;
     let (limits, _) = options.rooms(&options.out, &wanted);
     let pool = threads(options.threads)?;
     let workers = pool.current_num_threads() as u64;
-    // Problem of a case; true if it is lack of room.
+    // Problem of a case; true if it is too little memory.
     let wrong = |planned: &PlannedCase| -> Option<(bool, FailedCase)> {
         let failed = |has_no_room: bool, problem: RunError| {
             (has_no_room, FailedCase { case: planned.name.clone(), problem: problem.to_string() })
@@ -178,8 +177,8 @@ pub fn unsound(plan: &CasePlan, options: &CaseOptions) -> Result<Vec<FailedCase>
     if no_room.is_empty() { Ok(cases(wrong)) } else { Err(RunError::Refused(named(&cases(no_room)))) }
 }
 
-/// Looks at the cases of a plan as far as they can be worked out without packing a filter: `None` if a filter
-/// is still to be packed. Claims and writes nothing. Errors: a case that is wrong.
+/// Passes the cases of a plan to `at` if they can be worked out without packing a filter, else `None`. Claims
+/// and writes nothing. Errors: a case that is wrong.
 pub(crate) fn look<R>(
     plan: &CasePlan,
     options: &CaseOptions,
@@ -192,13 +191,13 @@ pub(crate) fn look<R>(
     Ok(at(failed.is_empty().then_some(&cases[..])))
 }
 
-/// The cases of a campaign when their filters are packed and before the first is walked: all, or why not.
+/// Cases of a campaign after their filters are packed and before the first walk, or the reason for refusal.
 pub(crate) type ReadyCases<'a, 'b> = Result<&'b [PreparedCase<'a>], RunError>;
 
 /// Walks the cases that are ready.
 pub(crate) type Walk<'a> = Box<dyn FnOnce() -> Result<FinishedCases, RunError> + 'a>;
 
-/// Walks a campaign like [`run()`], with the caller's work around the walk of the cases once all are ready.
+/// Walks a campaign like [`run()`], but lets the caller work around the walk once all cases are ready.
 pub(crate) fn run_around<R>(
     plan: &CasePlan,
     options: &CaseOptions,
@@ -249,10 +248,10 @@ pub(crate) fn run_around<R>(
             failed.extend(result?);
             return Ok(FinishedCases { lines: None, failed, cases: wanted.len() });
         }
-        // The whole plan is collected, whichever of its cases this process was at, and whatever has ended it.
+        // The whole plan is collected, whichever cases this process walked, and however it ended.
         let mut lines = write_ledger(plan, &cases, out, &callbacks.run)?;
         failed.extend(result?);
-        // Cases that were done, by this process or before, and are not there now.
+        // Cases that were finished, by this process or earlier, and have disappeared.
         let absent = |lines: &[LedgerLine], failed: &[FailedCase]| -> Vec<&PreparedCase> {
             let is_absent = |case: &&PreparedCase| {
                 let name = &case.planned.name;
@@ -262,7 +261,7 @@ pub(crate) fn run_around<R>(
         };
         let mut gone = absent(&lines, &failed);
         if !gone.is_empty() {
-            // Another process may be replacing their files with the same ones at this moment.
+            // Another process may just be replacing their files with identical ones.
             for case in gone {
                 runner.is_lost(case);
             }
@@ -277,7 +276,7 @@ pub(crate) fn run_around<R>(
     around(ready, walk)
 }
 
-/// Collects the finished cases of a plan, in its order, into `ledger.jsonl`, one JSON line a case,
+/// Collects the finished cases of a plan, in its order, into `ledger.jsonl` (one JSON line for each case),
 /// `campaign.json` and `cases.csv` in the campaign's folder. A finished case that cannot be read is an error:
 /// a ledger without it would be wrong.
 fn write_ledger(
@@ -327,7 +326,7 @@ fn write_ledger(
 /// Collects a campaign whose cases are all done.
 ///
 /// # Errors
-/// A folder without cases; cases that are missing, each with its state. Nothing is written then.
+/// A folder without cases; missing cases, each with its state. Nothing is written then.
 pub fn collect(
     plan: &CasePlan,
     options: &CaseOptions,
@@ -358,10 +357,10 @@ pub fn collect(
     write_ledger(plan, &cases, folder.path(), callbacks)
 }
 
-/// Makes one of the packings that a plan needs, counted from 1 in the order of its cases.
+/// Makes one of the packings that a plan needs; they are counted from 1 in the order of its cases.
 ///
 /// # Errors
-/// There is no such packing; then see `provide`.
+/// There is no such packing; then as in `provide`.
 pub fn make_packing(
     plan: &CasePlan,
     number: u64,
@@ -379,8 +378,8 @@ pub fn make_packing(
     on_threads(options.threads, || provide(packing, &packings, callbacks)).map(drop)
 }
 
-/// Consequences for finished cases that do not belong to the present plan, in sentences. Unreadable cases are
-/// skipped: they are reported at a later step.
+/// Warnings about finished cases that do not belong to the present plan, in sentences. Unreadable cases are
+/// skipped: they are reported later.
 fn changed(plan: &CasePlan, cases: &[PreparedCase], out: &Path) -> Vec<String> {
     let finished = |folder: &Path| folder.join(LINE).symlink_metadata().is_ok();
     let again: Vec<&str> = cases
@@ -413,7 +412,7 @@ fn changed(plan: &CasePlan, cases: &[PreparedCase], out: &Path) -> Vec<String> {
     sentences
 }
 
-/// `2 finished cases (a; b)`, with the first three names.
+/// Counts and names cases: `2 finished cases (a; b)`, with at most three names.
 fn counted(names: &[&str]) -> String {
     let all = names.len();
     let more = if all > 3 { format!("; and {} more", all - 3) } else { String::new() };

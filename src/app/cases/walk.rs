@@ -1,14 +1,14 @@
 //! Walks the unfinished cases of a plan, each in a folder of its own, by any number of processes.
 //!
-//! A case is claimed by the lock of its folder, which dies with its owner, and is done when the folder holds
+//! A case is claimed by the lock of its folder, which ends with its owner. It is done when the folder holds
 //! `case.json` with the case's fingerprint. Nothing else is shared: if a process is killed, the work since
 //! its last checkpoint is lost, and the next process continues from there.
 //!
-//! A case that cannot be walked stops no other: its folder says why in `problem.txt`, and the caller is told
-//! at the end.
+//! A case that cannot be walked stops no other: `problem.txt` in its folder gives the reason, and the caller
+//! is told at the end.
 //!
-//! Where the locks of a shared folder reach one machine only, two processes may walk one case at the same
-//! time. Both write the same bits, file by file under their final names, so that costs time and nothing else.
+//! If locks of a shared folder do not work across machines, two processes may walk one case at the same time.
+//! Both write the same bits, file by file under their final names, so only time is lost.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -34,10 +34,10 @@ use voidwalk_core::store::{Folder, StoreError, format, make_folder};
 pub(super) const LOST: &str = "its results were overwritten by another process; is another plan, or this \
     one changed, at work on the folder?";
 
-/// Interval between looks for finished cases of other processes: at first, and after some waiting.
+/// Interval between checks for finished cases of other processes: at first, and after some waiting.
 const LOOK: (Duration, Duration) = (Duration::from_millis(300), Duration::from_secs(10));
 
-/// Time that another process may take to replace the files of a case with the same ones.
+/// Time in which another process may replace the files of a case with identical ones.
 const REPLACING: Duration = Duration::from_secs(5);
 
 const TRIES: u32 = 3;
@@ -45,35 +45,35 @@ const TRIES: u32 = 3;
 /// Event of a case in a process.
 #[derive(Clone, Copy, Debug)]
 pub enum CaseEvent<'a> {
-    /// It begins to walk it, or continues from its checkpoints.
+    /// This process begins the case, or continues it from its checkpoints.
     Begun {
-        /// True if there are checkpoints.
+        /// True if it continues from checkpoints.
         resumes: bool,
     },
-    /// A run of it is done.
+    /// A run of the case is done.
     Walked {
-        /// Runs that are done.
+        /// Number of runs done.
         done: u64,
         /// Runs to walk, as far as is known.
         runs: u64,
     },
-    /// It is done.
+    /// The case is done.
     Done(&'a LedgerLine),
-    /// It cannot be walked.
+    /// The case cannot be walked.
     Failed(&'a str),
-    /// Another process is at it, and this one waits.
+    /// Another process works on the case, and this one waits.
     Waiting,
 }
 
-/// Callbacks of a caller that follow a campaign and stop it.
+/// Callbacks by which a caller follows a campaign and stops it.
 #[derive(Clone, Copy)]
 pub struct CaseCallbacks<'a> {
-    /// Callbacks of the caller that follow packings, stop the campaign and take finished results; walks of
-    /// single cases are reported to `on_case`.
+    /// Follow packings, stop the campaign and receive finished results; walks of single cases are reported to
+    /// `on_case`.
     pub run: Callbacks<'a>,
-    /// Receives the number of cases before the first is walked, and the number of those done already.
+    /// Receives, before the first walk, the number of cases and the number of those already done.
     pub on_cases: &'a (dyn Fn(usize, usize) + Sync),
-    /// Receives every case that this process begins, walks a run of, has finished or waits for.
+    /// Receives events of every case that this process begins, walks, finishes or waits for.
     pub on_case: &'a (dyn Fn(&str, CaseEvent) + Sync),
 }
 
@@ -99,13 +99,13 @@ pub(super) struct CaseRunner<'a> {
 
 impl CaseRunner<'_> {
     /// Walks every unfinished case, and waits for those of other processes; returns those that cannot be
-    /// walked. Fails for all cases at once only; finished ones stay finished.
+    /// walked. Fails only for reasons that concern all cases; finished ones stay finished.
     pub fn run(&self, cases: &[PreparedCase]) -> Result<Vec<FailedCase>, RunError> {
         make_folder(&self.out.join(CASES))?;
         let (done, mut open): (Vec<&PreparedCase>, Vec<&PreparedCase>) =
             cases.iter().partition(|case| self.is_done(case));
         for case in done {
-            // A process that was killed as soon as the case was done left them.
+            // They are left over if a process was killed as soon as the case was done.
             checkpoints::discard(&self.out.join(case.folder()))?;
         }
         let tally = Tally::default();
@@ -113,8 +113,8 @@ impl CaseRunner<'_> {
         while !open.is_empty() {
             let (before, told) = (open.len(), tally.waited());
             self.pass(&open, &tally)?;
-            // A case that this process has finished and that is not there any more was overwritten: by
-            // another plan, or by a plan that was changed meanwhile.
+            // A case that this process finished and that has disappeared was overwritten, by another plan or
+            // by a plan that was changed meanwhile.
             open.retain(|case| !self.is_done(case));
             let lost =
                 open.iter().filter(|case| tally.has_finished(&case.planned.name) && self.is_lost(case));
@@ -139,8 +139,8 @@ impl CaseRunner<'_> {
         Ok(tally.failed.into_inner().unwrap_or_default())
     }
 
-    /// True if a finished case stays gone: if locks reach one machine only, another process may be replacing
-    /// its files with the same ones at this moment.
+    /// True if a finished case stays missing: without locks across machines, another process may just be
+    /// replacing its files with identical ones.
     pub(super) fn is_lost(&self, case: &PreparedCase) -> bool {
         let until = Instant::now() + REPLACING;
         while !self.is_done(case) {
@@ -166,9 +166,9 @@ impl CaseRunner<'_> {
 
     fn pass(&self, open: &[&PreparedCase], tally: &Tally) -> Result<(), RunError> {
         let next = AtomicUsize::new(0);
-        // One pool for all: if a case leaves a thread idle, another case has work for it. A thread blocked in
-        // rayon may start another whole case meanwhile: never hold a mutex, wait for the lock of a file or
-        // borrow a thread's local data across a rayon call.
+        // One pool serves all cases: if one leaves a thread idle, another has work for it. A thread blocked
+        // in rayon may meanwhile start another whole case: never hold a mutex, wait for a file lock or borrow
+        // a thread's local data across a rayon call.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads).build()?;
         let work = || -> Result<(), RunError> {
             while !self.is_stopped() {
@@ -191,11 +191,11 @@ impl CaseRunner<'_> {
         on_each(at_once as usize, work)
     }
 
-    /// Claims one case and walks it into its folder; true if this process finished it.
+    /// Claims one case and walks it into its folder; returns true if this process finished it.
     fn one(&self, case: &PreparedCase) -> Result<bool, RunError> {
         let folder = Folder::open(&self.out.join(case.folder()))?;
-        // Opening the folder's list of files makes the client ask the server again; opening one file that was
-        // missing before may not.
+        // Listing the folder makes the network client ask the server again; opening a file that was missing
+        // before may not.
         drop(std::fs::read_dir(folder.path()));
         folder.remove(PROBLEM)?;
         // Another process may have finished it since the list was made.
@@ -203,14 +203,14 @@ impl CaseRunner<'_> {
             return Ok(false);
         }
         match self.walk(case, &folder) {
-            // If locks reach one machine only, another process may have finished it and removed the
+            // Without locks across machines, another process may have finished it and removed the
             // checkpoints.
             Err(_) if self.is_done(case) => {
                 checkpoints::discard(folder.path())?;
                 Ok(false)
             }
             Err(problem) => {
-                // A problem that cannot be written here is reported all the same.
+                // A problem that cannot be written here is still reported.
                 let _ = folder.write(PROBLEM, format!("{problem}\n").as_bytes());
                 Err(problem)
             }
@@ -244,14 +244,14 @@ impl CaseRunner<'_> {
         let walked = CaseWalks::walk(case, &context)
             .and_then(|walks| Ok((Studies::walk(case, &walks, &context)?, walks)));
         for problem in checkpoints.passed_over() {
-            self.warn(name, &format!("{problem}; the checkpoint before it was taken"));
+            self.warn(name, &format!("{problem}; the checkpoint before it was used"));
         }
         let (studies, walks) = match walked {
             Err(error) if error.exit() == Exit::Stopped => {
                 checkpoints.flush()?;
                 return Ok(false);
             }
-            // The checkpoint is corrupt, or older than a change of the plan: walk from the start.
+            // The checkpoint is corrupt, or from before a change of the plan: walk from the start.
             Err(error @ RunError::Checkpoint(_)) if error.exit() == Exit::Refused => {
                 self.warn(name, &format!("{error}; the case is walked from its start"));
                 checkpoints.clear()?;
@@ -274,8 +274,8 @@ impl CaseRunner<'_> {
         let line = LedgerLine::new(name, &prepared.planned.levels, place, fingerprint, &answer.0, made);
         let files = results::files(case, answer, &walks.replicates, manifest)?;
         folder.remove(LINE)?;
-        // Results of the case before the plan was changed; another process that walks this very case has
-        // written this very scene, and its files stay.
+        // These may be results from before the plan was changed. Another process that walks this very case
+        // has written this very scene, and its files stay.
         if folder.read("scene.toml")?.as_deref() != Some(files.scene.as_bytes()) {
             clear(folder, FolderKind::Run)?;
         }
@@ -325,8 +325,8 @@ impl Tally {
         }
     }
 
-    /// True if the writing of results may be tried again: if locks reach one machine only, another process
-    /// may have been replacing the same files. Finished walks are not repeated.
+    /// True if results may be written again: without locks across machines, another process may have been
+    /// replacing the same files. Finished walks are not repeated.
     fn may_try_again(&self, name: &str) -> bool {
         self.waits.fetch_add(1, Ordering::Relaxed);
         let Ok(mut tries) = self.tries.lock() else { return false };
@@ -335,7 +335,7 @@ impl Tally {
         *tries <= TRIES
     }
 
-    /// Another process works on the case; reported once.
+    /// Reports once that another process works on the case.
     fn wait(&self, callbacks: &CaseCallbacks, name: &str) {
         self.waits.fetch_add(1, Ordering::Relaxed);
         if self.waiting.lock().is_ok_and(|mut names| names.insert(name.to_owned())) {

@@ -1,4 +1,4 @@
-//! Arguments and their meaning for a user: the commands, and options of one pair or several.
+//! Arguments of the command line, with their meaning for a user.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -21,12 +21,12 @@ use voidwalk_practice::design::SieveSeries;
 #[derive(Parser)]
 #[command(name = "voidwalk", version, about, propagate_version = true)]
 pub struct Arguments {
-    /// What to do.
+    /// Command to run.
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// What the program can do.
+/// Commands of the program.
 #[derive(Subcommand)]
 pub enum Command {
     /// Walk the base of a scene through its filter, and judge it
@@ -97,7 +97,7 @@ pub enum Command {
     },
 }
 
-/// Which two soils.
+/// Two soils, or many samples and filters.
 #[derive(Args)]
 pub struct RulesArgs {
     /// The base: a sieve table, as base.sieve in a scene; several soils are the curves of an envelope. With
@@ -114,7 +114,7 @@ pub struct RulesArgs {
     /// With --each or several filters: write the table into this new file
     #[arg(long, value_name = "FILE.csv")]
     pub csv: Option<PathBuf>,
-    /// What the sheets do not say of the two.
+    /// Settings that the sheets do not state.
     #[command(flatten)]
     pub settings: SettingOptions<OfRules>,
     /// Accept base and filter as named, even if they look exchanged
@@ -125,7 +125,7 @@ pub struct RulesArgs {
     pub json: bool,
 }
 
-/// Which soils.
+/// Soils to read.
 #[derive(Args)]
 pub struct SoilArgs {
     /// Sieve tables: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils
@@ -154,18 +154,18 @@ pub struct SoilArgs {
     pub json: bool,
 }
 
-/// How to run it.
+/// Scene to walk, and options of the run.
 #[derive(Args)]
 pub struct RunArgs {
-    /// Which scene.
+    /// Scene to walk.
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Where the results go, and how it is walked.
+    /// Folder of the results, and options of the walk.
     #[command(flatten)]
     pub results: ResultArgs,
 }
 
-/// How two sieve tables become a scene.
+/// Options that turn two sieve tables into a scene.
 #[derive(Args)]
 pub struct TableArgs {
     /// Density of the filter: loose, medium (or intermediate) or dense. The constrictions come from the
@@ -184,12 +184,12 @@ pub struct TableArgs {
     /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub as_given: bool,
-    /// What is set in it besides, and how it is prepared.
+    /// Settings of the scene, and options of preparing it.
     #[command(flatten)]
     pub set: SettingArgs,
 }
 
-/// Which two soils are judged, and where the answer goes.
+/// Soils to judge, and where the answer goes.
 #[derive(Args)]
 pub struct JudgeArgs {
     /// The base soil: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils. With --each also a
@@ -209,15 +209,15 @@ pub struct JudgeArgs {
     /// With --each: walk the three samples that govern each filter, and no other
     #[arg(long, requires = "each", conflicts_with = "quick")]
     pub governing: bool,
-    /// How the two become a scene.
+    /// Options that turn the soils into a scene.
     #[command(flatten)]
     pub tables: TableArgs,
-    /// Where the results go, and how it is walked.
+    /// Folder of the results, and options of the walk.
     #[command(flatten)]
     pub results: ResultArgs,
 }
 
-/// Where the page is, and how its jobs are walked.
+/// Port and folder of the page, and options of its jobs.
 #[cfg(feature = "serve")]
 #[derive(Args)]
 pub struct ServeArgs {
@@ -240,7 +240,7 @@ pub struct ServeArgs {
     pub threads: Option<usize>,
 }
 
-/// Which run, and how it continues.
+/// Run to continue, and options of the rest of it.
 #[derive(Args)]
 pub struct ResumeArgs {
     /// The run's folder
@@ -249,10 +249,10 @@ pub struct ResumeArgs {
     /// result is the same [default: 80 % of what is available]
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub memory: Option<u64>,
-    /// Which verdicts are not accepted.
+    /// Verdicts that are not accepted.
     #[command(flatten)]
     pub accept: AcceptArgs,
-    /// How it is walked.
+    /// Options of the walk.
     #[command(flatten)]
     pub walk: WalkArgs,
     /// Print JSON
@@ -260,7 +260,7 @@ pub struct ResumeArgs {
     pub json: bool,
 }
 
-/// For which base, and where the specification goes.
+/// Base to specify a filter for, and where the specification goes.
 #[derive(Args)]
 pub struct DesignArgs {
     /// The base: sieve tables (FILE#NAME for one of several soils); several soils are the curves of an
@@ -295,7 +295,7 @@ pub struct DesignArgs {
     pub quiet: bool,
 }
 
-/// Which base, and what shape of filter.
+/// Base, and shape of the filter.
 #[derive(Args)]
 pub struct BoundaryArgs {
     /// The base: a sieve table, as base.sieve in a scene (FILE#NAME for one of several soils) [default: from
@@ -350,7 +350,7 @@ pub struct BoundaryArgs {
     pub quiet: bool,
 }
 
-/// Which plan, and where its results go.
+/// Plan, and where its results go.
 #[derive(Args)]
 pub struct CampaignArgs {
     /// Plan (TOML): crossed factors, and single cases
@@ -389,12 +389,12 @@ pub struct CampaignArgs {
     /// result is the same [default: 80 % of what is available]
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub memory: Option<u64>,
-    /// How it is walked.
+    /// Options of the walk.
     #[command(flatten)]
     pub walk: WalkArgs,
 }
 
-/// Which filter, and where its packing goes.
+/// Filter, and where its packing goes.
 #[derive(Args)]
 pub struct PackArgs {
     /// The filter (TOML): [filter] with cu or sieve, d0_mm, and density or friction; optionally [packing]. A
@@ -424,7 +424,7 @@ pub struct PackArgs {
     pub quiet: bool,
 }
 
-/// Which packing, and how its voids are told apart.
+/// Packing, and how its voids are separated.
 #[derive(Args)]
 pub struct ConstrictionsArgs {
     /// Grains: CSV (x_mm,y_mm,z_mm,diameter_mm after `# cell_mm = Lx, Ly, Lz` or `# cell = none`; or points
@@ -455,7 +455,7 @@ pub struct ConstrictionsArgs {
     pub json: bool,
 }
 
-/// Which lattices, and how many.
+/// Sizes and number of the lattices.
 #[derive(Args)]
 pub struct PercolationArgs {
     /// Lattice sizes: voids along each side, or along x, y and z, such as 40x40x60

@@ -1,4 +1,4 @@
-//! `voidwalk campaign`: the cases of a plan, by any number of processes on its folder.
+//! Command `voidwalk campaign`: the cases of a plan, walked by any number of processes in one folder.
 
 use super::args::CampaignArgs;
 use super::print::{grains_per_void, percent, plain, shown, to_copy, to_stdout};
@@ -17,7 +17,7 @@ use crate::words::left_out::left_out_line;
 use std::fmt::Write;
 use std::path::Path;
 
-/// A summary names no more cases than this.
+/// Maximum number of cases named in a summary.
 const SHOWN: usize = 20;
 
 impl CampaignArgs {
@@ -37,7 +37,7 @@ impl CampaignArgs {
     }
 }
 
-/// Walks a plan's cases and collects their results, or does the part of it that is asked for.
+/// Walks a plan's cases and collects their results, or does the requested part of this work.
 pub fn campaign(args: &CampaignArgs) -> Result<(), RunError> {
     let (plan, options, quiet) = (CasePlan::read(&args.plan)?, args.options(), args.walk.quiet);
     if args.list {
@@ -128,7 +128,7 @@ fn jobs_in_words(jobs: &WrittenJobs) -> String {
         lines.push(format!("{packings} packings first, the longest about {longest}"));
     }
     lines.push(format!(
-        "{} cases in {} tasks, the longest about {}; asked for a task: processors {}, memory {} MB, \
+        "{} cases in {} tasks, the longest about {}; requested per task: processors {}, memory {} MB, \
          time {} min",
         jobs.cases,
         jobs.tasks,

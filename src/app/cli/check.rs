@@ -23,7 +23,7 @@ impl SettingArgs {
 }
 
 impl SceneArgs {
-    /// The scene that the arguments name, with their settings applied.
+    /// Scene that the arguments name, with their settings applied.
     pub fn scene(&self) -> Result<Scene, RunError> {
         let settings = &self.set.settings.assignments;
         Ok(match &self.scene {
@@ -142,7 +142,7 @@ fn check_plan(path: &Path, set: &SettingArgs) -> Result<(), RunError> {
         ));
     }
     let plan = CasePlan::read(path)?;
-    // If no folder of packings is named, a campaign keeps them in its own.
+    // Without a named folder, a campaign keeps packings in its own.
     let is_named = set.packings != PrepareOptions::default().packings;
     let packings = is_named.then(|| set.packings.clone());
     let options = CaseOptions { packings, memory: set.memory, ..CaseOptions::default() };

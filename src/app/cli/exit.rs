@@ -1,11 +1,11 @@
-//! Ends of the program: its exit codes, and the verdicts that a caller does not accept.
+//! Exit codes of the program, and the verdicts that a caller does not accept.
 
 use clap::ValueEnum;
 
 use crate::outcome::record::Verdict;
 use crate::run::{Exit, RunError};
 
-/// Every exit code and its meaning: help, manual pages and guide show this table.
+/// Every exit code and its meaning; help, manual pages and guide show this table.
 pub const EXIT_CODES: [(u8, &str); 5] = [
     (0, "done"),
     (Exit::Failed.code(), "failed"),
@@ -17,13 +17,13 @@ pub const EXIT_CODES: [(u8, &str); 5] = [
     (Exit::NotAccepted.code(), "done and written, but the verdict is one that `--fail-on` does not accept"),
 ];
 
-/// The table in words, a line a code.
+/// Table of exit codes in words, one line per code.
 pub fn in_words() -> String {
     let lines = EXIT_CODES.map(|(code, meaning)| format!("  {code}  {meaning}\n"));
     format!("Exit codes:\n{}", lines.concat())
 }
 
-/// Answers that are not accepted, by the worse of practice and model. What nobody can say never is.
+/// Answers that are not accepted, by the worse of practice and model; an unknown answer is never accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum FailOn {
     /// Some erosion, continuing erosion, undecided; practice not met or not known
@@ -36,7 +36,7 @@ pub enum FailOn {
 #[derive(Clone, Copy)]
 pub struct JudgedAnswer {
     pub model: Verdict,
-    /// The class that practice counts as; `None` if no rule was applied.
+    /// Class that practice counts as; `None` if no rule was applied.
     pub practice: Option<Verdict>,
 }
 
@@ -58,8 +58,8 @@ impl FailOn {
     }
 }
 
-/// Ends a command by the verdicts of its cases, each with its name: an error names those that are not
-/// accepted, with the reason for those that were not walked.
+/// Ends a command by the verdicts of its cases, each with its name. The error names the cases that are not
+/// accepted, with the reasons of those that were not walked.
 pub fn accept<'a>(
     fail_on: Option<FailOn>,
     cases: impl IntoIterator<Item = (&'a str, Result<JudgedAnswer, &'a str>)>,

@@ -1,5 +1,5 @@
-//! Commands to type: two examples in the help of every command, a short `-h` beside the whole `--help`, and
-//! the first words for a user who types `voidwalk` alone.
+//! Commands to type: two examples in the help of every command, a short `-h`, the full `--help`, and the
+//! first words for a user who types only `voidwalk`.
 
 use std::fmt::Write;
 use std::sync::LazyLock;
@@ -9,20 +9,20 @@ use clap::{Arg, Command, CommandFactory};
 use super::args::Arguments;
 use super::exit;
 
-/// A command line, and its effect.
+/// Command line, and its effect.
 type Example = [&'static str; 2];
 
-/// Two examples of every command, whose name is the second word.
+/// Two examples for every command; the command is the second word of a line.
 const EXAMPLES: [Example; 38] = [
     ["voidwalk run", "the built-in scene"],
-    ["voidwalk run dam.toml --set replicates=30 --out dam", "a scene of your own, in one point changed"],
+    ["voidwalk run dam.toml --set replicates=30 --out dam", "your own scene, with one setting changed"],
     ["voidwalk judge base.csv filter.csv --quick", "a first look: five replicates, loose and dense"],
     ["voidwalk judge base.csv fine.csv coarse.csv", "two filters, in one table"],
     ["voidwalk serve", "prints the address to open in the browser"],
     ["voidwalk serve --port 8080 --out site", "on a port and in a folder of your choice"],
-    ["voidwalk resume voidwalk-run", "goes on where the run was stopped"],
+    ["voidwalk resume voidwalk-run", "continues where the run was stopped"],
     ["voidwalk resume dam --threads 2", "on two cores, with the same bits"],
-    ["voidwalk check", "what the built-in scene comes to"],
+    ["voidwalk check", "memory and time of the built-in scene"],
     ["voidwalk check dam.toml --set filter.density=loose", "memory and time before a run"],
     ["voidwalk rules base.csv filter.csv", "every rule of filter practice, the base first"],
     ["voidwalk rules base.csv filter.csv --dispersive --joint-mm 2", "beside an open joint of 2 mm"],
@@ -39,7 +39,7 @@ const EXAMPLES: [Example; 38] = [
     ["voidwalk campaign plan.toml --out study", "walks every case that is not done"],
     ["voidwalk campaign plan.toml --list", "names the cases and does nothing"],
     ["voidwalk pack filter.toml", "packs the filter of a scene"],
-    ["voidwalk pack filter.toml --set packing.grains=20000 --out dense", "with so many grains"],
+    ["voidwalk pack filter.toml --set packing.grains=20000 --out dense", "with this many grains"],
     ["voidwalk constrictions grains.csv", "grains with columns x_mm, y_mm, z_mm, diameter_mm"],
     ["voidwalk constrictions grains.txt --unit m --cell none", "of Yade: metres, no periodic cell"],
     ["voidwalk percolation", "lattices of 10 to 160 voids along a side"],
@@ -54,7 +54,7 @@ const EXAMPLES: [Example; 38] = [
     ["voidwalk man ~/.local/share/man/man1", "where `man voidwalk-run` finds them"],
 ];
 
-/// Text for a user who types `voidwalk` alone.
+/// Text for a user who types only `voidwalk`.
 pub const FIRST_WORDS: &str = "\
 Will this filter hold this soil? Type first, with two sieve tables (CSV, .xlsx, .ods, AGS4), the base before
 the filter:
@@ -71,13 +71,13 @@ Without tables at hand:
 All commands: voidwalk help. One of them, with examples: voidwalk judge --help
 ";
 
-/// The version, with the commit that the program was built from.
+/// Version, with the commit from which the program was built.
 static VERSION: LazyLock<String> = LazyLock::new(|| {
     let number = env!("CARGO_PKG_VERSION");
     option_env!("VOIDWALK_COMMIT").map_or_else(|| number.into(), |commit| format!("{number} ({commit})"))
 });
 
-/// The program's arguments as they are read, with examples and the version.
+/// Arguments of the program, with examples and the version.
 pub fn command() -> Command {
     let command = Arguments::command().version(VERSION.as_str()).after_help(exit::in_words());
     let template = format!(
@@ -99,10 +99,10 @@ fn examples_in_words(command: &str) -> String {
     format!("Examples:\n{}", lines.collect::<Vec<_>>().join("\n"))
 }
 
-/// Longest line of `-h` on an argument (characters), unless its first clause is longer.
+/// Maximum length of an argument's description in `-h` (characters), unless its first clause is longer.
 const SHORT: usize = 90;
 
-/// The first clause of an argument's description for `-h`, all of it for `--help`.
+/// Shows the first clause of an argument's description in `-h`, and all of it in `--help`.
 fn short_and_long(arg: Arg) -> Arg {
     let Some(whole) = arg.get_help().map(ToString::to_string) else { return arg };
     let first = [": ", "; ", ". ", " [", ", so that"].iter().filter_map(|end| whole.find(end)).min();
@@ -115,7 +115,7 @@ fn short_and_long(arg: Arg) -> Arg {
     }
 }
 
-/// The commands that are listed, by the user's data at hand.
+/// Listed commands, grouped by the user's data.
 const GROUPS: [(&str, &[&str]); 4] = [
     ("To begin", &["examples", "serve", "soil"]),
     ("Two sieve tables", &["rules", "judge", "design"]),
@@ -123,7 +123,7 @@ const GROUPS: [(&str, &[&str]); 4] = [
     ("Many cases, and results", &["campaign", "boundary", "report", "export"]),
 ];
 
-/// Commands that are named alone.
+/// Commands shown by name only.
 const MORE: [&str; 5] = ["pack", "constrictions", "percolation", "completions", "man"];
 
 fn groups_in_words(command: &Command) -> String {
@@ -159,7 +159,7 @@ mod tests {
         for name in &shown {
             assert_eq!(examples_of(name).count(), 2, "{name}");
             for [line, _] in examples_of(name) {
-                // Line as a shell splits it.
+                // The line is split as a shell does.
                 let line = line.split(" > ").next().unwrap_or_default();
                 let words = line.split('"').enumerate().flat_map(|(at, part)| match at % 2 {
                     0 => part.split_whitespace().collect::<Vec<_>>(),

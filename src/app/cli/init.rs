@@ -1,5 +1,5 @@
-//! `voidwalk init` and `examples`: the built-in scene, the plan of a campaign and files to try as a start;
-//! and the JSON Schemas of the files that are written, made from the types that write them.
+//! Commands `voidwalk init` and `examples`: the built-in scene, the plan of a campaign and example files to
+//! start from; and the JSON Schemas of the files that are written, made from the types that write them.
 
 use super::print::{as_it_is, json, shown, to_copy, to_stdout};
 use crate::cases::{CasePlan, PlanCheck};
@@ -25,7 +25,7 @@ use voidwalk_practice::design::Specification;
 use voidwalk_practice::{DesignedSamples, PairRules};
 use voidwalk_sheets::SoilSummary;
 
-/// Writes the built-in scene or a plan, or lists the settings, or the contents of a file.
+/// Writes the built-in scene or a plan, or prints the settings or a JSON Schema.
 pub fn init(path: Option<&Path>, plan: bool, as_json: bool, schema: Option<String>) -> Result<(), RunError> {
     if let Some(schema) = schema {
         to_stdout(&schema);
@@ -48,7 +48,7 @@ pub fn init(path: Option<&Path>, plan: bool, as_json: bool, schema: Option<Strin
     Ok(())
 }
 
-/// Commands to try with the files, from within their folder: a command line, and its effect.
+/// Commands to try with the files, from within their folder: each a command line and its effect.
 const TO_TRY: [[&str; 2]; 9] = [
     ["voidwalk soil us-sieves.csv", "what is read from a sheet"],
     ["voidwalk rules base.csv filter.csv", "every rule of practice"],
@@ -77,10 +77,10 @@ pub fn examples(folder: &Path) -> Result<(), RunError> {
     Ok(())
 }
 
-/// Makes the schema of a type.
+/// Function that makes the schema of a type.
 type Made = fn() -> Schema;
 
-/// Contents of each form after its beginning.
+/// Contents of each format after its beginning.
 const CONTENTS: &[(Format, Made)] = &[
     (format::OUTCOME, schema_of::<Outcome>),
     (format::MANIFEST, schema_of::<Manifest>),
@@ -100,11 +100,11 @@ const CONTENTS: &[(Format, Made)] = &[
     (format::SOILS, schema_of::<Soils>),
     (format::SETTINGS, schema_of::<SceneReference>),
 ];
-/// Types that Python gives but no file holds: they are made from their schemas.
+/// Types that Python returns but no file holds, because Python makes them from their schemas.
 const OF_PYTHON: &[(&str, Made)] =
     &[("network-walk", schema_of::<NetworkWalkRecord>), ("columns", schema_of::<Tables>)];
 
-/// The JSON Schema of a file, by the name of its form, as `outcome`: indented, with a newline at its end.
+/// JSON Schema of a file, by the name of its format, such as `outcome`: indented, with a newline at its end.
 pub fn schema(name: &str) -> Option<String> {
     let content = CONTENTS.iter().find(|(form, _)| form.name() == name);
     let of_file = content.map(|(form, content)| headed(*form, content()));
@@ -127,11 +127,11 @@ struct Tables {
     boundary: Vec<WalkRow>,
 }
 
-/// A file of which only the beginning is anybody's business.
+/// File whose contents after the beginning are internal.
 #[derive(Serialize, JsonSchema)]
 struct Nothing {}
 
-/// The schema of a type as it is written.
+/// Schema of a type as it is written.
 fn schema_of<T: JsonSchema>() -> Schema {
     let schema = SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<T>();
     let mut schema = schema.to_value();
@@ -139,7 +139,7 @@ fn schema_of<T: JsonSchema>() -> Schema {
     schema.try_into().expect("still a schema")
 }
 
-/// Removes the examples in Rust, which do not describe a file, from all descriptions.
+/// Removes Rust examples, which do not describe a file, from all descriptions.
 fn without_examples(schema: &mut Value) {
     match schema {
         Value::Object(fields) => {
@@ -153,7 +153,7 @@ fn without_examples(schema: &mut Value) {
     }
 }
 
-/// The schema of a file, its beginning included.
+/// Schema of a file, including its beginning.
 fn headed(form: Format, content: Schema) -> Value {
     let mut schema = content.to_value();
     let about = schema.as_object_mut().expect("a schema is a map");
@@ -193,9 +193,9 @@ mod tests {
         }
     }
 
-    /// Variable that makes the test write the lines again.
+    /// Variable that makes the test write the lines anew.
     const UPDATE: &str = "VOIDWALK_UPDATE_SCHEMAS";
-    /// A line a record: its form, and a hash of its schema.
+    /// File with a line per record: its format, and a hash of its schema.
     const KEPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/cli/schemas.txt");
 
     #[test]

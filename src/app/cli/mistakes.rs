@@ -1,4 +1,4 @@
-//! Command lines that are not understood: guesses at their meaning.
+//! Guesses at the meaning of command lines that are not understood.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -12,10 +12,10 @@ use super::print::to_copy;
 use crate::scene::Scene;
 use voidwalk_core::schema::KeyInfo;
 
-/// No more files of a folder are looked at for one with a name like that which is missing.
+/// Maximum number of files in a folder that are searched for a name similar to a missing one.
 const FILES: usize = 1000;
 
-/// Adds the command to type instead to an error of the command line.
+/// Adds a command to type instead to an error of the command line.
 pub fn explained(mut error: clap::Error, command: &Command, words: &[OsString]) -> clap::Error {
     let words: Vec<String> = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let text = |kind| match error.get(kind) {
@@ -65,7 +65,7 @@ fn instead_of_argument(name: &str, command: &Command, words: &[String]) -> Optio
         if walks && ["base", "filter"].contains(&flag) {
             return Some(JUDGE.into());
         }
-        // The settings of a specification affect its page alone.
+        // Settings of a specification affect only its page.
         let is_walked = used.get_name() != "design";
         let takes_settings = is_walked && used.get_arguments().any(|arg| arg.get_long() == Some("set"));
         return takes_settings.then(|| as_setting(name, words)).flatten();
@@ -104,7 +104,7 @@ fn as_setting(flag: &str, words: &[String]) -> Option<String> {
     Some(format!("a setting of the scene: {}", set.join(" or ")))
 }
 
-/// Hint for two tables in the place of a scene.
+/// Hint for two tables that are given instead of a scene.
 fn two_tables(words: &[String]) -> Option<String> {
     let tables: Vec<&String> = words.iter().skip(2).filter(|word| is_table(word)).collect();
     match tables[..] {
@@ -122,14 +122,14 @@ fn is_table(word: &str) -> bool {
     [".csv", ".xlsx", ".ods", ".ags"].iter().any(|ending| path.ends_with(ending))
 }
 
-/// Hint at the files that may be meant if something is refused: one whose name has a space, so that the shell
-/// took it for two words; or, if one is missing, one whose name differs a little.
+/// Hint at a file that may be meant if something is refused: one whose name contains a space, so that the
+/// shell took it for two words; or, if a file is missing, one with a similar name.
 pub fn instead_of_files(words: &[OsString], is_missing: bool) -> Option<String> {
     let words: Vec<String> = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     unquoted(&words).or_else(|| if is_missing { misspelt_file(&words) } else { None })
 }
 
-/// Words that are the name of one file together, the first of them perhaps after `key=`.
+/// Words that together are the name of one file; the first may follow `key=`.
 fn unquoted(words: &[String]) -> Option<String> {
     for (at, first) in words.iter().enumerate().skip(1) {
         let (key, begin) =
@@ -147,13 +147,13 @@ fn unquoted(words: &[String]) -> Option<String> {
     None
 }
 
-/// The file that a word names: after `key=`, and before `#NAME` of one of its soils.
+/// File that a word names, after `key=` and before the `#NAME` of a soil.
 fn named(word: &str) -> PathBuf {
     let path = word.split_once('=').map_or(word, |(_, value)| value);
     PathBuf::from(path.split('#').next().unwrap_or_default())
 }
 
-/// A file beside one that is missing, with a name much like its.
+/// File with a name similar to a missing one, in the same folder.
 fn misspelt_file(words: &[String]) -> Option<String> {
     let written = |word: &String| ["--out", "--figure", "--packings"].contains(&word.as_str());
     let pairs = words.iter().zip(words.iter().skip(1)).filter(|(before, _)| !written(before));

@@ -1,5 +1,5 @@
-//! The command line: it parses, calls the library and prints, and is the only place that does. One table,
-//! `EXIT_CODES` (`exit.rs`), lists its ends.
+//! Command line: it parses arguments, calls the library and prints, which nothing else does. `EXIT_CODES`
+//! (`exit.rs`) lists all its exit codes.
 
 mod args;
 mod campaign;
@@ -30,11 +30,11 @@ pub use progress::page;
 use run::START;
 pub use run::Start;
 
-/// The system's number of the error that a file is not there: the same on Unix and Windows.
+/// System's error number for a missing file, the same on Unix and Windows.
 const NO_FILE: i32 = 2;
 
-/// Reads the arguments; otherwise prints the mistake and the command to type instead, or the text that
-/// `--help` asked for.
+/// Reads the arguments; otherwise prints the mistake and a command to type instead, or the text requested by
+/// `--help`.
 fn arguments(words: &[OsString]) -> Result<Arguments, u8> {
     if words.len() < 2 {
         print::to_stderr(help::FIRST_WORDS);
@@ -58,7 +58,7 @@ pub fn main() -> ExitCode {
     ExitCode::from(main_with(Start { words: std::env::args_os().collect(), again: None }))
 }
 
-/// Runs the program, once a process, and returns its exit code. For programs that hold the command line in a
+/// Runs the program, once per process, and returns its exit code; for programs that use the command line as a
 /// library.
 pub fn main_with(start: Start) -> u8 {
     voidwalk_core::store::platform::process::outlive_large_files();
@@ -102,7 +102,7 @@ fn command(arguments: Arguments) -> Result<(), RunError> {
     }
 }
 
-/// Tells on stderr why a command ended early: its exit code.
+/// Reports on stderr why a command ended early, and returns its exit code.
 fn told(done: Result<(), RunError>, words: &[OsString]) -> u8 {
     let Err(error) = done else { return 0 };
     let exit = error.exit();
@@ -112,7 +112,7 @@ fn told(done: Result<(), RunError>, words: &[OsString]) -> u8 {
         Exit::Failed => "error",
         Exit::NotAccepted => "not accepted",
     };
-    // Messages name files and values that may hold anything.
+    // Messages name files and values, which may contain any characters.
     let mut text = error.to_string();
     let meant = match exit {
         Exit::Refused => {

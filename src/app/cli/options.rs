@@ -1,7 +1,6 @@
-//! Options that several commands share: settings of a scene (`--joint-mm` is `filter.joint_mm`), whose help,
-//! allowed values and errors come from the table of settings; the scene, its walk and the folder of its
-//! results; and the values of options as a user writes them, with the expected form if they are not
-//! understood.
+//! Options shared by several commands. Settings of a scene (`--joint-mm` is `filter.joint_mm`) have their
+//! help, allowed values and errors from the table of settings. Other options are the scene, its walk and the
+//! folder of its results. Values are parsed as a user writes them; errors state the expected form.
 
 use std::marker::PhantomData;
 use std::path::PathBuf;
@@ -21,7 +20,7 @@ use voidwalk_core::schema::length::{LENGTHS, millimetres};
 use voidwalk_core::schema::{KeyInfo, Value, setting_name};
 use voidwalk_core::store::format::FORMATS;
 
-/// The settings of a command.
+/// Settings of a command.
 pub trait CommandSettings {
     /// Full names of the settings that have an option of their own.
     const OPTIONS: &'static [&'static str];
@@ -56,14 +55,14 @@ settings! {
         Some("Replace a setting, for example --set packing.grains=20000; can be repeated");
     /// Settings of `design`.
     OfSpecification: ["about.units", "base.dispersive"],
-        Some("What the page says of itself, for example --set about.project=\"Main dam\"; can be repeated");
+        Some("State a fact on the page, for example --set about.project=\"Main dam\"; can be repeated");
     /// Settings of `rules`.
     OfRules: ["base.dispersive", "filter.joint_mm"], None;
 }
 
-/// The settings that a command line gives, by `--set` and by options of their own.
+/// Settings given on a command line, by `--set` and by options of their own.
 pub struct SettingOptions<C> {
-    /// `KEY=VALUE` each.
+    /// Assignments, each as `KEY=VALUE`.
     pub assignments: Vec<String>,
     command: PhantomData<C>,
 }
@@ -108,7 +107,7 @@ impl<C: CommandSettings> FromArgMatches for SettingOptions<C> {
 
 pub(super) const SET: &str = "set";
 
-/// The option of a setting, without its dashes.
+/// Name of the option of a setting, without its dashes.
 fn option_name(key: &str) -> String {
     key.rsplit('.').next().unwrap_or_default().replace('_', "-")
 }
@@ -142,7 +141,7 @@ fn parser(key: KeyInfo) -> ValueParser {
     NonEmptyStringValueParser::new().try_map(checked).into()
 }
 
-/// How a walk is done.
+/// Options of a walk.
 #[derive(Args)]
 pub struct WalkArgs {
     /// Worker threads; the result is the same for any number [default: one per core]
@@ -157,17 +156,17 @@ pub struct WalkArgs {
     pub quiet: bool,
 }
 
-/// Which verdicts the caller does not accept.
+/// Verdicts that the caller does not accept.
 #[derive(Args)]
 pub struct AcceptArgs {
     /// Exit with code 4 if the worse of practice and model is at least this bad: some or continuing erosion.
-    /// Practice that is not met counts as some erosion, or as continuing where that is not excluded.
+    /// Practice that is not met counts as some erosion, or as continuing if that is not excluded.
     /// Undecided counts as bad, as does practice that is not known. Results are written as usual
     #[arg(long, value_name = "VERDICT")]
     pub fail_on: Option<FailOn>,
 }
 
-/// Where a run's results go, and how it is walked.
+/// Folder of a run's results, and options of the walk.
 #[derive(Args)]
 pub struct ResultArgs {
     /// Folder for the results: new, empty, or made by voidwalk [default: the first free of voidwalk-run,
@@ -181,29 +180,29 @@ pub struct ResultArgs {
     #[cfg(feature = "xlsx")]
     #[arg(long)]
     pub xlsx: bool,
-    /// Which verdicts are not accepted.
+    /// Verdicts that are not accepted.
     #[command(flatten)]
     pub accept: AcceptArgs,
-    /// How it is walked.
+    /// Options of the walk.
     #[command(flatten)]
     pub walk: WalkArgs,
 }
 
-/// Which scene.
+/// Scene to use.
 #[derive(Args)]
 pub struct SceneArgs {
     /// Scene (TOML), for check also the plan of a campaign [default: the built-in scene, a loose filter of Cu
     /// 1.5 and a base of Cu 1.5 at Dc5]
     pub scene: Option<PathBuf>,
-    /// What is set in it, and how it is prepared.
+    /// Settings of the scene, and options of preparing it.
     #[command(flatten)]
     pub set: SettingArgs,
 }
 
-/// What is set in a scene, and how it is prepared.
+/// Settings of a scene, and options of preparing it.
 #[derive(Args)]
 pub struct SettingArgs {
-    /// Its settings.
+    /// Settings of the scene.
     #[command(flatten)]
     pub settings: SettingOptions<OfScene>,
     /// Folder that keeps packings, so that each is made once
@@ -218,7 +217,7 @@ pub struct SettingArgs {
     pub json: bool,
 }
 
-/// A setting and its value.
+/// Parses a setting and its value.
 fn assignment(text: &str) -> Result<String, String> {
     match text.split_once('=') {
         Some((name, _)) if !name.trim().is_empty() => Ok(text.to_owned()),
@@ -226,7 +225,7 @@ fn assignment(text: &str) -> Result<String, String> {
     }
 }
 
-/// Density of a filter. A number could be a void ratio, a relative density or a friction.
+/// Parses the density of a filter. A number could be a void ratio, a relative density or a friction.
 pub(super) fn density(text: &str) -> Result<Density, String> {
     Density::named(text).ok_or_else(|| {
         "write loose, medium (or intermediate) or dense; the friction between grains while they are \
@@ -235,7 +234,7 @@ pub(super) fn density(text: &str) -> Result<Density, String> {
     })
 }
 
-/// The words for the facets between voids that are counted.
+/// Words for the facets between voids that are counted.
 pub(super) const FACETS: [(&str, Facets); 2] = [("all", Facets::All), ("on-both-hulls", Facets::OnBothHulls)];
 
 pub(super) fn facets(text: &str) -> Result<Facets, String> {
@@ -257,7 +256,7 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
     text.trim().parse().map_err(|_| format!("write a whole number from 0 to {}", u64::MAX))
 }
 
-/// The JSON Schema of a file, by the name of its form.
+/// JSON Schema of a file, by the name of its format.
 pub(super) fn schema_of(text: &str) -> Result<String, String> {
     let names: Vec<&str> = FORMATS.iter().map(|form| form.name()).collect();
     schema(text).ok_or_else(|| format!("one of {}", names.join(", ")))
@@ -272,7 +271,7 @@ pub(super) fn time(text: &str) -> Result<Duration, String> {
     humantime::parse_duration(text).map_err(|e| format!("{e}; write a time as 30s, 4min or 1h"))
 }
 
-/// A length above 0 (mm).
+/// Parses a length above 0 (mm).
 pub(super) fn length(text: &str) -> Result<f64, String> {
     millimetres(text).ok_or_else(|| format!("write {LENGTHS}"))
 }

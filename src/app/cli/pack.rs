@@ -1,4 +1,4 @@
-//! `voidwalk pack` and `constrictions`: grains from a gradation, and the constrictions of a packing.
+//! Commands `voidwalk pack` and `constrictions`: grains from a gradation, and the constrictions of a packing.
 
 use super::args::{ConstrictionsArgs, PackArgs};
 use super::print::{as_it_is, json, plain, to_stdout};

@@ -1,4 +1,4 @@
-//! Printing that outlives a closed pipe, and remembers other losses.
+//! Printing that ignores a closed pipe and remembers other failures.
 
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
@@ -17,31 +17,31 @@ pub use voidwalk_practice::quantity::{percent, whole};
 /// The first failure to write to stdout.
 static LOST: OnceLock<String> = OnceLock::new();
 
-/// Prints words to stdout; [`whole_stdout`] tells of a failure.
+/// Prints words to stdout; [`whole_stdout`] reports a failure.
 pub fn to_stdout(text: &str) {
     as_it_is(&on_a_terminal(text));
 }
 
-/// Prints a record to stdout, likewise.
+/// Prints a record to stdout unchanged; failures are reported likewise.
 pub fn as_it_is(text: &str) {
     by_stdout(|| io::stdout().write_all(text.as_bytes()));
 }
 
-/// Words with spaces that every terminal has and every search finds.
+/// Words with only such spaces as every terminal shows and every search finds.
 fn on_a_terminal(text: &str) -> String {
     text.replace(THIN, " ")
 }
 
-/// Prints to stdout by a function, likewise.
+/// Prints to stdout by a function; failures are reported likewise.
 pub fn by_stdout(print: impl FnOnce() -> io::Result<()>) {
     let printed = print().and_then(|()| io::stdout().flush());
-    // A reader that has left is not an error of the program.
+    // A reader that has left is no error of the program.
     if let Some(error) = printed.err().filter(|error| error.kind() != ErrorKind::BrokenPipe) {
         LOST.get_or_init(|| error.to_string());
     }
 }
 
-/// Confirms that all of stdout was written, other than to a closed pipe.
+/// Fails if anything could not be written to stdout, except to a closed pipe.
 pub fn whole_stdout() -> Result<(), RunError> {
     LOST.get().map_or(Ok(()), |error| Err(RunError::failed(format!("cannot write to stdout: {error}"))))
 }
@@ -51,12 +51,12 @@ pub fn to_stderr(text: &str) {
     let _ = std::io::stderr().lock().write_all(on_a_terminal(text).as_bytes());
 }
 
-/// A word of a command that is shown to be copied.
+/// Word of a command, quoted for copying.
 pub fn to_copy(word: impl AsRef<Path>) -> String {
     plain(&shell_word(&word.as_ref().display().to_string()))
 }
 
-/// A path made safe for a terminal.
+/// Path made safe for a terminal.
 pub fn shown(path: &Path) -> String {
     plain(&path.display().to_string())
 }
@@ -65,7 +65,7 @@ pub fn json(format: Format, record: &impl Serialize) -> Result<String, RunError>
     Ok(format.json(record)?)
 }
 
-/// Prints a result: its record as in its file, or in words unless it is to be quiet.
+/// Prints a result: its record as in its file, or its words unless it must be quiet.
 pub fn answer(
     (as_json, quiet): (bool, bool),
     format: Format,
@@ -80,12 +80,12 @@ pub fn answer(
     Ok(())
 }
 
-/// A count and its noun, one or many: `1 replicate`.
+/// Count with its noun in the singular or plural: `1 replicate`.
 pub fn counted(n: u64, one: &str, many: &str) -> String {
     format!("{} {}", whole(n), if n == 1 { one } else { many })
 }
 
-/// Grains per void, or that they are not given.
+/// Grains per void, or words for an unknown number.
 pub fn grains_per_void(grains: Option<f64>) -> String {
     match grains {
         Some(grains) => format!("{} grains per void", (grains * 1e4).round() / 1e4),
@@ -95,7 +95,7 @@ pub fn grains_per_void(grains: Option<f64>) -> String {
 
 const WIDTH: usize = 100;
 
-/// A text in lines that begin with this many spaces.
+/// Text in lines that begin with this many spaces.
 pub fn wrapped(text: &str, indent: usize) -> Vec<String> {
     let indent = " ".repeat(indent);
     let mut lines = vec![indent.clone()];

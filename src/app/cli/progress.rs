@@ -1,5 +1,5 @@
-//! Follows packings, walks and the cases of a campaign on stderr: a bar on a terminal, plain lines otherwise;
-//! stops them on a signal, and writes the pages of their results.
+//! Shows the progress of packings, walks and campaigns on stderr: a bar on a terminal, plain lines otherwise.
+//! Stops them on a signal, and writes the pages of their results.
 
 use super::print::{plain, shown, to_stderr};
 use crate::cases::{CaseCallbacks, CaseEvent};
@@ -19,10 +19,10 @@ use voidwalk_core::packing::{CompressionProgress, Stage};
 use voidwalk_core::store::platform::process::{end_at_once, stop_on_request};
 use voidwalk_practice::quantity::whole;
 
-/// Plain lines come at most this often.
+/// Minimum time between plain lines.
 const BETWEEN_LINES: Duration = Duration::from_secs(5);
 
-/// Does some work that is followed on stderr, stopped by signals, and whose results get their pages.
+/// Runs work that is shown on stderr and stopped by signals, and writes the pages of its results.
 pub fn followed<T>(quiet: bool, work: impl FnOnce(&Callbacks) -> Result<T, RunError>) -> Result<T, RunError> {
     let stop = stop_on_signals()?;
     end_at_once();
@@ -37,7 +37,7 @@ pub fn followed<T>(quiet: bool, work: impl FnOnce(&Callbacks) -> Result<T, RunEr
     done
 }
 
-/// Callbacks of short work: its results get their pages, and a signal ends it like any program.
+/// Callbacks of short work: its results get their pages, and a signal ends it as it ends any program.
 pub fn unfollowed() -> Callbacks<'static> {
     Callbacks {
         warn: &|warning| to_stderr(&format!("warning: {}\n", plain(warning))),
@@ -46,7 +46,7 @@ pub fn unfollowed() -> Callbacks<'static> {
     }
 }
 
-/// Writes the page of finished results, of a run from the content of its files if that is at hand; a set of
+/// Writes the page of finished results, for a run from the content of its files if available. A set of
 /// constrictions has no page, nor has a server's folder.
 pub fn page(kind: FolderKind, folder: &Path, run: Option<RunFiles>) -> Result<PathBuf, ReportError> {
     let written = match kind {
@@ -66,12 +66,12 @@ pub fn page(kind: FolderKind, folder: &Path, run: Option<RunFiles>) -> Result<Pa
     written.map(|written| written.page)
 }
 
-/// A flag that the first request to end sets.
+/// Flag that the first signal to end sets.
 pub fn stop_on_signals() -> Result<Arc<AtomicBool>, RunError> {
     stop_on_request().map_err(RunError::failed)
 }
 
-/// A bar of this length on a terminal, and no bar elsewhere.
+/// Bar of this length on a terminal; no bar elsewhere.
 fn bar_on_terminal(length: u64, style: &str) -> Option<ProgressBar> {
     if !std::io::stderr().is_terminal() {
         return None;
@@ -84,7 +84,7 @@ fn bar_on_terminal(length: u64, style: &str) -> Option<ProgressBar> {
     Some(bar)
 }
 
-/// Looks at the replicates so far come at most this often as plain lines.
+/// Minimum time between plain lines on the replicates so far.
 const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
 
 struct Display {
@@ -93,7 +93,7 @@ struct Display {
     shown: Mutex<Option<Shown>>,
 }
 
-/// A packing or walk that is under way.
+/// Packing or walk in progress.
 struct Shown {
     bar: Option<ProgressBar>,
     begun: Instant,
@@ -101,11 +101,11 @@ struct Shown {
     work: Work,
 }
 
-/// Runs that take longer than this report their progress.
+/// Minimum time without a finished run before its increments are reported.
 const BETWEEN_INCREMENTS: Duration = Duration::from_secs(30);
 
 enum Work {
-    /// Steps that it usually takes, and that were done when this start of the program began.
+    /// Usual number of steps, and number of steps done before this start of the program.
     Packing {
         usual: u64,
         first: Option<u64>,
@@ -113,23 +113,23 @@ enum Work {
     Walk(Walk),
 }
 
-/// Finished runs, number of runs, and results of the replicates so far.
+/// Numbers of finished runs and of runs in all, and results of the replicates so far.
 #[derive(Default)]
 struct Walk {
     done: u64,
     runs: u64,
     so_far: SoFar,
-    /// Replicates that the verdict is to have, and runs of each.
+    /// Number of replicates that the verdict needs, and runs of each.
     needs: [u64; 2],
     /// True if the verdict also waits for other readings of the inputs.
     readings: bool,
-    /// Replicates at the last look, and the time of the last line.
+    /// Number of replicates at the last report, and the time of the last line.
     looked_at: usize,
     last_line: Option<Instant>,
 }
 
 impl Walk {
-    /// A look that has not been reported yet, if two or more replicates are finished and others are to come.
+    /// New report on the replicates, if two or more are finished and others are to come.
     fn new_look(&mut self) -> Option<String> {
         let [replicates, runs] = self.needs;
         let look = self.so_far.look(runs)?;
@@ -241,7 +241,7 @@ impl Shown {
                     to_stderr(&(words + "\n"));
                 }
             }
-            // Once there are results of replicates, the bar shows those.
+            // Results of replicates, once there are any, take the place of increments in the bar.
             (Work::Walk(walk), Event::Increment { replicate, run, increment, moving })
                 if walk.looked_at == 0 =>
             {
@@ -271,7 +271,7 @@ impl Shown {
     }
 }
 
-/// Shows a message beside the bar; without one prints it, if the last line is this long ago.
+/// Shows a message beside the bar; without a bar prints it, if the last line is at least this old.
 fn show(bar: Option<&ProgressBar>, last: &mut Instant, between: Duration, message: impl FnOnce() -> String) {
     if let Some(bar) = bar {
         bar.set_message(message());
@@ -281,7 +281,7 @@ fn show(bar: Option<&ProgressBar>, last: &mut Instant, between: Duration, messag
     }
 }
 
-/// Progress of a packing, with `here` of its steps done by this start of the program.
+/// Progress of a packing; `here` of its steps were done since this start of the program.
 fn packing_line(progress: &CompressionProgress, usual: u64, here: u64, seconds: f64) -> String {
     let stage = match progress.stage {
         Stage::Squeeze => "squeeze",
@@ -291,7 +291,7 @@ fn packing_line(progress: &CompressionProgress, usual: u64, here: u64, seconds: 
     };
     let left = match usual.checked_sub(progress.steps) {
         Some(steps) if here > 0 => {
-            format!("about {:.0} s to go if it is like others", steps as f64 * seconds / here as f64)
+            format!("about {:.0} s to go if it is typical", steps as f64 * seconds / here as f64)
         }
         Some(_) => "time to go not known yet".to_string(),
         None => "longer than most".to_string(),
@@ -307,21 +307,21 @@ fn packing_line(progress: &CompressionProgress, usual: u64, here: u64, seconds: 
     )
 }
 
-/// Plain lines come at most this often, outside of a cluster's job.
+/// Minimum time between plain lines outside a cluster's job.
 const BETWEEN_CASES: Duration = Duration::from_secs(2);
 
-/// After this long without a message, the progress of a case is reported.
+/// Time without a message after which the progress of a case is reported.
 const BETWEEN_RUNS: Duration = Duration::from_secs(5);
 
 pub struct CaseProgress {
     quiet: bool,
-    /// True if every event of a case has a line, as in the log of a job.
+    /// True if every event of a case gets a line, as in the log of a job.
     every_event: bool,
-    /// Known as soon as the cases are counted.
+    /// Known once the cases are counted.
     shown: OnceLock<(Option<ProgressBar>, Mutex<Lines>)>,
 }
 
-/// Cases done, when this process began and now, of how many.
+/// Number of cases done when this process began, number done now, and number in all.
 struct Lines {
     first: usize,
     done: usize,
@@ -387,7 +387,7 @@ impl CaseProgress {
                 to_stderr(&format!("{}: {case}\n", if resumes { "continues" } else { "begins" }));
             }
             (None, CaseEvent::Waiting) if self.every_event => {
-                to_stderr(&format!("waits: {case}: another process is at it\n"));
+                to_stderr(&format!("waits: {case}: another process works on it\n"));
             }
             (None, CaseEvent::Walked { done, runs }) if !self.every_event => {
                 let Ok(mut lines) = lines.lock() else { return };

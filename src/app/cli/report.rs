@@ -73,7 +73,7 @@ pub fn serve(args: &ServeArgs) -> Result<(), RunError> {
         "open {address}\nfor this machine alone; whoever has the address can use it. Sheets and results are \
          in {folder}; Ctrl-C ends it\n"
     ));
-    // No other program is given the address.
+    // The address is not passed to any other program.
     whole_stdout()?;
     server.run(&stop)
 }

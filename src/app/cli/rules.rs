@@ -1,5 +1,5 @@
-//! `voidwalk rules`: the answer of filter practice on two soils, or on many samples and filters in one table,
-//! without a walk.
+//! Command `voidwalk rules`: the decision of filter practice on two soils, or on many samples and filters in
+//! one table, without a walk.
 
 use super::args::RulesArgs;
 use super::print::{answer, plain, shown, to_copy, to_stdout, wrapped};
@@ -114,7 +114,7 @@ fn words(
             let named = curves.iter().filter(|(_, curve)| !curve.is_empty());
             let curves: Vec<String> = named.map(|(whose, curve)| format!("{whose} curve {curve}")).collect();
             let curves = curves.join(", ");
-            // The rule's name gives its authority if no manual states it as well.
+            // The rule's name gives its authority unless a manual states it as well.
             let is_stated = !rule.stated_by.is_empty();
             let authorities = is_stated.then(|| format!("authority: {}", rule.authorities().join(", ")));
             let more = [curves, notes(&rule.notes), notes(&rule.needs), authorities.unwrap_or_default()];
@@ -131,7 +131,7 @@ fn words(
 
 /// Result, name, value and limit of a rule.
 fn row(rule: &AppliedRule) -> String {
-    // Short words for a column: the note below explains rules that are not judged.
+    // Short words fit the column; the note below explains rules that are not judged.
     let word = match result_of(rule) {
         RuleResult::NotMet => "NOT MET",
         RuleResult::DoesNotApply => "not for it",
@@ -144,7 +144,7 @@ fn row(rule: &AppliedRule) -> String {
     format!("  {word:<12}{}: {} {value}{limit}", rule.name, rule.quantity)
 }
 
-/// Sizes by their names, with the unit once if all of them are known.
+/// Sizes by their names, with the unit only once if all of them are known.
 fn sizes(sizes: &[(&str, Option<f64>)]) -> String {
     let all_known = sizes.iter().all(|(_, size)| size.is_some());
     let words = |(name, size): &(&str, Option<f64>)| {
@@ -155,7 +155,7 @@ fn sizes(sizes: &[(&str, Option<f64>)]) -> String {
     format!("{}{}", words.join(", "), if all_known { " mm" } else { "" })
 }
 
-/// Three digits that mean something.
+/// Number with three significant digits.
 fn number(value: Option<f64>) -> String {
     value.map_or_else(|| "not known".into(), |value| significant(value).to_string())
 }
@@ -168,7 +168,7 @@ fn rules_of_each(args: &RulesArgs, options: PairOptions) -> Result<(), RunError>
     let rows = &table.rows;
     if let Some(path) = &args.csv {
         let csv = columns(SizeUnit::Mm).csv(rows);
-        // A call that continues finds the table that it wrote.
+        // A continued call finds the table that it wrote.
         if std::fs::read(path).ok().as_ref() != Some(&csv) {
             write_new(path, &csv)?;
         }
@@ -187,7 +187,7 @@ fn rules_of_each(args: &RulesArgs, options: PairOptions) -> Result<(), RunError>
     Ok(())
 }
 
-/// Assumptions about the files, a line each.
+/// Assumptions about the files, one per line.
 pub(super) fn in_notes(notes: &[String]) -> String {
     let lines = notes.iter().map(|note| format!("note  {}\n", plain(note))).collect::<String>();
     if lines.is_empty() { lines } else { format!("\n{lines}") }
@@ -213,7 +213,7 @@ pub(super) fn aligned<T>(columns: Columns<T>, rows: &[T]) -> String {
     text
 }
 
-/// Number of samples that a filter retains, and the governing ones.
+/// Number of samples that a filter retains, and the samples that govern.
 pub(super) fn of_filter(rows: &[BatchRow], filter: &BatchFilter, inches: bool) -> String {
     let lines = filter_lines(filter, rows, SizeUnit::of(false, inches));
     lines.iter().map(|line| plain(line)).collect::<Vec<_>>().join("\n  ") + "\n"

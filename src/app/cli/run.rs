@@ -1,5 +1,5 @@
-//! `voidwalk run`, `resume` and `judge`: walks of a scene, of two sieve tables, or of many samples and
-//! filters.
+//! Commands `voidwalk run`, `resume` and `judge`: walks of a scene, of two sieve tables, or of many samples
+//! and filters.
 
 use std::ffi::OsString;
 use std::fmt::Write;
@@ -57,7 +57,7 @@ impl ResultArgs {
         }
     }
 
-    /// Prints the results of a run, writes its workbook if it is asked for, and ends by its verdict.
+    /// Prints the results of a run, writes its workbook if requested, and ends by its verdict.
     pub fn finish(&self, run: &FinishedRun, as_json: bool) -> Result<(), RunError> {
         answer((as_json, self.walk.quiet), format::OUTCOME, &run.outcome, || summary(run))?;
         #[cfg(feature = "xlsx")]
@@ -82,13 +82,13 @@ pub fn resume(args: &ResumeArgs) -> Result<(), RunError> {
     args.accept.judged(&run)
 }
 
-/// The command line in words, whatever bytes it is made of.
+/// Command line in words, even if it is not UTF-8.
 pub fn command_line() -> String {
     let words = START.get().map_or(&[][..], |start| &start.words);
     words.iter().map(|word| shell_word(&word.to_string_lossy())).collect::<Vec<_>>().join(" ")
 }
 
-/// Subjects of notes that the last line names, those that matter most.
+/// Maximum number of important notes whose subjects the last line names.
 const LABELS: usize = 4;
 
 /// Lines that a user wants to read first.
@@ -183,7 +183,7 @@ fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
     })?;
     let name = |row: &WalkedRow| format!("{} in {}", row.rules.sample, row.rules.filter);
     let names: Vec<String> = batch.rows.iter().map(name).collect();
-    // The class of a pair that could not be walked is unknown; others were left out on purpose.
+    // The class of a pair that could not be walked is unknown; other pairs were left out on purpose.
     let is_asked = |row: &WalkedRow| !args.governing || row.governs.is_some() || row.rules.is_refused;
     let asked = batch.rows.iter().zip(&names).filter(|(row, _)| row.walk.is_some() || is_asked(row));
     let pairs = asked.map(|(row, name)| {
@@ -206,7 +206,7 @@ fn campaign_options(out: &Path, set: &SettingArgs, walk: &WalkArgs) -> CaseOptio
     }
 }
 
-/// Number of walks that were kept with the cover of an earlier call, in a line; empty if it is 0.
+/// Line with the number of walks kept with the cover of an earlier call; empty for 0.
 fn of_earlier_cover(walks: usize) -> String {
     match walks {
         0 => String::new(),
@@ -251,9 +251,9 @@ fn batch_words(batch: &WalkedBatch, constrictions: &str, out: &Path) -> String {
 /// Start of the program.
 #[derive(Clone, Debug)]
 pub struct Start {
-    /// The words of the command line, the program's name first.
+    /// Words of the command line, starting with the program's name.
     pub words: Vec<OsString>,
-    /// Command that starts the program again in a job script: a path and words after it. If `None`, this
+    /// Command that starts the program again in a job script: a path and further words; `None` means this
     /// executable.
     pub again: Option<Vec<String>>,
 }

@@ -1,4 +1,4 @@
-//! `voidwalk completions` and `voidwalk man`: descriptions of the program for a shell and for `man`.
+//! Commands `voidwalk completions` and `voidwalk man`: descriptions of the program for a shell and for `man`.
 
 use std::path::Path;
 
@@ -20,7 +20,7 @@ use voidwalk_core::schema::KeyInfo;
 use voidwalk_core::store::format::FORMATS;
 use voidwalk_core::store::{StoreError, write_whole};
 
-/// Prints a script that completes commands, options and the values of options.
+/// Prints a script that completes commands, options and values of options.
 pub fn completions(shell: Shell) {
     to_stdout(&script(shell));
 }
@@ -41,13 +41,13 @@ fn script(shell: Shell) -> String {
     script
 }
 
-/// Names of files that bash would insert without quoting them, and run: where nothing is offered, bash itself
-/// completes files, and quotes them.
+/// Completion of file names that bash would insert unquoted, and run: with nothing offered, bash itself
+/// completes and quotes files.
 const BASH_FILES: &str = r#"COMPREPLY=($(compgen -f "${cur}"))"#;
 
-/// In bash the soils of a file follow `FILE#`, and nothing follows `base.cu=`, whose value is still to come.
-/// Bash does not quote text that it inserts within quotes: it offers there only names to which quotes give no
-/// meaning.
+/// Completion in bash of the soils of a file after `FILE#`; after `base.cu=` it offers nothing, because the
+/// value is still to be typed. Bash does not quote text that it inserts within quotes, so only names to which
+/// quotes give no meaning are offered there.
 const BASH_MORE: &str = r##"
 _voidwalk_and_values() {
     local word="${COMP_WORDS[COMP_CWORD]}" quoted="" name
@@ -73,7 +73,7 @@ complete -F _voidwalk_and_values -o nosort -o bashdefault -o default voidwalk 2>
     complete -F _voidwalk_and_values -o bashdefault -o default voidwalk
 "##;
 
-/// The soils of a file behind `FILE#`, in zsh.
+/// Completion in zsh of the soils of a file after `FILE#`.
 const ZSH_MORE: &str = r#"
 _voidwalk_and_soils() {
     local word=${(Q)words[CURRENT]}
@@ -99,8 +99,8 @@ end
 complete -c voidwalk -a '(__voidwalk_soils)'
 "#;
 
-/// The program's arguments with the values that each may have. Arguments that may also be a file have values
-/// in bash alone, which goes on to files if no value fits.
+/// Arguments of the program with their possible values. Arguments that may also be a file have values only in
+/// bash, which goes on to files if no value fits.
 fn with_values(shell: Shell) -> Command {
     let names = command().get_subcommands().map(|sub| sub.get_name().to_owned()).collect::<Vec<_>>();
     names.iter().fold(command(), |whole, name| {
@@ -131,7 +131,7 @@ fn of_argument(arg: Arg, command: &str, shell: Shell) -> Arg {
     arg.value_parser(PossibleValuesParser::new(values))
 }
 
-/// Every setting as `--set` takes it, with each of the words that it may have.
+/// Every setting in the form of `--set`, with each of its possible words.
 fn assignments() -> Vec<String> {
     let of_key = |key: KeyInfo| {
         let name = key.full_name();
@@ -143,7 +143,7 @@ fn assignments() -> Vec<String> {
     Scene::keys().into_iter().flat_map(of_key).collect()
 }
 
-/// Writes a manual page of the program and of each of its commands.
+/// Writes manual pages of the program and of each of its commands.
 pub fn man(folder: &Path) -> Result<(), RunError> {
     if let Some(file) = folder.ancestors().find(|part| part.exists() && !part.is_dir()) {
         let problem = "is a file; name a folder for the pages, a new one or one that is there";
@@ -196,7 +196,7 @@ mod tests {
         assert!(
             every.iter().all(|script| script.contains("loose") && script.contains("filter.density=dense"))
         );
-        // Arguments that may be a file have no list of words there.
+        // Arguments that may be a file have no list of words in this shell.
         let of_filter =
             |line: &&str| line.contains("using_subcommand boundary") && line.contains(" -l filter ");
         let lines: Vec<&str> = every[1].lines().filter(of_filter).collect();
@@ -231,7 +231,7 @@ mod tests {
                 }
             }
         }
-        // A word that is offered for a setting is read, in a scene that has the settings that it needs.
+        // A scene with the required settings must accept every word that is offered for a setting.
         assert!(settings.len() > 30, "{settings:?}");
         let packed = ["filter.cu=1.5", "filter.density=loose"];
         let file = ["network.kind=graph", "network.packing=\"grains.csv\""];

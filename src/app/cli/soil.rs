@@ -1,4 +1,4 @@
-//! `voidwalk soil`: the contents of a file of soils, as the program understands it.
+//! Command `voidwalk soil`: the contents of a file of soils, as the program reads them.
 
 use std::fmt::Write;
 
@@ -103,19 +103,19 @@ fn words(soils: &[SoilSummary]) -> String {
     text
 }
 
-/// Neighbouring sieves (mm) between which a rule of practice would read no straight line.
+/// Neighbouring sieves (mm) too far apart for a rule of practice to interpolate between them.
 fn far_apart(soil: &SoilSummary) -> Vec<[String; 2]> {
     let points: Vec<(f64, f64)> = soil.points.iter().map(|point| (point.size, point.percent)).collect();
     let steps = Gradation::from_points(&points, None).map_or(Vec::new(), |curve| curve.open_steps());
     steps.iter().map(|step| [step.from_mm, step.to_mm].map(digits)).collect()
 }
 
-/// A percentage and its reference.
+/// Percentage and its reference.
 fn percent(value: Option<f64>, part: &str) -> String {
     value.map_or("not known".to_owned(), |value| format!("{value:.1} % {part}"))
 }
 
-/// A number with four digits that mean something.
+/// Number with four significant digits.
 fn digits(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();

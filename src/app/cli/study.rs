@@ -1,5 +1,5 @@
-//! `voidwalk design`, `boundary` and `percolation`: specifications by practice, of one base or of many
-//! samples; the boundaries of the model; and the percolation threshold against the size of the lattice.
+//! Commands `voidwalk design`, `boundary` and `percolation`: specifications by practice, for one base or for
+//! many samples; the boundaries of the model; and the percolation threshold against the size of the lattice.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -68,7 +68,7 @@ pub fn design(args: &DesignArgs) -> Result<(), RunError> {
     })
 }
 
-/// The band and its limit, points to watch, and the products that fit; the page has steps and limits.
+/// Words for the band and its limit, points to watch, and suitable products; the page has steps and limits.
 fn specification_words(specification: &Specification) -> String {
     let unit = SizeUnit::of(false, specification.inches);
     let band = band(specification, unit).unwrap_or_else(|| match &specification.no_band {
@@ -94,7 +94,7 @@ fn design_each(args: &DesignArgs, options: &SpecifyOptions) -> Result<(), RunErr
     answer((args.json, args.quiet), format::DESIGNS, &all, || designs_words(&all, &options.out))
 }
 
-/// Advice for a base that is found to be dispersive, with the option to add.
+/// Advice on a base that is found to be dispersive, with the option to add.
 fn by_option(again: &str) -> String {
     format!("{again} (--dispersive)")
 }
@@ -160,7 +160,7 @@ fn of_row(row: &BoundaryRow, unit: SizeUnit) -> Vec<String> {
         row.shown().into_iter().zip([words(&row.no_erosion_notes), words(&row.continuing_notes)]);
     let networks = row.networks.len() as u64;
     let mut lines = vec![format!("{}, {}, in the model:", row.name(), row.thickness)];
-    // The boundary of no erosion is stated as a limit.
+    // The boundary of no erosion is given as a limit.
     let sizes: [fn(f64) -> String; 2] =
         [|mm| significant(mm).role(NumberRole::Greatest).number(), |mm| format!("{mm:.3}")];
     for ((what, size), (boundary, note)) in what.into_iter().zip(sizes).zip(boundaries) {

@@ -1,8 +1,8 @@
-//! Boundaries of the model: the contents of `boundary.json` and `boundary.csv`, and the merging of networks.
+//! Boundaries of the model: contents of `boundary.json` and `boundary.csv`, and combination of networks.
 //!
-//! A boundary is the D15F/D85B from which a network erodes 7.5 % of the base: in the first run (no erosion
-//! turns into some), or in the second as well (some turns into continuing). Each shape and density has one
-//! packing; the filter is scaled, which needs no new packing.
+//! A boundary is the D15F/D85B from which a network erodes 7.5 % of the base: in the first run (from no
+//! to some erosion), or in the second as well (from some to continuing erosion). Each shape and density
+//! has one packing; the filter is scaled without a new packing.
 
 use crate::outcome::BaseSize;
 use crate::outcome::record::ModelLimit;
@@ -14,54 +14,53 @@ use voidwalk_practice::{InputFile, Note, SheetCover};
 /// Step of the scale of ratios on which boundaries are found: half a percent, in ln(D15F/D85B).
 pub const BETWEEN_STEPS: f64 = 0.005;
 
-/// The whole of `boundary.json`.
+/// Contents of `boundary.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Boundaries {
     /// Version of voidwalk.
     pub version: String,
-    /// The commit that it was built from; `None` where that is not known.
+    /// Commit that the program was built from; `None` if it is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub commit: Option<String>,
-    /// The boundaries of the model, one row per density and thickness, in the order in which they were asked
-    /// for.
+    /// Boundaries of the model, one row for each density and thickness, in the order requested.
     pub boundaries: Vec<BoundaryRow>,
     /// The base.
     pub base: BaseStated,
-    /// The filter's shape, as the user calls it.
+    /// Shape of the filter as named by the user.
     pub filter: String,
     /// Name of its constriction curve.
     pub curve_name: String,
     /// Cu of the filter.
     pub filter_cu: Option<f64>,
-    /// The filter's own D15F (mm), where its sizes are given.
+    /// D15F of the filter as given (mm), if its sizes are given.
     pub filter_d15_mm: Option<f64>,
-    /// Every file that was read.
+    /// Files that were read.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub inputs: Vec<InputFile>,
-    /// Mass eroded from which a run erodes.
+    /// Eroded mass fraction from which a run counts as eroding.
     pub threshold: f64,
-    /// Networks of each boundary.
+    /// Number of networks for each boundary.
     pub replicates: u64,
-    /// The user's seed.
+    /// Seed given by the user.
     pub seed: u64,
-    /// Engine that walked; `expected` moves the base particles that can block nothing as their expectation.
+    /// Engine of the walks; `expected` moves base particles that can block nothing as their expectation.
     pub engine: String,
-    /// D15F/D85B between which boundaries were searched.
+    /// Range of D15F/D85B that was searched.
     pub bracket: [f64; 2],
-    /// Steps of the search, as a part of D15F/D85B.
+    /// Step of the search as a fraction of D15F/D85B.
     pub step: f64,
-    /// What a reader must know of the model's boundaries, the weightiest first.
+    /// Notes on the model's boundaries, most important first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<RowNote>,
-    /// What the model does not contain.
+    /// Processes that the model omits.
     pub model_leaves_out: Vec<ModelLimit>,
     /// Settings that were given, as on the command line.
     pub settings: Vec<String>,
-    /// What the sheet says of itself.
+    /// Cover of the sheet.
     #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
     pub cover: SheetCover,
-    /// Whether inches stand beside mm on its page.
+    /// True if the page shows inches beside mm.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub inches: bool,
     /// Wall time (s).
@@ -74,8 +73,8 @@ impl Boundaries {
         self.engine == Engine::Expected.name()
     }
 
-    /// The row that holds least, and the ratio that nearly all of its networks hold; `None` if no row has a
-    /// known ratio that it holds.
+    /// Row with the lowest ratio that nearly all of its networks hold, and this ratio; `None` if no row
+    /// has a known ratio.
     pub fn least_held(&self) -> Option<(&BoundaryRow, f64)> {
         let held = |row| Some((row, BoundaryRow::held(row)?));
         let all: Vec<_> = self.boundaries.iter().map(held).collect::<Option<_>>()?;
@@ -83,85 +82,85 @@ impl Boundaries {
     }
 }
 
-/// What is known of the base.
+/// Properties of the base.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct BaseStated {
-    /// Its name.
+    /// Name of the base.
     pub name: String,
     /// D60/D10.
     pub cu: Option<f64>,
-    /// D15 (mm) before regrading; `None` without a size of its own.
+    /// D15 (mm) before regrading; `None` if the base has no sizes in mm.
     pub d15_mm: Option<f64>,
-    /// D85 (mm) as walked; `None` without a size of its own.
+    /// D85 (mm) as walked; `None` if the base has no sizes in mm.
     pub d85_mm: Option<f64>,
     /// D95/D85.
     pub d95_over_d85: Option<f64>,
-    /// The size (mm) that it was regraded on before it was walked; `None` where it was walked as sampled.
+    /// Size (mm) on which the base was regraded before the walk; `None` if it was walked as sampled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub regraded_at_mm: Option<f64>,
-    /// The part of its mass that is finer than its finest sieve, as it was walked.
+    /// Mass fraction finer than the finest sieve, as walked.
     pub tail_mass_fraction: f64,
-    /// D85 (mm) before regrading, where it was regraded.
+    /// D85 (mm) before regrading, if it was regraded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub d85_as_sampled_mm: Option<f64>,
 }
 
 impl BaseStated {
-    /// D85 and the base that it belongs to; `None` without a size of its own.
+    /// D85 and the base that it belongs to; `None` if the base has no sizes in mm.
     pub fn size(&self) -> Option<BaseSize> {
         let (regraded_at_mm, as_sampled_mm) = (self.regraded_at_mm, self.d85_as_sampled_mm);
         Some(BaseSize { d85_mm: self.d85_mm?, regraded_at_mm, as_sampled_mm })
     }
 }
 
-/// The boundaries of one density and thickness.
+/// Boundaries of one density and thickness.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct BoundaryRow {
-    /// How densely the filter is packed.
+    /// Density of the filter.
     pub density: String,
-    /// The thickness that was asked for, in words.
+    /// Thickness as requested, in words.
     pub thickness: String,
-    /// Layers of voids, at the no-erosion boundary where the thickness is in mm.
+    /// Layers of voids; at the no-erosion boundary if the thickness is in mm.
     pub layers: u64,
-    /// Thickness (mm), at the no-erosion boundary where it is in layers; `None` where sizes have no unit.
+    /// Thickness (mm); at the no-erosion boundary if it is in layers. `None` if sizes have no unit.
     pub thickness_mm: Option<f64>,
     /// Filter grains per void, Eq. (2).
     pub grains_per_void: Option<f64>,
-    /// Where no erosion turns into some; `None` where that lies beyond what can be walked.
+    /// Boundary between no and some erosion; `None` if it lies beyond the range that can be walked.
     pub no_erosion: Option<Boundary>,
-    /// Why there is none, or what else is to be said of it.
+    /// Notes on this boundary, or the reasons why there is none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub no_erosion_notes: Vec<Note>,
-    /// D15F/D85B to which nearly all networks hold where more than half of them hold all that was searched,
-    /// so that there is no boundary.
+    /// D15F/D85B to which nearly all networks hold, if there is no boundary because more than half of
+    /// them hold over the whole search.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub holds_to: Option<f64>,
-    /// Where some erosion turns into continuing.
+    /// Boundary between some and continuing erosion.
     pub continuing: Option<Boundary>,
-    /// Why there is none, or what else is to be said of it.
+    /// Notes on this boundary, or the reasons why there is none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub continuing_notes: Vec<Note>,
-    /// The note on a boundary that few particles decide.
+    /// Note on a boundary that depends on few particles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub unsteady: Option<Note>,
-    /// Networks on which a larger ratio was seen to hold than one that erodes, in either run: their smallest
-    /// that erodes counts.
+    /// Number of networks that held at a larger ratio than one that eroded, in either run; their smallest
+    /// eroding ratio counts.
     pub not_monotone: u64,
-    /// What each network says.
+    /// Boundaries of each network.
     pub networks: Vec<NetworkBoundaries>,
-    /// The end of its range whose boundaries these are: the one that holds least. A filter of unknown density
-    /// is searched at its ends only, loose and dense.
+    /// End of the density range with the lowest boundary, which gives this row. A filter of unknown
+    /// density is searched only at its loose and its dense end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub as_end: Option<String>,
-    /// The density of which this is an end of the range in which its constriction curve is known.
+    /// Density for which this row is an end of the range of its constriction curve.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub end_of: Option<String>,
 }
 
 impl BoundaryRow {
-    /// The density in words, with the range that it is an end of, or with its worse end.
+    /// Density in words, with the range that it is an end of, or with its worse end.
     pub fn name(&self) -> String {
         match (&self.end_of, &self.as_end) {
             (Some(range), _) => format!("{} (an end of the range of {range})", self.density),
@@ -170,18 +169,18 @@ impl BoundaryRow {
         }
     }
 
-    /// The density whose networks were searched.
+    /// Density whose networks were searched.
     pub fn searched(&self) -> &str {
         self.as_end.as_ref().unwrap_or(&self.density)
     }
 
-    /// The ratio that nearly all networks hold; `None` where it is unknown.
+    /// Ratio that nearly all networks hold; `None` if it is unknown.
     pub fn held(&self) -> Option<f64> {
         self.no_erosion.as_ref().map_or(self.holds_to, Boundary::cautious)
     }
 
-    /// Boundaries of no and of continuing erosion with the ends that are shown. For few networks the ends are
-    /// the least and the most, because the percentiles lie between two networks.
+    /// Boundaries of no and of continuing erosion with the ends that are shown. For few networks the ends
+    /// are the minimum and maximum, because the percentiles lie between two networks.
     pub fn shown(&self) -> [Option<Boundary>; 2] {
         let by_network =
             |read: fn(&NetworkBoundaries) -> Option<f64>| self.networks.iter().map(read).collect::<Vec<_>>();
@@ -192,27 +191,27 @@ impl BoundaryRow {
         both.map(|(boundary, networks)| Some(boundary.as_ref()?.with_shown_ends(&networks)))
     }
 
-    /// Number of networks that were found to erode at some ratio of the search.
+    /// Number of networks that eroded at some ratio of the search.
     pub fn eroding_networks(&self) -> usize {
         self.networks.iter().filter(|network| network.no_erosion.is_some()).count()
     }
 }
 
-/// A boundary over networks: D15F/D85B, and the same in mm.
+/// Boundary over networks: D15F/D85B, and D15F in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Boundary {
     /// Median over networks.
     pub median: f64,
-    /// 5 % of networks lie below; `None` where that hangs on networks beyond the search, and of one network.
+    /// 5th percentile of networks; `None` if it depends on networks beyond the search, or for one network.
     pub low: Option<f64>,
-    /// 5 % of networks lie above; `None` likewise.
+    /// 95th percentile of networks; `None` as for `low`.
     pub high: Option<f64>,
-    /// On which side of the search the 5 percentile lies, where it lies beyond: below, networks erode at
-    /// every ratio that was searched.
+    /// Side of the search on which the 5th percentile lies, if it lies beyond: below means that these
+    /// networks erode at every ratio searched.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub low_beyond: Option<Beyond>,
-    /// D15F (mm) of the filter, where the base has a size.
+    /// D15F (mm) of the filter, if the base has sizes in mm.
     pub d15f_mm: Option<Range>,
 }
 
@@ -229,7 +228,7 @@ impl Boundary {
         Some(Self { median, low, high, low_beyond, d15f_mm: d85b_mm.map(mm) })
     }
 
-    /// Takes the least and the most of these networks as ends if they are few. An end that depends on
+    /// Takes the minimum and maximum of these networks as ends if they are few. An end that depends on
     /// networks beyond the search stays unknown.
     fn with_shown_ends(&self, networks: &[Option<f64>]) -> Self {
         if !are_few(networks.len() as u64) {
@@ -246,27 +245,27 @@ impl Boundary {
         Self { low, high, d15f_mm, ..self.clone() }
     }
 
-    /// The ratio that all but a few networks hold: the 5 percentile, or the median of a single network;
-    /// `None` if more than a few erode at every ratio that was searched, so that the ratio is unknown.
+    /// Ratio that all but a few networks hold: the 5th percentile, or the median of a single network;
+    /// `None` if more than a few erode at every ratio searched.
     pub fn cautious(&self) -> Option<f64> {
         let median = (self.low_beyond != Some(Beyond::Below)).then_some(self.median);
         self.low.or(median)
     }
 }
 
-/// Median and band of a size (mm).
+/// Median and range of a size (mm).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Range {
     /// Median over networks.
     pub median: f64,
-    /// 5 percentile.
+    /// 5th percentile.
     pub low: Option<f64>,
-    /// 95 percentile.
+    /// 95th percentile.
     pub high: Option<f64>,
 }
 
-/// What one network says; `None` where its boundary lies beyond the search.
+/// Boundaries of one network; `None` if a boundary lies beyond the search.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct NetworkBoundaries {
@@ -274,11 +273,11 @@ pub struct NetworkBoundaries {
     pub network: u64,
     /// D15F/D85B from which its first run erodes.
     pub no_erosion: Option<f64>,
-    /// D15F/D85B from which its second run does.
+    /// D15F/D85B from which its second run erodes.
     pub continuing: Option<f64>,
 }
 
-/// A row of `boundary.csv`: every ratio that was walked.
+/// Row of `boundary.csv`: one ratio that was walked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct WalkRow {
@@ -288,17 +287,17 @@ pub struct WalkRow {
     pub thickness: String,
     /// Network, counted from 1.
     pub network: u64,
-    /// The ratio D15F/D85B.
+    /// Ratio D15F/D85B.
     pub d15f_over_d85b: f64,
-    /// Mass eroded in the first run, over the mass inserted.
+    /// Eroded mass over inserted mass, first run.
     pub eroded_first: f64,
-    /// The same in the second run; empty where it was not walked.
+    /// Eroded mass over inserted mass, second run; empty if it was not walked.
     pub eroded_second: Option<f64>,
-    /// Which base D85B is of: `as sampled`, or the size that it was regraded on; empty without a size.
+    /// Base of D85B: `as sampled`, or the size on which it was regraded; empty without a size.
     pub d85b_of: String,
 }
 
-/// On which side of all that was searched something lies.
+/// Side of the search on which a value lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
@@ -312,16 +311,16 @@ pub enum Beyond {
 /// Percentiles of a boundary over networks (percent).
 const PERCENTILES: [f64; 3] = [5.0, 50.0, 95.0];
 
-/// Tells if the least and the most of this number of networks are shown: a percentile would be read between
-/// the last two.
+/// True if the minimum and maximum of this number of networks are shown, because a percentile would lie
+/// between the last two.
 pub fn are_few(networks: u64) -> bool {
     networks < 20
 }
 
-/// The 5, 50 and 95 percentile of values, some of which are only known to lie above or below the whole
-/// search. A percentile that depends on such values gives their side instead (below if it depends on both
-/// sides: the cautious one). Between two values a percentile is linear in its rank, from the least at 0 to
-/// the greatest at 100 (Hyndman and Fan's seventh definition).
+/// 5th, 50th and 95th percentile of values, some known only to lie above or below the whole search. A
+/// percentile that depends on such values gives their side instead (below, the cautious one, if it
+/// depends on both). Between two values a percentile is linear in its rank, from the minimum at 0 to the
+/// maximum at 100 (Hyndman and Fan's seventh definition).
 ///
 /// # Panics
 /// Panics if there is no value.
@@ -388,7 +387,7 @@ mod tests {
         let mm = shown.d15f_mm.unwrap();
         let is = |value: Option<f64>, by_hand: f64| (value.unwrap() - by_hand).abs() < 1e-12;
         assert!(is(mm.low, 2.0) && is(mm.high, 3.0), "{mm:?}");
-        // The ratio that the walk holds is still read from the percentile.
+        // The ratio that the filter holds is still read from the percentile.
         assert!(boundary.cautious().unwrap() > 4.0);
         let many = Boundary::of(&over(20), Some(0.5)).unwrap();
         assert_eq!(many.with_shown_ends(&known(&over(20))), many);
@@ -413,7 +412,7 @@ mod tests {
         let eleven: Vec<_> = (0..=10).rev().map(|k| Ok(f64::from(k))).collect();
         assert_eq!(spread(&eleven), [Ok(0.5), Ok(5.0), Ok(9.5)]);
         assert_eq!(spread(&[Ok(3.0)]), [Ok(3.0); 3]);
-        // The ends of the band of five networks are not the least and the most.
+        // For five networks the ends of the range are not the minimum and maximum.
         let five: Vec<_> = (0..5).map(|k| Ok(f64::from(k))).collect();
         let [low, _, high] = spread(&five).map(Result::unwrap);
         assert!(low > 0.0 && low < 1.0 && high > 3.0 && high < 4.0, "{low} {high}");

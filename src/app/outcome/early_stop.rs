@@ -1,68 +1,67 @@
-//! Early stop of a point of a study whose class is clear: another number of base particles, another thickness
-//! of the filter.
+//! Early stop of a point of a study with a clear class: another number of base particles, or another
+//! thickness of the filter.
 //!
-//! A point is walked on the networks and random numbers of the scene's first replicates, and the scene's own
-//! replicates are all known. So the first one or two replicates of the point can show that its erosion
-//! continues, far above the threshold, where the scene's erosion does. Such a point stops; any other is
+//! A point is walked on the networks and random numbers of the scene's first replicates, and the scene's
+//! own replicates are all known. The first one or two replicates of the point can therefore show that it
+//! erodes continually, far above the threshold, as the scene does. Such a point stops; any other is
 //! walked in full and judged by the scatter of its own replicates alone.
 //!
-//! # What is asked of a point that stops
-//! - The scene's verdict is **continuing erosion**, by at least [`FEWEST_OWN`] replicates. Points of no and
-//!   some erosion, which a reader may rely on, are walked in full.
-//! - Each run lies wholly above the threshold. Its interval takes **twice** the scatter of the scene's
-//!   replicates, or the point's own scatter if that makes it wider, each with its own Student's factor. The
+//! # Conditions for a stop
+//! - The scene's verdict is **continuing erosion**, by at least [`FEWEST_OWN`] replicates. Points of no
+//!   and some erosion, which a user may rely on, are walked in full.
+//! - Each run is wholly above the threshold. Its interval takes **twice** the scatter of the scene's
+//!   replicates, or the point's own scatter if that is wider, each with its own Student's factor. The
 //!   error is 5 % over both looks and all runs (Bonferroni).
-//! - In every replicate, each run lies above the threshold, like the scene's run on the same network, and
+//! - In every replicate, each run is above the threshold, like the scene's run on the same network, and
 //!   keeps at least a third of its distance from it. A point that moves more may scatter more.
-//!
-//! The assumption is that a point scatters at most twice as much as the scene; `results/precision.md` counts
-//! how often it fails, and how often it misled.
+//! The assumption is that a point scatters at most twice as much as the scene; `results/precision.md`
+//! counts how often it fails and how often it misleads.
 //!
 //! # The ends of the curve's range
-//! One replicate is enough at an end whose class equals the class of the curve itself: the end is walked to
-//! see if it *changes* the class, and the class rests on the case's own replicates. Every run that decides
-//! the class lies wholly on its side of the threshold, by an interval as above with a scatter of at least 5 %
-//! of its value, and keeps a third of its distance. An end of another class, or not clear, is walked in full.
+//! One replicate is enough at an end whose class equals that of the curve itself: the end is walked to see if
+//! it *changes* the class, and the class rests on the case's own replicates. Every run that decides the class
+//! is wholly on its side of the threshold, by an interval as above with a scatter of at least 5 % of its
+//! value, and keeps a third of its distance. An end of another class, or an unclear one, is walked in full.
 
 use super::record::{Statistic, Verdict};
 use super::statistic::two_sided;
 use super::stopping::{ReplicateValues, statistic};
 use super::verdict::THRESHOLD;
 
-/// Replicates of the scene from which its scatter is taken.
+/// Minimum number of replicates of the scene to estimate its scatter.
 pub const FEWEST_OWN: usize = 5;
 
-/// Greatest scatter of a point, as a multiple of the scene's scatter.
+/// Maximum scatter of a point, as a multiple of the scene's scatter.
 const SCATTER: f64 = 2.0;
 
-/// Part of its distance from the threshold that a point keeps.
+/// Minimum fraction of its distance from the threshold that a point keeps.
 const KEPT: f64 = 1.0 / 3.0;
 
-/// Replicates of the case itself from which the scatter at an end of its curve's range is taken.
+/// Minimum number of the case's replicates to estimate the scatter at an end of its curve's range.
 pub const FEWEST_OF_RANGE: usize = 4;
 
-/// Least scatter of an end, relative to its value: replicates of the case may agree by chance.
+/// Minimum scatter of an end, relative to its value: replicates of the case may agree by chance.
 const LEAST_SCATTER: f64 = 0.05;
 
-/// Error probability of the class of each of the two ends of a range, unless the scene asks for another.
+/// Error probability of the class of each of the two ends of a range, unless the scene sets another.
 pub const ERROR_OF_END: f64 = ERROR / 2.0;
 
-/// Error probability of all looks and runs together, and of the intervals that are shown.
+/// Error probability of all looks and runs together, and of the intervals shown.
 const ERROR: f64 = 0.05;
 
 /// Looks at a point: after one replicate and after two.
 const LOOKS: usize = 2;
 
-/// Numbers of replicates at which to look at a point of a study with `of_study` replicates, the last of them
-/// all; `class` is the scene's, by `replicates` of it.
+/// Numbers of replicates at which to look at a point of a study with `of_study` replicates, all of them
+/// last; `class` is the scene's class, from `replicates` of it.
 pub fn looks(class: Verdict, replicates: usize, of_study: u64) -> Vec<u64> {
     let may_stop = class == Verdict::Continuing && replicates >= FEWEST_OWN;
     let fewest = if may_stop { 1 } else { of_study };
     (fewest..=LOOKS as u64).filter(|&look| look < of_study).chain([of_study]).collect()
 }
 
-/// The eroded mass of each run at a point that is clear, with wide 95 % intervals; `None` if it is not clear.
-/// `scene[run]` holds the scene's replicates, `point[run]` the first of them at the point.
+/// Eroded mass of each run at a clear point, with wide 95 % intervals; `None` if it is not clear.
+/// `scene[run]` holds the scene's replicates, `point[run]` the first ones of the point.
 pub fn clear(scene: &[ReplicateValues], class: Verdict, point: &[ReplicateValues]) -> Option<Vec<Statistic>> {
     if class != Verdict::Continuing || scene.first()?.len() < FEWEST_OWN {
         return None;
@@ -72,8 +71,8 @@ pub fn clear(scene: &[ReplicateValues], class: Verdict, point: &[ReplicateValues
     is_clear.then(|| scene.iter().zip(point).map(|(scene, point)| wide(scene, point, ERROR)).collect())
 }
 
-/// The eroded mass of each run at an end of the curve's range after its first replicate, with wide 95 %
-/// intervals; `None` unless, with this error probability, its class is clearly the class of the curve itself.
+/// Eroded mass of each run at an end of the curve's range after its first replicate, with wide 95 %
+/// intervals; `None` unless its class, with this error probability, is clearly that of the curve itself.
 pub fn clear_end(
     case: &[ReplicateValues],
     class: Verdict,
@@ -94,7 +93,7 @@ pub fn clear_end(
     is_clear.then(|| case.iter().zip(end).map(|(case, end)| wide(case, end, ERROR)).collect())
 }
 
-/// Tells if a run at an end lies on the side of the threshold where all replicates of the case lie.
+/// True if a run at an end is on the side of the threshold where all replicates of the case are.
 fn is_on_its_side(case: &ReplicateValues, end: &ReplicateValues, error: f64) -> bool {
     let (Some(&(_, below)), Some(&(value, _))) = (case.first(), end.first()) else { return false };
     let interval = wide(case, end, error);
@@ -107,7 +106,7 @@ fn is_on_its_side(case: &ReplicateValues, end: &ReplicateValues, error: f64) -> 
     is_whole && keeps && case.iter().chain(end).all(|&(_, side)| side == below)
 }
 
-/// Tells if a run of a point lies above the threshold for certain.
+/// True if a run of a point is above the threshold with certainty.
 fn is_above(scene: &ReplicateValues, point: &ReplicateValues, error: f64) -> bool {
     let keeps = |(&(scene, scene_below), &(value, value_below)): (&(f64, bool), &(f64, bool))| {
         !scene_below && !value_below && value - THRESHOLD >= KEPT * (scene - THRESHOLD)
@@ -116,7 +115,7 @@ fn is_above(scene: &ReplicateValues, point: &ReplicateValues, error: f64) -> boo
     is_whole && scene.iter().zip(point).all(keeps)
 }
 
-/// The interval of a point: by twice the scatter of the scene, or by its own if that makes it wider.
+/// Interval of a point: from twice the scatter of the scene, or from its own scatter if that is wider.
 fn wide(scene: &ReplicateValues, point: &ReplicateValues, error: f64) -> Statistic {
     let of_point = statistic(point, ERROR);
     let reach =
@@ -139,7 +138,7 @@ mod tests {
         values.iter().map(|&v| (v, v < THRESHOLD)).collect()
     }
 
-    /// Ten replicates of a run about this mean, with a standard deviation of 0.02.
+    /// Ten replicates of a run with this mean and a standard deviation of 0.02.
     fn ten_values(mean: f64) -> ReplicateValues {
         let steps = [-1.5, -1.2, -0.8, -0.4, -0.1, 0.1, 0.4, 0.8, 1.2, 1.5];
         values(&steps.map(|step| mean + 0.02 * step))
@@ -192,14 +191,14 @@ mod tests {
         let cleared = clear_end(&some, Verdict::Some, &one([0.35, 0.012]), ERROR_OF_END).unwrap();
         // Student's t for 3 degrees of freedom is 3.182; twice the scatter of 0.3 times 0.00816.
         assert!((cleared[0].low.unwrap() - (0.35 - 3.182_446 * 2.0 * 0.3 * 0.008_165)).abs() < 1e-5);
-        // Another class of either run, or close to it.
+        // Another class of either run, or a value close to it.
         for other in [[0.05, 0.01], [0.35, 0.2], [0.35, 0.06], [0.12, 0.01]] {
             assert_eq!(clear_end(&some, Verdict::Some, &one(other), ERROR_OF_END), None, "{other:?}");
         }
         let none = [four(0.0), four(0.0)];
-        // The second run decides nothing where the first is below the threshold.
+        // The second run decides nothing if the first is below the threshold.
         assert!(clear_end(&none, Verdict::None, &one([0.002, 0.2]), ERROR_OF_END).is_some());
-        // Zero scatter is no reason to believe a value near the threshold.
+        // Zero scatter is no reason to trust a value near the threshold.
         assert_eq!(clear_end(&none, Verdict::None, &one([0.052, 0.0]), ERROR_OF_END), None);
         assert_eq!(clear_end(&none, Verdict::None, &one([0.08, 0.0]), ERROR_OF_END), None);
         assert_eq!(clear_end(&some, Verdict::Undecided, &one([0.35, 0.012]), ERROR_OF_END), None);

@@ -1,4 +1,4 @@
-//! The ledger of a campaign, as types: one line of `ledger.jsonl` for each finished case.
+//! Ledger of a campaign, as types: one line of `ledger.jsonl` for each finished case.
 
 use super::record::{ModelLimit, Outcome, Ratios, RunSummary, Verdict, commit};
 use super::verdict::UndecidedBy;
@@ -6,94 +6,94 @@ use super::{BaseSize, Modelled, leaves_out_of_all};
 use serde::{Deserialize, Serialize};
 use voidwalk_practice::Note;
 
-/// A finished case.
+/// Finished case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct LedgerLine {
     /// Name of the case.
     pub case: String,
-    /// Level by factor, in the order of the plan.
+    /// Level of each factor, in the order of the plan.
     pub levels: serde_json::Map<String, serde_json::Value>,
-    /// Folder of its results, inside the campaign's.
+    /// Folder of its results, inside the campaign's folder.
     pub folder: String,
-    /// Fingerprint of everything that the results follow from: the resolved scene and its files.
+    /// Fingerprint of all inputs of the results: the resolved scene and its files.
     pub fingerprint: String,
-    /// The case's seed.
+    /// Seed of the case.
     pub seed: u64,
     /// Version of the program.
     pub version: String,
-    /// Commit of the program, where known.
+    /// Commit of the program, if known.
     pub commit: Option<String>,
-    /// The class that the replicates together support.
+    /// Class supported by all replicates together.
     pub verdict: Verdict,
-    /// What leaves the verdict undecided.
+    /// Cause that leaves the verdict undecided.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub undecided_by: Option<UndecidedBy>,
-    /// The filter that was modelled, along the flow.
+    /// Thickness of the modelled filter along the flow.
     pub thickness: ModelledThickness,
-    /// Whether water gave particles their way.
+    /// True if water directed particles.
     pub with_flow: bool,
-    /// Whether particles arched.
+    /// True if particles arched.
     pub with_arches: bool,
-    /// Whether blocked constrictions left openings.
+    /// True if blocked constrictions left openings.
     pub with_openings: bool,
-    /// The rules of practice that were made for these soils and are not kept, by their names for programs.
+    /// Identifiers of rules of practice that apply to these soils and are not kept.
     pub rules_not_met: Vec<String>,
-    /// Replicates by their own class, in the order of [`Verdict::ALL`].
+    /// Number of replicates in each class, in the order of [`Verdict::ALL`].
     pub replicate_verdicts: [u64; 4],
-    /// Replicates.
+    /// Number of replicates.
     pub replicates: u64,
-    /// Base particles of each run.
+    /// Number of base particles in each run.
     pub n_base: u64,
-    /// Base particles by Eq. (2), before any cap.
+    /// Number of base particles by Eq. (2), before any cap.
     pub n_base_eq2: Option<u64>,
-    /// Whether a cap made `n_base` smaller than `n_base_eq2`.
+    /// True if a cap made `n_base` smaller than `n_base_eq2`.
     pub capped: bool,
     /// Filter grains per void.
     pub grains_per_void: Option<f64>,
     /// D15F over D85B and D95B.
     pub ratios: Ratios,
-    /// D85B and which base it is of; `None` without a unit.
+    /// D85B and the base that it belongs to; `None` without a unit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub base: Option<BaseSize>,
     /// Statistics of each run.
     pub runs: Vec<RunSummary>,
-    /// What else to know.
+    /// Notes on the case.
     pub notes: Vec<Note>,
-    /// Where and when, apart from the rest: two campaigns of one plan differ here only.
+    /// Machine and time of the walk: two campaigns of one plan differ only here.
     pub made: Made,
 }
 
-/// The whole of `campaign.json`.
+/// Contents of `campaign.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Campaign {
-    /// What the plan is about, in a line.
+    /// Subject of the plan, in one line.
     pub title: String,
     /// Name of the plan's file.
     pub plan: String,
     /// Factors in the order of the plan.
     pub factors: Vec<String>,
-    /// Cases of the plan.
+    /// Number of cases in the plan.
     pub cases: u64,
-    /// Cases that are not done.
+    /// Cases that are not finished.
     pub missing: Vec<String>,
 }
 
-/// How thick the filter is that was modelled.
+/// Thickness of a modelled filter.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ModelledThickness {
     /// Layers of voids.
     pub layers: u64,
-    /// Along the flow (mm); `None` where the network does not say.
+    /// Thickness along the flow (mm); `None` if the network does not give it.
     pub mm: Option<f64>,
-    /// Whether sizes are multiples of D0F instead of mm.
+    /// True if sizes are multiples of D0F instead of mm.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub scale_free: bool,
 }
 
-/// Where and when a case was walked.
+/// Machine and time of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Made {
@@ -101,17 +101,17 @@ pub struct Made {
     pub host: String,
     /// Worker threads.
     pub threads: u64,
-    /// Job and task of a cluster, where there is one.
+    /// Job and task of a cluster, if there is one.
     pub job: Option<String>,
-    /// When the case began (RFC 3339).
+    /// Start of the case (RFC 3339).
     pub started: String,
-    /// Wall time from the start of the case to its end, s. Cases that are walked beside it on the same
-    /// threads take a part of it.
+    /// Wall time of the case from start to end, s. Other cases on the same threads at the same time
+    /// lengthen it.
     pub seconds: f64,
 }
 
 impl LedgerLine {
-    /// The line of an outcome.
+    /// Builds the line of an outcome.
     pub fn new(
         case: &str,
         levels: &[(String, String)],

@@ -3,42 +3,42 @@
 use serde::{Deserialize, Serialize};
 use voidwalk_core::walk::Shortcut;
 
-/// A part of the program that a scene does not need, or a study of which nothing is walked.
+/// Part of the program that a scene does not need, or a study that is not walked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema), schemars(with = "schema::LeftOut"))]
 #[serde(tag = "id", content = "numbers", rename_all = "snake_case")]
 pub enum LeftOut {
-    /// A lattice, where the voids of a packing are the network.
+    /// Lattice, if the voids of a packing are the network.
     Lattice,
-    /// All before the network, where that is given.
+    /// All steps before the network, if the network is given.
     BeforeNetwork,
-    /// A given curve, where a packing is measured.
+    /// Given curve, if a packing is measured.
     GivenCurve,
-    /// Packing, where the curve comes from the library.
+    /// Packing, if the curve comes from the library.
     PackingByLibrary,
-    /// Packing, where the curve is guessed.
+    /// Packing, if the curve is guessed.
     PackingByGuess,
-    /// Packing, where the curve is given.
+    /// Packing, if the curve is given.
     PackingByCurve,
-    /// Packing, where the packing of this folder has the filter's shape and is taken so many times as large.
+    /// Packing, if the packing in this folder has the filter's shape; its sizes are multiplied by the factor.
     PackingOfShape(String, f64),
     /// The second run.
     SecondRun,
-    /// Multiples of that number above the cap, and the cap.
+    /// Multiples of the number of base particles above the cap, and the cap.
     AmountsAboveCap(Vec<f64>, f64),
-    /// Multiples of that number that give a number which is walked already.
+    /// Multiples of the number of base particles that repeat a number already walked.
     AmountsTheSame(Vec<f64>),
-    /// Another thickness of a network from a file.
+    /// Other thickness of a network from a file.
     ThicknessOfFile,
-    /// A multiple of the thickness, and why it cannot be walked.
+    /// Multiple of the thickness, and the reason why it cannot be walked.
     ThicknessRefused(f64, String),
-    /// A multiple of the thickness that has as many layers, or as many copies of a packing.
+    /// Multiple of the thickness that gives the same number of layers or copies of a packing.
     ThicknessTheSame(f64, u64, LayerKind),
-    /// A part that the first run of the first replicate did not need.
+    /// Part that the first run of the first replicate did not need.
     Walk(Shortcut),
 }
 
-/// Unit of which a network consists along the flow.
+/// Unit of a network's thickness along the flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LayerKind {
@@ -50,40 +50,40 @@ pub enum LayerKind {
 
 #[cfg(feature = "cli")]
 mod schema {
-    /// A part of the program that a scene does not need.
+    /// Part of the program that a scene does not need.
     #[derive(schemars::JsonSchema)]
     #[allow(dead_code)]
     pub(super) struct LeftOut {
-        /// Its name.
+        /// Name of the part.
         id: String,
-        /// Its numbers; missing without any.
+        /// Numbers of the part; absent if it has none.
         #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
         numbers: serde_json::Value,
     }
 }
 
-/// Something that the model does not contain.
+/// Process that the model omits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ModelLimit {
     /// Flow, gradient and time.
     Hydraulics,
-    /// The same, in those of several cases in which no water gives particles their way.
+    /// Flow, gradient and time in those of several cases without water.
     HydraulicsElsewhere,
-    /// Gradient and time, where water gives particles their way.
+    /// Gradient and time, if water directs particles.
     Gradient,
-    /// The same, in those of several cases in which it does.
+    /// Gradient and time in those of several cases with water.
     GradientThere,
     /// Bridging of several particles.
     Bridging,
-    /// Constrictions that are partly clogged.
+    /// Partly clogged constrictions.
     PartialClogging,
-    /// A limit to the base that enters.
+    /// Limited supply of base particles.
     Supply,
     /// The class of excessive erosion.
     Excessive,
-    /// What soils do besides.
+    /// Cohesion and further behaviour of soils.
     Cohesion,
 }
 
@@ -101,7 +101,7 @@ impl ModelLimit {
         Self::Cohesion,
     ];
 
-    /// Limits that hold with water and without.
+    /// Limits with and without water.
     const ALWAYS: &[Self] = Self::ALL.split_at(4).1;
 }
 
@@ -116,7 +116,7 @@ pub struct Modelled {
     pub openings: bool,
 }
 
-/// Features that the model of such a walk omits; shown next to every verdict.
+/// Features that the model of such a walk omits; shown beside every verdict.
 pub fn leaves_out(modelled: Modelled) -> Vec<ModelLimit> {
     leaves_out_of_all([modelled])
 }

@@ -1,4 +1,4 @@
-//! The numbers of one run at its end, and its rows of the CSV files.
+//! Numbers of one run at its end, and its rows in the CSV files.
 
 use super::record::{
     BlockedRow, ByConnectivity, FlowRow, LayerRow, Replicate, RetainedRow, Run, SeriesRow, SizeRow,
@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use voidwalk_core::network::{NO_LAYER, Network};
 use voidwalk_core::walk::{FlowRecord, SizeClasses, SizeCounts, State, Tally};
 
-/// A run of a replicate, and the reference sizes of its numbers.
+/// Run of a replicate, and the reference sizes of its numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct RunId {
     /// Replicate, counted from 1.
@@ -18,20 +18,20 @@ pub struct RunId {
     pub run: u64,
     /// D15F (mm).
     pub d15f_mm: f64,
-    /// Pan fraction of the base by mass: the part finer than the finest sieve.
+    /// Mass fraction of the base that is finer than the finest sieve.
     pub pan_fraction: f64,
 }
 
-/// The numbers of one run at its end.
+/// Numbers of one run at its end.
 #[derive(Clone, Debug)]
 pub struct RunMetrics {
-    /// Its entry of `outcome.json`.
+    /// Entry of the run in `outcome.json`.
     pub run: Run,
     /// True if less than 7.5 % of the mass eroded.
     pub below_threshold: bool,
 }
 
-/// Rows of the CSV files of one run.
+/// Rows of one run in the CSV files.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Recorded {
@@ -54,13 +54,13 @@ pub struct Recorded {
     pub blocked: Vec<BlockedRow>,
 }
 
-/// Mass eroded over the mass that the run inserts in all.
+/// Mass eroded over the total mass that the run inserts.
 ///
-/// The pan fraction is passive: it erodes in the same share as the passive particles, and entirely if the
-/// base has none.
+/// The pan fraction is passive: the same fraction of it erodes as of the passive particles, and all of it
+/// if the base has none.
 fn eroded_mass_fraction(tally: &Tally, end: &Tally, pan_fraction: f64) -> f64 {
     let sized = match end.inserted_mass > 0.0 {
-        // Masses added in two orders may differ in their last bits.
+        // Masses added in different orders may differ in their last bits.
         true => (tally.eroded_mass / end.inserted_mass).min(1.0),
         false => 0.0,
     };
@@ -74,7 +74,7 @@ fn eroded_mass_fraction(tally: &Tally, end: &Tally, pan_fraction: f64) -> f64 {
     (1.0 - pan_fraction) * sized + pan_fraction * of_pan
 }
 
-/// Mass that a finished run eroded.
+/// Mass eroded in a finished run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eroded {
     /// Mass eroded over the mass inserted.
@@ -84,7 +84,7 @@ pub struct Eroded {
 }
 
 impl Eroded {
-    /// Reads a run that has ended, from a base with this pan fraction by mass.
+    /// Reads a run that has ended, with a base of this pan fraction by mass.
     pub fn of(state: &State, pan_fraction: f64) -> Self {
         let tally = &state.tally;
         let mass_fraction = eroded_mass_fraction(tally, tally, pan_fraction);
@@ -99,7 +99,7 @@ impl Eroded {
 }
 
 impl RunMetrics {
-    /// The numbers of a finished run, which took `seconds` of wall time, on the network as it was at its end.
+    /// Numbers of a finished run, which took `seconds` of wall time, with the network as it is at its end.
     pub fn new(network: &Network, state: &State, flow: Option<&FlowRecord>, id: RunId, seconds: f64) -> Self {
         let tally = &state.tally;
         let Eroded { mass_fraction: eroded_mass_fraction, below_threshold } =
@@ -111,7 +111,7 @@ impl RunMetrics {
         let (blocked, constrictions) =
             layers.iter().take(3).fold((0, 0), |(b, c), row| (b + row.blocked, c + row.constrictions));
         let (fullness_max, overfull_fraction) = match state.passive.expected() {
-            // For an expectation only the number by void is known.
+            // For an expectation only the number in each void is known.
             Some(_) => (None, None),
             None => fullness(network.volumes(), &state.retained_cubes),
         };
@@ -153,7 +153,7 @@ impl RunMetrics {
 }
 
 impl Recorded {
-    /// The rows of a finished run.
+    /// Rows of a finished run.
     pub fn new(
         network: &Network,
         state: &State,
@@ -185,7 +185,7 @@ impl Recorded {
             series: series.collect(),
             layers: layers(network, state, id),
             flow: flow.collect(),
-            // Without recorded voids nobody asked for the blocked constrictions.
+            // Without recorded voids the blocked constrictions were not requested.
             blocked: if recorder.voids.is_empty() { Vec::new() } else { recorder::blocked(network, state) },
             voids: recorder::of_filter(network, &recorder.voids),
             ..Self::default()
@@ -198,7 +198,7 @@ impl Recorded {
         recorded
     }
 
-    /// Adds the rows of a later run or replicate.
+    /// Appends the rows of a later run or replicate.
     pub fn append(&mut self, mut later: Self) {
         self.series.append(&mut later.series);
         self.layers.append(&mut later.layers);
@@ -210,12 +210,12 @@ impl Recorded {
     }
 }
 
-/// A void is overfull above this part of its volume: no packing of its particles is denser.
+/// Fraction of its volume above which a void is overfull: no packing of its particles is denser.
 const OVERFULL: f64 = 0.6;
 
-/// Retained volume over volume of the fullest void that has a volume, and the share of the voids that are
-/// overfull, by volumes and by sums of the cubed diameters of resting particles. A void without a volume has
-/// room for nothing: any particle makes it overfull, by an unknown amount.
+/// Retained volume over volume for the fullest void with a volume, and the fraction of overfull voids,
+/// from volumes and sums of the cubed diameters of resting particles. A void without a volume has no
+/// room: any particle makes it overfull by an unknown amount.
 fn fullness(volumes: &[f64], cubes: &[f64]) -> (Option<f64>, Option<f64>) {
     let full = |(&volume, &cubes): (&f64, &f64)| match cubes > 0.0 {
         true if volume > 0.0 => std::f64::consts::FRAC_PI_6 * cubes / volume,
@@ -228,7 +228,7 @@ fn fullness(volumes: &[f64], cubes: &[f64]) -> (Option<f64>, Option<f64>) {
     (most, (!fullness.is_empty()).then(|| overfull as f64 / fullness.len() as f64))
 }
 
-/// Moves out of the reservoir through entries that are no constrictions: entering is no move.
+/// Moves out of the reservoir through inlets without a constriction: entering is no move.
 fn free_entries(network: &Network, state: &State) -> u64 {
     match network.reservoir().filter(|_| network.entry_is_free()) {
         Some(r) => state.tally.inserted - state.retained_in_voids[r as usize],
@@ -236,7 +236,7 @@ fn free_entries(network: &Network, state: &State) -> u64 {
     }
 }
 
-/// The deepest layer with a retained particle, and the layer down to which 95 % of the particles retained in
+/// Deepest layer with a retained particle, and layer down to which 95 % of the particles retained in
 /// layers lie.
 fn retained_layers(layers: &[LayerRow]) -> [Option<u64>; 2] {
     let retained = |row: &LayerRow| row.retained_in_constrictions + row.retained_in_voids;
@@ -271,7 +271,7 @@ fn layers(network: &Network, state: &State, id: RunId) -> Vec<LayerRow> {
     rows
 }
 
-/// The size curve of `counts`: one row per class bound; empty if nothing is counted.
+/// Size curve of `counts`: one row for each class bound; empty if nothing is counted.
 fn size_curve(
     counts: &SizeCounts,
     classes: &SizeClasses,
@@ -301,12 +301,12 @@ fn size_curve(
     rows
 }
 
-/// Voids, exits, blocked exits, particles in exits, particles in voids.
+/// Numbers of voids, exits, blocked exits, particles in exits and particles in voids.
 type Sums = [u64; 5];
 
-/// Sums of a run by ascending connectivity. Trapped particles never settle in one void and are not counted.
+/// Sums of a run by ascending connectivity. Trapped particles never settle in a void and are not counted.
 fn of_run(network: &Network, state: &State) -> Vec<ByConnectivity> {
-    // Entrances and exits are the same there, and all voids of the cubic lattice are alike.
+    // Entrances and exits are the same for these networks, and all voids of the cubic lattice are alike.
     if network.reservoir().is_some() || network.shape().is_some() {
         return Vec::new();
     }
@@ -324,8 +324,8 @@ fn of_run(network: &Network, state: &State) -> Vec<ByConnectivity> {
     by_connectivity(network.connectivity().iter().enumerate().map(of_void))
 }
 
-/// Particles retained and constrictions blocked in run `run` (counted from 1) of all replicates together, by
-/// the connectivity of the void (paper, Table 3).
+/// Particles retained and constrictions blocked in run `run` (counted from 1) of all replicates, by
+/// connectivity of the void (paper, Table 3).
 pub fn of_replicates(replicates: &[Replicate], run: u64) -> Vec<ByConnectivity> {
     let runs = replicates.iter().flat_map(|r| &r.runs).filter(|r| r.run == run);
     let of_row = |row: &ByConnectivity| {
@@ -370,7 +370,7 @@ mod tests {
         let sphere = std::f64::consts::FRAC_PI_6;
         assert_eq!(fullness(&[1.0, 0.0, 0.0, 2.0], &[0.5, 3.0, 0.0, 2.0]), (Some(sphere), Some(0.25)));
         assert_eq!(fullness(&[1.0, 1.0], &[2.0, 0.0]), (Some(2.0 * sphere), Some(0.5)));
-        // A volume next to zero is treated as zero.
+        // A volume close to zero is treated as zero.
         assert_eq!(fullness(&[5e-324, 1.0], &[1e300, 0.0]), (Some(0.0), Some(0.5)));
         assert_eq!(fullness(&[0.0], &[1.0]), (None, Some(1.0)));
         assert_eq!(fullness(&[], &[]), (None, None));

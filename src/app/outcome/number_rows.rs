@@ -1,23 +1,23 @@
-//! Rows of numbers, whose columns are the fields of their type: CSV, npz and Python use the same names.
+//! Rows of numbers whose columns are the fields of their type: CSV, npz and Python use the same names.
 
-/// A column of a table of numbers.
+/// Column of a table of numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NumberColumn {
     /// Counts.
     Counts(Vec<u64>),
-    /// Whole numbers, some of which represent things without a number.
+    /// Whole numbers; some values stand for things without a number.
     Whole(Vec<i64>),
-    /// Numbers with a point.
+    /// Floating-point numbers.
     Floats(Vec<f64>),
 }
 
-/// A row of a table of numbers, whose columns are the fields of its type; `rows!` declares it.
+/// Row of a table of numbers whose columns are the fields of its type; declared by `rows!`.
 pub trait NumberRow: Sized {
-    /// Every column with its name.
+    /// All columns with their names.
     fn columns(rows: &[Self]) -> Vec<(&'static str, NumberColumn)>;
 
-    /// The rows of columns, each requested by its name and with an empty column of its kind; `None` if the
-    /// given columns differ in length or kind.
+    /// Builds rows from columns, each requested by its name and with an empty column of its kind; `None`
+    /// if the given columns differ in length or kind.
     ///
     /// # Errors
     /// Returns the errors of `column`.
@@ -82,141 +82,141 @@ macro_rules! rows {
     )* };
 }
 rows! {
-    /// One row of `flow.csv`: the permeability when the flow was solved; there is none without water.
+    /// Row of `flow.csv`: permeability when the flow was solved; there are no rows without water.
     pub struct FlowRow {
-        /// Counts from 1.
+        /// Replicate, counted from 1.
         pub replicate: u64,
         /// 1 or 2.
         pub run: u64,
-        /// Increments that were done.
+        /// Number of increments completed.
         pub increment: u64,
         /// Permeability over that of the clean filter.
         pub k_over_k0: f64,
-        /// Part of the inflow that went through constrictions which had closed since the flow was solved
-        /// before, summed over the filter: so many on the mean way of a particle.
+        /// Fraction of the inflow through constrictions that had closed since the previous flow solution,
+        /// summed over the filter: their mean number on the way of a particle.
         pub closed_flow_fraction: f64,
     }
 
-    /// One row of `series.csv`: the counts after an increment.
+    /// Row of `series.csv`: counts after an increment.
     pub struct SeriesRow {
-        /// Counts from 1.
+        /// Replicate, counted from 1.
         pub replicate: u64,
         /// 1 or 2.
         pub run: u64,
-        /// Counts from 1.
+        /// Increment, counted from 1.
         pub increment: u64,
-        /// Particles inserted so far in this run.
+        /// Number of particles inserted so far in this run.
         pub inserted: u64,
-        /// Particles still moving.
+        /// Number of particles still moving.
         pub moving: u64,
-        /// Particles eroded so far in this run.
+        /// Number of particles eroded so far in this run.
         pub eroded: u64,
-        /// Particles stopped by a constriction so far in this run.
+        /// Number of particles stopped by a constriction so far in this run.
         pub retained_in_constrictions: u64,
-        /// Particles retained in voids so far in this run.
+        /// Number of particles retained in voids so far in this run.
         pub retained_in_voids: u64,
-        /// Particles trapped in closed loops.
+        /// Number of particles trapped in closed loops.
         pub trapped: u64,
-        /// Constrictions blocked.
+        /// Number of blocked constrictions.
         pub blocked: u64,
         /// Mass eroded so far over the mass that the whole run inserts.
         pub eroded_mass_fraction: f64,
     }
 
-    /// One row of `layers.csv`: a layer when a run has ended.
+    /// Row of `layers.csv`: a layer at the end of a run.
     pub struct LayerRow {
-        /// Counts from 1.
+        /// Replicate, counted from 1.
         pub replicate: u64,
         /// 1 or 2.
         pub run: u64,
-        /// Counts from 0 where particles come in.
+        /// Layer, counted from 0 at the inlet.
         pub layer: u64,
-        /// Constrictions that leave the voids of this layer.
+        /// Number of constrictions that leave the voids of this layer.
         pub constrictions: u64,
-        /// Those of them that are blocked.
+        /// Number of these constrictions that are blocked.
         pub blocked: u64,
-        /// Particles of this run stopped by them.
+        /// Number of particles of this run stopped by them.
         pub retained_in_constrictions: u64,
-        /// Particles of this run retained in the voids of this layer.
+        /// Number of particles of this run retained in the voids of this layer.
         pub retained_in_voids: u64,
     }
 
-    /// One row of `retained.csv` or `eroded.csv`: a point of the size curve of what is retained, or eroded,
-    /// so far.
+    /// Row of `retained.csv` or `eroded.csv`: a point of the size curve of the mass retained or eroded so
+    /// far.
     pub struct SizeRow {
-        /// Counts from 1.
+        /// Replicate, counted from 1.
         pub replicate: u64,
         /// 1 or 2.
         pub run: u64,
-        /// The increment after which the curve was taken.
+        /// Increment after which the curve was recorded.
         pub increment: u64,
         /// Size (mm).
         pub diameter_mm: f64,
-        /// Percent of the mass in particles no larger.
+        /// Percent of the mass in particles of at most this size.
         pub percent_finer_by_mass: f64,
-        /// Percent of the number in particles no larger.
+        /// Percent of the number in particles of at most this size.
         pub percent_finer_by_number: f64,
     }
 
-    /// One row of `voids.csv`: a void of the filter, and where it lies.
+    /// Row of `voids.csv`: a void of the filter with its position.
     pub struct VoidRow {
-        /// Counts from 0.
+        /// Void, counted from 0.
         pub void: u64,
-        /// Counts from 0 at the start nodes, or at the first voids behind the reservoir.
+        /// Layer, counted from 0 at the start nodes, or at the first voids downstream of the reservoir.
         pub layer: u64,
-        /// Across the flow.
+        /// Position across the flow.
         pub x_mm: f64,
-        /// Across the flow.
+        /// Position across the flow.
         pub y_mm: f64,
-        /// Along the flow.
+        /// Position along the flow.
         pub z_mm: f64,
     }
 
-    /// One row of `constrictions_of_network.csv`: a constriction between two voids; -1 is the outside, before
-    /// the filter as the first of the two and behind it as the second.
+    /// Row of `constrictions_of_network.csv`: a constriction between two voids; -1 is the outside,
+    /// upstream of the filter as the first of the two and downstream as the second.
     pub struct ConstrictionRow {
-        /// Its number in `blocked.csv`.
+        /// Number of the constriction in `blocked.csv`.
         pub constriction: u64,
-        /// One of the voids that it joins.
+        /// First of the two voids that it joins.
         pub from: i64,
-        /// The other; where constrictions have a direction, the one that it leads to.
+        /// Second void; the one that it leads to if constrictions have a direction.
         pub to: i64,
-        /// Way from the one to the other, to the nearest of its periodic images; half a layer along the flow
-        /// where either is the outside.
+        /// Distance along x from the first to the nearest periodic image of the second; half a layer
+        /// along the flow if either is the outside.
         pub dx_mm: f64,
-        /// Along y.
+        /// Distance along y.
         pub dy_mm: f64,
-        /// Along z.
+        /// Distance along z.
         pub dz_mm: f64,
         /// Diameter.
         pub diameter_mm: f64,
-        /// Conductance times viscosity: in mm3 between the voids of a packing, in a unit of its own on a
-        /// lattice; 0 where no water is reckoned with.
+        /// Conductance times viscosity: in mm3 between the voids of a packing, in an arbitrary unit on a
+        /// lattice; 0 without water.
         pub conductance: f64,
     }
 
-    /// One row of `blocked.csv`: a constriction that a base particle blocked.
+    /// Row of `blocked.csv`: a constriction that a base particle blocked.
     pub struct BlockedRow {
         /// 1 or 2.
         pub run: u64,
-        /// The increment in which a particle stopped there.
+        /// Increment in which a particle stopped there.
         pub increment: u64,
-        /// The constriction, from 0.
+        /// Constriction, counted from 0.
         pub constriction: u64,
     }
 
-    /// One row of `retained_by_void.csv`: what a void with retained particles of a run held after an
-    /// increment; void 0 has a row after each increment that was kept, whatever it holds.
+    /// Row of `retained_by_void.csv`: contents of a void with retained particles of a run after an
+    /// increment; void 0 has a row after each recorded increment, even if it is empty.
     pub struct RetainedRow {
         /// 1 or 2.
         pub run: u64,
-        /// Increments that were done.
+        /// Number of increments completed.
         pub increment: u64,
-        /// The void, from 0; -1 is the reservoir before the filter.
+        /// Void, counted from 0; -1 is the reservoir upstream of the filter.
         pub void: i64,
-        /// Particles stopped by its constrictions so far in this run.
+        /// Number of particles stopped by its constrictions so far in this run.
         pub retained_in_constrictions: u64,
-        /// Particles retained in it so far in this run for want of an open exit.
+        /// Number of particles retained in it so far in this run because no exit was open.
         pub retained_in_voids: u64,
     }
 }
@@ -229,11 +229,10 @@ mod tests {
     use serde::de::DeserializeOwned;
     use std::fmt::Debug;
 
-    /// Endings of the names of columns of numbers with a point: the unit, or the total that the number is a
-    /// share of.
+    /// Endings of the names of floating-point columns: the unit, or the total that a fraction refers to.
     const UNITS: [&str; 6] = ["_mm", "_fraction", "_by_mass", "_by_number", "_over_k0", "conductance"];
 
-    /// The CSV file of a type has its columns in this order, and its rows come back from them.
+    /// Checks that the CSV file of a type has its columns in this order, and that its rows can be read back.
     fn has_its_columns<R: NumberRow + Serialize + DeserializeOwned + PartialEq + Debug>() {
         let mut count = 0u8;
         let another = |_: &str, kind| {
@@ -255,7 +254,7 @@ mod tests {
         }
         let given = |name: &str| columns.iter().find(|(column, _)| *column == name).unwrap().1.clone();
         assert_eq!(R::rows::<()>(|name, _| Ok(given(name))), Ok(Some(rows)));
-        // A column that is too short, or of another kind, makes no rows.
+        // A column that is too short or of another kind gives no rows.
         let short = |name: &str, like| Ok(if name == names[1] { like } else { given(name) });
         assert_eq!(R::rows::<()>(short), Ok(None));
         let truth = NumberColumn::Floats(vec![1.0]);

@@ -1,12 +1,12 @@
-//! The paper beside the walk: Table 2 on its filters, to which nothing is fitted at run time, and Eq. (1) on
-//! the depth that single particles reach in the clean filter.
+//! Results of the paper beside the walk: Table 2 on its filters, without fitting at run time, and Eq. (1)
+//! on the depth that single particles reach in the clean filter.
 
 use super::record::{Infiltration, InfiltrationSize};
 use voidwalk_core::constrictions::Curve;
 use voidwalk_core::gradation::Gradation;
 use voidwalk_core::network::Passage;
 
-/// A row of Table 2.
+/// Row of Table 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PaperFilter {
     /// D60 / D10 by mass of the linear gradation.
@@ -29,18 +29,18 @@ const TABLE_2: [PaperFilter; 6] = [
     PaperFilter { cu: 6.0, friction: 0.7, void_ratio: 0.340, cu_csd: 1.57 },
 ];
 
-/// The paper's filter with this linear gradation and friction, if it has one.
+/// Filter of the paper with this linear gradation and friction, if there is one.
 pub fn filter(cu: f64, friction: f64) -> Option<PaperFilter> {
     TABLE_2.into_iter().find(|f| (f.cu - cu).abs() < 1e-6 && f.friction == friction)
 }
 
-/// Percentages by mass of the base whose sizes are followed.
+/// Percents finer by mass of the base at which sizes are followed.
 const SIZES: [f64; 6] = [15.0, 50.0, 85.0, 90.0, 95.0, 100.0];
 
-/// Number of parts of the base's mass over which the mass that would leave without blocking is summed.
+/// Number of parts of the base's mass used to sum the mass that would leave without blocking.
 const PARTS: u32 = 400;
 
-/// Eq. (1) for this base on a cubic lattice of `layers` layers with this constriction curve (mm).
+/// Evaluates Eq. (1) for this base on a cubic lattice of `layers` layers with this constriction curve (mm).
 ///
 /// The pan fraction (finer than the finest sieve) is passive: all of it would leave.
 pub fn infiltration(curve: &Curve, base: &Gradation, layers: u64) -> Infiltration {
@@ -81,8 +81,8 @@ mod tests {
         let of_base = |d0: f64| infiltration(&curve, &Gradation::linear_from_d0(d0, 1.5).unwrap(), 60);
         assert_eq!(of_base(0.05).eroded_without_blocking, 1.0);
         assert_eq!(of_base(0.3).eroded_without_blocking, 0.0);
-        // Straight from 0.15 to 0.3375 on semi-log paper: ln(0.2 / 0.15) / ln(2.25) of the mass is fine
-        // enough.
+        // Straight from 0.15 to 0.3375 on semi-log paper: the fine enough fraction of the mass is ln(0.2
+        // / 0.15) / ln(2.25).
         let some = of_base(0.15);
         let expected = libm::log(0.2 / 0.15) / libm::log(2.25);
         assert!((some.eroded_without_blocking - expected).abs() < 0.5 / 400.0 + 1e-9);

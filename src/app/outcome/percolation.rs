@@ -1,20 +1,20 @@
-//! A study of the percolation threshold against the size of the lattice (paper, Fig. 6): the contents of
-//! `percolation.json`, and the merging of thresholds.
+//! Study of the percolation threshold against the size of the lattice (paper, Fig. 6): contents of
+//! `percolation.json`, and combination of thresholds.
 //!
 //! # Finite size
 //! Two finite-size relations are fitted to the mean threshold p(L) of an L x L x L lattice, by weighted least
 //! squares:
 //!
 //! - *One length*: `p(L) = p - a L^(-1/nu)`, with the exponent of the correlation length along the flow.
-//! - *Many starts*: the start layer holds of order `(L / xi_across)^2` independent starts, and each survives
-//!   L layers with a probability that falls as `exp(-L / xi_along)`; so `L / xi_along` grows with the
-//!   logarithm of their number. With `d = p - p(L)`, `xi_along = d^(-nu)` and `xi_across = d^(-nu / z)`: `L
-//!   d^nu = b + c ln(L d^(nu / z))`. The p with the least sum of squares is the threshold; its interval is
-//!   the range in which the sum is at most 1 above the least.
+//! - *Many starts*: the start layer holds of order `(L / xi_across)^2` independent starts, and each
+//!   survives L layers with a probability proportional to `exp(-L / xi_along)`; so `L / xi_along` grows
+//!   with the logarithm of their number. With `d = p - p(L)`, `xi_along = d^(-nu)` and `xi_across =
+//!   d^(-nu / z)`: `L d^nu = b + c ln(L d^(nu / z))`. The threshold is the p with the smallest sum of
+//!   squares; its interval is the range in which the sum is at most 1 above the smallest.
 //!
-//! The exponents belong to directed percolation in 2 + 1 dimensions, as on this lattice (two across the flow,
-//! one along it): `nu` = 1.295(6) (Hinrichsen, Adv. Phys. 49, 815, 2000) and `z` = 1.766. (1.105 belongs to 3
-//! + 1 dimensions.)
+//! The exponents are those of directed percolation in 2 + 1 dimensions, as on this lattice (two across
+//! the flow, one along it): `nu` = 1.295(6) (Hinrichsen, Adv. Phys. 49, 815, 2000) and `z` = 1.766.
+//! (1.105 is the value in 3 + 1 dimensions.)
 
 use super::record::Statistic;
 use super::statistic::{Straight, log_log_slope};
@@ -30,95 +30,95 @@ pub const NU_PARALLEL: f64 = 1.295;
 /// Ratio of the exponents along and across the flow, directed percolation in 2 + 1 dimensions.
 pub const Z: f64 = 1.766;
 
-/// The whole of `percolation.json`.
+/// Contents of `percolation.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct PercolationStudy {
     /// Version of voidwalk.
     pub version: String,
-    /// The user's seed.
+    /// Seed given by the user.
     pub seed: u64,
-    /// Realisations of each size.
+    /// Number of realisations of each size.
     pub realisations: u64,
-    /// One per size, ascending.
+    /// Thresholds of each size, ascending.
     pub sizes: Vec<SizeThreshold>,
-    /// One per lattice that is no cube, in order of its lengths; no relation is fitted to these.
+    /// Thresholds of each lattice that is not a cube, in order of its lengths; no relation is fitted to them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub boxes: Vec<BoxThreshold>,
-    /// The relation of one length; `None` with fewer than two sizes or realisations.
+    /// Relation of one length; `None` with fewer than two sizes or realisations.
     pub one_length: Option<OneLength>,
-    /// The relation of many starts; `None` with fewer than four sizes, or where no threshold fits.
+    /// Relation of many starts; `None` with fewer than four sizes, or if no threshold fits.
     pub many_starts: Option<ManyStarts>,
     /// Slope of ln(standard deviation) against ln(size); `None` as for `one_length`.
     pub sd_exponent: Option<f64>,
-    /// [`INFINITE_LATTICE`].
+    /// Threshold of the infinite lattice, [`INFINITE_LATTICE`].
     pub infinite_lattice: f64,
     /// Wall time, s.
     pub seconds: f64,
 }
 
-/// The thresholds of one size.
+/// Threshold of one size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SizeThreshold {
-    /// Voids along each side.
+    /// Number of voids along each side.
     pub size: u64,
-    /// Share of constrictions that is open at the threshold.
+    /// Fraction of constrictions that are open at the threshold.
     pub threshold: Statistic,
     /// Standard error of the standard deviation, for normal thresholds: sd / sqrt(2 (n - 1)).
     pub sd_error: Option<f64>,
 }
 
-/// The thresholds of a lattice that is no cube.
+/// Threshold of a lattice that is not a cube.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct BoxThreshold {
-    /// Voids along x and y, and layers.
+    /// Number of voids along x and y, and number of layers.
     pub shape: [u32; 3],
-    /// Share of constrictions that is open at the threshold.
+    /// Fraction of constrictions that are open at the threshold.
     pub threshold: Statistic,
-    /// Standard error of the standard deviation, as that of a size.
+    /// Standard error of the standard deviation, as for a size.
     pub sd_error: Option<f64>,
 }
 
-/// A fit of `p(L) = threshold - amplitude L^(-1 / NU_PARALLEL)`.
+/// Fit of `p(L) = threshold - amplitude L^(-1 / NU_PARALLEL)`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct OneLength {
     /// Threshold of the infinite lattice.
     pub threshold: f64,
-    /// Its standard error, if the relation holds.
+    /// Standard error of the threshold, if the relation holds.
     pub threshold_error: f64,
     /// Amplitude.
     pub amplitude: f64,
-    /// Sum of squared deviations, each over its standard error.
+    /// Sum of squared deviations, each divided by its standard error.
     pub chi_squared: f64,
     /// Degrees of freedom.
     pub degrees: u64,
 }
 
-/// A fit of `L d^nu = offset + slope ln(L d^(nu / z))`, `d = threshold - p(L)`.
+/// Fit of `L d^nu = offset + slope ln(L d^(nu / z))`, `d = threshold - p(L)`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ManyStarts {
     /// Threshold of the infinite lattice.
     pub threshold: f64,
-    /// Lower end of its 68 % interval.
+    /// Lower end of the threshold's 68 % interval.
     pub threshold_low: f64,
-    /// Upper end of its 68 % interval.
+    /// Upper end of the threshold's 68 % interval.
     pub threshold_high: f64,
     /// Offset.
     pub offset: f64,
     /// Slope.
     pub slope: f64,
-    /// Sum of squared deviations, each over its standard error.
+    /// Sum of squared deviations, each divided by its standard error.
     pub chi_squared: f64,
     /// Degrees of freedom.
     pub degrees: u64,
 }
 
 impl PercolationStudy {
-    /// Combines the thresholds of each lattice: `(voids along x and y, and layers; one threshold per
+    /// Combines the thresholds of each lattice: `(voids along x and y, and layers; one threshold for each
     /// realisation)`, cubes by ascending size.
     pub fn new(seed: u64, thresholds: &[([u32; 3], Vec<f64>)], seconds: f64) -> Self {
         let (cubes, boxes): (Vec<_>, Vec<_>) = thresholds.iter().partition(|(shape, _)| is_cube(*shape));
@@ -149,7 +149,7 @@ impl PercolationStudy {
         }
     }
 
-    /// Every lattice, cubes first: its name, its threshold, and the standard error of the standard deviation.
+    /// All lattices, cubes first: name, threshold, and standard error of the standard deviation.
     pub fn lattices(&self) -> impl Iterator<Item = (String, &Statistic, Option<f64>)> {
         let cubes = self.sizes.iter().map(|cube| (cube.size.to_string(), &cube.threshold, cube.sd_error));
         cubes.chain(
@@ -160,25 +160,25 @@ impl PercolationStudy {
     }
 }
 
-/// Name of a lattice by its lengths: 40, or 40x40x60.
+/// Name of a lattice by its lengths, such as 40 or 40x40x60.
 pub fn lattice_name(shape: [u32; 3]) -> String {
     let lengths = if is_cube(shape) { &shape[..1] } else { &shape };
     lengths.iter().map(u32::to_string).collect::<Vec<_>>().join("x")
 }
 
-/// True if a lattice has one length along x, y and z.
+/// True if a lattice has the same length along x, y and z.
 pub fn is_cube(shape: [u32; 3]) -> bool {
     shape == [shape[0]; 3]
 }
 
-/// The threshold over the realisations, and the standard error of its standard deviation.
+/// Threshold over the realisations, and the standard error of its standard deviation.
 fn of_lattice(all: &[f64]) -> (Statistic, Option<f64>) {
     let threshold = Statistic::of_fraction(all);
     let sd_error = threshold.sd.map(|sd| sd / (2.0 * (all.len() as f64 - 1.0)).sqrt());
     (threshold, sd_error)
 }
 
-/// A size as a fit reads it.
+/// Data point of a fit: one size.
 struct Point {
     size: f64,
     mean: f64,
@@ -188,7 +188,7 @@ struct Point {
 }
 
 impl Point {
-    /// `None` without scatter, as the weight would be undefined.
+    /// Returns `None` without scatter, as the weight would be undefined.
     fn new(size: &SizeThreshold, realisations: u64) -> Option<Self> {
         let sd = size.threshold.sd.filter(|sd| *sd > 0.0)?;
         let error = sd / (realisations as f64).sqrt();
@@ -208,7 +208,7 @@ fn one_length(points: &[Point]) -> OneLength {
     }
 }
 
-/// The straight line of many starts for a given threshold above every mean.
+/// Straight line of many starts for a given threshold above every mean.
 fn starts_at(points: &[Point], threshold: f64) -> Straight {
     let row = |p: &Point| {
         let d = threshold - p.mean;
@@ -270,7 +270,7 @@ mod tests {
 
     #[test]
     fn many_starts_are_found_again() {
-        // d by bisection from L d^nu = 0.2 + 0.13 ln(L d^(nu / z)); the logarithm dominates below the lower
+        // By bisection: L d^nu = 0.2 + 0.13 ln(L d^(nu / z)). Below the lower bound the logarithm dominates.
         // bound.
         let d = |size: f64| {
             let off = |d: f64| {
@@ -291,7 +291,7 @@ mod tests {
         assert!(fit.threshold_low < 0.382 && fit.threshold_high > 0.382 && fit.degrees == 2);
     }
 
-    /// A box has thresholds of its own, and changes no relation.
+    /// A box has separate thresholds and changes no relation.
     #[test]
     fn a_box_is_told_beside_the_sizes() {
         let cubes = around(|size| 0.38 - 0.3 * libm::pow(size, -1.0 / NU_PARALLEL));
@@ -303,7 +303,7 @@ mod tests {
         assert_eq!((beside.boxes.len(), beside.boxes[0].shape), (1, [40, 40, 60]));
         assert!((beside.boxes[0].threshold.mean - 0.4).abs() < 1e-12);
         assert!((beside.boxes[0].sd_error.unwrap() - 0.05).abs() < 1e-12, "0.1 / sqrt(2 (3 - 1))");
-        // An older file, and one of cubes alone, do not mention boxes.
+        // An older file, or one with cubes alone, does not mention boxes.
         let text = serde_json::to_string(&alone).unwrap();
         assert!(!text.contains("boxes") && serde_json::from_str::<PercolationStudy>(&text).unwrap() == alone);
     }

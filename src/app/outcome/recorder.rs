@@ -1,4 +1,4 @@
-//! The requested data of a running walk, and what happens in each void and constriction, for pictures.
+//! Requested data of a running walk, and events in each void and constriction, for pictures.
 
 use super::record::{BlockedRow, ConstrictionRow, RetainedRow};
 use voidwalk_core::network::Network;
@@ -7,18 +7,18 @@ use voidwalk_core::walk::{SizeCounts, State, Tally};
 /// Data to record of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wanted {
-    /// Record the sums every this many increments, and after the last; 0 records the last only. A series of
-    /// more than 20,000 records is thinned: every second record is dropped, repeatedly if needed.
+    /// Interval of the records of sums, in increments; the last is always recorded, and 0 records only it. A
+    /// series over 20,000 records is thinned: every second record is dropped, repeatedly if needed.
     pub series_every: u64,
-    /// Increments after which size curves are recorded, besides the last.
+    /// Increments after which size curves are recorded, in addition to the last.
     pub size_curves: Vec<u64>,
-    /// Number of size classes of those curves.
+    /// Number of size classes of these curves.
     pub size_classes: usize,
-    /// Increments after which the contents of each void are recorded, besides the last; `None` omits them.
+    /// Increments after which each void's contents are recorded, in addition to the last; `None` omits them.
     pub voids: Option<Vec<u64>>,
 }
 
-/// Rows that a series may have before it is thinned.
+/// Maximum rows of a series before it is thinned.
 const LONGEST_SERIES: usize = 20_000;
 
 /// Sums and size curves of one run, as recorded.
@@ -31,7 +31,7 @@ pub struct Recorder {
     /// Contents of each void.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub voids: Vec<RetainedRow>,
-    /// Number of times that the series was thinned by half.
+    /// Number of times the series was thinned by half.
     thinned: u32,
 }
 
@@ -62,12 +62,12 @@ impl Recorder {
 /// Number of a void that represents the outside.
 const OUTSIDE: i64 = -1;
 
-/// Places of voids, for pictures: no result depends on them. Water flows along z, from 0 on.
+/// Positions of voids, for pictures: no result depends on them. Water flows along z, from 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Places {
-    /// Place (mm) by void of the filter.
+    /// Position (mm) of each void of the filter.
     pub point_mm: Vec<[f64; 3]>,
-    /// Lengths (mm) after which the network repeats along x and y.
+    /// Lengths (mm) over which the network repeats along x and y.
     pub period_mm: [f64; 2],
     /// Thickness of a layer (mm).
     pub layer_mm: f64,
@@ -86,14 +86,14 @@ impl Places {
     }
 }
 
-/// The constrictions of a network whose voids lie in these places, each once.
+/// Constrictions of a network whose voids have these positions, each once.
 pub fn constrictions(network: &Network, places: &Places) -> Vec<ConstrictionRow> {
     let filter = network.filter_voids() as u32;
     let mut rows = Vec::with_capacity(network.passages());
     for void in 0..network.voids() as u32 {
         for exit in network.exits(void).filter(|&exit| network.counts(exit)) {
             let target = network.targets()[exit];
-            // The reservoir is no void of the filter; a constriction that leads there leads in from it.
+            // The reservoir is not a void of the filter; a constriction to it counts as leading in from it.
             let (from, to) = match (void < filter, network.reservoir() == Some(target)) {
                 (true, true) => (OUTSIDE, i64::from(void)),
                 (true, false) if target < filter => (i64::from(void), i64::from(target)),
@@ -116,7 +116,7 @@ pub fn constrictions(network: &Network, places: &Places) -> Vec<ConstrictionRow>
     rows
 }
 
-/// The constrictions that a run blocked, in the order of blocking.
+/// Constrictions blocked in a run, in the order of blocking.
 pub fn blocked(network: &Network, state: &State) -> Vec<BlockedRow> {
     let row = |blocking: &voidwalk_core::walk::Blocking| BlockedRow {
         run: state.run,
@@ -126,8 +126,8 @@ pub fn blocked(network: &Network, state: &State) -> Vec<BlockedRow> {
     state.history.iter().map(row).collect()
 }
 
-/// The voids that hold retained particles of a run, and void 0, so that the moment is known even if no void
-/// holds any.
+/// Voids with retained particles of a run, and void 0, so that the increment is recorded even if no void
+/// has any.
 fn retained(state: &State) -> Vec<RetainedRow> {
     let counts = state.retained_in_constrictions.iter().zip(&state.retained_in_voids);
     (0i64..)
@@ -143,7 +143,7 @@ fn retained(state: &State) -> Vec<RetainedRow> {
         .collect()
 }
 
-/// Rows with the reservoir before the filter as the outside instead of the void after the last.
+/// Rows with the reservoir upstream of the filter as the outside instead of the void after the last.
 pub fn of_filter(network: &Network, rows: &[RetainedRow]) -> Vec<RetainedRow> {
     let filter = network.filter_voids() as i64;
     let void = |row: &RetainedRow| if row.void < filter { row.void } else { OUTSIDE };

@@ -7,7 +7,7 @@ use voidwalk_practice::quantity::{Span, percent};
 impl Statistic {
     /// Mean, sample standard deviation and 95 % interval of the mean (Student's t) of independent values.
     ///
-    /// One value has neither a standard deviation nor an interval. For values between 0 and 1 see
+    /// One value has neither standard deviation nor interval. For values between 0 and 1 see
     /// [`Statistic::of_fraction`].
     ///
     /// # Panics
@@ -33,7 +33,7 @@ impl Statistic {
         Self { mean, sd: Some(sd), low: Some(mean - half), high: Some(mean + half) }
     }
 
-    /// [`Statistic::of`] for a quantity that lies between 0 and 1: the 95 % interval is cut to that range.
+    /// Statistic of a quantity between 0 and 1: as [`Statistic::of`], with the interval cut to that range.
     ///
     /// # Panics
     /// Panics if there is no value.
@@ -58,11 +58,11 @@ pub fn percent_interval(statistic: &Statistic) -> Option<Span> {
     interval(statistic).map(|(low, high)| percent(low).to(percent(high)))
 }
 
-/// The `t` beyond which at most `error` of Student's distribution lies, both tails together: the factor of a
-/// two-sided interval at level `1 - error`.
+/// Value `t` that Student's distribution exceeds with probability `error`, both tails together: the
+/// factor of a two-sided interval at level `1 - error`.
 ///
 /// Uses the finite sums of Abramowitz and Stegun 26.7.3 and 26.7.4, solved for the angle `atan(t /
-/// sqrt(degrees))`. Good to about 1e-13 / `error`, relative.
+/// sqrt(degrees))`. Relative error about 1e-13 / `error`.
 ///
 /// # Panics
 /// Panics without a degree of freedom, or if `error` does not lie between 0 and 1.
@@ -90,11 +90,11 @@ pub fn two_sided(degrees: u64, error: f64) -> f64 {
     }
 }
 
-/// The share of Student's distribution between `-t` and `t`, with `t = sqrt(degrees) tan(angle)`.
+/// Fraction of Student's distribution between `-t` and `t`, with `t = sqrt(degrees) tan(angle)`.
 fn within(degrees: u64, angle: f64) -> f64 {
     let (sine, cosine) = (libm::sin(angle), libm::cos(angle));
     let odd = degrees % 2 == 1;
-    // Terms cos^k, each from the one before: k = 1, 3, .. or 0, 2, ..
+    // Terms cos^k, each from the previous one: k = 1, 3, .. or 0, 2, ..
     let (mut term, mut k) = if odd { (cosine, 2) } else { (1.0, 1) };
     let mut sum = if degrees == 1 { 0.0 } else { term };
     while k + 1 < degrees {
@@ -105,7 +105,7 @@ fn within(degrees: u64, angle: f64) -> f64 {
     if odd { FRAC_2_PI * (angle + sine * sum) } else { sine * sum }
 }
 
-/// A straight line by weighted least squares.
+/// Straight line by weighted least squares.
 pub(crate) struct Straight {
     pub offset: f64,
     pub slope: f64,
@@ -131,7 +131,7 @@ impl Straight {
     }
 }
 
-/// Slope of ln(y) against ln(x) through points with positive coordinates, all of one weight.
+/// Slope of ln(y) against ln(x) through points with positive coordinates and equal weights.
 pub(crate) fn log_log_slope(points: &[(f64, f64)]) -> f64 {
     let n = points.len() as f64;
     let logs = || points.iter().map(|&(x, y)| (libm::log(x), libm::log(y)));

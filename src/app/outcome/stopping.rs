@@ -1,25 +1,24 @@
-//! Number of replicates that is enough: until the error is small, or the verdict is decided at a confidence
-//! level.
+//! Number of replicates needed for a small error, or for a verdict at a confidence level.
 //!
 //! # Looks
-//! The rule looks at the replicates when there are `n_1` of them (the scene's number, at least 8), then `n_2
-//! = 1.5 n_1`, and so on, rounded up, until it is met or there are `most_replicates`.
+//! The rule looks at the replicates when there are `n_1` of them (the scene's number, at least 8), then
+//! at `n_2 = 1.5 n_1`, and so on, rounded up, until it is met or there are `most_replicates`.
 //!
 //! # Confidence level of the verdict
-//! A fixed interval that is looked at repeatedly errs more often than its level states. So look `k` takes
-//! intervals whose error probability is `1 / (k (k + 1))` of the whole, which sums to 1 over all looks; the
-//! two runs share it. If each interval has its nominal coverage, the verdict is wrong with at most the
-//! requested error probability, for any number of looks (Bonferroni), at the price of somewhat wide
-//! intervals. The intervals are Student's, for means of independent replicates.
+//! A fixed interval that is looked at repeatedly errs more often than its level states. Look `k`
+//! therefore takes intervals with an error probability of `1 / (k (k + 1))` of the whole, which sums to 1
+//! over all looks; the two runs share it. If each interval has its nominal coverage, the verdict is wrong
+//! with at most the requested error probability for any number of looks (Bonferroni), at the price of
+//! somewhat wide intervals. The intervals are Student's, for means of independent replicates.
 //!
-//! If the constriction curve is known only within a range, the curve itself and the ends of its range share
-//! the error, `1 / curves` each. An end is looked at twice, after one replicate and after as many as the
-//! curve has, with half of its share each. At a level below the usual one, an end is classed at the usual
-//! level.
+//! If the constriction curve is known only within a range, the curve and the ends of its range share the
+//! error, `1 / curves` each. An end is looked at twice, after one replicate and after as many as the
+//! curve has, with half of its share each. At a level below the usual one, an end is classified at the
+//! usual level.
 //!
 //! # Target error
-//! Met when the 95 % interval of the mean reaches no further than the target to either side, in every run
-//! (Chow and Robbins). Its coverage is measured in the tests.
+//! Met if the 95 % interval of the mean extends at most the target to either side, in every run (Chow and
+//! Robbins). Its coverage is measured in the tests.
 
 use super::record::{ShortOf, Statistic, Stopping, Verdict};
 use super::statistic::two_sided;
@@ -29,12 +28,12 @@ use voidwalk_core::schema::{only, section, whole, within};
 /// Error probability of the deciding intervals if no level is requested.
 const USUAL_ERROR: f64 = 0.05;
 
-/// Least number of replicates: fewer hardly reveal their own scatter.
+/// Minimum number of replicates: fewer hardly reveal their own scatter.
 const FEWEST: u64 = 8;
 
 section! {
-    /// Replicates are added until the eroded mass is known closely enough, or the verdict is decided; then
-    /// `replicates` is where it first looks.
+    /// Adds replicates until the eroded mass is known closely enough or the verdict is decided;
+    /// `replicates` is then the number at the first look.
     pub struct StopRule in "stop" {
         /// Half width of the 95 % interval of the eroded mass, in every run: percentage points of the base.
         pub target_error_pp: Option<f64> = None, off "0.1",
@@ -42,7 +41,7 @@ section! {
         /// Confidence level (%) at which the verdict is to be decided, corrected for repeated looks.
         pub decide_percent: Option<f64> = None, off "99.9",
             within(50.0..=99.999, "a probability from 50 to 99.999 (%)");
-        /// Where it gives up, and says what it would take.
+        /// Maximum number of replicates, after which the run stops and reports how many it would need.
         pub most_replicates: u64 = 1000, off, whole(2..=100_000);
     }
 }
@@ -56,28 +55,28 @@ pub enum Look {
     Stop(Stopping),
 }
 
-/// The eroded mass fraction of each replicate, with `true` if it is below the threshold by exact comparison.
+/// Eroded mass fraction of each replicate, with `true` if it is below the threshold by exact comparison.
 pub type ReplicateValues = Vec<(f64, bool)>;
 
 impl StopRule {
-    /// True if there is nothing to look at: the number of replicates is fixed by the scene.
+    /// True if the number of replicates is fixed by the scene.
     pub fn is_unset(&self) -> bool {
         self.target_error_pp.is_none() && self.decide_percent.is_none()
     }
 
-    /// True if there is something to look at.
+    /// True if a target or a confidence level is set.
     pub fn is_set(&self) -> bool {
         !self.is_unset()
     }
 
-    /// Number of replicates at look `look`, counted from 1, where the first is at `first`.
+    /// Number of replicates at look `look`, counted from 1, if the first look is at `first`.
     pub fn replicates_at(&self, first: u64, look: u64) -> u64 {
         let grow = |n: u64| n.saturating_add(n.div_ceil(2)).min(self.most_replicates);
         (1..look).fold(first.max(FEWEST).min(self.most_replicates), |n, _| grow(n))
     }
 
-    /// Looks at `runs[r][replicate]` of one of several constriction curves, which share the error; the first
-    /// look is at `first` replicates.
+    /// Looks at `runs[r][replicate]` of one of several constriction curves, which share the error; the
+    /// first look is at `first` replicates.
     pub fn look_at_one_of(&self, curves: usize, first: u64, runs: &[ReplicateValues]) -> Look {
         let replicates = runs.first().map_or(0, |values| values.len() as u64);
         let look = (1..)
@@ -120,7 +119,7 @@ impl StopRule {
         self.decide_percent.map(|percent| (1.0 - 0.01 * percent) / curves.max(1) as f64)
     }
 
-    /// The reason why the verdict is open.
+    /// Reason why the verdict is open.
     fn undecided(&self, error: f64, below: &[BelowThreshold], runs: &[ReplicateValues]) -> ShortOf {
         if below == [Some(false)] {
             return ShortOf::SecondRun;
@@ -139,7 +138,7 @@ impl StopRule {
         }
     }
 
-    /// True if no replicate can decide the open class: a clear first run without a second.
+    /// True if no replicate can decide the open class: the first run is clear and there is no second.
     fn is_hopeless(&self, runs: &[ReplicateValues]) -> bool {
         let clear = |values: &ReplicateValues| {
             values.len() > 1 && statistic(values, 1e-6).low.is_some_and(|low| low >= THRESHOLD)
@@ -159,8 +158,8 @@ impl StopRule {
 }
 
 impl Stopping {
-    /// The confidence level of a decided verdict, if it is lower than the usual level and the verdict is open
-    /// at the usual level: `usual` is the verdict of the 95 % intervals.
+    /// Confidence level of a decided verdict, if it is below the usual level and the verdict is open at
+    /// the usual level: `usual` is the verdict of the 95 % intervals.
     pub fn less_than_usual(&self, usual: Verdict) -> Option<f64> {
         let percent = self.decide_percent.filter(|percent| *percent < 95.0)?;
         let is_decided = self.verdict.is_some_and(|verdict| verdict != Verdict::Undecided);
@@ -168,8 +167,8 @@ impl Stopping {
     }
 }
 
-/// The class of runs that are looked at once, with this error probability or the usual one of each run if
-/// that is less, and the worst class that their intervals allow.
+/// Class of runs at a single look, with this error probability or the usual one of each run if smaller,
+/// and the worst class that their intervals allow.
 pub fn class_at(error: f64, runs: &[ReplicateValues]) -> [Verdict; 2] {
     let error_of_run = (error / runs.len().max(1) as f64).min(USUAL_ERROR);
     let [first, second] = [0, 1].map(|run| runs.get(run).and_then(|run| lies(run, error_of_run)));
@@ -177,7 +176,7 @@ pub fn class_at(error: f64, runs: &[ReplicateValues]) -> [Verdict; 2] {
     [classify(first, second), worst]
 }
 
-/// The side of the threshold on which the mean of a run lies, by an interval with this error probability.
+/// Side of the threshold on which the mean of a run lies, by an interval with this error probability.
 fn lies(run: &ReplicateValues, error: f64) -> BelowThreshold {
     let is_below: Vec<bool> = run.iter().map(|&(_, below)| below).collect();
     below_by_interval(&statistic(run, error), &is_below)
@@ -189,7 +188,7 @@ pub(super) fn statistic(values: &ReplicateValues, error: f64) -> Statistic {
     Statistic::with_error(&values, error)
 }
 
-/// Number of replicates, more than were walked, whose interval is as narrow as the mean's distance from the
+/// Number of replicates, above those walked, for an interval as narrow as the mean's distance from the
 /// threshold; `sd` is in units of this distance.
 fn needed(walked: f64, sd: f64, error: f64) -> f64 {
     let mut n = walked + 1.0;
@@ -198,12 +197,12 @@ fn needed(walked: f64, sd: f64, error: f64) -> f64 {
         if wanted <= n || n > 1e9 {
             return n.max(wanted);
         }
-        // Student's factor falls with more replicates, so that fewer than these may be enough.
+        // Student's factor falls with more replicates, so fewer may be enough.
         n = (1.1 * n).ceil().min(wanted.ceil()).max(n + 1.0);
     }
 }
 
-/// A number of replicates to two digits.
+/// Rounds a number of replicates to two digits.
 fn two_digits(n: f64) -> u64 {
     let unit = libm::pow(10.0, libm::floor(libm::log10(n.max(1.0))) - 1.0).max(1.0);
     (libm::ceil(n / unit) * unit) as u64
@@ -278,7 +277,7 @@ mod tests {
         let (stopping, runs) = until_stop(rule.clone(), &[0.0751, 0.01], 0.02, false, 3);
         assert!(!stopping.met && stopping.verdict == Some(Verdict::Undecided) && runs[0].len() == 60);
         assert!(matches!(stopping.short_of, Some(ShortOf::Decision { run: 1, .. })), "{stopping:?}");
-        // A first run that is clearly above, and no second: more replicates cannot help.
+        // The first run is clearly above, and there is no second: more replicates cannot help.
         let Look::Stop(stopping) = rule.look_at_one_of(1, 10, &far[..1]) else { panic!("hopeless") };
         assert!(!stopping.met && stopping.short_of == Some(ShortOf::SecondRun));
     }
@@ -303,15 +302,15 @@ mod tests {
             (stopping.verdict.unwrap(), at_end)
         };
         let (none, open) = (Verdict::None, Verdict::Undecided);
-        // The first look takes half of the curve's error, and each of two runs half of that; an end is looked
-        // at once, here with one run.
+        // The first look takes half of the curve's error, and each of two runs half of that; an end is
+        // looked at once, here with one run.
         assert_eq!(decided(1, 3.6), (open, none));
         assert_eq!(decided(2, 3.6), (open, open));
         assert_eq!(decided(1, 4.6), (none, none));
         assert_eq!(decided(2, 4.6), (open, none));
         assert_eq!(decided(4, 4.6), (open, none));
         assert_eq!(decided(4, 4.5), (open, open));
-        // At 50 % an end is classed by the usual intervals: Student's t at an error of 5 % is 2.36.
+        // At 50 % an end is classified by the usual intervals: Student's t at an error of 5 % is 2.36.
         let loose = decide(50.0, 8).error_of_curve(1).unwrap();
         assert_eq!(class_at(loose, &[run(2.3)])[0], open);
         assert_eq!(class_at(loose, &[run(2.4)])[0], none);
@@ -329,9 +328,9 @@ mod tests {
         assert!(needed.to_string().starts_with('1'), "{needed}");
     }
 
-    /// 1,500 runs with a first-run mean a fifth of the standard deviation beside the threshold, 2 % allowed
-    /// to be wrong: wrong ones are binomial; a true rate of 4 % would be seen with a power of 0.97. Skewed
-    /// replicates too.
+    /// 1,500 runs with a first-run mean a fifth of the standard deviation from the threshold, and 2 %
+    /// allowed errors: the number of errors is binomial, and a true rate of 4 % would be detected with a
+    /// power of 0.97. The test includes skewed replicates.
     #[test]
     fn the_error_rate_is_kept_however_often_it_looks() {
         for (skewed, mean) in
@@ -348,8 +347,8 @@ mod tests {
         }
     }
 
-    /// 3,000 runs until a 95 % interval is narrow enough: it still covers. A true coverage of 92 % would be
-    /// seen in about half of them.
+    /// 3,000 runs until a 95 % interval is narrow enough: it still covers. A true coverage of 92 % would
+    /// be detected in about half of them.
     #[test]
     fn an_interval_that_was_waited_for_covers() {
         for sd in [0.005, 0.02] {

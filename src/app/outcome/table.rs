@@ -1,9 +1,9 @@
-//! A table, described once for its file and for a page: a column has a name in the file, a heading if the
-//! page shows it, and one function that takes its cell from a row. A table without a file is described in the
-//! same way.
+//! Table described once for its file and for a page: a column has a name in the file, a heading if the
+//! page shows it, and one function that takes its cell from a row. A table without a file is described in
+//! the same way.
 //!
-//! [`csv_of()`] writes rows whose fields are the columns of a file. For other rows each column is described:
-//! [`Columns`].
+//! [`csv_of()`] writes rows whose fields are the columns of a file. For other rows, [`Columns`] describes
+//! each column.
 //!
 //! ```
 //! use voidwalk_app::outcome::table::Columns;
@@ -23,13 +23,13 @@ use std::fmt::{self, Display, Formatter};
 use voidwalk_core::text::visible;
 use voidwalk_practice::quantity::{Quantity, percent, significant, whole};
 
-/// The reason why writing to memory cannot fail.
+/// Reason why writing to memory cannot fail.
 const WRITTEN: &str = "memory takes rows of numbers and names";
 
-/// Rows as CSV, one column per field of their type; the header is present even without rows.
+/// Writes rows as CSV, one column for each field of their type; the header is present even without rows.
 pub fn csv_of<T: Serialize + DeserializeOwned>(rows: &[T]) -> Vec<u8> {
     let mut names: &[&str] = &[];
-    // It stops at the names, which are all that is needed.
+    // The call stops at the names, which are all that is needed.
     let _ = T::deserialize(Names(&mut names));
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     writer.write_record(names).expect(WRITTEN);
@@ -37,13 +37,13 @@ pub fn csv_of<T: Serialize + DeserializeOwned>(rows: &[T]) -> Vec<u8> {
     written(writer)
 }
 
-/// A table whose names hold no hidden characters.
+/// Returns a table whose names hold no hidden characters.
 fn written(writer: csv::Writer<Vec<u8>>) -> Vec<u8> {
     let text = String::from_utf8(writer.into_inner().expect(WRITTEN)).expect(WRITTEN);
     text.chars().map(visible).collect::<String>().into_bytes()
 }
 
-/// Reads the names of a type's fields, and nothing else.
+/// Reads only the names of a type's fields.
 struct Names<'a>(&'a mut &'static [&'static str]);
 
 impl<'de> Deserializer<'de> for Names<'_> {
@@ -69,46 +69,46 @@ impl<'de> Deserializer<'de> for Names<'_> {
     }
 }
 
-/// The columns of a table.
+/// Columns of a table.
 pub struct Columns<'a, T>(Vec<Column<'a, T>>);
 
 /// Function that takes the cell of a column from a row.
 type OfRow<'a, T, C> = Box<dyn Fn(&T) -> C + 'a>;
 
-/// A column of a file, and of a page that shows it.
+/// Column of a file and of a page that shows it.
 struct Column<'a, T> {
-    /// Names in a file; a value with its interval has three columns there, and one cell on a page.
+    /// Names in a file; a value with its interval has three columns there and one cell on a page.
     names: Vec<String>,
     cells: OfRow<'a, T, Vec<CellValue>>,
-    /// Heading in a workbook, if neither the page nor the name describes the column.
+    /// Heading in a workbook, if neither the page nor the name gives one.
     heading: Option<&'static str>,
     page: Option<PageColumn<'a, T>>,
-    /// Place on the page: before the columns with a greater number, after those with a smaller one.
+    /// Position on the page: a column comes before those with a greater number.
     place: i8,
-    /// Hidden on a brief page.
+    /// True if a brief page hides the column.
     is_detail: bool,
 }
 
-/// A column as a page shows it.
+/// Column as a page shows it.
 pub struct PageColumn<'a, T> {
-    /// Its first name in a file.
+    /// First name of the column in a file.
     pub name: String,
-    /// Quantity of the column, with its unit.
+    /// Quantity of the column with its unit.
     pub heading: Shown,
-    /// Kind of its cells.
+    /// Kind of the cells.
     pub kind: ColumnKind,
-    /// Its cell of a row.
+    /// Returns the cell of a row.
     pub cell: Box<dyn Fn(&T) -> Shown + 'a>,
 }
 
 /// Kind of the cells of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColumnKind {
-    /// The names of the rows.
+    /// Names of the rows.
     Name,
-    /// Texts.
+    /// Text.
     Text,
-    /// Numbers, aligned to the right.
+    /// Numbers, aligned right.
     Number,
 }
 
@@ -124,17 +124,17 @@ impl<'a, T> Columns<'a, T> {
         self.with(vec![name.into()], move |row| vec![cell(row).value()])
     }
 
-    /// Adds such a column of numbers, with this number of decimals.
+    /// Adds a column of numbers of a file, with this number of decimals.
     pub fn digits(self, name: &str, decimals: usize, value: impl Fn(&T) -> Option<f64> + 'a) -> Self {
         self.column(name, move |row| fixed(value(row), decimals))
     }
 
-    /// Adds such a column of fractions in percent.
+    /// Adds a column of fractions in percent of a file.
     pub fn percent(self, name: &str, value: impl Fn(&T) -> Option<f64> + 'a) -> Self {
         self.column(name, move |row| in_percent(value(row)))
     }
 
-    /// Adds such columns for a fraction in percent and the ends of its interval; on a page they are one.
+    /// Adds columns of a file for a fraction in percent and its interval; a page shows them as one column.
     pub fn statistic(self, names: [&str; 3], value: impl Fn(&T) -> Option<Statistic> + 'a) -> Self {
         self.with(names.map(String::from).to_vec(), move |row| {
             let ends = value(row)
@@ -149,7 +149,7 @@ impl<'a, T> Columns<'a, T> {
         self
     }
 
-    /// Adds a column of the names of the rows, which a page shows under this heading.
+    /// Adds a column of row names, which a page shows under this heading.
     pub fn name<C: TableCell>(
         self,
         name: impl Into<String>,
@@ -159,7 +159,7 @@ impl<'a, T> Columns<'a, T> {
         self.column(name, cell.clone()).shown(ColumnKind::Name, heading, cell)
     }
 
-    /// Adds a column of texts, which a page shows under this heading.
+    /// Adds a column of text, which a page shows under this heading.
     pub fn text<C: TableCell>(
         self,
         name: impl Into<String>,
@@ -179,12 +179,12 @@ impl<'a, T> Columns<'a, T> {
         self.column(name, cell.clone()).page_number(heading, cell)
     }
 
-    /// Shows this number on a page in the place of the last column.
+    /// Shows this number on a page instead of the last column.
     pub fn page_number<C: TableCell>(self, heading: impl TableCell, cell: impl Fn(&T) -> C + 'a) -> Self {
         self.shown(ColumnKind::Number, heading, cell)
     }
 
-    /// Shows this text on a page in the place of the last column.
+    /// Shows this text on a page instead of the last column.
     pub fn page_text<C: TableCell>(self, heading: impl TableCell, cell: impl Fn(&T) -> C + 'a) -> Self {
         self.shown(ColumnKind::Text, heading, cell)
     }
@@ -201,19 +201,19 @@ impl<'a, T> Columns<'a, T> {
         self
     }
 
-    /// Puts this heading on the last column in a workbook.
+    /// Sets the heading of the last column in a workbook.
     pub fn headed(mut self, heading: &'static str) -> Self {
         self.last().heading = Some(heading);
         self
     }
 
-    /// Shows the last column on a page before (below 0) or after (above 0) the others.
+    /// Moves the last column on a page before (below 0) or after (above 0) the others.
     pub fn place(mut self, place: i8) -> Self {
         self.last().place = place;
         self
     }
 
-    /// Adds the columns of the same rows that were described elsewhere.
+    /// Adds columns of the same rows that are described elsewhere.
     pub fn and(mut self, more: Self) -> Self {
         self.0.extend(more.0);
         self
@@ -243,7 +243,7 @@ impl<'a, T> Columns<'a, T> {
         Self(names.iter().map(column).collect())
     }
 
-    /// Turns the columns of a part of a row into columns of the whole row.
+    /// Turns columns of a part of a row into columns of the whole row.
     pub fn of_part<W: 'a>(self, part: impl Fn(&W) -> &T + Copy + 'a) -> Columns<'a, W>
     where
         T: 'a,
@@ -264,13 +264,13 @@ impl<'a, T> Columns<'a, T> {
         self.0.last_mut().expect("a column comes before what is said of it")
     }
 
-    /// The columns that a page shows, in its order.
+    /// Columns that a page shows, in order.
     pub fn of_page(mut self) -> impl Iterator<Item = PageColumn<'a, T>> {
         self.0.sort_by_key(|column| column.place);
         self.0.into_iter().filter_map(|column| column.page)
     }
 
-    /// The rows as CSV; no cell of it is a formula.
+    /// Writes the rows as CSV; no cell can be read as a formula.
     pub fn csv<'r>(&self, rows: impl IntoIterator<Item = &'r T>) -> Vec<u8>
     where
         T: 'r,
@@ -284,12 +284,12 @@ impl<'a, T> Columns<'a, T> {
         written(writer)
     }
 
-    /// Values that a file holds of a row.
+    /// Values of a row in a file.
     pub fn values(&self, row: &T) -> impl Iterator<Item = CellValue> {
         self.0.iter().flat_map(|column| (column.cells)(row))
     }
 
-    /// The headings of a workbook.
+    /// Headings in a workbook.
     pub fn headings(&self) -> Vec<String> {
         let names = self.0.iter().flat_map(|column| column.names.iter().map(move |name| (column, name)));
         let heading = |(column, name): (&Column<T>, &String)| match (column.heading, &column.page) {
@@ -301,13 +301,13 @@ impl<'a, T> Columns<'a, T> {
     }
 }
 
-/// A cell that no spreadsheet takes for a formula.
+/// Changes a cell so that no spreadsheet reads it as a formula.
 fn inert(cell: String) -> String {
     let formula = cell.starts_with(['=', '+', '-', '@', '\t', '\r']) && cell.parse::<f64>().is_err();
     if formula { format!("'{cell}") } else { cell }
 }
 
-/// Content of a cell of a file.
+/// Content of a cell in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CellValue {
     /// Nothing.
@@ -334,12 +334,12 @@ impl Display for CellValue {
     }
 }
 
-/// A cell or a heading of a page.
+/// Cell or heading of a page.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Shown {
     /// Text of the cell.
     pub text: String,
-    /// Smaller lines below the text.
+    /// Smaller lines below the main text.
     pub below: Vec<String>,
     /// Emphasis of the text.
     pub emphasis: Option<Emphasis>,
@@ -348,40 +348,40 @@ pub struct Shown {
 /// Emphasis of the text of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Emphasis {
-    /// Colour of a doubt.
+    /// Colour for doubt.
     Doubt,
     /// A tick if kept, or a cross if not.
     Kept(bool),
-    /// Colour of a run, by its number.
+    /// Colour of a run by its number.
     Run(u64),
-    /// No word is broken.
+    /// Words are not broken across lines.
     Whole,
 }
 
 impl Shown {
-    /// Adds a smaller line at its end, if there is one.
+    /// Adds a smaller line at the end, if there is one.
     pub fn below(mut self, line: impl Into<Option<String>>) -> Self {
         self.below.extend(line.into());
         self
     }
 
-    /// Puts the cell into one line.
+    /// Joins the cell into one line.
     pub fn line(self) -> String {
         [&[self.text], &self.below[..]].concat().join("; ")
     }
 
-    /// Emphasises the text, if an emphasis is given.
+    /// Emphasises the text if an emphasis is given.
     pub fn emphasised(self, emphasis: impl Into<Option<Emphasis>>) -> Self {
         Self { emphasis: emphasis.into(), ..self }
     }
 }
 
-/// Content of a cell: without a value empty in a file and a dash on a page.
+/// Content of a cell; without a value it is empty in a file and a dash on a page.
 pub trait TableCell {
-    /// In a file.
+    /// Content in a file.
     fn value(self) -> CellValue;
 
-    /// On a page.
+    /// Content on a page.
     fn shown(self) -> Shown;
 }
 
@@ -395,7 +395,7 @@ impl<C: TableCell> TableCell for Option<C> {
     }
 }
 
-/// A fraction in percent, on a page with its interval below it.
+/// Fraction in percent, with its interval below it on a page.
 impl TableCell for Statistic {
     fn value(self) -> CellValue {
         in_percent(Some(self.mean)).value()
@@ -442,7 +442,7 @@ cells! {
     Verdict: |class: Verdict| class.words().value(), Verdict::words;
 }
 
-/// A number with this number of decimals; empty without a number.
+/// Number with this number of decimals; empty without a number.
 fn fixed(value: Option<f64>, decimals: usize) -> String {
     value.map_or_else(String::new, |value| format!("{value:.decimals$}"))
 }

@@ -1,4 +1,4 @@
-//! The verdict: the paper's three classes, by mass eroded in the first and the second run.
+//! Verdict: the paper's three classes, by mass eroded in the first and the second run.
 //!
 //! | first run | second run | verdict |
 //! |---|---|---|
@@ -6,9 +6,9 @@
 //! | >= 7.5 % | < 7.5 % | some erosion |
 //! | >= 7.5 % | >= 7.5 % | continuing erosion |
 //!
-//! With replicates a run lies above or below the threshold if its whole 95 % interval of the mean does; an
-//! interval that straddles the threshold, or a missing second run that would decide, makes the verdict
-//! *undecided*.
+//! With replicates, a run is above or below the threshold if the whole 95 % interval of its mean is. The
+//! verdict is *undecided* if an interval straddles the threshold, or if a second run that would decide is
+//! missing.
 
 use super::record::{CurveEnd, CurveRange, Outcome, RunSummary, Statistic, Verdict};
 use serde::{Deserialize, Serialize};
@@ -20,7 +20,7 @@ pub const THRESHOLD: f64 = 0.075;
 /// True for a run below the threshold, false for one above; `None` if open.
 pub type BelowThreshold = Option<bool>;
 
-/// The class of two runs; the second may be missing.
+/// Classifies two runs; the second may be missing.
 pub fn classify(first: BelowThreshold, second: BelowThreshold) -> Verdict {
     match (first, second) {
         (Some(true), _) => Verdict::None,
@@ -30,24 +30,24 @@ pub fn classify(first: BelowThreshold, second: BelowThreshold) -> Verdict {
     }
 }
 
-/// The class of the sides of one run or two.
+/// Class by the sides of one or two runs.
 pub(super) fn class_of(below: &[BelowThreshold]) -> Verdict {
     classify(below.first().copied().flatten(), below.get(1).copied().flatten())
 }
 
-/// Tells if less than 7.5 % eroded, by exact comparison: `eroded * 40 < inserted * 3`.
+/// True if less than 7.5 % eroded, by exact comparison: `eroded * 40 < inserted * 3`.
 pub fn below_by_mass(eroded: f64, inserted: f64) -> bool {
     eroded * 40.0 < inserted * 3.0
 }
 
-/// Tells if less than 7.5 % eroded, for particles of one size: exact, on integers.
+/// True if less than 7.5 % eroded, for particles of one size: exact, on integers.
 pub fn below_by_count(eroded: u64, inserted: u64) -> bool {
     u128::from(eroded) * 40 < u128::from(inserted) * 3
 }
 
-/// The side of the mean over replicates: the side of its whole interval. The exact side of every replicate,
-/// `is_below`, decides for a single replicate, or if the replicates agree in value, so that the rounding of a
-/// mean decides nothing.
+/// Side of the mean over replicates: the side of its whole interval. For a single replicate, or for
+/// replicates of equal value, their exact side `is_below` decides, so that rounding of a mean decides
+/// nothing.
 pub fn below_by_interval(statistic: &Statistic, is_below: &[bool]) -> BelowThreshold {
     let no_scatter = statistic.sd.is_none_or(|sd| sd < 1e-12);
     if no_scatter && is_below.iter().all(|&below| below == is_below[0]) {
@@ -60,28 +60,28 @@ pub fn below_by_interval(statistic: &Statistic, is_below: &[bool]) -> BelowThres
     }
 }
 
-/// What leaves a verdict undecided.
+/// Cause that leaves a verdict undecided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub enum UndecidedBy {
     /// The ends of the constriction curve's range give another class than the curve itself.
     #[serde(rename = "constriction curve")]
     Curve,
-    /// The second run, which was not asked for, would tell the classes apart.
+    /// A second run, which was not requested, would tell the classes apart.
     #[serde(rename = "second run")]
     SecondRun,
-    /// The replicates.
+    /// The replicates do not separate the classes.
     #[serde(rename = "replicates")]
     Replicates,
 }
 
 impl UndecidedBy {
-    /// All causes.
+    /// Every cause.
     pub const ALL: [Self; 3] = [Self::Curve, Self::SecondRun, Self::Replicates];
 }
 
 impl Outcome {
-    /// The cause that leaves the verdict undecided; `None` if it is decided.
+    /// Cause that leaves the verdict undecided; `None` if it is decided.
     pub fn undecided_by(&self) -> Option<UndecidedBy> {
         if self.model.class != Verdict::Undecided {
             return None;
@@ -102,13 +102,13 @@ impl Outcome {
     }
 }
 
-/// The verdict of replicates that are walked also at the ends of the range in which the curve is known.
+/// Verdict of replicates that are also walked at the ends of the range of the curve.
 ///
-/// If the ends of a guess differ, the verdict is undecided. The ends of a filter from the library are the
-/// coarsest and the finest constrictions that it may have, loose or dense: the worst class is its verdict,
-/// which errs on the safe side. A walk with an open class that could be worse leaves the verdict undecided.
+/// If the ends of a guess differ, the verdict is undecided. The ends of a filter from the library are its
+/// coarsest and finest possible constrictions, loose or dense: the worst class is its verdict, which is
+/// on the safe side. A walk with an open class that could be worse leaves the verdict undecided.
 impl CurveRange {
-    /// The range of a verdict whose own curve gives `verdict` and `runs`; `None` without ends.
+    /// Builds the range of a verdict whose own curve gives `verdict` and `runs`; `None` without ends.
     pub fn new(
         verdict: Verdict,
         runs: &[Statistic],
@@ -130,7 +130,7 @@ impl CurveRange {
         Some(Self { verdict, ends, worst_counts, could_be, eroded_mass_fraction })
     }
 
-    /// The class that the whole range supports.
+    /// Class that the whole range supports.
     pub fn whole(&self) -> Verdict {
         match self.agrees() {
             true => self.verdict,
@@ -139,7 +139,7 @@ impl CurveRange {
         }
     }
 
-    /// The worst class of the range; undecided if a walk with an open class could be of a worse one.
+    /// Worst class of the range; undecided if a walk with an open class could be worse.
     fn worst(&self) -> Verdict {
         let all = || self.ends.iter().map(|end| end.walked.verdict).chain([self.verdict]);
         let decided = [Verdict::Continuing, Verdict::Some, Verdict::None];
@@ -147,7 +147,7 @@ impl CurveRange {
         let is_open = all().any(|verdict| verdict == Verdict::Undecided);
         let above =
             |run: usize| self.eroded_mass_fraction.get(run).is_none_or(|[_, high]| *high >= THRESHOLD);
-        // The worst class that the intervals of the whole range allow.
+        // Worst class that the intervals of the whole range allow.
         let could_be = self.could_be.unwrap_or_else(|| classify(Some(!above(0)), Some(!above(1))));
         match worst {
             Some(Verdict::Continuing) => Verdict::Continuing,
@@ -156,38 +156,38 @@ impl CurveRange {
         }
     }
 
-    /// Tells if the ends have the class of the curve itself.
+    /// True if the ends have the class of the curve itself.
     pub fn agrees(&self) -> bool {
         self.ends.iter().all(|end| end.walked.verdict == self.verdict)
     }
 }
 
-/// Runs of replicates as they come, in any order.
+/// Runs of replicates received so far, in any order.
 #[derive(Clone, Debug, Default)]
 pub struct SoFar {
-    /// Mass eroded, and true if it is below the threshold, by replicate and run.
+    /// Eroded mass, and true if it is below the threshold, by replicate and run.
     walked: BTreeMap<u64, BTreeMap<u64, (f64, bool)>>,
 }
 
-/// A look at the complete replicates. It is not a verdict: more replicates follow, and an interval that is
+/// Look at the complete replicates. It is not a verdict: more replicates follow, and an interval that is
 /// looked at repeatedly lies on the wrong side more often than its level states.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FirstLook {
     /// Number of complete replicates.
     pub replicates: usize,
-    /// The class that their intervals support; undecided if they support none.
+    /// Class that their intervals support; undecided if they support none.
     pub class: Verdict,
     /// Eroded mass fraction, one per run.
     pub eroded: Vec<Statistic>,
 }
 
 impl SoFar {
-    /// Takes a run of a replicate, both counted from 1.
+    /// Adds a run of a replicate, both counted from 1.
     pub fn add(&mut self, replicate: u64, run: u64, eroded_mass_fraction: f64, below_threshold: bool) {
         self.walked.entry(replicate).or_default().insert(run, (eroded_mass_fraction, below_threshold));
     }
 
-    /// The replicates that have `runs` runs; `None` until one replicate is complete.
+    /// Looks at the replicates that have `runs` runs; `None` until one is complete.
     pub fn look(&self, runs: u64) -> Option<FirstLook> {
         let is_whole = |walked: &&BTreeMap<u64, (f64, bool)>| (1..=runs).all(|run| walked.contains_key(&run));
         let whole: Vec<_> = self.walked.values().filter(is_whole).collect();
@@ -277,7 +277,7 @@ mod tests {
         assert_eq!(whole(Some, Some, None), Some);
         assert_eq!(whole(None, Some, None), Some);
         assert_eq!(whole(Some, Continuing, None), Continuing);
-        // Up to 10 % erode in the first run and 5 % in the second: the open class is some erosion at most.
+        // At most 10 % and 5 % erode in the two runs: the open class is some erosion at worst.
         assert_eq!(whole(Undecided, Some, Undecided), Some);
         assert_eq!(whole(None, None, Undecided), Undecided);
         assert_eq!(whole(None, Undecided, None), Undecided);
@@ -303,7 +303,7 @@ mod tests {
         so_far.add(1, 2, 0.011, true);
         let two = so_far.look(2).unwrap();
         assert_eq!((two.replicates, two.class), (2, Verdict::Some));
-        // Far apart, they support no class.
+        // Values far apart support no class.
         so_far.add(3, 1, 0.0, true);
         so_far.add(3, 2, 0.9, false);
         assert_eq!(so_far.look(2).unwrap().class, Verdict::Undecided);

@@ -1,4 +1,4 @@
-//! The page of a batch, from `batch.json` alone.
+//! Page of a batch, made from `batch.json` alone.
 
 use std::path::Path;
 
@@ -27,10 +27,10 @@ use voidwalk_practice::{BatchFilter, BatchRow};
 
 const RECORD: &str = "batch.json";
 
-/// Rows of the page's table; all are in `batch.csv`.
+/// Maximum number of rows in the page's table; all are in `batch.csv`.
 const LISTED: usize = 2000;
 
-/// Lines of the filters whose D15F is drawn.
+/// Colours and dashes of the lines that show the filters' D15F.
 const LINES: [(Colour, Dash); 6] = [
     (BLACK, Dash::Dashed),
     (VERMILLION, Dash::Dotted),
@@ -40,8 +40,8 @@ const LINES: [(Colour, Dash); 6] = [
     (BLACK, Dash::Dotted),
 ];
 
-/// Writes `batch.html` and `figures/*.svg` into the folder of a batch.
-/// A file that is missing or malformed is an error, and nothing is written then.
+/// Writes `batch.html` and `figures/*.svg` into the folder of a batch. A missing or malformed file is an
+/// error, and nothing is written then.
 pub fn write_batch(folder: &Path) -> Result<Written, ReportError> {
     let path = folder.join(RECORD);
     let batch: WalkedBatch = json(&path)?;
@@ -56,7 +56,7 @@ fn alike<'a>(batch: &'a WalkedBatch, filter: &str) -> Vec<&'a str> {
     names.filter(|other| soil_name(other) == soil_name(filter)).collect()
 }
 
-/// Name of a filter here: its soil, with a number if another filter has the same soil name.
+/// Name of a filter on the page: its soil, with a number if another filter has the same soil name.
 fn filter_name(batch: &WalkedBatch, filter: &str) -> String {
     let (alike, soil) = (alike(batch, filter), soil_name(filter));
     match alike.iter().position(|other| *other == filter) {
@@ -65,7 +65,7 @@ fn filter_name(batch: &WalkedBatch, filter: &str) -> String {
     }
 }
 
-/// The file of each filter that has a number; empty if the names tell them apart.
+/// Files of the numbered filters; empty if names alone distinguish them.
 fn key(batch: &WalkedBatch) -> Markup {
     let line = |filter: &BatchFilter| {
         let alike = alike(batch, &filter.name);
@@ -118,8 +118,8 @@ fn page(folder: &Path, batch: &WalkedBatch) -> Sections {
         .section("How this was made", &made)
 }
 
-/// Answers to a client's question about a filter: the number of samples that it holds, by the rules and by
-/// the walk, and the samples that govern.
+/// Answers for a client about a filter: the number of samples that it holds, by the rules and by the walk,
+/// and the samples that govern.
 fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup {
     let walks = walks(batch, &filter.name, SizeUnit::of(false, batch.inches));
     let rules: Vec<BatchRow> = batch.of_filter(&filter.name).map(|row| row.rules.clone()).collect();
@@ -158,13 +158,13 @@ fn of_filter(folder: &Path, batch: &WalkedBatch, filter: &BatchFilter) -> Markup
     }
 }
 
-/// D15F of a filter, with enough digits to tell it apart from the nearest limit.
+/// D15F of a filter, with enough digits to distinguish it from the nearest limit.
 fn d15f(rules: &[BatchRow]) -> Option<String> {
     let beside = rules.iter().map(|row| d15f_and_limit(row, SizeUnit::Mm));
     beside.filter_map(|[d15f, _]| d15f).max_by_key(String::len)
 }
 
-/// The limit of a sample, D15F beside it, and the answer.
+/// Limit of a sample, the filter's D15F, and the answer.
 fn limit_and_answer(folder: &Path, row: &WalkedRow, inches: bool) -> Markup {
     let rules = &row.rules;
     let unit = SizeUnit::of(false, inches);
@@ -207,8 +207,7 @@ fn table(folder: &Path, batch: &WalkedBatch) -> Markup {
     }
 }
 
-/// The curves of one base and of its filters, with the limits of D15F by practice; `None` for several
-/// samples.
+/// Curves of one base and of its filters, with the limits of D15F by practice; `None` for several samples.
 fn curves(batch: &WalkedBatch) -> Option<Drawn> {
     if !batch.has_one_base() {
         return None;
@@ -248,10 +247,10 @@ fn curves(batch: &WalkedBatch) -> Option<Drawn> {
     Some(Drawn::new("batch-curves", figure, caption))
 }
 
-/// The limit of every sample against its D85B, with the D15F of the filters; `None` without a limit, or for
-/// one base.
+/// Limit of every sample against its D85B, with the D15F of the filters; `None` without a limit, or for one
+/// base.
 fn limits(batch: &WalkedBatch) -> Option<Drawn> {
-    // A limit belongs to the sample: filters only differ if rules require more of one.
+    // A limit belongs to the sample; filters differ only if the rules require more of one.
     let known = |row: &&WalkedRow| row.rules.d85b_mm.is_some() && row.rules.limit_mm.is_some();
     let rows: Vec<&WalkedRow> = batch.rows.iter().filter(known).collect();
     let d85b = |row: &WalkedRow| row.rules.d85b_mm.unwrap_or(f64::NAN);
@@ -286,7 +285,7 @@ fn limits(batch: &WalkedBatch) -> Option<Drawn> {
     Some(Drawn::new("batch-limits", figure, caption))
 }
 
-/// Mass eroded in the first run against D15F by the limit: the rule and the walk, side by side.
+/// Mass eroded in the first run against D15F over its limit, for comparing rule and walk.
 fn eroded(batch: &WalkedBatch) -> Option<Drawn> {
     let case = |row: &WalkedRow| {
         let walk: &SampleWalk = row.walk.as_ref()?;
@@ -313,11 +312,11 @@ fn eroded(batch: &WalkedBatch) -> Option<Drawn> {
         Rule::new(Across::Y, 100.0 * batch.threshold, BLACK).dash(Dash::Dashed).label(&limit),
         Rule::new(Across::X, 1.0, BLACK).dash(Dash::Dotted).label("limit by practice"),
     ];
-    let what = "Percent of the base mass eroded in the first run against D15F by its limit, by class";
+    let what = "Percent of the base mass eroded in the first run against D15F over its limit, by class";
     let figure = cases::against_ratio(["Rules and walk", what], (x, y), rules, &symbols);
-    let caption = "One symbol a sample and filter, with the 95 % interval over its replicates. Up to 1 D15F \
-                   is within the limit. Hollow: the limit is at most this, so the ratio is at least this. \
-                   Black: nothing erodes in the model, and a rule of retention or of the filter’s own \
+    let caption = "One symbol per sample and filter, with the 95 % interval over its replicates. Up to 1 \
+                   D15F is within the limit. Hollow: the limit is at most this, so the ratio is at least \
+                   this. Black: nothing erodes in the model, and a rule of retention or of the filter’s own \
                    stability is not met. Below the dashed line the walk erodes less than the threshold. The \
                    class also takes the second run.";
     Some(Drawn::new("batch-eroded", figure, caption))

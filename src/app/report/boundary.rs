@@ -1,4 +1,4 @@
-//! The page of the model's boundaries: one table and one figure, from `boundary.json` and `boundary.csv`
+//! Page of the model's boundaries: one table and one figure, made from `boundary.json` and `boundary.csv`
 //! alone.
 
 use std::path::Path;
@@ -22,7 +22,7 @@ use crate::words::{FOREMOST, base_size, row_note, sentence};
 use voidwalk_practice::Note;
 use voidwalk_practice::quantity::{NumberRole, SizeUnit, length, percent, significant, whole};
 
-/// Writes `boundary.html` and its figure into a folder, from `boundary.json` and `boundary.csv` there.
+/// Writes `boundary.html` and its figure into the folder that holds `boundary.json` and `boundary.csv`.
 pub fn write_boundary(folder: &Path) -> Result<Written, ReportError> {
     let all: Boundaries = json(&folder.join("boundary.json"))?;
     let walks: Vec<(u64, WalkRow)> = rows(&folder.join("boundary.csv"))?;
@@ -39,7 +39,7 @@ pub fn write_boundary(folder: &Path) -> Result<Written, ReportError> {
         p.small { (clean(&left_out_in_brief(&all.model_leaves_out))) " The boundaries of the walk are the \
             model’s. They do not replace a filter test or a designer’s judgement." }
     } };
-    // Folded on a screen, and open in print.
+    // They are collapsed on a screen and expanded in print.
     let others = html! { @if !rest.is_empty() {
         details { summary { (rest.len()) " more" } ul { @for note in rest { li { (clean(note)) } } } }
     } };
@@ -60,7 +60,7 @@ pub fn write_boundary(folder: &Path) -> Result<Written, ReportError> {
         .write(folder, "boundary.html", &footer)
 }
 
-/// The soil of the filter with its given sizes, and its curve.
+/// Soil of the filter with its given sizes, and its curve.
 fn filter_words(all: &Boundaries) -> Markup {
     html! {
         (titled_by_file("filter", "filter of the shape", &all.filter))
@@ -78,7 +78,7 @@ fn as_given(all: &Boundaries) -> Option<String> {
     (!facts.is_empty()).then(|| facts.join(", "))
 }
 
-/// The line of the model, and the notes that matter most.
+/// Line of the model, and the most important notes.
 fn model(all: &Boundaries, foremost: &[String], more: usize) -> Markup {
     let sentence = unbroken(&held(all, size_unit(all)));
     html! {
@@ -91,8 +91,8 @@ fn model(all: &Boundaries, foremost: &[String], more: usize) -> Markup {
     }
 }
 
-/// Draws the row that holds least; if no row is known to hold, the first that has a boundary or was walked at
-/// all.
+/// Figure of the row that holds least; if no row is known to hold, of the first row that has a boundary, else
+/// of the first that was walked.
 fn erosion(all: &Boundaries, walks: &[WalkRow]) -> Option<Drawn> {
     let is_of = |row: &BoundaryRow, walk: &&WalkRow| {
         walk.density == row.searched() && walk.thickness == row.thickness
@@ -147,15 +147,14 @@ fn erosion(all: &Boundaries, walks: &[WalkRow]) -> Option<Drawn> {
     Some(Drawn::new("boundary", figure, caption))
 }
 
-/// The zones of the model, over the whole width of the figure. No zone is green, which is a colour of
-/// practice.
+/// Zones of the model, over the whole width of the figure. No zone is green: green is reserved for practice.
 fn zones(figure: &mut Figure, row: &BoundaryRow, d85: f64, (left, right): (f64, f64)) {
     let edges = |boundary: &Boundary| {
         let at = |ratio: f64| (ratio * d85).clamp(left, right);
-        // Some erosion begins at the left edge if no ratio is known that nearly all networks hold.
+        // "Some erosion" begins at the left edge if no ratio is known that nearly all networks hold.
         [at(boundary.cautious().unwrap_or(0.0)), at(boundary.high.unwrap_or(boundary.median))]
     };
-    // A row that holds to the end of the search is drawn to that end.
+    // A row that holds to the end of the search is drawn up to that end.
     let [from, to] = match (&row.no_erosion, row.holds_to) {
         (Some(first), _) => edges(first),
         (None, Some(ratio)) => [right, (ratio * d85).clamp(left, right)],
@@ -199,7 +198,7 @@ fn draw_runs(figure: &mut Figure, walks: &[&WalkRow], d85: f64) {
     }
 }
 
-/// The columns of the boundaries, whose cells the page decorates.
+/// Columns of the boundaries, whose cells the page decorates.
 fn columns<'a>() -> Columns<'a, BoundaryRow> {
     let thick = |row: &BoundaryRow| {
         let mm = row.thickness_mm.map(|mm| format!(", {} mm", significant(mm))).unwrap_or_default();
@@ -218,11 +217,11 @@ fn columns<'a>() -> Columns<'a, BoundaryRow> {
         })
 }
 
-/// The boundaries of the model, a row a density and thickness.
+/// Boundaries of the model, one row per density and thickness.
 fn boundaries(all: &Boundaries) -> Markup {
     let of_base =
         all.base.size().map_or(String::new(), |base| format!(" ({})", base_size(&base, size_unit(all))));
-    // A boundary of no erosion is stated as a limit.
+    // A boundary of no erosion is given as a limit.
     let unit = size_unit(all);
     let limit = |mm: f64| length(mm, unit).role(NumberRole::Greatest).to_string();
     let rounded = |mm: f64| length(mm, unit).to_string();
@@ -252,7 +251,7 @@ fn boundaries(all: &Boundaries) -> Markup {
                 ", median of " (whole(all.replicates)) " networks (in brackets "
                 (share_of_networks(all.replicates)) ")"
             }
-            "; below it the D15F in mm where sizes have a unit."
+            "; below it the D15F in mm if sizes have a unit."
         }
         (Table::new(&all.boundaries, columns()).class("study")
             .showing("no_erosion", |row| cell(row.shown()[0].as_ref(), &row.no_erosion_notes, true))
@@ -271,7 +270,7 @@ fn boundaries(all: &Boundaries) -> Markup {
     }
 }
 
-/// A coefficient of uniformity, or words for an unknown one.
+/// Coefficient of uniformity, or words for an unknown one.
 fn cu(value: Option<f64>) -> String {
     value.map_or_else(|| "not known".to_owned(), |cu| significant(cu).in_digits(4).to_string())
 }
@@ -318,7 +317,7 @@ fn ratio(value: f64) -> String {
     format!("{value:.2}")
 }
 
-/// The band in brackets, if there are enough networks for one.
+/// Band in brackets, if there are enough networks for one.
 fn in_band(low: Option<f64>, high: Option<f64>, words: impl Fn(f64) -> String) -> String {
     let end = |value: Option<f64>| value.map_or_else(|| "unknown".to_owned(), &words);
     if low.or(high).is_some() { format!(" ({} to {})", end(low), end(high)) } else { String::new() }
@@ -395,7 +394,7 @@ mod tests {
     const CSV: &str = "density,thickness,network,d15f_over_d85b,eroded_first,eroded_second,d85b_of\n\
                        <loose>,60 layers,1,4.0,0.01,,\n<loose>,60 layers,1,5.0,0.5,0.4,\n";
 
-    /// A percentile of few networks would lie between two of them.
+    /// With few networks, a percentile would lie between two of them.
     #[test]
     fn of_few_networks_the_page_has_least_and_most() {
         use crate::outcome::boundary::NetworkBoundaries;
@@ -426,7 +425,7 @@ mod tests {
         );
     }
 
-    /// Whatever the model says, its line has no colour, no zone of its figure is green, and names are inert.
+    /// The model's line has no colour, no zone of its figure is green, whatever it says, and names are inert.
     #[test]
     fn nothing_of_the_model_is_green_and_names_are_inert() {
         for no_erosion in [Boundary::of(&[Ok(4.3), Ok(4.5)], Some(0.2)), None] {
@@ -467,7 +466,7 @@ mod tests {
         assert!(page.contains("D15F 0.806 mm") && !page.contains("0.807"), "{page}");
         all.inches = true;
         let page = written(&all, &csv).replace('\u{202f}', " ");
-        // 0.806 mm are 0.03173 in.
+        // 0.806 mm is 0.03173 in.
         let inches = page.matches("0.806 mm (").count();
         assert!(inches > 1 && inches == page.matches("0.0317 in").count(), "{page}");
     }

@@ -1,5 +1,5 @@
-//! The page of a campaign, from `campaign.json` and `ledger.jsonl` alone: one row a case, with a link to its
-//! page.
+//! Page of a campaign, made from `campaign.json` and `ledger.jsonl` alone, with one row per case and a link
+//! to its page.
 
 use super::cases;
 use super::cases::AtRatio;
@@ -21,23 +21,23 @@ use std::path::Path;
 use voidwalk_practice::quantity::{SizeUnit, duration, whole};
 use voidwalk_practice::rules::RULES;
 
-/// Cases drawn one by one; all are in the table.
+/// Maximum number of cases drawn one by one; all are in the table.
 const DRAWN: usize = 120;
 
-/// Writes `report.html` and `figures/*.svg` into the folder of a campaign.
-/// A file that is missing or malformed is an error, and nothing is written then.
+/// Writes `report.html` and `figures/*.svg` into the folder of a campaign. A missing or malformed file is an
+/// error, and nothing is written then.
 pub fn write_campaign(folder: &Path) -> Result<Written, ReportError> {
     let about: Campaign = json(&folder.join(ABOUT))?;
     let ledger: Vec<LedgerLine> = lines(&folder.join(LEDGER))?;
     page(folder, &about, &ledger).write(folder, "report.html", &citation())
 }
 
-/// The page of a campaign whose `campaign.json` and `ledger.jsonl` hold these texts; writes nothing.
-/// A text that is malformed is an error.
+/// Page of a campaign whose `campaign.json` and `ledger.jsonl` hold these texts; writes nothing. A malformed
+/// text is an error.
 pub fn campaign_page(about: &str, ledger: &str) -> Result<String, ReportError> {
     let about: Campaign = json_of(Path::new(ABOUT), about)?;
     let ledger: Vec<LedgerLine> = lines_of(Path::new(LEDGER), ledger)?;
-    // Without a folder no case has a page of its own.
+    // Without a folder, no case has a page of its own.
     Ok(page(Path::new(""), &about, &ledger).text(&citation()))
 }
 
@@ -53,7 +53,7 @@ fn largest_eroded(line: &LedgerLine) -> Option<Statistic> {
     line.runs.first().and_then(|run| run.largest_eroded_over_d15f)
 }
 
-/// A quantity of each case against the ratio of the filter rules.
+/// Quantity of each case against the ratio of the filter rules.
 fn against_ratio(
     words: [&str; 2],
     y: Axis,
@@ -83,7 +83,7 @@ fn against_ratio(
 fn by_ratio(ledger: &[LedgerLine]) -> Drawn {
     let y = Axis::percent("Base eroded in the first run, by mass (%)");
     let what =
-        "Percent of the base mass eroded in the first run against D15F/D85B, one symbol a case, by class";
+        "Percent of the base mass eroded in the first run against D15F/D85B, one symbol per case, by class";
     let mut rules = vec![Rule::new(Across::Y, 100.0 * THRESHOLD, BLACK).dash(Dash::Dashed).label("7.5 %")];
     let ratios = || ledger.iter().map(|line| line.ratios.d15f_over_d85b);
     if ratios().any(|r| r < 4.0) && ratios().any(|r| r > 4.0) {
@@ -92,10 +92,9 @@ fn by_ratio(ledger: &[LedgerLine]) -> Drawn {
     let figure = against_ratio(["Erosion against the filter ratio", what], y, rules, ledger, |line| {
         eroded(line, 0).map(|first| (100.0 * first.mean, interval_in_percent(first)))
     });
-    let caption = "Base eroded in the first run against D15F/D85B: one symbol a case, with the 95 % interval \
-                   over its replicates. D85B is that of the base as it is walked: the table of cases \
-                   says where \
-                   it is regraded. The class also takes the second run.";
+    let caption = "Base eroded in the first run against D15F/D85B: one symbol per case, with the 95 % \
+                   interval over its replicates. D85B is that of the base as it is walked: the table of \
+                   cases says where it is regraded. The class also takes the second run.";
     Drawn::new("by-ratio", figure, caption)
 }
 
@@ -109,13 +108,13 @@ fn both_runs(ledger: &[LedgerLine]) -> Drawn {
     Drawn::new("both-runs", figure, caption)
 }
 
-/// Largest particle that left, over D15F.
+/// Largest eroded particle, over D15F.
 fn largest(ledger: &[LedgerLine]) -> Drawn {
     let quantity = |line: &LedgerLine| largest_eroded(line).map(|s| (s.mean, interval(&s)));
     let highest =
         ledger.iter().filter_map(largest_eroded).map(|s| s.high.unwrap_or(s.mean)).fold(0.2, f64::max);
     let y = Axis::linear("Largest eroded particle / D15F, first run (–)", 0.0, 1.05 * highest);
-    let what = "Largest eroded particle over D15F against D15F/D85B, one symbol a case";
+    let what = "Largest eroded particle over D15F against D15F/D85B, one symbol per case";
     let figure = against_ratio(["Largest eroded particle", what], y, Vec::new(), ledger, quantity);
     let caption = "Largest particle that left the filter in the first run, over D15F.";
     Drawn::new("largest-eroded", figure.sizes((720.0, 340.0), (358.0, 320.0)), caption)
@@ -167,14 +166,13 @@ fn provenance(about: &Campaign, ledger: &[LedgerLine]) -> Markup {
     }
 }
 
-/// Cases listed in the page; all are in `cases.csv`.
+/// Maximum number of cases listed in the page; all are in `cases.csv`.
 const LISTED: usize = 2000;
 
-/// Different warnings that are listed.
+/// Maximum number of different warnings listed.
 const WARNINGS: usize = 40;
 
-/// The table of all cases, and below it an explanation of its counts. Cases whose folder holds a page are
-/// linked.
+/// Table of all cases, with an explanation of its counts below. Cases with a page in their folder are linked.
 fn all(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Markup {
     let table = Table::new(ledger.iter().take(LISTED), columns(&about.factors)).class("cases");
     html! {
@@ -191,7 +189,7 @@ fn all(folder: &Path, about: &Campaign, ledger: &[LedgerLine]) -> Markup {
     }
 }
 
-/// Causes that leave verdicts undecided, each once with the number of cases.
+/// Causes that leave verdicts undecided, each with the number of cases.
 fn undecided(ledger: &[LedgerLine]) -> Markup {
     let open = || ledger.iter().filter(|line| line.verdict == Verdict::Undecided);
     let count = |by| open().filter(|line| line.undecided_by == Some(by)).count() as u64;
@@ -206,7 +204,7 @@ fn undecided(ledger: &[LedgerLine]) -> Markup {
     }
 }
 
-/// The class, with a link to the case's own page, and below it the replicates if they differ.
+/// Class with a link to the case's own page and, below it, the classes of the replicates if they differ.
 fn class(line: &LedgerLine, folder: &Path) -> Markup {
     let mixed = line.replicate_verdicts.iter().filter(|count| **count > 0).count() > 1;
     html! {
@@ -215,7 +213,7 @@ fn class(line: &LedgerLine, folder: &Path) -> Markup {
     }
 }
 
-/// "7 no, 3 some".
+/// Classes of the replicates, counted, as in "7 no, 3 some".
 fn replicates_by_class(line: &LedgerLine) -> String {
     let parts = Verdict::ALL.iter().zip(line.replicate_verdicts).filter(|(_, count)| *count > 0);
     parts
@@ -229,7 +227,7 @@ fn rules_of(line: &LedgerLine) -> Vec<String> {
     line.rules_not_met.iter().map(|id| name(id).unwrap_or_else(|| id.clone())).collect()
 }
 
-/// Texts of the cases, each once with the number of cases that have it, the commonest first.
+/// Texts of the cases, each with the number of its cases, the most common first.
 fn tally(ledger: &[LedgerLine], texts: impl Fn(&LedgerLine) -> Vec<String>) -> Vec<(String, u64)> {
     let mut counts: BTreeMap<String, u64> = BTreeMap::new();
     for text in ledger.iter().flat_map(texts) {

@@ -1,5 +1,5 @@
-//! Parts of the pages of campaigns and batches for one case among others: its class with a link, and both
-//! runs of all cases.
+//! One case among others in the pages of campaigns and batches: its class with a link, and figures of all
+//! cases.
 
 use std::path::Path;
 
@@ -14,19 +14,19 @@ use voidwalk_core::text::is_plain_part;
 /// Symbols of the classes, in the order of [`Verdict::ALL`].
 const SHAPES: [Shape; 4] = [Shape::Circle, Shape::Diamond, Shape::Square, Shape::Triangle];
 
-/// A case in a figure: x is a ratio, y a value with its interval.
+/// Case in a figure: x is a ratio, y a value with its interval.
 pub(super) struct AtRatio {
     pub ratio: f64,
     pub class: Verdict,
     pub value: f64,
     pub interval: Option<(f64, f64)>,
-    /// True if practice contradicts "no erosion" of the case.
+    /// True if the case has no erosion, but practice contradicts that.
     pub is_against: bool,
     /// True if the ratio is only a lower bound.
     pub is_bound: bool,
 }
 
-/// One symbol per case, by class, over rules; the words are title and description.
+/// Figure with one symbol per case, by class, over rules; `words` are its title and description.
 pub(super) fn against_ratio(
     [title, what]: [&str; 2],
     (x, y): (Axis, Axis),
@@ -40,7 +40,7 @@ pub(super) fn against_ratio(
             let point = Point::new(case.ratio, case.value, colour, shape).y_interval(case.interval);
             if case.is_bound { point.hollow() } else { point }
         };
-        // "No erosion" in green would mean that the filter is a good one.
+        // Green for "no erosion" would mean that the filter is good.
         let is_doubted = |case: &AtRatio| class == Verdict::None && case.is_against;
         let of_class = || cases.iter().filter(|case| case.class == class);
         let plain = of_class().filter(|case| !is_doubted(case));
@@ -52,7 +52,7 @@ pub(super) fn against_ratio(
     figure
 }
 
-/// The class, with a link to the case's own page if it exists; only a page inside the folder of all cases is
+/// Class, with a link to the case's own page if it exists; only pages inside the folder of all cases are
 /// linked.
 pub(super) fn class(verdict: Verdict, folder: &Path, case: &str) -> Markup {
     let (words, page) = (verdict.words(), format!("{case}/report.html"));

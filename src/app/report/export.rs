@@ -1,5 +1,5 @@
-//! The tables of a folder for other programs: arrays for NumPy, grids of VTK for ParaView (`.vtu`, its
-//! numbers in binary at its end).
+//! Tables of a folder for other programs: NumPy arrays and VTK grids for ParaView (`.vtu` with its numbers in
+//! binary at the end).
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -9,22 +9,22 @@ use super::files::{ReportError, malformed, rows, text};
 use crate::outcome::record::{BlockedRow, ConstrictionRow, LayerRow, RetainedRow, VoidRow};
 use voidwalk_core::store::{Array, make_folder, npz, write_whole};
 
-/// The files that were written, and the columns of words that were not.
+/// Files that were written, and columns of words that were not.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Exported {
     /// The files.
     pub files: Vec<PathBuf>,
-    /// `TABLE.COLUMN`.
+    /// Columns of words, as `TABLE.COLUMN`.
     pub words: Vec<String>,
 }
 
-/// Writes `export/arrays.npz`, with an array `TABLE.COLUMN` of every column of numbers of every CSV table in
-/// the folder; `export/layers.vtu` of a run: a block for each layer, with the means over the replicates;
-/// `export/grains.vtu` of a packing: a point for each grain, with its diameter; of a run that kept its
-/// voids `voids.pvd` and `constrictions.pvd`, with a grid for each moment; and `verdict.xlsx` of a run.
+/// Writes `export/arrays.npz`, with an array `TABLE.COLUMN` for each numeric column of every CSV table in the
+/// folder. For a run it also writes `export/layers.vtu`, a block per layer with the means over the
+/// replicates, and `verdict.xlsx`; for a packing `export/grains.vtu`, a point per grain with its diameter;
+/// for a run that kept its voids `voids.pvd` and `constrictions.pvd`, with a grid for each moment.
 ///
 /// # Errors
-/// [`ReportError`] names the file that cannot be read, is no table, or cannot be written.
+/// [`ReportError`] names the file that cannot be read, is not a table, or cannot be written.
 pub fn export(folder: &Path) -> Result<Exported, ReportError> {
     let tables = tables(folder)?;
     let (mut arrays, mut words) = (Vec::new(), Vec::new());
@@ -98,7 +98,7 @@ fn table(path: &Path) -> Result<Table, ReportError> {
     Ok(table)
 }
 
-/// A column as whole numbers if all are whole, else as numbers with empty cells as NaN; `None` for words.
+/// Column of integers if all values are integers, else of numbers (NaN if empty); `None` for words.
 fn numbers(fields: &[String]) -> Option<Array> {
     if let Some(whole) = fields.iter().map(|field| field.parse().ok()).collect::<Option<Vec<i64>>>() {
         return Some(Array::of_whole(whole));
@@ -107,7 +107,7 @@ fn numbers(fields: &[String]) -> Option<Array> {
     fields.iter().map(float).collect::<Option<Vec<f64>>>().map(Array::of_floats)
 }
 
-/// A column of blocks, one for each layer, the first layer on top; lengths are in layers.
+/// Blocks in a column, one per layer, the first layer on top; lengths are in layers.
 fn layers(path: &Path) -> Result<Vec<u8>, ReportError> {
     let rows = rows::<LayerRow>(path)?;
     let count = rows.iter().map(|(_, row)| row.layer.saturating_add(1)).max().unwrap_or(0) as usize;
@@ -138,13 +138,13 @@ fn layers(path: &Path) -> Result<Vec<u8>, ReportError> {
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let points: Vec<[f64; 3]> =
         (0..=count).flat_map(|layer| square.map(|[x, y]| [x, y, 0.0 - layer as f64])).collect();
-    // The corners below first, as VTK requires.
+    // The lower corners come first, as VTK requires.
     let corners: Vec<i64> =
         (0..count as i64).flat_map(|layer| [4, 5, 6, 7, 0, 1, 2, 3].map(|c| 4 * layer + c)).collect();
     Ok(Grid { points: &points, kind: CellKind::Hexahedron, corners: &corners, columns: &columns }.file())
 }
 
-/// The grains of a packing; `None` if the table has no grains.
+/// Grains of a packing; `None` if the table has no grains.
 fn grains(table: &Table) -> Option<Vec<u8>> {
     let column = |name: &str| -> Option<Vec<f64>> {
         let (_, fields) = table.iter().find(|(column, _)| column == name)?;
@@ -157,10 +157,10 @@ fn grains(table: &Table) -> Option<Vec<u8>> {
     Some(Grid { points: &points, kind: CellKind::Vertex, corners: &corners, columns: &columns }.file())
 }
 
-/// A moment: run, and increments that were done.
+/// Moment: a run, and the number of increments done.
 type Moment = (u64, u64);
 
-/// Contents and moments of the drawing: the tables of a folder.
+/// Tables of a folder, with the contents of its voids at each moment.
 struct Tables {
     voids: Vec<[f64; 3]>,
     constrictions: Vec<ConstrictionRow>,
@@ -171,10 +171,9 @@ struct Tables {
     moments: BTreeSet<Moment>,
 }
 
-/// Writes grids of a run that kept its voids: for each moment `voids_N.vtu`, a point for each void with its
-/// contents, and `constrictions_N.vtu`, a line for each constriction with its diameter, its conductance and
-/// the time of blocking, if any; and `voids.pvd` and `constrictions.pvd`, which ParaView opens as a sequence
-/// of moments.
+/// Writes grids of a run that kept its voids. For each moment: `voids_N.vtu`, a point per void with its
+/// contents, and `constrictions_N.vtu`, a line per constriction with its diameter, its conductance and the
+/// time of blocking, if any. `voids.pvd` and `constrictions.pvd` open in ParaView as sequences of moments.
 fn void_grids(
     tables: &Tables,
     mut write: impl FnMut(&str, &[u8]) -> Result<(), ReportError>,
@@ -207,7 +206,7 @@ impl Tables {
                 .map(|name| folder.join(name));
         let voids = rows::<VoidRow>(&of_voids)?;
         let count = voids.len() as u64;
-        // The row number of a void is its number.
+        // Voids are numbered by row.
         if let Some((index, (line, row))) = (0u64..).zip(&voids).find(|(index, (_, row))| row.void != *index)
         {
             return Err(malformed(&of_voids, *line, format!("void is {}, allowed: {index}", row.void)));
@@ -239,7 +238,7 @@ impl Tables {
         Ok(Self { voids, constrictions, blocked, retained, moments })
     }
 
-    /// The time of a moment: increments, with the second run after the first.
+    /// Time of a moment in increments; the second run follows the first.
     fn time_of(&self, (run, increment): Moment) -> u64 {
         let last = |run: u64| self.moments.iter().filter(|m| m.0 == run).map(|m| m.1).max().unwrap_or(0);
         let before: u64 = self.moments.iter().map(|m| m.0).filter(|&r| r < run).max().map_or(0, last);
@@ -249,7 +248,7 @@ impl Tables {
     fn voids_at(&self, moment: Moment) -> Vec<u8> {
         let (mut in_constrictions, mut in_voids) = (vec![0.0; self.voids.len()], vec![0.0; self.voids.len()]);
         for row in self.retained.get(&moment).into_iter().flatten() {
-            // The reservoir before the filter, -1, is no void of it.
+            // The reservoir before the filter, -1, is not a void.
             if let Ok(void) = usize::try_from(row.void) {
                 in_constrictions[void] = row.retained_in_constrictions as f64;
                 in_voids[void] = row.retained_in_voids as f64;
@@ -291,7 +290,7 @@ impl Tables {
     }
 }
 
-/// Kind of each cell of a grid.
+/// Kind of a grid's cells.
 #[derive(Clone, Copy)]
 enum CellKind {
     Vertex,
@@ -300,7 +299,7 @@ enum CellKind {
 }
 
 impl CellKind {
-    /// VTK's number of the kind, and the corners of a cell.
+    /// VTK's number of the kind, and the number of corners of a cell.
     fn number_and_corners(self) -> (u8, usize) {
         match self {
             Self::Vertex => (1, 1),
@@ -310,7 +309,7 @@ impl CellKind {
     }
 }
 
-/// Points, cells between them, and named numbers of each cell.
+/// Points, cells between them, and named numbers for each cell.
 struct Grid<'a> {
     points: &'a [[f64; 3]],
     kind: CellKind,
@@ -320,7 +319,7 @@ struct Grid<'a> {
 }
 
 impl Grid<'_> {
-    /// The file: a head with the beginning of each array, then the arrays, each after its length in bytes.
+    /// The file: a header with the offset of each array, then the arrays, each after its length in bytes.
     fn file(&self) -> Vec<u8> {
         let (number, corners) = self.kind.number_and_corners();
         let cells = self.corners.len() / corners;

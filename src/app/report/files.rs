@@ -1,5 +1,5 @@
 //! Readers of the files in a folder of results: JSON, JSON lines and CSV, into the types of
-//! [`crate::outcome`], which the writer of the file used too; and their errors, with file and line.
+//! [`crate::outcome`] with which they were written. Errors give file and line.
 
 use std::path::{Path, PathBuf};
 
@@ -21,7 +21,7 @@ pub fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
     from_json(text(path)?.as_bytes()).map_err(|error| form(path, &error))
 }
 
-/// Reads JSON like [`json()`] from a text, which `path` names in errors; it need not begin as a file does.
+/// Reads JSON like [`json()`], but from a text without the file's beginning; `path` names it in errors.
 pub fn json_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, ReportError> {
     serde_json::from_str(text).map_err(|error| form(path, &error))
 }
@@ -35,12 +35,12 @@ pub(super) fn malformed(path: &Path, line: u64, message: String) -> ReportError 
     ReportError::Form { path: path.to_owned(), line, message }
 }
 
-/// Reads the lines of a file of JSON lines, as `ledger.jsonl`.
+/// Reads a file of JSON lines, such as `ledger.jsonl`.
 pub fn lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ReportError> {
     lines_of(path, &text(path)?)
 }
 
-/// Reads [`lines()`] of a file with this text.
+/// Reads JSON lines like [`lines()`], but from this text.
 pub(super) fn lines_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<Vec<T>, ReportError> {
     let one = |(index, line): (usize, &str)| {
         serde_json::from_str(line).map_err(|error| malformed(path, index as u64 + 1, error.to_string()))
@@ -48,9 +48,8 @@ pub(super) fn lines_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<V
     text.lines().enumerate().map(one).collect()
 }
 
-/// Reads the rows of a CSV file, each with its line; columns are found by their names in the first line of
-/// the file.
-/// Errors name the column, too.
+/// Reads the rows of a CSV file, each with its line number. Columns are found by their names in the first
+/// line of the file. Errors name the column, too.
 pub fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<(u64, T)>, ReportError> {
     let content = text(path)?;
     let mut reader = csv::Reader::from_reader(content.as_bytes());
@@ -86,7 +85,7 @@ pub(super) fn refused(path: &Path, field: &str, value: String, allowed: &str) ->
     ReportError::Value { path: path.to_owned(), field, value, allowed }
 }
 
-/// The reason why a report could not be written.
+/// Reason why a report could not be written.
 #[derive(Debug, Error)]
 pub enum ReportError {
     /// A file of the run folder is missing or cannot be read.
@@ -120,7 +119,7 @@ pub enum ReportError {
         field: String,
         /// Its value.
         value: String,
-        /// The values that would be right.
+        /// Allowed values.
         allowed: String,
     },
     /// The page or a figure cannot be written.

@@ -1,5 +1,5 @@
-//! The first sheet, which can be handed in by itself: cover, answer, sizes, and the rules that decide or are
-//! not met; and below it all rules with their sources.
+//! First sheet, which can be handed in by itself: cover, answer, sizes, and the rules that decide or are not
+//! met. Below it are all rules with their sources.
 
 use super::folder::RunFolder;
 use super::names::{is_named, titled};
@@ -18,7 +18,7 @@ use voidwalk_practice::rule_result::{RuleResult, result_of};
 use voidwalk_practice::rules::{DESIGN, PERMEABILITY, TESTS_CONTINUING, TESTS_NO_EROSION};
 use voidwalk_practice::{AppliedRule, Decision, Headline, PracticeClass, RuleRole};
 
-/// The two soils, and the cover of a sheet that is handed in.
+/// Header with the two soils and the cover of the sheet.
 pub(super) fn header(folder: &RunFolder) -> Markup {
     let inputs = &folder.outcome.inputs;
     let (base, filter) = (titled("Base", &inputs.base.name), titled("filter", &inputs.filter.name));
@@ -38,7 +38,7 @@ pub(super) fn header(folder: &RunFolder) -> Markup {
 
 pub(super) const QUESTION: &str = "Will this filter hold this soil?";
 
-/// The answer: the lines of practice and model, and the number of notes.
+/// Answer: the lines of practice and model, and the number of notes.
 pub(super) fn answer(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> Markup {
     let notes = outcome.notes.len();
     html! {
@@ -58,7 +58,7 @@ pub(super) fn answer(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> 
     }
 }
 
-/// The colour of an answer, by practice: neutral without it.
+/// Colour of an answer, by practice; neutral without practice.
 fn colour(headline: Option<Headline>) -> &'static str {
     let Some(headline) = headline else { return "neutral" };
     match (headline, headline.class()) {
@@ -88,7 +88,7 @@ pub(super) fn sizes(outcome: &Outcome, unit: SizeUnit) -> Markup {
     of_few(&soils, unit)
 }
 
-/// The rules of practice that decide or are not met, and the number of the others.
+/// Rules of practice that decide or are not met, and the number of the others.
 pub(super) fn in_short(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> Markup {
     let listed = decision.listed();
     let rules = listed.iter().map(AsRef::as_ref);
@@ -136,7 +136,7 @@ pub(super) fn in_short(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -
     }
 }
 
-/// Number of these rules by result, those that are not met first.
+/// Numbers of these rules by result, starting with those not met.
 fn counts(rules: &[&AppliedRule]) -> Vec<(usize, RuleResult)> {
     let with = [RuleResult::NotMet, RuleResult::Met, RuleResult::NotReached, RuleResult::ExcessiveNotJudged];
     let count = |result: RuleResult| rules.iter().filter(|rule| result_of(rule) == result).count();
@@ -144,13 +144,13 @@ fn counts(rules: &[&AppliedRule]) -> Vec<(usize, RuleResult)> {
     counts.filter(|(count, _)| *count > 0).collect()
 }
 
-/// The rules that decide if a filter retains and drains a base, in reading order.
+/// Rules that decide if a filter retains and drains a base, in reading order.
 const DECIDING: [&str; 4] = [DESIGN, TESTS_NO_EROSION, TESTS_CONTINUING, PERMEABILITY];
 
-/// The place of other rules that are not met.
+/// Position of other rules that are not met.
 const NOT_MET: usize = DECIDING.len();
 
-/// The place of a rule: deciding rules first, then those that are not met, and then the others.
+/// Position of a rule: first the deciding rules, then those that are not met, then the others.
 fn place(rule: &AppliedRule) -> usize {
     let deciding = DECIDING.iter().position(|id| *id == rule.id).filter(|_| rule.applies);
     match (deciding, result_of(rule)) {
@@ -173,7 +173,7 @@ fn purpose(rule: &AppliedRule) -> &'static str {
     }
 }
 
-/// The quantity of a rule without the soil and the splits, which “All rules” names.
+/// Quantity of a rule without soil and split sizes, which “All rules” gives.
 fn quantity_in_brief(rule: &AppliedRule) -> &str {
     let name = rule.quantity.name();
     name.split([',', '(']).next().and_then(|name| name.split(" of the filter").next()).unwrap_or(name)
@@ -231,7 +231,7 @@ pub(super) fn rules(decision: &Decision, unit: SizeUnit) -> Markup {
     }
 }
 
-/// The sources of all rules, by their numbers in the table.
+/// Sources of all rules, by their numbers in the table.
 pub(super) fn sources(decision: &Decision) -> Markup {
     let listed = decision.listed();
     let sources = distinct_sources(&listed);
@@ -244,7 +244,7 @@ pub(super) fn sources(decision: &Decision) -> Markup {
             h2 { "Sources" }
             ol.sources {
                 @for source in &sources {
-                    // Comparisons of the walk stay on the screen.
+                    // Sources of comparisons with the walk appear on screen only.
                     li.screen[is_of_walk(source)] { (clean(source)) }
                 }
             }
@@ -268,7 +268,7 @@ fn distinct_sources<'a>(rules: &'a [Cow<AppliedRule>]) -> Vec<&'a str> {
     sources
 }
 
-/// Rules as a table in which numbers represent the sources.
+/// Table of rules, with numbers for the sources.
 fn table_of_all(rules: &[&AppliedRule], unit: SizeUnit, sources: &[&str]) -> Markup {
     let number = |rule: &AppliedRule| sources.iter().position(|source| *source == rule.source);
     let columns = rule::columns(unit).only(&["rule", "authority", "value", "limit", "result"]);
@@ -323,7 +323,7 @@ mod tests {
         let listed = decision.listed();
         let page = table_of_all(&[&listed[0]], SizeUnit::Mm, &[]).into_string();
         assert!(page.contains("= 4.0003") && page.contains("≤ 4<") && page.contains("✗ not met"), "{page}");
-        // 0.70003 mm and 0.7 mm are 0.027561 and 0.027559 inches.
+        // 0.70003 mm and 0.7 mm are 0.027561 and 0.027559 in.
         let texts = shown(&rule(DESIGN, 0.70003, 0.7), SizeUnit::MmAndInches);
         assert_eq!(texts[0], "0.70003\u{202f}mm (0.0276\u{202f}in)");
         assert_eq!(texts[1], "0.70000\u{202f}mm (0.0275\u{202f}in)");

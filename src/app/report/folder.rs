@@ -1,4 +1,4 @@
-//! Reads a finished run folder, and refuses contents that do not fit together.
+//! Reads a finished run folder, and refuses inconsistent contents.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ use voidwalk_practice::{AboutPage, Decision};
 
 pub(super) struct RunFolder {
     pub outcome: Outcome,
-    /// The decision of practice on its pair.
+    /// Decision of practice on its pair.
     pub decision: Decision,
     pub manifest: Manifest,
     /// The packing of the filter, if the program made it.
@@ -42,7 +42,7 @@ impl RunFolder {
         Ok(RunFolder { packing, outcome, decision, manifest, scene, about, rows })
     }
 
-    /// Makes the folder of a run whose files have this content; errors name a file of `folder`.
+    /// Makes the folder of a run from the content of its files; errors name a file of `folder`.
     pub(super) fn from_files(folder: &Path, files: RunFiles) -> Result<RunFolder, ReportError> {
         let RunFiles { outcome, decision, manifest, scene, about, packing, recorded } = files;
         let outcome = checked(&folder.join(OUTCOME), outcome)?;
@@ -55,7 +55,7 @@ impl RunFolder {
     }
 }
 
-/// Results and rows of an outcome for figures and tables of walks.
+/// Results and rows of an outcome, for figures and tables of walks.
 pub(super) fn walks<'a>(outcome: &'a Outcome, rows: &'a RunRows) -> Walks<'a> {
     Walks {
         verdict: outcome.model.class,
@@ -80,7 +80,7 @@ fn rows_of(outcome: &Outcome, folder: &Path, source: RowSource) -> Result<RunRow
     RunRows::read(folder, source, outcome.replicates.len(), outcome.summary.len())
 }
 
-/// The outcome as it is shown; `path` names it in errors.
+/// Outcome as it is shown; `path` names it in errors.
 pub(super) fn checked(path: &Path, mut outcome: Outcome) -> Result<Outcome, ReportError> {
     check_results(path, &outcome.replicates, &outcome.summary, outcome.threshold)?;
     let inputs = &outcome.inputs;
@@ -91,7 +91,7 @@ pub(super) fn checked(path: &Path, mut outcome: Outcome) -> Result<Outcome, Repo
     Ok(outcome)
 }
 
-/// The packing of the filter, if this run was made with that very file.
+/// Packing of the filter, if this run was made with that very file.
 fn packing(path: &Path, manifest: &Manifest) -> Result<Option<PackingRecord>, ReportError> {
     if !path.is_file() {
         return Ok(None);
@@ -103,8 +103,7 @@ fn packing(path: &Path, manifest: &Manifest) -> Result<Option<PackingRecord>, Re
     }
 }
 
-/// The outcome itself is the case of factor 1; it is shown among the others unless it was walked a second
-/// time.
+/// Adds the outcome itself, which has factor 1, to its variations, unless it was walked a second time.
 fn stand_among_its_variations(outcome: &mut Outcome) {
     if outcome.sensitivity.is_empty() || outcome.sensitivity.iter().any(|case| case.factor == 1.0) {
         return;
@@ -139,16 +138,16 @@ enum SheetUnits {
     Us,
 }
 
-/// The page that the text of a run's scene asks for; `path` names the text in errors.
-/// A value that cannot be read is an error with its line: a page without it may go to a client.
+/// Page settings in the text of a run's scene; `path` names the text in errors. A value that cannot be read
+/// is an error with its line: a page without it may go to a client.
 pub fn about_page(path: &Path, scene: &str, outcome: &Outcome) -> Result<AboutPage, ReportError> {
     let (cover, sizes): (_, ShownSizes) = (about(path, scene)?, about(path, scene)?);
     let unit = SizeUnit::of(outcome.inputs.scale_free, sizes.units == Some(SheetUnits::Us));
     Ok(AboutPage { cover, coarse_left: sizes.coarse_left, unit })
 }
 
-/// The settings of one kind in the table `about`; nothing else of the scene is read. Each kind is read
-/// separately, as an error within a flattened struct would have no line.
+/// Settings of one kind in the table `about`; the rest of the scene is not read. Each kind is read
+/// separately, because an error within a flattened struct would have no line.
 fn about<T: Default + DeserializeOwned>(path: &Path, scene: &str) -> Result<T, ReportError> {
     #[derive(Deserialize)]
     struct Scene<T> {

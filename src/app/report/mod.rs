@@ -1,26 +1,26 @@
-//! The report: one page and its figures, from a finished run folder alone.
+//! Report: one page and its figures, made from a finished run folder alone.
 //!
-//! [`write()`] reads the files of a run and runs nothing; the other `write_` functions read other folders.
-//! They write `figures/*.svg`, each a file of its own, and the page. [`write_walked()`] writes the page of a
-//! run that was just walked, from the contents of its files; [`run_page()`] and [`network_walk_page()`] make
-//! pages of walks in memory as text; [`run_brief()`] and [`network_walk_brief()`] the verdict alone, for a
-//! notebook.
+//! [`write()`] reads the files of a run and walks nothing; the other `write_` functions read other folders.
+//! They write `figures/*.svg`, each a separate file, and the page. [`write_walked()`] writes the page of a
+//! run that was just walked, from the contents of its files. [`run_page()`] and [`network_walk_page()`]
+//! return pages of walks in memory as text; [`run_brief()`] and [`network_walk_brief()`] return the verdict
+//! alone, for a notebook.
 //!
-//! A page can only show itself. Its content security policy forbids every script and every fetch and names
-//! its one style by hash; figures are SVG elements without a style. Names come from users and are treated as
-//! hostile: markup in them is escaped, control characters and those that change the direction of writing are
-//! replaced.
+//! A page is self-contained. Its content security policy forbids every script and every fetch and names its
+//! one style by hash; figures are SVG elements without a style. Names come from users and are treated as
+//! hostile: markup in them is escaped; control characters and characters that change the writing direction
+//! are replaced.
 //!
-//! An engineer reads the answer first, the gradations and the deciding rules, on one sheet; then notes,
-//! results and limits of the model, and all rules. Figures and tables of research stay on the screen; paper
-//! ends with the gradations in numbers, the sources, and the commands to run it again.
+//! An engineer first reads the answer, the gradations and the deciding rules, on one sheet; then notes,
+//! results and limits of the model, and all rules. Research figures and tables appear on screen only; the
+//! printed report ends with the gradations in numbers, the sources, and the commands to run it again.
 
 mod batch;
 mod boundary;
 mod campaign;
 mod cases;
 mod export;
-/// Public for the benches alone.
+/// Public only for the benchmarks.
 #[doc(hidden)]
 pub mod figures;
 pub mod files;

@@ -1,5 +1,5 @@
-//! Name of a soil on a page: its own name rather than the name of a file, and no name that only repeats its
-//! kind. No page shows the folders in which a file lies.
+//! Names of soils on a page: a soil's own name rather than its file's, and no name that only repeats its
+//! kind. No page shows the folders of a file.
 
 use std::borrow::Cow;
 
@@ -8,10 +8,10 @@ use maud::{Markup, html};
 use super::figures::shorten;
 use super::shell::{LINE, clean};
 
-/// Endings of the tables from which soils are read.
+/// File name endings of the tables from which soils are read.
 const TABLES: [&str; 7] = ["csv", "txt", "tsv", "xlsx", "ods", "ags", "dat"];
 
-/// The name of a soil: `Till 3` for `soils.xlsx#Till 3`, `tillh` for `csv/tillh.csv`; any other name stays.
+/// Name of a soil: `Till 3` for `soils.xlsx#Till 3`, `tillh` for `csv/tillh.csv`; any other name is kept.
 pub(super) fn soil_name(name: &str) -> &str {
     let (file, soil) = name.split_once('#').unwrap_or((name, ""));
     let Some(stem) = ends_as_table(file) else { return name };
@@ -22,7 +22,7 @@ pub(super) fn soil_name(name: &str) -> &str {
     }
 }
 
-/// Tells if a soil has a name that says more than its kind: a column of a table may be called `Base`.
+/// True if a soil's name says more than its kind; a column of a table may be called `Base`.
 pub(super) fn is_named(kind: &str, name: &str) -> bool {
     let soil = soil_name(name).trim();
     !soil.is_empty() && !soil.eq_ignore_ascii_case(kind)
@@ -36,7 +36,7 @@ pub(super) fn titled(kind: &str, name: &str) -> Markup {
     }
 }
 
-/// A file name, or a name that begins with one, without its folders; anything else stays.
+/// File name, or a name that begins with one, without its folders; any other name is kept.
 pub(super) fn file_name(name: &str) -> Cow<'_, str> {
     let (file, rest) = match name.find('#').or_else(|| name.find(", ")) {
         Some(at) => name.split_at(at),
@@ -48,7 +48,7 @@ pub(super) fn file_name(name: &str) -> Cow<'_, str> {
     }
 }
 
-/// Name without folders for any file that was read.
+/// Name, without folders, of any file that was read.
 pub(super) fn input_name(name: &str) -> Cow<'_, str> {
     match file_name(name) {
         Cow::Borrowed(_) => Cow::Borrowed(last_part(name)),
@@ -56,8 +56,8 @@ pub(super) fn input_name(name: &str) -> Cow<'_, str> {
     }
 }
 
-/// Kind of a soil, in these words, and its name; the name of its file if its own name says no more than its
-/// kind: `Base base.csv`.
+/// Kind of a soil, in these words, and its name, or its file's name if its own says no more than its kind:
+/// `Base base.csv`.
 pub(super) fn titled_by_file(kind: &str, words: &str, name: &str) -> Markup {
     let is_table = ends_as_table(name.split('#').next().unwrap_or_default()).is_some();
     let shown = match is_named(kind, name) {
@@ -71,7 +71,7 @@ pub(super) fn titled_by_file(kind: &str, words: &str, name: &str) -> Markup {
     }
 }
 
-/// The end of a path that tells it apart from others, with as few folders as possible.
+/// End of a path that distinguishes it from others, with as few folders as possible.
 pub(super) fn told_apart(path: &str, others: &[&str]) -> String {
     let parts = |path: &str| path.split(['/', '\\']).map(str::to_owned).collect::<Vec<String>>();
     let path_parts = parts(path);
@@ -84,14 +84,14 @@ pub(super) fn told_apart(path: &str, others: &[&str]) -> String {
     end(&path_parts, count)
 }
 
-/// An option as on a command line, with a file name without its folders.
+/// Option as on a command line, with a file name without its folders.
 pub(super) fn option_words(option: &str) -> String {
     let at = option.find('=').map(|at| at + 1).or_else(|| option.strip_prefix("--filter ").map(|_| 9));
     let (name, value) = option.split_at(at.unwrap_or(0));
     format!("{name}{}", file_name(value))
 }
 
-/// A note that begins with the name of its file.
+/// Note that begins with the name of its file.
 fn note_words(note: &str) -> String {
     match note.split_once(": ") {
         Some((file, note)) => format!("{}: {note}", file_name(file)),
@@ -99,7 +99,7 @@ fn note_words(note: &str) -> String {
     }
 }
 
-/// A name from outside, as tables and legends have room for it.
+/// Name from outside, shortened to fit tables and legends.
 pub(super) fn brief_name(name: &str) -> String {
     clean(&shorten(name, 60))
 }

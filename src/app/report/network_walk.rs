@@ -1,4 +1,4 @@
-//! The page of walks on given networks, without a scene.
+//! Page of walks on given networks, without a scene.
 
 use super::figures::{Axis, BLUE, Dash, Figure, Line, VERMILLION};
 use super::files::{ReportError, json_of, refused};
@@ -20,8 +20,8 @@ use voidwalk_practice::quantity::{SizeUnit, length, percent, significant, whole}
 
 const RECORD: &str = "outcome";
 
-/// The page of walks on given networks: their record as JSON, and the rows of their tables.
-/// Errors are a record that is malformed, and rows that do not fit together.
+/// Page of walks on given networks, from their record as JSON and the rows of their tables. A malformed
+/// record, or rows that do not fit together, are errors.
 pub fn network_walk_page(record: &str, recorded: Recorded) -> Result<String, ReportError> {
     let record = checked(record)?;
     let (replicates, runs) = (record.replicates.len(), record.summary.len());
@@ -39,9 +39,8 @@ pub fn network_walk_page(record: &str, recorded: Recorded) -> Result<String, Rep
     Ok(page(&record, &walks, &figures))
 }
 
-/// The verdict of walks on given networks, as a piece of a page: its numbers, a figure, the omissions of the
-/// model.
-/// A record that is malformed is an error.
+/// Verdict of walks on given networks, as a fragment of a page: its numbers, a figure, the omissions of the
+/// model. A malformed record is an error.
 pub fn network_walk_brief(record: &str) -> Result<String, ReportError> {
     let record = checked(record)?;
     let rows = RunRows::default();
@@ -151,7 +150,7 @@ fn amount(record: &NetworkWalkRecord) -> String {
 
 fn verdict_section(record: &NetworkWalkRecord, walks: &Walks) -> Markup {
     let class = match record.verdict {
-        // Never green unless practice was asked.
+        // Never green without a decision of practice.
         Verdict::None => "doubted",
         Verdict::Some => "some",
         Verdict::Continuing => "continuing",

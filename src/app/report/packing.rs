@@ -1,4 +1,4 @@
-//! The page of a packing, from its folder alone.
+//! Page of a packing, made from its folder alone.
 
 use std::path::Path;
 
@@ -14,19 +14,19 @@ use crate::outcome::paper;
 use crate::outcome::table::Columns;
 use voidwalk_practice::quantity::{duration, percent, significant, whole};
 
-/// Number of shades, by size, in which the grains of a slice are drawn.
+/// Number of shades by which a slice shows the sizes of its grains.
 const SHADES: usize = 6;
 
-/// Contents of a packing's folder, except for the grains.
+/// Contents of a packing's folder, without the grains.
 struct Packed {
     record: PackingRecord,
     summary: Summary,
-    /// Ascending.
+    /// In ascending order.
     curve: Vec<CurveRow>,
 }
 
-/// Writes `report.html` and `figures/*.svg` into the folder of a packing.
-/// A file that is missing or malformed is an error, and nothing is written then.
+/// Writes `report.html` and `figures/*.svg` into the folder of a packing. A missing or malformed file is an
+/// error, and nothing is written then.
 pub fn write_packing(folder: &Path) -> Result<Written, ReportError> {
     let packed = Packed {
         record: json(&folder.join("packing.json"))?,
@@ -75,7 +75,7 @@ fn curves(packed: &Packed) -> Drawn {
     Drawn::new("curves", figure, caption)
 }
 
-/// The plane through the middle of the cell.
+/// Plane through the middle of the cell.
 pub(super) fn slice(record: &PackingRecord) -> Drawn {
     let edge = record.cell_mm;
     let axis = |label| Axis::linear(label, 0.0, edge).within(0.0, edge);
@@ -99,7 +99,7 @@ pub(super) fn slice(record: &PackingRecord) -> Drawn {
     Drawn::new("slice", figure, caption)
 }
 
-/// Share of the voids by number of their constrictions.
+/// Fraction of the voids by number of their constrictions.
 fn connectivity(packed: &Packed) -> Drawn {
     let counts = &packed.summary.connectivity;
     let total = counts.iter().sum::<usize>().max(1) as f64;

@@ -1,4 +1,4 @@
-//! The page of a run.
+//! Page of a run.
 
 use super::files::{ReportError, json_of};
 use super::first_page::{answer, in_short, rules, sizes, sources};
@@ -22,36 +22,35 @@ use voidwalk_core::text::visible;
 use voidwalk_practice::Note;
 use voidwalk_practice::quantity::{SizeUnit, length, percent, significant, whole};
 
-/// Characters of `scene.toml` that are shown.
+/// Maximum number of characters of `scene.toml` shown.
 const SCENE: usize = 100_000;
 
 /// Writes `report.html` and `figures/*.svg` into a finished run folder.
 ///
-/// Each file appears whole or not at all, and an older one of the same name is replaced.
+/// Each file appears complete or not at all, and replaces an older one of the same name.
 ///
 /// # Errors
-/// [`ReportError`] names the file that is missing, malformed or contradicts another, with the line and field
-/// if there is one. Nothing is written then.
+/// [`ReportError`] names the file that is missing, malformed or contradicts another, with line and field if
+/// known. Nothing is written then.
 pub fn write(folder: &Path) -> Result<Written, ReportError> {
     let (page, figures) = drawn(&RunFolder::read(folder)?);
     write_page(folder, "report.html", &figures, &page)
 }
 
-/// Writes the page of a run that was just walked: [`write()`] without reading its files.
+/// Writes the page of a run that was just walked, like [`write()`] but without reading its files.
 pub fn write_walked(folder: &Path, files: RunFiles) -> Result<Written, ReportError> {
     let (page, figures) = drawn(&RunFolder::from_files(folder, files)?);
     write_page(folder, "report.html", &figures, &page)
 }
 
-/// The page of a run whose files would have this content; writes nothing.
-/// Errors have the names that the files would have.
+/// Page of a run whose files would have this content; writes nothing. Errors give the names that the files
+/// would have.
 pub fn run_page(files: RunFiles) -> Result<String, ReportError> {
     Ok(drawn(&RunFolder::from_files(Path::new(""), files)?).0)
 }
 
-/// The verdict of a run whose `outcome.json` holds this text, as a piece of a page: its numbers, a figure,
-/// the omissions of the model.
-/// A text that is malformed is an error.
+/// Verdict of a run whose `outcome.json` holds this text, as a fragment of a page: its numbers, a figure, the
+/// omissions of the model. A malformed text is an error.
 pub fn run_brief(outcome: &str) -> Result<String, ReportError> {
     let path = Path::new("outcome.json");
     let outcome = checked(path, json_of(path, outcome)?)?;
@@ -62,8 +61,8 @@ pub fn run_brief(outcome: &str) -> Result<String, ReportError> {
     Ok(results::brief(&walks, &lines, &meaning, notes, replicate(&outcome), &outcome.model_leaves_out))
 }
 
-/// Words for the only replicate of a run, and for each of several. The ends of a range of constrictions have
-/// replicates of their own, which are not counted.
+/// Words for the only replicate of a run, or for each of several. Replicates of the ends of a range of
+/// constrictions are not counted.
 fn replicate(outcome: &Outcome) -> [&'static str; 2] {
     match outcome.curve_range {
         Some(_) => [
@@ -92,7 +91,7 @@ fn drawn(run: &RunFolder) -> (String, Vec<Drawn>) {
     (page, [verdict, gradations].into_iter().chain(figures).collect())
 }
 
-/// The page as text. `gradations` is on its first sheet, `verdict` and `figures` below it.
+/// Page as text. `gradations` is on its first sheet, followed by `verdict` and `figures`.
 fn page(folder: &RunFolder, [verdict, gradations]: [&Drawn; 2], figures: &[Drawn]) -> String {
     let RunFolder { outcome, decision, .. } = folder;
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
@@ -119,7 +118,7 @@ fn page(folder: &RunFolder, [verdict, gradations]: [&Drawn; 2], figures: &[Drawn
             p { "The model does not replace a filter test or a designer’s judgement." }
         }))
         (rules(decision, unit))
-        // Parts that are not handed to a client stay on the screen.
+        // Parts that are not for a client appear on screen only.
         section.screen {
             h2 { "Figures" }
             @for (number, drawn) in (2..).zip(figures) { (shell::figure(number, drawn)) }
@@ -139,7 +138,7 @@ fn page(folder: &RunFolder, [verdict, gradations]: [&Drawn; 2], figures: &[Drawn
     page_with_foot(foot.as_deref(), &title, [&first_page::header(folder), &main, &citation(outcome)])
 }
 
-/// The void ratio of the filter: the given one, or else the one of the library.
+/// Void ratio of the filter: the given one, or else the one in the library.
 fn void_ratio(outcome: &Outcome) -> String {
     let is_given = !outcome.notes.iter().any(|note| matches!(note, Note::LibraryOfAnyDensity { .. }));
     match outcome.inputs.filter.void_ratio {
@@ -150,7 +149,7 @@ fn void_ratio(outcome: &Outcome) -> String {
     }
 }
 
-/// Result of the walk: its class, the mass eroded, and the cause that leaves it open.
+/// Result of the walk: its class, the mass eroded, and why it is undecided, if it is.
 fn walk(outcome: &Outcome, walks: &Walks, verdict: &Drawn) -> Markup {
     html! {
         h2 { "What the model found" }

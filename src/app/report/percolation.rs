@@ -1,4 +1,4 @@
-//! The page and the figures of a percolation study.
+//! Page and figures of a percolation study.
 
 use std::path::Path;
 
@@ -14,8 +14,7 @@ use crate::outcome::record::Statistic;
 use crate::outcome::table::Columns;
 use voidwalk_practice::quantity::{duration, significant, whole};
 
-/// Writes `report.html` and its figures into the folder of a percolation study, from `percolation.json`
-/// there.
+/// Writes `report.html` and its figures into the folder of a percolation study, from its `percolation.json`.
 pub fn write_percolation(folder: &Path) -> Result<Written, ReportError> {
     let study: &PercolationStudy = &json(&folder.join("percolation.json"))?;
     let title = "Percolation threshold of the directed cubic lattice";
@@ -25,7 +24,7 @@ pub fn write_percolation(folder: &Path) -> Result<Written, ReportError> {
          open. " (whole(study.realisations)) " realisations of each size, seed " (study.seed)
         ", each threshold exact."
     } };
-    // Without a cube there is no size to draw anything against.
+    // Without a cube there is no size to plot against.
     let draw: &[fn(&PercolationStudy) -> Drawn] =
         if study.sizes.is_empty() { &[] } else { &[percolation_spread, threshold] };
     let footer = html! { p.small { "voidwalk " (study.version) ", " (duration(study.seconds)) "." } };
@@ -131,7 +130,7 @@ fn threshold(study: &PercolationStudy) -> Drawn {
         figure.add(Line::new(ends.to_vec(), BLUE).label("one length"));
     }
     if let Some(fit) = &study.many_starts {
-        // Iterates over d, from which L follows: y = b + c ln(L d^(nu / z)) with y = L d^nu; the iteration
+        // Fixed-point iteration for d, which gives L: y = b + c ln(L d^(nu / z)) with y = L d^nu; it
         // contracts.
         let least = means().map(|mean| fit.threshold - mean).fold(f64::MAX, f64::min);
         let most = means().map(|mean| fit.threshold - mean).fold(0.0, f64::max);

@@ -1,5 +1,5 @@
-//! Results of walks on a page: their tables, Table 3 and Eq. (1) of the paper for them, and the parts of the
-//! box with their verdict.
+//! Results of walks on a page: their tables, their comparison with Table 3 and Eq. (1) of the paper, and the
+//! parts of the verdict box.
 
 use super::run_figures;
 use super::run_figures::run_name;
@@ -22,7 +22,7 @@ use maud::{Markup, Render, html};
 use voidwalk_practice::Note;
 use voidwalk_practice::quantity::{Quantity, SizeUnit, length, percent, significant, whole};
 
-/// Replicates listed one by one; all are in `outcome.json`.
+/// Maximum number of replicates listed one by one; all are in `outcome.json`.
 const LISTED: usize = 100;
 
 fn run_heading(run: u64) -> Shown {
@@ -130,12 +130,12 @@ pub(super) fn replicates(walks: &Walks) -> Markup {
     }
 }
 
-/// A number of particles that fits its column: from ten thousand million on in three digits.
+/// Number of particles that fits its column: three significant digits from ten thousand million upwards.
 fn particles(number: u64) -> Quantity {
     if number < 10_000_000_000 { whole(number) } else { significant(number as f64) }
 }
 
-/// A row of [`varied`]: the case with another amount of base or another thickness.
+/// Row of [`varied`]: the case with another amount of base or another thickness.
 struct Varied<'a> {
     changed: &'static str,
     factor: f64,
@@ -144,7 +144,7 @@ struct Varied<'a> {
     walked: &'a Classed,
 }
 
-/// Other amounts of base and other thicknesses, each with its eroded mass and its class.
+/// Table of other amounts of base and other thicknesses, each with its eroded mass and its class.
 pub(super) fn varied(outcome: &Outcome) -> Markup {
     let layers = outcome.inputs.network.layers;
     let amounts = outcome.sensitivity.iter().map(|row| {
@@ -178,7 +178,7 @@ pub(super) fn varied(outcome: &Outcome) -> Markup {
     }
 }
 
-/// A class whose words are never broken.
+/// Class whose words are never separated by a line break.
 fn class(verdict: Verdict) -> Shown {
     verdict.shown().emphasised(Emphasis::Whole)
 }
@@ -227,14 +227,14 @@ fn of_run(run: u64, rows: &[ByConnectivity]) -> Markup {
     }
 }
 
-/// Eq. (1) for single particles, the result of the walk, and their difference.
+/// Eq. (1) for single particles, the result of the walk, and the difference between them.
 pub(super) fn infiltration(outcome: &Outcome, unit: SizeUnit) -> Markup {
     html! {
         h2 { "Infiltration depth without blocking" }
         @match &outcome.infiltration {
             None => p {
                 "Not given: the closed form holds for a regular cubic lattice whose exits are chosen by \
-                 area, and this network is another."
+                 area, and this network is not one."
             },
             Some(result) => details {
                 summary { "Eq. (1) for single particles, beside the walk" }
@@ -311,7 +311,7 @@ fn beside_the_walk(result: &Infiltration, outcome: &Outcome, unit: SizeUnit) -> 
     }
 }
 
-/// Meaning of the difference between the mass that Eq. (1) lets through and the mass that left.
+/// Meaning of the difference between the mass that leaves by Eq. (1) and the mass that left in the walk.
 fn what_blocking_does(held: f64) -> &'static str {
     if held > 0.01 {
         "The difference is due to blocking: coarser particles close constrictions, and finer ones that would \
@@ -344,7 +344,7 @@ pub(super) fn in_words(walks: &Walks) -> String {
     words::meaning(walks.verdict, walks.summary, walks.threshold)
 }
 
-/// The classes of the replicates, counted, with the words for one replicate and for each of several.
+/// Classes of the replicates, counted, with the words for one replicate and for each of several.
 fn tally(walks: &Walks, [single, several]: [&str; 2]) -> String {
     let count = walks.replicates.len();
     if count == 1 {
@@ -375,9 +375,9 @@ pub(super) fn replicates_in_words(walks: &Walks, what: [&str; 2]) -> Markup {
     }
 }
 
-/// The verdict in brief, for a page of another program, as a notebook: it needs no style, and the figure is a
-/// picture, so that several fit on one page. `lines` are those of practice and model, for a network the
-/// model's alone; `replicate` are the words for one replicate, and for each of several.
+/// Brief verdict for a page of another program, such as a notebook: it needs no style, and the figure is an
+/// image, so that several fit on one page. `lines` are those of practice and model, or of the model alone for
+/// a network; `replicate` are the words for one replicate, and for each of several.
 pub(super) fn brief(
     walks: &Walks,
     lines: &[(FirstLine, String)],

@@ -1,4 +1,4 @@
-//! The figures of one run folder.
+//! Figures of a run folder.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -17,14 +17,14 @@ use voidwalk_practice::quantity::{SizeUnit, length, percent, significant, whole}
 use voidwalk_practice::rules::{DESIGN, TESTS_CONTINUING, TESTS_NO_EROSION};
 use voidwalk_practice::{Decision, RuleQuantity};
 
-/// Replicates drawn one by one; with more, the mean and the first ones are drawn.
+/// Maximum number of replicates drawn one by one; of more, only the mean and the first ones are drawn.
 const DRAWN: usize = 40;
 
 pub(super) fn run_name(run: u64) -> &'static str {
     if run == 1 { "first run" } else { "second run" }
 }
 
-/// The colour, symbol and dashes of a run in every figure.
+/// Colour, symbol and dashes of a run in every figure.
 fn run_look(run: u64) -> (Colour, Shape, Dash) {
     if run == 1 { (BLUE, Shape::Circle, Dash::Solid) } else { (PURPLE, Shape::Square, Dash::Dashed) }
 }
@@ -43,7 +43,7 @@ pub(super) fn size_axis(unit: SizeUnit, sizes: impl Iterator<Item = f64>) -> Axi
     Axis::log(if unit == SizeUnit::D0f { "Size / D0F (–)" } else { "Size (mm)" }, low, high)
 }
 
-/// The upper end of an interval, or the mean without one.
+/// Upper end of an interval, or the mean if there is none.
 fn upper(statistic: &Statistic) -> f64 {
     interval(statistic).map_or(statistic.mean, |(_, high)| high)
 }
@@ -53,13 +53,13 @@ fn threshold_rule(walks: &Walks, across: Across) -> Rule {
     Rule::new(across, limit * 100.0, BLACK).dash(Dash::Dashed).label(&percent(limit).in_digits(3).to_string())
 }
 
-/// An axis from 0 that holds these percentages and the threshold, and never less than 10 %.
+/// Axis from 0 that includes these percentages and the threshold, and reaches at least 10 %.
 fn eroded_axis(label: &str, walks: &Walks, highest: f64) -> Axis {
     let high = highest.max(walks.threshold * 100.0 * 1.3).min(100.0);
     if high > 60.0 { Axis::percent(label) } else { Axis::linear(label, 0.0, high) }
 }
 
-/// Mean and interval of both runs against the threshold, for the eye, beside the verdict.
+/// Small figure beside the verdict: mean and interval of both runs against the threshold.
 pub(super) fn verdict(walks: &Walks) -> Drawn {
     let summary = walks.summary;
     let highest = 100.0 * summary.iter().map(|run| upper(&run.eroded_mass_fraction)).fold(0.0, f64::max);
@@ -81,7 +81,7 @@ pub(super) fn verdict(walks: &Walks) -> Drawn {
     Drawn::new("verdict", figure, "")
 }
 
-/// Filter, base and constrictions on semi-logarithmic axes.
+/// Filter, base and constrictions on a semi-logarithmic plot.
 pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     let (inputs, decision) = (&folder.outcome.inputs, &folder.decision);
     let (filter, base) = (&inputs.filter, &inputs.base);
@@ -114,7 +114,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
         false => kind.to_owned(),
     };
     draw(&mut figure, &limits);
-    // With two curves of the base each has its own words; a single curve is as sampled.
+    // Two curves of the base are named separately; a single curve is as sampled.
     let walked = match (inputs.base_size(), sampled) {
         (Some(size), Some(_)) => format!("base, {}", grading(&size)),
         _ => name("base", &base.name),
@@ -140,8 +140,8 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
     Drawn::new("gradations", figure, caption)
 }
 
-/// Eroded mass in percent after an increment, by straight lines between recorded increments, level after the
-/// last.
+/// Eroded mass in percent after an increment, interpolated linearly between recorded increments, and constant
+/// after the last.
 fn eroded_at(rows: &[SeriesRow], increment: f64) -> f64 {
     let value = |row: &SeriesRow| row.eroded_mass_fraction * 100.0;
     let after = rows.partition_point(|row| (row.increment as f64) < increment);
@@ -151,11 +151,11 @@ fn eroded_at(rows: &[SeriesRow], increment: f64) -> f64 {
     y0 + (value(next) - y0) * (increment - x0) / (next.increment as f64 - x0)
 }
 
-/// Eroded mass against increment for each run: every replicate thin, the mean bold.
+/// Eroded mass against increment for each run: thin lines for replicates, a bold line for the mean.
 pub(super) fn eroded(walks: &Walks) -> Option<Drawn> {
     let last = walks.rows.series.values().flatten().map(|row| row.increment).max()?;
-    // the point from which every curve stays within a thousandth of its end; the rest of a long tail is left
-    // out
+    // The point from which every curve stays within a thousandth of its end; the rest of a long tail is left
+    // out.
     let settled = walks.rows.series.values().filter_map(|rows| {
         let end = rows.last()?.eroded_mass_fraction;
         rows.iter().find(|row| end - row.eroded_mass_fraction <= 0.001).map(|row| row.increment)
@@ -194,7 +194,7 @@ pub(super) fn eroded(walks: &Walks) -> Option<Drawn> {
         let increments: BTreeSet<u64> =
             all.iter().flat_map(|rows| rows.iter().map(|row| row.increment)).collect();
         let increments: Vec<u64> = increments.into_iter().chain([last]).collect();
-        // no more points than the eye can use: the mean costs increments times replicates
+        // No more points than the eye can distinguish, because the mean takes increments times replicates.
         let stride = increments.len().div_ceil(2000).max(1);
         let mut mean = vec![(0.0, 0.0)];
         for at in increments.iter().step_by(stride).chain(increments.last()).map(|at| *at as f64) {
@@ -219,7 +219,7 @@ pub(super) fn eroded(walks: &Walks) -> Option<Drawn> {
     Some(Drawn::new("eroded", figure, caption))
 }
 
-/// Blocked constrictions by layer, depth downward, for each run.
+/// Blocked constrictions by layer for each run, with depth downward.
 pub(super) fn layers(walks: &Walks) -> Option<Drawn> {
     let deepest = walks.rows.layers.values().flatten().map(|row| row.layer).max()?;
     let share = |row: &LayerRow| {
@@ -275,8 +275,8 @@ pub(super) fn layers(walks: &Walks) -> Option<Drawn> {
     Some(Drawn::new("layers", figure, caption))
 }
 
-/// Size curves of the particles that the first run of the first replicate retained, after chosen increments,
-/// beside base and eroded.
+/// Size curves of the particles retained in the first run of the first replicate, after chosen increments,
+/// with the curves of the base and the eroded mass.
 pub(super) fn retained(walks: &Walks) -> Option<Drawn> {
     const CURVES: usize = 6;
     let (run, replicate) = (1, 1);
@@ -291,7 +291,7 @@ pub(super) fn retained(walks: &Walks) -> Option<Drawn> {
     if all.is_empty() && gone.is_none() {
         return None;
     }
-    // chosen so that neighbours differ: evenly in the order of the record, first and last included
+    // Chosen so that neighbours differ: evenly spaced in the record, including the first and the last.
     let count = all.len().min(CURVES);
     let chosen: Vec<_> =
         (0..count).map(|i| all[if count > 1 { i * (all.len() - 1) / (count - 1) } else { 0 }]).collect();
@@ -338,17 +338,17 @@ pub(super) fn retained(walks: &Walks) -> Option<Drawn> {
 /// Half the height of a line, in percent finer.
 const HALF: f64 = 4.0;
 
-/// The rules whose limit is a D15F: the name beside the line, its colour, and its words in the caption.
+/// Rules whose limit is a D15F: the name beside the line, its colour, and its words in the caption.
 const LIMITS: [(&str, &str, Colour, &str); 3] = [
     (DESIGN, "design", GREY, "design"),
     (TESTS_NO_EROSION, "NE", GREEN, "no erosion (NE)"),
     (TESTS_CONTINUING, "CE", PURPLE, "continuing erosion (CE)"),
 ];
 
-/// A boundary: its index in [`LIMITS`], and its D15F.
+/// Boundary: its index in [`LIMITS`], and its D15F.
 type Boundary = (usize, f64);
 
-/// The boundaries that are known for these soils.
+/// Known boundaries for these soils.
 fn boundaries(decision: &Decision) -> Vec<Boundary> {
     let limit = |id: &str| {
         let rule = decision.applied(id).filter(|rule| rule.quantity == RuleQuantity::D15F)?;
@@ -359,7 +359,7 @@ fn boundaries(decision: &Decision) -> Vec<Boundary> {
     LIMITS.iter().enumerate().filter_map(boundary).collect()
 }
 
-/// Draws the row of 15 % and the boundaries at it, which are named there; the caption names the row.
+/// Draws the 15 % line and the boundaries at it, with their names; the caption explains the line.
 fn draw(figure: &mut Figure, boundaries: &[Boundary]) {
     figure.add(Rule::new(Across::Y, 15.0, BLACK).dash(Dash::Dotted));
     for (place, limit) in boundaries {
@@ -369,7 +369,7 @@ fn draw(figure: &mut Figure, boundaries: &[Boundary]) {
     }
 }
 
-/// The names of the lines, for the caption; empty without lines.
+/// Names of the lines for the caption; empty without lines.
 fn caption(decision: &Decision, boundaries: &[Boundary]) -> String {
     if boundaries.is_empty() {
         return String::new();

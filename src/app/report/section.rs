@@ -1,4 +1,4 @@
-//! A page as a list of sections, whose figures are numbered through the page, and written beside it.
+//! Page as a list of sections; its figures are numbered consecutively, and also written as files.
 
 use std::path::{Path, PathBuf};
 
@@ -9,7 +9,7 @@ use super::shell::{Drawn, contents, cover, figure, foot, model, page_with_foot};
 use voidwalk_core::store::{Together, make_folder};
 use voidwalk_practice::SheetCover;
 
-/// A page that is built from the top.
+/// Page that is built from the top.
 pub(super) struct Sections {
     title: String,
     foot: Option<String>,
@@ -19,7 +19,7 @@ pub(super) struct Sections {
 }
 
 impl Sections {
-    /// A page with its title for a browser, its first heading, and its subject below.
+    /// Page with its browser title, its first heading, and its subject below.
     pub(super) fn new(title: impl Into<String>, heading: &str, names: &Markup) -> Self {
         let header = html! { h1 { (heading) } @if !names.0.is_empty() { p.names { (names) } } };
         Self { title: title.into(), foot: None, header, main: String::new(), drawn: Vec::new() }
@@ -43,7 +43,7 @@ impl Sections {
         self
     }
 
-    /// Adds words under a heading; without words the heading is left out too.
+    /// Adds text under a heading; without text it adds nothing.
     pub(super) fn section(self, heading: &str, words: &Markup) -> Self {
         match words.0.is_empty() {
             true => self,
@@ -63,29 +63,29 @@ impl Sections {
         self
     }
 
-    /// The page as text, with this at its end.
+    /// Page as text, with this footer.
     pub(super) fn text(&self, footer: &Markup) -> String {
         let main = PreEscaped(self.main.clone());
         page_with_foot(self.foot.as_deref(), &self.title, [&self.header, &main, footer])
     }
 
-    /// Writes the figures and then the page, with this at its end, under its name in the folder.
+    /// Writes the figures and then the page, with this footer, under its name in the folder.
     pub(super) fn write(&self, folder: &Path, name: &str, footer: &Markup) -> Result<Written, ReportError> {
         write_page(folder, name, &self.drawn, &self.text(footer))
     }
 }
 
-/// The files of a report.
+/// Files of a report.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Written {
     /// `report.html`.
     pub page: PathBuf,
-    /// `figures/*.svg`, in the order of the page.
+    /// Files `figures/*.svg`, in the order of the page.
     pub figures: Vec<PathBuf>,
 }
 
-/// Writes the figures as `figures/*.svg`, then the page under its name. Each file appears whole or not at
-/// all, and an older one of the same name is replaced.
+/// Writes the figures as `figures/*.svg`, then the page under its name. Each file appears complete or not at
+/// all, and replaces an older one of the same name.
 pub(super) fn write_page(
     folder: &Path,
     name: &str,

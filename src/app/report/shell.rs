@@ -1,5 +1,5 @@
 //! Frame of every page: one HTML file that fetches nothing, its head, its figures, and the cover of a sheet
-//! that can be handed in. [`maud::Markup`] escapes texts; those from outside go through [`clean()`] too.
+//! that can be handed in. [`maud::Markup`] escapes texts; texts from outside also go through [`clean()`].
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -10,13 +10,13 @@ use voidwalk_core::text::visible;
 use voidwalk_practice::SheetCover;
 
 const STYLE: &str = include_str!("page.css");
-/// SHA-256 of the style in base64, as a content policy names it. If the style changes, a test on Linux prints
-/// the new hash.
+/// SHA-256 of the style in base64, for the content security policy. If the style changes, a test on Linux
+/// prints the new hash.
 const STYLE_HASH: &str = "mDepA0nhVqGFzpjx3fdu2udUK7V6SF3ya+Kp73qFFQA=";
 
-/// A figure of a page with its caption.
+/// Figure of a page with its caption.
 pub struct Drawn {
-    /// Name of its file, without the ending; no other figure of the page has it.
+    /// File name without the ending; unique on the page.
     pub name: &'static str,
     pub caption: String,
     pub figure: Figure,
@@ -28,13 +28,13 @@ impl Drawn {
     }
 }
 
-/// Permissions of every page: it may only show itself.
+/// Content security policy of every page, which allows nothing from elsewhere.
 pub fn content_policy() -> String {
-    // the style is named by its hash: a style that a hostile name might bring along would not be obeyed
+    // The style is named by its hash, so that a style injected by a hostile name has no effect.
     format!("default-src 'none'; style-src 'sha256-{STYLE_HASH}'; base-uri 'none'; form-action 'none'")
 }
 
-/// A page as text: `title` for the browser, a text at the foot of every sheet of paper beside its number, and
+/// Page as text: `title` for the browser, a text in the footer of every printed sheet next to its number, and
 /// the contents of each part of its body.
 pub(super) fn page_with_foot(
     foot: Option<&str>,
@@ -64,7 +64,7 @@ pub(super) fn page_with_foot(
     .into_string()
 }
 
-/// Place at which the headings below are to be listed.
+/// Place for the list of the headings that follow.
 const CONTENTS: &str = "<nav class=\"contents\"></nav>";
 
 /// Lists the headings that follow on the page.
@@ -72,7 +72,7 @@ pub(super) fn contents() -> Markup {
     html! { (PreEscaped(CONTENTS)) }
 }
 
-/// A page with the list of its headings, if one is requested; each heading gets an id.
+/// Adds the list of headings to a page if it was requested; each heading gets an id.
 fn with_contents(main: &str) -> String {
     let Some((before, after)) = main.split_once(CONTENTS) else { return main.to_owned() };
     let mut parts = after.split("<h2>");
@@ -94,12 +94,12 @@ fn with_contents(main: &str) -> String {
     [before, &list.0, &marked].concat()
 }
 
-/// A text from outside without characters that are no text; maud escapes the markup in it.
+/// Text from outside without non-text characters; maud escapes the markup in it.
 pub fn clean(text: &str) -> String {
     text.chars().map(visible).collect()
 }
 
-/// A sentence, cleaned, in which no line breaks between a number and its unit.
+/// Cleaned sentence with no line break between a number and its unit.
 pub(super) fn unbroken(text: &str) -> String {
     let mut sentence = clean(text);
     for unit in ["%", "mm"] {
@@ -111,7 +111,7 @@ pub(super) fn unbroken(text: &str) -> String {
     sentence
 }
 
-/// A figure as an element of the page, in all its sizes: the style shows the size that fits.
+/// Figure as an element of the page, in all its sizes; the style shows the size that fits.
 pub fn drawing(drawn: &Drawn) -> Markup {
     let wide = drawn.figure.inline(&format!("{}-wide", drawn.name), Size::Wide);
     let narrow = drawn.figure.inline(&format!("{}-narrow", drawn.name), Size::Narrow);
@@ -134,7 +134,7 @@ pub(super) fn figure(number: usize, drawn: &Drawn) -> Markup {
 }
 
 /// Controls of a figure on a screen: the curves that are shown, and their size. The boxes work by style
-/// alone, as no script runs on a page; in print every curve is present.
+/// alone, because no script runs on a page; in print all curves are shown.
 fn looks(number: usize, curves: &[String]) -> Markup {
     html! {
         div.looks role="group" aria-label=(format!("Figure {number}, as shown on a screen")) {
@@ -146,7 +146,7 @@ fn looks(number: usize, curves: &[String]) -> Markup {
     }
 }
 
-/// Explanation of the model, before a page speaks of it.
+/// Explanation of the model, before its first mention on a page.
 pub(super) fn model() -> Markup {
     html! {
         p.model {
@@ -156,7 +156,7 @@ pub(super) fn model() -> Markup {
     }
 }
 
-/// Limits of the model, which a page lists beside its results.
+/// Limits of the model, for a page to list beside its results.
 pub(super) fn leaves_out(limits: &[ModelLimit], more: &Markup) -> Markup {
     html! {
         aside.leaves {
@@ -182,13 +182,13 @@ pub(super) fn fact(name: &str, value: impl std::fmt::Display) -> Markup {
     html! { tr { th { (name) } td { (clean(&value.to_string())) } } }
 }
 
-/// Characters of a text of the user's that are shown.
+/// Maximum number of characters of a user's text shown.
 pub(super) const LINE: usize = 120;
 
-/// Characters that fit at the foot of a printed page.
+/// Number of characters that fit in the footer of a printed page.
 const FOOT: usize = 60;
 
-/// Those who sign: on paper their names are in the signature fields.
+/// People who sign: on paper their names are in the signature fields.
 const SIGNED: [&str; 2] = ["Author", "Checked by"];
 
 /// Version and commit of the program, in short.
@@ -199,8 +199,8 @@ pub(super) fn program(version: &str, commit: Option<&str>) -> String {
     }
 }
 
-/// Stated facts, the date, the program and, if something was walked, its seed; on paper blank lines for
-/// missing facts, and the fields of three signatures.
+/// Cover: stated facts, the date, the program and, after a walk, its seed. On paper missing facts become
+/// blank lines, and there are fields for three signatures.
 pub(super) fn cover(sheet: &SheetCover, program: &str, seed: Option<u64>) -> Markup {
     let facts = [
         ("Project", sheet.project.clone()),
@@ -231,13 +231,13 @@ pub(super) fn cover(sheet: &SheetCover, program: &str, seed: Option<u64>) -> Mar
     }
 }
 
-/// Text at the foot of every page beside its number: the number of the project, or its name.
+/// Footer of every page, next to its number: the number of the project, or its name.
 pub(super) fn foot(sheet: &SheetCover) -> Option<String> {
     let text = sheet.number.as_ref().or(sheet.project.as_ref())?;
     Some(clean(&shorten(text, FOOT)))
 }
 
-/// Signature fields of those who prepared, checked and approved the sheet, on paper.
+/// Signature fields on paper, for those who prepared, checked and approved the sheet.
 fn signatures(sheet: &SheetCover) -> Markup {
     let who = [("Prepared", sheet.author.as_ref()), ("Checked", sheet.checker.as_ref()), ("Approved", None)];
     html! {
@@ -343,7 +343,7 @@ mod tests {
         for fact in ["Dam &lt;1&gt;", "D-2031", "Chimney filter", "Water Board", ">A<"] {
             assert_eq!(page.matches(fact).count(), 1, "{fact}: {page}");
         }
-        // The signature fields, and the foot of every page.
+        // Signature fields, and the footer of every page.
         assert_eq!(foot(&sheet).as_deref(), Some("D-2031"));
         for fact in ["Prepared</th><td><bdi>N. N.<", "Checked</th><td><bdi>M. M.<", "Approved</th><td></td>"]
         {

@@ -1,5 +1,5 @@
-//! Gradations of soils: as one figure, as tables of numbers in an appendix, and as those of a specification;
-//! and the files that were read.
+//! Gradations of soils: as one figure, as tables of numbers in an appendix, and for a specification; and the
+//! files that were read.
 
 use super::figures::{
     Area, Axis, BLACK, BLUE, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, VERMILLION, positive_range,
@@ -19,8 +19,8 @@ use voidwalk_practice::design::specification::SpecifiedCurve;
 use voidwalk_practice::quantity::{SizeUnit, percent, significant};
 use voidwalk_sheets::us_sieve;
 
-/// Percent finer by mass against size (mm) for each soil: its name and its points, as an SVG file; with
-/// coarse sizes on the left if requested, as in the United States.
+/// SVG figure of percent finer by mass against size (mm), from the name and points of each soil; with coarse
+/// sizes on the left if requested, as in the United States.
 pub fn soils_figure<'a>(
     soils: impl IntoIterator<Item = (&'a str, &'a [CurvePoint])>,
     coarse_left: bool,
@@ -28,7 +28,7 @@ pub fn soils_figure<'a>(
     let soils: Vec<(&str, &[CurvePoint])> = soils.into_iter().collect();
     let (low, high) =
         positive_range(soils.iter().flat_map(|(_, points)| points.iter().map(|point| point.size)));
-    // One size alone still gets a range.
+    // A single size still gets a range.
     let high = if high > low { high } else { 2.0 * low };
     let names: Vec<String> = soils.iter().map(|(name, _)| shorten(name, 40)).collect();
     let what = format!("Percent finer by mass against size for {}", names.join(", "));
@@ -46,18 +46,18 @@ pub fn soils_figure<'a>(
     figure.file()
 }
 
-/// Rows shown of each gradation; all are in the record.
+/// Maximum number of rows shown of each gradation; all are in the record.
 const ROWS: usize = 200;
 
-/// A gradation: its kind, as `Filter`, its name, and its rows of size and percent finer by mass.
+/// Gradation: its kind, such as `Filter`, its name, and its rows of size and percent finer by mass.
 struct TabledSoil<'a> {
     kind: &'a str,
-    /// Its name, which may say no more.
+    /// Name, which may only repeat the kind.
     name: &'a str,
     rows: &'a [[f64; 2]],
 }
 
-/// Filter and base as the walk read them: the values that a reader types in to check it.
+/// Filter and base as the walk read them: the values to type in for a check.
 pub(super) fn of_run(outcome: &Outcome, unit: SizeUnit) -> Markup {
     let inputs = &outcome.inputs;
     let (filter, base) = (&inputs.filter, &inputs.base);
@@ -83,7 +83,7 @@ pub(super) fn of_run(outcome: &Outcome, unit: SizeUnit) -> Markup {
 
 const BETWEEN: &str = "between two rows straight lines on semi-logarithmic paper.";
 
-/// Gradations side by side; the record has all of their rows.
+/// Gradations side by side; the record holds all of their rows.
 fn gradations(soils: &[TabledSoil], unit: SizeUnit, record: &str) -> Markup {
     html! { div.gradations { @for soil in soils { (gradation(soil, unit, record)) } } }
 }
@@ -98,7 +98,7 @@ pub(super) fn input_files(files: &[InputFile]) -> Markup {
 fn gradation(soil: &TabledSoil, unit: SizeUnit, record: &str) -> Markup {
     let TabledSoil { kind, name, rows } = soil;
     let finest = rows.iter().map(|row| row[1]).fold(100.0, f64::min);
-    // The coarsest first, as a laboratory writes it.
+    // Coarsest first, as in laboratory reports.
     let shown: Vec<&[f64; 2]> = rows.iter().rev().take(ROWS).collect();
     let mut columns = Columns::default();
     if unit == SizeUnit::MmAndInches {
@@ -124,11 +124,10 @@ fn gradation(soil: &TabledSoil, unit: SizeUnit, record: &str) -> Markup {
 
 const RECORD: &str = "specification.json";
 
-/// Greatest number of curves of a base that are drawn with every row shown.
+/// Maximum number of curves of a base drawn with all their rows.
 const CURVES: usize = 12;
 
-/// The curves of the base of a specification, drawn on the form of gradations with the band if there is one,
-/// and in an appendix.
+/// Curves of the base of a specification, drawn as gradations with the band, if any, and in an appendix.
 pub(super) struct GivenCurves<'a>(pub &'a Specification);
 
 impl<'a> GivenCurves<'a> {
@@ -139,7 +138,7 @@ impl<'a> GivenCurves<'a> {
         }
     }
 
-    /// Sizes and gradations of every soil; empty if no soil is known.
+    /// Sizes and gradations of every known soil; empty without one.
     pub(super) fn appendix(&self) -> Markup {
         let (curves, unit) = (&self.0.curves, SizeUnit::of(false, self.0.inches));
         if curves.is_empty() {
@@ -191,8 +190,8 @@ impl<'a> GivenCurves<'a> {
         soils
     }
 
-    /// The first curves on the form of gradations, with both sides of the band, whose D15F is in `words`;
-    /// `None` if there is nothing to draw.
+    /// The first curves on a gradation chart, with both sides of the band, whose D15F is in `words`; `None`
+    /// without anything to draw.
     pub(super) fn figure(&self, words: Option<&str>) -> Option<Drawn> {
         let (curves, band) = (&self.0.curves, self.0.band.as_ref());
         let sides = band.map(|band| (band.drawn_fine_side(), &band.coarse_side));
@@ -259,7 +258,7 @@ mod tests {
         let text = soils_figure([("fine <side>", &fine[..]), ("coarse", &coarse[..])], false);
         assert!(text.starts_with("<?xml") || text.starts_with("<svg"), "{}", &text[..40]);
         assert!(text.contains(">fine &lt;side&gt;<") && text.contains(">coarse<"));
-        // One size.
+        // A single size.
         assert!(soils_figure([("one", &[point((2.0, 100.0))][..])], false).contains("</svg>"));
     }
 }

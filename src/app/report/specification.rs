@@ -1,4 +1,4 @@
-//! The page of a specification, and that of the specifications for many samples.
+//! Page of a specification, and page of the specifications for many samples.
 
 use std::path::Path;
 
@@ -24,7 +24,7 @@ use voidwalk_practice::quantity::{NumberRole, SizeUnit, length};
 use voidwalk_practice::{DesignedSample, DesignedSamples};
 
 /// Writes `specification.html`, its figure and `specification.xlsx` into the folder of a specification, from
-/// `specification.json` there.
+/// its `specification.json`.
 pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
     let design: Specification = json(&folder.join("specification.json"))?;
     let names = html! {
@@ -81,17 +81,17 @@ fn answer(design: &Specification) -> Markup {
             @for row in design.notes.iter().take(WARNINGS) {
                 p.caution { b { "Warning" } ": " (unbroken(&row_note(row, unit))) }
             }
-            @if design.notes.len() > WARNINGS { p.small { "More warnings stand below." } }
+            @if design.notes.len() > WARNINGS { p.small { "More warnings below." } }
             @if let Some(gaps) = still_to_set(design, unit) { p.caution { b { (unbroken(&gaps)) } } }
             p { (clean(&products_line(design))) "." }
         }
     }
 }
 
-/// Number of warnings in the answer; those of further curves are below it.
+/// Maximum number of warnings in the answer; the others are below it.
 const WARNINGS: usize = 4;
 
-/// The reason for the beginning of the band, and the sizes of its two sides; empty without a band.
+/// Reason for the start of the band, and the sizes of its two sides; empty without a band.
 fn to_specify(design: &Specification) -> Markup {
     let Some(band) = &design.band else { return html! {} };
     let unit = unit(design);
@@ -175,11 +175,11 @@ fn products(design: &Specification) -> Markup {
 
 const RECORD: &str = "designs.json";
 
-/// Rows of the page's table; all are in `designs.csv`.
+/// Maximum number of rows in the page's table; all are in `designs.csv`.
 const LISTED: usize = 2000;
 
-/// Writes `designs.html` and `figures/designs.svg` into the folder of the designs of many samples.
-/// A file that is missing or malformed is an error, and nothing is written then.
+/// Writes `designs.html` and `figures/designs.svg` into the folder of the designs of many samples. A missing
+/// or malformed file is an error, and nothing is written then.
 pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
     let path = folder.join(RECORD);
     let all: DesignedSamples = json(&path)?;
@@ -250,7 +250,7 @@ fn table(all: &DesignedSamples) -> Markup {
     }
 }
 
-/// The limit of practice of every sample against its D85B; `None` without a number.
+/// Limit of practice of every sample against its D85B; `None` without a number.
 fn limits(all: &DesignedSamples) -> Option<Drawn> {
     let limit = |row: &DesignedSample| Some((row.d85b_mm?, row.d15f_max_mm?, row.governs == Some(1)));
     let practice: Vec<_> = all.rows.iter().filter_map(limit).collect();
@@ -288,7 +288,7 @@ mod tests {
         let line = products_line(&core);
         assert_eq!(line, "Standard products that fit: ASTM C33 fine aggregate");
         assert!(sieve_limits(&core).into_string().contains("D15F of each delivery must lie within 0.140 to"));
-        // The greatest is unknown, and the least alone refuses the finest product.
+        // The maximum is unknown, and the minimum alone refuses the finest product.
         let unknown =
             Specification { d15f_max_mm: None, products: margins((Some(0.2), 0.2), None), ..core.clone() };
         assert!(products_line(&unknown).starts_with("No other product is known to fit"));

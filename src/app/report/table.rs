@@ -1,5 +1,5 @@
 //! Tables of a page: rows with the columns that describe them ([`Columns`]), which a page may decorate; and
-//! the sizes of soils as such tables.
+//! tables of the sizes of soils.
 
 use super::shell::clean;
 use crate::outcome::table::{ColumnKind, Columns, Emphasis, PageColumn, Shown};
@@ -12,11 +12,11 @@ use voidwalk_practice::quantity::{SizeUnit, whole};
 /// Markup that a page shows in the cells of a column instead of its description.
 type Decoration<'a, T> = Box<dyn Fn(&T) -> Markup + 'a>;
 
-/// A table, which scrolls by itself if the page is too narrow for it.
+/// Table that scrolls by itself if the page is too narrow for it.
 pub(super) struct Table<'a, T> {
     rows: Vec<&'a T>,
     columns: Vec<PageColumn<'a, T>>,
-    /// Decorations by the places of their columns.
+    /// Decorations by the positions of their columns.
     decorations: BTreeMap<usize, Decoration<'a, T>>,
     class: Option<&'static str>,
     more: Markup,
@@ -32,13 +32,13 @@ impl<'a, T> Table<'a, T> {
         Self { class: Some(class), ..self }
     }
 
-    /// Adds a further row at its end.
+    /// Adds a row at the end.
     pub(super) fn more(self, more: Markup) -> Self {
         Self { more, ..self }
     }
 
-    /// Shows this in the cells of the first column of this name: a factor of a campaign may have the name of
-    /// a column, too.
+    /// Shows this in the cells of the first column with this name; a factor of a campaign may have the name
+    /// of another column.
     pub(super) fn showing(mut self, name: &str, cell: impl Fn(&T) -> Markup + 'a) -> Self {
         let place = self.columns.iter().position(|column| column.name == name);
         self.decorations.insert(place.unwrap_or_else(|| panic!("{name} is no column")), Box::new(cell));
@@ -52,7 +52,7 @@ impl<'a, T> Table<'a, T> {
         }
     }
 
-    /// The columns with their places, without those of texts that are empty in every row.
+    /// Columns with their positions, without text columns that are empty in every row.
     fn filled(&self) -> Vec<(usize, &PageColumn<'a, T>)> {
         let is_filled = |(place, column): &(usize, &PageColumn<T>)| {
             column.kind != ColumnKind::Text
@@ -77,7 +77,7 @@ fn markup(shown: &Shown) -> Markup {
     }
 }
 
-/// The class of the style for an emphasised text, and the text before it.
+/// Style class of an emphasised text, and the text before it.
 fn look(emphasis: Emphasis) -> (String, &'static str) {
     match emphasis {
         Emphasis::Doubt => ("amber".into(), ""),
@@ -110,7 +110,7 @@ impl<T> Render for Table<'_, T> {
     }
 }
 
-/// A soil: its name in the table, and its rows of size and percent finer by mass.
+/// Soil: its name in the table, and its rows of size and percent finer by mass.
 pub(super) struct SizedSoil<'a> {
     name: String,
     rows: &'a [[f64; 2]],
@@ -122,7 +122,7 @@ impl<'a> SizedSoil<'a> {
     }
 }
 
-/// The name of a soil, and its sizes by their names.
+/// Name of a soil, and its sizes by their names.
 type SoilRow<'a> = (&'a String, Vec<(&'static str, Option<String>)>);
 
 fn note(unit: SizeUnit) -> Markup {
@@ -158,7 +158,7 @@ pub(super) fn of_many(soils: &[SizedSoil]) -> Markup {
     html! { (table.showing("soil", |(name, _)| html! { bdi { (clean(name)) } })) (note(SizeUnit::Mm)) }
 }
 
-/// A value, or words for a missing one.
+/// Value in words, or a text for a missing one.
 pub(super) fn known<T, R: Display>(value: Option<T>, words: impl FnOnce(T) -> R) -> String {
     value.map_or_else(|| "not given".to_owned(), |value| words(value).to_string())
 }

@@ -1,4 +1,4 @@
-//! Data for the figures and tables of walks, of a scene or of given networks.
+//! Data for the figures and tables of walks, from a scene or on given networks.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,7 +10,7 @@ use crate::outcome::Recorded;
 use crate::outcome::record::{LayerRow, Replicate, RunSummary, SeriesRow, SizeRow, Verdict};
 use voidwalk_practice::quantity::SizeUnit;
 
-/// The results of walks and their rows.
+/// Results of walks and their rows.
 #[derive(Clone, Copy)]
 pub(super) struct Walks<'a> {
     pub verdict: Verdict,
@@ -18,11 +18,11 @@ pub(super) struct Walks<'a> {
     pub replicates: &'a [Replicate],
     /// Eroded mass fraction that divides the classes.
     pub threshold: f64,
-    /// Share of the base inserted in each increment.
+    /// Fraction of the base inserted in each increment.
     pub inject_share: f64,
-    /// Rows of (size, percent finer by mass) of the base.
+    /// Gradation of the base: rows of size and percent finer by mass.
     pub base: &'a [[f64; 2]],
-    /// The unit of sizes below the first sheet: mm alone, or D0F.
+    /// Unit of sizes after the first sheet: mm alone, or D0F.
     pub unit: SizeUnit,
     /// D15F (mm), if the filter is known.
     pub d15f_mm: Option<f64>,
@@ -38,16 +38,16 @@ impl Walks<'_> {
     }
 }
 
-/// The rows of the CSV files of walks, by run first; within a key in the order of the file.
+/// Rows of the CSV files of walks, by run first; rows of one key are in the order of the file.
 #[derive(Default)]
 pub(super) struct RunRows {
-    /// By (run, replicate).
+    /// Rows by (run, replicate).
     pub series: BTreeMap<(u64, u64), Vec<SeriesRow>>,
-    /// By (run, replicate).
+    /// Rows by (run, replicate).
     pub layers: BTreeMap<(u64, u64), Vec<LayerRow>>,
-    /// By (run, replicate, increment).
+    /// Rows by (run, replicate, increment).
     pub retained: BTreeMap<(u64, u64, u64), Vec<SizeRow>>,
-    /// By (run, replicate, increment).
+    /// Rows by (run, replicate, increment).
     pub eroded: BTreeMap<(u64, u64, u64), Vec<SizeRow>>,
 }
 
@@ -67,7 +67,7 @@ impl RowSource<'_> {
     ) -> Result<Numbered<T>, ReportError> {
         match self {
             RowSource::Folder(folder) => rows(&folder.join(name)),
-            // The first line of a file is its header.
+            // Line 1 of a file is its header.
             RowSource::Memory(recorded) => Ok((2..).zip(std::mem::take(table(recorded))).collect()),
         }
     }
@@ -79,8 +79,8 @@ const RETAINED: &str = "retained.csv";
 const ERODED: &str = "eroded.csv";
 
 impl RunRows {
-    /// Sorts the rows of these numbers of replicates and runs, and refuses those that do not fit together;
-    /// errors name a file of `folder`.
+    /// Sorts the rows of the expected replicates and runs, and refuses rows that do not fit together; errors
+    /// name a file of `folder`.
     pub(super) fn read(
         folder: &Path,
         mut source: RowSource,
@@ -133,7 +133,7 @@ impl RunRows {
     }
 }
 
-/// Rows by their key, each checked beside the previous row of its key; `path` names their file in errors.
+/// Rows by their key, each checked against the previous row of its key; `path` names their file in errors.
 fn sorted<K: Ord, T>(
     path: &Path,
     rows: Numbered<T>,
@@ -149,7 +149,7 @@ fn sorted<K: Ord, T>(
     Ok(sorted)
 }
 
-/// Refuses values that are not between 0 and `most` (Rust reads "nan" and "inf" as numbers).
+/// Refuses values outside 0 to `most` (Rust reads "nan" and "inf" as numbers).
 fn in_range(field: &str, value: f64, most: f64) -> Result<(), String> {
     if value >= 0.0 && value <= most * (1.0 + 1e-9) {
         return Ok(());
@@ -159,7 +159,7 @@ fn in_range(field: &str, value: f64, most: f64) -> Result<(), String> {
     Err(format!("{field} is {value}, allowed: {allowed}"))
 }
 
-/// Refuses results that no walks have.
+/// Refuses results that no walk can have.
 pub(super) fn check_results(
     path: &Path,
     replicates: &[Replicate],

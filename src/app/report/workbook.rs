@@ -1,4 +1,4 @@
-//! Answers as workbooks: numbers as numbers, units in the headings, the same bytes twice.
+//! Answers as workbooks: numbers as numbers, units in the headings, the same bytes every time.
 
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -28,7 +28,7 @@ pub(super) const VERDICT: &str = "verdict.xlsx";
 const SPECIFICATION: &str = "specification.xlsx";
 
 /// Writes `verdict.xlsx` into `into`, from the files of a finished run folder: the answer, the inputs, every
-/// rule with its formula and source, every run, both gradations, and the program that made it.
+/// rule with its formula and source, every run, both gradations, and the program version.
 pub fn write_verdict_workbook(folder: &Path, into: &Path) -> Result<PathBuf, ReportError> {
     let path = into.join(VERDICT);
     write_whole(&path, &verdict_workbook(folder)?)?;
@@ -40,8 +40,8 @@ pub(super) fn verdict_workbook(folder: &Path) -> Result<Vec<u8>, ReportError> {
     bytes(&folder.join(VERDICT), "voidwalk: verdict", &verdict_sheets(&RunFolder::read(folder)?))
 }
 
-/// Writes `specification.xlsx` into a folder: steps, limits, band, products, and the base. With a clock
-/// before 1970 there is no workbook.
+/// Writes `specification.xlsx` into a folder: steps, limits, band, products, and the base. Writes nothing if
+/// the clock is before 1970.
 pub(super) fn write_specification_workbook(
     folder: &Path,
     specification: &Specification,
@@ -53,8 +53,8 @@ pub(super) fn write_specification_workbook(
     Ok(write_whole(&path, &bytes(&path, "voidwalk: specification of a filter", &sheets)?)?)
 }
 
-/// A workbook to fill in, which [`voidwalk_sheets::soils_in_file`] reads: one column per soil, as bytes.
-/// A clock before 1970 is an error.
+/// Workbook to fill in, with one column per soil, for [`voidwalk_sheets::soils_in_file`], as bytes. A clock
+/// before 1970 is an error.
 ///
 /// ```
 /// let bytes = voidwalk_app::report::soil_template()?;
@@ -65,23 +65,23 @@ pub fn soil_template() -> Result<Vec<u8>, ReportError> {
     bytes(Path::new("template"), "voidwalk: sieve tables", &template_sheets())
 }
 
-/// A workbook; `path` names it in errors.
+/// Workbook as bytes; `path` names it in errors.
 fn bytes(path: &Path, title: &str, sheets: &[Sheet]) -> Result<Vec<u8>, ReportError> {
     workbook(title, sheets).map_err(|error| malformed(path, 0, error.to_string()))
 }
 
-/// Most characters of a cell that Excel allows.
+/// Maximum number of characters in a cell; Excel allows slightly more.
 const CELL: usize = 32_000;
 
-/// The greatest whole number that a cell holds exactly.
+/// Largest integer that a cell holds exactly.
 const WHOLE: u64 = 1 << 53;
 
-/// The creation day of every workbook, on any day.
+/// Creation date of every workbook, so that its bytes do not change from day to day.
 const DAY: (u16, u8, u8) = (2000, 1, 1);
 
 const WIDTHS: (usize, usize) = (8, 70);
 
-/// A sheet: headings, and rows below them.
+/// Sheet with headings and rows.
 struct Sheet {
     name: &'static str,
     headings: Vec<String>,
@@ -138,7 +138,7 @@ impl Sheet {
     }
 }
 
-/// A value as a cell holds it: words without hidden characters, and numbers that no cell holds as words.
+/// Value for a cell: words without hidden characters; numbers that no cell can hold become words.
 fn held(value: CellValue) -> CellValue {
     match value {
         CellValue::Words(words) if words.is_empty() => CellValue::Empty,
@@ -149,16 +149,16 @@ fn held(value: CellValue) -> CellValue {
     }
 }
 
-/// Tells if the clock shows a year that makes the writer of workbooks panic.
+/// True if the clock shows a year in which the workbook writer panics.
 fn is_before_1970() -> bool {
     SystemTime::now() < UNIX_EPOCH
 }
 
 const NO_THREADS: &str =
-    "the system gives no more threads, and a workbook needs one a sheet: allow more (ulimit -u)";
+    "the system gives no more threads, and a workbook needs one per sheet: allow more (ulimit -u)";
 
-/// Tells if the system can start this number of threads at once: the writer of workbooks takes one per sheet,
-/// or panics.
+/// True if the system can start this number of threads at once: the workbook writer takes one per sheet, or
+/// panics.
 fn has_threads(count: usize) -> bool {
     let threads: Vec<_> = (0..count).map(|_| std::thread::Builder::new().spawn(std::thread::park)).collect();
     let all = threads.iter().all(Result::is_ok);
@@ -169,8 +169,8 @@ fn has_threads(count: usize) -> bool {
     all
 }
 
-/// A workbook of these sheets, as bytes. A sheet that no workbook holds is an error, such as one of more than
-/// a million rows; so are a clock before 1970, and no threads.
+/// Workbook of these sheets, as bytes. Errors: a sheet that does not fit into a workbook, such as one of more
+/// than a million rows; a clock before 1970; no threads.
 fn workbook(title: &str, sheets: &[Sheet]) -> Result<Vec<u8>, XlsxError> {
     if is_before_1970() {
         return Err(XlsxError::ParameterError("no workbook before 1970: set this machine's clock".into()));
@@ -353,7 +353,7 @@ fn provenance(run: &RunFolder) -> Sheet {
     sheet
 }
 
-/// Cautions that the page has too.
+/// Cautions that the page also gives.
 const CAUTIONS: [(&str, &str); 3] = [
     ("Fines", "At most 5 % may be finer than 0.075 mm, and these fines must not be plastic."),
     ("Segregation", "Segregation is not checked: the maximum D90F is still to be set (see its step)."),
@@ -435,12 +435,12 @@ fn base(design: &Specification) -> Sheet {
     Sheet::new("Base", &columns, &rows.collect::<Vec<_>>())
 }
 
-/// Sheets of the workbook: the soils first.
+/// Sheets of the workbook, starting with the soils.
 fn template_sheets() -> Vec<Sheet> {
     vec![soil("Base", &BASE), soil("Filter", &FILTER), how()]
 }
 
-/// Percent finer of an example at the sieves of the United States, the coarsest first.
+/// Percent finer of an example at the US sieves, coarsest first.
 type Example = [f64; 14];
 
 const BASE: Example =
@@ -462,7 +462,7 @@ fn rows(example: &Example) -> Vec<(f64, f64)> {
     SieveSeries::Us.openings().iter().copied().zip(*example).collect()
 }
 
-/// Instructions, in words that no reader takes for a sieve table.
+/// Instructions, worded so that no reader takes them for a sieve table.
 fn how() -> Sheet {
     let columns = Columns::default().column("How to fill in", |line: &&str| line.to_string());
     let lines = [
@@ -470,7 +470,7 @@ fn how() -> Sheet {
         "Add or remove rows as you need. A further sample is a further column, headed as Sample 2 (% finer).",
         "The coarsest row must have 100 % finer. Leave no row empty between two others.",
         "Add hydrometer sizes below the finest sieve if you have them: retention depends on fines and D85.",
-        "Where a command reads one soil, name its sheet: site.xlsx#Base. Else both sheets would be one soil.",
+        "If a command reads one soil, name its sheet: site.xlsx#Base. Otherwise both sheets are one soil.",
         "Delete a sheet that you do not need. voidwalk soil FILE.xlsx shows what is read.",
     ];
     Sheet::new("How to fill in", &columns, &lines)
@@ -502,7 +502,7 @@ mod tests {
         assert_eq!(first, made());
     }
 
-    /// The last sheet asks for one column per further sample.
+    /// A further sample takes one column, as the last sheet says.
     #[test]
     fn a_template_with_a_further_sample_is_read_as_it_says() {
         let columns = template_columns().column("Sample 2 (% finer)", |row| row.1);
@@ -514,7 +514,7 @@ mod tests {
         let names: Vec<&str> = soils.iter().map(|soil| soil.name.as_str()).collect();
         assert_eq!(names, ["Base/Sample 1 (% finer)", "Base/Sample 2 (% finer)", "Filter"]);
         assert_eq!(soils[0].points, soils[1].points);
-        // Sieves that everything passes are one row: the finest of them.
+        // Of the sieves that everything passes, only the finest becomes a row.
         assert_eq!((soils[0].points.len(), soils[0].points[0].row()), (8, [0.075, 38.0]));
     }
 }

@@ -1,4 +1,4 @@
-//! Callbacks of a caller, to follow the work and to stop it.
+//! Callbacks by which a caller follows the work and stops it.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -17,32 +17,32 @@ use voidwalk_practice::{Decision, Note};
 /// Event while a filter is packed and a case is walked.
 #[derive(Clone, Copy, Debug)]
 pub enum Event<'a> {
-    /// Another process makes the packing that is needed; it is waited for.
+    /// Another process is making the packing that is needed, and this one waits.
     PackingElsewhere {
         /// The packing's folder.
         folder: &'a Path,
-        /// Who makes it.
+        /// Process that makes it.
         holder: &'a str,
     },
-    /// A filter is packed, from the start or from a checkpoint.
+    /// The packing of a filter begins, from the start or from a checkpoint.
     PackingBegun(&'a PackingPlan),
     /// Progress of the packing.
     Packing(&'a CompressionProgress),
-    /// The packing has ended, well or not.
+    /// The packing has ended, successfully or not.
     PackingEnded,
     /// Notes on a case before its walk.
     Noted {
-        /// The most important first.
+        /// Notes, most important first.
         notes: &'a [Note],
         /// Unit of sizes in the case.
         unit: SizeUnit,
     },
-    /// Replicates are walked: this many runs, as far as is known.
+    /// The walk of replicates begins.
     WalkBegun {
-        /// Number of runs.
+        /// Number of runs, as far as is known.
         runs: u64,
     },
-    /// An increment of some run is done.
+    /// An increment of a run is done.
     Increment {
         /// Replicate, counted from 1.
         replicate: u64,
@@ -63,10 +63,10 @@ pub enum Event<'a> {
         run: u64,
         /// Mass eroded over mass inserted.
         eroded_mass_fraction: f64,
-        /// True if the fraction is below the threshold, exactly.
+        /// True if the fraction is below the threshold, without rounding.
         below_threshold: bool,
     },
-    /// Number of walks that decide the verdict, as far as is known; repeated if more replicates are needed.
+    /// Number of walks that decide the verdict, as far as is known; sent again if more replicates are needed.
     VerdictNeeds {
         /// Replicates of the case itself.
         replicates: u64,
@@ -77,14 +77,14 @@ pub enum Event<'a> {
     },
     /// The verdict is final; all further walks are studies.
     VerdictStands {
-        /// The outcome, its studies to come.
+        /// The outcome, still without its studies.
         outcome: &'a Outcome,
         /// The decision of practice.
         decision: &'a Decision,
         /// Unit of sizes in the case.
         unit: SizeUnit,
     },
-    /// More runs are needed than was known.
+    /// More runs are needed than were known.
     MoreRuns {
         /// Number of runs.
         runs: u64,
@@ -93,25 +93,25 @@ pub enum Event<'a> {
     Studying(&'a str),
 }
 
-/// Callbacks of a caller that follow the work, from any thread, and stop it; the default follows nothing and
-/// never stops. [`resume`](super::resume) has an example.
+/// Callbacks by which a caller follows the work, from any thread, and stops it; by default they do nothing.
+/// [`resume`](super::resume) has an example.
 #[derive(Clone, Copy)]
 pub struct Callbacks<'a> {
     /// Receives every event.
     pub on_event: &'a (dyn Fn(Event) + Sync),
-    /// Set to stop: the work ends after the current increment or step, with its progress saved.
+    /// Set to stop: the work ends after the current increment or step and saves its progress.
     pub stop: &'a AtomicBool,
     /// Receives warnings for the user.
     pub warn: &'a (dyn Fn(&str) + Sync),
-    /// Called when results of this kind are whole in this folder, before the work counts as done; of a run
-    /// that was walked now with the content of its files.
+    /// Called when results of this kind in this folder are complete, before the work counts as done. It gets
+    /// the content of the files of a run that was walked in this call.
     pub on_results: &'a TakeResults<'a>,
 }
 
-/// Takes results of a kind in a folder.
+/// Receives results of a kind in a folder.
 type TakeResults<'a> = dyn Fn(FolderKind, &Path, Option<RunFiles>) -> Result<(), AnyError> + Sync + 'a;
 
-/// The stop flag of who never stops.
+/// Stop flag that is never set.
 static NEVER: AtomicBool = AtomicBool::new(false);
 
 impl Default for Callbacks<'_> {

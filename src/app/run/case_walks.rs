@@ -1,9 +1,9 @@
-//! All walks of a case: those that its verdict follows from, its replicates and the ends of the range of its
-//! constriction curve; and its studies, the change of the verdict with the number of base particles and with
-//! the thickness of the filter.
+//! All walks of a case. Its verdict follows from its replicates and the ends of the range of its constriction
+//! curve; its studies show how the verdict changes with the number of base particles and with the thickness
+//! of the filter.
 //!
-//! A point of a study, one other number or thickness, is walked on the random numbers of the first
-//! replicates: the same networks; a lattice of another thickness has the first layers in common with them.
+//! A point of a study is one other number or thickness. It is walked on the random numbers of the first
+//! replicates, and so on the same networks; a lattice of another thickness shares the first layers with them.
 //! The walk of a point stops when its class is clear ([`crate::outcome::early_stop`]). All points are walked
 //! side by side, so that one replicate of each keeps all threads busy.
 
@@ -26,22 +26,21 @@ use crate::outcome::record::{
 };
 use crate::outcome::stopping::class_at;
 
-/// Everything that was walked for the verdict of a case, with the class of it.
+/// Everything walked for the verdict of a case, and the resulting class.
 pub struct CaseWalks {
     pub replicates: Vec<ReplicateResult>,
     pub summary: Vec<RunSummary>,
     /// Result of a rule that adds replicates.
     pub stopping: Option<Stopping>,
-    /// The ends of the range of the curve; `None` if the curve has no range.
+    /// Ends of the range of the curve; `None` if the curve has no range.
     pub range: Option<CurveRange>,
     pub verdict: Verdict,
-    /// The confidence level (%) at which the rule decided, if it is less than the usual one.
+    /// Confidence level (%) at which the rule decided, if below the usual level.
     pub low_level_percent: Option<f64>,
 }
 
 impl CaseWalks {
-    /// Walks the replicates of a case and, on their random numbers, everything else that its verdict follows
-    /// from.
+    /// Walks everything that decides a case's verdict: its replicates and, on their random numbers, the rest.
     pub fn walk(case: &Case, context: &ReplicateContext) -> Result<Self, RunError> {
         // Ends do not wait for the last replicate.
         let (walked, begun) = rayon::join(|| replicates(case, context), || begin_ends(case, context));
@@ -49,7 +48,7 @@ impl CaseWalks {
         let (verdict, summary) = summarise(&replicates);
         let stopping = stopping(case, &replicates);
         let low_level_percent = stopping.as_ref().and_then(|stopping| stopping.less_than_usual(verdict));
-        // A verdict that was to be certain is one at the level asked for.
+        // If certainty was asked for, the verdict is the one reached at that confidence level.
         let verdict = stopping.as_ref().and_then(|stopping| stopping.verdict).unwrap_or(verdict);
         let range = curve_range(case, &replicates, (verdict, &summary), begun, context)?;
         let verdict = range.as_ref().map_or(verdict, CurveRange::whole);
@@ -57,7 +56,7 @@ impl CaseWalks {
     }
 }
 
-/// An end of the range of the curve, and its replicates that were walked.
+/// End of the range of the curve, with its replicates walked so far.
 struct BegunEnd<'a> {
     end: &'a OtherCurve,
     case: Case,
@@ -66,10 +65,10 @@ struct BegunEnd<'a> {
     walked: Vec<ReplicateResult>,
 }
 
-/// Begins the ends of the range of the curve. If walks fit into the memory side by side, walks a first
-/// replicate of each, which is needed in any case, on the random numbers of the case's first replicate.
+/// Begins the ends of the range of the curve. Each needs a first replicate in any case; it is walked at once,
+/// on the random numbers of the case's first replicate, if the walks fit into memory side by side.
 fn begin_ends<'a>(case: &'a Case, context: &ReplicateContext) -> Result<Vec<BegunEnd<'a>>, RunError> {
-    // The parts before these are the sensitivity study's.
+    // Lower part numbers belong to the sensitivity study.
     let before = case.sensitivity_factors().len() as u64 + 1;
     let fit = fit_side_by_side(case, case.supply.n_base);
     let one = |(part, end): (u64, &'a OtherCurve)| {
@@ -81,8 +80,8 @@ fn begin_ends<'a>(case: &'a Case, context: &ReplicateContext) -> Result<Vec<Begu
     map_side_by_side((before..).zip(&case.filter.curve_ends).collect(), fit, one)
 }
 
-/// Walks each end of the range of the curve: one replicate if the class clearly stays, else as many as with
-/// the curve itself, whose class and statistics by run are known. `None` if the curve has no range.
+/// Walks each end of the range of the curve: one replicate if the class is clearly the same, else as many as
+/// with the curve itself, whose class and statistics by run are given. `None` if the curve has no range.
 fn curve_range(
     case: &Case,
     walked: &[ReplicateResult],
@@ -103,7 +102,7 @@ fn curve_range(
     Ok(CurveRange::new(verdict, &runs, ends, case.filter.library.is_some(), could_be))
 }
 
-/// Walks one end; also gives the worst class that its walks allow, if a confidence level was asked for.
+/// Walks one end; also returns the worst class that its walks allow, if a confidence level was asked for.
 fn of_end(
     case: &Case,
     begun: BegunEnd,
@@ -114,7 +113,7 @@ fn of_end(
     let (first, all) = (replicates_of_end(walked.len() as u64), walked.len() as u64);
     let BegunEnd { end, case: other, part, n_base, walked: mut of_end } = begun;
     of_end.extend(some_replicates(&other, part, of_end.len() as u64 + 1..=first, n_base, context)?);
-    // Error of each of the two looks.
+    // Error probability of each of the two looks.
     let error = case.scene.stop.error_of_curve(case.curves()).map(|error| 0.5 * error);
     let of_first = error.unwrap_or(ERROR_OF_END).min(ERROR_OF_END);
     let clear = clear_end(&values_by_run(walked), class, &values_by_run(&of_end), of_first);
@@ -148,23 +147,23 @@ pub struct Studies {
     pub thickness: Vec<OfThickness>,
 }
 
-/// One other number of base particles, or one other thickness.
+/// Another number of base particles, or another thickness.
 struct Point<'a> {
     case: Cow<'a, Case>,
-    /// Names its checkpoints.
+    /// Part number, which identifies its checkpoints.
     part: u64,
     n_base: u64,
     /// Factor on the base particles; `None` if the point changes the thickness.
     base_factor: Option<f64>,
     walked: Vec<ReplicateResult>,
-    /// Eroded mass by run, if it stopped because it was clear.
+    /// Eroded mass by run, if its walk stopped because the class was clear.
     clear: Option<Vec<Statistic>>,
 }
 
 /// The points of both studies of a case.
 fn points(case: &Case) -> Vec<Point<'_>> {
     let factors = case.sensitivity_factors();
-    // The parts between belong to the ends of the curve's range.
+    // The part numbers in between belong to the ends of the curve's range.
     let thicknesses = (factors.len() + case.filter.curve_ends.len()) as u64 + 1..;
     let point = |part, case, n_base, base_factor| {
         let (walked, clear) = (Vec::new(), None);
@@ -172,7 +171,7 @@ fn points(case: &Case) -> Vec<Point<'_>> {
     };
     let of_base =
         |(part, factor): (u64, f64)| point(part, Cow::Borrowed(case), case.times_base(factor), Some(factor));
-    // Impossible thicknesses are reported among the parts that are left out.
+    // Impossible thicknesses are reported with the parts that are left out.
     let of_thickness = |(part, factor): (u64, f64)| {
         let other = case.of_thickness(factor).ok()?;
         let n_base = other.supply.n_base;
@@ -183,7 +182,7 @@ fn points(case: &Case) -> Vec<Point<'_>> {
 }
 
 impl Studies {
-    /// Walks the studies of a case whose verdict has been walked for.
+    /// Walks the studies of a case whose verdict is known.
     pub fn walk(case: &Case, walks: &CaseWalks, context: &ReplicateContext) -> Result<Self, RunError> {
         let (of_case, class, mut points) = (&walks.replicates, walks.verdict, points(case));
         let own_values = values_by_run(of_case);
@@ -235,7 +234,7 @@ impl Studies {
         points(case).is_empty()
     }
 
-    /// The case itself, with its verdict, is a point of each of its studies.
+    /// Adds the case itself, with its verdict, as a point of each of its studies.
     fn add_own(&mut self, case: &Case, replicates: &[ReplicateResult], verdict: Verdict) {
         let judged = || Classed { verdict, ..classed(replicates) };
         if !self.sensitivity.is_empty() {
@@ -249,8 +248,8 @@ impl Studies {
     }
 }
 
-/// Walks replicates of points, several side by side if they fit into the memory; in the order of the points
-/// and replicates.
+/// Walks replicates of points, several side by side if they fit into memory; results are in the order of
+/// points and replicates.
 fn walk_all(
     points: &[Point],
     jobs: Vec<(usize, u64)>,
@@ -262,7 +261,7 @@ fn walk_all(
         Ok((point, replicate, walk_replicate(case, *part, replicate, *n_base, context)?))
     };
     let (mut small, large): (Vec<_>, Vec<_>) = jobs.into_iter().partition(is_small);
-    // The longest first, so that no thread is left with one at the end.
+    // The longest go first, so that no thread works alone on one at the end.
     small.sort_by_key(|&(point, _)| {
         Reverse(points[point].n_base.saturating_mul(points[point].case.network.layers))
     });

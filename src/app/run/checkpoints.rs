@@ -1,8 +1,8 @@
-//! Saves the replicates of a case in checkpoints, so that a run which is stopped or killed continues where it
+//! Saves the replicates of a case in checkpoints, so that a stopped or killed run continues from where it
 //! was.
 //!
-//! For a replicate that is being walked its state and its records so far are saved; for a finished one its
-//! figures and rows. Each is a checkpoint of its own in the folder `checkpoint` of the run
+//! A replicate under way is saved with its state and its records so far, a finished one with its figures and
+//! rows. Each has a checkpoint of its own in the folder `checkpoint` of the run
 //! ([`voidwalk_core::store::checkpoint`]), written as often as [`CheckpointInterval`] says, and on a stop.
 
 use std::collections::BTreeMap;
@@ -21,7 +21,7 @@ use voidwalk_core::store::checkpoint::{Checkpoint, CheckpointError, Identity, La
 use voidwalk_core::store::{Folder, StoreError, files_in, make_folder, remove_folder};
 use voidwalk_core::walk::{SavedState, State};
 
-/// Folder of the checkpoints, inside the run's.
+/// Folder of the checkpoints, inside the run's folder.
 pub const FOLDER: &str = "checkpoint";
 
 /// Finished part of a replicate.
@@ -29,18 +29,18 @@ pub const FOLDER: &str = "checkpoint";
 pub struct Done {
     pub complete: bool,
     pub runs: Vec<Run>,
-    /// True, by run, if it eroded less than the threshold.
+    /// True, by run, if the eroded mass was below the threshold.
     pub below: Vec<bool>,
     pub recorded: Recorded,
-    /// Records of the run that is under way.
+    /// Records of the current run.
     pub recorder: Recorder,
 }
 
-/// Which walk of a case: a checkpoint of one is never taken for another's.
+/// Identity of a walk of a case: a checkpoint belongs to one walk only.
 #[derive(Clone, Copy, Debug)]
 pub struct WalkId {
-    /// 0: the walks of the scene itself; from 1: the walks of the sensitivity study, then those at the ends
-    /// of the constriction curve's range, and those of other thicknesses; from 2^32: those of the margin.
+    /// 0 for the walks of the scene itself. From 1: walks of the sensitivity study, then those at the ends of
+    /// the constriction curve's range, then those of other thicknesses. From 2^32: those of the margin.
     pub part: u64,
     /// Replicate, counted from 1.
     pub replicate: u64,
@@ -58,7 +58,7 @@ impl WalkId {
 /// Interval between saves of a walk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckpointInterval {
-    /// When this much time has passed since the last time.
+    /// A save after this much time.
     Time(Duration),
     /// A save after this many increments.
     Increments(u64),
@@ -102,14 +102,14 @@ pub struct Checkpoints {
     folder: PathBuf,
     scene: String,
     every: CheckpointInterval,
-    /// Replicates that are done and not on the disk yet, and the next generation of each name.
+    /// Finished replicates that are not on disk yet, and the next generation of each name.
     waiting: Mutex<BTreeMap<String, (Label, Vec<u8>)>>,
     generations: Mutex<BTreeMap<String, u64>>,
     passed_over: Mutex<Vec<String>>,
 }
 
 impl Checkpoints {
-    /// The checkpoints of the case with this fingerprint, in a run's folder.
+    /// Checkpoints of the case with this fingerprint, in a run's folder.
     pub fn new(folder: &Folder, scene: &str, every: CheckpointInterval) -> Result<Self, StoreError> {
         let path = folder.path().join(FOLDER);
         make_folder(&path)?;
@@ -123,7 +123,7 @@ impl Checkpoints {
         })
     }
 
-    /// Fingerprint of the scene of the checkpoints in a run's folder; `None` if no checkpoint is whole.
+    /// Fingerprint of the scene of the checkpoints in a run's folder; `None` without an intact checkpoint.
     pub fn scene_in(folder: &Path) -> Result<Option<String>, CheckpointError> {
         let folder = folder.join(FOLDER);
         let files = files_in(&folder)
@@ -143,7 +143,7 @@ impl Checkpoints {
         Ok(!files_in(&folder.join(FOLDER))?.is_empty())
     }
 
-    /// True if it is time to save a walk that was saved `last` and has done this increment.
+    /// True if a walk that was last saved at `last` must be saved after this increment.
     pub fn is_due(&self, last: Instant, increment: u64, stop: bool) -> bool {
         stop || match self.every {
             CheckpointInterval::Time(time) => last.elapsed() >= time,
@@ -151,8 +151,8 @@ impl Checkpoints {
         }
     }
 
-    /// Loads a replicate: its finished part, and the checkpoint of the run that is under way. Errors: it has
-    /// checkpoints, but no checkpoint is whole and belongs to this very walk.
+    /// Loads a replicate: its finished part, and the checkpoint of the current run. Errors: it has
+    /// checkpoints, but none is intact and belongs to this very walk.
     pub fn load(&self, walk: WalkId) -> Result<Option<(Done, Checkpoint)>, CheckpointError> {
         let name = walk.name();
         let (saved, refused) = newest(&self.folder, &name, &self.identity(walk))?;
@@ -170,7 +170,7 @@ impl Checkpoints {
         self.passed_over.lock().map(|all| all.clone()).unwrap_or_default()
     }
 
-    /// Saves a walk after a whole increment. If that fails, the previous checkpoint stays.
+    /// Saves a walk after a complete increment. If saving fails, the previous checkpoint stays.
     pub fn save_walk(
         &self,
         walk: WalkId,
@@ -192,7 +192,7 @@ impl Checkpoints {
         self.flush()
     }
 
-    /// Takes a replicate that is done; it goes to the disk with the next checkpoint of any.
+    /// Accepts a finished replicate, which is written with the next checkpoint of any replicate.
     pub fn save_finished(&self, walk: WalkId, done: &Done) {
         let text = serde_json::to_vec(done).expect("figures are numbers and words");
         let label = self.next_label(walk);
@@ -201,7 +201,7 @@ impl Checkpoints {
         }
     }
 
-    /// Writes the finished replicates that are not on the disk yet.
+    /// Writes the finished replicates that are not on disk yet.
     pub fn flush(&self) -> Result<(), StoreError> {
         let waiting = self.waiting.lock().map(|mut w| std::mem::take(&mut *w)).unwrap_or_default();
         for (name, (label, text)) in &waiting {
@@ -220,7 +220,7 @@ impl Checkpoints {
         Identity { scene: self.scene.clone(), part, replicate, seed, n_base }
     }
 
-    /// The label of the next checkpoint of a walk, before its first increment.
+    /// Label of the next checkpoint of a walk, before its first increment.
     fn next_label(&self, walk: WalkId) -> Label {
         let generation = self.generations.lock().map_or(1, |mut generations| {
             let generation = generations.entry(walk.name()).or_insert(0);
@@ -231,7 +231,7 @@ impl Checkpoints {
     }
 }
 
-/// Removes the checkpoints in a run's folder, whatever they belong to.
+/// Removes the checkpoints in a run's folder, whichever scene they belong to.
 pub fn discard(folder: &Path) -> Result<(), StoreError> {
     remove_folder(&folder.join(FOLDER))
 }

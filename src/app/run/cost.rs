@@ -1,9 +1,9 @@
-//! The one cost model: seconds, steps and memory of walks and packings.
+//! Cost model of the program: seconds, steps and memory of walks and packings.
 //!
-//! It is used before any work, to tell a user minutes from hours and to size a cluster's jobs, and after a
-//! first run, whose counted work predicts the cost of further runs. Its figures hold for one thread of a
-//! processor of 2024 that is shared with other work; only functions whose names end in `_here` measure the
-//! speed of the machine on which they run. `results/speed.md` holds estimates against measured times
+//! It is used before any work, to distinguish minutes from hours for a user and to size a cluster's jobs, and
+//! after a first run, whose counted work predicts the cost of further runs. Its figures hold for one thread
+//! of a processor of 2024 that is shared with other work; only functions whose names end in `_here` measure
+//! the speed of the machine on which they run. `results/speed.md` compares estimates with measured times
 //! (`scripts/checks/check_times.py`).
 
 use std::ops::Range;
@@ -21,65 +21,64 @@ use voidwalk_core::packing::{Settings, compress, is_wide};
 use voidwalk_core::store::platform::{THREAD_SECONDS_STEP, thread_seconds};
 use voidwalk_core::walk::{Clogged, Engine, Passive, SizeClasses, State, Walk, WalkControl};
 
-/// Seconds that parts of a walk take on a cubic lattice.
+/// Times of the parts of a walk on a cubic lattice (s).
 struct Rates {
-    /// One move of a particle that is walked by itself.
+    /// One move of a particle that is walked individually.
     moved_s: f64,
     /// Inserting such a particle.
     inserted_s: f64,
-    /// Splitting the counts of a void in an increment.
+    /// Splitting the counts of one void in one increment.
     void_s: f64,
-    /// Seconds to test, in an increment, if a void holds counts, in a layer that holds any.
+    /// Testing one void of an occupied layer for counts in one increment.
     looked_at_s: f64,
 }
 
-/// Rates of a walk whose occupied voids are counted.
+/// Rates of a walk whose occupied voids are known.
 const WALK: Rates = Rates { moved_s: 2.05e-9, inserted_s: 6.5e-8, void_s: 1.65e-8, looked_at_s: 8e-9 };
-/// Factors on the time of a void's counts with engine `expected`: on a lattice by area, whose rows move at
-/// once, and on other networks.
+/// Factors on the time of a void's counts with engine `expected`: on a lattice by area, whose rows move
+/// together, and on other networks.
 const EXPECTED: [f64; 2] = [0.06, 0.55];
-/// Rates of a walk whose number of voids alone is known, empty ones included.
+/// Rates of a walk if only the total number of voids is known, including empty ones.
 const COUNTED: Rates = Rates { moved_s: 2.5e-9, inserted_s: 1.5e-8, void_s: 1.7e-8, looked_at_s: 0.0 };
-/// On a network of any other kind, whose voids have any number of exits, the counts of a void take this many
-/// times as long.
+/// Factor on the time of a void's counts on any other network, whose voids have any number of exits.
 const OTHER_NETWORK: f64 = 5.5;
-/// A void holds counts for the increments of insertion and, as the front that passes it is spread out, this
-/// many times the root of the number of layers.
+/// A void holds counts for the increments of insertion plus this many times the square root of the number of
+/// layers, because the front that passes it spreads out.
 const SPREAD: f64 = 24.0;
-/// Moves of a particle that nothing stops, by layers: on a directed lattice a third of its moves lead
+/// Moves per layer of a particle that nothing stops: on a directed lattice a third of its moves lead
 /// downstream.
 const MOVES_A_LAYER: f64 = 3.0;
-/// Parts of the curve and of the base in which the moves of a particle are worked out.
+/// Intervals into which curve and base are divided to compute the moves of a particle.
 const PARTS: usize = 64;
-/// Seconds to build a network, by its voids and constrictions.
+/// Seconds to build a network, for each void and constriction.
 const NETWORK_S: f64 = 1e-7;
 /// Seconds to write a case's files and page ...
 const FILES_S: f64 = 0.12;
-/// ... and further ones for the files of a packing.
+/// ... and additional ones for the files of a packing.
 const PACKED_FILES_S: f64 = 0.1;
-/// The most that a pilot walk of a case may take.
+/// Maximum time of a pilot walk of a case (s).
 const PILOT_S: f64 = 0.25;
-/// Share of a case's threads that walks keep busy.
+/// Fraction of a case's threads that walks keep busy.
 const BUSY: f64 = 0.7;
-/// Seconds for one grain in one step of a compression of `GRAINS` grains; more fit the cache less well, and
-/// their seconds grow with the power `GRAINS_POWER` of their number.
+/// Seconds for one grain in one step of a compression of `GRAINS` grains. Larger packings fit the cache less
+/// well: the time grows with the power `GRAINS_POWER` of their number.
 const GRAIN_STEP_S: f64 = 7.5e-8;
 const GRAINS: f64 = 9_000.0;
 const GRAINS_POWER: f64 = 0.3;
-/// Power of Cu with which the seconds of a grain and step grow: the wider the gradation, the more of its
-/// grains touch nothing.
+/// Power of Cu that scales the time of a grain and step: the wider the gradation, the more of its grains
+/// touch nothing.
 const WIDTH_POWER: f64 = -0.4;
-/// Seconds from which on a measured time tells a pace ...
+/// Minimum measured time that gives a pace (s) ...
 const LEAST_TIMED_S: f64 = 0.002;
-/// ... and steps of the clock.
+/// ... and its minimum number of clock steps.
 const LEAST_STEPS: f64 = 6.0;
-/// Seconds of the small packing that measures a machine's pace, if a grain and step take `GRAIN_STEP_S`.
+/// Time of the small packing that measures a machine's pace, at `GRAIN_STEP_S` per grain and step (s).
 const SMALL_PACKING_S: f64 = 0.105;
-/// Steps that packings with friction took at Cu 1.5 (11,200 to 14,100), the power of Cu with which they grow
-/// (15,300 to 19,400 at Cu 2, 22,400 to 33,100 at Cu 3), and the number at which they stay (30,500 to 43,300
-/// from Cu 4 to Cu 6, with the grains' own masses).
+/// Steps of packings with friction at Cu 1.5 (11,200 to 14,100), the power of Cu with which they grow (15,300
+/// to 19,400 at Cu 2, 22,400 to 33,100 at Cu 3), and their upper limit (30,500 to 43,300 from Cu 4 to Cu 6,
+/// with the grains' own masses).
 const STEPS: (f64, f64, f64) = (12_000.0, 1.1, 40_000.0);
-/// Steps that packings without friction took at the least (38,700 to 52,500).
+/// Minimum number of steps of packings without friction (38,700 to 52,500).
 const DENSE_STEPS: f64 = 45_000.0;
 /// Fraction of those steps for packings whose sizes differ so much that crowded grains are moved as heavier
 /// ones (Cu 6: 17,800 to 22,500 of 30,900 to 51,100; without friction 20,200 to 36,300 of 30,400 to 50,300).
@@ -93,22 +92,22 @@ const MEASURED_GRAIN_S: f64 = 5e-5;
 pub const MEASURING_S: f64 = 5.0;
 /// Seconds to collect a case into a campaign's ledger.
 const COLLECTING_S: f64 = 0.05;
-/// Bytes that collecting takes: at the least, and for a case.
+/// Memory of collecting: the minimum, and for each case (bytes).
 const COLLECTING_BYTES: (u64, u64) = (100_000_000, 100_000);
-/// Bytes that packing a grain takes, its constrictions included.
+/// Memory of packing one grain, including its constrictions (bytes).
 const GRAIN_BYTES: u64 = 20_000;
-/// Bytes of the program itself and of a page that is being written.
+/// Memory of the program itself and of a page that is being written (bytes).
 const PROGRAM_BYTES: u64 = 100_000_000;
 
-/// Increments after which the flow is solved again, as long as constrictions close.
+/// Increments between two solutions of the flow, as long as constrictions close.
 const SOLVED_EVERY: f64 = 1.5;
 
-/// Solving the flow takes so long for a constriction (s): 0.185 s for 288,000 of them.
+/// Time to solve the flow, per constriction (s): 0.185 s for 288,000 constrictions.
 const SOLVE_S: f64 = 6.5e-7;
 
 impl Case {
-    /// Seconds that one thread of a machine of 2024 takes for the whole case, its packing apart: a rough
-    /// guess, equal on every machine. It leaves out the replicates that a rule may add.
+    /// Estimated time of the whole case on one thread of a machine of 2024, without its packing (s): rough,
+    /// and the same on every machine. It leaves out replicates that a rule may add.
     pub fn core_seconds(&self) -> f64 {
         self.foreseen().seconds
     }
@@ -130,7 +129,7 @@ impl Case {
             None => {
                 self.of_thickness(factor).ok().map(|other| other.of_replicate(other.supply.n_base, most_s))
             }
-            // Base and copies grow by one factor; no pilot walks this case.
+            // Base and copies grow by the same factor; no pilot walks this case.
             Some(_) => {
                 let times = factor * factor.max(1.0);
                 let (seconds, besides) = (times * of_case.seconds, times * of_case.besides);
@@ -140,7 +139,7 @@ impl Case {
         let points = factors.into_iter().map(of_base);
         let points = points.chain(thicknesses.into_iter().filter_map(of_thickness));
         let studies = points.map(|point| {
-            // Points that no pilot walks are taken to erode as the case does.
+            // Points without a pilot are assumed to erode as the case does.
             let of_case = of_case.eroded.as_deref();
             let eroded = of_case.map(|of_case| (of_case, point.eroded.as_deref().unwrap_or(of_case)));
             (likely_replicates(self, eroded), point)
@@ -153,8 +152,8 @@ impl Case {
         studies.chain(ends).fold(first, |all, (replicates, point)| all.and(replicates as f64, &point))
     }
 
-    /// All runs of a replicate with this many base particles, its network included: by a pilot walk, else by
-    /// a guess.
+    /// Estimate for all runs of a replicate with this many base particles, including its network: from a
+    /// pilot walk, else a guess.
     fn of_replicate(&self, n_base: u64, most_s: f64) -> Foreseen {
         let runs = self.scene.walk.runs as f64;
         let (guessed, solved) = self.guessed(n_base);
@@ -175,7 +174,7 @@ impl Case {
         }
     }
 
-    /// Seconds of one run that meets a clean network all the way, and those in which the flow is solved.
+    /// Seconds of one run on a network that stays clean, and the seconds spent on solving the flow.
     fn guessed(&self, n_base: u64) -> (f64, f64) {
         let CaseNetwork { voids, constrictions, layers, .. } = self.network;
         let is_one_by_one = self.takes_each(n_base);
@@ -189,7 +188,7 @@ impl Case {
         (COUNTED.seconds(occupied, 0.0, one_by_one, one_by_one * self.moves_of_each(n_base)), solved)
     }
 
-    /// Time of a void's counts relative to a cubic lattice by engine `counts`.
+    /// Time of a void's counts relative to engine `counts` on a cubic lattice.
     fn slower(&self) -> f64 {
         let of_network = match self.scene.network.source() {
             NetworkSource::Cubic(_) => 1.0,
@@ -208,8 +207,8 @@ impl Case {
         }
     }
 
-    /// Moves of a particle that is walked by itself, on average: until a finer constriction stops it, with
-    /// the chance that it has on the clean network, or until it leaves.
+    /// Mean number of moves of a particle that is walked individually, until it leaves or a constriction
+    /// stops it, with the probability of the clean network.
     fn moves_of_each(&self, n_base: u64) -> f64 {
         let shares = || (0..PARTS).map(|part| (part as f64 + 0.5) / PARTS as f64);
         let size = |share| self.filter.curve.quantile(share) / self.filter.unit_mm;
@@ -225,7 +224,7 @@ impl Case {
         shares().filter_map(|share| walked.d_by_number(share)).map(moves).sum::<f64>() / PARTS as f64
     }
 
-    /// Bytes of the whole program if its walks take this many.
+    /// Memory of the whole program if its walks take this much (bytes).
     pub fn program_bytes(&self, walks: u64) -> u64 {
         let CaseNetwork { voids, constrictions, .. } = self.network;
         // A network is being built, and a page is being written.
@@ -234,8 +233,8 @@ impl Case {
 }
 
 impl Rates {
-    /// Seconds for voids that hold counts and voids that are looked at, both summed over the increments,
-    /// particles that are walked by themselves, and moves of those.
+    /// Time for occupied voids and tested voids, both summed over the increments, for particles walked one by
+    /// one, and for their moves (s).
     fn seconds(&self, voids: f64, looked_at: f64, one_by_one: f64, moves: f64) -> f64 {
         let Self { moved_s, inserted_s, void_s, looked_at_s } = self;
         void_s * voids + looked_at_s * looked_at + inserted_s * one_by_one + moved_s * moves
@@ -243,8 +242,8 @@ impl Rates {
 }
 
 impl WorkByVoid {
-    /// Seconds of this work on this many voids, whose counts take `slower` times as long as on a lattice by
-    /// engine `counts`.
+    /// Time of this work on this many voids, if their counts take `slower` times as long as with engine
+    /// `counts` on a lattice by area (s).
     fn of_voids(&self, voids: f64, slower: f64) -> f64 {
         let [occupied, looked_at] = [self.occupied, self.looked_at].map(|seconds| voids * seconds * slower);
         WALK.seconds(occupied, looked_at, voids * self.one_by_one, voids * self.moves)
@@ -254,9 +253,9 @@ impl WorkByVoid {
 #[derive(Default)]
 struct Foreseen {
     seconds: f64,
-    /// Part of those seconds without walks: networks are built, the flow is solved, files are written.
+    /// Time outside the walks: building networks, solving the flow, writing files (s).
     besides: f64,
-    /// Seconds of the pilot walks by which it was: measured here, and predicted by the rates of this module.
+    /// Time of the pilot walks behind it (s): measured here, and predicted by the rates of this module.
     took: f64,
     predicted: f64,
     /// Eroded mass fraction by run, if a pilot walk gives it.
@@ -264,7 +263,7 @@ struct Foreseen {
 }
 
 impl Foreseen {
-    /// Sum of this and a multiple of `other`, whose pilot walks were walked once.
+    /// Sum of this and a multiple of `other`; its pilot walks count once.
     fn and(self, times: f64, other: &Self) -> Self {
         Self {
             seconds: self.seconds + times * other.seconds,
@@ -283,8 +282,8 @@ fn pace(took: f64, predicted: f64) -> f64 {
 }
 
 impl PackingPlan {
-    /// Seconds that one thread of a machine of 2024 takes for the packing: a rough guess, the same wherever
-    /// it is asked for.
+    /// Estimated time of the packing on one thread of a machine of 2024 (s): rough, and the same on every
+    /// machine.
     pub fn core_seconds(&self) -> f64 {
         // Stiffer grains move in shorter steps.
         let stiffness = libm::sqrt((self.compression.stiffness_ratio / 0.1).max(0.1));
@@ -304,7 +303,7 @@ impl PackingPlan {
         libm::sqrt(self.gradation.largest_mm() / self.gradation.smallest_mm())
     }
 
-    /// Steps that packings of this friction and width of gradation took.
+    /// Typical number of steps of packings of this friction and width of gradation.
     pub fn usual_steps(&self) -> u64 {
         let cu = self.line_cu();
         let (at_1_5, power, most) = STEPS;
@@ -316,18 +315,18 @@ impl PackingPlan {
         100 * (steps / 100.0).round() as u64
     }
 
-    /// The most bytes that packing it takes.
+    /// Maximum memory of packing it (bytes).
     pub fn program_bytes(&self) -> u64 {
         PROGRAM_BYTES + self.compression.grains as u64 * GRAIN_BYTES
     }
 }
 
-/// Seconds of a case on this many threads of its own.
+/// Time of a case on this many threads of its own (s).
 pub fn seconds_on(case: &Case, threads: u64) -> f64 {
     case.core_seconds() / (threads as f64 * BUSY)
 }
 
-/// Seconds and bytes of collecting this many cases, with `measuring_s` for the packing of each.
+/// Time (s) and memory (bytes) of collecting this many cases, with `measuring_s` for the packing of each.
 pub fn collecting(cases: usize, measuring_s: f64) -> (f64, u64) {
     let bytes = COLLECTING_BYTES.0 + cases as u64 * COLLECTING_BYTES.1;
     (cases as f64 * (COLLECTING_S + measuring_s), bytes)
@@ -342,39 +341,39 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// Work of all runs of one replicate, for each void of its network, counted by a pilot walk: the runs of a
-/// case on a slim lattice as deep as its own.
+/// Work of all runs of one replicate per void of its network, counted in a pilot walk of the case's runs on a
+/// slim lattice of the same depth.
 ///
-/// The time of a run depends on its base: a filter that seals leaves the voids below empty, a base of one
-/// size blocks the constrictions that would stop it and then walks to the end. A lattice a few voids wide
-/// meets the same base per void and so does the same work per void, in a fraction of the time.
+/// The time of a run depends on its base: a filter that seals leaves the voids below empty, while a base of
+/// one size first blocks the constrictions that would stop it and then passes through. A lattice a few voids
+/// wide receives the same base per void and so does the same work per void, in a fraction of the time.
 #[derive(Default)]
 struct WorkByVoid {
     /// Voids that held counts, summed over the increments.
     occupied: f64,
-    /// Voids that are looked at, in layers of which any held counts, summed likewise.
+    /// Voids tested in layers that hold any counts, summed over the increments.
     looked_at: f64,
-    /// Moves that were attempted by particles that are walked by themselves.
+    /// Attempted moves of particles that are walked one by one.
     moves: f64,
     one_by_one: f64,
     /// Eroded mass fraction of each run: a slim lattice erodes about as much.
     eroded: Vec<f64>,
     voids: f64,
-    /// Processor time of their walk here (s); 0 if the system does not give it.
+    /// Processor time of the pilot walk here (s); 0 if the system does not report it.
     took: f64,
 }
 
-/// Greatest width of the slim lattice: voids along x and y.
+/// Maximum width of the slim lattice: voids along x and y.
 const WIDEST: u32 = 10;
-/// Least width: narrower ones meet themselves.
+/// Minimum width: particles in narrower lattices meet themselves.
 const NARROWEST: u32 = 4;
 
 /// Size classes of its records, which are not used.
 const CLASSES: usize = 2;
 
-/// Work of the runs of the case's first replicate, with `n_base` particles in all, on a slim lattice; `None`
-/// if its own is as slim, if even the narrowest takes more than `most_s`, or if it cannot be walked. On its
-/// own lattice these runs are guessed to take `whole_s`.
+/// Work of the runs of the case's first replicate, with `n_base` particles in all, on a slim lattice. `None`
+/// if its own is as slim, if even the narrowest takes more than `most_s`, or if it cannot be walked.
+/// `whole_s` is the guessed time on the case's own lattice.
 fn pilot(case: &Case, n_base: u64, whole_s: f64, most_s: f64) -> Option<WorkByVoid> {
     let CaseNetwork { voids, start_nodes, layers, .. } = case.network;
     let depth = u32::try_from(layers).ok()?;
@@ -391,7 +390,7 @@ fn alone<T: Send>(work: impl Fn() -> T + Send + Sync) -> T {
     on_threads(Some(1), || Ok(work())).unwrap_or_else(|_| work())
 }
 
-/// Pilot walk on a lattice this many voids wide and deep.
+/// Pilot walk on a lattice of this width and depth (voids).
 fn walked(case: &Case, n_base: u64, width: u32, depth: u32) -> Option<WorkByVoid> {
     let seed = replicate_seed(case.scene.walk.seed, 1);
     let network =
@@ -431,8 +430,8 @@ fn walked(case: &Case, n_base: u64, width: u32, depth: u32) -> Option<WorkByVoid
     Some(WorkByVoid { voids, took: thread_seconds() - begun - counting, ..work })
 }
 
-/// Processor time of a small packing here, on one thread (s): the same grains and steps everywhere. Packed
-/// once; 0 if the system does not give it.
+/// Processor time of a small packing here, on one thread (s), with the same grains and steps everywhere. It
+/// is packed once; 0 if the system does not report the time.
 fn small_packing_seconds() -> f64 {
     static SECONDS: LazyLock<f64> = LazyLock::new(|| {
         let Ok(gradation) = Gradation::linear_from_d0(1.0, 1.5) else { return 0.0 };
@@ -445,7 +444,7 @@ fn small_packing_seconds() -> f64 {
     *SECONDS
 }
 
-/// Number of these voids that hold counts.
+/// Number of voids that hold counts.
 fn occupied(passive: &Passive, voids: Range<usize>) -> usize {
     match passive {
         Passive::OneByOne => 0,
@@ -467,7 +466,7 @@ mod tests {
         assert_eq!(pace(0.2, 0.1), 2.0);
     }
 
-    /// The packing of a Cu 1.5 filter with friction 0.7, by the model written out.
+    /// Packing of a Cu 1.5 filter with friction 0.7, with the model written out.
     #[test]
     fn a_packing_takes_what_the_model_says_and_here_as_many_times_that_as_the_machine_is_slower() {
         let text = b"[filter]\ncu = 1.5\nfriction = 0.7\n[base]\ncu = 1.5\nd85_at_dc = 5\n";

@@ -1,4 +1,4 @@
-//! Why a command of the program ended early.
+//! Reasons for an early end of a command.
 
 use crate::case::{CaseError, PackedError};
 use crate::scene::SceneError;
@@ -10,16 +10,16 @@ use voidwalk_core::store::StoreError;
 use voidwalk_core::store::checkpoint::CheckpointError;
 use voidwalk_core::walk::WalkError;
 
-/// Reason why a command does not succeed.
+/// Reason why a command did not succeed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
-    /// The input is refused before any work, and nothing was written.
+    /// The input was refused before any work, and nothing was written.
     Refused,
     /// Stopped on request; progress is saved and the work can be continued.
     Stopped,
     /// The work failed.
     Failed,
-    /// The work is done, and its verdict is one that the caller does not accept.
+    /// The work is done, but the caller does not accept its verdict.
     NotAccepted,
 }
 
@@ -35,11 +35,11 @@ impl Exit {
     }
 }
 
-/// An error of any kind, on its way to a user.
+/// Error of any kind, to be shown to a user.
 pub type AnyError = Box<dyn std::error::Error + Send + Sync>;
 
-/// Reason why a command of the program ended early; [`RunError::exit`] tells refused, stopped and failed
-/// commands apart.
+/// Reason for the early end of a command; [`RunError::exit`] distinguishes refused, stopped and failed
+/// commands.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// A scene or plan that is refused.
@@ -66,16 +66,16 @@ pub enum RunError {
     /// Stopped on request.
     #[error("{0}")]
     Stopped(String),
-    /// The verdict is one that the caller does not accept.
+    /// The caller does not accept the verdict.
     #[error("{0}")]
     NotAccepted(String),
-    /// The walk went wrong, or was stopped.
+    /// The walk failed or was stopped.
     #[error(transparent)]
     Walk(#[from] WalkError),
     /// Grains that cannot be packed.
     #[error(transparent)]
     Packing(#[from] PackingError),
-    /// There is no room for the base particles.
+    /// Too little room for the base particles.
     #[error("cannot keep {particles} base particles: {source}")]
     Room {
         /// Base particles that are walked one by one.
@@ -83,7 +83,7 @@ pub enum RunError {
         /// Error of the system.
         source: std::io::Error,
     },
-    /// Results that cannot be put into words.
+    /// Results that cannot be formatted.
     #[error("cannot write {file}: {source}")]
     Format {
         /// The file.
@@ -116,7 +116,7 @@ impl RunError {
         Self::failed(format!("no thread can be started: {problem}; {limits}"))
     }
 
-    /// Kind of the end: refused, stopped, failed or not accepted.
+    /// Kind of early end: refused, stopped, failed or not accepted.
     pub fn exit(&self) -> Exit {
         let refused_if = |refused| if refused { Exit::Refused } else { Exit::Failed };
         match self {
@@ -136,7 +136,7 @@ impl RunError {
         }
     }
 
-    /// Advice on a full or failing disk: the work that is kept, and the next step.
+    /// Advice on a full or failing disk: which work is kept, and the next step.
     pub fn advice(&self) -> Option<&'static str> {
         use std::io::ErrorKind::{
             FileTooLarge, InvalidFilename, NotADirectory, PermissionDenied, QuotaExceeded,
@@ -159,17 +159,17 @@ impl RunError {
         };
         Some(match kind {
             StorageFull | QuotaExceeded => {
-                "what is in its folder under its own name is whole and kept; make room on that disk, then \
+                "files in its folder under their own names are whole and kept; make room on that disk, then \
                  `voidwalk resume FOLDER` continues a run, and the same command any other work"
             }
             FileTooLarge => {
-                "a larger file than is allowed here (ulimit -f); what is in its folder under its own name \
-                 is whole and kept; allow larger files, then `voidwalk resume FOLDER` continues a run, and \
+                "a larger file than is allowed here (ulimit -f); files in its folder under their own names \
+                 are whole and kept; allow larger files, then `voidwalk resume FOLDER` continues a run, and \
                  the same command any other work"
             }
             PermissionDenied | ReadOnlyFilesystem => {
-                "nothing may be written there; name a folder of your own by --out, or have somebody give \
-                 you leave"
+                "nothing may be written there; name a folder of your own by --out, or ask for \
+                 permission"
             }
             InvalidFilename => {
                 "name another folder by --out: this name is too long, or has a character that is not \
@@ -180,7 +180,7 @@ impl RunError {
         })
     }
 
-    /// True if a retry may succeed a little later: another process was replacing the same files.
+    /// True if a retry may soon succeed, because another process was replacing the same files.
     pub(crate) fn is_of_files(&self) -> bool {
         matches!(self, Self::Store(_) | Self::Claim(_) | Self::Format { .. } | Self::Results(_))
     }
@@ -201,7 +201,7 @@ impl From<ImportError> for RunError {
     }
 }
 
-/// Errors that no input which was accepted causes.
+/// Errors that no accepted input causes.
 macro_rules! failures {
     ($($error:ty),*) => {
         $(impl From<$error> for RunError {

@@ -13,23 +13,23 @@ use voidwalk_core::store::format::{self, Format, from_json};
 use voidwalk_core::store::{Folder, StoreError};
 use voidwalk_core::text::plain;
 
-/// The files of the checkpoint of a compression that is not finished.
+/// Checkpoint files of an unfinished compression.
 pub(super) const STATES: [&str; 2] = ["compression.0", "compression.1"];
 
-/// The files of the checkpoint of a search of boundaries that is not finished.
+/// Checkpoint files of an unfinished search of boundaries.
 pub(crate) const NETWORKS: [&str; 2] = ["networks.0", "networks.1"];
 
-/// The files of the checkpoint of a percolation study that is not finished.
+/// Checkpoint files of an unfinished percolation study.
 pub(crate) const LATTICES: [&str; 2] = ["lattices.0", "lattices.1"];
 
-/// The file of the mark of unfinished work.
+/// File that marks unfinished work.
 pub(super) const MARK: &str = ".voidwalk.unfinished";
 
-/// Files that `voidwalk export` writes into a folder of that name ...
+/// Files that `voidwalk export` writes into the folder `export`.
 const EXPORTED: [&str; 6] =
     ["arrays.npz", "layers.vtu", "grains.vtu", "voids.pvd", "constrictions.pvd", "verdict.xlsx"];
 
-/// ... and how the names of the moments of a walk begin, before their numbers.
+/// Prefixes of the numbered files, one for each moment of a walk, that it writes as well.
 const EXPORTED_MOMENTS: [&str; 2] = ["voids_", "constrictions_"];
 
 /// Kind of the contents of a folder.
@@ -58,7 +58,7 @@ pub enum FolderKind {
 }
 
 impl FolderKind {
-    /// Every kind; a packing holds constrictions of its own and so comes before them.
+    /// Every kind. A packing comes before constrictions because its folder holds constrictions, too.
     pub const ALL: [Self; 10] = [
         Self::Run,
         Self::Packing,
@@ -88,7 +88,7 @@ impl FolderKind {
         }
     }
 
-    /// The form of its record.
+    /// Format of its record.
     pub fn format(self) -> Format {
         match self {
             Self::Run => format::OUTCOME,
@@ -104,22 +104,22 @@ impl FolderKind {
         }
     }
 
-    /// The file from which its page is made, which a finished folder holds.
+    /// Record of a finished folder, from which its page is made.
     pub fn record(self) -> &'static str {
         self.format().file
     }
 
-    /// True if a page is made of its record.
+    /// True if its record has a page.
     pub fn has_page(self) -> bool {
         !matches!(self, Self::Constrictions | Self::Serve)
     }
 
-    /// True if it holds cases that continue by themselves, each in a folder of its own.
+    /// True if it holds cases that are continued one by one, each in a folder of its own.
     pub(crate) fn has_cases(self) -> bool {
         self == Self::Batch
     }
 
-    /// Further marks of such a folder, finished or not.
+    /// Other files that mark such a folder, finished or not.
     fn marks(self) -> &'static [&'static str] {
         match self {
             Self::Run => &["scene.toml", "series.csv", super::checkpoints::FOLDER],
@@ -128,14 +128,13 @@ impl FolderKind {
             Self::Percolation => &LATTICES,
             Self::Batch => &["pairs"],
             Self::Boundary => &NETWORKS,
-            // Versions that wrote no record had them.
+            // Older versions wrote no record.
             Self::Serve => &["sheets"],
             _ => &[],
         }
     }
 
-    /// The files that such a folder holds, in the order in which they are removed: the first makes it one
-    /// that is not finished.
+    /// Files of such a folder, in the order of their removal: removing the first makes the folder unfinished.
     fn files(self) -> &'static [&'static str] {
         match self {
             Self::Run => &[
@@ -169,7 +168,7 @@ impl FolderKind {
             Self::Percolation => {
                 &["percolation.json", "report.html", "percolation.csv", LATTICES[0], LATTICES[1]]
             }
-            // Its cases stay, as all that a campaign holds.
+            // Its cases stay, like everything in a campaign.
             Self::Batch => &["batch.json", "batch.html", "batch.csv"],
             Self::Boundary => &["boundary.json", "boundary.html", "boundary.csv", NETWORKS[0], NETWORKS[1]],
             Self::Designs => &["designs.json", "designs.html", "designs.csv"],
@@ -187,7 +186,7 @@ impl FolderKind {
         }
     }
 
-    /// The figures of its page, in `figures`; a campaign's figures stay, like everything that it holds.
+    /// Figures of its page, in `figures`; those of a campaign stay, like everything it holds.
     pub fn figures(self) -> &'static [&'static str] {
         match self {
             Self::Run => &["verdict", "gradations", "eroded", "layers", "retained", "slice"],
@@ -226,7 +225,7 @@ impl FolderKind {
 /// may be shared.
 ///
 /// # Errors
-/// A folder that is not the program's own, that another process holds, that holds work of another kind or,
+/// The folder is not the program's own, or another process holds it. It holds work of another kind or,
 /// without `overwrite`, finished work of this kind. Nothing in it was changed then.
 pub fn claim(path: &Path, kind: FolderKind, overwrite: bool) -> Result<Folder, RunError> {
     let folder = match kind {
@@ -234,13 +233,13 @@ pub fn claim(path: &Path, kind: FolderKind, overwrite: bool) -> Result<Folder, R
         _ => Folder::open(path).map_err(RunError::Claim)?,
     };
     let refuse = |problem: String| Err(refused(path, problem));
-    // Work that has begun names its kind; if the mark is corrupt, its files tell the kind.
+    // The mark of unfinished work names its kind; if the mark is corrupt, the files tell the kind.
     let begun = Unfinished::read(&folder)?.map(|begun| begun.kind);
     let of_begun = |other: &FolderKind| begun.as_deref() == Some(other.name());
     if let Some(other) = FolderKind::ALL.into_iter().find(|other| *other != kind && of_begun(other)) {
         return refuse(format!("holds a {}; name another folder", other.name()));
     }
-    // The constrictions of a packing belong to it; those of a user's own grains are other work.
+    // Constrictions of a packing belong to it; those of a user's own grains are separate work.
     let packed = folder.has(RECORD) || STATES.iter().any(|state| folder.has(state));
     let packed = kind == FolderKind::Packing && (packed || of_begun(&kind));
     let is_part = |other| packed && other == FolderKind::Constrictions;
@@ -255,14 +254,13 @@ pub fn claim(path: &Path, kind: FolderKind, overwrite: bool) -> Result<Folder, R
     Ok(folder)
 }
 
-/// Clears a claimed folder of the files of earlier work of this kind, except the checkpoints of a run, before
-/// the first file of other work is written. The removal of the first file makes the folder unfinished; files
-/// that the program does not know to be its own stay.
+/// Removes the files of earlier work of this kind from a claimed folder, except the checkpoints of a run,
+/// before other work writes its first file. The first removal makes the folder unfinished; files that the
+/// program does not recognise as its own stay.
 pub fn clear(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
     let files = kind.files();
     if kind == FolderKind::Packing && folder.has(RECORD) {
-        // Otherwise its constrictions would be taken for those of a user's own grains once the record is
-        // gone.
+        // Otherwise, without the record, its constrictions would be taken for those of a user's own grains.
         Unfinished::new(kind, String::new()).begin(folder)?;
     }
     folder.remove_all(&files[..files.len().min(1)])?;
@@ -288,15 +286,15 @@ pub(super) fn clear_but_scene(folder: &Folder) -> Result<(), StoreError> {
 fn clear_results(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
     let files: Vec<&str> = kind.files().iter().copied().filter(|name| *name != "scene.toml").collect();
     folder.remove_all(&files)?;
-    // The pictures were made of the drawings by others, as `scripts/browser/figures_to_png.sh`.
+    // Pictures were made from the drawings by other tools, such as `scripts/browser/figures_to_png.sh`.
     let both = |name: &&str| ["svg", "png"].map(|ending| format!("{name}.{ending}"));
     let figures: Vec<String> = kind.figures().iter().flat_map(both).collect();
     folder.remove_all_in("figures", &figures)?;
     folder.remove_all_in("export", &exported(folder.path()))
 }
 
-/// Refuses files from which work is begun and that [`clear`] would take away before it is: a kill in between
-/// would lose them.
+/// Refuses input files that [`clear`] would remove before the work has read them: if the process were killed
+/// in between, they would be lost.
 pub(super) fn outlive_clear(folder: &Folder, kind: FolderKind, files: &[PathBuf]) -> Result<(), RunError> {
     let Ok(real) = folder.path().canonicalize() else { return Ok(()) };
     let goes = |name: &Path| match (name.parent(), name.file_name().and_then(|name| name.to_str())) {
@@ -308,7 +306,7 @@ pub(super) fn outlive_clear(folder: &Folder, kind: FolderKind, files: &[PathBuf]
         |file: &&PathBuf| file.canonicalize().is_ok_and(|file| file.strip_prefix(&real).is_ok_and(&goes));
     match files.iter().find(is_cleared) {
         Some(file) => Err(RunError::Refused(format!(
-            "{}: lies in {}, and goes before new results are written there: a kill would lose it; name \
+            "{}: lies in {}, and is removed before new results are written: a kill would lose it; name \
              another folder by --out",
             shown(file),
             shown(folder.path())
@@ -317,7 +315,7 @@ pub(super) fn outlive_clear(folder: &Folder, kind: FolderKind, files: &[PathBuf]
     }
 }
 
-/// Names of the files that `voidwalk export` wrote in a folder.
+/// Names of the files that `voidwalk export` may have written in a folder.
 fn exported(folder: &Path) -> Vec<String> {
     let is_moment = |name: &str| {
         let number = EXPORTED_MOMENTS.iter().find_map(|begin| name.strip_prefix(begin)?.strip_suffix(".vtu"));
@@ -328,8 +326,7 @@ fn exported(folder: &Path) -> Vec<String> {
     EXPORTED.iter().map(ToString::to_string).chain(moments).collect()
 }
 
-/// Claims the first of `NAME`, `NAME-2`, ... for a run that is new, or that an earlier run left without
-/// results.
+/// Claims the first of `NAME`, `NAME-2`, ... that is new or was left without results by an earlier run.
 pub(super) fn claim_first_free(name: &str) -> Result<Folder, RunError> {
     let names = std::iter::once(name.to_owned()).chain((2..).map(|n| format!("{name}-{n}")));
     for name in names {
@@ -345,8 +342,8 @@ pub(super) fn claim_first_free(name: &str) -> Result<Folder, RunError> {
     unreachable!("there is no last name")
 }
 
-/// Refuses a folder of packings inside one of the program's own that is a link to one elsewhere, which then
-/// would be written to.
+/// Refuses a folder of packings that is a link from one of the program's own folders to a place elsewhere,
+/// which would then be written to.
 pub(crate) fn own_packings(packings: &Path) -> Result<(), RunError> {
     match packings.symlink_metadata() {
         Ok(meta) if meta.is_symlink() => Err(refused(
@@ -357,7 +354,7 @@ pub(crate) fn own_packings(packings: &Path) -> Result<(), RunError> {
     }
 }
 
-/// Message on a file system without locks, where cases cannot be claimed.
+/// Message on a file system without locks, on which cases cannot be claimed.
 fn no_locks(error: StoreError) -> RunError {
     match &error {
         StoreError::Io { action: "lock the folder", .. } => RunError::refused(format!(
@@ -367,26 +364,26 @@ fn no_locks(error: StoreError) -> RunError {
     }
 }
 
-/// The refusal of a path.
+/// Refusal of a path.
 pub(crate) fn refused(path: &Path, problem: impl std::fmt::Display) -> RunError {
     RunError::Refused(format!("{}: {problem}", shown(path)))
 }
 
-/// A path in one line.
+/// Path on one line.
 pub(crate) fn shown(path: &Path) -> String {
     plain(&path.display().to_string())
 }
 
-/// Mark of a folder whose work has begun and is not whole yet, its page included.
+/// Mark of a folder with unfinished work, including work that lacks only its page.
 ///
 /// It is written before the first file of the work and removed after the last, so a folder that holds it is
-/// not finished, whatever else it holds. It describes the work, so that the same command continues it, and
+/// unfinished, whatever else it holds. It identifies the work, so that the same command continues it, and
 /// holds the options of a run that change no result.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Unfinished {
-    /// Kind of the folder, as a user calls it.
+    /// Name of the folder's kind for users.
     pub kind: String,
-    /// Fingerprint of everything that the results follow from.
+    /// Fingerprint of everything that determines the results.
     pub work: String,
     /// Interval between saves of a run, as it was given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -394,18 +391,18 @@ pub(crate) struct Unfinished {
 }
 
 impl Unfinished {
-    /// The mark of this work; empty, if nothing is known of it but its kind.
+    /// Mark of this work; empty if only its kind is known.
     pub fn new(kind: FolderKind, work: String) -> Self {
         Self { kind: kind.name().into(), work, checkpoint_every: None }
     }
 
-    /// Reads the mark in a folder; `None` if no work is under way, and an empty mark if the file is corrupt.
+    /// Reads the mark in a folder; `None` without work under way, an empty mark if the file is corrupt.
     pub fn read(folder: &Folder) -> Result<Option<Self>, StoreError> {
         let bytes = folder.read(MARK)?;
         Ok(bytes.map(|bytes| serde_json::from_slice(&bytes).unwrap_or_default()))
     }
 
-    /// The record of this very work, if everything except its page was written.
+    /// Record of this very work, if everything but its page has been written.
     pub fn whole<T: DeserializeOwned>(&self, folder: &Folder, record: &str) -> Result<Option<T>, StoreError> {
         if Self::read(folder)?.as_ref() != Some(self) {
             return Ok(None);

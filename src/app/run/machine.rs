@@ -1,4 +1,4 @@
-//! The machine of a case: threads, memory, the job of a cluster, and the number of cases at the same time.
+//! The machine that walks a case: threads, memory, the job of a cluster, and the number of cases at a time.
 
 use std::panic::resume_unwind;
 
@@ -6,7 +6,7 @@ use super::RunError;
 use crate::case::Case;
 use voidwalk_core::store::platform;
 
-/// The machine, in words.
+/// Description of the machine.
 pub struct Machine {
     /// Name of the machine.
     pub host: String,
@@ -30,7 +30,7 @@ impl Machine {
                 platform::system(),
                 if cores == 1 { "core" } else { "cores" }
             ),
-            // Without word from the system, nothing is refused. A cluster's job has its share of the
+            // If the system reports no memory, nothing is refused. A cluster's job has a fraction of the
             // machine.
             available: memory
                 .available
@@ -40,20 +40,20 @@ impl Machine {
     }
 }
 
-/// Worker threads: the number that is asked for, else the number that a cluster's job has, else one per core
-/// on which this process may run.
+/// Worker threads: the number asked for, else the number of a cluster's job, else one per core on which this
+/// process may run.
 ///
 /// # Errors
-/// The system gives no threads.
+/// The system provides no threads.
 pub fn threads(asked: Option<usize>) -> Result<rayon::ThreadPool, RunError> {
     let cores = std::thread::available_parallelism().ok().map(usize::from);
-    // No more than this process may run on.
+    // At most as many as this process may run on.
     let allocated = || Some(Allocation::here()?.processors?.min(cores.unwrap_or(usize::MAX)));
     let number = asked.or_else(allocated).or(cores).unwrap_or(1);
     Ok(rayon::ThreadPoolBuilder::new().num_threads(number).build()?)
 }
 
-/// Does some work on such threads.
+/// Runs work on such threads.
 pub(crate) fn on_threads<T: Send>(
     asked: Option<usize>,
     work: impl FnOnce() -> Result<T, RunError> + Send,
@@ -61,7 +61,7 @@ pub(crate) fn on_threads<T: Send>(
     threads(asked)?.install(work)
 }
 
-/// Does the same work on this many threads, this one included; on fewer if the system gives no more.
+/// Does the same work on this many threads, including this one; on fewer if the system provides no more.
 pub(crate) fn on_each(count: usize, work: impl Fn() -> Result<(), RunError> + Sync) -> Result<(), RunError> {
     std::thread::scope(|scope| {
         let start = |_| std::thread::Builder::new().spawn_scoped(scope, &work).ok();
@@ -73,7 +73,7 @@ pub(crate) fn on_each(count: usize, work: impl Fn() -> Result<(), RunError> + Sy
     })
 }
 
-/// A size in bytes as a user writes it: `4GB`, `500 MB`, `1.5GiB`.
+/// Reads a size in bytes as users write it: `4GB`, `500 MB`, `1.5GiB`.
 pub fn bytes_from_words(text: &str) -> Result<u64, String> {
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let unit = match text[digits.len()..].to_lowercase().as_str() {
@@ -94,10 +94,10 @@ pub fn bytes_from_words(text: &str) -> Result<u64, String> {
     }
 }
 
-/// The job of a cluster in which the program runs, and its resources, as Slurm describes them.
+/// Job of a cluster in which the program runs, and its resources, as Slurm describes them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Allocation {
-    /// Job, and task if it is one of an array, as Slurm writes it: `12_3`.
+    /// Job, with its task if it belongs to an array, as Slurm writes it: `12_3`.
     pub job: String,
     processors: Option<usize>,
     /// Memory (bytes).
@@ -129,14 +129,14 @@ impl Allocation {
     }
 }
 
-/// Factor on the estimated memory in the request of a job script.
+/// Factor on the estimated memory that a job script requests.
 pub(crate) const MEMORY_MARGIN: f64 = 1.5;
 
-/// A job takes little that takes no more than this for each of its threads (bytes).
+/// A job is small if it takes at most this much memory for each of its threads (bytes).
 const LITTLE_BYTES: u64 = 1 << 30;
 
-/// Cases that are walked at the same time: one answer for the process itself, for `check`, and for the job
-/// scripts that ask for its memory.
+/// Number of cases walked at a time: the same for the process itself, for `check`, and for the job scripts
+/// that request its memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CasesAtOnce {
     pub cases: u64,
@@ -145,8 +145,8 @@ pub(crate) struct CasesAtOnce {
 }
 
 impl CasesAtOnce {
-    /// Counts these cases in a job whose script asks for their memory. A case beside those that keep the
-    /// threads busy is added if the job takes little memory with it: no job asks for twice the memory to fill
+    /// Counts these cases in a job whose script requests their memory. Cases beyond those that keep the
+    /// threads busy are added only if the job stays small with them: no job requests twice the memory to fill
     /// threads that idle at the end of a case.
     pub fn of_job(cases: &[&Case], threads: u64) -> Self {
         let of_room = |spare| Self::where_there_is_room(cases, threads, spare, u64::MAX);
@@ -160,7 +160,7 @@ impl CasesAtOnce {
         Self::within(cases, threads, Machine::here().available, in_job)
     }
 
-    /// Counts these cases if this many bytes are available: to a job alone, or to all that runs on the
+    /// Counts these cases if this many bytes are available, either to a job alone or to everything on the
     /// machine.
     fn within(cases: &[&Case], threads: u64, available: u64, in_job: bool) -> Self {
         if !in_job {
@@ -176,7 +176,7 @@ impl CasesAtOnce {
         Self::at_most(wanted(threads, fewest, spare, cases.len()), cases, threads, room)
     }
 
-    /// Limits the number of cases by `most`, by the room for their walks, and by the limit of each case.
+    /// Limits the number of cases to `most`, by the room for their walks, and by the limit of each case.
     fn at_most(most: u64, cases: &[&Case], threads: u64, room: u64) -> Self {
         let allowed = cases.iter().map(|case| case.memory).min().unwrap_or(u64::MAX);
         let largest = cases.iter().map(|case| case.peak_bytes(threads)).max().unwrap_or(0);
@@ -188,9 +188,9 @@ impl CasesAtOnce {
     }
 }
 
-/// Number of these cases to walk at the same time, memory aside, if each has at least this many replicates:
-/// enough to give each thread a replicate, and `spare` more for the threads that wait for the last replicate
-/// or the page of another.
+/// Number of these cases to walk at a time, regardless of memory, if each has at least this many replicates:
+/// enough to give each thread a replicate, and `spare` more for threads that wait for the last replicate or
+/// the page of another case.
 fn wanted(threads: u64, replicates: u64, spare: u64, cases: usize) -> u64 {
     let spare = if threads > 1 { spare } else { 0 };
     (threads.div_ceil(replicates.max(1)) + spare).clamp(1, cases.max(1) as u64)
@@ -253,7 +253,7 @@ mod tests {
         assert_eq!([wanted(4, 10, 0, 9), wanted(64, 10, 0, 99)], [1, 7]);
     }
 
-    /// A job asks for the memory of the cases that it then walks, however large they are.
+    /// A job requests the memory of the cases that it will walk at a time, however large they are.
     #[test]
     fn a_job_walks_as_many_cases_as_its_script_asked_for() {
         let mut numbers = Vec::new();

@@ -1,14 +1,14 @@
-//! The application: the functions that every face of the program calls, the command line like any other.
+//! Application layer: the functions that every interface calls, including the command line.
 //!
 //! - [`walk_scene`] and [`resume`] walk a scene into a folder, [`walk_case`] walks a case in memory,
-//!   [`walk_networks`] networks from elsewhere.
+//!   [`walk_networks`] walks networks from elsewhere.
 //! - [`pack`](pack::pack) packs a filter, [`measure_constrictions`] measures a packing from elsewhere.
-//! - [`check`](prepare::check) forecasts a run, by the one model of `cost`.
-//! - [`Callbacks`] follow the work and stop it, [`RunError`] gives the reason of an early end,
+//! - [`check`](prepare::check) forecasts a run by the cost model of `cost`.
+//! - [`Callbacks`] follow the work and stop it, [`RunError`] gives the reason for an early end, and
 //!   [`folder::claim`] guards every folder.
 //!
-//! A case is [prepared](prepare::prepare), its `replicates` are walked under `checkpoints`, and
-//! [`results`] are written. Pages are no part of it: they are made from the files that are written here.
+//! A case is [prepared](prepare::prepare), its `replicates` are walked under `checkpoints`, and [`results`]
+//! are written. Pages are made elsewhere, from the files that are written here.
 
 pub(crate) mod callbacks;
 pub(crate) mod case_walks;

@@ -18,7 +18,7 @@ use voidwalk_practice::{Decision, Mistake, Note, ordered, rules};
 const STEP: usize = 2;
 
 impl NetworkOutcome {
-    /// The record of these walks by a plan; `network` is the first of this many networks.
+    /// Record of these walks by a plan; `network` is the first of this many networks.
     pub fn record(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> NetworkWalkRecord {
         let first = self.replicates.first().map(|walked| &walked.result);
         NetworkWalkRecord {
@@ -62,7 +62,7 @@ fn given(network: &Network, networks: usize) -> GivenNetwork {
     let constrictions = diameters.len() as u64;
     diameters.retain(|&diameter| diameter > 0.0);
     diameters.par_sort_unstable_by(f32::total_cmp);
-    // The least, the greatest, and between them the size at this percentile.
+    // The minimum, the maximum, or the size at this percentile in between.
     let size = |percent: usize| {
         let at = (percent * diameters.len()).div_ceil(100).max(1) - 1;
         Some([f64::from(*diameters.get(at)?) * network.unit_mm(), percent as f64])
@@ -123,8 +123,8 @@ impl NetworkWalk {
         planned.notes().into_iter().chain(mistake).chain(self.amount(network)).collect()
     }
 
-    /// Note on a class that depends on a number of base particles which differs from Eq. (2), or cannot be
-    /// compared with it.
+    /// Note on a number of base particles that differs from Eq. (2), or cannot be compared with it, if the
+    /// class depends on it.
     fn amount(&self, network: &Network) -> Option<Note> {
         let particles = self.n_base;
         let Some(needed) = self.eq2(network, PAPER_MASS_RATIO).ok().flatten() else {
@@ -152,7 +152,7 @@ mod tests {
     use voidwalk_core::gradation::Gradation;
     use voidwalk_core::network::{ExitRule, NetworkColumns};
 
-    /// Two constrictions that are passed both ways and one that is closed from the start, each counted once.
+    /// Two constrictions are passed both ways and one is closed from the start; each is counted once.
     #[test]
     fn a_record_says_what_was_walked_through() {
         let columns = NetworkColumns {
@@ -197,8 +197,8 @@ mod tests {
         (plan.n_base, outcome.notes(&plan, &network, 1))
     }
 
-    /// Numbers that cannot be compared with Eq. (2), fall short of it or exceed it are doubts; its own number
-    /// is not.
+    /// Numbers that fall short of Eq. (2), exceed it or cannot be compared with it are doubts; the number of
+    /// Eq. (2) is not.
     #[test]
     fn a_number_of_particles_that_is_not_that_of_equation_two_is_a_doubt() {
         let filter = || Gradation::linear_from_d0(1.0, 1.5).ok();
@@ -216,7 +216,7 @@ mod tests {
         assert!(has(&number_and_notes(Some(n), None, None).1, "no_filter"));
     }
 
-    /// The one constriction is closed by the first particle.
+    /// The first particle closes the only constriction.
     #[test]
     fn a_network_that_clogs_is_a_doubt() {
         let columns = NetworkColumns {
@@ -237,11 +237,11 @@ mod tests {
         assert!(notes.iter().any(|note| note.id() == "clogged"), "{notes:?}");
     }
 
-    /// Notes that only a scene has: on its files, and on a filter's finest part, which matters if Eq. (2)
+    /// Notes that only a scene has: on its files, and on a filter's pan fraction, which matters if Eq. (2)
     /// gives the base.
     const OF_A_SCENE: [&str; 2] = ["read_as", "pan_of_filter"];
 
-    /// Notes on a scene, and on its soils on its network without it: all but the list above.
+    /// Notes on a scene, and on a walk of its soils on its network without it; the list above is left out.
     fn of_both(case: &Case, network: &Network) -> [BTreeSet<(String, String)>; 2] {
         let filter = GivenFilter {
             gradation: case.filter.gradation.clone(),
@@ -262,7 +262,7 @@ mod tests {
         [shared(of_scene, &OF_A_SCENE), shared(of_network, &[])]
     }
 
-    /// A narrow lattice, and one whose water stops before any of the base can be through.
+    /// A narrow lattice, and one with too few increments for any of the base to leave it.
     #[test]
     fn a_lattice_that_is_given_has_the_findings_of_its_scene() {
         for (own, id) in [
@@ -303,8 +303,8 @@ mod tests {
         (FILTER, SAND),
     ];
 
-    /// Walks the soils on one network, with a scene and without: each note that follows from them is reported
-    /// by both with equal numbers, or is in the list above.
+    /// Walks the soils on one network, with a scene and without. Both must report the same notes with equal
+    /// numbers, apart from the list above.
     #[test]
     fn a_walk_without_a_scene_finds_what_a_scene_of_the_same_soils_finds() {
         let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Walks given networks, without a scene: networks that other programs built, or that were built by hand.
+//! Walks given networks without a scene: built by other programs or by hand.
 
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -19,9 +19,9 @@ use voidwalk_core::gradation::{Gradation, GradationError, SizeSampler, base_part
 use voidwalk_core::network::Network;
 use voidwalk_core::walk::{Engine, RunPlan, Sampling, SizeClasses, State, Walk, WalkControl};
 
-/// Bytes of one void while it is walked, with its constrictions (a generous estimate).
+/// Estimated memory of one void during a walk, with its constrictions (bytes); generous.
 const BYTES_A_VOID: u64 = 600;
-/// Bytes of one base particle.
+/// Memory of one base particle (bytes).
 const BYTES_A_PARTICLE: u64 = 8;
 
 /// Plan of walks on given networks.
@@ -31,13 +31,13 @@ pub struct NetworkWalk {
     pub base: Gradation,
     /// Base particles of a run.
     pub n_base: u64,
-    /// Equal parts in which they are inserted.
+    /// Increments of equal mass in which they are inserted.
     pub increments: u64,
     /// Engine of passive particles.
     pub engine: Engine,
     /// Sampling of sizes and start nodes.
     pub sampling: Sampling,
-    /// Seed; replicate `r` has [`replicate_seed`] of it.
+    /// Seed; replicate `r` uses its [`replicate_seed`].
     pub seed: u64,
     /// Runs of a replicate, 1 or 2.
     pub runs: u64,
@@ -47,7 +47,7 @@ pub struct NetworkWalk {
     pub wanted: Wanted,
     /// The filter, if known.
     pub filter: Option<GivenFilter>,
-    /// Mass of the base over mass of the filter, for Eq. (2).
+    /// Mass ratio of base to filter, for Eq. (2).
     pub mass_ratio: f64,
 }
 
@@ -56,15 +56,15 @@ pub struct NetworkWalk {
 pub struct GivenFilter {
     /// Its gradation.
     pub gradation: Gradation,
-    /// True if it is a sieve curve, not a straight line that was assumed.
+    /// True if it is a sieve curve rather than an assumed straight line.
     pub is_measured: bool,
-    /// Its grains per void, without which Eq. (2) is not known.
+    /// Its grains per void, without which Eq. (2) gives no number.
     pub grains_per_void: Option<f64>,
 }
 
 /// Results of the walks.
 pub struct NetworkOutcome {
-    /// The class that the replicates together support.
+    /// Class that the replicates together support.
     pub verdict: Verdict,
     /// Statistics over the replicates, by run.
     pub summary: Vec<RunSummary>,
@@ -72,7 +72,7 @@ pub struct NetworkOutcome {
     pub replicates: Vec<WalkedNetwork>,
 }
 
-/// A replicate that is walked.
+/// Walked replicate.
 pub struct WalkedNetwork {
     /// Its figures and rows.
     pub result: ReplicateResult,
@@ -83,11 +83,11 @@ pub struct WalkedNetwork {
 /// Walks given networks in memory, replicate `r` on entry `(r - 1) mod n` of the `n` networks, on the threads
 /// of the pool that it is called in.
 ///
-/// A network that a scene names too is walked to the same bits.
+/// A network is walked to the same bits if a scene names it.
 ///
 /// # Errors
-/// Settings that are not allowed, a base whose pan fraction need not be passive and memory that does not
-/// suffice are refused before any work; a walk that goes wrong, or that was stopped.
+/// Settings that are not allowed, a base whose pan fraction need not be passive, or too little memory are
+/// refused before any work; then errors of a walk, or a stop.
 ///
 /// # Example
 /// ```
@@ -127,11 +127,11 @@ pub fn walk_networks(
 /// A replicate, and its blocked exits at the end of each run.
 type Walked = (ReplicateResult, Vec<BitVec>);
 
-/// Replicates that take no more together are walked side by side (bytes).
+/// Replicates are walked side by side if they take at most this much memory together (bytes).
 const SIDE_BY_SIDE_BYTES: u64 = 1 << 30;
 
 impl NetworkWalk {
-    /// `n_base` particles of this base, with the settings that a scene has by default.
+    /// Plan for `n_base` particles of this base, with a scene's default settings.
     pub fn new(base: Gradation, n_base: u64) -> Self {
         Self {
             base,
@@ -148,7 +148,7 @@ impl NetworkWalk {
         }
     }
 
-    /// Size (mm) with 15 % of the filter finer by mass, if known.
+    /// D15F (mm) by mass, if known.
     pub fn d15f_mm(&self) -> Option<f64> {
         self.filter.as_ref()?.gradation.d(15.0)
     }
@@ -157,7 +157,7 @@ impl NetworkWalk {
     /// known.
     ///
     /// # Errors
-    /// Numbers that Eq. (2) does not take.
+    /// Numbers that Eq. (2) does not accept.
     pub fn eq2(&self, network: &Network, mass_ratio: f64) -> Result<Option<u64>, GradationError> {
         let Some(GivenFilter { gradation, grains_per_void: Some(grains), .. }) = &self.filter else {
             return Ok(None);
@@ -167,7 +167,7 @@ impl NetworkWalk {
         Ok(Some(supply.n_base_eq2))
     }
 
-    /// Refuses plans that cannot be walked; draws sizes for each network.
+    /// Refuses plans that cannot be walked; returns a size sampler for each network.
     fn check(&self, networks: &[Arc<Network>]) -> Result<Vec<SizeSampler>, RunError> {
         for (name, value, most) in [
             ("runs", self.runs, 2),
@@ -213,7 +213,7 @@ impl NetworkWalk {
         Ok(samplers)
     }
 
-    /// Bytes of one walk on the largest of these networks.
+    /// Memory of one walk on the largest of these networks (bytes).
     fn bytes(&self, networks: &[Arc<Network>]) -> u64 {
         let bytes = |network: &Arc<Network>| {
             let coarse = self.coarse_particles(network);
@@ -228,8 +228,8 @@ impl NetworkWalk {
         networks.iter().map(bytes).max().unwrap_or(0)
     }
 
-    /// Approximate number of base particles coarser than the finest constriction, each of which is walked by
-    /// itself.
+    /// Approximate number of base particles coarser than the finest constriction, which are walked one by
+    /// one.
     fn coarse_particles(&self, network: &Network) -> u64 {
         let finest_mm = f64::from(network.finest_open(|_| false)) * network.unit_mm();
         let coarser = 1.0 - self.base.percent_finer_by_number(finest_mm) / 100.0;
@@ -313,7 +313,7 @@ mod tests {
         Network::cubic([6, 6, 8], &curve, 1.0, 5).unwrap()
     }
 
-    /// The engines that record every particle and those that count, both runs, every figure but the time.
+    /// Covers engines that record and engines that count, both runs, and every figure but the time.
     #[test]
     fn a_network_is_walked_as_the_scene_that_names_it_walks_it() {
         let folder = tempfile::tempdir().unwrap();
@@ -355,7 +355,7 @@ mod tests {
 
     #[test]
     fn an_undirected_network_is_walked_both_ways() {
-        // A ring of four voids with a way in at void 0 and out at void 2: one side lets nothing through.
+        // A ring of four voids, inlet at void 0 and outlet at void 2: one side lets nothing through.
         let columns = NetworkColumns {
             voids: 4,
             conns: &[[0, 1], [2, 1], [0, 3], [3, 2]],
@@ -371,8 +371,7 @@ mod tests {
         let plan = NetworkWalk { replicates: 4, ..NetworkWalk::new(Gradation::single(0.5).unwrap(), 1000) };
         let outcome = walk_networks(&[Arc::new(network)], &plan, &Callbacks::default()).unwrap();
         for walked in &outcome.replicates {
-            // One particle blocks the narrow side: all others take the wide one, which is at the end of the
-            // ring.
+            // One particle blocks the narrow side: all others take the wide side, at the end of the ring.
             let at_end: Vec<bool> = exit.iter().map(|&exit| walked.blocked[1][exit as usize]).collect();
             assert_eq!(at_end, [false, false, true, false]);
             let run = &walked.result.replicate.runs[1];

@@ -1,7 +1,7 @@
-//! Packs a filter into a folder, in as many starts of the program as it takes.
+//! Packs a filter into a folder; the work may be stopped and continued any number of times.
 //!
-//! The folder holds, once whole: `grains.csv`, `grains.vtp`, `constrictions.csv`, `constrictions.json`,
-//! `constrictions.vtp` and, written last, `packing.json`. While the grains are compressed it holds the
+//! A finished folder holds `grains.csv`, `grains.vtp`, `constrictions.csv`, `constrictions.json`,
+//! `constrictions.vtp` and, written last, `packing.json`. While the grains are being compressed it holds the
 //! checkpoint `compression` instead ([`voidwalk_core::store::checkpoint`]), from which the next start
 //! continues with the same bits: sections `state` ([`Compression::to_bytes`]) and `seconds` (one number),
 //! under the fingerprint of the plan.
@@ -30,19 +30,19 @@ use voidwalk_core::store::checkpoint::{CheckpointError, Identity, Label, Section
 use voidwalk_core::store::format::{self, from_json};
 use voidwalk_core::store::{Folder, StoreError};
 
-/// The checkpoint of a compression that is not finished; its files are [`STATES`].
+/// Checkpoint of an unfinished compression; its files are [`STATES`].
 const STATE: &str = "compression";
 
 /// Default interval between saves of a compression.
 const SAVE_EVERY: Duration = Duration::from_secs(60);
 
-/// Interval between looks for a packing that another process makes.
+/// Interval between checks for a packing that another process is making.
 const LOOK: Duration = Duration::from_millis(500);
 
-/// Options of packing a filter; only `overwrite` changes the files that are there afterwards.
+/// Options of packing a filter; only `overwrite` changes the resulting files.
 #[derive(Clone, Debug)]
 pub struct PackOptions {
-    /// Folder for the packing; without one, one of its own in `packings`.
+    /// Folder for the packing; by default a folder of its own in `packings`.
     pub out: Option<PathBuf>,
     /// Folder in which packings are kept.
     pub packings: PathBuf,
@@ -66,7 +66,7 @@ impl Default for PackOptions {
     }
 }
 
-/// A packing that is whole.
+/// Finished packing.
 pub struct FinishedPacking {
     /// Its folder.
     pub folder: PathBuf,
@@ -74,15 +74,15 @@ pub struct FinishedPacking {
     pub json: String,
     /// Contents of `packing.json`.
     pub record: PackingRecord,
-    /// Results that a walk needs.
+    /// Results needed for a walk.
     pub filter: PackedFilter,
 }
 
 /// Packs a filter into a folder, continuing a packing there that was stopped.
 ///
 /// # Errors
-/// A filter that cannot be packed and a folder that cannot be claimed are refused before any work; after a
-/// stop the next call continues.
+/// A filter that cannot be packed or a folder that cannot be claimed is refused before any work. After a stop
+/// the next call continues.
 pub fn pack(
     spec: &PackingSpec,
     options: &PackOptions,
@@ -103,7 +103,7 @@ pub fn pack(
     Ok(FinishedPacking { folder: out, json: String::from_utf8_lossy(&json).into_owned(), record, filter })
 }
 
-/// A plan that is refused for its few grains, with the time that grains enough would take.
+/// Adds to the refusal of a plan with too few grains the time that enough grains would take.
 pub(super) fn with_time(error: CaseError) -> RunError {
     let CaseError::NarrowCell { would_do, .. } = &error else { return error.into() };
     let time = duration(would_do.core_seconds_here());
@@ -114,8 +114,8 @@ pub(super) fn with_time(error: CaseError) -> RunError {
     ))
 }
 
-/// Provides the packing of a scene's filter: taken from the folder of packings, its own or else one of the
-/// same shape in another size, or made and kept there; waits for a packing that another process makes.
+/// Provides the packing of a scene's filter: an existing one of the filter itself or of the same shape in
+/// another size, else a new one, which is kept. Waits for a packing that another process is making.
 pub fn provide(plan: &PackingPlan, packings: &Path, callbacks: &Callbacks) -> Result<PackedFilter, RunError> {
     let path = packings.join(plan.folder_name());
     let has_page = || path.join(MARK).symlink_metadata().is_err();
@@ -136,7 +136,7 @@ fn gone(folder: &Path) -> RunError {
     RunError::failed(format!("{}: the packing is gone", shown(folder)))
 }
 
-/// The folder of a packing, as soon as no other process is at it.
+/// Claims the folder of a packing as soon as no other process uses it.
 fn wait_for(path: &Path, callbacks: &Callbacks) -> Result<Folder, RunError> {
     let mut told = false;
     loop {
@@ -156,14 +156,14 @@ fn wait_for(path: &Path, callbacks: &Callbacks) -> Result<Folder, RunError> {
     }
 }
 
-/// Makes the packing in a folder that was claimed, and continues an earlier start.
+/// Makes the packing in a claimed folder, continuing an earlier start.
 fn make(
     folder: &Folder,
     plan: &PackingPlan,
     save_every: Duration,
     callbacks: &Callbacks,
 ) -> Result<(), RunError> {
-    // A killed process may have left all but the page.
+    // The process may have been killed when only the page was missing.
     if matches!(PackedFilter::read(folder.path(), plan), Ok(Some(_))) {
         return finish(folder, callbacks);
     }
@@ -187,13 +187,13 @@ fn make(
     finish(folder, callbacks)
 }
 
-/// Ends a packing whose record is written: only then its checkpoint goes.
+/// Finishes a packing whose record is written; the checkpoint is removed only now.
 fn finish(folder: &Folder, callbacks: &Callbacks) -> Result<(), RunError> {
     STATES.iter().try_for_each(|state| folder.remove(state))?;
     callbacks.finish(FolderKind::Packing, folder)
 }
 
-/// Compresses the grains; with the seconds that earlier starts spent.
+/// Compresses the grains; also returns the seconds of earlier starts.
 fn compress(
     folder: &Folder,
     plan: &PackingPlan,
@@ -243,7 +243,7 @@ fn compress(
     }
 }
 
-/// The compression that was saved, the seconds spent on it and its generation.
+/// Saved compression, the seconds spent on it and its generation.
 fn saved(
     folder: &Folder,
     plan: &PackingPlan,
@@ -259,7 +259,7 @@ fn saved(
     };
     let (saved, passed_over) = newest(folder.path(), STATE, &identity(plan)).map_err(refused)?;
     for error in passed_over {
-        (callbacks.warn)(&format!("{error}; the checkpoint before it was taken"));
+        (callbacks.warn)(&format!("{error}; the checkpoint before it was used"));
     }
     let Some(saved) = saved else { return Ok(None) };
     let seconds = saved.read::<f64>("seconds").map_err(refused)?;
@@ -274,7 +274,7 @@ fn identity(plan: &PackingPlan) -> Identity {
     Identity { scene: plan.fingerprint(), seed: plan.compression.seed, ..Identity::default() }
 }
 
-/// The record of a packing whose grains were written as `grains_csv`, after this many seconds of compression.
+/// Record of a packing whose grains were written as `grains_csv`, after this many seconds of compression.
 fn record(
     plan: &PackingPlan,
     packing: &Packing,
@@ -324,8 +324,7 @@ fn record(
     })
 }
 
-/// The grains that the plane through the middle of the cell cuts, with those that reach over its sides on
-/// both.
+/// Grains cut by the plane through the middle of the cell; those that cross its sides appear on both sides.
 fn slice(packing: &Packing, cell_mm: f64, height_mm: f64) -> Vec<[f64; 4]> {
     let mut cuts = Vec::new();
     for i in 0..packing.x.len() {
@@ -352,9 +351,9 @@ fn slice(packing: &Packing, cell_mm: f64, height_mm: f64) -> Vec<[f64; 4]> {
 /// Options of measuring constrictions.
 #[derive(Clone, Debug)]
 pub struct ConstrictionsOptions {
-    /// Overlap of two inscribed spheres from which their tetrahedra are one void.
+    /// Overlap from which two inscribed spheres count as one void.
     pub merge_overlap: f64,
-    /// Which facets between voids are constrictions of the curve.
+    /// Facets between voids that count as constrictions of the curve.
     pub facets: Facets,
     /// Options that complete the file of grains.
     pub read: ReadOptions,
@@ -381,7 +380,7 @@ impl Default for ConstrictionsOptions {
 /// the contents of that file.
 ///
 /// # Errors
-/// Grains that are refused, or do not fit their cell; a folder that cannot be claimed or written.
+/// Grains that are refused or do not fit their cell; a folder that cannot be claimed or written.
 pub fn measure_constrictions(
     packing: &Path,
     options: &ConstrictionsOptions,
@@ -402,9 +401,9 @@ fn measure_here(
     let constrictions = Constrictions::from_triangulation(&t, options.merge_overlap, options.facets)
         .map_err(|error| refused(&error))?;
     constrictions.check().map_err(|error| refused(&error))?;
-    // Grains without a cell, and voids that run through it, have no graph.
+    // Grains without a cell, or with voids that run through it, have no graph.
     let graph = VoidGraph::of(&t, options.merge_overlap).ok();
-    // Constrictions near the outside of grains without a cell do not count for the curve.
+    // In grains without a cell, constrictions near the outside do not count for the curve.
     let whole =
         |summary: &Summary| summary.grains_per_void.is_finite() && summary.mean_connectivity.is_finite();
     let mut summary = constrictions.summary().ok().filter(whole).ok_or_else(|| {

@@ -1,10 +1,10 @@
-//! From a scene to a case that can be walked: the one sequence for every command.
+//! Turns a scene into a case that can be walked, in one sequence for all commands.
 //!
-//! A scene is drafted first, with a guess at a filter that is still to be packed: its mistakes, and a lack of
-//! memory, are refused then. The caller claims the folder for the results next. Only then is the draft
-//! finished, and its filter packed unless it has been packed before, which may take hours.
+//! A scene is first drafted, with a guess for a filter that is still to be packed; mistakes and a lack of
+//! memory are refused at this point. The caller then claims the folder for the results. Only then is the
+//! draft finished, and its filter packed unless it has been packed before, which may take hours.
 //!
-//! A check forecasts the run of a scene before any of its work. Examples are files to start from.
+//! A check forecasts the run of a scene without doing any of its work. Examples are files to start from.
 
 use std::path::{Path, PathBuf};
 
@@ -23,12 +23,12 @@ use crate::scene::Scene;
 use voidwalk_core::store::{Placement, StoreError, write_whole};
 use voidwalk_practice::{Note, ordered};
 
-/// Options of preparing a scene; no setting changes a result.
+/// Options of preparing a scene; no option changes a result.
 #[derive(Clone, Debug)]
 pub struct PrepareOptions {
     /// Folder in which packings are kept, so that each is made once.
     pub packings: PathBuf,
-    /// Memory that the walks may take (bytes); 80 % of the available memory without it.
+    /// Memory that the walks may take (bytes); by default 80 % of the available memory.
     pub memory: Option<u64>,
     /// Worker threads; by default the number that a cluster's job has, else one per core.
     pub threads: Option<usize>,
@@ -47,17 +47,17 @@ impl PrepareOptions {
     }
 }
 
-/// A scene that has been found sound, and the packing that it needs.
+/// Scene found sound, and the packing that it needs.
 pub struct Draft {
     scene: Scene,
-    /// The case, with a guess at a filter that is to be packed.
+    /// Case, with a guess for a filter that is still to be packed.
     pub case: Case,
     /// Packing that is still to be made for it.
     pub packing: Option<PackingPlan>,
 }
 
 impl Draft {
-    /// Works a scene out, with a guess at a filter that is to be packed.
+    /// Works a scene out, with a guess for a filter that is still to be packed.
     pub fn new(scene: Scene) -> Result<Self, RunError> {
         let packing = PackingPlan::of(&scene).map_err(with_time)?;
         let placeholder = packing.as_ref().map(PackedFilter::placeholder).transpose();
@@ -66,8 +66,8 @@ impl Draft {
         Ok(Self { scene, case, packing })
     }
 
-    /// Finishes the case, with the packed filter if it needs one; no file is read again. Errors: a filter
-    /// that turns out unsuitable once it is packed.
+    /// Finishes the case, with the packed filter if it needs one; no file is read again. Errors: a packed
+    /// filter that turns out unsuitable.
     pub fn finished(self, filter: Option<PackedFilter>) -> Result<Case, RunError> {
         match filter {
             Some(_) => Ok(Case::with_packed(self.scene, filter, self.case.inputs)?),
@@ -76,19 +76,18 @@ impl Draft {
     }
 }
 
-/// Prepares a scene: checks it and its memory, packs its filter or takes it from the folder of packings,
-/// works its numbers out, and places its particles in memory or, if they do not fit, in files in the current
-/// folder.
+/// Prepares a scene: checks it and its memory, provides its packed filter, works its numbers out, and places
+/// its particles in memory or, if they do not fit, in files in the current folder.
 ///
 /// # Errors
-/// Mistakes of the scene, before any work; later errors of the packing.
+/// Mistakes of the scene, before any work; then errors of the packing.
 pub fn prepare(scene: Scene, options: &PrepareOptions, callbacks: &Callbacks) -> Result<Case, RunError> {
     let here = Path::new(".");
     on_threads(options.threads, || Ok(prepare_into(scene, options, here, || Ok(here), callbacks)?.0))
 }
 
-/// Prepares a scene for a folder that is claimed once the scene is found sound, before any work: `claim`
-/// claims it, and `wanted` is its future path. To be called on the threads that will walk.
+/// Prepares a scene for a folder that `claim` claims, before any work, once the scene is found sound;
+/// `wanted` is its future path. Must be called on the threads that will walk.
 pub(crate) fn prepare_into<F: AsRef<Path>>(
     scene: Scene,
     options: &PrepareOptions,
@@ -112,38 +111,38 @@ pub(crate) fn prepare_into<F: AsRef<Path>>(
     Ok((case, folder))
 }
 
-/// Writes the built-in scene, commented, as a start for another; refuses a file that exists already.
+/// Writes the built-in scene, with comments, as a start for another; refuses to replace a file.
 pub fn write_built_in(path: &Path) -> Result<(), RunError> {
     write_new(path, Scene::init_text().as_bytes())
 }
 
-/// Writes a file; refuses one that exists already.
+/// Writes a file; refuses to replace one.
 pub fn write_new(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     if path.symlink_metadata().is_ok() {
-        return Err(refused(path, "is there already; name a file that is not"));
+        return Err(refused(path, "exists already; name a new file"));
     }
     write_whole(path, bytes).map_err(RunError::Claim)
 }
 
-/// What a run of a scene would do; sizes and times are estimates.
+/// Forecast of a run of a scene; sizes and times are estimates.
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Check {
     /// Base particles of a run.
     pub n_base: u64,
-    /// Base particles by Eq. (2), where the grains per void are known.
+    /// Base particles by Eq. (2), if the grains per void are known.
     pub n_base_eq2: Option<u64>,
-    /// Whether a cap made `n_base` smaller than Eq. (2).
+    /// True if a cap made `n_base` smaller than Eq. (2).
     pub capped: bool,
-    /// Filter grains per void, where known.
+    /// Filter grains per void, if known.
     pub grains_per_void: Option<f64>,
-    /// Mass of base over mass of filter, where known.
+    /// Mass of base over mass of filter, if known.
     pub mass_ratio: Option<f64>,
-    /// Base particles that are walked by themselves, at most.
+    /// Maximum number of base particles that are walked one by one.
     pub one_by_one: u64,
     /// Runs to walk.
     pub runs_to_walk: u64,
-    /// Increments of insertion of a run, at most.
+    /// Maximum number of increments of insertion of a run.
     pub increments: u64,
     /// Memory of a walk (bytes).
     pub bytes: u64,
@@ -151,21 +150,21 @@ pub struct Check {
     pub bytes_allowed: u64,
     /// Memory in words.
     pub memory: String,
-    /// Seconds of one core of this machine for the walks, the packing apart.
+    /// Seconds of one core of this machine for the walks, without the packing.
     pub core_seconds: f64,
-    /// Whether the particles are in files, mapped into memory.
+    /// True if the particles are in files mapped into memory.
     pub particles_on_disk: bool,
-    /// Sizes of filter over base.
+    /// Size ratios of filter and base.
     pub ratios: Ratios,
     /// The packing that is needed.
     pub packing: Option<PackingCheck>,
-    /// What goes in.
+    /// Inputs of the run.
     pub inputs: Inputs,
     /// Parts of the program that are not needed.
     pub left_out: Vec<LeftOut>,
-    /// What a user must know.
+    /// Notes for the user.
     pub notes: Vec<Note>,
-    /// Why a run would be refused all the same: memory does not suffice.
+    /// Reason why a run would still be refused: too little memory.
     #[serde(skip)]
     pub refusal: Option<CaseError>,
 }
@@ -178,15 +177,15 @@ pub struct PackingCheck {
     pub grains: u64,
     /// Its folder.
     pub folder: PathBuf,
-    /// Whether it is there; until then the filter's constrictions and grains per void are guesses.
+    /// True if it exists; until then the filter's constrictions and grains per void are guesses.
     pub is_made: bool,
-    /// Steps that it takes.
+    /// Steps of its compression.
     pub steps: u64,
-    /// Seconds of one core of this machine that it takes; where it is made, of one of 2024.
+    /// Seconds of one core of this machine that it takes; if it exists, of one core of 2024.
     pub core_seconds: f64,
 }
 
-/// Forecasts a run of a scene, here and with these options; makes no packing and writes nothing.
+/// Forecasts a run of a scene, here and with these options; packs nothing and writes nothing.
 ///
 /// # Errors
 /// All mistakes of the scene, memory apart: see [`Check::refusal`].
@@ -247,11 +246,11 @@ pub struct ExampleFile {
     pub name: &'static str,
     /// Description of its contents.
     pub what: &'static str,
-    /// All that is in it.
+    /// Its whole text.
     pub text: &'static str,
 }
 
-/// The example in `src/app/data/examples` of this name.
+/// Example of this name in `src/app/data/examples`.
 macro_rules! example {
     ($name:literal, $what:literal) => {
         ExampleFile { name: $name, what: $what, text: include_str!(concat!("../data/examples/", $name)) }
@@ -263,7 +262,7 @@ pub const EXAMPLE_FILES: [ExampleFile; 8] = [
     example!("base.csv", "a base: openings in mm, percent finer by mass"),
     example!("filter.csv", "a filter for it"),
     example!("filter-fine.csv", "a finer one"),
-    example!("us-sieves.csv", "two soils by US sieves, as they stand side by side in a sheet"),
+    example!("us-sieves.csv", "two soils by US sieves, side by side in one sheet"),
     example!("borrow-area.ags", "six samples of a borrow area (AGS4)"),
     example!("scene.toml", "a scene: base, filter and network, with a cover for the first sheet"),
     example!("plan.toml", "a plan: two filters by two densities"),
@@ -273,11 +272,11 @@ pub const EXAMPLE_FILES: [ExampleFile; 8] = [
 /// Writes every example into a folder, which is made if it is missing. Other files in it stay.
 ///
 /// # Errors
-/// [`RunError::Refused`] if a file is there already, or the folder is a file: then nothing is written.
+/// [`RunError::Refused`] if a file exists already, or the folder is a file; nothing is written then.
 pub fn write_examples(folder: &Path) -> Result<(), RunError> {
     let places = EXAMPLE_FILES.map(|file| folder.join(file.name));
     if let Some(taken) = places.iter().find(|path| path.symlink_metadata().is_ok()) {
-        return Err(refused(taken, "is there already; nothing was written. Name another folder"));
+        return Err(refused(taken, "exists already; nothing was written. Name another folder"));
     }
     if let Some(file) = folder.ancestors().find(|part| part.exists() && !part.is_dir()) {
         return Err(refused(file, "is a file; name a folder, a new one or one that is there"));
@@ -323,7 +322,7 @@ mod tests {
         let taken = root.path().join("plan.toml");
         std::fs::write(&taken, "mine").unwrap();
         let message = write_examples(root.path()).unwrap_err().to_string();
-        assert!(message.contains("plan.toml: is there already; nothing was written"), "{message}");
+        assert!(message.contains("plan.toml: exists already; nothing was written"), "{message}");
         assert_eq!(std::fs::read_dir(root.path()).unwrap().count(), 1);
         let message = write_examples(&taken.join("below")).unwrap_err().to_string();
         assert!(message.contains("plan.toml: is a file"), "{message}");

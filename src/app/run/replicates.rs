@@ -1,4 +1,4 @@
-//! Walks the replicates of a case: a new network and a new walk each.
+//! Walks the replicates of a case, each with a new network.
 
 use std::borrow::Cow;
 use std::ops::RangeInclusive;
@@ -30,14 +30,14 @@ use voidwalk_core::walk::{
 };
 use voidwalk_practice::Note;
 
-/// Callbacks, checkpoints and networks of walking replicates.
+/// Callbacks, checkpoints and shared networks for walking replicates.
 #[derive(Clone, Copy)]
 pub struct ReplicateContext<'a> {
-    /// Who follows the walks and stops them.
+    /// Follow the walks and stop them.
     pub callbacks: &'a Callbacks<'a>,
-    /// Saves finished work, so that the next start continues from there; without it nothing is saved.
+    /// Save finished work for the next start; without them nothing is saved.
     pub checkpoints: Option<&'a Checkpoints>,
-    /// Networks that other cases walk, too; each replicate builds its own without them.
+    /// Networks shared with other cases; without them each replicate builds its own.
     pub networks: Option<&'a SharedNetworks>,
 }
 
@@ -60,14 +60,14 @@ pub struct ReplicateResult {
     pub recorded: Recorded,
     /// The engine that walked the first run.
     pub engine: Engine,
-    /// Parts that the first run did not need.
+    /// Shortcuts that the first run took.
     pub left_out: Vec<Shortcut>,
     /// True, by run, if less than 7.5 % of the mass eroded.
     pub(super) below: Vec<bool>,
 }
 
-/// Walks every replicate of the case: the number of the scene, or until its rule stops. Errors: a walk that
-/// loses particles, or that was stopped.
+/// Walks every replicate of the case: the number in the scene, or until its rule stops. Errors: a walk that
+/// loses particles or was stopped.
 pub(super) fn replicates(case: &Case, context: &ReplicateContext) -> Result<Vec<ReplicateResult>, RunError> {
     let (runs, readings) = (case.scene.walk.runs, !case.filter.curve_ends.is_empty());
     let tell_needs = |replicates| context.tell(Event::VerdictNeeds { replicates, runs, readings });
@@ -91,7 +91,7 @@ pub(super) fn stopping(case: &Case, walked: &[ReplicateResult]) -> Option<Stoppi
     }
 }
 
-/// A look of the scene's rule at the walked replicates.
+/// Evaluation of the scene's rule on the walked replicates.
 fn look(case: &Case, walked: &[ReplicateResult]) -> Option<Look> {
     let rule = Some(&case.scene.stop).filter(|rule| rule.is_set())?;
     Some(rule.look_at_one_of(case.curves(), case.scene.walk.replicates, &values_by_run(walked)))
@@ -106,8 +106,7 @@ pub(super) fn values_by_run(walked: &[ReplicateResult]) -> Vec<ReplicateValues> 
     (0..runs).map(of_run).collect()
 }
 
-/// Replicates with `n_base` particles each; part 0 are the replicates of the case itself, the only ones that
-/// are recorded.
+/// Walks replicates with `n_base` particles each. Only those of part 0, the case itself, are recorded.
 pub(super) fn some_replicates(
     case: &Case,
     part: u64,
@@ -119,12 +118,12 @@ pub(super) fn some_replicates(
     map_side_by_side(replicates.collect(), fit_side_by_side(case, n_base), one)
 }
 
-/// True if walks of the case with this many particles fit into the memory side by side.
+/// True if walks of the case with this many particles fit into memory side by side.
 pub(super) fn fit_side_by_side(case: &Case, n_base: u64) -> bool {
     case.side_by_side(n_base, rayon::current_num_threads() as u64) > 1
 }
 
-/// Applies `one` to each item, side by side if their walks fit into the memory together.
+/// Applies `one` to each item, side by side if their walks fit into memory together.
 pub(super) fn map_side_by_side<T: Send, R: Send>(
     all: Vec<T>,
     fit: bool,
@@ -133,7 +132,7 @@ pub(super) fn map_side_by_side<T: Send, R: Send>(
     if fit { all.into_par_iter().map(one).collect() } else { all.into_iter().map(one).collect() }
 }
 
-/// Walks one replicate with `n_base` particles, or takes it from its checkpoint.
+/// Walks one replicate with `n_base` particles, or loads it from its checkpoint.
 pub(super) fn walk_replicate(
     case: &Case,
     part: u64,
@@ -161,7 +160,7 @@ pub(super) fn walk_replicate(
         let begun = Instant::now();
         let end = run.walk(clogged, exits.take(), &mut done, saved.take(), context)?;
         run.record(&end, begun.elapsed().as_secs_f64(), &mut done, context);
-        // The next run begins with the constrictions that this run leaves open.
+        // The next run begins with the open constrictions of this run.
         (clogged, exits) = (end.state.into_clogged(), end.exits.map(Cow::Owned));
     }
     let verdict = classify(done.below.first().copied(), done.below.get(1).copied());
@@ -174,7 +173,7 @@ pub(super) fn walk_replicate(
     })
 }
 
-/// Finished runs of a replicate, and the checkpoint of the run under way; a finished replicate is reported.
+/// Finished runs of a replicate, and the checkpoint of the current run; reports a finished replicate.
 fn load(id: WalkId, context: &ReplicateContext) -> Result<(Done, Option<Checkpoint>), RunError> {
     let loaded = context.checkpoints.map(|checkpoints| checkpoints.load(id));
     let Some(Some((done, saved))) = loaded.transpose().map_err(RunError::Checkpoint)? else {
@@ -187,7 +186,7 @@ fn load(id: WalkId, context: &ReplicateContext) -> Result<(Done, Option<Checkpoi
     Ok((done, Some(saved)))
 }
 
-/// Ends a replicate that has not begun, if the caller asked to stop.
+/// Fails if the caller asked to stop before a replicate has begun.
 fn go_on(callbacks: &Callbacks) -> Result<(), RunError> {
     if callbacks.is_stopped() { Err(WalkError::Stopped { increment: 0 }.into()) } else { Ok(()) }
 }
@@ -208,16 +207,16 @@ pub(crate) fn plan(case: &Case, network: &Network, blocked: &BitSlice, n_base: u
         .sampled(case.scene.walk.sampling)
 }
 
-/// Parts that the first run of the first replicate does not need. Errors: see [`Case::network`].
+/// Shortcuts of the first run of the first replicate. Errors: see [`Case::network`].
 pub(super) fn left_out_of_first_run(case: &Case) -> Result<Vec<Shortcut>, RunError> {
     let network = case.network(replicate_seed(case.scene.walk.seed, 1))?;
     let open: BitVec = BitVec::repeat(false, network.constrictions());
     Ok(plan(case, &network, &open, case.supply.n_base).left_out().to_vec())
 }
 
-/// Checks that every replicate that is known to be walked has a network: a network with a distribution of
-/// connectivity is searched for at random, and the search of another replicate may fail. Errors: a replicate
-/// without a network; a stop.
+/// Checks that every replicate that will be walked for certain has a network. A network with a distribution
+/// of connectivity is searched for at random, and the search may fail for single replicates. Errors: a
+/// replicate without a network; a stop.
 pub fn have_networks(case: &Case, callbacks: &Callbacks) -> Result<(), RunError> {
     if !matches!(case.scene.network.source(), NetworkSource::Connected(..)) {
         return Ok(());
@@ -260,7 +259,7 @@ impl RunContext<'_> {
         let mut walk = Walk::with_exits(network, &supply, &state, exits);
         let (mut last, mut failed) = (Instant::now(), None);
         let mut wanted = case.scene.record.wanted();
-        // One replicate is picture enough.
+        // Voids are recorded for one replicate only.
         wanted.voids = wanted.voids.filter(|_| run_id.replicate == 1);
         let walked = walk.run(&mut state, &mut |state| {
             if id.part == 0 {
@@ -285,7 +284,7 @@ impl RunContext<'_> {
         }
         walked?;
         let (end, flow, exits) = walk.end_with_exits(&state)?;
-        // The network outlives the supply of the run.
+        // The network is kept after the supply of the run is dropped.
         let network = match end {
             Cow::Borrowed(_) => Cow::Borrowed(&**network),
             Cow::Owned(directed) => Cow::Owned(directed),
@@ -337,8 +336,8 @@ impl RunContext<'_> {
     }
 }
 
-/// Constrictions that were blocked when the saved run began: those blocked now, less those that it blocked
-/// itself.
+/// Constrictions that were blocked when the saved run began: those blocked now without those that the run
+/// itself has blocked.
 fn blocked_at_start(network: &Network, saved: &Checkpoint) -> Result<BitVec, RunError> {
     let mut blocked = from_words(&saved.read("blocked")?, network.constrictions());
     for constriction in saved.read::<u32>("history_constriction")? {
@@ -349,8 +348,8 @@ fn blocked_at_start(network: &Network, saved: &Checkpoint) -> Result<BitVec, Run
     Ok(blocked)
 }
 
-/// Notes of walks against their verdict: for a base in this many increments through this many layers, with
-/// openings or without.
+/// Notes on behaviour of the walks that the verdict does not show; the base came in this many increments
+/// through this many layers, with openings or without.
 pub(super) fn said_by_walks<'a>(
     verdict: Verdict,
     walked: impl IntoIterator<Item = &'a ReplicateResult, IntoIter: Clone>,
@@ -372,8 +371,8 @@ pub(super) fn said_by_walks<'a>(
     walks::notes(verdict, &Walked { replicates, clogged, base, share, layers, openings })
 }
 
-/// Number of runs that are walked for a case: its own, and those of the ends of its curve's range and of its
-/// studies, as far as it is known before.
+/// Number of runs walked for a case: its own, those of the ends of its curve's range, and those of its
+/// studies, as far as known before the walk.
 pub fn runs_to_walk(case: &Case) -> u64 {
     let first = first_replicates(case);
     let of_ends = replicates_of_end(first) * case.filter.curve_ends.len() as u64;
@@ -381,28 +380,28 @@ pub fn runs_to_walk(case: &Case) -> u64 {
     case.scene.walk.runs * (first + of_ends + points * replicates_at_least(case))
 }
 
-/// Replicates of a case as far as it is known before it is walked.
+/// Replicates of a case, as far as known before it is walked.
 pub(super) fn first_replicates(case: &Case) -> u64 {
     let (rule, replicates) = (&case.scene.stop, case.scene.walk.replicates);
     if rule.is_set() { rule.replicates_at(replicates, 1) } else { replicates }
 }
 
-/// Least number of replicates of an end of the curve's range, for this many of the case.
+/// Minimum number of replicates of an end of the curve's range, for this many of the case.
 pub(super) fn replicates_of_end(of_case: u64) -> u64 {
     if of_case >= FEWEST_OF_RANGE as u64 { 1 } else { of_case }
 }
 
-/// Replicates of each point that are walked at the least, as far as it is known before the case is walked.
+/// Minimum number of replicates of each point, as far as known before the case is walked.
 pub(super) fn replicates_at_least(case: &Case) -> u64 {
     let most = case.scene.record.sensitivity_replicates;
     if first_replicates(case) >= FEWEST_OWN as u64 { most.min(1) } else { most }
 }
 
-/// Scatter of replicates over their mean before any walk: the value of the built-in scene.
+/// Assumed relative scatter of replicates before any walk: the value of the built-in scene.
 const LIKELY_SCATTER: f64 = 0.05;
 
-/// Replicates of a point that are likely to be walked, given the eroded mass of each run in a replicate of
-/// the case and in one of the point; all of them if it is not known.
+/// Number of replicates of a point that will probably be walked, given the eroded mass of each run in a
+/// replicate of the case and in one of the point; all of them if that is unknown.
 pub(super) fn likely_replicates(case: &Case, eroded: Option<(&[f64], &[f64])>) -> u64 {
     let most = case.scene.record.sensitivity_replicates;
     let Some((of_case, point)) = eroded else { return most };
@@ -422,7 +421,7 @@ pub(super) fn likely_replicates(case: &Case, eroded: Option<(&[f64], &[f64])>) -
     looks.into_iter().find(is_clear).map_or(most, |look| look.min(most))
 }
 
-/// The verdict that the replicates support together, and their statistics by run.
+/// Verdict that all replicates together support, and their statistics by run.
 pub(super) fn summarise(walked: &[ReplicateResult]) -> (Verdict, Vec<RunSummary>) {
     let runs = walked.first().map_or(0, |w| w.replicate.runs.len());
     let summaries: Vec<RunSummary> = (0..runs).map(|run| run_summary(walked, run)).collect();
@@ -434,7 +433,7 @@ pub(super) fn summarise(walked: &[ReplicateResult]) -> (Verdict, Vec<RunSummary>
     (classify(below(0), below(1)), summaries)
 }
 
-/// Class and statistics of the replicates, as a point of a study holds them.
+/// Class and statistics of the replicates, in the form that a point of a study holds.
 pub(super) fn classed(walked: &[ReplicateResult]) -> Classed {
     let (verdict, summaries) = summarise(walked);
     let runs = summaries.iter().map(|run| run.eroded_mass_fraction).collect();
@@ -464,7 +463,7 @@ mod tests {
     use super::*;
     use crate::run::case_of;
 
-    /// The figures and rows of a replicate, times apart.
+    /// Figures and rows of a replicate, without times.
     fn walked(case: &Case, networks: Option<&SharedNetworks>) -> String {
         let context = ReplicateContext { callbacks: &Callbacks::default(), checkpoints: None, networks };
         let mut walked = walk_replicate(case, 0, 1, case.supply.n_base, &context).unwrap();
@@ -473,8 +472,8 @@ mod tests {
         format!("{:?} {:?}", walked.replicate, walked.recorded)
     }
 
-    /// Without kept exits, with those that the case has just worked out, and with those that another case
-    /// left: to the bit.
+    /// Gives the same bits without kept exits, with exits that the case has just computed, and with those of
+    /// another case.
     #[test]
     fn a_replicate_is_the_same_whichever_case_has_left_its_network() {
         let small = ["network.nx=6", "network.ny=6", "network.nz=8"];

@@ -21,8 +21,8 @@ use voidwalk_core::walk::Shortcut;
 use voidwalk_practice::rules::{BaseSoil, RuleInputs};
 use voidwalk_practice::{Decision, IfDispersive, Note, dispersion, ordered, rules};
 
-/// The outcome of a walked case with these earlier notes, and the decision of practice on its pair; with its
-/// studies, left empty if they follow later.
+/// Outcome of a walked case with these earlier notes, and the decision of practice on its pair. `studies` is
+/// empty if they follow later.
 pub fn outcome(
     case: &Case,
     noted: &[Note],
@@ -77,7 +77,7 @@ pub fn outcome(
     concluded_from_results(outcome, case, inputs)
 }
 
-/// Completes the outcome from its results: the decision of practice, notes, the digest.
+/// Completes the outcome from its results: the decision of practice, notes, digest.
 fn concluded_from_results(mut outcome: Outcome, case: &Case, inputs: RuleInputs) -> (Outcome, Decision) {
     let range_of_tests_mm = rules::tested_range(&inputs);
     if case.scene.base.dispersive.is_none() {
@@ -86,7 +86,7 @@ fn concluded_from_results(mut outcome: Outcome, case: &Case, inputs: RuleInputs)
     let d15f_mm = Some(outcome.inputs.filter.d15_mm);
     let mut decision = Decision::new(&outcome.rules, outcome.if_dispersive, d15f_mm);
     let mut notes: Vec<Note> = decision.notes().collect();
-    // Multiples of D0F are the sizes of a study, not of two soils.
+    // Multiples of D0F are sizes in a study, not in a pair of real soils.
     match case.is_scale_free() {
         true => decision.headline = None,
         false => outcome.practice = decision.record(range_of_tests_mm),
@@ -100,7 +100,7 @@ fn concluded_from_results(mut outcome: Outcome, case: &Case, inputs: RuleInputs)
     (outcome, decision)
 }
 
-/// Notes on the verdict from the walks, the case, the rule that stopped them and the range of its curve.
+/// Notes on the verdict, from the walks, the case, the stopping rule and the range of its curve.
 fn notes_before_results(case: &Case, noted: &[Note], walks: &CaseWalks) -> Vec<Note> {
     let CaseWalks { replicates: walked, range, verdict, low_level_percent, .. } = walks;
     let of_network = (case.network.layers, case.scene.leaves_openings());
@@ -115,7 +115,7 @@ fn notes_before_results(case: &Case, noted: &[Note], walks: &CaseWalks) -> Vec<N
     notes
 }
 
-/// Mass eroded (%) of each run, least and most, over the replicates and the range of the constriction curve.
+/// Minimum and maximum mass eroded (%) in each run, over the replicates and the range of the curve.
 fn eroded_percent(summary: &[RunSummary], range: Option<&CurveRange>) -> Vec<[f64; 2]> {
     let of_run = |(index, run): (usize, &RunSummary)| {
         let Statistic { mean, low, high, .. } = run.eroded_mass_fraction;
@@ -174,15 +174,15 @@ fn rule_inputs<'a>(case: &'a Case, walked: &[ReplicateResult]) -> RuleInputs<'a>
     }
 }
 
-/// Parts that the scene does not need, and that the first replicate's first run does not.
+/// Parts of the program that neither the scene nor the first run of the first replicate needs.
 pub(super) fn left_out(case: &Case, of_run: &[Shortcut]) -> Vec<LeftOut> {
     case.left_out().into_iter().chain(of_run.iter().copied().map(LeftOut::Walk)).collect()
 }
 
-/// The content of the files of a run, but for its voids.
+/// Content of the files of a run, except its voids.
 ///
 /// # Errors
-/// A record of its packing that cannot be read.
+/// The record of its packing cannot be read.
 pub fn files(
     case: &Case,
     (outcome, decision): (Outcome, Decision),
@@ -201,9 +201,9 @@ pub fn files(
 /// Writes the results of a run beside its scene: the CSV files, the outcome, the manifest.
 ///
 /// # Errors
-/// Errors of the folder; no file is half written.
+/// Errors of the folder; no file is left half written.
 pub fn write(folder: &Folder, case: &Case, run: &RunFiles) -> Result<(), RunError> {
-    // First, so that a folder is not taken for whole while its files are being replaced.
+    // They go first, so that a folder whose files are being replaced is not taken for finished.
     for name in ["manifest.json", "outcome.json"] {
         folder.remove(name)?;
     }
@@ -221,7 +221,7 @@ pub fn write(folder: &Folder, case: &Case, run: &RunFiles) -> Result<(), RunErro
     }
     files.add("outcome.json", &json(format::OUTCOME, &run.outcome)?)?;
     files.finish()?;
-    // Last, so that a folder with a manifest is whole.
+    // The manifest comes last: a folder that holds it is complete.
     folder.write("manifest.json", &json(format::MANIFEST, &run.manifest)?)?;
     Ok(())
 }
@@ -241,7 +241,7 @@ fn add_voids(files: &mut Together, case: &Case, recorded: &Recorded) -> Result<(
     Ok(files.add("retained_by_void.csv", &csv_of(&recorded.voids))?)
 }
 
-/// A file of JSON in its form.
+/// Contents of a JSON file in this format.
 pub fn json(format: Format, record: &impl Serialize) -> Result<Vec<u8>, RunError> {
     let text = format.json(record).map_err(|e| RunError::Format { file: format.file, source: e.into() })?;
     Ok(text.into_bytes())
@@ -287,7 +287,7 @@ mod tests {
         words::next(outcome, &outcome.decision(), SizeUnit::Mm)
     }
 
-    /// Practice has 0.7 mm for a silt, and 0.5 mm if it is dispersive.
+    /// The limit of practice for a silt is 0.7 mm, or 0.5 mm if it is dispersive.
     #[test]
     fn a_d15f_that_is_recommended_is_said_for_a_dispersive_base_too() {
         let coarse = walked(45.0, 1.2, &[]);
@@ -317,8 +317,8 @@ mod tests {
         assert!(!line(&kept).contains("dispersive"));
     }
 
-    /// With 38 % fines design allows 0.860 mm, more than the boundary of no erosion, and a dispersive base
-    /// less. D15B of a base whose finest sieve 38 % pass is finer than that: five times that sieve are
+    /// With 38 % fines the design limit is 0.860 mm, above the boundary of no erosion; it is lower for a
+    /// dispersive base. The finest sieve passes 38 %, so D15B is finer than it: five times that sieve is
     /// enough.
     #[test]
     fn the_next_step_goes_by_design_and_says_what_is_enough_to_drain() {
@@ -343,8 +343,8 @@ mod tests {
         }
     }
 
-    /// A clay with 51 % finer than 0.002 mm and a D85B of 0.01736 mm: 9 times it are 0.156 mm and 6.4 times
-    /// it 0.111 mm, and the limit of design has a floor of 0.2 mm.
+    /// A clay with 51 % finer than 0.002 mm and a D85B of 0.01736 mm: 9 D85B is 0.156 mm and 6.4 D85B 0.111
+    /// mm, and the design limit is at least 0.2 mm.
     #[test]
     fn the_next_step_goes_down_to_the_floor_of_the_limit_of_design() {
         const CLAY: &str = "0.002,51\n0.006,70\n0.012,79.79\n0.02,87\n0.063,95\n0.63,100\n";
@@ -354,7 +354,7 @@ mod tests {
         };
         assert_eq!(most(CLAY, 2.2, &["base.dispersive=false"]).as_deref(), Some("0.200"));
         assert_eq!(most(CLAY, 2.2, &["base.dispersive=true"]).as_deref(), Some("0.111"));
-        // Within the floor practice asks for nothing, and the model is undecided.
+        // Up to that minimum practice has no objection, and the model is undecided.
         let outcome_at = |d15f| walked_base(CLAY, d15f, &["base.dispersive=false"]);
         let fine = outcome_at(0.18);
         assert_ne!(fine.model.class, Verdict::None);
@@ -362,7 +362,7 @@ mod tests {
         assert_eq!(fine.headline, Some(Headline::Meets));
         let fine = outcome_at(0.08);
         assert_eq!(next_step(&fine), "take a coarser filter, D15F 0.100 to 0.200\u{202f}mm");
-        // A fat clay: D85B 0.005 mm, and continuing erosion from 9 D95B, 0.072 mm, on: no design goes beyond.
+        // A fat clay: D85B 0.005 mm; continuing erosion from 9 D95B = 0.072 mm, so no design goes beyond.
         const FAT: &str = "0.001,60\n0.005,85\n0.008,95\n0.02,100\n";
         for d15f in [0.18, 1.8] {
             let outcome = walked_base(FAT, d15f, &["base.dispersive=false"]);

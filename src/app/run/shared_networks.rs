@@ -1,8 +1,8 @@
-//! Networks that several cases of a campaign walk, built once.
+//! Networks that several cases of a campaign share, built once.
 //!
-//! Cases with one seed draw their networks from the same random numbers; if all inputs of a network agree, it
-//! is the same network, and one copy is enough. Each case would build the same bits for itself. The exits
-//! with which first runs begin are kept with a network, as far as there is room.
+//! Cases with the same seed draw their networks from the same random numbers. If all inputs of a network
+//! agree, each case would build the same bits, and one copy is enough. The exits with which first runs begin
+//! are kept with a network, as far as there is room.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, OnceLock};
@@ -11,32 +11,32 @@ use crate::case::Case;
 use voidwalk_core::network::{Network, NetworkError};
 use voidwalk_core::walk::PlainExits;
 
-/// Largest memory of the networks that are kept (bytes), and the largest fraction, as a divisor, of the
-/// memory for walks.
+/// Maximum memory of the kept networks (bytes), and their maximum fraction of the memory for walks, as a
+/// divisor.
 const MOST_BYTES: u64 = 1 << 27;
 const PART: u64 = 16;
 
-/// Exits that draws pick on a network without blocked constrictions, once a case has computed them.
+/// Exits drawn on a network without blocked constrictions, once a case has computed them.
 type KeptExits = Arc<OnceLock<PlainExits>>;
 
-/// A network to walk, and its exits if they are kept.
+/// Network to walk, and its exits if they are kept.
 pub struct NetworkToWalk {
     pub network: Arc<Network>,
     exits: Option<KeptExits>,
 }
 
 impl NetworkToWalk {
-    /// A network that is not kept.
+    /// Network that is not shared.
     pub fn own(network: Network) -> Self {
         Self { network: Arc::new(network), exits: None }
     }
 
-    /// The exits with which the first run of a case begins: computed by the first case that asks. `None` if
-    /// they are not kept, or if the case begins with others.
+    /// Exits with which the first run of a case begins, computed by the first case that asks for them. `None`
+    /// if they are not kept, or if the case begins with other exits.
     pub fn exits(&self, case: &Case) -> Option<&PlainExits> {
         let kept = self.exits.as_ref().filter(|_| case.begins_with_plain_exits())?;
         if kept.get().is_none() {
-            // No case waits here: two that compute them find the same bits.
+            // No case waits here: two cases that compute the exits get the same bits.
             let _ = kept.set(PlainExits::unblocked(&self.network));
         }
         kept.get()
@@ -47,7 +47,7 @@ struct KeptNetwork {
     key: u128,
     network: Arc<Network>,
     exits: Option<KeptExits>,
-    /// Bytes of the network and of its exits.
+    /// Memory of the network and of its exits (bytes).
     bytes: [u64; 2],
 }
 
@@ -58,25 +58,25 @@ impl KeptNetwork {
     }
 }
 
-/// Networks by the key of their inputs.
+/// Networks, each under the key of its inputs.
 pub struct SharedNetworks {
     kept: Mutex<VecDeque<KeptNetwork>>,
     most_bytes: u64,
 }
 
 impl SharedNetworks {
-    /// Bytes of the networks that are kept, if walks and networks together may take this much memory (bytes).
+    /// Memory for kept networks if walks and networks together may take this much (bytes).
     pub fn bytes(memory: u64) -> u64 {
         MOST_BYTES.min(memory / PART)
     }
 
-    /// Creates an empty store of at most this many bytes. Exits are dropped before networks, and the oldest
-    /// entries first.
+    /// Creates an empty store of at most this many bytes. Exits are dropped before networks, the oldest
+    /// first.
     pub fn new(most_bytes: u64) -> Self {
         Self { kept: Mutex::default(), most_bytes }
     }
 
-    /// The network of the replicate of a case with this seed, as [`Case::network`] builds it.
+    /// Network of the replicate of a case with this seed, as built by [`Case::network`].
     pub fn get(&self, case: &Case, seed: u64) -> Result<NetworkToWalk, NetworkError> {
         let Some(key) = case.network_key(seed) else {
             return Ok(NetworkToWalk::own(case.network(seed)?));
@@ -84,7 +84,7 @@ impl SharedNetworks {
         if let Some(network) = self.find(key) {
             return Ok(network);
         }
-        // Others are found meanwhile; two that build the same one build the same bits.
+        // Others may look up networks meanwhile; two threads that build the same network build the same bits.
         let network = Arc::new(case.network(seed)?);
         let bytes = case.shared_network_bytes();
         let exits = (bytes[1] > 0).then(KeptExits::default);
@@ -151,7 +151,7 @@ mod tests {
         assert!(!Arc::ptr_eq(&network, &shared.get(&case_itself, 6).unwrap().network));
     }
 
-    /// Exits are computed only if first runs begin with them, whichever case the network was built for.
+    /// Exits are computed only if first runs begin with them, whichever case built the network.
     #[test]
     fn exits_stay_with_the_networks_whose_walks_take_them() {
         let shared = SharedNetworks::new(MOST_BYTES);
@@ -194,7 +194,7 @@ mod tests {
         assert_eq!(kept(7 * network, 7).0, "-------");
         let (shown, keys) = kept(7 * network, 9);
         assert_eq!((shown.as_str(), keys[0]), ("-------", case.network_key(2).unwrap()));
-        // Keeps nothing if nothing fits, and computes no exits without need.
+        // If nothing fits, it keeps nothing and computes no exits.
         assert_eq!(kept(network - 1, 2).0, "");
         let none = SharedNetworks::new(0).get(&case, 1).unwrap();
         assert!(none.exits(&case).is_none());

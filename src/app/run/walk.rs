@@ -25,23 +25,23 @@ use voidwalk_practice::quantity::SizeUnit;
 use voidwalk_practice::{Decision, Note, ordered};
 use voidwalk_sheets::file_and_soil;
 
-/// Options of walking a scene; no setting changes a result. [`walk_scene`] has an example.
+/// Options of walking a scene; no option changes a result. [`walk_scene`] has an example.
 #[derive(Clone, Debug, Default)]
 pub struct RunOptions {
-    /// Folder for the results; the first free of `voidwalk-run`, `voidwalk-run-2`, ... without one.
+    /// Folder for the results; by default the first free of `voidwalk-run`, `voidwalk-run-2`, ...
     pub out: Option<PathBuf>,
     /// True if the results of an earlier run in `out` are replaced.
     pub overwrite: bool,
     /// Threads, memory and the folder of packings.
     pub prepare: PrepareOptions,
-    /// Interval between saves of the walks, so that a run which is killed can be continued; by default the
-    /// interval of the run that is continued, else ten minutes.
+    /// Interval between saves of the walks, from which a killed run can be continued; by default the interval
+    /// of the continued run, else ten minutes.
     pub checkpoint_interval: Option<CheckpointInterval>,
-    /// Command in `manifest.json` that started the run.
+    /// Command that started the run, for `manifest.json`.
     pub command: String,
 }
 
-/// A run that is whole.
+/// Finished run.
 pub struct FinishedRun {
     /// Its folder.
     pub folder: PathBuf,
@@ -49,15 +49,15 @@ pub struct FinishedRun {
     pub outcome: Outcome,
     /// The decision of practice on its pair.
     pub decision: Decision,
-    /// The unit of sizes that its scene asks for (`about.units`).
+    /// Unit of sizes in its scene (`about.units`).
     pub unit: SizeUnit,
 }
 
 /// Walks a scene and writes its folder; continues from checkpoints of a stopped run of this very scene.
 ///
 /// # Errors
-/// A scene that is wrong, memory that does not suffice and a folder that cannot be claimed are refused before
-/// any work; then errors of the packing, the walk or the folder. After a stop, [`resume`] continues.
+/// A wrong scene, too little memory, or a folder that cannot be claimed is refused before any work; then
+/// errors of the packing, the walk or the folder. After a stop, [`resume`] continues.
 ///
 /// # Example
 /// ```
@@ -80,11 +80,11 @@ pub fn walk_scene(
     on_threads(options.prepare.threads, || walk_here(scene, options, false, callbacks))
 }
 
-/// Continues a run that was stopped or killed, with the same bits: its scene is the one that its folder
-/// holds, and [`RunOptions::out`] and [`RunOptions::overwrite`] are ignored.
+/// Continues a run that was stopped or killed, with the same bits. The scene is taken from its folder;
+/// [`RunOptions::out`] and [`RunOptions::overwrite`] are ignored.
 ///
 /// # Errors
-/// A folder that holds no run, or a finished one, is refused; then see [`walk_scene`].
+/// A folder without a run, or with a finished one, is refused; then see [`walk_scene`].
 ///
 /// # Example
 /// A walk is stopped after its first run, and continued.
@@ -123,11 +123,11 @@ pub fn resume(folder: &Path, options: &RunOptions, callbacks: &Callbacks) -> Res
     on_threads(options.prepare.threads, || walk_here(scene, &options, true, callbacks))
 }
 
-/// Walks a case in memory and writes nothing, on the threads of the pool that it is called in, else on one
-/// per core.
+/// Walks a case in memory and writes nothing. Uses the thread pool that it is called in, else one thread per
+/// core.
 ///
 /// # Errors
-/// A walk that goes wrong, or that was stopped.
+/// A walk that fails or was stopped.
 pub fn walk_case(case: &Case, callbacks: &Callbacks) -> Result<Outcome, RunError> {
     Ok(walk_case_recorded(case, callbacks)?.0)
 }
@@ -208,7 +208,7 @@ fn walk_here(
     Ok(FinishedRun { folder: folder.path().to_owned(), outcome, decision, unit })
 }
 
-/// Claims the folder of a run of a scene of these files, none of which may be removed with the old results.
+/// Claims the folder of a run; `files` of its scene must not be removed with the old results.
 fn claim_for(options: &RunOptions, files: &[PathBuf]) -> Result<Folder, RunError> {
     let Some(path) = &options.out else { return claim_first_free("voidwalk-run") };
     let folder = claim(path, FolderKind::Run, options.overwrite)?;
@@ -221,7 +221,7 @@ fn claim_for(options: &RunOptions, files: &[PathBuf]) -> Result<Folder, RunError
 /// Clears the folder of a run that starts again.
 fn clear_for(folder: &Folder, files: &[PathBuf], resumed: bool) -> Result<(), RunError> {
     if resumed {
-        // Its own scene and files are all that there is of it.
+        // Nothing else exists of its scene and input files.
         clear_but_scene(folder)?;
     } else {
         outlive_clear(folder, FolderKind::Run, files)?;
@@ -230,7 +230,7 @@ fn clear_for(folder: &Folder, files: &[PathBuf], resumed: bool) -> Result<(), Ru
     Ok(checkpoints::discard(folder.path())?)
 }
 
-/// The files of a scene, including the scene's own file if it has one.
+/// Files of a scene, including the scene's own file if it has one.
 fn files_of(scene: &Scene) -> Vec<PathBuf> {
     let curve = |source: &Option<CurveSource>| match source {
         Some(CurveSource::File(path)) => Some(path.clone()),
@@ -239,14 +239,14 @@ fn files_of(scene: &Scene) -> Vec<PathBuf> {
     let (filter, base, network) = (&scene.filter, &scene.base, &scene.network);
     let tables = [&filter.sieve, &filter.measured, &base.sieve, &network.file, &network.packing];
     let named = tables.into_iter().cloned().chain([curve(&filter.curve), curve(&base.dc_curve)]).flatten();
-    // A soil of a workbook is no part of its path.
+    // The name of a soil in a workbook is not part of the path.
     std::iter::once(scene.name.clone().into()).chain(named.map(|path| file_and_soil(&path).0)).collect()
 }
 
-/// Refuses a run to be continued that is no longer the one that was begun.
+/// Refuses to continue a run that is no longer the one that was begun.
 fn unchanged(folder: &Folder, fingerprint: &str) -> Result<(), RunError> {
     match Unfinished::read(folder)? {
-        // A corrupt mark tells nothing.
+        // A corrupt mark gives no information.
         Some(begun) if !begun.work.is_empty() && begun.work != fingerprint => {
             let problem = "scene.toml or a file in inputs is not what this run was begun with, or another \
                            version of voidwalk began it; put it back, or walk the scene anew into another \
@@ -257,8 +257,8 @@ fn unchanged(folder: &Folder, fingerprint: &str) -> Result<(), RunError> {
     }
 }
 
-/// Mark of an earlier start of this very run in its folder; `None` if there was no start, or if its results
-/// are replaced and the folder is cleared.
+/// Mark of an earlier start of this very run in its folder; `None` without such a start, or if its results
+/// are to be replaced.
 fn begun(folder: &Folder, fingerprint: &str, overwrite: bool) -> Result<Option<Unfinished>, RunError> {
     if overwrite {
         return Ok(None);
@@ -266,8 +266,8 @@ fn begun(folder: &Folder, fingerprint: &str, overwrite: bool) -> Result<Option<U
     let begun = Unfinished::read(folder)?.filter(|begun| begun.work == fingerprint);
     match Checkpoints::scene_in(folder.path()).map_err(RunError::Checkpoint)? {
         Some(scene) if scene == fingerprint => Ok(Some(begun.unwrap_or_default())),
-        // Without a scene the checkpoints remain from a run that was to be replaced: nothing continues from
-        // them.
+        // Checkpoints without a scene are left over from a run that was to be replaced; they are not
+        // continued.
         Some(_) if folder.has("scene.toml") => Err(refused(
             folder.path(),
             "holds checkpoints of another scene, or of another version of voidwalk; continue with that one \
@@ -277,7 +277,7 @@ fn begun(folder: &Folder, fingerprint: &str, overwrite: bool) -> Result<Option<U
     }
 }
 
-/// The outcome of a run that was killed when all but its page was written.
+/// Outcome of a run that was killed when only its page was missing.
 fn without_page(folder: &Folder, case: &Case) -> Result<Option<Outcome>, RunError> {
     if !folder.has("scene.toml") || !folder.has("manifest.json") {
         return Ok(None);
@@ -287,7 +287,7 @@ fn without_page(folder: &Folder, case: &Case) -> Result<Option<Outcome>, RunErro
     Ok(outcome.filter(|o| Studies::are_whole(case, &o.sensitivity, &o.thickness)))
 }
 
-/// A case that is walked into a folder.
+/// Case that is walked into a folder.
 struct CaseRun<'a> {
     case: &'a Case,
     notes: &'a [Note],
@@ -298,8 +298,8 @@ struct CaseRun<'a> {
 }
 
 impl CaseRun<'_> {
-    /// Walks the replicates and the other walks that decide the verdict, writes their results, then adds the
-    /// studies and writes the whole.
+    /// Walks everything that decides the verdict, writes these results, then adds the studies and writes
+    /// everything.
     fn walk(
         &self,
         write: impl Fn(&(Outcome, Decision), &[ReplicateResult]) -> Result<(), RunError>,
@@ -313,14 +313,14 @@ impl CaseRun<'_> {
             results::outcome(self.case, self.notes, &walks, studies, begun.elapsed().as_secs_f64())
         };
         for problem in self.checkpoints.passed_over() {
-            (self.callbacks.warn)(&format!("{problem}; the checkpoint before it was taken"));
+            (self.callbacks.warn)(&format!("{problem}; the checkpoint before it was used"));
         }
         let mut first = answer(Studies::default());
         if Studies::are_none(self.case) {
             write(&first, &walks.replicates)?;
             return Ok(first);
         }
-        // A folder with results counts as finished unless it holds checkpoints, and the studies are to come.
+        // Without checkpoints, a folder with results would count as finished before its studies.
         self.checkpoints.flush()?;
         first.0.studies_to_come = true;
         write(&first, &walks.replicates)?;
@@ -332,8 +332,7 @@ impl CaseRun<'_> {
         Ok(whole)
     }
 
-    /// Saves finished work that is not on the disk yet, for any end of the walk, and explains how to
-    /// continue.
+    /// Saves finished work that is not on disk yet, however the walk ended, and explains how to continue.
     fn ended(&self, error: RunError) -> RunError {
         let flushed = self.checkpoints.flush();
         match (error.exit(), flushed) {

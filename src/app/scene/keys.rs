@@ -1,5 +1,5 @@
-//! The settings of a scene, section by section: each declared once, with its meaning and its allowed values;
-//! and which of them exclude each other.
+//! Settings of a scene by section, each declared once with its meaning and allowed values, and the
+//! settings that exclude each other.
 
 use super::values::{
     CurveSource, Density, LibraryDensity, NetworkMadeOf, Regrade, SheetUnits, VoidConnectivity,
@@ -34,7 +34,7 @@ section! {
         pub runs: u64 = 2, set, whole(1..=2);
         /// Number of replicates, each with a new network; their scatter is the uncertainty of the verdict.
         pub replicates: u64 = 10, set, whole(1..=100_000);
-        /// Share of the base inserted in each increment (paper: 1 %).
+        /// Fraction of the base inserted in each increment (paper: 1 %).
         pub inject_share: f64 = 0.01, set, only(
             "one part of a whole number of equal parts, from 0.000001 to 1, as 0.01 or 0.02",
             |share| is_whole_part(*share),
@@ -45,7 +45,7 @@ section! {
     }
 }
 
-/// True if a share goes into 1 a whole number of times, within a thousandth.
+/// True if 1 is a whole multiple of the fraction, within a thousandth.
 fn is_whole_part(share: f64) -> bool {
     let parts = 1.0 / share;
     (1e-6..=1.0).contains(&share) && (parts - parts.round()).abs() < 1e-3 * parts
@@ -65,11 +65,11 @@ section! {
                 .offering(&Density::ALL.map(Density::name));
         /// Instead of a density: friction between grains during compression.
         pub friction: Option<f64> = None, off "0.3", within(0.0..=10.0, "a number from 0 to 10");
-        /// Written by a run whose filter was packed: its measured constriction curve.
+        /// Measured constriction curve of a packed filter, written by its run.
         pub measured: Option<PathBuf> = None, off "\"inputs/filter-curve.csv\"", any("a file name in quotes");
-        /// Instead of a density: constrictions from the library of packings, which takes no time. Where the
-        /// density is unknown, the filter is taken as loose, and walked as dense besides. A gradation like
-        /// none of the library has its constrictions guessed.
+        /// Instead of a density: constrictions from the library of packings, which takes no time. If the
+        /// density is unknown, the filter is taken as loose, and also walked as dense. Constrictions are
+        /// guessed if no gradation of the library is similar.
         pub library: Option<LibraryDensity> = None, off "\"unknown\"",
             any("\"dense\", \"medium\" or \"intermediate\", \"loose\", or \"unknown\"")
                 .offering(&LibraryDensity::ALL.map(LibraryDensity::name));
@@ -96,7 +96,7 @@ section! {
 }
 
 section! {
-    /// How the filter is packed, with filter.density or filter.friction.
+    /// Packing of the filter, with filter.density or filter.friction.
     pub struct FilterPacking in "packing" {
         /// Number of grains. Default: enough for a cell 5.4 times as wide as the largest grain, 9,000 to
         /// 60,000.
@@ -113,12 +113,12 @@ section! {
 }
 
 section! {
-    /// The base soil: its gradation by mass, and how much of it.
+    /// The base soil: its gradation by mass, and its amount.
     pub struct Base in "base" {
         /// Cu of a gradation that is linear on semi-log paper. One of d85_at_dc, d85_mm and d15f_over_d85b
         /// sets its size.
         pub cu: Option<f64> = None, set "1.5", within(1.0..=1000.0, "a number from 1 to 1000");
-        /// D85B equals the size that this percent of the filter's constrictions is smaller than.
+        /// Percent of the filter's constrictions that are smaller than D85B.
         pub d85_at_dc: Option<f64> = None, set "5", within(0.0..=100.0, "a percentage from 0 to 100");
         /// Constriction curve for d85_at_dc. Default: the filter's own.
         pub dc_curve: Option<CurveSource> = None, off "\"cu3-loose\"", any("a shipped curve or a file name, \
@@ -137,7 +137,7 @@ section! {
         /// (`voidwalk judge`, `boundary`, `serve`) without --as-sampled.
         pub regrade: Option<Regrade> = None, off "\"practice\"",
             any("\"practice\" or \"no\"").offering(&["practice", "no"]);
-        /// Whether the base is a dispersive clay or silt. The rules of practice take stricter limits. The
+        /// True if the base is a dispersive clay or silt. The rules of practice take stricter limits. The
         /// walk ignores dispersion, so the verdict is in doubt.
         pub dispersive: Option<bool> = None, off "true", any("true or false").offering(&["true", "false"]);
         /// Instead of a gradation: one size (mm).
@@ -153,18 +153,18 @@ section! {
 }
 
 section! {
-    /// How particles choose their way.
+    /// Choice of exits by particles.
     pub struct ExitKeys in "walk" {
         /// How a particle chooses among the open exits of its void: in proportion to "area" (the paper's, on
         /// a directed network), to the "flux" of water, to area among the exits with outflow
         /// ("area-along-flow"), or to area among exits to voids further along ("height"). Default: "area" on
         /// a lattice, "flux" on a graph and on an .npz of arrays.
         pub exit: Option<ExitRule> = None, off "\"flux\"", words(&ExitRule::ALL.map(ExitRule::name));
-        /// Part of its conductance that a blocked constriction keeps, with water.
-        pub rho: Option<f64> = None, off "0.0", within(0.0..=1.0, "a part from 0 to 1");
-        /// Water is solved again once the constrictions that have closed since carried this part of it,
-        /// summed over the filter: so many on the mean way of a particle. 0: as soon as any has closed.
-        /// Default: 0.03.
+        /// Fraction of its conductance that a blocked constriction keeps, with water.
+        pub rho: Option<f64> = None, off "0.0", within(0.0..=1.0, "a fraction from 0 to 1");
+        /// The flow is solved again once the constrictions closed since the last solution carried this
+        /// fraction of the inflow, summed over the filter: their mean number on a particle's way. 0: after
+        /// every closure. Default: 0.03.
         pub flow_tolerance: Option<f64> = None, off "0.03", within(0.0..=10.0, "a number from 0 to 10");
         /// On a lattice, conductance is proportional to this power of the diameter. Default: 4.
         pub conductance_exponent: Option<f64> = None, off "4.0", within(0.0..=10.0, "a number from 0 to 10");
@@ -177,16 +177,16 @@ section! {
         /// it.
         pub concentration: Option<f64> = None, off "0.02",
             only(concentrations(), |part| *part > 0.0 && *part <= DENSEST);
-        /// What a blocked constriction is to those that follow: "closed", or "open" beside the particle that
-        /// blocks it, for finer particles and water. Default: "closed". Openings need every particle walked
-        /// one by one, so that fine bases take longer.
+        /// State of a blocked constriction for later particles: "closed", or "open" beside the particle
+        /// that blocks it, for finer particles and water. Default: "closed". Openings require every
+        /// particle to be walked one by one, so fine bases take longer.
         pub blocked: Option<BlockedAs> = None, off "\"open\"", words(&BlockedAs::ALL.map(BlockedAs::name));
     }
 }
 
 section! {
-    /// The network: a directed cubic lattice, z being the direction of flow, one from a file, or the voids of
-    /// a packing themselves.
+    /// The network: a directed cubic lattice with flow along z, a network from a file, or the voids of a
+    /// packing.
     pub struct NetworkKeys in "network" {
         /// "lattice", or "graph": the voids of the filter's own packing and the constrictions between them.
         pub kind: Option<NetworkMadeOf> = None, off "\"graph\"",
@@ -208,11 +208,11 @@ section! {
         pub thickness_mm: Option<f64> = None, off "500.0", length();
         /// Thickness of the filter in multiples of D50F by mass.
         pub thickness_d50f: Option<f64> = None, off "75.0", above_zero();
-        /// Voids across.
+        /// Voids across, along x.
         pub nx: Option<u64> = None, set "40", whole(1..=u64::from(u32::MAX));
-        /// Voids across, the other way.
+        /// Voids across, along y.
         pub ny: Option<u64> = None, set "40", whole(1..=u64::from(u32::MAX));
-        /// Voids along the flow: layers.
+        /// Voids along the flow, along z: layers.
         pub nz: Option<u64> = None, set "60", whole(1..=u64::from(u32::MAX));
         /// Connectivity of the voids: as in Table 3 of the paper ("table3", 4 to 8 entrances and exits), or
         /// percent of the voids by connectivity, as { 5 = 25, 6 = 50, 7 = 25 }. Diagonals are added and
@@ -229,9 +229,9 @@ section! {
 }
 
 section! {
-    /// What to record of the walks.
+    /// Data to record of the walks.
     pub struct Record in "record" {
-        /// Record the sums every so many increments; 0 records the last only.
+        /// Interval of the recorded sums, in increments; 0 records only the last.
         pub series_every: u64 = 1, set, whole(0..=u64::MAX);
         /// Increments whose retained and eroded size curves are recorded, besides the last.
         pub size_curves: Vec<u64> = vec![1, 10, 50, 100], set,
@@ -254,7 +254,7 @@ section! {
         /// this study. Default: half and twice, if `sensitivity` is walked.
         pub thickness: Option<Vec<f64>> = None, off "[0.5, 2.0]",
             only("a list of numbers above 0", |list: &Vec<f64>| list.iter().all(|factor| *factor > 0.0));
-        /// Most replicates of each point of both studies; a clear point stops after one or two.
+        /// Maximum number of replicates of each point of both studies; a clear point stops after one or two.
         pub sensitivity_replicates: u64 = 3, set, whole(1..=1000);
     }
 }
@@ -266,17 +266,17 @@ section! {
         pub project: Option<String> = None, off "\"Main dam, zone 2B\"", line();
         /// The number of the project.
         pub number: Option<String> = None, off "\"D-2031\"", line();
-        /// What the sheet is for.
+        /// Purpose of the sheet.
         pub purpose: Option<String> = None, off "\"Design of the chimney filter\"", line();
         /// The client.
         pub client: Option<String> = None, off "\"Water Board\"", line();
         /// The author.
         pub author: Option<String> = None, off "\"N. N.\"", line();
-        /// Who checked it.
+        /// Name of the checker.
         pub checker: Option<String> = None, off "\"M. M.\"", line();
         /// The revision of the sheet.
         pub revision: Option<String> = None, off "\"A, issued for review\"", line();
-        /// The date on the sheet; that of the run otherwise.
+        /// Date on the sheet. Default: the day of the run.
         pub date: Option<String> = None, off "\"2026-11-25\"", line();
         /// Coarse sizes on the left of the figure of the gradations, as in the United States.
         pub coarse_left: Option<bool> = None, off "true", any("true or false").offering(&["true", "false"]);
@@ -286,30 +286,30 @@ section! {
     }
 }
 
-/// Largest number of increments after which the contents of each void are kept.
+/// Maximum number of increments after which the contents of each void are recorded.
 const MOST_MOMENTS: usize = 100;
 
-/// The names of the shipped curves.
+/// Names of the shipped curves.
 fn shipped_names() -> Vec<&'static str> {
     shipped().iter().map(|filter| filter.name.as_str()).collect()
 }
 
-/// Characters of a line.
+/// Maximum characters of a line.
 const LINE: usize = 120;
 
-/// Texts that fit into one line of a page.
+/// Text that fits into one line of a page.
 fn line() -> Allowed<String> {
     let fits =
         |text: &String| (1..=LINE).contains(&text.trim().chars().count()) && !text.chars().any(is_hidden);
     only(format!("a text in quotes, one line of at most {LINE} characters that are seen"), fits)
 }
 
-/// The concentrations that a scene may state, in words.
+/// Concentrations that a scene may state, in words.
 pub(super) fn concentrations() -> String {
     format!("a number above 0 and up to {DENSEST}")
 }
 
-/// Settings of the sheet that are one of a few words, or of the figure: they are not on the cover.
+/// Settings of the sheet that are not texts on the cover.
 const NO_COVER: [&str; 2] = ["coarse_left", "units"];
 
 impl About {
@@ -318,19 +318,19 @@ impl About {
         self.units == Some(SheetUnits::Us)
     }
 
-    /// The full names of the settings of the cover, which are texts.
+    /// Full names of the settings of the cover that are texts.
     pub fn texts() -> Vec<String> {
         let of_cover = Self::keys().into_iter().filter(|key| !NO_COVER.contains(&key.name));
         of_cover.map(|key| key.full_name()).collect()
     }
 
-    /// The page of a run, whose sizes may be multiples of D0F.
+    /// Page of a run, whose sizes may be multiples of D0F.
     pub fn page(&self, scale_free: bool) -> AboutPage {
         let unit = SizeUnit::of(scale_free, self.shows_inches());
         AboutPage { cover: self.cover(), coarse_left: self.coarse_left == Some(true), unit }
     }
 
-    /// The cover of the sheet; it has no date if the scene states no date.
+    /// Cover of the sheet, without a date if the scene states none.
     pub fn cover(&self) -> SheetCover {
         SheetCover {
             project: self.project.clone(),
@@ -345,18 +345,18 @@ impl About {
     }
 }
 
-/// The section `packing`: settings of the measured packing, and of the compression of its grains.
+/// Section `packing`: settings of the measured packing, and of the compression of its grains.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PackingKeys {
-    /// Grains and voids.
+    /// Settings of grains and voids.
     #[serde(flatten)]
     pub filter: FilterPacking,
-    /// The compression; friction and number of grains are not set here.
+    /// Settings of the compression; friction and number of grains are not set here.
     #[serde(flatten)]
     pub compression: packing::Settings,
 }
 
-/// The section `packing`, if density or friction asks for a packing.
+/// Section `packing`, if density or friction requires a packing.
 pub(super) fn packing_keys(s: &GivenSettings) -> Result<Option<PackingKeys>, SceneError> {
     let stated = s.has("filter.density") || s.has("filter.friction");
     match s.first_in("packing.") {
@@ -391,7 +391,7 @@ pub(super) const GROUPS: &[Group] = &[
             Alternative::by(&["filter.estimate"]),
         ],
     },
-    // A network from a file brings its constrictions along; a curve may still define D85B.
+    // A network from a file contains its constrictions; a curve may still define D85B.
     Group {
         says: "say what the filter's constrictions are",
         alternatives: &[

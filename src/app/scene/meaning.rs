@@ -1,4 +1,4 @@
-//! Combined meaning of the settings of a scene: settings that exclude each other become one enum.
+//! Combined meaning of the settings of a scene: settings that exclude each other form one enum.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use crate::outcome::Wanted;
 use voidwalk_core::network::Connectivity;
 use voidwalk_core::packing;
 
-/// The filter's gradation by mass.
+/// Gradation of the filter by mass.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FilterGradation {
     /// Linear on semi-log paper from `d0_mm`; without `cu`, the value of the shipped curve.
@@ -19,32 +19,32 @@ pub enum FilterGradation {
         /// D60 / D10.
         cu: Option<f64>,
     },
-    /// A sieve table, and the end of its open tail (mm).
+    /// Sieve table, and the lower end of its open tail (mm).
     Sieve(PathBuf, Option<f64>),
 }
 
-/// The base's gradation by mass.
+/// Gradation of the base by mass.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BaseGradation {
     /// Linear on semi-log paper with a given D85B.
     Linear {
         /// D60 / D10.
         cu: f64,
-        /// The setting that defines D85B.
+        /// Setting that defines D85B.
         d85: D85,
     },
-    /// A sieve table, and the end of its open tail (mm).
+    /// Sieve table, and the lower end of its open tail (mm).
     Sieve(PathBuf, Option<f64>),
     /// One size (mm).
     Single(f64),
 }
 
-/// The setting that defines D85B.
+/// Setting that defines D85B.
 #[derive(Clone, Debug, PartialEq)]
 pub enum D85 {
-    /// A length (mm).
+    /// Size (mm).
     Mm(f64),
-    /// Dc at this percent of the filter's constriction curve, or of another one.
+    /// Constriction size at this percent of the filter's curve, or of another one.
     AtDc(f64, Option<CurveSource>),
     /// D15F over this ratio.
     Ratio(f64),
@@ -55,20 +55,20 @@ pub enum D85 {
 pub enum Amount {
     /// Mass of base over mass of filter, Eq. (2), and a cap.
     MassRatio(f64, Option<u64>),
-    /// The number itself.
+    /// Fixed number.
     Number(u64),
 }
 
 /// Source of a scene's network.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NetworkSource {
-    /// The directed cubic lattice with this many voids along x, y, z.
+    /// Directed cubic lattice with this many voids along x, y, z.
     Cubic([u32; 3]),
-    /// The lattice changed until its voids have this distribution of connectivity.
+    /// Lattice changed until its voids have this distribution of connectivity.
     Connected([u32; 3], Connectivity),
     /// A CSV file.
     File(PathBuf),
-    /// The voids of a packing: of the filter that was packed, or of a file of grains.
+    /// Voids of a packing: of the packed filter, or of a file of grains.
     Graph(Option<PathBuf>, Extent),
 }
 
@@ -112,7 +112,7 @@ impl Filter {
         }
     }
 
-    /// Its gradation by mass.
+    /// Gradation of the filter by mass.
     pub fn gradation(&self) -> FilterGradation {
         match &self.sieve {
             Some(path) => FilterGradation::Sieve(path.clone(), self.d0_mm),
@@ -128,7 +128,7 @@ impl Base {
         }
     }
 
-    /// Its gradation by mass.
+    /// Gradation of the base by mass.
     pub fn gradation(&self) -> BaseGradation {
         if let Some(path) = &self.sieve {
             return BaseGradation::Sieve(path.clone(), self.d0_mm);
@@ -137,13 +137,13 @@ impl Base {
             (Some(size), _) => BaseGradation::Single(size),
             (None, d85) => BaseGradation::Linear {
                 cu: self.cu.unwrap_or(1.0),
-                // A scene without any of the three has been refused.
+                // A scene without any of the three was refused.
                 d85: d85.unwrap_or(D85::Ratio(1.0)),
             },
         }
     }
 
-    /// The setting that defines D85B of a linear gradation.
+    /// Setting that defines D85B of a linear gradation.
     pub fn d85(&self) -> Option<D85> {
         let at_dc = self.d85_at_dc.map(|percent| D85::AtDc(percent, self.dc_curve.clone()));
         self.d85_mm.map(D85::Mm).or(at_dc).or(self.d15f_over_d85b.map(D85::Ratio))
@@ -159,7 +159,7 @@ impl Base {
 }
 
 impl NetworkKeys {
-    /// True if it is a file of arrays, whose constrictions can be passed both ways.
+    /// True for a file of arrays, whose constrictions can be passed both ways.
     pub fn is_of_arrays(&self) -> bool {
         let ending = |path: &PathBuf| path.extension().map(|ending| ending.to_ascii_lowercase());
         self.file.as_ref().and_then(ending).is_some_and(|ending| ending == "npz")
@@ -177,7 +177,7 @@ impl NetworkKeys {
         }
     }
 
-    /// Its thickness along the flow.
+    /// Thickness along the flow.
     pub fn extent(&self) -> Extent {
         match (self.copies, self.thickness_mm, self.thickness_d50f) {
             (Some(copies), ..) => Extent::Copies(copies as u32),
@@ -193,7 +193,7 @@ impl NetworkKeys {
         (self.thickness_mm, self.thickness_d50f) = (None, None);
     }
 
-    /// Limits a lattice to this many voids across, both ways.
+    /// Limits the width of a lattice to this many voids in both directions.
     pub fn narrow_to(&mut self, across: u64) {
         let narrow = |width: Option<u64>, usual: u64| Some(width.unwrap_or(usual).min(across));
         (self.nx, self.ny) = (narrow(self.nx, VOIDS[0]), narrow(self.ny, VOIDS[1]));
@@ -223,7 +223,7 @@ impl NetworkKeys {
 }
 
 impl NetworkSource {
-    /// Voids along x, y, z, if the network is a lattice.
+    /// Number of voids along x, y, z, if the network is a lattice.
     pub fn shape(&self) -> Option<[u32; 3]> {
         match self {
             Self::Cubic(shape) | Self::Connected(shape, _) => Some(*shape),
@@ -233,7 +233,7 @@ impl NetworkSource {
 }
 
 impl Record {
-    /// Records that are kept of a run.
+    /// Data to record of a run.
     pub fn wanted(&self) -> Wanted {
         Wanted {
             series_every: self.series_every,
@@ -247,17 +247,17 @@ impl Record {
 /// Specification of the packing of a filter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PackingSpec {
-    /// Its gradation; a linear one has a `cu`.
+    /// Gradation to pack; a linear one has a `cu`.
     pub gradation: FilterGradation,
-    /// Number of grains, if the user gives it.
+    /// Number of grains, if given by the user.
     pub grains: Option<usize>,
-    /// Height of the cell by its width.
+    /// Height of the cell over its width.
     pub aspect: f64,
-    /// Percent of the mass, from the finest grain on, that is packed, if the user gives it.
+    /// Percent by mass to pack, from the finest grain up, if given by the user.
     pub coarsest: Option<f64>,
-    /// Compression of the grains; its number of grains counts only if the user gave one.
+    /// Compression of the grains; its number of grains counts only if given by the user.
     pub compression: packing::Settings,
-    /// Overlap of two inscribed spheres from which their tetrahedra are one void.
+    /// Overlap of two inscribed spheres above which their tetrahedra form one void.
     pub merge_overlap: f64,
     /// Name of the file in errors.
     pub file: String,

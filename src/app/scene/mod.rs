@@ -1,9 +1,9 @@
-//! A scene: one base-filter combination and the plan of its walk, as the user states them.
+//! Scene: one base-filter combination and the plan of its walk, as stated by the user.
 //!
-//! Every setting is declared once, in `keys` or by the stage that it belongs to ([`StopRule`], packing's
-//! [`Settings`](voidwalk_core::packing::Settings)); a [`Scene`] holds them all. Those declarations decide the
-//! commented text of [`Scene::init_text`], the allowed and refused settings, and the resolved scene that a
-//! run writes and that identifies it. The names are a contract.
+//! Every setting is declared once, in `keys` or by its stage ([`StopRule`], packing's
+//! [`Settings`](voidwalk_core::packing::Settings)); a [`Scene`] holds them all. Those declarations define
+//! the commented text of [`Scene::init_text`], the allowed and refused settings, and the resolved scene
+//! that a run writes and that identifies it. Setting names must not change.
 
 mod keys;
 mod meaning;
@@ -32,7 +32,7 @@ use voidwalk_core::walk::{BlockedAs, Engine, Law};
 /// Name of the built-in scene in errors.
 pub(crate) const BUILT_IN_NAME: &str = "built-in scene";
 
-/// A scene: every setting with its value, given or by default, each checked by itself and against the others.
+/// Scene: every setting with its value, given or default, each checked alone and against the others.
 ///
 /// ```
 /// let scene = voidwalk_app::Scene::built_in(&["base.cu=3".into(), "network.nz=30".into()]).unwrap();
@@ -45,13 +45,13 @@ pub struct Scene {
     /// Name in errors.
     #[serde(skip)]
     pub name: String,
-    /// True if base and filter were named as a pair: they are refused if they look exchanged.
+    /// True if base and filter were named as a pair, which is refused if they look exchanged.
     #[serde(skip)]
     pub is_guarded: bool,
-    /// Seed, engine, replicates and the like: the settings without a section.
+    /// Settings without a section, such as seed, engine and replicates.
     #[serde(flatten)]
     pub walk: WalkKeys,
-    /// Rule that stops the addition of replicates, if more than those may be needed.
+    /// Rule that ends the addition of replicates, if their number is not fixed.
     #[serde(skip_serializing_if = "StopRule::is_unset")]
     pub stop: StopRule,
     /// The filter.
@@ -68,7 +68,7 @@ pub struct Scene {
     pub network: NetworkKeys,
     /// Results to keep.
     pub record: Record,
-    /// Further entries on the first page of the report.
+    /// Further entries for the first page of the report.
     #[serde(skip_serializing_if = "is_unset")]
     pub about: About,
 }
@@ -77,7 +77,7 @@ fn is_unset<T: Default + PartialEq>(section: &T) -> bool {
     *section == T::default()
 }
 
-/// The names of all settings, and which exclude each other.
+/// Names of all settings, and which exclude each other.
 static NAMES: LazyLock<Names> = LazyLock::new(|| Names {
     known: Scene::keys().iter().map(KeyInfo::full_name).collect(),
     lines: About::texts(),
@@ -85,15 +85,15 @@ static NAMES: LazyLock<Names> = LazyLock::new(|| Names {
 });
 
 impl Scene {
-    /// The built-in scene, with `name=value` settings applied.
+    /// Built-in scene with `name=value` settings applied.
     ///
     /// # Errors
-    /// A setting that does not exist or is not allowed.
+    /// A setting does not exist or is not allowed.
     pub fn built_in(assignments: &[String]) -> Result<Self, SceneError> {
         Self::parse(Self::init_text().as_bytes(), BUILT_IN_NAME, assignments)
     }
 
-    /// A scene from a file, with `name=value` settings applied.
+    /// Scene from a file, with `name=value` settings applied.
     ///
     /// # Errors
     /// The file cannot be read, or a setting does not exist, is not allowed, clashes or is missing.
@@ -101,13 +101,13 @@ impl Scene {
         Self::assigned(GivenSettings::read(path, &NAMES)?, assignments)
     }
 
-    /// A scene from TOML text; errors call the file `name`, and paths are taken as they are.
+    /// Scene from TOML text; errors call the file `name`, and paths are taken as they are.
     pub fn parse(bytes: &[u8], name: &str, assignments: &[String]) -> Result<Self, SceneError> {
         Self::assigned(GivenSettings::parse(bytes, name, PathBuf::new(), &NAMES)?, assignments)
     }
 
-    /// The scene of a plan's case: the built-in scene or one from a file, with the case's settings, those
-    /// stated together in one list each.
+    /// Scene of a plan's case: the built-in scene or one from a file, with the case's settings, one list
+    /// for each group stated together.
     pub fn planned(
         base: Option<&Path>,
         assignments: &[Vec<String>],
@@ -146,7 +146,7 @@ impl Scene {
             about: About::read(s)?,
         };
         scene.check_what_is_missing(s)?;
-        // The settings that follow from others get their values, so that the scene is complete.
+        // Settings that follow from others get their values, so that the scene is complete.
         scene.filter.fill_in();
         scene.base.fill_in();
         scene.network.fill_in();
@@ -179,12 +179,12 @@ impl Scene {
         self.packing.as_ref().map(spec).transpose()
     }
 
-    /// Every setting that the scene has, in TOML: read again, it is the same scene.
+    /// All settings of the scene in TOML; reading them gives the same scene.
     pub fn to_toml(&self) -> String {
         toml::to_string(self).unwrap_or_else(|e| unreachable!("settings are numbers, words and lists: {e}"))
     }
 
-    /// The error for settings of this scene that clash.
+    /// Error for settings of this scene that clash.
     pub fn clash(&self, problem: impl Into<String>) -> SceneError {
         SceneError::Clash { file: self.name.clone(), problem: problem.into() }
     }
@@ -194,7 +194,7 @@ impl Scene {
         self.exits.blocked == Some(BlockedAs::Open)
     }
 
-    /// The law of arching, if particles arch.
+    /// Law of arching, if particles arch.
     pub fn law(&self) -> Option<&'static Law> {
         self.exits.arching?.law()
     }
@@ -213,7 +213,7 @@ impl Scene {
         matches!(self.network.source(), NetworkSource::Cubic(_)) && self.exit_rule() == ExitRule::Area
     }
 
-    /// Refuses a scene that leaves a question open, or answers one that is not asked.
+    /// Refuses a scene that lacks a setting or has one that does not apply.
     fn check_what_is_missing(&self, s: &GivenSettings) -> Result<(), SceneError> {
         let filter = &self.filter;
         if filter.curve.is_none()
@@ -253,7 +253,7 @@ impl Scene {
         self.packing_spec().map(drop)
     }
 
-    /// Refuses a network that is half a lattice and half a graph, and an exit rule that does not go with it.
+    /// Refuses a network that mixes lattice and graph, and an exit rule that it does not allow.
     fn check_network(&self, s: &GivenSettings) -> Result<(), SceneError> {
         let graph = self.network.kind == Some(NetworkMadeOf::Graph);
         let wrong = |names: &[&str], problem: &str| match names.iter().find(|name| s.has(name)) {

@@ -1,5 +1,5 @@
-//! Every setting in its order: as the commented text of `voidwalk init`, and for programs, as `voidwalk init
-//! --json` prints it and the book shows it.
+//! All settings in order: as the commented text of `voidwalk init`, and for programs, as printed by
+//! `voidwalk init --json` and shown in the book.
 
 use super::Scene;
 use super::keys::{About, Base, ExitKeys, Filter, FilterPacking, GROUPS, NetworkKeys, Record, WalkKeys};
@@ -9,49 +9,49 @@ use std::fmt::Write;
 use voidwalk_core::packing;
 use voidwalk_core::schema::{Alternative, Group, KeyInfo};
 
-/// Columns of a comment.
+/// Width of a comment in columns.
 const WIDTH: usize = 96;
 
-/// Every setting of a scene, and which exclude each other. Values stand as they are written in TOML.
+/// All settings of a scene, and which exclude each other. Values are written as in TOML.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SceneReference {
-    /// The sections in the order in which they are written.
+    /// Sections in the order in which they are written.
     pub sections: Vec<SectionReference>,
-    /// Settings that say the same thing in different ways, of which a scene may use one.
+    /// Groups of settings that state one fact in different ways; a scene uses one way of each.
     pub exclusive: Vec<ExclusiveSettings>,
 }
 
-/// A section of a scene.
+/// Section of a scene.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SectionReference {
-    /// Its name, empty for the settings at the top.
+    /// Name of the section; empty for the settings at the top.
     pub name: &'static str,
-    /// What it is about.
+    /// Subject of the section.
     pub about: String,
-    /// Its settings.
+    /// Settings of the section.
     pub settings: Vec<SettingReference>,
 }
 
-/// A setting.
+/// Setting of a scene.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SettingReference {
-    /// Its full name: `base.cu`.
+    /// Full name, such as `base.cu`.
     pub name: String,
-    /// The type of its value in TOML.
+    /// Type of the value in TOML.
     #[serde(rename = "type")]
     pub toml_type: &'static str,
-    /// What is allowed.
+    /// Allowed values.
     pub allowed: String,
-    /// The value where a scene does not set it; none where it then has no value.
+    /// Value if a scene does not set it; absent if it then has no value.
     pub default: Option<String>,
-    /// Its value in the built-in scene; none where it is not set there.
+    /// Value in the built-in scene; absent if it is not set there.
     pub built_in: Option<String>,
-    /// A value that it may have.
+    /// Example of a value.
     pub example: String,
-    /// What it means.
+    /// Meaning of the setting.
     pub meaning: String,
 }
 
@@ -59,30 +59,30 @@ pub struct SettingReference {
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ExclusiveSettings {
-    /// What they say: `give the base`.
+    /// Statement that they make, such as `give the base`.
     pub says: &'static str,
-    /// The ways to say it. A name that ends in a point is that of a whole section.
+    /// Ways to make the statement. A name that ends in a point is a whole section.
     pub alternatives: Vec<WayReference>,
 }
 
-/// One way to say what [`ExclusiveSettings`] say.
+/// One way to make the statement of [`ExclusiveSettings`].
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct WayReference {
-    /// Settings that say it, each by itself.
+    /// Settings that make the statement, each alone.
     pub by: &'static [&'static str],
-    /// Settings that go with these alone.
+    /// Settings allowed only with these.
     pub with: &'static [&'static str],
 }
 
 impl Scene {
-    /// Every setting, section by section, in the order in which they are written.
+    /// All settings, section by section, in the order in which they are written.
     pub fn keys() -> Vec<KeyInfo> {
         sections().into_iter().flat_map(|(_, keys)| keys).collect()
     }
 
-    /// The built-in scene as commented TOML, with every setting: words follow `# `, settings that are off
-    /// follow `#`; a section whose settings are all off is off too.
+    /// Built-in scene as commented TOML with every setting: words follow `# `, settings that are off
+    /// follow `#`; a section whose settings are all off is also off.
     pub fn init_text() -> String {
         let mut text = String::new();
         for (about, keys) in sections() {
@@ -114,7 +114,7 @@ impl Scene {
             about: for_users(about),
             settings: keys.into_iter().map(setting).collect(),
         };
-        // In a group with one alternative the others give way on the command line only.
+        // In a group with one alternative, the others give way only on the command line.
         let exclusive = GROUPS.iter().filter(|group| group.alternatives.len() > 1).map(exclusive);
         SceneReference {
             sections: sections().into_iter().map(section).collect(),
@@ -123,7 +123,7 @@ impl Scene {
     }
 }
 
-/// Description of each section, with its settings.
+/// Sections, each with its description and settings.
 fn sections() -> Vec<(&'static [&'static str], Vec<KeyInfo>)> {
     let packing_keys = [FilterPacking::keys(), packing::Settings::keys()].concat();
     vec![
@@ -156,7 +156,7 @@ fn exclusive(group: &Group) -> ExclusiveSettings {
     ExclusiveSettings { says: group.says, alternatives: group.alternatives.iter().map(reference).collect() }
 }
 
-/// First paragraph of a section's description; the paragraphs after it are for programmers.
+/// First paragraph of a section's description; further paragraphs are for programmers.
 fn for_users(about: &[&str]) -> String {
     about.iter().take_while(|line| !line.trim().is_empty()).copied().collect::<String>().trim().to_owned()
 }
@@ -180,14 +180,14 @@ fn comment(text: &mut String, words: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    /// A value that no setting takes.
+    /// Value that no setting takes.
     const WRONG: &str = "[[]]";
 
     fn settings() -> Vec<SettingReference> {
         Scene::reference().sections.into_iter().flat_map(|section| section.settings).collect()
     }
 
-    /// The only setting beside which this one is allowed.
+    /// Setting that this one requires beside it.
     fn beside(name: &str) -> Option<&'static str> {
         let exclusive = Scene::reference().exclusive;
         let alternative = exclusive
@@ -217,7 +217,7 @@ mod tests {
         for SettingReference { name, default, example, .. } in settings() {
             let error =
                 |value: &str| Scene::built_in(&[format!("{name}={value}")]).err().map(|e| e.to_string());
-            // It may ask for others beside it, but not for another value.
+            // An error may ask for other settings, but not for another value.
             let wrong = |value: &str| error(value).is_some_and(|text| text.contains("is not allowed"));
             assert!(!example.is_empty() && !wrong(&example), "{name} = {example}: {:?}", error(&example));
             assert!(!default.as_deref().is_some_and(wrong), "{name}: {default:?}");

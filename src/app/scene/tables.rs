@@ -1,4 +1,4 @@
-//! The scene of two sieve tables, for a user who names only a base and a filter.
+//! Scene of two sieve tables, for a user who names only a base and a filter.
 
 use std::path::Path;
 
@@ -7,26 +7,26 @@ use super::{Origin, Scene, SceneError};
 use voidwalk_core::schema::setting_name;
 use voidwalk_practice::PairOptions;
 
-/// Options of a scene of two tables.
+/// Options for a scene of two tables.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TableOptions {
-    /// Density of the filter. Its constrictions come from the library of packings; without a density, and if
-    /// `changes` do not define the constrictions, loose and dense are both walked.
+    /// Density of the filter. Its constrictions come from the library of packings; without a density, and
+    /// if `changes` do not define the constrictions, both loose and dense are walked.
     pub density: Option<Density>,
-    /// True if this very filter is packed, loose unless a density is given.
+    /// True to pack the filter itself, loose unless a density is given.
     pub pack: bool,
-    /// A first look: fewer replicates.
+    /// True for a first look with fewer replicates.
     pub quick: bool,
-    /// True if the base is walked as it was sampled. Otherwise a base in a table is walked as filter practice
-    /// regrades it, unless `changes` contain `base.regrade`.
+    /// True to walk the base as sampled. Otherwise a base in a table is walked as regraded by filter
+    /// practice, unless `changes` contain `base.regrade`.
     pub as_sampled: bool,
-    /// Base and filter are taken as they are given, though their sizes look exchanged.
+    /// True to accept base and filter as given, though their sizes look exchanged.
     pub as_given: bool,
-    /// Further settings, as `name=value`; they override all of these.
+    /// Further settings, as `name=value`; they override the other options.
     pub changes: Vec<String>,
 }
 
-/// Replicates of a first look.
+/// Number of replicates of a first look.
 const QUICK: u64 = 5;
 
 /// Settings that define the filter's constrictions.
@@ -40,7 +40,7 @@ const CONSTRICTIONS: [&str; 7] = [
     "network.packing",
 ];
 
-/// Settings that decide the number of replicates.
+/// Settings that determine the number of replicates.
 const REPLICATES: [&str; 3] = ["replicates", "stop.target_error_pp", "stop.decide_percent"];
 
 /// Settings that describe the filter's own packing.
@@ -52,17 +52,17 @@ const BASE: [&str; 3] = ["base.sieve", "base.cu", "base.single_mm"];
 /// Settings that define the filter.
 const FILTER: [&str; 2] = ["filter.sieve", "filter.cu"];
 
-/// Settings that no sieve table states and that rules of practice depend on.
+/// Settings that no sieve table gives and that rules of practice depend on.
 const OF_RULES: [&str; 2] = ["base.dispersive", "filter.joint_mm"];
 
 impl TableOptions {
-    /// The setting by which a base is walked as it was sampled.
+    /// Setting to walk a base as sampled.
     pub(crate) const AS_SAMPLED: &str = "base.regrade=\"no\"";
 
-    /// The settings that state all of this.
+    /// Settings that express these options.
     ///
     /// # Errors
-    /// [`SceneError::Clash`]: a change also sets the density, or the regrading of the base.
+    /// [`SceneError::Clash`]: a change also sets the density or the regrading of the base.
     fn settings(&self) -> Result<Vec<String>, SceneError> {
         if let (Some(density), true) = (self.density, self.is_set(&["filter.density", "filter.library"])) {
             return Err(clash(format!(
@@ -86,7 +86,7 @@ impl TableOptions {
         Ok(settings)
     }
 
-    /// The setting of the density: of the filter's own packing, which is loose if nothing else is stated, or
+    /// Setting of the density: of the filter's own packing, which is loose if nothing else is stated, or
     /// of the library, where it is unknown if no setting defines the constrictions.
     pub(crate) fn density_setting(&self) -> Option<String> {
         let (name, density, stated): (_, _, &[&str]) = match self.pack {
@@ -100,10 +100,10 @@ impl TableOptions {
         is_needed.then(|| format!("filter.{name}=\"{density}\""))
     }
 
-    /// Facts for the rules of practice beside the two tables.
+    /// Inputs of the rules of practice other than the two tables.
     ///
     /// # Errors
-    /// A value that is not allowed.
+    /// A value is not allowed.
     pub fn of_rules(&self) -> Result<PairOptions, SceneError> {
         let is_one = |change: &&String| OF_RULES.contains(&setting_name(change));
         let stated: Vec<String> = self.changes.iter().filter(is_one).cloned().collect();
@@ -121,8 +121,8 @@ impl TableOptions {
 }
 
 impl Scene {
-    /// The scene of a base and a filter that are sieve tables (`FILE#NAME` for one of several soils); all
-    /// else comes from the built-in scene. It reads no file.
+    /// Scene of a base and a filter that are sieve tables (`FILE#NAME` for one of several soils); all
+    /// other settings come from the built-in scene. Reads no file.
     ///
     /// # Errors
     /// See [`Scene::built_in`]; also if a change would replace one of the two, or if a name is not UTF-8.
@@ -133,11 +133,11 @@ impl Scene {
         for (name, path) in [("filter.sieve", filter), ("base.sieve", base)] {
             settings.push(format!("{name}={}", quoted(path)?));
         }
-        // A pair is judged as it is given; other amounts and thicknesses are a researcher's question.
+        // A pair is judged as given; other amounts and thicknesses are a research question.
         settings.push("record.sensitivity=[]".into());
         let changes = options.settings()?;
         let mut scene = Self::built_in(&[&settings[..], &changes].concat())?;
-        // Millions of passive particles scatter by less than anyone reads, and their expectation is quick;
+        // The scatter of millions of passive particles is negligible, and their expectation is fast;
         // there is no expectation if blocked constrictions leave openings.
         if !scene.leaves_openings() {
             settings.push("engine=\"expected\"".into());
@@ -147,7 +147,7 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Source of the filter's constrictions, in a sentence.
+    /// Source of the filter's constrictions in a sentence.
     pub fn constrictions_in_words(&self) -> String {
         let filter = &self.filter;
         if let Some(friction) = filter.friction {
@@ -177,11 +177,11 @@ impl Scene {
     }
 }
 
-/// Refuses settings that would replace a soil that is also named: results for the named soil would belong to
-/// the other.
+/// Refuses settings that would replace a soil that is also named: results would then belong to the wrong
+/// soil.
 ///
 /// # Errors
-/// [`SceneError::Clash`], with the setting and the soil.
+/// [`SceneError::Clash`] names the setting and the soil.
 pub fn keep_soils(changes: &[String], base: Option<&str>, filter: Option<&str>) -> Result<(), SceneError> {
     for (role, named, names) in [("base", base, &BASE[..]), ("filter", filter, &FILTER)] {
         if let (Some(named), Some(name)) = (named, set_among(changes, names)) {
@@ -198,13 +198,13 @@ fn clash(problem: String) -> SceneError {
     SceneError::Clash { file: Origin::CommandLine.to_string(), problem }
 }
 
-/// The first of these settings among the changes.
+/// First of these settings among the changes.
 fn set_among<'a>(changes: &[String], names: &[&'a str]) -> Option<&'a str> {
     let is_set = |name: &str| changes.iter().any(|change| setting_name(change) == name);
     names.iter().copied().find(|name| is_set(name))
 }
 
-/// A path as a TOML string, so that one like `1e5` stays a name.
+/// Path as a TOML string, so that one like `1e5` remains a name.
 pub fn quoted(path: &Path) -> Result<String, SceneError> {
     let text = path.to_str().ok_or_else(|| SceneError::Clash {
         file: path.display().to_string(),
@@ -242,7 +242,7 @@ mod tests {
         assert_eq!((scene.base.cu, scene.walk.replicates), (None, 10));
     }
 
-    /// The notation does not matter; an engine that was asked for goes first.
+    /// The notation does not matter; a requested engine takes precedence.
     #[test]
     fn the_engine_follows_from_what_blocked_constrictions_are() {
         let engine = |changes: &[&str]| scene(&with(changes)).unwrap().walk.engine;

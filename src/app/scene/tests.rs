@@ -52,7 +52,7 @@ fn one_alternative_replaces_the_others() {
     assert_eq!(network(&["network.connectivity=table3", "network.nx=8"]), table_3);
 }
 
-/// Settings that are stated together do not replace each other.
+/// Settings stated together do not replace each other.
 #[test]
 fn alternatives_that_are_set_together_are_refused() {
     for (set, message) in [
@@ -75,7 +75,7 @@ fn alternatives_that_are_set_together_are_refused() {
     ] {
         assert!(built_in(&set).unwrap_err().to_string().contains(message), "{set:?}: {:?}", built_in(&set));
     }
-    // The file's settings are still replaced, and a setting given twice counts as on any command line.
+    // Settings of the file are still replaced, and a setting given twice counts as on any command line.
     let text = b"[filter]\ncurve = \"a.csv\"\nd0_mm = 2\n[base]\ncu = 2\nd85_mm = 1\n";
     let set = ["base.d15f_over_d85b=3", "filter.sieve=f.csv", "base.d15f_over_d85b=4"].map(String::from);
     let scene = Scene::parse(text, "s.toml", &set).unwrap();
@@ -103,7 +103,7 @@ fn what_is_written_is_the_whole_scene() {
     }
 }
 
-/// A shell removes the quotes around text like a number or a date.
+/// A shell removes the quotes around text that looks like a number or a date.
 #[test]
 fn what_a_cover_says_is_a_text_on_the_command_line_and_in_quotes_in_a_file() {
     let cover = |set: &[&str]| built_in(set).unwrap().about.cover();

@@ -1,4 +1,4 @@
-//! Values of settings beside numbers and texts: words, files and tables as a scene writes them.
+//! Values of settings other than numbers and texts: words, files and tables as a scene writes them.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -8,11 +8,11 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use voidwalk_core::network::Connectivity;
 use voidwalk_core::schema::Leaf;
 
-/// Where a constriction curve comes from: a file name has a folder or an ending.
+/// Source of a constriction curve: a file name has a folder or an ending.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum CurveSource {
-    /// A filter that comes with the program.
+    /// Filter shipped with the program.
     Shipped(String),
     /// A CSV file.
     File(PathBuf),
@@ -36,7 +36,7 @@ impl Leaf for CurveSource {
     }
 }
 
-/// Declares a value that is one of a few words.
+/// Declares a value that is one of several words.
 macro_rules! words {
     ($(#[$about:meta])* $kind:ident { $($(#[$what:meta])* $variant:ident = $word:literal,)* }) => {
         $(#[$about])*
@@ -46,10 +46,10 @@ macro_rules! words {
         }
 
         impl $kind {
-            /// Every value.
+            /// All values.
             pub const ALL: [Self; [$($word),*].len()] = [$(Self::$variant),*];
 
-            /// The word in a scene.
+            /// Word in a scene.
             pub fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $word,)*
@@ -62,23 +62,23 @@ macro_rules! words {
 }
 
 words! {
-    /// A word for how densely a filter is packed.
+    /// Density of a packed filter.
     Density {
-        /// The densest packing: no friction.
+        /// Densest packing: no friction.
         Dense = "dense",
-        /// Between the two: friction 0.1. "medium" is read as this too.
+        /// Friction 0.1, between dense and loose. "medium" is accepted too.
         #[serde(alias = "medium")]
         Intermediate = "intermediate",
-        /// Loose: friction 0.3.
+        /// Loose packing: friction 0.3.
         Loose = "loose",
     }
 }
 
 impl Density {
-    /// The words that [`Density::named`] takes, for a message.
+    /// Words accepted by [`Density::named`], for messages.
     pub const WORDS: &str = "dense, medium (or intermediate), loose";
 
-    /// The density that a word names, as a scene reads it.
+    /// Density that a word names, as a scene reads it.
     pub fn named(word: &str) -> Option<Self> {
         match word {
             "medium" => Some(Self::Intermediate),
@@ -99,20 +99,20 @@ impl Density {
 words! {
     /// Density of a filter whose constrictions come from the library of packings.
     LibraryDensity {
-        /// The densest packing.
+        /// Densest packing.
         Dense = "dense",
-        /// Between the two. "medium" is read as this too.
+        /// Between dense and loose. "medium" is accepted too.
         #[serde(alias = "medium")]
         Intermediate = "intermediate",
-        /// Loose.
+        /// Loose packing.
         Loose = "loose",
-        /// Not known: anything from loose to dense.
+        /// Unknown density: anything from loose to dense.
         Unknown = "unknown",
     }
 }
 
 impl LibraryDensity {
-    /// From 0, loose, to 1, dense; the middle if it is unknown.
+    /// Relative density from 0 (loose) to 1 (dense); 0.5 if it is unknown.
     pub fn relative(self) -> f64 {
         match self {
             Self::Loose => 0.0,
@@ -135,9 +135,9 @@ impl From<Density> for LibraryDensity {
 words! {
     /// Structure of a network.
     NetworkMadeOf {
-        /// A cubic lattice of voids.
+        /// Cubic lattice of voids.
         Lattice = "lattice",
-        /// The voids of a packing.
+        /// Voids of a packing.
         Graph = "graph",
     }
 }
@@ -145,9 +145,9 @@ words! {
 words! {
     /// Units that a sheet shows.
     SheetUnits {
-        /// mm alone.
+        /// Millimetres alone.
         Metric = "metric",
-        /// Inches beside mm.
+        /// Millimetres and inches.
         Us = "us",
     }
 }
@@ -157,7 +157,7 @@ words! {
     Regrade {
         /// Regraded by filter practice.
         Practice = "practice",
-        /// Left unchanged.
+        /// Not regraded.
         No = "no",
     }
 }
@@ -168,7 +168,7 @@ pub struct VoidConnectivity(pub Connectivity);
 
 const TABLE_3: &str = "table3";
 
-/// The forms in which it may be written.
+/// Forms in which connectivity may be written.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged)]
 enum WrittenConnectivity {

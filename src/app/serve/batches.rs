@@ -1,5 +1,5 @@
 //! Tables of the page: the rules of practice on two sheets; and every sample of a sheet against filters, by
-//! the rules alone or walked, which grows as the walks are done, with the requests for it.
+//! the rules alone or with walks, in a table that grows as the walks are done.
 
 use super::sheets::Sheets;
 use crate::cases::{BatchWalks, numbered, pairs_of};
@@ -19,10 +19,10 @@ use voidwalk_practice::{BatchFilter, BatchRow, BatchTable, PairOptions, PairRule
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AskedBatch {
-    /// The sheet whose every soil is a sample, by its number; or the one base, for walks of `filters`.
+    /// Number of the sheet whose soils are all samples; for walks of `filters`, the one base.
     pub base: String,
     pub filters: Vec<String>,
-    /// Pairs that are walked, and their walks: `governing`, `look`, `alone`, or `filters` for one base.
+    /// Pairs to walk, and the depth: `governing`, `look`, `alone`, or `filters` for one base.
     pub walks: String,
     #[serde(flatten)]
     pub tables: AskedTables,
@@ -32,14 +32,14 @@ pub struct AskedBatch {
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub struct AskedTables {
-    /// A word, or empty.
+    /// Density in one word, or empty.
     pub density: String,
-    /// This very filter is packed.
+    /// True if this very filter is packed.
     pub pack: bool,
     pub quick: bool,
-    /// The base is walked as it was sampled, not as practice regrades it.
+    /// True if the base is walked as sampled, not as practice regrades it.
     pub as_sampled: bool,
-    /// The two are taken as they are given, though they look exchanged.
+    /// True if base and filter are taken as given even if they look exchanged.
     pub as_given: bool,
     pub changes: Vec<String>,
 }
@@ -59,7 +59,7 @@ pub fn filter_names(sheets: &Sheets, paths: &[PathBuf]) -> Vec<String> {
 }
 
 impl AskedBatch {
-    /// Pairs that are walked; an unknown word is an error.
+    /// Pairs to walk; an unknown word is an error.
     pub fn walks(&self) -> Result<BatchWalks, String> {
         match self.walks.as_str() {
             "governing" => Ok(BatchWalks::GoverningInFull),
@@ -114,7 +114,7 @@ fn table<'r, T: 'r>(
     })
 }
 
-/// The class of the result of a sample: a result that is met but in doubt is not green.
+/// Class of a sample's result; a result that is met but doubted is not green.
 fn class_of(row: &BatchRow, is_doubted: bool) -> Option<&'static str> {
     match row.met {
         Some(true) if !is_doubted && !row.breaks_if_dispersive => Some("keeps"),
@@ -128,7 +128,7 @@ pub fn so_far(rows: &[WalkedRow], inches: bool) -> Value {
     table(columns, rows, |row| class_of(&row.rules, row.is_doubted()))
 }
 
-/// JSON of a finished batch for the page: its table, and the answers for a client about each filter.
+/// JSON of a finished batch for the page: its table, and the answers for a client on each filter.
 pub fn of_batch(batch: &WalkedBatch) -> Value {
     let rules: Vec<BatchRow> = batch.rows.iter().map(|row| row.rules.clone()).collect();
     let unit = SizeUnit::of(false, batch.inches);
@@ -147,7 +147,7 @@ pub fn of_batch(batch: &WalkedBatch) -> Value {
 
 const SHOWN: [&str; 7] = ["result", "rule", "authority", "quantity", "value", "limit", "note"];
 
-/// The rules part by part with their results for the pair: the page computes nothing.
+/// Rules in groups with their results for the pair; the page computes nothing.
 pub fn rules_of_pair(pair: &PairRules) -> Value {
     let decision = pair.decision();
     let listed = decision.listed();
@@ -179,7 +179,7 @@ pub fn rules_of_pair(pair: &PairRules) -> Value {
 
 const MOST_SHOWN: usize = 1000;
 
-/// The rules on all samples of the sheet in which a base is, against filters.
+/// Rules on all samples in the sheet of a base, against filters.
 pub fn samples(
     sheets: &Sheets,
     base: &str,
@@ -189,7 +189,7 @@ pub fn samples(
     let paths = filter_paths(sheets, filters)?;
     let table = pairs_of(&sheets.path(whole_sheet(base))?, &paths, options, true);
     let mut table = table.map_err(|problem| sheets.as_named(&problem.to_string()))?;
-    // Sheets have their own names here, which may repeat, and no folder.
+    // Sheets appear here under their own names, which may repeat, without folders.
     let names = filter_names(sheets, &paths);
     let of_filter = (table.rows.len() / table.filters.len()).max(1);
     for (at, row) in table.rows.iter_mut().enumerate() {

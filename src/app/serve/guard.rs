@@ -2,9 +2,9 @@
 //! origin.
 //!
 //! - The address holds a secret of 128 bits.
-//! - The name that was asked for is this machine's own, so that no foreign name that is made to point here
-//!   (DNS rebinding) is answered.
-//! - A request that a page of another origin has made is refused, whatever it knows.
+//! - The requested name must be this machine's own, so that a foreign name that is made to point here
+//!   (DNS rebinding) gets no answer.
+//! - A request from a page of another origin is refused, whatever it knows.
 
 use std::io;
 use std::net::{Shutdown, TcpStream};
@@ -21,7 +21,7 @@ pub struct Guard {
 }
 
 impl Guard {
-    /// A new secret for this port; an error if the system gives no random bytes.
+    /// Creates a secret for this port; fails if the system gives no random bytes.
     pub fn new(port: u16) -> io::Result<Self> {
         // A secret must not follow from any seed, so it is not a number of `voidwalk_core::stream`.
         let mut bytes = [0u8; 16];
@@ -33,7 +33,7 @@ impl Guard {
         format!("http://127.0.0.1:{}/{}/", self.port, self.token)
     }
 
-    /// The path below the secret; `None` if the request is not allowed.
+    /// Path below the secret; `None` if the request is not allowed.
     pub fn path<'a>(&self, request: &'a Request) -> Option<&'a str> {
         if !request.field("host").is_some_and(|name| self.is_host(name)) {
             return None;
@@ -42,7 +42,7 @@ impl Guard {
             let host = request.field("origin").and_then(|origin| origin.strip_prefix("http://"));
             host.filter(|host| self.is_host(host))?;
         }
-        // Browsers state the origin of a request; `none` is an address that the user has typed.
+        // Browsers state the origin of a request; `none` means an address typed by the user.
         if request.has("sec-fetch-site") {
             request.field("sec-fetch-site").filter(|site| ["same-origin", "none"].contains(site))?;
         }
@@ -51,7 +51,7 @@ impl Guard {
         self.is_token(token).then_some(rest)
     }
 
-    /// True if this is the name of this machine and port; browsers leave out port 80.
+    /// True if this names the machine and port; browsers leave out port 80.
     fn is_host(&self, name: &str) -> bool {
         ["127.0.0.1", "localhost"].iter().any(|host| match name.strip_prefix(host) {
             Some("") => self.port == 80,
@@ -68,32 +68,32 @@ impl Guard {
     }
 }
 
-/// Connections that are answered at the same time; others wait.
+/// Maximum number of connections answered at a time; others wait.
 const MOST: usize = 64;
 
-/// Time for which a connection that has not shown the secret is left alone, however many wait.
+/// Time for which a connection that has not shown the secret is spared, however many wait.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// Interval between checks for connections past that time.
+/// Interval between checks for connections older than that.
 const LOOK: Duration = Duration::from_millis(50);
 
 #[derive(Default)]
 pub struct Connections {
-    /// In the order in which they came.
+    /// Connections in the order of their arrival.
     open: Mutex<Vec<Connection>>,
-    /// Number of connections so far: each has a number of its own, even after the last was ended.
+    /// Number of connections so far, which numbers each of them uniquely.
     came: AtomicU64,
     freed: Condvar,
 }
 
 struct Connection {
     id: u64,
-    /// The stream by which to end it; `None` once it has shown the secret.
+    /// Stream by which to end it; `None` once it has shown the secret.
     shed: Option<TcpStream>,
     since: Instant,
 }
 
-/// The place of a connection, until it is dropped.
+/// Place of a connection, until it is dropped.
 pub struct Place {
     connections: Arc<Connections>,
     id: u64,
@@ -104,15 +104,15 @@ impl Connections {
         self.open.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A place for a connection, as soon as there is one: if all are taken, the oldest connection without the
-    /// secret is ended. An error if there are no more file handles.
+    /// Waits for a place for a connection: if all are taken, the oldest connection without the secret is
+    /// ended. Fails if there are no more file handles.
     pub fn place(self: &Arc<Self>, stream: &TcpStream) -> io::Result<Place> {
         let shed = Some(stream.try_clone()?);
         let mut open = self.locked();
         while open.len() >= MOST {
             let oldest = open.iter().position(|one| one.shed.is_some() && one.since.elapsed() >= GRACE);
             if let Some(at) = oldest {
-                // Its thread finds the connection ended.
+                // Its thread will find the connection ended.
                 let ended = open.remove(at).shed.map(|stream| stream.shutdown(Shutdown::Both));
                 drop(ended);
                 continue;
@@ -126,7 +126,7 @@ impl Connections {
 }
 
 impl Place {
-    /// The connection has shown the secret: it is not ended for others.
+    /// Protects a connection that has shown the secret from being ended for others.
     pub fn keep(&self) {
         if let Some(one) = self.connections.locked().iter_mut().find(|one| one.id == self.id) {
             one.shed = None;
@@ -158,8 +158,8 @@ mod tests {
         }
     }
 
-    /// All but the last have shown the secret; the last makes room for another, and when its thread finds it
-    /// ended, that other keeps its place.
+    /// All but the last have shown the secret. The last makes room for another; when its thread finds it
+    /// ended, the other must keep its place.
     #[test]
     fn a_connection_that_is_ended_takes_no_other_out_of_the_list() {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();

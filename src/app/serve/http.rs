@@ -1,8 +1,8 @@
-//! One HTTP/1.1 request a connection, read within limits, and its answer.
+//! One HTTP/1.1 request per connection, read within limits, and its answer.
 //!
-//! Heads are parsed by `httparse`; input that is larger or slower than the limits below is refused before it
-//! is kept. A body has a length that is stated before it; there are no chunks, no second request on a
-//! connection, and so nothing that two readers could divide differently.
+//! Heads are parsed by `httparse`; input larger or slower than the limits below is refused before it is
+//! stored. A body must state its length in advance. There are no chunks and no second request on a
+//! connection, so nothing that two readers could split differently.
 
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpStream};
@@ -16,17 +16,16 @@ const HEAD: usize = 16 << 10;
 
 const FIELDS: usize = 64;
 
-/// The largest body of a request (bytes): a workbook.
+/// Maximum body of a request (bytes): a workbook.
 pub const BODY: u64 = 32 << 20;
 
-/// Time within which the head of a request must arrive, and then its body, in all.
+/// Time limits for the head of a request, and for its body as a whole.
 const ARRIVAL: (Duration, Duration) = (Duration::from_secs(10), Duration::from_secs(60));
 
-/// Time within which an answer must leave: from one piece of it to the next, and in all, with this many
-/// further bytes a second.
+/// Time limits for sending an answer: for each piece, and in all, plus one second for this many bytes.
 const DEPARTURE: (Duration, Duration, u64) = (Duration::from_secs(20), Duration::from_secs(60), 1 << 20);
 
-/// Time and bytes for which input after a refusal is discarded, so that the refusal is read.
+/// Limits on the time and bytes of input discarded after a refusal, so that the refusal is read.
 const DRAIN: (Duration, u64) = (Duration::from_secs(1), 2 * BODY);
 
 /// A request whose body has not been read.
@@ -36,13 +35,13 @@ pub struct Request {
     pub path: String,
     pub query: String,
     fields: Vec<(String, String)>,
-    /// Part of the body that came with the head.
+    /// Beginning of the body, which came with the head.
     begun: Vec<u8>,
     length: u64,
 }
 
 impl Request {
-    /// The only value of a header field; `None` if it is not given, or given twice.
+    /// Value of a header field; `None` if it is missing or repeated.
     pub fn field(&self, name: &str) -> Option<&str> {
         let mut values = self.fields.iter().filter(|(field, _)| field.eq_ignore_ascii_case(name));
         match (values.next(), values.next()) {
@@ -61,7 +60,7 @@ impl Request {
     }
 }
 
-/// Text without its `%41`; bytes that are not UTF-8 are replaced.
+/// Text with its `%41` decoded; bytes that are not UTF-8 are replaced.
 fn decoded(text: &str) -> String {
     let mut bytes = Vec::with_capacity(text.len());
     let mut rest = text.as_bytes();
@@ -90,7 +89,7 @@ pub struct Answer {
     /// Type of the body.
     pub kind: &'static str,
     pub body: Body,
-    /// The content security policy; nothing at all is allowed without one.
+    /// Content security policy; without one, nothing at all is allowed.
     pub policy: Option<String>,
     /// Name under which a browser saves it.
     pub download: Option<String>,
@@ -98,7 +97,7 @@ pub struct Answer {
 
 pub enum Body {
     Bytes(Vec<u8>),
-    /// In a file, from its start, with its length.
+    /// Content of a file from its start, with its length.
     File(std::fs::File, u64),
 }
 
@@ -112,7 +111,7 @@ impl Answer {
         Ok(Self { body: Body::File(file, length), ..Self::new(200, kind, "") })
     }
 
-    /// A value as JSON for the page, without hidden characters.
+    /// Answer with a value as JSON for the page, without hidden characters.
     pub fn json(status: u16, mut value: Value) -> Self {
         show(&mut value);
         Self::new(status, "application/json; charset=utf-8", value.to_string())
@@ -133,7 +132,7 @@ fn show(value: &mut Value) {
     }
 }
 
-/// A connection until a time: nothing that is read or written takes longer, in however small pieces.
+/// Connection with a deadline for all reading and writing, however small the pieces.
 struct Until<'a> {
     stream: &'a mut TcpStream,
     end: Instant,
@@ -171,7 +170,7 @@ impl Write for Until<'_> {
     }
 }
 
-/// The head of a request, or the answer to a bad one.
+/// Reads the head of a request; a bad head gives its answer.
 pub fn read_head(stream: &mut TcpStream) -> io::Result<Result<Request, Answer>> {
     let mut stream = Until::new(stream, ARRIVAL.0, ARRIVAL.0);
     let mut bytes = Vec::new();
@@ -193,7 +192,7 @@ pub fn read_head(stream: &mut TcpStream) -> io::Result<Result<Request, Answer>> 
             Err(httparse::Error::TooManyHeaders) => {
                 return Ok(Err(Answer::problem(431, "there are too many header fields")));
             }
-            Err(_) => return Ok(Err(Answer::problem(400, "this is no HTTP request"))),
+            Err(_) => return Ok(Err(Answer::problem(400, "this is not an HTTP request"))),
         }
     }
 }
@@ -218,7 +217,7 @@ fn request(parsed: &httparse::Request, begun: Vec<u8>) -> Result<Request, Answer
         let length = request.field("content-length").filter(|text| text.bytes().all(|b| b.is_ascii_digit()));
         request.length = match length.map(str::parse) {
             Some(Ok(length)) => length,
-            _ => return Err(Answer::problem(400, "Content-Length is no number")),
+            _ => return Err(Answer::problem(400, "Content-Length is not a number")),
         };
     } else if request.method == "POST" {
         return Err(Answer::problem(411, "a body needs Content-Length"));
@@ -226,7 +225,7 @@ fn request(parsed: &httparse::Request, begun: Vec<u8>) -> Result<Request, Answer
     Ok(request)
 }
 
-/// The body of a request; the answer to one that is too large, which is not read.
+/// Reads the body of a request; a body that is too large is not read and gives its answer.
 pub fn read_body(request: &mut Request, stream: &mut TcpStream) -> io::Result<Result<Vec<u8>, Answer>> {
     if request.length > BODY {
         let words = format!("too large: at most {} MB", BODY >> 20);
@@ -277,7 +276,7 @@ pub fn send(stream: &mut TcpStream, answer: Answer) -> io::Result<()> {
     if refused { drain(stream) } else { Ok(()) }
 }
 
-/// Discards further input: an end with bytes unread would lose the answer.
+/// Discards further input: closing with unread bytes would lose the answer.
 fn drain(stream: &mut TcpStream) -> io::Result<()> {
     let mut rest = Until::new(stream, DRAIN.0, DRAIN.0).take(DRAIN.1);
     io::copy(&mut rest, &mut io::sink()).map(drop)
@@ -312,7 +311,7 @@ mod tests {
         assert_eq!(decoded("%E2%80%AE%FF"), "\u{202e}\u{fffd}");
     }
 
-    /// Small pieces, each in time, do not make more of it.
+    /// Sends small pieces, each in time, which do not extend the total time.
     #[test]
     fn a_connection_ends_in_time_however_slowly_it_is_fed_or_read() {
         let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
@@ -320,7 +319,7 @@ mod tests {
         let (mut stream, _) = listener.accept().unwrap();
         let (piece, all) = (Duration::from_secs(5), Duration::from_millis(300));
         let slow = std::thread::spawn(move || {
-            // One byte after another, and then one read after another.
+            // One byte at a time, first written, then read.
             for _ in 0..100 {
                 let _ = other.write_all(b"x");
                 std::thread::sleep(Duration::from_millis(10));

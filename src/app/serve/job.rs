@@ -1,5 +1,5 @@
-//! One job of the page: its state, its work (a call of the library into a folder of its own), its description
-//! for the page, the request that its folder keeps, and the jobs that an earlier server left.
+//! Job of the page: its state, its work (a call of the library into its own folder), its description for the
+//! page, the request stored in its folder, and the jobs that an earlier server left.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -52,9 +52,9 @@ impl JobState {
 pub struct Job {
     pub id: usize,
     pub title: String,
-    /// The two sheets that it was asked for, as the page names them.
+    /// Sheets of the request, as the page names them.
     pub asked: Value,
-    /// Name of its folder inside the server's.
+    /// Name of its folder inside the server's folder.
     pub folder: String,
     pub work: Work,
     pub state: JobState,
@@ -65,7 +65,7 @@ pub struct Job {
 }
 
 impl Job {
-    /// One that nothing was done of.
+    /// Creates a job with no work done.
     pub fn new(id: usize, title: String, folder: String, work: Work, state: JobState) -> Self {
         let (live, stop) = (Arc::default(), Arc::default());
         let (message, result, asked) = (String::new(), Value::Null, Value::Null);
@@ -76,8 +76,8 @@ impl Job {
         self.state == JobState::Waiting && !matches!(self.work, Work::Nothing)
     }
 
-    /// True if it can continue: if it ended early in a folder that the command line would resume. A request
-    /// that was refused before any work would be refused again.
+    /// True if it can continue, because it ended early in a folder that the command line would resume. A
+    /// request refused before any work would be refused again.
     pub fn can_continue(&self, root: &Path) -> bool {
         let ended_early = match self.state {
             JobState::Stopped | JobState::Failed => true,
@@ -119,7 +119,7 @@ impl Job {
     }
 }
 
-/// A result whose every text has passed through `named`.
+/// Result with every text passed through `named`.
 fn all_said(value: &Value, named: &impl Fn(&str) -> String) -> Value {
     match value {
         Value::String(text) => Value::String(named(text)),
@@ -129,7 +129,7 @@ fn all_said(value: &Value, named: &impl Fn(&str) -> String) -> Value {
     }
 }
 
-/// True if a folder holds the scene of a run that has begun, which the command line resumes.
+/// True if a folder holds the scene of a run that has begun, which the command line can resume.
 pub fn has_scene(folder: &Path) -> bool {
     folder.join("scene.toml").is_file()
 }
@@ -149,16 +149,16 @@ pub type OnResults = fn(FolderKind, &Path, Option<RunFiles>) -> Result<(), AnyEr
 pub enum Work {
     Judge(Box<Scene>),
     Batch(Box<BatchPlan>),
-    /// Work that its folder describes: it is planned again when the job continues.
+    /// Work described by its folder, which is planned again when the job continues.
     Kept,
-    /// Continues a run whose folder does not keep the request.
+    /// Continues a run whose folder holds no request.
     Resume,
-    /// Nothing: the request is unknown.
+    /// No work: the request is unknown.
     Nothing,
 }
 
 impl Work {
-    /// Beginning of the name of its folder.
+    /// Prefix of the name of its folder.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Batch(_) => "batch",
@@ -167,11 +167,11 @@ impl Work {
     }
 }
 
-/// Settings that all jobs of a server share.
+/// Settings shared by all jobs of a server.
 pub struct WorkContext {
     pub root: PathBuf,
     pub prepare: PrepareOptions,
-    /// Command in a folder that started it.
+    /// Command that started it, for its folder.
     pub command: String,
     pub on_results: OnResults,
 }
@@ -188,7 +188,7 @@ impl WorkContext {
         let live = || live.lock().unwrap_or_else(PoisonError::into_inner);
         let callbacks = Callbacks {
             on_event: &|event| {
-                // An increment changes nothing that is shown, and there are many.
+                // Increments are many, and change nothing that is shown.
                 if !matches!(event, run::Event::Increment { .. }) {
                     live().tell(event);
                 }
@@ -209,7 +209,7 @@ impl WorkContext {
             Work::Judge(scene) => shown(run::walk_scene((**scene).clone(), &options, &callbacks)?),
             Work::Resume => shown(run::resume(folder, &options, &callbacks)?),
             Work::Batch(plan) => {
-                // Outcomes are read before the page is kept waiting.
+                // Outcomes are read first, so that the page does not have to wait.
                 let rows = plan.so_far(folder);
                 live().batch = Some((rows, plan.shows_inches()));
                 let options = of_cases(folder, &self.prepare, &self.command);
@@ -244,7 +244,7 @@ pub fn of_cases(folder: &Path, prepare: &PrepareOptions, command: &str) -> CaseO
     }
 }
 
-/// Greatest loss if a server is killed.
+/// Interval between saves: the maximum loss if a server is killed.
 fn often() -> CheckpointInterval {
     "1min".parse().unwrap_or_default()
 }
@@ -267,11 +267,11 @@ pub const LAST: usize = 999_999;
 fn number(name: &str) -> Option<usize> {
     let (kind, id) = name.split_once('-')?;
     let id = id.parse().ok().filter(|id| (1..=LAST).contains(id))?;
-    // No second folder has the same number by `+1` or `01`.
+    // A folder such as `run-+1` or `run-01` must not have the same number.
     (name == format!("{kind}-{id}") && kind.bytes().all(|b| b.is_ascii_lowercase())).then_some(id)
 }
 
-/// The newest jobs that an earlier server left, at most `most`, the oldest first.
+/// The `most` newest jobs that an earlier server left, oldest first.
 pub fn earlier(root: &Path, most: usize) -> Vec<Job> {
     let entries = std::fs::read_dir(root).into_iter().flatten().flatten();
     let folders = entries.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir()));
@@ -285,7 +285,7 @@ pub fn earlier(root: &Path, most: usize) -> Vec<Job> {
     jobs
 }
 
-/// True if a folder holds nothing but marks of the program: a job that was never accepted.
+/// True if a folder holds only marks of the program, because its job was never accepted.
 fn holds_nothing(folder: &Path) -> bool {
     let entries = std::fs::read_dir(folder);
     entries.is_ok_and(|mut entries| {
@@ -293,7 +293,7 @@ fn holds_nothing(folder: &Path) -> bool {
     })
 }
 
-/// A job that an earlier server left; `None` if the folder of this name holds no job.
+/// Job that an earlier server left; `None` if the folder of this name holds no job.
 fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
     let path = root.join(&name);
     let file = JobFile::read(&path);
@@ -306,7 +306,7 @@ fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
         Some(FolderKind::Run) => record(FolderKind::Run)
             .and_then(|bytes| from_json::<Outcome>(&bytes).ok())
             .map(|outcome| of_run(&outcome, &outcome.decision())),
-        // Without its page it is not whole, and the same call writes it.
+        // Without its page it is unfinished, and the same call writes the page.
         Some(FolderKind::Batch) if path.join("batch.html").is_file() => record(FolderKind::Batch)
             .and_then(|bytes| from_json::<WalkedBatch>(&bytes).ok())
             .map(|batch| of_batch(&batch)),
@@ -315,7 +315,7 @@ fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
     };
     let ended = file.as_ref().and_then(|file| file.ended.clone());
     let title =
-        file.as_ref().map_or_else(|| format!("{name}, of an earlier start"), |file| file.title.clone());
+        file.as_ref().map_or_else(|| format!("{name}, from an earlier start"), |file| file.title.clone());
     let work = match &file {
         Some(_) => Work::Kept,
         None if has_scene(&path) => Work::Resume,
@@ -330,7 +330,7 @@ fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
         }
         (None, Some((_, message))) => (JobState::Failed, message, Value::Null),
         (None, None) if matches!(job.work, Work::Nothing) => {
-            let message = "the server ended before this was done, and what was asked is not known";
+            let message = "the server ended before this was done, and its request is not known";
             (JobState::Stopped, message.into(), Value::Null)
         }
         (None, None) => (JobState::Stopped, how_to_continue(&path), Value::Null),
@@ -340,35 +340,35 @@ fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
 
 const FILE: &str = "job.json";
 
-/// The largest that is written, and read (bytes).
+/// Maximum size of the file, for writing and reading (bytes).
 const LARGEST: u64 = 4 << 20;
 
 /// Request of a job, and its end if it cannot continue.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct JobFile {
-    /// Its kind, by the name of the request.
+    /// Kind of job, as the request names it.
     pub kind: String,
     pub title: String,
     pub asked: Value,
     pub request: Value,
-    /// `refused` or `failed`, with the message.
+    /// Word `refused` or `failed`, with the message.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ended: Option<(String, String)>,
 }
 
 impl JobFile {
-    /// Keeps this in the job's folder, which is made if it is missing; an error for a link, a folder that is
-    /// not the program's own or at work, and a request that is too large.
+    /// Stores this in the job's folder, which is made if missing. Fails for a link, for a folder that is not
+    /// the program's own or is in use, and for a request that is too large.
     pub fn write(&self, folder: &Path) -> Result<(), RunError> {
         let bytes = serde_json::to_vec_pretty(self)?;
         if bytes.len() as u64 > LARGEST {
             return Err(RunError::Refused(format!("the request is larger than {} MB", LARGEST >> 20)));
         }
-        // Its lock marks the folder as the program's own, so that the work may take it.
+        // Its lock marks the folder as the program's own, so that the job may use it.
         Ok(Folder::open(folder)?.write(FILE, &bytes)?)
     }
 
-    /// Reads the file of a job's folder; `None` in other folders.
+    /// Reads the file in a job's folder; `None` in other folders.
     pub fn read(folder: &Path) -> Option<Self> {
         let bytes = read_regular(&folder.join(FILE), LARGEST).ok()??;
         serde_json::from_slice(&bytes).ok()

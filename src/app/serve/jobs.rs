@@ -1,9 +1,9 @@
-//! Jobs that the page has asked for: one is walked at a time, the others wait.
+//! Jobs requested by the page: one is walked at a time, the others wait.
 //!
-//! A job is a call of the library into a folder of its own, the same folder of a run or a batch as by the
-//! command line. The request is kept there before any work ([`JobFile`]), so that a later server on the
-//! same folder can do it. A new kind of job needs a variant of [`Work`], its work in `WorkContext::work`, and
-//! the reading of its request (`Routes::planned`).
+//! A job is a call of the library into its own folder, the same folder of a run or batch as from the command
+//! line. The request is stored there before any work ([`JobFile`]), so that a later server on the same folder
+//! can do it. A new kind of job needs a variant of [`Work`], its work in `WorkContext::work`, and a reader of
+//! its request (`Routes::planned`).
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ use voidwalk_core::text::shell_word;
 
 const WAITING: usize = 20;
 
-/// Most jobs that are listed; of more, those that ended first are left out. Their folders stay.
+/// Maximum number of jobs listed; the earliest finished are dropped, but their folders stay.
 const LISTED: usize = 200;
 
 pub struct JobQueue {
@@ -35,7 +35,7 @@ pub struct JobQueue {
 }
 
 impl JobQueue {
-    /// The jobs in `root`: those of an earlier server there, and no others yet.
+    /// Jobs of an earlier server in `root`, and no others yet.
     pub fn new(root: &Path, prepare: PrepareOptions, command: String, on_results: OnResults) -> Self {
         let all = earlier(root, LISTED);
         let last = AtomicUsize::new(all.iter().map(|job| job.id).max().unwrap_or(0));
@@ -48,7 +48,7 @@ impl JobQueue {
         self.all.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Refuses one more job if too many wait, or if the server ends.
+    /// Refuses a further job if too many wait, or if the server is ending.
     fn has_room(&self, all: &[Job]) -> Result<(), String> {
         if self.ends.load(Ordering::Relaxed) {
             return Err("the server ends".into());
@@ -59,7 +59,7 @@ impl JobQueue {
         }
     }
 
-    /// Adds a job, keeps its request in its folder, and returns its number; refused if too many wait.
+    /// Adds a job, stores its request in its folder, and returns its number; refuses if too many wait.
     pub fn add(&self, file: JobFile, work: Work) -> Result<usize, RunError> {
         let has_room = |all: &[Job]| self.has_room(all).map_err(RunError::Refused);
         has_room(&self.locked())?;
@@ -70,10 +70,10 @@ impl JobQueue {
         let id = id.ok_or_else(|| RunError::Refused("this folder is full: start on another".into()))?;
         let written = file.write(&path(&id)).map_err(|error| RunError::failed(error.to_string()));
         let mut all = self.locked();
-        // Meanwhile others may have been added, or the server stopped.
+        // Meanwhile other jobs may have been added, or the server stopped.
         if let Err(error) = written.and_then(|()| has_room(&all)) {
             drop(all);
-            // The folder was free, so that its contents belong to this job, which does not start.
+            // The folder was new, so its contents belong to this job, which does not start.
             let _ = remove_folder(&path(&id));
             let _ = self.last.compare_exchange(id, id - 1, Ordering::Relaxed, Ordering::Relaxed);
             return Err(error);
@@ -101,7 +101,7 @@ impl JobQueue {
         Ok(())
     }
 
-    /// Request of a job that can continue; `None` if it is to resume the run in its folder.
+    /// Stored request of a job that can continue; `None` if the run in its folder is to be resumed.
     pub fn kept(&self, id: usize) -> Result<Option<JobFile>, String> {
         let folder = {
             let mut all = self.locked();
@@ -112,7 +112,7 @@ impl JobQueue {
             self.context.root.join(&job.folder)
         };
         match JobFile::read(&folder) {
-            None if !has_scene(&folder) => Err("what this job was asked for is lost; ask again".into()),
+            None if !has_scene(&folder) => Err("the request of this job is lost; ask again".into()),
             file => Ok(file),
         }
     }
@@ -122,25 +122,25 @@ impl JobQueue {
         if job.can_continue(&self.context.root) { Ok(job) } else { Err("this job cannot continue".into()) }
     }
 
-    /// True if the folder of a job holds the scene of a run that has begun, from which it can be resumed.
+    /// True if a job's folder holds the scene of a run that has begun, which can be resumed.
     pub fn has_scene(&self, id: usize) -> bool {
         let all = self.locked();
         all.iter().any(|job| job.id == id && has_scene(&self.context.root.join(&job.folder)))
     }
 
-    /// Lets a job that was stopped or has failed continue, with its work planned again.
+    /// Continues a job that was stopped or has failed, with its work planned again.
     pub fn resume(&self, id: usize, work: Work) -> Result<(), String> {
         let folder = {
             let mut all = self.locked();
             self.has_room(&all)?;
             let job = self.that_continues(&mut all, id)?;
-            // It begins once its work is set.
+            // It begins when its work is set.
             (job.work, job.state, job.message) = (Work::Nothing, JobState::Waiting, String::new());
             job.stop.store(false, Ordering::Relaxed);
             *job.live.lock().unwrap_or_else(PoisonError::into_inner) = Live::default();
             self.context.root.join(&job.folder)
         };
-        // Its earlier end is no longer true.
+        // Its recorded end no longer applies.
         if let Some(file) = JobFile::read(&folder).filter(|file| file.ended.is_some()) {
             let _ = JobFile { ended: None, ..file }.write(&folder);
         }
@@ -150,8 +150,7 @@ impl JobQueue {
         Ok(())
     }
 
-    /// Stops everything, and lets nothing more begin; returns the numbers of jobs that were under way or
-    /// waited.
+    /// Stops all jobs and starts no more; returns the numbers of jobs that were running or waiting.
     pub fn stop_all(&self) -> Vec<usize> {
         let mut all = self.locked();
         self.ends.store(true, Ordering::Relaxed);
@@ -166,7 +165,7 @@ impl JobQueue {
         .collect()
     }
 
-    /// End of these jobs, once nothing is walked any more: an error if one failed, else if one is not done.
+    /// Result of these jobs once nothing is walked any more: an error if one failed, else if one is not done.
     pub fn ended(&self, ids: &[usize]) -> Result<(), RunError> {
         let all = self.locked();
         let in_state =
@@ -179,7 +178,7 @@ impl JobQueue {
         match stopped.is_empty() {
             true => Ok(()),
             false => Err(RunError::Stopped(format!(
-                "not done, and what is done of it is saved: {}; `voidwalk serve --out {}` lists it, and \
+                "not done, with all finished work saved: {}; `voidwalk serve --out {}` lists it, and \
                  Continue on its page goes on",
                 stopped.join(", "),
                 shell_word(&self.context.root.display().to_string())
@@ -191,7 +190,7 @@ impl JobQueue {
         self.locked().iter().any(|job| job.folder == name).then(|| self.context.root.join(name))
     }
 
-    /// All jobs, the newest first; messages pass through `named`.
+    /// All jobs, newest first; messages pass through `named`.
     pub fn snapshot(&self, named: impl Fn(&str) -> String) -> Value {
         let all = self.locked();
         all.iter().rev().map(|job| job.snapshot(&all, &self.context.root, &named)).collect()
@@ -218,7 +217,7 @@ impl JobQueue {
             let ended = matches!(state, JobState::Refused | JobState::Failed);
             let file = JobFile::read(&folder);
             if let Some(file) = file.clone().filter(|_| ended) {
-                // If this cannot be written, the next server lets the job continue, which does no harm.
+                // If this cannot be written, the next server offers to continue the job, which does no harm.
                 let ended = Some((state.words().to_owned(), message.clone()));
                 let _ = JobFile { ended, ..file }.write(&folder);
             }
@@ -228,14 +227,14 @@ impl JobQueue {
                 job.live.lock().unwrap_or_else(PoisonError::into_inner).end_batch();
             }
             (job.state, job.message, job.result) = (state, message, result);
-            // A scene is large, and needed no more.
+            // A scene is large, and no longer needed.
             if file.is_some() {
                 job.work = Work::Kept;
             }
         }
     }
 
-    /// The job that has waited longest, now running; waits a little for one.
+    /// Starts the job that has waited longest and returns it; waits briefly if there is none.
     #[allow(clippy::type_complexity)]
     fn next(&self) -> Option<(usize, PathBuf, Work, Arc<Mutex<Live>>, Arc<AtomicBool>)> {
         let mut all = self.locked();
@@ -250,7 +249,7 @@ impl JobQueue {
     }
 }
 
-/// Removes the jobs that ended first, if there are too many.
+/// Removes the earliest finished jobs if there are too many.
 fn shorten(all: &mut Vec<Job>) {
     let mut more = all.len().saturating_sub(LISTED);
     all.retain(|job| {
@@ -285,7 +284,7 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let queue = queue(root.path());
         let ids = [(); 4].map(|()| queue.add(file(), Work::Kept).unwrap());
-        // The first is walked, the second was stopped before, the others wait.
+        // The first is being walked, the second was already stopped, the others wait.
         set(&queue, ids[0], JobState::Running);
         set(&queue, ids[1], JobState::Stopped);
         let open = queue.stop_all();
@@ -331,7 +330,7 @@ mod tests {
         });
         let ids: Vec<usize> = queue.locked().iter().map(|job| job.id).collect();
         assert_eq!(ids, (1..=WAITING).collect::<Vec<_>>());
-        // A request that cannot be kept makes no job, and the next job takes its number.
+        // A request that cannot be stored makes no job, and the next job takes its number.
         queue.stop(1).unwrap();
         let large = JobFile { request: "x".repeat(5 << 20).into(), ..file() };
         assert!(queue.add(large, Work::Kept).is_err() && !root.path().join("run-21").exists());
@@ -351,7 +350,7 @@ mod tests {
         for folder in wrong.into_iter().chain(["sheets-1000", "batch-7"]) {
             std::fs::create_dir(root.path().join(folder)).unwrap();
         }
-        // The request of one job is unknown; another, which left only the mark, was never accepted.
+        // The request of one job is unknown; another job, which left only the mark, was never accepted.
         std::fs::write(root.path().join("batch-7/cases.jsonl"), "").unwrap();
         std::fs::create_dir(root.path().join("run-5")).unwrap();
         std::fs::write(root.path().join("run-5/.voidwalk.lock"), "").unwrap();
@@ -367,7 +366,7 @@ mod tests {
         assert_eq!((&told[1]["message"], &told[3]["title"]), (&json!("why"), &json!("a job")));
         assert_eq!(queue.kept(1), Ok(Some(file())));
         assert!(queue.kept(7).is_err() && queue.kept(2).is_err());
-        // The next number is free: under 8 there is a link.
+        // 9 is the next free number: 8 is taken by a link.
         assert_eq!(queue.add(file(), Work::Kept).unwrap(), 9);
     }
 
@@ -382,8 +381,8 @@ mod tests {
         assert_eq!((all.len(), &ids[..3]), (LISTED, &[1, 3, 6][..]));
     }
 
-    /// A job that a full disk ended continues once there is room: if the command line resumes a folder, so
-    /// does the page, on this server and the next.
+    /// A job that a full disk ended can continue once there is room: the page resumes a folder whenever the
+    /// command line does, on this server and the next.
     #[test]
     fn what_has_failed_can_continue() {
         let root = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Progress of a job while it is walked.
+//! Progress of a job while it runs.
 
 use super::batches::so_far;
 use crate::cases::CaseEvent;
@@ -9,29 +9,29 @@ use crate::words::sentence;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
-/// Fewer replicates have no class while more are to come.
+/// Minimum number of replicates for a class while more are to come.
 const FEW: usize = 4;
 
 const WARNINGS: usize = 50;
 
-/// Lines of a study that are kept: the newest.
+/// Maximum number of lines of a study that are kept: the newest.
 const LINES: usize = 12;
 
 #[derive(Clone, Debug, Default)]
 pub struct Live {
-    /// Grains of the packing, its steps, and how many it usually takes.
+    /// Grains of the packing, steps done, and usual number of steps.
     packing: Option<[u64; 3]>,
     waits_for_packing: bool,
-    /// Runs that are done, and that are to be walked, as far as it is known.
+    /// Numbers of runs done and to be walked, as far as known.
     runs: [u64; 2],
     walked: SoFar,
-    /// Cases that are done, and all.
+    /// Numbers of cases done and in all.
     pub cases: [usize; 2],
     done: Vec<Value>,
-    /// Cases that are walked, with their runs that are done and that are to be walked.
+    /// Cases being walked, with their numbers of runs done and to be walked.
     walking: BTreeMap<String, [u64; 2]>,
     case: String,
-    /// The rows of a batch, as far as they are walked; true if they show inches.
+    /// Rows of a batch, with the walks so far; true if they show inches.
     pub batch: Option<(Vec<WalkedRow>, bool)>,
     lines: Vec<String>,
     pub warnings: Vec<String>,
@@ -88,7 +88,7 @@ impl Live {
         }
     }
 
-    /// A batch is done: its result has the table.
+    /// Removes the rows of a finished batch, whose result has the table.
     pub fn end_batch(&mut self) {
         if let Some((rows, _)) = &mut self.batch {
             *rows = Vec::new();
@@ -107,7 +107,7 @@ impl Live {
         }
     }
 
-    /// All of it, for a case that is walked in `runs` runs.
+    /// State for the page, of a case that is walked in `runs` runs.
     pub fn snapshot(&self, runs: u64) -> Value {
         let table = self.batch.as_ref().filter(|(rows, _)| !rows.is_empty());
         json!({
@@ -123,7 +123,7 @@ impl Live {
             "walking": self.walking.iter().map(|(case, [done, runs])| json!({
                 "case": case, "done": done, "runs": runs
             })).collect::<Vec<_>>(),
-            // The table of a batch shows it.
+            // The table of a batch shows them.
             "done": if self.batch.is_some() { json!([]) } else { json!(self.done) },
             "table": table.map(|(rows, inches)| so_far(rows, *inches)),
             "lines": self.lines,
@@ -132,7 +132,7 @@ impl Live {
         })
     }
 
-    /// Results of the finished replicates; a few of them have no class.
+    /// Results of the finished replicates, without a class if they are few.
     fn so_far(&self, runs: u64) -> Value {
         let Some(look) = self.walked.look(runs) else { return Value::Null };
         let class = Some(look.class.words()).filter(|_| look.replicates >= FEW);
@@ -163,7 +163,7 @@ mod tests {
             assert_eq!(so_far["runs"][0]["low"].is_null(), replicate == 1);
             assert_eq!(so_far["class"].as_str(), (replicate == 4).then_some("some erosion"));
         }
-        // An interval that straddles the threshold has no class either.
+        // An interval that straddles the threshold gives no class either.
         walked(&mut live, 5, 1, 0.0);
         walked(&mut live, 5, 2, 0.9);
         assert_eq!(live.snapshot(2)["so_far"]["class"], "undecided");

@@ -1,13 +1,13 @@
-//! A page on this machine alone: sheets in, curves, rules, walks and their verdicts out.
+//! Page on this machine alone: it takes sheets and shows curves, rules, walks and their verdicts.
 //!
-//! Only the user can reach it: it listens on the loopback address, answers only clients that know the secret
-//! in the address, by this machine's own name, and no page of another origin (`guard.rs`). Requests are
-//! bounded (`http.rs`), the page fetches nothing from outside and runs its own script only.
+//! Only the user can reach it. It listens on the loopback address and answers only clients that know the
+//! secret in the address and use this machine's own name, but no page of another origin (`guard.rs`).
+//! Requests are bounded (`http.rs`); the page fetches nothing from outside and runs only its own script.
 //!
-//! Every answer is a call of the library (`routes.rs`); each walk is a folder of a run or a batch in the
-//! server's folder (`jobs.rs`), as the command line makes them. Requests are kept there too, so that a later
-//! server on the folder lists every job and continues it; `voidwalk resume` continues a run that has begun to
-//! walk.
+//! Every answer is a call of the library (`routes.rs`). Each walk is a folder of a run or batch in the
+//! server's folder (`jobs.rs`), as made by the command line. Requests are stored there too, so that a later
+//! server on the folder lists every job and can continue it; `voidwalk resume` continues a run that has
+//! begun.
 
 mod batches;
 mod guard;
@@ -35,24 +35,24 @@ use sheets::Sheets;
 use voidwalk_core::store::Folder;
 use voidwalk_core::store::format;
 
-/// Pause after an accept that failed: there may be no more file handles for a while.
+/// Pause after a failed accept: the system may be short of file handles for a while.
 const PAUSE: Duration = Duration::from_millis(100);
 
 /// Options of a server.
 pub struct ServeOptions {
-    /// Port of the loopback address; 0 takes a free one.
+    /// Port of the loopback address; 0 takes any free one.
     pub port: u16,
-    /// Folder for sheets and results; the first new of `voidwalk-serve`, `voidwalk-serve-2`, ... without one.
+    /// Folder for sheets and results; by default the first new `voidwalk-serve`, `voidwalk-serve-2`, ...
     pub folder: Option<PathBuf>,
     /// Threads, memory and the folder of packings.
     pub prepare: PrepareOptions,
-    /// Action on finished results: writes their pages.
+    /// Action on finished results, which writes their pages.
     pub on_results: OnResults,
-    /// Command in `manifest.json` that started a run.
+    /// Command that started a run, for `manifest.json`.
     pub command: String,
 }
 
-/// A page on this machine, with its folder and its port taken.
+/// Server of a page on this machine; it holds its folder and its port.
 pub struct Server {
     listener: TcpListener,
     folder: Folder,
@@ -63,8 +63,8 @@ impl Server {
     /// Takes a folder and a port.
     ///
     /// # Errors
-    /// A folder that is not the program's own, holds work of another kind, or that another server has; a port
-    /// that is taken.
+    /// A folder that is not the program's own, holds work of another kind, or is in use by another server; a
+    /// port that is in use.
     pub fn open(options: ServeOptions) -> Result<Self, RunError> {
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, options.port)).map_err(|error| {
             RunError::Refused(format!("port {}: {error}; name another by --port", options.port))
@@ -87,7 +87,7 @@ impl Server {
         Ok(Self { listener, routes: Arc::new(routes), folder })
     }
 
-    /// The page's address, with its secret.
+    /// Address of the page, with its secret.
     pub fn address(&self) -> String {
         self.routes.guard.address()
     }
@@ -100,10 +100,10 @@ impl Server {
     /// Answers requests and walks jobs, until `stop`; then saves the work under way.
     ///
     /// # Errors
-    /// A job that was under way or waited then is not done, and can be continued; or it failed.
+    /// A job that was running or waiting is not done, and can be continued; or it failed.
     pub fn run(self, stop: &AtomicBool) -> Result<(), RunError> {
         let (routes, listener) = (Arc::clone(&self.routes), self.listener);
-        // It ends with the process: its next connection may never come.
+        // It ends only with the process, because its next connection may never come.
         let answering = std::thread::Builder::new().spawn(move || accept(&listener, &routes));
         answering.map_err(RunError::no_thread)?;
         std::thread::scope(|scope| {
@@ -121,7 +121,7 @@ impl Server {
     }
 }
 
-/// Takes a folder that is not there yet.
+/// Makes and takes a folder that does not exist yet.
 fn first_new(name: &str) -> Result<Folder, RunError> {
     let names = std::iter::once(name.to_owned()).chain((2..).map(|n| format!("{name}-{n}")));
     let mut names = names.filter(|name| Path::new(name).symlink_metadata().is_err());

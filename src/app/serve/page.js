@@ -1,10 +1,10 @@
 "use strict";
-// The page asks the program for everything that it shows, and shows texts as texts.
+// The page asks the program for everything that it shows, and inserts texts as plain text.
 
 const $ = (selector, from = document) => from.querySelector(selector);
 const $$ = (selector, from = document) => [...from.querySelectorAll(selector)];
 
-/** An element with attributes and children; what is no element is text. */
+/** An element with attributes and children; children that are not elements become text. */
 function el(name, attributes = {}, ...children) {
   const svg = ["svg", "line", "rect", "circle", "text"].includes(name);
   const made = svg ? document.createElementNS("http://www.w3.org/2000/svg", name) : document.createElement(name);
@@ -16,7 +16,7 @@ function el(name, attributes = {}, ...children) {
   return made;
 }
 
-/** What scrolls by itself, by keys as well. */
+/** A box that scrolls by itself, also by keys. */
 const scrolling = (label, ...children) => el("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": label }, ...children);
 
 function show(node, text) {
@@ -36,7 +36,7 @@ const percent = (share) => {
   return (value === 0 || value >= 10 ? value.toFixed(1) : value.toFixed(2)) + "\u202f%";
 };
 
-/** What the program says; a problem is an Error with its words. */
+/** The answer of the program; a problem is an Error with its message. */
 async function ask(path, body, type) {
   const request = { cache: "no-store", credentials: "same-origin" };
   if (body !== undefined) {
@@ -57,7 +57,7 @@ async function ask(path, body, type) {
 
 const state = { sheets: [], jobs: [], base: "", filter: "", more: [], largest: 32, seen: "", samples: "", examples: {} };
 
-// --- What is taken: kept in the address, so that a page that is loaded again has it.
+// --- Selection: kept in the address, so that it survives a reload.
 
 function remember() {
   const words = new URLSearchParams({ b: state.base, f: state.filter, m: state.more.join("\n") });
@@ -71,7 +71,7 @@ function recall() {
   state.more = (words.get("m") || "").split("\n").filter(Boolean);
 }
 
-/** Every soil of every sheet: what names it, and what it is called: its own name first, as a narrow list cuts the rest off. */
+/** Every soil of every sheet: its identifier, and its label, which begins with its own name in case a narrow list cuts it. */
 function soils() {
   return state.sheets.flatMap((sheet) => sheet.soils.map((soil) => ({
     key: sheet.soils.length > 1 ? `${sheet.id}#${soil.name}` : String(sheet.id),
@@ -111,7 +111,7 @@ async function tryExample(button) {
   show($("#try-problem"), "");
   try {
     const key = async (name) => {
-      // A sheet of somebody's own can have that name, too.
+      // A user's own sheet can have that name, too.
       let sheet = state.sheets.find((one) => one.id === state.examples[name]);
       if (!sheet) {
         const answer = await fetch("examples/" + name, { cache: "no-store", credentials: "same-origin" });
@@ -237,10 +237,10 @@ async function showPair() {
   }
 }
 
-/** The filter, and every further filter. */
+/** The filter and all further filters. */
 const filters = () => [state.filter, ...state.more];
 
-/** The rules on every soil of the sheet of the base, where it has several. */
+/** The rules on every soil in the sheet of the base, if there are several. */
 async function showSamples(query) {
   const sheet = state.sheets.find((one) => state.base.startsWith(`${one.id}#`));
   const into = $("#samples");
@@ -265,7 +265,7 @@ async function showSamples(query) {
   }
 }
 
-/** The head of a table, and its body; the result of a row stands in the colour of its class. */
+/** The head of a table, and its body; the result of a row has the colour of its class. */
 const headOf = (table) => el("thead", {}, el("tr", {}, ...table.headings.map((text, at) => el("th", { class: table.kinds[at] === "number" ? "n" : null }, text))));
 function bodyOf(table, ...first) {
   const marked = (text, name) => (name ? el("span", { class: name }, name === "breaks" ? text.toUpperCase() : text) : text);
@@ -274,10 +274,10 @@ function bodyOf(table, ...first) {
 }
 const rowsOf = (table) => [headOf(table), bodyOf(table)];
 
-/** The samples of a sheet with their walks; no two of the page have one name. */
+/** The samples of a sheet with their walks; the label is unique on the page. */
 const samplesTable = (job, table) => scrolling(`the samples of job ${job.id} with their walks`, el("table", { class: "samples" }, ...rowsOf(table)));
 
-/** Puts the drawing into the page itself, so that it can be asked for its values. */
+/** Inserts the drawing into the page itself, so that its values can be read. */
 async function showCurves(query) {
   const request = { cache: "no-store", credentials: "same-origin" };
   const drawn = await fetch("api/curves.svg?" + query, request).then((answer) => (answer.ok ? answer.text() : ""), () => "");
@@ -291,12 +291,12 @@ async function showCurves(query) {
 
 const ASK = "Point at a curve, or use the arrow keys, to read its values.";
 
-/** Says the values of the point of a curve that is nearest to the pointer, or that the arrow keys move to. */
+/** Shows the values of the point of a curve that is nearest to the pointer, or selected by the arrow keys. */
 function readCurves(svg) {
   const curves = [...new Set($$("circle[pointer-events]", svg).map((spot) => spot.parentNode))]
     .map((curve) => $$("circle[pointer-events]", curve).map((spot) => {
       const title = $("title", spot);
-      title.remove(); // the browser would show it over the curve as well
+      title.remove(); // otherwise the browser shows it over the curve as well
       return { x: Number(spot.getAttribute("cx")), y: Number(spot.getAttribute("cy")), text: title.textContent };
     }).sort((a, b) => a.x - b.x));
   if (!curves.length) return;
@@ -377,13 +377,13 @@ async function setUpForm() {
   $("#check").addEventListener("click", check);
 }
 
-/** What is said of the soils beside the rules, as settings. */
+/** The facts stated about the soils beside the rules, as settings. */
 function ofSoils() {
   const joint = $("#joint").value.trim();
   return [...($("#dispersion").value ? [`base.dispersive=${$("#dispersion").value}`] : []), ...(joint ? [`filter.joint_mm=${joint}`] : [])];
 }
 
-/** How the two sheets are taken. */
+/** The options for reading the two sheets. */
 const taken = () => ({ as_sampled: $("#as-sampled").checked, as_given: $("#as-given").checked });
 
 function asked() {
@@ -394,7 +394,7 @@ function asked() {
   return { base: state.base, filter: state.filter, density: $("#density").value, pack: $("#pack").checked, quick: $("#quick").checked, ...taken(), changes };
 }
 
-/** Walks the base, or every sample of its sheet, against every filter, with what the form says. */
+/** Walks the base, or every sample of its sheet, against every filter, with the settings of the form. */
 async function walkFilters(walks, problem) {
   show($(problem), "");
   const { density, pack, as_sampled, as_given, changes } = asked();
@@ -446,7 +446,7 @@ async function check() {
 
 const RUNS = ["first run", "second run"];
 
-/** Eroded mass of each run with its interval, and the threshold, drawn. */
+/** A drawing of the eroded mass of each run with its interval, and of the threshold. */
 function plot(runs) {
   const bottom = 26 * runs.length + 16;
   const x = (share) => 84 + 290 * Math.min(1, Math.max(0, share));
@@ -472,12 +472,12 @@ function plot(runs) {
 const eroded = (run) => percent(run.mean) + (run.low === null ? ", no interval from one replicate"
   : ` (95 % interval ${percent(run.low)} to ${percent(run.high)})`);
 
-/** The colour of a card by that of the first page. */
+/** The colour of a card, from the colour of the first page. */
 const COLOURS = { none: "green", some: "amber", doubted: "amber", continuing: "red" };
 
 const list = (items) => (items && items.length ? el("ul", {}, ...items.map((item) => el("li", {}, item))) : null);
 
-/** What a walk has come to so far: never a verdict. */
+/** The result of a walk so far, which is never a verdict. */
 function soFar(job) {
   const live = job.live;
   const parts = [];
@@ -509,10 +509,10 @@ function soFar(job) {
   return parts;
 }
 
-/** The lines that every face begins with. */
+/** The lines with which every interface begins. */
 const answer = (lines) => lines.map(([name, words]) => el("p", { class: "practice" }, el("b", {}, name), `: ${words}.`));
 
-/** At most three notes; the rest is folded. */
+/** At most three notes; the rest is collapsed. */
 const notes = (all) => [list(all.slice(0, 3)),
   all.length > 3 ? el("details", {}, el("summary", {}, `and ${all.length - 3} more`), list(all.slice(3))) : null];
 
@@ -554,7 +554,7 @@ function card(job) {
   return el("article", { class: `job ${kind}`, "data-id": job.id, "data-state": job.state }, ...parts);
 }
 
-/** Opens a page of results and the browser's own dialog to print it, which saves PDFs as well; that page runs no script itself. */
+/** Opens a page of results and the browser's print dialog, which also saves PDFs; the page itself runs no script. */
 function printPage(page) {
   const opened = open(page, "_blank");
   if (opened) opened.addEventListener("load", () => opened.print());
@@ -562,7 +562,7 @@ function printPage(page) {
 
 const cards = new Map();
 
-// A card that is replaced between a press and its release would take the click with it.
+// A card replaced between a press and its release would lose the click.
 let pressed = false;
 addEventListener("pointerdown", () => { pressed = true; });
 for (const kind of ["pointerup", "pointercancel"]) addEventListener(kind, () => setTimeout(() => { pressed = false; }, 50));
@@ -575,14 +575,14 @@ function showJobs() {
     const old = cards.get(job.id);
     if (old && old.text === text) return old.card;
     const made = card(job);
-    // What was opened or closed by hand stays so while the numbers change.
+    // Details opened or closed by hand stay so while the numbers change.
     if (old) $$("details", made).forEach((one, at) => { const before = $$("details", old.card)[at]; if (before && old.state === job.state) one.open = before.open; });
     cards.set(job.id, { text, card: made, state: job.state });
     return made;
   });
   const into = $("#jobs");
   if (shown.length === into.children.length && shown.every((one, at) => into.children[at] === one)) return;
-  // Nor does whoever goes by keys lose the place.
+  // Keyboard users keep their place, too.
   const at = document.activeElement;
   const held = at && into.contains(at) ? [at.closest(".job").dataset.id, at.textContent] : null;
   into.replaceChildren(...shown);
@@ -621,7 +621,7 @@ async function begin() {
   recall();
   setUpSheets();
   await poll();
-  // A new tab takes what the newest job was asked for.
+  // A new tab takes the sheets of the newest job.
   const newest = state.jobs.find((job) => job.asked);
   if (!state.base && !state.filter && newest) [state.base, state.filter] = [newest.asked.base, newest.asked.filter];
   showSheets();

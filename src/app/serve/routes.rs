@@ -39,14 +39,13 @@ const SCRIPT: &str = include_str!("page.js");
 const STYLE: &str = include_str!("page.css");
 const ICON: &str = include_str!("icon.svg");
 
-/// Content security policy of the page: its own script and style, its own pictures and requests, and nothing
-/// else.
+/// Content security policy of the page: it may use only its own script, style, pictures and requests.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; \
     connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
 const POLICY_OF_DRAWING: &str = "default-src 'none'; style-src 'unsafe-inline'; sandbox";
 
-/// Longest list of settings, and longest setting.
+/// Maximum number of settings, and maximum length of a setting.
 const SETTINGS: (usize, usize) = (200, 2000);
 
 #[derive(Debug, Deserialize)]
@@ -73,11 +72,11 @@ pub struct Routes {
     pub root: PathBuf,
 }
 
-/// An answer to a failed request: its status and words.
+/// Failed request: its status and message.
 type Problem = (u16, String);
 
-/// The constriction curves of a filter, loose and dense, by their names; empty if the library has no filter
-/// like it.
+/// Constriction curves of a filter, loose and dense, by their names; empty if the library has no similar
+/// filter.
 fn constrictions(filter: &Gradation) -> Vec<(String, Vec<CurvePoint>)> {
     let curve = |density: LibraryDensity| {
         let entry = LibraryFilter::find(filter, density).ok()??.found;
@@ -90,7 +89,7 @@ fn wrong(error: impl std::fmt::Display) -> Problem {
     (422, on_page(&error.to_string()))
 }
 
-/// Message of the command line in the words of the page, whose ticks and fields replace options.
+/// Message of the command line in the words of the page, which has boxes and fields instead of options.
 fn on_page(message: &str) -> String {
     let message =
         message.strip_prefix("--set: ").or_else(|| message.strip_prefix("--set, ")).unwrap_or(message);
@@ -100,7 +99,7 @@ fn on_page(message: &str) -> String {
 }
 
 impl Routes {
-    /// The answer to a request.
+    /// Answers a request.
     pub fn answer(&self, mut request: Request, stream: &mut TcpStream) -> io::Result<Answer> {
         let Some(path) = self.guard.path(&request).map(str::to_owned) else {
             let words = "not allowed: open the address that voidwalk serve has printed, with its secret";
@@ -186,7 +185,7 @@ impl Routes {
                 let work = match self.jobs.kept(id).map_err(conflict)? {
                     Some(file) => match self.planned(&file.kind, &file.request) {
                         Ok(planned) => planned.work,
-                        // A sheet is gone, and the folder has all that is needed.
+                        // A sheet is missing, but the folder holds everything needed.
                         Err(_) if self.jobs.has_scene(id) => Work::Resume,
                         Err(problem) => return Err(problem),
                     },
@@ -198,7 +197,7 @@ impl Routes {
         }
     }
 
-    /// Work of a request of this kind, now or when it continues.
+    /// Work for a request of this kind, now or when it is continued.
     fn planned(&self, kind: &str, request: &Value) -> Result<Planned, Problem> {
         match kind {
             "judge" => {
@@ -224,7 +223,7 @@ impl Routes {
         }
     }
 
-    /// All state that changes; the sheets only if the page has another number of them.
+    /// All state that changes; sheets only if the page has a different number of them.
     fn state(&self, request: &Request) -> Value {
         let sheets = self.sheets.all();
         let folder = std::path::absolute(&self.root).unwrap_or_else(|_| self.root.clone());
@@ -277,8 +276,7 @@ impl Routes {
         batches::samples(&self.sheets, &base, &filters, pair_options(request)?).map_err(wrong)
     }
 
-    /// The sieve curves of the sheets that are named, in one drawing, with the library's constrictions of the
-    /// filter.
+    /// Sieve curves of the named sheets in one drawing, with the library's constrictions of the filter.
     fn curves(&self, request: &Request) -> Result<Answer, Problem> {
         let (mut soils, mut passages) = (Vec::new(), Vec::new());
         for (name, role) in [("base", "base"), ("filter", "filter"), ("more", "")] {
@@ -299,7 +297,7 @@ impl Routes {
         Ok(Answer { policy: Some(POLICY_OF_DRAWING.into()), ..answer })
     }
 
-    /// A file of a job's folder: no other folder, and no link.
+    /// File in a job's folder; other folders and links are refused.
     fn file(&self, named: &str) -> Result<Answer, Problem> {
         let missing = || (404, "there is no such file".to_owned());
         let (folder, rest) = named.split_once('/').ok_or_else(missing)?;
@@ -312,7 +310,7 @@ impl Routes {
         if !real(&path).zip(real(&folder)).is_some_and(|(path, folder)| path.starts_with(folder)) {
             return Err(missing());
         }
-        // A pipe would hold the connection for ever.
+        // Reading a pipe would block the connection for ever.
         let file = open_regular(&path).ok().flatten();
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
         let kind = match ending {
@@ -325,7 +323,7 @@ impl Routes {
         let answer =
             Answer::file(kind, file.ok_or_else(missing)?).map_err(|error| (500, error.to_string()))?;
         let policy = match ending {
-            // A page of results runs nothing; its links lead to other files here.
+            // A page of results runs no script; its links lead to other files here.
             "html" => Some(format!("{}; frame-ancestors 'none'", report::shell::content_policy())),
             "svg" => Some(POLICY_OF_DRAWING.to_owned()),
             _ => None,
@@ -352,12 +350,12 @@ fn pair_options(request: &Request) -> Result<PairOptions, Problem> {
     TableOptions { as_given, changes, ..TableOptions::default() }.of_rules().map_err(wrong)
 }
 
-/// True if a job's folder is a folder, not a link to one elsewhere.
+/// True if a job's folder is a real folder, not a link to another.
 fn is_own(folder: &Path) -> bool {
     folder.symlink_metadata().is_ok_and(|meta| meta.is_dir())
 }
 
-/// A request that is not of its form.
+/// Answer to a malformed request.
 fn malformed(error: serde_json::Error) -> Problem {
     (400, error.to_string())
 }
@@ -381,7 +379,7 @@ fn bounded(changes: &[String]) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Every setting of a scene with its meaning, and the curves and filters that ship with the program.
+/// Every setting of a scene with its meaning, and the curves and filters shipped with the program.
 fn form() -> Value {
     let key = |key: &KeyInfo| {
         json!({
@@ -408,8 +406,8 @@ fn template(path: &str) -> Result<Answer, Problem> {
     Ok(Answer { download: Some(path.into()), ..answer })
 }
 
-/// Packs the results in `folder`, below `name`, into a file without a name in `beside`. Names that begin with
-/// a dot and checkpoints are left out, and no link is followed.
+/// Packs the results in `folder` under `name`, into an unnamed file in `beside`. Leaves out checkpoints and
+/// names that begin with a dot, and follows no link.
 fn archive(folder: &Path, name: &str, beside: &Path) -> io::Result<File> {
     let mut writer = ZipWriter::new(tempfile::tempfile_in(beside)?);
     add(&mut writer, folder, name)?;

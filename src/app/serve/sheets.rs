@@ -1,4 +1,4 @@
-//! Sheets that were dropped or pasted: each in a folder of its own, under a name that is harmless.
+//! Sheets that were dropped or pasted, each in its own folder under a harmless name.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -11,23 +11,23 @@ use voidwalk_sheets::{SoilSummary, soils_in_file};
 
 const FOLDER: &str = "sheets";
 
-/// Most sheets of a server, and all their bytes.
+/// Maximum number of sheets on a server, and of their bytes in all.
 const MOST: (usize, u64) = (200, 256 << 20);
 
-/// Most soils of a sheet that are kept and can be chosen.
+/// Maximum number of soils of a sheet that are kept and can be chosen.
 const MOST_SOILS: usize = 1000;
 
-/// No sheet has this number.
+/// Upper bound on the numbers of sheets.
 const LAST: usize = 100_000;
 
-/// Longest name of a file and its ending (letters, bytes): file systems allow 255 bytes.
+/// Maximum lengths of a file's name and ending (letters, bytes); file systems allow 255 bytes.
 const NAME: [(usize, usize); 2] = [(60, 180), (8, 32)];
 
 #[derive(Debug, Serialize)]
 pub struct Sheet {
     pub id: usize,
     pub name: String,
-    /// The soils that can be chosen, the first of the file, as `voidwalk soil` understands them.
+    /// Soils that can be chosen, the first ones of the file, as `voidwalk soil` reads them.
     pub soils: Vec<SoilSummary>,
     /// Number of soils in the file.
     pub in_all: usize,
@@ -57,11 +57,11 @@ struct Kept {
 }
 
 impl Sheets {
-    /// The sheets below `root`: those of an earlier server, and no others yet.
+    /// Sheets of an earlier server below `root`, and no others yet.
     pub fn new(root: &Path) -> Self {
         let folder = root.join(FOLDER);
         let mut kept = Kept::default();
-        // A folder of sheets that is a link, or cannot be read, counts as empty.
+        // A folder of sheets that is a link or unreadable counts as empty.
         let is_own = folder.symlink_metadata().is_ok_and(|meta| meta.is_dir());
         let entries = std::fs::read_dir(&folder).into_iter().flatten().flatten().filter(|_| is_own);
         let ids = entries.filter_map(|entry| entry.file_name().to_str()?.parse().ok());
@@ -75,7 +75,7 @@ impl Sheets {
         Self { folder, kept: Mutex::new(kept) }
     }
 
-    /// Keeps a sheet, if soils can be read from it and there is room.
+    /// Adds a sheet, if soils can be read from it and there is room.
     pub fn add(&self, name: &str, bytes: &[u8]) -> Result<Arc<Sheet>, String> {
         let size = bytes.len() as u64;
         {
@@ -86,7 +86,7 @@ impl Sheets {
             kept.read += 1;
             kept.bytes += size;
         }
-        // A large one takes a while, in which others are not kept waiting.
+        // Reading a large sheet takes a while, and must not make others wait.
         let added = self.read(name, bytes);
         let mut kept = self.locked();
         kept.read -= 1;
@@ -97,14 +97,14 @@ impl Sheets {
         added
     }
 
-    /// Writes a sheet into a folder of its own, and reads it.
+    /// Writes a sheet into its own folder, and reads it.
     fn read(&self, name: &str, bytes: &[u8]) -> Result<Arc<Sheet>, String> {
         make_folder(&self.folder).map_err(|error| error.to_string())?;
         let (id, folder) = self.new_folder()?;
         let path = folder.join(harmless(name));
         let written = write_whole(&path, bytes).map_err(|error| error.to_string());
         written.and_then(|()| Sheet::open(id, &path)).map_err(|problem| {
-            // Removes a file that is not a sheet; if that fails it stays, and does no harm.
+            // Removes a file that is not a sheet; if that fails, the file stays and does no harm.
             let _ = std::fs::remove_file(&path).and_then(|()| std::fs::remove_dir(&folder));
             self.as_named(&problem)
         })
@@ -114,7 +114,7 @@ impl Sheets {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A number whose folder was not there, and the folder: an earlier server may have left some.
+    /// New folder and its number; an earlier server may have left folders.
     fn new_folder(&self) -> Result<(usize, PathBuf), String> {
         for id in 1..LAST {
             let folder = self.folder.join(id.to_string());
@@ -131,7 +131,7 @@ impl Sheets {
         self.locked().sheets.clone()
     }
 
-    /// The path of a sheet that a page names by its number, with the soil behind a `#`: `3#Filter A`.
+    /// Path of a sheet that a page names by its number, with the soil after a `#`: `3#Filter A`.
     pub fn path(&self, named: &str) -> Result<PathBuf, String> {
         let (id, soil) = named.split_once('#').map_or((named, None), |(id, soil)| (id, Some(soil)));
         let sheets = self.all();
@@ -149,7 +149,7 @@ impl Sheets {
         Err(format!("{} holds no soil of this name{among}", sheet.name))
     }
 
-    /// A message as the command line would give it: a sheet has its name there, and no folder.
+    /// Message as the command line would give it, but with the sheet's name and no folder.
     pub fn as_named(&self, message: &str) -> String {
         let mut text = message.to_owned();
         let folder = format!("{}/", self.folder.display());
@@ -163,8 +163,8 @@ impl Sheets {
     }
 }
 
-/// A sheet that an earlier server kept, with its bytes; `None` if no file of this number is the program's own
-/// and still holds soils.
+/// Sheet that an earlier server kept, with its size in bytes; `None` if no file of this number is the
+/// program's own and still holds soils.
 fn earlier(folder: &Path, id: usize) -> Option<(Arc<Sheet>, u64)> {
     let folder = folder.join(id.to_string());
     folder.symlink_metadata().ok().filter(|meta| meta.is_dir())?;
@@ -179,12 +179,12 @@ fn earlier(folder: &Path, id: usize) -> Option<(Arc<Sheet>, u64)> {
     Some((Sheet::open(id, &folder.join(name)).ok()?, bytes))
 }
 
-/// True if no terminal, page or file system gives a letter a special meaning.
+/// True if a letter has no special meaning to terminals, pages and file systems.
 fn is_plain(letter: char) -> bool {
     !is_hidden(letter) && (letter.is_alphanumeric() || "._- ()+,".contains(letter))
 }
 
-/// A name of a file without folders, and of letters that no terminal, page or file system takes for more.
+/// File name without folders and without letters of special meaning to terminals, pages or file systems.
 fn harmless(name: &str) -> String {
     let last = name.rsplit(['/', '\\']).next().unwrap_or_default();
     let kept: String = last.chars().filter(|c| is_plain(*c)).collect();
@@ -199,7 +199,7 @@ fn harmless(name: &str) -> String {
     }
 }
 
-/// The first letters of a text, up to these numbers of letters and bytes.
+/// First letters of a text, up to these numbers of letters and bytes.
 fn cut(text: &str, (letters, bytes): (usize, usize)) -> &str {
     let ends = text.char_indices().map(|(at, letter)| at + letter.len_utf8()).take(letters);
     &text[..ends.take_while(|end| *end <= bytes).last().unwrap_or(0)]
@@ -249,7 +249,7 @@ mod tests {
         }
         let hidden = "size_mm,a\u{1b}\u{202e}b,c\n1,0,0\n2,100,100\n";
         sheets.add("hidden.csv", hidden.as_bytes()).unwrap();
-        // Name on the page.
+        // Name shown on the page.
         let path = sheets.path("2#a\u{fffd}\u{fffd}b").unwrap();
         assert_eq!(voidwalk_sheets::curves_in_file(&path, None).unwrap().len(), 1);
     }

@@ -35,10 +35,10 @@ impl Default for PercolationOptions {
     }
 }
 
-/// Plan of a study; one seed always gives the same bits.
+/// Plan of a study; the same seed always gives the same bits.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PercolationPlan {
-    /// Voids along x and y, and layers, of one lattice after another.
+    /// Voids along x and y, and layers, of each lattice.
     pub shapes: Vec<[u32; 3]>,
     /// Realisations of each size.
     pub realisations: u64,
@@ -54,7 +54,7 @@ impl Default for PercolationPlan {
 
 #[derive(Default, Serialize, Deserialize)]
 struct Found {
-    /// The lengths of a lattice, and the threshold of each of its realisations in order.
+    /// Lengths of a lattice, and the thresholds of its realisations in order.
     thresholds: Vec<([u32; 3], Vec<f64>)>,
     /// Wall time (s).
     seconds: f64,
@@ -63,8 +63,8 @@ struct Found {
 /// Finds the thresholds and writes `percolation.csv` and, last, `percolation.json`.
 ///
 /// # Errors
-/// Sizes that no lattice can have and a folder that cannot be claimed are refused before any work; errors of
-/// the folder. After a kill the same command continues with the lattice that was under way.
+/// Sizes that no lattice can have, or a folder that cannot be claimed, are refused before any work; then
+/// errors of the folder. After a kill the same command continues with the lattice that was under way.
 pub fn run(options: &PercolationOptions, callbacks: &Callbacks) -> Result<PercolationStudy, RunError> {
     let plan = options.plan.clone().checked().map_err(RunError::refused)?;
     let kind = FolderKind::Percolation;
@@ -78,10 +78,10 @@ pub fn run(options: &PercolationOptions, callbacks: &Callbacks) -> Result<Percol
 }
 
 impl PercolationPlan {
-    /// Cubes first, ascending, each lattice once.
+    /// Sorts cubes first, by size, and keeps each lattice once.
     ///
     /// # Errors
-    /// A length of 0, or more constrictions than 32 bits can number.
+    /// A length of 0, or too many constrictions for 32 bits.
     pub fn checked(mut self) -> Result<Self, NetworkError> {
         self.shapes.sort_unstable_by_key(|&shape| (!is_cube(shape), shape));
         self.shapes.dedup();
@@ -91,9 +91,9 @@ impl PercolationPlan {
         Ok(self)
     }
 
-    /// Finds every threshold that was not found before, realisations side by side, and keeps each lattice as
-    /// soon as it is done; the same bits for any number of threads. All errors but those of the folder are
-    /// known from [`PercolationPlan::checked`].
+    /// Finds every missing threshold, realisations side by side, and saves each lattice as soon as it is
+    /// done; gives the same bits for any number of threads. [`PercolationPlan::checked`] rules out all errors
+    /// except those of the folder.
     fn run(&self, mut found: Found, kept: Option<&Kept>) -> Result<Found, RunError> {
         let (begun, seconds_before) = (Instant::now(), found.seconds);
         for &shape in &self.shapes[found.thresholds.len()..] {
@@ -108,7 +108,7 @@ impl PercolationPlan {
     }
 }
 
-/// `percolation.csv`: one row a realisation; the size of a lattice that is not a cube is written as 40x40x60.
+/// `percolation.csv`: one row per realisation; a lattice that is not a cube is written as 40x40x60.
 fn csv(found: &Found) -> Vec<u8> {
     let of_lattice = |(shape, all): &'_ ([u32; 3], Vec<f64>)| {
         let shape = *shape;

@@ -1,5 +1,5 @@
-//! The specification of a filter by the rules of practice alone, for one base or for each of many samples, in
-//! a folder of its own.
+//! Specification of a filter by the rules of practice alone, for one base or for each of many samples, in a
+//! folder of its own.
 
 use std::path::PathBuf;
 
@@ -22,24 +22,24 @@ use voidwalk_practice::quantity::SizeUnit;
 use voidwalk_practice::{DesignedSample, DesignedSamples, SheetCover, SpecificationOptions};
 use voidwalk_sheets::{SoilSample, file_and_soil};
 
-/// A coarser base (D85, mm) is refused: its sizes are in another unit.
+/// D85 (mm) above which a base is refused, because its sizes are probably in another unit.
 pub(super) const NO_BASE_MM: f64 = 100.0;
 
-/// Options of a specification, and the place of its results.
+/// Options of a specification, and the folder of its results.
 #[derive(Clone, Debug)]
 pub struct SpecifyOptions {
-    /// Sieve tables of the base, whose soils are the curves of an envelope; or of samples, also folders of
-    /// tables.
+    /// Sieve tables of the base, whose soils are the curves of an envelope; or tables, or folders of tables,
+    /// of samples.
     pub bases: Vec<PathBuf>,
     /// True if the base is dispersive.
     pub dispersive: bool,
     /// True if the band is to lie at the finer end of the allowed range.
     pub finer: bool,
-    /// The sieves at which the limits are stated.
+    /// Sieves at which the limits are stated.
     pub sieves: SieveSeries,
-    /// Cover of its page, without the day.
+    /// Cover of its page, without the date.
     pub cover: SheetCover,
-    /// True if its page shows inches beside mm.
+    /// True if its page shows inches as well as mm.
     pub inches: bool,
     /// Folder for the results.
     pub out: PathBuf,
@@ -72,7 +72,7 @@ impl SpecifyOptions {
 /// `specification.json`.
 ///
 /// # Errors
-/// A base that cannot be read or is not a base, and a folder that cannot be claimed, are refused before
+/// A base that cannot be read or is not a base, or a folder that cannot be claimed, is refused before
 /// anything is written.
 pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specification, RunError> {
     let base = InputSoils::envelope(&options.bases)?;
@@ -94,10 +94,10 @@ pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specif
 }
 
 /// Specifies a filter for every sample (the bases of the options) by practice alone, and writes
-/// `designs.csv`, a row a sample, and, last, `designs.json`.
+/// `designs.csv`, one row per sample, and, last, `designs.json`.
 ///
 /// # Errors
-/// Samples that cannot be read, or one that is not a base, and a folder that cannot be claimed, are refused
+/// Samples that cannot be read, a sample that is not a base, or a folder that cannot be claimed are refused
 /// before anything is written.
 pub fn specify_each(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<DesignedSamples, RunError> {
     let input = InputSoils::samples(&options.bases)?;
@@ -122,17 +122,17 @@ pub fn specify_each(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<D
     Ok(table)
 }
 
-/// Refuses soils of which one is called base and another filter: the filter is not a curve of the base.
+/// Refuses soils if one is named base and another filter: the filter is not a curve of the base.
 fn no_filter_within(base: &InputSoils) -> Result<(), RunError> {
     let called = |wanted: &str| {
-        // Several samples on a sheet are each named like `Base/Sample 1`.
+        // Samples on one sheet have names like `Base/Sample 1`.
         let sheet = |name: &str| name.split('/').next().unwrap_or_default().trim().to_lowercase();
         let in_file = |soil: &SoilSample| file_and_soil(&soil.path).1.unwrap_or_else(|| soil.name.clone());
         base.soils.iter().find(|soil| sheet(&in_file(soil)) == wanted)
     };
     match (called("base"), called("filter")) {
         (Some(soil), Some(filter)) => Err(RunError::Refused(format!(
-            "{}: {}: it holds a base and a filter, and all curves are taken as of the base; name one: {}",
+            "{}: {}: it holds a base and a filter, and all curves are taken as the base's; name one: {}",
             plain(&base.name),
             filter.name,
             shown(&soil.path)
@@ -141,7 +141,7 @@ fn no_filter_within(base: &InputSoils) -> Result<(), RunError> {
     }
 }
 
-/// Refuses stones: a size in micrometres under a header in mm, most likely.
+/// Refuses stones: most likely a size in micrometres under a header in mm.
 fn is_a_base(soil: &SoilSample) -> Result<(), RunError> {
     match soil.curve.d(85.0).filter(|d85| *d85 > NO_BASE_MM) {
         Some(d85) => Err(refused(&soil.path, format!("{}: {}", soil.name, no_base(d85)))),
@@ -149,7 +149,7 @@ fn is_a_base(soil: &SoilSample) -> Result<(), RunError> {
     }
 }
 
-/// Problem of a base that is too coarse.
+/// Message for a base that is too coarse.
 pub(super) fn no_base(d85: f64) -> String {
     format!(
         "the base's D85 is {d85:.0} mm, and no filter holds such stones: are its sizes micrometres under a \

@@ -1,5 +1,5 @@
-//! A case's answer as facts: practice beside the walks, each with its notes. No walk changes the answer of
-//! practice.
+//! Answer of a case as facts: practice beside the walks, each with its notes. No walk changes the answer
+//! of practice.
 
 pub(crate) mod walks;
 
@@ -13,17 +13,17 @@ use serde::{Deserialize, Serialize};
 use voidwalk_practice::decision::Standing;
 use voidwalk_practice::{AboutPage, BatchFilter, BatchRow, Decision, Headline, SheetCover, TestedClass};
 
-/// The content of the files of a run folder and the derived values from which its page is made.
+/// Contents of the files of a run folder, and derived values for its page.
 pub struct RunFiles {
     /// `outcome.json`.
     pub outcome: Outcome,
-    /// The decision of practice on the pair.
+    /// Decision of practice on the pair.
     pub decision: Decision,
     /// `manifest.json`.
     pub manifest: Manifest,
     /// `scene.toml`.
     pub scene: String,
-    /// Its settings of the page.
+    /// Page settings of the scene.
     pub about: AboutPage,
     /// `inputs/packing.json`, if the filter was packed.
     pub packing: Option<PackingRecord>,
@@ -31,8 +31,8 @@ pub struct RunFiles {
     pub recorded: Recorded,
 }
 
-/// The class by which practice counts when verdicts are accepted or not, the worst that nobody excludes;
-/// `None` if no rule of design was applied.
+/// Class of practice for comparison with verdicts: the worst that is not excluded; `None` if no rule of
+/// design was applied.
 pub fn counts_as(decision: &Decision) -> Option<Verdict> {
     let coarse = match decision.tests {
         TestedClass::Continuing => Verdict::Continuing,
@@ -51,40 +51,40 @@ pub fn counts_as(decision: &Decision) -> Option<Verdict> {
     }
 }
 
-/// The whole of `batch.json`.
+/// Contents of `batch.json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct WalkedBatch {
     /// Version of the program.
     pub version: String,
-    /// The commit that it was built from; `None` where that is not known.
+    /// Commit that the program was built from; `None` if it is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub commit: Option<String>,
-    /// Hash of everything that the rows follow from: samples, filters and settings.
+    /// Hash of all inputs of the rows: samples, filters and settings.
     pub work: String,
     /// Seed of every walk.
     pub seed: u64,
-    /// The samples, as they were named.
+    /// Samples as named by the user.
     pub samples: String,
-    /// The filters.
+    /// Filters of the batch.
     pub filters: Vec<BatchFilter>,
-    /// The curve of the one base as sampled, rows of (size in mm, percent finer by mass); left out where each
-    /// soil is a sample.
+    /// Curve of the one base as sampled, rows of (size in mm, percent finer by mass); absent if each soil
+    /// is a sample.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub base: Vec<[f64; 2]>,
-    /// A row for each filter and sample, filter by filter.
+    /// One row for each filter and sample, grouped by filter.
     pub rows: Vec<WalkedRow>,
-    /// What was assumed of the files, a sentence each.
+    /// Assumptions about the files, one sentence each.
     pub notes: Vec<String>,
     /// Eroded mass fraction that divides the classes: 0.075.
     pub threshold: f64,
-    /// What the sheet says of itself.
+    /// Cover of the sheet.
     #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
     pub cover: SheetCover,
-    /// Whether inches stand beside mm on page and terminal.
+    /// True if page and terminal show inches beside mm.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub inches: bool,
-    /// What no walk contains.
+    /// Processes that every walk omits.
     pub model_leaves_out: Vec<ModelLimit>,
 }
 
@@ -92,49 +92,49 @@ pub struct WalkedBatch {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct WalkedRow {
-    /// What practice says.
+    /// Answer of practice.
     #[serde(flatten)]
     pub rules: BatchRow,
-    /// 1 for the sample that governs the filter by the rules, 2 and 3 for those next to it.
+    /// Rank by the rules: 1 for the sample that governs the filter, 2 and 3 for the next.
     pub governs: Option<u64>,
-    /// What its walk says; `None` where there was none.
+    /// Result of the walk; `None` if there was none.
     pub walk: Option<SampleWalk>,
-    /// Why it was not walked; empty where it was.
+    /// Reason why it was not walked; empty if it was.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub not_walked: String,
 }
 
-/// What the walk of one sample says.
+/// Result of the walk of one sample.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct SampleWalk {
-    /// Folder of its results, inside the batch's.
+    /// Folder of its results, inside the batch's folder.
     pub folder: String,
-    /// Whether it was walked in full; otherwise it was a first look.
+    /// True if it was walked in full, false for a first look.
     pub in_full: bool,
-    /// The answer of practice; `None` without two sieve curves in mm.
+    /// Answer of practice; `None` without two sieve curves in mm.
     pub headline: Option<Headline>,
-    /// The class that its replicates together support.
+    /// Class supported by all replicates together.
     pub verdict: Verdict,
-    /// The class as which practice counts; `None` without a rule.
+    /// Class of practice; `None` without a rule.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by_practice: Option<Verdict>,
-    /// Replicates.
+    /// Number of replicates.
     pub replicates: u64,
     /// D15F over D85B and D95B.
     pub ratios: Ratios,
-    /// D85B, and which base it is of.
+    /// D85B, and the base that it belongs to.
     pub base: Option<BaseSize>,
     /// Eroded mass fraction of each run.
     pub runs: Vec<Statistic>,
-    /// Least and most eroded over the range of the constriction curve, one pair per run; empty where the
-    /// curve is no range.
+    /// Minimum and maximum eroded mass fraction over the range of the constriction curve, one pair for
+    /// each run; empty if the curve has no range.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub curve_range: Vec<[f64; 2]>,
 }
 
 impl SampleWalk {
-    /// Takes the numbers of the outcome in this folder.
+    /// Takes the results of the outcome in this folder.
     pub fn of(outcome: &Outcome, folder: String, in_full: bool) -> Self {
         let range = outcome.curve_range.as_ref();
         Self {
@@ -153,7 +153,7 @@ impl SampleWalk {
 }
 
 impl WalkedBatch {
-    /// A batch of these rows.
+    /// Builds a batch of these rows.
     pub fn new(samples: String, filters: Vec<BatchFilter>, rows: Vec<WalkedRow>) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
@@ -171,12 +171,12 @@ impl WalkedBatch {
         !self.base.is_empty()
     }
 
-    /// The rows of a filter.
+    /// Rows of a filter.
     pub fn of_filter(&self, filter: &str) -> impl Iterator<Item = &WalkedRow> {
         self.rows.iter().filter(move |row| row.rules.filter == filter)
     }
 
-    /// The samples that govern a filter, the strictest first.
+    /// Samples that govern a filter, strictest first.
     pub fn governing(&self, filter: &str) -> Vec<&WalkedRow> {
         let mut rows: Vec<&WalkedRow> = self.of_filter(filter).filter(|row| row.governs.is_some()).collect();
         rows.sort_by_key(|row| row.governs);
@@ -185,18 +185,18 @@ impl WalkedBatch {
 }
 
 impl WalkedRow {
-    /// Tells if its walk erodes.
+    /// True if the walk erodes.
     pub fn erodes(&self) -> bool {
         let class = self.walk.as_ref().map(|walk| walk.verdict);
         matches!(class, Some(Verdict::Some | Verdict::Continuing))
     }
 
-    /// Tells if a rule that is met is in doubt: another rule is not kept, or the walk erodes.
+    /// True if a rule that is met is in doubt: another rule is not kept, or the walk erodes.
     pub fn is_doubted(&self) -> bool {
         self.is_against_practice() || self.erodes()
     }
 
-    /// Tells if a rule of retention or of the filter's own stability is not kept.
+    /// True if a rule of retention or of the filter's internal stability is not kept.
     pub fn is_against_practice(&self) -> bool {
         let breaks = |walk: &SampleWalk| walk.by_practice.is_some_and(|class| class != Verdict::None);
         self.walk.as_ref().is_some_and(breaks) || self.rules.met == Some(false) || self.rules.may_lose_fines

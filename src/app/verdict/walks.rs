@@ -1,4 +1,4 @@
-//! Notes on a walk: on soils and network before it, on its own doubts, and on the results of a run.
+//! Notes on a walk: on soils and network before it, on doubts about the walk, and on the results of a run.
 
 use crate::outcome::packing::{FLOATING_PERCENT, PackedPart};
 use crate::outcome::record::{Outcome, Replicate, Run, ShortOf, Stopping, Verdict};
@@ -7,48 +7,48 @@ use voidwalk_core::gradation::{BROAD_CU, FEW_FINES, FINES_MM, Gradation};
 use voidwalk_practice::Note;
 use voidwalk_practice::rules::broad_base;
 
-/// With fewer replicates than these a note states their number: their scatter is hardly known.
+/// Number of replicates below which a note states their number: their scatter is hardly known.
 const FEW_REPLICATES: u64 = 5;
 
 /// Ranges of Cu, of filter and base, in which the model was checked.
 const FILTER_CU: [f64; 2] = [1.2, 6.0];
 const BASE_CU: [f64; 2] = [1.2, 4.5];
 
-/// A lattice narrower than this many voids has few parallel paths: on one pair of soils one void across
-/// eroded 3.3 %, forty 13.3 %.
+/// Minimum width of a lattice (voids); a narrower one has few parallel paths. On one pair of soils one
+/// void across eroded 3.3 %, forty 13.3 %.
 const FEWEST_ACROSS: u32 = 10;
 
-/// A base, a filter and a network that are to be walked.
+/// Base, filter and network of a walk to come.
 #[derive(Clone)]
 pub struct PlannedWalk<'a> {
-    /// The base, as it is walked.
+    /// Base as walked.
     pub base: &'a Gradation,
-    /// The base as it was stated, if it is walked regraded.
+    /// Base as stated, if it is walked regraded.
     pub regraded_from: Option<&'a Gradation>,
-    /// The finest constriction (mm): a pan fraction of the base that may be coarser counts as finer.
+    /// Finest constriction (mm): a pan fraction of the base that may be coarser counts as finer.
     pub finest_constriction_mm: f64,
-    /// The filter, if it is known.
+    /// Filter, if it is known.
     pub filter: Option<&'a Gradation>,
-    /// True if the filter's gradation is a sieve curve, and not an assumed straight line.
+    /// True for a sieve curve of the filter, false for an assumed straight line.
     pub filter_is_measured: bool,
     /// True if sizes are multiples of D0F.
     pub scale_free: bool,
-    /// Voids of a network that was given, not built.
+    /// Number of voids of a given network.
     pub given_voids: Option<u64>,
-    /// Voids along each axis of a lattice.
+    /// Number of voids along each axis of a lattice.
     pub lattice: Option<[u32; 3]>,
-    /// Layers of voids.
+    /// Number of layers of voids.
     pub layers: u64,
     /// True if water flows.
     pub flows: bool,
-    /// Increments in which the base is inserted.
+    /// Number of increments in which the base is inserted.
     pub increments: u64,
-    /// Replicates.
+    /// Number of replicates.
     pub replicates: u64,
 }
 
 impl PlannedWalk<'_> {
-    /// Notes on unchecked and unknown things, in no order.
+    /// Notes on inputs that are unchecked or unknown, in no order.
     pub fn notes(&self) -> Vec<Note> {
         let notes = [
             self.fines(),
@@ -67,7 +67,7 @@ impl PlannedWalk<'_> {
         notes.into_iter().flatten().collect()
     }
 
-    /// Notes fines of the base that may be cohesive, or that are unknown.
+    /// Notes fines of the base that may be cohesive or are unknown.
     fn fines(&self) -> Option<Note> {
         let fines = self.base.percent_finer_by_mass(FINES_MM);
         if self.scale_free || fines <= FEW_FINES {
@@ -80,7 +80,7 @@ impl PlannedWalk<'_> {
         })
     }
 
-    /// Notes a broadly graded base, walked as practice cuts it or as it is.
+    /// Notes a broadly graded base, walked as regraded by practice or as sampled.
     fn broad_base(&self) -> Option<Note> {
         if self.scale_free {
             return None;
@@ -95,8 +95,8 @@ impl PlannedWalk<'_> {
         }
     }
 
-    /// Notes a Cu that is a lower bound: if D10 is finer than the finest sieve, its size is not extrapolated.
-    /// Cu is greater than if all of that part were as coarse as that sieve, by an unknown amount.
+    /// Notes a Cu that is a lower bound: if D10 is finer than the finest sieve, it is not extrapolated.
+    /// The true Cu exceeds the value with D10 at that sieve by an unknown amount.
     fn cu_of_base(&self) -> Option<Note> {
         let ([low, high], sieve) = (BASE_CU, self.base.smallest_mm());
         match (self.base.cu(), self.base.d(60.0)) {
@@ -107,7 +107,7 @@ impl PlannedWalk<'_> {
         }
     }
 
-    /// Notes a base whose coarser part does not hold its own finer part.
+    /// Notes a base whose coarser part does not hold its finer part.
     fn unstable_base(&self) -> Option<Note> {
         let stated = self.regraded_from.unwrap_or(self.base);
         let index = stated.known_kenney_lau().filter(|index| index.value < 1.0 && !self.scale_free)?;
@@ -135,16 +135,16 @@ impl PlannedWalk<'_> {
         (nx.min(ny) < FEWEST_ACROSS).then(|| Note::NarrowLattice { nx: nx.into(), ny: ny.into() })
     }
 
-    /// Notes a base that is, with water, inserted completely before any of it can be through.
+    /// Notes a base that, with water, is inserted completely before any of it can pass the filter.
     ///
-    /// A particle makes one move per increment, and needs as many as there are layers. Particles on their way
-    /// when the water stops count as retained; here this is the whole base.
+    /// A particle makes one move per increment and needs as many as there are layers. Particles on their
+    /// way when the water stops count as retained; here this is the whole base.
     fn all_on_its_way(&self) -> Option<Note> {
         let is_late = self.flows && self.increments <= self.layers;
         is_late.then_some(Note::AllOnItsWay { increments: self.increments, layers: self.layers })
     }
 
-    /// Notes that the replicates reveal little of their own scatter.
+    /// Notes that the replicates say little about their own scatter.
     fn few_replicates(&self) -> Option<Note> {
         match self.replicates {
             1 => Some(Note::OneReplicate {}),
@@ -164,34 +164,34 @@ fn not_as_uniform(soil: &str, cu: Option<f64>, [low, high]: [f64; 2]) -> Option<
     }
 }
 
-/// A permeability below this part of the clean filter's is treated as zero: it is shown as 0.0 %.
+/// Fraction of the clean filter's permeability below which it is treated as zero and shown as 0.0 %.
 const CLOGGED: f64 = 5e-4;
 
 /// Data of a walk that raise doubts.
 pub struct Walked<'a> {
-    /// Its replicates.
+    /// Replicates of the walk.
     pub replicates: Vec<&'a Replicate>,
-    /// Replicate, run and increment after which water was first found to flow no more; in order.
+    /// Replicate, run and increment after which water was first found not to flow; in order.
     pub clogged: Vec<[u64; 3]>,
-    /// The base.
+    /// Base of the walk.
     pub base: &'a Gradation,
-    /// Part of the base that an increment inserts.
+    /// Fraction of the base inserted in each increment.
     pub share: f64,
-    /// Layers of the network.
+    /// Number of layers of the network.
     pub layers: u64,
     /// True if blocked constrictions leave openings.
     pub openings: bool,
 }
 
-/// Tells if such a small part of the clean filter's permeability is treated as zero. With openings little
+/// True if this fraction of the clean filter's permeability is treated as zero. With openings little
 /// passes, but water flows.
 pub fn is_clogged(k_over_k0: f64, openings: bool) -> bool {
     k_over_k0 <= if openings { 0.0 } else { CLOGGED }
 }
 
-/// Notes the reasons in its walk to distrust a class that does not erode for ever.
+/// Notes reasons in the walk to distrust a class that does not erode continually.
 pub fn notes(verdict: Verdict, walked: &Walked) -> Vec<Note> {
-    // The first run tells "no erosion" from the others, the second "some" from "continuing".
+    // The first run separates "no erosion" from the other classes, the second "some" from "continuing".
     let run = match verdict {
         Verdict::None => 1,
         Verdict::Some | Verdict::Undecided => 2.min(walked.runs()),
@@ -212,8 +212,8 @@ impl Walked<'_> {
 
     /// Notes that no water flowed at the end of the run that decides.
     ///
-    /// From then on nothing moves: all particles on their way, at least those of the last increments, as many
-    /// as there are layers, count as retained.
+    /// From then on nothing moves: all particles on their way, at least those of the last increments, as
+    /// many as there are layers, count as retained.
     fn clogging(&self, run: u64) -> Option<Note> {
         let all = self.of_run(run).count();
         let is_none = |k_over_k0| is_clogged(k_over_k0, self.openings);
@@ -247,14 +247,14 @@ impl Walked<'_> {
         Some(Note::TrappedCouldTurn { trapped: worst.trapped, inserted: worst.inserted, mass_percent })
     }
 
-    /// The greatest mass of such a share of the particles, by number: the mass of the coarsest.
+    /// Upper bound of the mass fraction of this number fraction of the particles: that of the coarsest.
     fn mass_of(&self, share: f64) -> f64 {
         let coarser_than = self.base.d_by_number(100.0 * (1.0 - share));
         let mass = coarser_than.map_or(1.0, |d| 1.0 - self.base.percent_finer_by_mass(d) / 100.0);
         mass.clamp(share, 1.0)
     }
 
-    /// Notes that the second run erodes what the first did not.
+    /// Notes that the second run erodes though the first does not.
     fn more_in_the_second(&self) -> Option<Note> {
         let eroded: Vec<f64> = self.of_run(2).map(|run| run.eroded_mass_fraction).collect();
         let mean = eroded.iter().sum::<f64>() / eroded.len().max(1) as f64;
@@ -262,12 +262,12 @@ impl Walked<'_> {
     }
 }
 
-/// Above this part of its volume a void holds more than any packing of particles would.
+/// Fraction of its volume above which a void holds more than any packing of particles.
 const ROOM: f64 = 0.6;
 
 impl Outcome {
-    /// Notes on its results: a target that was not reached, classes that the replicates leave open, trapped
-    /// particles, and the effects of water and full voids.
+    /// Notes on the results: a target that was not reached, classes that the replicates leave open,
+    /// trapped particles, and effects of water and full voids.
     pub fn notes_of_results(&self) -> Vec<Note> {
         let trapped: u64 = self.replicates.iter().flat_map(|r| &r.runs).map(|r| r.trapped).sum();
         [
@@ -285,7 +285,7 @@ impl Outcome {
         .collect()
     }
 
-    /// Notes the cause of a class that the replicates do not separate, unless another note does.
+    /// Notes why the replicates do not separate the classes, unless another note does.
     fn replicates_leave_open(&self) -> Option<Note> {
         // A target error that was met says nothing about the class.
         let is_told = |stopping: &Stopping| stopping.short_of.is_some() || stopping.decide_percent.is_some();
@@ -314,21 +314,21 @@ impl Outcome {
         (grain_mm > modelled_mm).then_some(Note::ThinnerThanGrain { modelled_mm, grain_mm })
     }
 
-    /// Notes that no other amount of base or thickness was walked.
+    /// Notes that no other amount of base and no other thickness was walked.
     fn not_studied(&self) -> Option<Note> {
         let is_studied = self.studies_to_come || !(self.sensitivity.is_empty() && self.thickness.is_empty());
         (self.practice.is_some() && !is_studied).then_some(Note::NotStudied {})
     }
 
-    /// Notes the part of the permeability that is left at the end: a mean over the replicates; `None` without
-    /// water.
+    /// Notes the remaining fraction of the permeability at the end: a mean over the replicates; `None`
+    /// without water.
     fn permeability(&self) -> Option<Note> {
         let last = self.summary.len().checked_sub(1)?;
         let left_percent = 100.0 * self.mean_of(last, |run| run.k_over_k0)?;
         Some(Note::Permeability { run: last as u64 + 1, left_percent })
     }
 
-    /// Notes that a void holds more than it has room for; `None` if no void does, or volumes are unknown.
+    /// Notes that a void holds more than it has room for; `None` if no void does or volumes are unknown.
     fn overfull(&self) -> Option<Note> {
         let runs = || self.replicates.iter().flat_map(|replicate| &replicate.runs);
         let share = 100.0 * runs().filter_map(|run| run.overfull_fraction).reduce(f64::max)?;
@@ -346,7 +346,7 @@ impl Outcome {
     }
 }
 
-/// The note on a filter from which this part was packed.
+/// Note on a filter of which this part was packed.
 pub fn packed_part(part: &PackedPart) -> Note {
     let PackedPart { percent: part_percent, largest_mm, finer_by, sizes_missing_above, .. } = *part;
     let finer_percent = 100.0 * finer_by;
@@ -357,7 +357,7 @@ pub fn packed_part(part: &PackedPart) -> Note {
     }
 }
 
-/// Notes the reason why replicates miss the requested target.
+/// Notes why the replicates miss the requested target.
 fn short_of(stopping: &Stopping) -> Option<Note> {
     Some(match stopping.short_of? {
         ShortOf::SecondRun => Note::SecondRunMissing {},
@@ -430,7 +430,7 @@ mod tests {
         }
     }
 
-    /// Openings always let a little water flow.
+    /// Openings always let some water pass.
     #[test]
     fn what_openings_still_let_pass_is_not_clogged() {
         let clogs = |k: f64, openings: bool| {
@@ -456,7 +456,7 @@ mod tests {
         assert_eq!(doubts(Verdict::None, &[(0.05, 0, None), (0.07, 0, None)], &[]), []);
     }
 
-    /// A plan without findings, and the finding of each change of it.
+    /// Plan without findings, and the finding from each change of it.
     #[test]
     fn each_finding_follows_from_its_own_change_alone() {
         let sand = curve(&[(0.2, 0.0), (0.6, 100.0)]);
@@ -487,7 +487,7 @@ mod tests {
             ids(&changed)
         };
         assert_eq!(ids(&plan), [""; 0]);
-        // Each pair of soils with its findings in mm, and in multiples of D0F.
+        // Each pair of soils has its findings in mm and in multiples of D0F.
         for (base, in_mm, free) in [
             (&silt, vec!["cohesive_fines"], vec![]),
             (
@@ -516,7 +516,7 @@ mod tests {
         assert!(
             ids(&PlannedWalk { base: &mostly_hidden, ..plan.clone() }).contains(&"cu_unknown".to_owned())
         );
-        // 14 % finer than 0.002 mm, D60 0.2 mm.
+        // 14 % finer than 0.002 mm, D60 of 0.2 mm.
         let clayey = curve(&[(0.002, 14.0), (0.2, 60.0), (0.4, 100.0)]);
         let open = PlannedWalk { base: &clayey, ..plan.clone() };
         let least = open.notes().into_iter().find_map(|note| match note {
@@ -524,7 +524,7 @@ mod tests {
             _ => None,
         });
         assert!(least.is_some_and(|[cu, d10]| (cu - 100.0).abs() < 1e-9 && d10 == 0.002), "{least:?}");
-        // A Cu of more than 3 may be beyond 4.5.
+        // A Cu above 3 may be above 4.5.
         let narrow = curve(&[(0.1, 14.0), (0.3, 60.0), (0.4, 100.0)]);
         let within = PlannedWalk { base: &narrow, ..plan.clone() };
         assert!(ids(&within).contains(&"cu_at_least".to_owned()), "{:?}", ids(&within));

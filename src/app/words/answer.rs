@@ -1,4 +1,4 @@
-//! The lines at the top of every face: practice, the model, and the next step.
+//! First lines of every face: practice, the model, and the next step.
 
 use super::practice::{beside_dispersive, practice_line};
 use super::rule::missing;
@@ -10,22 +10,22 @@ use voidwalk_practice::quantity::{SizeUnit, greatest_length, least_length, limit
 use voidwalk_practice::rules::{FILTER_FINES, FILTER_GREATEST_SIZE, PERMEABILITY};
 use voidwalk_practice::{AppliedRule, Decision, Note, RuleQuantity, RuleRole, TestedClass};
 
-/// Most notes in a brief verdict of a run, and in the answer on boundaries, which counts the others.
+/// Maximum number of notes in a brief verdict and in the answer on boundaries, which counts the others.
 pub const FOREMOST: usize = 3;
 
-/// A line at the top of every face.
+/// First line of every face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FirstLine {
-    /// The answer of practice.
+    /// Answer of practice.
     Practice,
-    /// The class of the walk.
+    /// Class of the walk.
     Model,
-    /// A step to take next.
+    /// Step to take next.
     Next,
 }
 
 impl FirstLine {
-    /// The name before the line.
+    /// Name before the line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Practice => "Practice",
@@ -35,7 +35,7 @@ impl FirstLine {
     }
 }
 
-/// The lines at the top of every face: without two sieve curves in mm the model's alone.
+/// First lines of every face; without two sieve curves in mm, only the model's.
 pub fn first_lines(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> Vec<(FirstLine, String)> {
     let line = (FirstLine::Model, model(&outcome.model));
     match decision.headline {
@@ -48,13 +48,13 @@ pub fn first_lines(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> Ve
     }
 }
 
-/// The notes that matter most, at most [`FOREMOST`], and the number of the others.
+/// The most important notes, at most [`FOREMOST`], and the number of the others.
 pub fn foremost(outcome: &Outcome) -> (&[Note], usize) {
     let (first, rest) = outcome.notes.split_at(outcome.notes.len().min(FOREMOST));
     (first, rest.len())
 }
 
-/// The class of a walk, and the mass eroded in each run.
+/// Class of a walk, and mass eroded in each run.
 pub fn model(model: &Model) -> String {
     let part = |percentage: f64| percent((percentage / 100.0).max(0.0));
     let run = |(run, [low, high]): (usize, &[f64; 2])| {
@@ -69,19 +69,19 @@ pub fn model(model: &Model) -> String {
     format!("{}; {}", model.class.words(), runs.join(", "))
 }
 
-/// Above this D15F (mm) a filter is a drain, bedding or rockfill, and coarse grains are no fault.
+/// D15F (mm) above which a filter is a drain, bedding or rockfill, so that coarse grains are no fault.
 const DRAIN_D15F_MM: f64 = 5.0;
 
-/// The next step by practice for a pair in mm, in a sentence without its end.
+/// Next step by practice for a pair in mm, in a sentence without its end.
 pub fn next(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> String {
     Pair { decision, d15f_mm: outcome.inputs.filter.d15_mm, class: outcome.model.class, unit }.step()
 }
 
-/// A pair as practice sees it.
+/// A pair and the decision of practice on it.
 struct Pair<'a> {
     decision: &'a Decision,
     d15f_mm: f64,
-    /// The class of the model.
+    /// Class of the model.
     class: Verdict,
     unit: SizeUnit,
 }
@@ -90,7 +90,7 @@ impl Pair<'_> {
     fn step(&self) -> String {
         match self.decision.standing {
             Standing::Fails | Standing::NoMargin => self.retention(),
-            // The filter as placed is too coarse already.
+            // The filter as placed is already too coarse.
             Standing::WashedOut if self.decision.breaks(RuleRole::Retention) => {
                 self.retention() + "; it must be internally stable"
             }
@@ -114,7 +114,7 @@ impl Pair<'_> {
         }
     }
 
-    /// The filter to take instead of one that may lose its finer part.
+    /// Filter to use instead of one that may lose its finer part.
     fn stability(&self) -> String {
         let filter = match self.greatest() {
             Some((limit, false)) => self.sized("an internally stable filter", limit),
@@ -125,9 +125,9 @@ impl Pair<'_> {
         if is_open { filter } else { format!("{filter}, or have its internal stability tested") }
     }
 
-    /// The D15F that retains the base, and the advice for an existing filter.
+    /// D15F that retains the base, and advice for an existing filter.
     fn retention(&self) -> String {
-        // Beyond the boundary of continuing erosion no test of the pair is worth waiting for.
+        // Beyond the boundary of continuing erosion no test of the pair is worthwhile.
         let exists = match self.decision.tests {
             TestedClass::Continuing => "for an existing filter, assume continuing erosion",
             _ => "for an existing filter, have this pair tested",
@@ -142,14 +142,14 @@ impl Pair<'_> {
         }
     }
 
-    /// A filter with a D15F of at most this (mm), and at least the D15F that drains the base.
+    /// Filter with a D15F of at most this (mm) and at least the D15F that drains the base.
     fn sized(&self, filter: &str, most: f64) -> String {
         let drainage = self.drainage_rule().filter(|rule| !rule.limit_at_most);
         let (drains, dry) = match self.drainage_rule().and_then(|rule| rule.limit) {
             Some(least) if least <= most => {
                 (format!(" and at least {}", least_length(least, self.unit)), None)
             }
-            // A limit with an upper bound may be lower, and perhaps requires no more than is allowed.
+            // A limit known only by an upper bound may be lower, and perhaps allowed.
             Some(least) if drainage.is_some() => {
                 let least = least_length(least, self.unit).to_string();
                 (String::new(), Some(format!("drainage asks for at least {least}: compare permeabilities")))
@@ -161,12 +161,12 @@ impl Pair<'_> {
         format!("take {filter} with D15F at most {}{beside}{drains}", greatest_length(most, self.unit))
     }
 
-    /// The limit of a dispersive base beside a D15F (mm) that is recommended.
+    /// Limit of a dispersive base beside a recommended D15F (mm).
     fn beside_dispersive(&self, most: f64) -> Option<String> {
         beside_dispersive(self.decision.if_dispersive?, most, self.unit)
     }
 
-    /// The maximum D15F (mm) that every rule of retention allows, and true if the limit itself is lower and
+    /// Maximum D15F (mm) that every rule of retention allows, and true if the actual limit is lower and
     /// unknown.
     fn greatest(&self) -> Option<(f64, bool)> {
         self.decision.strictest().map(|(_, limit)| (limit, self.decision.is_strictest_open))
@@ -196,7 +196,7 @@ impl Pair<'_> {
         }
     }
 
-    /// Advice on a filter whose fines nobody sieved.
+    /// Advice on a filter whose fines were not sieved.
     fn fines(&self) -> Option<String> {
         let most = self.decision.applied(FILTER_FINES).filter(|rule| rule.met.is_none())?.limit?;
         Some(format!("have the fines of the filter tested, and wash it where needed: {}", few_fines(most)))
@@ -214,19 +214,19 @@ impl Pair<'_> {
         self.decision.broken(RuleRole::Placing).find_map(step)
     }
 
-    /// Missing data for judging drainage.
+    /// Data missing to judge drainage.
     fn missing_drainage(&self) -> Option<String> {
         let need = self.drainage_rule().filter(|rule| rule.met.is_none())?.needs.first()?;
         missing(*need).map(|need| format!("get {need}: drainage is not known"))
     }
 }
 
-/// Fines that a filter may have once it is placed.
+/// Fines allowed in a filter after placing.
 fn few_fines(most: f64) -> String {
     format!("at most {most} % finer than {FINES_MM} mm in place")
 }
 
-/// The reason why a class is undecided, in a sentence without its end.
+/// Reason why a class is undecided, in a sentence without its end.
 pub fn undecided_by(cause: UndecidedBy) -> &'static str {
     match cause {
         UndecidedBy::Curve => {
@@ -241,13 +241,13 @@ pub fn undecided_by(cause: UndecidedBy) -> &'static str {
     }
 }
 
-/// A text with a capital letter at its beginning.
+/// Capitalises the first letter of a text.
 pub fn capital(text: &str) -> String {
     let mut chars = text.chars();
     chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
 }
 
-/// Meaning of a class, in a sentence, for runs with these means.
+/// Meaning of a class in a sentence, for runs with these means.
 pub fn meaning(verdict: Verdict, summary: &[RunSummary], threshold: f64) -> String {
     let limit = format!("{}\u{202f}%", (1e4 * threshold).round() / 1e2);
     match verdict {
@@ -284,8 +284,8 @@ fn undecided(summary: &[RunSummary], threshold: f64, limit: &str) -> String {
     format!("Inconclusive: {by}.")
 }
 
-/// A look in one line, for a verdict with `wanted` replicates; `None` for one replicate, which says nothing
-/// about the scatter.
+/// Look in one line, for a verdict with `wanted` replicates; `None` for one replicate, which says nothing
+/// about scatter.
 ///
 /// ```
 /// use voidwalk_app::outcome::verdict::SoFar;

@@ -1,4 +1,4 @@
-//! Many samples against filters: the columns of their table, and the lines on each filter.
+//! Many samples against filters: columns of their table, and sentences on each filter.
 
 use super::note::sentence;
 use super::practice::{dispersive_limit, tested_in_brief};
@@ -15,11 +15,11 @@ use voidwalk_practice::{BatchFilter, BatchRow, IfDispersive};
 /// Words for a sample whose limit is open.
 pub const MAY_GOVERN: &str = "may govern, as its limit is not known or may be lower";
 
-/// The reason why a pair is neither judged nor walked.
+/// Reason why a pair is neither judged nor walked.
 pub const EXCHANGED: &str = "base and filter look exchanged";
 
-/// The columns of a batch: its file, and under their headings the columns of a terminal and a page, sizes in
-/// this unit. Details are the columns that the table of walks leaves out.
+/// Columns of a batch in its file, and under their headings on a terminal and a page, with sizes in this
+/// unit. Details are the columns that the table of walks omits.
 pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, BatchRow> {
     let size = move |mm: Option<f64>| mm.map(|mm| length(mm, unit).in_cell());
     let limit = move |row: &BatchRow| {
@@ -57,8 +57,7 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, BatchRow> {
         .place(9)
 }
 
-/// The columns of `batch.csv`, and under their headings the columns of a terminal and a page, sizes in this
-/// unit.
+/// Columns of `batch.csv`, and under their headings of a terminal and a page, with sizes in this unit.
 pub fn walked_columns<'a>(unit: SizeUnit) -> Columns<'a, WalkedRow> {
     let walk = |row: &WalkedRow| row.walk.clone();
     let of_walk = Columns::default()
@@ -91,12 +90,12 @@ pub fn d15f_and_limit(row: &BatchRow, unit: SizeUnit) -> [Option<String>; 2] {
     beside_limit([row.d15f_mm, row.limit_mm], false, Unit::Size(unit))
 }
 
-/// D15F and its limit in the cells of a table that has the unit at its head.
+/// D15F and its limit for table cells whose head names the unit.
 fn d15f_and_limit_in_cells(row: &BatchRow, unit: SizeUnit) -> [Option<String>; 2] {
     beside_limit_in_cells([row.d15f_mm, row.limit_mm], false, Unit::Size(unit))
 }
 
-/// The result of a row.
+/// Result of a row.
 fn result(row: &BatchRow) -> &'static str {
     match row.met {
         Some(true) if row.breaks_if_dispersive => "met unless the base is dispersive",
@@ -106,7 +105,7 @@ fn result(row: &BatchRow) -> &'static str {
     }
 }
 
-/// Remarks on a row, in the cell of a table.
+/// Remarks on a row for a table cell.
 fn besides(row: &BatchRow, unit: SizeUnit) -> String {
     let mut all: Vec<String> = row.notes.iter().map(|note| sentence(note, unit)).collect();
     all.extend(row.open_sieves.map(|sieves| rule_note(sieves, unit)));
@@ -138,8 +137,8 @@ fn besides(row: &BatchRow, unit: SizeUnit) -> String {
 /// Words for drainage without a result.
 const DRAINAGE_UNKNOWN: &str = "drainage not known";
 
-/// Number of samples that it retains, and the samples that govern, one sentence each; the curves of an
-/// envelope are named.
+/// Number of samples that the filter retains, and the governing samples, one sentence each; the curves of
+/// an envelope are named.
 pub fn of_filter(filter: &BatchFilter, rows: &[BatchRow], unit: SizeUnit) -> Vec<String> {
     let BatchFilter { name, curves, .. } = filter;
     let mut lines = vec![format!("{name}: {}", counts(rows, name))];
@@ -167,8 +166,8 @@ pub fn of_filter(filter: &BatchFilter, rows: &[BatchRow], unit: SizeUnit) -> Vec
     lines
 }
 
-/// Number of samples that a filter retains; unless it drains all, the number that it may not drain, and the
-/// number for which drainage is unknown.
+/// Number of samples that a filter retains; unless it drains all, also the numbers that it may not drain
+/// and for which drainage is unknown.
 pub fn counts(rows: &[BatchRow], filter: &str) -> String {
     let in_filter = || rows.iter().filter(|row| row.filter == filter);
     let samples = in_filter().count();
@@ -188,7 +187,7 @@ pub fn counts(rows: &[BatchRow], filter: &str) -> String {
     format!("of {samples} {one_or_more} {met} met{on_condition}, {others}")
 }
 
-/// The sample with the greatest minimum D15F that drains, in words; `None` if the filter drains all, or
+/// Sample with the largest minimum D15F for drainage, in words; `None` if the filter drains all, or
 /// without a limit.
 pub fn governs_drainage(rows: &[BatchRow], filter: &str, unit: SizeUnit) -> Option<String> {
     let undrained = rows.iter().filter(|row| row.filter == filter && row.drains != Some(true));
@@ -201,7 +200,7 @@ pub fn governs_drainage(rows: &[BatchRow], filter: &str, unit: SizeUnit) -> Opti
     Some(format!("drainage is governed by {}: {limit}", row.sample))
 }
 
-/// The samples of a filter that may govern, and those to which nothing was applied, one sentence each without
+/// Samples of a filter that may govern, and those to which nothing was applied, one sentence each without
 /// its end.
 pub fn open_limits(rows: &[BatchRow], filter: &str) -> Vec<String> {
     let names = |rows: Vec<&BatchRow>| {
@@ -214,8 +213,8 @@ pub fn open_limits(rows: &[BatchRow], filter: &str) -> Vec<String> {
     open.into_iter().chain(refused).collect()
 }
 
-/// Walks of a filter, as sentences without their ends: the number of samples, the kinds of walks and their
-/// classes; then the samples for which the walk is stricter than practice.
+/// Sentences without their ends on the walks of a filter: number of samples, kinds of walks and classes,
+/// then the samples for which the walk is stricter than practice.
 pub fn walks(batch: &WalkedBatch, filter: &str, unit: SizeUnit) -> Vec<String> {
     let rows: Vec<&WalkedRow> = batch.of_filter(filter).collect();
     let walks: Vec<&SampleWalk> = rows.iter().filter_map(|row| row.walk.as_ref()).collect();
@@ -240,14 +239,14 @@ pub fn walks(batch: &WalkedBatch, filter: &str, unit: SizeUnit) -> Vec<String> {
     all
 }
 
-/// Answer of practice and walk on the sample; or the reason why it was not walked.
+/// Answer of practice and walk on the sample, or the reason why it was not walked.
 pub fn answer(row: &WalkedRow) -> String {
     let Some(walk) = &row.walk else { return format!("not walked: {}", row.not_walked) };
     let practice = walk.headline.map(|headline| format!("{}; ", headline.words()));
     format!("{}{} in the model", practice.unwrap_or_default(), walk.verdict.words())
 }
 
-/// The number of samples that may be dispersive, and the samples that then break practice.
+/// Number of samples that may be dispersive, and the samples that then break practice.
 fn dispersive_samples(rows: &[&WalkedRow], unit: SizeUnit) -> Option<String> {
     let limit = |row: &&WalkedRow| Some((row.rules.clone(), row.walk.as_ref().and(row.rules.if_dispersive)?));
     let open: Vec<(BatchRow, IfDispersive)> = rows.iter().filter_map(limit).collect();
@@ -293,7 +292,7 @@ mod tests {
         BatchRow::of(&sample, ("F", filter), options)
     }
 
-    /// A filter with a D15F of 0.725 mm, linear from 0.5 to 2 mm.
+    /// Filter with a D15F of 0.725 mm, linear from 0.5 to 2 mm.
     fn named_filter() -> Vec<NamedCurve> {
         vec![("F".to_owned(), curve(&[(0.5, 0.0), (2.0, 100.0)]))]
     }
@@ -388,7 +387,7 @@ mod tests {
         assert_eq!(rows[0].limit_mm, retention(&pair.rules, d15f).map(|(_, limit)| limit));
         assert_eq!((rows[0].met, rows[0].tests), (Some(true), TestedClass::None));
         assert_eq!((rows[1].met, rows[2].limit_mm, rows[2].category), (Some(false), Some(0.7), Some(2)));
-        // Fines that nobody sieved: an upper bound of the limit, and no result for a filter within it.
+        // The fines were not sieved: the limit is an upper bound, and a filter within it has no result.
         assert!(rows[3].limit_at_most && rows[3].met != Some(true), "{:?}", rows[3]);
         assert!(rows[4].met.is_none() && rows[4].is_refused, "{:?}", rows[4]);
         let csv = String::from_utf8(columns(SizeUnit::Mm).csv(&rows)).unwrap();
@@ -398,7 +397,7 @@ mod tests {
         assert_eq!(csv.lines().count(), 6);
     }
 
-    /// A limit that is kept reads as kept, and one that is exceeded as exceeded; inches as well.
+    /// A limit that is kept reads as kept, and one that is exceeded reads as exceeded, also in inches.
     #[test]
     fn a_d15f_stands_on_its_side_of_the_limit() {
         let texts = |d15f: f64, limit: f64| {
@@ -435,7 +434,7 @@ mod tests {
         let rows = rows();
         let names = |rows: Vec<&BatchRow>| rows.iter().map(|row| row.sample.clone()).collect::<Vec<_>>();
         assert_eq!(names(governing(&rows, "F", 2)), ["fine sand", "silty"]);
-        // The upper bound among four limits governs, or may govern.
+        // The upper bound among four limits governs or may govern.
         let named = names(governing(&rows, "F", NAMED));
         let open: &[&str] = if named.contains(&"open".to_owned()) { &[] } else { &["open"] };
         assert_eq!(names(may_govern(&rows, "F")), open);
@@ -459,7 +458,7 @@ mod tests {
     }
 
     /// A filter that is too coarse without its finer part is not met in the table either. A filter with a
-    /// tenth of its sizes keeps, without its finer part, the limit of a dispersive till too, and has no
+    /// tenth of its sizes keeps the limit of a dispersive till, also without its finer part, but has no
     /// result: it may lose more.
     #[test]
     fn a_filter_that_is_too_coarse_without_its_finer_part_is_not_met() {
@@ -490,7 +489,7 @@ mod tests {
         assert_eq!(joint(0.45 * d95b).joint, Some(JointErosion { percent: None, is_below_source: true }));
     }
 
-    /// Limits of fines are the same for many samples: 0.7 mm. The finer sample comes first.
+    /// Samples with 40 to 85 % fines have the same limit, 0.7 mm. The finer sample comes first.
     #[test]
     fn of_equal_limits_the_finer_base_governs_and_the_others_are_counted() {
         let filter = named_filter();
@@ -504,7 +503,7 @@ mod tests {
         assert_eq!(more_with_that_limit(&rows, "G", &[]), 0);
     }
 
-    /// The limit of a base whose fines nobody sieved is an upper bound, with a known D15F and without.
+    /// The limit of a base whose fines were not sieved is an upper bound, whether D15F is known or not.
     #[test]
     fn a_d15f_in_the_pan_hides_no_limit_that_is_one_at_most() {
         let filter = vec![("F".to_owned(), curve(&[(0.5, 30.0), (2.0, 100.0)]))];

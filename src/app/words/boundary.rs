@@ -1,14 +1,14 @@
-//! Words of every face for the boundaries of the model.
+//! Words of every face for boundaries of the model.
 
 use crate::outcome::boundary::{Boundaries, are_few};
 use voidwalk_practice::quantity::{NumberRole, SizeUnit, greatest_length, significant};
 
-/// The share of networks that is shown: for few networks the least and the most of them.
+/// Range of networks that is shown: for few networks the minimum and maximum.
 pub fn share_of_networks(networks: u64) -> &'static str {
     if are_few(networks) { "least and most" } else { "5 to 95 % range" }
 }
 
-/// The ends of a boundary over networks, as `4.77 to 4.97`, with the meaning of the ends.
+/// Ends of a boundary over networks, as `4.77 to 4.97`, with their meaning.
 pub fn over_networks(ends: &str, networks: u64) -> String {
     match are_few(networks) {
         true => format!("{ends} over {networks} networks"),
@@ -16,12 +16,12 @@ pub fn over_networks(ends: &str, networks: u64) -> String {
     }
 }
 
-/// The share of networks that figures draw, which is read between two networks if they are few.
+/// Range of networks drawn in figures; with few networks it is read between two of them.
 pub fn drawn_of_networks(networks: u64) -> &'static str {
     if are_few(networks) { "interpolated 5 to 95 % range" } else { "5 to 95 % range" }
 }
 
-/// The least D15F/D85B that nearly all networks hold, and its D15F if the base has a size.
+/// Lowest D15F/D85B that nearly all networks hold, and its D15F if the base has sizes in mm.
 pub fn held(boundaries: &Boundaries, unit: SizeUnit) -> String {
     let Some((row, ratio)) = boundaries.least_held() else {
         return "no D15F/D85B is known that nearly all networks hold".into();
@@ -41,7 +41,7 @@ mod tests {
     use super::*;
     use crate::outcome::boundary::Boundary;
 
-    /// A record whose networks erode from these D15F/D85B on; no network erodes without ratios.
+    /// Record of networks that erode from these D15F/D85B; without ratios no network erodes.
     fn record(ratios: &[f64], d85_mm: Option<f64>) -> Boundaries {
         let networks: Vec<_> = ratios.iter().map(|ratio| Ok(*ratio)).collect();
         let no_erosion = if networks.is_empty() { None } else { Boundary::of(&networks, d85_mm) };
@@ -70,7 +70,7 @@ mod tests {
         assert_eq!(two.least_held().map(|(_, ratio)| ratio), Some(3.0));
         two.boundaries.extend(record(&[], None).boundaries);
         assert!(two.least_held().is_none());
-        // A row that holds to the end of the search counts to that end, and the words say so.
+        // A row that holds to the end of the search counts up to that end, and the words say so.
         two.boundaries[1].holds_to = Some(1.08);
         assert!(held(&two, SizeUnit::Mm).ends_with("1.08, as far as was searched"));
     }

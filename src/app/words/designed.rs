@@ -9,7 +9,7 @@ use voidwalk_practice::{
     DesignedSample, DesignedSamples, IfDispersive, Note, least_of_band, no_band_between,
 };
 
-/// A kind of note, and the beginning of its warning for several samples.
+/// Kind of note, and the beginning of its warning for several samples.
 type Caution = (fn(&Note) -> bool, &'static str);
 
 /// Warnings of a specification on a base.
@@ -34,35 +34,35 @@ fn counted(samples: usize) -> String {
     format!("{samples} sample{}", if samples == 1 { "" } else { "s" })
 }
 
-/// A sample, and one of its limits of D15F (mm).
+/// Sample and one of its limits of D15F (mm).
 type Limit<'a> = (&'a DesignedSample, f64);
 
-/// The sample with the greatest minimum D15F to drain; `None` if no sample has one.
+/// Sample with the largest minimum D15F for drainage; `None` if no sample has one.
 fn drainage<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<Limit<'a>> {
     let limits = rows.into_iter().filter_map(|row| Some((row, row.d15f_min_mm?)));
     limits.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// The sample with the least maximum D15F; `None` if no sample has one.
+/// Sample with the smallest maximum D15F; `None` if no sample has one.
 fn strictest<'a>(rows: impl IntoIterator<Item = &'a DesignedSample>) -> Option<Limit<'a>> {
     let limits = rows.into_iter().filter_map(|row| Some((row, row.d15f_max_mm?)));
     limits.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// The maximum D15F of a sample, and the origin of its rule.
+/// Maximum D15F of a sample, and the origin of its rule.
 fn greatest(row: &DesignedSample, unit: SizeUnit) -> String {
     let Some(mm) = row.d15f_max_mm else { return "no maximum D15F is known".into() };
     format!("D15F up to {} (practice: {})", greatest_length(mm, unit), row.rule)
 }
 
-/// The reason why a sample has no band of its own, without the last full stop; empty if it has one.
+/// Reason why a sample has no band, without the last full stop; empty if it has one.
 fn without_band(row: &DesignedSample, unit: SizeUnit) -> String {
     row.no_band.as_ref().map_or_else(String::new, |why| no_band(why, unit).trim_end_matches('.').to_owned())
 }
 
-/// The D15F of a filter for all samples, in a sentence without its end.
+/// D15F of a filter for all samples, in a sentence without its end.
 ///
-/// Both ends belong to settled samples, and the greatest is never above the limit of any other sample.
+/// Both ends come from settled samples, and the maximum never exceeds the limit of any other sample.
 fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
     let [most, least_of] = [false, true]
         .map(|at_least| move |mm: f64| length(mm, unit).role(NumberRole::of_limit(at_least)).to_string());
@@ -129,8 +129,8 @@ fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
     }
 }
 
-/// The governing samples with their limits, and the open samples: sentences without their ends; `again` is
-/// the advice for a dispersive sample, as [`DESIGN_EACH_AGAIN`](super::specification::DESIGN_EACH_AGAIN).
+/// Sentences without their ends on the governing samples with their limits, and on the open samples; `again`
+/// is the advice for a dispersive sample, as [`DESIGN_EACH_AGAIN`](super::specification::DESIGN_EACH_AGAIN).
 pub fn lines(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Vec<String> {
     let mut sentences = vec![for_all(all, unit)];
     for (at, row) in all.governing().into_iter().enumerate() {
@@ -160,8 +160,8 @@ pub fn lines(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Vec<String> 
     sentences
 }
 
-/// Number of samples that may be dispersive, and the limit by practice of the strictest sample whose limit is
-/// then lower.
+/// Number of samples that may be dispersive, and the limit by practice of the strictest sample whose
+/// limit is then lower.
 fn dispersion(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Option<String> {
     let open: Vec<_> = all.rows.iter().filter_map(|row| Some((row, row.if_dispersive?))).collect();
     let is_less = |(row, limit): &&(&DesignedSample, IfDispersive)| {
@@ -183,7 +183,7 @@ fn dispersion(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Option<Stri
     ))
 }
 
-/// Warnings on the samples themselves, with their names.
+/// Warnings about the samples themselves, with their names.
 fn cautions(all: &DesignedSamples) -> Vec<String> {
     let named = |(is_it, what): &Caution| {
         let is_so = |row: &&DesignedSample| row.notes.iter().any(is_it);
@@ -193,7 +193,7 @@ fn cautions(all: &DesignedSamples) -> Vec<String> {
     CAUTIONS.iter().filter_map(named).collect()
 }
 
-/// The limit of a dispersive base, and the test for an unknown one.
+/// Limit of a dispersive base, and the test for an unknown limit.
 fn clause(limit: IfDispersive, unit: SizeUnit) -> String {
     let words = format!("D15F is to be {}", dispersive_limit(limit, unit));
     if limit.at_most {
@@ -203,8 +203,7 @@ fn clause(limit: IfDispersive, unit: SizeUnit) -> String {
     }
 }
 
-/// The columns of `designs.csv`, and under their headings the columns of a terminal and a page, sizes in this
-/// unit.
+/// Columns of `designs.csv`, and under their headings of a terminal and a page, with sizes in this unit.
 pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
     let drains = move |row: &DesignedSample| {
         let at_most = if row.d15f_min_at_most { " at most" } else { "" };
@@ -312,7 +311,7 @@ mod tests {
         assert_eq!(for_all(&none, SizeUnit::Mm), "No maximum D15F is known for any sample");
     }
 
-    /// Each of these gravels has a D60F beyond the greatest size; between their limits there is no band.
+    /// Each of these gravels has a D60F beyond the maximum size; between their limits there is no band.
     #[test]
     fn a_sample_without_a_band_of_its_own_is_not_served() {
         let t1 =

@@ -1,4 +1,4 @@
-//! The lines of a campaign's ledger, the columns that its table shares with batches, and D85 of a base.
+//! Lines of a campaign's ledger, columns that its table shares with batches, and D85 of a base.
 
 use crate::outcome::BaseSize;
 use crate::outcome::ledger::{LedgerLine, ModelledThickness};
@@ -8,14 +8,14 @@ use voidwalk_core::text::shorten;
 use voidwalk_practice::quantity::{SizeUnit, length, percent, significant, whole};
 use voidwalk_sheets::us_sieve;
 
-/// The thickness of a modelled filter, as `60 layers, 93.1 mm`.
+/// Thickness of a modelled filter, as `60 layers, 93.1 mm`.
 pub fn thickness(filter: &ModelledThickness) -> String {
     let unit = if filter.scale_free { "D0F" } else { "mm" };
     let size = filter.mm.map_or("no size in particular".into(), |mm| format!("{mm:.1} {unit}"));
     format!("{} {}, {size}", whole(filter.layers), if filter.layers == 1 { "layer" } else { "layers" })
 }
 
-/// The columns of `cases.csv` and of the page's table.
+/// Columns of `cases.csv` and of the page's table.
 pub fn columns(factors: &[String]) -> Columns<'_, LedgerLine> {
     // The levels identify the case, if there are any.
     let case = |line: &LedgerLine| if line.levels.is_empty() { shorten(&line.case, 60) } else { "".into() };
@@ -80,12 +80,12 @@ pub fn columns(factors: &[String]) -> Columns<'_, LedgerLine> {
         .column("folder", |line| line.folder.clone())
 }
 
-/// Mass eroded in a run, and its range if the constriction curve is a range.
+/// Eroded mass in a run, and its range if the constriction curve has one.
 type Eroded = (Option<Statistic>, Option<[f64; 2]>);
 
 impl<'a, T: 'a> Columns<'a, T> {
-    /// Adds the mass eroded in the first run and in the second, with its interval and, on a page, its range
-    /// if the constriction curve is a range.
+    /// Adds the eroded mass in the first and the second run, with its interval and, on a page, its range
+    /// if the constriction curve has one.
     pub(super) fn eroded(self, eroded_of: fn(&T, usize) -> Eroded) -> Self {
         let cell = move |row: &T, run| {
             let (statistic, range) = eroded_of(row, run);
@@ -109,8 +109,8 @@ pub fn grading(base: &BaseSize) -> String {
     base.regraded_at_mm.map_or_else(|| "as sampled".into(), regraded)
 }
 
-/// The whole text, as `D85B 1.80 mm, regraded on 4.75 mm (as sampled 12.8 mm)`; if inches are shown, with
-/// inches behind each D85 and the name of a US sieve.
+/// Full text, as `D85B 1.80 mm, regraded on 4.75 mm (as sampled 12.8 mm)`; if inches are shown, with
+/// inches after each D85 and the name of a US sieve.
 pub fn base_size(base: &BaseSize, unit: SizeUnit) -> String {
     let size = |mm: f64| length(mm, unit).to_string();
     let before = base.as_sampled_mm.filter(|_| base.regraded_at_mm.is_some());

@@ -1,21 +1,20 @@
-//! Words for the parts that an answer leaves out: limits of the model, and parts that a scene does not need.
+//! Words for what an answer leaves out: limits of the model, and parts that a scene does not need.
 
 use crate::outcome::left_out::{LayerKind, LeftOut};
 use crate::outcome::record::ModelLimit;
 use voidwalk_core::walk::{Engine, Finest, Shortcut};
 use voidwalk_practice::quantity::{given, significant};
 
-/// A limit of the model in brief, and the rest of its meaning.
+/// Limit of the model in brief, and the rest of its meaning.
 fn parts(limit: ModelLimit) -> (&'static str, &'static str) {
     const HYDRAULICS: &str = "no flow, no gradient, no time; an increment is not an interval of time";
     const GRADIENT: &str = "no gradient, no time; an increment is not an interval of time";
     match limit {
         ModelLimit::Hydraulics => ("hydraulics", HYDRAULICS),
         ModelLimit::HydraulicsElsewhere => ("hydraulics, in the other cases", HYDRAULICS),
-        ModelLimit::Gradient => ("hydraulics but for the direction and the shares of slow flow", GRADIENT),
+        ModelLimit::Gradient => ("hydraulics except direction and distribution of slow flow", GRADIENT),
         ModelLimit::GradientThere => (
-            "hydraulics but for the direction and the shares of slow flow, where water gives particles \
-                 their way",
+            "hydraulics except direction and distribution of slow flow, if water directs particles",
             GRADIENT,
         ),
         ModelLimit::Bridging => {
@@ -36,7 +35,7 @@ fn parts(limit: ModelLimit) -> (&'static str, &'static str) {
     }
 }
 
-/// A limit of the model.
+/// Limit of the model in words.
 pub fn model_limit(limit: ModelLimit) -> String {
     match parts(limit) {
         (brief, "") => brief.to_owned(),
@@ -44,10 +43,10 @@ pub fn model_limit(limit: ModelLimit) -> String {
     }
 }
 
-/// Checks that no rule covers, as no text was read that gives their numbers.
+/// Checks that no rule covers because no text with their numbers was read.
 pub const NOT_COVERED: &str = "Not checked: segregation by D90F and D10F, excessive erosion.";
 
-/// The limits of the model that matter most to a designer, in a line; the page lists all.
+/// Limits of the model that matter most to a designer, in one line; the page lists all.
 pub fn left_out_line(limits: &[ModelLimit]) -> String {
     let mut names: Vec<&str> = Vec::new();
     if limits.iter().any(|limit| [ModelLimit::Hydraulics, ModelLimit::HydraulicsElsewhere].contains(limit)) {
@@ -67,10 +66,10 @@ pub fn left_out_in_brief(limits: &[ModelLimit]) -> String {
     format!("The model leaves out: {}. {NOT_COVERED}", brief.join("; "))
 }
 
-/// The study of the number of base particles.
+/// Study of the number of base particles.
 const AMOUNTS: &str = "sensitivity to the number of base particles";
 
-/// A part of the program that a scene does not need, as part of a sentence; sizes have this unit.
+/// Part of the program that a scene does not need, as part of a sentence; sizes are in this unit.
 pub fn left_out(part: &LeftOut, unit: &str) -> String {
     let times = |factors: &[f64]| {
         factors.iter().map(|factor| format!("x{}", given(*factor))).collect::<Vec<_>>().join(", ")
@@ -127,12 +126,12 @@ pub fn left_out(part: &LeftOut, unit: &str) -> String {
     text.into()
 }
 
-/// Several parts that a scene does not need.
+/// Several parts that a scene does not need, in words.
 pub fn left_out_words(parts: &[LeftOut], unit: &str) -> String {
     parts.iter().map(|part| left_out(part, unit)).collect::<Vec<_>>().join("; ")
 }
 
-/// A shortcut of a walk, in a sentence; sizes have this unit.
+/// Shortcut of a walk, in a sentence; sizes are in this unit.
 fn shortcut_words(shortcut: Shortcut, unit: &str) -> String {
     let followed = |engine: Engine| match engine {
         Engine::Expected => "only their expected number in each void is followed",
@@ -181,7 +180,7 @@ fn shortcut_words(shortcut: Shortcut, unit: &str) -> String {
     }
 }
 
-/// A number of percent with four significant digits: `19.65`, `0.002500`, `3.000e-7`.
+/// Percent with four significant digits: `19.65`, `0.002500`, `3.000e-7`.
 fn digits(percent: f64) -> String {
     match percent {
         few if few < 1e-3 && few.is_finite() => format!("{few:.3e}"),

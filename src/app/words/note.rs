@@ -6,7 +6,7 @@ use voidwalk_practice::design::RowNote;
 use voidwalk_practice::note::Note;
 use voidwalk_practice::quantity::{NumberRole, SizeUnit, Unit, significant, whole};
 
-/// The sentence of a note; lengths are shown in this unit.
+/// Sentence of a note; lengths are shown in this unit.
 ///
 /// ```
 /// use voidwalk_practice::{Note, quantity::SizeUnit};
@@ -18,18 +18,18 @@ pub fn sentence(note: &Note, unit: SizeUnit) -> String {
     filled(note, note.entry().sentence, unit)
 }
 
-/// The setting that changes the subject of a note; empty without one.
+/// Setting that changes the subject of a note; empty without one.
 pub fn setting(note: &Note) -> String {
     filled(note, note.entry().setting, SizeUnit::Mm)
 }
 
-/// The sentence of a note on a part of boundaries or of a specification, behind the name of that part.
+/// Sentence of a note on a part of boundaries or of a specification, after the name of that part.
 pub fn row_note(row: &RowNote, unit: SizeUnit) -> String {
     let words = sentence(&row.note, unit);
     row.row.as_ref().map_or(words.clone(), |name| format!("{name}: {words}"))
 }
 
-/// A template with the numbers of a note in place of their names: `{name}`, or `{name:noun}` of a count.
+/// Template with a note's numbers in place of their names: `{name}`, or `{name:noun}` for a count.
 fn filled(note: &Note, template: &str, unit: SizeUnit) -> String {
     let record = serde_json::to_value(note).unwrap_or_default();
     let mut text = String::new();
@@ -44,7 +44,7 @@ fn filled(note: &Note, template: &str, unit: SizeUnit) -> String {
     text + rest
 }
 
-/// A number by the unit and the side in its name.
+/// Number, rounded by the unit and the side in its name.
 fn shown(name: &str, noun: Option<&str>, value: &Value, unit: SizeUnit) -> String {
     match value {
         Value::String(text) => one_line(text),
@@ -72,7 +72,7 @@ fn measured(name: &str, value: f64, unit: SizeUnit) -> String {
     }
 }
 
-/// A count with its noun, as `replicate` or `copy|copies`.
+/// Count with its noun, such as `replicate` or `copy|copies`.
 fn counted(number: u64, noun: Option<&str>) -> String {
     let Some(noun) = noun else { return whole(number).to_string() };
     let (one, many) = noun.split_once('|').unwrap_or((noun, ""));
@@ -83,12 +83,12 @@ fn counted(number: u64, noun: Option<&str>) -> String {
     }
 }
 
-/// A text on one line, for any name.
+/// Text on one line, for any name.
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// `a`, `a and b`, `a, b and c`.
+/// Joins items as `a`, `a and b`, `a, b and c`.
 fn listed(items: &[String]) -> String {
     match items {
         [] => String::new(),
@@ -110,7 +110,7 @@ mod tests {
         Note::all_with(&Sample { number, count, name: name.into() })
     }
 
-    /// A client reads each sentence alone, and in one breath.
+    /// Clients read each sentence alone; a short one is understood at once.
     #[test]
     fn every_sentence_has_at_most_25_words() {
         for note in all(12.5, 3, "some") {
@@ -144,7 +144,7 @@ mod tests {
         }
     }
 
-    /// The folder of all crates.
+    /// Folder of all crates.
     const SOURCES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
 
     #[test]
@@ -167,7 +167,7 @@ mod tests {
                 };
                 assert!(is_used(entry.sentence) || is_used(entry.setting), "{id} does not say {name}");
             }
-            // No words of the program in sentences for a client.
+            // Sentences for a client contain no words of the program.
             for word in ["base.", "filter.", "network.", "walk.", "inject_share", "--", "rattler"] {
                 let is_key =
                     |(at, _)| entry.sentence[at + word.len()..].starts_with(|c: char| c.is_ascii_lowercase());
@@ -192,7 +192,7 @@ mod tests {
         assert_eq!(counted(12_000, Some("replicate")), "12\u{202f}000 replicates");
     }
 
-    /// A dead row would be a sentence that nobody ever reads.
+    /// A dead row would be a sentence that is never read.
     #[test]
     fn every_note_is_reported_somewhere() {
         let mut code = String::new();

@@ -1,4 +1,4 @@
-//! The line of practice, and the limit of a base that may be dispersive or not.
+//! Line of practice, and the limit for a base that may be dispersive.
 
 use super::rule::{missing, rule_note, value_and_limit};
 use crate::outcome::record::Outcome;
@@ -13,7 +13,7 @@ use voidwalk_practice::{
     TestedClass,
 };
 
-/// Notes that the rules that are met were judged for one curve of each soil alone; `None` for envelopes.
+/// Note that the rules that are met were judged for a single curve of each soil; `None` for envelopes.
 pub fn judged_alone(outcome: &Outcome, decision: &Decision) -> Option<&'static str> {
     let is_envelope = outcome.notes.iter().any(|note| matches!(note, Note::Envelope { .. }));
     (decision.standing == Standing::Met && !is_envelope).then_some(
@@ -22,8 +22,8 @@ pub fn judged_alone(outcome: &Outcome, decision: &Decision) -> Option<&'static s
     )
 }
 
-/// The line of practice: the headline, D15F beside the limit of design, the class of tests, and every other
-/// rule that is not kept; with the limit that the filter breaks if the base is dispersive.
+/// Line of practice: headline, D15F and the limit of design, class of tests, other rules that are not
+/// kept, and the limit that the filter breaks if the base is dispersive.
 pub fn practice_line(decision: &Decision, unit: SizeUnit) -> String {
     let (Some(headline), Some(design)) = (decision.headline, decision.applied(DESIGN)) else {
         return "the limit of design was not applied".into();
@@ -39,7 +39,7 @@ pub fn practice_line(decision: &Decision, unit: SizeUnit) -> String {
     format!("{}: {}", headline.words(), clauses.join("; "))
 }
 
-/// D15F beside the limit of design.
+/// D15F with the limit of design.
 fn of_design(rule: &AppliedRule, standing: Standing, unit: SizeUnit) -> String {
     let [value, limit] = value_and_limit(rule, unit);
     let known = format!("D15F {}", value.as_deref().unwrap_or("unknown"));
@@ -63,7 +63,7 @@ fn of_design(rule: &AppliedRule, standing: Standing, unit: SizeUnit) -> String {
     format!("{d15f}, {limit}{}", needs.unwrap_or_default())
 }
 
-/// Rules of retention that are not kept besides the limit of design and the boundary of no erosion.
+/// Rules of retention that are not kept, other than the limit of design and the boundary of no erosion.
 fn of_other_retention(decision: &Decision, unit: SizeUnit) -> impl Iterator<Item = String> {
     let others = decision.broken(RuleRole::Retention);
     let others = others.filter(|rule| ![DESIGN, TESTS_NO_EROSION].contains(&&*rule.id));
@@ -73,9 +73,9 @@ fn of_other_retention(decision: &Decision, unit: SizeUnit) -> impl Iterator<Item
     })
 }
 
-/// The class of such pairs in tests, with the boundary beyond which the filter lies.
+/// Class of such pairs in tests, with the boundary that the filter exceeds.
 fn of_tests(decision: &Decision, unit: SizeUnit) -> Option<String> {
-    // Within the one limit of a dispersive base tests have no other.
+    // Within the single limit of a dispersive base, tests add nothing.
     if decision.without_margin().is_some_and(|rule| rule.met == Some(true)) {
         return None;
     }
@@ -101,8 +101,8 @@ fn of_tests(decision: &Decision, unit: SizeUnit) -> Option<String> {
     Some(format!("Foster and Fell: {class}{}", boundary.unwrap_or_default()))
 }
 
-/// A class by the boundaries that Foster and Fell saw in tests. Beyond the boundary of no erosion
-/// (`is_beyond`) a base erodes, even if tests identified no boundary of the classes beyond.
+/// Class by the boundaries of Foster and Fell in brief. Beyond the boundary of no erosion (`is_beyond`) a
+/// base erodes, even if tests identified no boundary of the further classes.
 pub(super) fn tested_in_brief(class: TestedClass, is_beyond: bool) -> &'static str {
     match class {
         TestedClass::None => "no erosion",
@@ -149,7 +149,7 @@ fn besides(decision: &Decision, headline: Headline) -> Vec<&'static str> {
     all.into_iter().filter(|(holds, _)| *holds).map(|(_, words)| words).collect()
 }
 
-/// A filter that is too coarse for a dispersive base alone, in a clause.
+/// Filter that is too coarse only for a dispersive base, in a clause.
 pub(super) fn beyond_dispersive(beyond: &BeyondDispersive, unit: SizeUnit) -> String {
     let at_most = if beyond.limit.at_most { "at most " } else { "" };
     let [value, most] =
@@ -162,7 +162,7 @@ pub(super) fn beyond_dispersive(beyond: &BeyondDispersive, unit: SizeUnit) -> St
     format!("dispersive base: limit {at_most}{most}, not kept{without}")
 }
 
-/// The limit behind a recommended D15F (mm); `None` if that holds for a dispersive base too.
+/// Limit after a recommended D15F (mm); `None` if that D15F holds for a dispersive base too.
 pub(super) fn beside_dispersive(limit: IfDispersive, d15f_mm: f64, unit: SizeUnit) -> Option<String> {
     if !limit.at_most && limit.d15f_max_mm >= d15f_mm {
         return None;
@@ -175,19 +175,19 @@ pub(super) fn beside_dispersive(limit: IfDispersive, d15f_mm: f64, unit: SizeUni
     Some(format!("dispersive base: {bound} {most}"))
 }
 
-/// The limit of D15F. A limit that no source gives is never stated as the limit of other bases.
+/// Limit of D15F. A limit that no source gives is never stated as the limit of other bases.
 pub fn dispersive_limit(limit: IfDispersive, unit: SizeUnit) -> String {
     let most = greatest_length(limit.d15f_max_mm, unit).to_string();
     match limit.lacks.filter(|_| limit.at_most) {
         Some(DispersiveLack::AnyLimit) => {
-            format!("less than {most}, by how much no source that was read says")
+            format!("less than {most}, by an amount that no available source gives")
         }
         Some(DispersiveLack::D85B) => format!("at most {most}, as D85B is not known"),
         Some(DispersiveLack::LimitOfDesign) | None => format!("at most {most}"),
     }
 }
 
-/// The test that determines an unknown limit: this one, if no text has the limit.
+/// Test that determines an unknown limit; `of_the_pair` if no text has the limit.
 pub(super) fn test(limit: IfDispersive, of_the_pair: &'static str) -> &'static str {
     match limit.lacks {
         Some(DispersiveLack::D85B) => "have the base tested with a hydrometer",
@@ -226,7 +226,7 @@ mod tests {
             (&[(5.0, 0.0), (6.5, 15.0), (20.0, 100.0)], &TILL, Headline::DoesNotMeet),
             (&GAP, &SAND, Headline::TooCoarseWithoutFiner),
             (&GRAVEL_0_32, &REGRADED_TILL, Headline::TooCoarseWithoutFiner),
-            // Beyond the limit of design as placed, and beyond that of tests without the finer part.
+            // Beyond the limit of design as placed, and beyond the boundary of tests without the finer part.
             (&coarse, &SAND_OF_1_MM, Headline::TooCoarseWithoutFiner),
             (&halved, &SAND, Headline::MayLoseFiner),
             (&[(1.0, 0.0), (3.0, 100.0)], &[(0.3, 25.0), (1.0, 100.0)], Headline::TestMissing),
@@ -241,7 +241,7 @@ mod tests {
         assert_eq!(Decision::new(&[], None, None).headline, None);
     }
 
-    /// 45 % fines: 0.7 mm, and 0.5 mm if they are dispersive.
+    /// With 45 % fines the limit is 0.7 mm, or 0.5 mm for a dispersive base.
     #[test]
     fn a_filter_that_a_dispersive_base_would_break_meets_practice_on_that_condition() {
         let base = soil(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)]);
@@ -284,7 +284,7 @@ mod tests {
         assert!(line.contains("D15F lies between 0.3 and 38\u{202f}mm"), "{line}");
     }
 
-    /// Sherard and Dunnigan allow 0.200 and 1.28 mm, Foster and Fell 0.166 and 0.700 mm.
+    /// Limits of Sherard and Dunnigan: 0.200 and 1.28 mm; of Foster and Fell: 0.166 and 0.700 mm.
     #[test]
     fn where_tests_are_stricter_than_design_both_limits_are_said() {
         for (base, d15f, limits) in [
@@ -297,13 +297,13 @@ mod tests {
         }
     }
 
-    /// The inches behind the last mm of a text, in mm; `None` without inches.
+    /// Inches after the last mm of a text, in mm; `None` without inches.
     fn back_in_mm(behind: &str) -> Option<f64> {
         let bracket = behind.strip_prefix(" (")?.split_once("\u{202f}in)")?.0;
         bracket.rsplit(' ').next()?.parse::<f64>().ok().map(|inches| 25.4 * inches)
     }
 
-    /// Every limit of D15F in every sentence that faces show of a pair, over sizes of many digits.
+    /// All limits of D15F in all sentences that faces show for a pair, for sizes with many digits.
     #[test]
     fn no_sentence_has_inches_beyond_the_limit_that_it_names() {
         const UNIT: SizeUnit = SizeUnit::MmAndInches;

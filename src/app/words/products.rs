@@ -7,7 +7,7 @@ use voidwalk_practice::design::specification::{ProductMargin, Specification};
 use voidwalk_practice::quantity::{SizeUnit, length, significant};
 use voidwalk_practice::rules::{GREATEST_SIZE_MM, MOST_CU, WIDEST_BAND};
 
-/// Requirements that the sides of a product break beside D15F.
+/// Requirements other than on D15F that the sides of a product do not keep.
 fn not_kept(all: &[NotKept]) -> String {
     let one = |breach: &NotKept| match breach {
         NotKept::CuOfFineSide { cu } => cu_of("fine", *cu),
@@ -25,15 +25,15 @@ fn cu_of(side: &str, cu: f64) -> String {
     format!("Cu of its {side} side is {}, and {LEAST_CU} to {MOST_CU} is asked for", significant(cu))
 }
 
-/// Names the products whose limits are to be checked; `None` without any.
+/// Names of products whose limits are to be checked; `None` if there are none.
 pub fn to_be_checked(products: &[ProductMargin]) -> Option<String> {
     let checked = products.iter().filter(|product| is_to_be_checked(&product.source));
     let named: Vec<&str> = checked.map(|product| product.product.as_str()).collect();
     (!named.is_empty()).then(|| format!("Limits to be checked against the standard: {}.", named.join(", ")))
 }
 
-/// The columns of `specification_products.csv` and of a workbook, and under their headings the columns of a
-/// page, sizes in this unit.
+/// Columns of `specification_products.csv` and of a workbook, and under their headings the columns of a
+/// page, with sizes in this unit.
 pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, ProductMargin> {
     let margin = |by: Option<f64>| by.map_or("not given".shown(), |by| significant(by).shown());
     Columns::default()
@@ -50,14 +50,14 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, ProductMargin> {
         .column("holds_by", |product| product.holds_by)
         .page_number("Retains: maximum D15F / coarsest D15", move |product| margin(product.holds_by))
         .column("not_kept", |product| not_kept(&product.not_kept))
-        .page_text("What else its sides do not keep", |product| {
+        .page_text("Other requirements not kept", |product| {
             Some(not_kept(&product.not_kept)).filter(|words| !words.is_empty())
         })
         .column("source", |product| product.source.clone())
         .headed("Source of its limits")
 }
 
-/// The result of a standard product beside a specification.
+/// Result of a standard product beside a specification.
 pub fn product(specification: &Specification, product: &ProductMargin) -> String {
     match product.fits() {
         Some(true) => "fits".into(),
@@ -70,7 +70,7 @@ pub fn product(specification: &Specification, product: &ProductMargin) -> String
     }
 }
 
-/// The standard products that fit, or the closest one: sentences without the last end.
+/// Standard products that fit, or the closest one, in sentences, the last without its end.
 pub fn products(specification: &Specification) -> String {
     let fitting = specification.products.iter().filter(|product| product.fits() == Some(true));
     let fitting: Vec<&str> = fitting.map(|product| product.product.as_str()).collect();
@@ -99,8 +99,8 @@ mod tests {
     use voidwalk_core::gradation::Gradation;
     use voidwalk_practice::SpecificationOptions;
 
-    /// A core of category 2, for which 0.100 to 0.700 mm are allowed. C33 sand has a D15 of 0.178 to 0.424 mm
-    /// and a Cu of 4.0 and 4.2, and leaves the band at 1.18 mm.
+    /// A core of category 2, for which 0.100 to 0.700 mm is allowed. C33 sand has a D15 of 0.178 to
+    /// 0.424 mm and a Cu of 4.0 and 4.2, and leaves the band at 1.18 mm.
     #[test]
     fn a_product_is_tested_with_its_own_sides_and_not_by_the_band_that_was_drawn() {
         let base = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]).unwrap();

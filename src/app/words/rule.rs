@@ -1,5 +1,5 @@
 //! Rules of practice in words: their table, from which every face shows some columns, their results, and
-//! values beside limits.
+//! values with limits.
 
 use crate::outcome::table::{Columns, Emphasis, Shown, TableCell};
 use voidwalk_core::gradation::{FEW_FINES, RegradeCause, RegradeReason};
@@ -10,10 +10,10 @@ use voidwalk_practice::rule_result::{RuleResult, result_of};
 use voidwalk_practice::rules::PERMEABILITY_LEAST;
 use voidwalk_practice::{AppliedRule, RuleNote, RuleRole, RuleUnit, ValueBound};
 
-/// Note beside lists of limits: a reader finds the digits that are not shown a little larger.
+/// Note beside lists of limits, for readers who compare them with unrounded numbers.
 pub const LIMITS_ROUNDED: &str = "Limits are rounded to the safe side.";
 
-/// The parts in which rules of practice are listed, with their headings.
+/// Parts in which rules of practice are listed, with their headings.
 pub const PARTS: [(RuleRole, &str); 5] = [
     (RuleRole::Retention, "The filter retains the base"),
     (RuleRole::Continuation, "Coarser filters: where erosion still ends"),
@@ -22,8 +22,8 @@ pub const PARTS: [(RuleRole, &str); 5] = [
     (RuleRole::Stability, "Internal stability of the filter"),
 ];
 
-/// The columns of rules: the columns of a workbook, and under their headings the columns from which other
-/// faces choose, sizes in this unit.
+/// Columns of rules: those of a workbook, and under their headings those from which other faces choose,
+/// with sizes in this unit.
 pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, AppliedRule> {
     Columns::default()
         .name("rule", "Rule", |rule: &AppliedRule| rule.name.clone())
@@ -43,7 +43,7 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, AppliedRule> {
         .column("The limit is", |rule| rule.limit.map(|_| limit_is(rule)))
         .column("Applies", |rule| rule.applies)
         .text("result", "Result", shown_result)
-        // A boundary of continuing erosion that is not reached is no limit that is met.
+        // A boundary of continuing erosion that is not reached does not count as met.
         .column("Met", |rule| rule.met.filter(|met| rule.role != RuleRole::Continuation || !met))
         .column("Formula", |rule| rule.formula.clone())
         .column("Applies to", |rule| rule.applies_to.clone())
@@ -57,22 +57,22 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, AppliedRule> {
         .column("Id", |rule| rule.id.clone())
 }
 
-/// The value of a rule if sieves give only a bound.
+/// Word for the value of a rule if sieves give only a bound.
 fn value_is(bound: ValueBound) -> &'static str {
     match bound {
-        ValueBound::AtMost => "the most that it can be",
-        ValueBound::AtLeast => "the least that it can be",
+        ValueBound::AtMost => "an upper bound",
+        ValueBound::AtLeast => "a lower bound",
     }
 }
 
-/// The kind of a limit that is known.
+/// Kind of a known limit.
 fn limit_is(rule: &AppliedRule) -> &'static str {
     match (rule.at_least, rule.limit_at_most) {
         _ if rule.role == RuleRole::Continuation => "a boundary: continuing erosion beyond it",
         (true, false) => "the least",
-        (true, true) => "enough; the least is not known",
+        (true, true) => "sufficient; the minimum is not known",
         (false, false) => "the most",
-        (false, true) => "the most that it can be",
+        (false, true) => "an upper bound",
     }
 }
 
@@ -81,7 +81,7 @@ fn notes(rule: &AppliedRule, unit: SizeUnit) -> String {
     rule_notes(&[&rule.notes[..], &rule.needs].concat(), unit)
 }
 
-/// The result in a cell; a comparison of the walk with tests lies within them or not.
+/// Result in a table cell; for a comparison of the walk with tests, within the tests or not.
 fn shown_result(rule: &AppliedRule) -> Shown {
     let rule_result = result_of(rule);
     match (rule.role, rule.met) {
@@ -95,19 +95,19 @@ fn shown_result(rule: &AppliedRule) -> Shown {
     }
 }
 
-/// The value of a rule as `= 0.8`, or as `at most 0.8` if sieves give only a bound.
+/// Value of a rule as `= 0.8`, or as `at most 0.8` if sieves give only a bound.
 pub fn value(rule: &AppliedRule, unit: SizeUnit) -> Option<String> {
     let [value, _] = value_and_limit(rule, unit);
     value.map(|value| format!("{} {value}", value_begins(rule)))
 }
 
-/// The limit of a rule with the words around it.
+/// Limit of a rule with the words around it.
 pub fn limit(rule: &AppliedRule, unit: SizeUnit) -> Option<String> {
     let [_, limit] = value_and_limit(rule, unit);
     limit.map(|limit| format!("{} {limit}{}", limit_begins(rule), limit_ends(rule)))
 }
 
-/// The result of a rule.
+/// Result of a rule in words.
 pub fn result(result: RuleResult) -> &'static str {
     match result {
         RuleResult::Met => "met",
@@ -121,11 +121,11 @@ pub fn result(result: RuleResult) -> &'static str {
     }
 }
 
-/// The words before a limit: a least, a most, or a boundary beyond which erosion continues.
+/// Words before a limit: minimum, maximum, or boundary beyond which erosion continues.
 pub fn limit_begins(rule: &AppliedRule) -> &'static str {
     match (rule.role, rule.at_least, rule.limit_at_most) {
         (RuleRole::Continuation, ..) => "continuing beyond",
-        // The least follows from a size in the base's finest part, and a sufficient value is known.
+        // D15B is finer than the finest sieve, and a sufficient value is known.
         (_, true, true) if rule.id == PERMEABILITY_LEAST => "≥ 3 D15B;",
         (_, true, true) => "≥ 5 D15B;",
         (_, true, false) => "≥",
@@ -133,7 +133,7 @@ pub fn limit_begins(rule: &AppliedRule) -> &'static str {
     }
 }
 
-/// The words behind a limit that is itself unknown.
+/// Words after a limit that is itself unknown.
 pub fn limit_ends(rule: &AppliedRule) -> &'static str {
     match (rule.limit_at_most, rule.at_least) {
         (true, true) => " is enough",
@@ -142,7 +142,7 @@ pub fn limit_ends(rule: &AppliedRule) -> &'static str {
     }
 }
 
-/// The words before a value: a bound, if sieves give no more.
+/// Words before a value that is only a bound.
 pub fn value_begins(rule: &AppliedRule) -> &'static str {
     match rule.value_bound {
         None => "=",
@@ -151,8 +151,8 @@ pub fn value_begins(rule: &AppliedRule) -> &'static str {
     }
 }
 
-/// Value and limit of a rule with their unit, as far as they are known, and in inches if these are shown:
-/// with enough digits to tell the two apart, so that a value beyond its limit never reads as within it.
+/// Value and limit of a rule with their unit, if known, and in inches if these are shown: with enough
+/// digits to tell them apart, so that a value beyond its limit never reads as within it.
 pub fn value_and_limit(rule: &AppliedRule, unit: SizeUnit) -> [Option<String>; 2] {
     let unit = match rule.unit {
         RuleUnit::One => Unit::None,
@@ -168,7 +168,7 @@ pub fn rule_notes(notes: &[RuleNote], unit: SizeUnit) -> String {
     notes.iter().map(|note| rule_note(*note, unit)).collect::<Vec<_>>().join("; ")
 }
 
-/// A note of a rule, as part of a sentence.
+/// Note of a rule as part of a sentence.
 pub(super) fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
     let text = match note {
         RuleNote::D15FBetween(from, to) => return between(unit, "D15F lies", from, to),
@@ -189,7 +189,7 @@ pub(super) fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
         RuleNote::BeforeRegrading => "base before regrading",
         RuleNote::TakenAsSand => "sizes are multiples of D0F: taken as a sand without fines",
         RuleNote::ResultOfModel => "a result of the model, for the base as it is walked",
-        RuleNote::BeyondAnyLimit => "beyond the most that the limit can be",
+        RuleNote::BeyondAnyLimit => "beyond any possible limit",
         RuleNote::NoClearBoundary => {
             "not a limit: with 15 to 85 % fines and D95B above 2 mm tests identified no boundary of \
                  continuing erosion (Fell et al., section 9.3.2); the manual of the Corps has one in a \
@@ -225,7 +225,7 @@ pub(super) fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
         }
         RuleNote::BandFrom(percent) => {
             return format!(
-                "compared from {} % finer, as no finer sieve tells",
+                "compared from {} % finer, as there is no finer sieve",
                 significant(percent).decimals(0)
             );
         }
@@ -255,7 +255,7 @@ pub(super) fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
         }
         RuleNote::KezdiHidden(share) => {
             let share = significant(share).decimals(0);
-            return format!("what its {share} % finer than the finest sieve hide is not known");
+            return format!("not known for the {share} % finer than the finest sieve");
         }
         RuleNote::ShapeAt(at, most) => {
             return format!("at F = {} %, judged up to F = {} %", significant(at).decimals(1), given(most));
@@ -281,12 +281,12 @@ pub(super) fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
         }
         RuleNote::LimitsByFines(percent) => {
             let percent = significant(percent).decimals(0);
-            return format!("{percent} % of the base is fines: limits by fines stand in its place");
+            return format!("{percent} % of the base is fines: limits by fines apply instead");
         }
         RuleNote::BurenkovaSoils => "for grains of up to 100 mm and a Cu of up to 200",
         RuleNote::BurenkovaThirdZone(high) => {
             return format!(
-                "h' is above {}: Burenkova's third zone, of which Wan and Fell have no tests and expect \
+                "h' is above {}: Burenkova's third zone, where Wan and Fell have no tests and expect \
                      no loss of fines",
                 significant(high).decimals(2)
             );
@@ -297,7 +297,7 @@ pub(super) fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
     text.into()
 }
 
-/// Missing data for a result, without a word before it; `None` if nothing is missing.
+/// Data missing for a result, without an introductory word; `None` if nothing is missing.
 pub fn missing(note: RuleNote) -> Option<&'static str> {
     Some(match note {
         RuleNote::NeedsFinesOfBase => "finer sieves of the base, to tell whether it has 15 % fines or more",
@@ -308,15 +308,13 @@ pub fn missing(note: RuleNote) -> Option<&'static str> {
         RuleNote::NeedsD10F => "the filter's D10",
         RuleNote::NeedsFinesOfFilter => "finer sieves of the filter, down to 0.075 mm",
         RuleNote::NeedsSievesOfFilter => "finer sieves of the filter",
-        RuleNote::NeedsFinestPartOfFilter => {
-            "finer sieves of the filter, of which too much passes the finest"
-        }
+        RuleNote::NeedsFinestPartOfFilter => "finer sieves of the filter, as too much passes the finest",
         RuleNote::NeedsCurveOfFilter => "the filter's sieve curve",
         RuleNote::NeedsCurveOfFilterInMm => "the filter's sieve curve in mm",
         RuleNote::NeedsTestOfDispersive => {
             "a test of this dispersive soil, for whose fines no source gives a limit"
         }
-        RuleNote::NeedsErosion => "a walk whose first run erodes something",
+        RuleNote::NeedsErosion => "a walk with erosion in the first run",
         _ => return None,
     })
 }
@@ -326,7 +324,7 @@ fn between(unit: SizeUnit, what: &str, from: f64, to: f64) -> String {
     format!("{what} between {} and {}: test the sieves between", low.in_cell(), high)
 }
 
-/// The reason why practice regrades a base or does not, as part of a sentence.
+/// Reason why practice regrades a base or not, as part of a sentence.
 pub fn regrade_reason(reason: RegradeReason) -> String {
     let cause = match reason.cause {
         RegradeCause::Gap(from) => &*format!(
@@ -364,7 +362,7 @@ mod tests {
                 let words = rule_note(note, SizeUnit::Mm);
                 assert!(!words.contains("NaN") && !words.contains("inf "), "{note:?}: {words}");
                 assert!(!words.is_empty() && !words.contains("  ") && words.len() < 200, "{note:?}: {words}");
-                // Others follow behind a semicolon.
+                // Others follow after a semicolon.
                 assert!(!words.ends_with(['.', ';', ':', ' ']), "{note:?}: {words}");
                 assert_eq!(words.starts_with("needs "), format!("{note:?}").starts_with("Needs"), "{words}");
             }

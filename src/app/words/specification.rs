@@ -1,4 +1,4 @@
-//! The specification of a filter in words.
+//! Specification of a filter in words.
 
 use super::answer::capital;
 use super::practice::{beside_dispersive, dispersive_limit, test};
@@ -19,13 +19,13 @@ use voidwalk_practice::rules::{
     range_of_tests,
 };
 
-/// Advice for a base that is found to be dispersive.
+/// Advice for a base found to be dispersive.
 pub const DESIGN_AGAIN: &str = "design again for a dispersive base";
 
-/// Advice for many samples that are found to be dispersive.
+/// Advice for samples found to be dispersive.
 pub const DESIGN_EACH_AGAIN: &str = "design again for dispersive soils";
 
-/// The band to specify: D15F of both sides, and Cu. `None` without a band.
+/// Band to specify: D15F of both sides, and Cu. `None` without a band.
 ///
 /// ```
 /// use voidwalk_core::Gradation;
@@ -45,8 +45,8 @@ pub fn band(specification: &Specification, unit: SizeUnit) -> Option<String> {
     Some(format!("D15F from {}{open}, Cu from {LEAST_CU} to {MOST_CU}", limits(least, most, unit)))
 }
 
-/// The reason why the band begins above the minimum D15F that drains the base, or ends below the maximum that
-/// retains it, in a sentence without its end; `None` if it does neither.
+/// Reason why the band begins above the minimum D15F that drains the base, or ends below the maximum that
+/// retains it, in a sentence without its end; `None` if neither is the case.
 pub fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let [least, most] = specification.band.as_ref()?.d15_mm();
     if let Some(retains) = specification.d15f_max_mm.filter(|max| most < max * (1.0 - 1e-9)) {
@@ -65,8 +65,8 @@ pub fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
     ))
 }
 
-/// Gap of a specification for which no text with its numbers could be read: the maximum D90F, which keeps a
-/// filter from segregating. `None` without a band.
+/// Gap in a specification: the maximum D90F, which keeps a filter from segregating, because no text with
+/// its numbers could be read. `None` without a band.
 pub fn still_to_set(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let least = specification.band.as_ref().map(SizeBand::least_d10_mm)?;
     Some(format!(
@@ -78,8 +78,8 @@ pub fn still_to_set(specification: &Specification, unit: SizeUnit) -> Option<Str
     ))
 }
 
-/// Requirements of a delivery beside the limits at the sieves: between two sieves it may leave the band or
-/// have a gap. `None` without a band.
+/// Requirements of a delivery beside the limits at the sieves: between two sieves it may leave the band
+/// or have a gap. `None` without a band.
 pub fn beside_limits(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let [least, most] = specification.band.as_ref()?.d15_mm();
     Some(format!(
@@ -89,13 +89,13 @@ pub fn beside_limits(specification: &Specification, unit: SizeUnit) -> Option<St
     ))
 }
 
-/// Warns that the maximum D15F has no margin, if it is the boundary of no erosion of tests itself: a sentence
-/// without its end.
+/// Warning in a sentence without its end that the maximum D15F has no margin, if it equals the tests'
+/// boundary of no erosion.
 pub fn without_margin(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let (curve, limit) = specification.strictest()?;
     let fines = curve.fines_percent.filter(|_| curve.without_margin)?;
     let why = match (specification.dispersive && fines >= FEW_FINES, range_of_tests(fines, curve.d85_mm?)) {
-        // The limit of design is the floor of any filter then, and above the boundary of tests.
+        // The limit of design is then the floor for any filter, above the boundary of tests.
         (true, _) if limit < DESIGN_FLOOR_MM => {
             "it is the boundary of no erosion in tests (Fell et al., Table 9.2, note b)".into()
         }
@@ -119,7 +119,7 @@ pub fn without_margin(specification: &Specification, unit: SizeUnit) -> Option<S
     Some(format!("This limit has no margin: {why}"))
 }
 
-/// The maximum D15F and the origin of its rule.
+/// Maximum D15F and the origin of its rule.
 pub fn limit(specification: &Specification, unit: SizeUnit) -> String {
     match specification.strictest() {
         Some((curve, limit)) => {
@@ -129,8 +129,8 @@ pub fn limit(specification: &Specification, unit: SizeUnit) -> String {
     }
 }
 
-/// The maximum D15F if the base is dispersive, and the advice, as [`DESIGN_AGAIN`]: sentences, the last
-/// without its end; `None` if all holds for such a base too, or if it was stated to be dispersive or not.
+/// Maximum D15F if the base is dispersive, and the advice, such as [`DESIGN_AGAIN`], in sentences, the
+/// last without its end; `None` if all holds for such a base too, or if dispersion is stated.
 pub fn if_dispersive(specification: &Specification, again: &str, unit: SizeUnit) -> Option<String> {
     let most = specification.d15f_max_mm.unwrap_or(f64::INFINITY);
     let limit =
@@ -149,7 +149,7 @@ pub fn if_dispersive(specification: &Specification, again: &str, unit: SizeUnit)
     ))
 }
 
-/// The reason why there is no band, in sentences.
+/// Reason why there is no band, in sentences.
 pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
     match why {
         NoBand::DrainageNotKnown { most_drains_mm, most_mm } => format!(
@@ -163,7 +163,7 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
              {} to retain it. {}",
             least_length(*least_mm, unit),
             greatest_length(*most_mm, unit),
-            // Such a fine base is not broad: the least D15F of any filter is beyond its limit.
+            // A base this fine is not broad: the minimum D15F of any filter exceeds its limit.
             if *least_mm <= LEAST_D15F_MM {
                 "Have the base tested in the laboratory with the filter, or take a filter in two stages."
             } else {
@@ -179,14 +179,14 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
         ),
         NoBand::LimitNotKnown { curve, needs } => {
             let why =
-                if needs.is_empty() { "the limit can only be less".into() } else { rule_notes(needs, unit) };
+                if needs.is_empty() { "the limit may be lower".into() } else { rule_notes(needs, unit) };
             format!("The maximum D15F is not known for {curve}: {why}.")
         }
         NoBand::NoRule => "No rule of retention covers this base.".into(),
     }
 }
 
-/// A number of a step with its unit: a minimum rounded up, a maximum and the size that enters a table rounded
+/// Number of a step with its unit: a minimum rounded up, a maximum or a size that enters a table rounded
 /// down; `None` if unknown.
 pub fn step_value(value: &StepValue, unit: SizeUnit) -> Option<String> {
     let number = value.value?;
@@ -198,7 +198,7 @@ pub fn step_value(value: &StepValue, unit: SizeUnit) -> Option<String> {
     })
 }
 
-/// A step of the procedure.
+/// Step of the procedure in words.
 pub fn step_name(step: StepName) -> &'static str {
     match step {
         StepName::Plot => "Plot the gradation of the base",
@@ -216,7 +216,7 @@ pub fn step_name(step: StepName) -> &'static str {
     }
 }
 
-/// Remarks on a step, in sentences.
+/// Remarks on a step in sentences.
 pub fn step_notes(step: &SpecificationStep, unit: SizeUnit) -> String {
     let remark = match step.does {
         StepName::KeepUniform => format!(
@@ -264,7 +264,7 @@ fn step_note(note: &StepNote, unit: SizeUnit) -> String {
             format!("Set by {name}.")
         }
         StepNote::SetBy { rule: None, curve: None } => String::new(),
-        StepNote::LimitNotKnown { needs } if needs.is_empty() => "The limit can only be less.".into(),
+        StepNote::LimitNotKnown { needs } if needs.is_empty() => "The limit may be lower.".into(),
         StepNote::LimitNotKnown { needs: notes } | StepNote::OfRule { notes } => {
             format!("{}.", capital(&rule_notes(notes, unit)))
         }
@@ -281,7 +281,7 @@ fn step_note(note: &StepNote, unit: SizeUnit) -> String {
     }
 }
 
-/// The check for a gap, by a number of this program, as the manual leaves it to the eye.
+/// Check for a gap by a number of this program, as the manual leaves it to the eye.
 fn gap(flattest: Option<[f64; 2]>, unit: SizeUnit) -> String {
     const EYE: &str =
         "The manual gives no number and leaves it to visual examination and judgment: look at the curve.";
@@ -297,7 +297,7 @@ fn gap(flattest: Option<[f64; 2]>, unit: SizeUnit) -> String {
     )
 }
 
-/// The columns of limits sieve by sieve on a page and in a workbook.
+/// Columns of limits at each sieve, on a page and in a workbook.
 pub fn limit_columns<'a>() -> Columns<'a, SieveLimit> {
     Columns::default()
         .name("sieve", "Sieve", |limit: &SieveLimit| limit.sieve.clone())
@@ -311,7 +311,7 @@ pub fn limit_columns<'a>() -> Columns<'a, SieveLimit> {
         })
 }
 
-/// A number of `specification_steps.csv`.
+/// Row of `specification_steps.csv`: one number of a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepRow {
     /// Number of the step.
@@ -322,9 +322,9 @@ pub struct StepRow {
     pub quantity: String,
     /// The number.
     pub value: Option<f64>,
-    /// Its unit.
+    /// Unit of the number.
     pub unit: String,
-    /// The formula.
+    /// Formula of the step.
     pub formula: String,
     /// Remarks for the reader.
     pub note: String,
@@ -332,7 +332,7 @@ pub struct StepRow {
     pub source: String,
 }
 
-/// The numbers of a step as rows; one row without a number if it has no number.
+/// Numbers of a step as rows; a step without a number gives one row.
 pub fn step_rows(step: &SpecificationStep) -> Vec<StepRow> {
     let row = |value: Option<&StepValue>| StepRow {
         step: step.step,
@@ -372,7 +372,7 @@ mod tests {
             step_value(&StepValue { name: name.into(), value, unit: unit.into() }, SizeUnit::Mm)
         };
         assert_eq!(rounded("minimum D15F", Some(0.11661), "mm").unwrap(), "0.117\u{202f}mm");
-        // The words agree with the sentence that asks for D90F.
+        // The words agree with the sentence on D90F.
         assert_eq!(rounded(ENTERED_BY, Some(0.19158), "mm").unwrap(), "0.191\u{202f}mm");
         assert_eq!(rounded("maximum D10F", Some(0.58389), "mm").unwrap(), "0.583\u{202f}mm");
         assert_eq!(rounded("maximum D15F / minimum D15F, as found", Some(6.999), "").unwrap(), "7.00");
@@ -380,7 +380,7 @@ mod tests {
         assert_eq!(rounded("minimum D15F", None, "mm"), None);
     }
 
-    /// All lengths of all steps, over sizes of many digits.
+    /// All lengths of all steps, for sizes with many digits.
     #[test]
     fn inches_of_a_step_lie_within_the_limit_beside_them() {
         let mut checked = 0;
@@ -413,7 +413,7 @@ mod tests {
         assert!(checked > 500, "{checked}");
     }
 
-    /// One band on every page: the band in words is the band that is drawn.
+    /// The band in words is the band that is drawn, on every page.
     #[test]
     fn the_band_that_is_said_is_the_one_that_is_drawn() {
         for specification in [specified(&CORE, None), specified(&SAND, None)] {
@@ -431,7 +431,7 @@ mod tests {
         assert_eq!([band(&none, SizeUnit::Mm), beside_limits(&none, SizeUnit::Mm)], [None, None]);
     }
 
-    /// A ratio of 7 is narrowed to 5, at either end; a ratio of 2 is not.
+    /// A ratio of 7 is narrowed to 5 at either end; a ratio of 2 is not.
     #[test]
     fn a_band_that_was_narrowed_is_said_with_both_sizes() {
         let base = [("core".into(), Gradation::from_lines(&CORE).unwrap())];
@@ -448,7 +448,7 @@ mod tests {
         assert_eq!(raised(&specified(&SAND, None), SizeUnit::Mm), None);
     }
 
-    /// One size on the first sheet and in its step: the size that enters the table of D90F.
+    /// The first sheet and its step state the same size, which enters the table of D90F.
     #[test]
     fn the_minimum_d10f_is_one_number() {
         let till = [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
@@ -463,7 +463,7 @@ mod tests {
         assert_eq!(still_to_set(&none, SizeUnit::Mm), None);
     }
 
-    /// A limit within what tests showed, one at its lower end, one below it, and those of dispersive soils.
+    /// A limit within the range of tests, one at its lower end, one below it, and limits of dispersive soils.
     #[test]
     fn a_limit_without_a_margin_is_said_to_have_none() {
         let sentence =
@@ -474,15 +474,15 @@ mod tests {
         assert!(has(sentence(&CLAY, None), "it lies in the range in which tests put"));
         assert!(has(sentence(&CLAY, None), "0.320 to 0.675\u{202f}mm"));
         assert!(has(sentence(&CLAY, Some(true)), "give it for no erosion in tests"));
-        // For a dispersive clay this fine 6.4 D85B is less than the 0.2 mm below which design never lies.
+        // For a dispersive clay this fine, 6.4 D85B is less than 0.2 mm, the minimum of design.
         let fine = [(0.0005, 0.0), (0.02, 85.0), (0.04, 100.0)];
         assert!(has(sentence(&fine, Some(true)), "it is the boundary of no erosion in tests"));
         assert_eq!(sentence(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)], None), None);
         assert_eq!(sentence(&SAND, Some(true)), None);
     }
 
-    /// 0.5 mm if a silt is dispersive; with 25 % fines no source has a limit, and it is never stated as the
-    /// limit of other bases.
+    /// The limit of a dispersive silt is 0.5 mm; with 25 % fines no source has a limit, and the limit of
+    /// other bases is never stated as one.
     #[test]
     fn a_limit_of_dispersive_bases_that_no_source_gives_is_less_than_that_of_others() {
         let silt = |fines| [(0.01, 0.0), (0.075, fines), (0.3, 92.0), (0.6, 100.0)];
@@ -496,14 +496,14 @@ mod tests {
         let open = sentence(25.0, None).unwrap();
         assert!(open.contains("less than ") && !open.contains("at most"), "{open}");
         assert!(open.ends_with("have the base tested with the filter"), "{open}");
-        // Few fines, and bases of known dispersion.
+        // Few fines, and bases whose dispersion is stated.
         assert_eq!(
             [sentence(10.0, None), sentence(45.0, Some(true)), sentence(45.0, Some(false))],
             [None, None, None]
         );
     }
 
-    /// D15F of at most 6.4 D85B, here 0.064 mm, is less than any filter may have.
+    /// The maximum D15F, 6.4 D85B = 0.064 mm, is less than the minimum for any filter.
     #[test]
     fn a_base_that_is_too_fine_is_not_called_broad() {
         let why =

@@ -15,7 +15,7 @@ pub enum CurveUnit {
 }
 
 impl CurveUnit {
-    /// Name of the diameter column in this unit.
+    /// Returns the name of the diameter column in this unit.
     pub fn field(self) -> &'static str {
         match self {
             CurveUnit::Mm => "diameter_mm",
@@ -39,21 +39,21 @@ pub enum CurveError {
     /// The table of the curve.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// A number from outside a table.
+    /// A number that is not from a table.
     #[error(transparent)]
     Number(#[from] NumberError),
-    /// A packing has no constriction to measure.
+    /// The packing has no constriction to measure.
     #[error(
         "the packing has no constriction: its {0} tetrahedra form {1} voids, with no open facet \
          between two; more grains of the sizes that carry the filter are needed"
     )]
     NoConstriction(usize, usize),
-    /// No shipped filter has this name.
+    /// No filter with this name is shipped.
     #[error("no shipped filter is called \"{name}\"; the nearest is \"{nearest}\" (shipped: {all})")]
     UnknownFilter {
-        /// Name asked for.
+        /// Requested name.
         name: String,
-        /// Shipped name that resembles it most.
+        /// Shipped name that is most similar.
         nearest: String,
         /// All shipped names.
         all: String,
@@ -62,12 +62,12 @@ pub enum CurveError {
 
 const PERCENT: &str = "percent_smaller";
 
-/// A constriction size distribution (CSD): percent smaller by number against diameter, straight in
-/// percent against diameter between its points.
+/// A constriction size distribution (CSD): percent smaller by number against diameter, linear between
+/// its points.
 ///
-/// Invariants: diameters and percent never fall, from 0 % to 100 %. One point is a single size; the same
-/// diameter twice is a vertical step; the same percent twice is a plateau, a gap in the sizes. A first point
-/// above 0 % is a step at its diameter.
+/// Invariants: diameters and percent never fall, and percent goes from 0 to 100. One point is a single
+/// size; the same diameter twice is a vertical step; the same percent twice is a plateau, a gap in the
+/// sizes. A first point above 0 % is a step at its diameter.
 ///
 /// ```
 /// use voidwalk_core::constrictions::{Curve, CurveUnit};
@@ -90,7 +90,7 @@ impl Curve {
     /// Makes a curve through pairs of percent smaller and diameter, in `unit`, rising or falling.
     ///
     /// # Errors
-    /// Errors of [`Curve::from_csv`], with the point's place in the list as the line.
+    /// Errors of [`Curve::from_csv`]; the line is the point's number in the list.
     pub fn from_points(points: &[(f64, f64)], unit: CurveUnit) -> Result<Curve, CurveError> {
         let rows: Vec<Row> = points
             .iter()
@@ -104,14 +104,14 @@ impl Curve {
     /// `diameter_over_d0f`, in either order, named in a header.
     ///
     /// # Errors
-    /// A file that cannot be read, is a folder, is too large or no UTF-8; no header, or one with other names;
-    /// no rows; a row without exactly two fields; a value that is no finite number in range; diameters that
-    /// both rise and fall; percent that falls as diameter rises; a largest diameter below 100 %.
+    /// A file that cannot be read, is a folder, is too large or is not UTF-8; no header, or other names in
+    /// it; no rows; a row without exactly two fields; a value that is not a finite number in range; diameters
+    /// that both rise and fall; percent that falls as diameter rises; a largest diameter below 100 %.
     pub fn from_csv(path: impl AsRef<Path>) -> Result<Curve, CurveError> {
         Curve::from_table(&Table::open(path.as_ref())?)
     }
 
-    /// [`Curve::from_csv`] on the content of a file, called `name` in messages.
+    /// Parses the content of a file like [`Curve::from_csv`]; `name` is used in messages.
     pub fn from_csv_text(name: &str, content: &[u8]) -> Result<Curve, CurveError> {
         Curve::from_table(&Table::parse(name, content)?)
     }
@@ -163,14 +163,14 @@ impl Curve {
             }
             points.push((row.percent, row.size));
         }
-        // Levels at 0 % and at 100 % hold no constriction.
+        // Plateaus at 0 % and at 100 % hold no constriction.
         let start = points.iter().rposition(|&(p, _)| p == 0.0).unwrap_or(0);
         let end = points.iter().position(|&(p, _)| p == 100.0).unwrap_or(points.len() - 1);
         let (percent, diameter) = points[start..=end].iter().copied().unzip();
         Ok(Curve { percent, diameter, unit })
     }
 
-    /// D_cx: the smallest diameter that `percent` of the constrictions do not exceed; `None` outside 0 to
+    /// D_cx: smallest diameter that `percent` of the constrictions do not exceed; `None` outside 0 to
     /// 100.
     pub fn dc(&self, percent: f64) -> Option<f64> {
         if !(0.0..=100.0).contains(&percent) {
@@ -182,16 +182,16 @@ impl Curve {
         }
     }
 
-    /// The part of the curve that ends with point `i`, which is not the first.
+    /// Returns the segment that ends at point `i`, which is not the first.
     #[inline(always)]
     fn up_to(&self, i: usize) -> Part {
         let ends = |points: &[f64]| [points[i - 1], points[i]];
         Part { percent: ends(&self.percent), diameter: ends(&self.diameter) }
     }
 
-    /// Diameters drawn by random words: [`Curve::quantile`] at [`unit`] of each word.
+    /// Draws diameters from random words: [`Curve::quantile`] at [`unit`] of each word.
     pub(crate) fn draws(&self) -> CurveDraws<'_> {
-        // There are two points at least, the first at 0 %.
+        // There are at least two points, the first at 0 %.
         let mut end = 1;
         let of_bucket = |bucket: u64| {
             let percent = 100.0 * unit(bucket << BELOW_BUCKET);
@@ -201,7 +201,7 @@ impl Curve {
         CurveDraws { curve: self, end: (0..=u64::MAX >> BELOW_BUCKET).map(of_bucket).collect() }
     }
 
-    /// Percent of the constrictions, by number, no larger than `diameter` (in this curve's unit).
+    /// Percent by number of the constrictions that are no larger than `diameter` (in this curve's unit).
     pub fn percent_smaller(&self, diameter: f64) -> f64 {
         let above = self.diameter.partition_point(|&d| d <= diameter);
         if above == 0 {
@@ -215,8 +215,8 @@ impl Curve {
         (p + (diameter - a) / (b - a) * (q - p)).clamp(p, q)
     }
 
-    /// Diameter of the draw `unit`: the inverse of the distribution, so that `unit` uniform in 0 to 1 draws a
-    /// constriction. It never falls as `unit` rises; outside 0 to 1 it is the nearest end.
+    /// Diameter at the fraction `unit`: the inverse of the distribution, so that a uniform `unit` from 0
+    /// to 1 draws a constriction. It never falls as `unit` rises; outside 0 to 1 it is the nearest end.
     pub fn quantile(&self, unit: f64) -> f64 {
         match self.dc(100.0 * unit) {
             Some(diameter) => diameter,
@@ -251,7 +251,7 @@ impl Curve {
         self.diameter.iter().zip(&self.percent).map(point).collect()
     }
 
-    /// Multiplies every diameter by `factor`; the unit is kept.
+    /// Multiplies every diameter by `factor` and keeps the unit.
     ///
     /// # Errors
     /// A factor that is not positive and finite, or that takes a diameter out of range.
@@ -276,7 +276,7 @@ impl Curve {
     }
 }
 
-/// A part of a curve that is straight in percent against diameter.
+/// A segment of a curve, linear in percent against diameter.
 #[derive(Clone, Copy, Default)]
 struct Part {
     /// Percent at the two ends.
@@ -285,7 +285,7 @@ struct Part {
 }
 
 impl Part {
-    /// Diameter at `percent`, which is above the first end and no more than the second.
+    /// Diameter at `percent`, which is above the first end and at most the second.
     #[inline(always)]
     fn at(self, percent: f64) -> f64 {
         let ([p, q], [a, b]) = (self.percent, self.diameter);
@@ -296,21 +296,21 @@ impl Part {
     }
 }
 
-/// Bits of a word below those of its bucket: 1,024 buckets.
+/// Number of bits of a word below those of its bucket: 1,024 buckets.
 const BELOW_BUCKET: u32 = 54;
 
-/// Words whose diameters are drawn together.
+/// Number of words whose diameters are drawn together.
 const AT_ONCE: usize = 64;
 
-/// The inverse of a curve for random words: the place of each on the curve is looked up, not searched for.
+/// The inverse of a curve for random words: the segment of each is looked up, not searched for.
 pub(crate) struct CurveDraws<'a> {
     curve: &'a Curve,
-    /// Point that ends the part of the bucket's smallest word, by bucket (the upper bits of a word).
+    /// Point that ends the segment of the bucket's smallest word, by bucket (the upper bits of a word).
     end: Vec<u32>,
 }
 
 impl CurveDraws<'_> {
-    /// Draws diameters, in the curve's unit, from the words that `next` gives one after another.
+    /// Draws diameters, in the curve's unit, from successive words of `next`.
     pub(crate) fn fill(&self, mut next: impl FnMut() -> u64, out: &mut [f32], unit_mm: f64) {
         for out in out.chunks_mut(AT_ONCE) {
             let (mut percent, mut parts) = ([0.0; AT_ONCE], [Part::default(); AT_ONCE]);
@@ -330,7 +330,7 @@ impl CurveDraws<'_> {
     }
 }
 
-/// Entry of `known` that resembles `name` most; `None` if `known` is empty.
+/// Entry of `known` most similar to `name`; `None` if `known` is empty.
 pub(super) fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     known.into_iter().max_by(|a, b| strsim::jaro_winkler(name, a).total_cmp(&strsim::jaro_winkler(name, b)))
 }
@@ -343,7 +343,7 @@ mod tests {
         Curve::from_points(points, CurveUnit::D0f).unwrap()
     }
 
-    /// Points in the form that `from_points` takes.
+    /// Points in the form accepted by `from_points`.
     fn pairs(curve: &Curve) -> Vec<(f64, f64)> {
         curve.points().iter().map(|point| (point.percent, point.size)).collect()
     }
@@ -390,8 +390,8 @@ mod tests {
         assert_eq!((c.percent_smaller(0.0), c.percent_smaller(1.0)), (0.0, 100.0));
     }
 
-    /// Checks curves with one size, steps, levels, and many points: at bounds of buckets, beside them,
-    /// anywhere.
+    /// Checks curves with one size, steps, plateaus, and many points: at the bounds of buckets, beside
+    /// them, and anywhere.
     #[test]
     fn words_draw_what_the_quantile_of_each_is() {
         let many: Vec<_> = (0..=5000).map(|i| (0.02 * f64::from(i), 0.1 + 1e-5 * f64::from(i))).collect();

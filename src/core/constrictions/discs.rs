@@ -1,41 +1,41 @@
-//! The disc of a facet, the largest that passes between its three grains; tangent circles and spheres.
+//! The disc of a facet: the largest that passes between its three grains. Tangent circles and spheres.
 //!
 //! The disc is the circle tangent to the three grains in the plane of their centres. If further grains cut
-//! into it, it is the largest circle through any three of the grains concerned (their sections by that plane)
-//! that none of the others cuts: Reboul, Vincens & Cambou, *A computational procedure to assess the
+//! into it, it is the largest circle tangent to any three of these grains (their sections by that plane)
+//! that no other grain cuts: Reboul, Vincens & Cambou, *A computational procedure to assess the
 //! distribution of constriction sizes for an assembly of spheres*, doi:10.1016/j.compgeo.2009.09.002. The
-//! others are the corners of the two tetrahedra at the facet, of their neighbours and of their neighbours'
-//! neighbours: on packings of Cu 1.5 and Cu 3 a search one step further cut no further disc.
+//! further grains are the corners of the two tetrahedra at the facet, of their neighbours and of their
+//! neighbours' neighbours: on packings of Cu 1.5 and Cu 3 a search one step further cut no further disc.
 //!
 //! # Tangents
 //! Seen from the centre of the smallest grain (radius `r0`), a centre `q` at distance `s = rho + r0`
-//! touches grain `k` (centre `d`, radius `r0 + delta`) when `d.q + s delta = (|d|^2 - delta^2) / 2`:
-//! linear in `q` and `s`. So `q = A + B s`, and `|q| = s` is a quadratic. Differences of squares are
-//! taken as products, so that a grain of one in a gap of grains of a million keeps its digits.
+//! touches grain `k` (centre `d`, radius `r0 + delta`) if `d.q + s delta = (|d|^2 - delta^2) / 2`: linear
+//! in `q` and `s`. So `q = A + B s`, and `|q| = s` is a quadratic equation. Differences of squares are
+//! computed as products, so that a grain of 1 in a gap between grains of a million keeps its digits.
 
 use super::triangulation::{GrainPoint, Shift, Triangulation, cross, dot, facet, offset};
 
-/// Cuts shallower than this part of the disc's radius are contacts.
+/// Maximum depth of a cut that counts as a contact, as a fraction of the disc's radius.
 const CONTACT: f64 = 1e-9;
 
-/// Grains that may cut into a disc at the same time; more are not tried.
+/// Maximum number of grains that cut into a disc together; more are not tried.
 const MOST_CUTTING: usize = 8;
 
-/// Number of facets to search for other grains, from the disc's two tetrahedra.
+/// Number of facets from the disc's two tetrahedra within which other grains are searched for.
 const RINGS: usize = 2;
 
-/// Opening through which grains may pass a facet, in grid units.
+/// Opening through which particles may pass a facet, in grid units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ConstrictionDisc {
     /// Centre in the stored translate of the requested tetrahedron.
     pub centre: [f64; 3],
     /// Radius; zero if the grains leave no room.
     pub radius: f64,
-    /// True if a further grain cuts into the circle tangent to the three.
+    /// True if another grain cuts into the circle tangent to the three.
     pub cut: bool,
 }
 
-/// The plane of a facet: coordinates along `u`, `v`, and `w` above it.
+/// The plane of a facet: coordinates along `u` and `v`, and `w` normal to it.
 struct Plane {
     origin: GrainPoint,
     axes: [[f64; 3]; 3],
@@ -57,7 +57,7 @@ impl Plane {
         self.axes.map(|a| dot(&a, &d))
     }
 
-    /// Circle in which a grain meets the plane.
+    /// Circle in which a grain intersects the plane.
     fn section(&self, p: &GrainPoint) -> Option<[f64; 3]> {
         let [u, v, w] = self.local(p);
         let square = (p[3] - w) * (p[3] + w);
@@ -84,7 +84,7 @@ pub(super) fn disc(t: &Triangulation, tetrahedron: usize, corner: usize) -> Cons
         None => ConstrictionDisc { centre: [facet[0][0], facet[0][1], facet[0][2]], radius: 0.0, cut },
     };
     let Some(first) = circle(&sections) else { return place(None, false) };
-    // Few discs are cut: look for one cutting grain before listing all.
+    // Few discs are cut: search for one cutting grain before listing all.
     let (centre, mut cut) = (plane.global(first.centre), false);
     around(t, tetrahedron, corner, |grain| {
         let d = offset(&centre, grain);
@@ -109,7 +109,7 @@ fn cuts(disc: &Tangent<2>, other: &[f64; 3]) -> bool {
     (x * x + y * y).sqrt() < other[2] + disc.radius * (1.0 - CONTACT)
 }
 
-/// Finds the largest circle through three of the grains concerned that no other grain cuts.
+/// Finds the largest circle tangent to three of these grains that no other grain cuts.
 fn largest(facet: &[[f64; 3]; 3], others: &[[f64; 3]], first: &Tangent<2>) -> Option<Tangent<2>> {
     let mut concerned = facet.to_vec();
     concerned.extend(others.iter().filter(|other| cuts(first, other)).take(MOST_CUTTING));
@@ -138,7 +138,7 @@ fn around(t: &Triangulation, tetrahedron: usize, corner: usize, mut visit: impl 
     }
 }
 
-/// Visits the corners beyond the facets of a tetrahedron, except the facet of entry.
+/// Visits the corners beyond the facets of a tetrahedron, except beyond the facet of entry.
 fn beyond(
     t: &Triangulation,
     (tetrahedron, translate, entered): (usize, Shift, usize),
@@ -170,9 +170,8 @@ fn half_power<const N: usize>(d: &[f64; N], delta: f64) -> f64 {
     0.5 * (length - delta) * (length + delta)
 }
 
-/// Distance `s` of `A + B s` from the origin that equals `s`: the smaller positive root. This root changes
-/// smoothly with the sizes; a larger one, if any, comes in from infinity (a sphere that holds the grains on
-/// its other side).
+/// Solves `|A + B s| = s`: the smaller positive root. This root changes smoothly with the sizes; a
+/// larger one, if any, comes from infinity (a sphere with the grains on its other side).
 fn distance<const N: usize>(a: &[f64; N], b: &[f64; N]) -> Option<f64> {
     let (square, half, constant) = (dot(b, b) - 1.0, dot(a, b), dot(a, a));
     let discriminant = half * half - square * constant;
@@ -184,7 +183,7 @@ fn distance<const N: usize>(a: &[f64; N], b: &[f64; N]) -> Option<f64> {
     (s.is_finite() && s > 0.0).then_some(s)
 }
 
-/// Finds the sphere that touches four grains (centre and radius each); `None` if they leave no such room.
+/// Finds the sphere that touches four grains (centre and radius of each); `None` if there is no room.
 pub(super) fn sphere(grains: &[[f64; 4]; 4]) -> Option<Tangent<3>> {
     let first = least(grains.map(|g| g[3]));
     let origin = grains[first];
@@ -203,7 +202,7 @@ pub(super) fn sphere(grains: &[[f64; 4]; 4]) -> Option<Tangent<3>> {
     (s > origin[3]).then_some(Tangent { centre, radius: s - origin[3] })
 }
 
-/// Finds the circle that touches three circles (centre and radius each); `None` if they leave no room.
+/// Finds the circle that touches three circles (centre and radius of each); `None` if there is no room.
 pub(super) fn circle(circles: &[[f64; 3]; 3]) -> Option<Tangent<2>> {
     let first = least(circles.map(|c| c[2]));
     let origin = circles[first];
@@ -234,12 +233,12 @@ mod tests {
     fn touching(r: [f64; 3]) -> [[f64; 3]; 3] {
         let (ab, ac, bc) = (r[0] + r[1], r[0] + r[2], r[1] + r[2]);
         let x = (ab * ab + (r[0] - r[1]) * (ac + bc)) / (2.0 * ab);
-        // Heron, in the form that keeps the digits of thin triangles.
+        // Heron's formula, in a form that keeps the digits of thin triangles.
         let area = (r[0] * r[1] * r[2] * (r[0] + r[1] + r[2])).sqrt();
         [[0.0, 0.0, r[0]], [ab, 0.0, r[1]], [x, 2.0 * area / ab, r[2]]]
     }
 
-    /// Known geometry: three equal grains 0.154701 of their diameter; radii of wide ratios.
+    /// Known geometry: three equal grains give 0.154701 of their diameter; radii of wide ratios.
     #[test]
     fn known_discs() {
         for (r, expected) in [

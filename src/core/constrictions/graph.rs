@@ -1,16 +1,16 @@
 //! The void graph of a packing: voids, the constrictions between them, and their conductances.
 //!
-//! After Chareyre, Cortis, Catalano & Barthelemy (2012), *Pore-scale modeling of viscous flow and induced
-//! forces in dense sphere packings*, doi:10.1007/s11242-011-9915-6. A throat is the bipyramid of a facet and
-//! the power centres on either side of it. Its hydraulic radius is the volume of water in it over the surface
-//! of grains in it, `R_h = phi / gamma`, and it conducts
+//! After Chareyre, Cortis, Catalano & Barthelemy (2012), *Pore-scale modeling of viscous flow and
+//! induced forces in dense sphere packings*, doi:10.1007/s11242-011-9915-6. A throat is the bipyramid of
+//! a facet and the power centres on either side of it. Its hydraulic radius is its volume of water over
+//! its surface of grains, `R_h = phi / gamma`, and its conductance is
 //!
 //! ```text
 //! g = A_f R_h^2 / (2 mu L)
 //! ```
-//! with `A_f` the part of the facet outside the grains and `L` the path between the two voids. Volumes and
-//! solid angles have a sign: a power centre on the far side of a facet subtracts. So the sums over all facets
-//! are exactly the volume of the voids and the surface of the grains.
+//! with `A_f` the area of the facet outside the grains and `L` the path between the two voids. Volumes
+//! and solid angles are signed: a power centre on the far side of a facet counts as negative. So the
+//! sums over all facets are exactly the volume of the voids and the surface of the grains.
 
 use super::triangulation::{GrainPoint, Shift, Triangulation, cross, dot, edges, facet, offset, six_volume};
 use super::voids::{Insphere, Voids, solid_angle};
@@ -19,14 +19,14 @@ use crate::packing::Packing;
 use rayon::prelude::*;
 use std::fmt::Write;
 
-/// Least distance of two void points, as a part of the smallest grain: a path of no length would conduct
-/// without limit.
+/// Minimum distance of two void points, over the smallest grain diameter: a path of zero length would
+/// have an infinite conductance.
 const LEAST_WAY: f64 = 0.05;
 
-/// The voids of a periodic packing and the constrictions between them, as a graph that repeats in x, y and z.
+/// The voids of a periodic packing and the constrictions between them, as a graph periodic in x, y and z.
 ///
-/// Constriction `c` is constriction `c` of the [`Constrictions`] that it was measured with: it leads from
-/// void `from[c]` in the cell to void `to[c]` in the cell that is shifted by `shift[c]`, and back.
+/// Constriction `c` is also constriction `c` of the [`Constrictions`] measured with it. It leads from
+/// void `from[c]` in the cell to void `to[c]` in the cell shifted by `shift[c]`, and back.
 ///
 /// ```
 /// use voidwalk_core::constrictions::VoidGraph;
@@ -54,7 +54,7 @@ pub struct VoidGraph {
     pub from: Vec<u32>,
     /// Void on the other side, by constriction.
     pub to: Vec<u32>,
-    /// Shift of that other void in cells along x, y, z, by constriction.
+    /// Shift of the void on the other side, in cells along x, y, z, by constriction.
     pub shift: Vec<[i32; 3]>,
     /// Diameter (mm) by constriction.
     pub diameter_mm: Vec<f64>,
@@ -64,7 +64,7 @@ pub struct VoidGraph {
     pub point_mm: Vec<[f64; 3]>,
     /// Volume outside the grains (mm3) by void.
     pub volume_mm3: Vec<f64>,
-    /// Number of grains that take part.
+    /// Number of grains that are not hidden.
     pub grains: usize,
     /// Sum of their diameters cubed (mm3).
     pub cubes_mm3: f64,
@@ -72,7 +72,7 @@ pub struct VoidGraph {
     pub d32_mm: f64,
     /// Smallest grain (mm).
     pub d0_mm: f64,
-    /// Porosity: volume of the voids over the cell's.
+    /// Porosity: volume of the voids over the volume of the cell.
     pub porosity: f64,
 }
 
@@ -80,8 +80,8 @@ impl VoidGraph {
     /// Triangulates a packing and measures its constrictions and its graph.
     ///
     /// # Errors
-    /// Errors of [`Constrictions::measure`]; a packing without a periodic cell, or whose grains do not fit
-    /// their cell; a void that meets itself through the cell.
+    /// Errors of [`Constrictions::measure`]; a packing without a periodic cell, or with grains that do
+    /// not fit their cell; a void that meets itself through the cell.
     pub fn measure(
         packing: &Packing,
         merge_overlap: f64,
@@ -89,7 +89,7 @@ impl VoidGraph {
         let t = Triangulation::new(packing)?;
         let passages = Passages::find(&t, merge_overlap, Facets::All)?;
         let constrictions = Constrictions::between(&t, &passages);
-        // Checked first, or an error of the cell would appear as one of the graph.
+        // Checked first; else an error of the cell would appear as one of the graph.
         constrictions.check()?;
         Ok((constrictions, Self::between(&t, &passages)?))
     }
@@ -145,7 +145,7 @@ impl VoidGraph {
         for passage in &passages.open {
             let ((i, k), (u, across)) = (passage.facet, passage.across);
             let (a, b) = (voids.by_tetrahedron[i] as usize, voids.by_tetrahedron[u] as usize);
-            // Place of the far void if the near one is at its own place, and then its place in the cell.
+            // Shift of the far void from the near one; below, its shift if the near one is in the cell.
             let by = voids.shift[i].plus(across).minus(voids.shift[u]);
             let path = offset(&points[a], &moved(&points[b], &t.displacement(by)));
             let length = dot(&path, &path).sqrt().max(LEAST_WAY * 2.0 * smallest);
@@ -170,13 +170,13 @@ impl VoidGraph {
         self.point_mm.len()
     }
 
-    /// Edge of the mean void's cube (mm): the thickness of a layer.
+    /// Edge of a cube with the mean volume per void (mm): the thickness of a layer.
     pub fn spacing_mm(&self) -> f64 {
         let [x, y, z] = self.cell_mm;
         libm::cbrt(x * y * z / self.voids() as f64)
     }
 
-    /// Permeability (mm2) by Kozeny and Carman: `n^3 d32^2 / (180 (1 - n)^2)` with n the porosity.
+    /// Permeability (mm2) by Kozeny and Carman: `n^3 d32^2 / (180 (1 - n)^2)` with porosity n.
     pub fn kozeny_carman_mm2(&self) -> f64 {
         let (n, solid) = (self.porosity, 1.0 - self.porosity);
         n * n * n * self.d32_mm * self.d32_mm / (180.0 * solid * solid)
@@ -200,13 +200,13 @@ fn moved(p: &[f64; 3], by: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| p[axis] + by[axis])
 }
 
-/// Shift in cells that moves a point into the cell.
+/// Shift, in cells, that moves a point into the cell.
 fn fold(p: &[f64; 3], cell: &[f64; 3]) -> Shift {
     Shift::new(std::array::from_fn(|axis| -libm::floor(p[axis] / cell[axis]) as i32))
 }
 
-/// Centre of the largest tangent sphere of each void, beside the stored translate of its first tetrahedron; a
-/// void without one has a corner of that tetrahedron.
+/// Centre of the largest tangent sphere of each void, for the stored translate of its first tetrahedron;
+/// a void without such a sphere has a corner of that tetrahedron.
 fn void_points(t: &Triangulation, voids: &Voids) -> Vec<[f64; 3]> {
     let mut largest = vec![-1.0; voids.count];
     let mut points = vec![[0.0; 3]; voids.count];
@@ -227,8 +227,8 @@ fn void_points(t: &Triangulation, voids: &Voids) -> Vec<[f64; 3]> {
     points
 }
 
-/// Power centre of each tetrahedron, in its stored translate. For four grains on a circle it is ill-defined:
-/// the centre of the neighbour in the same void replaces it.
+/// Power centre of each tetrahedron, in its stored translate. For four grains on a circle it is
+/// ill-defined, and the centre of the neighbour in the same void is used.
 fn power_centres(t: &Triangulation, voids: &Voids) -> Vec<[f64; 3]> {
     let by_tetrahedron: Vec<[f64; 3]> =
         (0..t.tetrahedra()).into_par_iter().with_min_len(1024).map(|i| power_centre(&t.stored(i))).collect();
@@ -274,7 +274,7 @@ struct Throat {
 }
 
 impl Throat {
-    /// Makes the throat of the facet `k` of tetrahedron `i` from the tetrahedron across it, shifted, and the
+    /// Makes the throat of facet `k` of tetrahedron `i` from the shifted tetrahedron across it and the
     /// power centres.
     fn new(
         t: &Triangulation,
@@ -300,8 +300,8 @@ impl Throat {
     }
 }
 
-/// Volume of water and surface of grains between a facet and a point, positive if the point is on the side of
-/// `inside`.
+/// Volume of water and surface of grains between a facet and a point, positive if the point is on the
+/// same side as `inside`.
 fn half(facet: &[GrainPoint; 3], inside: &GrainPoint, apex: &[f64; 3]) -> (f64, f64) {
     let (e, f) = (offset(&facet[0], &facet[1]), offset(&facet[0], &facet[2]));
     let normal = cross(&e, &f);
@@ -319,7 +319,7 @@ fn half(facet: &[GrainPoint; 3], inside: &GrainPoint, apex: &[f64; 3]) -> (f64, 
     (sign * volume, sign * surface)
 }
 
-/// Area of a facet less the sectors of its three grains, each up to the opposite edge.
+/// Area of a facet minus the sectors of its three grains, each cut at the opposite edge.
 fn open_area(facet: &[GrainPoint; 3]) -> f64 {
     let edge = |a: usize, b: usize| offset(&facet[a], &facet[b]);
     let normal = cross(&edge(0, 1), &edge(0, 2));
@@ -338,7 +338,7 @@ fn open_area(facet: &[GrainPoint; 3]) -> f64 {
     (area - covered).max(0.0)
 }
 
-/// Area of a circle's sector between two angles from the perpendicular onto a line, up to that line.
+/// Area of a circular sector between two angles from the perpendicular onto a line, cut at that line.
 fn sector(radius: f64, height: f64, from: f64, to: f64) -> f64 {
     let reach = if radius > height { libm::acos(height / radius) } else { 0.0 };
     let (cut_from, cut_to) = (from.clamp(-reach, reach), to.clamp(-reach, reach));
@@ -385,7 +385,7 @@ mod tests {
         packing
     }
 
-    /// Bipyramids fill the voids, and their solid angles go once round every grain.
+    /// Bipyramids fill the voids, and their solid angles cover every grain exactly once.
     #[test]
     fn throats_sum_to_all_water_and_all_surface() {
         let packing = packing();
@@ -409,7 +409,7 @@ mod tests {
         let of_voids: f64 = graph.volume_mm3.iter().sum();
         assert!((of_voids / (216.0 - solid) - 1.0).abs() < 1e-9, "{of_voids}");
         assert!(graph.point_mm.iter().flatten().all(|&x| (0.0..6.0).contains(&x)));
-        // Cubes that merged with no other are next to each other.
+        // Cubes that merged with no other are neighbours.
         let alone = |void: u32| graph.volume_mm3[void as usize] < 0.7;
         let mut seen = 0;
         for c in (0..graph.from.len()).filter(|&c| alone(graph.from[c]) && alone(graph.to[c])) {
@@ -433,14 +433,14 @@ mod tests {
         assert!(VoidGraph::measure(&free, 0.1).unwrap_err().to_string().contains("periodic cell"));
     }
 
-    /// A grain that reaches beyond the opposite edge covers no more of the facet than the facet has.
+    /// A grain that reaches beyond the opposite edge covers no more of the facet than there is.
     #[test]
     fn a_sector_ends_at_the_opposite_edge() {
         let long = |r| sector(r, 1.0, -0.4, 0.7);
         let triangle = 0.5 * (libm::tan(0.7) + libm::tan(0.4));
         assert!((long(10.0) - triangle).abs() < 1e-15);
         assert!((long(1.0) - 0.5 * 1.1).abs() < 1e-15);
-        // Between the two: by quadrature.
+        // Between the two cases: by quadrature.
         let steps = 100_000;
         let sum: f64 = (0..steps)
             .map(|k| {
@@ -450,7 +450,7 @@ mod tests {
             })
             .sum();
         assert!((long(1.1) - sum).abs() < 1e-9);
-        // The perpendicular may fall outside.
+        // The perpendicular may fall outside the edge.
         assert!((sector(0.5, 1.0, 0.3, 0.9) - 0.5 * 0.25 * 0.6).abs() < 1e-15);
     }
 

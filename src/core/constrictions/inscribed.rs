@@ -1,16 +1,16 @@
-//! Estimates a filter's constrictions from its gradation alone: circles inscribed between touching grains.
+//! Estimates a filter's constrictions from its gradation alone, by circles inscribed between touching grains.
 //!
-//! After the idea of Silveira: grains that meet at a constriction are drawn from the gradation and laid
-//! touching in a plane. *Dense*: three touch each other, and the constriction is the circle between them.
-//! *Loose*: four touch in a ring that is opened until the area between them is largest, and the constriction
-//! is the largest circle in it. Each grain is drawn with a probability proportional to its surface. In
-//! between, diameters at the same percentage are mixed by relative density; the linear mixture is this
-//! program's choice.
+//! After an idea of Silveira: the grains around a constriction are drawn from the gradation and placed
+//! in a plane so that they touch. *Dense*: three touch each other, and the constriction is the circle
+//! between them. *Loose*: four touch in a ring that is opened until the area between them is largest,
+//! and the constriction is the largest circle in it. Each grain is drawn with a probability proportional
+//! to its surface. In between, diameters at the same percentage are interpolated by relative density;
+//! linear interpolation is this program's choice.
 //!
-//! Only three or four grains of the packing are considered. In a filter of wide gradation coarse grains meet
-//! through many fine ones, and fine grains hide in the gaps of coarse ones, so the estimate gets worse the
-//! wider the gradation: `results/packing.md` gives the errors of its Dc50 beside the triangulation of the
-//! same filters.
+//! Only three or four grains of the packing are considered. In a widely graded filter coarse grains meet
+//! through many fine ones, and fine grains hide in the gaps between coarse ones, so the estimate gets
+//! worse the wider the gradation: `results/packing.md` gives the errors of its Dc50 against the
+//! triangulation of the same filters.
 
 use super::curve::{Curve, CurveError, CurveUnit};
 use super::discs::circle;
@@ -21,17 +21,17 @@ use std::collections::VecDeque;
 use std::f64::consts::PI;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Number of constrictions that make a curve.
+/// Number of constrictions drawn for a curve.
 const DRAWS: usize = 8_000;
 
 /// Number of sizes that represent a gradation.
 const SIZES: usize = 4000;
 
-/// Number of steps that find the angle of a ring.
+/// Number of steps to find the angle of a ring.
 const STEPS: usize = 34;
 
-/// Makes the constriction curve (mm, by number) of touching grains of this gradation, at a relative density
-/// from 0, loose, to 1, dense. A pan fraction is left out.
+/// Makes the constriction curve (mm, by number) of touching grains of this gradation, at a relative
+/// density from 0 (loose) to 1 (dense). A pan fraction is left out.
 ///
 /// ```
 /// use voidwalk_core::{constrictions::inscribed, gradation::Gradation};
@@ -58,22 +58,22 @@ pub fn inscribed(gradation: &Gradation, relative_density: f64) -> Result<Curve, 
     Curve::from_points(&points, CurveUnit::Mm)
 }
 
-/// Diameters of the constrictions that were drawn for a gradation, ascending: all densities share the draws.
+/// Diameters of the constrictions drawn for a gradation, ascending; all densities share the draws.
 struct Drawn {
     sizes: Sizes,
     dense: Vec<f64>,
     loose: Vec<f64>,
 }
 
-/// Filters of the last requests. Drawing takes most of the time of a small case, and a check, a run or a
-/// search asks for the same filter at its own density and at both ends of the range, several times.
+/// Filters of the latest requests. Drawing takes most of the time of a small case, and a check, a run or
+/// a search asks several times for the same filter, at its own density and at both ends of the range.
 static KEPT: Mutex<VecDeque<Arc<Drawn>>> = Mutex::new(VecDeque::new());
 
 /// Number of filters kept, of 200 kB each: enough for one comparison.
 const KEPT_FILTERS: usize = 8;
 
 impl Drawn {
-    /// Returns the kept constrictions or draws them anew; no thread waits for the drawing of another filter.
+    /// Returns the cached constrictions, or draws them; no thread waits for another filter to be drawn.
     fn cached(sizes: Sizes) -> Arc<Self> {
         let kept = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
         let known = kept().iter().find(|drawn| drawn.sizes == sizes).cloned();
@@ -101,7 +101,7 @@ impl Drawn {
     }
 }
 
-/// Sizes (mm) of a gradation, and the running sum of their surfaces.
+/// Sizes (mm) of a gradation, and the cumulative sum of their surfaces.
 #[derive(PartialEq)]
 struct Sizes {
     diameter: Vec<f64>,
@@ -137,15 +137,15 @@ fn between_three(radius: [f64; 3]) -> f64 {
     1.0 / (a + b + c + 2.0 * (a * b + b * c + c * a).sqrt())
 }
 
-/// Radius of the largest circle inside four circles that touch in a ring, opened until the area in it is
-/// largest.
+/// Radius of the largest circle inside four circles that touch in a ring, opened until the enclosed area
+/// is largest.
 fn between_four(radius: [f64; 4]) -> f64 {
     let [a, b, c, d] = radius;
     // The angle at `a` runs from the contact of `b` and `d` to the contact of `a` and `c`.
     let (ab, ad) = (a + b, a + d);
     let least = angle(ab, ad, b + d);
     let most = angle(ab, a + c, b + c) + angle(ad, a + c, c + d);
-    // Golden section on an area with one maximum.
+    // Golden-section search for the only maximum of the area.
     let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
     let (mut low, mut high) = (least, most);
     let (mut x, mut y) = (high - golden * (high - low), low + golden * (high - low));
@@ -172,7 +172,7 @@ fn between_four(radius: [f64; 4]) -> f64 {
             largest = largest.max(inner.radius);
         }
     }
-    // If rounding lets no circle through, use the circle of the three smallest.
+    // If, by rounding, no circle fits, use the circle of the three smallest.
     if largest > 0.0 {
         return largest;
     }
@@ -186,7 +186,7 @@ fn angle(p: f64, q: f64, opposite: f64) -> f64 {
     libm::acos(((p * p + q * q - opposite * opposite) / (2.0 * p * q)).clamp(-1.0, 1.0))
 }
 
-/// Centres and radii of the ring with this angle at the first.
+/// Centres and radii of the ring with this angle at the first circle.
 fn ring([a, b, c, d]: [f64; 4], at_a: f64) -> [[f64; 3]; 4] {
     let (ab, ad) = (a + b, a + d);
     let (dx, dy) = (ad * libm::cos(at_a), ad * libm::sin(at_a));

@@ -1,11 +1,11 @@
-//! Lattices, exact and disturbed: every row of known sizes and counts.
+//! Lattices, exact and disturbed: known sizes and counts.
 
 use super::{Constrictions, ConstrictionsError, Facets, Triangulation, TriangulationError};
 use crate::packing::{Cell, Packing};
 use crate::stream::{Key, Purpose, unit};
 use rand::Rng;
 
-/// Grains of a lattice: a basis in a box of given lengths, repeated, all of one diameter.
+/// Grains of a lattice: a basis in a box of given lengths, repeated, all of the same diameter.
 struct Lattice {
     name: &'static str,
     basis: Vec<[f64; 3]>,
@@ -50,8 +50,8 @@ fn measure(packing: &Packing) -> Constrictions {
 }
 
 impl Lattice {
-    /// Places the lattice in a periodic box, scaled, axes turned round `turn` times, each centre moved by up
-    /// to `jitter`.
+    /// Places the scaled lattice in a periodic box, with axes rotated `turn` times and each centre moved
+    /// by up to `jitter`.
     fn periodic(&self, scale: f64, jitter: f64, turn: usize) -> Packing {
         let [nx, ny, nz] = self.repeat;
         let lengths = [nx as f64 * self.lengths[0], ny as f64 * self.lengths[1], nz as f64 * self.lengths[2]];
@@ -109,8 +109,8 @@ fn lattices_have_their_sizes_and_counts_jittered_too() {
     }
 }
 
-/// A lattice turned by an arbitrary angle fits no periodic box: it becomes a free pack, and in its inner part
-/// every size is the lattice's.
+/// A lattice turned by an arbitrary angle fits no periodic box: it becomes a free packing, and in its
+/// inner region every size equals the lattice's.
 #[test]
 fn rotated_lattices_keep_their_sizes() {
     let (c, s) = (0.8, 0.6);
@@ -126,7 +126,7 @@ fn rotated_lattices_keep_their_sizes() {
             let diameter = vec![1.0; x.len()];
             let packing = Packing { cell: Cell::Free, x, y, z, diameter };
             let measured = measure(&packing);
-            // On the hull tetrahedra stretch along its faces; the middle is unaffected.
+            // At the hull tetrahedra stretch along its faces; the middle is unaffected.
             let middle = |axis: usize, column: &[f64]| {
                 let (low, high) = column.iter().fold((f64::MAX, f64::MIN), |(a, b), &v| (a.min(v), b.max(v)));
                 (axis, 0.5 * (low + high))
@@ -163,7 +163,7 @@ fn a_factor_of_two_changes_no_bit() {
     }
 }
 
-/// Cubes meet six others, octahedra (one per grain) eight tetrahedra (two per grain), which meet four.
+/// Cubes meet six others; octahedra (one per grain) meet eight tetrahedra (two per grain), which meet four.
 #[test]
 fn voids_and_their_connectivity() {
     let all = lattices();
@@ -174,7 +174,7 @@ fn voids_and_their_connectivity() {
     assert!(cubic.void_diameter_mm.iter().all(|d| (d - 0.732_051).abs() < 1e-6));
     let fcc = measure(&all[1].periodic(1.0, 0.0, 0));
     assert_eq!(fcc.connectivity(), [0, 0, 0, 0, 192, 0, 0, 0, 96]);
-    // Each constriction leads up: a cubic cell's windows along x and y lead nowhere along z.
+    // Each constriction leads up: the windows of a cubic cell along x and y have no direction along z.
     for c in 0..cubic.constrictions() {
         let z = |v: u32| cubic.void_centre_mm[v as usize][2];
         let rise = z(cubic.downstream[c]) - z(cubic.upstream[c]);
@@ -207,8 +207,8 @@ fn grains_that_cannot_be_a_packing_are_refused() {
         let swollen = measured(&swollen).unwrap();
         (swollen.check().is_ok(), swollen.doubts().len())
     };
-    // A simple cubic lattice has 0.91; grains of 1.25 times the size fill 0.98 of the volume, of 1.26 all of
-    // it.
+    // A simple cubic lattice has 0.91; grains 1.25 times as large fill 0.98 of the volume, 1.26 times
+    // all of it.
     assert_eq!([1.0, 0.9, 1.2, 1.26].map(doubts), [(true, 0), (true, 1), (true, 1), (false, 1)]);
     let again = |by: f64| {
         move |p: &mut Packing| {
@@ -229,7 +229,7 @@ fn grains_that_cannot_be_a_packing_are_refused() {
     };
     assert_eq!([0.002, 0.2].map(near), [(true, 1, 1); 2]);
     assert_eq!(near(0.3).1, 0);
-    // Two layers, the one on the hollows of the other, level or tilted, smooth or rough, and a third on them.
+    // Two layers, one in the hollows of the other, level or tilted, smooth or rough, and a third on top.
     for (layers, tilt, rough) in
         [(2, 0.0, 0.0), (2, 0.4, 0.0), (2, 0.0, 0.1), (2, 0.4, 0.1), (3, 0.0, 0.1), (3, 0.4, 0.0)]
     {
@@ -247,7 +247,7 @@ fn grains_that_cannot_be_a_packing_are_refused() {
         let refused = matches!(layer.unwrap().check(), Err(ConstrictionsError::Outside));
         assert_eq!(refused, layers == 2, "{layers} {tilt} {rough}");
     }
-    // One layer, tilted, and moved out of its plane by less than a millionth of a diameter.
+    // One layer, tilted, and displaced out of its plane by less than a millionth of a diameter.
     for (tilt, off) in [(0.0, 0.0), (0.0, 1e-8), (0.7, 1e-8)] {
         let flat = measured(&|p: &mut Packing| {
             for i in 0..p.x.len() {
@@ -281,7 +281,7 @@ fn a_merge_overlap_that_is_none_is_refused() {
     }
 }
 
-/// The voids of a lattice are convex, so all their facets lie on both hulls; square windows too.
+/// The voids of a lattice are convex, so all their facets, including square windows, lie on both hulls.
 #[test]
 fn on_lattices_every_facet_is_on_both_hulls() {
     for lattice in lattices() {

@@ -1,16 +1,16 @@
-//! Finds a filter's constrictions in a library of packings: a gradation's curve lies between those of similar
-//! gradations.
+//! Finds a filter's constrictions in a library of packings, by interpolation between the curves of
+//! similar gradations.
 //!
-//! `src/core/data/library.csv` holds packings of many shapes of gradation, each dense (friction 0), medium
-//! (0.1) and loose (0.3), made by `scripts/studies/library_of_packings.py`. It holds no lengths: sizes are in
-//! units of the size that halves the surface of the grains, `S50`.
+//! `src/core/data/library.csv` holds packings of gradations of many shapes, each dense (friction 0),
+//! medium (0.1) and loose (0.3), made by `scripts/studies/library_of_packings.py`. It contains no
+//! lengths: sizes are in units of `S50`, the size that divides the surface of the grains in half.
 //!
-//! Grains that touch form the constrictions, and grains meet by surface. So six numbers describe a shape,
-//! `ln(S/S50)` of the sizes below which 5, 20, 30, 70, 80 and 95 % of the surface lie; these and the relative
-//! density give a place in the library. Each percentile of the curve is `ln(Dc/S50)`: a trend that is linear
-//! in the shape and quadratic in the density, and beside it a Gaussian process that draws it to nearby
-//! measurements (universal kriging; Rasmussen & Williams 2006, section 2.7). Grains per void and void ratio
-//! are found likewise.
+//! Grains that touch form the constrictions, and grains meet by surface. So six numbers describe a
+//! shape, `ln(S/S50)` of the sizes below which 5, 20, 30, 70, 80 and 95 % of the surface lie; these and
+//! the relative density give a place in the library. Each percentile of the curve is `ln(Dc/S50)`: a
+//! trend, linear in the shape and quadratic in the density, plus a Gaussian process that draws it
+//! towards nearby measurements (universal kriging; Rasmussen & Williams 2006, section 2.7). Grains per
+//! void and void ratio are found in the same way.
 
 use super::curve::{Curve, CurveError, CurveUnit};
 use crate::gradation::Gradation;
@@ -20,29 +20,29 @@ use std::sync::OnceLock;
 
 const TABLE: &str = include_str!("../data/library.csv");
 
-/// Shares of the surface (%) whose sizes describe a shape, beside the half.
+/// Percentages of the surface whose sizes describe a shape, besides 50 %.
 const SHAPE: [f64; 6] = [5.0, 20.0, 30.0, 70.0, 80.0, 95.0];
-/// Number of coordinates of a place: the shape's, and the relative density.
+/// Number of coordinates of a place: those of the shape, and the relative density.
 const PLACE: usize = SHAPE.len() + 1;
-/// Number of terms of the trend: 1, each coordinate, the square of the density, its product with each
-/// coordinate of the shape.
+/// Number of terms of the trend: 1, each coordinate, the square of the density, and its product with
+/// each coordinate of the shape.
 const TREND: usize = 1 + PLACE + 1 + SHAPE.len();
 /// Distance at which two places are still correlated.
 const REACH: f64 = 0.7;
-/// Variance of a packing's own scatter, by the process's.
+/// Variance of the scatter of a packing over that of the process.
 const SCATTER: f64 = 0.05;
 /// Ridge that keeps the trend from being singular if the library is small.
 const RIDGE: f64 = 1e-6;
-/// Errors of the library by the distance to its nearest shape, relative: of constrictions from Dc5 to Dc95,
-/// and of grains per void. At least nine in ten of the packings whose shape was left out lay within both
-/// (`results/library.md`). A shape that is farther resembles no shape of the library.
+/// Relative errors of the library, by distance to its nearest shape: for constrictions from Dc5 to Dc95,
+/// and for grains per void. At least nine in ten of the packings whose shape was left out were within
+/// both (`results/library.md`). A shape at a larger distance resembles no shape of the library.
 const ERRORS: [LibraryError; 3] = [
     LibraryError { up_to: 0.2, curve: 0.03, grains: 0.06 },
     LibraryError { up_to: 0.35, curve: 0.10, grains: 0.25 },
     LibraryError { up_to: 0.7, curve: 0.13, grains: 0.75 },
 ];
 
-/// Errors of shapes whose nearest in the library is within the distance `up_to`.
+/// Errors for shapes whose nearest shape in the library is within the distance `up_to`.
 struct LibraryError {
     up_to: f64,
     curve: f64,
@@ -54,9 +54,9 @@ struct LibraryError {
 pub struct FromLibrary {
     /// The constriction curve (mm), by number.
     pub curve: Curve,
-    /// Grains of the filter per void.
+    /// Number of grains of the filter per void.
     pub grains_per_void: f64,
-    /// Volume of the voids by the grains'.
+    /// Volume of the voids over the volume of the grains.
     pub void_ratio: f64,
     /// Relative error of the curve, for shapes outside the library.
     pub curve_error: f64,
@@ -64,8 +64,8 @@ pub struct FromLibrary {
     pub grains_error: f64,
 }
 
-/// Finds the constrictions of a filter from its gradation, at a relative density from 0, loose, to 1, dense.
-/// A pan fraction is left out. `None` for a shape that resembles no shape of the library.
+/// Finds the constrictions of a filter from its gradation, at a relative density from 0 (loose) to 1
+/// (dense). A pan fraction is left out. `None` for a shape that resembles no shape of the library.
 ///
 /// ```
 /// use voidwalk_core::{constrictions::from_library, gradation::Gradation};
@@ -85,11 +85,11 @@ pub fn from_library(gradation: &Gradation, relative_density: f64) -> Result<Opti
 /// A packing of the library.
 struct Shipped {
     place: [f64; PLACE],
-    /// Logarithms of the curve's percentiles by `S50`, of grains per void, and of the void ratio.
+    /// Logarithms of the curve's percentiles over `S50`, of grains per void, and of the void ratio.
     measured: Vec<f64>,
 }
 
-/// Percentages of the curve, from the head of the table.
+/// Percentages of the curve, from the header of the table.
 fn percentages() -> Vec<f64> {
     let head = TABLE.lines().find(|line| !line.starts_with('#')).unwrap_or_default();
     head.split(',').filter_map(|name| name.strip_prefix("dc")?.parse().ok()).collect()
@@ -111,7 +111,7 @@ fn packings(table: &str) -> Vec<Shipped> {
 /// The library with its fitted model.
 struct Library {
     places: Vec<[f64; PLACE]>,
-    /// Factors of the trend, for each measured number.
+    /// Coefficients of the trend, for each measured number.
     trend: Vec<[f64; TREND]>,
     /// Weights of the places, for each measured number.
     weights: Vec<Vec<f64>>,
@@ -167,7 +167,7 @@ impl Library {
             .into_iter()
             .zip(curve)
             .map(|(percent, value)| {
-                // Each percentile is found alone; the curve never falls.
+                // Each percentile is predicted alone, but the curve must never fall.
                 size = size.max(half_mm * value);
                 (percent, size)
             })
@@ -181,7 +181,7 @@ impl Library {
         }))
     }
 
-    /// Distance to the nearest shape, whatever its density.
+    /// Distance to the nearest shape, at any density.
     fn distance(&self, place: &[f64; PLACE]) -> f64 {
         let far = |other: &[f64; PLACE]| sqrt(square(&place[..SHAPE.len()], &other[..SHAPE.len()]));
         self.places.iter().map(far).fold(f64::INFINITY, f64::min)
@@ -196,7 +196,7 @@ impl Library {
     }
 }
 
-/// Size (mm) below which this share (%) of the grains' surface lies.
+/// Size (mm) below which this percentage of the grains' surface lies.
 fn by_surface(gradation: &Gradation, percent: f64) -> f64 {
     let (mut low, mut high) = (log(gradation.smallest_mm()), log(gradation.largest_mm()));
     for _ in 0..52 {
@@ -235,7 +235,7 @@ fn column(terms: &[[f64; TREND]], t: usize, values: &[f64]) -> f64 {
     terms.iter().zip(values).map(|(terms, value)| terms[t] * value).sum()
 }
 
-/// Cholesky's root of a positive definite matrix, both by the rows of their lower halves.
+/// Cholesky factor of a positive definite matrix; both are stored as the rows of their lower triangles.
 fn root_of(rows: Vec<Vec<f64>>) -> Root {
     let mut root = Root { columns: rows.iter().map(|_| Vec::with_capacity(rows.len())).collect(), rows };
     for i in 0..root.rows.len() {
@@ -251,7 +251,7 @@ fn root_of(rows: Vec<Vec<f64>>) -> Root {
     root
 }
 
-/// The lower half of a root.
+/// The lower triangle of a Cholesky factor.
 struct Root {
     rows: Vec<Vec<f64>>,
     /// Lower part of each column, from the diagonal down.
@@ -261,7 +261,7 @@ struct Root {
 /// Solves the lower triangle for `right`, one equation after another.
 #[multiversion(targets("x86_64+avx+avx2+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx+avx2"))]
 fn eliminate(columns: &[Vec<f64>], rows: &[Vec<f64>], right: &mut [f64]) {
-    // -0.0, the neutral start of a sum.
+    // -0.0 is the neutral start of a sum.
     let mut sums = vec![-0.0; right.len()];
     for (i, column) in columns.iter().enumerate() {
         right[i] = (right[i] - sums[i]) / rows[i][i];
@@ -288,7 +288,7 @@ fn back(root: &Root, mut right: Vec<f64>) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// A packing, and what a library that was not fitted to it says.
+    /// A packing, and the prediction by a library that was not fitted to it.
     struct Predicted {
         cu: f64,
         density: f64,
@@ -331,7 +331,7 @@ mod tests {
         .collect()
     }
 
-    /// Predicts the packings with a shape for which `is_out` holds from a library of the others.
+    /// Predicts the packings of the shapes for which `is_out` holds, from a library of the others.
     fn left_out(is_out: impl Fn(usize) -> bool) -> Vec<Predicted> {
         let (out, others): (Vec<_>, Vec<_>) =
             shapes().into_iter().zip(packings(TABLE)).partition(|((shape, _), _)| is_out(*shape));
@@ -373,7 +373,7 @@ mod tests {
         for (name, density) in [("loose", 0.0), ("medium", 0.5), ("dense", 1.0)] {
             table(name, &|case| case.density == density);
         }
-        // From Dc5 to Dc95 together, by the distance that sets the stated error.
+        // From Dc5 to Dc95 together, for each range of distances with a stated error.
         let mut nearer = 0.0;
         for LibraryError { up_to, curve, grains } in ERRORS {
             let cases: Vec<&Predicted> =
@@ -390,8 +390,8 @@ mod tests {
         }
     }
 
-    /// `scripts/studies/library_held_out.py` packed them; the library was never fitted to them. The error of
-    /// grains per void in the farthest band was raised from 65 to 75 % for one of them.
+    /// Packed by `scripts/studies/library_held_out.py`; the library was never fitted to them. The error
+    /// of grains per void in the farthest band was raised from 65 to 75 % because of one of them.
     #[test]
     fn packings_that_were_never_fitted_lie_as_near_as_it_says() {
         let table = concat!(env!("CARGO_MANIFEST_DIR"), "/../../results/library-held-out.csv");
@@ -418,7 +418,7 @@ mod tests {
         assert!(beyond.iter().all(|[all, curves, grains]| *all >= 8 && 10 * curves.max(grains) <= *all));
     }
 
-    /// Broad filters are packed in their finer part, which resembles narrower filters.
+    /// Broad filters are packed without their coarser fraction; the finer one resembles narrower filters.
     #[test]
     fn the_shapes_before_them_say_the_broad_ones() {
         const BEFORE: usize = 126;

@@ -3,8 +3,8 @@
 //! ```text
 //! Packing -> Triangulation -> voids, discs -> Constrictions -> Curve
 //! ```
-//! [`from_library()`] finds a curve from packings made earlier, and [`inscribed()`] estimates one from the
-//! gradation alone.
+//! [`from_library()`] gets a curve from packings made earlier, and [`inscribed()`] estimates one from
+//! the gradation alone.
 
 mod curve;
 mod discs;
@@ -34,20 +34,20 @@ use std::collections::HashMap;
 use triangulation::{GrainPoint, Shift, facet};
 use voids::{Insphere, NEAR, Region, SAME_GRAIN, Voids, is_surrounded, nearer, void_ratio_within};
 
-/// Relative difference of centre and radius, by the radius, within which two discs between the same voids are
-/// one (four grains on one circle, up to a jitter of 1e-6 of a grain).
+/// Difference of centre and radius, relative to the radius, within which two discs between the same
+/// voids are one (four grains on one circle, up to a jitter of 1e-6 of a grain).
 const SAME_DISC: f64 = 1e-4;
 
-/// Overlap from which two tetrahedra share a void, unless it is given.
+/// Default overlap from which two tetrahedra share a void.
 pub const DEFAULT_MERGE_OVERLAP: f64 = 0.1;
 
-/// Which facets between two voids are constrictions.
+/// Selection of the facets between two voids that count as constrictions.
 ///
 /// The published program of the paper's author (T. Shire, *Weighted-Delaunay-Constrictions*, GitHub,
 /// after Reboul et al.) does not count every facet between two voids: it takes the convex hull of the
-/// grains of each void and counts a triangle that is on two such hulls. With its overlap of 0.5 this
-/// gives, on packings of Cu 1.5 and Cu 3, the curve that all facets give at an overlap of 0.1, within 1 %
-/// from Dc5 to Dc75 (`results/packing.md`).
+/// grains of each void and counts a triangle that lies on two such hulls. With its overlap of 0.5 this
+/// gives, on packings of Cu 1.5 and Cu 3, the same curve within 1 % from Dc5 to Dc75 as all facets with
+/// an overlap of 0.1 (`results/packing.md`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
@@ -55,15 +55,15 @@ pub enum Facets {
     /// Every facet between two voids.
     #[default]
     All,
-    /// Those on the convex hulls of the grain centres of both voids.
+    /// Facets on the convex hulls of the grain centres of both voids.
     OnBothHulls,
 }
 
-/// The constrictions of a packing, the voids between them, and the quantities for judging a filter.
+/// The constrictions of a packing, the voids between them, and the quantities needed to judge a filter.
 ///
 /// Constriction `c` is entry `c` of the constriction columns, void `v` entry `v` of the void columns.
-/// Constrictions are in the order of their tetrahedra, which the packing alone decides. A free packing's
-/// columns hold everything; its statistics leave out the outer 5 %.
+/// Constrictions are in the order of their tetrahedra, which depends on the packing only. The columns of
+/// a free packing contain everything; its statistics leave out the outer 5 %.
 ///
 /// ```
 /// use voidwalk_core::constrictions::Constrictions;
@@ -95,13 +95,13 @@ pub struct Constrictions {
     pub void_diameter_mm: Vec<f64>,
     /// Its centre x, y, z (mm), by void; a corner of the void if there is no such sphere.
     pub void_centre_mm: Vec<[f64; 3]>,
-    /// Facets between voids that the grains close.
+    /// Number of facets between voids that are closed by grains.
     pub closed: usize,
-    /// Constrictions whose disc a fourth grain shortened.
+    /// Number of constrictions whose disc was made smaller by a fourth grain.
     pub cut: usize,
-    /// Tetrahedra.
+    /// Number of tetrahedra.
     pub tetrahedra: usize,
-    /// Grains inside others, ascending; they take no part.
+    /// Grains inside others, ascending; they are ignored.
     pub hidden: Vec<u32>,
     /// Pairs of grains with the same centre, to a thousandth of the smaller diameter.
     pub duplicates: Vec<[u32; 2]>,
@@ -113,13 +113,13 @@ pub struct Constrictions {
     pub d0_mm: f64,
     /// Overlap from which two tetrahedra share a void.
     pub merge_overlap: f64,
-    /// Facets between voids that were counted.
+    /// Selection of the facets between voids.
     pub counted: Facets,
     /// Region for statistics.
     region: Region,
-    /// Grains in the region, hidden ones left out.
+    /// Number of grains in the region, without hidden ones.
     grains: usize,
-    /// True if a grain has others all around it.
+    /// True if a grain is surrounded by others.
     is_surrounded: bool,
 }
 
@@ -129,20 +129,20 @@ pub enum ConstrictionsError {
     /// The packing has no triangulation.
     #[error(transparent)]
     Triangulation(#[from] TriangulationError),
-    /// Grains without a periodic cell, which the graph of their voids needs.
+    /// The grains have no periodic cell, which the graph of their voids needs.
     #[error("the grains have no periodic cell, and the graph of their voids needs one")]
     NoCell,
-    /// A void that meets itself on the other side of the cell.
+    /// A void meets itself on the other side of the cell.
     #[error(
-        "void {0} runs through the whole cell and meets itself: no way through the graph is known. Merge \
+        "void {0} runs through the whole cell and meets itself: no path through the graph is known. Merge \
          less (merge_overlap = {1} now), or take more grains"
     )]
     Endless(u32, f64),
-    /// Grains inside others: a periodic cell of another size or unit makes them of grains side by side.
+    /// Grains lie inside others: grains side by side appear so in a cell of the wrong size or unit.
     #[error(
         "the grains do not fit their cell: {hidden} of {grains} lie inside others, the first of them grain \
          {first} (counted from 0). The cell is too small, or in another unit than the grains, or grains \
-         stand twice in the file"
+         occur twice in the file"
     )]
     Hidden {
         /// Grains inside others.
@@ -152,22 +152,22 @@ pub enum ConstrictionsError {
         /// The first grain inside another.
         first: u32,
     },
-    /// Grains that occur twice: the number of such pairs, and the first.
+    /// Grains that occur twice: the number of such pairs, and the first pair.
     #[error(
         "{0} pairs of grains have the same centre, the first of them grains {one} and {other} (counted from \
-         0); leave out those that stand twice",
+         0); leave out the duplicates",
         one = .1[0], other = .1[1]
     )]
     Twice(usize, [u32; 2]),
-    /// Grains that leave no voids: the void ratio is 0 or less.
+    /// The grains leave no voids: the void ratio is 0 or less.
     #[error(
-        "the void ratio is {0:.4}: the grains have more volume than the space that they stand in. \
+        "the void ratio is {0:.4}: the grains have more volume than the space that contains them. \
          Diameters may be in another unit than centres, or radii be read as diameters"
     )]
     Full(f64),
-    /// Grains without any that has others all around it.
+    /// No grain is surrounded by others.
     #[error(
-        "no grain has others all around it: the grains are a layer, a heap or a row, and their voids are \
+        "no grain is surrounded by others: the grains are a layer, a heap or a row, and their voids are \
          open outwards. Take a block of at least three grains along each axis, or give its periodic cell"
     )]
     Outside,
@@ -176,13 +176,13 @@ pub enum ConstrictionsError {
     MergeOverlap(f64),
 }
 
-/// An open facet between two voids, and the constriction that it forms, or forms a part of.
+/// An open facet between two voids, and the constriction of which it is all or a part.
 struct Passage {
-    /// Tetrahedron and corner opposite the facet, on the side with the lower index.
+    /// Tetrahedron with the lower index, and its corner opposite the facet.
     facet: (usize, usize),
     /// Tetrahedron on the other side, and the shift of its stored translate.
     across: (usize, Shift),
-    /// Its constriction; a new one is numbered one above those of earlier facets.
+    /// Index of its constriction; a new one is numbered one above those of earlier facets.
     constriction: usize,
     disc: ConstrictionDisc,
 }
@@ -192,12 +192,12 @@ struct Passages {
     voids: Voids,
     counted: Facets,
     open: Vec<Passage>,
-    /// Number of facets that the grains close.
+    /// Number of facets closed by grains.
     closed: usize,
 }
 
 impl Passages {
-    /// Finds the voids, and those facets between them that are `counted`.
+    /// Finds the voids, and the `counted` facets between them.
     ///
     /// # Errors
     /// A `merge_overlap` that is negative or not finite.
@@ -208,7 +208,7 @@ impl Passages {
         let voids = Voids::merge(t, merge_overlap);
         let void_of = &voids.by_tetrahedron;
         let counts = |i: usize, k: usize| {
-            // Each facet is taken from the tetrahedron with the lower index.
+            // Each facet is visited from the tetrahedron with the lower index.
             t.across(i, k).is_some_and(|(u, j, _)| {
                 u > i
                     && void_of[u] != void_of[i]
@@ -343,12 +343,12 @@ impl Constrictions {
         measured
     }
 
-    /// Number of grains that statistics are taken over.
+    /// Number of grains used for statistics.
     pub fn grains(&self) -> usize {
         self.grains
     }
 
-    /// Number of voids that statistics are taken over.
+    /// Number of voids used for statistics.
     pub fn voids(&self) -> usize {
         self.void_centre_mm.iter().filter(|centre| self.region.holds(centre)).count()
     }
@@ -363,7 +363,7 @@ impl Constrictions {
         self.grains as f64 / self.voids() as f64
     }
 
-    /// Voids by number of their constrictions: entry `n` counts those with `n`.
+    /// Number of voids by number of constrictions: entry `n` counts those with `n`.
     pub fn connectivity(&self) -> Vec<usize> {
         let mut of_void = vec![0usize; self.void_centre_mm.len()];
         for &v in self.upstream.iter().chain(&self.downstream) {
@@ -381,18 +381,18 @@ impl Constrictions {
         counts
     }
 
-    /// Mean number of constrictions of a void.
+    /// Mean number of constrictions per void.
     pub fn mean_connectivity(&self) -> f64 {
         let counts = self.connectivity();
         let ends: usize = counts.iter().enumerate().map(|(n, voids)| n * voids).sum();
         ends as f64 / counts.iter().sum::<usize>() as f64
     }
 
-    /// Curve by number (mm): constriction `i` of `n` in ascending order at `i / (n - 1)`, so that D_c0 and
-    /// D_c100 are the smallest and the largest.
+    /// Returns the curve by number (mm): constriction `i` of `n`, in ascending order, is at
+    /// `i / (n - 1)`, so that D_c0 and D_c100 are the smallest and the largest.
     ///
     /// # Errors
-    /// A packing without constrictions, or with sizes that are invalid in a [`Curve`].
+    /// A packing without constrictions, or sizes that are not allowed in a [`Curve`].
     pub fn curve(&self) -> Result<Curve, CurveError> {
         let mut sizes: Vec<f64> = (self.diameter_mm.iter().zip(&self.centre_mm))
             .filter(|(_, centre)| self.region.holds(centre))
@@ -417,7 +417,7 @@ fn leads_up(corners: &[GrainPoint; 4], corner: usize) -> bool {
     let facet = facet(corners, corner);
     let edge = |k: usize| -> [f64; 2] { [facet[k][0] - facet[0][0], facet[k][1] - facet[0][1]] };
     let normal_z = edge(1)[0] * edge(2)[1] - edge(1)[1] * edge(2)[0];
-    // Positive orientation: the other corners turn one way for even corners, the other way for odd.
+    // Positive orientation: the other corners turn one way for even corners, the opposite way for odd ones.
     if corner.is_multiple_of(2) { normal_z > 0.0 } else { normal_z < 0.0 }
 }
 

@@ -1,7 +1,7 @@
-//! The filters shipped with the program: each has a constriction curve, so that no packing is needed.
+//! Filters shipped with the program: each has a constriction curve, so that no packing is needed.
 //!
-//! They are in `src/core/data/filters`: one CSV file per filter, and `filters.toml` with their descriptions.
-//! A new one takes a file, an entry there and a line in `TEXTS` here.
+//! They are in `src/core/data/filters`: one CSV file per filter, and `filters.toml` with their
+//! descriptions. A new one needs a file, an entry there and a line in `TEXTS` here.
 
 use super::curve::{Curve, CurveError, nearest};
 use std::sync::OnceLock;
@@ -35,11 +35,11 @@ pub struct ShippedFilter {
     pub void_ratio: f64,
     /// Source of the void ratio.
     pub void_ratio_source: String,
-    /// Grains per void of a similar packing, N_p / N_voids.
+    /// Number of grains per void of a similar packing, N_p / N_voids.
     pub grains_per_void: f64,
     /// Source of the grains per void.
     pub grains_per_void_source: String,
-    /// Authors to name.
+    /// Authors to be named.
     pub attribution: String,
     /// Licence of the curve.
     pub licence: String,
@@ -55,7 +55,7 @@ struct Manifest {
 }
 
 impl ShippedFilter {
-    /// The constriction curve, in units of D0F.
+    /// Returns the constriction curve, in units of D0F.
     ///
     /// # Errors
     /// Never for a filter from [`shipped`]: a test reads each.
@@ -80,10 +80,10 @@ pub fn shipped() -> &'static [ShippedFilter] {
     })
 }
 
-/// The shipped filter called `name`.
+/// Finds the shipped filter named `name`.
 ///
 /// # Errors
-/// An unknown name; the error gives the nearest name and all names.
+/// An unknown name; the error gives the most similar name and all names.
 ///
 /// ```
 /// let filter = voidwalk_core::constrictions::find("shire2016-cu1.5-loose")?;
@@ -114,15 +114,15 @@ mod tests {
             let published = filter.name.starts_with("shire2016");
             let is_cited = filter.curve_csv.contains("CC BY 4.0") && filter.attribution.contains("doi");
             assert_eq!(published, is_cited);
-            // Three touching smallest grains leave 0.1547 D0F: nothing can be finer.
+            // Three touching smallest grains leave 0.1547 D0F: nothing can be smaller.
             assert!(curve.smallest() >= 0.1547, "{}", filter.name);
         }
     }
 
     /// Published curves have the Cu_CSD of Table 2 of the paper, to the two decimals it gives.
-    /// The program's own six curves beside Table 2: Cu_CSD within 0.04, but for Cu 6 (0.049 too wide, a
-    /// finding); void ratio within 0.006 without friction, 0.02 with 0.3, 0.03 with 0.7. And beside the
-    /// published curves: 3 % at Dc5, Dc25, Dc50, 5 % at Dc75.
+    /// Compares the program's own six curves with Table 2: Cu_CSD within 0.04, except for Cu 6 (0.049
+    /// too wide, a finding); void ratio within 0.006 without friction, 0.02 with 0.3, 0.03 with 0.7.
+    /// Compares them with the published curves: 3 % at Dc5, Dc25, Dc50, 5 % at Dc75.
     #[test]
     fn own_curves_are_near_table_2_and_the_published_ones() {
         for (name, void_ratio, within, cu_csd, cu_within) in [

@@ -1,4 +1,4 @@
-//! The figures of a packing's constrictions and files with them; checks of grains that cannot be a packing.
+//! Results of measuring a packing's constrictions, their files, and checks that grains can be a packing.
 
 use super::curve::CurveError;
 use super::voids::Region;
@@ -9,23 +9,23 @@ use crate::store::format;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
-/// Percent smaller at which [`Summary`] gives diameters.
+/// Percentages for which [`Summary`] gives diameters.
 const SUMMARY_PERCENT: [f64; 13] =
     [0.0, 1.0, 1.5, 5.0, 10.0, 15.0, 25.0, 50.0, 60.0, 75.0, 90.0, 99.0, 100.0];
 
-/// The figures of a packing's constrictions, as in `constrictions.json`.
+/// Results for a packing's constrictions, as in `constrictions.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct Summary {
-    /// Grains, hidden ones left out.
+    /// Number of grains, without hidden ones.
     pub grains: usize,
-    /// Voids.
+    /// Number of voids.
     pub voids: usize,
     /// Grains per void, N_p / N_voids of Eq. (2).
     pub grains_per_void: f64,
-    /// Tetrahedra.
+    /// Number of tetrahedra.
     pub tetrahedra: usize,
-    /// Constrictions.
+    /// Number of constrictions.
     pub constrictions: usize,
     /// Volume of voids over volume of grains.
     pub void_ratio: f64,
@@ -33,37 +33,37 @@ pub struct Summary {
     pub cu_csd: f64,
     /// Smallest grain (mm).
     pub d0_mm: f64,
-    /// Diameter (mm) that a percentage by number is no larger than, by that percentage.
+    /// Diameter (mm) that this percentage of the constrictions by number do not exceed, by percentage.
     pub dc_mm: serde_json::Map<String, serde_json::Value>,
-    /// Mean number of constrictions of a void.
+    /// Mean number of constrictions per void.
     pub mean_connectivity: f64,
-    /// Voids by number of their constrictions, from 0.
+    /// Number of voids by number of constrictions, from 0.
     pub connectivity: Vec<usize>,
     /// Overlap from which two tetrahedra share a void.
     pub merge_overlap: f64,
-    /// Which facets between voids were counted.
+    /// Selection of the facets between voids.
     pub counted_facets: Facets,
-    /// Constrictions whose disc a fourth grain shortened.
+    /// Number of constrictions whose disc was made smaller by a fourth grain.
     pub cut_constrictions: usize,
-    /// Facets between voids that the grains close.
+    /// Number of facets between voids that are closed by grains.
     pub closed_facets: usize,
     /// Grains that lie inside others, counted from 0.
     pub hidden_grains: Vec<u32>,
     /// Pairs of grains with the same centre.
     pub duplicate_grains: Vec<[u32; 2]>,
-    /// What a reader must know of these grains.
+    /// Notes on these grains.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
-    /// Permeability along z over the square of the grains' Sauter mean d32; none without a periodic cell.
+    /// Permeability along z over the square of the grains' Sauter mean d32; absent without a periodic cell.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub k_over_d32_squared: Option<f64>,
-    /// The same by Kozeny and Carman, (1 - c)^3 / (180 c^2) with c the solid fraction.
+    /// Kozeny and Carman's permeability over d32^2, (1 - c)^3 / (180 c^2) with c the solid fraction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kozeny_carman_over_d32_squared: Option<f64>,
 }
 
 impl Constrictions {
-    /// Computes all figures.
+    /// Computes all results.
     ///
     /// # Errors
     /// Errors of [`Constrictions::curve`].
@@ -94,7 +94,7 @@ impl Constrictions {
         })
     }
 
-    /// Files with the results, by name: curve, the constrictions for ParaView, and this summary.
+    /// Makes the files of results, by name: the curve, the constrictions for ParaView, and this summary.
     ///
     /// # Errors
     /// Errors of [`Constrictions::curve`].
@@ -131,13 +131,13 @@ impl Constrictions {
     }
 }
 
-/// Least and greatest void ratio of grains that rest on each other.
+/// Minimum and maximum void ratio of grains that rest on each other.
 const DENSEST: f64 = 0.2;
 const LOOSEST: f64 = 1.5;
 
 impl Constrictions {
-    /// Refuses grains that cannot be a packing: grains inside others in a periodic cell, which must then be
-    /// the wrong cell; grains that occur twice; grains that leave no voids; grains that enclose no grain.
+    /// Refuses grains that cannot be a packing: grains inside others in a periodic cell, which is then the
+    /// wrong cell; grains that occur twice; grains that leave no voids; grains that surround no grain.
     ///
     /// # Errors
     /// [`ConstrictionsError::Hidden`], [`ConstrictionsError::Twice`], [`ConstrictionsError::Outside`] or
@@ -164,7 +164,7 @@ impl Constrictions {
         let other = if is_periodic { "the cell" } else { "their centres" };
         let loose = match is_periodic {
             true => "the cell may be too large, or in another unit than the grains",
-            false => "they may lie apart, or diameters be in another unit than centres",
+            false => "they may not touch, or diameters may be in another unit than centres",
         };
         let mut doubts = Vec::new();
         if ratio > LOOSEST {
@@ -179,7 +179,7 @@ impl Constrictions {
         if let Some([one, other]) = self.near.first() {
             doubts.push(format!(
                 "{} pairs of grains lie nearer than a quarter of the smaller diameter, the first of them \
-                 grains {one} and {other} (counted from 0): they may be one that stands twice",
+                 grains {one} and {other} (counted from 0): they may be one grain given twice",
                 self.near.len()
             ));
         }

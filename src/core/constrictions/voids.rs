@@ -1,35 +1,35 @@
 //! Voids: tetrahedra whose inspheres overlap.
 //!
-//! A tetrahedron's insphere is the sphere tangent to its four grains from between them. Two tetrahedra belong
-//! to one void when `overlap = (r1 + r2 - distance) / min(r1, r2) >= merge_overlap`, for neighbours and
-//! neighbours' neighbours, transitively. Two kinds have no usable insphere:
-//! - wide gradings have tetrahedra without one: they join all four neighbours;
+//! A tetrahedron's insphere is the sphere tangent to its four grains from between them. Two tetrahedra
+//! belong to one void if `overlap = (r1 + r2 - distance) / min(r1, r2) >= merge_overlap`, for neighbours
+//! and neighbours' neighbours, transitively. Two kinds have no usable insphere:
+//! - wide gradations have tetrahedra without an insphere: they join all four neighbours;
 //! - four grains (nearly) on one circle make a flat tetrahedron, whose sphere may lie anywhere on the
-//!   axis of that circle. It is a window, not a void: it joins the neighbour with the largest sphere
-//!   and never links two.
+//!   axis of that circle. It is a window, not a void: it joins the neighbour with the largest sphere and
+//!   never links two.
 //!
-//! Beside them: the part of a packing that statistics are taken over, and what is odd about its grains.
+//! Also here: the region of a packing that is used for statistics, and anomalies of its grains.
 
 use super::discs::{Tangent, sphere};
 use super::triangulation::{GrainPoint, Shift, Triangulation, cross, dot, edges, facet, offset, six_volume};
 use rayon::prelude::*;
 use std::collections::HashSet;
 
-/// A tetrahedron is flat when six times its volume is below this part of the product of the three
-/// edges at every corner (the sine of its widest solid angle). Lattices jittered by 1e-6 of a grain
-/// have 1e-5; no tetrahedron of the disordered packings tried was flat.
+/// A tetrahedron is flat if six times its volume is below this fraction of the product of the three
+/// edges at every corner (the sine of its widest solid angle). Lattices jittered by 1e-6 of a grain have
+/// 1e-5; no tetrahedron of the disordered packings tested was flat.
 const FLAT: f64 = 1e-4;
 
-/// Height over the plane of a facet, as a part of the tetrahedron's height, below which a grain is in the
-/// plane.
+/// Height above the plane of a facet, as a fraction of the tetrahedron's height, below which a grain
+/// counts as in the plane.
 const COPLANAR: f64 = 1e-4;
 
-/// Content of a tetrahedron, in grid units.
+/// Kind of a tetrahedron, with its insphere if it has one, in grid units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Insphere {
-    /// The sphere tangent to its grains, in its stored translate.
+    /// Sphere tangent to its grains, in its stored translate.
     Sphere(Tangent<3>),
-    /// No sphere that touches all four from between them.
+    /// No sphere touches all four grains from between them.
     Open,
     /// Four grains on one circle.
     Flat,
@@ -39,10 +39,10 @@ pub(super) enum Insphere {
 pub(super) struct Voids {
     /// Void by tetrahedron, numbered in the order of their first tetrahedra.
     pub(super) by_tetrahedron: Vec<u32>,
-    /// Translate of each tetrahedron that belongs to the same image of the void as the stored translate of
-    /// the void's first tetrahedron.
+    /// Translate of each tetrahedron that belongs to the same image of the void as the stored translate
+    /// of the void's first tetrahedron.
     pub(super) shift: Vec<Shift>,
-    /// True for each void that meets an image of itself, and so runs through the whole periodic cell.
+    /// True for each void that meets an image of itself, and so extends through the whole periodic cell.
     pub(super) endless: Vec<bool>,
     /// Number of voids.
     pub(super) count: usize,
@@ -82,8 +82,8 @@ impl Voids {
         Self { by_tetrahedron, shift, endless, count: count as usize, inspheres, merge_overlap }
     }
 
-    /// Tells if the facet opposite a corner lies on the convex hull of the grain centres of its tetrahedron's
-    /// void.
+    /// Tells if the facet opposite a corner lies on the convex hull of the grain centres of its
+    /// tetrahedron's void.
     pub(super) fn on_hull(&self, t: &Triangulation, tetrahedron: usize, corner: usize) -> bool {
         let corners = t.stored(tetrahedron);
         let [a, b, c] = facet(&corners, corner);
@@ -94,7 +94,7 @@ impl Voids {
         let mut seen = HashSet::from([tetrahedron]);
         let mut open = vec![(tetrahedron, Shift::ZERO)];
         while let Some((at, shift)) = open.pop() {
-            // Grains in the plane of the facet (a square window) count as on its side.
+            // Grains in the plane of the facet (a square window) count as on the inner side.
             let beyond = |p: &GrainPoint| height(p) * inside.signum() < -COPLANAR * inside.abs();
             if t.at(at, shift).iter().any(beyond) {
                 return false;
@@ -122,8 +122,8 @@ fn insphere(corners: &[GrainPoint; 4]) -> Insphere {
     if is_flat { Insphere::Flat } else { sphere(corners).map_or(Insphere::Open, Insphere::Sphere) }
 }
 
-/// Finds the tetrahedra that share a void with tetrahedron `i`, as far as `i` tells: `i`, the other, and the
-/// translate of the other that the stored one of `i` meets.
+/// Finds the tetrahedra that tetrahedron `i` joins to a void: pairs of `i` and the other, and the
+/// translate of the other next to the stored one of `i`.
 fn joined(t: &Triangulation, inspheres: &[Insphere], merge_overlap: f64, i: usize) -> Vec<(u32, u32, Shift)> {
     let neighbours = (0..4).filter_map(|k| t.across(i, k).map(|(u, _, shift)| (u, shift)));
     let pair = |(u, shift): (usize, Shift)| (i as u32, u as u32, shift);
@@ -140,7 +140,7 @@ fn joined(t: &Triangulation, inspheres: &[Insphere], merge_overlap: f64, i: usiz
         Insphere::Sphere(sphere) => {
             let mut pairs = Vec::new();
             let mut test = |u: usize, shift: Shift| {
-                // Each pair is seen from both sides.
+                // Each pair is found from both sides.
                 if u > i
                     && let Insphere::Sphere(other) = inspheres[u]
                 {
@@ -164,11 +164,11 @@ fn joined(t: &Triangulation, inspheres: &[Insphere], merge_overlap: f64, i: usiz
     }
 }
 
-/// Disjoint sets, each identified by its smallest member, whatever the order of the unions. Every member
-/// stores its translate that goes with the stored translate of its set's smallest member.
+/// Disjoint sets, each identified by its smallest member, whatever the order of the unions. Each member
+/// stores the translate that belongs with the stored translate of its set's smallest member.
 struct Sets {
     above: Vec<u32>,
-    /// Translate of each member that goes with the stored one of the member above it.
+    /// Translate of each member that belongs with the stored one of the member above it.
     shift: Vec<Shift>,
 }
 
@@ -177,7 +177,7 @@ impl Sets {
         Self { above: (0..members as u32).collect(), shift: vec![Shift::ZERO; members] }
     }
 
-    /// The smallest member of the set of `i`, and the translate of `i` that goes with it.
+    /// Returns the smallest member of the set of `i`, and the translate of `i` that belongs with it.
     fn root(&mut self, i: u32) -> (u32, Shift) {
         let mut at = i as usize;
         let mut shift = Shift::ZERO;
@@ -192,8 +192,8 @@ impl Sets {
         (at as u32, shift)
     }
 
-    /// Joins the sets of `a` and `b`, where translate `by` of `b` goes with the stored one of `a`. False if
-    /// they are in one set already, by another translate.
+    /// Joins the sets of `a` and `b`, where translate `by` of `b` belongs with the stored one of `a`.
+    /// False if they are already in one set by another translate.
     fn unite(&mut self, a: u32, b: u32, by: Shift) -> bool {
         let ((root_a, of_a), (root_b, of_b)) = (self.root(a), self.root(b));
         let between = of_a.plus(by).minus(of_b);
@@ -210,10 +210,10 @@ impl Sets {
     }
 }
 
-/// Share of a free packing's extent, at either end of each axis, that statistics leave out.
+/// Fraction of a free packing's extent, at either end of each axis, that statistics leave out.
 const OUTER_SHARE: f64 = 0.05;
 
-/// Part of space that statistics are taken over (mm).
+/// Region used for statistics (mm).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Region {
     Everything,
@@ -221,7 +221,7 @@ pub(super) enum Region {
 }
 
 impl Region {
-    /// The whole cell, or a free packing without the outer share at either end.
+    /// Makes the whole cell, or a free packing without the outer fraction at either end.
     pub(super) fn new(t: &Triangulation) -> Self {
         if t.cell().is_some() {
             return Region::Everything;
@@ -247,11 +247,11 @@ impl Region {
     }
 }
 
-/// Depth within the hull of all centres, as a share of the grain's radius, at which a grain counts as
+/// Depth within the hull of all centres, as a fraction of the grain's radius, at which a grain counts as
 /// surrounded.
 const WITHIN: f64 = 0.5;
 
-/// Tells if a grain has others all around it; in a periodic cell every grain has.
+/// Tells if a grain is surrounded by others; in a periodic cell every grain is.
 pub(super) fn is_surrounded(t: &Triangulation) -> bool {
     let planes: Vec<(GrainPoint, [f64; 3])> = (0..t.tetrahedra())
         .flat_map(|i| (0..4).map(move |k| (i, k)))
@@ -267,8 +267,8 @@ pub(super) fn is_surrounded(t: &Triangulation) -> bool {
     t.spheres().iter().any(|s| planes.iter().all(|(a, normal)| dot(normal, &offset(a, s)) > WITHIN * s[3]))
 }
 
-/// Void ratio of the tetrahedra whose centroid lies in a region, from their volume and the sectors that their
-/// grains fill.
+/// Void ratio of the tetrahedra whose centroid lies in a region, from their volume and the sectors
+/// filled by their grains.
 pub(super) fn void_ratio_within(t: &Triangulation, region: &Region) -> f64 {
     let (mut whole, mut solid) = (0.0, 0.0);
     for i in 0..t.tetrahedra() {
@@ -301,10 +301,10 @@ pub(super) fn solid_angle(edges: &[[f64; 3]; 3], six: f64) -> f64 {
 /// Distance of two centres, over the smaller diameter, below which they are one grain that occurs twice.
 pub(super) const SAME_GRAIN: f64 = 1e-3;
 
-/// Distance of two centres, over the smaller diameter, below which they may well be one grain.
+/// Distance of two centres, over the smaller diameter, below which they are probably one grain.
 pub(super) const NEAR: f64 = 0.25;
 
-/// Adds to `pairs` the neighbours nearer than this share of the smaller diameter.
+/// Adds to `pairs` the neighbours nearer than this fraction of the smaller diameter.
 pub(super) fn nearer(share: f64, t: &Triangulation, mut pairs: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
     for i in 0..t.tetrahedra() {
         let (grains, at) = (t.corners(i), t.stored(i));
@@ -330,7 +330,7 @@ mod tests {
         let mut sets = Sets::new(5);
         let by = |x| Shift::new([x, 0, -x]);
         assert!(sets.unite(3, 4, by(1)) && sets.unite(1, 2, by(2)) && sets.unite(4, 2, by(-1)));
-        // 1 is the smallest; 2 goes with it at 2, 4 at 2 + 1, 3 at 3 - 1.
+        // 1 is the smallest; with it belong 2 at 2, 4 at 2 + 1, and 3 at 3 - 1.
         for (member, shift) in [(1, 0), (2, 2), (4, 3), (3, 2)] {
             assert_eq!(sets.root(member), (1, by(shift)), "{member}");
         }

@@ -1,4 +1,4 @@
-//! Errors of a gradation or of a table of two columns.
+//! Errors of a gradation or a two-column table.
 
 use std::fmt;
 
@@ -10,7 +10,7 @@ use crate::text::{is_hidden, quoted};
 pub struct Position {
     /// File as the user named it, or the name of a list of points.
     pub file: String,
-    /// Line, counted from 1 (point, counted from 1, if there is no file).
+    /// Line (or point, if there is no file), counted from 1.
     pub line: usize,
     /// Name of the column.
     pub field: &'static str,
@@ -27,7 +27,7 @@ impl fmt::Display for Position {
     }
 }
 
-/// Name of a column of a sheet: A, B, ... Z, AA.
+/// Returns the name of a sheet's column: A, B, ... Z, AA.
 pub fn letters(column: u32) -> String {
     let mut name = String::new();
     let mut rest = column + 1;
@@ -39,7 +39,7 @@ pub fn letters(column: u32) -> String {
     name
 }
 
-/// A table of two columns that cannot be used.
+/// A two-column table that cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum TableError {
     /// The file cannot be opened or read.
@@ -64,22 +64,22 @@ pub enum TableError {
         /// Endings of the accepted files.
         endings: String,
     },
-    /// A file larger than any such table.
+    /// A file that is larger than the limit.
     #[error("{file} is larger than {}; allowed: a CSV file of two columns up to that size", in_mb(*.limit))]
     TooLarge {
         /// File as the user named it.
         file: String,
-        /// Largest file that is read.
+        /// Maximum size of a file.
         limit: u64,
     },
-    /// Bytes that are no UTF-8 text.
+    /// Bytes that are not UTF-8 text.
     #[error("{file}, line {line}: byte 0x{byte:02X} is not UTF-8 text; allowed: a CSV file saved as UTF-8")]
     Encoding {
         /// File as the user named it.
         file: String,
         /// Line, counted from 1.
         line: usize,
-        /// The first byte that does not belong.
+        /// First invalid byte.
         byte: u8,
     },
     /// A file of another kind.
@@ -87,7 +87,7 @@ pub enum TableError {
     Format {
         /// File as the user named it.
         file: String,
-        /// Description of its actual kind.
+        /// Description of its actual type.
         is: String,
     },
     /// A refused workbook.
@@ -98,7 +98,7 @@ pub enum TableError {
         /// Reason.
         why: String,
     },
-    /// Several soils, without a name to choose one.
+    /// Several soils, and no name to choose one.
     #[error("{file} holds several soils: {soils}; name one of them, as in {}",
             quoted(&format!("{file}#{first}")))]
     SeveralSoils {
@@ -109,17 +109,17 @@ pub enum TableError {
         /// First name.
         first: String,
     },
-    /// A name that no soil has.
+    /// A soil name that is not in the file.
     #[error("{file} holds no soil called \"{name}\"; it holds {soils}")]
     NoSuchSoil {
         /// File as the user named it.
         file: String,
-        /// Name asked for.
+        /// Requested name.
         name: String,
         /// Names of the soils in the file.
         soils: String,
     },
-    /// No row of numbers.
+    /// A table without a row of numbers.
     #[error("{file} has no row of numbers{}; allowed: at least one row of two numbers",
             if *.header { " below its header" } else { "" })]
     NoRows {
@@ -154,7 +154,7 @@ pub enum TableError {
         /// Allowed headers.
         allowed: String,
     },
-    /// A value that is not allowed in its place.
+    /// A value that is not allowed at its place.
     #[error("{at}: \"{value}\" is not allowed; allowed: {allowed}")]
     Value {
         /// Place of the value.
@@ -167,7 +167,7 @@ pub enum TableError {
 }
 
 impl TableError {
-    /// Refuses a value of a column, in a line of a file.
+    /// Makes the error for a value in a column and a line of a file.
     pub(super) fn refused(
         file: &str,
         line: usize,
@@ -179,8 +179,8 @@ impl TableError {
         TableError::Value { at, value: value.to_string(), allowed: allowed.into() }
     }
 
-    /// Moves the error to the rows of the original table: `place` gives the line and the column of a row's
-    /// opening or percent, `row_name` the row's name; rows count from 1.
+    /// Moves the error to the rows of the original table: `place` gives the line and column of a row's
+    /// opening or percent, `row_name` the name of the row; rows count from 1.
     pub fn placed(
         self,
         place: impl Fn(usize, bool) -> (usize, Option<u32>),
@@ -207,12 +207,12 @@ pub enum GradationError {
     /// The table of a sieve curve.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// A number from outside a table.
+    /// A number that is not from a table.
     #[error(transparent)]
     Number(#[from] NumberError),
 }
 
-/// A number that is not allowed.
+/// A number with a value that is not allowed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{name} = {value:?} is not allowed; allowed: {allowed}")]
 pub struct NumberError {
@@ -229,7 +229,7 @@ impl NumberError {
         NumberError { name, value, allowed: allowed.into() }
     }
 
-    /// Refuses a `value` that is not right.
+    /// Refuses a `value` that is not allowed.
     pub(crate) fn unless(
         is_right: bool,
         name: &'static str,

@@ -1,21 +1,21 @@
-//! Group of a soil by ASTM D2487, as far as a sieve curve decides it.
+//! Group of a soil by ASTM D2487, as far as a sieve curve determines it.
 
 use super::sieve::{FINES_MM, GRAVEL_MM, Gradation};
 
-/// Coarser grains are cobbles, which the groups leave out (mm).
+/// Size above which grains are cobbles, which the groups leave out (mm).
 const COBBLES_MM: f64 = 75.0;
 
-/// The sieve for cobbles in exact inches, as in older tables (mm): a soil that passes it counts as free of
+/// Sieve for cobbles in exact inches, as in older tables (mm): a soil that passes it counts as free of
 /// cobbles.
 const THREE_INCHES_MM: f64 = 76.2;
 
-/// Coarser cobbles are boulders (mm).
+/// Size above which cobbles are boulders (mm).
 const BOULDERS_MM: f64 = 300.0;
 
-/// Least percentage at which gravel makes a sand "with gravel", and sand makes a gravel "with sand".
+/// Minimum percentage of gravel in a sand "with gravel", and of sand in a gravel "with sand".
 const WITH_OTHER: f64 = 15.0;
 
-/// A group. Above 12 % of fines their plasticity decides, and the shape is not needed.
+/// A group. Above 12 % of fines it depends on their plasticity, and the shape is not needed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Group {
     FineGrained,
@@ -24,7 +24,7 @@ enum Group {
 }
 
 impl Group {
-    /// Group of a soil from its percentages of fines and gravel, and its Cu and Cc.
+    /// Finds the group of a soil from its percentages of fines and gravel, and its Cu and Cc.
     fn classify(fines: f64, gravel: f64, shape: Option<(f64, f64)>) -> Option<Self> {
         if fines >= 50.0 {
             return Some(Self::FineGrained);
@@ -42,7 +42,7 @@ impl Group {
         Some(Self::FewFines { is_gravel, is_well_graded, has_fines: fines >= 5.0, has_other })
     }
 
-    /// Symbol; both possible symbols if the plasticity of the fines decides.
+    /// Returns the symbol, or both possible symbols if the plasticity of the fines decides.
     fn symbol(self) -> String {
         match self {
             Self::FineGrained => "fine-grained".into(),
@@ -56,7 +56,7 @@ impl Group {
         }
     }
 
-    /// Sand or gravel, if the soil has enough of the one that its name leaves out.
+    /// Returns sand or gravel if the soil has enough of the one that its name omits.
     fn other(self) -> Option<&'static str> {
         match self {
             Self::ManyFines { is_gravel, has_other: true }
@@ -68,7 +68,7 @@ impl Group {
     }
 }
 
-/// Classification of a soil by the standard: the group of its part finer than 75 mm, and its other parts.
+/// Classification of a soil by the standard: the group of its fraction finer than 75 mm, and the rest.
 struct Class {
     group: Group,
     has_cobbles: bool,
@@ -76,14 +76,14 @@ struct Class {
 }
 
 impl Class {
-    /// Classifies a soil; `None` if more than half is cobbles, or a finest tail leaves the group open.
+    /// Classifies a soil; `None` if more than half is cobbles, or if a pan fraction leaves the group open.
     fn classify(soil: &Gradation) -> Option<Self> {
         let has_cobbles = soil.largest_mm() > THREE_INCHES_MM;
         if has_cobbles && soil.percent_finer_by_mass(COBBLES_MM) < 50.0 {
             return None;
         }
         let part = if has_cobbles { soil.passing(COBBLES_MM)? } else { soil.clone() };
-        // A finest tail is part of the fines, so below 5 % it does not matter.
+        // A pan fraction belongs to the fines, so below 5 % it does not matter.
         let fines = part.percent_finer_by_mass(FINES_MM);
         if fines >= 5.0 && part.percent_finer_if_known(FINES_MM).is_none() {
             return None;
@@ -93,7 +93,7 @@ impl Class {
         Some(Self { group, has_cobbles, has_boulders: soil.largest_mm() > BOULDERS_MM })
     }
 
-    /// Suffix such as `, with gravel and cobbles`.
+    /// Makes a suffix such as `, with gravel and cobbles`.
     fn with(&self) -> String {
         let cobbles = self.has_cobbles.then_some("cobbles");
         let boulders = self.has_boulders.then_some("boulders");
@@ -109,7 +109,7 @@ impl Class {
         format!("{}{}", self.group.symbol(), self.with())
     }
 
-    /// Name and symbol.
+    /// Returns the name and symbol.
     fn in_words(&self) -> String {
         let noun = |is_gravel| if is_gravel { "gravel" } else { "sand" };
         let part = if self.has_cobbles { " in the part finer than 75 mm" } else { "" };
@@ -133,14 +133,14 @@ impl Class {
 }
 
 impl Gradation {
-    /// Symbol of the soil's group, sizes in mm: the group of the part finer than 75 mm, with the soil's other
-    /// parts. If the plasticity of the fines decides, both possible symbols; `None` if more than half is
-    /// coarser than 75 mm, or a finest tail leaves the group open.
+    /// Returns the group symbol of the fraction finer than 75 mm, and the soil's other fractions (sizes
+    /// in mm). Gives both possible symbols if the plasticity of the fines decides; `None` if more than
+    /// half is coarser than 75 mm, or if a pan fraction leaves the group open.
     pub fn group(&self) -> Option<String> {
         Class::classify(self).map(|class| class.symbol())
     }
 
-    /// Name of the soil and the symbol of its group.
+    /// Returns the name of the soil and its group symbol.
     pub fn group_in_words(&self) -> Option<String> {
         Class::classify(self).map(|class| class.in_words())
     }
@@ -169,7 +169,7 @@ mod tests {
         let dual = [(0.075, 8.0), (0.15, 10.0), (0.3, 30.0), (0.6, 60.0), (2.0, 100.0)];
         assert_eq!(group(&dual).as_deref(), Some("SP-SM or SP-SC"));
         assert_eq!(group(&[(0.075, 22.0), (0.3, 85.0), (0.6, 100.0)]).as_deref(), Some("SM or SC"));
-        // Exactly half of the part coarser than No. 200 is gravel.
+        // Exactly half of the fraction coarser than No. 200 is gravel.
         assert_eq!(
             group(&[(0.075, 20.0), (4.75, 60.0), (19.0, 100.0)]).as_deref(),
             Some("SM or SC, with gravel")
@@ -181,7 +181,7 @@ mod tests {
             assert_eq!(group(&sand).as_deref(), Some(name));
         }
         assert_eq!(group(&[(0.01, 0.0), (0.075, 50.0), (0.3, 100.0)]).as_deref(), Some("fine-grained"));
-        // The fines were not sieved; it does not matter if they are few.
+        // The fines were not sieved; this does not matter if there are few.
         assert_eq!(group(&[(0.3, 25.0), (1.0, 100.0)]), None);
         assert_eq!(group(&[(0.3, 4.0), (1.0, 100.0)]).as_deref(), Some("SP"));
         assert_eq!(group(&[(5.0, 5.0), (10.0, 100.0)]), None);
@@ -199,7 +199,7 @@ mod tests {
         }
     }
 
-    /// The whole is a gravel, the classified part a sand.
+    /// The whole is a gravel, the classified fraction a sand.
     #[test]
     fn only_the_part_finer_than_75_mm_is_classified() {
         let cobbles = soil(&[(0.075, 20.0), (4.75, 54.0), (75.0, 80.0), (150.0, 100.0)]);
@@ -207,7 +207,7 @@ mod tests {
         let name = "sand with more than 12 % fines in the part finer than 75 mm";
         let words = format!("{name}: SM or SC, with gravel and cobbles");
         assert_eq!(cobbles.group_in_words(), Some(words));
-        // 41 % of 80 % are fines: more than half of the part, less than half of the whole.
+        // 41 % of 80 % are fines: more than half of the fraction, less than half of the whole.
         let fines = soil(&[(0.075, 41.0), (4.75, 80.0), (75.0, 80.0), (350.0, 100.0)]);
         assert_eq!(fines.group().as_deref(), Some("fine-grained, with cobbles and boulders"));
         let words = fines.group_in_words().unwrap();
@@ -215,7 +215,7 @@ mod tests {
             words.contains("(half or more of the part finer than 75 mm is finer than 0.075 mm)"),
             "{words}"
         );
-        // Cu and Cc are taken from the part, too.
+        // Cu and Cc are those of the fraction, too.
         let gravel = soil(&[(4.75, 0.0), (75.0, 75.0), (150.0, 100.0)]);
         let part = soil(&[(4.75, 0.0), (75.0, 100.0)]);
         assert_eq!(gravel.group().unwrap(), format!("{}, with cobbles", part.group().unwrap()));

@@ -1,26 +1,26 @@
 //! Gradations: the distribution of a soil's mass over particle sizes, and the number of its particles.
 //!
-//! - [`Gradation`] is a sieve curve, percent finer by mass, straight in percent against ln(size) between its
-//!   points. "Linear" in the paper is one such straight line: `D_x = D_0 Cu^(x / 50)`, so `D_60 / D_10 = Cu`
-//!   and `D_100 / D_0 = Cu^2`.
+//! - [`Gradation`] is a sieve curve, percent finer by mass, linear in percent against ln(size) between
+//!   its points. "Linear" in the paper is one such straight line: `D_x = D_0 Cu^(x / 50)`, so
+//!   `D_60 / D_10 = Cu` and `D_100 / D_0 = Cu^2`.
 //! - [`SizeSampler`] draws diameters from it by number.
-//! - [`Gradation::kenney_lau`] and [`Gradation::kezdi`] tell if a soil holds its own fines, with
-//!   [`Gradation::li_fannin`] and [`Gradation::uniformity_factors`]; [`Gradation::gap`] finds missing sizes;
-//!   [`Gradation::regraded`] regrades a base by filter practice.
-//! - [`base_particles`] is Eq. (2) of the paper: the number of base particles that a test inserts.
+//! - [`Gradation::kenney_lau`] and [`Gradation::kezdi`] tell if a soil retains its own fines, as do
+//!   [`Gradation::li_fannin`] and [`Gradation::uniformity_factors`]; [`Gradation::gap`] finds missing
+//!   sizes; [`Gradation::regraded`] regrades a base by filter practice.
+//! - [`base_particles`] is Eq. (2) of the paper: the number of base particles inserted in a test.
 //!
 //! # By mass and by number
 //! Between two points of a curve the mass is spread evenly over ln(D), so the number of particles
 //! per mm of diameter is proportional to `D^-4`, and the number finer than `D` is linear in `D^-3`.
 //!
 //! # The pan fraction
-//! A finest row above 0 % leaves a pan fraction, finer than the finest sieve. With `d0_mm` it ends at that
-//! size, as one more straight segment. Without it the pan fraction is taken as passive and counted by mass
-//! only: number statistics cover the sized part, and [`Gradation::pan_fraction`] gives the rest.
+//! A finest row above 0 % leaves a pan fraction, finer than the finest sieve. With `d0_mm` it is one more
+//! straight segment that ends at that size. Without it the pan fraction is treated as passive and counted
+//! by mass only: number statistics cover the sized part, and [`Gradation::pan_fraction`] gives the rest.
 //!
 //! # Units
-//! Sizes are diameters in mm. Only ratios of sizes enter a formula that rounds, so a factor of two
-//! on every length changes no bit of any ratio.
+//! Sizes are diameters in mm. Only ratios of sizes enter a formula that rounds, so a factor of two on
+//! every length does not change any ratio by a bit.
 
 mod error;
 mod group;

@@ -1,5 +1,4 @@
-//! Regrading: the part of a base soil that filter practice considers, by its gap and the part that passes a
-//! sieve.
+//! Regrading: the fraction of a base soil that filter practice considers, cut at a gap or at a sieve.
 
 use super::Gradation;
 use super::sieve::{FINES_MM, GRAVEL_MM, TIE, TRACE_PERCENT};
@@ -8,41 +7,41 @@ use serde::{Deserialize, Serialize};
 /// Percent of fines below which a base has few fines.
 pub const FEW_FINES: f64 = 15.0;
 
-/// Cu from which a soil counts as broadly graded: the limit of well-graded sands in ASTM D2487.
+/// Minimum Cu of a broadly graded soil: the limit of well-graded sands in ASTM D2487.
 pub const BROAD_CU: f64 = 6.0;
 
 /// A base soil regraded by filter practice, or unchanged.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Regraded {
-    /// Soil after regrading; unchanged if it is not regraded.
+    /// Soil after regrading, or the unchanged soil.
     pub gradation: Gradation,
-    /// Size on which it was regraded (mm); `None` if it was not.
+    /// Size at which it was regraded (mm); `None` if it was not.
     pub at_mm: Option<f64>,
-    /// Reason why it was regraded, or not.
+    /// Reason for regrading, or for not regrading.
     pub why: RegradeReason,
-    /// Size below which practice considers it, if the sizes there are unknown: `gradation` is then the whole
-    /// soil, coarser than the part that practice considers.
+    /// Size below which practice considers the soil, if the sizes there are unknown: `gradation` is then
+    /// the whole soil, coarser than the fraction that practice considers.
     pub hidden_below_mm: Option<f64>,
 }
 
-/// Why practice regrades a base, or leaves it as it is.
+/// Reason why practice regrades a base, or leaves it as it is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct RegradeReason {
-    /// What practice asks of the soil.
+    /// Property of the soil that decides.
     pub cause: RegradeCause,
-    /// Whether it was to be regraded and is left as it is, as none of its known sizes passes the sieve.
+    /// True if it should be regraded but is not, because none of its known sizes passes the sieve.
     pub nothing_passes: bool,
 }
 
-/// What of a soil has it regraded, or not.
+/// Property of a soil that decides if it is regraded.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 #[serde(tag = "id", content = "from_mm", rename_all = "snake_case")]
 pub enum RegradeCause {
     /// It has a gap that begins at this size (mm).
     Gap(f64),
-    /// It has a gap that begins at this size (mm), and what is finer would be regraded for its gravel.
+    /// It has a gap that begins at this size (mm), and the finer fraction would be regraded for its gravel.
     GapAmongGravel(f64),
     /// It has gravel and many fines.
     GravelAndFines,
@@ -63,22 +62,22 @@ impl Gradation {
     ///
     /// The rules are from the U.S. Army Corps of Engineers' Filter Evaluation manual (chapter Base
     /// Gradation), after Sherard and Dunnigan (1989): a gap-graded soil at its gap; a soil with grains
-    /// coarser than No. 4 (4.75 mm) to 100 % passing No. 4, unless it has less than 15 % fines and is not
-    /// broadly graded. If the part finer than a gap has such grains, and the fines or the gradation that make
-    /// the rule apply, it is regraded on No. 4 too: the manual stops at the gap, whose limit is coarser.
-    /// Every percent is divided by the percent passing.
+    /// coarser than No. 4 (4.75 mm) to 100 % passing No. 4, unless it has less than 15 % fines and is
+    /// not broadly graded. If the fraction finer than a gap has such grains, and the fines or the
+    /// gradation that make the rule apply, it is regraded on No. 4 too: the manual stops at the gap,
+    /// which gives a coarser limit. Every percent is divided by the percent passing.
     pub fn regraded(&self) -> Regraded {
         self.regraded_as(self)
     }
 
-    /// Regrades this soil on the size that another curve decides.
+    /// Regrades this soil at the size that another curve determines.
     pub fn regraded_as(&self, other: &Self) -> Regraded {
         self.regraded_on(other.regrading(other.gap(FINES_MM)))
     }
 
     /// Regrades this soil with the opposite reading of the other curve's flattest part: as a gap if
-    /// [`Gradation::regraded_as`] does not read it as one, and as no gap if it does; `None` if that part is
-    /// steep, or level.
+    /// [`Gradation::regraded_as`] does not read it as one, and as no gap if it does; `None` if that part
+    /// is steep or exactly level.
     pub fn regraded_otherwise(&self, other: &Self) -> Option<Regraded> {
         let flat = other.flattest(FINES_MM)?;
         let is_open = (100.0 * TIE..FLAT_PERCENT - 100.0 * TIE).contains(&flat.within);
@@ -99,7 +98,7 @@ impl Gradation {
         }
     }
 
-    /// Size on which practice regrades this base, and the reason.
+    /// Size at which practice regrades this base, and the reason.
     fn regrading(&self, gap: Option<Gap>) -> (Option<f64>, RegradeCause) {
         let Some(Gap { from_mm, .. }) = gap else { return self.regrading_for_gravel() };
         let finer = self.passing(from_mm).filter(|_| from_mm > GRAVEL_MM);
@@ -126,10 +125,10 @@ impl Gradation {
         (Some(GRAVEL_MM), cause)
     }
 
-    /// Tells if a soil is broadly graded: Cu of at least 6, the limit of well-graded sands in ASTM D2487, or
-    /// 4, the limit of gravels; `None` if D10 is not known. The manual asks for Cc of 1 to 3 besides and
-    /// leaves the last word to the engineer; a soil of that Cu whose Cc lies outside has more of one size and
-    /// is no narrower.
+    /// Tells if a soil is broadly graded: Cu of at least 6, the limit of well-graded sands in ASTM
+    /// D2487, or 4, the limit of gravels; `None` if D10 is not known. The manual also requires Cc of 1
+    /// to 3 and leaves the decision to the engineer; a soil of that Cu whose Cc is outside has more of
+    /// one size and is no narrower.
     pub fn is_broad(&self) -> Option<bool> {
         let coarse = 100.0 - self.percent_finer_by_mass(FINES_MM);
         let gravel = 100.0 - self.percent_finer_by_mass(GRAVEL_MM);
@@ -144,20 +143,20 @@ pub const GAP_PERCENT: f64 = 5.0;
 /// Percent of the mass between D and 4 D below which a curve may be gap-graded.
 pub(crate) const FLAT_PERCENT: f64 = 2.0 * GAP_PERCENT;
 
-/// Least and greatest percent finer at which a gap is searched for.
+/// Minimum and maximum percent finer at which a gap is searched for.
 const GAP_RANGE: [f64; 2] = [10.0, 80.0];
 
-/// Difference below which percents count as equal, however a step of the curve is read.
+/// Maximum difference of percents that count as equal, however a step of the curve is read.
 const SAME_PERCENT: f64 = 10.0 * TRACE_PERCENT;
 
 /// Sizes missing from a soil.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
-    /// Its fine end (mm); its coarse end is four times as large, or more.
+    /// Its fine end (mm); its coarse end is at least four times as large.
     pub from_mm: f64,
     /// Percent finer than its fine end.
     pub percent: f64,
-    /// Percent of the mass between its fine end and four times that.
+    /// Percent of the mass between its fine end and four times that size.
     pub within: f64,
 }
 
@@ -168,17 +167,17 @@ impl Gradation {
         Some(d30 * d30 / (d10 * d60))
     }
 
-    /// Finds the widest gap of the curve from `least_mm` on: less than 5 % of the mass between D and 4 D,
-    /// with 10 to 80 % finer than D.
+    /// Finds the widest gap of the curve from `least_mm` on: less than 5 % of the mass between D and 4
+    /// D, with 10 to 80 % finer than D.
     ///
-    /// Manuals leave gaps to the eye; these numbers are ours. A straight line on semi-log paper has less than
-    /// 5 % in a factor of 4 only if its Cu is above a million.
+    /// Manuals leave gaps to the eye; these numbers are our own. A straight line on semi-log paper has
+    /// less than 5 % in a factor of 4 only if its Cu is above one million.
     pub fn gap(&self, least_mm: f64) -> Option<Gap> {
         self.flattest(least_mm).filter(|gap| gap.within < GAP_PERCENT)
     }
 
-    /// Finds the flattest part of the curve from `least_mm` on: the D with the least mass between D and 4 D,
-    /// with 10 to 80 % finer than D. `None` if there is no such D.
+    /// Finds the flattest part of the curve from `least_mm` on: the D with the minimum mass between D
+    /// and 4 D, with 10 to 80 % finer than D. `None` if there is no such D.
     pub fn flattest(&self, least_mm: f64) -> Option<Gap> {
         let at = |d: f64| {
             let percent = self.percent_finer_by_mass(d);
@@ -186,7 +185,7 @@ impl Gradation {
         };
         let range = self.smallest_mm().max(least_mm)..=self.largest_mm();
         let [low, high] = [GAP_RANGE[0] - SAME_PERCENT, GAP_RANGE[1] + SAME_PERCENT];
-        // On a straight stretch every D has as much between itself and 4 D: the finest counts.
+        // On a straight stretch every D has the same mass between D and 4 D: the finest is taken.
         let [first, last] = GAP_RANGE.map(|percent| self.d(percent));
         let ends = [first, last, Some(least_mm)].into_iter().flatten();
         let candidates = self.size_mm.iter().flat_map(|&d| [d, d / 4.0]).chain(ends);
@@ -197,8 +196,8 @@ impl Gradation {
         ties.min_by(|a, b| a.from_mm.total_cmp(&b.from_mm))
     }
 
-    /// Part of this soil that passes a sieve, as a soil of its own: every percent is divided by the percent
-    /// passing.
+    /// Fraction of this soil that passes a sieve, as a separate soil: every percent is divided by the
+    /// percent passing.
     ///
     /// `None` if nothing of known size passes.
     pub fn passing(&self, opening_mm: f64) -> Option<Gradation> {
@@ -209,7 +208,7 @@ impl Gradation {
         if opening_mm <= self.smallest_mm() || passing <= 0.0 {
             return None;
         }
-        // Up to the first size at which all passing mass is finer.
+        // Up to the first size at which all of the passing mass is finer.
         let below = self.percent.partition_point(|&p| p < passing);
         let (mut size_mm, mut percent): (Vec<f64>, Vec<f64>) =
             (0..below).map(|i| (self.size_mm[i], self.percent[i] / passing * 100.0)).unzip();
@@ -246,7 +245,7 @@ mod tests {
     fn each_question_of_the_manual_has_its_answer() {
         // Nothing coarser than No. 4.
         assert_eq!(regraded(&[(0.1, 0.0), (0.5, 60.0), (4.75, 100.0)]).at_mm, None);
-        // Coarser, less than 15 % fines, Cu 3.2: left.
+        // Coarser, less than 15 % fines, Cu 3.2: unchanged.
         let gravel = regraded(&[(2.0, 0.0), (9.5, 60.0), (19.0, 100.0)]);
         assert!(gravel.at_mm.is_none() && gravel.why.cause == RegradeCause::NarrowGravel);
         // Coarser and broadly graded: Cu 15.0, Cc 1.01.
@@ -255,16 +254,16 @@ mod tests {
         // A similar sand with more gravel: Cu 20.9, but Cc 0.70.
         let skewed = regraded(&[(0.1, 0.0), (0.42, 20.0), (2.0, 45.0), (4.75, 62.0), (19.0, 100.0)]);
         assert!(skewed.at_mm.is_some() && skewed.why.cause == RegradeCause::BroadGravel, "{:?}", skewed.why);
-        // Coarser, and D10 in a tail: on the safe side.
+        // Coarser, and D10 in a pan fraction: conservative.
         let tail = regraded(&[(0.3, 12.0), (1.0, 40.0), (4.75, 80.0), (9.5, 100.0)]);
         assert!(tail.at_mm.is_some() && tail.why.cause == RegradeCause::GravelOfUnknownCu);
-        // A gap: the part finer than it.
+        // A gap: the finer fraction.
         let gap = regraded(&[(0.1, 0.0), (0.5, 40.0), (5.0, 40.0), (20.0, 100.0)]);
         assert_eq!((gap.at_mm, gap.gradation.largest_mm()), (Some(0.5), 0.5));
     }
 
-    /// A gap from 12.5 to 50 mm: 65 % is finer, a third of it gravel. With fines its limit is set by the part
-    /// that passes No. 4; a narrow gravel below a gap is left whole.
+    /// A gap from 12.5 to 50 mm: 65 % is finer, a third of it gravel. With fines its limit is set by the
+    /// fraction that passes No. 4; a narrow gravel below a gap is left whole.
     #[test]
     fn a_gap_among_gravel_regrades_on_no_4_too() {
         let till =
@@ -287,17 +286,17 @@ mod tests {
     #[test]
     fn the_part_that_passes_a_sieve_by_hand() {
         let soil = points(&[(0.1, 0.0), (1.0, 30.0), (4.0, 60.0), (16.0, 100.0)]);
-        // 2 mm is half of the way from 1 to 4 mm: 45 %.
+        // On the log scale 2 mm is halfway from 1 to 4 mm: 45 %.
         let passing = soil.passing(2.0).unwrap();
         for (d, percent) in [(0.1, 0.0), (1.0, 30.0 / 0.45), (2.0, 100.0)] {
             assert!((passing.percent_finer_by_mass(d) - percent).abs() < 1e-9, "{d}");
         }
         assert_eq!(soil.passing(16.0), Some(soil.clone()));
         assert_eq!(soil.passing(0.1), None);
-        // A sieve in a gap cuts where the finer part ends.
+        // A sieve in a gap cuts at the end of the finer fraction.
         let gap = points(&[(0.1, 0.0), (0.2, 40.0), (5.0, 40.0), (20.0, 100.0)]);
         assert_eq!(gap.passing(1.0).unwrap(), points(&[(0.1, 0.0), (0.2, 100.0)]));
-        // A tail alone has no size.
+        // A pan fraction alone has no size.
         assert_eq!(points(&[(0.1, 40.0), (5.0, 40.0), (20.0, 100.0)]).passing(1.0), None);
         assert_eq!(Gradation::single(9.5).unwrap().passing(4.75), None);
     }

@@ -1,16 +1,16 @@
-//! Draws diameters by number, with roots that have the same bits on every machine.
+//! Draws diameters by number, with roots that are bit for bit the same on every machine.
 
 use super::{Gradation, GradationError, NumberError};
 use crate::stream::unit;
 use std::ops::Range;
 
-/// Number of all words: 2^64.
+/// Number of 64-bit words: 2^64.
 const ALL_WORDS: u128 = 1 << 64;
 
-/// Largest number of buckets of a guide, as a power of two.
+/// Base-2 logarithm of the maximum number of buckets of a guide.
 const BUCKET_BITS: u32 = 8;
 
-/// Words whose diameters are drawn together.
+/// Number of words whose diameters are drawn together.
 const AT_ONCE: usize = 64;
 
 /// Mask that keeps 40 bits of the mantissa.
@@ -18,7 +18,7 @@ const COARSE: u64 = !0 << 12;
 
 /// A segment of the gradation, in reference units.
 ///
-/// `v` is the share, by number, of the particles that are coarser; within a segment `D^-3` is linear in it.
+/// `v` is the number fraction of coarser particles; within a segment `D^-3` is linear in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Segment {
     a: f64,
@@ -36,9 +36,9 @@ struct Segment {
 impl Segment {
     /// Diameter at `v`, for `v_b <= v <= v_a`.
     ///
-    /// It never rises with `v`: every operation is monotone but the root, whose error (2^-51) is smaller than
-    /// the step that 40 bits of mantissa leave (2^-41.6). Those 40 bits are 2^16 times finer than the f32
-    /// that is returned.
+    /// It never rises with `v`: every operation is monotone except the root, whose error (2^-51) is
+    /// smaller than the step that 40 bits of mantissa leave (2^-41.6). Those 40 bits are 2^16 times
+    /// finer than the returned f32.
     #[inline(always)]
     fn diameter(&self, v: f64) -> f32 {
         root_within(self.y_at(v), [self.a, self.b])
@@ -69,13 +69,13 @@ impl Segment {
     }
 }
 
-/// `y^(-1/3)` from 40 bits of the mantissa of `y`, at least `a` and at most `b`.
+/// Computes `y^(-1/3)` from 40 bits of the mantissa of `y`, clamped to `a` and `b`.
 #[inline(always)]
 fn root_within(y: f64, bounds: [f64; 2]) -> f32 {
     within(inverse_cube_root(coarse(y)), bounds)
 }
 
-/// Applies [`root_within`] to each number, from `least` to `most`.
+/// Applies [`root_within`] to each number, with bounds `least` and `most`.
 #[inline(always)]
 fn roots_within(
     mut y: [f64; AT_ONCE],
@@ -95,7 +95,7 @@ fn coarse(y: f64) -> f64 {
     f64::from_bits(y.to_bits() & COARSE)
 }
 
-/// Clamps to `a` at least and `b` at most.
+/// Clamps to the range from `a` to `b`.
 #[inline(always)]
 fn within(d: f64, [a, b]: [f64; 2]) -> f32 {
     let d = if d > a { d } else { a };
@@ -104,9 +104,9 @@ fn within(d: f64, [a, b]: [f64; 2]) -> f32 {
 
 /// Draws diameters of a [`Gradation`] by number: the inverse of its distribution.
 ///
-/// Diameters are in units of a reference length, as f32. A word of 64 random bits gives one diameter, which
-/// never falls as the word rises; so a word below a threshold ([`SizeSampler::word_limit`]) gives a particle
-/// no coarser than a limit, exactly. A tail of unknown size is never drawn.
+/// Diameters are in units of a reference length, as f32. A word of 64 random bits gives one diameter,
+/// which never falls as the word rises; so a word below a threshold ([`SizeSampler::word_limit`]) gives
+/// a particle no coarser than a limit, exactly. A pan fraction is never drawn.
 ///
 /// ```
 /// use voidwalk_core::gradation::{Gradation, SizeSampler};
@@ -120,25 +120,25 @@ fn within(d: f64, [a, b]: [f64; 2]) -> f32 {
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizeSampler {
-    /// Sizes rise from one to the next; `v` falls from 1 to 0.
+    /// Sizes rise from one segment to the next; `v` falls from 1 to 0.
     segments: Vec<Segment>,
-    /// Guide to the segments of all words.
+    /// Guide to the segments, for all words.
     guide: SizeGuide,
 }
 
-/// Guide to the segments of the words from a first one on: words that draw coarse particles are few among
-/// all, and so lie close together.
+/// Guide to the segments for words from a first one on. Words that draw coarse particles are few, and so
+/// lie close together.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SizeGuide {
     first: u64,
-    /// Number of low bits to drop from a word's distance to the first, which gives its bucket.
+    /// Number of low bits to drop from a word's distance to the first; the rest is its bucket.
     shift: u32,
-    /// Segment of the smallest word of each bucket.
+    /// Segment of the smallest word in each bucket.
     segment: Vec<u32>,
 }
 
 impl SizeGuide {
-    /// Segment no coarser than the word's own, and close to it.
+    /// Returns a segment no coarser than the word's own, and close to it.
     #[inline(always)]
     fn start(&self, word: u64) -> usize {
         debug_assert!(word >= self.first, "a word below the first of the guide");
@@ -150,8 +150,8 @@ impl SizeSampler {
     /// Makes a sampler of `gradation` with diameters in units of `reference_mm`.
     ///
     /// # Errors
-    /// A reference length that is not a positive finite number, or that takes a size out of the range of a
-    /// gradation.
+    /// A reference length that is not a positive finite number, or that takes a size out of the allowed
+    /// range.
     pub fn new(gradation: &Gradation, reference_mm: f64) -> Result<SizeSampler, GradationError> {
         NumberError::unless_positive("reference_mm", reference_mm)?;
         let size: Vec<f64> = gradation.size_mm.iter().map(|d| d / reference_mm).collect();
@@ -163,7 +163,7 @@ impl SizeSampler {
         if let [d] = size[..] {
             segments.push(Segment { a: d, b: d, v_a: 1.0, v_b: 0.0, y_b: 1.0 / (d * d * d), slope: 0.0 });
         }
-        // Shares are summed from the coarse end, where they are smallest.
+        // Fractions are summed from the coarse end, where they are smallest.
         let mut coarser = vec![0.0; size.len()];
         for i in (0..size.len() - 1).rev() {
             coarser[i] = coarser[i + 1] + (gradation.number[i + 1] - gradation.number[i]);
@@ -183,7 +183,7 @@ impl SizeSampler {
         Ok(sampler)
     }
 
-    /// Makes the guide to the segments of the words from this one on.
+    /// Makes the guide to the segments for the words from this one on.
     pub(crate) fn guide_from(&self, first: u64) -> SizeGuide {
         let last = u64::MAX - first;
         let shift = (u64::BITS - last.leading_zeros()).saturating_sub(BUCKET_BITS);
@@ -195,8 +195,8 @@ impl SizeSampler {
         SizeGuide { first, shift, segment: (0..=last >> shift).map(of_bucket).collect() }
     }
 
-    /// Finds the segment of `v`, at or after segment `start`. The last one's `v_b` is 0, and no `v` is below
-    /// it.
+    /// Finds the segment of `v`, starting from segment `start`. The last one's `v_b` is 0, and no `v` is
+    /// below it.
     #[inline(always)]
     fn segment(&self, start: usize, v: f64) -> usize {
         let mut i = start;
@@ -206,14 +206,14 @@ impl SizeSampler {
         i
     }
 
-    /// Diameter, in reference units, that `word` draws.
+    /// Returns the diameter, in reference units, that `word` draws.
     #[inline]
     pub fn diameter(&self, word: u64) -> f32 {
         let v = coarser_share(word);
         self.segments[self.segment(self.guide.start(word), v)].diameter(v)
     }
 
-    /// Applies [`SizeSampler::diameter`] to every word, in vector code as wide as the caller is compiled for.
+    /// Applies [`SizeSampler::diameter`] to every word, in vector code as wide as the caller's target allows.
     ///
     /// # Panics
     /// If the slices differ in length.
@@ -222,7 +222,7 @@ impl SizeSampler {
         self.fill_guided(&self.guide, words, out);
     }
 
-    /// Fills like [`SizeSampler::fill`], with a guide of these words; no word may be below the guide's first.
+    /// Fills like [`SizeSampler::fill`], with a guide for these words, none below its first.
     ///
     /// # Panics
     /// Panics of [`SizeSampler::fill`]; with debug assertions if a word is below the first of the guide.
@@ -261,8 +261,8 @@ impl SizeSampler {
         roots_within(y, &least, &most, out);
     }
 
-    /// Number of words whose diameter is no coarser than `limit`: `diameter(word) <= limit` exactly if `word`
-    /// is below it. 2^64 if all are.
+    /// Number of words whose diameter is no coarser than `limit`: `diameter(word) <= limit` if and only
+    /// if `word` is below it. 2^64 if all are.
     pub fn word_limit(&self, limit: f32) -> u128 {
         let (mut low, mut high) = (0, ALL_WORDS);
         while low < high {
@@ -286,7 +286,7 @@ impl SizeSampler {
         self.diameter(u64::MAX)
     }
 
-    /// Particles whose word lies in `words`, as a distribution of its own.
+    /// Returns the particles whose words lie in `words`, as a separate distribution.
     ///
     /// # Panics
     /// If the range ends before it starts or beyond 2^64.
@@ -297,58 +297,58 @@ impl SizeSampler {
         SizeRange { sampler: self, words, v_fine, v_coarse }
     }
 
-    /// All particles.
+    /// Returns all particles.
     pub fn whole(&self) -> SizeRange<'_> {
         self.part(0..ALL_WORDS)
     }
 }
 
-/// Share by number that is coarser than the diameter of `word`: exactly `1 - unit(word)`, without the
+/// Fraction by number that is coarser than the diameter of `word`: exactly `1 - unit(word)`, without the
 /// cancellation.
 #[inline(always)]
 fn coarser_share(word: u64) -> f64 {
     unit(!word)
 }
 
-/// The particles of a [`SizeSampler`] whose word lies in a range: closed forms, in reference units.
+/// The particles of a [`SizeSampler`] whose words lie in a range: closed forms, in reference units.
 ///
-/// The limits are those of the words; between them sizes count as continuous, before the rounding to f32.
+/// The range is exact in words; within it sizes count as continuous, before the rounding to f32.
 #[derive(Clone, Debug)]
 pub struct SizeRange<'a> {
     sampler: &'a SizeSampler,
     words: Range<u128>,
-    /// Share of all particles coarser than the finest of this part.
+    /// Fraction of all particles coarser than the finest of this range.
     v_fine: f64,
-    /// Share of all particles coarser than the coarsest of this part.
+    /// Fraction of all particles coarser than the coarsest of this range.
     v_coarse: f64,
 }
 
 impl SizeRange<'_> {
-    /// Share of all particles in this part, by number.
+    /// Fraction of all particles in this range, by number.
     pub fn number_fraction(&self) -> f64 {
         ((self.words.end - self.words.start) as f64) * (1.0 / ALL_WORDS as f64)
     }
 
-    /// Mean of the cubed diameter; `None` if the part is empty.
+    /// Mean of the cubed diameter; `None` if the range is empty.
     pub fn mean_cube(&self) -> Option<f64> {
         let width = self.number_fraction();
         (width > 0.0).then(|| self.cubes(0.0) / width)
     }
 
-    /// Share of this part's particles, 0 to 1, no coarser than `d`; `None` if the part is empty.
+    /// Fraction of this range's particles, 0 to 1, no coarser than `d`; `None` if the range is empty.
     pub fn finer_by_number(&self, d: f64) -> Option<f64> {
         let width = self.number_fraction();
         (width > 0.0).then(|| ((self.v_fine - self.v_at(d)) / width).clamp(0.0, 1.0))
     }
 
-    /// Share of this part's mass, 0 to 1, no coarser than `d`; `None` if the part is empty.
+    /// Fraction of this range's mass, 0 to 1, no coarser than `d`; `None` if the range is empty.
     pub fn finer_by_mass(&self, d: f64) -> Option<f64> {
         let all = self.cubes(0.0);
         (all > 0.0).then(|| (self.cubes(self.v_at(d)) / all).clamp(0.0, 1.0))
     }
 
-    /// Diameter that `share` (0 to 1) of this part's particles do not exceed; `None` if the part is empty or
-    /// the share is out of range.
+    /// Diameter that `share` (0 to 1) of this range's particles do not exceed; `None` if the range is
+    /// empty or `share` is outside 0 to 1.
     pub fn d_by_number(&self, share: f64) -> Option<f64> {
         if self.words.is_empty() || !(0.0..=1.0).contains(&share) {
             return None;
@@ -358,8 +358,8 @@ impl SizeRange<'_> {
         Some((1.0 / libm::cbrt(segment.y_at(v))).clamp(segment.a, segment.b))
     }
 
-    /// Diameter that `share` (0 to 1) of this part's mass does not exceed; `None` if the part is empty or the
-    /// share is out of range.
+    /// Diameter that `share` (0 to 1) of this range's mass does not exceed; `None` if the range is empty
+    /// or `share` is outside 0 to 1.
     pub fn d_by_mass(&self, share: f64) -> Option<f64> {
         if self.words.is_empty() || !(0.0..=1.0).contains(&share) {
             return None;
@@ -382,7 +382,7 @@ impl SizeRange<'_> {
         size
     }
 
-    /// Draws the largest diameter among `count` particles of this part; `None` if there are no particles.
+    /// Draws the largest diameter among `count` particles of this range; `None` if there are no particles.
     ///
     /// The largest of `n` uniform draws has the distribution of `u^(1/n)`.
     pub fn largest_of(&self, count: u64, word: u64) -> Option<f32> {
@@ -395,7 +395,7 @@ impl SizeRange<'_> {
         Some(self.sampler.diameter((self.words.end - 1 - below) as u64))
     }
 
-    /// `v` at `d`, within this part.
+    /// `v` at `d`, clamped to this range.
     fn v_at(&self, d: f64) -> f64 {
         let segments = &self.sampler.segments;
         let i = segments.partition_point(|s| s.b <= d);
@@ -403,7 +403,7 @@ impl SizeRange<'_> {
         v.clamp(self.v_coarse, self.v_fine)
     }
 
-    /// Integral of `D^3` over this part from its finest particle up to share `v`.
+    /// Integral of `D^3` over this range from its finest particle up to `v`.
     fn cubes(&self, v: f64) -> f64 {
         let coarse = v.max(self.v_coarse);
         let one = |s: &Segment| {
@@ -429,10 +429,10 @@ pub(crate) fn inverse_cube_root(x: f64) -> f64 {
 /// Applies [`inverse_cube_root`] to each number.
 ///
 /// Two steps of fourth order for `z^-3 = x`: with `e = 1 - x z^3`,
-/// `z (1 - e)^(-1/3) = z (1 + e/3 + 2 e^2/9 + 14 e^3/81 + ...)`. Only additions and multiplications of f64,
-/// in this order: no library call, no fused operation, and no branch, so that the loops become vector code.
-/// Each step takes two short loops over all numbers: one root after another would make the machine wait for
-/// each operation's result before the next.
+/// `z (1 - e)^(-1/3) = z (1 + e/3 + 2 e^2/9 + 14 e^3/81 + ...)`. Only f64 additions and multiplications, in
+/// this order: no library call, no fused operation, and no branch, so that the loops become vector code.
+/// Each step takes two short loops over all numbers: with one root after another the machine would wait for
+/// each result before the next operation.
 #[inline(always)]
 fn inverse_cube_roots<const N: usize>(x: &[f64; N]) -> [f64; N] {
     let (mut z, mut e) = ([0.0; N], [0.0; N]);
@@ -458,7 +458,7 @@ mod tests {
     use crate::stream::{Key, Purpose};
     use rand::Rng;
 
-    /// Segments of very unequal numbers of particles; the words of the coarse ones lie close together.
+    /// Uses segments with very unequal numbers of particles; the words of the coarse ones lie close together.
     #[test]
     fn a_guide_of_coarse_words_finds_the_same_diameters() {
         let points =
@@ -486,7 +486,7 @@ mod tests {
     /// with the error terms that rounding loses.
     fn error_ulp(x: f64) -> f64 {
         let (z, near) = (inverse_cube_root(x), 1.0 / libm::cbrt(x));
-        // `near` is good to about one unit; one exact-residual Newton step makes it a reference.
+        // `near` is good to about one unit; one Newton step with the exact residual makes it a reference.
         let residual = |z: f64| {
             let square = z * z;
             let lost_square = libm::fma(z, z, -square);

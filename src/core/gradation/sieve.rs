@@ -1,24 +1,24 @@
-//! A sieve curve: made, checked, read, and the wide steps between two of its sieves, where nobody knows the
-//! distribution of the mass.
+//! A sieve curve: made, checked and read. Wide steps between two of its sieves, where the distribution
+//! of the mass is unknown.
 
 use super::error::{GradationError, NumberError, TableError};
 use super::table::{Direction, Row, check_percent, check_size, rising};
 use serde::Serialize;
 use std::f64::consts::PI;
 
-/// Fines are finer than this (mm): the No. 200 sieve.
+/// Upper limit of fines (mm): the No. 200 sieve.
 pub const FINES_MM: f64 = 0.075;
 
-/// Gravel is coarser than this (mm): the No. 4 sieve.
+/// Lower limit of gravel (mm): the No. 4 sieve.
 pub const GRAVEL_MM: f64 = 4.75;
 
 /// Names of the two columns in messages.
 pub const FIELDS: [&str; 2] = ["opening_mm", "percent_finer"];
 
-/// A sieve curve: percent finer by mass against size, straight in percent against ln(size).
+/// A sieve curve: percent finer by mass against size, linear in percent against ln(size).
 ///
-/// Invariants: sizes rise, percent never falls, the coarsest point is 100 %. A flat piece between two points
-/// (a gap-graded soil) has no particles in it.
+/// Invariants: sizes rise, percent never falls, the coarsest point is 100 %. A flat segment between two
+/// points (a gap-graded soil) has no particles in it.
 ///
 /// ```
 /// use voidwalk_core::gradation::Gradation;
@@ -30,16 +30,16 @@ pub const FIELDS: [&str; 2] = ["opening_mm", "percent_finer"];
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gradation {
-    /// Size of each point (mm), rising; one entry for a single size.
+    /// Size of each point (mm), rising; one entry for particles of a single size.
     pub(super) size_mm: Vec<f64>,
     /// Percent finer by mass at each point, never falling, 100 at the last.
     pub(super) percent: Vec<f64>,
     /// ln of the size ratio over each segment; entry i is from point i to point i + 1.
     pub(super) log_ratio: Vec<f64>,
-    /// Particles finer than each point, in one mm3 of solid.
+    /// Number of particles finer than each point, per mm3 of solid.
     pub(super) number: Vec<f64>,
-    /// Number of segments, from the finest on, that are stated as straight lines and are no steps between two
-    /// sieves.
+    /// Number of segments, from the finest on, that were given as straight lines, not as steps between
+    /// two sieves.
     pub(super) lines: usize,
 }
 
@@ -47,8 +47,8 @@ impl Gradation {
     /// Makes a straight line on semi-log paper from its smallest size: `D_x = d0_mm Cu^(x / 50)`.
     ///
     /// # Errors
-    /// A size out of range (1e-12 to 1e12 mm, also for the largest, `d0_mm cu^2`), or a `cu` below 1; `cu` =
-    /// 1 is a single size.
+    /// A size out of range (1e-12 to 1e12 mm, also for the largest, `d0_mm cu^2`), or a `cu` below 1.
+    /// `cu` = 1 is a single size.
     pub fn linear_from_d0(d0_mm: f64, cu: f64) -> Result<Gradation, GradationError> {
         check_size("d0_mm", d0_mm)?;
         check_cu(cu)?;
@@ -60,7 +60,7 @@ impl Gradation {
         Ok(Gradation::new(vec![d0_mm, largest], vec![0.0, 100.0]))
     }
 
-    /// Makes a straight line on semi-log paper through one of its sizes: `D_percent` is `dx_mm`.
+    /// Makes a straight line on semi-log paper through a given size: `D_percent` is `dx_mm`.
     ///
     /// # Errors
     /// Errors of [`Gradation::linear_from_d0`], and a `percent` outside 0 to 100.
@@ -83,24 +83,24 @@ impl Gradation {
     /// Makes a gradation from a sieve table: pairs of opening (mm) and percent finer by mass, ascending or
     /// descending.
     ///
-    /// A finest point above 0 % leaves a tail: with `d0_mm` the curve goes on straight to 0 % at that size;
-    /// without it the pan fraction is counted by mass only.
+    /// A finest point above 0 % leaves a pan fraction: with `d0_mm` the curve continues straight to 0 %
+    /// at that size; without it the pan fraction is counted by mass only.
     ///
     /// # Errors
-    /// Rows that are no sieve curve, with the point's place in the list as the line.
+    /// Rows that are not a sieve curve; the line is the point's number in the list.
     pub fn from_points(points: &[(f64, f64)], d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
         let rows = points.iter().enumerate().map(|(i, &(size, percent))| Row { line: i + 1, size, percent });
         from_rows("points", Row::checked("points", rows.collect(), FIELDS)?, d0_mm)
     }
 
-    /// Makes a curve that is stated as straight lines between these points, and not by sieves: nothing is
-    /// open between them.
+    /// Makes a curve given as straight lines between these points, not by sieves: nothing is uncertain
+    /// between them.
     pub fn from_lines(points: &[(f64, f64)]) -> Result<Gradation, GradationError> {
         let curve = Gradation::from_points(points, None)?;
         Ok(Gradation { lines: curve.size_mm.len(), ..curve })
     }
 
-    /// Makes a gradation from rows of a record: size (mm), percent finer by mass.
+    /// Makes a gradation from the rows of a record: size (mm), percent finer by mass.
     pub fn of_rows(rows: &[[f64; 2]]) -> Result<Gradation, GradationError> {
         let points: Vec<(f64, f64)> = rows.iter().map(|&[size, percent]| (size, percent)).collect();
         Gradation::from_lines(&points)
@@ -132,14 +132,14 @@ impl Gradation {
         Ok(Gradation::sieved(size_mm, self.percent.clone(), self.lines))
     }
 
-    /// D_x: the smallest size (mm) that `percent` of the mass is finer than or equal to.
+    /// D_x: smallest size (mm) such that `percent` of the mass is no coarser.
     ///
     /// `None` for a percentage outside 0 to 100, or in a pan fraction.
     pub fn d(&self, percent: f64) -> Option<f64> {
         if !(0.0..=100.0).contains(&percent) || percent < self.tail_percent() {
             return None;
         }
-        // Percents that differ by the last digits of a sum are one percent.
+        // Percents that differ only in the last digits of a sum are equal.
         let i = self.percent.partition_point(|&p| p < percent - 100.0 * TIE);
         if i == 0 || self.percent[i] <= percent + 100.0 * TIE {
             return Some(self.size_mm[i]);
@@ -154,7 +154,7 @@ impl Gradation {
         Some(self.d(60.0)? / self.d(10.0)?)
     }
 
-    /// Smallest size of known mass (mm): D_0, or the finest opening if there is a tail.
+    /// Smallest size of known mass (mm): D_0, or the finest opening if there is a pan fraction.
     pub fn smallest_mm(&self) -> f64 {
         self.size_mm[0]
     }
@@ -164,7 +164,7 @@ impl Gradation {
         self.size_mm[self.size_mm.len() - 1]
     }
 
-    /// Percent by mass no coarser than `d_mm`; `None` if that lies in a pan fraction.
+    /// Percent by mass no coarser than `d_mm`; `None` if that size lies in a pan fraction.
     pub fn percent_finer_if_known(&self, d_mm: f64) -> Option<f64> {
         (self.pan_fraction() == 0.0 || self.smallest_mm() <= d_mm).then(|| self.percent_finer_by_mass(d_mm))
     }
@@ -183,12 +183,12 @@ impl Gradation {
         (low + share * (high - low)).clamp(low, high)
     }
 
-    /// Pan fraction: share of the mass, 0 to 1, finer than the finest sieve. It is counted by mass only.
+    /// Pan fraction: fraction of the mass, 0 to 1, finer than the finest sieve. It is counted by mass only.
     pub fn pan_fraction(&self) -> f64 {
         self.tail_percent() / 100.0
     }
 
-    /// Points of the curve for a plot; sizes never fall. A single size is the two ends of its vertical line.
+    /// Points of the curve for a plot; sizes never fall. A single size gives the two ends of a vertical line.
     pub fn points(&self) -> Vec<CurvePoint> {
         let point = |(&size, &percent): (&f64, &f64)| CurvePoint { size, percent };
         let mut points: Vec<_> = self.size_mm.iter().zip(&self.percent).map(point).collect();
@@ -238,7 +238,7 @@ pub fn from_rows(file: &str, rows: Vec<Row>, d0_mm: Option<f64>) -> Result<Grada
         }
         None => {}
     }
-    // Points before the last 0 % and after the first 100 % hold no mass.
+    // Points before the last 0 % or after the first 100 % hold no mass.
     let end = percent.partition_point(|&p| p < 100.0) + 1;
     size_mm.truncate(end);
     percent.truncate(end);
@@ -251,10 +251,10 @@ pub fn from_rows(file: &str, rows: Vec<Row>, d0_mm: Option<f64>) -> Result<Grada
     Ok(Gradation::sieved(size_mm.split_off(start), percent.split_off(start), usize::from(d0_mm.is_some())))
 }
 
-/// Relative difference allowed between two ways of writing the numbers of one curve.
+/// Relative difference allowed between two ways of writing a number of a curve.
 pub const TIE: f64 = 1e-9;
 
-/// A point of a gradation or of a constriction curve; in JSON a row of size and percent.
+/// A point of a gradation or constriction curve; a row of size and percent in JSON.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(into = "[f64; 2]")]
 pub struct CurvePoint {
@@ -282,14 +282,14 @@ fn shape(l: f64) -> f64 {
     if l > 0.0 { -libm::expm1(-3.0 * l) / l } else { 3.0 }
 }
 
-/// Particles per mm3 of solid in a segment from size `a` to `a e^l`, with mass fraction `m`: the integral of
-/// `6 / (pi D^3) dm`, which is `2 m / (pi a^3) (1 - e^(-3 l)) / l`. The number finer than `D` is linear in
-/// `D^-3`.
+/// Particles per mm3 of solid in a segment from size `a` to `a e^l` with mass fraction `m`: the integral
+/// of `6 / (pi D^3) dm`, which is `2 m / (pi a^3) (1 - e^(-3 l)) / l`. The number finer than `D` is
+/// linear in `D^-3`.
 pub(super) fn count(a: f64, l: f64, m: f64) -> f64 {
     2.0 * m / (PI * (a * a * a)) * shape(l)
 }
 
-/// Particles finer than each point, per mm3 of solid.
+/// Numbers of particles finer than each point, per mm3 of solid.
 fn cumulative(size_mm: &[f64], percent: &[f64], log_ratio: &[f64]) -> Vec<f64> {
     if let [d] = size_mm {
         return vec![6.0 / (PI * (d * d * d))];
@@ -303,24 +303,24 @@ fn cumulative(size_mm: &[f64], percent: &[f64], log_ratio: &[f64]) -> Vec<f64> {
     number
 }
 
-/// Greatest ratio of two neighbouring sieves between which practice reads a straight line. The openings of
-/// 12.5 and 4.75 mm (2.63) are neighbours among the sieves that ASTM D448 asks for of a No. 57 stone.
+/// Maximum ratio of two neighbouring sieves between which practice draws a straight line. The openings of
+/// 12.5 and 4.75 mm (2.63) are neighbours among the sieves that ASTM D448 requires for a No. 57 stone.
 pub const USUAL_STEP: f64 = 2.65;
 
-/// Ratio of two neighbouring sieves above which a rule has no result if its answer depends on the sizes
-/// between them.
+/// Ratio of two neighbouring sieves above which a rule has no result if it depends on the sizes between
+/// them.
 pub const WIDE_STEP: f64 = 4.0;
 
-/// Mass (%) that remains spread over a step that is not wide when the rest of its mass is at one of its
-/// sieves.
+/// Mass (%) that remains spread over a step that is not wide when the rest of the step's mass is placed
+/// at one of its sieves.
 pub(super) const TRACE_PERCENT: f64 = 1e-6;
 
-/// Relative distance from a sieve of mass that counts as being at it, and relative distance of mass beside a
+/// Relative distance within which mass counts as being at a sieve, and relative distance of mass from a
 /// size at which a rule counts fines or gravel.
 const NEXT: f64 = 1e-12;
 const BESIDE: f64 = 1e-6;
 
-/// Parts of a wide step, equal in ln(size); the bounds between them are its single sizes.
+/// Number of parts of a wide step, equal in ln(size); the bounds between them serve as single sizes.
 const FILLINGS: i32 = 6;
 
 /// Two neighbouring sieves with a ratio above [`USUAL_STEP`] and mass between them.
@@ -349,15 +349,15 @@ impl Step {
         size_mm > self.from_mm * (1.0 + TIE) && size_mm < self.to_mm * (1.0 - TIE)
     }
 
-    /// Tells if a size lies between the two sieves, or on one of them.
+    /// Tells if a size lies between the two sieves, or at one of them.
     pub fn encloses(self, size_mm: f64) -> bool {
         (self.from_mm * (1.0 - TIE)..=self.to_mm * (1.0 + TIE)).contains(&size_mm)
     }
 }
 
 impl Gradation {
-    /// Finds the steps between sieves that are wider than practice interpolates over, the finest first. A
-    /// stated straight line has none.
+    /// Finds the steps between sieves that are too wide for practice to interpolate, the finest first. A
+    /// given straight line has no such steps.
     pub fn open_steps(&self) -> Vec<Step> {
         let step = |i: usize| Step { from_mm: self.size_mm[i], to_mm: self.size_mm[i + 1], segment: i };
         let is_open = |i: &usize| {
@@ -367,7 +367,7 @@ impl Gradation {
         (self.lines..self.log_ratio.len()).filter(is_open).map(step).collect()
     }
 
-    /// Fills the curve's own steps with these points between their sieves: size (mm) and percent finer,
+    /// Fills the given steps of the curve with points between their sieves: size (mm) and percent finer,
     /// rising.
     pub fn filled(&self, steps: &[(Step, Vec<(f64, f64)>)]) -> Gradation {
         let (mut size_mm, mut percent) = (self.size_mm.clone(), self.percent.clone());
@@ -382,7 +382,7 @@ impl Gradation {
     /// Points that place the mass of a step at one of its sieves.
     pub fn mass_at(&self, step: &Step, end: End) -> Vec<(f64, f64)> {
         let [low, high] = self.percents(step);
-        // The sieves of a step that is not wide keep their own percents: a trace of mass marks each.
+        // The sieves of a step that is not wide keep their percents: a trace of mass marks each.
         let trace = if step.is_wide() { 0.0 } else { TRACE_PERCENT.min((high - low) / 3.0) };
         match end {
             End::Fine => vec![(step.from_mm * (1.0 + NEXT), high - trace)],
@@ -409,13 +409,13 @@ impl Gradation {
         at_once.chain(parts.map(|percent| ends.map(|end| (end, percent)).to_vec())).collect()
     }
 
-    /// Percent finer than each of the two sieves of a step.
+    /// Percent finer at each of the two sieves of a step.
     fn percents(&self, step: &Step) -> [f64; 2] {
         [self.percent[step.segment], self.percent[step.segment + 1]]
     }
 
-    /// D_x as the largest size (mm) that no more than `percent` of the mass is finer than; [`Gradation::d`]
-    /// gives the smallest: they differ where the curve is flat at this percent.
+    /// Largest size (mm) such that at most `percent` of the mass is finer; [`Gradation::d`] gives the
+    /// smallest. They differ if the curve is flat at this percent.
     pub fn coarse_d(&self, percent: f64) -> Option<f64> {
         let above = self.percent.partition_point(|&p| p <= percent + 100.0 * TIE);
         match above.checked_sub(1).map(|i| (self.percent[i], self.size_mm[i])) {
@@ -425,7 +425,7 @@ impl Gradation {
     }
 }
 
-/// Place of a step's mass at one of its two sieves.
+/// Sieve of a step at which its mass is placed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum End {
     /// At the finer sieve.
@@ -444,7 +444,7 @@ mod tests {
         assert!(Gradation::from_points(&stone, None).unwrap().open_steps().is_empty());
         let four = Gradation::from_points(&[(0.075, 0.0), (0.3, 50.0), (1.3, 100.0)], None).unwrap();
         assert_eq!(four.open_steps().iter().map(|step| step.is_wide()).collect::<Vec<_>>(), [false, true]);
-        // No sieve is missing between the finest sieve and a size that the user states.
+        // No sieve is missing between the finest sieve and a size given by the user.
         let stated = Gradation::from_points(&[(0.3, 12.0), (0.6, 100.0)], Some(0.01)).unwrap();
         assert!(stated.open_steps().is_empty());
     }

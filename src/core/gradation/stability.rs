@@ -1,37 +1,37 @@
-//! Tests if a soil holds its own fines, by the shape of its sieve curve.
+//! Tests if a soil retains its own fines, from the shape of its sieve curve.
 //!
-//! - Kenney and Lau (1985, 1986): F is the mass finer than D, H the mass between D and 4 D. If H is less than
-//!   F, the coarse part does not hold the fine part. Only the part of a curve that can be loose counts: F up
-//!   to 20 % if Cu > 3, up to 30 % otherwise. The limit of 1986 is H / F = 1 (1985: 1.3).
-//! - Kezdi (1979): the curve is split in two; Terzaghi's ratio of the coarser part over the finer, D'15 /
-//!   d'85, is not to be more than 4. Whatever the split, 15 % of the whole mass lie between the two sizes: H
-//!   is to be at least 15 % in the words of Kenney and Lau. Splits near the ends are meaningless: below F =
-//!   15 % the limit of Kenney and Lau is the better one (Li and Fannin), and if the coarser part is small its
-//!   grains float in the finer part and are no filter for it. Only splits with d'85 at F = 15 % to 55 % are
-//!   judged; the second limit is ours.
-//! - Li and Fannin (2008): both together. H / F of at least 1 for F up to 15 %, H of at least 15 % from there
-//!   to the F of Kenney and Lau; so the least H / min(F, 15 %) is to be at least 1.
+//! - Kenney and Lau (1985, 1986): F is the mass finer than D, H the mass between D and 4 D. If H is less
+//!   than F, the coarse fraction does not retain the fine one. Only the part of a curve that can be loose
+//!   counts: F up to 20 % if Cu > 3, up to 30 % otherwise. The limit of 1986 is H / F = 1 (1985: 1.3).
+//! - Kezdi (1979): the curve is split in two; Terzaghi's ratio of the coarser fraction over the finer,
+//!   D'15 / d'85, must not exceed 4. Whatever the split, 15 % of the whole mass lie between the two
+//!   sizes: in the terms of Kenney and Lau, H must be at least 15 %. Splits near the ends are
+//!   meaningless: below F = 15 % the limit of Kenney and Lau is the better one (Li and Fannin), and the
+//!   grains of a small coarser fraction float in the finer one and do not filter it. Only splits with
+//!   d'85 at F = 15 % to 55 % are judged; the second limit is ours.
+//! - Li and Fannin (2008): both together. H / F must be at least 1 for F up to 15 %, and H at least 15 %
+//!   from there to the F of Kenney and Lau; so the minimum of H / min(F, 15 %) must be at least 1.
 //!
-//! Definitions and limits as in the technical manual of the U.S. Army Corps of Engineers' Internal
-//! Instability Toolbox (Risk Management Center, RMC-CPD-2023-10, "Modified Kenney and Lau method"), which
-//! follows Li and Fannin (2008).
+//! Definitions and limits are from the technical manual of the U.S. Army Corps of Engineers' Internal
+//! Instability Toolbox (Risk Management Center, RMC-CPD-2023-10, "Modified Kenney and Lau method"),
+//! which follows Li and Fannin (2008).
 //!
-//! Both indices are extreme at a point of the curve, or where the other end of their window is at one; so
-//! they are found exactly. A pan fraction is left out: its effect is not known.
+//! Both indices have their extremes at points of the curve, or where the other end of their window is at
+//! one, so they are found exactly. A pan fraction is left out: its effect is not known.
 
 use super::Gradation;
 use super::sieve::TIE;
 
-/// Largest Cu of a narrowly graded soil.
+/// Maximum Cu of a narrowly graded soil.
 const NARROW_CU: f64 = 3.0;
 
-/// Percent finer up to which grains of a widely graded soil may be loose.
+/// Percent finer below which grains of a widely graded soil may be loose.
 pub const WIDE_LOOSE_PERCENT: f64 = 20.0;
 
 /// Percent finer than d'85 over which Kezdi's ratio is judged.
 pub const KEZDI_RANGE: [f64; 2] = [15.0, 55.0];
 
-/// Percent of the mass between d'85 and D'15, and F from which Kezdi's limit is the better one.
+/// Percent of the mass between d'85 and D'15; also the F from which Kezdi's limit is the better one.
 const BETWEEN: f64 = 15.0;
 
 /// An extreme of a shape index.
@@ -39,51 +39,51 @@ const BETWEEN: f64 = 15.0;
 pub struct ShapeIndex {
     /// Its value.
     pub value: f64,
-    /// Percent finer where it is: F of Kenney and Lau.
+    /// Percent finer at the extreme: F of Kenney and Lau.
     pub percent: f64,
-    /// Greatest percent finer, in the examined range, at which the index is less than 1: that percentage of
-    /// the soil may be lost. `None` if the index is nowhere less.
+    /// Maximum percent finer, in the examined range, at which the index is below 1: this percentage of
+    /// the soil may be lost. `None` if the index is nowhere below 1.
     pub lost_percent: Option<f64>,
 }
 
-/// A split of a soil in two, with Terzaghi's ratio of the coarser part over the finer.
+/// A split of a soil in two, with Terzaghi's ratio of the coarser fraction over the finer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoilSplit {
     /// D'15 / d'85.
     pub value: f64,
     /// Percent of the soil that is finer than the split.
     pub percent: f64,
-    /// D'15 (mm): 15 % of the coarser part alone is finer.
+    /// D'15 (mm): 15 % of the coarser fraction alone is finer.
     pub coarse_d15_mm: f64,
-    /// d'85 (mm): 85 % of the finer part alone is finer.
+    /// d'85 (mm): 85 % of the finer fraction alone is finer.
     pub fine_d85_mm: f64,
 }
 
 impl Gradation {
-    /// Percent finer up to which Kenney and Lau look: 20 if Cu > 3, 30 otherwise; `None` if Cu is not known.
+    /// Maximum percent finer examined by Kenney and Lau: 20 if Cu > 3, 30 otherwise; `None` without Cu.
     pub fn loose_percent(&self) -> Option<f64> {
         Some(if self.cu()? > NARROW_CU { WIDE_LOOSE_PERCENT } else { 30.0 })
     }
 
-    /// Index of Kenney and Lau: the least H / F over F up to [`Gradation::loose_percent`].
+    /// Index of Kenney and Lau: the minimum of H / F over F up to [`Gradation::loose_percent`].
     ///
-    /// `None` for a single size, or if D_10 lies in a pan fraction or that pan fraction reaches beyond F.
+    /// `None` for a single size, or if D_10 lies in a pan fraction or the pan fraction reaches beyond F.
     pub fn kenney_lau(&self) -> Option<ShapeIndex> {
         self.least_of_next(self.loose_percent()?, |finer| finer)
     }
 
-    /// Index of Kenney and Lau over the part of the curve that sieves show: if D10 lies in a pan fraction,
-    /// and Cu is more than 3 all the same, from there up to F = 20 %. An index below 1 is a failure, whatever
-    /// the pan hides.
+    /// Index of Kenney and Lau over the part of the curve shown by sieves: if D10 lies in a pan fraction
+    /// but Cu is certainly above 3, from there up to F = 20 %. An index below 1 is a failure, whatever
+    /// the pan contains.
     pub fn known_kenney_lau(&self) -> Option<ShapeIndex> {
         let is_wide = self.d(60.0)? > NARROW_CU * self.smallest_mm();
         let limit = self.loose_percent().or(is_wide.then_some(WIDE_LOOSE_PERCENT))?;
         self.least_of_next(limit, |finer| finer)
     }
 
-    /// Index of Li and Fannin: the least H / min(F, 15 %) over F up to [`Gradation::loose_percent`].
+    /// Index of Li and Fannin: the minimum of H / min(F, 15 %) over F up to [`Gradation::loose_percent`].
     ///
-    /// `None` in the cases of [`Gradation::kenney_lau`].
+    /// `None` as for [`Gradation::kenney_lau`].
     ///
     /// ```
     /// use voidwalk_core::gradation::Gradation;
@@ -96,7 +96,7 @@ impl Gradation {
         self.least_of_next(self.loose_percent()?, |finer| finer.min(BETWEEN))
     }
 
-    /// The least H / `over(F)` for F up to `limit` (%).
+    /// Minimum of H / `over(F)` for F up to `limit` (%).
     fn least_of_next(&self, limit: f64, over: impl Fn(f64) -> f64) -> Option<ShapeIndex> {
         let last = self.coarse_d(limit)?;
         let between = self.coarse_d(BETWEEN);
@@ -117,9 +117,9 @@ impl Gradation {
         Some(ShapeIndex { value, percent, lost_percent })
     }
 
-    /// Kezdi's split: the greatest D'15 / d'85 over splits with d'85 within [`KEZDI_RANGE`].
+    /// Kezdi's split: the maximum D'15 / d'85 over splits with d'85 within [`KEZDI_RANGE`].
     ///
-    /// `None` for a single size, or if a pan fraction hides all of that range.
+    /// `None` for a single size, or if a pan fraction hides the whole range.
     pub fn kezdi(&self) -> Option<SoilSplit> {
         let splits: Vec<SoilSplit> =
             self.splits(KEZDI_RANGE[1]).filter_map(|finer| self.split(finer)).collect();
@@ -128,7 +128,7 @@ impl Gradation {
         ties.max_by(|a, b| a.percent.total_cmp(&b.percent))
     }
 
-    /// Kezdi's greatest split at up to `most_percent` with a D'15 / d'85 above this limit; `None` if there is
+    /// Coarsest split, at up to `most_percent`, with a D'15 / d'85 above this limit; `None` if there is
     /// no such split.
     pub fn greatest_split_above(&self, limit: f64, most_percent: f64) -> Option<SoilSplit> {
         let splits: Vec<f64> = self.splits(0.85 * most_percent).collect();
@@ -144,7 +144,7 @@ impl Gradation {
         candidates.filter(move |finer| is_split && (low..=high).contains(finer))
     }
 
-    /// Split with d'85 at the percent `finer`: the split is at 1/0.85 times `finer`, and D'15 at 15 % more of
+    /// Split with d'85 at the percent `finer`: the split is at `finer` / 0.85, and D'15 at 15 % more of
     /// the whole mass.
     fn split(&self, finer: f64) -> Option<SoilSplit> {
         let (coarse, fine) = (self.coarse_d(finer + BETWEEN)?, self.d(finer)?);
@@ -153,7 +153,7 @@ impl Gradation {
     }
 }
 
-/// Greatest place at which a condition holds that changes at most once between two neighbours of `places`.
+/// Largest place at which a condition holds that changes at most once between neighbours of `places`.
 fn greatest(places: &[f64], holds: impl Fn(f64) -> bool) -> Option<f64> {
     let last = places.iter().copied().filter(|&at| holds(at)).max_by(f64::total_cmp)?;
     let next = places.iter().copied().filter(|&at| at > last).min_by(f64::total_cmp);
@@ -167,33 +167,33 @@ fn greatest(places: &[f64], holds: impl Fn(f64) -> bool) -> Option<f64> {
 
 /// Burenkova's two conditional factors of uniformity of a soil.
 ///
-/// - Burenkova (1993): a soil without cohesion, with grains of up to 100 mm and a Cu of up to 200, keeps its
-///   fines where `0.76 lg h'' + 1 < h' < 1.86 lg h'' + 1`.
-/// - Wan and Fell (2004, 2008): logistic regression of tests on broadly graded and gap-graded soils gives the
-///   probability that a soil loses its fines, `1 / (1 + exp(-Z))`: `Z = 3.875 lg h'' - 3.591 h' + 2.436` for
-///   sand and gravel with up to 10 % of fines that are not plastic, `Z = 2.378 lg h'' - 3.648 h' + 3.701` for
-///   silt, sand and gravel.
+/// - Burenkova (1993): a soil without cohesion, with grains of up to 100 mm and a Cu of up to 200,
+///   retains its fines if `0.76 lg h'' + 1 < h' < 1.86 lg h'' + 1`.
+/// - Wan and Fell (2004, 2008): logistic regression of tests on broadly graded and gap-graded soils
+///   gives the probability that a soil loses its fines, `1 / (1 + exp(-Z))`:
+///   `Z = 3.875 lg h'' - 3.591 h' + 2.436` for sand and gravel with up to 10 % of non-plastic fines,
+///   `Z = 2.378 lg h'' - 3.648 h' + 3.701` for silt, sand and gravel.
 ///
-/// Source: the manual named above, chapters "Burenkova Method" and "Modified Burenkova Method". One stored
-/// version of it prints D10 in the equation of h'' and D15 in its list of symbols; the published page, its
-/// text and the chapter on Wan and Fell have D15.
+/// Source: the manual named above, chapters "Burenkova Method" and "Modified Burenkova Method". One
+/// stored version prints D10 in the equation of h'' and D15 in its list of symbols; the published page,
+/// its text and the chapter on Wan and Fell have D15.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UniformityFactors {
-    /// `h' = D90 / D60`: steepness of the coarse part.
+    /// `h' = D90 / D60`: steepness of the coarse fraction.
     pub coarse: f64,
-    /// `h'' = D90 / D15`: distance of the fine part below it.
+    /// `h'' = D90 / D15`: distance from the fine to the coarse fraction.
     pub whole: f64,
 }
 
 impl UniformityFactors {
-    /// Bounds of `h'` between which Burenkova's soils kept their fines.
+    /// Bounds of `h'` between which Burenkova's soils retained their fines.
     pub fn stable(&self) -> [f64; 2] {
         let lg = libm::log10(self.whole);
         [0.76 * lg + 1.0, 1.86 * lg + 1.0]
     }
 
-    /// Wan and Fell's probability (0 to 1) that the soil loses its fines: with the equation for sand and
-    /// gravel with few fines, or the one for silt, sand and gravel.
+    /// Wan and Fell's probability (0 to 1) that the soil loses its fines, by the equation for sand and
+    /// gravel with few fines or the one for silt, sand and gravel.
     pub fn probability_of_instability(&self, few_fines: bool) -> f64 {
         let lg = libm::log10(self.whole);
         let z = match few_fines {
@@ -220,8 +220,8 @@ mod tests {
         Gradation::from_points(points, None).unwrap()
     }
 
-    /// On a straight line on semi-log paper the mass between D and 4 D is the same everywhere, 50 ln 4 / ln
-    /// Cu percent, so H / F is least at the largest F; and 15 % of the mass always spans Cu^0.3.
+    /// On a straight line on semi-log paper the mass between D and 4 D is the same everywhere, 50 ln 4 /
+    /// ln Cu percent, so H / F is smallest at the largest F; and 15 % of the mass always spans Cu^0.3.
     #[test]
     fn straight_curves_by_hand() {
         for (cu, limit) in [(3.0, 30.0), (8.0, 20.0), (60.0, 20.0)] {
@@ -234,7 +234,7 @@ mod tests {
         }
     }
 
-    /// A size at F = 20 % that reads as a hair more than 20 % finer is still examined.
+    /// A size at F = 20 % that is read as slightly more than 20 % finer is still examined.
     #[test]
     fn the_end_of_the_loose_part_is_looked_at_whatever_its_last_digit() {
         let mut beyond = 0;
@@ -249,7 +249,7 @@ mod tests {
         assert!(beyond > 10, "{beyond}");
     }
 
-    /// A gap from 0.2 to 2 mm at 25 %: F = 25 % is outside the loose part of every widely graded soil, but
+    /// A gap from 0.2 to 2 mm at 25 %: F = 25 % is outside the loose part of a widely graded soil, but
     /// Kezdi's split there has d'85 at 21.25 % and D'15 at 36.25 %.
     #[test]
     fn a_gap_by_hand() {
@@ -286,8 +286,8 @@ mod tests {
         assert!(kezdi >= most * (1.0 - 1e-12) && kezdi - most < 1e-3 * most, "{kezdi} {most}");
     }
 
-    /// A filter with 0.5 % of fines, and the middle of the limits of ASTM C33 fine aggregate: D'15 / d'85 is
-    /// above 4 where next to nothing is finer, or next to nothing coarser, and both hold their fines.
+    /// A filter with 0.5 % of fines, and the middle of the limits of ASTM C33 fine aggregate: D'15 / d'85
+    /// is above 4 where almost nothing is finer or almost nothing coarser, yet both retain their fines.
     #[test]
     fn ends_of_a_curve_raise_no_alarm() {
         let clean = points(&[(0.075, 0.5), (0.3, 2.0), (0.6, 10.0), (1.2, 40.0), (4.0, 100.0)]);
@@ -312,8 +312,8 @@ mod tests {
         assert!(gap.kezdi().unwrap().value > 10.0);
     }
 
-    /// ASTM C33 sand, split at 17.65 %: 85 % of the finer part is 15 % of the whole, and 15 % of the coarser
-    /// part with the finer one 30 %. Each part is worked out by itself here, as 100 %.
+    /// ASTM C33 sand, split at 17.65 %: 85 % of the finer fraction is 15 % of the whole, and 15 % of the
+    /// coarser fraction plus all of the finer is 30 %. Each fraction is computed separately here, as 100 %.
     #[test]
     fn a_split_is_that_of_both_parts_by_themselves() {
         let sizes = [0.15, 0.3, 0.6, 1.18, 2.36, 4.75, 9.5];
@@ -341,7 +341,7 @@ mod tests {
         let tail = points(&[(0.1, 35.0), (1.0, 60.0), (10.0, 100.0)]);
         assert_eq!(tail.kenney_lau(), None);
         assert_eq!(tail.known_kenney_lau(), None);
-        // 14 % below the finest sieve, and 46 % straight over the next two decades: H is least at F = 20 %.
+        // 14 % below the finest sieve, 46 % straight over the next two decades: H is smallest at F = 20 %.
         let clayey = points(&[(0.002, 14.0), (0.2, 60.0), (0.4, 100.0)]);
         let known = clayey.known_kenney_lau().unwrap();
         let h = 46.0 * libm::log(4.0) / libm::log(100.0);
@@ -369,8 +369,8 @@ mod tests {
         }
     }
 
-    /// A straight line on semi-log paper has h' = Cu^0.6 and h'' = Cu^1.5: such filters are stable at a usual
-    /// Cu.
+    /// A straight line on semi-log paper has h' = Cu^0.6 and h'' = Cu^1.5: such filters are stable at a
+    /// usual Cu.
     #[test]
     fn straight_filters_keep_their_fines() {
         for cu in [1.5, 3.0, 6.0] {

@@ -1,5 +1,5 @@
-//! Numbers and surfaces of particles, and the number of base particles that a test inserts: Eq. (2) of the
-//! paper.
+//! Numbers and surfaces of particles, and the number of base particles inserted in a test: Eq. (2) of
+//! the paper.
 
 use super::sieve::count;
 use super::{Gradation, GradationError, NumberError};
@@ -22,15 +22,15 @@ pub struct BaseSupply {
 /// ```
 ///
 /// rounded to the nearest integer. `mass_ratio` is F_base, the mass of base over the mass of filter;
-/// `grains_per_void` is N_p / N_voids of the filter's packing; `voids` is the number of voids of the network.
-/// N_unit is the number of particles per unit mass; base and filter have one solid density, so numbers per
-/// unit of solid volume ([`Gradation::particles_per_unit_volume`]) serve as well.
+/// `grains_per_void` is N_p / N_voids of the filter's packing; `voids` is the number of voids of the
+/// network. N_unit is the number of particles per unit mass; base and filter have the same solid density,
+/// so numbers per unit of solid volume ([`Gradation::particles_per_unit_volume`]) serve as well.
 ///
-/// A pan fraction in the base is in its mass, not in its number: the particles represent `1 - tail` of
-/// `mass_ratio`.
+/// A pan fraction counts in the mass of the base, not in its number: the particles represent `1 - tail`
+/// of `mass_ratio`.
 ///
-/// `cap` limits the number; `None` is no limit. Fewer particles than Eq. (2) requires is a bias towards more
-/// erosion, not noise, so the result tells if it is capped.
+/// `cap` limits the number; `None` means no limit. Fewer particles than by Eq. (2) bias the result
+/// towards more erosion (this is not noise), so the result tells if it is capped.
 ///
 /// # Errors
 /// A mass ratio or grains per void that is not a positive finite number, no voids, or a number of
@@ -56,19 +56,19 @@ pub fn base_particles(
 }
 
 impl Gradation {
-    /// Number of particles of known size in one mm3 of solid: the integral of `6 / (pi D^3)` over the mass
-    /// fraction. Base and filter have one solid density, so the ratio of two of these is `N_base,unit /
-    /// N_filter,unit` of Eq. (2). A pan fraction is in the solid, not in the number.
+    /// Number of particles of known size per mm3 of solid: the integral of `6 / (pi D^3)` over the mass
+    /// fraction. Base and filter have the same solid density, so the ratio of two of these is
+    /// `N_base,unit / N_filter,unit` of Eq. (2). A pan fraction counts in the solid, not in the number.
     pub fn particles_per_unit_volume(&self) -> f64 {
         self.number[self.number.len() - 1]
     }
 
-    /// Percent by number, among the particles of known size, no coarser than `d_mm`.
+    /// Percent by number of the particles of known size that are no coarser than `d_mm`.
     pub fn percent_finer_by_number(&self, d_mm: f64) -> f64 {
         100.0 * self.number_fraction_in(0.0, d_mm)
     }
 
-    /// Smallest size (mm) that `percent` by number of the particles of known size is finer than or equal to;
+    /// Smallest size (mm) such that `percent` by number of the particles of known size are no coarser;
     /// `None` outside 0 to 100.
     pub fn d_by_number(&self, percent: f64) -> Option<f64> {
         if !(0.0..=100.0).contains(&percent) {
@@ -87,13 +87,13 @@ impl Gradation {
         if target >= high {
             return Some(b);
         }
-        // The share of the segment's particles is (1 - (a / D)^3) / (1 - e^(-3 L)).
+        // The fraction of the segment's particles is (1 - (a / D)^3) / (1 - e^(-3 L)).
         let share = (target - low) / (high - low);
         let x = -libm::expm1(-3.0 * self.log_ratio[i - 1]) * share;
         Some((a / libm::cbrt(1.0 - x)).clamp(a, b))
     }
 
-    /// Share by number, 0 to 1, of the particles of known size that are coarser than `low_mm` and no
+    /// Fraction by number, 0 to 1, of the particles of known size that are coarser than `low_mm` and no
     /// coarser than `high_mm`.
     pub fn number_fraction_in(&self, low_mm: f64, high_mm: f64) -> f64 {
         (self.number_in(low_mm, high_mm) / self.particles_per_unit_volume()).min(1.0)
@@ -123,10 +123,10 @@ impl Gradation {
         number
     }
 
-    /// Share, 0 to 1, of the surface of the particles of known size that belongs to those coarser than
-    /// `d_mm`.
+    /// Fraction, 0 to 1, of the surface of the particles of known size that belongs to those coarser
+    /// than `d_mm`.
     ///
-    /// Mass `m` spread evenly over ln(D) from `a` to `b` has the surface `6 m (1/a - 1/b) / ln(b/a)` for one
+    /// Mass `m` spread evenly over ln(D) from `a` to `b` has the surface `6 m (1/a - 1/b) / ln(b/a)` per
     /// mm3 of solid.
     ///
     /// ```

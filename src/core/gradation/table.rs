@@ -1,19 +1,19 @@
-//! Reads every table of two columns, size and percent: sieve curves and constriction curves.
+//! Reads two-column tables of size and percent: sieve curves and constriction curves.
 //!
-//! Accepted: comma, semicolon or tab between the columns; decimal commas wherever the comma does not separate
-//! columns (or the number is quoted); a byte order mark; CRLF; blank lines; `#` comments; one header row;
-//! quotes; empty fields at the end of a row, as spreadsheets write them. A row is the header if it is the
-//! first and has no number among its fields.
+//! Accepted: comma, semicolon or tab between the columns; decimal commas if the comma does not separate
+//! columns (or the number is quoted); a byte order mark; CRLF; blank lines; `#` comments; one header
+//! row; quotes; empty fields at the end of a row, as written by spreadsheets. The first row is the
+//! header if no field in it is a number.
 
 use super::error::{NumberError, TableError, shortened};
 use crate::store::read_regular;
 use std::path::Path;
 
-/// Smallest and largest size that an input may hold (mm).
+/// Minimum and maximum size in an input (mm).
 const SIZE_MIN_MM: f64 = 1e-12;
 const SIZE_MAX_MM: f64 = 1e12;
 
-/// Largest file that is read, in bytes.
+/// Maximum size of a file (bytes).
 pub const FILE_LIMIT_BYTES: u64 = 16 << 20;
 
 /// One row of a table: its line and its two numbers.
@@ -28,7 +28,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Makes `rows` from a list, not from a file, and checks the values.
+    /// Makes `rows` from a list instead of a file, and checks the values.
     pub(crate) fn checked(
         file: &str,
         mut rows: Vec<Row>,
@@ -59,7 +59,7 @@ impl Row {
 pub(crate) struct Table {
     /// File as the user named it.
     pub(crate) file: String,
-    /// Line and two fields of the header.
+    /// Line and the two fields of the header.
     pub(crate) header: Option<(usize, [String; 2])>,
     rows: Vec<(usize, [String; 2])>,
 }
@@ -70,7 +70,7 @@ impl Table {
         Table::parse(&path.display().to_string(), &bytes_of(path)?)
     }
 
-    /// Reads the table in `bytes`, called `file` in messages.
+    /// Reads the table in `bytes`, named `file` in messages.
     pub(crate) fn parse(file: &str, bytes: &[u8]) -> Result<Table, TableError> {
         let file = file.to_string();
         if bytes.len() as u64 > FILE_LIMIT_BYTES {
@@ -125,8 +125,8 @@ impl Table {
         TableError::Fields { file: self.file.clone(), line, found, value: shortened(content.trim()), allowed }
     }
 
-    /// Refuses ambiguous commas: a file that uses both `.` and `,` inside numbers has thousands separators,
-    /// or a mistake; one that separates its columns by commas may have them in `"1,180"`.
+    /// Refuses ambiguous commas: a file with both `.` and `,` inside numbers has thousands separators or
+    /// a mistake; one with commas between its columns may have them in `"1,180"`.
     fn check_decimal_signs(&self, delimiter: char) -> Result<(), TableError> {
         let is = |wanted: Comma| {
             let of_row = move |(line, fields): &(usize, [String; 2])| {
@@ -167,7 +167,7 @@ impl Table {
         self.rows.first().map_or(1, |(line, _)| *line)
     }
 
-    /// Rows as numbers, with the size in column `size_column` and the percent in the other.
+    /// Reads the rows as numbers, with the size in column `size_column` and the percent in the other.
     pub(crate) fn rows(
         &self,
         size_column: usize,
@@ -193,7 +193,7 @@ impl Table {
     }
 }
 
-/// Reads the bytes of a file, up to the largest size of a table.
+/// Reads the bytes of a file, up to the maximum size of a table.
 pub fn bytes_of(path: &Path) -> Result<Vec<u8>, TableError> {
     let file = path.display().to_string();
     let read = |source| TableError::Read { file: file.clone(), source };
@@ -203,7 +203,7 @@ pub fn bytes_of(path: &Path) -> Result<Vec<u8>, TableError> {
     match read_regular(path, FILE_LIMIT_BYTES).map_err(read)? {
         Some(bytes) => Ok(bytes),
         None if std::fs::metadata(path).is_ok_and(|meta| !meta.is_file()) => {
-            Err(read(std::io::Error::other("is no regular file")))
+            Err(read(std::io::Error::other("is not a regular file")))
         }
         None => Err(TableError::TooLarge { file, limit: FILE_LIMIT_BYTES }),
     }
@@ -239,17 +239,17 @@ pub fn allowed_percent() -> String {
     "a number from 0 to 100".into()
 }
 
-/// Rule for the size column of a table from one row to the next.
+/// Rule for the sizes of a table from one row to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Direction {
-    /// No size twice.
+    /// No equal sizes.
     Strict,
     /// Allows equal sizes: a vertical step of the curve.
     Steps,
 }
 
-/// Returns `rows` with rising sizes, after checking that sizes only rise or only fall, that percent never
-/// falls as size rises, and that the coarsest is 100 %.
+/// Returns `rows` with rising sizes, after checking that sizes only rise or only fall, that percent
+/// never falls as size rises, and that the coarsest size has 100 %.
 pub(crate) fn rising(
     file: &str,
     mut rows: Vec<Row>,
@@ -296,12 +296,12 @@ pub(crate) fn rising(
     }
 }
 
-/// Separator of the columns: the first of semicolon, tab and comma in the first line that has any.
+/// Finds the separator of the columns: the first of semicolon, tab and comma in the first line with one.
 fn delimiter<'a>(lines: impl Iterator<Item = &'a str>) -> char {
     lines.filter_map(|line| [';', '\t', ','].into_iter().find(|&c| line.contains(c))).next().unwrap_or(',')
 }
 
-/// Fields of one line, trimmed and without their quotes; empty ones at its end left out.
+/// Splits a line into fields, trimmed and without quotes; empty ones at the end are left out.
 fn split(line: &str, delimiter: char) -> Vec<String> {
     let mut fields = vec![String::new()];
     let mut quoted = false;
@@ -323,10 +323,10 @@ fn split(line: &str, delimiter: char) -> Vec<String> {
     fields
 }
 
-/// Reads a field as a number: all that Rust reads (so also `nan`, `inf` and `1e400`, for the caller to
-/// refuse), with a decimal comma in place of the point.
+/// Reads a field as a number: all that Rust reads (so also `nan`, `inf` and `1e400`, which the caller
+/// refuses), with a decimal comma allowed in place of the point.
 pub fn number(field: &str) -> Option<f64> {
-    // An exponent has its sign, as spreadsheets write it: another letter e is a slip.
+    // An exponent has a sign, as in spreadsheets: any other letter e is a typing error.
     if field.split_once(['e', 'E']).is_some_and(|(_, power)| !power.starts_with(['+', '-'])) {
         return None;
     }
@@ -346,7 +346,7 @@ pub enum Comma {
     Either,
 }
 
-/// Reads the only comma of the number in a text, such as `1,180 um`.
+/// Tells the meaning of the only comma in a number, such as `1,180 um`.
 pub fn comma(text: &str) -> Option<Comma> {
     let at = text.find(',')?;
     let before = text[..at].bytes().rev().take_while(u8::is_ascii_digit).count();

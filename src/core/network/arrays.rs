@@ -1,17 +1,17 @@
 //! Networks in `.npz` files, as OpenPNM and PoreSpy name their arrays.
 //!
-//! | array | what |
+//! | array | content |
 //! |---|---|
-//! | `throat.conns` (`conns`) | the two voids of each constriction, n x 2 whole numbers from 0 |
-//! | `throat.diameter` (`throat.inscribed_diameter`, `diameter`) | its diameter |
-//! | `throat.hydraulic_conductance` (`throat.conductance`, `conductance`) | may be missing |
-//! | `pore.inlets` (`inlets`, `pore.left`, `pore.xmin`) | voids that base particles come into |
-//! | `pore.outlets` (`outlets`, `pore.right`, `pore.xmax`) | voids that they leave the filter from |
-//! | `pore.coords` | looked at for the number of voids only |
+//! | `throat.conns` (`conns`) | two voids of each constriction, n x 2 integers from 0 |
+//! | `throat.diameter` (`throat.inscribed_diameter`, `diameter`) | diameter of each constriction |
+//! | `throat.hydraulic_conductance` (`throat.conductance`, `conductance`) | optional |
+//! | `pore.inlets` (`inlets`, `pore.left`, `pore.xmin`) | voids that base particles enter |
+//! | `pore.outlets` (`outlets`, `pore.right`, `pore.xmax`) | voids from which they leave the filter |
+//! | `pore.coords` | used only for the number of voids |
 //!
-//! A negative number in `throat.conns` is the outside: before the filter as the first of the two, behind it
-//! as the second. Inlets and outlets are numbers of voids, or a truth value for each. Conductances that are
-//! missing are the fourth powers of the diameters.
+//! A negative number in `throat.conns` means outside: upstream of the filter if first, downstream if
+//! second. Inlets and outlets are void numbers, or one truth value per void. Missing conductances are
+//! taken as the fourth power of the diameter.
 
 use super::{ExitRule, Network, NetworkColumns, NetworkError};
 use crate::packing::LengthUnit;
@@ -24,17 +24,17 @@ const INLETS: &[&str] = &["pore.inlets", "inlets", "pore.left", "pore.xmin"];
 const OUTLETS: &[&str] = &["pore.outlets", "outlets", "pore.right", "pore.xmax"];
 const COORDS: &[&str] = &["pore.coords", "coords"];
 
-/// Number of voids that a file may name by few constrictions.
+/// Number of voids allowed in a file with few constrictions.
 const MANY: usize = 1 << 16;
 
 /// Options for reading the arrays of a file.
 #[derive(Clone, Copy, Debug)]
 pub struct ArrayOptions {
-    /// The unit of the diameters; a file does not say it.
+    /// Unit of the diameters, which the file does not state.
     pub unit: LengthUnit,
-    /// Rule by which particles choose.
+    /// Rule by which particles choose exits.
     pub rule: ExitRule,
-    /// Part of its conductance that a blocked constriction keeps.
+    /// Fraction of its conductance that a blocked constriction keeps.
     pub rho: f64,
     /// Length of one unit of diameter in the network (mm).
     pub unit_mm: f64,
@@ -44,7 +44,7 @@ impl Network {
     /// Reads a network from an `.npz`; `file` names it in errors.
     ///
     /// # Errors
-    /// Names the file and the array, and what is allowed.
+    /// Errors state the file, the array and the allowed values.
     pub fn from_npz(bytes: &[u8], file: &str, options: &ArrayOptions) -> Result<Self, NetworkError> {
         let whole = |problem: String| NetworkError::Whole { file: file.into(), problem };
         let mut npz = Npz::open(bytes).map_err(whole)?;
@@ -88,9 +88,8 @@ impl Network {
 
 type Named = (&'static str, Array);
 
-/// Number of voids: the entries of the longest array with an entry for each void; without such an array the
-/// number that the constrictions name, but not far more than there are constrictions, as every void takes
-/// memory.
+/// Number of voids: the length of the longest array with one entry per void. Without such an array it is
+/// the number named by the constrictions, limited by their count, as every void takes memory.
 fn number_of_voids(
     name: &str,
     conns: &[[i64; 2]],
@@ -142,7 +141,7 @@ fn floats((name, array): Named) -> Result<Vec<f64>, String> {
     }
 }
 
-/// Voids by their numbers, or by a truth value for each of them.
+/// Reads voids given by number, or by one truth value per void.
 fn numbered((name, array): Named, voids: usize) -> Result<Vec<u32>, String> {
     let is_void = |&void: &i64| u32::try_from(void).ok().filter(|&void| (void as usize) < voids);
     match (array.columns, array.numbers) {
@@ -208,7 +207,7 @@ mod tests {
             let expected = Network::from_columns(&NetworkColumns { rule, ..columns }).unwrap().0;
             assert_eq!(read(&arrays(), rule).unwrap(), expected);
         }
-        // Other names, and conductances, which a network without water has no use for.
+        // Other array names, and conductances, which a network without water does not use.
         let mut other = arrays();
         other[0].0 = "conns";
         other[1].0 = "throat.inscribed_diameter";
@@ -219,7 +218,7 @@ mod tests {
         assert!(read(&other, ExitRule::Area).is_ok());
     }
 
-    /// A void without constrictions has a number if an array with an entry for each void lists it.
+    /// A void without constrictions is counted if an array with one entry per void lists it.
     #[test]
     fn the_number_of_a_void_is_explained_by_the_constrictions_or_an_array_of_the_voids() {
         let ring = |last: i64| whole(4, Some(2), &[0, 1, 1, 2, 0, last, last, 2]);

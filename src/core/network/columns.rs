@@ -1,51 +1,50 @@
-//! Networks from columns: an entry a constriction, as other programs hold them.
+//! Networks from columns with one entry per constriction, as other programs store them.
 
 use super::file::listed_twice;
 use super::undirected::{Link, LinkEnd, LinkedVoids, WIDE};
 use super::{END, ExitRule, Network, NetworkError};
 
-/// Exponent of the diameter in the conductance of a constriction, unless more is known of it (Poiseuille).
+/// Default exponent of the diameter in the conductance of a constriction (Poiseuille).
 pub const CONDUCTANCE_EXPONENT: f64 = 4.0;
 
-/// Marks a constriction without an exit: one whose two ends are the same void.
+/// Marks a constriction without an exit: its two ends are the same void.
 pub const NO_EXIT: u32 = u32::MAX;
 
-/// A network as columns; constriction `c` is entry `c` of each.
+/// Network as columns; entry `c` of each belongs to constriction `c`.
 #[derive(Clone, Copy, Debug)]
 pub struct NetworkColumns<'a> {
     /// Number of voids.
     pub voids: usize,
-    /// The two voids that each constriction joins; a negative number is the outside: before the filter as
-    /// the first of the two, behind it as the second.
+    /// Two voids that each constriction joins; a negative number means outside: upstream of the filter if
+    /// first, downstream if second.
     pub conns: &'a [[i64; 2]],
-    /// Diameter (mm) by constriction; 0 is closed from the start.
+    /// Diameter (mm) by constriction; 0 means closed from the start.
     pub diameter_mm: &'a [f64],
-    /// Conductance times viscosity by constriction, in any one unit; without it the fourth power of the
+    /// Conductance times viscosity by constriction, in any consistent unit; default: fourth power of the
     /// diameter.
     pub conductance: Option<&'a [f64]>,
-    /// Voids that base particles come into, by ways that nothing can block.
+    /// Voids that base particles enter, through unblockable ways in.
     pub inlets: &'a [u32],
-    /// Voids that particles leave the filter from, by ways that nothing can block.
+    /// Voids from which particles leave the filter, through unblockable ways out.
     pub outlets: &'a [u32],
-    /// Rule by which particles choose. With [`ExitRule::Area`] each constriction leads from its first void to
-    /// its second; with any other it can be passed both ways, and water decides which.
+    /// Rule by which particles choose exits. With [`ExitRule::Area`] each constriction leads from its first
+    /// void to its second; with the other rules it can be passed in both directions, and water decides which.
     pub rule: ExitRule,
-    /// Part of its conductance that a blocked constriction keeps.
+    /// Fraction of its conductance that a blocked constriction keeps.
     pub rho: f64,
     /// Length of one unit of diameter (mm).
     pub unit_mm: f64,
 }
 
 impl Network {
-    /// Builds the network of these columns, and lists the exit of each constriction as seen from the first of
-    /// its voids ([`NO_EXIT`] if it has no exit).
+    /// Builds the network of these columns, and lists the exit of each constriction from its first void
+    /// ([`NO_EXIT`] if it has no exit).
     ///
-    /// Ways in and out of an undirected network conduct as a constriction does on average.
+    /// In an undirected network, ways in and out have the mean conductance of all constrictions.
     ///
     /// # Errors
-    /// Columns of unequal length, a void that does not exist, a diameter or conductance that no constriction
-    /// can have; no constriction, no inlet, no way out, no open way between the two; a rule that goes by
-    /// height, which the columns do not give.
+    /// Columns of unequal length; a void that does not exist; an invalid diameter or conductance; no
+    /// constriction, inlet, way out or open path; a rule by height, which the columns do not contain.
     pub fn from_columns(columns: &NetworkColumns) -> Result<(Self, Vec<u32>), NetworkError> {
         let diameter = columns.checked()?;
         match columns.rule {
@@ -61,7 +60,7 @@ fn wrong(problem: impl Into<String>) -> NetworkError {
 }
 
 impl NetworkColumns<'_> {
-    /// Refuses columns that make no network; returns their diameters in units.
+    /// Refuses columns that do not form a network; returns their diameters in units of `unit_mm`.
     fn checked(&self) -> Result<Vec<f32>, NetworkError> {
         let count = self.conns.len();
         let same_length = |name, len| match len == count {
@@ -108,8 +107,8 @@ impl NetworkColumns<'_> {
         };
         let is_inlet = marked("inlet", self.inlets)?;
         let is_outlet = marked("outlet", self.outlets)?;
-        // Extracted networks have voids at their faces that nothing joins; if numbers count from 1, void 0 is
-        // one of them.
+        // Extracted networks have isolated voids at their faces; if numbers count from 1, void 0 looks
+        // like one.
         let is_joined = self.conns.iter().flatten().any(|&end| end == 0);
         for (name, marked) in [("inlet", &is_inlet), ("outlet", &is_outlet)] {
             if !is_joined && marked.first() == Some(&true) {
@@ -129,8 +128,8 @@ impl NetworkColumns<'_> {
         let rows = (0..count).map(|c| (self.conns[c], [d[c], g.map_or(0.0, |g| g[c])]));
         if let Some([row, again]) = listed_twice(rows, false) {
             return Err(wrong(format!(
-                "constrictions {row} and {again} (counted from 0), and others, are one listed twice, there \
-                 and back or again; keep one row of each"
+                "constrictions {row} and {again} (counted from 0) are one constriction listed twice (there \
+                 and back, or repeated), and others are, too; keep one row of each"
             )));
         }
         let unit = |(constriction, &mm): (usize, &f64)| {
@@ -141,7 +140,7 @@ impl NetworkColumns<'_> {
         self.diameter_mm.iter().enumerate().map(unit).collect()
     }
 
-    /// Every constriction leads from its first void to its second.
+    /// Builds a network in which every constriction leads from its first void to its second.
     fn directed(&self, mut diameter: Vec<f32>) -> Result<(Network, Vec<u32>), NetworkError> {
         if self.conductance.is_some() {
             return Err(wrong("by area: conductance says nothing where no water flows"));
@@ -175,7 +174,8 @@ impl NetworkColumns<'_> {
         Ok((network, slot[..self.conns.len()].to_vec()))
     }
 
-    /// Every constriction can be passed both ways, and one blocking closes both.
+    /// Builds a network in which every constriction can be passed in both directions; one blocking closes
+    /// both.
     fn undirected(&self, diameter: &[f32]) -> Result<(Network, Vec<u32>), NetworkError> {
         let poiseuille = |d: f32| libm::pow(f64::from(d), CONDUCTANCE_EXPONENT);
         let conductance = |c: usize| match self.conductance {
@@ -214,7 +214,7 @@ impl NetworkColumns<'_> {
         Ok((network, exit))
     }
 
-    /// Fewest constrictions between each void and the way in, whichever way they are passed.
+    /// Minimum number of constrictions between each void and the way in, in either direction.
     fn layers(&self) -> Vec<u32> {
         let inside = |end: i64| u32::try_from(end).ok();
         let ends = self.conns.iter().filter_map(|&[a, b]| Some((inside(a)?, inside(b)?)));
@@ -279,7 +279,7 @@ mod tests {
         let (network, exit) = Network::from_columns(&columns).unwrap();
         assert_eq!(network, file);
         assert_eq!(exit, [3, 1, 2, 0]);
-        // An outlet is one more exit, which nothing can block.
+        // An outlet is one more exit and cannot be blocked.
         let (network, _) = Network::from_columns(&NetworkColumns { outlets: &[0], ..columns }).unwrap();
         assert_eq!(network.constrictions(), 5);
         assert_eq!((network.targets()[1], network.diameters()[1]), (END, WIDE));
@@ -301,7 +301,7 @@ mod tests {
         }
         // Two constrictions side by side.
         assert!(!refused(&[there, there].concat(), &[alike, alike].concat(), ExitRule::Flux));
-        // Rows there and back are one constriction, whatever the sizes.
+        // Rows there and back are one constriction, for any sizes.
         for factor in [1.0 + 1e-12, 1.001, 2.0] {
             let (sizes, rows) = ([d, d.map(|d| d * factor)].concat(), [there, back].concat());
             assert!(refused(&rows, &sizes, ExitRule::Flux) && refused(&rows, &sizes, ExitRule::Area));
@@ -311,7 +311,7 @@ mod tests {
             &[d, d.map(|d| d * (1.0 + 1e-12))].concat(),
             ExitRule::Flux
         ));
-        // A fifth of a long chain.
+        // A fifth of the rows of a long chain.
         let long: Vec<[i64; 2]> = (0..40).map(|void| [void, void + 1]).collect();
         let part = |factor: f64| {
             let back = long.iter().take(10).map(|&[a, b]| [b, a]);
@@ -363,7 +363,8 @@ mod tests {
             (NetworkColumns { unit_mm: 0.0, ..CHAIN }, "the unit of length is 0 mm"),
             (NetworkColumns { inlets: &[], ..area }, "no inlet"),
             (NetworkColumns { outlets: &[], ..area }, "no outlet"),
-            // Each leads away from the outlet; these constrictions can be passed both ways where water flows.
+            // Each leads away from the outlet; with water these constrictions could be passed in both
+            // directions.
             (NetworkColumns { conns: &[[2, 1], [1, 0], [3, 2]], ..area }, "from the first of its two voids"),
             (NetworkColumns { diameter_mm: &[1.0, 1.0, 0.0], conns: &CHAIN_DOWN, ..area }, "no open way"),
             (NetworkColumns { conns: &[[-1, 1], [0, 1], [2, 3]], ..area }, "leads from the outside"),

@@ -1,14 +1,14 @@
 //! Lattices with a given distribution of void connectivity (paper, section 6, Table 3 and Fig. 20).
 //!
-//! The *connectivity* of a void is the number of its entrances and exits. On the cubic lattice it is 6 for
-//! every void: the inlet of a start node counts as an entrance, the way out of the last layer as an exit. The
-//! paper keeps the mean of 6 but spreads it over 4 to 8: "constrictions were created between diagonally
-//! neighbouring voids, or deleted until the connectivity distribution shown in Table 3 was reached". It does
-//! not say in which order, or which diagonals: module `possible_exits` decides.
+//! The *connectivity* of a void is the number of its entrances and exits. It is 6 for every void of the
+//! cubic lattice: the inlet of a start node counts as an entrance, the outlet of the last layer as an
+//! exit. The paper keeps the mean of 6 but spreads it over 4 to 8: "constrictions were created between
+//! diagonally neighbouring voids, or deleted until the connectivity distribution shown in Table 3 was
+//! reached". It specifies neither the order nor the diagonals: module `possible_exits` chooses them.
 //!
-//! The wanted numbers of voids are the percentages rounded by largest remainder. Constrictions that are kept
-//! have the diameters that the cubic lattice has for the same seed; diagonals are further independent draws
-//! from the same curve. Layers are those of the lattice: voids with the same z.
+//! Target counts of voids are the percentages rounded by largest remainder. Remaining constrictions have
+//! the same diameters as in the cubic lattice with the same seed; diagonals are further independent draws
+//! from the same curve. A layer is all voids with the same z, as in the lattice.
 
 use super::possible_exits::{MOST, PossibleExits, SLOTS};
 use super::{END, Network, NetworkError};
@@ -17,27 +17,27 @@ use crate::constrictions::Curve;
 /// Table 3 of the paper: connectivity, and percent of the voids.
 pub const TABLE_3: [(u32, f64); 5] = [(4, 3.5), (5, 22.8), (6, 47.6), (7, 22.6), (8, 3.5)];
 
-/// First block of the stream that diagonals draw their diameters from; those of the lattice begin at 0.
+/// First block of the random stream for diameters of diagonals; blocks of the lattice begin at 0.
 const FIRST_DIAGONAL_BLOCK: u64 = 1 << 32;
 
-/// A distribution of connectivity: percent of the voids by connectivity.
+/// Distribution of connectivity: percent of the voids by connectivity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Connectivity {
-    /// Rising connectivity, each with its percent; they sum to 100.
+    /// Percent by connectivity, in rising order of connectivity; sums to 100.
     percent: Vec<(u32, f64)>,
 }
 
 impl Connectivity {
-    /// The distribution of Table 3.
+    /// Distribution of Table 3.
     pub fn table_3() -> Self {
         Self { percent: TABLE_3.to_vec() }
     }
 
-    /// A distribution from pairs of connectivity and percent of the voids, in any order.
+    /// Builds a distribution from pairs of connectivity and percent of the voids, in any order.
     ///
     /// # Errors
-    /// A connectivity outside 2 to 12 or given twice, a percentage that is negative or not finite, or
-    /// percentages that do not sum to 100 within 0.5; the sum is then made exact.
+    /// A connectivity outside 2 to 12 or given twice, a percentage that is negative or not finite, or a
+    /// sum that differs from 100 by more than 0.5. Smaller differences are scaled away.
     pub fn new(percent: &[(u32, f64)]) -> Result<Self, NetworkError> {
         let refused =
             |value: String, allowed: &str| Err(NetworkError::Connectivity { value, allowed: allowed.into() });
@@ -58,7 +58,7 @@ impl Connectivity {
         if (sum - 100.0).abs() > 0.5 {
             return refused(format!("a sum of {sum}"), "percentages that sum to 100");
         }
-        // A distribution that was made exact before stays as it is, bit for bit.
+        // A distribution that was scaled before stays the same to the bit.
         if (sum - 100.0).abs() > 1e-9 {
             percent.iter_mut().for_each(|(_, share)| *share *= 100.0 / sum);
         }
@@ -66,12 +66,12 @@ impl Connectivity {
         Ok(Self { percent })
     }
 
-    /// Connectivity and percent of the voids, rising.
+    /// Connectivity and percent of the voids, in rising order of connectivity.
     pub fn percent(&self) -> &[(u32, f64)] {
         &self.percent
     }
 
-    /// Voids by connectivity, summing to `voids`: rounded down, then up where the remainder is largest.
+    /// Number of voids by connectivity, summing to `voids`: rounded by largest remainder.
     pub(super) fn voids(&self, voids: u64) -> [i64; MOST + 1] {
         let mut counts = [0; MOST + 1];
         let exact = |share: f64| share / 100.0 * voids as f64;
@@ -89,11 +89,11 @@ impl Connectivity {
 }
 
 impl Network {
-    /// A lattice of this shape whose voids have this distribution of connectivity; diameters as in
-    /// [`Network::cubic`].
+    /// Builds a lattice of this shape whose voids have this distribution of connectivity, with diameters
+    /// drawn as in [`Network::cubic`].
     ///
     /// # Errors
-    /// Those of [`Network::cubic`], and a distribution that no such network has.
+    /// Errors of [`Network::cubic`], and a distribution that no such network has.
     ///
     /// ```
     /// use voidwalk_core::constrictions::{Curve, CurveUnit};
@@ -147,7 +147,7 @@ impl Network {
         Ok(network)
     }
 
-    /// Connectivity of each void: its entrances and exits; that it is a start node counts as an entrance.
+    /// Connectivity of each void: its entrances and exits. The inlet of a start node counts as an entrance.
     pub fn connectivity(&self) -> Vec<u32> {
         let mut connectivity: Vec<u32> =
             (0..self.voids() as u32).map(|v| self.exits(v).len() as u32).collect();
@@ -183,8 +183,8 @@ mod tests {
         assert!((mean - 5.998).abs() < 1e-9, "{mean}");
     }
 
-    /// Steps lead to x, y, z or one more, around the periodic sides; without the steps over a seam nothing is
-    /// cyclic, since every step then leads to a larger number.
+    /// Every step leads to x, y, z or one more, across periodic sides; without steps across a side there
+    /// are no cycles, since every step then leads to a larger void number.
     fn check_directed(network: &Network, shape: [u32; 3]) {
         let [nx, ny, nz] = shape;
         let place = |v: u32| [v % nx, v / nx % ny, v / (nx * ny)];
@@ -241,15 +241,15 @@ mod tests {
                 }
             }
         }
-        // A void that goes from 6 to k takes | k - 6 | changes, and a change serves two voids: 29.8 % of the
-        // voids are entrances or exits lost, 29.6 % gained. Of 36,000 constrictions 1,788 must go and 1,776
-        // diagonals be made; few more do.
+        // A void that goes from 6 to k takes | k - 6 | changes, and each change serves two voids: the
+        // voids lose entrances or exits numbering 29.8 % of all voids, and gain 29.6 %. At least 1,788 of
+        // 36,000 constrictions must be deleted and 1,776 diagonals created; the search needs few more.
         let deleted = cubic.constrictions() - kept;
         assert!(
             (1788..1900).contains(&deleted) && (1776.0..1900.0).contains(&diagonals),
             "{deleted} {diagonals}"
         );
-        // Mean of a uniform curve: 0.25, standard error 0.0577 / sqrt(1500) at most.
+        // Mean of a uniform curve: 0.25, with a standard error of at most 0.0577 / sqrt(1500).
         assert!((sum / diagonals - 0.25).abs() < 5.0 * 0.0577 / f64::sqrt(diagonals));
     }
 
@@ -305,7 +305,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(40))]
-        /// Around a mean of 5 to 7 any distribution over 3 to 9 is met.
+        /// Any distribution over 3 to 9 with a mean of 5 to 7 is reached.
         #[test]
         fn distributions_are_met(
             shares in proptest::array::uniform7(0.0f64..1.0), seed: u64,
@@ -322,7 +322,7 @@ mod tests {
             let mut counted = [0; MOST + 1];
             network.connectivity().iter().for_each(|&k| counted[k as usize] += 1);
             for (k, share) in percent {
-                // Rounding moves a number by one, the tolerance by one more.
+                // Rounding changes a count by at most one, the tolerance by one more.
                 prop_assert!((f64::from(counted[k as usize]) - share / 100.0 * voids).abs() <= 2.0);
             }
         }

@@ -6,7 +6,7 @@ use crate::stream::{Key, LANES, Purpose};
 use rand::Rng;
 use rayon::prelude::*;
 
-/// Constrictions drawn from one stream; fixed, so that threads change nothing.
+/// Number of constrictions drawn from one stream; fixed, so that results do not depend on threads.
 const BLOCK: usize = 1 << 14;
 
 impl Network {
@@ -22,8 +22,8 @@ impl Network {
         }
     }
 
-    /// The directed cubic lattice: void `x + nx (y + ny z)`, exits +x, +y, +z in that order,
-    /// periodic in x and y, start nodes in layer 0, +z of the last layer leaves the filter.
+    /// Builds the directed cubic lattice: void `x + nx (y + ny z)`, exits +x, +y, +z in that order,
+    /// periodic in x and y; start nodes are in layer 0, and +z of the last layer leaves the filter.
     ///
     /// Constriction diameters are independent draws from `curve`, in its own units, divided by `unit_mm`.
     ///
@@ -46,8 +46,8 @@ impl Network {
         Self::cubic_from_diameters(shape, diameter, unit_mm)
     }
 
-    /// `count` independent draws from `curve`, divided by `unit_mm`; the streams of the network's blocks from
-    /// `first_block` on.
+    /// Draws `count` independent diameters from `curve`, divided by `unit_mm`, from the streams of blocks
+    /// `first_block` onwards.
     pub(super) fn draw_diameters(
         count: usize,
         first_block: u64,
@@ -64,7 +64,7 @@ impl Network {
         diameter
     }
 
-    /// The directed cubic lattice with given diameters, in units of `unit_mm`: exit `e` of void `v`
+    /// Builds the directed cubic lattice with given diameters, in units of `unit_mm`: exit `e` of void `v`
     /// is entry `3 v + e`.
     ///
     /// # Errors
@@ -114,11 +114,11 @@ impl Network {
     }
 }
 
-/// Share of all constrictions of an `nx x ny x nz` lattice that is open when it first percolates, in
-/// realisation `realisation` (counted from 1) of `seed`.
+/// Fraction of open constrictions at which an `nx x ny x nz` lattice first percolates, in realisation
+/// `realisation` (counted from 1) of `seed`.
 ///
-/// The lattice of [`Network::cubic`]: directed, periodic in x and y, every void of layer 0 a start node, +z
-/// of the last layer the end. Memory grows with `nx ny` alone; time with the number of constrictions.
+/// The lattice is as in [`Network::cubic`]: directed, periodic in x and y, with start nodes in layer 0 and
+/// exits from the last layer along +z. Memory grows with `nx ny` only, time with the number of constrictions.
 ///
 /// # Errors
 /// A length of 0, or more constrictions than 32 bits can number.
@@ -142,8 +142,8 @@ pub fn percolation_threshold(shape: [u32; 3], seed: u64, realisation: u64) -> Re
     Ok(open as f64 / constrictions as f64)
 }
 
-/// Key of layer 0 of a realisation. Every shape has a seed of its own, drawn from the user's; realisation `r`
-/// reads layer `z` from (that seed, percolation, `r`, 0, `z`): plane by plane the values of +x, +y and +z.
+/// Key of layer 0 of a realisation. Every shape has its own seed, derived from the user's seed. Realisation
+/// `r` reads layer `z` from (that seed, percolation, `r`, 0, `z`): all values of +x, then +y, then +z.
 fn key_of([nx, ny, nz]: [u32; 3], seed: u64, realisation: u64) -> Key {
     let of_shape = Key {
         seed,
@@ -156,18 +156,19 @@ fn key_of([nx, ny, nz]: [u32; 3], seed: u64, realisation: u64) -> Key {
     Key { seed, purpose: Purpose::Percolation, run: realisation, increment: 0, chunk: 0 }
 }
 
-/// One layer while constrictions open in random order, its voids at `x + nx y`.
+/// Layer whose constrictions open in random order; its voids are at `x + nx y`.
 ///
-/// Every constriction gets an independent opening value, uniform on 64 bits. A path is open once its largest
-/// value is, so the bottleneck is the least, over all paths, of the largest value on the path. No move leads
-/// upstream, so layers are done one after the other. Within a layer one sweep along +x and +y is exact but
-/// for the periodic seam, and is repeated while a move over the seam still improves a void.
+/// Every constriction gets an independent opening value, uniform on 64 bits. A path is open once its
+/// largest value is, so the lattice percolates at the minimum, over all paths, of the largest value on the
+/// path. No move leads upstream, so layers are processed one after the other. Within a layer one sweep
+/// along +x and +y is exact except across the periodic sides; it is repeated while a move across a side
+/// still improves a void.
 struct Layer {
     nx: usize,
     plane: usize,
     /// Opening values: +x of all voids, then +y, then +z.
     opening: Vec<u64>,
-    /// The least over paths from the start layer of the largest opening value on the path; 0 in the start
+    /// Minimum, over paths from the start layer, of the largest opening value on the path; 0 in the start
     /// layer.
     least: Vec<u64>,
 }
@@ -186,7 +187,7 @@ impl Layer {
         }
     }
 
-    /// Brings every void to its least value over sideways moves.
+    /// Lowers every void to its minimum over sideways moves.
     fn settle(&mut self) {
         let Self { nx, plane, opening, least } = self;
         let (along_x, along_y) = opening[..2 * *plane].split_at(*plane);
@@ -198,7 +199,7 @@ impl Layer {
         }
     }
 
-    /// Moves along +z: from here on, `least` belongs to the layer below.
+    /// Moves along +z: afterwards `least` belongs to the next layer.
     fn descend(&mut self) {
         for (least, &value) in self.least.iter_mut().zip(&self.opening[2 * self.plane..]) {
             *least = (*least).max(value);
@@ -206,7 +207,7 @@ impl Layer {
     }
 }
 
-/// Every move along +x and +y but those over the seam, in an order in which one pass is enough.
+/// Makes every move along +x and +y except across the periodic sides, in an order that needs only one pass.
 fn sweep(nx: usize, along_x: &[u64], along_y: &[u64], least: &mut [u64]) {
     for begin in (0..least.len()).step_by(nx) {
         let (above, row) = least.split_at_mut(begin);
@@ -225,7 +226,7 @@ fn sweep(nx: usize, along_x: &[u64], along_y: &[u64], least: &mut [u64]) {
     }
 }
 
-/// Makes the moves over the seams; tells if one of them improved a void.
+/// Makes the moves across the periodic sides; returns true if one of them improved a void.
 fn cross_seams(nx: usize, along_x: &[u64], along_y: &[u64], least: &mut [u64]) -> bool {
     let mut improved = false;
     let mut cross = |least: &mut [u64], from: usize, to: usize, value: u64| {
@@ -274,7 +275,7 @@ mod tests {
         assert!(Network::cubic_from_diameters([1, 1, 1], vec![1.0, f32::NAN, 1.0], 1.0).is_err());
     }
 
-    /// The threshold by trial and error: constrictions opened one by one, and after each a search for a path.
+    /// Finds the threshold by trial: opens constrictions one by one and searches for a path after each.
     fn by_trial(shape: [u32; 3], seed: u64, realisation: u64) -> f64 {
         let count = Network::lattice_constrictions(shape).unwrap();
         let network = Network::cubic_from_diameters(shape, vec![1.0; count], 1.0).unwrap();
@@ -313,7 +314,7 @@ mod tests {
         }
     }
 
-    /// From x = 1 the only cheap way to row 1 is at x = 0: over the seam.
+    /// From x = 1 the only cheap way to row 1 is at x = 0, across the periodic side.
     #[test]
     fn a_path_may_wind_around_the_sides() {
         let mut layer = Layer::new([3, 2, 2]);
@@ -336,10 +337,10 @@ mod tests {
         (mean, (all.iter().map(|t| (t - mean) * (t - mean)).sum::<f64>() / (n - 1.0)).sqrt())
     }
 
-    /// Against thresholds known from elsewhere, to four and two digits: 0.3297 (sd 0.032) at 10^3 and 0.3448
-    /// (sd 0.017) at 20^3; a lattice that is walked both ways has 0.248. With 4,000 realisations at 10^3 the
-    /// mean has a standard error of 0.0005 and the sd one of 0.00036, with 1,000 at 20^3 0.00054 and 0.00038:
-    /// a bias of the mean of 0.002 would pass one time in forty or less.
+    /// Compares with independent thresholds, known to four and two digits: 0.3297 (sd 0.032) at 10^3 and
+    /// 0.3448 (sd 0.017) at 20^3; a lattice passable in both directions has 0.248. The standard errors of
+    /// mean and sd are 0.0005 and 0.00036 for 4,000 realisations at 10^3, and 0.00054 and 0.00038 for
+    /// 1,000 at 20^3: a bias of 0.002 in the mean would pass at most one time in forty.
     #[test]
     fn thresholds_are_those_of_directed_percolation() {
         let (mean, sd) = mean_and_sd(10, 4000);

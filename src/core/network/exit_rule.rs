@@ -1,5 +1,5 @@
-//! Rules by which a particle chooses among the open exits of its void, and the columns by exit that they need
-//! where constrictions have no direction of their own.
+//! Rules by which a particle chooses among the open exits of its void, and the exit columns of undirected
+//! networks.
 
 use crate::schema::Leaf;
 use serde::{Deserialize, Serialize};
@@ -8,22 +8,22 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ExitRule {
-    /// In proportion to area, on a network whose constrictions have a direction of their own (the paper's).
+    /// In proportion to area, on a network of directed constrictions (as in the paper).
     #[default]
     Area,
-    /// In proportion to the flow of water, which leads down the pressure.
+    /// In proportion to the outflow of water.
     Flux,
-    /// In proportion to area, among the exits that water leaves by.
+    /// In proportion to area, among the exits through which water leaves.
     AreaAlongFlow,
-    /// In proportion to area, among the exits that lead to a void further along the axis of flow: for
-    /// comparison, since voids without one hold back particles that water would carry on.
+    /// In proportion to area, among the exits to voids further along the axis of flow. For comparison
+    /// only: voids without such exits hold back particles that water would carry on.
     Height,
 }
 
 impl Leaf for ExitRule {}
 
 impl ExitRule {
-    /// Every rule, in the order in which a user is told of them.
+    /// All rules, in the order shown to users.
     pub const ALL: [Self; 4] = [Self::Area, Self::Flux, Self::AreaAlongFlow, Self::Height];
 
     /// Name of the rule in a scene.
@@ -36,15 +36,15 @@ impl ExitRule {
         }
     }
 
-    /// Tells if the rule needs to know where water flows.
+    /// Tells if the rule needs the flow of water.
     pub fn needs_flow(self) -> bool {
         matches!(self, Self::Flux | Self::AreaAlongFlow)
     }
 
-    /// Weight of an exit of this area (the square of its diameter), with `flux` out through it, or in if
-    /// negative; fluxes up to `least` count as zero.
+    /// Weight of an exit with this area (square of its diameter) and this outward `flux` (inward if
+    /// negative); fluxes up to `least` count as zero.
     pub(super) fn weight(self, area: f64, flux: f64, least: f64) -> f64 {
-        // The direction of water cannot be foreseen: chosen without a branch.
+        // The direction of water is unpredictable, so the choice is branch-free.
         match self {
             Self::Area | Self::Height => area,
             Self::Flux if flux > least => flux,
@@ -57,30 +57,30 @@ impl ExitRule {
 /// Marks an exit without a twin.
 pub(super) const NO_TWIN: u32 = u32::MAX;
 
-/// Columns by exit of a network whose constrictions have no direction of their own.
+/// Exit columns of an undirected network.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Undirected {
-    /// Exit of the other void that is the same constriction, or [`NO_TWIN`].
+    /// Exit of the neighbouring void through the same constriction, or [`NO_TWIN`].
     pub(super) twin: Vec<u32>,
-    /// Conductance times viscosity, in any one unit, by exit.
+    /// Conductance times viscosity by exit, in any consistent unit.
     pub(super) conductance: Vec<f64>,
-    /// Present weight in the choice, by exit.
+    /// Current weight by exit.
     pub(super) weight: Vec<f64>,
     pub(super) rule: ExitRule,
     pub(super) rho: f64,
-    /// Tolerance beyond which a walk solves the flow again: see
+    /// Tolerance beyond which a walk recomputes the flow: see
     /// [`Network::with_flow_tolerance`](crate::network::Network).
     pub(super) flow_tolerance: f64,
-    /// Volume by void, in units of the network's reference length cubed; empty where it is not known.
+    /// Volume by void, in units of the network's reference length cubed; empty if unknown.
     pub(super) volume: Vec<f64>,
-    /// Constrictions: each pair of twins once, without those that nothing can block.
+    /// Number of constrictions: each pair of twins counts once, unblockable ways in do not count.
     pub(super) passages: usize,
-    /// Factor from the conductance of the whole to its permeability, in mm2.
+    /// Factor that converts the conductance of the network to its permeability (mm2).
     pub(super) permeability_factor: Option<f64>,
 }
 
 impl Undirected {
-    /// Adds the columns that a walk takes to a hash; the weights follow from the rest.
+    /// Adds the columns that a walk uses to a hash; weights follow from the other columns.
     pub(super) fn hash(&self, hash: &mut xxhash_rust::xxh3::Xxh3) {
         let Self { twin, conductance, rule, rho, flow_tolerance, volume, .. } = self;
         hash_column(hash, twin, |number| number.to_le_bytes());
@@ -92,7 +92,7 @@ impl Undirected {
     }
 }
 
-/// Adds a column to a hash: its length, and its numbers as the same bytes on every machine.
+/// Adds the length and the numbers of a column to a hash, as the same bytes on every machine.
 pub(super) fn hash_column<T: Copy, const N: usize>(
     hash: &mut xxhash_rust::xxh3::Xxh3,
     column: &[T],

@@ -1,96 +1,96 @@
 //! Networks in CSV files.
 //!
-//! Header `from,to,diameter_mm`. A row `FROM,TO,D` is a constriction from void FROM to void TO; `TO` = `end`
-//! leaves the filter. A row `start,ID,` makes void ID a start node. Void ids count from 0 without gaps. Exits
-//! of a void keep the order of their rows. Lines that begin with `#` are comments; `# shape = nx, ny, nz`
-//! marks the cubic lattice, whose exits must be where +x, +y, +z of that lattice lead.
+//! Header `from,to,diameter_mm`. A row `FROM,TO,D` is a constriction from void FROM to void TO; `TO` =
+//! `end` leaves the filter. The row `start,ID,` makes void ID a start node. Void ids run from 0 without
+//! gaps. The exits of a void keep the order of their rows. Lines that begin with `#` are comments; `#
+//! shape = nx, ny, nz` marks the cubic lattice, whose exits must be the +x, +y, +z exits of that lattice.
 
 use super::{END, Network};
 use std::io::Write;
 
-/// Bytes that one void of a cubic lattice takes while it is walked: three constrictions, tables and tallies.
+/// Memory of one void of a cubic lattice during a walk (bytes): three constrictions, tables and tallies.
 const BYTES_A_VOID: f64 = 215.0;
 
 /// Reasons why a network cannot be built.
 #[derive(Debug, thiserror::Error)]
 pub enum NetworkError {
-    /// A lattice of no voids, or of more constrictions than 32 bits can number.
+    /// Lattice without voids, or with more constrictions than 32 bits can count.
     #[error(
         "network of {} x {} x {} voids: every length must be at least 1 and 3 nx ny nz below 4294967295; \
          this one would take {:.2e} bytes",
         shape[0], shape[1], shape[2], shape.iter().map(|&n| f64::from(n)).product::<f64>() * BYTES_A_VOID
     )]
     Shape {
-        /// Voids along x, y, z.
+        /// Number of voids along x, y, z.
         shape: [u32; 3],
     },
-    /// The number of diameters does not fit the lattice.
+    /// Number of diameters that does not match the lattice.
     #[error("a lattice of {shape:?} voids has {expected} constrictions, but {found} diameters were given")]
     WrongLength {
-        /// Voids along x, y, z.
+        /// Number of voids along x, y, z.
         shape: [u32; 3],
-        /// Constrictions of that lattice.
+        /// Number of constrictions of that lattice.
         expected: usize,
-        /// Diameters given.
+        /// Number of diameters given.
         found: usize,
     },
-    /// A diameter that no constriction can have.
+    /// Invalid diameter.
     #[error("constriction {constriction} has diameter {value}: it must be finite and not negative")]
     Diameter {
-        /// Constriction, counted from 0.
+        /// Number of the constriction, counted from 0.
         constriction: usize,
-        /// The value found.
+        /// Value found.
         value: f32,
     },
-    /// A conductance that no constriction can have.
+    /// Invalid conductance.
     #[error("constriction {constriction} has conductance {value}: it must be finite and not negative")]
     Conductance {
-        /// Constriction, counted from 0.
+        /// Number of the constriction, counted from 0.
         constriction: usize,
-        /// The value found.
+        /// Value found.
         value: f64,
     },
-    /// Voids and constrictions that make no network that anything can pass.
+    /// Voids and constrictions that do not form a passable network.
     #[error("the network cannot be walked: {problem}")]
     Unlinked {
         /// Description of the problem.
         problem: String,
     },
-    /// A distribution of connectivity that cannot be.
+    /// Impossible distribution of connectivity.
     #[error("connectivity {value} is not allowed; {allowed}")]
     Connectivity {
-        /// The value given.
+        /// Value given.
         value: String,
         /// Allowed values.
         allowed: String,
     },
-    /// Closed loops with a way out that is hardly ever taken.
+    /// Loops whose exit is hardly ever taken.
     #[error(
-        "a network has loops with so narrow a way out that what a particle can expect there is not known \
+        "a network has loops with so narrow a way out that the fate of a particle there is still unknown \
          after {sweeps} sweeps over its voids"
     )]
     NarrowWayOut {
         /// Number of sweeps over all voids.
         sweeps: usize,
     },
-    /// A row that is not understood.
+    /// Row that cannot be read.
     #[error("{file}, line {line}, {field}: `{value}` is not allowed; {allowed}")]
     Row {
-        /// The file.
+        /// Name of the file.
         file: String,
-        /// Line, counted from 1.
+        /// Line number, counted from 1.
         line: u64,
         /// Name of the field.
         field: &'static str,
-        /// The value in the file.
+        /// Value in the file.
         value: String,
         /// Allowed values.
         allowed: String,
     },
-    /// The rows are understood, but together make no network.
+    /// Readable rows that do not form a network.
     #[error("{file}: {problem}")]
     Whole {
-        /// The file.
+        /// Name of the file.
         file: String,
         /// Problem of the file as a whole.
         problem: String,
@@ -101,15 +101,15 @@ impl Network {
     /// Reads a network from CSV text; `file` names it in errors.
     ///
     /// # Errors
-    /// Names file, line, field, value and what is allowed.
+    /// Errors state the file, line, field, value and the allowed values.
     pub fn from_csv(bytes: &[u8], file: &str, unit_mm: f64) -> Result<Self, NetworkError> {
         Rows::parse(bytes, file)?.into_network(file, unit_mm)
     }
 
-    /// Writes the network as CSV, such that [`Network::from_csv`] gives it back bit for bit.
+    /// Writes the network as CSV, such that [`Network::from_csv`] restores it to the bit.
     ///
     /// # Errors
-    /// Those of the writer.
+    /// Errors of the writer.
     pub fn write_csv(&self, mut out: impl Write) -> std::io::Result<()> {
         if let Some([nx, ny, nz]) = self.shape {
             writeln!(out, "# shape = {nx}, {ny}, {nz}")?;
@@ -243,8 +243,8 @@ impl Rows {
         {
             let [row, again] = rows.map(|row| format!("{} to {}", self.from[row], self.to[row]));
             return Err(whole(format!(
-                "the rows from {row} and from {again}, and others, are one constriction listed twice, there \
-                 and back or again; keep one row of each"
+                "the rows from {row} and from {again} are one constriction listed twice (there and back, or \
+                 repeated), and others are, too; keep one row of each"
             )));
         }
         let unit = |&mm: &f64| {
@@ -269,8 +269,7 @@ impl Rows {
 }
 
 impl Network {
-    /// Builds the network of directed constrictions, a row for each; also returns their places among the
-    /// exits.
+    /// Builds the network of directed constrictions, one per row; also returns the exit number of each.
     pub(super) fn of_rows(
         voids: usize,
         from: &[u32],
@@ -298,8 +297,8 @@ impl Network {
     }
 }
 
-/// First exit of each void with one more entry at the end, and the place of each constriction among the
-/// exits, for constrictions that lead from these voids.
+/// First exit of each void with one extra entry at the end, and the exit number of each constriction, for
+/// constrictions with these upstream voids.
 fn in_order_of_voids(voids: usize, from: &[u32]) -> (Vec<u32>, Vec<u32>) {
     let mut exit_begin = vec![0u32; voids + 1];
     for &from in from {
@@ -322,21 +321,22 @@ fn parse_shape(text: &str) -> Option<[u32; 3]> {
     lengths.try_into().ok()
 }
 
-/// Allowed difference of the sizes of one constriction listed there and back, as a part of the larger.
+/// Largest relative difference between the two listings of one constriction, there and back.
 const BACK: f64 = 2e-3;
-/// Allowed difference of the sizes of a row that is listed again, as a part of the larger.
+/// Largest relative difference between two listings of the same row.
 const AGAIN: f64 = 1e-9;
-/// Number of rows below which partners may arise by chance.
+/// Number of rows below which matches may be chance.
 const FEW: usize = 8;
 
-/// Lower and higher void, sizes, whether the row leads back, and its number.
+/// Lower and higher void, sizes, true if the row leads from the higher void, row number.
 type Row = ([i64; 2], [f64; 2], bool, usize);
 
-/// Finds two rows that are one constriction, if too many rows are listed twice: there and back, as in lists
-/// of neighbours, or the same row again. One constriction would become two, and one of them would stay open
-/// when the other is blocked. Some voids may well be joined by several constrictions, which can all be passed
-/// both ways: half of all rows there and back, whatever their sizes, are too many, and so is a twentieth of
-/// like sizes. If each row leads one way (`directed`), only nine rows of ten of like sizes are too many.
+/// Finds two rows that are one constriction, if too many rows are listed twice: there and back, as in
+/// lists of neighbours, or the same row again. One constriction would become two, and one of them would
+/// stay open when the other is blocked. Some pairs of voids may really have several constrictions between
+/// them, so a few matches are allowed. In undirected networks the limit is half of all rows there and
+/// back, whatever their sizes, or a twentieth of rows with equal sizes; in `directed` networks it is nine
+/// rows in ten with equal sizes.
 pub(super) fn listed_twice(
     rows: impl Iterator<Item = ([i64; 2], [f64; 2])>,
     directed: bool,
@@ -372,7 +372,7 @@ pub(super) fn listed_twice(
         }
     }
     let too_many = match directed {
-        // Two of them may join the same voids, each its own way.
+        // Two directed constrictions may join the same voids in opposite directions.
         true => twice >= 3 * FEW && 10 * twice >= 9 * rows.len(),
         false => 2 * twice >= rows.len() || !are_alike && back >= FEW && 20 * back >= rows.len(),
     };
@@ -469,7 +469,7 @@ mod tests {
             let mut text = Vec::new();
             network.write_csv(&mut text).unwrap();
             prop_assert_eq!(Network::from_csv(&text, "net.csv", unit_mm).unwrap(), network.clone());
-            // Read as a general network it has the same voids, constrictions and layers.
+            // Read as a general network, it has the same voids, constrictions and layers.
             let general = text.split(|&b| b == b'\n').skip(1).collect::<Vec<_>>().join(&b'\n');
             let general = Network::from_csv(&general, "net.csv", unit_mm).unwrap();
             prop_assert_eq!(general.shape(), None);

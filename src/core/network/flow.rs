@@ -1,12 +1,13 @@
-//! Water through a network: pressures, fluxes, and the conductance of the whole.
+//! Flow of water through a network: pressures, fluxes and total conductance.
 //!
-//! At every void inflow equals outflow, `sum over its constrictions of g (p - p_other) = 0`, with pressure 1
-//! in the reservoir and 0 behind the filter. A blocked constriction keeps a part `rho` of its conductance.
-//! The system is symmetric and positive, and is solved by conjugate gradients from the last answer on, with
-//! an approximate factor (module `elimination`) of the open constrictions, or of those that were open until a
-//! few closed. So an answer depends, within the accuracy asked for, on those before. If conductances lie so
-//! far apart that fluxes cannot be told from residuals, voids are eliminated without subtraction (module
-//! `exact`), provided the network is small enough. Module `system` defines when a flow counts as solved.
+//! At every void inflow equals outflow, `sum over its constrictions of g (p - p_other) = 0`, with pressure
+//! 1 in the reservoir and 0 downstream of the filter. A blocked constriction keeps a fraction `rho` of its
+//! conductance. The system is symmetric and positive definite. It is solved by conjugate gradients
+//! starting from the last solution, preconditioned by an approximate factor (module `elimination`) of the
+//! open constrictions, which is kept while few more close. So a solution depends, within the required
+//! accuracy, on earlier ones. If conductances differ so much that fluxes cannot be distinguished from
+//! residuals, voids are eliminated without subtraction (module `exact`), provided the network is small
+//! enough. Module `system` defines when a flow counts as solved.
 
 mod elimination;
 mod exact;
@@ -27,21 +28,21 @@ pub use system::FlowError;
 /// Conductance and permeability of a network.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Permeability {
-    /// Flow times viscosity for a pressure of 1 across the whole.
+    /// Flow times viscosity for a pressure difference of 1 across the network.
     pub conductance: f64,
-    /// Permeability (mm2), where the network knows its own lengths.
+    /// Permeability (mm2), if the lengths of the network are known.
     pub k_mm2: Option<f64>,
 }
 
 struct Passage {
-    /// The void that it is an exit of.
+    /// Void that the exit leaves.
     one: u32,
-    /// The void beyond; the reservoir counts as a void, and so does the space behind the filter.
+    /// Void that the exit enters; the reservoir and the space downstream of the filter count as voids.
     other: u32,
     exit: u32,
 }
 
-/// Sides of the filter that a void is connected to, without passing the other side.
+/// Sides of the filter to which a void is connected, not counting paths through the other side.
 #[derive(Clone, Copy, Default, PartialEq)]
 struct Meets {
     reservoir: bool,
@@ -50,40 +51,40 @@ struct Meets {
 
 const THROUGH: Meets = Meets { reservoir: true, end: true };
 
-/// The flow through an undirected network, solved again and again as constrictions close.
+/// Flow through an undirected network, solved repeatedly as constrictions close.
 pub struct Flow {
     passages: Vec<Passage>,
     reservoir: Option<u32>,
     inlets: std::ops::Range<usize>,
-    /// Pressure by void, and behind the filter.
+    /// Pressure by void, and downstream of the filter.
     pressure: Vec<f64>,
-    /// Conductance by exit, as it is now.
+    /// Current conductance by exit.
     open: Vec<f64>,
-    /// Flow times viscosity out of its void, by exit.
+    /// Outward flow times viscosity by exit.
     flux: Vec<f64>,
-    /// Exits that were blocked when the flow was solved last.
+    /// Exits that were blocked in the last solution.
     blocked: BitVec,
-    /// True if that solution was for parts of conductances.
+    /// True if the last solution was for fractions of conductances.
     is_of_parts: bool,
-    /// Flow times viscosity in from the reservoir.
+    /// Inflow from the reservoir times viscosity.
     through: f64,
-    /// Residual allowed in the last solution, over the inflow.
+    /// Residual allowed in the last solution, relative to the inflow.
     accuracy: f64,
     /// Largest possible error of a flux of the last solution.
     missing: f64,
-    /// Fluxes up to this may have the wrong sign, and lead round in a circle; 0 if they follow pressures.
+    /// Fluxes up to this value may have the wrong sign and form circles; 0 if fluxes follow from pressures.
     noise: f64,
-    /// Largest conductance found for the network.
+    /// Largest conductance of the network so far.
     most: f64,
-    /// Number of voids that were too many to eliminate; far fewer are tried again.
+    /// Number of voids that was too large to eliminate; at most half of it is tried again.
     too_many: usize,
     kept: Option<Kept>,
-    /// By void: true if water flowed through it when the kept factor was first wanted.
+    /// True for each void with flow when the kept factor was first needed.
     inside: BitVec,
 }
 
 impl Flow {
-    /// Prepares the flow of a clean network; pressures are a guess until it is solved.
+    /// Prepares the flow of a clean network, with initial guesses of the pressures.
     pub fn new(network: &Network) -> Self {
         let (outside, reservoir) = (network.voids() as u32, network.reservoir());
         let twins = network.undirected.as_ref().map(|undirected| &undirected.twin);
@@ -100,7 +101,7 @@ impl Flow {
         let open: Vec<f64> = (0..network.constrictions()).map(|c| whole(network, c)).collect();
         let mut pressure = vec![0.0; network.voids() + 1];
         if let Some(reservoir) = reservoir {
-            // Pressure falls evenly from layer to layer.
+            // Pressure falls linearly from layer to layer.
             let layers = network.layers().max(1) as f64;
             for (p, &layer) in pressure.iter_mut().zip(network.layer_of()) {
                 *p = 1.0 - (f64::from(layer) + 0.5) / layers;
@@ -127,44 +128,43 @@ impl Flow {
         }
     }
 
-    /// Pressure by void (1 in the reservoir), and 0 behind the filter.
+    /// Pressure by void: 1 in the reservoir; the last entry, downstream of the filter, is 0.
     pub fn pressure(&self) -> &[f64] {
         &self.pressure
     }
 
-    /// Rounds of conjugate gradients for the system whose factor is kept; 0 if no factor is kept.
+    /// Iterations of conjugate gradients for the system whose factor is kept; 0 if no factor is kept.
     pub fn rounds(&self) -> usize {
         self.kept.as_ref().map_or(0, |kept| kept.rounds)
     }
 
-    /// Flow times viscosity through an exit, out of its void.
+    /// Outward flow times viscosity through an exit.
     pub fn flux(&self, exit: usize) -> f64 {
         self.flux[exit]
     }
 
-    /// Absolute flux through a constriction over the inflow, by one of its exits; 0 if nothing flows in.
+    /// Absolute flux through an exit divided by the inflow; 0 without inflow.
     pub fn share(&self, exit: usize) -> f64 {
         let through = self.through;
         if through > 0.0 { (self.flux[exit] / through).abs() } else { 0.0 }
     }
 
-    /// Solves for the constrictions that `blocked` leaves open: a bit for each exit, equal for both exits of
-    /// one constriction. The conductance found is 0 if no way leads through, and only then.
+    /// Solves the flow with `blocked` exits: one bit per exit, equal for both exits of a constriction. The
+    /// conductance is 0 if and only if no path leads through.
     ///
     /// # Errors
-    /// Conductances so far apart that the flow is not known to half a millionth of the largest conductance
-    /// found for the network, or, while open ways lead through, that it does not tell where water goes: every
-    /// flux would count as zero and all particles would wait, so that a filter that lets everything through
-    /// would seem to hold it.
+    /// Conductances that differ so much that the error of the flow exceeds half a millionth of the largest
+    /// conductance so far, or that the direction of water is unknown although an open path leads through:
+    /// every flux would count as zero and all particles would wait, so that an open filter would seem to
+    /// hold the base.
     pub fn solve(&mut self, network: &Network, blocked: &BitSlice) -> Result<Permeability, FlowError> {
         self.solve_as(network, blocked, false)
     }
 
-    /// Solves like [`Flow::solve`], as closely as rounding allows: for a reader of every flux.
+    /// Solves like [`Flow::solve`], as accurately as rounding allows, for uses of individual fluxes.
     ///
     /// # Errors
-    /// Those of [`Flow::solve`], and fluxes that are not known to a hundred-millionth of the flow through the
-    /// filter.
+    /// Errors of [`Flow::solve`], and errors of fluxes above 1e-8 of the flow through the filter.
     pub fn solve_closely(
         &mut self,
         network: &Network,
@@ -181,19 +181,19 @@ impl Flow {
     ) -> Result<Permeability, FlowError> {
         let rho = network.undirected.as_ref().map_or(0.0, |u| u.rho);
         self.set_blocked(network, blocked, rho);
-        // Leaks through blocked constrictions carry no particle out.
+        // Leaks through blocked constrictions carry no particles.
         let is_open = |passage: &Passage| !blocked[passage.exit as usize];
         self.solve_now(network, closely, rho > 0.0, is_open)
     }
 
-    /// Solves for constrictions that keep these parts of their conductance, from 0 to 1: one for each exit,
-    /// equal for both exits of one constriction. All that conduct let particles pass.
+    /// Solves for constrictions that keep these fractions of their conductance (0 to 1): one per exit,
+    /// equal for both exits of a constriction. Every constriction that conducts lets particles pass.
     ///
     /// # Errors
-    /// Those of [`Flow::solve`].
+    /// Errors of [`Flow::solve`].
     pub fn solve_parts(&mut self, network: &Network, parts: &[f64]) -> Result<Permeability, FlowError> {
         assert_eq!(parts.len(), self.open.len(), "one part for each exit");
-        // Blocked constrictions lead on again, however much they leaked.
+        // No constriction counts as blocked now, however much it leaked.
         let mut changed = std::mem::replace(&mut self.blocked, BitVec::repeat(false, parts.len()));
         let mut is_open_again = false;
         for (c, (open, part)) in self.open.iter_mut().zip(parts).enumerate() {
@@ -209,7 +209,7 @@ impl Flow {
         self.solve_now(network, false, false, |_| true)
     }
 
-    /// Solves for the present conductances; `leaks`: some constrictions conduct that are closed to particles.
+    /// Solves for the current conductances; `leaks`: some constrictions closed to particles conduct.
     fn solve_now(
         &mut self,
         network: &Network,
@@ -234,7 +234,7 @@ impl Flow {
         let mut result = self.find_pressures(network, &meets, CONVERGED);
         if leads_through && (closely || result.is_err() || !tells(self, CLEAR)) {
             if result.is_ok() {
-                // If they come no closer in time, the present solution has to do.
+                // If this does not converge in time, the present solution is used.
                 let _ = self.find_pressures(network, &meets, CLOSEST);
             }
             if (result.is_err() || !tells(self, CLEAR)) && self.eliminate(network, &meets) {
@@ -252,7 +252,7 @@ impl Flow {
         Ok(Permeability { conductance, k_mm2: factor.map(|factor| factor * conductance) })
     }
 
-    /// Sides that each void is connected to by constrictions that conduct and are a way, and by other voids.
+    /// Sides to which each void is connected, through constrictions that conduct and satisfy `is_way`.
     fn meets(&self, is_way: impl Fn(&Passage) -> bool) -> Vec<Meets> {
         let outside = self.pressure.len() - 1;
         let is_side =
@@ -276,7 +276,7 @@ impl Flow {
     fn set_blocked(&mut self, network: &Network, blocked: &BitSlice, rho: f64) {
         assert_eq!(blocked.len(), self.open.len(), "one bit for each exit");
         if std::mem::take(&mut self.is_of_parts) {
-            // Nothing is blocked, and narrowed constrictions are whole again.
+            // Nothing is blocked, and narrowed constrictions have their full conductance again.
             self.kept = None;
             self.open.iter_mut().enumerate().for_each(|(c, open)| *open = whole(network, c));
         }
@@ -289,7 +289,7 @@ impl Flow {
         }
     }
 
-    /// Keeps the factor if few exits have changed since it was made, and no exit has opened again.
+    /// Keeps the factor if few exits have changed since it was made and no exit has reopened.
     fn keep_factor(&mut self, network: &Network, changed: &BitSlice, is_open_again: bool) {
         if let Some(kept) = &mut self.kept {
             kept.closed += changed.count_ones();
@@ -299,14 +299,14 @@ impl Flow {
         }
     }
 
-    /// Constrictions between voids that water flows through, and from them to both sides of the filter.
+    /// Constrictions of voids that carry flow: among them, and to both sides of the filter.
     fn conducting<'a>(&'a self, meets: &'a [Meets]) -> impl Iterator<Item = (&'a Passage, f64)> {
         let is_in = |passage: &&Passage| meets[passage.one as usize] == THROUGH;
         let with_open = |passage: &'a Passage| (passage, self.open[passage.exit as usize]);
         self.passages.iter().filter(is_in).map(with_open).filter(|&(_, open)| open > 0.0)
     }
 
-    /// Finds pressures and fluxes, to this part of the inflow.
+    /// Finds pressures and fluxes, to this fraction of the inflow.
     fn find_pressures(&mut self, network: &Network, meets: &[Meets], within: f64) -> Result<(), FlowError> {
         let Some(reservoir) = self.reservoir else { return Ok(()) };
         let outside = meets.len() as u32;
@@ -323,7 +323,7 @@ impl Flow {
         let fit = system.solve(&mut self.pressure, network.layers(), within, &mut self.kept)?;
         self.stand_still(meets, reservoir);
         self.missing = fit.missing;
-        // The accuracy asked for, or as much of it as rounding allows.
+        // Required accuracy, or as close as rounding allows.
         let asked = within.max(ROUNDING);
         self.accuracy = if fit.residual <= 2.0 * asked { asked } else { fit.residual };
         self.noise = 0.0;
@@ -371,7 +371,7 @@ impl Flow {
         true
     }
 
-    /// Gives voids that water does not flow through the pressure of the one side that they meet.
+    /// Gives voids without flow the pressure of the side to which they are connected.
     fn stand_still(&mut self, meets: &[Meets], reservoir: u32) {
         for (pressure, &meets) in self.pressure.iter_mut().zip(meets) {
             if meets != THROUGH {
@@ -392,7 +392,7 @@ impl Flow {
         self.through = self.flux[self.inlets.clone()].iter().sum();
     }
 
-    /// Mean flux of an inlet over the flux that the residual may account for.
+    /// Mean flux of an inlet divided by the flux that the residual may account for.
     fn part(&self) -> f64 {
         self.through / self.inlets.len().max(1) as f64 / self.residual_of_inlets()
     }
@@ -411,9 +411,9 @@ impl Flow {
         self.accuracy * open.iter().map(square).sum::<f64>().sqrt() / unit
     }
 
-    /// Gives each exit of the network its weight by the flow that was solved last; exits blocked then weigh
-    /// nothing. A void whose open exits each pass too little to count keeps the one that passes most, so that
-    /// it retains nothing that water carries into it.
+    /// Gives each exit its weight from the last solution; exits blocked in it get weight 0. If all open
+    /// exits of a void have negligible fluxes, the one with the largest flux is kept, so that the void
+    /// does not retain particles that water carries into it.
     pub fn direct(&self, network: &mut Network) {
         if self.reservoir.is_none() {
             return;
@@ -425,7 +425,7 @@ impl Flow {
             let exits = network.exits(void);
             let is_open = |&c: &usize| !self.blocked[c];
             let most = exits.clone().filter(is_open).map(|c| self.flux[c]).fold(self.noise, f64::max);
-            // The next number below the largest, so that this one counts.
+            // Just below the largest flux, so that this one counts.
             let least = if most > least { least } else { most.next_down().max(self.noise) };
             for c in exits {
                 let area = f64::from(network.diameter[c]);
@@ -439,7 +439,7 @@ impl Flow {
     }
 }
 
-/// Conductance of an exit while it is open.
+/// Conductance of an exit when open.
 fn whole(network: &Network, exit: usize) -> f64 {
     if network.diameter[exit] == 0.0 { 0.0 } else { network.conductance(exit) }
 }

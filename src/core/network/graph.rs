@@ -1,4 +1,4 @@
-//! The network of a packing's own voids.
+//! Networks of the voids of a packing.
 
 use super::flow::system::{CONVERGED, FlowError, System, Together};
 use super::undirected::{Link, LinkEnd, LinkedVoids};
@@ -8,24 +8,24 @@ use crate::constrictions::VoidGraph;
 /// Settings for turning a packing's voids into a network.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GraphShape {
-    /// Equal copies of the cell along the flow.
+    /// Number of identical cells in a row along the flow.
     pub copies: u32,
-    /// Rule by which particles choose.
+    /// Rule by which particles choose exits.
     pub rule: ExitRule,
-    /// Part of its conductance that a blocked constriction keeps.
+    /// Fraction of its conductance that a blocked constriction keeps.
     pub rho: f64,
     /// Length of one unit of diameter (mm).
     pub unit_mm: f64,
 }
 
 impl Network {
-    /// Builds the network of the voids of a packing, in `copies` equal cells one behind the other along z and
-    /// periodic in x and y: void `v` of copy `k` is void `k N + v`. A constriction that leads into the first
-    /// copy from before it is an inlet, one that leads out of the last an outlet. Layers are as thick as the
-    /// edge of the cube that a void has on average.
+    /// Builds the network of the voids of a packing, in `copies` identical cells in a row along z,
+    /// periodic in x and y: void `v` of copy `k` is void `k N + v`. A constriction that enters the first
+    /// copy from outside is an inlet, one that leaves the last copy an outlet. A layer is as thick as the
+    /// edge of a cube with the mean volume per void.
     ///
     /// # Errors
-    /// Refusals of [`Network::linked`], such as no way through.
+    /// Errors of [`Network::linked`], such as no open path through the filter.
     pub fn of_graph(graph: &VoidGraph, shape: GraphShape) -> Result<Self, NetworkError> {
         let (voids, unit) = (graph.voids() as u32, shape.unit_mm);
         let copies = shape.copies;
@@ -48,7 +48,7 @@ impl Network {
         for copy in -furthest..i64::from(copies) {
             for c in 0..graph.from.len() {
                 let along = i64::from(graph.shift[c][2]);
-                // Seen from its upper end, so that each is met once and leads along the flow.
+                // Each is taken once, in the direction of the flow.
                 let (from, to, along) = match along >= 0 {
                     true => (graph.from[c], graph.to[c], along),
                     false => (graph.to[c], graph.from[c], -along),
@@ -82,24 +82,24 @@ impl Network {
             unit_mm: unit,
             rule: shape.rule,
             rho: shape.rho,
-            // Reservoirs lie half a layer before and behind the filter.
+            // The reservoirs lie half a layer upstream and downstream of the filter.
             permeability_mm2: Some((f64::from(copies) * z + spacing) / (x * y)),
         };
         Self::linked(linked, &links)
     }
 }
 
-/// Permeability (mm2) of the medium that the graph repeats without end, along `axis` (0, 1, 2 for x, y, z).
+/// Permeability (mm2) of the infinite periodic medium, along `axis` (0, 1, 2 for x, y, z).
 ///
-/// Pressure falls by 1 from each cell to the next, and is otherwise equal in all: so no face of the filter
-/// plays a part. Darcy's law `k = mu Q L / (A dP)` then gives the permeability.
+/// Pressure falls by 1 from each cell to the next and is otherwise periodic, so there are no end effects.
+/// Darcy's law `k = mu Q L / (A dP)` then gives the permeability.
 ///
 /// # Errors
-/// Conductances too far apart.
+/// Conductances that differ too much.
 pub fn permeability_mm2(graph: &VoidGraph, axis: usize) -> Result<f64, FlowError> {
     let voids = graph.voids();
     let links = || (0..graph.from.len()).filter(|&c| graph.conductance_mm3[c] > 0.0);
-    // Pressures are known but for a constant: one void of each connected part is at 0.
+    // Pressures are known up to a constant, so one void of each connected component is set to 0.
     let mut together = Together::new(voids);
     links().for_each(|c| together.join(graph.from[c], graph.to[c]));
     let root: Vec<u32> = (0..voids as u32).map(|void| together.root(void)).collect();
@@ -150,8 +150,8 @@ mod tests {
         VoidGraph::measure(&packing, 0.1).unwrap().1
     }
 
-    /// Simple cubic touching: the scheme's closed form, and the exact solution of Zick & Homsy (1982),
-    /// doi:10.1017/S0022112082000627, k / D^2 = 1 / (18 c K) with K = 42.1 at c = 0.5236.
+    /// Touching simple cubic lattice: closed form of the scheme, and the exact solution of Zick & Homsy
+    /// (1982), doi:10.1017/S0022112082000627, k / D^2 = 1 / (18 c K) with K = 42.1 at c = 0.5236.
     #[test]
     fn permeability_of_a_simple_cubic_packing() {
         let graph = lattice(&[[0.0; 3]], 1.0, [4, 5, 6]);
@@ -165,10 +165,10 @@ mod tests {
         }
     }
 
-    /// Body-centred and face-centred cubic touching: the scheme's closed form. All throats are equal, so
-    /// that each has its part of the void and of the surface, and pressure falls evenly along the axis: k is
-    /// the sum of g dz^2 over the throats of a cell of edge 1, by its volume. It comes within a tenth of
-    /// Stokes flow through the same grains, as `scripts/studies/stokes_lattices.py` solves it (k / D^2 to
+    /// Touching body-centred and face-centred cubic lattices: closed form of the scheme. All throats are
+    /// equal, so they share void and surface equally, and pressure falls evenly along the axis: k is the
+    /// sum of g dz^2 over the throats of a cell of edge 1, divided by its volume. It is within 10 % of the
+    /// Stokes flow through the same grains, solved by `scripts/studies/stokes_lattices.py` (k / D^2 to
     /// 0.2 %; the tables are in `results/graph.md`).
     #[test]
     fn permeability_of_body_centred_and_face_centred_cubic_packings() {
@@ -193,7 +193,7 @@ mod tests {
         }
     }
 
-    /// Three equal constrictions a void, and columns that nothing leaves sideways.
+    /// Three equal constrictions per void, and columns without sideways flow.
     #[test]
     fn a_simple_cubic_packing_has_straight_columns() {
         let graph = lattice(&[[0.0; 3]], 1.0, [3, 4, 5]);

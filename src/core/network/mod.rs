@@ -1,15 +1,15 @@
 //! Void networks: voids joined by directed constrictions.
 //!
-//! A [`Network`] is any directed graph of voids. A constriction belongs to its upstream void, as an *exit* of
-//! it; exits of one void are neighbours, in a fixed order. Start nodes receive base particles; an exit whose
-//! target is [`END`] leaves the filter.
+//! A [`Network`] is any directed graph of voids. A constriction belongs to its upstream void, as one of
+//! its *exits*. The exits of a void are stored together, in a fixed order. Start nodes receive base
+//! particles; an exit whose target is [`END`] leaves the filter.
 //!
 //! The paper's network is the directed cubic lattice ([`Network::cubic`], Fig. 2): `nx x ny x nz`
 //! voids, periodic in x and y, flow along +z. [`Network::connected`] changes it until its voids have a given
 //! distribution of connectivity (Table 3).
 //!
-//! Diameters are held in units of a reference length ([`Network::unit_mm`]), so that a change of
-//! units by a power of two changes no bit of a walk.
+//! Diameters are stored in units of a reference length ([`Network::unit_mm`]), so that changing the unit
+//! by a power of two leaves a walk the same to the bit.
 
 mod arrays;
 mod columns;
@@ -42,35 +42,36 @@ use exit_rule::{Undirected, hash_column};
 /// Target of an exit that leaves the filter.
 pub const END: u32 = u32::MAX;
 
-/// Layer of a void that no start node leads to.
+/// Layer of a void that cannot be reached from a start node.
 pub const NO_LAYER: u32 = u32::MAX;
 
 /// Voids, constrictions and start nodes, as columns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Network {
-    /// First exit of each void, and one more entry: exits of void `v` are constrictions
+    /// First exit of each void, with one extra entry at the end: the exits of void `v` are constrictions
     /// `exit_begin[v] .. exit_begin[v + 1]`.
     exit_begin: Vec<u32>,
     target: Vec<u32>,
-    /// Diameter of each constriction in units of `unit_mm`; 0 is closed from the start.
+    /// Diameter of each constriction in units of `unit_mm`; 0 means closed from the start.
     diameter: Vec<f32>,
-    /// Voids that receive base particles, in the order in which they are drawn.
+    /// Voids that receive base particles; random draws depend on their order.
     start: Vec<u32>,
-    /// Layer of each void, counted from 0: z on a lattice, else the fewest moves from a start node.
+    /// Layer of each void, counted from 0: z on a lattice, otherwise the minimum number of moves from a
+    /// start node.
     layer: Vec<u32>,
     unit_mm: f64,
     shape: Option<[u32; 3]>,
-    /// Columns that exist only if constrictions have no direction of their own.
+    /// Columns of an undirected network only.
     undirected: Option<Box<Undirected>>,
 }
 
 impl Network {
-    /// Weight of a constriction in the choice among the open exits of its void: its area, but for a factor
-    /// that all have (the paper's Fig. 4), or the weight that its [`ExitRule`] makes of area and flow. One
-    /// that is closed from the start weighs nothing.
+    /// Weight of a constriction when a particle chooses among the open exits of its void: its area, up to
+    /// a common factor (the paper's Fig. 4), or the weight that its [`ExitRule`] derives from area and
+    /// flow. A constriction that is closed from the start has weight 0.
     ///
-    /// Engines, first passage and Eq. (1) all take it from here; the slow reference of the walk works it out
-    /// by itself, on purpose.
+    /// Engines, first passage and Eq. (1) all take it from here; the slow reference of the walk
+    /// deliberately computes its own.
     #[inline]
     pub fn exit_weight(&self, constriction: usize) -> f64 {
         if let Some(undirected) = &self.undirected {
@@ -80,7 +81,7 @@ impl Network {
         diameter * diameter
     }
 
-    /// Fingerprint of everything that a walk takes from the network; a new column must be declared here.
+    /// Fingerprint of everything in the network that affects a walk; new columns must be added here.
     pub fn fingerprint(&self) -> u64 {
         let Self { exit_begin, target, diameter, start, layer, unit_mm, shape: _, undirected } = self;
         let mut hash = xxhash_rust::xxh3::Xxh3::new();
@@ -105,7 +106,7 @@ impl Network {
         self.target.len()
     }
 
-    /// Constrictions through which void `void` can be left.
+    /// Exits of void `void`.
     #[inline]
     pub fn exits(&self, void: u32) -> std::ops::Range<usize> {
         self.exit_begin[void as usize] as usize..self.exit_begin[void as usize + 1] as usize
@@ -126,7 +127,7 @@ impl Network {
         &self.start
     }
 
-    /// Layer of each void; [`NO_LAYER`] where no start node leads to it.
+    /// Layer of each void; [`NO_LAYER`] if it cannot be reached from a start node.
     pub fn layer_of(&self) -> &[u32] {
         &self.layer
     }
@@ -144,7 +145,7 @@ impl Network {
         self.unit_mm
     }
 
-    /// Voids along x, y, z where the network is the cubic lattice.
+    /// Number of voids along x, y, z, if the network is the cubic lattice.
     pub fn shape(&self) -> Option<[u32; 3]> {
         self.shape
     }
@@ -158,19 +159,19 @@ impl Network {
         upstream
     }
 
-    /// The finest constriction that `closed` leaves open (`f32::INFINITY` if all are closed): a base particle
-    /// no coarser than it is *passive*, it can block nothing.
+    /// Finest open constriction (`f32::INFINITY` if all are closed). A base particle no coarser than it is
+    /// *passive*: it cannot block anything.
     pub fn finest_open(&self, closed: impl Fn(usize) -> bool) -> f32 {
         const TOGETHER: usize = 64;
         let mut finest = f32::INFINITY;
         for (part, diameters) in self.diameter.chunks(TOGETHER).enumerate() {
-            // Bits of positive numbers rise with them; those of 0 become the largest.
+            // The bits of positive floats are ordered like the floats; 0 becomes the largest.
             let order = |d: f32| d.to_bits().wrapping_sub(1);
             if diameters.iter().fold(u32::MAX, |least, &d| least.min(order(d))) >= order(finest) {
                 continue;
             }
             for (c, &d) in (part * TOGETHER..).zip(diameters) {
-                // Few are finer than all before: for the others it does not matter if they are closed.
+                // Few are finer than all before; the others need not be tested for closure.
                 if d < finest && d > 0.0 && !closed(c) {
                     finest = d;
                 }

@@ -1,41 +1,41 @@
-//! Depth that one particle reaches, which blocks nothing that matters to it. In each void it picks an open
-//! exit with a probability proportional to area, and is stopped where that exit is finer than it.
+//! Depth reached by a single particle, unaffected by its own blocking. In each void it picks an open exit
+//! with a probability proportional to area, and is stopped if that exit is finer than the particle.
 //!
 //! On a clean cubic lattice with independent constrictions (Eq. (1) of the paper, [`Passage`])
 //!
 //! ```text
 //! q = E[ area of exits finer than d / area of all three ]     stopped in this attempt
-//! s = (1 - q) / (1 + 2 q)                                   P(F): comes one layer downstream
+//! s = (1 - q) / (1 + 2 q)                                   P(F): moves one layer downstream
 //! n = ln(1 - confidence) / ln(s)                            Eq. (1): layers that it does not pass
 //! ```
 //!
-//! s follows from q: a third of the moves that succeed lead downstream. Eq. (1) in the paper speaks of
-//! Schuler's network, in which a void has five exits; this P(F) holds for the directed lattice that the
-//! program walks. It takes every void as new, which holds for lattices wider than a particle's way around
-//! them.
+//! s follows from q: a third of the successful moves lead downstream. Eq. (1) of the paper refers to
+//! Schuler's network, whose voids have five exits; this P(F) holds for the directed lattice of this program.
+//! It assumes that a void is never visited twice, as on lattices too wide for a particle to go round.
 //!
-//! On a given network ([`FirstPassage`]), with `t(e)` the void that exit `e` leads to and `p_e` its share,
+//! On a given network ([`FirstPassage`]), with `t(e)` the void that exit `e` leads to and `p_e` the
+//! fraction of its weight,
 //!
 //! ```text
 //! leaves(v) = sum over exits e that it fits of p_e (1 if e leads out, else leaves(t(e)))
 //! moves(v)  = sum over exits e that it fits of p_e (1 + (0 if e leads out, else moves(t(e))))
 //! ```
 //!
-//! The smallest solution of the first is the probability to leave; the second is the mean number of completed
-//! moves, infinite where the particle may be trapped in closed loops. Gauss-Seidel sweeps, downstream voids
-//! first: on a lattice that is periodic sideways only the rows of a layer wait for each other, so some tens
-//! of sweeps do.
+//! The smallest solution of the first is the probability of leaving; the second is the mean number of
+//! completed moves, infinite if the particle may be trapped in closed loops. Both are solved by
+//! Gauss-Seidel sweeps, downstream voids first. On a lattice with periodic sides only the rows of a layer
+//! depend on each other, so tens of sweeps are enough.
 
 use super::{END, Network, NetworkError};
 use crate::constrictions::Curve;
 
-/// Parts of the curve over which the first of three exits is followed.
+/// Number of parts of the curve for the first of three exits.
 const PARTS: usize = 512;
 
-/// Parts for the two others.
+/// Number of parts of the curve for the other two exits.
 const OTHERS: usize = 64;
 
-/// The probability of a particle to pass a layer of the cubic lattice with this curve, by its size.
+/// Probability that a particle passes a layer of the cubic lattice with this curve, by particle size.
 ///
 /// ```
 /// use voidwalk_core::constrictions::{Curve, CurveUnit};
@@ -51,13 +51,13 @@ const OTHERS: usize = 64;
 #[derive(Clone, Debug)]
 pub struct Passage<'a> {
     curve: &'a Curve,
-    /// Three times the integral, over the finest i / PARTS of the curve, of the share of area that such an
-    /// exit has.
+    /// Three times the integral, over the finest i / PARTS of the curve, of the fraction of area of such
+    /// an exit.
     stopped: Vec<f64>,
 }
 
 impl<'a> Passage<'a> {
-    /// Follows three independent exits through the curve, each at the middle of equal parts.
+    /// Integrates over three independent exits drawn from the curve, each at the midpoints of equal parts.
     pub fn new(curve: &'a Curve) -> Self {
         let area = |part: usize, parts: usize| {
             let diameter = curve.quantile((part as f64 + 0.5) / parts as f64);
@@ -73,40 +73,40 @@ impl<'a> Passage<'a> {
             sum += 3.0 * share / PARTS as f64;
             stopped.push(sum);
         }
-        // The three shares sum to 1; the difference that rounding and the coarser parts leave is taken out.
+        // The three fractions sum to 1; errors of rounding and of the coarser parts are scaled away.
         stopped.iter_mut().for_each(|s| *s /= sum);
         Self { curve, stopped }
     }
 
-    /// q: the probability that a particle of diameter `d`, in the curve's unit, is stopped in an attempt.
+    /// Probability q that a particle of diameter `d`, in the curve's unit, is stopped in an attempt.
     pub fn stopped(&self, d: f64) -> f64 {
-        // A particle as large as a constriction passes it.
+        // A particle passes a constriction of equal size.
         let finer = self.curve.percent_smaller(d * (1.0 - 1e-12)) / 100.0 * PARTS as f64;
         let part = (finer as usize).min(PARTS - 1);
         let (low, high) = (self.stopped[part], self.stopped[part + 1]);
         (low + (finer - part as f64) * (high - low)).clamp(0.0, 1.0)
     }
 
-    /// s, or P(F): the probability that it comes one layer downstream.
+    /// Probability s, or P(F), that the particle moves one layer downstream.
     pub fn downstream(&self, d: f64) -> f64 {
         let q = self.stopped(d);
         (1.0 - q) / (1.0 + 2.0 * q)
     }
 
-    /// Eq. (1): the layers that it does not pass with this confidence (0 to 1); `None` if nothing can stop
-    /// it.
+    /// Number of layers that the particle does not pass with this confidence (0 to 1), by Eq. (1); `None`
+    /// if nothing can stop it.
     pub fn layers(&self, d: f64, confidence: f64) -> Option<f64> {
         let s = self.downstream(d);
         (s < 1.0).then(|| if s > 0.0 { libm::log(1.0 - confidence) / libm::log(s) } else { 0.0 })
     }
 
-    /// Probability that it leaves a lattice of this many layers: `s ^ layers`.
+    /// Probability that the particle leaves a lattice of this many layers: `s ^ layers`.
     pub fn through(&self, d: f64, layers: u64) -> f64 {
         libm::pow(self.downstream(d), layers as f64)
     }
 
-    /// The diameter whose [`Passage::layers`] at this confidence are `layers`: coarser particles come less
-    /// far.
+    /// Diameter at which [`Passage::layers`] equals `layers` at this confidence; coarser particles do not
+    /// get as far.
     pub fn coarsest_through(&self, layers: u64, confidence: f64) -> f64 {
         let (mut low, mut high) = (self.curve.smallest(), self.curve.largest());
         for _ in 0..100 {
@@ -117,27 +117,27 @@ impl<'a> Passage<'a> {
     }
 }
 
-/// Relative change below which sweeps end.
+/// Relative change below which sweeps stop.
 const CONVERGED: f64 = 1e-15;
 
-/// Constrictions looked at until an answer is given up: seconds. A loop that is left once in `n` moves takes
-/// some `30 n` sweeps.
+/// Maximum number of constriction visits (seconds). A loop that is left once in `n` moves takes about `30
+/// n` sweeps.
 const MOST_LOOKS: usize = 1 << 30;
 
-/// Sweeps until an answer is given up on the largest network, at least.
+/// Minimum number of sweeps before giving up, on the largest network.
 const LEAST_SWEEPS: usize = 1 << 12;
 
-/// Expectations of a single particle, by the void that it starts in.
+/// Expectations for a single particle, by starting void.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FirstPassage {
-    /// Probability to leave the filter.
+    /// Probability of leaving the filter.
     pub leaves: Vec<f64>,
-    /// Mean number of completed moves, the one that leaves included.
+    /// Mean number of completed moves, including the one that leaves.
     pub moves: Vec<f64>,
 }
 
 impl FirstPassage {
-    /// Mean of both over the start nodes of the network: a particle starts on each with the same probability.
+    /// Mean of both over the start nodes, each being equally probable.
     pub fn from_start(&self, network: &Network) -> (f64, f64) {
         let mean = |values: &[f64]| {
             let sum: f64 = network.start().iter().map(|&void| values[void as usize]).sum();
@@ -148,23 +148,23 @@ impl FirstPassage {
 }
 
 impl Network {
-    /// Expectations of a single particle of diameter `d` (in units of [`Network::unit_mm`]) while `closed`
-    /// constrictions, and those of size 0, are closed.
+    /// Expectations for a single particle of diameter `d` (in units of [`Network::unit_mm`]), with
+    /// `closed` constrictions and those of size 0 closed.
     ///
     /// ```
     /// use voidwalk_core::network::Network;
-    /// // One void: it leaves through z by the share of area, or is stopped by the finer x; y leads back.
+    /// // One void: the particle leaves through z, or is stopped by the finer x; y leads back.
     /// let network = Network::cubic_from_diameters([1, 1, 1], vec![1.0, 2.0, 2.0], 1.0)?;
     /// let passage = network.first_passage(1.5, |_| false)?;
     /// assert!((passage.leaves[0] - 0.8).abs() < 1e-12);
-    /// // x is closed: nothing stops it, and it leaves after two moves on average.
+    /// // x is closed: nothing stops the particle, and it leaves after two moves on average.
     /// let passage = network.first_passage(1.5, |c| c == 0)?;
     /// assert!((passage.leaves[0] - 1.0).abs() < 1e-12 && (passage.moves[0] - 2.0).abs() < 1e-12);
     /// # Ok::<(), voidwalk_core::network::NetworkError>(())
     /// ```
     ///
     /// # Errors
-    /// Loops have so narrow a way out that the answer would take too long.
+    /// Loops with so narrow a way out that the solution would take too long.
     pub fn first_passage(
         &self,
         d: f32,
@@ -173,7 +173,7 @@ impl Network {
         let weight = |c: usize| if closed(c) { 0.0 } else { self.exit_weight(c) };
         let (share, mut ends) = self.shares(weight, d);
         self.upstream_of(&share, &mut ends);
-        // Closed loops without an end, and all that leads there.
+        // Voids in closed loops, and all voids that may lead there.
         let mut unending: Vec<bool> = ends.iter().map(|ends| !ends).collect();
         self.upstream_of(&share, &mut unending);
         let most = (MOST_LOOKS / self.constrictions().max(1)).max(LEAST_SWEEPS);
@@ -182,8 +182,8 @@ impl Network {
         Ok(FirstPassage { leaves, moves })
     }
 
-    /// By exit: its share of the weights in its void, if a particle of this size fits. By void: true if such
-    /// a particle may leave or be stopped there.
+    /// Fraction of the weight of its void for each exit that a particle of this size fits; and by void,
+    /// true if such a particle may leave or be stopped there.
     fn shares(&self, weight: impl Fn(usize) -> f64, d: f32) -> (Vec<f64>, Vec<bool>) {
         let mut share = vec![0.0; self.constrictions()];
         let mut ends = vec![false; self.voids()];
@@ -200,8 +200,8 @@ impl Network {
         (share, ends)
     }
 
-    /// Marks the voids from which a marked one can be reached through exits with a share, and returns all
-    /// marked voids, each after the one that its shortest way leads to.
+    /// Marks the voids from which a marked one can be reached through exits with a positive share. Returns
+    /// all marked voids, each after the next void on its shortest path.
     fn upstream_of(&self, share: &[f64], marked: &mut [bool]) -> Vec<u32> {
         let (begin, entrances) = self.entrances();
         let upstream = self.upstream();
@@ -221,18 +221,17 @@ impl Network {
         marked_voids
     }
 
-    /// Approximate number of moves that a particle that fits everywhere makes until it leaves, comes to a
-    /// void without an open exit, or is in closed loops for good; infinite if that is more than numbers can
-    /// hold. It looks at about `most` constrictions, one after another, and extrapolates from there by the
-    /// changes.
+    /// Approximate number of moves of a particle that fits everywhere, until it leaves, reaches a void
+    /// without an open exit, or is trapped in closed loops; infinite if it overflows. Visits about `most`
+    /// constrictions, then extrapolates from the changes.
     pub fn moves_to_an_end(&self, most: u64) -> f64 {
         let area = |c: usize| f64::from(self.diameter[c]) * f64::from(self.diameter[c]);
         let (share, mut ends) = self.shares(area, 0.0);
         let order = self.upstream_of(&share, &mut ends);
         let mut moves = vec![0.0; self.voids()];
-        // Means after each round; once they grow by a constant ratio, the rest of the sum is known.
+        // Means after each round; once the increments have a constant ratio, the rest of the sum is known.
         let mut means = vec![0.0];
-        // From layer to layer an answer takes a few rounds.
+        // Results take a few rounds to spread from layer to layer.
         let least = 4 * self.layers() + 100;
         let most = usize::try_from(most / self.constrictions().max(1) as u64).unwrap_or(usize::MAX);
         let most = most.min(1 << 20).max(least);
@@ -319,8 +318,8 @@ mod tests {
         assert!(passage.stopped(curve.smallest()) == 0.0 && passage.stopped(2.0 * curve.largest()) == 1.0);
     }
 
-    /// The mean over the voids of a network: 96,000 voids, standard error of q at most 0.3 / sqrt(96,000) =
-    /// 0.001.
+    /// Compares with the mean over the 96,000 voids of a network: standard error of q at most 0.3 /
+    /// sqrt(96,000) = 0.001.
     #[test]
     fn q_is_the_mean_over_the_voids_of_a_network() {
         let curve = find("shire2016-cu1.5-loose").unwrap().curve().unwrap();
@@ -342,7 +341,7 @@ mod tests {
         }
     }
 
-    /// With equal constrictions a third of the moves leads downstream, on a lattice of any width: 3 nz moves.
+    /// With equal constrictions a third of the moves lead downstream, on a lattice of any width: 3 nz moves.
     #[test]
     fn equal_constrictions_take_three_moves_a_layer() {
         let network = Network::cubic_from_diameters([3, 2, 7], vec![0.5; 126], 1.0).unwrap();
@@ -351,7 +350,7 @@ mod tests {
         assert_eq!(network.first_passage(0.6, |_| false).unwrap().leaves, vec![0.0; 42]);
     }
 
-    /// x and y lead round, z is closed: it never leaves, and never stops moving.
+    /// x and y lead round, z is closed: the particle never leaves and never stops moving.
     #[test]
     fn a_particle_that_circles_never_leaves() {
         let network = Network::cubic_from_diameters([2, 2, 2], vec![1.0; 24], 1.0).unwrap();
@@ -360,13 +359,13 @@ mod tests {
             (passage.leaves[0], passage.moves[0], passage.moves[4]),
             (0.0, f64::INFINITY, f64::INFINITY)
         );
-        // Once everything is closed it moves no more.
+        // Once everything is closed it no longer moves.
         let stuck = network.first_passage(0.5, |_| true).unwrap();
         assert_eq!((stuck.leaves[0], stuck.moves[0]), (0.0, 0.0));
     }
 
-    /// A loop that is left once in a million million moves would be swept for days; one that is left once in
-    /// ten thousand has its answer.
+    /// A loop that is left once in 10^12 moves would be swept for days; a loop that is left once in 10,000
+    /// is solved.
     #[test]
     fn an_answer_that_takes_too_long_is_given_up_in_words() {
         let passage = |narrow: f64| {
@@ -376,15 +375,15 @@ mod tests {
         };
         let (leaves, moves) = passage(0.01).unwrap();
         assert!((leaves - 1.0).abs() < 1e-9 && (moves / 10_001.0 - 1.0).abs() < 1e-6, "{leaves} {moves}");
-        // With as few sweeps as on a large network, so that the test is short.
+        // With as few sweeps as on a large network, to keep the test short.
         let text = "from,to,diameter_mm\nstart,0,\n0,0,1\n0,end,0.000001\n";
         let network = Network::from_csv(text.as_bytes(), "n.csv", 1.0).unwrap();
         let error = network.relax(&[1.0, 1e-12], &[false], |_| 1.0, 1000).unwrap_err().to_string();
         assert!(error.contains("after 1000 sweeps") && error.contains("way out"), "{error}");
     }
 
-    /// Loops with a way out that is taken once in a million and in a million million moves, of one void and
-    /// of many; and ordinary lattices, closed loops and dead ends, which take few.
+    /// Loops of one and of many voids whose way out is taken once in 10^6 and in 10^12 moves; and ordinary
+    /// lattices, closed loops and dead ends, which take few.
     #[test]
     fn narrow_ways_out_are_known_without_going_them() {
         let moves =
@@ -394,7 +393,7 @@ mod tests {
         assert!(about(moves(&format!("{head}0,0,1\n0,end,0.001\n")), 1e6));
         assert!(moves(&format!("{head}0,0,1000\n0,end,0.001\n")) > 1e11);
         assert!(about(moves(&format!("{head}0,1,1\n1,2,1\n2,0,1\n2,end,0.001\n")), 3e6));
-        // The way out hides in a void that is seldom seen and easily left.
+        // The way out is in a void that is seldom visited and easily left.
         assert!(about(moves(&format!("{head}0,1,1\n1,0,1\n1,2,0.001\n2,0,1\n2,end,1\n")), 4e6));
         assert!(moves(&format!("{head}0,1,1\n1,0,1\n")) == 0.0);
         assert!(moves(&format!("{head}0,1,1\n0,end,1\n1,1,1\n")) <= 1.0);

@@ -1,28 +1,28 @@
-//! The search for a lattice with a given distribution of connectivity.
+//! Search for a lattice with a given distribution of connectivity.
 //!
 //! - Every void has six possible exits: the lattice's +x, +y, +z and the three face diagonals +x+y, +x+z,
-//!   +y+z. All lead in positive directions, so no move leads upstream, and the only cycles are those of the
-//!   lattice, around a periodic side within one layer. No diagonal leaves the last layer.
-//! - One possible exit of one void is drawn at a time, uniformly: deleted if it is there, else created. The
-//!   proposal is taken when it brings the distribution nearer to the wanted one; *near* is the sum over k of
-//!   | voids with connectivity up to k, less those wanted |. Where as many proposals as there are possible
-//!   exits brought nothing nearer, those that leave it as near are taken too, until one does. A search that
-//!   is stuck all the same begins again from elsewhere, since otherwise one replicate would have a network
-//!   and another none; one that has not ended after [`MOST_PROPOSALS`] is completed along chains.
-//! - A void never loses its last entrance (the inlet of a start node is one), and keeps two exits; one where
-//!   connectivities below 4 are wanted. Table 3 speaks for two: a void that one particle can close retains so
-//!   much that those of connectivity 4 would hold three times as much each as those of 5, while the paper has
-//!   them alike (397 and 444; see `results/paper.md`).
-//! - A sum that stays above 0 (parity, or a distribution that no such network has) is accepted when every
-//!   number is within [`TOLERANCE_PERCENT`] of all voids, or one void, of what is wanted; else the
-//!   distribution is refused.
+//!   +y+z. All lead in positive directions, so no move leads upstream, and the only cycles are the
+//!   lattice's own, around a periodic side within one layer. No diagonal leaves the last layer.
+//! - One possible exit of one void is drawn at a time, uniformly: deleted if present, otherwise created.
+//!   The proposal is accepted if it reduces the *distance* from the target distribution: the sum over k of
+//!   | voids with connectivity up to k, minus the target |. If as many proposals in a row as there are
+//!   possible exits bring no progress, proposals that leave the distance unchanged are accepted too, until
+//!   one reduces it. A search that is still stuck restarts from another state, so that every replicate
+//!   gets a network; after [`MOST_PROPOSALS`] proposals it is completed along chains.
+//! - A void never loses its last entrance (the inlet of a start node counts) and keeps two exits, or one
+//!   if connectivities below 4 are wanted. Table 3 suggests two: a void that one particle can close
+//!   retains so much that voids of connectivity 4 would hold three times as much each as voids of
+//!   connectivity 5, but in the paper they hold about the same (397 and 444; see `results/paper.md`).
+//! - A remaining distance (parity, or a distribution that no such network has) is accepted if every count
+//!   is within [`TOLERANCE_PERCENT`] of all voids, or one void, of its target; otherwise the distribution
+//!   is refused.
 
 use rand::Rng;
 
 use super::{END, NetworkError};
 use crate::stream::{Key, Purpose, below};
 
-/// Allowed error of the share of a connectivity (percent of all voids).
+/// Allowed error of the percentage of each connectivity (percent of all voids).
 pub const TOLERANCE_PERCENT: f64 = 0.05;
 
 pub(super) const SLOTS: usize = 6;
@@ -31,44 +31,44 @@ pub(super) const SLOTS: usize = 6;
 pub(super) const STEPS: [[u32; 3]; SLOTS] =
     [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0], [1, 0, 1], [0, 1, 1]];
 
-/// The largest connectivity: six exits and six entrances.
+/// Maximum connectivity: six exits and six entrances.
 pub(super) const MOST: usize = 2 * SLOTS;
 
-/// Exits that every void keeps, where no connectivity below [`FEW`] is wanted; one otherwise.
+/// Number of exits that every void keeps if no connectivity below [`FEW`] is wanted; otherwise one.
 const KEPT_EXITS: u32 = 2;
 
-/// The least connectivity that leaves room for [`KEPT_EXITS`].
+/// Minimum connectivity that leaves room for [`KEPT_EXITS`].
 const FEW: u32 = 4;
 
-/// Proposals without progress, for each possible exit, after which a first search is given up.
+/// Proposals without progress per possible exit after which the first search is given up.
 const PATIENCE: u64 = 60;
 
-/// Likewise for a search that begins again from elsewhere.
+/// Proposals without progress per possible exit after which a restarted search is given up.
 const PATIENCE_AGAIN: u64 = 6;
 
-/// Proposals without progress that every search makes at least.
+/// Minimum number of proposals without progress before any search is given up.
 const LEAST_PATIENCE: u64 = 100_000;
 
-/// Number of times that a stuck search begins again from elsewhere.
+/// Maximum number of restarts of a stuck search.
 const SHAKES: u32 = 60;
 
-/// Proposals of all searches together, a second or less; the rest is changed along chains.
+/// Maximum number of proposals in all searches together (at most a second); chains do the rest.
 const MOST_PROPOSALS: u64 = 10_000_000;
 
-/// One in this many proposals that lead farther away is taken when a search begins elsewhere.
+/// During a restart, one in this many proposals that increase the distance is accepted.
 const WORSE_IN: u64 = 4;
 
-/// Exits of the voids while they are changed.
+/// Exits of all voids during the search.
 pub(super) struct PossibleExits {
     shape: [u32; 3],
-    /// By void: bit s is set if possible exit s is there.
+    /// Exits by void: bit s is set if possible exit s is present.
     pub(super) present: Vec<u8>,
-    /// Entrances of each void, its inlet included.
+    /// Number of entrances of each void, including its inlet.
     entrances: Vec<u8>,
     kept_exits: u32,
-    /// For each k: voids with connectivity up to k, less those wanted.
+    /// Number of voids with connectivity up to k minus the target, for each k.
     surplus: [i64; MOST + 1],
-    /// Proposals that may still be made.
+    /// Number of proposals left.
     proposals_left: u64,
 }
 
@@ -102,10 +102,10 @@ impl PossibleExits {
         (self.present[void as usize].count_ones() + u32::from(self.entrances[void as usize])) as usize
     }
 
-    /// Counts that a void's connectivity goes from `k` to one more, or one less; returns the change of
-    /// distance (negative if nearer).
+    /// Records that the connectivity of a void rises (`more`) or falls by one from `k`; returns the change
+    /// of distance (negative if nearer).
     fn count_change(&mut self, k: usize, more: bool) -> i64 {
-        // One more: the voids up to k are one fewer. One less: those up to k - 1 are one more.
+        // Rise: one void fewer has up to k. Fall: one void more has up to k - 1.
         let (at, by) = if more { (k, -1) } else { (k - 1, 1) };
         let before = self.surplus[at].abs();
         self.surplus[at] += by;
@@ -123,7 +123,7 @@ impl PossibleExits {
         change
     }
 
-    /// Tells if an exit can be deleted while each void keeps the exits and the entrance that it must have.
+    /// Tells if an exit can be deleted without taking a required exit or entrance from a void.
     fn spare(&self, void: u32, target: u32) -> bool {
         self.present[void as usize].count_ones() > self.kept_exits
             && (target == END || self.entrances[target as usize] > 1)
@@ -155,13 +155,13 @@ impl PossibleExits {
         self.check(counts)
     }
 
-    /// Distance of the distribution from the wanted one.
+    /// Distance from the target distribution.
     fn distance(&self) -> i64 {
         self.surplus.iter().map(|s| s.abs()).sum()
     }
 
-    /// Draws a proposal and carries it out; returns how much farther it leads, and the change that undoes it.
-    /// `None` if it cannot be made.
+    /// Draws a proposal and carries it out; returns the change of distance and the reverse step, or `None`
+    /// if the proposal is not possible.
     fn propose(&mut self, draws: &mut impl Rng) -> Option<(i64, (u32, usize, u32, bool))> {
         let possible = SLOTS as u64 * self.present.len() as u64;
         let drawn = below(draws.next_u64(), possible);
@@ -174,8 +174,8 @@ impl PossibleExits {
         Some((self.toggle(void, slot, target, more), (void, slot, target, !more)))
     }
 
-    /// Takes proposals that lead nearer, and after long without one those that lead as near, until the wanted
-    /// distribution is reached or patience ends.
+    /// Accepts proposals that reduce the distance, and after many without progress also those that leave
+    /// it unchanged, until the target distribution is reached or patience runs out.
     fn search(&mut self, draws: &mut impl Rng, patience: u64) {
         let possible = SLOTS as u64 * self.present.len() as u64;
         let mut distance = self.distance();
@@ -194,8 +194,8 @@ impl PossibleExits {
         }
     }
 
-    /// Takes all proposals for a while, but only one in [`WORSE_IN`] of those that lead farther away, so that
-    /// a stuck search begins elsewhere.
+    /// Accepts proposals for a while, but only one in [`WORSE_IN`] of those that increase the distance, to
+    /// free a stuck search.
     fn shake(&mut self, draws: &mut impl Rng) {
         for _ in 0..SLOTS * self.present.len() {
             let Some((change, (void, slot, target, back))) = self.propose(draws) else { continue };
@@ -205,7 +205,7 @@ impl PossibleExits {
         }
     }
 
-    /// Refuses numbers of voids that are too far from those wanted.
+    /// Refuses counts that are too far from their targets.
     fn check(&self, counts: &[i64; MOST + 1]) -> Result<(), NetworkError> {
         let voids = self.present.len() as f64;
         let off = |k: usize| self.surplus[k] - if k == 0 { 0 } else { self.surplus[k - 1] };
@@ -220,8 +220,8 @@ impl PossibleExits {
         Err(NetworkError::Connectivity {
             value: list(&|k| counts[k]),
             allowed: format!(
-                "a distribution (percent of voids by connectivity) that adding diagonals and deleting \
-                 constrictions reaches; \
+                "a distribution (percent of voids by connectivity) that can be reached by adding diagonals \
+                 and deleting constrictions; \
                  the nearest found was {}",
                 list(&|k| counts[k] + off(k))
             ),
@@ -236,14 +236,14 @@ struct Reached {
     void: u32,
     /// True if the next exit of the chain is created, false if it is deleted.
     more: bool,
-    /// The exit by which the chain came here, and the place of the void before among those reached.
+    /// Exit through which the chain came here, and index of the previous void among those reached.
     by: Option<(Exit, usize)>,
 }
 
 impl PossibleExits {
-    /// Changes chains of exits, created and deleted by turns, as long as that leads nearer: only the two ends
-    /// of a chain change their connectivity, so that voids far from each other are mended together. The voids
-    /// that begin them are drawn.
+    /// Changes chains of exits, alternately created and deleted, while that reduces the distance. Only the
+    /// two ends of a chain change their connectivity, so distant voids are corrected together. Starting
+    /// voids are taken in random order.
     fn change_along_chains(&mut self, draws: &mut impl Rng) {
         let mut starts: Vec<u32> = (0..self.present.len() as u32).collect();
         for last in (1..starts.len()).rev() {
@@ -251,7 +251,7 @@ impl PossibleExits {
         }
         let mut seen = vec![false; 2 * starts.len()];
         loop {
-            // If one start leads nowhere, others need not look in this pass.
+            // States that led nowhere from one start are skipped for the others in this pass.
             seen.fill(false);
             let before = self.distance();
             for &start in &starts {
@@ -265,17 +265,17 @@ impl PossibleExits {
         }
     }
 
-    /// Tells if one exit or entrance more of this void (else one less) leads nearer.
+    /// Tells if one exit or entrance more (or less, if not `more`) of this void reduces the distance.
     fn wants(&self, void: u32, more: bool) -> bool {
         let k = self.connectivity(void);
         if more { k < MOST && self.surplus[k] > 0 } else { k > 0 && self.surplus[k - 1] < 0 }
     }
 
-    /// Changes the shortest chain from this void to another that wants to be changed, or to an exit out of
-    /// the last layer; returns `false` if no such chain exists.
+    /// Changes the shortest chain from this void to another that needs a change, or to an exit out of the
+    /// last layer; returns `false` if no such chain exists.
     fn change_chain(&mut self, start: u32, more: bool, seen: &mut [bool]) -> bool {
         let k = self.connectivity(start);
-        // The other end is judged by the numbers still wanted after this one.
+        // The other end is judged with this end already changed.
         self.count_change(k, more);
         let (reached, chain) = self.chain(start, more, seen);
         self.count_change(if more { k + 1 } else { k - 1 }, !more);
@@ -286,7 +286,7 @@ impl PossibleExits {
         is_changed
     }
 
-    /// Voids that were looked at, and the chain: exits that are to be created (`true`) or deleted.
+    /// Finds the voids visited, and the chain: exits to create (`true`) or delete (`false`).
     fn chain(&self, start: u32, more: bool, seen: &mut [bool]) -> (Vec<Reached>, Option<Vec<(Exit, bool)>>) {
         let mut reached = vec![Reached { void: start, more, by: None }];
         let mut at = 0;
@@ -315,7 +315,7 @@ impl PossibleExits {
         (reached, None)
     }
 
-    /// The possible exits and entrances of a void, and the void at the other end of each.
+    /// Possible exits and entrances of a void, each with the void at its other end.
     fn exits_and_entrances(&self, void: u32) -> impl Iterator<Item = (Exit, u32)> {
         (0..SLOTS).flat_map(move |slot| {
             let exit = self.target(void, slot).map(|target| ((void, slot, target), target));
@@ -324,7 +324,7 @@ impl PossibleExits {
         })
     }
 
-    /// Void whose possible exit leads here; `None` before the first layer.
+    /// Void whose possible exit `slot` leads here; `None` upstream of the first layer.
     fn source(&self, void: u32, slot: usize) -> Option<u32> {
         let [nx, ny, nz] = self.shape;
         let (x, y, z) = (void % nx, void / nx % ny, void / (nx * ny));
@@ -337,8 +337,7 @@ impl PossibleExits {
         is_present != more && (more || self.spare(void, target))
     }
 
-    /// Changes all exits of a chain or leaves all: a chain that passes a void twice may ask for too much of
-    /// it.
+    /// Changes all exits of a chain or none: a chain that passes a void twice may not be possible.
     fn change(&mut self, chain: &[(Exit, bool)]) -> bool {
         for (changed, &(exit, more)) in chain.iter().enumerate() {
             if !self.can_change(exit, more) {

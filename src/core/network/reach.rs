@@ -2,11 +2,11 @@
 
 use super::{END, NO_LAYER, Network, WIDE};
 
-/// Voids that paths through passable constrictions join to the start and the end, found breadth-first.
+/// Voids joined to the start and to the end by paths through passable constrictions (breadth-first).
 pub struct Reachability {
-    /// Voids that a start node leads to.
+    /// True for each void that can be reached from a start node.
     pub from_start: Vec<bool>,
-    /// Voids from which the end can be reached.
+    /// True for each void from which the end can be reached.
     pub to_end: Vec<bool>,
 }
 
@@ -18,13 +18,12 @@ impl Network {
         Reachability { from_start, to_end: self.leading_to_end(&passable) }
     }
 
-    /// Tells if an open way leads from a start node out of the network: nothing can leave any other network,
-    /// whatever it would hold.
+    /// Tells if an open path leads from a start node out of the network; otherwise no particle can leave.
     pub fn leads_out(&self) -> bool {
         self.leads_out_by(|c| self.diameter[c] > 0.0)
     }
 
-    /// Tells if constrictions that `open` admits lead from a start node out of the network.
+    /// Tells if a path through constrictions that `open` admits leads from a start node out of the network.
     pub(super) fn leads_out_by(&self, open: impl Fn(usize) -> bool) -> bool {
         let reached = self.distances(&open);
         let is_last = |c: usize| self.target[c] == END && open(c);
@@ -32,8 +31,8 @@ impl Network {
         voids.any(|void| self.exits(void).any(is_last))
     }
 
-    /// Share of all constrictions that lie on a path from start to end through constrictions that `open`
-    /// admits.
+    /// Fraction of all constrictions that lie on a path from start to end through constrictions that
+    /// `open` admits.
     pub fn backbone_fraction(&self, open: impl Fn(usize) -> bool) -> f64 {
         if let Some(shape) = self.shape {
             return self.on_paths_of_lattice(shape, open) as f64 / self.passages().max(1) as f64;
@@ -50,8 +49,8 @@ impl Network {
         on_path as f64 / self.passages().max(1) as f64
     }
 
-    /// Number of these constrictions on a lattice: layer by layer, as no path leads back into one that it
-    /// left.
+    /// Number of these constrictions on a lattice, counted layer by layer: no path returns to a layer it
+    /// has left.
     fn on_paths_of_lattice(&self, shape: [u32; 3], open: impl Fn(usize) -> bool) -> u64 {
         let [nx, plane, voids] = lengths(shape);
         let open = open_exits(voids, open);
@@ -76,7 +75,7 @@ impl Network {
                     }
                 }
                 if open[v] & ALONG_Z > 0 {
-                    // Beyond the last layer is the end.
+                    // The end follows the last layer.
                     on_path += u64::from(leads_out.get(v + plane).is_none_or(|&below| below));
                     if let Some(below) = reached.get_mut(v + plane) {
                         *below = true;
@@ -87,9 +86,9 @@ impl Network {
         on_path
     }
 
-    /// The constrictions that an unlimited supply of particles of diameter `d` blocks, whatever the
-    /// seed: those finer than `d` whose upstream void can be reached from a start node through
-    /// constrictions of at least `d`. Ascending.
+    /// Constrictions blocked by an unlimited supply of particles of diameter `d`, for any seed, in
+    /// ascending order: constrictions finer than `d` whose upstream void can be reached from a start node
+    /// through constrictions of at least `d`.
     pub fn blocked_by_one_size(&self, d: f32) -> Vec<u32> {
         let distance = self.distances(|c| self.diameter[c] >= d && self.diameter[c] > 0.0);
         let mut blocked = Vec::new();
@@ -100,7 +99,8 @@ impl Network {
         blocked
     }
 
-    /// Fewest moves from a start node to each void through `passable` constrictions, or [`NO_LAYER`].
+    /// Minimum number of moves from a start node to each void through `passable` constrictions, or
+    /// [`NO_LAYER`].
     pub(super) fn distances(&self, passable: impl Fn(usize) -> bool) -> Vec<u32> {
         let mut distance = vec![NO_LAYER; self.voids()];
         let mut front: Vec<u32> = self.start.clone();
@@ -114,7 +114,7 @@ impl Network {
             for void in front {
                 for exit in self.exits(void) {
                     let target = self.target[exit];
-                    // Most have been reached already, which costs less to know than if an exit is passable.
+                    // Most voids have been reached already, and this check is cheaper than `passable`.
                     if target != END && distance[target as usize] == NO_LAYER && passable(exit) {
                         distance[target as usize] = moves;
                         next.push(target);
@@ -128,12 +128,12 @@ impl Network {
 
     fn leading_to_end(&self, passable: impl Fn(usize) -> bool) -> Vec<bool> {
         let is_last = |&void: &u32| self.exits(void).any(|c| self.target[c] == END && passable(c));
-        // On a lattice they are in its last layer.
+        // On a lattice these voids are in the last layer.
         let first = self.shape.map_or(0, |[nx, ny, nz]| nx * ny * (nz - 1));
         self.leading_to((first..self.voids() as u32).filter(is_last).collect(), passable)
     }
 
-    /// Voids from which constrictions that `passable` admits lead to any of `those`; these are included.
+    /// True for each void of `those`, and each from which `passable` constrictions lead to one of them.
     pub(crate) fn leading_to(&self, those: Vec<u32>, passable: impl Fn(usize) -> bool) -> Vec<bool> {
         let mut leads = vec![false; self.voids()];
         those.iter().for_each(|&void| leads[void as usize] = true);
@@ -154,8 +154,8 @@ impl Network {
         leads
     }
 
-    /// Constrictions by downstream void: those that lead into void `v` are
-    /// `entrances[begin[v] .. begin[v + 1]]`, ascending.
+    /// Constrictions by downstream void (`begin`, `entrances`): `entrances[begin[v] .. begin[v + 1]]` lead
+    /// into void `v`, in ascending order.
     pub fn entrances(&self) -> (Vec<u32>, Vec<u32>) {
         let inner = || self.target.iter().enumerate().filter(|&(_, &t)| t != END);
         let mut begin = vec![0u32; self.voids() + 1];
@@ -175,25 +175,25 @@ impl Network {
     }
 }
 
-/// Bits of the exits of a void of a lattice.
+/// Bits for the exits of a lattice void.
 const ALONG_X: u8 = 1;
 const ALONG_Y: u8 = 2;
 const ALONG_Z: u8 = 4;
 
-/// Voids of a lattice along x, in a layer, and in all.
+/// Number of voids of a lattice along x, in a layer, and in total.
 fn lengths(shape: [u32; 3]) -> [usize; 3] {
     let [nx, ny, nz] = shape.map(|n| n as usize);
     [nx, nx * ny, nx * ny * nz]
 }
 
-/// By void of a lattice: the bits of its exits that are open.
+/// Bits of the open exits of each lattice void.
 fn open_exits(voids: usize, open: impl Fn(usize) -> bool) -> Vec<u8> {
     let of_void = |v| (0..3).fold(0, |bits, e| bits | u8::from(open(3 * v + e)) << e);
     (0..voids).map(of_void).collect()
 }
 
-/// Adds the voids of a lattice from which open exits lead to marked ones: layer by layer, as no exit leads
-/// back into a layer, so that memory is read close together.
+/// Marks the lattice voids from which open exits lead to marked voids. Works layer by layer, as no exit
+/// leads back into a layer, so that memory access stays local.
 fn spread_upstream(shape: [u32; 3], open: &[u8], leads: &mut [bool]) {
     let [nx, plane, voids] = lengths(shape);
     let mut stack = Vec::new();
@@ -206,7 +206,7 @@ fn spread_upstream(shape: [u32; 3], open: &[u8], leads: &mut [bool]) {
             }
         }
         while let Some(v) = stack.pop() {
-            // The voids before it along x and y.
+            // Upstream neighbours along x and y.
             let by_x = if v % nx == 0 { v + nx - 1 } else { v - 1 };
             let by_y = if v - layer < nx { v + plane - nx } else { v - nx };
             for (before, along) in [(by_x, ALONG_X), (by_y, ALONG_Y)] {
@@ -228,7 +228,7 @@ mod tests {
         let network = Network::cubic_from_diameters([3, 3, 4], vec![1.0; 108], 1.0).unwrap();
         assert_eq!(network.backbone_fraction(|_| true), 1.0);
         assert_eq!(network.backbone_fraction(|_| false), 0.0);
-        // With every +z exit of one layer closed nothing leads through.
+        // With every +z exit of one layer closed, no path leads through.
         assert_eq!(network.backbone_fraction(|c| !(c % 3 == 2 && network.layer_of()[c / 3] == 1)), 0.0);
     }
 
@@ -239,7 +239,7 @@ mod tests {
         assert_eq!(network.blocked_by_one_size(1.0), Vec::<u32>::new());
     }
 
-    /// Voids before a void are computed on a lattice, and looked up in other networks.
+    /// Upstream voids are computed on a lattice and looked up in other networks.
     #[test]
     fn as_many_voids_lead_on_in_a_lattice_as_in_the_network_that_it_is() {
         for shape in [[4, 3, 5], [1, 4, 3], [5, 1, 3], [1, 1, 4], [2, 2, 1]] {

@@ -1,24 +1,23 @@
-//! Networks whose constrictions can be passed both ways, until a rule gives them a direction.
+//! Networks whose constrictions can be passed in both directions, until a rule gives them one.
 //!
-//! A constriction between two voids is an exit of both: two exits that are each other's *twin*, and one
-//! blocking closes both. Two more kinds end at the filter's faces: an *inlet* leads from the reservoir, a
-//! void of its own and the only start node, into a void; an *outlet* leaves the filter.
+//! A constriction between two voids is an exit of both: the two exits are *twins*, and one blocking closes
+//! both. Two other kinds lie at the faces of the filter: an *inlet* leads from the reservoir, a void of
+//! its own and the only start node, into a void; an *outlet* leaves the filter.
 //!
-//! The reservoir is the last void, so that all others keep their numbers.
+//! The reservoir has the last number, so that the other voids keep theirs.
 
 use super::exit_rule::{NO_TWIN, Undirected};
 use super::{END, ExitRule, Network, NetworkError};
 
-/// Default tolerance of the flow in a walk.
+/// Default flow tolerance of a walk.
 pub const FLOW_TOLERANCE: f64 = 0.03;
 
-/// Tolerances, and the largest difference in eroded mass (percentage points) between walks up to each and
-/// walks of tolerance 0: both runs of eleven filters from open to sealed, on a lattice (`src/docs/graph.md`)
-/// and on the voids of a packing (`results/graph.md`), rounded up.
+/// Flow tolerances, each with the largest difference in eroded mass (percentage points) from walks of
+/// tolerance 0, rounded up. Measured in two runs on each of eleven filters from open to sealed, on a
+/// lattice (`src/docs/graph.md`) and on the voids of a packing (`results/graph.md`).
 const FLOW_ERRORS: [(f64, f64); 4] = [(0.0, 0.0), (FLOW_TOLERANCE, 0.3), (0.1, 0.5), (1.0, 11.0)];
 
-/// Measured error of the eroded mass at a tolerance of the flow (percentage points); `None` above 1, where
-/// nothing was measured.
+/// Measured error of the eroded mass at a flow tolerance (percentage points); `None` above 1 (not measured).
 ///
 /// ```
 /// assert_eq!(voidwalk_core::network::flow_error_pp(0.02), Some(0.3));
@@ -27,21 +26,21 @@ pub fn flow_error_pp(tolerance: f64) -> Option<f64> {
     FLOW_ERRORS.iter().find(|(most, _)| tolerance <= *most).map(|(_, error)| *error)
 }
 
-/// Diameter, in units of the network, of a way in that nothing can block.
+/// Diameter of an unblockable way in, in units of the network.
 pub const WIDE: f32 = 1e30;
 
 /// A constriction of an undirected network.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Link {
-    /// Void that it leads from, or the reservoir.
+    /// Upstream void, or the reservoir.
     pub from: LinkEnd,
-    /// Void that it leads to, or out of the filter.
+    /// Downstream void, or the space behind the filter.
     pub to: LinkEnd,
     /// Diameter, in units of the network's reference length.
     pub diameter: f32,
-    /// Conductance times viscosity, in any one unit.
+    /// Conductance times viscosity, in any consistent unit.
     pub conductance: f64,
-    /// Direction along the axis of flow: against it, level, or along it if below, at or above 0.
+    /// Direction relative to the axis of flow: along it if positive, against it if negative, level if 0.
     pub rise: f64,
 }
 
@@ -50,7 +49,7 @@ pub struct Link {
 pub enum LinkEnd {
     /// A void.
     Void(u32),
-    /// Outside: the reservoir before the filter, or the space behind it.
+    /// Outside: reservoir upstream of the filter, or space downstream of it.
     Outside,
 }
 
@@ -59,40 +58,41 @@ pub enum LinkEnd {
 pub struct LinkedVoids {
     /// Layer by void.
     pub layer: Vec<u32>,
-    /// Volume by void, in units of the reference length cubed; empty where it is not known.
+    /// Volume by void, in units of the reference length cubed; empty if unknown.
     pub volume: Vec<f64>,
     /// Length of one unit of diameter (mm).
     pub unit_mm: f64,
-    /// Rule by which particles choose.
+    /// Rule by which particles choose exits.
     pub rule: ExitRule,
-    /// Part of its conductance that a blocked constriction keeps.
+    /// Fraction of its conductance that a blocked constriction keeps.
     pub rho: f64,
-    /// Factor from the conductance of the whole to its permeability, in mm2.
+    /// Factor that converts the conductance of the network to its permeability (mm2).
     pub permeability_mm2: Option<f64>,
 }
 
 impl Network {
-    /// Builds a network of voids joined by constrictions without a direction of their own.
+    /// Builds an undirected network of voids joined by constrictions.
     ///
     /// # Errors
-    /// A diameter or a conductance that is negative or not a number; a void that does not exist; no inlet; no
-    /// outlet; no open way from an inlet to an outlet; more exits than 32 bits can number.
+    /// A diameter or a conductance that is negative or NaN; a void that does not exist; no inlet; no
+    /// outlet; no open path from an inlet to an outlet; more exits than 32 bits can count.
     pub fn linked(voids: LinkedVoids, links: &[Link]) -> Result<Self, NetworkError> {
         Ok(Self::linked_numbered(voids, links)?.0)
     }
 
-    /// Builds the network, and lists the exit of each link, the first of two; `u32::MAX` if it has no exit.
+    /// Builds the network and lists the exit of each link (the first of two, or `u32::MAX` if it has no
+    /// exit).
     pub(super) fn linked_numbered(
         voids: LinkedVoids,
         links: &[Link],
     ) -> Result<(Self, Vec<u32>), NetworkError> {
         let reservoir = voids.layer.len() as u32;
         check(links, reservoir)?;
-        // Two exits by link, or one: from this void, to that one, by this link.
+        // One or two exits for each link: upstream void, downstream void, link.
         let mut exits: Vec<(u32, u32, u32)> = Vec::with_capacity(2 * links.len());
         for (i, link) in (0u32..).zip(links) {
             match (link.from, link.to) {
-                // A void that meets itself sideways: nothing flows there.
+                // A void joined to itself across a periodic side carries no flow.
                 (LinkEnd::Void(a), LinkEnd::Void(b)) if a == b => {}
                 (LinkEnd::Void(a), LinkEnd::Void(b)) => exits.extend([(a, b, i), (b, a, i)]),
                 (LinkEnd::Void(a), LinkEnd::Outside) => exits.push((a, END, i)),
@@ -100,7 +100,7 @@ impl Network {
                 (LinkEnd::Outside, LinkEnd::Outside) => {}
             }
         }
-        // By void, then in the order of the links.
+        // Sorted by void, then by link.
         exits.sort_by_key(|&(from, _, link)| (from, link));
         let mut begin = vec![0u32; reservoir as usize + 2];
         exits.iter().for_each(|&(from, _, _)| begin[from as usize + 1] += 1);
@@ -122,7 +122,7 @@ impl Network {
             };
             let rise = if forward { link.rise } else { -link.rise };
             let area = f64::from(link.diameter) * f64::from(link.diameter);
-            // Until water is known to flow nothing leads anywhere.
+            // Until the flow is solved, exits have no weight.
             if voids.rule == ExitRule::Height && rise > 0.0 { area } else { 0.0 }
         };
         let mut layer = voids.layer;
@@ -152,10 +152,10 @@ impl Network {
         Ok((network, first))
     }
 
-    /// This network with another tolerance of the flow in a walk. Water is solved again once the
-    /// constrictions that have closed since carried this part of it, summed over the whole filter: at most
-    /// this many closed constrictions on the mean way of a particle are unknown to the flow. With 0 it is
-    /// solved again as soon as any has closed.
+    /// Sets the flow tolerance of a walk. The flow is solved again once the constrictions that have closed
+    /// since the last solution carried this fraction of it, summed over the whole filter: a particle meets
+    /// on average at most this many closed constrictions that the flow ignores. With 0 it is solved again
+    /// after every closure.
     #[must_use]
     pub fn with_flow_tolerance(mut self, tolerance: f64) -> Self {
         if let Some(undirected) = &mut self.undirected {
@@ -164,17 +164,17 @@ impl Network {
         self
     }
 
-    /// The tolerance of the flow in a walk: [`Network::with_flow_tolerance`].
+    /// Flow tolerance of a walk: see [`Network::with_flow_tolerance`].
     pub fn flow_tolerance(&self) -> f64 {
         self.undirected.as_ref().map_or(FLOW_TOLERANCE, |undirected| undirected.flow_tolerance)
     }
 
-    /// The lattice of [`Network::cubic_from_diameters`] without its directions: six neighbours a void. Water
-    /// flows through a constriction in proportion to the power `exponent` of its diameter. Into each void of
-    /// the first layer leads a way in that nothing can block, with the mean conductance of all constrictions.
+    /// Undirected version of the lattice of [`Network::cubic_from_diameters`], with six neighbours per
+    /// void. The conductance of a constriction is its diameter to the power `exponent`. Each void of the
+    /// first layer has an unblockable way in, with the mean conductance of all constrictions.
     ///
     /// # Errors
-    /// Those of [`Network::cubic_from_diameters`] and [`Network::linked`].
+    /// Errors of [`Network::cubic_from_diameters`] and [`Network::linked`].
     pub fn undirected_lattice(&self, rule: ExitRule, rho: f64, exponent: f64) -> Result<Self, NetworkError> {
         let conductance = |c: usize| match f64::from(self.diameter[c]) {
             0.0 => 0.0,
@@ -216,7 +216,7 @@ impl Network {
         Self::linked(voids, &links)
     }
 
-    /// The reservoir before the filter, where constrictions have no direction of their own.
+    /// Reservoir upstream of the filter, if the network is undirected.
     pub fn reservoir(&self) -> Option<u32> {
         self.undirected.as_ref().map(|_| self.start[0])
     }
@@ -226,20 +226,20 @@ impl Network {
         self.undirected.as_ref().map_or(ExitRule::Area, |u| u.rule)
     }
 
-    /// Exit of the other void that is the same constriction.
+    /// Exit of the neighbouring void through the same constriction.
     #[inline]
     pub fn twin(&self, exit: usize) -> Option<usize> {
         let twin = self.undirected.as_ref()?.twin[exit];
         (twin != NO_TWIN).then_some(twin as usize)
     }
 
-    /// The number of a constriction, whichever way it is passed: the lesser of its exits.
+    /// Number of a constriction, the same in both directions: the smaller of its exit numbers.
     #[inline]
     pub fn either_way(&self, exit: usize) -> usize {
         self.twin(exit).map_or(exit, |twin| twin.min(exit))
     }
 
-    /// Marks a constriction as blocked, or as open again, both ways.
+    /// Marks a constriction as blocked or open, in both directions.
     pub fn set_blocked(&self, blocked: &mut bitvec::slice::BitSlice, exit: usize, is: bool) {
         blocked.set(exit, is);
         if let Some(twin) = self.twin(exit) {
@@ -247,24 +247,24 @@ impl Network {
         }
     }
 
-    /// Tells if an exit represents its constriction where each is to be counted once: it has no twin, or
-    /// comes first; ways in that nothing can block do not count.
+    /// Tells if an exit is counted when each constriction is counted once: it has no twin or comes before
+    /// it. Unblockable ways in are not counted.
     #[inline]
     pub fn counts(&self, exit: usize) -> bool {
         self.diameter[exit] != WIDE && self.twin(exit).is_none_or(|twin| exit < twin)
     }
 
-    /// Constrictions, each counted once, whichever way it can be passed.
+    /// Number of constrictions, each counted once.
     pub fn passages(&self) -> usize {
         self.undirected.as_ref().map_or(self.constrictions(), |u| u.passages)
     }
 
-    /// Voids of the filter: without the reservoir.
+    /// Number of voids of the filter, without the reservoir.
     pub fn filter_voids(&self) -> usize {
         self.voids() - usize::from(self.undirected.is_some())
     }
 
-    /// Places by which particles come in: start nodes, or the inlets of the reservoir.
+    /// Number of entries for particles: start nodes, or the inlets of the reservoir.
     pub fn entries(&self) -> usize {
         match self.reservoir() {
             Some(reservoir) => self.exits(reservoir).len(),
@@ -272,17 +272,17 @@ impl Network {
         }
     }
 
-    /// Tells if ways in are no constrictions, so that coming in is no move.
+    /// Tells if the ways in are not constrictions, so that entering is not a move.
     pub fn entry_is_free(&self) -> bool {
         self.reservoir().is_some_and(|r| self.exits(r).all(|c| self.diameter[c] == WIDE))
     }
 
-    /// Volume by void (units of the reference length cubed); empty where it is not known.
+    /// Volume by void (units of the reference length cubed); empty if unknown.
     pub fn volumes(&self) -> &[f64] {
         self.undirected.as_ref().map_or(&[], |u| &u.volume)
     }
 
-    /// Blocked constrictions, each counted once.
+    /// Number of blocked constrictions, each counted once.
     pub fn blocked_count(&self, blocked: &bitvec::slice::BitSlice) -> u64 {
         match &self.undirected {
             None => blocked.count_ones() as u64,
@@ -290,7 +290,7 @@ impl Network {
         }
     }
 
-    /// Refuses a network that no water can pass.
+    /// Refuses a network without an open path for water.
     fn leads_through(&self) -> Result<(), NetworkError> {
         let nowhere = |problem: &str| NetworkError::Unlinked { problem: problem.into() };
         let Some(reservoir) = self.reservoir() else { return Ok(()) };
@@ -307,7 +307,7 @@ impl Network {
         }
     }
 
-    /// Conductance times viscosity of an exit; 0 on a network whose constrictions have a direction.
+    /// Conductance times viscosity of an exit; 0 on a directed network.
     pub fn conductance(&self, exit: usize) -> f64 {
         self.undirected.as_ref().map_or(0.0, |u| u.conductance[exit])
     }

@@ -20,14 +20,14 @@ fn compression(edge: f64, grains: &[[f64; 4]], settings: &Settings) -> Compressi
     Compression::new(&packing(edge, grains), settings).unwrap()
 }
 
-/// Grains of a linear gradation of this uniformity, placed at random.
+/// Draws grains of a linear gradation of this Cu, and places them at random.
 fn drawn(cu: f64, settings: &Settings) -> Compression {
     let filter = Gradation::linear_from_d0(1.0, cu).unwrap();
     let start = random_start(&draw(&filter, settings.grains, 1), settings).unwrap();
     Compression::new(&start, settings).unwrap()
 }
 
-/// Place in memory of the grain of this rank.
+/// Index in memory of the grain of this rank.
 fn place(c: &Compression, rank: u32) -> usize {
     c.rank.iter().position(|&r| r == rank).unwrap()
 }
@@ -46,14 +46,14 @@ fn elastic(contact: Contact) -> Settings {
     }
 }
 
-/// Steps without servo and without protocol.
+/// Takes steps without servo and protocol.
 fn free(c: &mut Compression, steps: u64) {
     for _ in 0..steps {
         c.advance_once(None).unwrap();
     }
 }
 
-/// Two grains of diameter 1 that just touch, approaching along x with `speed` in all.
+/// Two grains of diameter 1 that just touch and approach along x at the relative speed `speed`.
 fn head_on(settings: &Settings, speed: f64, step: f64) -> Compression {
     let settings = Settings { step: Some(step), ..settings.clone() };
     let mut c = compression(8.0, &[[3.5, 4.0, 4.0, 1.0], [4.5, 4.0, 4.0, 1.0]], &settings);
@@ -72,7 +72,7 @@ fn approach(c: &Compression) -> f64 {
     c.velocity[a][0] - c.velocity[b][0]
 }
 
-/// Time from touch to separation, with interpolated ends, and the remaining part of the approach speed.
+/// Time from touch to separation, with interpolated ends, and the remaining fraction of the approach speed.
 fn collide(mut c: Compression) -> (f64, f64) {
     let before = approach(&c);
     let mut last = distance(&c);
@@ -121,7 +121,7 @@ fn restitution_is_kept_at_every_speed() {
                 let settings = Settings { restitution: e, ..undamped };
                 let ratio = -libm::log(e) / (PI * PI + libm::log(e) * libm::log(e)).sqrt();
                 for parts in [50.0, 200.0, 800.0, 3200.0] {
-                    // The damping force begins and ends within a step: an error of first order.
+                    // The damping force begins and ends within a step: a first-order error.
                     let bound =
                         5.0 * PI * ratio / (1.0 - ratio * ratio).sqrt() / parts + 10.0 / (parts * parts);
                     let bound = if e >= 0.9 && parts == 50.0 { 0.005f64 } else { bound };
@@ -157,8 +157,8 @@ fn hertz_contact_time() {
     }
 }
 
-/// On a slope a contact rolls and slides: a small grain pressed against a large one that turns at constant
-/// rate ends in rolling without sliding, with the friction force never above its limit.
+/// A small grain pressed against a large one that turns at constant rate rolls and slides first, and
+/// ends in rolling without sliding. The friction force never exceeds its limit.
 #[test]
 fn coulomb_limit_holds_for_spring_and_damping_together() {
     let settings = Settings {
@@ -201,8 +201,8 @@ fn the_step_is_refused_with_both_numbers() {
     assert!(Compression::new(&grains, &settings).is_ok());
 }
 
-/// While the servo squeezes and then holds, the step that follows the contacts stays well below the critical
-/// one at every instant.
+/// While the servo squeezes and then holds, the adaptive step stays well below the critical one at every
+/// instant.
 #[test]
 fn the_automatic_step_stays_below_the_critical_one() {
     for friction in [0.0, 0.5] {
@@ -218,8 +218,8 @@ fn the_automatic_step_stays_below_the_critical_one() {
     }
 }
 
-/// With a gain far above the inverse of the contacts' viscosity, the strain rate settles at its value and
-/// does not swing between its limits: its changes of sign stay rare.
+/// With a gain far above the inverse of the contacts' viscosity, the strain rate settles and does not
+/// swing between its limits: it rarely changes sign.
 #[test]
 fn the_servo_does_not_swing() {
     let settings =
@@ -262,7 +262,7 @@ fn the_critical_step_is_stable_and_not_far_from_the_limit() {
     assert!((c.critical_step() / limit - 1.0).abs() < 1e-12);
 }
 
-/// The first velocity of a small grain pressed into a large one, from rest, shows the mass that moved it: its
+/// The first velocity of a small grain pressed into a large one, from rest, shows the mass that was used: its
 /// own, or the mass at which the contact's critical step is 1.5 times the one before there are contacts.
 #[test]
 fn crowded_grains_of_wide_packings_are_moved_as_heavier_ones() {
@@ -294,8 +294,8 @@ fn crowded_grains_of_wide_packings_are_moved_as_heavier_ones() {
     }
 }
 
-/// The step of a wide packing does not follow its most crowded grains, and a hold is counted in the steps
-/// that their own masses would have taken.
+/// The step of a wide packing does not depend on its most crowded grains, and a hold is counted in the
+/// steps that their own masses would have taken.
 #[test]
 fn the_step_of_wide_packings_does_not_follow_the_most_crowded_grains() {
     let settings = Settings { grains: 806, squeeze_rate: 0.03, ..Settings::default() };
@@ -375,7 +375,7 @@ fn an_overlapping_start_relaxes_at_a_capped_speed() {
     assert!(capped && c.measure().largest_overlap < 0.05, "{}", c.measure().largest_overlap);
 }
 
-/// A gas: grains without overlap, at a packing fraction, with random velocities and spins.
+/// A gas: grains without overlap, at a given packing fraction, with random velocities and spins.
 fn gas(n: usize, ratio: f64, fraction: f64, speed: f64, settings: &Settings) -> Compression {
     let mut u = random(7);
     let diameter: Vec<f64> =
@@ -430,8 +430,8 @@ fn undamped_gas_keeps_energy_and_momentum() {
     }
 }
 
-/// With friction, no damping and true masses, the energy of a gas of two sizes falls and never rises, beyond
-/// the time step's error of single contacts.
+/// With friction, no damping and true masses, the energy of a gas of two sizes falls and never rises by
+/// more than the time step's error in single contacts.
 #[test]
 fn friction_makes_no_energy_at_any_size_ratio() {
     for ratio in [1.0, 10.0, 36.0, 100.0] {
@@ -463,8 +463,8 @@ fn friction_makes_no_energy_at_any_size_ratio() {
 }
 
 /// Case of Vyas and others: a small grain squeezed between two large ones has to leave; it sticks if the
-/// tangential motion is taken in the wrong plane. Two large grains that approach expel it here faster than
-/// they come, and the energy of the three never rises above the initial one.
+/// tangential motion is taken in the wrong plane. Here two approaching large grains expel it faster than
+/// they approach, and the energy of the three never rises above the initial energy.
 #[test]
 fn a_small_grain_between_large_ones_is_expelled() {
     for ratio in [4.0, 10.0, 36.0, 100.0] {
@@ -475,7 +475,7 @@ fn a_small_grain_between_large_ones_is_expelled() {
             step_fraction: 0.1,
             ..elastic(Contact::Hertz)
         };
-        // The small grain touches both, so far off their axis that friction cannot hold it.
+        // The small grain touches both, so far from their axis that friction cannot hold it.
         let big: f64 = 0.5 * ratio;
         let half = big + 0.25;
         let gap = ((big + 0.5) * (big + 0.5) - half * half).sqrt();

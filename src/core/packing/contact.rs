@@ -1,61 +1,61 @@
-//! The contact law, and the pass that turns the lists into forces.
+//! The contact law, and the pass that computes forces from the lists.
 //!
 //! # Law
 //! With overlap `d`, reduced radius `R`, reduced mass `m`, contact stiffness `E* = G / (1 - nu)`:
 //!
 //! - normal, Hertz: `4/3 E* sqrt(R) d^1.5`; tangent stiffness `kn = 2 E* sqrt(R d)`;
-//! - tangential, Mindlin without micro-slip: spring force `T` grows by `kt` times the tangential motion, `kt
-//!   = 8 G* sqrt(R d) = kn 2 (1 - nu) / (2 - nu)`. Where `kt` falls, `T` falls with it (Thornton, Cummins &
-//!   Cleary 2013, doi:10.1016/j.powtec.2012.08.012), so that no cycle of loading and unloading makes energy;
+//! - tangential, Mindlin without micro-slip: spring force `T` grows by `kt` times the tangential motion,
+//!   `kt = 8 G* sqrt(R d) = kn 2 (1 - nu) / (2 - nu)`. If `kt` falls, `T` falls with it (Thornton,
+//!   Cummins & Cleary 2013, doi:10.1016/j.powtec.2012.08.012), so that no load cycle creates energy;
 //! - damping: normal `2 sqrt(5/6) b sqrt(m kn)` times the approach, `b = -ln e / sqrt(pi^2 + ln^2 e)`, gives
 //!   the restitution `e` at every speed (Tsuji, Tanaka & Ishida 1992, doi:10.1016/0032-5910(92)88030-L);
 //!   tangential the same with `kt`;
 //! - no tension: the normal force with its damping is never below zero;
-//! - Coulomb: spring and damping together at most friction times the normal force; where they slip both are
-//!   cut alike.
+//! - Coulomb: spring and damping together are at most friction times the normal force; if they slip, both are
+//!   reduced in proportion.
 //!
 //! Torques act with the lever arms `r ri / (ri + rj)`, which add up to the distance `r` of the centres.
 //! Tests use a linear spring (constant `kn`).
 //!
 //! # Time levels
-//! Positions are at full steps, velocities at half steps. The tangential motion over a step is the velocity
-//! of the half step in the plane perpendicular to the half step's normal, and `T` is then turned into the
-//! plane of the full step. The usual scheme takes the half step's velocity in the full step's plane; a part
-//! of the normal motion is then counted as tangential, and small grains between large ones stick or gain
-//! energy beyond a size ratio of about 3 (Vyas, Ottino, Lueptow & Umbanhowar 2025,
+//! Positions are at full steps, velocities at half steps. The tangential motion over a step is the
+//! velocity of the half step in the plane perpendicular to the half step's normal; `T` is then rotated
+//! into the plane of the full step. The usual scheme takes the half step's velocity in the full step's
+//! plane; some of the normal motion then counts as tangential, and small grains between large ones stick
+//! or gain energy beyond a size ratio of about 3 (Vyas, Ottino, Lueptow & Umbanhowar 2025,
 //! doi:10.1016/j.cpc.2025.109524).
 //!
 //! # Order
-//! Each chunk first finds the touching ones among its close pairs, from the positions alone (in a wide
-//! gradation four in ten touch), and then goes through those in list order, in blocks: gather, compute lane
-//! by lane, scatter. The choice of close pairs changes no bit: a pair that does not touch leaves no trace.
-//! Forces on grains of other chunks go to outboxes, one per chunk, which their chunk adds in the order of the
-//! senders. All sums therefore have one order, whatever the number of threads or the width of the vector
-//! unit.
+//! Each chunk first finds the touching pairs among its close pairs, from the positions alone (in a wide
+//! gradation four in ten touch), and then processes them in list order, in blocks: gather, compute lane
+//! by lane, scatter. The choice of close pairs changes no bit: a pair that does not touch has no effect.
+//! Forces on grains of other chunks go to outboxes, one per chunk, which the receiving chunk adds in the
+//! order of the senders. So all sums have one order, whatever the number of threads or the width of the
+//! vector unit.
 
 use super::neighbours::{Aspect, GrainChunk, Reach, nearest};
 use multiversion::multiversion;
 
-/// Contacts computed together.
+/// Number of contacts computed together.
 const BLOCK: usize = 64;
 
 /// Contact parameters in reduced units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Law {
-    /// Hertz contacts; else linear springs.
+    /// True for Hertz contacts, false for linear springs.
     pub hertz: bool,
     /// `2 E*` for Hertz, the spring constant for linear springs.
     pub stiffness: f64,
-    /// Tangential by normal stiffness.
+    /// Ratio of tangential to normal stiffness.
     pub tangential: f64,
     /// Damping coefficient over `sqrt(m kn)`.
     pub damping: f64,
     pub friction: f64,
-    /// Cuts the normal force at zero.
+    /// True to cut the normal force at zero.
     pub clip: bool,
 }
 
-/// Input of one step besides the grains.
+/// Input of one step, except the grains.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Now {
     pub cell: f64,
@@ -67,7 +67,7 @@ pub(super) struct Now {
     pub pick: Option<Reach>,
 }
 
-/// Grains in the form that the contact pass reads.
+/// Grains as read by the contact pass.
 #[derive(Clone, Copy)]
 pub(super) struct Grains<'a> {
     /// Position in units of the cell; radius.
@@ -132,7 +132,7 @@ type Lanes = [f64; BLOCK];
 struct Block {
     /// Separation from the larger to the smaller grain along x, y, z, in units of the cell.
     gap: [Lanes; 3],
-    /// Velocity of the smaller grain minus the larger's, along x, y, z.
+    /// Velocity of the smaller grain minus that of the larger, along x, y, z.
     motion: [Lanes; 3],
     /// Radius times angular velocity, summed over both, about x, y, z.
     spin: [Lanes; 3],
@@ -146,7 +146,7 @@ struct Block {
     force: [Lanes; 3],
     /// Torque per radius about x, y, z.
     torque: [Lanes; 3],
-    /// Normal stiffness; zero where the grains do not touch.
+    /// Normal stiffness; zero if the grains do not touch.
     stiffness: Lanes,
     normal: Lanes,
     /// Normal force times distance.
@@ -172,9 +172,9 @@ impl Default for Block {
     }
 }
 
-/// Adds the forces and torques on the grains of `chunk` from the pairs that it lists to `force` and `torque`
-/// (of its grains), and those for other chunks to the outboxes. The fourth entry of a force sums normal
-/// stiffness; the fourth entry of a torque is zero.
+/// Adds the forces and torques from the pairs that `chunk` lists: those on its own grains to `force` and
+/// `torque`, those on others to the outboxes. The fourth entry of a force sums normal stiffness; the
+/// fourth entry of a torque is zero.
 #[multiversion(targets("x86_64+avx+avx2+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx+avx2"))]
 pub(super) fn pass(
     chunk: &mut GrainChunk,
@@ -222,7 +222,7 @@ fn sweep<const FRICTION: bool, const HERTZ: bool>(
     work.hits = hits;
 }
 
-/// Collects the close pairs that touch in `hits`, in list order; the others lose their memory.
+/// Collects the touching close pairs in `hits`, in list order; the others lose their memory.
 #[inline(always)]
 fn touching(chunk: &mut GrainChunk, position: &[[f64; 4]], now: &Now, hits: &mut Vec<u32>) {
     hits.clear();
@@ -253,7 +253,7 @@ fn touching(chunk: &mut GrainChunk, position: &[[f64; 4]], now: &Now, hits: &mut
     }
 }
 
-/// Separation to the nearest image, from a difference in units of the cell's width; and the distance.
+/// Separation to the nearest image, from a difference in units of the cell's width, and the distance.
 #[inline(always)]
 fn distance([x, y, z]: [f64; 3], now: &Now) -> ([f64; 3], f64) {
     let [x, y, z] = [nearest(x) * now.cell, nearest(y) * now.cell, now.aspect.nearest(z) * now.cell];

@@ -1,5 +1,5 @@
-//! The content of a packing file before anything is added to it: its fields, its unit, and the errors of a
-//! file that cannot be used.
+//! The content of a packing file before it is completed: its fields, its unit, and the errors of a file
+//! that cannot be used.
 
 use super::Cell;
 use crate::gradation::{Position, shortened};
@@ -8,17 +8,17 @@ use crate::store::in_mb;
 use serde::{Deserialize, Serialize};
 use std::str::FromStr;
 
-/// Largest packing file that is read, in bytes, and largest size that a packed file may unpack to.
+/// Maximum size of a packing file and of the content of a compressed one, in bytes.
 pub const PACKING_FILE_LIMIT_BYTES: u64 = 4 << 30;
 
-/// Formats that are read, in words.
+/// Accepted formats, in words.
 const KNOWN: &str = "CSV with columns as x_mm, y_mm, z_mm and diameter_mm (or Points:0, Points:1, Points:2 \
                      and Diameter of ParaView and MFIX; radius will do), text dumps of LAMMPS and LIGGGHTS, \
                      Yade's export.text, MercuryDPM's .data, and points of VTK with a diameter or radius \
                      (.vtk, .vtp, .vtu); each also packed by gzip";
 
 /// Usual units of other programs.
-const UNITS_OF_PROGRAMS: &str = " (LIGGGHTS, Yade, MercuryDPM and MFIX mostly have metres; LAMMPS says it \
+const UNITS_OF_PROGRAMS: &str = " (LIGGGHTS, Yade, MercuryDPM and MFIX mostly use metres; LAMMPS states it \
                                  after `dump_modify ID units yes`)";
 
 /// A packing file that cannot be used.
@@ -36,18 +36,18 @@ pub enum ImportError {
     #[error("{0} is a folder; name a file of grains: {known}", known = KNOWN)]
     Folder(String),
     /// A file of no known format.
-    #[error("{0} is no packing that is known: {1}. Known are: {known}", known = KNOWN)]
+    #[error("{0} is not in a known packing format: {1}. Known formats: {known}", known = KNOWN)]
     Unknown(String, String),
     /// Neither the file nor the user gives the unit of its lengths.
     #[error(
-        "{0} does not say the unit of its lengths, and a guess may be wrong by a factor of 1000; say it: \
+        "{0} does not say the unit of its lengths, and a guess may be wrong by a factor of 1000; give it: \
          --unit m (or cm, mm, um, nm), in a scene network.unit = \"m\"{programs}",
         programs = UNITS_OF_PROGRAMS
     )]
     NoUnit(String),
     /// Neither the file nor the user tells if the boundaries are periodic.
     #[error(
-        "{0} does not say whether its boundaries are periodic; say it: --cell none for free ones, --cell \
+        "{0} does not say whether its boundaries are periodic; give them: --cell none for free ones, --cell \
          Lx,Ly,Lz for a periodic cell with a corner at the origin (in the file's unit){1}; in a scene \
          network.cell"
     )]
@@ -67,17 +67,17 @@ pub enum ImportError {
         limit = in_mb(PACKING_FILE_LIMIT_BYTES)
     )]
     TooLarge(String),
-    /// Bytes that are no UTF-8 text.
+    /// Bytes that are not UTF-8 text.
     #[error("{file}, line {line}: byte 0x{byte:02X} is not UTF-8 text; allowed: a text file saved as UTF-8")]
     Encoding {
         /// File as the user named it.
         file: String,
         /// Line, counted from 1.
         line: usize,
-        /// The first byte that does not belong.
+        /// First invalid byte.
         byte: u8,
     },
-    /// A value that is not allowed in its place.
+    /// A value that is not allowed at its place.
     #[error("{at}: \"{value}\" is not allowed; allowed: {allowed}")]
     Value {
         /// Place of the value.
@@ -102,12 +102,12 @@ pub enum ImportError {
 /// A line of a file and its number, counted from 1.
 pub(super) type Line<'a> = (usize, &'a str);
 
-/// The lines that are not blank.
+/// Returns the lines that are not blank, with their numbers.
 pub(super) fn numbered(text: &str) -> impl Iterator<Item = Line<'_>> + Clone {
     text.lines().enumerate().map(|(i, line)| (i + 1, line)).filter(|(_, line)| !line.trim().is_empty())
 }
 
-/// Bytes as text.
+/// Decodes bytes as text.
 pub(super) fn in_utf8<'a>(file: &str, content: &'a [u8]) -> Result<&'a str, ImportError> {
     std::str::from_utf8(content).map_err(|error| {
         let good = error.valid_up_to();
@@ -154,7 +154,7 @@ pub(super) fn number(
     }
 }
 
-/// Reads a low and a high bound, which are `shown` if they are in the wrong order.
+/// Reads a low and a high bound; `shown` is their text for the error if their order is wrong.
 pub(super) fn bounds(
     file: &str,
     line: usize,
@@ -173,15 +173,15 @@ pub(super) fn bounds(
 /// Names of the four columns in messages.
 pub(super) const NAMES: [&str; 4] = ["x", "y", "z", "diameter"];
 
-/// Grains as a file gives them.
+/// Grains as given by a file.
 pub(super) struct FileGrains {
-    /// x, y, z and diameter of each, in the file's unit.
+    /// x, y, z and diameter of each grain, in the file's unit.
     pub grains: Vec<[f64; 4]>,
     pub unit: Option<LengthUnit>,
     pub cell: FileCell,
-    /// The line that names the columns, for messages.
+    /// Line that names the columns, for messages.
     pub line: usize,
-    /// Notes to the user on how the file was understood.
+    /// Notes to the user on how the file was read.
     pub notes: Vec<String>,
 }
 
@@ -189,15 +189,15 @@ pub(super) struct FileGrains {
 pub(super) enum FileCell {
     /// A complete cell.
     Known(Cell),
-    /// Bounds of the grains, without telling if they are periodic.
+    /// Bounds of the grains, not known to be periodic.
     Bounds([[f64; 2]; 3]),
-    /// Periodic along some axes only, which no packing here can be.
+    /// Periodic along some axes only, which no packing here supports.
     Mixed,
     /// Not given.
     Unsaid,
 }
 
-/// Reads one grain's row: the four numbers at `places` among its fields, the last times `factor`.
+/// Reads one grain's row: the four numbers at `places` among its fields, the last multiplied by `factor`.
 pub(super) fn grain(
     file: &str,
     line: usize,

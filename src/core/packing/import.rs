@@ -1,15 +1,15 @@
 //! Reads packings from files of this program and of others.
 //!
 //! # Formats
-//! - text ([`tables`](super::tables)): CSV, which is this program's own and what spreadsheets and ParaView
-//!   save of points (MFIX and other programs write points for it); dumps of LAMMPS and LIGGGHTS; what Yade's
-//!   `export.text` writes, and MercuryDPM's `.data`;
-//! - points of VTK with a diameter or radius, as LIGGGHTS, Yade, MercuryDPM and ParaView write them
+//! - text ([`tables`](super::tables)): CSV, as saved by this program, spreadsheets and ParaView (MFIX
+//!   and other programs write points for it); dumps of LAMMPS and LIGGGHTS; Yade's `export.text`;
+//!   MercuryDPM's `.data`;
+//! - VTK points with a diameter or radius, as written by LIGGGHTS, Yade, MercuryDPM and ParaView
 //!   ([`vtk`](super::vtk)).
 //!
-//! Each of them may be packed by gzip. The first line decides the format, not the file's name. The unit of
-//! length and the boundaries are never guessed: if a file does not give them, [`ReadOptions`] does, or the
-//! file is refused.
+//! Each may be compressed by gzip. The first line determines the format, not the file's name. The unit
+//! of length and the boundaries are never guessed: if a file does not give them, [`ReadOptions`] must,
+//! or the file is refused.
 
 use super::fields::{
     FileCell, FileGrains, ImportError, LengthUnit, PACKING_FILE_LIMIT_BYTES, in_utf8, refused,
@@ -27,7 +27,7 @@ use std::str::FromStr;
 /// Facts about a packing file that the file itself does not give.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReadOptions {
-    /// The unit of its lengths.
+    /// Unit of its lengths.
     pub unit: Option<LengthUnit>,
     /// Its cell.
     pub cell: Option<CellOption>,
@@ -39,7 +39,7 @@ pub struct ReadOptions {
 pub enum CellOption {
     /// Free boundaries.
     None,
-    /// Periodic between the bounds that the file gives.
+    /// Periodic between the bounds given by the file.
     Bounds,
     /// Periodic from the origin to these lengths along x, y, z, in the file's unit.
     Lengths([f64; 3]),
@@ -95,12 +95,12 @@ impl Packing {
         Ok(Self::read_as(path, &ReadOptions::default())?.0)
     }
 
-    /// Reads a packing, with notes to the user on how it was understood: the frame, the unit.
+    /// Reads a packing, with notes to the user on how it was read: the frame, the unit.
     ///
     /// # Errors
-    /// A file that cannot be read, is a folder, too large or no text; one of no known format, or that leaves
-    /// its unit or cell open while `options` do too; any departure from its format, with the line, the field,
-    /// the value and the allowed values.
+    /// A file that cannot be read, is a folder, is too large or is not text; a file of an unknown
+    /// format, or without unit or cell if `options` do not give them; any departure from its format,
+    /// with the line, the field, the value and the allowed values.
     pub fn read_as(
         path: impl AsRef<Path>,
         options: &ReadOptions,
@@ -114,13 +114,13 @@ impl Packing {
         match read_regular(path, PACKING_FILE_LIMIT_BYTES).map_err(failed)? {
             Some(bytes) => Self::parse_as(&file, &bytes, options),
             None if std::fs::metadata(path).is_ok_and(|meta| !meta.is_file()) => {
-                Err(failed(std::io::Error::other("is no regular file")))
+                Err(failed(std::io::Error::other("is not a regular file")))
             }
             None => Err(ImportError::TooLarge(file)),
         }
     }
 
-    /// [`Packing::read`] on the content of a file, called `name` in messages.
+    /// Parses the content of a file like [`Packing::read`]; `name` is used in messages.
     ///
     /// ```
     /// use voidwalk_core::packing::{Cell, Packing};
@@ -133,7 +133,7 @@ impl Packing {
         Ok(Self::parse_as(name, content, &ReadOptions::default())?.0)
     }
 
-    /// [`Packing::read_as`] on the content of a file, called `name` in messages.
+    /// Parses the content of a file like [`Packing::read_as`]; `name` is used in messages.
     ///
     /// ```
     /// use voidwalk_core::packing::{CellOption, LengthUnit, Packing, ReadOptions};
@@ -155,7 +155,7 @@ impl Packing {
         if let Some((_, what)) = NOT_TEXT.iter().find(|(begin, _)| content.starts_with(begin)) {
             return Err(ImportError::Unknown(name.into(), (*what).into()));
         }
-        // These two may hold binary numbers.
+        // These two may contain binary numbers.
         if content.starts_with(b"# vtk DataFile") {
             return complete(name, legacy(name, content)?, options);
         }
@@ -180,7 +180,7 @@ impl Packing {
 
 const GZIP: &[u8] = b"\x1f\x8b";
 
-/// Unpacks the content of a gzip file, once: nothing inside it is unpacked further.
+/// Unpacks the content of a gzip file once: nothing inside it is unpacked again.
 fn unpacked(name: &str, content: &[u8]) -> Result<Vec<u8>, ImportError> {
     let (mut bytes, limit) = (Vec::new(), PACKING_FILE_LIMIT_BYTES);
     let read = flate2::read::MultiGzDecoder::new(content).take(limit + 1).read_to_end(&mut bytes);
@@ -198,20 +198,20 @@ fn unpacked(name: &str, content: &[u8]) -> Result<Vec<u8>, ImportError> {
     Ok(bytes)
 }
 
-/// Tells if a VTK file in XML begins here, perhaps behind a byte order mark and a declaration.
+/// Tells if the content begins as XML of VTK, possibly after a byte order mark and a declaration.
 fn is_vtk_in_xml(content: &[u8]) -> bool {
     let start = String::from_utf8_lossy(&content[..content.len().min(1000)]);
     let start = start.trim_start_matches('\u{feff}').trim_start();
     start.starts_with("<VTKFile") || start.starts_with("<?xml") && start.contains("<VTKFile")
 }
 
-/// First bytes of some files that are no text, and the names of those files.
+/// First bytes of some binary files, and descriptions of those files.
 const NOT_TEXT: [(&[u8], &str); 2] = [
     (b"PK\x03\x04", "a zip or a workbook (save a workbook's sheet as CSV)"),
     (b"\x28\xb5\x2f\xfd", "a compressed file (zstd): unpack it first"),
 ];
 
-/// Makes the packing (mm) from the file and from `options`; if both give a value, the file's counts.
+/// Makes the packing (mm) from the file and from `options`; if both give a value, the file's is used.
 fn complete(
     file: &str,
     grains: FileGrains,
@@ -222,7 +222,7 @@ fn complete(
         std::array::from_fn(|axis| grains.iter().map(|grain| grain[axis]).collect::<Vec<f64>>());
     let unit = match (unit, options.unit) {
         (Some(from_file), Some(given)) if from_file != given => {
-            let allowed = format!("{}: the file says the unit of its lengths itself", from_file.name());
+            let allowed = format!("{}: the file states the unit of its lengths", from_file.name());
             return Err(refused(file, line, "unit", given.name(), allowed));
         }
         (Some(from_file), _) => from_file,
@@ -232,7 +232,7 @@ fn complete(
     let cell = match (cell, options.cell) {
         (FileCell::Known(cell), None) => cell,
         (FileCell::Known(_), Some(_)) => {
-            let allowed = "nothing: the file says its boundaries itself";
+            let allowed = "nothing: the file states its boundaries";
             return Err(refused(file, line, "cell", "as it was given", allowed));
         }
         (_, Some(CellOption::None)) => Cell::Free,
@@ -260,14 +260,14 @@ fn complete(
     fits(file, &packing, matches!(options.cell, Some(CellOption::Lengths(_))))?;
     if unit != LengthUnit::Mm {
         into_mm(&mut packing, unit, (file, line))?;
-        notes.push(format!("lengths are in {}, and are turned into mm", unit.words()));
+        notes.push(format!("lengths are in {}, converted to mm", unit.words()));
     }
     Ok((packing, notes))
 }
 
-/// Refuses grains that do not fit their cell: a wrong cell would give constrictions that are too fine, so a
-/// filter that seems to hold more. Programs may keep grains outside a cell that they wrote themselves, but no
-/// other check can confirm a cell given by hand.
+/// Refuses grains that do not fit their cell: a wrong cell would give constrictions that are too fine,
+/// so a filter that seems to retain more. Programs may leave grains outside a cell that they wrote, but
+/// a cell given by hand has no other confirmation.
 fn fits(file: &str, packing: &Packing, by_hand: bool) -> Result<(), ImportError> {
     let Cell::Periodic(lengths) = packing.cell else { return Ok(()) };
     let misfit = |problem| Err(ImportError::Misfit(file.into(), problem));
@@ -296,7 +296,7 @@ fn fits(file: &str, packing: &Packing, by_hand: bool) -> Result<(), ImportError>
     Ok(())
 }
 
-/// Part of a cell's length that rounding in a file may take off or add.
+/// Fraction of a cell's length by which rounding in a file may change it.
 const ROUNDING: f64 = 1e-6;
 
 fn into_mm(packing: &mut Packing, unit: LengthUnit, (file, line): (&str, usize)) -> Result<(), ImportError> {
@@ -310,7 +310,7 @@ fn into_mm(packing: &mut Packing, unit: LengthUnit, (file, line): (&str, usize))
         let given = *length;
         *length *= unit.mm();
         if !length.is_finite() || (*length == 0.0) != (given == 0.0) {
-            let allowed = format!("lengths in {} that are numbers in mm", unit.words());
+            let allowed = format!("lengths in {} that are finite numbers in mm", unit.words());
             return Err(refused(file, line, "units", &given.to_string(), allowed));
         }
     }

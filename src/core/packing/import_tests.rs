@@ -1,4 +1,4 @@
-//! Packing files: every dress, every refusal with its words, and no panic.
+//! Packing files: every accepted form, every refusal with its words, and no panic.
 
 use super::{Cell, CellOption, LengthUnit, Packing, ReadOptions};
 use base64::Engine;
@@ -33,7 +33,7 @@ fn expected() -> Packing {
     }
 }
 
-/// Expects an error that contains `message`, where `|` stands between a value and what is allowed.
+/// Expects an error that contains `message`, where `|` separates a value from what is allowed.
 fn assert_refused(read: Result<Packing, String>, message: &str) {
     let error = read.expect_err(message);
     assert!(error.contains(&message.replace(" | ", " is not allowed; allowed: ")), "{error}\n{message}");
@@ -88,7 +88,7 @@ fn a_dump_says_which_frame_and_which_units_were_taken() {
             assert_eq!(packing.x, [0.5 * scale, 1.5 * scale]);
             assert_eq!(packing.cell, Cell::Periodic([2.0 * scale, 3.0 * scale, 4.0 * scale]));
             // The user names the unit.
-            let lengths = format!("lengths are in {words}, and are turned into mm");
+            let lengths = format!("lengths are in {words}, converted to mm");
             assert_eq!(notes, ["holds 2 frames: the last one, timestep 0, is taken", lengths.as_str()]);
         }
     }
@@ -99,13 +99,13 @@ fn a_dump_says_which_frame_and_which_units_were_taken() {
     let given = |unit| ReadOptions { unit: Some(unit), cell: None };
     assert_eq!(parsed_as(DUMP, &given(LengthUnit::Mm)), Ok(expected()));
     assert_eq!(parsed_as(DUMP, &given(LengthUnit::M)).unwrap().diameter, [1e3, 750.0]);
-    // Reduced units have no length of their own, and two that differ give no answer.
+    // Reduced units have no length, and two different units give no answer.
     let reduced = format!("{}{DUMP}", units("lj"));
     assert_eq!(parsed_as(&reduced, &given(LengthUnit::Mm)), Ok(expected()));
     let both = parsed_as(&format!("{}{DUMP}", units("si")), &given(LengthUnit::Mm)).unwrap_err();
-    assert!(both.contains("unit: \"mm\" is not allowed; allowed: m: the file says the unit"), "{both}");
+    assert!(both.contains("unit: \"mm\" is not allowed; allowed: m: the file states the unit"), "{both}");
     let cell = parsed_as(DUMP, &ReadOptions { unit: Some(LengthUnit::Mm), cell: Some(CellOption::None) });
-    assert!(cell.unwrap_err().contains("the file says its boundaries itself"));
+    assert!(cell.unwrap_err().contains("the file states its boundaries"));
     for name in ["lj", "real", "metal", "electron", "SI", ""] {
         let refused = parsed(&format!("{}{DUMP}", units(name))).unwrap_err();
         let message = format!("f, line 2, units: \"{name}\" is not allowed; allowed: si, cgs, micro or nano");
@@ -114,7 +114,7 @@ fn a_dump_says_which_frame_and_which_units_were_taken() {
     let two = parsed(&format!("{}{DUMP}{}{DUMP}", units("si"), units("cgs"))).unwrap_err();
     assert!(two.contains("line 15, units: \"cgs\"") && two.contains("the same units"), "{two}");
     let huge = parsed(&format!("{}{}", units("si"), DUMP.replace("0.5 2.5", "1e307 2.5"))).unwrap_err();
-    assert!(huge.contains("lengths in metres that are numbers in mm"), "{huge}");
+    assert!(huge.contains("lengths in metres that are finite numbers in mm"), "{huge}");
 }
 
 #[test]
@@ -136,12 +136,12 @@ fn bad_files_are_refused_with_their_place() {
         (String::new(), "f ends after line 0; expected a line \"# cell_mm"),
         (
             csv("# cell_mm = 2, 3, 4\n", ""),
-            "f does not say whether its boundaries are periodic; say it: --cell none",
+            "f does not say whether its boundaries are periodic; give them: --cell none",
         ),
         (csv("# cell_mm = 2, 3, 4\nx_mm", "name"), "one column each for x, y, z"),
         (
             "name,colour\n1,2\n".into(),
-            "f is no packing that is known: line 1 is \"name,colour\". Known are: CSV",
+            "f is not in a known packing format: line 1 is \"name,colour\". Known formats: CSV",
         ),
         (csv("2, 3, 4", "2, 3"), "f, line 1, cell"),
         (csv("2, 3, 4", "2, nan, 4"), "f, line 1, cell_mm: \"nan\" | a finite number above 0"),
@@ -169,7 +169,7 @@ fn bad_files_are_refused_with_their_place() {
         (dump("ATOMS\n2", "ATOMS\n1"), "f, line 11, atoms"),
         (dump("radius", "size"), "a column called diameter or radius"),
         (dump("x y z", "x y q"), "columns x, y and z"),
-        (dump("\n1 1", "\n2 1"), "f, line 11, id: \"2\" | every id once (it stands on line 10 too)"),
+        (dump("\n1 1", "\n2 1"), "f, line 11, id: \"2\" | every id once (it is also on line 10)"),
         (dump("0.375", "nan"), "f, line 10, diameter: \"nan\""),
         (DUMP[..80].to_string(), "f ends after line"),
     ] {
@@ -252,7 +252,7 @@ fn files_of_other_programs_are_read_when_unit_and_cell_are_said() {
     close(&moved, [1.0, 0.0, -1.0], "bounds");
     let (_, notes) = Packing::parse_as("f", mercury.as_bytes(), &options("none")).unwrap();
     assert!(notes[0].contains("holds 2 frames: the last one, time 1.5, is taken"), "{notes:?}");
-    // A unit in the names does as well as one that the user gives.
+    // A unit in the names is as good as one given by the user.
     let named = paraview.replace("Points:0", "x (m)").replace("Points:1", "y (m)").replace("Points:2", "z_m");
     let named =
         parsed_as(&named.replace("Diameter", "Diameter [m]"), &ReadOptions { unit: None, ..options("none") });
@@ -278,7 +278,7 @@ fn files_of_other_programs_that_are_broken_are_refused_with_their_place() {
         assert_refused(parsed_as(text, &options), message);
     }
     let zipped = Packing::parse("f", b"PK\x03\x04").unwrap_err().to_string();
-    let looks_like = "a zip or a workbook (save a workbook's sheet as CSV). Known are: CSV";
+    let looks_like = "a zip or a workbook (save a workbook's sheet as CSV). Known formats: CSV";
     assert!(zipped.contains(looks_like), "{zipped}");
     for bad in ["", "1,2", "1,2,0", "1,2,nan", "box"] {
         assert!(bad.parse::<CellOption>().unwrap_err().starts_with("write none for free"), "{bad}");
@@ -318,7 +318,7 @@ fn a_box_that_is_periodic_along_some_axes_is_free_where_the_user_says_so() {
     }
 }
 
-/// A wrong cell gives finer constrictions: a filter that seems to hold more.
+/// A wrong cell gives finer constrictions: a filter that seems to retain more.
 #[test]
 fn grains_wider_than_a_cell_given_by_hand_are_refused() {
     let text = "#format x_y_z_r\n0.1 0 0 0.05\n1.9 0.5 0.5 0.05\n";
@@ -356,7 +356,7 @@ fn read_vtk(content: &[u8]) -> Result<Packing, String> {
     Packing::parse_as("f", content, &options).map(|read| read.0).map_err(|error| error.to_string())
 }
 
-/// The two grains of these tests without a cell.
+/// The two grains of these tests, without a cell.
 fn expected_free() -> Packing {
     Packing { cell: Cell::Free, ..expected() }
 }
@@ -405,7 +405,7 @@ fn files_before_xml() {
     ];
     let binary: Vec<u8> = parts.iter().flat_map(|(text, bytes)| [text.as_bytes(), bytes].concat()).collect();
     assert_eq!(read_vtk(&binary), Ok(expected_free()));
-    // Every shorter file is refused, or lacks only the part behind the radii.
+    // Every shorter file is refused, or lacks only data after the radii.
     for end in 0..binary.len() {
         let shorter = read_vtk(&binary[..end]);
         assert!(shorter.is_err() || shorter == Ok(expected_free()), "{end}: {shorter:?}");
@@ -429,7 +429,7 @@ fn with_length(bytes: &[u8]) -> Vec<u8> {
     [&(bytes.len() as u32).to_le_bytes()[..], bytes].concat()
 }
 
-/// Two blocks of 4 bytes or fewer packed by zlib, and the header before them.
+/// Two blocks of at most 4 bytes compressed by zlib, and the header before them.
 fn zlib(bytes: &[u8]) -> [Vec<u8>; 2] {
     let half = bytes.len() / 2 + 2;
     let blocks: Vec<Vec<u8>> = bytes
@@ -451,7 +451,7 @@ fn files_in_xml() {
     let text = [words(&PLACES), words(&RADII)];
     let ascii = in_xml("", [("format=\"ascii\"", &text[0]), ("format=\"ascii\"", &text[1])], b"");
     assert_eq!(read_vtk(&ascii), Ok(expected_free()));
-    // Notes of VTK on an array lie within it.
+    // VTK's notes on an array are inside it.
     let noted =
         text.each_ref().map(|text| format!("{text}\n<InformationKey><Value>9</Value></InformationKey>"));
     let noted = [("format=\"ascii\"", noted[0].as_str()), ("format=\"ascii\"", &noted[1])];

@@ -1,31 +1,31 @@
 //! Packings of filter grains, and their compression.
 //!
 //! # Protocol
-//! All gradations and frictions share one protocol ([`compress`]):
+//! All gradations and frictions use the same protocol ([`compress`]):
 //!
-//! 1. sizes stratified by number ([`draw`]), random places without overlap ([`random_start`]);
-//! 2. squeeze: the cell shrinks at a constant rate to a part of the expected packing fraction;
-//! 3. compress: the strain rate is proportional to the lack of pressure, up to a limit, with the friction
-//!    that sets the density; once the pressure has come within 2 % the drag on the grains is raised to
+//! 1. sizes stratified by number ([`draw`]), random positions without overlap ([`random_start`]);
+//! 2. squeeze: the cell shrinks at a constant rate to a fraction of the expected packing fraction;
+//! 3. compress: the strain rate is proportional to the pressure deficit, up to a limit, with the friction
+//!    that sets the density; once the pressure is within 2 %, the drag on the grains is raised to
 //!    `settling_drag`;
-//! 4. settle: repeat step 3 with the final friction, if that differs.
+//! 4. settle: repeat step 3 with the final friction, if that is different.
 //!
 //! # End of a stage
-//! The state is checked every 100 steps: the pressure within 0.5 %, the root mean square unbalanced force
-//! below 5 % of the mean contact force, and the coordination number within 0.05 and the void ratio within
-//! 5e-4 of their values `hold_steps` ago; and kinetic below 1 % of elastic energy at the end.
+//! The state is checked every 100 steps. The pressure must be within 0.5 %, the root mean square unbalanced
+//! force below 5 % of the mean contact force, the coordination number within 0.05 and the void ratio within
+//! 5e-4 of their values `hold_steps` ago, and at the end the kinetic energy below 1 % of the elastic energy.
 //!
-//! The paper's criterion is the coordination number alone, held for 20,000 of its shorter steps. It also
-//! holds while a packing still creeps, so the void ratio has to hold too. No packing stops creeping
-//! altogether: without friction it goes on by ever rarer avalanches, and a wide grading with high friction by
-//! sliding, both about as the logarithm of time (void ratio 0.003 lower for Cu 1.5, and 0.002 for Cu 3, both
-//! without friction, when the unbalanced force has to fall to 2 %, which takes two to three times the steps).
-//! So some rate has to count as rest; this one is a quarter, per hold, of the 0.002 to which the void ratio
-//! is wanted. Grains that touch nothing make the kinetic energy fall slowly and the void ratio not at all, so
-//! that limit is wide; [`PackReport`] gives the values reached.
+//! The paper's criterion is the coordination number alone, held for 20,000 of its shorter steps. That
+//! also holds while a packing still creeps, so the void ratio has to hold too. No packing stops creeping
+//! altogether: without friction creep continues by ever rarer avalanches, and in a wide gradation with
+//! high friction by sliding, both roughly as the logarithm of time (if the unbalanced force has to fall
+//! to 2 %, without friction, the void ratio is 0.003 lower for Cu 1.5 and 0.002 for Cu 3, and the steps
+//! are two to three times as many). So some rate has to count as rest; this one is, per hold, a quarter
+//! of the 0.002 to which the void ratio is needed. Rattlers make the kinetic energy fall slowly and the
+//! void ratio not at all, so that limit is wide; [`PackReport`] gives the values reached.
 //!
-//! If crowded grains are moved as heavier ones (the largest grain 20 times as wide as the smallest or more),
-//! steps are longer, and a hold is as many steps as the grains' own masses would take for the same time.
+//! If crowded grains are given a larger mass (the largest grain at least 20 times as wide as the smallest),
+//! steps are longer, and a hold lasts as many steps as the grains' own masses would take for the same time.
 
 #[cfg(test)]
 mod checks;
@@ -65,10 +65,10 @@ pub enum Cell {
     Free,
 }
 
-/// Filter grains as columns; grain `i` is entry `i` of each.
+/// Filter grains as columns; grain `i` is entry `i` of each column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Packing {
-    /// Cell that holds the grains.
+    /// Cell containing the grains.
     pub cell: Cell,
     /// Centre along x (mm).
     pub x: Vec<f64>,
@@ -93,7 +93,7 @@ impl Packing {
 }
 
 impl Packing {
-    /// This packing as CSV: the cell, a header, a row per grain. [`Packing::parse`] reads the same bits back.
+    /// Writes this packing as CSV: cell, header, a row per grain. [`Packing::parse`] restores the same bits.
     pub fn to_csv(&self) -> String {
         let mut text = match self.cell {
             Cell::Periodic([x, y, z]) => format!("# cell_mm = {x}, {y}, {z}\n"),
@@ -107,7 +107,7 @@ impl Packing {
         text
     }
 
-    /// The grains for ParaView: points (mm) with their diameter, to be shown as spheres.
+    /// Writes the grains for ParaView: points (mm) with their diameter, to be shown as spheres.
     pub fn to_vtp(&self) -> String {
         let points: Vec<[f64; 3]> =
             (0..self.diameter.len()).map(|i| [self.x[i], self.y[i], self.z[i]]).collect();
@@ -115,7 +115,7 @@ impl Packing {
     }
 }
 
-/// Writes points with named numbers, a column each, as a VTK PolyData file.
+/// Writes points and columns of named numbers as a VTK PolyData file.
 pub(crate) fn vtp_points(points: &[[f64; 3]], columns: &[(&str, &[f64])]) -> String {
     let count = points.len();
     let mut text = format!(
@@ -149,10 +149,9 @@ pub(crate) fn vtp_points(points: &[[f64; 3]], columns: &[(&str, &[f64])]) -> Str
 }
 
 /// Draws diameters (mm, descending) from the known sizes of a gradation, one from each of `grains` equal
-/// strata of the number: the sample's curve follows the gradation much more closely than independent draws
-/// would.
+/// strata by number: the sample follows the gradation much more closely than independent draws would.
 ///
-/// A pan fraction is left out: its grains are too fine to form the skeleton, and their number is not known.
+/// A pan fraction is left out: its grains are too fine to form the skeleton, and their number is unknown.
 pub fn draw(gradation: &Gradation, grains: usize, seed: u64) -> Vec<f64> {
     let mut generator = stream(seed, 0);
     let mut diameter: Vec<f64> = (0..grains)
@@ -167,8 +166,8 @@ fn stream(seed: u64, chunk: u64) -> impl Rng {
     Key { seed, purpose: Purpose::Packing, run: 0, increment: 0, chunk }.generator()
 }
 
-/// Places these grains (mm, any order) at random without overlap, at the packing fraction of the settings;
-/// the grains of the result are in descending order of size.
+/// Places these grains (mm, any order) at random without overlap, at the packing fraction of the
+/// settings; the resulting grains are in descending order of size.
 ///
 /// # Errors
 /// Settings out of range; an invalid diameter; a cell narrower than two of the largest grain; no room.
@@ -176,8 +175,8 @@ pub fn random_start(diameter_mm: &[f64], settings: &Settings) -> Result<Packing,
     tall_start(diameter_mm, 1.0, settings)
 }
 
-/// Places grains like [`random_start`] in a cell that is `aspect` times as tall (along z) as wide, 1 to 100
-/// times.
+/// Places grains like [`random_start`] in a cell whose height (along z) is `aspect` (1 to 100) times its
+/// width.
 ///
 /// # Errors
 /// Errors of [`random_start`]; an aspect out of range.
@@ -211,21 +210,21 @@ pub fn tall_start(diameter_mm: &[f64], aspect: f64, settings: &Settings) -> Resu
     })
 }
 
-/// Tries per grain before the placement fails.
+/// Maximum number of tries per grain before the placement fails.
 const TRIES: usize = 2_000_000;
 
-/// One size level: a grid of the grains placed so far.
+/// A grid of the placed grains of one size level.
 struct Grid {
     radius: f64,
-    /// Cells along x and along y; `along` along z.
+    /// Number of cells along x and along y; `along` is the number along z.
     across: usize,
     along: usize,
-    /// Place and radius of the grains of each cell.
+    /// Position and radius of the grains in each cell.
     cells: Vec<Vec<[f64; 4]>>,
 }
 
-/// Finds centres in units of the cell's width for spheres of these radii (descending), so that no two overlap
-/// in a periodic cell as wide as `cell` and of this aspect.
+/// Finds centres, in units of the cell's width, for spheres of these radii (descending), so that no two
+/// overlap in a periodic cell of width `cell` and this aspect.
 fn place(
     radius: &[f64],
     cell: f64,
@@ -267,7 +266,7 @@ fn place(
 }
 
 impl Grid {
-    /// Tells if a grain of radius `r` at `s` would overlap no grain of the grid.
+    /// Tells if a grain of radius `r` at `s` would overlap no grain in the grid.
     fn is_clear(&self, s: [f64; 3], r: f64, cell: f64, aspect: Aspect) -> bool {
         let (across, along) = (self.across as i64, self.along as i64);
         let half = (r + self.radius) / cell;

@@ -1,22 +1,22 @@
-//! A step of a compression: the lists kept complete, forces, kick and drift, and the time step.
+//! A step of a compression: complete lists, forces, kick and drift, and the time step.
 //!
 //! # Step
 //! Positions are in units of the cell's width and relative to its deformation, at full steps; velocities
-//! (without the motion of the cell) and spins at half steps. A step: forces from positions and the last half
-//! step's velocities, kick, drift, and the cell grows by the servo's strain rate.
+//! (without the motion of the cell) and spins are at half steps. A step: forces from the positions and
+//! the last half step's velocities, kick, drift, and the cell deforms at the servo's strain rate.
 //!
 //! # Masses
-//! A grain of diameter `D` weighs `pi/6 D^(3 - mass_exponent)`. With the true masses (0) the smallest grains
-//! set the time step and the largest take `Dmax/Dmin` times as many steps to move as the smallest. Masses do
-//! not matter in a packing at rest.
+//! A grain of diameter `D` has the mass `pi/6 D^(3 - mass_exponent)`. With the true masses (0) the
+//! smallest grains set the time step, and the largest need `Dmax/Dmin` times as many steps to move as
+//! the smallest. Masses do not matter in a packing at rest.
 //!
-//! If the largest grain is 20 times as wide as the smallest or more, a few small grains between large ones
-//! have contacts so stiff that they would set the step of all. Each grain is then moved with a mass of at
-//! least `s K t^2 / 4`, and the moment of inertia of that mass: `K` is the sum of its contacts' stiffness at
-//! that moment, `s` the factor of the critical step `2 / sqrt(s K / m)`, and `t` 1.5 times the critical step
-//! before there are contacts. The damping of contacts and the energies keep the grain's own mass, so that its
-//! restitution differs. A fixed step makes no grain heavier. A stage then ends after as much time as with the
-//! own masses: a hold is counted in the steps that the own masses would have taken.
+//! If the largest grain is at least 20 times as wide as the smallest, a few small grains between large ones
+//! have such stiff contacts that they would set the step for all. Each grain is then moved with a mass of
+//! at least `s K t^2 / 4`, and the moment of inertia of that mass: `K` is the sum of its contact stiffness
+//! at that moment, `s` the factor of the critical step `2 / sqrt(s K / m)`, and `t` 1.5 times the critical
+//! step before there are contacts. The damping of contacts and the energies use the grain's own mass, so
+//! its restitution differs. With a fixed step no grain gets a larger mass. A stage still takes as much time
+//! as with the own masses: a hold is counted in the steps that the own masses would have taken.
 
 use super::contact::{Grains, Now, Work, pass};
 use super::neighbours::{GrainChunk, Reach, Remembered, chunk_bounds, list, morton};
@@ -25,29 +25,29 @@ use super::state::Compression;
 use multiversion::multiversion;
 use rayon::prelude::*;
 
-/// Farthest move of a grain in a step, in units of the smallest diameter: only an overlapping start comes
-/// near it.
+/// Farthest allowed move of a grain in a step, in units of the smallest diameter: only an overlapping
+/// start comes near it.
 pub(super) const LONGEST_MOVE: f64 = 0.02;
 
-/// Steps between two checks of the time step.
+/// Number of steps between two checks of the time step.
 const STEP_CHECK: u64 = 16;
 
-/// Part of the critical step at which the step is checked without waiting.
+/// Fraction of the critical step at which the step is checked without waiting.
 const CLOSE_STEP: f64 = 0.85;
 
-/// Part of the way to its target strain rate that the servo goes in a step. The contacts' damping makes the
-/// pressure answer at once to the strain rate; an immediate servo swings between its limits from step to step
-/// once its gain exceeds the viscosity's inverse (0.03 for Cu 6 at 5e4 times the pressure), this one only
-/// above seven times that gain.
+/// Fraction of the way to its target strain rate that the servo takes in a step. Through the contacts'
+/// damping the pressure responds at once to the strain rate. An immediate servo swings between its
+/// limits from step to step once its gain exceeds the inverse of the viscosity (0.03 for Cu 6 at 5e4
+/// times the pressure); this one only does so above seven times that gain.
 const SERVO_SHARE: f64 = 0.25;
 
-/// Steps that a pick of close pairs is meant to last.
+/// Number of steps for which a pick of close pairs should last.
 const PICKS: (u64, u64) = (10, 25);
 
-/// Steps that lists are meant to last.
+/// Number of steps for which lists should last.
 const LISTS: (u64, u64) = (100, 300);
 
-/// Lengthens a reach that lasted too short a time, shortens one that lasted too long.
+/// Lengthens a reach that lasted too short a time, and shortens one that lasted too long.
 fn follow(reach: &mut Reach, strained: bool, lasted: u64, meant: (u64, u64), least: Reach) {
     if lasted < meant.0 {
         if strained {
@@ -64,7 +64,7 @@ fn follow(reach: &mut Reach, strained: bool, lasted: u64, meant: (u64, u64), lea
 }
 
 impl Compression {
-    /// Takes one step; without `servo` (its largest rate, and its gain) the strain rate is left as it is.
+    /// Takes one step; without `servo` (its maximum rate, and its gain) the strain rate is unchanged.
     pub(super) fn advance_once(&mut self, servo: Option<(f64, f64)>) -> Result<(), PackingError> {
         let pick = self.renew();
         self.now.steps += 1;
@@ -175,7 +175,7 @@ impl Compression {
         }
     }
 
-    /// Keeps the step below the critical one: follows it, or refuses a fixed step that is no longer below it.
+    /// Keeps the step below the critical one: adapts it, or refuses a fixed step that is no longer below.
     fn check_step(&mut self) -> Result<(), PackingError> {
         let critical = self.critical_step();
         match self.settings.step {
@@ -191,27 +191,27 @@ impl Compression {
         }
     }
 
-    /// The largest stable time step for the contacts of the last step.
+    /// Largest stable time step for the contacts of the last step.
     pub(super) fn critical_step(&self) -> f64 {
         self.critical(self.now.stiffest)
     }
 
-    /// Critical step of grains whose stiffest contacts, by mass, sum up to `stiffest`.
+    /// Critical step if `stiffest` is the largest sum of contact stiffness over mass.
     fn critical(&self, stiffest: f64) -> f64 {
         if stiffest > 0.0 { 2.0 / (stability(&self.law) * stiffest).sqrt() } else { f64::INFINITY }
     }
 
-    /// Step that follows their critical one.
+    /// Step adapted to the critical step.
     fn followed(&self, stiffest: f64) -> f64 {
         let part = self.settings.step_fraction.min(damped_part(&self.law));
         part * self.critical(stiffest).min(2.0 * self.loose_step)
     }
 
-    /// Makes sure that every pair that can touch is among the close ones; returns the reach of a new pick if
-    /// one is due.
+    /// Ensures that every pair that can touch is among the close pairs; returns the reach of a new pick
+    /// if one is due.
     ///
-    /// Both reaches follow from how long they last: a longer one costs more pairs a step, a shorter one is
-    /// renewed more often.
+    /// Both reaches are adapted to how long they last: a longer one costs more pairs per step, a shorter
+    /// one is renewed more often.
     fn renew(&mut self) -> Option<Reach> {
         if self.now.close.holds(Reach::CONTACT, self.now.cell, self.now.picked_cell, self.now.moved) {
             return None;
@@ -292,7 +292,7 @@ struct StepRule {
     local: f64,
     fastest: f64,
     rotate: bool,
-    /// Least mass of a grain by the sum of its contacts' stiffness; 0 if grains keep their own.
+    /// Minimum mass of a grain over the sum of its contact stiffness; 0 if grains keep their own mass.
     least_mass: f64,
 }
 
@@ -301,13 +301,13 @@ struct StepRule {
 struct Sums {
     moved: f64,
     stiffest: f64,
-    /// `stiffest` with the grains' own masses.
+    /// `stiffest` computed with the grains' own masses.
     stiffest_of_own: f64,
     twice_kinetic: f64,
     unbalanced: f64,
 }
 
-/// The grains of a chunk on their way through a step.
+/// The grains of a chunk during a step.
 struct ChunkInStep<'a> {
     chunk: usize,
     first: usize,
@@ -319,7 +319,7 @@ struct ChunkInStep<'a> {
     picked: &'a [[f64; 4]],
 }
 
-/// Takes the forces that other chunks sent, and moves the grains of `part` by a step.
+/// Adds the forces sent by other chunks, and moves the grains of `part` by a step.
 #[multiversion(targets("x86_64+avx+avx2+avx512f+avx512dq+avx512vl+avx512bw", "x86_64+avx+avx2"))]
 fn advance(part: &mut ChunkInStep<'_>, work: &[Work], rule: &StepRule) -> Sums {
     for sender in work {
@@ -343,7 +343,7 @@ fn collect(to: &mut [[f64; 4]], first: usize, grain: &[u32], sent: &[[f64; 4]]) 
     }
 }
 
-/// Load after local damping: less if it drives the motion, more if it resists.
+/// Load after local damping: smaller if it drives the motion, larger if it resists.
 #[inline(always)]
 fn damped(load: f64, velocity: f64, local: f64) -> f64 {
     let along = f64::from(u8::from(velocity > 0.0)) - f64::from(u8::from(velocity < 0.0));
@@ -360,8 +360,8 @@ fn kick_by<const HEAVIER: bool>(part: &mut ChunkInStep<'_>, rule: &StepRule) -> 
     }
 }
 
-/// Does kick and drift. The fourth entries go along, so that a row is one vector: they are set, or zero is
-/// added.
+/// Does kick and drift. The fourth entries are included, so that a row is one vector: they are set, or
+/// zero is added.
 #[inline(always)]
 fn kick<const HEAVIER: bool, const ROTATE: bool, const LOCAL: bool>(
     part: &mut ChunkInStep<'_>,

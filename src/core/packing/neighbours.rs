@@ -1,19 +1,19 @@
 //! Finds close pairs of grains: Verlet lists from a multi-level grid.
 //!
-//! Grains are sorted into levels by size, each a factor of two wide, and every level has its own grid
-//! of cells about as wide as its largest grain. A grain looks only into its own level and the finer
-//! ones (large looks into small), so a grain of 36 times the size costs as many cell visits as the
-//! shell it touches holds, and the many small grains never look into coarse cells.
+//! Grains are sorted into levels by size, each a factor of two wide, and every level has its own grid of
+//! cells about as wide as its largest grain. A grain is compared only with its own level and the finer
+//! ones: a grain 36 times as large visits as many cells as the shell around it holds, and the many small
+//! grains never visit coarse cells.
 //!
-//! A pair is listed, by its larger grain, when the grains are nearer than `R (1 + relative) + absolute`, with
-//! `R` the sum of the radii. The list is complete as long as no grain has moved by more than `absolute / 2`
-//! relative to the deforming cell and the cell has shrunk by less than `relative`: see [`Reach::holds`].
+//! A pair is listed, by its larger grain, if the grains are nearer than `R (1 + relative) + absolute`, where
+//! `R` is the sum of the radii. The list is complete as long as no grain has moved by more than `absolute /
+//! 2` relative to the deforming cell and the cell has shrunk by less than `relative`: see [`Reach::holds`].
 //!
-//! Every few steps the pairs within a much shorter reach are picked from the lists; the force pass goes
-//! through those alone. Most of them touch.
+//! Every few steps the pairs within a much shorter reach are picked from the lists; the force pass uses
+//! only those. Most of them touch.
 //!
-//! The grains are cut into chunks by their number alone; each chunk owns the pairs that its grains
-//! list. A chunk is the unit of parallel work, so that no sum depends on the number of threads.
+//! Grains are divided into chunks that depend only on their number; each chunk owns the pairs that its
+//! grains list. A chunk is the unit of parallel work, so no sum depends on the number of threads.
 
 use rayon::prelude::*;
 
@@ -23,14 +23,14 @@ const CHUNK: usize = 1024;
 /// `1.5 * 2^52`: adding and subtracting it rounds to the nearest integer.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// Takes a difference of two positions, in units of the cell, to its nearest image.
+/// Maps a difference of two positions, in units of the cell, to its nearest image.
 #[inline(always)]
 pub(super) fn nearest(d: f64) -> f64 {
     d - ((d + ROUND) - ROUND)
 }
 
-/// Height of the cell by its width, which is the unit of all positions: along z they repeat after this
-/// height.
+/// Ratio of height to width of the cell. The width is the unit of all positions; along z they repeat
+/// after this height.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Aspect {
     height: f64,
@@ -38,7 +38,7 @@ pub(super) struct Aspect {
 }
 
 impl Aspect {
-    /// Largest height by width.
+    /// Maximum ratio of height to width.
     pub const TALLEST: f64 = 100.0;
 
     /// Makes the aspect of a cell that is `height` times as tall as wide.
@@ -46,13 +46,13 @@ impl Aspect {
         Self { height, per_height: 1.0 / height }
     }
 
-    /// Height by width.
+    /// Ratio of height to width.
     pub fn height(self) -> f64 {
         self.height
     }
 
-    /// Takes a difference of two positions along z to its nearest image; a cube gives the bits of
-    /// [`nearest`].
+    /// Maps a difference of two positions along z to its nearest image; for a cube it gives the same
+    /// bits as [`nearest`].
     #[inline(always)]
     pub fn nearest(self, d: f64) -> f64 {
         d - self.height * ((d * self.per_height + ROUND) - ROUND)
@@ -65,7 +65,7 @@ impl Aspect {
         x * x + y * y + z * z
     }
 
-    /// Number of cells along z, none flatter than the width of one of `across` cells.
+    /// Number of cells along z, none flatter than the width of a cell if there are `across` along x.
     pub fn along(self, across: usize) -> usize {
         (across as f64 * self.height) as usize
     }
@@ -84,24 +84,24 @@ impl Aspect {
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reach {
-    /// Part of the sum of the radii.
+    /// Fraction of the sum of the radii.
     pub relative: f64,
-    /// Length.
+    /// Additional length.
     pub absolute: f64,
 }
 
 impl Reach {
-    /// Reach of contact alone.
+    /// No reach beyond contact.
     pub(super) const CONTACT: Self = Self { relative: 0.0, absolute: 0.0 };
 
-    /// Distance within which grains count whose radii sum up to `radii`.
+    /// Distance within which two grains count if their radii sum to `radii`.
     #[inline(always)]
     fn around(self, radii: f64) -> f64 {
         radii * (1.0 + self.relative) + self.absolute
     }
 
     /// Tells if lists made when the cell was `listed_cell` wide still hold every pair within the shorter
-    /// `reach`, when the farthest any grain has moved since is `moved` (in units of the cell).
+    /// `reach`, if no grain has since moved farther than `moved` (in units of the cell).
     ///
     /// A pair that was not listed is, in units of the cell, at least
     /// `(R (1 + self.relative) + self.absolute) / listed_cell - 2 moved` apart, for every `R`; that has to
@@ -113,11 +113,11 @@ impl Reach {
     }
 }
 
-/// Tangential memory of a pair: spring force on the larger grain along x, y, z, and the tangential stiffness
-/// that it was made with; zero for pairs that do not touch.
+/// Tangential memory of a pair: spring force on the larger grain along x, y, z, and the tangential
+/// stiffness when it was computed; zero for pairs that do not touch.
 pub(super) type Memory = [f64; 4];
 
-/// The pairs that the grains `first .. last` list.
+/// Pairs listed by the grains `first .. last`.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GrainChunk {
     pub first: usize,
@@ -141,7 +141,7 @@ impl GrainChunk {
         self.start[i - self.first] as usize..self.start[i - self.first + 1] as usize
     }
 
-    /// Picks the close pairs anew; those that remain keep their memory, and those that touch remain.
+    /// Picks new close pairs; those that remain keep their memory, and those that touch remain.
     pub fn pick(&mut self, position: &[[f64; 4]], cell: f64, aspect: Aspect, reach: Reach) {
         let per_cell = 1.0 / cell;
         let old_pair = std::mem::take(&mut self.close_pair);
@@ -168,7 +168,7 @@ impl GrainChunk {
     }
 }
 
-/// Bounds of the chunks of `grains` grains: a function of that number alone.
+/// Bounds of the chunks of `grains` grains; they depend on that number only.
 pub(super) fn chunk_bounds(grains: usize) -> Vec<(usize, usize)> {
     let count = match grains / CHUNK {
         0 | 1 => 1,
@@ -179,7 +179,7 @@ pub(super) fn chunk_bounds(grains: usize) -> Vec<(usize, usize)> {
 
 struct Level {
     radius: f64,
-    /// Cells along x and along y; `along` along z.
+    /// Number of cells along x and along y; `along` is the number along z.
     cells: usize,
     along: usize,
     /// First grain of cell `(x * cells + y) * along + z`.
@@ -208,7 +208,7 @@ fn levels_of(position: &[[f64; 4]]) -> Vec<u8> {
     position.iter().map(level).collect()
 }
 
-/// Place of the first entry of each of `count` keys among entries sorted by key, and the number of entries.
+/// Index of the first entry of each of `count` keys among entries sorted by key, and the number of entries.
 fn starts(keys: impl Iterator<Item = u32>, count: usize) -> Vec<u32> {
     let mut start = vec![0u32; count + 1];
     keys.for_each(|key| start[key as usize + 1] += 1);
@@ -254,7 +254,7 @@ fn grids(position: &[[f64; 4]], level: &[u8], cell: f64, aspect: Aspect, reach: 
         .collect()
 }
 
-/// Runs of cells, two at most, that hold `s - half ..= s + half` on a periodic axis.
+/// Runs of cells, at most two, that cover `s - half ..= s + half` on a periodic axis.
 fn runs(s: f64, half: f64, cells: usize) -> [(usize, usize); 2] {
     let n = cells as f64;
     let low = libm::floor((s - half) * n) as i64;
@@ -267,8 +267,8 @@ fn runs(s: f64, half: f64, cells: usize) -> [(usize, usize); 2] {
     if low <= high { [(low, high + 1), (0, 0)] } else { [(0, high + 1), (low, cells)] }
 }
 
-/// Lists every pair within `reach`. Positions are in units of the cell's width, `0 <= s < 1` and along z
-/// below its height, the fourth entry the radius; `rank` orders the grains from large to small.
+/// Lists every pair within `reach`. Positions are in units of the cell's width, `0 <= s < 1` (along z
+/// below its height); the fourth entry is the radius. `rank` orders the grains from large to small.
 pub(super) fn list(
     position: &[[f64; 4]],
     rank: &[u32],
@@ -322,7 +322,7 @@ pub(super) fn list(
     }
 }
 
-/// Memories of the contacts, by the rank of the smaller grain, which has few contacts with larger ones.
+/// Memories of the contacts, by rank of the smaller grain, which has few contacts with larger ones.
 pub(super) struct Remembered {
     start: Vec<u32>,
     /// Rank of the larger grain, and the memory.
@@ -330,7 +330,7 @@ pub(super) struct Remembered {
 }
 
 impl Remembered {
-    /// Collects the memories of the close pairs.
+    /// Collects the memory of each close pair.
     pub fn collect(chunks: &[GrainChunk], rank: &[u32]) -> Self {
         let contacts = || {
             let pairs = chunks.iter().flat_map(|chunk| chunk.close.iter().zip(&chunk.memory));
@@ -347,7 +347,7 @@ impl Remembered {
         Self { start, entry }
     }
 
-    /// Gives the pairs of new lists their memory back, as close pairs.
+    /// Restores the memories to the pairs of new lists, as close pairs.
     pub fn restore(&self, chunks: &mut [GrainChunk], rank: &[u32]) {
         for chunk in chunks {
             for i in chunk.first..chunk.last {
@@ -366,7 +366,7 @@ impl Remembered {
     }
 }
 
-/// Position along a Morton curve of 2^10 cells a side, for points in the unit cube.
+/// Position along a Morton curve of 2^10 cells per side, for points in the unit cube.
 pub(super) fn morton(s: [f64; 3]) -> u32 {
     let spread = |s: f64| {
         let mut v = ((s * 1024.0) as u32).min(1023);
@@ -392,8 +392,8 @@ mod tests {
         (0..grains).map(|_| [u(), u(), u(), libm::pow(ratio, u())]).collect()
     }
 
-    /// The lists equal a search of all pairs, for size ratios up to 100 and cells from two of the largest
-    /// grain up.
+    /// The lists equal a search of all pairs, for size ratios up to 100 and cells from two largest
+    /// grains wide.
     #[test]
     fn lists_equal_all_pairs() {
         let cubes = [(1.0, 9.0), (1.5, 12.0), (10.0, 45.0), (36.0, 150.0), (100.0, 450.0), (3.0, 30.0)];
@@ -420,7 +420,7 @@ mod tests {
                 for j in i + 1..400 {
                     let (p, q) = (position[i], position[j]);
                     let [x, y, z] = [0, 1, 2].map(|a| q[a] - p[a]);
-                    // By hand, apart from the fast method.
+                    // By hand, independent of the fast method.
                     let z =
                         [z - height, z, z + height].map(f64::abs).into_iter().fold(f64::INFINITY, f64::min);
                     let d2 = nearest(x) * nearest(x) + nearest(y) * nearest(y) + z * z;

@@ -1,5 +1,5 @@
-//! The protocol of a compression: squeeze, hold the pressure, switch the friction, hold it again. It can be
-//! stored as bytes at any step and goes on to the same bits.
+//! The protocol of a compression: squeeze, hold the pressure, switch the friction, hold again. A
+//! compression can be stored as bytes at any step and continued with the same bits.
 
 use super::neighbours::{Aspect, list};
 use super::settings::{PackingError, Settings};
@@ -15,25 +15,25 @@ const VERSION: u64 = 1;
 /// Steps between two checks of the state.
 const CHECK: u64 = 100;
 
-/// Allowed departure of the pressure from its target.
+/// Allowed relative deviation of the pressure from its target.
 const PRESSURE: f64 = 0.005;
 
-/// Departure of the pressure from its target at which the drag is raised.
+/// Relative deviation of the pressure from its target at which the drag is raised.
 const BRAKE: f64 = 0.02;
 
-/// Allowed root mean square unbalanced force by mean contact force: a frictionless packing has more in an
-/// avalanche, less after it.
+/// Maximum root mean square unbalanced force over the mean contact force: a frictionless packing has
+/// more during an avalanche, less after it.
 const UNBALANCED: f64 = 0.05;
 
-/// Allowed kinetic by elastic energy.
+/// Maximum ratio of kinetic to elastic energy.
 const KINETIC: f64 = 1e-2;
 
-/// Allowed change of the coordination number during a hold.
+/// Maximum change of the coordination number during a hold.
 const COORDINATION: f64 = 0.05;
 
-/// Allowed change of the void ratio during a hold: a quarter of the 0.002 that two seeds or half the rate
-/// change it by. A wide grading with high friction creeps on as the logarithm of time, so some rate has to
-/// count as rest.
+/// Maximum change of the void ratio during a hold: a quarter of the 0.002 by which it differs between
+/// two seeds or with half the rate. A wide gradation with high friction creeps on as the logarithm of
+/// time, so some rate has to count as rest.
 const VOID_RATIO: f64 = 5e-4;
 
 /// Progress of a running compression.
@@ -41,15 +41,15 @@ const VOID_RATIO: f64 = 5e-4;
 pub struct CompressionProgress {
     /// Current stage.
     pub stage: Stage,
-    /// Steps done.
+    /// Number of steps done.
     pub steps: u64,
     /// Void ratio.
     pub void_ratio: f64,
-    /// Pressure by target.
+    /// Pressure over its target.
     pub pressure: f64,
     /// Mean coordination number `2 N_c / N_p`.
     pub coordination: f64,
-    /// Root mean square unbalanced force by mean contact force.
+    /// Root mean square unbalanced force over the mean contact force.
     pub unbalanced: f64,
     /// Time step, reduced units.
     pub step: f64,
@@ -58,19 +58,18 @@ pub struct CompressionProgress {
 /// Result of a compression.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PackReport {
-    /// Settled with the friction of the compression.
+    /// Values when settled with the friction of the compression.
     pub before: Measure,
-    /// Settled with the final friction.
+    /// Values when settled with the final friction.
     pub after: Measure,
-    /// Steps.
+    /// Number of steps.
     pub steps: u64,
     /// Simulated time (s), with the masses of the settings.
     pub simulated_s: f64,
 }
 
-/// Draws grains from the gradation, places them at random and compresses them: see the
-/// [module](crate::packing) for the protocol. `progress` is called every thousand steps and returns false to
-/// stop.
+/// Draws grains from the gradation, places them at random and compresses them by the protocol of the
+/// [module](crate::packing). `progress` is called every thousand steps and returns false to stop.
 ///
 /// ```
 /// use voidwalk_core::{gradation::Gradation, packing::{Settings, compress}};
@@ -96,11 +95,11 @@ pub fn compress(
 }
 
 impl Compression {
-    /// Does `steps` steps of the protocol, or fewer if it settles. The division of the steps into calls does
-    /// not change the result.
+    /// Does `steps` steps of the protocol, or fewer if it settles. The result does not depend on how the
+    /// steps are divided into calls.
     ///
     /// # Errors
-    /// A fixed time step that is too long for the contacts by now.
+    /// A fixed time step that has become too long for the contacts.
     pub fn advance(&mut self, steps: u64) -> Result<(), PackingError> {
         for _ in 0..steps {
             match self.now.stage {
@@ -152,8 +151,8 @@ impl Compression {
         (self.now.hold.since, self.now.hold.saved) = (self.now.steps, 0.0);
     }
 
-    /// Tells if pressure, unbalanced force, coordination number and void ratio have held for long enough, and
-    /// the grains rest.
+    /// Tells if pressure, unbalanced force, coordination number and void ratio have held for long
+    /// enough, and the grains are at rest.
     fn settled(&mut self) -> bool {
         let coordination = self.coordination();
         let void_ratio = self.void_ratio();
@@ -178,7 +177,7 @@ impl Compression {
         2.0 * self.now.contacts as f64 / self.rank.len() as f64
     }
 
-    /// Rough packing fraction to be expected: it only decides when the servo replaces the squeeze.
+    /// Rough estimate of the final packing fraction; it only decides when the servo replaces the squeeze.
     fn expected_fraction(&self) -> f64 {
         let mut by_rank = vec![0.0; self.rank.len()];
         for (p, &r) in self.position.iter().zip(&self.rank) {
@@ -210,10 +209,10 @@ impl Compression {
         }
     }
 
-    /// Goes on until settled, reporting every thousand steps; stops if `progress` returns false.
+    /// Continues until settled, reporting every thousand steps; stops if `progress` returns false.
     ///
     /// # Errors
-    /// Errors of [`Compression::advance`]; stopped by `progress`; not settled after the most steps allowed.
+    /// Errors of [`Compression::advance`]; stopped by `progress`; not settled after `max_steps`.
     pub fn run(
         &mut self,
         progress: impl FnMut(&CompressionProgress) -> bool,
@@ -221,8 +220,8 @@ impl Compression {
         self.run_until(|| false, progress)
     }
 
-    /// Runs like [`Compression::run`], to the same bits, asking whether to stop every million steps of a
-    /// grain.
+    /// Runs like [`Compression::run`], to the same bits, but calls `is_stopped` once per million grain
+    /// steps.
     pub fn run_until(
         &mut self,
         is_stopped: impl Fn() -> bool,
@@ -231,8 +230,8 @@ impl Compression {
         self.run_asking(1000, is_stopped, progress)
     }
 
-    /// Runs like [`Compression::run`], to the same bits, reporting every `every` steps, which sets how soon
-    /// it can be stopped.
+    /// Runs like [`Compression::run`], to the same bits, but reports every `every` steps, so that it can
+    /// be stopped sooner or later.
     pub fn run_reporting(
         &mut self,
         every: u64,
@@ -249,7 +248,7 @@ impl Compression {
     ) -> Result<PackReport, PackingError> {
         let at_once = (1_000_000 / self.position.len().max(1) as u64).max(1);
         while self.now.stage != Stage::Done {
-            // After a stop between two reports the run goes on to the next.
+            // After a stop between two reports, the run continues to the next.
             let report = (self.now.steps / every + 1) * every;
             while self.now.stage != Stage::Done && self.now.steps < report {
                 self.advance(at_once.min(report - self.now.steps))?;
@@ -280,21 +279,21 @@ impl Compression {
         })
     }
 
-    /// Writes everything that the next step depends on:
+    /// Writes all data on which the next step depends:
     ///
-    /// | bytes | what |
+    /// | bytes | content |
     /// |---|---|
     /// | 8 | `vwpacked` |
     /// | 8 | version of this format, 1 (all numbers are little-endian) |
     /// | 8 | bytes of the record |
-    /// | | the record: JSON with named fields; every floating-point number comes back bit for bit |
+    /// | | the record: JSON with named fields; every floating-point number is restored bit for bit |
     /// | 4 n | `rank` (u32) of each of the `n` grains by size, in memory order |
-    /// | 4 n | `origin` (u32): place in the user's columns, by rank |
+    /// | 4 n | `origin` (u32): index in the user's columns, by rank |
     /// | 32 n each | `position`, `velocity`, `spin`, `listed`, `picked`: rows of four f64, in memory order |
     /// | 32 each | tangential memory of the close pairs, in list order |
-    /// | 8 | XXH3-64 of everything before, which finds accidents, not attackers |
+    /// | 8 | XXH3-64 of everything before it, which detects accidents, not attackers |
     ///
-    /// The lists are left out: they follow from the stored positions at which they were made.
+    /// The lists are left out: they are rebuilt from the stored positions at which they were made.
     pub fn to_bytes(&self) -> Vec<u8> {
         let memory: Vec<[f64; 4]> = self.chunks.iter().flat_map(|c| c.memory.iter().copied()).collect();
         let now = Moment {
@@ -317,7 +316,7 @@ impl Compression {
         bytes
     }
 
-    /// Restores a compression from its bytes, with the settings that it was made with.
+    /// Restores a compression from its bytes and the settings with which it was made.
     ///
     /// # Errors
     /// Bytes that are corrupt, of another version, or of other settings.
@@ -355,7 +354,7 @@ impl Compression {
         let (position, velocity) = (row(), row());
         let origin = bytemuck::pod_collect_to_vec(origin);
         if !(1.0..=1.001 * Aspect::TALLEST).contains(&now.aspect) {
-            return Err(PackingError::State("its cell is none"));
+            return Err(PackingError::State("its cell is invalid"));
         }
         let makes_heavier = now.makes_heavier;
         let mut this = Self::blank(settings, now, position, velocity, origin);

@@ -1,4 +1,4 @@
-//! Settings of a compression, their defaults, its errors; masses, contact law and critical step that follow.
+//! Settings of a compression, their defaults and errors; masses, contact law and critical step.
 
 use super::contact::Law;
 use super::neighbours::Reach;
@@ -9,34 +9,34 @@ use std::f64::consts::PI;
 /// Normal force of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Contact {
-    /// Hertz-Mindlin with the shear modulus and Poisson's ratio of the settings.
+    /// Hertz-Mindlin, with the shear modulus and Poisson's ratio of the settings.
     Hertz,
     /// A linear spring, for comparison: stiffness in units of pressure times smallest diameter.
     Linear(f64),
 }
 
 section! {
-    /// How the grains are compressed; the defaults suit nearly every filter.
+    /// Compression of the grains; the defaults suit nearly every filter.
     ///
-    /// The defaults are those of the paper where it gives them. The others come from the study in
-    /// `results/packing.md` (`scripts/studies/study_packing.py`): half the rates, other masses,
-    /// half the time step, twice the hold, and more or fewer grains change the void ratio by no more than
-    /// 0.003, about what seeds do (standard deviation 0.0035 loose and 0.0016 dense for 4,000 grains, 0.0011
-    /// and 0.0005 for 15,000).
+    /// The defaults are those of the paper if it gives them. The others come from the study in
+    /// `results/packing.md` (`scripts/studies/study_packing.py`): half the rates, other masses, half the
+    /// time step, twice the hold, and more or fewer grains change the void ratio by no more than 0.003,
+    /// about as much as other seeds (standard deviation 0.0035 loose and 0.0016 dense for 4,000 grains,
+    /// 0.0011 and 0.0005 for 15,000).
     ///
-    /// A loose packing remembers its start: a packing fraction of 0.45 at the start makes it 0.014 denser,
-    /// 0.2 makes it 0.005 looser, three times the drag 0.006 looser. Take void ratios of loose packings as
-    /// uncertain by 0.01; constriction curves move by less than 1 % with any of this.
+    /// A loose packing depends on its start: a packing fraction of 0.45 at the start makes it 0.014
+    /// denser, 0.2 makes it 0.005 looser, three times the drag 0.006 looser. Take void ratios of loose
+    /// packings as uncertain by 0.01; none of this changes constriction curves by 1 % or more.
     ///
-    /// `stiffness_ratio`: with the default, a tenth, packings with friction keep their void ratio within
-    /// 0.003, but those without friction come out 0.003 to 0.008 denser than at the full stiffness, which
-    /// gives the paper's values within 0.002 (Cu 1.2 to 3) in two and a half times the time:
-    /// `stiffness_ratio: 1.0, hold_steps: 8000`. A tenth of the stiffness is the default because all six
-    /// filters of the paper, up to 60,000 grains of Cu 6, were settled with it.
+    /// `stiffness_ratio`: with the default of 0.1, packings with friction keep their void ratio within
+    /// 0.003, but packings without friction become 0.003 to 0.008 denser than at the full stiffness,
+    /// which gives the paper's values within 0.002 (Cu 1.2 to 3) in two and a half times the time:
+    /// `stiffness_ratio: 1.0, hold_steps: 8000`. The default is 0.1 because all six filters of the
+    /// paper, up to 60,000 grains of Cu 6, were settled with it.
     pub struct Settings in "packing" {
         /// Seed of sizes and start positions.
         pub seed: u64 = 1, off, whole(0..=u64::MAX);
-        /// Friction set once the pressure is held; the packing then settles again.
+        /// Friction set once the pressure holds; the packing then settles again.
         pub final_friction: f64 = 0.3, off, friction();
         /// Mean pressure (kPa).
         pub pressure_kpa: f64 = 50.0, off, positive();
@@ -50,33 +50,33 @@ section! {
         pub density_kg_m3: f64 = 2670.0, off, positive();
         /// Coefficient of restitution, at every speed.
         pub restitution: f64 = 0.5, off, only("more than 0, at most 1", |v| *v > 0.0 && *v <= 1.0);
-        /// Drag on every grain by its mass and velocity relative to the deforming cell, in reduced units.
+        /// Drag on every grain over its mass and velocity relative to the deforming cell, in reduced units.
         pub drag: f64 = 0.03, off, zero_or_more();
-        /// Drag once the pressure has first come within 2 %: it stops rattlers, which no contact would.
+        /// Drag once the pressure has first come within 2 %: it stops rattlers, which no contact slows down.
         pub settling_drag: f64 = 0.1, off, zero_or_more();
-        /// Cundall's local damping: each component of the unbalanced force is reduced by this part of itself
-        /// where it drives the motion, raised where it resists.
+        /// Cundall's local damping: each component of the unbalanced force is reduced by this fraction
+        /// of itself if it drives the motion, and increased if it resists.
         pub local_damping: f64 = 0.0, off, only("0 to below 1", |v| (0.0..1.0).contains(v));
         /// Packing fraction of the random placement.
         pub start_fraction: f64 = 0.35, off, only("more than 0, at most 0.5", |v| *v > 0.0 && *v <= 0.5);
-        /// Part of the expected final packing fraction up to which the cell shrinks at `squeeze_rate`.
+        /// Fraction of the expected final packing fraction up to which the cell shrinks at `squeeze_rate`.
         pub compression_target_fraction: f64 = 0.87, off, only("more than 0, at most \
          1", |v| *v > 0.0 && *v <= 1.0);
         /// Linear strain rate of that first compression, in reduced units.
         pub squeeze_rate: f64 = 0.01, off, positive();
-        /// Largest linear strain rate of the servo, in reduced units.
+        /// Maximum linear strain rate of the servo, in reduced units.
         pub servo_rate: f64 = 2e-3, off, positive();
-        /// Linear strain rate of the servo per relative lack of pressure, in reduced units.
+        /// Linear strain rate of the servo over the relative pressure deficit, in reduced units.
         pub servo_gain: f64 = 1e-2, off, positive();
-        /// Mass of a grain grows with diameter to the power of three less this: 0 is the true mass, more lets
-        /// small grains govern the time step less. At rest masses do not matter.
+        /// The mass of a grain is proportional to its diameter to the power of 3 minus this. 0 is the
+        /// true mass; with more, small grains limit the time step less. At rest masses do not matter.
         pub mass_exponent: f64 = 1.0, off, only("0 to 2", |v| (0.0..=2.0).contains(v));
-        /// Time step as part of the critical one; a low restitution lowers it further.
+        /// Time step as a fraction of the critical step; a low restitution lowers it further.
         pub step_fraction: f64 = 0.7, off, only("more than 0, less than 1", |v| *v > 0.0 && *v < 1.0);
-        /// Held steps that end a stage, as many as the grains' own masses would take where some are moved as
-        /// heavier ones (gradations of a size ratio of 20 or more).
+        /// Number of steps for which the state must hold to end a stage. If some grains are given a
+        /// larger mass (size ratio of 20 or more), it is counted in steps of the grains' own masses.
         pub hold_steps: u64 = 4000, off, whole(1..=u64::from(u32::MAX));
-        /// Give up after this many steps.
+        /// Maximum number of steps.
         pub max_steps: u64 = 2_000_000, off, whole(1..=u64::from(u32::MAX));
     }
     beside {
@@ -86,11 +86,11 @@ section! {
         pub friction: f64 = 0.3;
         /// Normal contact force.
         pub contact: Contact = Contact::Hertz;
-        /// No tension from the damping of a separating contact.
+        /// True to prevent tension from the damping of a separating contact.
         pub clip_tension: bool = true;
-        /// Fixed time step in reduced units instead of `step_fraction`; refused at or above the critical one.
+        /// Fixed time step in reduced units instead of `step_fraction`; must be below the critical step.
         pub step: Option<f64> = None;
-        /// How far the first neighbour lists reach beyond contact; adapted as the compression goes.
+        /// Initial reach of the neighbour lists beyond contact; adapted during the compression.
         pub reach: Reach = Reach { relative: 0.01, absolute: 0.1 };
     }
 }
@@ -107,9 +107,9 @@ fn friction() -> Allowed<f64> {
     only("0 to 10", |v| (0.0..=10.0).contains(v))
 }
 
-/// Largest overlap (%, of the diameter) at which grains still count as spheres in contact: beyond it the void
-/// ratio falls with the stiffness, below 0 in the end, although every other criterion of a settled packing is
-/// met.
+/// Maximum overlap (% of the diameter) at which grains still count as spheres in contact. Beyond it the
+/// void ratio falls with the stiffness, in the end below 0, although every other criterion of a settled
+/// packing is met.
 const MOST_OVERLAP_PERCENT: f64 = 3.0;
 
 /// Reasons why no packing could be made.
@@ -125,20 +125,20 @@ pub enum PackingError {
         /// Allowed values.
         allowed: String,
     },
-    /// Grains so soft that their overlaps mean nothing.
+    /// The grains are so soft that their overlaps mean nothing.
     #[error(
         "stiffness_ratio = {value} is not allowed: under the pressure of {pressure_kpa} kPa grains would \
          overlap by about {overlap_percent:.2} % of their size; allowed: at least {least:.1e}, where they \
          overlap by {MOST_OVERLAP_PERCENT} %"
     )]
     Soft {
-        /// The ratio asked for.
+        /// Requested ratio.
         value: f64,
-        /// Pressure to be held.
+        /// Target pressure.
         pressure_kpa: f64,
-        /// Overlap of two grains under that pressure, of their diameter.
+        /// Overlap of two grains under that pressure (% of the diameter).
         overlap_percent: f64,
-        /// Least allowed ratio.
+        /// Minimum allowed ratio.
         least: f64,
     },
     /// An invalid grain.
@@ -146,14 +146,14 @@ pub enum PackingError {
     Grain {
         /// Index of the grain, counted from 0.
         grain: usize,
-        /// Name of the wrong column.
+        /// Name of the invalid column.
         column: &'static str,
         /// The value.
         value: f64,
         /// Allowed values.
         allowed: &'static str,
     },
-    /// Columns of different length, or no grain at all.
+    /// Columns of different length, or without grains.
     #[error(
         "grain columns x, y, z, diameter have {0:?} entries: they must have the same number, at least one"
     )]
@@ -164,7 +164,7 @@ pub enum PackingError {
     /// A cell too flat or too tall.
     #[error("a cell {0} times as tall as wide: allowed: a number from 1 to 100")]
     Aspect(f64),
-    /// A grain would touch itself or another grain twice.
+    /// A grain would touch itself, or another grain twice.
     #[error(
         "the cell is {cell_mm} mm wide, narrower than two of the largest grain ({largest_mm} mm): use more \
          grains or a narrower gradation"
@@ -175,7 +175,7 @@ pub enum PackingError {
         /// Diameter of the largest grain (mm).
         largest_mm: f64,
     },
-    /// Two grains with one centre: there is no direction to push them apart.
+    /// Two grains with the same centre: there is no direction in which to push them apart.
     #[error("grains {0} and {1} have the same centre")]
     Coincident(usize, usize),
     /// A time step that cannot be stable.
@@ -184,7 +184,7 @@ pub enum PackingError {
          by {cause}"
     )]
     Step {
-        /// The step asked for.
+        /// Requested step.
         step: f64,
         /// The critical step.
         critical: f64,
@@ -198,7 +198,7 @@ pub enum PackingError {
         grain: usize,
         /// Number of grains.
         grains: usize,
-        /// Packing fraction that was tried.
+        /// Packing fraction tried.
         fraction: f64,
     },
     /// The stage did not settle.
@@ -207,23 +207,23 @@ pub enum PackingError {
          {kinetic_ratio:e}"
     )]
     Unsettled {
-        /// Steps done.
+        /// Number of steps done.
         steps: u64,
-        /// Pressure by target.
+        /// Pressure over its target.
         pressure: f64,
-        /// Kinetic by elastic energy.
+        /// Ratio of kinetic to elastic energy.
         kinetic_ratio: f64,
     },
     /// The progress callback asked to stop.
     #[error("stopped after {0} steps")]
     Stopped(u64),
-    /// Stored columns do not fit together.
+    /// The stored columns are inconsistent.
     #[error("stored state: {0}")]
     State(&'static str),
 }
 
 impl PackingError {
-    /// Refuses the first diameter that is no size.
+    /// Refuses the first diameter that is not a size.
     pub(super) fn unless_sizes(diameter: &[f64]) -> Result<(), Self> {
         match diameter.iter().position(|d| !(*d > 0.0 && *d < f64::INFINITY)) {
             None => Ok(()),
@@ -236,12 +236,12 @@ impl PackingError {
 }
 
 impl Settings {
-    /// Shear modulus of the grains by the pressure, with the ratio of stiffness.
+    /// Shear modulus of the grains over the pressure, reduced by the stiffness ratio.
     pub(super) fn shear(&self) -> f64 {
         self.shear_modulus_gpa * self.stiffness_ratio * 1e6 / self.pressure_kpa
     }
 
-    /// Hash of the settings, for recognising them.
+    /// Hash of the settings, to recognise them.
     pub(super) fn fingerprint(&self) -> u64 {
         xxhash_rust::xxh3::xxh3_64(format!("{self:?}").as_bytes())
     }
@@ -249,7 +249,7 @@ impl Settings {
     /// Checks every setting.
     ///
     /// # Errors
-    /// The first setting that is out of range, with what is allowed.
+    /// The first setting that is out of range, with its allowed values.
     pub fn check(&self) -> Result<(), PackingError> {
         if let Some(OutOfRange { name, value, allowed }) = self.out_of_range() {
             return Err(PackingError::Setting { field: name, value, allowed });
@@ -312,7 +312,7 @@ pub(super) fn mass(radius: f64, exponent: f64) -> f64 {
 }
 
 impl Law {
-    /// The contact law in reduced units, with this friction.
+    /// Makes the contact law in reduced units, with this friction.
     pub(super) fn new(settings: &Settings, friction: f64) -> Self {
         let nu = settings.poisson_ratio;
         let log = libm::log(settings.restitution);
@@ -332,26 +332,26 @@ impl Law {
     }
 }
 
-/// Upper bound of `(angular frequency)^2` by the largest sum of normal contact stiffness by mass: a contact
-/// of stiffness `kn` between two free grains has the modes `2 kn / m` and, with friction, `7 kt / m` (sliding
-/// and rolling together); the sum over the contacts of a grain bounds the whole network (each contact's
-/// energy is at most that of its two grains moved alone, twice).
+/// Upper bound of `(angular frequency)^2` over the largest sum of normal contact stiffness over mass. A
+/// contact of stiffness `kn` between two free grains has the modes `2 kn / m` and, with friction,
+/// `7 kt / m` (sliding and rolling together). The sum over the contacts of a grain bounds the whole
+/// network (the energy of each contact is at most twice that of its two grains moved separately).
 pub(super) fn stability(law: &Law) -> f64 {
     if law.friction > 0.0 { (7.0 * law.tangential).max(2.0) } else { 2.0 }
 }
 
-/// Part of the critical step that damping leaves. The damping force takes the velocity of the last half step,
-/// so an oscillator of damping ratio `z` is stable up to `sqrt(1 + z^2) - z` of its undamped limit. A grain
-/// between several contacts has a higher ratio than a pair, and the critical step is below the true limit;
-/// 0.9 of the damping coefficient covers both. Checked by packings: at restitution 0.2 this is 0.50, and 0.5
-/// settles where 0.6 and 0.7 of the critical step never do.
+/// Fraction of the critical step that damping leaves. The damping force uses the velocity of the last half
+/// step, so an oscillator of damping ratio `z` is stable up to `sqrt(1 + z^2) - z` of its undamped limit. A
+/// grain between several contacts has a higher ratio than a pair, and the critical step is below the true
+/// limit; 0.9 of the damping coefficient covers both. Checked with packings: at restitution 0.2 this is
+/// 0.50, and packings settle with 0.5 of the critical step but never with 0.6 or 0.7.
 pub(super) fn damped_part(law: &Law) -> f64 {
     let z = 0.9 * law.damping;
     (1.0 + z * z).sqrt() - z
 }
 
-/// The critical time step before there are contacts, and what sets it: the Rayleigh wave across the smallest
-/// grain by mass; the period of a Hertz contact under the target pressure; a grain with six such contacts.
+/// Critical time step before there are contacts, and its cause: the Rayleigh wave across the smallest grain
+/// by mass; the period of a Hertz contact under the target pressure; a grain with six such contacts.
 pub(super) fn critical_step(
     position: &[[f64; 4]],
     velocity: &[[f64; 4]],
@@ -390,19 +390,19 @@ pub(super) fn critical_step(
     least
 }
 
-/// Ratio of the largest to the smallest grain from which the most crowded grains are moved as heavier ones.
+/// Ratio of the largest to the smallest grain from which crowded grains are given a larger mass.
 pub(super) const WIDE: f64 = 20.0;
 
-/// Critical step of a heavier grain, by the critical step before there are contacts.
+/// Critical step of a grain with a larger mass, over the critical step before there are contacts.
 const HEAVIER_STEP: f64 = 1.5;
 
-/// Tells if sizes differ so much that a few small grains pressed between large ones would set the step of a
-/// compression, so that such grains are moved as heavier ones.
+/// Tells if sizes differ so much that a few small grains pressed between large ones would set the step
+/// of a compression, so that they are given a larger mass.
 pub fn is_wide(gradation: &Gradation) -> bool {
     gradation.largest_mm() / gradation.smallest_mm() >= WIDE
 }
 
-/// Least mass of a grain in a step by the sum of its contacts' stiffness, so that its critical step is
+/// Minimum mass of a grain in a step over the sum of its contact stiffness: its critical step is then
 /// [`HEAVIER_STEP`] times `loose_step`, the critical step before there are contacts.
 pub(super) fn heavier_mass_by_stiffness(law: &Law, loose_step: f64) -> f64 {
     let step = HEAVIER_STEP * loose_step;

@@ -1,4 +1,4 @@
-//! The state of a compression, as columns, and what is measured of it.
+//! The state of a compression, as columns, and the quantities measured from it.
 //!
 //! # Reduced units
 //! Length: the smallest diameter. Stress: the target pressure. Density: the grains' density. So the unit of
@@ -26,26 +26,26 @@ pub enum Stage {
     Done,
 }
 
-/// Observables of one instant.
+/// Measured values at one instant.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct Measure {
-    /// Volume of the voids by that of the grains.
+    /// Volume of the voids over the volume of the grains.
     pub void_ratio: f64,
     /// Mean contact pressure (kPa).
     pub pressure_kpa: f64,
     /// Mean coordination number `2 N_c / N_p`, over all grains.
     pub coordination: f64,
-    /// Mean coordination number among the grains that are held: with at least two contacts (four without
+    /// Mean coordination number among the held grains: those with at least two contacts (four without
     /// friction) with held grains.
     pub coordination_held: f64,
-    /// Rattler fraction: grains that are not held, by all grains.
+    /// Rattler fraction: number of grains that are not held over the number of all grains.
     pub rattlers: f64,
-    /// Kinetic by elastic energy.
+    /// Ratio of kinetic to elastic energy.
     pub kinetic_ratio: f64,
-    /// Root mean square unbalanced force of a grain by the mean normal contact force.
+    /// Root mean square unbalanced force of a grain over the mean normal contact force.
     pub unbalanced: f64,
-    /// Largest overlap by the smaller diameter of its two grains.
+    /// Largest overlap over the smaller diameter of its two grains.
     pub largest_overlap: f64,
 }
 
@@ -64,69 +64,69 @@ fn is_zero(saved: &f64) -> bool {
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HoldState {
-    /// Step since which all criteria have held.
+    /// Step from which all criteria have held.
     pub since: u64,
-    /// Number of further steps that the grains' own masses would have taken for this time, if some are moved
-    /// as heavier ones.
+    /// Number of additional steps that the grains' own masses would have taken for this time, if some
+    /// grains are given a larger mass.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub saved: f64,
-    /// Mean coordination number then.
+    /// Mean coordination number at that step.
     pub coordination: f64,
-    /// Void ratio then.
+    /// Void ratio at that step.
     pub void_ratio: f64,
-    /// True once the pressure has been near its target; the drag is raised from then on.
+    /// True once the pressure has been near its target; the drag is then raised.
     pub braking: bool,
-    /// Observables before the friction was switched.
+    /// Values before the friction was switched.
     pub before: Option<Measure>,
 }
 
-/// State of a compression besides its columns, as it is stored.
+/// State of a compression, except its columns, as it is stored.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Moment {
     pub settings: u64,
     pub grains: usize,
-    /// Number of close pairs; as `friction` and `makes_heavier`, set when the state is stored.
+    /// Number of close pairs; like `friction` and `makes_heavier`, set when the state is stored.
     pub close_pairs: usize,
     pub stage: Stage,
     pub steps: u64,
     pub time: f64,
     pub step: f64,
-    /// The smallest diameter (mm): the unit of length.
+    /// Smallest diameter (mm): the unit of length.
     pub unit_mm: f64,
     /// Width of the cell.
     pub cell: f64,
-    /// Height by width of the cell, which is fixed; omitted for a cube.
+    /// Fixed ratio of height to width of the cell; omitted for a cube.
     #[serde(default = "cube", skip_serializing_if = "is_cube")]
     pub aspect: f64,
     /// Relative growth of the cell per unit of time.
     pub strain_rate: f64,
     pub friction: f64,
-    /// True if crowded grains are moved as heavier ones.
+    /// True if crowded grains are given a larger mass.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub makes_heavier: bool,
-    /// Step in which the lists were made, width of the cell then, and their reach.
+    /// Step in which the lists were made; the width of the cell at that step, and the reach.
     pub listed_at: u64,
     pub listed_cell: f64,
     pub reach: Reach,
-    /// Step in which the close pairs were picked, width of the cell then, and their reach.
+    /// Step in which the close pairs were picked; the width of the cell at that step, and the reach.
     pub picked_at: u64,
     pub picked_cell: f64,
     pub close: Reach,
-    /// Farthest move of any grain since the close pairs were picked, in units of the cell; infinite before
-    /// the first pick, which is stored as `null`.
+    /// Farthest move of any grain since the close pairs were picked, in units of the cell; infinite
+    /// before the first pick, stored as `null`.
     #[serde(deserialize_with = "or_infinite")]
     pub moved: f64,
     pub contacts: u64,
-    /// In the last step, as all that follows: mean contact pressure by target.
+    /// Mean contact pressure over its target, in the last step, as for all fields below.
     pub pressure: f64,
-    /// Largest sum of contact stiffness by the mass that the grain was moved with, in the last step.
+    /// Largest sum of contact stiffness over the mass used for the grain.
     pub stiffest: f64,
-    /// Sum of the mass that grains were moved with times squared velocity, in the last step.
+    /// Sum of the mass used for a grain times its squared velocity.
     pub twice_kinetic: f64,
-    /// Sum of the squared unbalanced forces, in the last step.
+    /// Sum of the squared unbalanced forces.
     pub unbalanced: f64,
-    /// Mean normal force of the contacts in the last step.
+    /// Mean normal force of the contacts.
     pub mean_normal: f64,
     pub hold: HoldState,
 }
@@ -144,7 +144,7 @@ fn or_infinite<'d, D: serde::Deserializer<'d>>(stored: D) -> Result<f64, D::Erro
 }
 
 impl Moment {
-    /// Before the first step, which has no length yet.
+    /// State before the first step; the length of the step is not yet known.
     fn start(settings: &Settings, grains: usize, unit_mm: f64, (cell, aspect): (f64, Aspect)) -> Self {
         Self {
             settings: settings.fingerprint(),
@@ -178,15 +178,15 @@ impl Moment {
     }
 }
 
-/// Grains under compression: columns by grain in memory order, which changes, and `rank` (0 = the largest),
-/// which is fixed.
+/// Grains under compression: columns by grain in memory order, which changes, and `rank` (0 = the
+/// largest), which does not.
 #[derive(Clone, Debug)]
 pub struct Compression {
     pub(super) settings: Settings,
     pub(super) now: Moment,
     /// Rank of each grain by size, from the largest.
     pub(super) rank: Vec<u32>,
-    /// Place in the user's columns, by rank.
+    /// Index in the user's columns, by rank.
     pub(super) origin: Vec<u32>,
     /// Position along x, y, z in units of the cell; radius.
     pub(super) position: Vec<[f64; 4]>,
@@ -202,9 +202,9 @@ pub struct Compression {
     pub(super) law: Law,
     /// The lists, with the tangential memory.
     pub(super) chunks: Vec<GrainChunk>,
-    /// The critical step before there are contacts.
+    /// Critical step before there are contacts.
     pub(super) loose_step: f64,
-    /// True if sizes differ so much that the most crowded grains are moved as heavier ones.
+    /// True if sizes differ so much that the most crowded grains are given a larger mass.
     pub(super) is_wide: bool,
     pub(super) chunk_of: Vec<u16>,
     pub(super) work: Vec<Work>,
@@ -213,7 +213,7 @@ pub struct Compression {
 }
 
 impl Compression {
-    /// Makes a compression of grains at any position, at rest.
+    /// Makes a compression of grains at rest in any positions.
     ///
     /// # Errors
     /// Settings out of range; invalid grains; a cell narrower than two of the largest grain; coincident
@@ -277,7 +277,7 @@ impl Compression {
         Ok(this)
     }
 
-    /// Grains in order of rank, at rest, without lists.
+    /// Makes grains in order of rank, at rest, without lists.
     pub(super) fn blank(
         settings: &Settings,
         now: Moment,
@@ -316,7 +316,7 @@ impl Compression {
         }
     }
 
-    /// Steps done.
+    /// Number of steps done.
     pub fn steps(&self) -> u64 {
         self.now.steps
     }
@@ -331,12 +331,12 @@ impl Compression {
         self.spin.iter().map(|w| [w[0], w[1], w[2]]).collect()
     }
 
-    /// Mean contact pressure of the last step, by target.
+    /// Mean contact pressure of the last step, over its target.
     pub fn pressure(&self) -> f64 {
         self.now.pressure
     }
 
-    /// Volume of the cell by volume of the grains, less one.
+    /// Void ratio: volume of the cell over the volume of the grains, minus 1.
     pub fn void_ratio(&self) -> f64 {
         self.cell_volume() / self.grain_volume() - 1.0
     }
@@ -353,19 +353,19 @@ impl Compression {
         cubes.iter().sum::<f64>() * (4.0 / 3.0 * PI)
     }
 
-    /// Tells if crowded grains are moved as heavier ones.
+    /// Tells if crowded grains are given a larger mass.
     pub(super) fn makes_heavier(&self) -> bool {
         self.is_wide && self.settings.step.is_none()
     }
 
-    /// Moves crowded grains as heavier ones if the gradation that the grains were drawn from is wide: a small
-    /// sample may miss the extremes, and one gradation has one protocol.
+    /// Gives crowded grains a larger mass if the gradation from which they were drawn is wide: a small
+    /// sample may miss the extremes, and a gradation has one protocol.
     pub fn of_gradation(mut self, gradation: &Gradation) -> Self {
         self.is_wide = is_wide(gradation);
         self
     }
 
-    /// Grains in their present state, in the order that they were given in.
+    /// Grains in their present state, in their original order.
     pub fn packing(&self) -> Packing {
         let n = self.rank.len();
         let edge = self.now.cell * self.now.unit_mm;
@@ -401,7 +401,7 @@ impl Compression {
         }
     }
 
-    /// Energies, with the grains' own masses and the velocities of the last half step.
+    /// Computes energies, with the grains' own masses and the velocities of the last half step.
     pub(super) fn energy(&self) -> Energy {
         let mut kinetic = 0.0;
         for ((p, v), w) in self.position.iter().zip(&self.velocity).zip(&self.spin) {
@@ -426,7 +426,7 @@ impl Compression {
         Energy { kinetic, elastic }
     }
 
-    /// Observables of this instant.
+    /// Measures the packing at this instant.
     pub fn measure(&self) -> Measure {
         let n = self.rank.len();
         let mut contacts: Vec<(u32, u32)> = Vec::new();
@@ -468,7 +468,7 @@ impl Compression {
         }
     }
 
-    /// Root mean square unbalanced force of a grain by the mean normal contact force, in the last step.
+    /// Root mean square unbalanced force of a grain over the mean normal contact force, in the last step.
     pub(super) fn unbalanced_ratio(&self) -> f64 {
         if self.now.mean_normal > 0.0 {
             (self.now.unbalanced / self.rank.len() as f64).sqrt() / self.now.mean_normal

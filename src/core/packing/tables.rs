@@ -1,26 +1,26 @@
 //! Packings as text: CSV, dumps of LAMMPS and LIGGGHTS, Yade's `export.text`, MercuryDPM's `.data`.
 //!
 //! # CSV
-//! A column each for x, y, z and the diameter or the radius, by their names. A comment above the header,
-//! `# cell_mm = Lx, Ly, Lz`, gives a periodic cell with its corner at the origin, `# cell = none` free
-//! boundaries; a file without one leaves the cell open. The header names the columns in any order, with their
-//! unit at the end (`x_mm`, `Diameter (m)`), or without one, which leaves it open; further columns are passed
-//! over. ParaView's names of coordinates (`Points:0`, `coordinates_0`) are known. Comma, semicolon or tab
-//! between columns; a byte order mark, CRLF, blank lines and further `#` comments are allowed.
+//! One column each for x, y, z and the diameter or the radius, by name. A comment above the header,
+//! `# cell_mm = Lx, Ly, Lz`, gives a periodic cell with a corner at the origin, `# cell = none` free
+//! boundaries; without one the cell is not given. The header names the columns in any order, with their unit
+//! at the end (`x_mm`, `Diameter (m)`) or without one, in which case the unit is not given; other columns are
+//! ignored. ParaView's names of coordinates (`Points:0`, `coordinates_0`) are accepted. Comma, semicolon or
+//! tab between columns; a byte order mark, CRLF, blank lines and further `#` comments are allowed.
 //!
 //! # Dumps
-//! The last frame with atoms of a dump with the columns `x y z` (or `xu`, `xs`, `xsu` and so on), `radius` or
-//! `diameter`, and `id` if present, which then decides the order. Boundaries `pp pp pp` are a periodic cell,
-//! moved to the origin; boundaries without any `p` are free, and so are others if the user says so.
-//! `ITEM: UNITS` (LAMMPS writes it after `dump_modify ID units yes`, LIGGGHTS does not) gives the unit of
-//! length: `si`, `cgs`, `micro` and `nano` have one, `lj` has none, and the others are of atoms.
+//! The last frame with atoms is read. A dump has the columns `x y z` (or `xu`, `xs`, `xsu` and so on),
+//! `radius` or `diameter`, and optionally `id`, which then gives the order. Boundaries `pp pp pp` give a
+//! periodic cell, moved to the origin; boundaries without any `p` are free, and others are too if the user
+//! says so. `ITEM: UNITS` (LAMMPS writes it after `dump_modify ID units yes`, LIGGGHTS does not) gives the
+//! unit of length: `si`, `cgs`, `micro` and `nano` have one, `lj` has none, and the others are for atoms.
 //!
 //! # Yade and MercuryDPM
-//! Yade writes a first line `#format x_y_z_r` (further columns may follow, as `matId`), perhaps a comment,
-//! and a row per sphere. MercuryDPM writes frames: a line with the number of particles, the time and the
-//! bounds `xmin ymin zmin xmax ymax zmax`, then as many rows of 14 numbers or more: position, velocity,
-//! radius, rotation, angular velocity and one more. The last frame with grains is taken. Neither gives its
-//! unit of length or tells if its boundaries are periodic.
+//! Yade writes a first line `#format x_y_z_r` (more columns may follow, such as `matId`), possibly a
+//! comment, and one row per sphere. MercuryDPM writes frames: a line with the number of particles, the
+//! time and the bounds `xmin ymin zmin xmax ymax zmax`, then that many rows of at least 14 numbers:
+//! position, velocity, radius, rotation, angular velocity and one more. The last frame with grains is
+//! read. Neither program gives its unit of length or tells if its boundaries are periodic.
 
 use super::Cell;
 use super::fields::{
@@ -29,8 +29,7 @@ use super::fields::{
 };
 use crate::gradation::shortened;
 
-/// Accepted names of a coordinate, without a unit and in lower case; `@` stands for x, y or z, `#` for 0, 1
-/// or 2.
+/// Accepted names of a coordinate, in lower case without unit; `@` represents x, y or z, `#` 0, 1 or 2.
 const COORDINATE: [&str; 9] = [
     "@",
     "points:#",
@@ -43,14 +42,14 @@ const COORDINATE: [&str; 9] = [
     "@ coord",
 ];
 
-/// Accepted names of a column of diameters, and of one of radii.
+/// Accepted names of a column of diameters, and of a column of radii.
 pub(super) const DIAMETER: &[&str] = &["diameter", "diam"];
 pub(super) const RADIUS: &[&str] = &["radius", "radii", "r"];
 
-/// Relative difference allowed between a diameter and twice the radius beside it: both are rounded.
+/// Relative difference allowed between a diameter and twice the radius in the same row: both are rounded.
 const SAME_SIZE: f64 = 0.01;
 
-/// A name in a header, and the unit at its end.
+/// A name in a header, and the unit at its end, if any.
 pub(super) struct Named {
     pub name: String,
     pub unit: Option<LengthUnit>,
@@ -72,17 +71,17 @@ impl Named {
     }
 }
 
-/// Places of the four columns, their unit, and the factor that makes the last a diameter.
+/// Indices of the four columns, their unit, and the factor that turns the last into a diameter.
 struct Header {
     places: [usize; 4],
     unit: Option<LengthUnit>,
     factor: f64,
-    /// Columns of radii beside the diameters, and the factor that makes them diameters in their unit.
+    /// Columns of radii beside the diameters, and the factor that turns each into a diameter in its unit.
     radii: Vec<(usize, f64)>,
 }
 
 impl Header {
-    /// Reads a header; `None` if the line is no header of a packing.
+    /// Reads a header; `None` if the line is not the header of a packing.
     fn read(file: &str, (line, text): Line<'_>, delimiter: char) -> Result<Option<Self>, ImportError> {
         let names: Vec<Named> = text.split(delimiter).map(Named::of).collect();
         // x, y, z, diameter, radius.
@@ -120,7 +119,7 @@ impl Header {
             let allowed = "the same unit at the end of all four names, as x_mm, y_mm, z_mm and diameter_mm";
             return Err(refused(file, line, "header", text, allowed));
         }
-        // `r` may be a colour there.
+        // `r` may be a colour here.
         let beside = all[4].iter().filter(|&&at| size == 3 && names[at].name != "r");
         let factor_of = |&at: &usize| {
             let units = names[at].unit.zip(unit).map_or(1.0, |(radius, all)| radius.mm() / all.mm());
@@ -177,7 +176,7 @@ pub(super) fn csv(file: &str, text: &str) -> Result<FileGrains, ImportError> {
     if grains.is_empty() {
         return Err(ended(file, last, "at least one grain"));
     }
-    // The line of the cell gives the unit of the columns too if they name none.
+    // If the columns name no unit, they have that of the cell's line.
     let unit = unit.or(matches!(cell, FileCell::Known(Cell::Periodic(_))).then_some(LengthUnit::Mm));
     if matches!(cell, FileCell::Known(Cell::Periodic(_))) && unit != Some(LengthUnit::Mm) {
         let allowed = "columns in mm, as the cell above them";
@@ -188,13 +187,13 @@ pub(super) fn csv(file: &str, text: &str) -> Result<FileGrains, ImportError> {
 
 const CELL_LINES: &str = "a line \"# cell_mm = Lx, Ly, Lz\" or \"# cell = none\"";
 
-/// Reads the cell from a comment; most comments do not give one.
+/// Reads the cell from a comment; most comments give none.
 fn said_of_cell(file: &str, (line, text): Line<'_>) -> Result<FileCell, ImportError> {
     let Some((key, value)) = text.trim().strip_prefix('#').and_then(|rest| rest.split_once('=')) else {
         return Ok(FileCell::Unsaid);
     };
     let wrong = || refused(file, line, "cell", text, CELL_LINES);
-    // A spreadsheet fills the line up with delimiters.
+    // Spreadsheets pad the line with delimiters.
     let value = value.trim().trim_end_matches([',', ';', '\t', ' ']);
     match (key.trim().to_lowercase().as_str(), value) {
         ("cell" | "cell_mm", none) if none.eq_ignore_ascii_case("none") => Ok(FileCell::Known(Cell::Free)),
@@ -217,11 +216,11 @@ struct Coordinate {
     scaled: bool,
 }
 
-/// Systems of units of LAMMPS with a unit of length.
+/// LAMMPS unit systems that have a unit of length.
 const UNITS: [(&str, LengthUnit); 4] =
     [("si", LengthUnit::M), ("cgs", LengthUnit::Cm), ("micro", LengthUnit::Um), ("nano", LengthUnit::Nm)];
 
-/// System of units in which a length has no unit.
+/// Unit system in which a length has no unit.
 const REDUCED: &str = "lj";
 
 /// Reads the units of a dump, given once or before every frame: the name, and its unit of length.
@@ -251,11 +250,11 @@ fn unit(
     Ok(named)
 }
 
-/// Reads the last frame; `given` is the unit that the user names.
+/// Reads the last frame; `given` is the user's unit.
 pub(super) fn dump(file: &str, text: &str, given: Option<LengthUnit>) -> Result<FileGrains, ImportError> {
     let unit = unit(file, text, given)?;
     let frames = text.matches(FRAME).count();
-    // Only the last frame with atoms is parsed, so that a long run costs no more than its end.
+    // Only the last frame with atoms is parsed: a long run costs no more than its end.
     let (mut start, mut end) = (text.rfind(FRAME).unwrap_or(0), text.len());
     while is_empty(&text[start..end])
         && let Some(before) = text[..start].rfind(FRAME)
@@ -306,7 +305,7 @@ pub(super) fn dump(file: &str, text: &str, given: Option<LengthUnit>) -> Result<
             let unit = unit.map(|(_, unit)| unit);
             return Ok(FileGrains { grains, unit, cell, line, notes });
         } else {
-            // TIMESTEP, TIME, UNITS: one line, known by now or not needed.
+            // TIMESTEP, TIME, UNITS: one line, already read or not needed.
             lines.next();
         }
     }
@@ -322,7 +321,7 @@ fn is_empty(frame: &str) -> bool {
     number.is_some_and(|number| number.trim() == "0")
 }
 
-/// Periodicity of the box (unknown if it is periodic along some axes only), and its bounds.
+/// Periodicity of the box (`None` if it is periodic along some axes only), and its bounds.
 type Bounds = (Option<bool>, [[f64; 2]; 3]);
 
 fn box_bounds(file: &str, (line, kinds): Line<'_>, lines: [Line<'_>; 3]) -> Result<Bounds, ImportError> {
@@ -411,15 +410,15 @@ fn atom_rows<'a>(
     }
     grains.sort_by_key(|&(order, line, _)| (order, line));
     if let Some(pair) = grains.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-        let allowed = format!("every id once (it stands on line {} too)", pair[0].1);
+        let allowed = format!("every id once (it is also on line {})", pair[0].1);
         return Err(refused(file, pair[1].1, "id", &pair[1].0.to_string(), allowed));
     }
     Ok(grains.into_iter().map(|(_, _, grain)| grain).collect())
 }
 
-/// Numbers of a MercuryDPM header: in three dimensions, and in two.
+/// Number of values in a MercuryDPM header: in three dimensions, and in two.
 const HEADERS: [usize; 2] = [8, 6];
-/// Numbers in a MercuryDPM row, and the place of the radius.
+/// Number of values in a MercuryDPM row, and the index of the radius.
 const ROW: (usize, usize) = (14, 6);
 
 pub(super) fn yade(file: &str, text: &str) -> Result<FileGrains, ImportError> {
@@ -435,7 +434,7 @@ pub(super) fn yade(file: &str, text: &str) -> Result<FileGrains, ImportError> {
     for (line, row) in lines.filter(|(_, line)| !line.starts_with('#')) {
         last = line;
         let fields: Vec<&str> = row.split_whitespace().collect();
-        // The last of the columns may be a vector or a list of several words.
+        // The last column may be a vector or a list of several words.
         if fields.len() < names.len() {
             return Err(refused(file, line, "row", row, format!("{} fields, as in line 1", names.len())));
         }
@@ -447,7 +446,7 @@ pub(super) fn yade(file: &str, text: &str) -> Result<FileGrains, ImportError> {
     Ok(FileGrains { grains, unit: None, cell: FileCell::Unsaid, line, notes: Vec::new() })
 }
 
-/// Tells if a text begins like a frame of MercuryDPM: with numbers alone.
+/// Tells if a text begins like a frame of MercuryDPM: with numbers only.
 pub(super) fn is_mercury(text: &str) -> bool {
     let line = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
     line.is_some_and(|line| {
@@ -481,7 +480,7 @@ pub(super) fn mercury(file: &str, text: &str) -> Result<FileGrains, ImportError>
             return Err(ended(file, line + rows.len(), expected));
         }
         frames += 1;
-        // The first frame is empty in a simulation that fills a box, the last in one that empties it.
+        // The first frame is empty if a simulation fills a box, the last if it empties one.
         (last, is_last) = (line, count > 0);
         if count > 0 {
             frame = Some((line, words[1], ends, rows));

@@ -1,4 +1,4 @@
-//! Types of settings, their allowed values, and values in their written form.
+//! Types of settings, their allowed values, and values as written.
 
 use super::length::{LENGTHS, millimetres};
 use serde::de::value::{Error, MapDeserializer, SeqDeserializer};
@@ -14,9 +14,9 @@ pub struct Allowed<T> {
     /// Allowed values in words, for errors.
     pub words: String,
     test: Box<dyn Fn(&T) -> bool>,
-    /// Parser of the value from text, if text is accepted.
+    /// Parser for values written as text, if text is accepted.
     of_text: Option<fn(&str) -> Option<T>>,
-    /// Common values, for a shell to complete.
+    /// Common values, offered for shell completion.
     offered: Vec<String>,
 }
 
@@ -37,7 +37,7 @@ impl<T: Leaf> Allowed<T> {
         read.filter(|value| self.admits(value))
     }
 
-    /// Adds common values, for a shell to complete.
+    /// Adds common values for shell completion.
     pub fn offering(self, words: &[&str]) -> Self {
         Self { offered: words.iter().map(|word| (*word).to_owned()).collect(), ..self }
     }
@@ -53,37 +53,37 @@ impl<T: Leaf> Allowed<T> {
     }
 }
 
-/// Values that pass a test; `words` describes them.
+/// Allows values that pass a test; `words` describes them.
 pub fn only<T>(words: impl Into<String>, test: impl Fn(&T) -> bool + 'static) -> Allowed<T> {
     Allowed { words: words.into(), test: Box::new(test), of_text: None, offered: Vec::new() }
 }
 
-/// Every value of the type; `words` describes them.
+/// Allows every value of the type; `words` describes them.
 pub fn any<T>(words: impl Into<String>) -> Allowed<T> {
     only(words, |_| true)
 }
 
-/// Whole numbers of a range.
+/// Allows whole numbers in a range.
 pub fn whole(range: RangeInclusive<u64>) -> Allowed<u64> {
     only(format!("a whole number from {} to {}", range.start(), range.end()), move |n| range.contains(n))
 }
 
-/// Numbers of a range; `words` describes it.
+/// Allows numbers in a range; `words` describes it.
 pub fn within(range: RangeInclusive<f64>, words: &str) -> Allowed<f64> {
     only(words, move |n| range.contains(n))
 }
 
-/// Finite numbers above 0.
+/// Allows finite numbers above 0.
 pub fn above_zero() -> Allowed<f64> {
     only("a finite number above 0", |n: &f64| *n > 0.0 && n.is_finite())
 }
 
-/// Lengths above 0: numbers of mm, or text with a unit.
+/// Allows lengths above 0: numbers in mm, or text with a unit.
 pub fn length() -> Allowed<f64> {
     Allowed { words: LENGTHS.into(), of_text: Some(millimetres), ..above_zero() }
 }
 
-/// Words of a type that has few.
+/// Allows the words of a type that has only a few.
 pub fn words<T: Leaf>(all: &[&str]) -> Allowed<T> {
     let quoted: Vec<String> = all.iter().map(|word| format!("\"{word}\"")).collect();
     let allowed = any(match quoted.split_last() {
@@ -94,12 +94,12 @@ pub fn words<T: Leaf>(all: &[&str]) -> Allowed<T> {
     allowed.offering(all)
 }
 
-/// The type of a setting's value.
+/// Type of a setting's value.
 pub trait Leaf: Serialize + DeserializeOwned {
-    /// Type in TOML; most types are one of a few words.
+    /// Type in TOML; most types have a few allowed words.
     const TOML_TYPE: &'static str = "string";
 
-    /// Makes the relative paths of the value start from `folder`.
+    /// Resolves relative paths in the value from `folder`.
     fn placed(self, folder: &Path) -> Self {
         let _ = folder;
         self
@@ -128,23 +128,23 @@ impl Leaf for PathBuf {
     }
 }
 
-/// A value in its written form.
+/// A value as written.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// Text.
     Text(String),
-    /// A number, digit for digit.
+    /// A number, with all its digits.
     Number(String),
     /// A list.
     List(Vec<Value>),
-    /// A table, in the order of the text.
+    /// A table, in the order of its text.
     Table(Vec<(String, Value)>),
-    /// Anything else: a date, a truth value, an integer that is not decimal.
+    /// Anything else: a date, a boolean, a non-decimal integer.
     Other(String),
 }
 
 impl Value {
-    /// Reads a value from a command line: TOML, or else text.
+    /// Reads a value from a command line: as TOML, or else as text.
     pub fn of_assignment(text: &str) -> Self {
         match DeValue::parse(text) {
             Ok(parsed) => Self::from(parsed.get_ref()),
@@ -152,7 +152,7 @@ impl Value {
         }
     }
 
-    /// A finite number.
+    /// Reads a finite number.
     fn number(&self) -> Option<f64> {
         match self {
             Self::Number(digits) => digits.parse::<f64>().ok().filter(|n| n.is_finite()),
@@ -220,7 +220,7 @@ impl<'de> IntoDeserializer<'de> for &'de Value {
     }
 }
 
-/// Reads digits by the type of the setting: a count may be written `2e8`, a length may not be infinite.
+/// Reads digits by the type of the setting: a count may be written `2e8`, and a length must be finite.
 impl<'de> Deserializer<'de> for &'de Value {
     type Error = Error;
 

@@ -1,20 +1,20 @@
-//! Guesses what a text that is no settings file is, or a name that does not exist, and tells what to write
-//! instead.
+//! Guesses the nature of a text that is not a settings file, or of a name that does not exist, and
+//! suggests a correction.
 
 use super::length;
 use strsim::damerau_levenshtein;
 use toml::de::DeTable;
 
-/// First bytes of workbooks: .xlsx and .ods are zips, .xls is older.
+/// First bytes of workbooks: .xlsx and .ods are zip files, .xls is older.
 const WORKBOOKS: [&[u8]; 2] = [b"PK\x03\x04", b"\xd0\xcf\x11\xe0"];
 
-/// Sections and keys that only a plan of a campaign has.
+/// Sections and keys found only in the plan of a campaign.
 const OF_A_PLAN: [&str; 6] = ["factor", "case", "leave_out", "seeds", "title", "set"];
 
-/// A unit, and its size in another unit: a numerator and a denominator.
+/// A unit, and its size in another unit as a numerator and a denominator.
 type Unit = (&'static str, [f64; 2]);
 
-/// Units at the end of a setting's name, and the sizes of other units in them.
+/// Units at the end of a setting's name, and the sizes of other units in each.
 const UNITS: [(&str, &[Unit]); 4] = [
     ("mm", &length::UNITS),
     ("kPa", &[("kPa", [1.0, 1.0]), ("Pa", [1.0, 1e3]), ("MPa", [1e3, 1.0]), ("GPa", [1e6, 1.0])]),
@@ -22,16 +22,16 @@ const UNITS: [(&str, &[Unit]); 4] = [
     ("kg/m3", &[("kg/m3", [1.0, 1.0])]),
 ];
 
-/// Words that some users write behind a number of things.
+/// Words that some users write after a count.
 const COUNTED: [&str; 1] = ["layers"];
 
 /// Settings that are percentages.
 const PERCENTAGES: [&str; 2] = ["d85_at_dc", "coarsest"];
 
-/// Settings that are parts of 1, besides those whose names end in `_fraction`.
+/// Settings that are fractions, besides those whose names end in `_fraction`.
 const FRACTIONS: [&str; 5] = ["mass_ratio", "inject_share", "estimate", "rho", "concentration"];
 
-/// Bytes as text; a byte order mark is left out.
+/// Decodes bytes as text without a byte order mark.
 ///
 /// # Errors
 /// A description of the bytes.
@@ -53,7 +53,7 @@ pub fn as_text(bytes: &[u8]) -> Result<&str, String> {
     Ok(text.strip_prefix('\u{feff}').unwrap_or(text))
 }
 
-/// Describes the error in a line that is no TOML, if it is one of the usual mistakes: `line` counts from 1.
+/// Describes the error in a line that is not TOML, if it is a usual mistake; `line` counts from 1.
 pub fn of_line(text: &str, line: usize) -> Option<String> {
     let (key, value) = text.lines().nth(line.checked_sub(1)?)?.split_once('=')?;
     let (key, value) = (key.trim(), value.split('#').next().unwrap_or_default().trim());
@@ -74,12 +74,12 @@ pub fn of_line(text: &str, line: usize) -> Option<String> {
         && !value.contains(['"', '\'', ',', '=', '[', '{'])
         && !["true", "false"].contains(&value);
     is_bare.then(|| {
-        format!("`{value}` is no number: a name or a word stands in quotes; write {key} = \"{value}\"")
+        format!("`{value}` is not a number: a name or a word needs quotes; write {key} = \"{value}\"")
     })
 }
 
-/// Describes the error in a value of the setting `name` that is meant to be a number, if it is one of the
-/// usual mistakes. A number is named only if the setting's unit is certain.
+/// Describes the error in a value of the setting `name` that should be a number, if it is a usual
+/// mistake. A corrected number is suggested only if the setting's unit is certain.
 pub fn of_value(name: &str, value: &str) -> Option<String> {
     let number = value.trim();
     if let Some((whole, part)) = decimal_comma(number) {
@@ -110,14 +110,14 @@ pub fn of_value(name: &str, value: &str) -> Option<String> {
     match unit {
         "%" if PERCENTAGES.contains(&name) => alone(),
         "%" if FRACTIONS.contains(&name) || name.ends_with("_fraction") => {
-            Some(format!("as a part of 1, without the unit: {}", rounded(given / 100.0)))
+            Some(format!("as a fraction, without the unit: {}", rounded(given / 100.0)))
         }
         "layers" if name == "nz" => alone(),
         _ => Some("a number that has no unit".into()),
     }
 }
 
-/// Ending of the names of settings in this unit.
+/// Ending of the names of settings in a unit.
 fn ending(unit: &str) -> String {
     format!("_{}", unit.to_lowercase().replace('/', "_"))
 }
@@ -127,7 +127,7 @@ fn rounded(value: f64) -> f64 {
     format!("{value:.11e}").parse().unwrap_or(value)
 }
 
-/// The parts of a number before and behind its decimal comma.
+/// Splits a number at its decimal comma.
 fn decimal_comma(number: &str) -> Option<(&str, &str)> {
     let is_digits = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
     number
@@ -135,7 +135,7 @@ fn decimal_comma(number: &str) -> Option<(&str, &str)> {
         .filter(|(whole, part)| is_digits(whole.trim_start_matches(['+', '-'])) && is_digits(part))
 }
 
-/// Tells if a text that is no TOML is a table of numbers.
+/// Tells if a text that is not TOML is a table of numbers.
 pub fn is_table(text: &str) -> bool {
     let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
     let fields = |line: &str| line.split([',', ';', '\t']).filter(|field| !field.is_empty()).count();
@@ -143,15 +143,15 @@ pub fn is_table(text: &str) -> bool {
     lines.clone().all(|line| !line.contains('=')) && lines.any(is_row)
 }
 
-/// Tells if a table is a campaign's plan.
+/// Tells if a table is the plan of a campaign.
 pub fn is_plan(table: &DeTable) -> bool {
     table.keys().any(|key| OF_A_PLAN.contains(&&**key.get_ref()))
 }
 
-/// Largest number of settings in a list.
+/// Maximum number of settings in a list.
 const NAMED: usize = 30;
 
-/// `did you mean ...` if a known name resembles `name`; else the names in its section.
+/// Suggests `did you mean ...` if a known name resembles `name`; else lists the names in its section.
 pub(super) fn instead_of(name: &str, known: &[String]) -> String {
     let sections = sections(known);
     // A section by itself, as `[filtre]`.
@@ -182,7 +182,7 @@ pub(super) fn instead_of(name: &str, known: &[String]) -> String {
     format!("there are {}; and {} without a section", sections.join(", "), listed(&top))
 }
 
-/// Tells if few letters differ, for the length of the name.
+/// Tells if two names differ by few letters, relative to their length.
 fn is_like(known: &str, name: &str) -> bool {
     damerau_levenshtein(known, name) <= (name.chars().count() / 3).clamp(1, 3)
 }
@@ -193,7 +193,7 @@ fn sections(known: &[String]) -> Vec<&str> {
     sections
 }
 
-/// Name inside a section, if it is in that section.
+/// Returns the name inside a section, if it is in that section.
 fn in_section<'a>(name: &'a str, section: &str) -> Option<&'a str> {
     match name.rsplit_once('.') {
         Some((its_section, name)) => (its_section == section).then_some(name),
@@ -220,7 +220,7 @@ mod tests {
         }
         assert_eq!(
             hint("sieve = sand.csv").unwrap(),
-            "`sand.csv` is no number: a name or a word stands in quotes; write sieve = \"sand.csv\""
+            "`sand.csv` is not a number: a name or a word needs quotes; write sieve = \"sand.csv\""
         );
         assert!(hint("d0_mm = 0.5 mm").unwrap().contains("without its unit: 0.5"));
         for line in ["cu = ", "cu = 1,5,6", "cu = a,b", "[filter", "cu", "cu = \"a", "cu = 1e"] {
@@ -247,9 +247,9 @@ mod tests {
             ("thickness_mm", "1.1 cm", "in mm, without the unit: 11"),
             ("thickness_mm", "3in", "in mm, without the unit: 76.2"),
             ("thickness_mm", "5%", "in mm, not in %"),
-            ("base.mass_ratio", "5%", "as a part of 1, without the unit: 0.05"),
-            ("walk.concentration", "2%", "as a part of 1, without the unit: 0.02"),
-            ("packing.start_fraction", "35%", "as a part of 1, without the unit: 0.35"),
+            ("base.mass_ratio", "5%", "as a fraction, without the unit: 0.05"),
+            ("walk.concentration", "2%", "as a fraction, without the unit: 0.02"),
+            ("packing.start_fraction", "35%", "as a fraction, without the unit: 0.35"),
             ("base.d85_at_dc", "5%", "the number alone, without its unit: 5"),
             ("base.d85_at_dc", "5mm", "a number that has no unit"),
             ("network.nz", "60 layers", "the number alone, without its unit: 60"),

@@ -1,13 +1,13 @@
-//! Lengths in a user's input: a number of mm, or a number with its unit, in metric or US units.
+//! Lengths in a user's input: a number in mm or with its unit, metric or US.
 //!
-//! An inch is 25.4 mm and a foot 304.8 mm. The name of a sieve is no length: `3/8 in` in a sieve table is the
-//! nominal opening of ASTM E11, 9.5 mm, and `3/8in` as a length is 9.525 mm.
+//! An inch is 25.4 mm and a foot 304.8 mm. The name of a sieve is not a length: `3/8 in` in a sieve
+//! table is the nominal opening of ASTM E11, 9.5 mm; `3/8in` as a length is 9.525 mm.
 
 /// Allowed lengths, in the words of the errors.
 pub const LENGTHS: &str = "a length above 0, in mm or with its unit, as 24in, 2ft, 3/8in, 500mm, 0.5m or 5cm";
 
-/// Units of length, and the size of each in mm: a numerator and a denominator, so that 3/8 in is 9.525 mm to
-/// the last bit.
+/// Units of length, and the size of each in mm as a numerator and a denominator, so that 3/8 in is
+/// exactly the nearest number to 9.525 mm.
 pub(super) const UNITS: [(&str, [f64; 2]); 14] = [
     ("mm", [1.0, 1.0]),
     ("cm", [10.0, 1.0]),
@@ -25,7 +25,7 @@ pub(super) const UNITS: [(&str, [f64; 2]); 14] = [
     ("foot", [3048.0, 10.0]),
 ];
 
-/// Reads a length: its size (mm), above 0 and finite.
+/// Reads a length as a size (mm), above 0 and finite.
 ///
 /// ```
 /// use voidwalk_core::schema::length::millimetres;

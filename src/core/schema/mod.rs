@@ -1,10 +1,10 @@
-//! Settings, each declared once: its name, type, default, allowed values, and text for the user.
+//! Settings, each declared once with its name, type, default, allowed values, and text for the user.
 //!
-//! A stage declares its settings with `section!`; from that one declaration follow the struct with its
-//! fields, the reading of a TOML file and of `--set` with errors that name the line ([`GivenSettings`]), the
-//! commented text that `voidwalk init` writes ([`KeyInfo`]), the check of values from a program, and the
-//! written record ([`serde::Serialize`]). So a setting cannot be forgotten in one of these places. [`Group`]s
-//! declare which settings exclude each other.
+//! A stage declares its settings with `section!`. From that one declaration follow the struct with its
+//! fields, the reading of a TOML file and of `--set` with errors that name the line ([`GivenSettings`]),
+//! the commented text that `voidwalk init` writes ([`KeyInfo`]), the check of values from a program, and
+//! the written record ([`serde::Serialize`]). So no setting can be missing from one of these places.
+//! [`Group`]s declare which settings exclude each other.
 
 mod allowed;
 pub mod hints;
@@ -20,7 +20,7 @@ pub use settings::{Alternative, GivenSettings, Group, Names, Origin, SceneError}
 /// Description of a setting for the user, and its allowed values.
 #[derive(Clone, Debug)]
 pub struct KeyInfo {
-    /// Section, empty for the settings at the top.
+    /// Section; empty for top-level settings.
     pub section: &'static str,
     /// Name inside the section.
     pub name: &'static str,
@@ -36,7 +36,7 @@ pub struct KeyInfo {
     pub offered: Vec<String>,
     /// Sample value, in TOML.
     pub shown: String,
-    /// True if the built-in scene has that value; else it is an example.
+    /// True if the built-in scene sets this value; else it is an example.
     pub is_set: bool,
     /// Tells if a value is allowed.
     pub admits: fn(&Value) -> bool,
@@ -54,7 +54,7 @@ pub fn full_name(section: &str, name: &str) -> String {
     if section.is_empty() { name.to_owned() } else { format!("{section}.{name}") }
 }
 
-/// A value from a program that is out of range.
+/// A value set by a program that is out of range.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OutOfRange {
     /// Name of the setting inside its section.
@@ -65,18 +65,18 @@ pub struct OutOfRange {
     pub allowed: String,
 }
 
-/// Type of a setting: a value that is always there, or one that may be missing.
+/// Type of a setting: a value that is always present, or one that may be missing.
 pub trait Setting: Sized {
     /// Type of its value.
     type Value: Leaf;
 
-    /// Makes the setting from this value.
+    /// Makes the setting from a value.
     fn given(value: Self::Value) -> Self;
 
     /// Value, if there is one.
     fn value(&self) -> Option<&Self::Value>;
 
-    /// Tells if there is no value, so that nothing is written.
+    /// Tells if there is no value to write.
     fn is_missing(&self) -> bool {
         self.value().is_none()
     }
@@ -123,8 +123,8 @@ pub fn in_toml(value: &impl Serialize) -> String {
 ///     pub struct Base in "base" {
 ///         /// Meaning of the setting: for the docs and for `voidwalk init`.
 ///         pub cu: Option<f64> = None, set "1.5", within(1.0..=1000.0, "a number from 1 to 1000");
-///         /// `name: type = default`; then how `init` shows it: `set` as in the built-in scene, or `off` in
-///         /// a comment, with a value where the default has none; then what is allowed.
+/// `name: type = default`; then the form in `init`: `set` as in the built-in scene, or `off` as a
+/// comment, with a value if the default has none; then the allowed values.
 ///         pub cap: Option<u64> = None, off "2e8", whole(1..=u64::MAX);
 ///     }
 ///     // Fields that only a program sets, not a scene.
@@ -172,7 +172,7 @@ macro_rules! section {
             /// Text for the user about the section.
             pub const ABOUT: &'static [&'static str] = &[$($about),*];
 
-            /// Descriptions of the settings for the user, in the order in which they are written.
+            /// Descriptions of the settings for the user, in writing order.
             pub fn keys() -> Vec<$crate::schema::KeyInfo> {
                 vec![$({
                     type Checked = $crate::schema::Allowed<<$Type as $crate::schema::Setting>::Value>;
@@ -216,7 +216,7 @@ macro_rules! section {
                 })
             }
 
-            /// First setting whose value is not allowed.
+            /// Finds the first setting whose value is not allowed.
             pub fn out_of_range(&self) -> Option<$crate::schema::OutOfRange> {
                 $(
                     let allowed: $crate::schema::Allowed<<$Type as $crate::schema::Setting>::Value> =

@@ -1,7 +1,7 @@
 //! Settings with their origin: a line of a TOML file, or the command line.
 //!
-//! A setting has a dotted name (`base.cu`). Some exclude each other ([`Group`]): setting one on the command
-//! line replaces the others, and a file that gives both is refused.
+//! A setting has a dotted name (`base.cu`). Some settings exclude each other ([`Group`]): setting one on
+//! the command line replaces the others, and a file that gives both is refused.
 
 use super::{Allowed, Leaf, Value, hints};
 use crate::store::{read_regular, why_not_read};
@@ -31,17 +31,17 @@ pub enum SceneError {
         /// Description of the error.
         problem: String,
     },
-    /// A name that no setting has.
+    /// A name that is not a setting.
     #[error("{origin}: there is no setting `{name}`; {instead}")]
     Unknown {
         /// Place of the name.
         origin: Origin,
         /// The name.
         name: String,
-        /// A valid name that resembles it, or else those of its section.
+        /// A similar valid name, or else the names in its section.
         instead: String,
     },
-    /// A value that the setting cannot have.
+    /// A value that the setting does not allow.
     #[error("{origin}, {name}: `{value}` is not allowed; {allowed}")]
     Value {
         /// Place of the value.
@@ -53,7 +53,7 @@ pub enum SceneError {
         /// Allowed values.
         allowed: String,
     },
-    /// Settings that clash, or one that is missing.
+    /// Settings that clash, or a missing setting.
     #[error("{file}: {problem}")]
     Clash {
         /// The scene.
@@ -84,10 +84,10 @@ impl fmt::Display for Origin {
     }
 }
 
-/// Settings that give the same thing in different ways; a scene may use one of them.
+/// Alternative settings that give the same thing; a scene may use one alternative.
 #[derive(Clone, Copy, Debug)]
 pub struct Group {
-    /// Purpose, for a message that begins with their names: `give the base`.
+    /// Purpose, for a message that begins with the names: `give the base`.
     pub says: &'static str,
     /// Alternatives.
     pub alternatives: &'static [Alternative],
@@ -98,22 +98,22 @@ pub struct Group {
 pub struct Alternative {
     /// Settings that select it, each by itself.
     pub by: &'static [&'static str],
-    /// Settings that go with these alone.
+    /// Settings allowed only with this alternative.
     pub with: &'static [&'static str],
-    /// True if those choose this alternative too, on the command line.
+    /// True if those select this alternative too, on the command line.
     pub with_chooses: bool,
-    /// Settings that have another meaning under the other alternatives: choosing this one on the command line
-    /// removes them.
+    /// Settings with another meaning under the other alternatives; removed if this one is selected on
+    /// the command line.
     pub resets: &'static [&'static str],
 }
 
 impl Alternative {
-    /// Makes the alternative that these settings select.
+    /// Makes the alternative selected by these settings.
     pub const fn by(by: &'static [&'static str]) -> Self {
         Self { by, with: &[], with_chooses: false, resets: &[] }
     }
 
-    /// Adds settings that go with this alternative alone.
+    /// Adds settings allowed only with this alternative.
     pub const fn with(self, with: &'static [&'static str]) -> Self {
         Self { with, ..self }
     }
@@ -124,11 +124,11 @@ impl Alternative {
     }
 }
 
-/// Facts about the names: which exist, and which exclude each other.
+/// Valid names, and names that exclude each other.
 pub struct Names {
     /// All valid names.
     pub known: Vec<String>,
-    /// Names whose value is a text even if it looks like a number or a date.
+    /// Names whose value is text even if it looks like a number or a date.
     pub lines: Vec<String>,
     /// Settings that exclude each other.
     pub groups: &'static [Group],
@@ -142,7 +142,7 @@ pub struct GivenSettings {
     values: BTreeMap<String, (Value, Origin)>,
 }
 
-/// Name in `name=value`; empty without a `=`.
+/// Returns the name in `name=value`; empty without a `=`.
 pub fn setting_name(assignment: &str) -> &str {
     assignment.split_once('=').map_or("", |(name, _)| name).trim()
 }
@@ -160,7 +160,7 @@ impl GivenSettings {
     /// Reads a TOML file.
     ///
     /// # Errors
-    /// The file cannot be read, is no TOML, or sets what does not exist.
+    /// The file cannot be read, is not TOML, or sets an unknown name.
     pub fn read(path: &Path, names: &Names) -> Result<Self, SceneError> {
         let file = path.display().to_string();
         let io = |source| SceneError::File { file: file.clone(), source };
@@ -215,11 +215,11 @@ impl GivenSettings {
         Ok(settings)
     }
 
-    /// Applies assignments `name=value` that are stated together: they replace alternatives that were given
-    /// before, not one another. A value is TOML, or else text.
+    /// Applies assignments `name=value` given together: they replace alternatives that were given
+    /// before, not each other. A value is read as TOML, or else as text.
     ///
     /// # Errors
-    /// There is no `=`, or no such setting.
+    /// An assignment without `=`, or an unknown setting.
     pub fn set_together(
         &mut self,
         assignments: &[String],
@@ -262,7 +262,7 @@ impl GivenSettings {
         &self.file
     }
 
-    /// First given setting whose name begins with `beginning`.
+    /// Returns the first given setting whose name begins with `beginning`.
     pub fn first_in(&self, beginning: &str) -> Option<&str> {
         self.values.keys().find(|name| name.starts_with(beginning)).map(String::as_str)
     }
@@ -345,7 +345,7 @@ impl Names {
         if self.known.iter().any(|known| known == name) { Ok(()) } else { Err(self.unknown(name, origin)) }
     }
 
-    /// Settings that give way when `name` is set on the command line.
+    /// Lists the settings that are removed when `name` is set on the command line.
     fn replaced_by(&self, name: &str) -> Vec<&'static str> {
         let mut replaced = Vec::new();
         for group in self.groups {

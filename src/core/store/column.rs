@@ -11,20 +11,20 @@ use memmap2::{MmapMut, MmapOptions};
 use super::disk::{Call, ask};
 use super::platform::allocate;
 
-/// Place of the values of columns.
+/// Storage of columns.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Placement {
     /// In memory.
     #[default]
     Memory,
-    /// In files without a name (if the file system supports such; else their name is removed as soon as they
-    /// are made), in this folder, mapped into memory: the system keeps used pages in memory and moves the
-    /// rest to the disk. The files vanish with the process.
+    /// In files in this folder, mapped into memory. The files have no name (if the file system does not
+    /// support that, the name is removed at once), and vanish with the process. The system keeps used
+    /// pages in memory and moves the rest to the disk.
     Mapped(PathBuf),
 }
 
 impl Placement {
-    /// Puts the files of this placement in `folder`.
+    /// Places the files in `folder`.
     pub fn within(self, folder: &Path) -> Self {
         match self {
             Self::Memory => Self::Memory,
@@ -33,10 +33,10 @@ impl Placement {
     }
 }
 
-/// A column of plain values that is used as a slice.
+/// A column of plain values, used as a slice.
 ///
-/// The simulation sees slices only, so that a column is in memory or in a mapped file without a change to any
-/// kernel, and with the same bits.
+/// The simulation sees only slices: kernels and results are the same for a column in memory and one in a
+/// mapped file.
 #[derive(Debug)]
 pub struct Column<T: Pod> {
     values: Values<T>,
@@ -45,13 +45,13 @@ pub struct Column<T: Pod> {
 #[derive(Debug)]
 enum Values<T: Pod> {
     Owned(Vec<T>),
-    /// The mapping, and its file: if a file goes with its last handle (Windows), the mapping must go first.
+    /// The mapping, dropped before its file: on Windows a file may be deleted with its last handle.
     Mapped(MmapMut, #[allow(dead_code, reason = "is kept open")] File),
 }
 
 impl<T: Pod> Column<T> {
-    /// Makes a column of `len` zeros. Pages of memory are touched when they are first written; blocks of a
-    /// file are allocated here, so that a full disk is an error now and not a crash later (but see
+    /// Makes a column of `len` zeros. Memory pages are touched when first written; the blocks of a file
+    /// are allocated here, so that a full disk is an error now and not a crash later (but see
     /// `map_zeros` for file systems that copy on write).
     ///
     /// # Errors
@@ -71,25 +71,25 @@ impl<T: Pod> Column<T> {
     }
 }
 
-/// Maps a file without a name that holds `bytes` zeros, all of its blocks allocated.
+/// Maps a nameless file of `bytes` zeros, with all of its blocks allocated.
 ///
-/// So a full disk is an error here, and no signal (SIGBUS) when a page of the mapping goes to the disk, as
-/// long as the file system writes in place, as ext4, XFS, NTFS and tmpfs do. One that copies on write (btrfs,
-/// ZFS, bcachefs) may take new blocks for a page that is written again, and one that compresses may have
-/// allocated nothing for zeros: if others fill such a disk up while the program runs, the signal can end it,
-/// and it continues from its last checkpoint, as after a kill.
+/// So a full disk is an error here, not a signal (SIGBUS) when a page is written to the disk, if the
+/// file system writes in place, as ext4, XFS, NTFS and tmpfs do. One that copies on write (btrfs, ZFS,
+/// bcachefs) may take new blocks for a rewritten page, and one that compresses may allocate nothing for
+/// zeros: if others fill such a disk while the program runs, the signal can end it, and it continues
+/// from its last checkpoint, as after a kill.
 fn map_zeros(folder: &Path, bytes: usize) -> io::Result<(MmapMut, File)> {
     ask(Call::Map(folder, bytes as u64), || {
         let file: File = tempfile::tempfile_in(folder)?;
         allocate(&file, bytes as u64)?;
-        // SAFETY: the mapped file must not change or be cut by others while it is used as a slice. This
-        // process has one handle to the file, which is kept beside the mapping and is used for nothing else.
-        // Others have no name by which to open it, or are not allowed to (Windows). Two paths are left, open
-        // only to this user's own processes (and root's), and as deliberate as writing into this process by
-        // /proc/PID/mem, which no program can rule out: the mapping under /proc/PID/map_files; and, if the
-        // file system has no O_TMPFILE, the moment between the making of the file, by a random name and with
-        // mode 0600, and the removal of that name. Beyond its end nothing is mapped: `allocate` has made it
-        // `bytes` long.
+        // SAFETY: others must not change or truncate the mapped file while it is used as a slice. This
+        // process has one handle to the file, kept beside the mapping and used for nothing else. Other
+        // processes have no name by which to open it, or are not allowed to (Windows). Two ways remain,
+        // open only to this user's processes (and root's), and as deliberate as writing into this
+        // process through /proc/PID/mem, which no program can prevent: the mapping under
+        // /proc/PID/map_files; and, if the file system has no O_TMPFILE, the moment between the creation
+        // of the file, with a random name and mode 0600, and the removal of that name. Nothing is mapped
+        // beyond its end: `allocate` has made it `bytes` long.
         let map = unsafe { MmapOptions::new().len(bytes).map_mut(&file) }?;
         Ok((map, file))
     })

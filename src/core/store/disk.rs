@@ -1,9 +1,9 @@
-//! Calls to the disk: every call of the program that makes, changes, reads or removes a file of its own goes
-//! through `ask`, and through one [`Disk`].
+//! Calls to the disk. Every call that creates, changes, reads or removes one of the program's own files
+//! goes through `ask` and one [`Disk`].
 //!
-//! A process has one disk, so it is process-wide and not handed from function to function: a writer that has
-//! no folder at hand (a report, a ledger, a mapped column) cannot forget it, and only a test ever sets it.
-//! The real disk is the absence of another; it costs one load of a pointer per call.
+//! The disk is global to the process and not passed from function to function: a writer without a folder
+//! (a report, a ledger, a mapped column) cannot forget it, and only tests set it. Without a replacement
+//! the real disk is used, at the cost of one pointer load per call.
 
 use std::fmt;
 use std::fs::File;
@@ -20,26 +20,25 @@ use super::platform;
 pub enum Call<'a> {
     /// Lists a folder.
     List(&'a Path),
-    /// Makes a single folder.
+    /// Creates a single folder.
     MakeFolder(&'a Path),
     /// Removes a folder with all its content.
     RemoveFolder(&'a Path),
-    /// Opens the lock file, making it if it is missing, and locks it.
+    /// Opens the lock file, creating it if it is missing, and locks it.
     Lock(&'a Path),
     /// Writes the name of the holder into the lock file.
     Sign(&'a Path, &'a [u8]),
-    /// Makes a new, empty file.
+    /// Creates a new, empty file.
     Create(&'a Path),
-    /// Adds bytes to the end of a file.
+    /// Appends bytes to a file.
     Write(&'a Path, &'a [u8]),
-    /// Sends the written part of a file to the disk.
+    /// Syncs the written part of a file.
     Sync(&'a Path),
-    /// Gives a file another name, replacing the former file of that name.
+    /// Renames a file, replacing any file of that name.
     Rename(&'a Path, &'a Path),
-    /// Sends the names in a folder to the disk.
+    /// Syncs the names in a folder.
     SyncFolder(&'a Path),
-    /// Makes, in a folder, a file without a name of this many bytes, all of its blocks allocated, and maps
-    /// it.
+    /// Creates a nameless file of this many bytes in a folder, allocates all of its blocks, and maps it.
     Map(&'a Path, u64),
     /// Opens a file or reads from it.
     Read(&'a Path),
@@ -68,12 +67,12 @@ impl fmt::Debug for Call<'_> {
     }
 }
 
-/// A disk that may fail, or take notes.
+/// A disk that may fail or record calls.
 pub trait Disk: Send + Sync {
     /// Answers a call; `act` does the work of the real disk.
     ///
     /// # Errors
-    /// Error of `act`, or any error that this disk chooses.
+    /// The error of `act`, or any error that this disk chooses.
     fn call(&self, call: Call<'_>, act: &mut dyn FnMut() -> io::Result<()>) -> io::Result<()>;
 }
 
@@ -84,7 +83,7 @@ pub fn replace_disk(disk: Box<dyn Disk>) {
     let _ = DISK.set(disk);
 }
 
-/// Asks the disk; repeats a call that a signal interrupted.
+/// Calls the disk; repeats a call that a signal interrupted.
 pub(super) fn ask<T>(call: Call<'_>, mut act: impl FnMut() -> io::Result<T>) -> io::Result<T> {
     loop {
         let answer = match DISK.get() {
@@ -105,18 +104,18 @@ pub(super) fn ask<T>(call: Call<'_>, mut act: impl FnMut() -> io::Result<T>) -> 
     }
 }
 
-/// Beginning of the names of incomplete files; a file left by a killed process is removed when its folder is
-/// next taken.
+/// Prefix of the names of incomplete files. A file left by a killed process is removed when its folder
+/// is next locked.
 pub(super) const PART: &str = ".voidwalk-part-";
 
-/// Number of bytes after which a growing file is sent to the disk while the writing goes on.
+/// Number of bytes after which a growing file is synced in the background.
 const SEND_EVERY: u64 = 64 << 20;
 
-/// A new file beside its final place; removed unless it gets there.
+/// A new file beside its final place, removed unless it is renamed into place.
 pub(super) struct PartFile {
     path: PathBuf,
     file: Arc<File>,
-    /// Bytes written since the file was last sent to the disk, and the thread that is sending it.
+    /// Bytes written since the last sync began, and the thread that is syncing.
     waiting: u64,
     sending: Option<JoinHandle<io::Result<()>>>,
     whole: bool,
@@ -134,14 +133,14 @@ impl PartFile {
                     let file = Arc::new(file);
                     return Ok(Self { path, file, waiting: 0, sending: None, whole: false });
                 }
-                // Left by a killed process of the same number, or made by a process on another machine.
+                // Left by a killed process of this number, or created on another machine.
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error),
             }
         }
     }
 
-    /// Sends the file to the disk. After an error the file is given up: a second sync may report success when
+    /// Syncs the file. After an error the file is abandoned: a second sync may report success although
     /// nothing was written.
     pub fn sync(&mut self) -> io::Result<()> {
         self.sent()?;
@@ -154,7 +153,7 @@ impl PartFile {
         Ok(())
     }
 
-    /// Starts sending the new bytes to the disk, if they are many and the disk is idle.
+    /// Starts syncing the new bytes, if there are many and no sync is under way.
     fn send(&mut self) -> io::Result<()> {
         if self.waiting < SEND_EVERY || self.sending.as_ref().is_some_and(|thread| !thread.is_finished()) {
             return Ok(());
@@ -162,7 +161,7 @@ impl PartFile {
         self.send_by(File::sync_data)
     }
 
-    /// Starts sending all written bytes and the length to the disk; [`Self::sent`] waits for it.
+    /// Starts syncing all written bytes and the length; [`Self::sent`] waits for the end.
     pub fn send_all(&mut self) -> io::Result<()> {
         self.send_by(File::sync_all)
     }
@@ -173,14 +172,14 @@ impl PartFile {
         let send = move || ask(Call::Sync(&path), || sync(&file));
         match std::thread::Builder::new().spawn(send.clone()) {
             Ok(thread) => self.sending = Some(thread),
-            // The system has no free thread: this one waits for the disk.
+            // No thread is available: this one waits for the disk.
             Err(_) => send()?,
         }
         self.waiting = 0;
         Ok(())
     }
 
-    /// Waits for the bytes under way; the system reports an error only once.
+    /// Waits for the sync under way; the system reports an error only once.
     pub fn sent(&mut self) -> io::Result<()> {
         match self.sending.take().map(JoinHandle::join) {
             None => Ok(()),
@@ -192,7 +191,7 @@ impl PartFile {
 
 impl Write for PartFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        // All bytes at once, so that a disk that takes notes knows the content of the file.
+        // All bytes at once, so that a recording disk knows the content of the file.
         ask(Call::Write(&self.path, bytes), || (&*self.file).write_all(bytes))?;
         self.waiting += bytes.len() as u64;
         self.send()?;
@@ -208,19 +207,19 @@ impl Drop for PartFile {
     fn drop(&mut self) {
         let _ = self.sent();
         if !self.whole {
-            // If this fails too, the next process that takes the folder removes the file.
+            // If this fails too, the next process that locks the folder removes the file.
             let _ = ask(Call::Remove(&self.path), || std::fs::remove_file(&self.path));
         }
     }
 }
 
-/// Sends the names in a folder to the disk.
+/// Syncs the names in a folder.
 pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     ask(Call::SyncFolder(folder), || platform::sync_folder(folder))
 }
 
-/// Reads a whole file, which is no link to one elsewhere.
+/// Reads a whole file; a link is refused.
 pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
     ask(Call::Read(path), || {
         let mut bytes = Vec::new();
@@ -229,10 +228,10 @@ pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
     })
 }
 
-/// Opens a file of the program's own for reading: a regular one, and no link to one elsewhere.
+/// Opens one of the program's own files for reading: a regular file, not a link.
 pub(super) fn open_own(path: &Path) -> io::Result<File> {
     regular(platform::open_own(File::options().read(true), path)?)?
-        .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "is no regular file"))
+        .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "is not a regular file"))
 }
 
 /// Returns the file; `None` if it is a folder, a pipe, a socket or a device.
@@ -240,8 +239,8 @@ fn regular(file: File) -> io::Result<Option<File>> {
     Ok(file.metadata()?.is_file().then_some(file))
 }
 
-/// Reads a file of a user; `None` if it is no regular file, or has more bytes than `largest`. Does not wait
-/// for a pipe.
+/// Reads a user's file; `None` if it is not a regular file or is longer than `largest` bytes. Does not
+/// wait for a pipe.
 pub fn read_regular(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
     let Some(file) = open_regular(path)? else { return Ok(None) };
     let mut bytes = Vec::new();
@@ -249,7 +248,7 @@ pub fn read_regular(path: &Path, largest: u64) -> io::Result<Option<Vec<u8>>> {
     Ok((bytes.len() as u64 <= largest).then_some(bytes))
 }
 
-/// Explains why [`read_regular`] refuses a path: its kind, and what is allowed.
+/// Explains why [`read_regular`] refuses a path: its kind, and the kind allowed.
 pub fn why_not_read(path: &Path, largest: u64) -> String {
     let largest = in_mb(largest);
     match std::fs::metadata(path) {
@@ -261,7 +260,7 @@ pub fn why_not_read(path: &Path, largest: u64) -> String {
     }
 }
 
-/// A limit on a file's size, in words.
+/// Writes a limit on a file's size in words.
 pub fn in_mb(bytes: u64) -> String {
     match bytes >> 30 {
         0 => format!("{} MB", bytes >> 20),
@@ -269,7 +268,7 @@ pub fn in_mb(bytes: u64) -> String {
     }
 }
 
-/// Opens a file for reading; `None` if it is no regular file. Does not wait for a pipe.
+/// Opens a file for reading; `None` if it is not a regular file. Does not wait for a pipe.
 pub fn open_regular(path: &Path) -> io::Result<Option<File>> {
     regular(platform::open_any(File::options().read(true), path)?)
 }
@@ -278,7 +277,7 @@ pub fn open_regular(path: &Path) -> io::Result<Option<File>> {
 mod tests {
     use super::*;
 
-    /// A reader of a pipe with nobody at its other end waits for ever.
+    /// A reader of a pipe waits for ever if nobody writes to it.
     #[test]
     #[cfg(unix)]
     fn what_is_no_regular_file_is_not_read_and_not_waited_for() {
@@ -302,6 +301,6 @@ mod tests {
         assert_eq!(why(&text), "is larger than 16 MB; allowed: a file up to that size");
         assert_eq!(in_mb(4 << 30), "4 GB");
         assert_eq!(read(&text).unwrap(), b"abc");
-        assert_eq!(read(&pipe).unwrap_err().to_string(), "is no regular file");
+        assert_eq!(read(&pipe).unwrap_err().to_string(), "is not a regular file");
     }
 }

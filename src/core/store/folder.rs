@@ -1,13 +1,13 @@
-//! The run folder: one writer, and no file that is half written.
+//! The run folder: one writer, no half-written file.
 //!
-//! - A folder is ours if it was empty or absent, or holds our lock file [`LOCK_FILE`] or a finished run. Any
-//!   other folder is not written to; neither is a folder reached through a symbolic link.
-//! - The lock belongs to the process: the system releases it however the process dies. The lock file names
-//!   its holder.
-//! - A file appears under its name only when it is whole: written beside it, synced, renamed, and the folder
-//!   synced. A new folder is synced into its parent.
-//! - Incomplete files of a killed process are removed when their folder is next taken by one process alone.
-//! - A name of a folder or a file is one that every system accepts and none takes for another.
+//! - A folder is ours if it was empty or absent, or holds our lock file [`LOCK_FILE`] or a finished run.
+//!   No other folder is written to, nor one reached through a symbolic link.
+//! - The lock belongs to the process: the system releases it however the process ends. The lock file
+//!   names its holder.
+//! - A file appears under its name only when complete: it is written beside its place, synced and
+//!   renamed, and the folder is synced. A new folder is synced into its parent.
+//! - Incomplete files of a killed process are removed when one process alone next locks their folder.
+//! - Names of folders and files are valid on every system, and no system confuses two of them.
 
 use super::disk::{Call, PART, ask};
 use super::whole::{StoreError, is_empty, make_folder, make_folders, remove_folder, sync, write_whole};
@@ -22,13 +22,13 @@ use std::{fs, io};
 /// Name of the lock file, which marks a folder as ours.
 pub const LOCK_FILE: &str = ".voidwalk.lock";
 
-/// Time during which a shared folder is asked for: another process may hold it alone while it clears up.
+/// Time for which a shared folder is retried: another process may hold it alone while it clears up.
 const ASK_FOR: Duration = Duration::from_millis(500);
 
-/// Time within which a process signs the lock file after locking a folder.
+/// Maximum time in which a process signs the lock file after locking a folder.
 const SIGNS_WITHIN: Duration = Duration::from_millis(200);
 
-/// A folder that this process alone writes to, until it is dropped.
+/// A folder to which only this process writes until it is dropped.
 #[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
@@ -42,7 +42,7 @@ impl AsRef<Path> for Folder {
 }
 
 impl Folder {
-    /// Makes the folder if it is missing, and locks it.
+    /// Creates the folder if it is missing, and locks it.
     ///
     /// # Errors
     /// The folder is a link, holds other things, is held by another process, or cannot be written.
@@ -50,8 +50,8 @@ impl Folder {
         Self::open_locked(path, false)
     }
 
-    /// Opens a folder like [`Folder::open`], for several processes that each work in folders of their own
-    /// inside; it is not taken while one process holds it alone.
+    /// Opens a folder like [`Folder::open`], for several processes that each work in a subfolder of
+    /// their own. Fails while one process holds the folder alone.
     pub fn open_shared(path: &Path) -> Result<Self, StoreError> {
         Self::open_locked(path, true)
     }
@@ -59,7 +59,7 @@ impl Folder {
     fn open_locked(path: &Path, shared: bool) -> Result<Self, StoreError> {
         #[cfg(feature = "process")]
         platform::process::save_first();
-        // Without a trailing slash, which would follow a link.
+        // No trailing slash, which would follow a link.
         let path: &Path = &path.components().collect::<PathBuf>();
         let mut marked = false;
         match fs::symlink_metadata(path) {
@@ -71,7 +71,7 @@ impl Folder {
             }
             Ok(_) => {
                 let is_file = |name| path.join(name).symlink_metadata().is_ok_and(|m| m.is_file());
-                // In this order: a process that has just locked an empty folder leaves its mark in it.
+                // In this order: a process that has just locked an empty folder leaves its lock file in it.
                 let empty = is_empty(path).map_err(StoreError::io(path, "read the folder"))?;
                 marked = is_file(LOCK_FILE) || (is_file("manifest.json") && is_file("outcome.json"));
                 if !marked && !empty {
@@ -86,7 +86,7 @@ impl Folder {
         let lock_path = path.join(LOCK_FILE);
         let lock = if shared { share(&lock_path)? } else { lock(&lock_path, false)? };
         if !marked {
-            // Without this, a power failure could leave a folder with other files but without this mark.
+            // Else a power failure could leave a folder with other files but without this lock file.
             disk::sync_folder(path).map_err(StoreError::io(path, "sync the folder"))?;
         }
         if !shared {
@@ -123,7 +123,7 @@ impl Folder {
         }
     }
 
-    /// Removes a file of the folder, if it is there.
+    /// Removes a file of the folder, if it exists.
     pub fn remove(&self, name: &str) -> Result<(), StoreError> {
         let path = self.path.join(name);
         match ask(Call::Remove(&path), || fs::remove_file(&path)) {
@@ -132,16 +132,16 @@ impl Folder {
         }
     }
 
-    /// Removes files of the folder, if present, for good: a power cut restores no file.
+    /// Removes any of these files from the folder, for good: a power cut restores none.
     pub fn remove_all(&self, names: &[&str]) -> Result<(), StoreError> {
         if self.remove_there(names)? { sync(&self.path) } else { Ok(()) }
     }
 
-    /// Removes files like [`Folder::remove_all`] in a folder inside, and that folder too if nothing else is
-    /// in it.
+    /// Removes files like [`Folder::remove_all`] from a subfolder, and then the subfolder if it is
+    /// empty.
     ///
     /// # Errors
-    /// A link in place of that folder, or an error of the system.
+    /// A link in place of the subfolder, or an error of the system.
     pub fn remove_all_in(&self, inside: &str, names: &[impl AsRef<str>]) -> Result<(), StoreError> {
         let path = self.path.join(inside);
         if path.symlink_metadata().is_err() {
@@ -157,14 +157,14 @@ impl Folder {
         if removed { sync(&path) } else { Ok(()) }
     }
 
-    /// Removes those of the files that are there; tells if there were any.
+    /// Removes those of the files that exist; tells if there were any.
     fn remove_there(&self, names: &[impl AsRef<str>]) -> Result<bool, StoreError> {
         let there: Vec<&str> = names.iter().map(AsRef::as_ref).filter(|name| self.has(name)).collect();
         there.iter().try_for_each(|name| self.remove(name))?;
         Ok(!there.is_empty())
     }
 
-    /// Writes a whole file: afterwards either all of it is there, or the former content.
+    /// Writes a whole file: afterwards the file holds all of it, or its former content.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), StoreError> {
         let path = self.path.join(name);
         if let Some(folder) = path.parent().filter(|p| *p != self.path) {
@@ -174,7 +174,7 @@ impl Folder {
     }
 }
 
-/// A locked file, unlocked when it is dropped: a process that is just being started has a copy of every open
+/// A locked file, unlocked when dropped: a process that is being started holds a copy of every open
 /// file, and would keep the lock until it becomes another program.
 #[derive(Debug)]
 struct Lock(File);
@@ -195,7 +195,7 @@ fn lock(path: &Path, shared: bool) -> Result<Lock, StoreError> {
     // A link in place of the lock file would cause its target to be emptied.
     let file = ask(Call::Lock(path), || platform::open_own(&mut options, path)).map_err(failed)?;
     let meta = file.metadata().map_err(failed)?;
-    // So would a second name of a file that somebody else needs.
+    // So would a second name of somebody else's file.
     if !meta.is_file() || platform::has_other_names(&file).map_err(failed)? {
         return Err(StoreError::NotALock { path: path.to_owned() });
     }
@@ -208,7 +208,7 @@ fn lock(path: &Path, shared: bool) -> Result<Lock, StoreError> {
     }
 }
 
-/// Reads the holder from the lock file; a process that has just locked it is about to write that.
+/// Reads the holder from the lock file; a process that has just locked it is about to write its name.
 fn holder(path: &Path) -> String {
     let begun = Instant::now();
     loop {
@@ -216,13 +216,13 @@ fn holder(path: &Path) -> String {
         let text = String::from_utf8_lossy(&text);
         match text.lines().next() {
             Some(line) => return line.chars().take(200).collect(),
-            None if begun.elapsed() > SIGNS_WITHIN => return "which has not said who it is".into(),
+            None if begun.elapsed() > SIGNS_WITHIN => return "which has not given its name".into(),
             None => std::thread::sleep(Duration::from_millis(5)),
         }
     }
 }
 
-/// Opens a lock file and shares it; a process that is alone with it first clears up.
+/// Opens a lock file and shares it; a process that holds it alone clears up first.
 fn share(path: &Path) -> Result<Lock, StoreError> {
     if let Ok(alone) = lock(path, false) {
         let folder = path.parent().unwrap_or(path);
@@ -240,8 +240,7 @@ fn share(path: &Path) -> Result<Lock, StoreError> {
     }
 }
 
-/// Removes incomplete files of killed processes in a folder and in its subfolders without a lock of their
-/// own.
+/// Removes incomplete files of killed processes from a folder and its subfolders that have no lock.
 fn clear_parts(folder: &Path) -> io::Result<()> {
     let entries = ask(Call::List(folder), || fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>())?;
     for entry in entries {
@@ -258,14 +257,14 @@ fn clear_parts(folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Tells if a name belongs to an incomplete file whose process is gone. Without working locks, a live process
-/// may still be writing it.
+/// Tells if a name belongs to an incomplete file whose process has ended. Without working locks, a live
+/// process may still be writing it.
 fn is_left(name: &str) -> bool {
     let Some(process) = name.strip_prefix(PART).and_then(|rest| rest.split('-').next()) else { return false };
     process == std::process::id().to_string() || !platform::is_running(process)
 }
 
-/// Tells if Windows takes a name for a device's, whatever its ending.
+/// Tells if Windows reads a name as a device, whatever its ending.
 pub fn is_device(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or_default().trim_end().to_lowercase();
     let numbered =
@@ -274,8 +273,8 @@ pub fn is_device(name: &str) -> bool {
     is_numbered || ["con", "prn", "aux", "nul", "conin$", "conout$"].contains(&stem.as_str())
 }
 
-/// Turns a name into a folder's: if it is not plain, is a device's or ends with a dot, its hash is added at
-/// the end.
+/// Turns a name into a folder name. A hash is appended if the name is not plain, is a device name or
+/// ends with a dot.
 pub fn folder_name(name: &str) -> String {
     let safe = |c: char| if is_plain(c) { c } else { '_' };
     let plain: String = name.chars().take(120).map(safe).collect();
@@ -328,7 +327,7 @@ mod tests {
         fs::write(path.join("notes.txt"), "mine").unwrap();
         let held = Folder::open_shared(&path).unwrap();
         assert!(!left.exists() && !inside.exists() && of_another.exists());
-        // A live holder may own it.
+        // A running process may own it.
         part(&path);
         let _other = Folder::open_shared(&path).unwrap();
         assert!(left.exists());
@@ -370,7 +369,7 @@ mod tests {
         assert_eq!(fs::read_dir(&elsewhere).unwrap().count(), 0);
     }
 
-    /// A process that is being started has a copy of every open file until it becomes another program.
+    /// A process that is being started holds a copy of every open file until it becomes another program.
     #[test]
     fn a_folder_that_is_let_go_is_free_though_its_lock_file_is_open_elsewhere() {
         let root = tempfile::tempdir().unwrap();

@@ -1,10 +1,10 @@
-//! JSON files of the program: each begins with the name and number of its form and the program's version.
+//! JSON files of the program. Each begins with the name and number of its format and the program's version.
 //!
 //! ```json
 //! { "format": "voidwalk-outcome/1", "voidwalk": "0.1.0", ... }
 //! ```
-//! The number rises when an older program would misread the file: a field is gone, or has another meaning. A
-//! new field changes nothing. A file without such a beginning, or with another number, is refused.
+//! The number rises if an older program would misread the file: a field was removed, or has another
+//! meaning. A new field changes nothing. A file without this beginning, or with another number, is refused.
 
 use std::fmt;
 
@@ -14,12 +14,12 @@ use serde_json::Value;
 
 use crate::text::is_hidden;
 
-/// The form of a JSON file.
+/// The format of a JSON file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Format {
     /// Name, without the program's.
     name: &'static str,
-    /// Number of the form.
+    /// Number of the format.
     number: u32,
     /// Name of the file, or the command that prints it.
     pub file: &'static str,
@@ -29,7 +29,7 @@ macro_rules! formats {
     ($($(#[$what:meta])* $constant:ident = $name:literal / $number:literal, $file:literal;)*) => {
         $($(#[$what])* pub const $constant: Format = Format { name: $name, number: $number, file: $file };)*
 
-        /// Every form.
+        /// All formats.
         pub const FORMATS: &[Format] = &[$($constant),*];
     };
 }
@@ -51,13 +51,13 @@ formats! {
     CAMPAIGN = "campaign" / 1, "campaign.json";
     /// One case of a campaign.
     CASE = "case" / 1, "case.json";
-    /// A filter that was packed.
+    /// A packed filter.
     PACKING = "packing" / 1, "packing.json";
-    /// Constrictions that were measured.
+    /// Measured constrictions.
     CONSTRICTIONS = "constrictions" / 1, "constrictions.json";
     /// The percolation threshold.
     PERCOLATION = "percolation" / 1, "percolation.json";
-    /// The folder of a page on this machine.
+    /// The folder of the local web page.
     SERVE = "serve" / 1, "serve.json";
     /// Plan of a run.
     CHECK = "check" / 1, "voidwalk check --json";
@@ -80,7 +80,7 @@ struct Headed<'a, T> {
     content: &'a T,
 }
 
-/// Beginning of a file that is read.
+/// Beginning of a file being read.
 #[derive(Deserialize)]
 struct Beginning {
     #[serde(default)]
@@ -95,10 +95,10 @@ impl Format {
         self.name
     }
 
-    /// Writes a record in this form, as indented JSON with a newline at its end.
+    /// Writes a record in this format, as indented JSON with a final newline.
     ///
     /// # Errors
-    /// A record that is no map, or that JSON cannot hold.
+    /// A record that is not a map, or that JSON cannot hold.
     pub fn json(self, content: &impl Serialize) -> Result<String, serde_json::Error> {
         let headed = Headed { format: self.to_string(), voidwalk: env!("CARGO_PKG_VERSION"), content };
         Ok(visible_json(serde_json::to_string_pretty(&headed)?) + "\n")
@@ -124,21 +124,21 @@ impl fmt::Display for Format {
 /// Reads a record from the text of its file.
 ///
 /// # Errors
-/// Text without the name of a form, in a form that this version does not read, or that is no such record.
+/// Text without a format name, in a format that this version does not read, or that is not such a record.
 pub fn from_json<T: serde::de::DeserializeOwned>(text: &[u8]) -> Result<T, serde_json::Error> {
     let read = serde_json::from_slice(text);
-    // Read second: if the file is no JSON, its own error names the line.
+    // Read second: if the file is not JSON, the parser's own error names the line.
     match serde_json::from_slice(text).ok().and_then(|beginning: Beginning| refused(&beginning)) {
         Some(problem) => Err(serde_json::Error::custom(problem)),
         None => read,
     }
 }
 
-/// Reason for refusing a beginning; `None` if its form is known here.
+/// Reason for refusing a beginning; `None` if its format is known.
 fn refused(beginning: &Beginning) -> Option<String> {
     let this = concat!("this is voidwalk ", env!("CARGO_PKG_VERSION"));
     let Some(form) = beginning.format.as_str() else {
-        return Some(format!("this file does not begin with the name and number of its form; {this}"));
+        return Some(format!("this file does not begin with the name and number of its format; {this}"));
     };
     if FORMATS.iter().any(|format| format.to_string() == form) {
         return None;
@@ -147,7 +147,7 @@ fn refused(beginning: &Beginning) -> Option<String> {
     let name = form.strip_prefix("voidwalk-").and_then(|form| form.rsplit_once('/')).map(|(name, _)| name);
     let known = FORMATS.iter().find(|format| name == Some(format.name));
     let reads = known.map_or(String::new(), |known| format!(", which reads {known}"));
-    Some(format!("this file is in the form {form} of voidwalk {by}; {this}{reads}"))
+    Some(format!("this file is in the format {form} of voidwalk {by}; {this}{reads}"))
 }
 
 #[cfg(test)]

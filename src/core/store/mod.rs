@@ -1,6 +1,6 @@
 //! Storage: the run folder, its checkpoints, and the columns of a simulation.
 //!
-//! A [`StoreError`] that is not explained is one of the system, with the path of the file.
+//! A [`StoreError`] without further explanation is an error of the system, with the path of the file.
 
 pub mod checkpoint;
 mod column;

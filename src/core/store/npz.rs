@@ -1,7 +1,7 @@
-//! Arrays of NumPy: `.npy`, and several of them by name in a zip, `.npz`.
+//! NumPy arrays: `.npy`, and several named arrays in a zip, `.npz`.
 //!
-//! Numbers of 8 to 64 bits, integers or floats, little-endian, and booleans, with one or two dimensions, in
-//! the order of C or of Fortran; as `numpy.savez` and `numpy.savez_compressed` write them.
+//! Integers and floats of 8 to 64 bits, little-endian, and booleans, in one or two dimensions, in C or
+//! Fortran order; as `numpy.savez` and `numpy.savez_compressed` write them.
 
 use std::io::{self, Cursor, Read, Write};
 
@@ -11,7 +11,7 @@ use zip::{DateTime, ZipArchive, ZipWriter};
 /// First bytes of every `.npy`.
 const MAGIC: &[u8] = b"\x93NUMPY";
 
-/// Limits on the unpacked size of an array: this many bytes, or this many times the size of the file.
+/// Limits on the unpacked size of an array: this many bytes, or this many times the file size.
 const UNPACKED: (u64, u64) = (8 << 20, 200);
 
 /// Longest header (bytes).
@@ -59,13 +59,13 @@ pub struct Npz<'a> {
 }
 
 impl<'a> Npz<'a> {
-    /// Opens a `.npz`.
+    /// Opens an `.npz`.
     ///
     /// # Errors
-    /// A message: it is no zip.
+    /// A message if the file is not a zip.
     pub fn open(bytes: &'a [u8]) -> Result<Self, String> {
         let archive = ZipArchive::new(Cursor::new(bytes))
-            .map_err(|_| "is no .npz: it cannot be read as a zip".to_owned())?;
+            .map_err(|_| "is not an .npz file: it cannot be read as a zip".to_owned())?;
         let names =
             archive.file_names().flatten().map(|name| name.trim_end_matches(".npy").to_owned()).collect();
         let most = UNPACKED.0.saturating_add(UNPACKED.1.saturating_mul(bytes.len() as u64));
@@ -77,10 +77,10 @@ impl<'a> Npz<'a> {
         &self.names
     }
 
-    /// Reads the first array that exists under one of these names, and that name.
+    /// Reads the first of these arrays that exists; returns its name too.
     ///
     /// # Errors
-    /// A message with its name: it cannot be read, or its kind is not supported.
+    /// A message with the name of an array that cannot be read, or has an unsupported type.
     pub fn first<'n>(&mut self, names: &[&'n str]) -> Result<Option<(&'n str, Array)>, String> {
         let Some(&name) = names.iter().find(|name| self.names.iter().any(|known| known == *name)) else {
             return Ok(None);
@@ -98,9 +98,9 @@ impl<'a> Npz<'a> {
     }
 }
 
-/// Reads an array from the bytes of a `.npy`.
+/// Reads an array from the bytes of an `.npy`.
 fn parse(bytes: &[u8]) -> Result<Array, String> {
-    let no_array = || "is no array of NumPy".to_owned();
+    let no_array = || "is not a NumPy array".to_owned();
     let rest = bytes.strip_prefix(MAGIC).ok_or_else(no_array)?;
     let (&[major, _], rest) = rest.split_first_chunk::<2>().ok_or_else(no_array)?;
     let (length, rest) = match major {
@@ -127,7 +127,7 @@ fn parse(bytes: &[u8]) -> Result<Array, String> {
         [rows, columns] => (rows, Some(columns)),
         ref other => return Err(format!("has {} dimensions; one or two are read", other.len())),
     };
-    // Rows without columns take no bytes, so a header could claim any number of them.
+    // Rows without columns take no bytes, so a header could state any number of them.
     if rows > 0 && columns == Some(0) {
         return Err(format!("has the shape ({rows}, 0); rows of 1 or more numbers are allowed"));
     }
@@ -185,7 +185,7 @@ fn numbers(kind: &str, data: &[u8], count: usize) -> Result<Numbers, String> {
     })
 }
 
-/// Writes a `.npz` of these arrays, compressed; the same arrays give the same bytes.
+/// Writes an `.npz` of these arrays, compressed; the same arrays give the same bytes.
 ///
 /// # Errors
 /// Error of the zip writer.
@@ -202,7 +202,7 @@ pub fn npz(arrays: &[(String, Array)]) -> io::Result<Vec<u8>> {
     Ok(zip.finish().map_err(io::Error::other)?.into_inner())
 }
 
-/// Writes the bytes of a `.npy`, version 1.
+/// Writes the bytes of an `.npy`, version 1.
 fn npy(array: &Array) -> Vec<u8> {
     let kind = match array.numbers {
         Numbers::Float(_) => "<f8",

@@ -1,6 +1,6 @@
-//! Whole files: one, or many that wait for the disk together; the folders around them, inside one of ours.
+//! Whole files, one at a time or many synced together, and the folders around them, inside one of ours.
 //!
-//! A file appears under its name only when it is whole: it is written beside its place, synced and renamed,
+//! A file appears under its name only when complete: it is written beside its place, synced and renamed,
 //! and the folder is synced.
 
 use super::disk;
@@ -14,12 +14,12 @@ pub fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
     disk::read(path)
 }
 
-/// Writes a whole file: afterwards either all of it is there, or the former content.
+/// Writes a whole file: afterwards the file holds all of it, or its former content.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     write_whole_with(path, |file| file.write_all(bytes))
 }
 
-/// Writes like [`write_whole`], for content that is not in one piece.
+/// Writes like [`write_whole`], for content that is produced piece by piece.
 pub fn write_whole_with(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -29,22 +29,22 @@ pub fn write_whole_with(
     file.name(true)
 }
 
-/// Files of one folder and its subfolders. The disk takes each while the next is being made. They appear in
-/// the order in which they were added, when all are there; each folder is then synced once.
+/// Files of one folder and its subfolders. Each is synced while the next is being made. When all are
+/// complete, they appear in the order in which they were added; each folder is then synced once.
 ///
-/// If one of them cannot be written, none of the files appears.
+/// If one file cannot be written, none appears.
 pub struct Together {
     folder: PathBuf,
     files: Vec<Unnamed>,
 }
 
 impl Together {
-    /// Starts without files, for this folder.
+    /// Starts an empty set of files for this folder.
     pub fn in_folder(folder: &Path) -> Self {
         Self { folder: folder.to_owned(), files: Vec::new() }
     }
 
-    /// Adds a file by its name in the folder; a missing subfolder is made.
+    /// Adds a file by its name in the folder; a missing subfolder is created.
     pub fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), StoreError> {
         let path = self.folder.join(name);
         if folder_of(&path) != self.folder {
@@ -56,8 +56,8 @@ impl Together {
         Ok(())
     }
 
-    /// Waits for the disk, then gives the files their names; the files of a folder are on the disk before the
-    /// first of another folder appears.
+    /// Waits for the disk, then names the files; the files of one folder are on the disk before the
+    /// first of the next appears.
     pub fn finish(mut self) -> Result<(), StoreError> {
         for file in &mut self.files {
             file.part.sent().map_err(StoreError::io(&file.path, "sync"))?;
@@ -72,7 +72,7 @@ impl Together {
     }
 }
 
-/// A written file that has no final name yet.
+/// A written file without a final name.
 struct Unnamed {
     part: PartFile,
     path: PathBuf,
@@ -90,7 +90,7 @@ impl Unnamed {
         Ok(Self { part, path })
     }
 
-    /// Gives a file that is on the disk its name, and syncs its folder if it `is_last` of it.
+    /// Gives a synced file its name, and syncs the folder if the file `is_last` in it.
     fn name(self, is_last: bool) -> Result<(), StoreError> {
         let Self { part, path } = self;
         part.rename(&path).map_err(StoreError::io(&path, "rename"))?;
@@ -105,7 +105,7 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
 }
 
-/// Sends the names in a folder to the disk.
+/// Syncs the names in a folder.
 pub(super) fn sync(folder: &Path) -> Result<(), StoreError> {
     disk::sync_folder(folder).map_err(StoreError::io(folder, "sync the folder"))
 }
@@ -115,7 +115,7 @@ pub(super) fn is_empty(folder: &Path) -> io::Result<bool> {
     ask(Call::List(folder), || Ok(fs::read_dir(folder)?.next().is_none()))
 }
 
-/// Makes a folder and its missing parents, each synced into its own parent.
+/// Creates a folder and its missing parents, each synced into its own parent.
 pub(super) fn make_folders(path: &Path) -> io::Result<()> {
     let missing: Vec<&Path> =
         path.ancestors().take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists()).collect();
@@ -129,7 +129,7 @@ pub(super) fn make_folders(path: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Makes a folder inside one of ours, if it is missing; one reached through a link is refused.
+/// Creates a folder inside one of ours, if it is missing; one reached through a link is refused.
 ///
 /// # Errors
 /// A link or a file in its place, or an error of the system.
@@ -146,7 +146,7 @@ pub fn make_folder(path: &Path) -> Result<(), StoreError> {
 /// Removes a folder with all its content, if it exists.
 ///
 /// # Errors
-/// A link that somebody has put in its place, or an error of the system.
+/// A link in its place, or an error of the system.
 pub fn remove_folder(path: &Path) -> Result<(), StoreError> {
     if path.symlink_metadata().is_ok_and(|meta| meta.is_symlink()) {
         return Err(StoreError::NotAFolder { path: path.to_owned(), what: "a symbolic link" });
@@ -183,7 +183,7 @@ pub enum StoreError {
         /// The folder.
         path: PathBuf,
     },
-    /// The path is there, but is no folder of its own.
+    /// The path exists, but is not a real folder.
     #[error("{path}: is {what}; name a folder that is empty or new")]
     NotAFolder {
         /// The path.
@@ -191,9 +191,9 @@ pub enum StoreError {
         /// Its actual kind.
         what: &'static str,
     },
-    /// A file that is no lock file has the lock file's name.
+    /// The lock file's name belongs to a file that is not a lock file.
     #[error(
-        "{path}: is no lock file of voidwalk: another name of some other file, or no file at all; remove it, \
+        "{path}: is not a voidwalk lock file: it is another name of some file, or not a file; remove it, \
          or name another folder"
     )]
     NotALock {
@@ -208,10 +208,10 @@ pub enum StoreError {
         /// Content of the lock file.
         holder: String,
     },
-    /// The system refuses.
+    /// The system reported an error.
     #[error("{path}: cannot {action}: {source}")]
     Io {
-        /// The file or folder.
+        /// Path of the file or folder.
         path: PathBuf,
         /// Action that failed.
         action: &'static str,
@@ -227,11 +227,11 @@ impl StoreError {
         move |source| Self::Io { path, action, source }
     }
 
-    /// Tells if the user can fix it by naming another folder, before any work is done.
+    /// Tells if the user can fix this by naming another folder before any work is done.
     pub fn is_refusal(&self) -> bool {
         use io::ErrorKind::{InvalidFilename, InvalidInput, NotADirectory, NotFound};
         use io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem};
-        // Windows reports the name of a device, such as NUL, as an invalid input.
+        // Windows reports a device name, such as NUL, as invalid input.
         let by_name =
             [InvalidFilename, InvalidInput, NotADirectory, NotFound, PermissionDenied, ReadOnlyFilesystem];
         !matches!(self, Self::Io { source, .. } if !by_name.contains(&source.kind()))

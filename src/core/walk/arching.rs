@@ -1,56 +1,55 @@
-//! Arches: a particle that fits through a constriction may jam in it together with others that arrive.
+//! Arching: a particle that fits through a constriction may jam in it together with other arriving particles.
 //!
 //! # What is decided
-//! A particle that would pass a constriction of `R` times its size (diameter by diameter) jams with the
-//! probability that a [`Law`] gives, by a draw of its own. Particles that jam in one constriction in one
-//! increment are one arch, in the order of insertion, up to as many as an arch of the `R` of the first has
-//! ([`in_arch`]); those beyond pass (module `chunks`). Particles so fine that the law gives no arch pass, and
-//! belong to no arch.
+//! A particle that would pass a constriction `R` times its size (ratio of diameters) jams with the
+//! probability given by a [`Law`], by its own draw. Particles that jam in one constriction in one
+//! increment form one arch, in the order of insertion, up to the number in an arch for the `R` of the
+//! first ([`in_arch`]); the others pass (module `chunks`). Particles too fine for the law pass and never
+//! belong to an arch.
 //!
-//! The constriction closes from the next increment on, like one that a coarser particle blocked, however many
-//! are in the arch: the law has decided that it is jammed, and a walk of few particles an increment brings
-//! fewer than an arch has.
+//! The constriction closes from the next increment on, like one blocked by a coarser particle, even if the
+//! arch is incomplete: the law has decided that it is jammed, and with few particles per increment too few
+//! arrive to complete the arch.
 //!
-//! Jamming depends on the particle and the constriction alone, and staying on the order of insertion alone.
-//! So the cutting of the particles into chunks plays no part, except in the draw that a particle takes: the
-//! one at place `j` of chunk `c` takes draw `j` of the stream (seed, arching, run, increment, `c`), completed
-//! to 64 bits where sixteen do not decide.
+//! Jamming depends only on the particle and the constriction, and staying only on the order of insertion.
+//! So chunks affect only the draw of a particle: the one at place `j` of chunk `c` takes draw `j` of the
+//! stream (seed, arching, run, increment, `c`), extended to 64 bits if sixteen do not decide.
 //!
 //! # Concentration
-//! A law may depend on the solids fraction of the suspension that enters the filter: the volume of particles
-//! by the volume of suspension. Particles that go with the water keep it in every void and at every depth, so
-//! that it is one number for the whole walk, which the scene states.
+//! A law may depend on the solids fraction of the suspension that enters the filter: volume of particles
+//! divided by volume of suspension. Particles that move with the water keep this fraction in every void
+//! and at every depth, so the scene states one value for the whole walk.
 //!
 //! # Passive particles
-//! A particle is passive that can neither block nor arch: no coarser than the finest open constriction by
-//! [`Law::widest`].
+//! A passive particle can neither block nor arch: it is no coarser than the finest open constriction
+//! divided by [`Law::widest`].
 
 use crate::schema::Leaf;
 use libm::{exp, lgamma, log, pow};
 use serde::{Deserialize, Serialize};
 
-/// Solids fraction of densely packed grains: no suspension has a larger one.
+/// Solids fraction of densely packed grains, the maximum for a suspension.
 pub const DENSEST: f64 = 0.64;
 
 /// A published law of clogging.
 ///
-/// The laws are data: the walk reads a table of each over `R` ([`Arching`]).
+/// Laws are data: the walk reads a table of probabilities over `R` ([`Arching`]).
 #[derive(Debug)]
 pub struct Law {
     /// Name of the law in a scene.
     pub name: &'static str,
     /// Publication of the law.
     pub source: &'static str,
-    /// Parts of that source that could be read, and other sources used.
+    /// Parts of the source that could be read, and other sources used.
     pub basis: &'static str,
-    /// `R` from which nothing arches.
+    /// Minimum `R` at which nothing arches.
     pub widest: f64,
-    /// True if the probability depends on the concentration; the others hold for dense flow.
+    /// True if the probability depends on the concentration; the other laws are for dense flow.
     pub of_concentration: bool,
     probability: fn(f64, f64) -> f64,
 }
 
-/// The name of a law, as a scene says it.
+/// Name of a law in a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LawName {
     /// No arches.
@@ -59,10 +58,10 @@ pub enum LawName {
     /// Dense discharge of dry spheres.
     #[serde(rename = "zuriguel-2005")]
     Zuriguel2005,
-    /// A suspension: enough particles at the neck at once.
+    /// Suspension, with enough particles at the neck at once.
     #[serde(rename = "marin-2018")]
     Marin2018,
-    /// Every particle up to a third of the constriction.
+    /// Every particle larger than a third of the constriction.
     #[serde(rename = "critical-3")]
     Critical3,
 }
@@ -70,10 +69,10 @@ pub enum LawName {
 impl Leaf for LawName {}
 
 impl LawName {
-    /// All names, in the order in which a user is told of them.
+    /// All names, in the order shown to users.
     pub const ALL: [Self; 4] = [Self::None, Self::Zuriguel2005, Self::Marin2018, Self::Critical3];
 
-    /// The name as text.
+    /// Name as text.
     pub fn name(self) -> &'static str {
         self.law().map_or("none", |law| law.name)
     }
@@ -84,7 +83,7 @@ impl LawName {
     }
 }
 
-/// All laws, in the order in which a user is told of them.
+/// All laws, in the order shown to users.
 pub static LAWS: [Law; 3] = [
     Law {
         name: "zuriguel-2005",
@@ -92,9 +91,8 @@ pub static LAWS: [Law; 3] = [
         basis: "Dense discharge of dry spheres through a circular hole: on average A / (4.94 - R)^6.9 \
                 grains pass before a jam, A = 9900. The constants were read in a later review, not in the \
                 article; \
-                that a jam comes after so many grains, each with the same probability, is taken from its \
-                abstract. It is the law of the dense limit: nothing dilutes it. It held bases that eroded in \
-                tests.",
+                that each grain jams with the same probability is taken from its abstract. It is the law of \
+                the dense limit, without dilution. In the model it held bases that eroded in tests.",
         widest: 4.94,
         of_concentration: false,
         probability: zuriguel,
@@ -102,12 +100,12 @@ pub static LAWS: [Law; 3] = [
     Law {
         name: "marin-2018",
         source: "Marin, Lhuissier, Rossi and Kaehler 2018, Physical Review E 97, 021102 (arXiv 1711.06119)",
-        basis: "Suspensions arch for R < 3, where enough particles are at the neck at once. Read in the \
-                abstract; that an arch needs R^2 + 1 particles was read in a later review. That their number \
-                at the neck is Poisson, with the concentration times the volume of a neck as long as it is \
-                wide for its mean, is an assumption of this program. That number is whole, so that the \
+        basis: "Suspensions arch for R < 3, if enough particles are at the neck at once. Read in the \
+                abstract; that an arch needs R^2 + 1 particles was read in a later review. This program \
+                assumes that the number at the neck is Poisson, with a mean from the concentration and the \
+                volume of a neck as long as it is wide. The number in an arch is an integer, so the \
                 probability is saw-toothed over R; from a concentration of about 0.2 on it rises with R, \
-                where that of dry grains falls.",
+                whereas for dry grains it falls.",
         widest: 3.0,
         of_concentration: true,
         probability: at_the_neck,
@@ -115,9 +113,10 @@ pub static LAWS: [Law; 3] = [
     Law {
         name: "critical-3",
         source: "after Marin, Lhuissier, Rossi and Kaehler 2018, Physical Review E 97, 021102",
-        basis: "Every particle below R = 3 jams. One that jams alone is retained as by sieving with \
-                particles three times as large, by which a walk is checked; of those that jam in one \
-                constriction at once no more stay than an arch has. It held bases that eroded in tests.",
+        basis: "Every particle below R = 3 jams. A particle that jams alone is retained as by sieving with \
+                particles three times as large, which checks the walk; if several jam in one constriction \
+                at once, only as many stay as an arch holds. In the model it held bases that eroded in \
+                tests.",
         widest: 3.0,
         of_concentration: false,
         probability: |_, _| 1.0,
@@ -125,34 +124,35 @@ pub static LAWS: [Law; 3] = [
 ];
 
 impl Law {
-    /// The law of this name.
+    /// Law of this name.
     pub fn named(name: &str) -> Option<&'static Self> {
         LAWS.iter().find(|law| law.name == name)
     }
 
-    /// Probability that a particle jams in a constriction `ratio` times its size, from 1 on, at this
-    /// concentration (volume of particles by volume of suspension); 0 from the widest on.
+    /// Probability that a particle jams in a constriction `ratio` (at least 1) times its size, at this
+    /// concentration (volume of particles divided by volume of suspension); 0 from `widest` on.
     pub fn probability(&self, ratio: f64, concentration: f64) -> f64 {
         if ratio >= self.widest { 0.0 } else { (self.probability)(ratio, concentration) }
     }
 
-    /// The size up to which particles can neither block nor arch where this is the finest open constriction.
+    /// Maximum size of particles that can neither block nor arch, if this is the finest open constriction.
     pub fn passive_limit(&self, finest: f32) -> f32 {
-        // A little finer, so that rounding gives no particle an arch that the limit calls passive.
+        // Slightly finer, so that rounding never lets a passive particle arch.
         (f64::from(finest) / self.widest * (1.0 - 1e-6)) as f32
     }
 }
 
-/// One over the number of particles that pass before a jam, plus the one that jams.
+/// Reciprocal of the mean number of particles up to and including the one that jams.
 fn zuriguel(ratio: f64, _: f64) -> f64 {
     1.0 / (1.0 + 9900.0 / pow(4.94 - ratio, 6.9))
 }
 
-/// The probability of the others of an arch being in a neck as long as it is wide, beside this particle.
+/// Probability that the other particles of an arch are in the neck (as long as it is wide) with this
+/// particle.
 ///
-/// Computed as 1 less a sum, so that it is 0 if it is less than the last bit of 1.
+/// Computed as 1 minus a sum, so probabilities below the last bit of 1 become 0.
 fn at_the_neck(ratio: f64, concentration: f64) -> f64 {
-    // Neck pi / 4 D^2 D by particle pi / 6 d^3.
+    // Volume of the neck, pi / 4 D^2 D, divided by the volume of a particle, pi / 6 d^3.
     let mean = 1.5 * ratio * ratio * ratio * concentration;
     let others = in_arch(ratio) - 1;
     if mean <= 0.0 {
@@ -162,60 +162,60 @@ fn at_the_neck(ratio: f64, concentration: f64) -> f64 {
     (1.0 - (0..others).map(poisson).sum::<f64>()).max(0.0)
 }
 
-/// Particles of an arch over a constriction `ratio` times their size: R^2 + 1, at least 2.
+/// Number of particles in an arch over a constriction `ratio` times their size: R^2 + 1, at least 2.
 pub fn in_arch(ratio: f64) -> u32 {
     (ratio * ratio + 1.0).round().max(2.0) as u32
 }
 
 const STEPS: usize = 1 << 14;
 
-/// Bits of a draw that decide.
+/// Number of bits of a draw that decide.
 const BITS: u32 = 48;
 
-/// Least probability that draws of this many bits can have.
+/// Minimum probability that draws of this many bits can represent.
 const RAREST: f64 = 1.0 / (1u64 << BITS) as f64;
 
-/// The power of two of 1, as a class.
+/// Offset of the classes: twice the biased exponent of 1.
 pub(super) const CLASS_OF_ONE: usize = 254;
 
-/// A little wider, so that rounding jams no particle beyond its reach.
+/// Slightly wider, so that rounding never jams a particle beyond its reach.
 fn wider(ratio: f64) -> f32 {
     (ratio * (1.0 + 1e-6)) as f32
 }
 
-/// A law as a walk reads it, at one concentration.
+/// Tabulated law at one concentration, for a walk.
 #[derive(Clone, Debug)]
 pub struct Arching {
     pub(super) law: &'static Law,
-    /// Probability at equal steps of `R` from 1 to the widest; the last entry is for just below the widest.
+    /// Probability at equal steps of `R` from 1 to the widest; the last entry applies just below the widest.
     table: Vec<f64>,
-    /// `R` from which the table has no jams.
+    /// `R` from which the table contains no jams.
     stops_to: f64,
     reach: Reach,
 }
 
-/// By the sixteen bits of a draw, in classes of half a power of two ([`Arching::class_of`]): largest ratio of
-/// a constriction to a particle that jams in it by that draw; at least 1.
+/// Largest ratio of a constriction to a particle that jams in it, at least 1, for the sixteen bits of a
+/// draw in classes of half a power of two ([`Arching::class_of`]).
 pub(super) type Reach = [f32; 32];
 
 impl Arching {
-    /// Tabulates a law at this concentration (volume of particles by volume of suspension). Jams rarer than
-    /// once in `2^48` draws count as impossible.
+    /// Tabulates a law at this concentration (volume of particles divided by volume of suspension). Jams
+    /// rarer than once in `2^48` draws count as impossible.
     pub fn new(law: &'static Law, concentration: f64) -> Self {
         let step = (law.widest - 1.0) / STEPS as f64;
         let at = |k: usize| {
-            // At the widest itself the law says nothing: its table ends with its limit there.
+            // The law is not defined at `widest` itself: the table ends with the limit there.
             let ratio = 1.0 + step * k as f64;
             let probability = (law.probability)(ratio.min(law.widest * (1.0 - 1e-12)), concentration);
             if probability < RAREST { 0.0 } else { probability }
         };
         let table: Vec<f64> = (0..=STEPS).map(at).collect();
-        // Between two steps the table is above 0 where it is at either of them.
+        // Between two steps the table is above 0 if it is above 0 at either of them.
         let end_of = |jams: &dyn Fn(&f64) -> bool| {
             1.0 + step * table.iter().rposition(jams).map_or(0, |k| (k + 1).min(STEPS)) as f64
         };
         let reach = std::array::from_fn(|class| {
-            // The least draw of the class: half a power of two above a power of two.
+            // Smallest draw of the class: a power of two, or half-way to the next.
             let least =
                 if class == 0 { 0.0 } else { (1 << (class / 2)) as f64 * (1.0 + 0.5 * (class % 2) as f64) };
             wider(end_of(&|probability| probability * 65_536.0 > least.floor()))
@@ -223,8 +223,8 @@ impl Arching {
         Self { law, stops_to: end_of(&|&probability| probability > 0.0), table, reach }
     }
 
-    /// `R` from which nothing arches at this concentration: [`Law::widest`], or less where jams of wider
-    /// constrictions are too rare for any draw.
+    /// Minimum `R` at which nothing arches at this concentration: [`Law::widest`], or less if jams in
+    /// wider constrictions are too rare for any draw.
     pub fn stops_to(&self) -> f64 {
         self.stops_to
     }
@@ -239,14 +239,14 @@ impl Arching {
         &self.reach
     }
 
-    /// The class of a draw: twice its power of two, and one more from half way to the next on.
+    /// Class of a draw: twice its power of two, plus one from half-way to the next power on.
     #[inline(always)]
     pub(super) fn class_of(draw: u16) -> usize {
         ((f32::from(draw).to_bits() >> 22) as usize).saturating_sub(CLASS_OF_ONE)
     }
 
-    /// Particles of the arch that a particle of this size begins if it jams in this constriction by this
-    /// word; `None` if it passes.
+    /// Number of particles in the arch that a particle of this size starts if it jams in this constriction
+    /// by this word; `None` if it passes.
     #[inline]
     pub(super) fn jams(&self, width: f32, diameter: f32, word: u64) -> Option<u32> {
         if !self.may(width, diameter) {
@@ -257,7 +257,7 @@ impl Arching {
         (draw < self.by_table(ratio)).then(|| in_arch(ratio))
     }
 
-    /// Probability by the table: the law's at its steps, and between them by a straight line.
+    /// Probability from the table, by linear interpolation.
     pub(super) fn by_table(&self, ratio: f64) -> f64 {
         let place = ((ratio - 1.0) / (self.law.widest - 1.0)).clamp(0.0, 1.0) * STEPS as f64;
         let step = (place as usize).min(STEPS - 1);
@@ -287,7 +287,7 @@ mod tests {
                 for k in 0..1000 {
                     let ratio = 1.0 + (law.widest - 1.0) * (f64::from(k) + 0.37) / 1000.0;
                     let (table, whole) = (arching.by_table(ratio), law.probability(ratio, concentration));
-                    // The number of an arch is whole, so that one law has steps.
+                    // The number of particles in an arch is an integer, so one law has steps.
                     let steps = in_arch(ratio - 3e-4) != in_arch(ratio + 3e-4);
                     let near = (table - whole).abs() < 1e-6 || (steps && law.of_concentration);
                     assert!(near && (0.0..=1.0).contains(&table), "{} {ratio}: {table} {whole}", law.name);
@@ -297,9 +297,9 @@ mod tests {
         }
     }
 
-    /// The number of an arch is whole, so that the law is saw-toothed; in dense flow it rises with R. By hand
-    /// at 0.047: at 1.22, where an arch is of two, 1 - e^-0.1280; at 1.23, where it is of three,
-    /// 1 - e^-m (1 + m) with m = 0.1312.
+    /// The number of particles in an arch is an integer, so the law is saw-toothed; in dense flow it rises
+    /// with R. By hand at 0.047: at 1.22 (an arch of two) 1 - e^-0.1280; at 1.23 (an arch of three) 1 -
+    /// e^-m (1 + m) with m = 0.1312.
     #[test]
     fn a_suspension_is_saw_toothed_and_rises_where_it_is_dense() {
         let chance = at_the_neck;
@@ -309,12 +309,12 @@ mod tests {
         for dense in [0.2, 0.6] {
             assert!([1.23, 2.0, 2.5, 2.9].map(|ratio| chance(ratio, dense)).is_sorted_by(|a, b| a < b));
         }
-        // Too rare to leave anything of 1 less a sum.
+        // Below the last bit of 1 minus a sum.
         assert_eq!(chance(2.8, 0.001), 0.0);
     }
 
-    /// By hand: four others in a neck of R = 2 come with m^4 / 24, m = 12 times the concentration. At 0.0001
-    /// that is 8.6e-14, some 24 draws of 2^48; at 0.00001 it is 8.6e-18, less than one.
+    /// By hand: four others are in a neck of R = 2 with probability m^4 / 24, m = 12 times the concentration.
+    /// At 0.0001 that is 8.6e-14, some 24 draws of 2^48; at 0.00001 it is 8.6e-18, less than one.
     #[test]
     fn what_no_draw_can_be_is_no_jam() {
         let law = Law::named("marin-2018").unwrap();
@@ -324,14 +324,14 @@ mod tests {
         let [rare, rarer] = [1e-4, 1e-5].map(|concentration| Arching::new(law, concentration).stops_to());
         assert!(1.0 < rarer && rarer < 2.0 && 2.0 < rare && rare < 3.0, "{rare} {rarer}");
         for law in &LAWS {
-            // A law that falls to 0 at its widest is too rare just below it.
+            // Jams of a law that falls to 0 at its widest are too rare just below it.
             let dense = Arching::new(law, DENSEST).stops_to();
             assert!((law.widest - 0.05..=law.widest).contains(&dense), "{} {dense}", law.name);
         }
     }
 
-    /// Numbers that follow from the constants of the review, by hand: 9900 / 3.94^6.9 = 0.7704,
-    /// 9900 / 3.44^6.9 = 1.965, 9900 / 1.94^6.9 = 102.3.
+    /// Values from the constants of the review, by hand: 9900 / 3.94^6.9 = 0.7704, 9900 / 3.44^6.9 =
+    /// 1.965, 9900 / 1.94^6.9 = 102.3.
     #[test]
     fn dense_discharge_is_as_published() {
         let law = Law::named("zuriguel-2005").unwrap();
@@ -341,8 +341,8 @@ mod tests {
         }
     }
 
-    /// By hand: R = 2 needs 5, so four others; 0.2 * 1.5 * 8 = 2.4 are there on average, and four or more
-    /// with 1 - e^-2.4 (1 + 2.4 + 2.88 + 2.304) = 0.2213.
+    /// By hand: R = 2 needs 5, so four others. The mean number is 0.2 * 1.5 * 8 = 2.4, and four or more
+    /// have probability 1 - e^-2.4 (1 + 2.4 + 2.88 + 2.304) = 0.2213.
     #[test]
     fn a_suspension_needs_enough_at_the_neck() {
         let law = Law::named("marin-2018").unwrap();
@@ -351,7 +351,8 @@ mod tests {
         assert!(law.probability(1.5, 0.02) < 0.01 && law.probability(2.9, 0.6) > 0.9);
     }
 
-    /// No draw jams a particle beyond its reach, and the reach is no wider than half a power of two asks for.
+    /// No draw jams a particle beyond its reach, and the reach is no wider than its class (half a power of
+    /// two) requires.
     #[test]
     fn no_draw_jams_beyond_its_reach() {
         for arching in LAWS.iter().map(|law| Arching::new(law, 0.2)) {

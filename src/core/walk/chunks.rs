@@ -1,5 +1,5 @@
-//! Chunks of the particles, worked on one after another or over threads, and the merge of their events: no
-//! result depends on which.
+//! Chunks of particles, processed in sequence or by threads with the same result, and the merge of their
+//! events.
 
 use super::tally::cube;
 use super::{CHUNK, Particles, SizeClasses, SizeCounts, State};
@@ -8,28 +8,28 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::iter;
 
-/// Columns of one chunk: its part of every column, `CHUNK` entries or fewer, and its events.
+/// Columns of one chunk: at most `CHUNK` entries of every column, and its events.
 pub(super) struct ChunkColumns<'a> {
     pub chunk: u64,
     pub void: &'a mut [u32],
     pub diameter: &'a mut [f32],
-    /// Moving particles, at the front of the columns.
+    /// Number of moving particles, which are at the front of the columns.
     pub live: &'a mut u32,
     pub events: &'a mut Events,
 }
 
-/// Particles to move above which several threads are faster than one.
+/// Number of moving particles above which several threads are faster than one.
 const WORTH_THREADS: u64 = 4 * CHUNK as u64;
 
 thread_local! {
-    /// Diameters of the chunk that a thread is at, where all base particles have one size: a column of them
-    /// would say nothing, and be read from memory.
+    /// Diameters of the current chunk of a thread if all base particles have one size, instead of a column
+    /// in memory.
     static SIZES: RefCell<Vec<f32>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Does `work` on all chunks, which costs as much as moving `effort` particles once. `single_size`: size of
-/// all base particles, if they have one. Threads begin with the chunks from `receiving` on, which take
-/// longest where particles are inserted: the others fill the time that is left.
+/// Does `work` on all chunks, at the cost of moving `effort` particles once. `single_size`: size of all
+/// base particles, if they have one. Threads begin with the chunks from `receiving` on, which take longest
+/// when particles are inserted; the others fill the remaining time.
 pub(super) fn for_each(
     particles: &mut Particles,
     single_size: Option<f32>,
@@ -49,7 +49,7 @@ pub(super) fn for_each(
     }
 }
 
-/// The columns of chunks that are neighbours.
+/// Columns of adjacent chunks.
 struct Neighbours<'a> {
     first: usize,
     void: &'a mut [u32],
@@ -61,7 +61,7 @@ struct Neighbours<'a> {
 }
 
 impl Neighbours<'_> {
-    /// Columns of the chunks before `chunk`, and of the others.
+    /// Splits the columns into chunks before `chunk` and the others.
     fn split_at(self, chunk: usize) -> (Self, Self) {
         let Self { first, void, diameter, live, events, one_size } = self;
         let (chunk, entry) = (chunk.min(live.len()), chunk * CHUNK);
@@ -81,7 +81,7 @@ impl Neighbours<'_> {
         (before, after)
     }
 
-    /// Spreads the work over threads, which halve the rest until it is one chunk.
+    /// Spreads the work over threads, halving it down to single chunks.
     fn spread(self, work: &(impl Fn(ChunkColumns) + Sync)) {
         let chunks = self.live.len();
         if chunks <= 1 {
@@ -109,29 +109,29 @@ impl Neighbours<'_> {
 }
 
 thread_local! {
-    /// Buffer for the eroded particles of the chunk that a thread works on.
+    /// Buffer for the eroded particles of the current chunk of a thread.
     static ERODED: RefCell<Vec<f32>> = const { RefCell::new(Vec::new()) };
 }
 
 /// Events of one chunk in one increment.
 #[derive(Default)]
 pub(super) struct Events {
-    /// Particles that the chunk received.
+    /// Number of particles inserted into the chunk.
     pub inserted: u32,
     pub inserted_mass: f64,
     pub moves: u64,
-    /// Diameters of the particles that left, in particle order; summed up and gone once the chunk is done.
+    /// Diameters of the particles that left, in particle order; summed and dropped once the chunk is done.
     pub eroded: Vec<f32>,
     eroded_count: u64,
     /// Constriction and diameter of the particles that were stopped, in particle order.
     pub stopped: Vec<(u32, f32)>,
-    /// Particles that jammed, in particle order; they are not among those stopped or those that still move.
+    /// Particles that jammed, in particle order; not included in the stopped or moving ones.
     pub jams: Vec<Jam>,
-    /// Void and diameter of the particles without open exit, in particle order.
+    /// Void and diameter of the particles without an open exit, in particle order.
     pub stranded: Vec<(u32, f32)>,
-    /// Particles that wait for the flow to find another way.
+    /// Number of particles that wait until the flow is solved again.
     pub waiting: u64,
-    /// Passive particles among those received.
+    /// Number of passive particles inserted.
     pub passive_inserted: u32,
     passive_eroded: u64,
     sizes: Option<[SizeCounts; 2]>,
@@ -140,7 +140,7 @@ pub(super) struct Events {
 }
 
 impl Events {
-    /// Forgets the last increment, but keeps the memory.
+    /// Clears the last increment but keeps the memory.
     pub fn clear(&mut self) {
         self.inserted = 0;
         self.inserted_mass = 0.0;
@@ -152,14 +152,14 @@ impl Events {
         self.stranded.clear();
     }
 
-    /// Takes the buffer that this thread used before, with room for `count` eroded particles.
+    /// Takes this thread's buffer, with room for `count` eroded particles.
     pub fn lend_buffer(&mut self, count: usize) {
         self.eroded = ERODED.take();
         self.eroded.clear();
         self.eroded.reserve(count);
     }
 
-    /// Sums over the chunk, and gives the buffer back; called where the chunk was worked on.
+    /// Sums over the chunk and returns the buffer; called on the thread that processed the chunk.
     pub fn sum(&mut self, classes: &SizeClasses, passive_limit: f32) {
         self.eroded_count = self.eroded.len() as u64;
         self.passive_eroded = self.eroded.iter().map(|&d| u64::from(d <= passive_limit)).sum();
@@ -194,11 +194,11 @@ impl Events {
     }
 }
 
-/// Adds the events of all chunks to the state; returns the constrictions that have just closed, or whose
-/// openings have just been narrowed, ascending, each as one of its exits.
+/// Adds the events of all chunks to the state; returns the constrictions that have just closed or been
+/// narrowed, in ascending order, each by one of its exits.
 ///
-/// Counts are added and blocked constrictions joined by OR, which no order can change. Masses are added
-/// within a chunk in particle order and over chunks in chunk order.
+/// Counts are added and blocked constrictions combined by OR, in any order. Masses are added in particle
+/// order within a chunk, and in chunk order over chunks.
 pub(super) fn merge(
     network: &Network,
     events: &mut [Events],
@@ -250,28 +250,28 @@ pub(super) fn merge(
     }
 }
 
-/// A particle that jammed.
+/// Jammed particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Jam {
-    /// Particles of its chunk before it that still move.
+    /// Number of moving particles before it in its chunk.
     pub rank: u32,
     pub exit: u32,
     pub diameter: f32,
-    /// Particles of the arch that it begins.
+    /// Number of particles in the arch that it starts.
     pub particles: u32,
 }
 
-/// Keeps the arches of an increment and lets the others go on; the jams of all chunks are used up.
+/// Keeps the arches of an increment and releases the other jammed particles; consumes the jams of all chunks.
 ///
-/// The first particle that jammed in a constriction, in the order of insertion, says how many its arch has.
-/// Those beyond it are then in the void beyond, or have left the filter, and keep their place in that order.
+/// The first particle that jammed in a constriction, in the order of insertion, sets the number in the
+/// arch. The others move to the next void or leave the filter, and keep their place in that order.
 fn settle<'a>(
     network: &Network,
     jams: impl Iterator<Item = &'a mut Vec<Jam>>,
     upstream: &[u32],
     state: &mut State,
 ) {
-    // By constriction: room left in its arch.
+    // Room left in the arch, by constriction.
     let mut room = HashMap::new();
     let mut released = Vec::new();
     for (chunk, jams) in jams.enumerate().filter(|(_, jams)| !jams.is_empty()) {
@@ -303,7 +303,7 @@ fn keep(network: &Network, jam: Jam, upstream: &[u32], state: &mut State) {
     state.stop(network, upstream, jam.exit as usize, jam.diameter);
 }
 
-/// Lets a particle pass; returns the void that it is in then, unless it has left the filter.
+/// Lets a particle pass; returns its new void, or `None` if it has left the filter.
 fn release(network: &Network, jam: Jam, state: &mut State) -> Option<u32> {
     let tally = &mut state.tally;
     tally.particle_moves = tally.particle_moves.saturating_add(1);

@@ -1,15 +1,14 @@
-//! Directions of constrictions, where water decides: when the flow is solved again, and its solutions.
+//! Directions of constrictions set by water: solutions of the flow, and when it is solved again.
 //!
-//! The flow is solved before the first increment, and at the beginning of an increment once the constrictions
-//! that have closed since the last time carried more of it than a tolerance: the sum over them of flux over
-//! inflow, which is how many of them a particle meets on its way, on average
-//! ([`Network::with_flow_tolerance`]). Where blocked constrictions leave openings, a constriction counts by
-//! the part of its conductance that it has lost. Where anything has closed it is solved after ten increments
-//! at the latest, so that no particle waits longer before ways that have closed, and once more at the end. In
-//! between directions stay as they are, and a particle in a void whose exits have all been blocked since
-//! waits where it is. When to solve follows from the history of changes alone, so a walk that continues from
-//! a checkpoint repeats the earlier solutions and gives directions each time, in the same order, to the same
-//! bits.
+//! The flow is solved before the first increment, and again at the beginning of an increment once the
+//! constrictions closed since the last solution carried more of it than a tolerance. The criterion is the
+//! sum over them of flux divided by inflow: the mean number of them that a particle meets on its way
+//! ([`Network::with_flow_tolerance`]). If blocked constrictions leave openings, a constriction counts by
+//! the fraction of its conductance that it has lost. If any constriction has closed, the flow is solved
+//! after at most ten increments, which limits the waiting of particles, and once more at the end.
+//! Directions do not change between solutions, and a particle waits in its void if all exits have been
+//! blocked since the last one. The times of solution follow only from the history of changes, so a walk
+//! that continues from a checkpoint repeats the earlier solutions in the same order, to the same bits.
 
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
@@ -18,27 +17,27 @@ use super::State;
 use super::openings::{CONDUCTS, Narrowing, Openings, Weighed, part_kept};
 use crate::network::{ExitRule, Flow, FlowError, Network};
 
-/// Increments after which the flow is solved again where anything has closed since.
+/// Number of increments after which the flow is solved again, if any constriction has closed since.
 const INCREMENTS: u64 = 10;
 
-/// Fall of the permeability in a run.
+/// Decline of permeability in a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FlowRecord {
-    /// Permeability of the filter before anything was blocked (mm2), where the network knows its lengths.
+    /// Permeability of the clean filter (mm2), if the lengths of the network are known.
     pub k0_mm2: Option<f64>,
-    /// Each time that the flow was solved.
+    /// All solutions of the flow.
     pub solutions: Vec<FlowSolution>,
 }
 
-/// A solution of the flow.
+/// Solution of the flow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowSolution {
-    /// Increments that were done.
+    /// Number of completed increments.
     pub increment: u64,
-    /// Permeability over the permeability of the clean filter.
+    /// Permeability divided by that of the clean filter.
     pub k_over_k0: f64,
-    /// Part of the inflow that went through constrictions which had closed since the solution before, summed
-    /// over the filter.
+    /// Sum of the fluxes, as fractions of the inflow, of the constrictions that have closed since the
+    /// previous solution.
     pub closed: f64,
 }
 
@@ -47,21 +46,21 @@ pub(super) struct Directions {
     record: FlowRecord,
     /// Flow through the clean filter.
     clean: f64,
-    /// Last increment before the flow was solved.
+    /// Last increment before the last solution.
     solved_at: u64,
-    /// Constrictions blocked or narrowed in this run until then.
+    /// Number of blockings or narrowings in this run until then.
     changes_then: usize,
-    /// Number of changes since, and the flow that they carried, over the inflow.
+    /// Number of changes since, and the flow that they carried, divided by the inflow.
     since: (usize, f64),
-    /// By exit, as wide as it was then, where blocked constrictions leave openings.
+    /// Widths of exits at that time, if blocked constrictions leave openings.
     widths_then: Vec<f32>,
     rule: ExitRule,
 }
 
-/// Blocked constrictions, and the widths of the exits where openings are left.
+/// Blocked constrictions, and the openings if any are left.
 type Passable<'a> = (&'a BitSlice, Option<&'a Openings>);
 
-/// Constrictions at an earlier time of the run of a state.
+/// Constrictions at an earlier time of a run.
 struct Past<'a> {
     state: &'a State,
     blocked: BitVec,
@@ -69,14 +68,14 @@ struct Past<'a> {
 }
 
 impl<'a> Past<'a> {
-    /// State of the constrictions when the run began.
+    /// Creates the constrictions at the start of the run.
     fn begin(network: &Network, state: &'a State) -> Self {
         let mut past = Self { state, blocked: state.blocked.clone(), openings: state.openings.clone() };
         (0..state.changes()).rev().for_each(|at| past.set(network, at, false));
         past
     }
 
-    /// Makes a change of the run, or takes it back.
+    /// Makes or reverts a change of the run.
     fn set(&mut self, network: &Network, at: usize, is_done: bool) {
         match &mut self.openings {
             Some(openings) => {
@@ -103,7 +102,7 @@ impl<'a> Past<'a> {
 }
 
 impl Directions {
-    /// Directions that `state` has come to, by all blocking until now; sets them in the network.
+    /// Computes the directions for the history of `state` and sets them in the network.
     pub fn new(network: &mut Network, state: &State) -> Result<Self, FlowError> {
         let clean_filter: BitVec = BitVec::repeat(false, network.constrictions());
         let mut flow = Flow::new(network);
@@ -121,7 +120,7 @@ impl Directions {
         let mut past = Past::begin(network, state);
         directions.solve(network, past.passable(), 0, 0)?;
         directions.flow.direct(network);
-        // Exits blocked since the flow was solved last lead on once it is solved again.
+        // Exits blocked since the last solution keep their direction until the next.
         let mut so_far = 0;
         for increment in 1..=state.increment {
             while so_far < state.changes() && past.increment(so_far) < increment {
@@ -136,7 +135,7 @@ impl Directions {
         Ok(directions)
     }
 
-    /// Widths that the weights of exits refer to, where blocked constrictions leave openings.
+    /// Widths to which the weights of exits refer, if blocked constrictions leave openings.
     pub fn weighed(&self) -> Weighed<'_> {
         match self.rule {
             ExitRule::Flux => Weighed::Solved(&self.widths_then, CONDUCTS),
@@ -144,7 +143,7 @@ impl Directions {
         }
     }
 
-    /// Tells if the flow is to be solved at the beginning of an increment, after this many changes of this
+    /// Tells if the flow must be solved at the beginning of an increment, after this many changes of this
     /// run.
     fn is_due(&mut self, network: &Network, state: &State, increment: u64, changes: usize) -> bool {
         self.count(network, state, changes);
@@ -152,7 +151,7 @@ impl Directions {
         changes > self.changes_then && (is_late || self.since.1 >= network.flow_tolerance())
     }
 
-    /// Counts the closures since the flow was solved, up to this many changes of this run.
+    /// Counts the closures since the last solution, up to this many changes of this run.
     fn count(&mut self, network: &Network, state: &State, changes: usize) {
         let (counted, mut carried) = self.since;
         for at in self.changes_then + counted..changes {
@@ -161,7 +160,7 @@ impl Directions {
         self.since = (changes - self.changes_then, carried);
     }
 
-    /// The part of the inflow that no longer goes through a constriction after a change of the run.
+    /// Fraction of the inflow that no longer passes a constriction after a change of the run.
     fn carried(&self, network: &Network, state: &State, at: usize) -> f64 {
         match &state.openings {
             None => self.flow.share(state.history[at].constriction as usize),
@@ -177,8 +176,8 @@ impl Directions {
         }
     }
 
-    /// Solves the flow if the increment that `state` begins is due for it, and gives the network its
-    /// directions; tells if it did.
+    /// Solves the flow and sets the directions of the network, if due in the increment that `state`
+    /// begins; returns true if it did.
     pub fn renew(&mut self, network: &mut Network, state: &State) -> Result<bool, FlowError> {
         let changes = state.changes();
         let is_due = self.is_due(network, state, state.increment, changes);
@@ -189,7 +188,7 @@ impl Directions {
         Ok(is_due)
     }
 
-    /// The flow at the end of a run; the network is given its directions.
+    /// Solves the flow at the end of a run and sets the directions of the network.
     pub fn end(mut self, network: &mut Network, state: &State) -> Result<FlowRecord, FlowError> {
         let changes = state.changes();
         if changes > self.changes_then {

@@ -1,4 +1,4 @@
-//! Choices of how a run is walked, made here alone: engine, work that is left out, instructions, threads.
+//! All choices of how a run is walked: engine, omitted work, instruction set, threads.
 
 use super::supply::passive_limit;
 use super::{Arching, Sampling, Supply};
@@ -10,30 +10,29 @@ use bitvec::slice::BitSlice;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::sync::{Arc, OnceLock};
 
-/// Methods of moving passive base particles; a run has the same distribution with the first three.
+/// Methods of moving passive base particles; the first three give the same distribution of runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Engine {
-    /// `Counts` where a particle can be passive and there are enough of them for that to be faster, else
-    /// `Particles`.
+    /// `Counts` if there are enough passive particles for it to be faster, otherwise `Particles`.
     Auto,
-    /// Every base particle one by one.
+    /// All base particles one by one.
     Particles,
     /// Passive particles as counts per void.
     Counts,
-    /// The expectation of the passive particles, given what the others block.
+    /// Expectation of the passive particles, given the constrictions blocked by the others.
     Expected,
 }
 
 impl Leaf for Engine {}
 
 impl Engine {
-    /// Every engine, in the order in which a user is told of them.
+    /// All engines, in the order shown to users.
     pub const ALL: [Engine; 4] = [Engine::Auto, Engine::Particles, Engine::Counts, Engine::Expected];
 
-    /// Tells if it walks every base particle one by one when each increment inserts this many passive ones on
-    /// this many start nodes: the others are walked one by one by every engine. Depends on numbers alone, so
-    /// that a seed gives the same bits on every machine.
+    /// Tells if the engine walks passive particles one by one, too, if each increment inserts this many of
+    /// them on this many start nodes. Depends only on numbers, so that a seed gives the same bits on every
+    /// machine.
     pub fn takes_each(self, passive_share: u64, start_nodes: u64) -> bool {
         match self {
             Engine::Particles => true,
@@ -42,7 +41,7 @@ impl Engine {
         }
     }
 
-    /// Number of passive ones among `share` base particles, if this many of all 2^64 words draw one.
+    /// Number of passive particles among `share` base particles, if this many of all 2^64 words draw one.
     pub fn passive_share(share: u64, passive_words: u128) -> u64 {
         ((u128::from(share) * passive_words) >> 64) as u64
     }
@@ -58,9 +57,8 @@ impl Engine {
     }
 }
 
-/// Twice the passive particles inserted on a start node in an increment from which counts of them are faster
-/// than one by one: both take equally long between 5 (AVX2, base Cu 3) and 9 (AVX-512, base Cu 1.5), see
-/// `results/speed.md`.
+/// Twice the number of passive particles per start node and increment from which counts are faster. The
+/// break-even number is between 5 (AVX2, base Cu 3) and 9 (AVX-512, base Cu 1.5), see `results/speed.md`.
 const WORTH_TWICE: u128 = 13;
 
 /// Plan of one run: an engine, and the passive part of the base.
@@ -75,8 +73,8 @@ pub struct RunPlan {
 }
 
 impl RunPlan {
-    /// Plans a run of this base on the constrictions that `blocked` leaves open, if each increment inserts
-    /// `share` base particles.
+    /// Plans a run of this base with `blocked` constrictions, if each increment inserts `share` base
+    /// particles.
     pub fn new(
         wanted: Engine,
         network: &Network,
@@ -87,8 +85,8 @@ impl RunPlan {
         Self::with_clogging(wanted, network, sampler, blocked, share, (None, false))
     }
 
-    /// Plans a run whose particles arch by this law, if given, so that only those too fine for that are
-    /// passive. If blocked constrictions leave openings, no particle is passive.
+    /// Plans a run with this law of arching, if given: only particles too fine to arch are passive. If
+    /// blocked constrictions leave openings, no particle is passive.
     pub fn with_clogging(
         wanted: Engine,
         network: &Network,
@@ -100,7 +98,7 @@ impl RunPlan {
         let passive_limit = |finest| passive_limit(arching.as_deref(), leaves_openings, finest);
         let finest = network.finest_open(|c| blocked[c]);
         let passive_words = sampler.word_limit(passive_limit(finest));
-        // The open network decides, so that all runs of a replicate have one engine.
+        // Decided on the clean network, so that all runs of a replicate use one engine.
         let on_open = sampler.word_limit(passive_limit(network.finest_open(|_| false)));
         let passive = Engine::passive_share(share, on_open);
         let engine = match wanted {
@@ -124,22 +122,22 @@ impl RunPlan {
         Self { engine, passive_words, sampling: Sampling::Independent, left_out, arching, leaves_openings }
     }
 
-    /// This plan with start nodes and sizes drawn in this way.
+    /// Sets the sampling of start nodes and sizes.
     pub fn sampled(self, sampling: Sampling) -> Self {
         Self { sampling, ..self }
     }
 
-    /// The engine that walks; never `Auto`.
+    /// Engine that walks; never `Auto`.
     pub fn engine(&self) -> Engine {
         self.engine
     }
 
-    /// Work that is left out.
+    /// Omitted work.
     pub fn left_out(&self) -> &[Shortcut] {
         &self.left_out
     }
 
-    /// `n` base particles in `increments` equal parts, for run `run` of `seed`.
+    /// Supply of `n` base particles in `increments` equal parts, for run `run` of `seed`.
     pub fn supply(&self, sampler: SizeSampler, n: u64, increments: u64, seed: u64, run: u64) -> Supply {
         let all = Supply::new(sampler, n, increments)
             .arching_by(self.arching.clone())
@@ -155,32 +153,32 @@ impl RunPlan {
     }
 }
 
-/// The finest constriction that is open when a run begins.
+/// Finest open constriction at the start of a run.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Finest {
-    /// Its size (mm).
+    /// Size (mm).
     pub size_mm: f64,
-    /// True if particles arch in it, so that only those too fine for that are passive.
+    /// True if particles may arch in it, so that only particles too fine to arch are passive.
     pub arches: bool,
 }
 
-/// Work that a run does not need.
+/// Work that a run can omit.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shortcut {
     /// Nothing moves, as no constriction is open.
     NothingOpen,
-    /// No base particle is a count: all are coarser than this.
+    /// No base particle is counted: all are coarser than this.
     NonePassive(Finest),
-    /// No base particle is a count: openings beside particles may stop any.
+    /// No base particle is counted: openings beside particles may stop any of them.
     Openings,
-    /// Every base particle is a count of this engine: no particle is coarser than this.
+    /// All base particles are counted by this engine: none is coarser than this.
     AllPassive(Finest, Engine),
-    /// All base particles but this percentage are counts of this engine.
+    /// This percentage of the base particles is walked one by one; this engine counts the others.
     MostPassive(f64, Finest, Engine),
-    /// No column of diameters is kept: the base has one size.
+    /// No column of diameters is stored: the base has one size.
     OneSize,
-    /// Too few passive base particles an increment (first number) on the start nodes (second number) for
+    /// Too few passive base particles per increment (first number) on the start nodes (second number) for
     /// counts.
     FewPassive(u64, u64),
 }
@@ -204,15 +202,15 @@ fn left_out(engine: Engine, finest: Finest, passive_words: u128) -> Vec<Shortcut
     left_out
 }
 
-/// A pool of `count` threads to run walks in (0: one for each processor that the program may use).
+/// Creates a pool of `count` threads for walks (0: one for each processor available to the program).
 ///
-/// With `pinned`, thread `i` stays on the `i`-th of those processors, if there are as many as threads: some
-/// systems keep the threads of a busy program together on one. A failure to pin (macOS cannot) is not an
-/// error: results do not depend on it. Use it where the machine is for this program alone: two programs that
-/// pin their threads share the same processors.
+/// With `pinned`, thread `i` stays on the `i`-th of these processors, if there are as many as threads:
+/// some systems keep the threads of a busy program on one processor. Failure to pin (impossible on macOS)
+/// is not an error, as results do not depend on it. Use it only if no other program pins its threads on
+/// this machine: they would share the same processors.
 ///
 /// # Errors
-/// Those of the system when it cannot start a thread.
+/// Errors of the system when it cannot start a thread.
 pub fn threads(count: usize, pinned: bool) -> Result<ThreadPool, ThreadPoolBuildError> {
     let processors = processors();
     let builder = ThreadPoolBuilder::new().num_threads(count).thread_name(|i| format!("walk {i}"));
@@ -229,7 +227,7 @@ pub fn threads(count: usize, pinned: bool) -> Result<ThreadPool, ThreadPoolBuild
         .build()
 }
 
-/// Instruction sets that the step is written for; all give the same bits.
+/// Instruction sets with a version of the step; all give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Isa {
     /// Instructions that every machine has.
@@ -241,10 +239,10 @@ pub enum Isa {
 }
 
 impl Isa {
-    /// All of them, the slowest first.
+    /// All instruction sets, the slowest first.
     pub const ALL: [Isa; 3] = [Isa::Portable, Isa::Avx2, Isa::Avx512];
 
-    /// The name used in `VOIDWALK_ISA` and in results.
+    /// Name used in `VOIDWALK_ISA` and in results.
     pub fn name(self) -> &'static str {
         match self {
             Self::Portable => "portable",
@@ -253,7 +251,7 @@ impl Isa {
         }
     }
 
-    /// Tells if this machine has it.
+    /// Tells if this machine supports it.
     pub fn is_available(self) -> bool {
         #[cfg(target_arch = "x86_64")]
         match self {
@@ -273,8 +271,8 @@ impl Isa {
         }
     }
 
-    /// Set that walks use: the fastest that this machine has, or the one that the environment variable
-    /// `VOIDWALK_ISA` names when the first walk starts, if this machine has it.
+    /// Instruction set of walks: the fastest that this machine supports, or the one named by the
+    /// environment variable `VOIDWALK_ISA` when the first walk starts, if supported.
     pub fn chosen() -> Self {
         static CHOSEN: OnceLock<Isa> = OnceLock::new();
         *CHOSEN.get_or_init(|| {
@@ -294,7 +292,8 @@ mod tests {
 
     #[test]
     fn auto_weighs_the_passive_particles_and_no_others() {
-        // 16 start nodes; one constriction of the base's median size by number, the others wider than all.
+        // 16 start nodes; one constriction has the base's median size by number, the others are wider than
+        // all particles.
         let base = Gradation::linear_from_d0(0.2, 1.5).unwrap();
         let sampler = SizeSampler::new(&base, 1.0).unwrap();
         let mut diameters = vec![1.0; 288];
@@ -302,7 +301,7 @@ mod tests {
         let network = Network::cubic_from_diameters([4, 4, 6], diameters, 1.0).unwrap();
         let open: BitVec = BitVec::repeat(false, network.constrictions());
         let engine = |share| RunPlan::new(Engine::Auto, &network, &sampler, &open, share).engine();
-        // Half of them are passive.
+        // Half of the particles are passive.
         let least = 16 * WORTH_TWICE as u64;
         assert_eq!((engine(least - 16), engine(least + 16)), (Engine::Particles, Engine::Counts));
         assert_eq!(Engine::passive_share(u64::MAX, 1 << 64), u64::MAX);
@@ -314,7 +313,7 @@ mod tests {
         let all = processors();
         let pool = threads(0, true).unwrap();
         let seen = pool.broadcast(|_| processors());
-        // Windows tells the processors of a program, not of its threads, and macOS pins none.
+        // Windows reports the processors of a program, not of its threads, and macOS cannot pin threads.
         if cfg!(target_os = "linux") && all.len() > 1 && seen.len() == all.len() {
             assert_eq!(seen.concat(), all);
         }

@@ -1,4 +1,4 @@
-//! Exits that draws pick: thresholds by void, renewed where an exit closes or water turns.
+//! Choice of exits by draws: thresholds by void, renewed when an exit closes or water changes direction.
 
 mod forms;
 
@@ -16,24 +16,24 @@ pub(super) struct VoidExits<'a> {
     pub void: u32,
     /// Threshold of each exit on the 64-bit scale.
     pub thresholds: &'a [u64],
-    /// Position of the last open exit, or `None` where every exit is closed.
+    /// Position of the last open exit, or `None` if all exits are closed.
     pub last_open: Option<usize>,
-    /// True if every exit is closed, and particles wait: water left the void when the flow was solved last,
-    /// by exits that have been blocked since.
+    /// True if all exits are closed and particles wait: in the last solution water left the void through
+    /// exits that have been blocked since.
     pub waits: bool,
 }
 
-/// Voids that a thread renews one after another.
+/// Number of voids that a thread renews at a time.
 const PART: usize = 1 << 13;
 
-/// Looks at the exits of one void after another; `ways` tells which are open.
+/// Visits the exits of one void after another; `ways` defines which are open.
 pub(super) fn of_each(
     network: &Network,
     ways: Ways,
     voids: impl IntoIterator<Item = u32>,
     look: impl FnMut(VoidExits),
 ) {
-    // Chosen here, once for all voids.
+    // Chosen once for all voids.
     match ways {
         Ways::Unblocked(blocked) => {
             let weight = |c| network.exit_weight(c) * f64::from(u8::from(!blocked[c]));
@@ -63,8 +63,8 @@ fn each_by(
     }
 }
 
-/// Thresholds of the exits of one void on the 64-bit scale, written into `thresholds`; returns the position
-/// of the last open exit, or `None` if every exit is closed.
+/// Thresholds of the exits of one void on the 64-bit scale, written into `thresholds`; returns the
+/// position of the last open exit, or `None` if all exits are closed.
 pub(super) fn thresholds(
     network: &Network,
     ways: Ways,
@@ -81,7 +81,7 @@ fn thresholds_by(
     weight: impl Fn(usize) -> f64,
     thresholds: &mut Vec<u64>,
 ) -> Option<usize> {
-    // Without branches: which exits are open cannot be foreseen. Weights are finite.
+    // Branch-free, as it is unpredictable which exits are open. Weights are finite.
     let exits = network.exits(void);
     let first = exits.start;
     let (mut total, mut last) = (0.0, usize::MAX);
@@ -103,11 +103,11 @@ fn thresholds_by(
 
 const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
 
-/// Exit thresholds of every void, in the form that suits the network.
+/// Exit thresholds of all voids, in a form suited to the network.
 #[derive(Clone)]
 pub struct ExitTable {
     pub(super) form: Form,
-    /// Instructions that read it.
+    /// Instruction set that reads it.
     pub(super) isa: Isa,
     /// Upstream void of each constriction.
     pub(super) upstream: Vec<u32>,
@@ -115,33 +115,32 @@ pub struct ExitTable {
 
 #[derive(Clone)]
 pub(super) enum Form {
-    /// Three exits a void, targets by arithmetic.
+    /// Three exits per void, with targets by arithmetic.
     Lattice(Lattice),
-    /// Any number of exits, targets by look-up.
+    /// Any number of exits, with targets by look-up.
     General(General),
 }
 
 /// Thresholds of a general network.
 #[derive(Clone)]
 pub(super) struct General {
-    /// By constriction: its threshold, and the upper sixteen bits of that.
+    /// Threshold of each constriction, and its upper sixteen bits.
     pub threshold: Vec<u64>,
     pub top: Vec<u16>,
-    /// By void: its last open exit as a constriction, or `NONE`, or `WAIT`.
+    /// Last open exit of each void as a constriction, or `NONE`, or `WAIT`.
     pub last_open: Vec<u32>,
-    /// By void: its exits if few are open, in half a cache line.
+    /// Exits of each void if few are open, in half a cache line.
     pub few: Vec<FewExits>,
-    /// By constriction: the void that it leads to and its width, next to each other.
+    /// Target void and width of each constriction, adjacent in memory.
     pub beyond: Vec<(u32, f32)>,
 }
 
 /// Marks a void without an open exit.
 pub(super) const NONE: u32 = u32::MAX;
-/// Marks a void that has had no open exit since the flow was solved last: particles wait until it is solved
-/// again.
+/// Marks a void whose exits have all closed since the last solution of the flow: particles wait for the next.
 pub(super) const WAIT: u32 = u32::MAX - 1;
 
-/// Tells if water left a void when the flow was solved last.
+/// Tells if water left a void in the last solution of the flow.
 fn waits(network: &Network, void: u32) -> bool {
     network.exit_rule().needs_flow() && network.exits(void).any(|c| network.exit_weight(c) > 0.0)
 }
@@ -151,27 +150,27 @@ pub(super) struct OpenExits<'a> {
     pub network: &'a Network,
     pub table: &'a ExitTable,
     pub ways: Ways<'a>,
-    /// By constriction: its widest way.
+    /// Current width of each constriction.
     pub widths: &'a [f32],
     pub passive_limit: f32,
-    /// Law by which particles arch; only with a table of the general form, or one that has widths read.
+    /// Law of arching; only with a table of the general form, or one that reads widths.
     pub arching: Option<&'a Arching>,
 }
 
 impl ExitTable {
-    /// The table for the constrictions that `blocked` leaves open.
+    /// Builds the table with `blocked` constrictions closed.
     pub fn new(network: &Network, blocked: &BitSlice) -> Self {
         Self::empty(network, blocked).filled(network, Ways::Unblocked(blocked))
     }
 
-    /// Table with no void set yet.
+    /// Creates a table without values.
     pub(super) fn empty(network: &Network, blocked: &BitSlice) -> Self {
         let Some([nx, ny, _]) = network.shape() else { return Self::empty_general(network) };
         let finest = network.finest_open(|c| blocked[c]).to_bits();
         Self::of_form(network, Form::Lattice(Lattice::new(network.voids(), nx, nx * ny, finest)))
     }
 
-    /// Recomputes the classes after many constrictions have closed: the remaining ones may be coarser than
+    /// Recomputes the classes after many constrictions have closed, as the open ones may be coarser than
     /// every class.
     pub(super) fn class_anew(&mut self, network: &Network, blocked: &BitSlice) {
         if let Form::Lattice(lattice) = &mut self.form
@@ -181,8 +180,8 @@ impl ExitTable {
         }
     }
 
-    /// Table for particles that arch or constrictions that leave openings: each particle is held against the
-    /// width of the exit that it chose.
+    /// Builds a table for particles that arch or constrictions that leave openings: each particle is
+    /// compared with the width of its chosen exit.
     pub(super) fn by_widths(network: &Network, ways: Ways) -> Self {
         let Some([nx, ny, _]) = network.shape() else {
             return Self::empty_general(network).filled(network, ways);
@@ -213,7 +212,7 @@ impl ExitTable {
         self
     }
 
-    /// Renews a void with an exit that has just closed, is narrower, or leads elsewhere.
+    /// Renews a void with an exit that has just closed, narrowed or changed direction.
     pub(super) fn set(&mut self, network: &Network, ways: Ways, of_void: VoidExits) {
         match &mut self.form {
             Form::Lattice(lattice) => {
@@ -259,7 +258,7 @@ impl General {
         GeneralPart { first_void: 0, first_exit: 0, threshold, top, last_open, few, beyond }
     }
 
-    /// Parts that threads renew side by side.
+    /// Splits the table into parts that threads renew in parallel.
     fn parts(&mut self, network: &Network) -> Vec<GeneralPart<'_>> {
         let mut parts = Vec::new();
         let mut left = self.all();
@@ -339,7 +338,7 @@ mod tests {
         assert_eq!(thresholds_of([0.0, 1.0, 1.0], [false, true, true]).1, None);
     }
 
-    /// Exits of very different widths, any of them blocked: a plain word tells if a void has no way out.
+    /// Exits of very different widths, any of them blocked: a plain word shows if a void has no open exit.
     #[test]
     fn a_word_tells_whether_an_exit_is_open() {
         let mut seen = [0; 2];
@@ -373,8 +372,8 @@ mod tests {
         }
     }
 
-    /// A table whose voids were renewed one after another as constrictions closed, with classes recomputed,
-    /// equals the table made of the constrictions left open.
+    /// A table renewed void by void as constrictions closed, with classes recomputed, equals a new table
+    /// of the open constrictions.
     #[test]
     fn a_table_that_a_run_leaves_is_that_of_the_next() {
         let shape = [7, 5, 4];

@@ -1,4 +1,4 @@
-//! Insertion: chunks that receive base particles of an increment, and draws of their start nodes and sizes.
+//! Insertion of the base particles of an increment into chunks, with draws of their start nodes and sizes.
 
 use super::chunks::ChunkColumns;
 use super::tally::cube;
@@ -13,12 +13,12 @@ pub(super) struct Insertion<'a> {
     isa: Isa,
     passive_limit: f32,
     key: Key,
-    /// Base particles inserted before and after this increment.
+    /// Number of base particles inserted before and after this increment.
     inserted: Range<u64>,
 }
 
 impl<'a> Insertion<'a> {
-    /// Insertion of the increment that `state` is in.
+    /// Prepares the insertion for the current increment of `state`.
     pub fn new(network: &'a Network, supply: &'a Supply, isa: Isa, state: &State) -> Self {
         let increment = state.increment;
         Self {
@@ -31,17 +31,17 @@ impl<'a> Insertion<'a> {
         }
     }
 
-    /// Base particles inserted in this increment.
+    /// Number of base particles inserted in this increment.
     pub fn share(&self) -> u64 {
         self.inserted.end - self.inserted.start
     }
 
-    /// The first chunk that receives any, or would if there were any.
+    /// First chunk that receives particles, if there are any.
     pub fn first_chunk(&self) -> usize {
         self.inserted.start as usize / CHUNK
     }
 
-    /// Appends the particles of a chunk to its columns; its events keep their number and mass.
+    /// Appends the particles of a chunk to its columns; records their number and mass in its events.
     pub fn append(&self, columns: &mut ChunkColumns) {
         let ChunkColumns { chunk, void, diameter, live, events } = columns;
         let begin = *chunk * CHUNK as u64;
@@ -66,15 +66,15 @@ impl<'a> Insertion<'a> {
     }
 }
 
-/// Particles drawn at a time.
+/// Number of particles drawn at a time.
 const BATCH: usize = 8 * LANES;
 
 type Words = [[u64; LANES]; 2 * BATCH / LANES];
 
-/// Particles of one chunk that are drawn, and the columns that they go to.
+/// Particles of one chunk to draw, and their columns.
 ///
-/// Each step of a draw is a loop over a whole batch, so that it becomes vector code and no particle waits for
-/// another; masses alone are added one after another, as their order is part of the result.
+/// Each step of a draw is a loop over a whole batch, so that it is vectorised. Only masses are added one
+/// after another, as the result depends on their order.
 struct Drawing<'a> {
     pub network: &'a Network,
     pub supply: &'a Supply,
@@ -93,24 +93,24 @@ struct Drawn {
 }
 
 impl Drawing<'_> {
-    /// Draws them with the instructions of `isa`, to the same bits.
+    /// Draws them with the instructions of `isa`; the bits are the same for all.
     pub fn draw(self, isa: Isa) -> Drawn {
         assert!(isa.is_available());
         match isa {
-            // SAFETY: the machine has the instructions.
+            // SAFETY: the machine supports the instructions.
             #[cfg(target_arch = "x86_64")]
             Isa::Avx512 => unsafe { with_avx512(self) },
-            // SAFETY: the machine has the instructions.
+            // SAFETY: the machine supports the instructions.
             #[cfg(target_arch = "x86_64")]
             Isa::Avx2 => unsafe { with_avx2(self) },
             _ => self.draw_by(|lanes, words| {
-                // Two blocks at a time: all at once take half as long again.
+                // Two blocks at a time: all at once take 1.5 times as long.
                 words.as_chunks_mut::<2>().0.iter_mut().for_each(|two| *two = lanes.next_blocks());
             }),
         }
     }
 
-    /// Draws them; `next` takes the next words of the stream.
+    /// Draws them; `next` reads the next words of the stream.
     #[inline(always)]
     fn draw_by(self, next: impl Fn(&mut Lanes, &mut Words)) -> Drawn {
         let Self { network, supply, key, before, passive_limit, void, diameter } = self;
@@ -118,7 +118,7 @@ impl Drawing<'_> {
         let mut drawn = Drawn { mass: 0.0, passive: 0 };
         let (mut words, mut place) = (Words::default(), before);
         for (void, diameter) in void.chunks_mut(BATCH).zip(diameter.chunks_mut(BATCH)) {
-            // The last batch leaves some of its words.
+            // The last batch leaves some words unused.
             next(&mut lanes, &mut words);
             let pairs = words.as_flattened().as_chunks::<2>().0;
             let mut size_words = [0; BATCH];
@@ -150,7 +150,7 @@ impl Drawing<'_> {
     }
 }
 
-/// Draws the start node of each particle by the first of its words.
+/// Draws the start node of each particle from the first of its words.
 #[inline(always)]
 fn start(network: &Network, pairs: &[[u64; 2]], void: &mut [u32]) {
     let nodes = network.start();
@@ -160,7 +160,7 @@ fn start(network: &Network, pairs: &[[u64; 2]], void: &mut [u32]) {
         }
         return;
     }
-    // Start nodes of a lattice are its first voids, in order.
+    // The start nodes of a lattice are its first voids, in order.
     for (void, pair) in void.iter_mut().zip(pairs) {
         *void = below_32(pair[0], nodes.len() as u32);
     }
@@ -185,7 +185,7 @@ mod tests {
     use crate::network::{ExitRule, NetworkColumns};
     use crate::stream::Purpose;
 
-    /// A lattice of 15 start nodes, and a network of three that do not follow one another.
+    /// A lattice with 15 start nodes, and a network with three that are not consecutive.
     fn networks() -> [Network; 2] {
         let columns = NetworkColumns {
             voids: 6,
@@ -216,7 +216,7 @@ mod tests {
         ]
     }
 
-    /// Each particle by definition, from its two words of the stream.
+    /// Draws each particle by definition, from its two words of the stream.
     fn by_definition(
         network: &Network,
         supply: &Supply,

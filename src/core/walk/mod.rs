@@ -1,4 +1,4 @@
-//! The walk: base particles move from void to void until each is eroded or retained.
+//! Walk: base particles move from void to void until each is eroded or retained.
 //!
 //! # An increment (the paper's Fig. 3)
 //! 1. *Insert* this increment's share of the base, each particle on a start node drawn uniformly.
@@ -6,53 +6,52 @@
 //!    began, with probability proportional to diameter squared (Fig. 4). A particle no coarser than
 //!    the constriction moves through it; a coarser one is retained, and blocks that constriction
 //!    from the next increment on. A particle in a void without open exits is retained in the void.
-//! 3. *Merge*: the constrictions blocked in this increment close. Since all choices were made on the
-//!    open set at the start of the increment, the order of the particles plays no part.
-//! 4. *Tally*: counts are integers, and their sum is checked; masses are sums of diameter cubed in
+//! 3. *Merge*: the constrictions blocked in this increment close. All choices use the exits open at the
+//!    start of the increment, so the order of the particles does not matter.
+//! 4. *Tally*: counts are integers and their sum is checked; masses are sums of diameter cubed, added in
 //!    chunk order.
 //!
 //! # Chunks and streams
-//! Base particle `i` of a run, counted in order of insertion, belongs to chunk `i / CHUNK` for good.
-//! A chunk keeps its moving particles together and in order of insertion: those that leave are
-//! closed over, newly inserted ones are appended. In increment `t` the `j`-th moving particle of
-//! chunk `c` takes sixteen-bit draw `j` of the stream (seed, step, run, `t`, `c`), completed to 64
-//! bits where sixteen do not decide; the `k`-th particle inserted into the chunk in that increment
-//! takes words `2 k` (start node) and `2 k + 1` (diameter) of (seed, insertion, run, `t`, `c`). Threads
-//! appear nowhere in this, so they change no bit, and a walk can go on from its columns alone.
+//! Base particle `i` of a run, counted in order of insertion, belongs to chunk `i / CHUNK` throughout. A
+//! chunk keeps its moving particles contiguous, in order of insertion: gaps of those that leave are
+//! closed, newly inserted ones are appended. In increment `t` the `j`-th moving particle of chunk `c`
+//! takes sixteen-bit draw `j` of the stream (seed, step, run, `t`, `c`), extended to 64 bits if sixteen do
+//! not decide; the `k`-th particle inserted into the chunk in that increment takes words `2 k` (start
+//! node) and `2 k + 1` (diameter) of (seed, insertion, run, `t`, `c`). None of this depends on threads, so
+//! results are the same to the bit for any number of them, and a walk can continue from its columns alone.
 //!
 //! # Sampling
-//! Start nodes and sizes are independent draws, as in the paper, or spread evenly over both
-//! ([`Sampling::Stratified`]): each particle's marginal distribution is the same, and
-//! replicates scatter less.
+//! Start nodes and sizes are drawn independently, as in the paper, or spread evenly
+//! ([`Sampling::Stratified`]): the marginal distribution of each particle is the same, and replicates
+//! scatter less.
 //!
 //! # Exit choice
-//! With `c_e` the sum of open areas up to exit `e` and `c` the sum of all, exit `e` is the first whose
-//! `floor(2^64 c_e / c)` exceeds the 64-bit draw, else the last open exit. A closed exit has exactly no
-//! width.
+//! With `c_e` the sum of open areas up to exit `e` and `c` the total, the exit chosen is the first whose
+//! `floor(2^64 c_e / c)` exceeds the 64-bit draw, otherwise the last open exit. The probability of a
+//! closed exit is exactly 0.
 //!
 //! # Arches
-//! A particle that fits may jam (module `arching`) if the scene asks for a law of that, at one concentration
-//! for the whole walk. Particles that jam in one constriction in one increment are one arch: step 3 keeps as
-//! many as it has (module `chunks`), and lets the others pass.
+//! If the scene names a law of arching, a particle that fits may jam (module `arching`), at one
+//! concentration for the whole walk. Particles that jam in one constriction in one increment form one
+//! arch: step 3 keeps as many as the arch holds (module `chunks`) and lets the others pass.
 //!
 //! # Residual openings
-//! If a scene asks for it, a blocked constriction is not closed: it leaves openings (module `openings`), by
-//! which finer particles go on and which stop coarser ones. Step 3 then narrows constrictions.
+//! If the scene asks for it, a blocked constriction is not closed: it leaves openings (module `openings`)
+//! that finer particles pass and that stop coarser ones. Step 3 then narrows constrictions.
 //!
 //! # The end
-//! A run ends when nothing moves, or when every moving particle is *trapped*: x and y are periodic, so
-//! a particle can move in closed loops for good.
+//! A run ends when nothing moves, or when every moving particle is *trapped*: x and y are periodic, so a
+//! particle can move in closed loops for ever.
 //!
 //! # Engines
-//! Passive particles may be followed as one count a void instead ([`RunPlan`], module `counts`): each
-//! increment then also inserts and splits counts, on the same open set, before the merge. Everything else is
-//! the same code, so whoever watches a [`State`] need not know which engine walks. [`Engine::Auto`] takes
-//! counts unless particles are few: a choice by numbers alone, never by the clock, so a seed gives the same
-//! bits everywhere.
+//! Passive particles may be followed as one count per void instead ([`RunPlan`], module `counts`): each
+//! increment then also inserts and splits counts, with the same open exits, before the merge. Everything else
+//! is the same code, so a [`State`] reads the same for every engine. [`Engine::Auto`] uses counts unless
+//! particles are few. It decides by numbers, never by timing, so a seed gives the same bits everywhere.
 //!
 //! # Memory
-//! The columns of the particles take 8 bytes each. [`State::placed`] puts them into mapped files where they
-//! would not fit; the kernels see slices either way, and the bits are the same.
+//! Particle columns take 8 bytes per particle. [`State::placed`] puts them into mapped files if they do
+//! not fit in memory; the kernels see slices either way, and the bits are the same.
 
 mod arching;
 mod chunks;
@@ -92,50 +91,50 @@ use chunks::Events;
 use directions::Directions;
 use openings::{Ways, Weighed};
 
-/// Decision after an increment to go on or to stop.
+/// Decision after an increment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WalkControl {
-    /// Go on.
+    /// Continue the walk.
     Continue,
-    /// Stop here.
+    /// Stop the walk.
     Stop,
 }
 
-/// Callback after each increment: recording, progress, a request to stop.
+/// Callback after each increment, for recording, progress and requests to stop.
 pub type Observer<'a> = dyn FnMut(&State) -> WalkControl + Send + 'a;
 
-/// A run under way: the machinery that is rebuilt from network and state, and never stored.
+/// Run in progress: data rebuilt from network and state, never stored.
 pub struct Walk<'a> {
-    /// An owned copy if water gives constrictions their direction.
+    /// Owned copy if water sets the directions of constrictions.
     network: Cow<'a, Network>,
-    /// The network as given, if its exits are to outlive the walk.
+    /// Network as given, if its exits must outlive the walk.
     kept: Option<&'a Arc<Network>>,
     directions: Option<Directions>,
-    /// Reason why the flow is not known.
+    /// Reason why the flow is unknown.
     no_flow: Option<FlowError>,
     supply: &'a Supply,
     table: ExitTable,
     events: Vec<Events>,
     trap: Search,
-    /// True if every particle walked one by one is trapped, or there is no such particle.
+    /// True if every particle walked one by one is trapped, or there are none.
     all_caught: bool,
     passive: Option<counts::PassiveWalk<'a>>,
 }
 
-/// Exit tables that depend only on the blocked set: worked out once for the first runs of many walks, or left
-/// by a run to the next.
+/// Exit tables that depend only on the blocked set: computed once for the first runs of many walks, or
+/// passed from a run to the next.
 ///
-/// They keep their network, so that no other one takes its place in memory and is taken for it.
+/// They keep their network alive, so that no other network can reuse its address and be mistaken for it.
 #[derive(Clone)]
 pub struct PlainExits {
     network: Arc<Network>,
     blocked: BitVec,
     table: ExitTable,
-    /// Shares of passive particles by exit, if there were any.
+    /// Shares of passive particles by exit, if there are passive particles.
     shares: Option<counts::Shares>,
 }
 
-/// Result of a walk: its network, the fall of the permeability, and its exits.
+/// Result of a walk: its network, the decline of permeability, and its exits.
 type WalkEnd<'a> = (Cow<'a, Network>, Option<FlowRecord>, Option<PlainExits>);
 
 impl PlainExits {
@@ -146,7 +145,7 @@ impl PlainExits {
         Self { network: network.clone(), blocked, table, shares }
     }
 
-    /// Works out the exits that `blocked` leaves open; with or without the shares of passive particles.
+    /// Computes the exits left open by `blocked`, with or without the shares of passive particles.
     fn work_out(
         network: &Network,
         blocked: &BitSlice,
@@ -175,13 +174,13 @@ impl PlainExits {
 }
 
 impl<'a> Walk<'a> {
-    /// Prepares to walk from `state` on.
+    /// Prepares a walk that continues from `state`.
     pub fn new(network: &'a Network, supply: &'a Supply, state: &State) -> Self {
         Self::prepare(network, supply, state, None)
     }
 
-    /// Prepares like [`Walk::new`], with exits that are known already; they are worked out if they belong to
-    /// another network or state, or if a particle's way depends on more than the blocked set.
+    /// Prepares like [`Walk::new`], with known exits. They are recomputed if they belong to another
+    /// network or state, or if paths depend on more than the blocked set.
     pub fn with_exits(
         network: &'a Arc<Network>,
         supply: &'a Supply,
@@ -236,8 +235,8 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Result of a walk at the end of its run: the network with the directions that it has then, and the fall
-    /// of the permeability, if water gives them.
+    /// Ends the walk; returns the network with its final directions and, if water sets them, the decline
+    /// of permeability.
     ///
     /// # Errors
     /// [`WalkError::Flow`].
@@ -246,8 +245,8 @@ impl<'a> Walk<'a> {
         Ok((network, record))
     }
 
-    /// Result of a walk that was prepared by [`Walk::with_exits`], with the exits that the next run on this
-    /// network may begin with.
+    /// Ends a walk prepared by [`Walk::with_exits`]; also returns the exits with which the next run on
+    /// this network may begin.
     ///
     /// # Errors
     /// [`WalkError::Flow`].
@@ -272,10 +271,10 @@ impl<'a> Walk<'a> {
         Ok((network, record, exits))
     }
 
-    /// This walk with the instructions of `isa`, to the same bits: for tests and measurements.
+    /// Uses the instructions of `isa`, with the same results to the bit: for tests and measurements.
     ///
     /// # Panics
-    /// If this machine does not have them.
+    /// If this machine does not support them.
     pub fn with_isa(mut self, isa: Isa) -> Self {
         assert!(isa.is_available(), "{isa:?} is not available on this machine");
         self.table.isa = isa;
@@ -285,10 +284,10 @@ impl<'a> Walk<'a> {
         self
     }
 
-    /// One increment, as in the paper's Fig. 3.
+    /// Performs one increment, as in the paper's Fig. 3.
     ///
     /// # Errors
-    /// [`WalkError::NotConserved`] where particles are lost or made; [`WalkError::Flow`].
+    /// [`WalkError::NotConserved`] if particles are lost or created; [`WalkError::Flow`].
     pub fn increment(&mut self, state: &mut State) -> Result<(), WalkError> {
         state.increment += 1;
         self.direct(state).map_err(|source| WalkError::Flow { increment: state.increment, source })?;
@@ -318,8 +317,8 @@ impl<'a> Walk<'a> {
         Ok(())
     }
 
-    /// Starts this increment's share of the base, each particle on a start node; then every moving particle
-    /// attempts one move, on the open set at the start of the increment.
+    /// Inserts this increment's share of the base on start nodes; then every moving particle attempts one
+    /// move through the exits open at the start of the increment.
     fn insert_and_step(&mut self, state: &mut State) {
         let Self { network, table, supply, events, passive, .. } = self;
         let mut one_by_one = |state: &mut State| kernel::step(network, table, supply, state, events);
@@ -332,7 +331,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Adds the events to the state; the constrictions that were blocked close or are narrower.
+    /// Adds the events to the state; blocked constrictions close or are narrowed.
     fn merge(&mut self, state: &mut State) {
         let Self { network, table, events, passive, directions, .. } = self;
         let closed = chunks::merge(network, events, &table.upstream, state);
@@ -347,7 +346,7 @@ impl<'a> Walk<'a> {
         });
     }
 
-    /// Finds out if the run has ended, and checks that every particle inserted is somewhere.
+    /// Determines if the run has ended, and checks that all inserted particles are accounted for.
     fn tally(&mut self, state: &mut State) -> Result<(), WalkError> {
         let inserting = state.increment < self.supply.increments();
         if !inserting && state.tally.moving > 0 && self.all_trapped(state) {
@@ -357,18 +356,18 @@ impl<'a> Walk<'a> {
         state.tally.check(state.increment)
     }
 
-    /// Tells if every moving particle is trapped. Once those walked one by one are, nothing can block any
-    /// more, so they stay so.
+    /// Tells if every moving particle is trapped. Once all particles walked one by one are trapped,
+    /// nothing can be blocked any more, so they stay trapped.
     fn all_trapped(&mut self, state: &mut State) -> bool {
         self.all_caught = self.all_caught || self.trap.all_trapped(&self.network, state);
         self.all_caught
             && self.passive.as_mut().is_none_or(|passive| passive.all_trapped(&self.network, state))
     }
 
-    /// Makes increments until the run ends or `observe` stops it.
+    /// Performs increments until the run ends or `observe` stops it.
     ///
     /// # Errors
-    /// Those of [`Walk::increment`], and [`WalkError::Stopped`].
+    /// Errors of [`Walk::increment`], and [`WalkError::Stopped`].
     pub fn run(&mut self, state: &mut State, observe: &mut Observer) -> Result<(), WalkError> {
         while !state.finished {
             self.increment(state)?;
@@ -384,27 +383,27 @@ fn weighed(directions: Option<&Directions>) -> Weighed<'_> {
     directions.map_or(Weighed::Whole, Directions::weighed)
 }
 
-/// A search for a particle that is not trapped, which remembers the last way out.
+/// Search for a particle that is not trapped, which remembers the last way out.
 ///
-/// A moving particle is trapped when, through open constrictions that it fits, it can reach no end, no open
-/// constriction finer than it or so fine that it may arch there (either would stop it), and no void without
-/// open exits. When every one is trapped nothing can change any more, and the run ends. One that is not is
-/// enough to go on; the way out found for it holds while nothing closes, so that a run that waits for it
-/// costs little.
+/// A moving particle is trapped if, through open constrictions that it fits, it can reach neither the end,
+/// nor a void without open exits, nor an open constriction that may stop it (finer than it, or so fine
+/// that it may arch there). When all are trapped nothing can change, and the run ends. One that is not
+/// trapped is enough to continue; its way out stays valid until a constriction closes, so that runs that
+/// wait for it cost little.
 struct Search {
-    /// Mark of the voids seen by the search that set it.
+    /// Number of the last search that saw each void.
     seen: Vec<u32>,
     mark: u32,
     /// Void from which a seen void was reached.
     came_from: Vec<u32>,
     stack: Vec<u32>,
-    /// Voids on ways out that hold for `known`.
+    /// Voids on ways out that are valid for `known`.
     way_out: Vec<bool>,
-    /// Number of blocked or narrowed constrictions and particle size that `way_out` holds for.
+    /// Number of blocked or narrowed constrictions and particle size for which `way_out` is valid.
     known: Option<(usize, u32)>,
-    /// Chunk in which the last particle that is not trapped was found.
+    /// Chunk of the last particle found that is not trapped.
     hint: usize,
-    /// Ratio of a constriction to the finest particle that it may stop.
+    /// Ratio of the size of a constriction to the finest particle that it may stop.
     stops_from: f64,
 }
 
@@ -426,12 +425,12 @@ impl Search {
     pub fn all_trapped(&mut self, network: &Network, state: &State) -> bool {
         let chunks = state.particles.live.len();
         let mut trapped = HashSet::new();
-        // The last that were inserted come first: trapped ones stay, and lie in front.
+        // Starts with the last inserted particles: trapped ones remain and are at the front.
         let hint = self.hint.min(chunks.saturating_sub(1));
         for chunk in (0..chunks.min(hint + 1)).rev().chain((hint + 1..chunks).rev()) {
             let (void, diameter) = state.particles.chunk(chunk);
             for (&void, &diameter) in void.iter().zip(diameter).rev() {
-                // Passive particles fit everywhere: an answer for one holds for all.
+                // Passive particles fit everywhere: the answer for one is valid for all.
                 let size = if diameter <= state.passive_limit { 0.0 } else { diameter };
                 if trapped.contains(&(void, size.to_bits())) {
                     continue;
@@ -446,7 +445,7 @@ impl Search {
         true
     }
 
-    /// Depth first, downstream exits before sideways ones.
+    /// Searches depth first, downstream exits before sideways ones.
     fn is_trapped(&mut self, network: &Network, state: &State, start: u32, diameter: f32) -> bool {
         let key = Some((state.changes(), diameter.to_bits()));
         if self.known != key {
@@ -485,7 +484,7 @@ impl Search {
         true
     }
 
-    /// Marks the way from `start` to `last` as a way out.
+    /// Marks the path from `start` to `last` as a way out.
     fn remember(&mut self, start: u32, last: u32) {
         let mut void = last;
         self.way_out[void as usize] = true;

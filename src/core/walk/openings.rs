@@ -1,32 +1,32 @@
 //! Openings that a blocked constriction leaves beside the particle that blocks it.
 //!
 //! # Geometry
-//! A constriction of size `D` is taken as the gap of three equal grains that touch each other, whose diameter
-//! is `G = D / (2 / sqrt(3) - 1) = 6.46 D`. A particle of diameter `d` that does not pass rests on all three.
-//! Between it and each two of the grains is an opening: these three spheres touch each other, and the
-//! narrowest place between them is the circle inside their three circles in the plane of their centres. By
-//! Descartes' circle theorem its diameter `x` is
+//! A constriction of size `D` is taken as the gap between three equal touching grains of diameter `G = D /
+//! (2 / sqrt(3) - 1) = 6.46 D`. A particle of diameter `d` that does not pass rests on all three grains.
+//! Between the particle and each pair of grains is an opening: the three spheres touch each other, and the
+//! narrowest section between them is the circle inscribed between their circles in the plane of their
+//! centres. By Descartes' circle theorem its diameter `x` is
 //!
 //! `1 / x = 1 / d + 2 / G + 2 sqrt(1 / G^2 + 2 / (d G))`.
 //!
-//! The height at which the particle rests does not matter: the plane goes through its own centre. The third
-//! grain leaves the circle free, because spheres that touch three others which touch each other form a ring
-//! (Soddy's hexlet), and its sphere is always more than a place away. For `d = D` the opening is 0.406 `D`.
-//! It grows with `d` and reaches `D` where the particle is as large as the grains; it is never taken as wider
-//! than `D`, because everything that passes it must pass `D` as well.
+//! The height of the particle does not matter, as the plane passes through its centre. The third grain
+//! does not obstruct the circle: spheres that touch three mutually touching spheres form a ring (Soddy's
+//! hexlet), and the third grain is always more than one position away in it. For `d = D` the opening is
+//! 0.406 `D`. It grows with `d` and reaches `D` when the particle is as large as the grains; it is limited
+//! to `D`, because everything that passes the opening must pass `D` as well.
 //!
 //! # What is decided
-//! - The three openings beside a particle are equal, and are taken as one exit of that size with three times
-//!   its area, at most the area of the constriction.
-//! - A particle coarser than the opening is stopped by it and sits between the same two grains, so that the
-//!   formula holds for it too. What is left is the opening beside the finest particle that was ever stopped
-//!   there: the least of all. The first particle that one of the three openings stops narrows all three.
-//! - The particles of an arch are particles that were stopped.
-//! - The least of several does not depend on their order, so that the order of chunks and threads plays no
-//!   part. As ever, what is blocked in an increment holds from the next one on.
-//! - Water passes a blocked constriction by the three openings: it keeps `3 (x / D)^4` of its conductance, at
-//!   most all of it.
-//! - No particle is passive: an opening that was narrowed again may stop any.
+//! - The three openings beside a particle are equal and are treated as one exit of that size with three
+//!   times its area, at most the area of the constriction.
+//! - A particle coarser than the opening is stopped and sits between the same two grains, so the formula
+//!   applies to it too. The remaining opening is the smallest, beside the finest particle stopped there so
+//!   far. The first particle stopped by one of the three openings narrows all three.
+//! - The particles of an arch count as stopped particles.
+//! - A minimum does not depend on order, so the order of chunks and threads does not matter. As always,
+//!   blocking takes effect in the next increment.
+//! - Water passes a blocked constriction through the three openings: it keeps `3 (x / D)^4` of its
+//!   conductance, at most 1.
+//! - No particle is passive: repeated narrowing can stop any particle.
 
 use crate::schema::Leaf;
 use bitvec::slice::BitSlice;
@@ -35,47 +35,46 @@ use serde::{Deserialize, Serialize};
 
 use crate::network::Network;
 
-/// Size of the constriction of three equal grains that touch each other, over the size of a grain: `2 /
-/// sqrt(3) - 1`.
+/// Size of the constriction of three equal touching grains, divided by the grain size: `2 / sqrt(3) - 1`.
 const OF_GRAIN: f64 = 0.154_700_538_379_251_53;
 
 const OPENINGS: f64 = 3.0;
 
-/// Power of its diameter that the conductance of an opening grows with (Hagen-Poiseuille), against the
-/// conductance of the whole constriction.
+/// Exponent of the diameter in the conductance of an opening relative to the whole constriction
+/// (Hagen-Poiseuille).
 pub(super) const CONDUCTS: f64 = 4.0;
 
-/// Diameter of the opening that is left between a particle and each two of the three equal, touching grains
-/// of a constriction, in the unit of both sizes; at most the size of the constriction.
+/// Diameter of the opening between a particle and each pair of the three equal, touching grains of a
+/// constriction, in the unit of the arguments; at most the size of the constriction.
 ///
-/// `1 / x = 1 / d + 2 / G + 2 sqrt(1 / G^2 + 2 / (d G))` with `G = D / (2 / sqrt(3) - 1)`: Descartes' circle
-/// theorem for the circle inside three that touch each other.
+/// `1 / x = 1 / d + 2 / G + 2 sqrt(1 / G^2 + 2 / (d G))` with `G = D / (2 / sqrt(3) - 1)`: Descartes'
+/// circle theorem for the circle inscribed between three touching circles.
 pub fn residual_opening(constriction: f64, particle: f64) -> f64 {
     let (grain, curvature) = (OF_GRAIN / constriction, 1.0 / particle);
     let inside = curvature + 2.0 * grain + 2.0 * (grain * (grain + 2.0 * curvature)).sqrt();
     (1.0 / inside).min(constriction)
 }
 
-/// Part that a constriction keeps of a quantity that grows with the power `exponent` of a diameter, where an
-/// opening `ratio` times as wide is left on each of the three sides of a particle: of its area with 2.
+/// Fraction that a constriction keeps of a quantity proportional to diameter to the power `exponent` (2
+/// for area), if three openings `ratio` times as wide remain beside a particle.
 pub(super) fn part_kept(ratio: f64, exponent: f64) -> f64 {
     if ratio > 0.0 { (OPENINGS * libm::pow(ratio, exponent)).min(1.0) } else { 0.0 }
 }
 
-/// Effect of a blocked constriction on the particles after it.
+/// Effect of a blocked constriction on later particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum BlockedAs {
     /// Closed, as in the paper.
     Closed,
-    /// Open beside the particle that blocks it.
+    /// Open beside the blocking particle.
     Open,
 }
 
 impl Leaf for BlockedAs {}
 
 impl BlockedAs {
-    /// Both, in the order in which a user is told of them.
+    /// Both choices, in the order shown to users.
     pub const ALL: [Self; 2] = [Self::Closed, Self::Open];
 
     /// Name of the choice in a scene.
@@ -87,55 +86,55 @@ impl BlockedAs {
     }
 }
 
-/// Constrictions of a network after base particles, for a run to hand on to the next.
+/// Constrictions of a network after a run, passed on to the next run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Clogged {
     /// Bit `c`: constriction `c` is blocked.
     pub blocked: BitVec,
-    /// The widest way through each exit's constriction, where blocked ones leave openings; empty where they
-    /// are closed.
+    /// Current width of the constriction of each exit, if blocked ones leave openings; empty if they are
+    /// closed.
     pub widths: Vec<f32>,
 }
 
 impl From<BitVec> for Clogged {
-    /// Blocked constrictions that are closed.
+    /// Creates the state of blocked constrictions without openings.
     fn from(blocked: BitVec) -> Self {
         Self { blocked, widths: Vec::new() }
     }
 }
 
 impl Clogged {
-    /// A clean network.
+    /// Creates the state of a clean network.
     pub fn none(network: &Network) -> Self {
         BitVec::repeat(false, network.constrictions()).into()
     }
 }
 
-/// An opening that a particle left, or narrowed.
+/// Opening created or narrowed by a particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Narrowing {
-    /// The increment in which a particle was stopped; the opening holds from the next one on.
+    /// Increment in which a particle was stopped; the opening takes effect in the next one.
     pub increment: u64,
-    /// The constriction, by the first of its exits.
+    /// Constriction, by the first of its exits.
     pub constriction: u32,
-    /// Widest way through it before, in units of the network's reference length.
+    /// Width before, in units of the network's reference length.
     pub before: f32,
-    /// Widest way through it after.
+    /// Width after, in the same units.
     pub after: f32,
 }
 
-/// The openings of a run in which blocked constrictions leave some.
+/// Openings of a run, if blocked constrictions leave any.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Openings {
-    /// By exit: the widest way through its constriction, in units of the network's reference length.
+    /// Width of the constriction of each exit, in units of the network's reference length.
     pub widths: Vec<f32>,
     /// Narrowings of this run, by increment, then by constriction.
     pub history: Vec<Narrowing>,
 }
 
 impl Openings {
-    /// Openings before the first increment of a run, on these constrictions. Blocked ones without an opening
-    /// of their own are closed.
+    /// Creates the openings before the first increment of a run. Blocked constrictions without an opening
+    /// are closed.
     pub(super) fn new(network: &Network, clogged: &Clogged) -> Self {
         let width_of = |c: usize| match clogged.widths.get(c) {
             Some(&width) => width,
@@ -145,7 +144,7 @@ impl Openings {
         Self { widths: (0..network.constrictions()).map(width_of).collect(), history: Vec::new() }
     }
 
-    /// Narrows the constriction of this exit after it stopped a particle of this size.
+    /// Narrows the constriction of this exit, which stopped a particle of this size.
     pub(super) fn stop(&mut self, network: &Network, exit: usize, diameter: f32) {
         let left = residual_opening(f64::from(network.diameters()[exit]), f64::from(diameter)) as f32;
         if left < self.widths[exit] {
@@ -156,11 +155,11 @@ impl Openings {
         }
     }
 
-    /// Merges the narrowings from entry `from` on into those of one increment, each constriction once;
-    /// returns these constrictions.
+    /// Merges the narrowings from entry `from` on into one per constriction, for one increment; returns
+    /// these constrictions.
     pub(super) fn end_increment(&mut self, increment: u64, from: usize) -> Vec<u32> {
         let new = &mut self.history[from..];
-        // By constriction, the widest first, which came first.
+        // Sorted by constriction, then from wide to narrow, which is their order in time.
         new.sort_by(|a, b| {
             (a.constriction, b.before).partial_cmp(&(b.constriction, a.before)).expect("numbers")
         });
@@ -179,9 +178,10 @@ impl Openings {
         self.history[from..].iter().map(|narrowing| narrowing.constriction).collect()
     }
 
-    /// Tells if a walk of this many increments may have left these openings, if no run had finer particles
-    /// than `smallest`: those of blocked constrictions are no narrower than beside such a one, both ways
-    /// alike, and others are whole; and each was narrowed step by step, at most once an increment.
+    /// Tells if a walk of this many increments can have left these openings, with no particles finer than
+    /// `smallest`. Blocked constrictions must be no narrower than beside such a particle and equal in both
+    /// directions, and the others unchanged. Each must have been narrowed step by step, at most once per
+    /// increment.
     pub(super) fn can_be(
         &self,
         network: &Network,
@@ -200,7 +200,7 @@ impl Openings {
                 && (blocked[c] || is_whole)
                 && network.twin(c).is_none_or(|twin| self.widths[twin] == width)
         };
-        // Back from the present widths.
+        // Goes back from the current widths.
         let mut then = self.widths.clone();
         let mut of_history = |n: &Narrowing| {
             let c = n.constriction as usize;
@@ -218,7 +218,7 @@ impl Openings {
             && self.history.windows(2).all(|pair| order(&pair[0]) < order(&pair[1]))
     }
 
-    /// Sets the widest way through the constriction of an exit, both ways.
+    /// Sets the width of the constriction of an exit, in both directions.
     pub(super) fn set(&mut self, network: &Network, exit: usize, width: f32) {
         self.widths[exit] = width;
         if let Some(twin) = network.twin(exit) {
@@ -227,20 +227,19 @@ impl Openings {
     }
 }
 
-/// Exits of voids that are open to base particles.
+/// Exits open to base particles.
 #[derive(Clone, Copy)]
 pub(super) enum Ways<'a> {
     Unblocked(&'a BitSlice),
-    /// All, with these widths, against the widths that the exits' weights refer to.
+    /// All exits with these widths, and the widths to which their weights refer.
     Openings(&'a [f32], Weighed<'a>),
 }
 
-/// Widths that the weights of exits refer to, where blocked constrictions leave openings.
+/// Widths to which the weights of exits refer, if blocked constrictions leave openings.
 #[derive(Clone, Copy)]
 pub(super) enum Weighed<'a> {
     Whole,
-    /// Constrictions as wide as they were when the flow was solved last, and the power of the diameter that a
-    /// weight grows with.
+    /// Widths of the last solution of the flow, and the exponent of the diameter in the weight.
     Solved(&'a [f32], f64),
 }
 
@@ -255,7 +254,7 @@ impl Ways<'_> {
 }
 
 impl Weighed<'_> {
-    /// Weight of an exit with this width. Not inlined, so that the check for blocked exits is.
+    /// Weight of an exit with this width. Not inlined, so that the check for blocked exits can be inlined.
     #[inline(never)]
     pub fn weight(&self, network: &Network, c: usize, width: f32) -> f64 {
         let whole = f64::from(network.diameters()[c]);
@@ -274,8 +273,8 @@ impl Weighed<'_> {
 mod tests {
     use super::*;
 
-    /// Three grains of size 1 on a plane, a particle on them, and the circle of the formula: it touches the
-    /// particle and two grains in the plane of their centres, and leaves the third free.
+    /// Three grains of size 1 on a plane, a particle on them, and the circle of the formula: it touches
+    /// the particle and two grains in the plane of their centres, and does not reach the third.
     #[test]
     fn the_opening_touches_the_particle_and_two_grains() {
         let size = |p: [f64; 3]| p.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -284,13 +283,13 @@ mod tests {
         let [one, two, third] = [[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, high, 0.0]];
         for times in [1.0, 1.01, 1.5, 2.0, 4.0, 6.4] {
             let d = times * OF_GRAIN;
-            // It rests above the middle of the grains, and touches each.
+            // The particle rests above the middle of the grains and touches each of them.
             let (middle, reach) = (high / 3.0, (1.0 + d) / 2.0);
             let above = (reach * reach - 4.0 * middle * middle).max(0.0).sqrt();
             let particle = [0.0, middle, above];
             assert!((between(particle, third) - reach).abs() < 1e-9);
             let x = residual_opening(OF_GRAIN, d);
-            // On the line from between the two grains to the particle.
+            // On the line from the midpoint of the two grains to the particle.
             let along = ((1.0 + x) / 2.0).powi(2) - 0.25;
             let to = size([0.0, middle, above]);
             let centre = [0.0, middle, above].map(|part| part / to * along.sqrt());
@@ -308,10 +307,10 @@ mod tests {
         let sizes = [0.1, 0.3, 0.5, 1.0, 1.5, 2.0, 4.0, 6.0];
         let widths = sizes.map(|d| residual_opening(1.0, d));
         assert!(widths.windows(2).all(|pair| pair[0] < pair[1]) && widths[7] < 1.0, "{widths:?}");
-        // Particles that were stopped do not pass afterwards.
+        // Stopped particles do not pass afterwards.
         assert!(sizes.iter().zip(widths).all(|(&d, width)| width < d));
         assert_eq!(residual_opening(1.0, 10.0), 1.0);
-        // A factor of two on every length changes no bit.
+        // A factor of two on every length leaves the bits the same.
         assert_eq!(residual_opening(0.25, 0.375), 0.25 * residual_opening(1.0, 1.5));
     }
 
@@ -321,7 +320,7 @@ mod tests {
         assert!((part_kept(0.5, 2.0) - 0.75).abs() < 1e-15 && (part_kept(0.5, 4.0) - 0.1875).abs() < 1e-15);
     }
 
-    /// In one increment a constriction is narrowed once, from what it was to what it is.
+    /// In one increment a constriction is narrowed once, from its old to its new width.
     #[test]
     fn what_happens_in_an_increment_is_one_narrowing() {
         let network = Network::cubic_from_diameters([1, 1, 2], vec![1.0; 6], 1.0).unwrap();
@@ -341,7 +340,7 @@ mod tests {
         assert!(can_be(&openings));
         assert!(!openings.can_be(&network, &blocked, 8, 1.25));
         assert!(!openings.can_be(&network, &BitVec::repeat(false, 6), 9, 1.25));
-        // No particle was so fine.
+        // No particle was that fine.
         assert!(!openings.can_be(&network, &blocked, 9, 1.3));
         let forgeries: [fn(&mut Openings); 5] = [
             |o| o.widths[0] = 1.5,

@@ -1,8 +1,8 @@
-//! Slow, obvious walk as a check of the fast one.
+//! Slow, simple walk as a check of the fast one.
 //!
-//! One particle after another, every weight computed afresh from the network, in the words of the model. It
-//! shares nothing with the kernel but the network, the flow that is solved on it, the base's sizes, the
-//! strata and the streams, and of arches the law: its probability by table, and where it ends.
+//! It moves one particle after another and computes every weight afresh from the network, as the model is
+//! stated. It shares with the kernel only the network, its flow solver, the sizes of the base, the strata,
+//! the streams, and the tabulated law of arching with its range.
 
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap};
@@ -18,49 +18,49 @@ use crate::stream::{DRAWS_PER_BLOCK, Key, LANES, Purpose, draw16};
 pub struct Particle {
     /// Rank in order of insertion.
     pub rank: u64,
-    /// Void that it is in.
+    /// Void that contains the particle.
     pub void: u32,
     /// Diameter, in units of the network's reference length.
     pub diameter: f32,
 }
 
-/// A run, particle by particle.
+/// Run, particle by particle.
 pub struct Reference<'a> {
     network: Cow<'a, Network>,
-    /// The flow, the last increment before it was solved, and the changes of constrictions by then.
+    /// Flow, last increment before its solution, and number of changes of constrictions by then.
     flow: Option<(Flow, u64, usize)>,
     supply: &'a Supply,
     seed: u64,
     run: u64,
-    /// Last whole increment.
+    /// Last completed increment.
     pub increment: u64,
     /// Moving particles, in order of insertion.
     pub moving: Vec<Particle>,
-    /// Particles that left, as they left.
+    /// Eroded particles, in order of leaving.
     pub eroded: Vec<Particle>,
-    /// Particles stopped by a constriction, with that constriction.
+    /// Particles stopped by a constriction, with the constriction.
     pub stopped: Vec<(Particle, usize)>,
-    /// Number of them that stay in arches.
+    /// Number of stopped particles in arches.
     pub arched: u64,
-    /// Their diameters cubed, summed.
+    /// Sum of the diameters cubed of particles in arches.
     pub arched_mass: f64,
-    /// Arches.
+    /// Number of arches.
     pub arches: u64,
     /// Particles in voids without open exits.
     pub stranded: Vec<Particle>,
     /// Particles trapped in closed loops.
     pub trapped: Vec<Particle>,
-    /// By constriction: true if it is blocked.
+    /// True for each blocked constriction.
     pub blocked: Vec<bool>,
-    /// The widest way through each constriction, where blocked ones leave openings.
+    /// Width of each constriction, if blocked ones leave openings.
     pub widths: Option<Vec<f32>>,
-    /// Number of narrowings; one a constriction in an increment.
+    /// Number of narrowings, at most one per constriction and increment.
     pub narrowings: usize,
-    /// Widths when the flow was solved last.
+    /// Widths at the last solution of the flow.
     widths_then: Vec<f32>,
     /// Increment and constriction of each blocking.
     pub history: Vec<(u64, usize)>,
-    /// Completed moves.
+    /// Number of completed moves.
     pub particle_moves: u64,
 }
 
@@ -91,7 +91,7 @@ impl<'a> Reference<'a> {
         }
     }
 
-    /// Goes on from openings that an earlier run left.
+    /// Continues from the openings of an earlier run.
     pub fn from_widths(self, widths: Option<Vec<f32>>) -> Self {
         Self { widths, ..self }
     }
@@ -101,7 +101,7 @@ impl<'a> Reference<'a> {
         self.increment >= self.supply.increments() && self.moving.is_empty()
     }
 
-    /// One increment.
+    /// Performs one increment.
     pub fn increment(&mut self) {
         self.increment += 1;
         self.direct();
@@ -164,8 +164,8 @@ impl<'a> Reference<'a> {
         self.widths.as_ref().map_or(self.network.diameters()[exit], |widths| widths[exit])
     }
 
-    /// Narrows the constrictions that stopped particles from this one on: to the circle inside those of the
-    /// finest of them and two grains, where three grains that touch each other leave the whole constriction.
+    /// Narrows the constrictions that stopped particles from entry `from` on: to the circle inscribed between
+    /// the finest of them and two grains, the constriction being the gap of three equal touching grains.
     fn narrow(&mut self, from: usize) {
         let Some(widths) = &mut self.widths else { return };
         let mut narrowed = BTreeSet::new();
@@ -181,15 +181,15 @@ impl<'a> Reference<'a> {
         self.narrowings += narrowed.len();
     }
 
-    /// Part that a constriction of this width keeps of a quantity that grows with this power of a diameter:
-    /// three openings beside a particle.
+    /// Fraction that a constriction of this width (three openings beside a particle) keeps of a quantity
+    /// proportional to this power of the diameter.
     fn part(&self, exit: usize, width: f32, power: i32) -> f64 {
         let whole = f64::from(self.network.diameters()[exit]);
         if whole == 0.0 { 0.0 } else { (3.0 * (f64::from(width) / whole).powi(power)).min(1.0) }
     }
 
-    /// Solves the flow before the first increment; and again if the constrictions that have closed since
-    /// carried more of it than the tolerance, or anything has closed since ten increments.
+    /// Solves the flow before the first increment, and again if the constrictions that have closed since
+    /// carried more of it than the tolerance, or if any has closed and ten increments have passed.
     fn direct(&mut self) {
         let Some((mut flow, solved_at, changes_then)) = self.flow.take() else { return };
         let changes = if self.widths.is_some() { self.narrowings } else { self.history.len() };
@@ -214,7 +214,7 @@ impl<'a> Reference<'a> {
             .map(|widths| (0..widths.len()).map(|exit| self.part(exit, widths[exit], 4)).collect());
         let network = self.network.to_mut();
         if self.increment == 1 {
-            // The clean filter comes first: its pressures are where the next solution begins.
+            // The clean filter is solved first: the next solution starts from its pressures.
             flow.solve(network, &BitVec::repeat(false, blocked.len())).expect("small networks are solved");
         }
         self.flow = Some(if self.increment == 1 || is_due {
@@ -231,8 +231,8 @@ impl<'a> Reference<'a> {
         });
     }
 
-    /// Tells if the particle at a place of a chunk stays in an arch: if it jams by its own draw, and the arch
-    /// that the first of an increment began there has room. `begun`: by constriction, the room that is left.
+    /// Tells if the particle at a place of a chunk stays in an arch: it jams by its own draw, and the arch
+    /// started there by the first particle of the increment has room. `begun`: room left, by constriction.
     fn arches(
         &self,
         (chunk, place): (u64, u64),
@@ -257,7 +257,7 @@ impl<'a> Reference<'a> {
         joins
     }
 
-    /// Tells if water left a void when the flow was solved, so that its particles wait for another way.
+    /// Tells if water left a void in the last solution, so that its particles wait for the next.
     fn waits(&self, void: u32) -> bool {
         self.flow.is_some() && self.network.exits(void).any(|e| self.network.exit_weight(e) > 0.0)
     }
@@ -296,7 +296,7 @@ impl<'a> Reference<'a> {
         block[w as usize % LANES]
     }
 
-    /// Draw of the particle at `place` in its chunk, in all 64 bits.
+    /// All 64 bits of the draw of the particle at `place` in its chunk.
     fn draw_of(&self, key: Key, place: u64) -> u64 {
         let mut lanes = key.lanes();
         let mut block = lanes.next_block();
@@ -328,7 +328,7 @@ impl<'a> Reference<'a> {
         self.network.exits(void).filter(|&e| self.open_area(e) > 0.0).collect()
     }
 
-    /// The exit that a draw picks, with probability proportional to area, among the open ones.
+    /// Exit picked by a draw among the open ones, with probability proportional to area.
     fn pick(&self, void: u32, draw: u64) -> Option<usize> {
         let open = self.open_exits(void);
         let total: f64 = open.iter().map(|&e| self.open_area(e)).sum();
@@ -342,8 +342,8 @@ impl<'a> Reference<'a> {
         open.last().copied()
     }
 
-    /// Tells if the particle can reach, through open constrictions that it fits, no end, no open constriction
-    /// finer than it, and no void without open exits.
+    /// Tells if, through open constrictions that it fits, the particle can reach neither the end, nor an
+    /// open constriction finer than it, nor a void without open exits.
     fn is_trapped(&self, particle: &Particle) -> bool {
         let mut seen = BTreeSet::from([particle.void]);
         let mut todo = vec![particle.void];
@@ -367,7 +367,7 @@ impl<'a> Reference<'a> {
     }
 }
 
-/// Diameter of the circle inside one of diameter `a` and two of diameter `b` that touch each other.
+/// Diameter of the circle inscribed between touching circles of diameters `a`, `b` and `b`.
 fn descartes(a: f64, b: f64) -> f64 {
     let [one, two, three] = [a, b, b].map(|diameter| 2.0 / diameter);
     2.0 / (one + two + three + 2.0 * (one * two + two * three + three * one).sqrt())

@@ -1,4 +1,4 @@
-//! A state as sections of a checkpoint, and back. Nothing that can be rebuilt is saved.
+//! Conversion of a state to sections of a checkpoint and back. Data that can be rebuilt are not saved.
 
 use super::{
     Blocking, CHUNK, Expected, ExpectedSums, Narrowing, Openings, Passive, SizeCounts, State, Supply, Tally,
@@ -9,37 +9,37 @@ use bitvec::vec::BitVec;
 use bytemuck::Pod;
 use serde::{Deserialize, Serialize};
 
-/// A state as the sections of a checkpoint.
+/// State as sections of a checkpoint.
 ///
-/// | section | element | what |
+/// | section | element | content |
 /// |---|---|---|
 /// | `state` | JSON | the record below |
 /// | `live` | u32 | moving particles by chunk |
 /// | `void` | u32 | void of each moving particle, chunk after chunk |
 /// | `diameter` | f32 | diameter of each moving particle, chunk after chunk |
-/// | `counts` | u64 | moving passive particles by void; empty but with engine `counts` |
-/// | `expected_moving` | f64 | expected moving passive particles by void; empty but with engine `expected` |
-/// | `expected_retained` | f64 | expected retained passive particles by void; empty as well |
-/// | `counted_retained` | u64 | how many of these the state counts; empty but with engine `expected` |
+/// | `counts` | u64 | moving passive particles by void; only with engine `counts` |
+/// | `expected_moving` | f64 | expected moving passive particles by void; only with engine `expected` |
+/// | `expected_retained` | f64 | expected retained passive particles by void; likewise |
+/// | `counted_retained` | u64 | number of these that the state counts, by void; likewise |
 /// | `blocked` | u64 | bit `c % 64` of word `c / 64`: constriction `c` is blocked |
 /// | `history_increment` | u64 | increment of each blocking of this run |
 /// | `history_constriction` | u32 | constriction of each blocking of this run |
-/// | `widths` | f32 | by exit, the widest way through it; this and the next only with openings |
+/// | `widths` | f32 | width by exit; this and the next three rows only with openings |
 /// | `narrowed_increment` | u64 | increment of each narrowing of this run |
 /// | `narrowed_constriction` | u32 | constriction of each narrowing of this run, by the first of its exits |
-/// | `narrowed_before`, `narrowed_after` | f32 | widest way through it before and after |
-/// | `retained_in_constrictions` | u64 | by void |
-/// | `retained_in_voids` | u64 | by void |
+/// | `narrowed_before`, `narrowed_after` | f32 | width before and after each narrowing |
+/// | `retained_in_constrictions` | u64 | particles retained in exits, by void |
+/// | `retained_in_voids` | u64 | particles retained for lack of an open exit, by void |
 /// | `eroded_number`, `retained_number` | u64 | particles by size class |
 /// | `eroded_mass`, `retained_mass` | f64 | mass by size class |
-/// | `retained_cubes` | f64 | diameters cubed of what is retained, by void; only where voids have a volume |
+/// | `retained_cubes` | f64 | retained diameters cubed by void; only if volumes are known |
 ///
 /// The record holds the fields of [`State`] with these names: `seed`, `run`, `increment`, `finished`,
-/// `passive_limit` (`null` where no constriction was open when the run began) and `tally` (all fields of
-/// [`Tally`]). Besides: `passive`, how the passive particles are followed (`one_by_one`, `counts` or
-/// `expected`); `constrictions`, their number; `expected`, with that engine alone the sums `eroded`, `moves`
-/// and `inserted`, and in `counted` the whole numbers `moves`, `eroded` and `at_rest` that the tally holds of
-/// them.
+/// `passive_limit` (`null` if no constriction was open at the start of the run) and `tally` (all fields of
+/// [`Tally`]). It also holds `passive`, the method for passive particles (`one_by_one`, `counts` or
+/// `expected`); `constrictions`, their number; and, with engine `expected` only, `expected`: the sums
+/// `eroded`, `moves` and `inserted`, and in `counted` the integers `moves`, `eroded` and `at_rest`
+/// included in the tally.
 pub struct SavedState<'a> {
     state: &'a State,
     record: Vec<u8>,
@@ -107,7 +107,7 @@ struct Record {
     constrictions: usize,
 }
 
-/// Way in which a run follows its passive particles.
+/// Method by which a run follows its passive particles.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum PassiveKind {
@@ -132,7 +132,7 @@ fn finite(limit: f32) -> Option<f32> {
 }
 
 impl<'a> SavedState<'a> {
-    /// Sections of this state.
+    /// Prepares the sections of this state.
     pub fn new(state: &'a State) -> Self {
         let record = Record {
             seed: state.seed,
@@ -155,7 +155,7 @@ impl<'a> SavedState<'a> {
         }
     }
 
-    /// The sections.
+    /// Sections of the checkpoint.
     pub fn sections(&self) -> Vec<Section<'_>> {
         let state = self.state;
         let particles = &state.particles;
@@ -192,19 +192,19 @@ impl<'a> SavedState<'a> {
 }
 
 impl State {
-    /// Takes a state from a checkpoint into this one, which belongs to the same run before its first
-    /// increment. Everything that a walk relies on is checked, so that a forged checkpoint with right
-    /// checksums brings no panic and no walk without an end.
+    /// Loads a state from a checkpoint into this one, which belongs to the same run before its first
+    /// increment. Everything that a walk relies on is checked, so that a forged checkpoint with correct
+    /// checksums causes no panic and no endless walk.
     ///
     /// # Errors
-    /// A checkpoint that is corrupt, or of another run.
+    /// A corrupt checkpoint, or one of another run.
     pub fn restore(
         &mut self,
         network: &Network,
         supply: &Supply,
         saved: &Checkpoint,
     ) -> Result<(), CheckpointError> {
-        let wrong = |what: &str| saved.corrupt(format!("{what} cannot be of this run"));
+        let wrong = |what: &str| saved.corrupt(format!("{what} cannot belong to this run"));
         let record: Record = saved.read_record("state")?;
         let forgery = Forgery { supply, increment: record.increment, tally: &record.tally };
         let other = |walk: String, expected: String| CheckpointError::OtherWalk {
@@ -239,7 +239,7 @@ impl State {
             voids &= piece.iter().all(|&v| (v as usize) < network.voids());
             place.put(piece, column);
         })?;
-        // One size is known without them.
+        // A single size is known without diameters.
         if !self.particles.has_one_size() {
             let mut place = Place::new(&live);
             let column = &mut self.particles.diameter;
@@ -304,7 +304,7 @@ impl State {
     }
 }
 
-/// Place of the next moving particle of a column; no more come than `live` says.
+/// Place of the next moving particle of a column, up to the numbers in `live`.
 struct Place<'a> {
     live: &'a [u32],
     chunk: usize,
@@ -331,10 +331,10 @@ impl<'a> Place<'a> {
     }
 }
 
-/// Words of the machine in one of 64 bits.
+/// Number of machine words in 64 bits.
 const IN_64: usize = (u64::BITS / usize::BITS) as usize;
 
-/// The bits, the first the lowest of the first word; those behind the last are 0.
+/// Packs bits into words, the first bit lowest in the first word; unused bits are 0.
 pub fn to_words(bits: &BitVec) -> Vec<u64> {
     let join = |parts: &[usize]| parts.iter().rev().fold(0, |word, &part| up(word) | part as u64);
     let mut words: Vec<u64> = bits.as_raw_slice().chunks(IN_64).map(join).collect();
@@ -344,7 +344,7 @@ pub fn to_words(bits: &BitVec) -> Vec<u64> {
     words
 }
 
-/// `len` bits of such words; beyond these words all are 0.
+/// Unpacks `len` bits from such words; missing bits are 0.
 pub fn from_words(words: &[u64], len: usize) -> BitVec {
     let split = |&word: &u64| (0..IN_64).map(move |part| (word >> (part as u32 * usize::BITS)) as usize);
     let mut bits = BitVec::from_vec(words.iter().flat_map(split).collect());
@@ -357,21 +357,21 @@ fn words_for(len: usize) -> usize {
     len.div_ceil(64)
 }
 
-/// A word with room for another of the machine's below it.
+/// Shifts a word up by one machine word.
 fn up(word: u64) -> u64 {
     word.checked_shl(usize::BITS).unwrap_or(0)
 }
 
-/// Relative error allowed in the sum of an expectation: sums over very many increments round.
+/// Relative error allowed in the sum of an expectation, for rounding over very many increments.
 const ROUNDING: f64 = 1e-6;
 
-/// Increments that no walk reaches.
+/// Number of increments that no walk reaches.
 const MOST_INCREMENTS: u64 = 1 << 62;
 
-/// Numbers of a checkpoint that a walk relies on, beside the supply of that walk.
+/// Numbers of a checkpoint that a walk relies on, and the supply of that walk.
 ///
-/// Checksums keep chance away from a checkpoint, not somebody who makes them right again. Such a state may
-/// give a wrong answer; it must not index beyond a column, wrap a sum, or move for ever.
+/// Checksums protect a checkpoint from accidents, not from forgery with new checksums. A forged state may
+/// give wrong results, but it must not index beyond a column, overflow a sum, or walk for ever.
 struct Forgery<'a> {
     pub supply: &'a Supply,
     pub increment: u64,
@@ -379,14 +379,15 @@ struct Forgery<'a> {
 }
 
 impl Forgery<'_> {
-    /// Tells if chunks may hold this many moving particles: no more than were inserted into each.
+    /// Tells if chunks can hold this many moving particles: at most as many as were inserted into each.
     pub fn live_can_be(&self, live: &[u32]) -> bool {
         let inserted = self.supply.inserted(self.increment);
         let into = |chunk: usize| inserted.saturating_sub((chunk * CHUNK) as u64).min(CHUNK as u64);
         live.iter().enumerate().all(|(chunk, &n)| u64::from(n) <= into(chunk))
     }
 
-    /// Finds an impossible number in a state whose columns have the right lengths and whose tally adds up.
+    /// Finds an impossible number in a state whose columns have the right lengths and whose tally is
+    /// consistent.
     pub fn fault(&self, state: &State) -> Option<&'static str> {
         let (tally, supply) = (self.tally, self.supply);
         let passive = supply.passive_inserted(self.increment);
@@ -397,7 +398,7 @@ impl Forgery<'_> {
         if u128::from(tally.inserted) != u128::from(supply.inserted(self.increment)) + u128::from(passive) {
             return Some("number of particles");
         }
-        // Those that are trapped stay where they are.
+        // Trapped particles stay in the columns.
         let live: u128 = state.particles.live.iter().map(|&n| u128::from(n)).sum();
         let still = match &state.passive {
             Passive::OneByOne => 0,
@@ -428,8 +429,8 @@ impl Forgery<'_> {
         (!state.history.iter().all(|b| is_past(b.increment))).then_some("history")
     }
 
-    /// Tells if an expectation is valid: numbers, no one below 0, that sum to the number inserted; and the
-    /// whole numbers that were counted of it are in the tally.
+    /// Tells if an expectation is valid: non-negative numbers that sum to the number inserted, with their
+    /// integer counts included in the tally.
     fn expectation_can_be(&self, expected: &Expected, inserted: u64, state: &State) -> bool {
         let (sums, counted) = (&expected.sums, &expected.sums.counted);
         let columns = || expected.moving.iter().chain(&expected.retained);

@@ -1,4 +1,4 @@
-//! The state of a run: columns, and nothing that belongs to an engine.
+//! State of a run: columns, independent of the engine.
 
 use super::openings::{Ways, Weighed};
 use super::supply::passive_limit;
@@ -10,28 +10,28 @@ use crate::stream::{Key, Purpose};
 use bitvec::vec::BitVec;
 use std::io;
 
-/// Base particles of one chunk: 128 KiB of columns, so that a chunk stays in a core's second-level
-/// cache while it is worked on. Part of the definition of every stream: changing it changes results.
+/// Base particles of one chunk: 128 KiB of columns, so that a chunk stays in the second-level cache of a
+/// core during its step. Part of the definition of every random stream: changing it changes results.
 pub const CHUNK: usize = 1 << 14;
 
-/// Constrictions blocked by a base particle, and when.
+/// Constriction blocked by a base particle, and the increment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Blocking {
-    /// The increment in which a particle stopped; the constriction is closed from the next one on.
+    /// Increment in which a particle stopped; the constriction is closed from the next one on.
     pub increment: u64,
-    /// The constriction.
+    /// Number of the constriction.
     pub constriction: u32,
 }
 
 /// Moving base particles as columns. Chunk `c` holds its `live[c]` particles, in order of insertion, in
-/// entries `c * CHUNK ..` of each column. Where all have one size, that column holds one chunk of it for all.
+/// entries `c * CHUNK ..` of each column. If all have one size, the diameter column holds a single chunk.
 #[derive(Debug)]
 pub struct Particles {
-    /// Void that the particle is in.
+    /// Void that contains the particle.
     pub void: Column<u32>,
     /// Diameter, in units of the network's reference length.
     pub diameter: Column<f32>,
-    /// Moving particles by chunk.
+    /// Number of moving particles by chunk.
     pub live: Vec<u32>,
 }
 
@@ -43,14 +43,14 @@ impl Particles {
         (&self.void[chunk * CHUNK..][..live], &self.diameter[sizes..][..live])
     }
 
-    /// Puts particles back among those of a chunk, each behind as many of these as its rank says, ascending:
-    /// rank, void and diameter.
+    /// Puts particles (rank, void, diameter) back into a chunk, each after as many of its particles as its
+    /// rank; ranks ascend.
     pub(super) fn put_back(&mut self, chunk: usize, back: &[(usize, u32, f32)]) {
         let first = chunk * CHUNK;
         let mut end = first + self.live[chunk] as usize;
         self.live[chunk] += back.len() as u32;
         let one_size = self.has_one_size();
-        // From the last on: particles behind it move up by the number put back before them.
+        // Starts with the last: particles after it move up by the number put back before them.
         for (before, &(rank, void, diameter)) in back.iter().enumerate().rev() {
             let at = first + rank;
             self.void.copy_within(at..end, at + before + 1);
@@ -63,55 +63,55 @@ impl Particles {
         }
     }
 
-    /// Tells if the column of diameters holds one chunk for all.
+    /// Tells if the column of diameters holds a single chunk for all.
     pub(super) fn has_one_size(&self) -> bool {
         self.diameter.len() < self.void.len()
     }
 }
 
-/// Complete state of a run after a whole increment. A walk goes on from this alone.
+/// Complete state of a run after a whole increment; enough to continue the walk.
 #[derive(Debug)]
 pub struct State {
     /// Seed of the replicate.
     pub seed: u64,
     /// Run, counted from 1.
     pub run: u64,
-    /// Last whole increment, counted from 1; 0 before the first.
+    /// Last completed increment, counted from 1; 0 before the first.
     pub increment: u64,
     /// True if the run has ended.
     pub finished: bool,
-    /// The finest constriction open when the run began, or less where particles arch: no particle up to this
-    /// diameter, called *passive*, can be stopped by a constriction in this run.
+    /// Size of the finest open constriction at the start of the run, or less if particles arch. Particles
+    /// up to this diameter are *passive*: no constriction can stop them in this run.
     pub passive_limit: f32,
-    /// The moving base particles that are walked one by one.
+    /// Moving base particles that are walked one by one.
     pub particles: Particles,
-    /// The moving base particles that are not.
+    /// Moving base particles that are not walked one by one.
     pub passive: Passive,
     /// Bit `c`: a base particle has blocked constriction `c` (in this run or an earlier one).
     pub blocked: BitVec,
-    /// The openings that blocked constrictions leave; `None` where they are closed.
+    /// Openings left by blocked constrictions; `None` if they are closed.
     pub openings: Option<Openings>,
     /// Constrictions blocked in this run, by increment, then by constriction.
     pub history: Vec<Blocking>,
-    /// Base particles retained in the exits of each void.
+    /// Number of base particles retained in the exits of each void.
     pub retained_in_constrictions: Vec<u64>,
-    /// Base particles retained in each void for want of an open exit.
+    /// Number of base particles retained in each void because it has no open exit.
     pub retained_in_voids: Vec<u64>,
-    /// Sum of the diameters cubed of the particles retained in each void and its exits; empty where the voids
-    /// have no known volume.
+    /// Sum of the diameters cubed of the particles retained in each void and its exits; empty if volumes
+    /// of voids are unknown.
     pub retained_cubes: Vec<f64>,
     /// Sums over the run.
     pub tally: Tally,
     /// Bounds of the size classes.
     pub classes: SizeClasses,
-    /// Eroded particles by size class.
+    /// Number and mass of eroded particles by size class.
     pub eroded_sizes: SizeCounts,
-    /// Retained particles by size class.
+    /// Number and mass of retained particles by size class.
     pub retained_sizes: SizeCounts,
 }
 
 impl State {
-    /// The state before the first increment of run `run`, on the constrictions that `clogged` leaves open.
+    /// Creates the state before the first increment of run `run`, with the constrictions of `clogged`.
     pub fn new(
         network: &Network,
         supply: &Supply,
@@ -124,10 +124,10 @@ impl State {
         state.expect("columns in memory need no file")
     }
 
-    /// [`State::new`] with the columns of the particles in `placement`, which changes no bit.
+    /// Works like [`State::new`], with the particle columns in `placement`; results are the same to the bit.
     ///
     /// # Errors
-    /// Files for the columns cannot be made or allocated.
+    /// Files for the columns that cannot be created or allocated.
     pub fn placed(
         placement: &Placement,
         network: &Network,
@@ -177,8 +177,8 @@ impl State {
         })
     }
 
-    /// Tells if base particles cannot use constriction `c`: blocked without an opening that is left, of size
-    /// 0, or no exit by the rule that gives constrictions their direction.
+    /// Tells if base particles cannot use constriction `c`: it is blocked without an opening, has size 0,
+    /// or is not an exit by the rule that sets directions.
     #[inline(always)]
     pub fn is_closed(&self, network: &Network, c: usize) -> bool {
         let is_shut = match &self.openings {
@@ -188,7 +188,7 @@ impl State {
         is_shut || network.diameters()[c] == 0.0 || network.exit_weight(c) == 0.0
     }
 
-    /// Key of the streams of this increment; that of the first chunk.
+    /// Key of the streams of this increment, for the first chunk.
     pub(super) fn key(&self, purpose: Purpose) -> Key {
         Key { seed: self.seed, purpose, run: self.run, increment: self.increment, chunk: 0 }
     }
@@ -201,18 +201,18 @@ impl State {
         }
     }
 
-    /// The widest way through the constriction of an exit.
+    /// Current width of the constriction of an exit.
     #[inline]
     pub fn width(&self, network: &Network, exit: usize) -> f32 {
         self.openings.as_ref().map_or(network.diameters()[exit], |openings| openings.widths[exit])
     }
 
-    /// Number of blockings in this run, or of narrowings with openings; it only grows.
+    /// Number of blockings in this run (narrowings, with openings); it never decreases.
     pub(super) fn changes(&self) -> usize {
         self.openings.as_ref().map_or(self.history.len(), |openings| openings.history.len())
     }
 
-    /// Stops a particle of this size in an exit, whose constriction it blocks or narrows; `upstream` gives
+    /// Stops a particle of this size in an exit and blocks or narrows its constriction; `upstream` lists
     /// the void of each exit.
     pub(super) fn stop(&mut self, network: &Network, upstream: &[u32], exit: usize, diameter: f32) {
         let void = upstream[exit] as usize;
@@ -227,14 +227,14 @@ impl State {
         }
     }
 
-    /// Adds the diameters cubed of what is retained in a void, where it has a volume.
+    /// Adds diameters cubed of retained particles to a void, if volumes are known.
     pub(super) fn retain_cubes(&mut self, void: usize, cubes: f64) {
         if let Some(sum) = self.retained_cubes.get_mut(void) {
             *sum += cubes;
         }
     }
 
-    /// Constrictions that this run leaves to the next.
+    /// Returns the constrictions for the next run.
     pub fn into_clogged(self) -> Clogged {
         Clogged {
             blocked: self.blocked,

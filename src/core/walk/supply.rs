@@ -1,4 +1,4 @@
-//! Base particles that a run inserts: their number in each increment, their sizes, and how these are sampled.
+//! Base particles inserted in a run: number per increment, sizes and sampling.
 
 use super::Arching;
 use super::counts::{Expected, Passive, coarse_share};
@@ -7,42 +7,42 @@ use crate::schema::Leaf;
 use crate::stream::{Key, Purpose, Words, below};
 use std::sync::Arc;
 
-/// The base particles of a run.
+/// Base particles of a run.
 ///
-/// Inserted in equal parts over a whole number of increments, such that exactly all of them are in
-/// after the last: `floor(n t / k)` after increment `t` of `k`.
+/// They are inserted in equal parts over `k` increments: `floor(n t / k)` of all `n` by the end of
+/// increment `t`.
 #[derive(Clone, Debug)]
 pub struct Supply {
     sampler: SizeSampler,
-    /// Lowest random word handed to the sampler: 0 for the whole base, larger for its coarse part.
+    /// Lowest random word passed to the sampler: 0 for the whole base, larger for its coarse part.
     first_word: u64,
-    /// Place where the sampler looks for the words from that one on.
+    /// Guide of the sampler for words from `first_word` on.
     guide: SizeGuide,
-    /// Particles inserted one by one up to and including each increment; entry `t - 1` is increment `t`.
+    /// Cumulative number of particles inserted one by one; entry `t - 1` is increment `t`.
     inserted: Vec<u64>,
-    /// The particles that are kept as counts.
+    /// Particles kept as counts.
     passive: PassiveSupply,
-    /// Strata that start nodes and sizes are spread over, if they are not independent.
+    /// Strata of start nodes and sizes, if these are not independent.
     strata: Option<Strata>,
-    /// Law by which its particles arch, if they do.
+    /// Law of arching, if particles arch.
     arching: Option<Arc<Arching>>,
-    /// True if constrictions that its particles block leave openings.
+    /// True if blocked constrictions leave openings.
     leaves_openings: bool,
 }
 
-/// The passive particles of a run that are not walked one by one.
+/// Passive particles of a run that are not walked one by one.
 #[derive(Clone, Debug, Default)]
 struct PassiveSupply {
-    /// Particles inserted up to and including each increment; empty if there are no such particles.
+    /// Cumulative number of particles inserted, by increment; empty if there are none.
     inserted: Vec<u64>,
-    /// The sampler gives passive particles for words below this.
+    /// Words below this value draw passive particles.
     words: u128,
-    /// True if their expectation is enough.
+    /// True if only their expectation is computed.
     expected: bool,
 }
 
 impl Supply {
-    /// `n` particles of the whole base, in `increments` equal parts.
+    /// Creates a supply of `n` particles of the whole base, in `increments` equal parts.
     pub fn new(sampler: SizeSampler, n: u64, increments: u64) -> Self {
         let part = |t: u64| (u128::from(n) * u128::from(t) / u128::from(increments)) as u64;
         let inserted = (1..=increments).map(part).collect();
@@ -58,28 +58,28 @@ impl Supply {
         }
     }
 
-    /// This supply with particles that arch by this law.
+    /// Sets the law of arching.
     pub fn arching_by(self, arching: Option<Arc<Arching>>) -> Self {
         Self { arching, ..self }
     }
 
-    /// This supply, where blocked constrictions leave openings (module `openings`) or are closed.
+    /// Sets if blocked constrictions leave openings (module `openings`) or are closed.
     pub fn leaving_openings(self, leaves_openings: bool) -> Self {
         Self { leaves_openings, ..self }
     }
 
-    /// Tells if constrictions that its particles block leave openings.
+    /// Tells if blocked constrictions leave openings.
     pub fn leaves_openings(&self) -> bool {
         self.leaves_openings
     }
 
-    /// Law by which its particles arch; `None` if they do not.
+    /// Law of arching; `None` if particles do not arch.
     pub fn arching(&self) -> Option<&Arching> {
         self.arching.as_deref()
     }
 
-    /// This supply with start nodes and sizes spread evenly ([`Sampling::Stratified`]), for run `run` of
-    /// `seed`. To be called before a passive part is taken out.
+    /// Spreads start nodes and sizes evenly ([`Sampling::Stratified`]), for run `run` of `seed`. Must be
+    /// called before a passive part is separated.
     pub fn stratified(self, seed: u64, run: u64) -> Self {
         let share = |t| self.inserted(t) - self.inserted(t - 1);
         let most = (1..=self.increments()).map(share).max().unwrap_or(0);
@@ -87,8 +87,8 @@ impl Supply {
         Self { strata: Some(strata), ..self }
     }
 
-    /// This supply with the particles drawn by words below `passive_words` kept as counts, or as an
-    /// expectation. Their number in each increment's share is drawn for run `run` of `seed`.
+    /// Keeps the particles drawn by words below `passive_words` as counts, or as an expectation. Their
+    /// number in each increment is drawn for run `run` of `seed`.
     pub fn with_passive_part(self, passive_words: u128, expected: bool, seed: u64, run: u64) -> Self {
         let increments = 1..=self.increments();
         let share = |t| self.inserted(t) - self.inserted(t - 1);
@@ -111,8 +111,8 @@ impl Supply {
         }
     }
 
-    /// Only sizes that the sampler gives for words from `first_word` on, `shares[t - 1]` of them in
-    /// increment `t`.
+    /// Creates a supply of the sizes drawn by words from `first_word` on, with `shares[t - 1]` particles
+    /// in increment `t`.
     pub fn coarse_part(sampler: SizeSampler, first_word: u64, shares: &[u64]) -> Self {
         let running = shares.iter().scan(0, |sum, &share| {
             *sum += share;
@@ -122,27 +122,27 @@ impl Supply {
         Self { guide, first_word, inserted, ..Self::new(sampler, 0, 1) }
     }
 
-    /// Number of increments after which everything is inserted.
+    /// Number of increments in which particles are inserted.
     pub fn increments(&self) -> u64 {
         self.inserted.len() as u64
     }
 
-    /// Base particles inserted one by one up to and including increment `increment`.
+    /// Number of base particles inserted one by one up to and including increment `increment`.
     pub fn inserted(&self, increment: u64) -> u64 {
         running(&self.inserted, increment)
     }
 
-    /// Passive base particles inserted as counts up to and including increment `increment`.
+    /// Number of passive base particles inserted as counts up to and including increment `increment`.
     pub fn passive_inserted(&self, increment: u64) -> u64 {
         running(&self.passive.inserted, increment)
     }
 
-    /// The sampler gives particles that are kept as counts for words below this.
+    /// Words below this value draw particles kept as counts.
     pub fn passive_words(&self) -> u128 {
         self.passive.words
     }
 
-    /// The passive particles before the first increment on a network of `voids` voids.
+    /// Passive particles before the first increment, on a network of `voids` voids.
     pub(super) fn no_passive_yet(&self, voids: usize) -> Passive {
         match &self.passive {
             part if part.inserted.is_empty() => Passive::OneByOne,
@@ -151,7 +151,7 @@ impl Supply {
         }
     }
 
-    /// The strata of the particles inserted one by one in increment `increment`, where there are any.
+    /// Strata of the particles inserted one by one in increment `increment`, if the run is stratified.
     pub(super) fn strata(&self, increment: u64) -> Option<IncrementStrata<'_>> {
         let count = self.inserted(increment) - self.inserted(increment - 1);
         self.strata.as_ref().map(|strata| strata.increment(increment, count))
@@ -167,24 +167,24 @@ impl Supply {
         &self.sampler
     }
 
-    /// The diameter of every base particle, where they have one size.
+    /// Diameter of all base particles, if they have one size.
     pub fn single_size(&self) -> Option<f32> {
         let size = self.sampler.smallest();
         (size == self.sampler.largest()).then_some(size)
     }
 
-    /// All base particles of the run that are walked one by one.
+    /// Number of base particles of the run that are walked one by one.
     pub fn total(&self) -> u64 {
         self.inserted(self.increments())
     }
 
-    /// Diameter of the base particle that `word` draws.
+    /// Diameter of the base particle drawn by `word`.
     #[inline]
     pub fn diameter(&self, word: u64) -> f32 {
         self.sampler.diameter(self.word(word))
     }
 
-    /// [`Supply::diameter`] of every word; the words are used up.
+    /// Computes [`Supply::diameter`] of every word; overwrites the words.
     ///
     /// # Panics
     /// If the slices differ in length.
@@ -196,7 +196,7 @@ impl Supply {
         self.sampler.fill_guided(&self.guide, words, out);
     }
 
-    /// The sampler's word for a random word.
+    /// Word of the sampler for a random word.
     #[inline]
     fn word(&self, word: u64) -> u64 {
         match self.first_word {
@@ -209,8 +209,8 @@ impl Supply {
     }
 }
 
-/// Size up to which particles that arch by this law are passive where this is the finest open constriction;
-/// no particle is if blocked constrictions leave openings.
+/// Maximum size of passive particles with this law of arching, if this is the finest open constriction; no
+/// particle is passive if blocked constrictions leave openings.
 pub(super) fn passive_limit(arching: Option<&Arching>, leaves_openings: bool, finest: f32) -> f32 {
     match arching {
         _ if leaves_openings => 0.0,
@@ -230,18 +230,18 @@ fn running(sums: &[u64], increment: u64) -> u64 {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Sampling {
-    /// Each by itself: the paper's way.
+    /// Independent draws, as in the paper.
     #[default]
     Independent,
-    /// Evenly over sizes and start nodes: the marginal distribution of each particle is unchanged, and
-    /// replicates scatter less.
+    /// Draws spread evenly over sizes and start nodes: the marginal distribution of each particle is
+    /// unchanged, and replicates scatter less.
     Stratified,
 }
 
 impl Leaf for Sampling {}
 
 impl Sampling {
-    /// Every sampling, in the order in which a user is told of them.
+    /// All samplings, in the order shown to users.
     pub const ALL: [Sampling; 2] = [Sampling::Independent, Sampling::Stratified];
 
     /// Name of the sampling in a scene.
@@ -253,27 +253,27 @@ impl Sampling {
     }
 }
 
-/// The strata of a stratified run: each particle is distributed as an independent draw is, but together they
-/// cover sizes and start nodes evenly.
+/// Strata of a stratified run: each particle has the distribution of an independent draw, but together
+/// they cover sizes and start nodes evenly.
 ///
 /// A run of `T` increments that inserts at most `K` particles in each has `T K` strata of equal probability:
 /// `K` groups of `T`, finest first. Particle `m` of increment `t` takes group `P_t(m)`, and in it stratum
-/// `Q_k(t - 1)`; `P` and `Q` are keyed permutations. So the sizes of an increment are stratified, and those
-/// of the whole run. The `n` particles of an increment divide the start nodes into `n` equal parts, and each
-/// takes a place in its part; their order plays no part in the walk, so it needs no permutation.
+/// `Q_k(t - 1)`; `P` and `Q` are keyed permutations. So the sizes of each increment and of the whole run are
+/// stratified. The `n` particles of an increment divide the start nodes into `n` equal parts, and each takes
+/// a place in its part. No permutation is needed, as the order of particles does not affect the walk.
 #[derive(Clone, Debug)]
 struct Strata {
     seed: u64,
     run: u64,
     within_increment: Permutation,
     within_group: Permutation,
-    /// Words of a stratum; the first `longer` strata have one more.
+    /// Number of words in a stratum; the first `longer` strata have one more.
     width: u128,
     longer: u64,
 }
 
 impl Strata {
-    /// Strata of a run that inserts up to `most` particles, at least one, in each of its increments.
+    /// Creates the strata of a run that inserts at most `most` (at least 1) particles in each increment.
     pub fn new(seed: u64, run: u64, most: u64, increments: u64) -> Self {
         let strata = u128::from(most) * u128::from(increments);
         let all = 1u128 << 64;
@@ -287,7 +287,7 @@ impl Strata {
         }
     }
 
-    /// The strata of one increment that inserts `count` particles.
+    /// Strata of one increment that inserts `count` particles.
     pub fn increment(&self, increment: u64, count: u64) -> IncrementStrata<'_> {
         let key =
             |increment| Key { seed: self.seed, purpose: Purpose::Strata, run: self.run, increment, chunk: 0 };
@@ -312,7 +312,7 @@ pub(super) struct IncrementStrata<'a> {
 }
 
 impl IncrementStrata<'_> {
-    /// The start node, of `nodes`, that random `word` gives particle `m` of the increment.
+    /// Start node (of `nodes`) of particle `m` of the increment, from random `word`.
     #[inline]
     pub fn node(&self, m: u64, word: u64, nodes: u64) -> usize {
         let place = u128::from(m) * u128::from(nodes) + u128::from(below(word, nodes));
@@ -322,7 +322,7 @@ impl IncrementStrata<'_> {
         }
     }
 
-    /// The word for the sampler that random `word` gives particle `m` of the increment.
+    /// Word of the sampler for particle `m` of the increment, from random `word`.
     #[inline]
     pub fn size_word(&self, m: u64, word: u64) -> u64 {
         let strata = self.strata;
@@ -335,9 +335,9 @@ impl IncrementStrata<'_> {
     }
 }
 
-/// Keyed permutations of `0 .. size`: a shuffle for few elements; for many an alternating Feistel network on
-/// the next larger rectangle, walked until it ends inside, and then turned round by a random step. The image
-/// of every element is exactly uniform.
+/// Keyed permutations of `0 .. size`: a shuffle for few elements; for many an alternating Feistel network
+/// on the next larger rectangle, repeated until the image lies inside, followed by a random rotation. The
+/// image of every element is exactly uniform.
 #[derive(Clone, Copy, Debug)]
 struct Permutation {
     size: u64,
@@ -345,11 +345,11 @@ struct Permutation {
     columns: u64,
 }
 
-/// Elements up to which a shuffle costs no more.
+/// Maximum number of elements for which a shuffle is as cheap.
 const SHUFFLED: usize = 16;
 
-/// With 6 rounds pairs of images are not yet evenly spread in small domains; 10 show no difference from
-/// random permutations.
+/// Number of Feistel rounds. With 6, pairs of images are not evenly spread in small domains; 10 show no
+/// difference from random permutations.
 const ROUNDS: u64 = 10;
 
 impl Permutation {
@@ -358,7 +358,7 @@ impl Permutation {
         Self { size, rows, columns: size.div_ceil(rows) }
     }
 
-    /// The image of `element` under the permutation that `key` names among those of `words`.
+    /// Image of `element` under permutation `key` of those of `words`.
     #[inline]
     fn image(&self, element: u64, words: Words, key: u64) -> u64 {
         let base = words.at(key);
@@ -398,8 +398,8 @@ fn turn(at: u64, by: u64, size: u64) -> u64 {
     if sum >= size { sum - size } else { sum }
 }
 
-/// Number of coarse particles among the first `inserted` of a run, given that `coarse_words` of all 2^64
-/// words draw coarse ones: the expected number, rounded up or down with one random word for the whole run.
+/// Number of coarse particles among the first `inserted` of a run, if `coarse_words` of all 2^64 words
+/// draw coarse ones: the expected number, rounded up or down by one random word for the whole run.
 fn coarse_until(inserted: u64, coarse_words: u128, word: u64) -> u64 {
     ((u128::from(inserted) * coarse_words).saturating_add(u128::from(word)) >> 64) as u64
 }
@@ -424,8 +424,8 @@ mod tests {
         }
     }
 
-    /// Images of pairs over 2,000 keys for each: a pair that came up a seventh too often or too rarely would
-    /// be seen.
+    /// Images of pairs over 2,000 keys each: a deviation of a seventh in the frequency of a pair would be
+    /// detected.
     #[test]
     fn pairs_of_images_are_as_frequent_as_in_random_permutations() {
         for size in [2u64, 3, 5, 17, 20, 25] {
@@ -449,7 +449,7 @@ mod tests {
         }
     }
 
-    /// Every stratum of the run is taken once where all increments insert as many.
+    /// Every stratum of the run is taken once if all increments insert the same number.
     #[test]
     fn a_run_takes_every_stratum_once() {
         for (most, increments) in [(1, 1), (1, 100), (3, 7), (40, 25), (257, 4)] {
@@ -478,7 +478,7 @@ mod tests {
         let mut on = [0; 16];
         (0..1003).for_each(|m| on[many.node(m, m.wrapping_mul(0x9e37_79b9_7f4a_7c15), 16)] += 1);
         assert!(on.iter().all(|&n| (62..=64).contains(&n)) && on.iter().sum::<u64>() == 1003, "{on:?}");
-        // Few particles for many nodes: no two in one part.
+        // Few particles on many nodes: no two in one part.
         let few = strata.increment(1, 10);
         let nodes: Vec<usize> = (0..10).map(|m| few.node(m, u64::MAX / 3 * (m % 3), 1000)).collect();
         assert!(nodes.iter().enumerate().all(|(m, &node)| node / 100 == m), "{nodes:?}");

@@ -1,4 +1,4 @@
-//! Sums over a run: numbers of particles, masses added in a fixed order, and both by size class.
+//! Sums over a run: particle numbers, masses added in a fixed order, and both by size class.
 
 use crate::network::FlowError;
 
@@ -6,38 +6,38 @@ use crate::network::FlowError;
 /// reference length cubed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Tally {
-    /// Base particles inserted.
+    /// Number of base particles inserted.
     pub inserted: u64,
-    /// Base particles still moving.
+    /// Number of base particles still moving.
     pub moving: u64,
-    /// Base particles that left through the end.
+    /// Number of base particles that left the filter.
     pub eroded: u64,
-    /// Base particles stopped by a constriction.
+    /// Number of base particles stopped by a constriction.
     pub retained_in_constrictions: u64,
-    /// Those of them that are in arches.
+    /// Number of base particles in arches, included in the former.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub retained_in_arches: u64,
-    /// Arches.
+    /// Number of arches.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub arches: u64,
     /// Mass in arches.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub arched_mass: f64,
-    /// Base particles in voids without open exits.
+    /// Number of base particles in voids without open exits.
     pub retained_in_voids: u64,
-    /// Base particles trapped in closed loops.
+    /// Number of base particles trapped in closed loops.
     pub trapped: u64,
-    /// Blocked constrictions, those of earlier runs included.
+    /// Number of blocked constrictions, including those of earlier runs.
     pub blocked: u64,
-    /// Completed moves, the one that leaves included; stays at 2^64 - 1 once it is there.
+    /// Number of completed moves, including those that leave; saturates at 2^64 - 1.
     pub particle_moves: u64,
     /// Mass inserted.
     pub inserted_mass: f64,
     /// Mass eroded.
     pub eroded_mass: f64,
-    /// Passive base particles inserted.
+    /// Number of passive base particles inserted.
     pub passive_inserted: u64,
-    /// Passive base particles eroded.
+    /// Number of passive base particles eroded.
     pub passive_eroded: u64,
     /// Diameter of the largest eroded particle; 0 if no particle has eroded.
     pub largest_eroded: f32,
@@ -53,11 +53,11 @@ impl Tally {
         self.trapped += std::mem::take(&mut self.moving);
     }
 
-    /// Checks that every particle inserted is somewhere.
+    /// Checks that all inserted particles are accounted for.
     pub(super) fn check(&self, increment: u64) -> Result<(), WalkError> {
         let all =
             [self.moving, self.eroded, self.retained_in_constrictions, self.retained_in_voids, self.trapped];
-        // Sums that something has spoilt may be beyond 64 bits.
+        // Corrupt counts may sum to more than 64 bits.
         let accounted = all.into_iter().fold(0u64, u64::saturating_add);
         match all.into_iter().map(u128::from).sum::<u128>() == u128::from(self.inserted) {
             true => Ok(()),
@@ -70,13 +70,12 @@ impl Tally {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SizeClasses {
     upper: Vec<f32>,
-    /// Class of the smallest diameter of each bucket, and the bound above which the next class begins; a
-    /// bucket is the top bits of an f32.
+    /// Class of the smallest diameter of each bucket, and the bound above which the next class begins. A
+    /// bucket holds diameters with equal top bits.
     guide: Vec<(u32, f32)>,
     /// Bucket of the first entry of `guide`.
     first_bucket: u32,
-    /// True if a bucket holds more than one bound, for example with 64 classes of sizes in a ratio of less
-    /// than 7.
+    /// True if a bucket contains more than one bound, for example with 64 classes over a size ratio below 7.
     several_bounds: bool,
 }
 
@@ -84,8 +83,8 @@ pub struct SizeClasses {
 const BELOW_BUCKET: u32 = 18;
 
 impl SizeClasses {
-    /// `count` classes of equal width in the logarithm of the diameter, from `smallest` to `largest`;
-    /// one class where the two are equal.
+    /// Creates `count` classes of equal width in the logarithm of the diameter, from `smallest` to
+    /// `largest`; one class if the two are equal.
     pub fn logarithmic(smallest: f32, largest: f32, count: usize) -> Self {
         let ratio = libm::log(f64::from(largest) / f64::from(smallest));
         let bound = |k: usize| f64::from(smallest) * libm::exp(ratio * k as f64 / count as f64);
@@ -97,7 +96,7 @@ impl SizeClasses {
         let first_bucket = bucket(upper[0]);
         let after_first = first_bucket + 1..=bucket(largest);
         let starts = after_first.map(|bucket| class(f32::from_bits(bucket << BELOW_BUCKET)));
-        // Sizes above the last bound count in the last class.
+        // Sizes above the last bound belong to the last class.
         let bound = |class: usize| if class + 1 < upper.len() { upper[class] } else { f32::INFINITY };
         let entry = |class: usize| (class as u32, bound(class));
         let guide: Vec<(u32, f32)> = std::iter::once(0).chain(starts).map(entry).collect();
@@ -110,7 +109,7 @@ impl SizeClasses {
         &self.upper
     }
 
-    /// Class of a diameter; sizes above the last bound count in the last class.
+    /// Class of a diameter; sizes above the last bound belong to the last class.
     #[inline]
     pub fn of(&self, diameter: f32) -> usize {
         let bucket = (diameter.to_bits() >> BELOW_BUCKET).saturating_sub(self.first_bucket) as usize;
@@ -129,14 +128,14 @@ impl SizeClasses {
 /// Number and mass by size class.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SizeCounts {
-    /// Particles by class.
+    /// Number of particles by class.
     pub number: Vec<u64>,
     /// Sum of diameter cubed by class.
     pub mass: Vec<f64>,
 }
 
 impl SizeCounts {
-    /// Nothing in any class.
+    /// Creates empty counts.
     pub fn new(classes: &SizeClasses) -> Self {
         Self { number: vec![0; classes.upper.len()], mass: vec![0.0; classes.upper.len()] }
     }
@@ -164,38 +163,38 @@ impl SizeCounts {
     }
 }
 
-/// Diameter cubed: mass in units of the reference length cubed.
+/// Diameter cubed, the mass in units of the reference length cubed.
 #[inline]
 pub(super) fn cube(diameter: f32) -> f64 {
     let d = f64::from(diameter);
     d * d * d
 }
 
-/// Reason why a walk ended before its run did.
+/// Reason why a walk ended early.
 #[derive(Debug, thiserror::Error)]
 pub enum WalkError {
-    /// Inserted particles are not all accounted for.
+    /// Not all inserted particles are accounted for.
     #[error("increment {increment}: {inserted} base particles inserted, but {accounted} accounted for")]
     NotConserved {
-        /// The increment.
+        /// Number of the increment.
         increment: u64,
-        /// Inserted so far.
+        /// Number of particles inserted so far.
         inserted: u64,
-        /// Moving, retained, trapped and eroded.
+        /// Number of moving, retained, trapped and eroded particles.
         accounted: u64,
     },
-    /// The flow through the network is not known.
+    /// The flow through the network is unknown.
     #[error("increment {increment}: {source}")]
     Flow {
-        /// The increment.
+        /// Number of the increment.
         increment: u64,
-        /// The reason.
+        /// Reason.
         source: FlowError,
     },
-    /// The caller asked the run to stop.
+    /// The caller requested a stop.
     #[error("stopped on request in increment {increment}")]
     Stopped {
-        /// The last whole increment.
+        /// Last completed increment.
         increment: u64,
     },
 }
@@ -210,7 +209,7 @@ mod tests {
         let error = tally.check(3).unwrap_err().to_string();
         assert_eq!(error, "increment 3: 5 base particles inserted, but 4 accounted for");
         assert!(Tally { retained_in_voids: 1, ..tally }.check(3).is_ok());
-        // 2^64 and 5 particles are not 5.
+        // 2^64 + 5 particles are not 5.
         assert!(Tally { retained_in_voids: u64::MAX, trapped: 4, ..tally }.check(3).is_err());
     }
 
@@ -223,7 +222,8 @@ mod tests {
         assert_eq!(SizeClasses::logarithmic(2.0, 2.0, 64).upper(), [2.0]);
     }
 
-    /// Comparison with the definition: at every bound, next to it, at every bucket's start, far out.
+    /// Compares with the definition: at and next to every bound, at the start of every bucket, and far
+    /// outside.
     #[test]
     fn the_guide_finds_the_class_by_definition() {
         for (smallest, largest, count) in [

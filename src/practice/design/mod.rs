@@ -1,4 +1,4 @@
-//! The specification of a filter for a base: record, steps, band, and standard products beside it.
+//! Specification of a filter for a base: record, steps, band, and standard products.
 
 pub mod products;
 pub mod size_band;
@@ -17,7 +17,7 @@ pub use specification::{RowNote, Specification, SpecificationStep};
 /// Options of a specification.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpecificationOptions {
-    /// True if the base is dispersive; `None` if nobody has said.
+    /// True if the base is dispersive; `None` if this is not stated.
     pub dispersive: Option<bool>,
     /// Sieves at which the limits are stated.
     pub sieves: SieveSeries,
@@ -26,8 +26,8 @@ pub struct SpecificationOptions {
 }
 
 impl Specification {
-    /// Specifies a filter for a base of one curve or of several, in mm. The filter must retain and drain
-    /// every curve: the strictest limit of each kind counts.
+    /// Specifies a filter for a base of one or several curves, in mm. The filter must retain and drain
+    /// every curve, so the strictest limit of each kind counts.
     ///
     /// ```
     /// use voidwalk_core::Gradation;
@@ -79,8 +79,8 @@ impl Specification {
     }
 }
 
-/// The control points of a band between a least and a maximum D15F (mm). If that range is wider than a band
-/// may be, they lie at its finer or at its coarser end; `None` if the least is above the maximum.
+/// Control points of a band between a minimum and a maximum D15F (mm), at the finer or the coarser end if
+/// that range is wider than a band may be; `None` if the minimum exceeds the maximum.
 fn control(min: f64, max: f64, finer: bool) -> Option<Control> {
     let d15 = match finer {
         true => [min, max.min(WIDEST_BAND * min)],
@@ -90,13 +90,13 @@ fn control(min: f64, max: f64, finer: bool) -> Option<Control> {
     (min <= max).then_some(Control { d15, d60: [d60_max / WIDEST_BAND, d60_max] })
 }
 
-/// The D15F (mm) at which the band of a filter begins that drains from a least D15F (mm) and retains up to a
-/// maximum: raised if the band would otherwise be too wide.
+/// Minimum D15F (mm) of the band of a filter that drains from `min` (mm) and retains up to `max`: raised
+/// if the band would otherwise be too wide.
 pub fn least_of_band(min: f64, max: f64) -> f64 {
     control(min, max, false).map_or(min, |control| control.d15[0])
 }
 
-/// Reason why no filter between a least and a maximum D15F (mm) has a band; `None` if one has.
+/// Reason why no filter between a minimum and a maximum D15F (mm) has a band; `None` if one has.
 pub fn no_band_between((min, at_most): (f64, bool), max: f64) -> Option<NoBand> {
     let band = control(min, max, false).and_then(|control| SizeBand::of(control.d15, control.d60));
     no_band((Some(min), at_most), Some(max), None, band.is_some())
@@ -166,7 +166,7 @@ mod tests {
         all.filter(|value| value.name == name).find_map(|value| value.value)
     }
 
-    /// A core of category 2: 0.7 mm and the least of 0.1 mm, whose ratio of 7 is narrowed to 5.
+    /// A core of category 2: 0.1 to 0.7 mm, a ratio of 7 that is narrowed to 5.
     #[test]
     fn a_core_with_60_percent_of_fines_by_hand() {
         let core = specified(&CORE);
@@ -197,7 +197,7 @@ mod tests {
         assert!(near(value(&sand, "minimum D15F of the band"), 1.0) && sand.steps[6].notes.is_empty());
     }
 
-    /// The till of the first trial: D85B 1.53 mm on No. 4, 38 % of fines.
+    /// The till of the first trial: D85B of 1.53 mm regraded on No. 4, 38 % fines.
     #[test]
     fn a_till_is_regraded_and_its_limit_is_that_of_design() {
         let till = specified(&TILL);
@@ -211,7 +211,7 @@ mod tests {
         assert!(near(till.d15f_min_mm, 5.0 * 0.075));
     }
 
-    /// If the fine side is flatter than the factor says, its own D10 counts.
+    /// If the fine side is flatter than the factor implies, its own D10 counts.
     #[test]
     fn the_least_d10f_is_that_of_the_fine_side_where_that_is_finer() {
         // D15F of 1 to 2 mm: D5 of the fine side is a fifth of 2 x 5^(-10/45).
@@ -236,12 +236,12 @@ mod tests {
             near(Some(from), 0.6) && near(Some(within), 12.0 * 4f64.ln() / (5.0f64 / 0.6).ln()),
             "{within}"
         );
-        // 5 % is cited under our name alone.
+        // 5 % is cited as a number of this program alone.
         let source = specified(&[(0.1, 0.0), (0.5, 100.0)]).steps[1].source.clone();
         assert!(source.ends_with("The check for a gap is this program's own"), "{source}");
     }
 
-    /// The base of a sheet that is signed: unstable, broad, and flat between 0.6 and 5 mm.
+    /// A base that is unstable, broad, and flat between 0.6 and 5 mm.
     #[test]
     fn what_is_wrong_with_the_base_itself_is_among_the_notes() {
         let notes = |specified: &Specification| {
@@ -249,7 +249,7 @@ mod tests {
         };
         let points = [(0.002, 5.0), (0.075, 29.0), (0.6, 59.0), (5.0, 71.0), (20.0, 100.0)];
         let broad = notes(&specified(&points));
-        // Regraded on 0.6 mm: 49.2 % of fines, and so 0.7 mm, as on No. 4: no other limit is noted.
+        // Regraded on 0.6 mm: 49.2 % fines, and so 0.7 mm, as on No. 4: no other limit is noted.
         let [Note::UnstableBase { index, .. }, Note::BroadBase { .. }, Note::FlatBase { .. }] = broad[..]
         else {
             panic!("{broad:?}")
@@ -258,14 +258,14 @@ mod tests {
         let gap = notes(&specified(&[(0.08, 0.0), (0.3, 40.0), (2.4, 41.0), (4.0, 100.0)]));
         assert!(gap.iter().any(|note| matches!(note, Note::GapOfBase { .. })), "{gap:?}");
         assert_eq!(notes(&specified(&[(0.1, 0.0), (0.5, 100.0)])), []);
-        // With several curves each note names its own.
+        // With several curves each note names its curve.
         let sand = curve(&[(0.1, 0.0), (0.5, 100.0)]);
         let both = [("sand".to_owned(), sand), ("till".to_owned(), curve(&points))];
         let both = Specification::of("site", &both, SpecificationOptions::default());
         let rows: Vec<_> = both.notes.iter().map(|row| row.row.as_deref()).collect();
         assert_eq!(rows, [Some("till"), Some("till"), Some("till"), None]);
-        // The note of the band covers all curves: 0.636 to 0.700 mm, with a fine side that runs far out to
-        // its D5.
+        // The note of the band covers all curves: 0.636 to 0.700 mm, with a fine side that extends far
+        // out to its D5.
         assert!(matches!(notes(&both)[3], Note::UnstableSide { .. }), "{:?}", both.notes);
     }
 
@@ -301,12 +301,12 @@ mod tests {
             panic!("{uniform:?}")
         };
         assert!(uniform.band.is_none() && near(uniform.d15f_min_mm, least_mm) && least_mm > most_mm);
-        // A gravel whose filter would consist of stones.
+        // A gravel whose filter would consist of cobbles.
         let gravel = specified(&[(5.0, 0.0), (6.0, 15.0), (9.0, 85.0), (12.0, 100.0)]);
         assert!(matches!(gravel.no_band, Some(NoBand::TooCoarse { most_d60f_mm }) if most_d60f_mm > 75.0));
     }
 
-    /// A dispersive clay whose limit is 6.4 D85B, 0.103 mm.
+    /// A dispersive clay whose limit is 6.4 D85B, or 0.103 mm.
     #[test]
     fn a_coarse_side_with_too_many_fines_leaves_no_band() {
         let narrow = specified_with(&[(0.0008, 0.0), (0.0161, 85.0), (0.03, 100.0)], DISPERSIVE);
@@ -314,7 +314,7 @@ mod tests {
         assert_eq!(narrow.no_band, Some(NoBand::TooManyFines));
     }
 
-    /// A specification keeps every rule of the table: both sides of the band, against every curve of the
+    /// A specification keeps every rule of the table for both sides of the band and every curve of the
     /// base.
     #[test]
     fn both_sides_of_a_band_keep_every_rule_of_retention_drainage_and_placing() {
@@ -357,7 +357,7 @@ mod tests {
         }
     }
 
-    /// Practice has 0.7 mm for a silt, and 0.5 mm if it is dispersive; with 25 % fines no source has a limit.
+    /// The limit of a silt is 0.7 mm, or 0.5 mm if it is dispersive; with 25 % fines no source has a limit.
     #[test]
     fn a_base_of_which_nobody_has_said_whether_it_is_dispersive_has_the_limit_of_one_that_is() {
         let silt = [(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)];
@@ -374,7 +374,7 @@ mod tests {
         assert_eq!([Some(true), Some(false)].map(|dispersive| limit(&silt, dispersive)), [None, None]);
     }
 
-    /// D15F of at most 6.4 D85B, here 0.064 mm, is less than any filter may have.
+    /// The maximum D15F, 6.4 D85B = 0.064 mm, is less than the minimum for any filter.
     #[test]
     fn a_base_that_is_too_fine_has_no_filter() {
         let specified = specified_with(&[(0.0005, 0.0), (0.01, 85.0), (0.02, 100.0)], DISPERSIVE);
@@ -398,11 +398,11 @@ mod tests {
         assert_eq!((finer.d15f_min_mm, finer.d15f_max_mm), (coarser.d15f_min_mm, coarser.d15f_max_mm));
         assert_eq!(finer.steps[6].notes, [StepNote::Lowered]);
         assert_eq!(coarser.steps[6].notes, [StepNote::Raised]);
-        // The allowed sizes are equal: products do not depend on the place of the band.
+        // The allowed sizes are equal: products do not depend on the position of the band.
         assert_eq!(finer.products, coarser.products);
     }
 
-    /// Each rule for the fines of this base, with its numbers: 37.8 % of fines and a D85B of 1.80 mm.
+    /// Each rule for the fines of this base, with its numbers: 37.8 % fines and a D85B of 1.80 mm.
     #[test]
     fn the_step_of_retention_has_the_formula_of_the_category_with_its_numbers() {
         let formula = |points: &[(f64, f64)]| specified(points).steps[4].formula.clone();
@@ -439,12 +439,12 @@ mod tests {
             ) && silty.contains(" mm (no text gives a limit for dispersive soils with such fines)"),
             "{silty}"
         );
-        // Unknown fines leave the formula whole.
+        // If the fines are not known, the formula is given whole.
         let open = formula(&[(0.2, 20.0), (0.5, 85.0), (1.0, 100.0)]);
         assert!(open.contains("limit of design: A > 85 %: 9 D85B, "), "{open}");
     }
 
-    /// Straight sides of a Cu of 6: D'15/d'85 is 6^(15/50), and 4 D is 38.7 % further up.
+    /// Straight sides with a Cu of 6: D'15/d'85 is 6^(15/50), and 4 D is 38.7 % higher.
     #[test]
     fn both_sides_of_the_band_are_checked_for_internal_stability() {
         let core = specified(&CORE);
@@ -462,7 +462,7 @@ mod tests {
         };
         assert_eq!(last.notes, [stable("fine", &[]), stable("coarse", &[])]);
         assert!(last.source.contains("Internal Instability") && core.notes.is_empty(), "{last:?}");
-        // 0.705 mm retain barely more than the 0.7 mm that drain: the fine side runs far out to its D5.
+        // 0.705 mm retains, barely more than the 0.7 mm that drains: the fine side extends far out to its D5.
         let narrow = specified(&[(0.1, 0.0), (0.14, 15.0), (0.17625, 85.0), (0.3, 100.0)]);
         let [RowNote { row: None, note: Note::UnstableSide { side, authorities } }] = &narrow.notes[..]
         else {
@@ -472,14 +472,14 @@ mod tests {
         assert_eq!(narrow.steps.last().unwrap().notes[0], stable("fine", &["Kenney and Lau"]));
     }
 
-    /// A side that loses its finer part still keeps the limit: D60F of the fine side is no more than the
-    /// maximum D15F, and the coarse side is straight, which is stable.
+    /// A side without its finer part still keeps the limit: D60F of the fine side is at most the maximum
+    /// D15F, and the coarse side is straight and therefore stable.
     #[test]
     fn no_side_of_a_band_is_too_coarse_without_its_finer_part() {
         let is_of_side = |row: &&RowNote| matches!(row.note, Note::UnstableSide { .. });
         let mut unstable = 0;
         for scale in [0.8, 1.0, 4.0] {
-            // A limit of four D85B, from less than the draining size to much more.
+            // A limit of four D85B, from below the draining size to far above it.
             for retains in [0.65, 0.7005, 0.705, 0.72, 0.8, 1.0, 2.0] {
                 let sand = [(0.1, 0.0), (0.14, 15.0), (retains / 4.0, 85.0), (1.0, 100.0)];
                 let points = sand.map(|(size, percent)| (scale * size, percent));

@@ -1,4 +1,4 @@
-//! Standard products, each checked with both of its sides against the requirements of a filter.
+//! Standard products, each checked on both sides against the requirements of a filter.
 //!
 //! The list holds only products whose limits could be read in a public source.
 
@@ -7,43 +7,43 @@ use serde::{Deserialize, Serialize};
 use crate::rules::{GREATEST_SIZE_MM, MOST_CU, MOST_FINES_PERCENT, WIDEST_BAND};
 use voidwalk_core::gradation::FINES_MM;
 
-/// What a product does not keep of what a band is asked for beside D15F.
+/// Requirement of a band, other than on D15F, that a product does not keep.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 #[serde(tag = "id", rename_all = "snake_case")]
 pub enum NotKept {
-    /// Cu of its fine side.
+    /// Cu of the fine side.
     CuOfFineSide {
-        /// That Cu.
+        /// Value of Cu.
         cu: f64,
     },
-    /// Cu of its coarse side.
+    /// Cu of the coarse side.
     CuOfCoarseSide {
-        /// That Cu.
+        /// Value of Cu.
         cu: f64,
     },
-    /// Its sides lie too far apart.
+    /// The sides are too far apart.
     Width {
-        /// Coarse over fine side at the same percent finer, at most.
+        /// Maximum ratio of coarse to fine side at the same percent finer.
         ratio: f64,
     },
-    /// It may have too many fines.
+    /// The product may have too many fines.
     Fines {
-        /// Percent finer than 0.075 mm, at most.
+        /// Maximum percent finer than 0.075 mm.
         percent: f64,
     },
-    /// It may have grains that are too coarse.
+    /// The product may have grains that are too coarse.
     GreatestSize,
 }
 
-/// Least Cu of a specified filter.
+/// Minimum Cu of a specified filter.
 pub const LEAST_CU: f64 = 2.0;
 
-/// A product with the limits of its standard.
+/// Product with the limits of its standard.
 pub(super) struct Product {
     /// Name of the product.
     pub name: &'static str,
-    /// Sieve (mm), least and greatest percent finer; rising.
+    /// Sieve (mm), minimum and maximum percent finer; ascending.
     pub limits: &'static [(f64, f64, f64)],
     /// Source of the limits.
     pub source: &'static str,
@@ -114,14 +114,14 @@ pub(super) const PRODUCTS: [Product; 5] = [
     },
 ];
 
-/// True if the source of a product says that its limits are to be checked against the standard: they were
-/// read in no text of a named body.
+/// True if the source of a product says that its limits are to be checked against the standard, since
+/// they were not read in a text of a named body.
 pub fn is_to_be_checked(source: &str) -> bool {
     source.ends_with("limits to be checked against the standard")
 }
 
-/// The size (mm) at which a side has this percent finer, straight in percent over log size; the end of the
-/// side if it does not reach the percent. Points are size (mm) and percent finer, rising.
+/// Size (mm) at which a side has this percent finer, straight in percent over log size; the end of the
+/// side if it does not reach the percent. Points are size (mm) and percent finer, ascending.
 pub(super) fn size_at(side: &[[f64; 2]], percent: f64) -> f64 {
     let above = side.iter().position(|point| point[1] >= percent).unwrap_or(side.len() - 1);
     let [high, b] = side[above];
@@ -131,7 +131,7 @@ pub(super) fn size_at(side: &[[f64; 2]], percent: f64) -> f64 {
 }
 
 impl Product {
-    /// The fine and the coarse side: size (mm) and percent finer.
+    /// Fine and coarse side: size (mm) and percent finer.
     fn sides(&self) -> [Vec<[f64; 2]>; 2] {
         let side = |percent: fn(&(f64, f64, f64)) -> f64| {
             self.limits.iter().map(|row| [row.0, percent(row)]).collect()
@@ -139,13 +139,13 @@ impl Product {
         [side(|row| row.2), side(|row| row.1)]
     }
 
-    /// D15 (mm) of the fine and of the coarse side.
+    /// D15 (mm) of the fine and the coarse side.
     pub fn d15_mm(&self) -> [f64; 2] {
         self.sides().map(|side| size_at(&side, 15.0))
     }
 
-    /// Requirements of a band, D15F apart, that the two sides do not keep; a delivery may lie anywhere
-    /// between them.
+    /// Requirements of a band, other than on D15F, that the two sides do not keep; a delivery may lie
+    /// anywhere between them.
     pub fn not_kept(&self) -> Vec<NotKept> {
         let sides = self.sides();
         let mut not_kept = Vec::new();
@@ -186,7 +186,7 @@ mod tests {
         }
     }
 
-    /// Nobody can sign for "a specification" or for what "others cite".
+    /// An engineer cannot sign for "a specification" or for what "others cite".
     #[test]
     fn a_source_names_a_body_and_a_document_or_asks_for_the_standard() {
         for product in &PRODUCTS {

@@ -1,4 +1,4 @@
-//! The band of a filter as sizes: its two sides, and its limits sieve by sieve.
+//! Band of a filter as sizes: its two sides, and its limits at each sieve.
 
 use super::products::size_at;
 use crate::rules::{GREATEST_SIZE_MM, MOST_FINES_PERCENT, WIDEST_BAND};
@@ -8,63 +8,63 @@ use std::str::FromStr;
 use voidwalk_core::gradation::{FINES_MM, Gradation, ShapeIndex, SoilSplit};
 use voidwalk_sheets::us_sieve;
 
-/// The two sides of a band as sizes.
+/// Two sides of a band as sizes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct SizeBand {
     /// D5, D15 and D60 of both sides.
     pub sizes: Vec<BandSize>,
-    /// The fine side up to its D60: size (mm) and percent finer, rising. No text was read for what lies
-    /// above.
+    /// Fine side up to its D60: size (mm) and percent finer, ascending. No source was read for the range
+    /// above it.
     pub fine_side: Vec<[f64; 2]>,
-    /// The coarse side, likewise.
+    /// Coarse side up to its D60: size (mm) and percent finer, ascending.
     pub coarse_side: Vec<[f64; 2]>,
 }
 
-/// A size of both sides of a band.
+/// Size of both sides of a band at one percent finer.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct BandSize {
     /// Percent finer.
     pub percent: f64,
-    /// Least size (mm), of the fine side.
+    /// Minimum size (mm), of the fine side.
     pub min_mm: f64,
-    /// Greatest size (mm), of the coarse side.
+    /// Maximum size (mm), of the coarse side.
     pub max_mm: f64,
 }
 
-/// What a delivery may have finer than a sieve. A row of `specification.csv`.
+/// Limits of a delivery at a sieve. A row of `specification.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct SieveLimit {
     /// Name of the sieve.
     pub sieve: String,
-    /// Its opening (mm).
+    /// Opening of the sieve (mm).
     pub opening_mm: f64,
-    /// Least percent finer, of the coarse side: a whole percent within the band; tenths or hundredths where
-    /// no whole percent lies within.
+    /// Minimum percent finer, of the coarse side: a whole percent within the band, or tenths or
+    /// hundredths if no whole percent lies within.
     pub min_percent_finer: f64,
-    /// Greatest percent finer, of the fine side, likewise; `None` above its D60.
+    /// Maximum percent finer, of the fine side, rounded likewise; `None` above its D60.
     pub max_percent_finer: Option<f64>,
 }
 
-/// Percents at which the sizes of a band are shown.
+/// Percents at which sizes of a band are shown.
 const SIZES: [f64; 3] = [5.0, 15.0, 60.0];
 
-/// D15/D10 of a side that is straight on the form and has a Cu of 6: 6^(5/50) = 1.196.
+/// D15/D10 of a straight side with a Cu of 6: 6^(5/50) = 1.196.
 pub const D15_OVER_D10: f64 = 1.2;
 
 impl SizeBand {
-    /// The minimum D10F (mm), which sets the maximum D90F.
+    /// Minimum D10F (mm), which sets the maximum D90F.
     pub fn least_d10_mm(&self) -> f64 {
         (self.d15_mm()[0] / D15_OVER_D10).min(size_at(&self.fine_side, 10.0))
     }
 
-    /// Band from the control points of its sides: least and maximum D15 and D60 (mm).
+    /// Builds a band from the control points of its sides: minimum and maximum D15 and D60 (mm).
     ///
-    /// Both sides are straight in percent over log size between their points, and end at their D60. The
-    /// coarse side goes on straight down to 0 %. The fine side begins at its D5, a fifth of the coarse side's
-    /// but not less than 0.075 mm; at most 5 % are finer. `None` if a D60 is not below 75 mm, or if the
+    /// Both sides are straight in percent over log size between their points and end at their D60. The
+    /// coarse side continues straight down to 0 %. The fine side begins at its D5, a fifth of the coarse
+    /// side's but at least 0.075 mm; at most 5 % is finer. `None` if a D60 is not below 75 mm, or if the
     /// coarse side has more than 5 % finer than 0.075 mm.
     pub fn of(d15: [f64; 2], d60: [f64; 2]) -> Option<Self> {
         let on =
@@ -74,7 +74,7 @@ impl SizeBand {
         }
         let coarse_d5 = on(1, MOST_FINES_PERCENT);
         let d5 = (coarse_d5 / WIDEST_BAND).max(FINES_MM);
-        // The band would be inside out.
+        // The sides would cross.
         if coarse_d5 < d5 {
             return None;
         }
@@ -88,8 +88,8 @@ impl SizeBand {
         Some(Self { sizes: SIZES.map(size).to_vec(), fine_side, coarse_side })
     }
 
-    /// Both sides, the fine one first, continued straight up to 100 %, but to no more than 75 mm: for their
-    /// internal stability alone.
+    /// Both sides, the fine one first, continued straight up to 100 % but to at most 75 mm; used only for
+    /// their internal stability.
     pub fn continued(&self) -> [Vec<[f64; 2]>; 2] {
         [&self.fine_side, &self.coarse_side].map(|side| {
             let [d15, d60] = [15.0, 60.0].map(|percent| size_at(side, percent));
@@ -98,7 +98,7 @@ impl SizeBand {
         })
     }
 
-    /// The fine side as drawn and as limited at the sieves: below its D5 it runs level down to 0.075 mm, the
+    /// Fine side as drawn and as limited at the sieves: below its D5 it is level down to 0.075 mm, the
     /// finest sieve of every series, where it ends. Both sides then begin at 0 %.
     pub fn drawn_fine_side(&self) -> Vec<[f64; 2]> {
         let foot = [[FINES_MM, 0.0], [FINES_MM, MOST_FINES_PERCENT]];
@@ -110,7 +110,7 @@ impl SizeBand {
         [&self.fine_side, &self.coarse_side].map(|side| size_at(side, 15.0))
     }
 
-    /// Least and greatest percent finer than an opening (mm); `None` above the D60 of the side.
+    /// Minimum and maximum percent finer than an opening (mm); `None` above the D60 of the side.
     fn percent_finer(&self, opening_mm: f64) -> [Option<f64>; 2] {
         [&self.coarse_side, &self.fine_side].map(|side| {
             let is_drawn = side.last().is_some_and(|top| opening_mm <= top[0]);
@@ -135,19 +135,19 @@ impl SizeBand {
     }
 }
 
-/// Whole percents within two limits; tenths if no whole percent lies between them, hundredths if no tenth
-/// does, and the limits themselves if no hundredth does.
+/// Whole percents within two limits, tenths if there is no whole percent between them, hundredths if
+/// there is no tenth, and the limits themselves if there is no hundredth.
 fn whole([min, max]: [f64; 2]) -> [f64; 2] {
-    // Logarithms leave a rounding error, which is not a percent.
+    // Absorbs the rounding error of logarithms.
     let hair = 1e-9;
-    // Rounding up from below 0 gives -0, to which 0 is added.
+    // Rounding up from below 0 gives -0; adding 0 removes the sign.
     let inward =
         |parts: f64| [((min - hair) * parts).ceil() / parts + 0.0, ((max + hair) * parts).floor() / parts];
     let rounded = [1.0, 10.0, 100.0].map(inward).into_iter().find(|[min, max]| min <= max);
     rounded.unwrap_or([min, max])
 }
 
-/// Percent finer than a size (mm); below its first point a side keeps the percent of that point.
+/// Percent finer than a size (mm); a side keeps the percent of its first point below that point.
 fn percent_at(side: &[[f64; 2]], size: f64) -> f64 {
     let below = side.partition_point(|point| point[0] <= size);
     match below.checked_sub(1) {
@@ -160,16 +160,16 @@ fn percent_at(side: &[[f64; 2]], size: f64) -> f64 {
     }
 }
 
-/// A series of sieves.
+/// Series of sieves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum SieveSeries {
-    /// Sieves of the United States (ASTM E11), by inches and numbers.
+    /// US sieves (ASTM E11), named by inches and numbers.
     #[default]
     Us,
-    /// Sieves in millimetres, each half of the one before; above them 75 mm, beyond which no side goes, and
-    /// below them 0.075 mm, at which fines are limited.
+    /// Sieves in millimetres, each half the previous one, with 75 mm above them, which no side exceeds,
+    /// and 0.075 mm below them, at which fines are limited.
     Iso,
 }
 
@@ -178,7 +178,7 @@ const US: [f64; 14] = [75.0, 50.0, 37.5, 25.0, 19.0, 12.5, 9.5, 4.75, 2.36, 1.18
 const ISO: [f64; 12] = [75.0, 63.0, 31.5, 16.0, 8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125, FINES_MM];
 
 impl SieveSeries {
-    /// Openings of the sieves (mm), the coarsest first.
+    /// Openings of the sieves (mm), coarsest first.
     pub fn openings(self) -> &'static [f64] {
         match self {
             Self::Us => &US,
@@ -217,13 +217,13 @@ impl fmt::Display for SieveSeries {
     }
 }
 
-/// The greatest D'15/d'85 of a stable soil by Kezdi.
+/// Maximum D'15/d'85 of a stable soil by Kezdi.
 pub(super) const MOST_KEZDI: f64 = 4.0;
 
-/// The least H/F of a stable soil by Kenney and Lau.
+/// Minimum H/F of a stable soil by Kenney and Lau.
 pub(super) const LEAST_SHAPE: f64 = 1.0;
 
-/// A side of a band as a soil.
+/// Side of a band as a soil.
 pub(super) struct Side {
     /// `fine` or `coarse`.
     pub name: &'static str,
@@ -232,8 +232,8 @@ pub(super) struct Side {
 }
 
 impl Side {
-    /// Both sides; an index is `None` for a side of one size. The line drawn below D5 of the fine side is a
-    /// limit of fines, and no part of a gradation.
+    /// Both sides; an index is `None` for a side of one size. The line drawn below D5 of the fine side
+    /// limits the fines and is not part of a gradation.
     pub fn both(band: &SizeBand) -> [Self; 2] {
         let [fine, coarse] = band.continued();
         [("fine", fine), ("coarse", coarse)].map(|(name, points)| {
@@ -298,7 +298,7 @@ mod tests {
         // ln(0.6/0.14)/ln 5 x 45 + 15 = 55.7 and ln(0.6/0.7)/ln 5 x 45 + 15 = 10.7.
         assert_eq!(limits_at("No. 30"), (11.0, Some(55.0)));
         assert_eq!(limits_at("No. 200"), (0.0, Some(5.0)));
-        // Above the D60 of a side, 0.7 and 3.5 mm, it has no limit: ln(2.36/0.7)/ln 5 x 45 + 15 = 48.98.
+        // A side has no limit above its D60, 0.7 and 3.5 mm: ln(2.36/0.7)/ln 5 x 45 + 15 = 48.98.
         assert_eq!(limits_at("No. 8"), (49.0, None));
         assert!(limits.iter().all(|limit| limit.min_percent_finer.is_sign_positive()));
         assert_eq!(limits[0].sieve, "No. 8");
@@ -329,12 +329,12 @@ mod tests {
 
     #[test]
     fn a_side_that_stands_upright_and_one_beyond_the_greatest_size() {
-        // D15 and D60 of the fine side are one size.
+        // D15 and D60 of the fine side are equal.
         let band = SizeBand::of([0.7, 0.7], [0.7, 3.5]).unwrap();
         assert_eq!(band.percent_finer(0.7)[1], Some(60.0));
         assert!(band.percent_finer(0.69)[1].unwrap() < 15.0);
         assert!(SizeBand::of([4.0, 20.0], [20.0, 100.0]).is_none());
-        // The greatest size cuts it off.
+        // The maximum size cuts it off.
         let coarse = SizeBand::of([2.0, 10.0], [10.0, 50.0]).unwrap();
         assert_eq!(coarse.continued()[1].last(), Some(&[75.0, 100.0]));
     }
@@ -348,8 +348,8 @@ mod tests {
         assert_eq!(whole([3.2, 9.9]), [4.0, 9.0]);
     }
 
-    /// No sieve has a least above its greatest, down to the maximum D15F at which the coarse side has 5 %
-    /// finer than 0.075 mm: 0.075 x 5^(10/45) = 0.1072 mm.
+    /// No sieve has a minimum above its maximum, down to the maximum D15F at which the coarse side has
+    /// 5 % finer than 0.075 mm: 0.075 x 5^(10/45) = 0.1072 mm.
     #[test]
     fn no_band_is_inside_out() {
         let band_from = |least: f64, most: f64| SizeBand::of([least, most], [most, 5.0 * most]);

@@ -1,5 +1,4 @@
-//! The specification of a filter for a base: the steps that lead to it, its band, and standard products
-//! beside it.
+//! Specification of a filter for a base: its steps, its band, and standard products beside it.
 //!
 //! `verdict` makes it from the rules of practice, with its words.
 
@@ -12,116 +11,115 @@ pub use super::size_band::{BandSize, SieveLimit, SizeBand};
 use crate::{IfDispersive, InputFile, RuleNote, SheetCover};
 use voidwalk_core::gradation::RegradeReason;
 
-/// The whole of `specification.json`.
+/// Contents of `specification.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct Specification {
     /// Version of voidwalk.
     pub version: String,
-    /// The commit that it was built from; `None` where that is not known.
+    /// Commit that the program was built from; `None` if it is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub commit: Option<String>,
     /// Name of the base.
     pub base: String,
-    /// Whether it was said to be dispersive.
+    /// True if the base was stated to be dispersive.
     pub dispersive: bool,
-    /// The sieves at which the limits are stated.
+    /// Sieves at which the limits are stated.
     pub sieves: SieveSeries,
-    /// What its sheet says of itself.
+    /// Cover of the sheet.
     #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
     pub cover: SheetCover,
-    /// Whether inches stand beside mm on its page.
+    /// True if the page shows inches beside mm.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub inches: bool,
-    /// Every file that was read.
+    /// Files that were read.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub inputs: Vec<InputFile>,
-    /// The curves of the base, in the order of the file.
+    /// Curves of the base, in the order of the file.
     pub curves: Vec<SpecifiedCurve>,
-    /// What a reader must know of the base itself, each of its curve where there are several, and of a side
-    /// of the band that is not stable.
+    /// Notes on the base, with the curve's name if there are several, and on sides of the band that are
+    /// not internally stable.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<RowNote>,
-    /// Every step, with its numbers.
+    /// Steps in order, with their numbers.
     pub steps: Vec<SpecificationStep>,
-    /// Minimum D15F (mm) that drains the base; `None` where it is not known.
+    /// Minimum D15F (mm) that drains the base; `None` if it is not known.
     pub d15f_min_mm: Option<f64>,
-    /// Whether the true least is not known, and is at most that.
+    /// True if the minimum is not known exactly and is at most `d15f_min_mm`.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub d15f_min_at_most: bool,
-    /// Whether the band lies at the finer end of what is allowed, and not at the coarser.
+    /// True if the band lies at the finer end of the allowed sizes, false if at the coarser end.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub finer: bool,
-    /// Maximum D15F (mm) that is allowed; `None` where it is not known.
+    /// Maximum allowed D15F (mm); `None` if it is not known.
     pub d15f_max_mm: Option<f64>,
-    /// What practice allows if the base is dispersive; `None` where somebody has said whether it is, and
-    /// where it has few fines.
+    /// Limit of practice if the base is dispersive; `None` if dispersion is stated or the base has few
+    /// fines.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub if_dispersive: Option<IfDispersive>,
-    /// The band; `None` where there is none.
+    /// Band of the filter; `None` if there is none.
     pub band: Option<SizeBand>,
-    /// Why there is no band.
+    /// Reason why there is no band.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub no_band: Option<NoBand>,
-    /// Percent finer at each sieve, the coarsest first; empty without a band.
+    /// Percent finer at each sieve, coarsest first; empty without a band.
     pub limits: Vec<SieveLimit>,
-    /// Standard products beside it; empty where neither limit of D15F is known.
+    /// Standard products; empty if neither limit of D15F is known.
     pub products: Vec<ProductMargin>,
 }
 
-/// A curve of the base, and the limits of D15F that follow from it.
+/// Curve of the base with its limits of D15F.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct SpecifiedCurve {
-    /// Its name.
+    /// Name of the curve.
     pub curve: String,
     /// Size (mm) and percent finer by mass, as sampled.
     pub gradation: Vec<[f64; 2]>,
-    /// The same after regrading; empty where it is not regraded.
+    /// Size (mm) and percent finer by mass after regrading; empty if it is not regraded.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub regraded: Vec<[f64; 2]>,
-    /// D15 (mm) before regrading; `None` where it is finer than the finest sieve.
+    /// D15 (mm) before regrading; `None` if it is finer than the finest sieve.
     pub d15_mm: Option<f64>,
-    /// The size on which it was regraded (mm).
+    /// Size on which the curve was regraded (mm).
     pub regraded_at_mm: Option<f64>,
     /// D85 (mm) after regrading.
     pub d85_mm: Option<f64>,
     /// Percent finer than 0.075 mm after regrading.
     pub fines_percent: Option<f64>,
-    /// Category of NRCS, 1 to 4.
+    /// NRCS category, 1 to 4.
     pub category: Option<u8>,
-    /// Maximum D15F (mm) that retains it; `None` where it is not known.
+    /// Maximum D15F (mm) that retains the curve; `None` if it is not known.
     pub d15f_max_mm: Option<f64>,
-    /// The rule that sets it.
+    /// Rule that sets the maximum.
     pub d15f_max_rule: String,
-    /// Whether that maximum has no margin: tests showed no erosion up to it and no further, or erosion below
-    /// it.
+    /// True if the maximum has no margin: tests showed erosion below it, or no erosion only up to it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub without_margin: bool,
-    /// Minimum D15F (mm) that drains it.
+    /// Minimum D15F (mm) that drains the curve.
     pub d15f_min_mm: Option<f64>,
 }
 
-/// A step of the procedure.
+/// Step of the procedure.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct SpecificationStep {
-    /// Its number, from 1.
+    /// Number of the step, from 1.
     pub step: u64,
-    /// What is done.
+    /// Name of the step.
     pub does: StepName,
-    /// The formula; empty where nothing is worked out.
+    /// Formula; empty if nothing is calculated.
     pub formula: String,
-    /// Its numbers.
+    /// Numbers of the step.
     pub values: Vec<StepValue>,
-    /// What else to know.
+    /// Notes on the step.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<StepNote>,
-    /// Where formula and numbers were read; empty where nothing is worked out.
+    /// Source of formula and numbers; empty if nothing is calculated.
     pub source: String,
 }
 
-/// A step of the procedure by its name.
+/// Name of a step of the procedure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
@@ -129,11 +127,11 @@ pub enum StepName {
     /// Plot the gradation of the base.
     #[default]
     Plot,
-    /// Find gravel and gaps of the base.
+    /// Find gravel and gaps in the base.
     FindGravel,
     /// Regrade the base.
     Regrade,
-    /// Place the base in a category.
+    /// Determine the category of the base.
     Place,
     /// Find the maximum D15F that retains the base.
     Retain,
@@ -143,7 +141,7 @@ pub enum StepName {
     Narrow,
     /// Keep both sides uniform.
     KeepUniform,
-    /// Limit the fines and the greatest size.
+    /// Limit the fines and the maximum size.
     LimitEnds,
     /// Keep the filter from segregating.
     KeepFromSegregating,
@@ -153,81 +151,80 @@ pub enum StepName {
     CheckStability,
 }
 
-/// What else to know of a step.
+/// Note on a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 #[serde(tag = "id", rename_all = "snake_case")]
 pub enum StepNote {
     /// Curves of the base.
     Curves {
-        /// How many.
+        /// Number of curves.
         curves: u64,
     },
-    /// Gravel and gaps of a curve.
+    /// Gravel and gaps in a curve.
     Gravel {
-        /// Its name, where there are several.
+        /// Name of the curve, if there are several.
         curve: Option<String>,
-        /// Why it is regraded, or not.
+        /// Reason for regrading or not.
         why: RegradeReason,
-        /// Size (mm) from which the least mass lies within a factor of 4, and that mass (%); `None` where its
-        /// sieves do not tell.
+        /// Size (mm) from which a factor of 4 in size holds the least mass, and that mass (%); `None` if
+        /// the sieves do not give it.
         flattest: Option<[f64; 2]>,
     },
     /// No curve is regraded.
     NotRegraded,
-    /// The rule, and of several curves the one, that sets a limit.
+    /// Rule and curve that set a limit.
     SetBy {
-        /// The rule; `None` where the step has one alone.
+        /// Name of the rule; `None` if the step has only one.
         rule: Option<String>,
-        /// The curve.
+        /// Name of the curve; `None` if there is only one.
         curve: Option<String>,
     },
     /// The limit of a curve is not known.
     LimitNotKnown {
-        /// What is missing.
+        /// Missing inputs.
         needs: Vec<RuleNote>,
     },
-    /// D15B is finer than the finest sieve, and the minimum D15F at most the one given.
+    /// D15B is finer than the finest sieve, so the minimum D15F is at most the one given.
     DrainageAtMost,
-    /// What the rule says besides.
+    /// Notes of the rule.
     OfRule {
         /// Its notes.
         notes: Vec<RuleNote>,
     },
-    /// The minimum D15F is raised.
+    /// The minimum D15F was raised.
     Raised,
-    /// The maximum D15F is lowered.
+    /// The maximum D15F was lowered.
     Lowered,
-    /// Internal stability of a side.
+    /// Internal stability of a side of the band.
     Stability {
         /// `fine` or `coarse`.
         side: String,
-        /// Whether both indices are known.
+        /// True if both indices are known.
         is_known: bool,
-        /// Whose rules it does not keep.
+        /// Authors of the rules that are not kept.
         not_kept: Vec<String>,
     },
 }
 
-/// Size of a band that enters a table of the maximum D90F. It is rounded down: a finer D10F allows no coarser
-/// D90F.
+/// Size of a band used to enter the table of the maximum D90F. It is rounded down: a finer D10F allows no
+/// coarser D90F.
 pub const ENTERED_BY: &str = "minimum D10F";
 
-/// A number of a step.
+/// Number of a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct StepValue {
-    /// What it is, as `maximum D15F`.
+    /// Name of the number, such as `maximum D15F`.
     pub name: String,
-    /// The number; `None` where it is not known.
+    /// Value of the number; `None` if it is not known.
     pub value: Option<f64>,
-    /// Its unit: `mm`, `%`; empty for a ratio or a count.
+    /// Unit: `mm` or `%`; empty for a ratio or a count.
     pub unit: String,
 }
 
 impl StepValue {
-    /// Side of a limit: `true` for a minimum, `false` for a maximum and for [`ENTERED_BY`]; `None` for any
-    /// other value.
+    /// True for a minimum, false for a maximum and for [`ENTERED_BY`], `None` for any other value.
     pub fn role(&self) -> Option<bool> {
         match self.name.split(' ').next() {
             _ if self.name == ENTERED_BY => Some(false),
@@ -238,14 +235,14 @@ impl StepValue {
     }
 }
 
-/// Why there is no band.
+/// Reason why there is no band.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 #[serde(tag = "id", rename_all = "snake_case")]
 pub enum NoBand {
-    /// Of the minimum D15F only the most is known, and it is above the maximum.
+    /// Only an upper bound of the minimum D15F is known, and it exceeds the maximum.
     DrainageNotKnown {
-        /// The most that the minimum can be (mm).
+        /// Upper bound of the minimum (mm).
         most_drains_mm: f64,
         /// The maximum (mm).
         most_mm: f64,
@@ -259,7 +256,7 @@ pub enum NoBand {
     },
     /// The coarse side would have too many fines.
     TooManyFines,
-    /// The maximum D60F lies beyond the greatest size.
+    /// The maximum D60F exceeds the maximum size.
     TooCoarse {
         /// The maximum D60F (mm).
         most_d60f_mm: f64,
@@ -268,32 +265,32 @@ pub enum NoBand {
     LimitNotKnown {
         /// The curve of the base.
         curve: String,
-        /// What is missing.
+        /// Missing inputs.
         needs: Vec<RuleNote>,
     },
     /// No rule of retention covers the base.
     NoRule,
 }
 
-/// A standard product beside a specification. A row of `specification_products.csv`.
+/// Standard product compared with a specification. A row of `specification_products.csv`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct ProductMargin {
-    /// Its name.
+    /// Name of the product.
     pub product: String,
-    /// D15 (mm) of its fine side.
+    /// D15 (mm) of the fine side.
     pub d15_fine_mm: f64,
-    /// D15 (mm) of its coarse side.
+    /// D15 (mm) of the coarse side.
     pub d15_coarse_mm: f64,
-    /// D15 of its fine side over the least that drains: at least 1 where it drains. `None` where it is not
-    /// known whether it drains.
+    /// D15 of the fine side over the minimum D15F: at least 1 if it drains. `None` if it is not known if
+    /// it drains.
     pub drains_by: Option<f64>,
-    /// The maximum D15F over D15 of its coarse side: at least 1 where it holds.
+    /// Maximum D15F over D15 of the coarse side: at least 1 if it holds the base.
     pub holds_by: Option<f64>,
-    /// What its two sides do not keep of the other requirements: Cu, width of the band, fines, greatest size;
-    /// empty where they keep all.
+    /// Other requirements that the two sides do not keep: Cu, width of the band, fines, maximum size;
+    /// empty if they keep all.
     pub not_kept: Vec<NotKept>,
-    /// Where its limits were read.
+    /// Source of its limits.
     pub source: String,
 }
 
@@ -315,14 +312,14 @@ impl ProductMargin {
 }
 
 impl Specification {
-    /// The product whose D15 comes closest to both limits, if no product fits.
+    /// Product whose D15 comes closest to both limits, if no product fits.
     pub fn nearest_product(&self) -> Option<&ProductMargin> {
         let none_fits = self.products.iter().all(|product| product.fits() == Some(false));
         let all = self.products.iter().filter(|_| none_fits && self.d15f_max_mm.is_some());
         all.max_by(|a, b| a.margin().total_cmp(&b.margin()))
     }
 
-    /// The curve that sets the maximum D15F, and this D15F (mm); `None` if it is not known.
+    /// Curve that sets the maximum D15F, and this D15F (mm); `None` if it is not known.
     pub fn strictest(&self) -> Option<(&SpecifiedCurve, f64)> {
         self.d15f_max_mm?;
         let limits = self.curves.iter().filter_map(|curve| Some((curve, curve.d15f_max_mm?)));
@@ -335,8 +332,7 @@ impl Specification {
     }
 }
 
-/// Compares every standard product with the minimum D15F (mm), with the least that it certainly is, and with
-/// the maximum.
+/// Compares every standard product with the minimum D15F (mm), its certain lower bound, and the maximum.
 pub fn margins((d15f_min, certain): (Option<f64>, f64), d15f_max: Option<f64>) -> Vec<ProductMargin> {
     if d15f_min.is_none() && d15f_max.is_none() {
         return Vec::new();
@@ -347,7 +343,7 @@ pub fn margins((d15f_min, certain): (Option<f64>, f64), d15f_max: Option<f64>) -
             product: product.name.into(),
             d15_fine_mm: fine,
             d15_coarse_mm: coarse,
-            // The true margin may be greater without limit.
+            // The true margin may be arbitrarily larger.
             drains_by: d15f_min.map(|least| fine / least).filter(|margin| *margin >= 1.0 || fine < certain),
             holds_by: d15f_max.map(|greatest| greatest / coarse),
             not_kept: product.not_kept(),
@@ -357,14 +353,14 @@ pub fn margins((d15f_min, certain): (Option<f64>, f64), d15f_max: Option<f64>) -
     PRODUCTS.iter().map(one).collect()
 }
 
-/// A note on a row of boundaries, or on a curve of the base for which a filter is specified.
+/// Note on a row of boundaries or on a curve of the base of a specification.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct RowNote {
-    /// The row or the curve that it is of, in words; `None` where it is of all.
+    /// Row or curve that the note concerns, in words; `None` if it concerns all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub row: Option<String>,
-    /// The note.
+    /// Text of the note.
     #[serde(flatten)]
     pub note: Note,
 }
@@ -380,7 +376,7 @@ mod tests {
     #[test]
     fn products_have_their_margins_also_where_none_fits() {
         let sand = &margins((Some(0.1), 0.1), Some(0.7))[0];
-        // D15 0.178 to 0.424 mm (see `products`).
+        // D15 of 0.178 to 0.424 mm (see `products`).
         assert!(
             near(sand.drains_by.unwrap(), 1.5 * 2f64.powf(0.25)) && sand.fits() == Some(true),
             "{sand:?}"
@@ -392,7 +388,7 @@ mod tests {
         let open = margins((Some(0.2), 0.2), None);
         assert_eq!((open[0].fits(), open[2].fits()), (Some(false), None));
         assert!(margins((None, 0.0), None).is_empty());
-        // Drainage is not known if the minimum is only known to be at most a number.
+        // Drainage is not known if only an upper bound of the minimum is known.
         let till = &margins((Some(0.375), 0.0), Some(0.7))[0];
         assert_eq!((till.drains_by, till.fits()), (None, None));
         assert_eq!(margins((Some(0.375), 0.0), Some(0.3))[0].fits(), Some(false));

@@ -1,4 +1,4 @@
-//! The steps of a specification, with their numbers, formulas and sources.
+//! Steps of a specification, with their numbers, formulas and sources.
 
 use crate::design::RowNote;
 use crate::design::size_band::{D15_OVER_D10, LEAST_SHAPE, MOST_KEZDI, Side};
@@ -15,7 +15,7 @@ use crate::rules::{
 use crate::{AppliedRule, IfDispersive, Note, RuleNote};
 use voidwalk_core::gradation::{FEW_FINES, FINES_MM, GAP_PERCENT, GRAVEL_MM, Gap, Gradation};
 
-/// Control points of a band: D15 and D60 (mm) of its fine and of its coarse side.
+/// Control points of a band: D15 and D60 (mm) of its fine and its coarse side.
 #[derive(Clone, Copy)]
 pub(super) struct Control {
     pub d15: [f64; 2],
@@ -25,10 +25,10 @@ pub(super) struct Control {
 /// Facts that the steps state.
 pub(super) struct Findings<'a> {
     pub read: &'a [ReadCurve],
-    /// The curve that allows the minimum D15F.
+    /// Curve that sets the maximum D15F.
     pub strictest: Option<&'a ReadCurve>,
     pub unknown: Option<&'a ReadCurve>,
-    /// The curve that asks for the maximum D15F.
+    /// Curve that sets the minimum D15F.
     pub coarsest: Option<&'a ReadCurve>,
     pub d15f_max: Option<f64>,
     pub control: Option<Control>,
@@ -58,7 +58,7 @@ impl Findings<'_> {
         steps.into_iter().enumerate().map(number).collect()
     }
 
-    /// A number of every curve; with several curves, each number names its own.
+    /// One number for each curve, named after the curve if there are several.
     fn of_each_curve(
         &self,
         name: &str,
@@ -73,7 +73,7 @@ impl Findings<'_> {
         self.read.iter().map(value_of).collect()
     }
 
-    /// The name of a curve, if there are several.
+    /// Name of a curve, if there are several.
     fn name(&self, curve: &ReadCurve) -> Option<String> {
         (self.read.len() > 1).then(|| curve.record.curve.clone())
     }
@@ -159,7 +159,7 @@ impl Findings<'_> {
         }
     }
 
-    /// The limit of design, if another rule is stricter.
+    /// Limit of design, if another rule is stricter.
     fn limit_of_design(&self) -> Option<f64> {
         let curve = self.strictest.filter(|_| self.d15f_max.is_some())?;
         let design = curve.design.as_ref()?;
@@ -298,7 +298,7 @@ impl Findings<'_> {
     }
 }
 
-/// Source to which the manual of the Corps refers for segregation.
+/// Source on segregation to which the manual of the Corps refers.
 const SEGREGATION: &str = "FEMA (2011), cited by U.S. Army Corps of Engineers, Filter Evaluation manual \
                            (RMC-CPD-2023-04), chapter Filter Gradation";
 
@@ -324,26 +324,25 @@ fn source_of(id: &str) -> String {
     RULES.iter().find(|rule| rule.id == id).map_or_else(String::new, |rule| rule.source.into())
 }
 
-/// D15F (mm) of the filter for which the rules are read: their limits do not depend on it.
+/// Arbitrary D15F (mm) of the filter for which the rules are read: their limits do not depend on it.
 const ANY_D15F: f64 = 1.0;
 
-/// Percent of the mass between D and 4 D below which a curve counts as flat and is noted: twice the percent
-/// of a gap.
+/// Percent by mass between D and 4 D below which a curve is noted as flat: twice the percent of a gap.
 const FLAT_PERCENT: f64 = 2.0 * GAP_PERCENT;
 
-/// A curve of the base with the results of the rules.
+/// Curve of the base with the results of the rules.
 pub(super) struct ReadCurve {
     pub record: SpecifiedCurve,
     /// Curve as sampled.
     base: Gradation,
     pub dispersive: bool,
     pub soil: BaseSoil,
-    /// The flattest part, which may be a gap.
+    /// Flattest part, which may be a gap.
     pub flattest: Option<Gap>,
     pub design: Option<AppliedRule>,
     pub retention: Option<AppliedRule>,
     pub drainage: Option<AppliedRule>,
-    /// The mildest minimum D15F (mm) that the sieves leave possible; 0 if no sieve bounds it.
+    /// Lower bound of the minimum D15F (mm) by the sieves; 0 if no sieve bounds it.
     drains_from: f64,
     /// Reasons for an unknown maximum D15F.
     pub unknown: Option<Vec<RuleNote>>,
@@ -356,7 +355,7 @@ impl ReadCurve {
         let soil = BaseSoil::of(base, false);
         let open = OpenBase::of(base, false);
         let over_sieves = sieved_limit(DESIGN, base, &open, dispersive).and_then(|limit| limit.depends_on);
-        // A limit that can only be less may be the strictest.
+        // A limit that is only an upper bound may be the strictest.
         let unknown = open_retention(&rules).map(|rule| rule.needs.clone());
         let unknown = over_sieves.map(|note| vec![note]).or(unknown);
         let strictest = retention(&rules, ANY_D15F);
@@ -399,7 +398,7 @@ impl ReadCurve {
         unstable.into_iter().chain(broad).chain(self.flat()).collect()
     }
 
-    /// A gap of the base, or a flat part that may be one; parts that practice cuts off do not count.
+    /// Gap of the base, or a flat part that may be one; parts that practice cuts off do not count.
     fn flat(&self) -> Option<Note> {
         let cut = self.record.regraded_at_mm.unwrap_or(f64::INFINITY);
         let flat = self.flattest.filter(|flat| flat.within < FLAT_PERCENT && flat.from_mm <= cut)?;
@@ -415,7 +414,7 @@ impl ReadCurve {
         self.record.d15f_max_mm.unwrap_or(f64::INFINITY)
     }
 
-    /// True if the true minimum D15F is not known, and is at most the one given.
+    /// True if the minimum D15F is not known exactly and is at most the one given.
     pub fn least_at_most(&self) -> bool {
         self.drainage.as_ref().is_some_and(|rule| rule.limit_at_most)
     }
@@ -430,7 +429,7 @@ impl ReadCurve {
     }
 }
 
-/// Notes on a base of these curves, with the name of the curve if there are several.
+/// Notes on a base with these curves, named after the curve if there are several.
 pub(super) fn notes(read: &[ReadCurve]) -> Vec<RowNote> {
     let row = |curve: &ReadCurve| (read.len() > 1).then(|| curve.record.curve.clone());
     let row_notes = |curve: &ReadCurve| {
@@ -445,11 +444,11 @@ pub(super) fn if_dispersive(bases: &[NamedCurve]) -> Option<IfDispersive> {
     IfDispersive::of_bases(bases, &any)
 }
 
-/// Percent of fines above which a base is of category 1.
+/// Percent of fines above which a base is in category 1.
 const MANY_FINES: f64 = 85.0;
 
-/// The formula of a rule for the fines of a base, followed by the formula with the base's numbers; the whole
-/// formula of the rule if its fines or its D85 are not known.
+/// Formula of a rule for the fines of a base, followed by the formula with the base's numbers; the whole
+/// formula of the rule if fines or D85 are not known.
 fn formula_of_base(rule: &AppliedRule, curve: &ReadCurve) -> String {
     let name = cited_rule(rule);
     let name = name.strip_prefix("the ").map_or(name.clone(), |rest| format!("The {rest}"));
@@ -461,7 +460,7 @@ fn formula_of_base(rule: &AppliedRule, curve: &ReadCurve) -> String {
     let category = curve.record.category.filter(|_| rule.id == DESIGN);
     let category = category.map_or_else(String::new, |category| format!("category {category}, "));
     let dispersive = if curve.dispersive && fines >= FEW_FINES { ", dispersive" } else { "" };
-    // This many digits of A are enough to find the limit by hand.
+    // A to this many digits is enough to find the limit by hand.
     let fines = (100.0 * fines).round() / 100.0;
     let [fines, d85b] = [format!("- {fines})"), format!("x {}", significant(d85b))];
     let worked = formula.replace("- A)", &fines).replace("D85B", &d85b);
@@ -471,19 +470,19 @@ fn formula_of_base(rule: &AppliedRule, curve: &ReadCurve) -> String {
     format!("{name}, {category}{condition}{dispersive}: {most}{formula}{worked}{why}")
 }
 
-/// Suffix to a formula for other soils, which a dispersive soil cannot exceed.
+/// Suffix to a formula for other soils, which is an upper bound for a dispersive soil.
 const NO_TEXT: &str = " (no text gives a limit for dispersive soils with such fines)";
 
-/// Part of a rule's formula that holds for a base.
+/// Part of a rule's formula that applies to a base.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Item<'a> {
     condition: &'a str,
     formula: &'a str,
-    /// True if the part is for other soils, and only an upper bound for a dispersive one.
+    /// True if the part is for other soils and only an upper bound for a dispersive one.
     is_at_most: bool,
 }
 
-/// Condition and limit of a rule's formula that hold for a base with this percent of fines.
+/// Condition and limit in a rule's formula for a base with this percent of fines.
 fn item(rule: &AppliedRule, fines: f64, dispersive: bool) -> Option<Item<'_>> {
     let from = match rule.id.as_str() {
         DESIGN => 40.0,
@@ -491,7 +490,7 @@ fn item(rule: &AppliedRule, fines: f64, dispersive: bool) -> Option<Item<'_>> {
         _ => return None,
     };
     let (usual, of_dispersive) = rule.formula.split_once("; dispersive: ")?;
-    // Each list begins with the most fines; the list for dispersive soils ends where no text has a limit.
+    // Each list begins with the highest fines; the list for dispersive soils ends where no text has a limit.
     let at = match fines {
         fines if fines > MANY_FINES => 0,
         fines if fines >= from => 1,
@@ -510,7 +509,7 @@ mod tests {
     use crate::PairRules;
     use voidwalk_core::gradation::Gradation;
 
-    /// Every item of both formulas is found in their texts, whose wording may change.
+    /// Every item of both formulas must be found in their texts, whose wording may change.
     #[test]
     fn each_rule_has_the_item_of_the_fines_of_its_base() {
         let sand = Gradation::linear_from_dx(85.0, 0.3, 3.0).unwrap();

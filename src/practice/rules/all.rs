@@ -5,7 +5,7 @@ use super::{drainage, retention, stability};
 use crate::{RuleQuantity, RuleRole, RuleUnit};
 use voidwalk_core::gradation::Gradation;
 
-/// The rule by which new filters are specified.
+/// Rule by which new filters are specified.
 pub const DESIGN: &str = "sherard-dunnigan";
 
 /// Boundary up to which tests saw no erosion.
@@ -14,19 +14,19 @@ pub const TESTS_NO_EROSION: &str = "foster-fell-no-erosion";
 /// Boundary from which tests saw continuing erosion.
 pub const TESTS_CONTINUING: &str = "foster-fell-continuing";
 
-/// The probability of continuing erosion into an open joint.
+/// Probability of continuing erosion into an open joint.
 pub const CONSTRICTED_EXIT: &str = "constricted-exit";
 
-/// The rule by which a filter drains its base.
+/// Rule of drainage of the base.
 pub const PERMEABILITY: &str = "permeability";
 
-/// The rule by which a filter has few fines.
+/// Rule that limits the fines of a filter.
 pub const FILTER_FINES: &str = "filter-fines";
 
-/// The rule by which a filter has no cobbles.
+/// Rule that excludes cobbles from a filter.
 pub const FILTER_GREATEST_SIZE: &str = "filter-greatest-size";
 
-/// The minimum D15F that an older manual asks for.
+/// Minimum D15F of an older manual.
 pub const PERMEABILITY_LEAST: &str = "permeability-em-1901";
 
 /// Id of Terzaghi's ratio.
@@ -42,7 +42,7 @@ pub const KENNEY_LAU: &str = "kenney-lau";
 /// Kezdi's at every size.
 pub const LI_FANNIN: &str = "li-fannin";
 
-/// Fell et al., who give Table 9.2.
+/// Publication with Table 9.2.
 const FELL: &str = "Fell, MacGregor, Stapledon & Bell, Geotechnical Engineering of Dams, Table 9.2 (after \
                     Foster 1999; Foster & Fell 2001)";
 
@@ -50,11 +50,11 @@ const FELL: &str = "Fell, MacGregor, Stapledon & Bell, Geotechnical Engineering 
 const INTERNAL_STABILITY: &str = "U.S. Army Corps of Engineers, Internal Instability Toolbox manual \
                                   (RMC-CPD-2023-10), after Li and Fannin (2008)";
 
-/// Source of numbers that are confirmed by no text which a report could cite.
+/// Source of numbers that no citable text confirms.
 const OURS: &str = "a check of this program, as specifications of filters commonly have it; no text that can \
                     be cited was read for its number";
 
-/// Every rule, in the order of a reader.
+/// All rules, in reading order.
 pub const RULES: &[FilterRule] = &[
     FilterRule {
         id: DESIGN,

@@ -1,6 +1,6 @@
-//! Rules by which a filter drains and can be placed; retention of the base is elsewhere.
+//! Rules by which a filter drains and can be placed.
 //!
-//! An unknown never hides a failure: a size in a finest tail is at most the finest sieve.
+//! An unknown never hides a failure: a size finer than the finest sieve is at most that sieve.
 
 use super::rule::{Judged, RuleInputs};
 use crate::{RuleNote, ValueBound};
@@ -9,19 +9,19 @@ use voidwalk_core::gradation::{FINES_MM, Gradation};
 /// Minimum D15F for any base (mm).
 pub const LEAST_D15F_MM: f64 = 0.1;
 
-/// Most fines of a filter (%).
+/// Maximum fines of a filter (%).
 pub const MOST_FINES_PERCENT: f64 = 5.0;
 
-/// Greatest size of a filter (mm).
+/// Maximum size of a filter (mm).
 pub const GREATEST_SIZE_MM: f64 = 75.0;
 
-/// Greatest Cu of a side of a filter's band.
+/// Maximum Cu of a side of a filter's band.
 pub const MOST_CU: f64 = 6.0;
 
-/// Greatest ratio of sizes of the coarse side of a band to the fine side.
+/// Maximum ratio of sizes of the coarse side of a band to the fine side.
 pub const WIDEST_BAND: f64 = 5.0;
 
-/// Checks that the filter is coarse enough to drain the base, as it is before regrading: so many times D15B.
+/// Checks that the filter drains the base: D15F is at least `times` D15B, before regrading.
 pub fn permeability(inputs: &RuleInputs, times: f64) -> Judged {
     let least = if inputs.scale_free { 0.0 } else { LEAST_D15F_MM };
     let (d15f, d15b) = (inputs.d15f(), inputs.base.coarse_d(15.0));
@@ -29,7 +29,7 @@ pub fn permeability(inputs: &RuleInputs, times: f64) -> Judged {
     let limit = of_base.max(least);
     let finest = inputs.filter.smallest_mm();
     if d15b.is_none() && of_base <= least {
-        // The least governs, however fine D15B is.
+        // The minimum for any filter governs, however fine D15B is.
         let judged = Judged::of(d15f, Some(limit)).noted(RuleNote::LeastGoverns(times, of_base));
         return match d15f {
             Some(_) => judged,
@@ -40,7 +40,7 @@ pub fn permeability(inputs: &RuleInputs, times: f64) -> Judged {
             None => judged.lacking(RuleNote::NeedsD15FSieved),
         };
     }
-    // If D15B is finer than the finest sieve, the limit lies between the least and this one.
+    // If D15B is finer than the finest sieve, the limit lies between that minimum and this one.
     let surely = if d15b.is_some() { limit } else { least };
     let judged = match (d15f, d15b) {
         (Some(_), Some(_)) => Judged::of(d15f, Some(limit)).noted(RuleNote::BeforeRegrading),
@@ -86,13 +86,13 @@ pub fn greatest_size(inputs: &RuleInputs) -> Judged {
     }
 }
 
-/// Checks that the filter is uniform enough: a band of wider curves leaves room for gap-graded ones.
+/// Checks that the filter is uniform enough: a band of broader curves leaves room for gap-graded ones.
 pub fn uniformity(inputs: &RuleInputs) -> Judged {
     const MOST: Option<f64> = Some(MOST_CU);
     match (inputs.filter_is_measured, inputs.filter.cu()) {
         (false, _) => Judged { limit: MOST, ..Judged::default() }.lacking(RuleNote::NeedsCurveOfFilter),
         (true, None) => {
-            // D10 is at most the finest sieve, or D60 also lies in the tail.
+            // D10 is at most the finest sieve, or D60 is also finer than it.
             let least = inputs.filter.d(60.0).map(|d60| d60 / inputs.filter.smallest_mm());
             match least.filter(|least| Some(*least) > MOST) {
                 Some(least) => {
@@ -105,11 +105,11 @@ pub fn uniformity(inputs: &RuleInputs) -> Judged {
     }
 }
 
-/// Percents finer over which the sides of a band are compared. D5 is the lowest size that designs state, and
-/// tails below it depend on the finest sieve; the second limit is the rule's.
+/// Percents finer between which the sides of a band are compared. D5 is the smallest size that designs
+/// state, and sizes below it depend on the finest sieve; the upper percent is the rule's.
 const BAND: [f64; 2] = [5.0, 60.0];
 
-/// Checks that the band of the filter is narrow, by its coarse side over its fine side.
+/// Checks that the band of the filter is narrow: ratio of its coarse side to its fine side.
 pub fn band(inputs: &RuleInputs) -> Judged {
     if inputs.filter_curves.len() < 2 {
         return Judged::left_out();
@@ -121,7 +121,7 @@ pub fn band(inputs: &RuleInputs) -> Judged {
             sizes.iter().fold((f64::INFINITY, 0.0f64), |(low, high), &d| (low.min(d), high.max(d)));
         Some((percent, most / least))
     };
-    // Between two points of any of the curves the ratio has no extreme.
+    // Between two points of the curves the ratio has no extreme.
     let of_curve = |curve: &&Gradation| curve.points().into_iter().map(|point| point.percent);
     let percents = inputs.filter_curves.iter().flat_map(of_curve).chain(BAND);
     let within = percents.filter(|percent| (BAND[0]..=BAND[1]).contains(percent));

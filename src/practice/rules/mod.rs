@@ -1,7 +1,7 @@
-//! The rules of filter practice, applied to the same two curves and shown beside the verdict.
+//! Rules of filter practice, applied to the two curves of the walk and shown beside the verdict.
 //!
-//! One rule is one entry of [`RULES`]: its purpose, its soils, its limit and its source. A rule that lacks an
-//! input names it; a rule that was not made for these soils has no result.
+//! Each rule is an entry of [`RULES`]: its purpose, soils, limit and source. A rule that lacks an input
+//! names it; a rule that was not made for these soils has no result.
 
 mod all;
 mod drainage;
@@ -28,7 +28,7 @@ pub(crate) use open::{OpenBase, sieved_limit};
 pub use retention::{DESIGN_FLOOR_MM, range_of_tests, tested_range};
 pub use rule::{BaseSoil, FilterRule, RuleInputs, broad_base};
 
-/// Applies every rule.
+/// Applies all rules to these inputs.
 pub fn apply(inputs: &RuleInputs) -> Vec<AppliedRule> {
     let base = OpenBase::of(inputs.base, inputs.scale_free);
     let filter = OpenFilter::of(inputs.filter, inputs.filter_is_measured);
@@ -37,7 +37,7 @@ pub fn apply(inputs: &RuleInputs) -> Vec<AppliedRule> {
     RULES.iter().filter_map(applied).collect()
 }
 
-/// Author of a rule, as a sentence cites it; the rule's name if nobody is cited.
+/// Author of a rule as a sentence cites it; the rule's name if nobody is cited.
 pub fn authority(rule: &AppliedRule) -> &str {
     if rule.authority.is_empty() { &rule.name } else { &rule.authority }
 }
@@ -47,12 +47,12 @@ pub fn authority_in_brief(rule: &AppliedRule) -> &str {
     authority(rule).split(" (").next().unwrap_or_default()
 }
 
-/// A curve of a soil, with its name.
+/// Curve of a soil with its name.
 pub type NamedCurve = (String, Gradation);
 
-/// Applies every rule to the curves of a filter and of a base, at least one of each. The curves that keep a
-/// rule worst count, and the result names them. Also returns the places of the filter and of the base that
-/// keep the limit of design worst, and this base as practice describes it.
+/// Applies every rule to one or more curves of a filter and of a base. The curves that keep a rule worst
+/// count, and the result names them. Also returns the indices of the filter and of the base that keep the
+/// limit of design worst, and this base as practice describes it.
 pub(crate) fn apply_and_decide(
     bases: &[NamedCurve],
     filters: &[NamedCurve],
@@ -71,7 +71,7 @@ pub(crate) fn apply_and_decide(
         ..RuleInputs::with_soil(&bases[base].1, soils[base].clone(), &filters[filter].1)
     };
     let mut worst: Vec<Option<Worst>> = RULES.iter().map(|_| None).collect();
-    // Among equal results, names the finest base.
+    // Among equal results the finest base is named.
     let d85b = |base: &usize| soils[*base].gradation.d(85.0).unwrap_or(0.0);
     let mut finest_first: Vec<usize> = (0..bases.len()).collect();
     finest_first.sort_by(|a, b| d85b(a).total_cmp(&d85b(b)));
@@ -110,15 +110,15 @@ pub(crate) fn apply_and_decide(
     (RULES.iter().zip(worst).filter_map(named).collect(), at, soils.swap_remove(at[1]))
 }
 
-/// The worst result of a rule among curves.
+/// Worst result of a rule among curves.
 struct Worst {
     judged: Judged,
     margin: (u8, f64, f64),
-    /// The least limit of all pairs.
+    /// Lowest limit of all pairs.
     least: f64,
-    /// The filter that is coarsest without a finer part that it may lose: any curve may be delivered.
+    /// Coarsest remainder of any curve without its finer part: any curve may be delivered.
     lost: Option<WithoutFiner>,
-    /// Places of filter and base.
+    /// Indices of filter and base.
     at: [usize; 2],
 }
 
@@ -135,7 +135,7 @@ impl Worst {
         let both = [before.lost, lost].into_iter().flatten();
         before.least = before.least.min(limit);
         before.lost = both.max_by(|a, b| a.d15f.total_cmp(&b.d15f));
-        // Among equal results the coarser base, which comes later, is the one to drain.
+        // Among equal results the coarser base, which comes later, must be drained.
         if margin < before.margin
             || rule.at_least && rule.pairing == Pairing::EachPair && margin == before.margin
         {
@@ -147,7 +147,7 @@ impl Worst {
     fn into_judged(self, rule: &FilterRule) -> Judged {
         let Self { mut judged, least, lost, .. } = self;
         judged.without_finer = lost.or(judged.without_finer);
-        // If one curve leaves the limit open, it is no higher than another curve's limit.
+        // If one curve leaves the limit open, it is at most another curve's limit.
         let is_lower = judged.limit.is_some_and(|limit| least < limit);
         if judged.applies && judged.met.is_none() && is_lower && !rule.at_least {
             (judged.limit, judged.limit_at_most) = (Some(least), true);

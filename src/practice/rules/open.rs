@@ -1,10 +1,10 @@
-//! Rules for soils with sieves far apart: each rule is judged for every way in which the mass between two
-//! sieves may be spread, at the finer or at the coarser one.
+//! Rules for soils with widely spaced sieves: each rule is judged with the mass between two sieves placed
+//! at the finer or at the coarser one, in every combination.
 //!
-//! Up to [`WIDE_STEP`] the worst of these results counts. Beyond it, a rule whose answer depends on the step
-//! has no result. A rule of the filter's shape has no result on any such step: the mass that the filter loses
-//! is not known. Internal stability reads a straight line where next to nothing passes, because sieves of
-//! ASTM D448 stones lie that far apart there.
+//! Up to [`WIDE_STEP`] the worst of these results counts. Beyond it, a rule whose answer depends on the
+//! step has no result. A rule of the filter's shape has no result on any such step, since the mass that
+//! the filter loses is not known. Internal stability reads a straight line where next to nothing passes,
+//! because sieves of ASTM D448 stones are that far apart there.
 //!
 //! [`WIDE_STEP`]: voidwalk_core::gradation::WIDE_STEP
 
@@ -16,17 +16,17 @@ use crate::applied::RuleRole;
 use std::cmp::Ordering;
 use voidwalk_core::gradation::{End, Gradation, Step};
 
-/// Most steps of a curve that are spread one by one: the widest. The others all go to one end.
+/// Maximum number of steps spread one by one, the widest first. All others go to one end together.
 const MOST_STEPS: usize = 6;
 
-/// An open question of a table of sieves, with two ends.
+/// Open question of a sieve table, with two possible answers.
 #[derive(Clone, Copy, Debug)]
 enum Choice {
     /// Spread of the mass of a step of the filter.
     OfFilter(Step),
     /// Spread of the mass of a step of the base.
     OfBase(Step),
-    /// Reading of a flat part of the base as a gap, on which practice regrades, or not.
+    /// Reading of a flat part of the base as a gap to regrade on, or not.
     Gap,
 }
 
@@ -47,11 +47,11 @@ impl Choice {
     }
 }
 
-/// Every curve that a base may have, with the choices that the bits of its place make.
+/// All possible curves of a base; the bits of a curve's index are its choices.
 pub struct OpenBase {
     choices: Vec<Choice>,
     curves: Vec<(Gradation, BaseSoil)>,
-    /// Curves with the mass within a wide step instead of at its ends, with this step.
+    /// Curves with the mass inside a wide step instead of at its ends, and this step.
     hidden: Vec<(Gradation, BaseSoil, Step)>,
 }
 
@@ -99,13 +99,13 @@ impl OpenBase {
     }
 }
 
-/// Every curve that a filter may have.
+/// All possible curves of a filter.
 pub struct OpenFilter {
     steps: Vec<Step>,
     curves: Vec<Gradation>,
-    /// Curves with straight lines where next to nothing passes.
+    /// Curves read as straight lines where next to nothing passes.
     stable: Vec<Gradation>,
-    /// Curves with the mass within a wide step instead of at its ends, with this step.
+    /// Curves with the mass inside a wide step instead of at its ends, and this step.
     hidden: Vec<(Gradation, Step)>,
 }
 
@@ -121,7 +121,7 @@ impl OpenFilter {
     }
 }
 
-/// The widest steps, which are spread one by one.
+/// Widest steps, which are spread one by one.
 fn chosen(steps: &[Step]) -> Vec<Step> {
     let mut widest = steps.to_vec();
     widest.sort_by(|a, b| b.ratio().total_cmp(&a.ratio()));
@@ -130,8 +130,8 @@ fn chosen(steps: &[Step]) -> Vec<Step> {
     widest
 }
 
-/// Curves with the mass of one wide step anywhere but at its ends, and with the mass of the others straight,
-/// at their finer and at their coarser sieves.
+/// Curves with the mass of one wide step anywhere but at its ends, and the mass of the others straight,
+/// at their finer sieves and at their coarser sieves.
 fn hidden(curve: &Gradation, steps: &[Step], counts: impl Fn(&Step) -> bool) -> Vec<(Gradation, Step)> {
     let others = |step: Step| {
         let at = |end| {
@@ -157,9 +157,9 @@ fn hidden(curve: &Gradation, steps: &[Step], counts: impl Fn(&Step) -> bool) -> 
     steps.iter().filter(|step| step.is_wide() && counts(step)).flat_map(filled).collect()
 }
 
-/// Curves with the mass of each step at either end: bit `i` of a place is set if step `i` has it at its
-/// coarser sieve. Steps that are not spread one by one go with the last of those that are. Steps that are not
-/// read by their ends keep the straight line.
+/// Curves with the mass of each step at either end: bit `i` of an index is set if step `i` has its mass
+/// at the coarser sieve. Steps that are not spread one by one follow the last of those that are. Steps
+/// that are not read by their ends keep the straight line.
 fn spread(curve: &Gradation, steps: &[Step], by_ends: impl Fn(usize, &Step) -> bool) -> Vec<Gradation> {
     let chosen = chosen(steps);
     let end = |place: usize, step: &Step| {
@@ -174,7 +174,7 @@ fn spread(curve: &Gradation, steps: &[Step], by_ends: impl Fn(usize, &Step) -> b
     (0..1usize << chosen.len()).map(at).collect()
 }
 
-/// Judges one rule for two soils, with the open questions of their tables; `None` if nobody asked for it.
+/// Judges one rule for two soils and the open questions of their tables; `None` if it was not requested.
 pub fn judged_over(
     rule: &FilterRule,
     inputs: &RuleInputs,
@@ -217,7 +217,7 @@ fn is_broken(judged: Option<Judged>) -> bool {
     judged.is_some_and(|judged| judged.met == Some(false))
 }
 
-/// The widest step of a filter in which mass may lie so that it breaks a rule that both ends keep.
+/// Widest step of a filter in which mass may lie so that it breaks a rule that both ends keep.
 fn breaks_in_filter(
     rule: &FilterRule,
     inputs: &RuleInputs,
@@ -233,7 +233,7 @@ fn breaks_in_filter(
     widest(filter.hidden.iter().filter(breaks).map(|(_, step)| *step))
 }
 
-/// The widest step of a base in which mass may lie so that it breaks a rule that both ends keep.
+/// Widest step of a base in which mass may lie so that it breaks a rule that both ends keep.
 fn breaks_in_base(
     rule: &FilterRule,
     inputs: &RuleInputs,
@@ -254,7 +254,7 @@ fn breaks_in_base(
     widest(base.hidden.iter().filter(breaks).map(|(.., step)| *step))
 }
 
-/// The open step that contains D15F, and the filters with D15F at either end of it; without such a step, the
+/// Open step that contains D15F, and the filters with D15F at either end of it; without such a step, the
 /// filter itself.
 fn d15f_ends<'a>(filter: &'a Gradation, open: &'a OpenFilter) -> (Option<Step>, Vec<&'a Gradation>) {
     let encloses = |step: &Step| filter.d(15.0).is_some_and(|d15f| step.encloses(d15f));
@@ -265,7 +265,7 @@ fn d15f_ends<'a>(filter: &'a Gradation, open: &'a OpenFilter) -> (Option<Step>, 
     }
 }
 
-/// Turns a result that depends on a step into no result; the known facts about a base remain.
+/// Removes a result that depends on a step; the known facts about a base remain.
 fn left_open(plain: Judged, is_of_base: bool, needs: Option<RuleNote>) -> Judged {
     Judged {
         met: None,
@@ -280,7 +280,7 @@ fn left_open(plain: Judged, is_of_base: bool, needs: Option<RuleNote>) -> Judged
 
 type Over = Option<(Vec<Choice>, Vec<Judged>)>;
 
-/// Judges rules that read no more of the filter than D15F.
+/// Judges a rule that reads only D15F of the filter.
 fn of_pair(rule: &FilterRule, inputs: &RuleInputs, base: &OpenBase, filter: &OpenFilter) -> Over {
     let (step, filters) = d15f_ends(inputs.filter, filter);
     let choices: Vec<Choice> =
@@ -310,7 +310,7 @@ fn of_filter(rule: &FilterRule, inputs: &RuleInputs, filter: &OpenFilter) -> Ove
     Some((filter.steps.iter().map(|step| Choice::OfFilter(*step)).collect(), results.collect()))
 }
 
-/// Judges a rule of all filters at once: the finest of each beside the coarsest of each.
+/// Judges a rule of all filters at once, with the finest and the coarsest curve of each.
 fn of_filters(rule: &FilterRule, inputs: &RuleInputs) -> Over {
     let open: Vec<OpenFilter> =
         inputs.filter_curves.iter().map(|filter| OpenFilter::of(filter, true)).collect();
@@ -324,10 +324,10 @@ fn of_filters(rule: &FilterRule, inputs: &RuleInputs) -> Over {
     Some((vec![step], vec![judged(rule, inputs)?, apart]))
 }
 
-/// Class of a rule that is kept; a rule that was not made for the soils speaks as little against them.
+/// Class of a rule that is kept; a rule that was not made for the soils does not count against them.
 const MET: u8 = 2;
 
-/// Combines the results that the open choices allow; bit `i` of a place is choice `i`.
+/// Combines the results that the open choices allow; bit `i` of an index is choice `i`.
 fn combined(
     rule: &FilterRule,
     inputs: &RuleInputs,
@@ -343,16 +343,16 @@ fn combined(
     let is_of_shape = matches!(rule.role, RuleRole::Stability | RuleRole::Placing);
     let wide: Vec<usize> = (0..choices.len()).filter(|i| is_of_shape || choices[*i].is_wide()).collect();
     let mask = wide.iter().fold(0, |mask, i| mask | 1 << i);
-    // Over steps that are not wide, the worst counts.
+    // For steps that are not wide, the worst counts.
     let answer = |place: usize| {
         let same = places.clone().filter(|other| other & mask == place & mask);
         same.map(|other| class(&results[other])).min()
     };
     let flips = |i: &usize| places.clone().any(|place| answer(place) != answer(place ^ 1 << i));
     let moves = |i: &usize| places.clone().any(|place| is_moved(&results[place], &results[place ^ 1 << i]));
-    // The widest step is the one to be sieved first.
+    // The widest step should be sieved first.
     let width = |a: &usize, b: &usize| choices[*a].width().total_cmp(&choices[*b].width());
-    // Every end may break a rule that the straight line between them keeps.
+    // Both ends may break a rule that the straight line between them keeps.
     let breaks = |i: &usize| {
         choices[*i].is_wide() && class(&plain) == MET && results.iter().all(|judged| class(judged) == 0)
     };
@@ -361,13 +361,13 @@ fn combined(
         return left_open(plain, is_of_base, note(rule, inputs, choices[flips], &worst, &results));
     }
     let Some(moves) = (0..choices.len()).filter(moves).max_by(width) else { return plain };
-    // If all agree, numbers between sieves far apart come from the straight line.
+    // If all agree, numbers for widely spaced sieves come from the straight line.
     let is_plain = class(&plain) == class(&worst) && (choices[moves].is_wide() || !plain.applies);
     let lost = results.iter().chain([&plain]).filter_map(|judged| judged.without_finer);
     let lost = lost.max_by(|a, b| a.d15f.total_cmp(&b.d15f));
     let judged = if is_plain { plain } else { worst };
     let note = note(rule, inputs, choices[moves], &judged, &results);
-    // If one reading leaves the limit open, it is no higher than another reading's limit.
+    // If one reading leaves the limit open, the limit is at most that of another reading.
     let least = results.iter().filter_map(|judged| judged.limit).reduce(f64::min);
     let is_open = judged.met.is_none() && judged.limit_at_most && !rule.at_least && !is_plain;
     // A limit that is kept in every reading is stated by its strict end.
@@ -381,7 +381,7 @@ fn combined(
     Judged { without_finer, limit, ..judged }.noted(note)
 }
 
-/// True if two results differ in more than their last digits.
+/// True if two results differ by more than rounding.
 fn is_moved(here: &Judged, there: &Judged) -> bool {
     let apart = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => (a - b).abs() > 1e-6 * a.abs().max(b.abs()),
@@ -390,18 +390,18 @@ fn is_moved(here: &Judged, there: &Judged) -> bool {
     apart(here.value, there.value) || apart(here.limit, there.limit) || here.met != there.met
 }
 
-/// The limit of a rule of D15F over all readings that the table of a base leaves open.
+/// Limit of a rule of D15F over all readings that the table of a base leaves open.
 pub struct SievedLimit {
-    /// The strictest limit.
+    /// Strictest limit.
     pub strictest: f64,
-    /// The mildest limit.
+    /// Mildest limit.
     pub mildest: f64,
-    /// Sieves far apart that the limit depends on.
+    /// Widely spaced sieves that the limit depends on.
     pub depends_on: Option<RuleNote>,
 }
 
-/// The limit of a rule of D15F for a base in mm, with all that its table leaves `open`; `None` without a
-/// limit.
+/// Limit of a rule of D15F for a base in mm, over all readings that its table leaves `open`; `None`
+/// without a limit.
 pub fn sieved_limit(id: &str, base: &Gradation, open: &OpenBase, dispersive: bool) -> Option<SievedLimit> {
     let rule = RULES.iter().find(|rule| rule.id == id)?;
     let filter = Gradation::linear_from_dx(15.0, 1.0, 1.5).ok()?;

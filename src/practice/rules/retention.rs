@@ -1,22 +1,22 @@
-//! Rules by which a filter retains its base, the boundaries of coarser filters, an open joint beside the
-//! base, and checks of the walk itself.
+//! Rules by which a filter retains its base, boundaries of coarser filters, an open joint beside the
+//! base, and checks of the walk.
 
 use super::rule::{Fines, Judged, RuleInputs};
 use crate::RuleNote;
 use std::f64::consts::SQRT_2;
 use voidwalk_core::gradation::{FEW_FINES, FINES_MM};
 
-/// Largest D15F of a base with between `few` and `many` percent of fines: from 4 D85B down to 0.7 mm.
+/// Maximum D15F of a base with between `few` and `many` percent fines: from 4 D85B down to 0.7 mm.
 fn between(few: f64, many: f64, fines: f64, d85b: f64) -> f64 {
     (many - fines) / (many - few) * (4.0 * d85b - 0.7) + 0.7
 }
 
-/// A limit of D15F for a base with this percent of fines and this D85B.
+/// Limit of D15F for a base with this percent of fines and this D85B.
 #[derive(Clone, Copy)]
 enum Limit {
     /// The limit itself.
     Is(f64),
-    /// An upper bound of a limit that no source gives.
+    /// Upper bound of a limit that no source gives.
     AtMost(f64),
 }
 
@@ -28,7 +28,7 @@ impl Limit {
     }
 }
 
-/// Least value of the limit of design (mm): for fine clays 9 D85B is less.
+/// Minimum of the limit of design (mm): for fine clays 9 D85B is smaller.
 pub const DESIGN_FLOOR_MM: f64 = 0.2;
 
 /// Sherard and Dunnigan's limit of design; for a dispersive base, with the limits for dispersive soils.
@@ -64,7 +64,7 @@ pub fn no_erosion(inputs: &RuleInputs) -> Judged {
     by_fines(inputs, limit, false).noted(formula(inputs, 1.6, 35.0))
 }
 
-/// Note on the formula of a limit between few fines and the percent `until`, for a reader who checks it.
+/// Note on the formula of a limit between few fines and the percent `until`, so that it can be checked.
 fn formula(inputs: &RuleInputs, times: f64, until: f64) -> Option<RuleNote> {
     let Fines::Percent(fines) = inputs.fines() else { return None };
     let is_known = !inputs.dispersive && inputs.size_of_base(85.0).is_known;
@@ -72,7 +72,7 @@ fn formula(inputs: &RuleInputs, times: f64, until: f64) -> Option<RuleNote> {
     (is_known && is_between).then_some(RuleNote::ByFines(times, until, fines))
 }
 
-/// The range of D15F (mm) in which tests of bases with this percent of fines, after regrading, and this D85B
+/// Range of D15F (mm) in which tests of bases with this percent of fines, after regrading, and this D85B
 /// (mm) had their boundary of no erosion (Fell et al., Geotechnical Engineering of Dams, Table 9.2, after
 /// Foster 1999).
 pub fn range_of_tests(fines: f64, d85b: f64) -> [f64; 2] {
@@ -84,7 +84,7 @@ pub fn range_of_tests(fines: f64, d85b: f64) -> [f64; 2] {
     }
 }
 
-/// The range of tests for the base of these inputs; `None` for a dispersive base, which had other tests, and
+/// Range of tests for the base of these inputs; `None` for a dispersive base, which had other tests, and
 /// if fines, D85B or the unit of sizes are not known.
 pub fn tested_range(inputs: &RuleInputs) -> Option<[f64; 2]> {
     let d85b = inputs.size_of_base(85.0);
@@ -96,10 +96,10 @@ pub fn tested_range(inputs: &RuleInputs) -> Option<[f64; 2]> {
     (d85b.is_known && !inputs.dispersive).then(|| range_of_tests(fines, d85b.most))
 }
 
-/// A limit of D15F that follows from fines and D85B of the regraded base.
+/// Limit of D15F that follows from fines and D85B of the regraded base.
 ///
-/// An unknown never hides a failure: if the limit itself is not known, its upper bound is used, and a filter
-/// beyond the bound breaks the rule whatever a test of the soil may show.
+/// An unknown never hides a failure: if the limit itself is not known, its upper bound is used, and a
+/// filter beyond the bound breaks the rule for any result of a soil test.
 fn by_fines(inputs: &RuleInputs, limit: impl Fn(f64, f64) -> Limit, says_category: bool) -> Judged {
     let (d15f, d85b) = (inputs.coarse_d15f(), inputs.size_of_base(85.0));
     let known = match inputs.fines() {
@@ -135,7 +135,7 @@ fn by_fines(inputs: &RuleInputs, limit: impl Fn(f64, f64) -> Limit, says_categor
     }
 }
 
-/// The greatest possible limit with unknown fines. D85B of a base that is nearly all fines is itself within
+/// Maximum possible limit with unknown fines. D85B of a base that is nearly all fines is itself within
 /// the fines.
 fn whatever_its_fines(limit: &impl Fn(f64, f64) -> Limit, d85b: f64) -> f64 {
     let most = |fines: u32| {
@@ -145,7 +145,7 @@ fn whatever_its_fines(limit: &impl Fn(f64, f64) -> Limit, d85b: f64) -> f64 {
     (0..=100).map(most).fold(0.0, f64::max)
 }
 
-/// Note on a base that was read as another than it is.
+/// Note on a base that was not read as sampled.
 fn base_as_read(inputs: &RuleInputs) -> Option<RuleNote> {
     match inputs.fines() {
         Fines::Assumed => Some(RuleNote::TakenAsSand),
@@ -166,12 +166,12 @@ pub fn terzaghi(inputs: &RuleInputs) -> Judged {
     }
 }
 
-/// The D95B (mm) up to which tests of bases with 15 to 85 % fines found a clear boundary of continuing
+/// D95B (mm) up to which tests of bases with 15 to 85 % fines found a clear boundary of continuing
 /// erosion.
 const CLEAR_TO_MM: f64 = 2.0;
 
-/// Foster and Fell's boundary of continuing erosion. If their tests found no clear boundary, it is no limit
-/// to keep; if nobody knows whether they did, it has no result. Beyond it, the rule is broken in both cases.
+/// Foster and Fell's boundary of continuing erosion. It is no limit if their tests found no clear boundary,
+/// and has no result if this is not known. Beyond it, the rule is broken in both cases.
 pub fn continuing(inputs: &RuleInputs) -> Judged {
     let (d15f, d95b) = (inputs.coarse_d15f(), inputs.size_of_base(95.0));
     let judged = Judged::of(d15f, Some(9.0 * d95b.most));
@@ -203,13 +203,13 @@ fn is_without_erosion(inputs: &RuleInputs) -> bool {
     !judged.limit_at_most && judged.value.zip(judged.limit).is_some_and(|(d15f, limit)| d15f <= limit)
 }
 
-/// Width of the joint over D95B, and the probability of continuing erosion.
+/// Width of the joint over D95B, and probability of continuing erosion.
 const PROBABILITY: [(f64, f64); 5] = [(0.5, 0.0001), (0.75, 0.001), (1.0, 0.1), (2.0, 0.5), (3.0, 0.9)];
 
 /// Below this ratio the probability is 0.
 const CLOSED: f64 = 0.4;
 
-/// The probability of continuing erosion into a joint, if a joint is given.
+/// Probability of continuing erosion into a joint, if a joint is given.
 pub fn constricted(inputs: &RuleInputs) -> Judged {
     let Some(joint) = inputs.joint_mm else { return Judged::left_out() };
     let Some(d95b) = inputs.base_soil.gradation.d(95.0) else {
@@ -222,8 +222,8 @@ pub fn constricted(inputs: &RuleInputs) -> Judged {
     if share.is_none() { judged.noted(RuleNote::LessThanSource) } else { judged }
 }
 
-/// Probability (0 to 1) of continuing erosion at this width over D95B: straight between the table's points in
-/// the ratio, on the scale of a normal variate. `None` means more than 0 and less than 0.0001.
+/// Probability (0 to 1) of continuing erosion at this width over D95B: straight between the table's
+/// points in the ratio, on the scale of a normal variate. `None` means above 0 and below 0.0001.
 fn probability(ratio: f64) -> Option<f64> {
     let [first, .., last] = PROBABILITY;
     if ratio < CLOSED {
@@ -245,12 +245,12 @@ fn probability(ratio: f64) -> Option<f64> {
     Some(below(from + share * (to - from)))
 }
 
-/// Share of a normal distribution below `z`.
+/// Fraction of a normal distribution below `z`.
 fn below(z: f64) -> f64 {
     0.5 * libm::erfc(-z / SQRT_2)
 }
 
-/// The `z` that this share of a normal distribution lies below.
+/// Quantile `z` of a normal distribution at this fraction.
 fn variate(share: f64) -> f64 {
     let (mut low, mut high) = (-10.0, 10.0);
     for _ in 0..80 {
@@ -270,7 +270,7 @@ const FAR_FINER: f64 = 0.1;
 pub fn largest_passing(inputs: &RuleInputs) -> Judged {
     let value = inputs.largest_eroded_over_d15f;
     let judged = Judged { applies: value.is_some(), ..Judged::of(value, Some(KENNEY)) };
-    // If all of the base is that fine, its size says nothing about the openings.
+    // If the whole base is that fine, its size says nothing about the openings.
     let is_far = |share: f64| share < FAR_FINER * KENNEY;
     let coarsest = inputs.d15f().map(|d15f| inputs.walked_base.largest_mm() / d15f);
     let is_held_back = coarsest.is_some_and(|share| !is_far(share));
@@ -283,7 +283,7 @@ pub fn largest_passing(inputs: &RuleInputs) -> Judged {
     }
 }
 
-/// A boundary of the paper: the most D15F over a size of the walked base.
+/// Boundary of the paper: maximum D15F over a size of the base as walked.
 pub fn paper(inputs: &RuleInputs, percent: f64, limit: f64) -> Judged {
     let value = inputs.d15f().zip(inputs.walked_base.d(percent)).map(|(d15f, size)| d15f / size);
     Judged::of(value, Some(limit)).noted(RuleNote::ResultOfModel)
@@ -310,8 +310,8 @@ mod tests {
         assert_eq!((probability(0.4), probability(0.49)), (None, None));
     }
 
-    /// By tables of the normal distribution: z(0.001) = -3.0902, z(0.1) = -1.2816, z(0.5) = 0, z(0.9) =
-    /// 1.2816; half-way -2.1859 (0.01441), -0.6408 (0.26083), 0.6408 (0.73917).
+    /// Tables of the normal distribution give z(0.001) = -3.0902, z(0.1) = -1.2816, z(0.5) = 0 and
+    /// z(0.9) = 1.2816; half-way -2.1859 (0.01441), -0.6408 (0.26083), 0.6408 (0.73917).
     #[test]
     fn between_its_points_the_variate_is_straight() {
         for (ratio, by_hand) in [(0.875, 0.01441), (1.5, 0.26083), (2.5, 0.73917)] {

@@ -1,4 +1,4 @@
-//! A rule, its inputs and its result, and the base as practice describes it.
+//! Rule, its inputs and its result, and the base as practice describes it.
 
 use crate::{Note, RuleNote, RuleQuantity, RuleRole, RuleUnit, ValueBound, WithoutFiner};
 use voidwalk_core::gradation::{
@@ -19,14 +19,14 @@ pub struct FilterRule {
     pub role: RuleRole,
     /// Soils that the rule was made for.
     pub applies_to: &'static str,
-    /// Quantity that the rule limits. A rule of retention also limits a design if [`RuleQuantity`] has a case
-    /// for it.
+    /// Quantity that the rule limits. A rule of retention also limits a design if [`RuleQuantity`] has a
+    /// variant for its quantity.
     pub quantity: RuleQuantity,
     /// Limit in words.
     pub formula: &'static str,
-    /// True if the limit is the least allowed, false if it is the most.
+    /// True if the limit is a minimum, false if it is a maximum.
     pub at_least: bool,
-    /// Unit of value and limit; sizes in mm also mean multiples of D0F.
+    /// Unit of value and limit; mm also means multiples of D0F.
     pub unit: RuleUnit,
     /// Source of the rule.
     pub source: &'static str,
@@ -35,7 +35,7 @@ pub struct FilterRule {
 }
 
 impl FilterRule {
-    /// Name for a reader: author and statement.
+    /// Name for readers: author and statement.
     pub fn name(&self) -> String {
         match self.authority {
             "" => self.says.into(),
@@ -49,7 +49,7 @@ impl FilterRule {
 pub(super) enum Pairing {
     /// Every curve of the filter with every curve of the base; the worst pair counts.
     EachPair,
-    /// Every curve of the filter; the worst of them counts.
+    /// Every curve of the filter; the worst one counts.
     EachFilter,
     /// All curves of the filter at once.
     AllFilters,
@@ -64,21 +64,21 @@ pub(super) struct Judged {
     /// Side on which the true value lies, if the value is a bound.
     pub value_bound: Option<ValueBound>,
     pub limit: Option<f64>,
-    /// True if the true limit is not known, and is at most `limit`.
+    /// True if the limit is not known exactly and is at most `limit`.
     pub limit_at_most: bool,
-    /// Result, if it does not follow from value and limit.
+    /// Result if it does not follow from value and limit.
     pub met: Option<bool>,
-    /// Input that is missing for a result.
+    /// Input missing for a result.
     pub needs: Option<RuleNote>,
     pub notes: Vec<RuleNote>,
-    /// Remainder of the filter without the greatest part that it may lose by this rule.
+    /// Remainder of the filter without the largest part that it may lose by this rule.
     pub without_finer: Option<WithoutFiner>,
-    /// True if nobody asked for the rule: it is not listed.
+    /// True if the rule was not requested; it is not listed.
     pub is_left_out: bool,
 }
 
 impl Judged {
-    /// A rule that applies, with its value and limit if they are known.
+    /// Rule that applies, with its value and limit if known.
     pub fn of(value: Option<f64>, limit: Option<f64>) -> Self {
         Self { applies: true, value, limit, ..Self::default() }
     }
@@ -103,7 +103,7 @@ impl Judged {
         Self { applies: false, notes: vec![why], ..self }
     }
 
-    /// A rule that nobody asked for.
+    /// Rule that was not requested.
     pub fn left_out() -> Self {
         Self { is_left_out: true, ..Self::default() }
     }
@@ -116,7 +116,7 @@ impl Judged {
 
 /// Inputs of the rules.
 pub struct RuleInputs<'a> {
-    /// The filter.
+    /// Gradation of the filter.
     pub filter: &'a Gradation,
     /// True for a sieve curve of the filter, false for an assumed straight line.
     pub filter_is_measured: bool,
@@ -134,18 +134,18 @@ pub struct RuleInputs<'a> {
     pub dispersive: bool,
     /// Width of an open joint at the exit (mm), if one is given.
     pub joint_mm: Option<f64>,
-    /// Largest particle eroded in the first run over D15F, mean over replicates; `None` if nothing eroded, or
-    /// nothing was walked.
+    /// Largest particle eroded in the first run over D15F, mean over replicates; `None` if nothing eroded
+    /// or no walk was made.
     pub largest_eroded_over_d15f: Option<f64>,
 }
 
 impl<'a> RuleInputs<'a> {
-    /// Inputs of two sieve curves in mm, without a walk.
+    /// Inputs for two sieve curves in mm, without a walk.
     pub fn of_soils(base: &'a Gradation, filter: &'a Gradation) -> Self {
         Self::with_soil(base, BaseSoil::of(base, false), filter)
     }
 
-    /// Inputs of a base that has already been described.
+    /// Inputs for a base that was already described.
     pub(crate) fn with_soil(base: &'a Gradation, base_soil: BaseSoil, filter: &'a Gradation) -> Self {
         Self {
             filter,
@@ -161,12 +161,12 @@ impl<'a> RuleInputs<'a> {
         }
     }
 
-    /// Copies the inputs, for changes.
+    /// Copies the inputs so that fields can be replaced.
     pub(super) fn same(&self) -> RuleInputs<'_> {
         RuleInputs { filter_curves: self.filter_curves.clone(), base_soil: self.base_soil.clone(), ..*self }
     }
 
-    /// D15 of the filter for a rule that it may not exceed: the coarse end of a flat curve.
+    /// D15 of the filter for a rule that sets its maximum: the coarse end of a flat curve.
     pub(super) fn coarse_d15f(&self) -> Option<f64> {
         self.filter.coarse_d(15.0)
     }
@@ -175,8 +175,8 @@ impl<'a> RuleInputs<'a> {
         self.filter.d(15.0)
     }
 
-    /// A size of the base after regrading, or the greatest that it can be if it lies in the finest tail or if
-    /// the part that practice looks at does.
+    /// Size of the base after regrading, or its upper bound if the size is finer than the finest sieve or
+    /// no sieve lies in the part that practice uses.
     pub(crate) fn size_of_base(&self, percent: f64) -> SizeBound {
         let soil = &self.base_soil;
         match (soil.hidden_below_mm, soil.gradation.d(percent)) {
@@ -186,7 +186,7 @@ impl<'a> RuleInputs<'a> {
         }
     }
 
-    /// Fines of the base; sizes without a unit belong to a sand without fines.
+    /// Fines of the base; a base whose sizes have no unit is taken as a sand without fines.
     pub(super) fn fines(&self) -> Fines {
         match (self.scale_free, self.base_soil.fines_percent) {
             (true, _) => Fines::Assumed,
@@ -197,7 +197,7 @@ impl<'a> RuleInputs<'a> {
     }
 }
 
-/// A size of a base, or the greatest that it can be.
+/// Size of a base, or its upper bound.
 pub(crate) struct SizeBound {
     pub most: f64,
     pub is_known: bool,
@@ -205,17 +205,17 @@ pub(crate) struct SizeBound {
 
 /// Knowledge of the fines of a base.
 pub(super) enum Fines {
-    /// Fines (%).
+    /// Fines in percent.
     Percent(f64),
-    /// Less than 15 %, the exact percent being unknown.
+    /// Less than 15 %; the exact percent is not known.
     Few,
     /// Sizes have no unit: a sand without fines is assumed.
     Assumed,
-    /// Not known: the finest sieve is too coarse.
+    /// The finest sieve is too coarse to give the fines.
     Unknown,
 }
 
-/// Margin by which a rule is kept, the worst first.
+/// Margin by which a rule is kept, worst first.
 pub(super) fn margin(rule: &FilterRule, judged: &Judged) -> (u8, f64, f64) {
     // A boundary of erosion that tests did not identify excludes less than one that is not reached.
     let is_open = judged.applies || judged.needs.is_some() || rule.role == RuleRole::Continuation;
@@ -234,7 +234,7 @@ pub(super) fn margin(rule: &FilterRule, judged: &Judged) -> (u8, f64, f64) {
     (class, over, judged.limit.filter(|_| !rule.at_least).unwrap_or(f64::INFINITY))
 }
 
-/// Judges one rule; `None` if nobody asked for it.
+/// Judges one rule; `None` if it was not requested.
 pub(super) fn judged(rule: &FilterRule, inputs: &RuleInputs) -> Option<Judged> {
     let judged = (rule.judge)(inputs);
     if judged.is_left_out {
@@ -245,7 +245,7 @@ pub(super) fn judged(rule: &FilterRule, inputs: &RuleInputs) -> Option<Judged> {
         false => value <= limit * (1.0 + TIE),
     };
     let met = judged.met.or_else(|| judged.value.zip(judged.limit).map(keeps));
-    // A limit that can only be less is certainly broken, or certainly kept if it is the least allowed.
+    // A broken upper bound of a maximum, or a kept upper bound of a minimum, settles the result.
     let met = met.filter(|met| !judged.limit_at_most || *met == rule.at_least || judged.met.is_some());
     let value_bound = judged.value_bound.filter(|_| judged.value.is_some());
     // A value that is only a bound decides if the bound itself meets or breaks the limit.
@@ -264,19 +264,19 @@ pub struct BaseSoil {
     pub regraded_at_mm: Option<f64>,
     /// Reason for regrading or not.
     pub why: RegradeReason,
-    /// Size (mm) below which practice looks at the soil, if no sieve gives the sizes there: they are at most
-    /// this.
+    /// Size (mm) below which practice uses the soil, if no sieve gives the sizes there; it is their upper
+    /// bound.
     pub hidden_below_mm: Option<f64>,
     /// Percent finer than 0.075 mm after regrading; `None` if the finest sieve is coarser and leaves a tail.
     pub fines_percent: Option<f64>,
-    /// Category of NRCS after regrading, 1 to 4: more than 85 %, 40 to 85 %, 15 to 40 %, less than 15 %
+    /// NRCS category after regrading, 1 to 4: more than 85 %, 40 to 85 %, 15 to 40 %, less than 15 %
     /// fines; `None` if the fines are not known closely enough.
     pub category: Option<u8>,
 }
 
 impl BaseSoil {
-    /// Describes a base. Sizes that are multiples of D0F have no No. 4 and no No. 200 sieve: such a base
-    /// remains as it is, without a category. Others are regraded by [`Gradation::regraded`].
+    /// Describes a base. If sizes are multiples of D0F there is no No. 4 or No. 200 sieve, so the base is
+    /// kept as sampled, without a category. Other bases are regraded by [`Gradation::regraded`].
     pub fn of(base: &Gradation, scale_free: bool) -> Self {
         if scale_free {
             return Self {
@@ -291,7 +291,7 @@ impl BaseSoil {
         Self::regraded(base.regraded())
     }
 
-    /// Describes a base regraded like another curve of it, and, for a flat curve, the other reading.
+    /// Describes a base regraded like another of its curves and, for a flat curve, also the other reading.
     pub(super) fn both(base: &Gradation, as_of: &Gradation) -> (Self, Option<Self>) {
         let otherwise = base.regraded_otherwise(as_of).map(Self::regraded);
         (Self::regraded(base.regraded_as(as_of)), otherwise)
@@ -318,14 +318,14 @@ impl BaseSoil {
     }
 }
 
-/// A percent without last digits that depend on how its curve was written.
+/// Rounds a percent to remove last digits that depend on how its curve was written.
 fn whole(percent: f64) -> f64 {
     let whole = percent.round();
     if (percent - whole).abs() <= 100.0 * TIE { whole } else { percent }
 }
 
-/// Cautions that a base is so broad as sampled that practice looks at its finer part alone. If D10 is finer
-/// than the finest sieve, its Cu is greater than with D10 at that sieve.
+/// Caution that a base is so broad as sampled that practice uses only its finer part. If D10 is finer
+/// than the finest sieve, Cu is greater than with D10 at that sieve.
 pub fn broad_base(sampled: &Gradation) -> Option<Note> {
     match sampled.cu() {
         Some(cu) => (cu >= BROAD_CU).then_some(Note::BroadBase { cu }),
@@ -344,14 +344,14 @@ mod tests {
         BaseSoil::of(&Gradation::from_lines(points).unwrap(), false)
     }
 
-    /// The till of the first trial: 35 % finer than 0.075 mm of the whole, 92 % finer than 4.75 mm.
+    /// The till of the first trial: 35 % of the whole is finer than 0.075 mm, 92 % finer than 4.75 mm.
     #[test]
     fn fines_are_those_of_the_regraded_base() {
         let till = soil(&[(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)]);
         assert_eq!(till.regraded_at_mm, Some(4.75));
         assert!((till.fines_percent.unwrap() - 35.0 / 0.92).abs() < 1e-9);
         assert_eq!(till.category, Some(3));
-        // 12 % of the 80 % that pass No. 4 are 15 %: too many to count as few for certain.
+        // 12 % of the 80 % that pass No. 4 is 15 %: too many to count as few with certainty.
         let tail = soil(&[(0.3, 12.0), (1.0, 40.0), (4.75, 80.0), (9.5, 100.0)]);
         assert_eq!((tail.fines_percent, tail.category), (None, None));
     }

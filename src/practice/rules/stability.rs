@@ -7,10 +7,10 @@ use voidwalk_core::gradation::{BROAD_CU, FINES_MM, Gradation, KEZDI_RANGE, Shape
 /// Limit of Kezdi's ratio.
 const KEZDI: f64 = 4.0;
 
-/// Percent below the finest sieve from which an index of the rest of the curve is only a bound.
+/// Percent finer than the finest sieve above which an index of the rest of the curve is only a bound.
 pub(super) const MOST_HIDDEN_PERCENT: f64 = 5.0;
 
-/// Kezdi's ratio over sensible splits.
+/// Kezdi's ratio over the range of splits that is judged.
 pub fn kezdi(inputs: &RuleInputs) -> Judged {
     let filter = inputs.filter;
     let [from, to] = KEZDI_RANGE.map(|of_fine_d85| of_fine_d85 / 0.85);
@@ -22,16 +22,16 @@ pub fn kezdi(inputs: &RuleInputs) -> Judged {
         [Some(at), Some(RuleNote::KezdiSplits(from, to)), hidden].into_iter().flatten().collect()
     });
     let judged = index(inputs, KEZDI, worst.map(|split| split.value), notes.unwrap_or_default());
-    // The part that may be lost is the greatest part that the rest does not hold, rather than the part of the
-    // worst ratio; if no such part may lie loose, the part of the worst ratio.
+    // The part that may be lost is the largest one that the rest does not hold, not the one with the
+    // worst ratio. If no such part can lie loose, the one with the worst ratio counts.
     let lost = worst.map(|worst| filter.greatest_split_above(KEZDI, WIDE_LOOSE_PERCENT).unwrap_or(worst));
     let left = lost.map(|split| WithoutFiner { percent: split.percent, d15f: split.coarse_d15_mm });
     let judged = Judged { without_finer: left, ..judged };
-    // The hidden part may have a greater ratio.
+    // The part below the finest sieve may have a greater ratio.
     if tail > KEZDI_RANGE[0] { judged.bound(ValueBound::AtLeast) } else { judged }
 }
 
-/// An index of the shape curve: Kenney and Lau's, or Li and Fannin's, which is Kezdi's and theirs together.
+/// Index of the shape curve: Kenney and Lau's, or Li and Fannin's, which combines theirs and Kezdi's.
 pub fn shape(inputs: &RuleInputs, index_of: fn(&Gradation) -> Option<ShapeIndex>) -> Judged {
     let (filter, shape) = (inputs.filter, index_of(inputs.filter));
     let most = filter.loose_percent().unwrap_or(f64::NAN);
@@ -42,7 +42,7 @@ pub fn shape(inputs: &RuleInputs, index_of: fn(&Gradation) -> Option<ShapeIndex>
     let judged = index(inputs, 1.0, shape.map(|shape| shape.value), shape.map(at_f).into_iter().collect());
     let left = shape.and_then(|shape| without(filter, shape.lost_percent?));
     let judged = Judged { without_finer: left, ..judged };
-    // Below the finest sieve the index may be less.
+    // Below the finest sieve the index may be smaller.
     let is_hidden = 100.0 * filter.pan_fraction() > MOST_HIDDEN_PERCENT;
     if is_hidden { judged.bound(ValueBound::AtMost) } else { judged }
 }
@@ -52,7 +52,7 @@ fn without(filter: &Gradation, percent: f64) -> Option<WithoutFiner> {
     Some(WithoutFiner { percent, d15f: filter.d(percent + 0.15 * (100.0 - percent))? })
 }
 
-/// An index of the filter's shape, and its place.
+/// Result of an index of the filter's shape, with its notes.
 fn index(inputs: &RuleInputs, limit: f64, value: Option<f64>, notes: Vec<RuleNote>) -> Judged {
     let lacking = |needs| Judged::of(None, Some(limit)).lacking(needs);
     if !inputs.filter_is_measured {
@@ -69,9 +69,9 @@ fn is_uniform(filter: &Gradation) -> bool {
     filter.cu().is_some_and(|cu| cu < BROAD_CU) && filter.gap(0.0).is_none()
 }
 
-/// Burenkova's range of uniformity, for soils like those on which Wan and Fell judged it. They found no clear
-/// boundary, and uniform stones without fines to lose lie below it. Above it her own zone III is suffusive
-/// too; Wan and Fell tested no soil there, and expect such soils to be stable.
+/// Burenkova's range of uniformity, for soils like those on which Wan and Fell assessed it. They found no
+/// clear boundary, and uniform stones without fines to lose lie below it. Above it her own zone III is
+/// also suffusive; Wan and Fell tested no soil there and expect such soils to be stable.
 pub fn burenkova(inputs: &RuleInputs) -> Judged {
     let filter = inputs.filter;
     if !inputs.filter_is_measured {
@@ -96,7 +96,7 @@ pub fn burenkova(inputs: &RuleInputs) -> Judged {
     }
 }
 
-/// Wan and Fell's probability of instability. They state contours and no limit.
+/// Wan and Fell's probability of instability, given as contours without a limit.
 pub fn wan_fell(inputs: &RuleInputs) -> Judged {
     let filter = inputs.filter;
     if !inputs.filter_is_measured || inputs.scale_free {
@@ -136,8 +136,8 @@ mod tests {
         assert_eq!(rule.quantity.to_string(), format!("D'15/d'85, split at {from:.1} to {to:.1} %"));
     }
 
-    /// The gap-graded filter of the first trial: 40 % below 0.5 mm, nothing to 5 mm. And one at which Kenney
-    /// and Lau look: 15 % below the gap.
+    /// The gap-graded filter of the first trial: 40 % below 0.5 mm, nothing up to 5 mm. Also a filter
+    /// with 15 % below the gap, a percent that Kenney and Lau judge.
     #[test]
     fn internal_stability_by_hand() {
         let soil = base(5.0, 0.5);
@@ -145,8 +145,8 @@ mod tests {
         // From F = 25 % the next 15 % end beyond the gap: 5 mm over D25 = 0.1 x 5^(25/40).
         let rule = applied("kezdi", &gap, &soil);
         assert!(close(rule.value, 50.0 / 5.0f64.powf(0.625)) && rule.met == Some(false), "{rule:?}");
-        // The ratio belongs to a split at 25/0.85 = 29.4 % finer: D40 above the gap over D25 below it. Splits
-        // at 15/0.85 to 55/0.85 % finer are judged.
+        // The ratio belongs to a split at 25/0.85 = 29.4 % finer: D40 above the gap over D25 below it.
+        // Splits from 15/0.85 to 55/0.85 % finer are judged.
         let [RuleNote::KezdiAt(split, coarse, fine), RuleNote::KezdiSplits(from, to)] = rule.notes[..] else {
             panic!("{rule:?}")
         };
@@ -205,21 +205,22 @@ mod tests {
         let by_hand = 100.0 / (1.0 + (-3.004f64).exp());
         assert!(rule.value.is_some_and(|value| (value - by_hand).abs() < 1e-6), "{rule:?}");
         assert!(rule.met.is_none() && rule.limit.is_none() && rule.applies && rule.unit == RuleUnit::Percent);
-        // Wan and Fell did not test uniform sand; nor No. 78 stone, which Burenkova's range would blame.
+        // Wan and Fell tested neither uniform sand nor No. 78 stone, which Burenkova's range would reject.
         let uniform = curve(&[(1.0, 0.0), (2.25, 100.0)]);
         assert!(!applied("wan-fell", &uniform, &soil).applies);
         let stone =
             curve(&[(1.18, 2.5), (2.36, 5.0), (4.75, 15.0), (9.5, 57.5), (12.5, 95.0), (19.0, 100.0)]);
         let rule = applied("burenkova", &stone, &soil);
         assert!(rule.value < rule.limit && !rule.applies && rule.met.is_none(), "{rule:?}");
-        // A long coarse tail: her third zone has no result.
+        // A long coarse tail lies in her third zone, which has no result.
         let tailed = curve(&[(0.05, 0.0), (0.1, 5.0), (1.0, 15.0), (2.5, 60.0), (19.0, 90.0), (30.0, 100.0)]);
         let rule = applied("burenkova", &tailed, &soil);
         assert!(!rule.applies && rule.met.is_none(), "{rule:?}");
         assert!(rule.notes.iter().any(|note| matches!(note, RuleNote::BurenkovaThirdZone(_))), "{rule:?}");
     }
 
-    /// Kezdi's ratio is above 4 at the splits of 1 % and 100 % of an ordinary filter, which is no alarm.
+    /// Kezdi's ratio exceeds 4 at splits of 1 % and 100 % of an ordinary filter, which is no reason for
+    /// concern.
     #[test]
     fn the_ends_of_an_ordinary_filter_raise_no_alarm() {
         let filter = curve(&[(0.075, 0.5), (0.3, 2.0), (0.6, 10.0), (1.2, 40.0), (4.0, 100.0)]);
@@ -236,8 +237,8 @@ mod tests {
         }
     }
 
-    /// Half of what passes between the two sieves of a filter at each of them is a gap, though neither end
-    /// is.
+    /// Half of the mass between two sieves of a filter, placed at each of them, makes a gap, though all
+    /// of it at either end does not.
     #[test]
     fn a_step_that_may_hide_a_gap_leaves_stability_open() {
         let of_rows = |rows: &[(f64, f64)]| Gradation::from_points(rows, None).unwrap();
@@ -246,7 +247,7 @@ mod tests {
         let open = applied("kezdi", &two_sieves, &silt);
         assert_eq!((open.met, open.value), (None, None), "{open:?}");
         assert_eq!(open.needs, [RuleNote::FilterBetween(0.3, 38.0)]);
-        // With sieves between it is stable by Kézdi, and with a gap there it is not.
+        // With sieves between, the filter is stable by Kézdi, and with a gap there it is not.
         let line =
             [(0.3, 12.0), (0.75, 28.7), (1.9, 45.5), (4.75, 62.2), (9.5, 74.8), (19.0, 87.4), (38.0, 100.0)];
         let straight = of_rows(&line);
@@ -260,7 +261,7 @@ mod tests {
         assert_eq!(applied("kezdi", &stone, &silt).met, Some(true));
     }
 
-    /// With 20 % below the finest sieve no split at 17.6 % is judged: the hidden part may be worse.
+    /// With 20 % below the finest sieve, no split at 17.6 % is judged: the hidden part may be worse.
     #[test]
     fn what_the_finest_part_hides_is_not_met() {
         let [narrow, gap] =
@@ -291,7 +292,7 @@ mod tests {
         assert!(matches!(whole.notes[..], [RuleNote::ShapeAt(..)]), "{whole:?}");
     }
 
-    /// In a band, the curve with the coarsest remainder counts, whichever has the worst index.
+    /// In a band, the curve with the coarsest remainder counts, even if another has the worst index.
     #[test]
     fn what_is_left_of_a_band_is_that_of_its_coarsest_curve() {
         let gap = |scale: f64, fines: f64| {

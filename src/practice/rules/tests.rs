@@ -1,4 +1,4 @@
-//! Each rule against an example worked by hand; formulas come from the source that the table names.
+//! Each rule against an example calculated by hand; formulas come from the source that the table names.
 
 use super::*;
 use crate::test_soils::{SAND, curve, soil};
@@ -10,12 +10,12 @@ pub(super) fn applied(id: &str, filter: &Gradation, base: &Gradation) -> Applied
     rules.into_iter().find(|rule| rule.id == id).unwrap()
 }
 
-/// A filter with this D15, of Cu 1.5.
+/// Filter with this D15 and a Cu of 1.5.
 pub(super) fn filter(d15: f64) -> Gradation {
     Gradation::linear_from_dx(15.0, d15, 1.5).unwrap()
 }
 
-/// A base with `fines` percent finer than 0.075 mm and this D85.
+/// Base with `fines` percent finer than 0.075 mm and this D85.
 pub(super) fn base(fines: f64, d85: f64) -> Gradation {
     match fines < 85.0 {
         true => curve(&[(0.001, 0.0), (0.075, fines), (d85, 85.0), (4.0, 100.0)]),
@@ -27,7 +27,7 @@ pub(super) fn close(value: Option<f64>, expected: f64) -> bool {
     value.is_some_and(|value| (value - expected).abs() < 1e-9)
 }
 
-/// A rule of a band of filters beside a sand.
+/// Applies a rule to a band of filters and a sand.
 pub(super) fn of_band(id: &str, filters: &[&[(f64, f64)]]) -> AppliedRule {
     let filters: Vec<NamedCurve> = filters.iter().map(|points| ("filter".into(), curve(points))).collect();
     apply_and_decide(&soil(&SAND), &filters, false, None).0.into_iter().find(|rule| rule.id == id).unwrap()
@@ -70,7 +70,7 @@ fn foster_and_fell_no_erosion_by_hand_in_each_group() {
     }
 }
 
-/// A reader finds both limits from the notes and D85B: 1.09 and 1.69 mm for a sand with 22 % fines.
+/// The notes and D85B give both limits: 1.09 and 1.69 mm for a sand with 22 % fines.
 #[test]
 fn limits_by_fines_say_how_they_are_worked_out() {
     let by_fines = |id: &str, fines: f64| {
@@ -102,9 +102,9 @@ fn continuing_erosion_is_nine_d95_of_the_regraded_base() {
         let rule = applied("foster-fell-continuing", &filter(d15f), &soil);
         assert!(close(rule.limit, limit) && rule.met == Some(met), "{rule:?}");
     }
-    // With gravel the base is regraded: D95 of what passes No. 4, not of all.
+    // With gravel the base is regraded: D95 is of the part that passes No. 4.
     let gravelly = curve(&[(0.01, 0.0), (0.075, 30.0), (1.0, 60.0), (4.75, 80.0), (50.0, 100.0)]);
-    // D95B after regrading is 3.48 mm, with 37.5 % fines: tests found no clear boundary, so it is no limit.
+    // After regrading, D95B is 3.48 mm with 37.5 % fines: tests found no clear boundary, so it is no limit.
     assert!((4.75f64.powf((76.0 - 60.0) / 20.0) - 3.478).abs() < 1e-3);
     let rule = applied("foster-fell-continuing", &filter(1.0), &gravelly);
     assert!(!rule.applies && rule.met.is_none() && rule.limit.is_none() && !rule.is_broken(), "{rule:?}");
@@ -115,7 +115,7 @@ fn continuing_erosion_is_nine_d95_of_the_regraded_base() {
     assert!(rule.notes.contains(&RuleNote::BeyondUnclearBoundary), "{rule:?}");
 }
 
-/// 7 D85B are 7 mm and 9 D95B 22.68 mm: erosion between them may be excessive, and nobody judges it.
+/// 7 D85B is 7 mm and 9 D95B is 22.68 mm: erosion between them may be excessive, and it is not judged.
 #[test]
 fn between_no_and_continuing_erosion_a_note_says_that_excessive_erosion_is_not_judged() {
     let soil = base(5.0, 1.0);
@@ -123,13 +123,13 @@ fn between_no_and_continuing_erosion_a_note_says_that_excessive_erosion_is_not_j
         let rule = applied("foster-fell-continuing", &filter(d15f), &soil);
         assert_eq!(rule.notes.contains(&RuleNote::ExcessiveNotJudged), is_open, "{d15f}: {rule:?}");
     }
-    // Fines that nobody sieved may put the boundary of no erosion below this filter.
+    // Fines that were not sieved may put the boundary of no erosion below this filter.
     let hidden = curve(&[(0.3, 25.0), (1.0, 100.0)]);
     let rule = applied("foster-fell-continuing", &filter(0.6), &hidden);
     assert!(rule.met == Some(true) && rule.notes.contains(&RuleNote::ExcessiveNotJudged), "{rule:?}");
 }
 
-/// 15 to 85 % fines and a D95B above 2 mm; also outside that range, and with unknown fines.
+/// Fines of 15 to 85 % with a D95B above 2 mm; also outside that range, and with unknown fines.
 #[test]
 fn continuing_erosion_is_a_limit_only_where_tests_found_a_clear_one() {
     // Straight from 85 % at `d85` to 100 % at 4.7 mm: nothing is regraded.
@@ -153,7 +153,7 @@ fn continuing_erosion_is_a_limit_only_where_tests_found_a_clear_one() {
     let finer = curve(&[(0.001, 0.0), (0.075, 86.0), (1.0, 88.0), (4.7, 100.0)]);
     let rule = applied("foster-fell-continuing", &filter(1.0), &finer);
     assert!(rule.applies && close(rule.limit, 9.0 * 4.7f64.powf(7.0 / 12.0)), "{rule:?}");
-    // Nobody sieved the fines: whether 9 D95B is a limit is not known, until the filter is beyond it.
+    // The fines were not sieved: it is not known if 9 D95B is a limit until the filter is beyond it.
     let hidden = curve(&[(0.3, 25.0), (1.0, 70.0), (4.7, 100.0)]);
     let rule = applied("foster-fell-continuing", &filter(1.0), &hidden);
     assert!(rule.applies && rule.met.is_none() && rule.limit.is_none(), "{rule:?}");
@@ -161,7 +161,7 @@ fn continuing_erosion_is_a_limit_only_where_tests_found_a_clear_one() {
     assert!(applied("foster-fell-continuing", &filter(100.0), &hidden).is_broken());
 }
 
-/// D85B 0.0174 mm: 9 times it are 0.156 mm, 6.4 times it 0.111 mm, and the limit of design is never less than
+/// For a D85B of 0.0174 mm, 9 D85B is 0.156 mm and 6.4 D85B 0.111 mm; the limit of design is at least
 /// 0.2 mm.
 #[test]
 fn the_floor_of_the_limit_of_design_is_said() {
@@ -182,7 +182,7 @@ fn the_floor_of_the_limit_of_design_is_said() {
     assert_eq!(floor(&applied("sherard-dunnigan", &filter, &base(90.0, 0.05))), None);
 }
 
-/// 51 % finer than 0.002 mm: 5 D15B is below 0.010 mm, so that the minimum D15F is 0.1 mm, and known.
+/// With 51 % finer than 0.002 mm, 5 D15B is below 0.010 mm: the minimum D15F is 0.1 mm, and known.
 #[test]
 fn the_floor_of_drainage_is_known_however_fine_the_base_is() {
     let clay = curve(&[(0.002, 51.0), (0.02, 87.0), (0.63, 100.0)]);
@@ -193,7 +193,7 @@ fn the_floor_of_drainage_is_known_however_fine_the_base_is() {
             assert_eq!(rule.notes, [RuleNote::LeastGoverns(times, times * 0.002)]);
         }
     }
-    // D15F is finer than 0.05 mm, or than 0.2 mm: too fine, or not known.
+    // D15F is finer than 0.05 mm (too fine) or finer than 0.2 mm (not known).
     let of_pan = |finest: f64| applied("permeability", &curve(&[(finest, 20.0), (1.0, 100.0)]), &clay);
     assert!(of_pan(0.05).met == Some(false) && close(of_pan(0.05).value, 0.05), "{:?}", of_pan(0.05));
     assert_eq!((of_pan(0.2).met, of_pan(0.2).needs), (None, vec![RuleNote::NeedsD15FSieved]));
@@ -214,16 +214,16 @@ fn terzaghi_is_for_few_fines_and_takes_the_regraded_base() {
 
 #[test]
 fn permeability_is_five_d15_of_the_base_as_it_is() {
-    // D15B of the whole is 0.3 mm; of the part that passes No. 4 it is less.
+    // D15B of the whole is 0.3 mm; that of the part passing No. 4 is less.
     let soil = curve(&[(0.1, 0.0), (0.3, 15.0), (1.0, 40.0), (4.75, 60.0), (40.0, 100.0)]);
     for (d15f, met) in [(1.49, false), (1.51, true)] {
         let rule = applied("permeability", &filter(d15f), &soil);
         assert!(close(rule.limit, 1.5) && rule.at_least && rule.met == Some(met), "{rule:?}");
     }
-    // Never less than 0.1 mm.
+    // The minimum is never less than 0.1 mm.
     let clay = curve(&[(0.001, 0.0), (0.002, 15.0), (0.02, 100.0)]);
     assert!(close(applied("permeability", &filter(0.09), &clay).limit, 0.1));
-    // 3 x 0.3 mm is the least that any manual asks for.
+    // 3 x 0.3 mm is the smallest minimum of any manual.
     let least = applied("permeability-em-1901", &filter(0.95), &soil);
     assert!(close(least.limit, 0.9) && least.met == Some(true) && least.formula.contains("EM 1110-2-1901"));
     // A till whose table ends at No. 200 with 35 %: at most 5 x 0.075 mm.
@@ -275,7 +275,7 @@ fn sizes_without_a_unit_are_those_of_a_sand() {
     assert!(close(find("paper-no-erosion").value, d15f / 0.2));
 }
 
-/// A walk far finer than Kenney's tests does not check them; nor does a walk of a base that is all as fine.
+/// A walk far finer than Kenney's tests does not check them; nor does one of a base that is all as fine.
 #[test]
 fn a_walk_far_finer_than_the_tests_of_the_largest_passing_says_so() {
     let filter = filter(4.0);
@@ -294,8 +294,8 @@ fn a_walk_far_finer_than_the_tests_of_the_largest_passing_says_so() {
     }
 }
 
-/// 25 % finer than 0.3 mm, and D85B 0.3 x (1/0.3)^(60/75) = 0.786 mm: for any fines, the limit of design is
-/// at most 4 D85B = 3.144 mm, and tests saw no erosion up to 7 D85B = 5.502 mm at most.
+/// With 25 % finer than 0.3 mm, D85B is 0.3 x (1/0.3)^(60/75) = 0.786 mm. For any fines, the limit of
+/// design is at most 4 D85B = 3.144 mm, and the boundary of no erosion at most 7 D85B = 5.502 mm.
 #[test]
 fn fines_that_are_not_known_hide_no_failure() {
     let hidden = curve(&[(0.3, 25.0), (1.0, 100.0)]);
@@ -308,13 +308,13 @@ fn fines_that_are_not_known_hide_no_failure() {
         assert!(coarse.met == Some(false) && coarse.needs.is_empty(), "{coarse:?}");
         assert!(coarse.notes.contains(&RuleNote::BeyondAnyLimit), "{coarse:?}");
     }
-    // With few fines Terzaghi would hold it for certain, but nobody knows that they are few.
+    // With few fines the filter would hold by Terzaghi, but the fines are not known.
     let terzaghi = applied("terzaghi", &filter(1.0), &hidden);
     assert!(terzaghi.value < Some(4.0) && terzaghi.met.is_none() && !terzaghi.needs.is_empty());
     assert_eq!(applied("terzaghi", &filter(4.0), &hidden).met, Some(false));
 }
 
-/// A clay whose table ends at No. 200 with 88 %: D85B is at most 0.075 mm, and 9 D85B 0.675 mm.
+/// A clay whose table ends at No. 200 with 88 %: D85B is at most 0.075 mm, and 9 D85B at most 0.675 mm.
 #[test]
 fn a_size_in_the_finest_tail_hides_no_failure() {
     let clay = curve(&[(0.075, 88.0), (2.0, 100.0)]);
@@ -328,13 +328,13 @@ fn a_size_in_the_finest_tail_hides_no_failure() {
     let continuing = applied("foster-fell-continuing", &filter(0.7), &clay);
     assert!(continuing.met == Some(false) && close(continuing.limit, 0.675) && continuing.limit_at_most);
     assert!(applied("foster-fell-continuing", &filter(0.6), &clay).met.is_none());
-    // D15F is finer than 0.2 mm, and the base asks for 5 x 0.3 mm.
+    // D15F is finer than 0.2 mm, and the base requires 5 x 0.3 mm.
     let silty = curve(&[(0.2, 20.0), (4.0, 100.0)]);
     let coarse = curve(&[(0.1, 0.0), (0.3, 15.0), (2.0, 100.0)]);
     let drains = applied("permeability", &silty, &coarse);
     assert!(drains.met == Some(false) && close(drains.value, 0.2), "{drains:?}");
     assert_eq!(drains.notes, [RuleNote::D15FAtMost]);
-    // Never less than 0.1 mm, whatever D15B is.
+    // The minimum is at least 0.1 mm for any D15B.
     let drains = applied("permeability", &filter(0.09), &curve(&[(0.075, 35.0), (1.0, 100.0)]));
     assert!(drains.met == Some(false) && close(drains.limit, 0.1), "{drains:?}");
     // D60 over a D10 of at most 0.2 mm.
@@ -344,8 +344,8 @@ fn a_size_in_the_finest_tail_hides_no_failure() {
     assert_eq!(cu.notes, [RuleNote::CuAtLeast]);
 }
 
-/// 20 % finer than 0.075 mm and next to nothing up to 0.5 mm: practice looks at the fines alone, whose sizes
-/// no sieve gives. 9 x 0.075 = 0.675 mm at most; for the whole it would be 0.8 x (4 D85B - 0.7) + 0.7.
+/// With 20 % finer than 0.075 mm and next to nothing up to 0.5 mm, practice uses the fines alone, whose sizes
+/// no sieve gives. At most 9 x 0.075 = 0.675 mm; for the whole it would be 0.8 x (4 D85B - 0.7) + 0.7.
 #[test]
 fn a_gap_above_unknown_fines_is_no_reason_to_judge_the_coarse_part() {
     let gap = curve(&[(0.075, 20.0), (0.5, 21.0), (1.0, 85.0), (2.0, 100.0)]);
@@ -354,14 +354,14 @@ fn a_gap_above_unknown_fines_is_no_reason_to_judge_the_coarse_part() {
     assert_eq!(applied("sherard-dunnigan", &filter(0.5), &gap).met, None);
     let continuing = applied("foster-fell-continuing", &filter(2.0), &gap);
     assert!(continuing.met == Some(false) && close(continuing.limit, 0.675), "{continuing:?}");
-    // With a hydrometer the gap is unchanged, and the limits are no wider.
+    // With a hydrometer test the gap is unchanged, and the limits are no wider.
     let tested = curve(&[(0.001, 0.0), (0.04, 17.0), (0.075, 20.0), (0.5, 21.0), (1.0, 85.0), (2.0, 100.0)]);
     let rule = applied("sherard-dunnigan", &filter(2.0), &tested);
     assert!(rule.met == Some(false) && rule.limit < Some(0.675), "{rule:?}");
 }
 
-/// The notes of Table 9.2: 6.4 D85B in group 1, 0.5 mm in group 2A. No limit for fewer fines was read, so the
-/// limit of other soils is an upper bound.
+/// Notes of Table 9.2: 6.4 D85B in group 1, 0.5 mm in group 2A. No limit was found for fewer fines, so
+/// the limit of other soils is an upper bound.
 #[test]
 fn dispersive_bases_have_limits_of_their_own() {
     let dispersive_rule = |id: &str, d15: f64, fines: f64, d85: f64| {
@@ -390,8 +390,8 @@ fn dispersive_bases_have_limits_of_their_own() {
     }
 }
 
-/// The appendix of the Megech dam: core of 35 to 90 % fines, maximum D15F 0.7 mm; D15B 0.0123 mm, and never
-/// less than 0.1 mm for D15F; D60F of 6 x 0.083 = 0.5 mm.
+/// The appendix of the Megech dam: core of 35 to 90 % fines, maximum D15F of 0.7 mm; D15B of 0.0123 mm,
+/// and a minimum D15F of at least 0.1 mm; D60F of 6 x 0.083 = 0.5 mm.
 #[test]
 fn the_design_of_the_megech_dam_is_reproduced_to_its_digits() {
     let core = curve(&[(0.001, 0.0), (0.0123, 15.0), (0.075, 60.0), (4.75, 100.0)]);
@@ -405,7 +405,7 @@ fn the_design_of_the_megech_dam_is_reproduced_to_its_digits() {
     assert_eq!(format!("{:.1}", fine_side.d(60.0).unwrap()), "0.5");
 }
 
-/// Filters with D15F 0.6 and 1.2 mm, bases with D85B 0.2 and 0.5 mm.
+/// Filters with a D15F of 0.6 and 1.2 mm, bases with a D85B of 0.2 and 0.5 mm.
 #[test]
 fn envelopes_pair_the_worst_sides() {
     let straight = |d15: f64, cu: f64| Gradation::linear_from_dx(15.0, d15, cu).unwrap();
@@ -421,7 +421,7 @@ fn envelopes_pair_the_worst_sides() {
     assert!(close(drains.value, 0.6));
     let cu = find("filter-uniformity");
     assert!(close(cu.value, 3.0) && cu.filter_curve == "coarse" && cu.base_curve.is_empty());
-    // Straight curves: D_x = D15 Cu^((x - 15) / 50), so the ratio is 2 x 1.5^((x - 15) / 50), most at 60 %.
+    // Straight curves: D_x = D15 Cu^((x - 15) / 50); the ratio is 2 x 1.5^((x - 15) / 50), largest at 60 %.
     let band = find("filter-band");
     assert!(close(band.value, 2.0 * 1.5f64.powf(0.9)) && band.met == Some(true), "{band:?}");
     // The finest D95B is straight from 0.2 mm at 85 % to 4 mm at 100 %: 0.2 x 20^(2/3) = 1.474 mm.
@@ -433,13 +433,13 @@ fn envelopes_pair_the_worst_sides() {
             if joint == 0.3 && close(Some(d95), d95b) && close(Some(ratio), 0.3 / d95b)),
         "{joint:?}"
     );
-    // A single curve each gives the ordinary result, and asks for neither.
+    // Single curves give the ordinary result and name no curve.
     let one = apply_and_decide(&bases[..1], &filters[..1], false, None).0;
     assert_eq!(one, apply(&RuleInputs::of_soils(&bases[0].1, &filters[0].1)));
     assert!(!one.iter().any(|rule| ["filter-band", "constricted-exit"].contains(&rule.id.as_str())));
 }
 
-/// A rule whose numbers no text confirms cannot be signed for.
+/// An engineer cannot sign for a rule whose numbers no text confirms.
 #[test]
 fn every_rule_says_what_it_is_and_has_its_numbers() {
     let ids: std::collections::BTreeSet<&str> = RULES.iter().map(|rule| rule.id).collect();
@@ -455,7 +455,7 @@ fn every_rule_says_what_it_is_and_has_its_numbers() {
     }
 }
 
-/// No. 57 stone as a quarry delivers it: no sieve is finer than 2.36 mm.
+/// No. 57 stone as delivered: no sieve is finer than 2.36 mm.
 #[test]
 fn fines_below_the_finest_sieve_are_at_most_what_passes_it() {
     let stone = |passing| [(2.36, passing), (4.75, 8.0), (12.5, 42.0), (25.0, 97.0), (37.5, 100.0)];

@@ -1,10 +1,10 @@
-//! The answer of the replicates: their class, their mean, the reason why no more were walked, and the answers
-//! of the case with one thing changed.
+//! Answer of the replicates: their class, their mean, the reason for their number, and the answers of the
+//! case with one thing changed.
 
 use super::inputs::NetworkKind;
 use serde::{Deserialize, Serialize};
 
-/// The paper's three classes, after Foster and Fell, and a fourth for what these replicates leave open.
+/// Classes of the paper, after Foster and Fell, and a fourth class for an open result.
 ///
 /// ```
 /// use voidwalk_app::Verdict;
@@ -16,10 +16,10 @@ pub enum Verdict {
     /// Less than the threshold eroded in the first run.
     #[serde(rename = "no erosion")]
     None,
-    /// The threshold reached in the first run, not in the second.
+    /// The threshold is reached in the first run, not in the second.
     #[serde(rename = "some erosion")]
     Some,
-    /// The threshold reached in both runs.
+    /// The threshold is reached in both runs.
     #[serde(rename = "continuing erosion")]
     Continuing,
     /// An interval straddles the threshold, or a run that would decide is missing.
@@ -31,7 +31,7 @@ impl Verdict {
     /// Every class, in the order of `replicate_verdicts`.
     pub const ALL: [Verdict; 4] = [Verdict::None, Verdict::Some, Verdict::Continuing, Verdict::Undecided];
 
-    /// Its name in `outcome.json` and in every table.
+    /// Name in `outcome.json` and in every table.
     pub fn words(self) -> &'static str {
         match self {
             Verdict::None => "no erosion",
@@ -42,46 +42,46 @@ impl Verdict {
     }
 }
 
-/// What the walks say together.
+/// Joint result of the walks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Model {
-    /// The class that the replicates together support.
+    /// Class supported by all replicates together.
     pub class: Verdict,
-    /// Mass eroded (%) of each run, least and most: the 95 % interval of the mean over the replicates, or the
-    /// range of the constriction curve; the mean twice with one replicate.
+    /// Minimum and maximum eroded mass (%) of each run: the 95 % interval of the mean over the
+    /// replicates, or the range of the constriction curve; the mean twice for one replicate.
     pub eroded_percent: Vec<[f64; 2]>,
-    /// Replicates.
+    /// Number of replicates.
     pub replicates: u64,
-    /// The network that was walked.
+    /// Network that was walked.
     pub network: NetworkKind,
 }
 
-/// What a rule that adds replicates until they are enough arrived at.
+/// Result of a rule that adds replicates until there are enough.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Stopping {
     /// Target half width of the 95 % interval of the eroded mass, in every run (percentage points of the
     /// base).
     pub target_error_pp: Option<f64>,
-    /// Confidence level at which the verdict was to be decided (%), corrected for repeated looks.
+    /// Confidence level of the verdict (%), corrected for repeated looks, if one was requested.
     pub decide_percent: Option<f64>,
-    /// Replicates at which it stops in any case.
+    /// Maximum number of replicates.
     pub most: u64,
-    /// How often it looked at the replicates.
+    /// Number of looks at the replicates.
     pub looks: u64,
-    /// Whether what was asked for is reached.
+    /// True if the request was met.
     pub met: bool,
-    /// The verdict at that confidence level, where one was asked for.
+    /// Verdict at that confidence level, if one was requested.
     pub verdict: Option<Verdict>,
-    /// Widest half of the 95 % intervals of the eroded mass (percentage points); `None` with one replicate.
+    /// Largest half width of the 95 % intervals (percentage points of the base); `None` for one replicate.
     pub half_width_pp: Option<f64>,
-    /// Why it is not reached.
+    /// Reason why the request was not met.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub short_of: Option<ShortOf>,
 }
 
-/// Why replicates do not reach what was asked for.
+/// Reason why replicates do not meet a request.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
@@ -90,29 +90,29 @@ pub enum ShortOf {
     SecondRun,
     /// The class is open.
     Decision {
-        /// The run that leaves it open.
+        /// Run that leaves it open.
         run: u64,
-        /// Its mean (%).
+        /// Mean of the run (%).
         mean_percent: f64,
-        /// How far that lies from the threshold (percentage points).
+        /// Distance of the mean from the threshold (percentage points).
         distance_pp: f64,
-        /// The scatter of its replicates (percentage points).
+        /// Standard deviation of the replicates (percentage points).
         sd_pp: f64,
-        /// About how many replicates would decide it; `None` where none will.
+        /// Approximate number of replicates that would decide; `None` if none would.
         needed: Option<u64>,
     },
     /// The interval is too wide.
     Target {
-        /// Half of it (percentage points).
+        /// Half width of the interval (percentage points).
         half_width_pp: f64,
-        /// Replicates.
+        /// Number of replicates.
         replicates: u64,
-        /// About how many would do.
+        /// Approximate number of replicates needed.
         needed: u64,
     },
 }
 
-/// A mean, and with two or more replicates its standard deviation and interval.
+/// Mean, and for two or more replicates its standard deviation and interval.
 ///
 /// ```
 /// use voidwalk_app::Statistic;
@@ -132,26 +132,26 @@ pub struct Statistic {
     pub high: Option<f64>,
 }
 
-/// The replicates of a case of which one thing was changed, and their class.
+/// Replicates of a case with one thing changed, and their class.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Classed {
-    /// How many replicates were walked.
+    /// Number of replicates walked.
     pub replicates: u64,
-    /// Whether it was clear before all replicates of a study were walked: its intervals then take twice the
-    /// scatter of the scene's own replicates, or its own where that is wider
+    /// True if the result was clear before all replicates of a study were walked. The intervals then use
+    /// twice the scatter of the scene's own replicates, or the point's own if that is wider
     /// (`crate::outcome::early_stop`).
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub stopped_when_clear: bool,
-    /// Their class.
+    /// Class of these replicates.
     pub verdict: Verdict,
     /// Eroded mass fraction, one per run.
     pub runs: Vec<Statistic>,
 }
 
-/// The outcome with another number of base particles.
+/// Outcome with another number of base particles.
 ///
-/// `N_base` holds grains per void and mass ratio only as a product (Eq. 2), so one factor answers for both.
+/// `N_base` contains grains per void and mass ratio only as a product (Eq. 2), so one factor covers both.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Sensitivity {
@@ -163,12 +163,12 @@ pub struct Sensitivity {
     pub grains_per_void: Option<f64>,
     /// Mass ratio to which this factor corresponds at the scene's grains per void.
     pub mass_ratio: Option<f64>,
-    /// What was walked.
+    /// Result of the walk.
     #[serde(flatten)]
     pub walked: Classed,
 }
 
-/// The same case with a filter of this thickness.
+/// Outcome with another thickness of the filter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct OfThickness {
@@ -176,45 +176,45 @@ pub struct OfThickness {
     pub factor: f64,
     /// Layers of voids along the flow.
     pub layers: u64,
-    /// Modelled thickness (mm, or D0F as all its sizes); `None` where a layer has none.
+    /// Modelled thickness (mm, or multiples of D0F); `None` if a layer has no thickness.
     pub thickness_mm: Option<f64>,
     /// Base particles inserted in each run.
     pub n_base: u64,
-    /// What was walked.
+    /// Result of the walk.
     #[serde(flatten)]
     pub walked: Classed,
 }
 
-/// The walks at the ends of the range of a constriction curve.
+/// Walks at the ends of the range of a constriction curve.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CurveRange {
-    /// The class by the curve itself.
+    /// Class by the curve itself.
     pub verdict: Verdict,
-    /// The other curves of the range: its ends.
+    /// Other curves of the range: its ends.
     pub ends: Vec<CurveEnd>,
-    /// Whether the worst class of the range is the verdict, as for a filter of which loose and dense are
-    /// walked; elsewhere ends that differ leave it undecided.
+    /// True if the worst class of the range is the verdict, as for a filter walked both loose and dense;
+    /// otherwise ends that differ leave it undecided.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub worst_counts: bool,
-    /// The worst class that the walks of the range allow, at the confidence level of the verdict, where one
-    /// was asked for; without one it follows from the 95 % intervals.
+    /// Worst class that the walks of the range allow at the confidence level of the verdict, if one was
+    /// requested; otherwise it follows from the 95 % intervals.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub could_be: Option<Verdict>,
-    /// Least and most eroded over the whole range, one pair per run: the ends of the 95 % intervals, or the
-    /// means of a single replicate (fraction of the mass).
+    /// Minimum and maximum eroded mass fraction over the whole range, one pair for each run: the ends of
+    /// the 95 % intervals, or the means of a single replicate.
     pub eroded_mass_fraction: Vec<[f64; 2]>,
 }
 
-/// The replicates walked with another constriction curve, all else and all random numbers the same.
+/// Replicates walked with another constriction curve; all other inputs and all random numbers are equal.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CurveEnd {
-    /// Which curve it is, in words.
+    /// Name of the curve, in words.
     pub curve: String,
-    /// Its median constriction by that of the curve itself.
+    /// Its median constriction over that of the curve itself.
     pub dc50_factor: f64,
-    /// What was walked.
+    /// Result of the walk.
     #[serde(flatten)]
     pub walked: Classed,
 }

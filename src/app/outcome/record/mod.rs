@@ -5,12 +5,12 @@
 //! # Conventions
 //! - Sizes are diameters, in mm. When [`Inputs::scale_free`] is set they are multiples of D0F, the smallest
 //!   filter grain; the names keep their `_mm`.
-//! - A fraction is of 1, a percentage is of 100 and says `percent`. Fractions of base material refer to the
-//!   total that the run inserts (`N_base` particles), not to the part inserted so far.
+//! - A fraction is relative to 1, a percentage to 100 and has `percent` in its name. Fractions of base
+//!   material refer to the total that the run inserts (`N_base` particles).
 //! - Replicates and runs count from 1, increments from 1, layers from 0 (the layer of the start nodes).
 //! - The *blocked* constrictions of a run are a state: those blocked at that moment, so the second run's
-//!   number contains the first's. The *retained* particles belong to one run: particles of the first run are
-//!   gone when the second begins.
+//!   number contains the first's. The *retained* particles belong to one run: particles of the first run
+//!   are removed when the second begins.
 
 mod answer;
 mod inputs;
@@ -34,7 +34,7 @@ use voidwalk_core::network::ExitRule;
 use voidwalk_practice::{AppliedRule, Decision, Headline, IfDispersive, InputFile, Note, Practice};
 use xxhash_rust::xxh3::Xxh3;
 
-/// The whole of `outcome.json`.
+/// Contents of `outcome.json`.
 ///
 /// ```
 /// use voidwalk_app::{Callbacks, Case, Scene, walk_case};
@@ -50,93 +50,92 @@ use xxhash_rust::xxh3::Xxh3;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Outcome {
-    /// The answer of filter practice; `None` without two sieve curves in mm.
+    /// Answer of filter practice; `None` without two sieve curves in mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub headline: Option<Headline>,
-    /// What filter practice says of the pair, without the walk; `None` likewise.
+    /// Decision of filter practice on the pair, without the walk; `None` without two sieve curves in mm.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub practice: Option<Practice>,
-    /// What the walk says, without practice.
+    /// Result of the walk, without practice.
     pub model: Model,
-    /// What else to know, in the order of every face.
+    /// Notes in the order of every face.
     pub notes: Vec<Note>,
-    /// What practice allows if the base is dispersive; `None` where somebody has said whether it is, and
-    /// where it has few fines.
+    /// Limit of practice if the base is dispersive; `None` if dispersion is stated or the base has few
+    /// fines.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub if_dispersive: Option<IfDispersive>,
-    /// Where the constrictions come from.
+    /// Origin of the constrictions.
     pub constrictions: ConstrictionsRecord,
-    /// The user's seed.
+    /// Seed given by the user.
     pub seed: u64,
     /// Base particles inserted in each run.
     pub n_base: u64,
-    /// Base particles by Eq. (2), before any cap or user's number; `None` where the grains per void are not
-    /// given.
+    /// Base particles by Eq. (2), before any cap or number set by the user; `None` if the grains per void
+    /// are not given.
     pub n_base_eq2: Option<u64>,
-    /// Whether a cap made `n_base` smaller than `n_base_eq2`.
+    /// True if a cap made `n_base` smaller than `n_base_eq2`.
     pub capped: bool,
-    /// Filter grains per void, `N_p / N_voids` of Eq. (2), where given.
+    /// Filter grains per void, `N_p / N_voids` of Eq. (2), if given.
     pub grains_per_void: Option<f64>,
-    /// Name of the engine that walked.
+    /// Name of the engine.
     pub engine: String,
-    /// One per replicate, in order.
+    /// Results of each replicate, in order.
     pub replicates: Vec<Replicate>,
-    /// One per run, in order: statistics over the replicates.
+    /// Statistics of each run over the replicates, in order.
     pub summary: Vec<RunSummary>,
-    /// Why there are so many replicates, where a rule added them.
+    /// Reason for the number of replicates, if a rule added them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stopping: Option<Stopping>,
     /// Eroded mass fraction that divides the classes: 0.075.
     pub threshold: f64,
     /// Parts of the program that this scene did not need.
     pub left_out: Vec<LeftOut>,
-    /// What the model does not contain, for any scene.
+    /// Processes that the model omits for any scene.
     pub model_leaves_out: Vec<ModelLimit>,
-    /// What went in, resolved.
+    /// Resolved inputs.
     pub inputs: Inputs,
-    /// The network, where its constrictions have no direction of their own.
+    /// Summary of the network, if its constrictions have no direction.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub network: Option<NetworkSummary>,
-    /// The ratios that filter rules use.
+    /// Ratios used by filter rules.
     pub ratios: Ratios,
     /// Empirical filter rules applied to the same two curves.
     pub rules: Vec<AppliedRule>,
-    /// Eq. (1) for single particles; `None` where the network is no cubic lattice.
+    /// Eq. (1) for single particles; `None` unless the network is a cubic lattice.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub infiltration: Option<Infiltration>,
-    /// What comes of the other constriction curves that the filter may have; `None` where its curve was
-    /// given, or measured on the whole filter.
+    /// Results for the other possible constriction curves of the filter; `None` if its curve was given,
+    /// or measured on the whole filter.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub curve_range: Option<CurveRange>,
-    /// The law by which particles arched; `None` where they did not.
+    /// Law by which particles arched; `None` if they did not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub arching: Option<ArchingRecord>,
-    /// How the verdict moves with the number of base particles; empty when it was not asked for.
+    /// Verdict for other numbers of base particles; empty if it was not requested.
     pub sensitivity: Vec<Sensitivity>,
-    /// How the verdict moves with the thickness of the filter, itself included; empty when it was not asked
-    /// for.
+    /// Verdict for several thicknesses of the filter, its own included; empty if it was not requested.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub thickness: Vec<OfThickness>,
-    /// Whether both studies are still being walked, or their walk was ended: `voidwalk resume` goes on.
+    /// True if both studies are still being walked or were stopped: `voidwalk resume` continues them.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub studies_to_come: bool,
-    /// Digest of its numbers, equal wherever a scene and seed give the same numbers: XXH3 with 128 bits,
-    /// in hexadecimal, of every number, `true`, `false` and `null` with its place. Left out are text,
-    /// `seconds` and `studies_to_come`.
+    /// Digest of all numbers, equal wherever a scene and seed give the same numbers: XXH3 with 128 bits,
+    /// in hexadecimal, of every number, `true`, `false` and `null` with its place. Text, `seconds` and
+    /// `studies_to_come` are omitted.
     pub digest: String,
-    /// Wall time of everything, s; in a campaign beside other cases on the same threads.
+    /// Total wall time, s; a campaign walks other cases on the same threads.
     pub seconds: f64,
 }
 
 impl Outcome {
-    /// The decision of practice on its pair: without an answer if the record has none.
+    /// Decision of practice on the pair: without an answer if the record has none.
     pub fn decision(&self) -> Decision {
         let mut decision = Decision::new(&self.rules, self.if_dispersive, Some(self.inputs.filter.d15_mm));
         decision.headline = self.headline.and(decision.headline);
         decision
     }
 
-    /// Features that its walk contained.
+    /// Features of its walk.
     pub fn modelled(&self) -> Modelled {
         let with_flow =
             |exit: &str| ExitRule::ALL.iter().any(|rule| rule.name() == exit && rule.needs_flow());
@@ -148,36 +147,36 @@ impl Outcome {
     }
 }
 
-/// A law by which particles arch in a constriction that they fit.
+/// Law by which particles arch in a constriction that they fit.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ArchingRecord {
-    /// Its name in a scene.
+    /// Name of the law in a scene.
     pub law: String,
-    /// Where it was published.
+    /// Publication of the law.
     pub source: String,
-    /// What of the source was read, and what was assumed.
+    /// Parts of the source that were read, and assumptions.
     pub basis: String,
-    /// Sizes of a constriction by that of a particle between which arches form.
+    /// Range in which arches form: size of the constriction over size of the particle.
     pub range_of_ratio: [f64; 2],
-    /// Solids fraction of the suspension that enters the filter, volume of particles by volume of suspension;
-    /// `None` where the law does not depend on it.
+    /// Solids fraction of the suspension that enters the filter, volume of particles over volume of
+    /// suspension; `None` if the law does not depend on it.
     pub concentration: Option<f64>,
 }
 
-/// One new network, walked once or twice.
+/// New network, walked once or twice.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Replicate {
-    /// The seed that gives this replicate alone.
+    /// Seed that gives this replicate alone.
     pub seed: u64,
-    /// The class of this replicate alone.
+    /// Class of this replicate alone.
     pub verdict: Verdict,
-    /// One or two.
+    /// One or two runs.
     pub runs: Vec<Run>,
 }
 
-/// The end of one run.
+/// State at the end of one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Run {
@@ -187,97 +186,97 @@ pub struct Run {
     pub eroded_mass_fraction: f64,
     /// Particles eroded over particles inserted.
     pub eroded_number_fraction: f64,
-    /// Largest particle that left the filter; `None` when none did.
+    /// Largest particle that left the filter; `None` if none did.
     pub largest_eroded_mm: Option<f64>,
     /// `largest_eroded_mm` over D15F.
     pub largest_eroded_over_d15f: Option<f64>,
-    /// Constrictions blocked when the run ends.
+    /// Number of blocked constrictions at the end of the run.
     pub blocked: u64,
-    /// Their share of all constrictions.
+    /// Blocked fraction of all constrictions.
     pub blocked_fraction: f64,
-    /// Their share of the constrictions of layers 0, 1 and 2.
+    /// Blocked fraction of the constrictions of layers 0, 1 and 2.
     pub blocked_first_three_layers_fraction: f64,
-    /// Share of all constrictions that lie on an open path from start to end.
+    /// Fraction of all constrictions that lie on an open path from start to end.
     pub backbone_fraction: f64,
-    /// Particles inserted.
+    /// Number of particles inserted.
     pub inserted: u64,
-    /// Particles that left through the last layer.
+    /// Number of particles that left through the last layer.
     pub eroded: u64,
-    /// Particles stopped by a constriction.
+    /// Number of particles stopped by a constriction.
     pub retained_in_constrictions: u64,
-    /// Those of them that are in arches; `None` where there are no arches. No physical number: it depends on
-    /// what an increment brings to one constriction (arches.md).
+    /// Number of particles stopped in arches; `None` without arches. It is not a physical number: it
+    /// depends on how many particles an increment brings to one constriction (arches.md).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub retained_in_arches: Option<u64>,
-    /// Arches, likewise.
+    /// Number of arches; `None` without arches.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub arches: Option<u64>,
-    /// Mass in arches over the mass inserted, likewise.
+    /// Mass in arches over the mass inserted; `None` without arches.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub arched_mass_fraction: Option<f64>,
-    /// Particles in voids without an open exit.
+    /// Number of particles in voids without an open exit.
     pub retained_in_voids: u64,
-    /// Particles trapped in closed loops.
+    /// Number of particles trapped in closed loops.
     pub trapped: u64,
-    /// Particles retained in any way, over voids.
+    /// Number of particles retained in any way, per void.
     pub retained_per_void: f64,
-    /// Deepest layer in which a particle of this run is retained; `None` where none is.
+    /// Deepest layer in which a particle of this run is retained; `None` if none is.
     pub deepest_retained_layer: Option<u64>,
-    /// The layer down to which 95 % of the particles of this run that a layer retains lie.
+    /// Layer down to which 95 % of the particles retained in layers in this run lie.
     pub retained_95_layer: Option<u64>,
-    /// Increments until nothing moved.
+    /// Number of increments until nothing moved.
     pub increments: u64,
-    /// Moves completed, the one that leaves included.
+    /// Number of moves completed, including those that leave the filter.
     pub particle_moves: u64,
-    /// Permeability when the run ends over that of the clean filter, where water flows.
+    /// Permeability at the end of the run over that of the clean filter, with water.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub k_over_k0: Option<f64>,
-    /// Times that the flow was solved, where water flows.
+    /// Number of times the flow was solved, with water.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub flow_solutions: Option<u64>,
-    /// The most of the inflow that went through constrictions which had closed since the flow was solved,
-    /// summed over the filter: so many on the mean way of a particle.
+    /// Maximum fraction of the inflow through constrictions that had closed since the flow was solved,
+    /// summed over the filter: their mean number on the way of a particle.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub flow_closed_most: Option<f64>,
-    /// Permeability of the clean filter (mm2), where the network knows its lengths.
+    /// Permeability of the clean filter (mm2), if the network has lengths.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub k0_mm2: Option<f64>,
-    /// Volume that this run retained over void volume, of the fullest void that has a volume; where volumes
-    /// are known.
+    /// Volume retained in this run over void volume, for the fullest void with a volume, if volumes are
+    /// known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fullness_max: Option<f64>,
-    /// Share of the voids that are filled by more than 0.6 of their volume, likewise; a void without volume
-    /// is as soon as a particle rests in it.
+    /// Fraction of voids filled above 0.6 of their volume, if volumes are known; a void without volume
+    /// counts as soon as a particle rests in it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub overfull_fraction: Option<f64>,
-    /// Retained and blocked by connectivity of the void, rising; empty where all voids have one connectivity.
+    /// Retained and blocked by connectivity of the void, ascending; empty if all voids have the same.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub by_connectivity: Vec<ByConnectivity>,
-    /// Wall time from start to end, s, beside what else is walked on the same threads.
+    /// Wall time from start to end, s; other walks may use the same threads.
     pub seconds: f64,
 }
 
-/// What the voids of one connectivity (entrances and exits) did in a run; Table 3 of the paper.
+/// Results for the voids of one connectivity (entrances and exits) in a run; Table 3 of the paper.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ByConnectivity {
-    /// Entrances and exits; that a void is a start node counts as an entrance.
+    /// Number of entrances and exits; being a start node counts as an entrance.
     pub connectivity: u64,
-    /// Voids that have it.
+    /// Number of voids with this connectivity.
     pub voids: u64,
-    /// Their share of all voids.
+    /// Fraction of all voids.
     pub voids_fraction: f64,
-    /// Their exits.
+    /// Number of their exits.
     pub constrictions: u64,
-    /// Those of them that are blocked when the run ends.
+    /// Number of these exits blocked at the end of the run.
     pub blocked: u64,
-    /// Particles of the run stopped by them.
+    /// Number of particles of the run stopped by them.
     pub retained_in_constrictions: u64,
-    /// Particles of the run retained in these voids.
+    /// Number of particles of the run retained in these voids.
     pub retained_in_voids: u64,
-    /// Particles retained either way, over these voids.
+    /// Number of particles retained either way, per void.
     pub retained_per_void: f64,
-    /// Their share of all particles retained either way.
+    /// Fraction of all particles retained either way.
     pub retained_fraction: f64,
 }
 
@@ -287,32 +286,32 @@ pub struct ByConnectivity {
 pub struct RunSummary {
     /// 1 or 2.
     pub run: u64,
-    /// Of [`Run::eroded_mass_fraction`].
+    /// Statistic of [`Run::eroded_mass_fraction`].
     pub eroded_mass_fraction: Statistic,
-    /// Of [`Run::eroded_number_fraction`].
+    /// Statistic of [`Run::eroded_number_fraction`].
     pub eroded_number_fraction: Statistic,
-    /// Of [`Run::largest_eroded_over_d15f`], over the replicates in which something eroded; `None` if in
-    /// none.
+    /// Statistic of [`Run::largest_eroded_over_d15f`] over the replicates in which something eroded;
+    /// `None` if there are none.
     pub largest_eroded_over_d15f: Option<Statistic>,
-    /// Of [`Run::blocked_fraction`].
+    /// Statistic of [`Run::blocked_fraction`].
     pub blocked_fraction: Statistic,
-    /// Of [`Run::blocked_first_three_layers_fraction`].
+    /// Statistic of [`Run::blocked_first_three_layers_fraction`].
     pub blocked_first_three_layers_fraction: Statistic,
-    /// Of [`Run::backbone_fraction`].
+    /// Statistic of [`Run::backbone_fraction`].
     pub backbone_fraction: Statistic,
 }
 
-/// Eq. (1) of the paper: how far single particles come in the clean filter.
+/// Eq. (1) of the paper: depth that single particles reach in the clean filter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Infiltration {
-    /// Layers of the network.
+    /// Number of layers of the network.
     pub layers: u64,
     /// Sizes of the base, ascending.
     pub sizes: Vec<InfiltrationSize>,
-    /// The coarsest size that passes all layers with a probability of 5 %.
+    /// Coarsest size that passes all layers with a probability of 5 %.
     pub coarsest_through_mm: f64,
-    /// Share of the base's mass that would leave if nothing were ever blocked.
+    /// Mass fraction of the base that would leave if nothing were ever blocked.
     pub eroded_without_blocking: f64,
 }
 
@@ -320,106 +319,106 @@ pub struct Infiltration {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct InfiltrationSize {
-    /// As `D85B`.
+    /// Name of the size, such as `D85B`.
     pub name: String,
-    /// Its size.
+    /// Diameter of the size.
     pub diameter_mm: f64,
-    /// P(F): probability that it moves one layer downstream.
+    /// P(F): probability of moving one layer downstream.
     pub downstream: f64,
-    /// Layers that it does not pass, with a confidence of 95 %; `None` where nothing stops it.
+    /// Number of layers that the size does not pass, with a confidence of 95 %; `None` if nothing stops it.
     pub layers_95: Option<f64>,
-    /// Layers that it does not pass, with a confidence of 99 %.
+    /// Number of layers that the size does not pass, with a confidence of 99 %.
     pub layers_99: Option<f64>,
-    /// Probability that it passes all layers.
+    /// Probability of passing all layers.
     pub through: f64,
 }
 
-/// The commit from which this program was built, if known.
+/// Commit that this program was built from, if known.
 pub fn commit() -> Option<String> {
     option_env!("VOIDWALK_COMMIT").map(String::from)
 }
 
-/// The whole of `manifest.json`: what made the folder.
+/// Contents of `manifest.json`: how the folder was made.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Manifest {
     /// Version of voidwalk.
     pub version: String,
-    /// Commit it was built from, where known.
+    /// Commit that the program was built from, if known.
     pub commit: Option<String>,
-    /// The user's seed.
+    /// Seed given by the user.
     pub seed: u64,
-    /// Every file that was read.
+    /// Files that were read.
     pub inputs: Vec<InputFile>,
-    /// Worker threads.
+    /// Number of worker threads.
     pub threads: u64,
     /// Name of the machine.
     pub host: String,
     /// Kind of machine: system, processor, memory.
     pub machine: String,
-    /// When the work began, RFC 3339.
+    /// Start of the work, RFC 3339.
     pub started: String,
-    /// When it ended, RFC 3339.
+    /// End of the work, RFC 3339.
     pub finished: String,
-    /// The command line.
+    /// Command line of the run.
     pub command: String,
 }
 
-/// The results of [`crate::run::walk_networks`]; the names are those of `outcome.json` where both have them.
+/// Results of [`crate::run::walk_networks`], with the field names of `outcome.json` if both have them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct NetworkWalkRecord {
-    /// The class that the replicates together support.
+    /// Class supported by all replicates together.
     pub verdict: Verdict,
-    /// What else to know, in the order of every face.
+    /// Notes in the order of every face.
     pub notes: Vec<Note>,
-    /// The user's seed.
+    /// Seed given by the user.
     pub seed: u64,
     /// Base particles inserted in each run.
     pub n_base: u64,
-    /// Those that Eq. (2) gives, where the filter and its grains per void are known.
+    /// Base particles by Eq. (2), if the filter and its grains per void are known.
     pub n_base_eq2: Option<u64>,
-    /// Filter grains per void, where they are known.
+    /// Filter grains per void, if known.
     pub grains_per_void: Option<f64>,
-    /// Mass of the base over that of the filter, of Eq. (2).
+    /// Mass of base over mass of filter, of Eq. (2).
     pub mass_ratio: f64,
-    /// Equal parts in which they were inserted.
+    /// Number of equal increments in which they were inserted.
     pub increments: u64,
-    /// Name of the engine that walked.
+    /// Name of the engine.
     pub engine: String,
-    /// One per replicate, in order.
+    /// Results of each replicate, in order.
     pub replicates: Vec<Replicate>,
-    /// One per run, in order: statistics over the replicates.
+    /// Statistics of each run over the replicates, in order.
     pub summary: Vec<RunSummary>,
     /// Eroded mass fraction that divides the classes: 0.075.
     pub threshold: f64,
     /// Parts of the program that this walk did not need.
     pub left_out: Vec<LeftOut>,
-    /// What the model does not contain.
+    /// Processes that the model omits.
     pub model_leaves_out: Vec<ModelLimit>,
     /// The base.
     pub base: BaseRecord,
-    /// 15 % of the filter finer by mass (mm), where the filter is known.
+    /// D15 of the filter by mass (mm), if the filter is known.
     pub d15f_mm: Option<f64>,
-    /// What was walked through.
+    /// Network that was walked.
     pub network: GivenNetwork,
     /// Version of the program.
     pub version: String,
 }
 
-/// Networks that were given; where there are several, the numbers are those of the first.
+/// Networks that were given; the numbers are those of the first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct GivenNetwork {
-    /// Networks that the replicates took in turn.
+    /// Number of networks, which the replicates take in turn.
     pub networks: u64,
-    /// How particles chose among the exits of a void.
+    /// Exit rule of the particles.
     pub exit: String,
-    /// Voids.
+    /// Number of voids.
     pub voids: u64,
-    /// Constrictions, each counted once.
+    /// Number of constrictions, each counted once.
     pub constrictions: u64,
-    /// Layers of voids.
+    /// Number of layers of voids.
     pub layers: u64,
     /// Rows of (diameter, percent smaller by number) of its open constrictions, diameters ascending (mm).
     pub diameters: Vec<[f64; 2]>,
@@ -428,10 +427,10 @@ pub struct GivenNetwork {
 /// Fields that are not results.
 const LEFT_OUT: [&str; 2] = ["seconds", "studies_to_come"];
 
-/// Digest of every number, `true`, `false` and `null` of a record: XXH3 of one line `PLACE=VALUE` each, 128
-/// bits in hexadecimal. Fields are sorted by name, so their order in the file does not matter. Text is left
-/// out (names, sentences, classes that follow from the numbers, version), and so are wall times (`seconds`)
-/// and the progress of a run (`studies_to_come`).
+/// Digest of every number, `true`, `false` and `null` of a record: XXH3 of one line `PLACE=VALUE` each,
+/// 128 bits in hexadecimal. Fields are sorted by name, so their order in the file does not matter. Text
+/// (names, sentences, classes that follow from the numbers, version), wall times (`seconds`) and the
+/// progress of a run (`studies_to_come`) are omitted.
 ///
 /// ```
 /// use serde_json::json;
@@ -443,7 +442,7 @@ const LEFT_OUT: [&str; 2] = ["seconds", "studies_to_come"];
 /// ```
 ///
 /// # Errors
-/// A record that JSON cannot hold.
+/// The record cannot be expressed in JSON.
 pub fn digest(record: &impl Serialize) -> Result<String, serde_json::Error> {
     let mut hash = Xxh3::new();
     add(&mut hash, "", &serde_json::to_value(record)?);

@@ -1,4 +1,4 @@
-//! Axes: a range, a scale, and the places of its ticks and grid lines.
+//! Axes: a range, a scale, and the positions of ticks and grid lines.
 
 /// Spacing of values along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -7,13 +7,13 @@ pub enum Scale {
     Log,
 }
 
-/// A grid line, and the lines of text beside it; without text it is a minor one.
+/// Grid line with its label; without text it is a minor line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
     pub at: f64,
-    /// Text beside it, one entry per line.
+    /// Label, one entry per line.
     pub text: Vec<String>,
-    /// Importance of the label: if two labels overlap, the one with the smaller rank is kept.
+    /// Rank of the label: if two labels overlap, the one of lower rank is kept.
     pub rank: u8,
 }
 
@@ -30,15 +30,14 @@ pub struct Axis {
     pub scale: Scale,
     pub low: f64,
     pub high: f64,
-    /// Grid lines, minor ones included.
+    /// Grid lines, including minor ones.
     pub ticks: Vec<Tick>,
-    /// True if values grow downward (depth), or, for an axis below the frame, to the left (coarse sizes
-    /// first).
+    /// True if values increase downwards (depth) or, on a horizontal axis, to the left (coarse sizes first).
     pub downward: bool,
 }
 
 impl Axis {
-    /// An even axis from `low` to `high`, widened to half steps of 1, 2 or 5.
+    /// Linear axis from `low` to `high`, widened to half steps of 1, 2 or 5.
     pub fn linear(label: &str, low: f64, high: f64) -> Axis {
         let (low, high) = if high > low { (low, high) } else { (low, low + 1.0) };
         let step = tidy_step((high - low) / 6.0);
@@ -54,7 +53,7 @@ impl Axis {
         Axis { label: label.to_owned(), scale: Scale::Linear, low, high, ticks, downward: false }
     }
 
-    /// Percent from 0 to 100, a line every 10.
+    /// Axis of percent from 0 to 100, with a line every 10.
     pub fn percent(label: &str) -> Axis {
         let ticks = (0..=10u8)
             .map(|ten| Tick {
@@ -66,7 +65,7 @@ impl Axis {
         Axis { label: label.to_owned(), scale: Scale::Linear, low: 0.0, high: 100.0, ticks, downward: false }
     }
 
-    /// A logarithmic axis around `low ... high` (both positive), with a line at 1, 2, ... 9 of each decade.
+    /// Logarithmic axis around `low ... high` (both positive), with lines at 1, 2, ... 9 of each decade.
     pub fn log(label: &str, low: f64, high: f64) -> Axis {
         let (low, high) = (tidy_log(low * 0.97, false), tidy_log(high * 1.03, true));
         let decades = libm::log10(high / low);
@@ -109,14 +108,14 @@ impl Axis {
         self
     }
 
-    /// Limits the axis to `low` and `high` exactly; ticks beyond them are removed.
+    /// Limits the axis to exactly `low` and `high`; ticks beyond them are removed.
     pub fn within(mut self, low: f64, high: f64) -> Axis {
         (self.low, self.high) = (low, high);
         self.ticks.retain(|tick| (low..=high).contains(&tick.at));
         self
     }
 
-    /// Rows with names instead of values, counted from 1, downward.
+    /// Downward axis of named rows, counted from 1.
     pub fn rows(names: impl IntoIterator<Item = String>) -> Axis {
         let ticks: Vec<Tick> =
             (1..).zip(names).map(|(row, name): (u32, _)| Tick::new(f64::from(row), &[&name])).collect();
@@ -135,7 +134,7 @@ impl Axis {
     }
 }
 
-/// Least and greatest of the positive values; 0.1 and 1 if there is no positive value.
+/// Minimum and maximum of the positive values; 0.1 and 1 if there are none.
 pub fn positive_range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let positive = values.filter(|v| *v > 0.0 && v.is_finite());
     let (low, high) =
@@ -143,7 +142,7 @@ pub fn positive_range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     if low.is_finite() { (low, high) } else { (0.1, 1.0) }
 }
 
-/// The next 1, 2 or 5 times a power of ten that is no smaller than `rough`.
+/// Smallest 1, 2 or 5 times a power of ten that is at least `rough`.
 fn tidy_step(rough: f64) -> f64 {
     let exponent = libm::floor(libm::log10(rough)) as i32;
     [1.0, 2.0, 5.0, 10.0]
@@ -153,7 +152,7 @@ fn tidy_step(rough: f64) -> f64 {
         .unwrap_or(rough)
 }
 
-/// The next digit times a power of ten, below or above `value`.
+/// Next digit times a power of ten below or above `value`.
 fn tidy_log(value: f64, above: bool) -> f64 {
     let exponent = libm::floor(libm::log10(value)) as i32;
     let mut digits = (1..=10u8).map(|digit| power_of_ten(f64::from(digit), exponent));
@@ -161,7 +160,7 @@ fn tidy_log(value: f64, above: bool) -> f64 {
     next.unwrap_or(value)
 }
 
-/// `digit * 10^exponent`, exact if a decimal text would be.
+/// Value of `digit * 10^exponent`, exact whenever its decimal text is.
 fn power_of_ten(digit: f64, exponent: i32) -> f64 {
     if exponent < 0 {
         digit / libm::exp10(f64::from(-exponent))

@@ -1,15 +1,15 @@
-//! Curves that a reader can hide: a named line or kind of symbol, and the marks in its colour alone. Rules,
-//! lines that represent a limit and named areas stay: a threshold, and the range in which a verdict holds,
-//! are never hidden.
+//! Curves that a reader can hide: a named line or kind of symbol, and the marks in its colour, if no other
+//! has that colour. Rules, limits and named areas stay: a threshold, or the range in which a verdict holds,
+//! cannot be hidden.
 
 use super::figure::{Colour, Figure, Mark};
 
-/// Greatest number of curves that the style of a page can hide; a figure with more hides no curve.
+/// Maximum number of curves that the style of a page can hide; a figure with more hides none.
 const MOST: usize = 16;
 
 impl Figure {
-    /// Names of the curves that a reader can hide, in the order of their classes `curve-1` ...; empty if
-    /// there are fewer than two.
+    /// Names of the curves that a reader can hide, in the order of their classes `curve-1` ...; empty for
+    /// fewer than two.
     pub fn curves(&self) -> Vec<String> {
         let mut names = Vec::new();
         for name in self.marks.iter().filter_map(|mark| curve_of(self, mark)) {
@@ -21,7 +21,7 @@ impl Figure {
     }
 }
 
-/// The class of each mark, as an element has it; empty for marks that stay.
+/// Class of each mark, as an attribute; empty for marks that stay.
 pub(super) fn classes(figure: &Figure) -> Vec<String> {
     let names = figure.curves();
     let class = |mark: &Mark| {
@@ -37,7 +37,7 @@ fn curve_of(figure: &Figure, mark: &Mark) -> Option<String> {
     let line = || only_name(figure, colour, |mark| matches!(mark, Mark::Line(_)));
     let any = || only_name(figure, colour, |_| true);
     match (mark, label) {
-        // A value that is marked on a line is hidden with it.
+        // A value marked on a line is hidden with the line.
         (Mark::Point(_), Some(name)) => line().or(Some(name)),
         (_, Some(name)) => Some(name),
         (Mark::Area(_), None) => line(),
@@ -45,7 +45,7 @@ fn curve_of(figure: &Figure, mark: &Mark) -> Option<String> {
     }
 }
 
-/// The name of a colour, if these marks have one alone.
+/// Name that belongs to a colour, if these marks have only one.
 fn only_name(figure: &Figure, colour: Colour, is_meant: fn(&Mark) -> bool) -> Option<String> {
     let looks = figure.marks.iter().filter(|mark| is_meant(mark)).filter_map(look);
     let mut names = looks.filter(|(_, other)| *other == colour).filter_map(|(name, _)| name);
@@ -53,7 +53,7 @@ fn only_name(figure: &Figure, colour: Colour, is_meant: fn(&Mark) -> bool) -> Op
     names.all(|name| name == first).then_some(first)
 }
 
-/// Name and colour of a mark that may be hidden.
+/// Name and colour of a mark that can be hidden.
 fn look(mark: &Mark) -> Option<(Option<String>, Colour)> {
     let (label, colour) = match mark {
         Mark::Line(line) if !line.stays => (&line.label, line.colour),
@@ -93,7 +93,7 @@ mod tests {
         assert_eq!(figure.curves(), ["first run", "second run"]);
         let (one, two) = (r#" class="curve-1""#, r#" class="curve-2""#);
         assert_eq!(classes(&figure), [one, two, "", one, two, two, "", "", ""]);
-        // Lines, their names, pointer titles and the symbol: all parts of each curve, no part of the rule.
+        // Lines, their names, tooltips and the symbol: all parts of each curve, and no part of the rule.
         let drawn = figure.inline("one", Size::Wide);
         let group = |class: &str| -> Vec<String> {
             let begin = format!("<g{class}>");

@@ -1,4 +1,4 @@
-//! Turns a [`Figure`] into SVG: marks, and their names if there is room.
+//! Draws a [`Figure`] as SVG: marks, and their names if there is room.
 
 use super::curves;
 use super::figure::{Across, Colour, Dash, Figure, Line, Mark, Point, Shape, Size};
@@ -28,7 +28,7 @@ fn draw(figure: &Figure, size: Size, id: &str, namespace: &str) -> String {
         Size::Sheet => figure.sheet.unwrap_or(figure.wide),
     };
     let mut above = if figure.names_above { named(figure) } else { Vec::new() };
-    // Marks without room for a name are named above the frame; this moves the frame, so all is drawn again.
+    // Marks without room for a name are named above the frame, which moves it, so all is drawn again.
     let (body, height) = loop {
         let (body, height, homeless) = body(figure, width, height, id, &above);
         if homeless.is_empty() {
@@ -67,8 +67,8 @@ fn label_of(mark: &Mark) -> Option<(&str, Colour)> {
     label.as_deref().map(|label| (label, colour))
 }
 
-/// Everything inside the element, its height, and the marks without room for a name. `above` are named above
-/// the frame.
+/// Content of the element, its height, and the marks without room for a name. Names of the marks in `above`
+/// are placed above the frame.
 fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> (String, f64, Vec<usize>) {
     let mut svg = Svg::default();
     let mut top = 12.0;
@@ -121,7 +121,7 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
         }
     }
     canvas.taken.extend(symbols);
-    // points first: they have one anchor only
+    // Points come first, because they have only one anchor.
     let mut order = named(figure);
     order.retain(|index| !above.contains(index));
     order.sort_by_key(|&index| !matches!(figure.marks[index], Mark::Point(_)));
@@ -141,7 +141,7 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
                 homeless.push(index);
                 continue;
             }
-            // the first choice is right of the anchor: here the middle of the area
+            // The first choice is right of the anchor: here it is moved to the middle of the area.
             anchors.iter_mut().for_each(|anchor| anchor.0 -= GAP + wide / 2.0);
         }
         match canvas.place(&anchors, wide, LINE_HEIGHT * lines.len() as f64 - 2.0, index) {
@@ -165,7 +165,7 @@ fn in_group(svg: &mut Svg, class: &str, draw: impl FnOnce(&mut Svg)) {
     svg.raw("</g>\n");
 }
 
-/// Writes a name beside its mark, on a light ground that separates it from the drawing below.
+/// Writes a name beside its mark, on a light background that separates it from the drawing below.
 fn name(svg: &mut Svg, lines: &[&str], area: &Rect, (at, anchor): (f64, Anchor), colour: Colour) {
     let halo = r##"stroke="#ffffff" stroke-width="3" stroke-linejoin="round" paint-order="stroke""##;
     let paint = format!("fill=\"{}\" {halo}", colour.text);
@@ -174,7 +174,7 @@ fn name(svg: &mut Svg, lines: &[&str], area: &Rect, (at, anchor): (f64, Anchor),
     }
 }
 
-/// Text left of its curve ends at the curve, so that a narrower font leaves no gap.
+/// Text to the left of its curve ends at the curve, so that a narrower font leaves no gap.
 fn side(area: &Rect, anchors: &[(f64, f64)]) -> (f64, Anchor) {
     let nearest = anchors.iter().min_by(|a, b| distance(area, **a).total_cmp(&distance(area, **b)));
     match nearest {
@@ -190,7 +190,7 @@ fn distance(rect: &Rect, point: (f64, f64)) -> f64 {
     libm::hypot(dx, dy)
 }
 
-/// Draws the names above the frame, in as many rows as they need. Returns the top of the frame.
+/// Draws the names above the frame, in as many rows as needed. Returns the top of the frame.
 fn key(svg: &mut Svg, figure: &Figure, above: &[usize], width: f64, top: f64) -> f64 {
     const SAMPLE: f64 = 26.0;
     let (mut left, mut row) = (14.0, top);
@@ -265,7 +265,7 @@ fn draw_mark(svg: &mut Svg, canvas: &mut Canvas, frame: &Frame<'_>, mark: &Mark,
     }
 }
 
-/// Draws a symbol and its bars over everything else without clipping: half a circle on the frame reads badly.
+/// Draws a symbol and its bars on top of everything without clipping: half a circle on the frame reads badly.
 fn draw_point(
     svg: &mut Svg,
     canvas: &mut Canvas,
@@ -331,7 +331,7 @@ fn stroke(line: &Line) -> String {
     format!("stroke=\"{}\" stroke-width=\"{}\"{dashes}{opacity}", line.colour.line, short(line.width))
 }
 
-/// Places for the name of a mark, in the order of preference.
+/// Positions for the name of a mark, in order of preference.
 fn anchors(frame: &Frame<'_>, mark: &Mark) -> Vec<(f64, f64)> {
     let Rect { left, top, right, bottom } = frame.area;
     match mark {
@@ -361,20 +361,20 @@ fn anchors(frame: &Frame<'_>, mark: &Mark) -> Vec<(f64, f64)> {
     }
 }
 
-/// Leftmost and rightmost pixel of an outline inside the frame.
+/// Leftmost and rightmost pixels of an outline inside the frame.
 fn reach(frame: &Frame<'_>, outline: &[(f64, f64)]) -> (f64, f64) {
     let seen = frame.seen(&frame.path(outline));
     seen.iter().fold((f64::MAX, f64::MIN), |(least, most), (x, _)| (least.min(*x), most.max(*x)))
 }
 
-/// Spots on a line, at most, and the space between two (pixels).
+/// Maximum number of spots on a line, and their minimum spacing (pixels).
 const SPOTS: usize = 24;
 const APART: f64 = 14.0;
 
-/// Title that a pointer shows at a point.
+/// Tooltip of a point.
 fn title(figure: &Figure, label: Option<&str>, (x, y): (f64, f64)) -> String {
     let name = label.map_or(String::new(), |label| format!("{}: ", label.replace('\n', " ")));
-    // An axis of rows has no label: its value is a place. The text after a label's first clause describes the
+    // An axis of rows has no label: its value is a position. After its first clause a label describes the
     // marks along the axis, not a value.
     let value = |label: &str, value: f64| match label.split([';', '\n']).next().unwrap_or_default() {
         "" => String::new(),
@@ -385,7 +385,7 @@ fn title(figure: &Figure, label: Option<&str>, (x, y): (f64, f64)) -> String {
     format!("<title>{}</title>", escape(&format!("{name}{}", values.join("; "))))
 }
 
-/// Draws the spots that show values to a pointer, each mark's in a group of its class.
+/// Draws the spots with tooltips, those of each mark in a group of its class.
 fn spots(svg: &mut Svg, figure: &Figure, classes: &[String], frame: &Frame<'_>) {
     for (mark, class) in figure.marks.iter().zip(classes) {
         let Mark::Line(line) = mark else { continue };
@@ -418,7 +418,7 @@ mod tests {
     use super::super::{Axis, BLUE, Line, Point, Shape, Size};
     use super::*;
 
-    /// The words are the first line of the axis label.
+    /// The first line of the axis label gives the words.
     #[test]
     fn a_pointer_shows_the_place_of_a_mark() {
         let x = Axis::log("Times the grains; below, grains per void", 0.5, 2.0);

@@ -1,15 +1,15 @@
-//! A figure: axes, and the marks between them, in colours that colour-blind readers tell apart.
+//! Figure: axes, and the marks between them, in colours that colour-blind readers can distinguish.
 
 use super::axis::Axis;
 
-/// Room for a figure. Text has the same size in both.
+/// Size of a figure; text is equally large in all sizes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Size {
     /// For a page or a file: 720 pixels wide unless the figure says otherwise.
     Wide,
     /// For a telephone: 358 pixels wide unless the figure says otherwise.
     Narrow,
-    /// For the first printed sheet, beside a table; as for a page unless the figure says otherwise.
+    /// For the first printed sheet, beside a table; the size of a page unless the figure says otherwise.
     Sheet,
 }
 
@@ -22,7 +22,7 @@ pub struct Figure {
     pub(super) x: Axis,
     pub(super) y: Axis,
     pub(super) marks: Vec<Mark>,
-    /// True if all names are above the frame; else each is beside its curve if there is room.
+    /// True if all names are above the frame; otherwise each is beside its curve if there is room.
     pub(super) names_above: bool,
     pub(super) square: bool,
     pub(super) sieves: bool,
@@ -32,8 +32,8 @@ pub struct Figure {
 }
 
 impl Figure {
-    /// An empty figure. `title` and `description` are for readers who do not see it, `heading` (may be empty)
-    /// is drawn above the frame.
+    /// Empty figure. `title` and `description` are for readers who cannot see it; `heading`, which may be
+    /// empty, is drawn above the frame.
     pub fn new(title: &str, description: &str, heading: &str, x: Axis, y: Axis) -> Figure {
         Figure {
             title: title.to_owned(),
@@ -63,12 +63,12 @@ impl Figure {
         self
     }
 
-    /// Tells if it has a size of its own on the first printed sheet.
+    /// True if it has a size of its own on the first printed sheet.
     pub fn has_sheet(&self) -> bool {
         self.sheet.is_some()
     }
 
-    /// Makes the frame a square, as large as there is room for: equal axes then have equal scales.
+    /// Makes the frame a square, as large as possible: equal axes then have equal scales.
     pub fn square(mut self) -> Figure {
         self.square = true;
         self
@@ -85,7 +85,7 @@ impl Figure {
         self
     }
 
-    /// Draws a mark over those that are there.
+    /// Draws a mark on top of the existing ones.
     pub fn add(&mut self, mark: impl Into<Mark>) {
         self.marks.push(mark.into());
     }
@@ -97,7 +97,7 @@ impl Figure {
         }
     }
 
-    /// Tells if it is higher than wide, so that it needs a printed page for itself.
+    /// True if it is taller than wide, so that it needs a printed page for itself.
     pub fn is_tall(&self) -> bool {
         self.wide.1 > 1.1 * self.wide.0
     }
@@ -110,7 +110,7 @@ pub enum Dash {
     Dotted,
 }
 
-/// A line through points.
+/// Line through points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Line {
     pub(super) points: Vec<(f64, f64)>,
@@ -123,13 +123,13 @@ pub struct Line {
 }
 
 impl Line {
-    /// A solid line, 2 pixels wide.
+    /// Solid line, 2 pixels wide.
     pub fn new(points: Vec<(f64, f64)>, colour: Colour) -> Line {
         let (width, dash, opacity) = (2.0, Dash::Solid, 1.0);
         Line { points, colour, width, dash, opacity, stays: false, label: None }
     }
 
-    /// A solid line through rows as records hold them: x, y.
+    /// Solid line through rows of records: x, y.
     pub fn of_rows(rows: &[[f64; 2]], colour: Colour) -> Line {
         Line::new(rows.iter().map(|&[x, y]| (x, y)).collect(), colour)
     }
@@ -151,7 +151,7 @@ impl Line {
         self
     }
 
-    /// Marks the line as a limit, which no reader of a page can hide.
+    /// Marks the line as a limit, which a reader of a page cannot hide.
     pub fn stays(mut self) -> Line {
         self.stays = true;
         self
@@ -180,7 +180,7 @@ pub enum Shape {
     Triangle,
 }
 
-/// A symbol, with error bars and a name if wanted.
+/// Symbol with optional error bars and an optional name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
     pub(super) at: (f64, f64),
@@ -216,14 +216,14 @@ impl Point {
         self
     }
 
-    /// Adds a dotted line down to the x axis, where its value is read.
+    /// Adds a dotted line down to the x axis, where its value can be read.
     pub fn dropped(mut self) -> Point {
         self.drop = true;
         self
     }
 }
 
-/// The axis that a [`Rule`] crosses.
+/// Axis that a [`Rule`] crosses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Across {
     /// At one x, vertical.
@@ -232,7 +232,7 @@ pub enum Across {
     Y,
 }
 
-/// A straight line at one value, from edge to edge.
+/// Straight line at one value, from edge to edge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
     pub(super) across: Across,
@@ -253,7 +253,7 @@ impl Rule {
     }
 }
 
-/// A circle to scale; its diameter is a length on the x axis.
+/// Circle to scale; its diameter is a length on the x axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disc {
     pub centre: (f64, f64),
@@ -261,7 +261,7 @@ pub struct Disc {
     pub colour: Colour,
 }
 
-/// Anything that is drawn between the axes.
+/// Mark that is drawn between the axes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mark {
     Line(Line),
@@ -285,7 +285,7 @@ marks!(Line, Area, Point, Rule, Disc);
 macro_rules! labels {
     ($($kind:ident),*) => { $(
         impl $kind {
-            /// Sets the name, of an area at its upper edge.
+            /// Sets the name, which an area has at its upper edge.
             pub fn label(mut self, label: &str) -> $kind {
                 self.label = Some(label.to_owned());
                 self
@@ -295,7 +295,7 @@ macro_rules! labels {
 }
 labels!(Line, Area, Point, Rule);
 
-/// A colour for lines, and a darker one for text that names them on white.
+/// Colour for lines, and a darker one for text that names them on white.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Colour {
     /// For lines, areas and symbols.
@@ -304,7 +304,7 @@ pub struct Colour {
     pub text: &'static str,
 }
 
-// Colours of Okabe and Ito.
+// Colours by Okabe and Ito.
 pub const BLACK: Colour = Colour { line: "#000000", text: "#000000" };
 pub const BLUE: Colour = Colour { line: "#0072B2", text: "#00598C" };
 pub const GREEN: Colour = Colour { line: "#009E73", text: "#00684C" };
@@ -313,7 +313,7 @@ pub const VERMILLION: Colour = Colour { line: "#D55E00", text: "#A34700" };
 pub const PURPLE: Colour = Colour { line: "#CC79A7", text: "#8E3F6C" };
 pub const GREY: Colour = Colour { line: "#767676", text: "#555555" };
 
-/// A ramp from light to dark blue, for curves in an order.
+/// Colour from a ramp of light to dark blue, for ordered curves.
 pub fn ramp(index: usize, count: usize) -> Colour {
     const BLUES: [Colour; 6] = [
         Colour { line: "#8CC5E3", text: "#1F6F9C" },

@@ -1,5 +1,5 @@
-//! The frame of a figure: the pixel of a value, its grid, the labels of its axes, and above it the scales of
-//! sieves and of the parts of a soil.
+//! Frame of a figure: the pixel of a value, its grid, the labels of its axes, and above it the scales of
+//! sieves and of soil fractions.
 
 use super::axis::{Axis, Tick};
 use super::figure::Figure;
@@ -8,7 +8,7 @@ use super::svg::{Anchor, Rect, Svg, short, simplify, width_of, wrap};
 pub(super) const TICK_TEXT: f64 = 13.0;
 pub(super) const LABEL_TEXT: f64 = 14.0;
 pub(super) const LINE_HEIGHT: f64 = 17.0;
-/// Least width and height of the frame.
+/// Minimum width and height of the frame (pixels).
 const LEAST: f64 = 60.0;
 
 /// Conversion of values to pixels.
@@ -39,22 +39,22 @@ impl Frame<'_> {
         simplify(points.iter().filter_map(|point| self.at(*point)))
     }
 
-    /// A path limited to the frame, for finding room: hidden parts need no room.
+    /// Path clipped to the frame, for finding room: hidden parts need no room.
     pub(super) fn seen(&self, path: &[(f64, f64)]) -> Vec<(f64, f64)> {
         let area = &self.area;
         path.iter().map(|(x, y)| (x.clamp(area.left, area.right), y.clamp(area.top, area.bottom))).collect()
     }
 }
 
-/// Makes a frame that is high enough to be seen, for any text above and below it: the figure grows.
+/// Makes a frame that is high enough to be seen, whatever the text above and below it: the figure grows.
 pub(super) fn roomy(figure: &Figure, width: f64, height: f64, top: f64) -> (Frame<'_>, f64) {
     let first = frame(figure, width, height, top);
     let high = first.area.bottom - first.area.top;
     if high >= LEAST {
         return (first, height);
     }
-    // The label beside the frame breaks into fewer lines if the frame is higher, which makes it wider: at
-    // most the labels below then need fewer lines.
+    // In a higher frame the label beside it breaks into fewer lines, which makes the frame wider; the labels
+    // below then need at most fewer lines.
     let height = height + LEAST - high;
     (frame(figure, width, height, top), height)
 }
@@ -71,7 +71,7 @@ fn frame(figure: &Figure, width: f64, height: f64, top: f64) -> Frame<'_> {
     } else {
         wrap(&figure.y.label, LABEL_TEXT, height - top - 90.0).len()
     };
-    // Text that is too long for the space beside the frame is cut off at the figure's edge.
+    // Text too long for the space beside the frame is cut off at the figure's edge.
     let left = (12.0 + y_lines as f64 * LINE_HEIGHT + widest(&figure.y) + 12.0).min(right - LEAST);
     let x_lines = wrap(&figure.x.label, LABEL_TEXT, right - left).len() as f64;
     let bottom = height - 10.0 - (x_lines + rows) * LINE_HEIGHT - 6.0;
@@ -113,8 +113,8 @@ pub(super) fn grid(svg: &mut Svg, frame: &Frame<'_>) {
     }
 }
 
-/// The ticks whose labels fit beside one another, the important ones first, each with its place. `room` gives
-/// the place of a tick and half the room of its label.
+/// Ticks whose labels fit beside one another, important ones first, each with its position. `room` gives the
+/// position of a tick and half the width of its label.
 fn labelled(axis: &Axis, room: impl Fn(&Tick) -> Option<(f64, f64)>) -> Vec<(&Tick, f64)> {
     let mut kept: Vec<(&Tick, f64, f64)> = Vec::new();
     let highest = axis.ticks.iter().map(|tick| tick.rank).max().unwrap_or(0);
@@ -125,7 +125,7 @@ fn labelled(axis: &Axis, room: impl Fn(&Tick) -> Option<(f64, f64)>) -> Vec<(&Ti
             .filter(|tick| tick.rank == rank && !tick.text.is_empty())
             .filter_map(|tick| room(tick).map(|(at, half)| (tick, at, half)))
             .collect();
-        // the first rank is thinned evenly until it fits; a lower one is kept whole or dropped
+        // The first rank is thinned evenly until it fits; a lower rank is kept or dropped as a whole.
         let fits = |stride: usize| {
             let mut all = kept.clone();
             all.extend(group.iter().step_by(stride));
@@ -160,7 +160,7 @@ pub(super) fn axis_labels(svg: &mut Svg, frame: &Frame<'_>, height: f64) {
     }
 }
 
-/// Openings (mm, ASTM E11) and names of sieves, in the order in which they are kept if there is little room.
+/// Openings (mm, ASTM E11) and names of sieves, the most important first if there is little room.
 const SIEVES: [(f64, &str); 11] = [
     (0.075, "200"),
     (4.75, "4"),
@@ -175,7 +175,7 @@ const SIEVES: [(f64, &str); 11] = [
     (37.5, "1½″"),
 ];
 
-/// Parts of a soil by size (mm), as ASTM D2487 divides them.
+/// Soil fractions by size (mm), as in ASTM D2487.
 const PARTS: [(&str, f64, f64); 4] =
     [("fines", 0.0, 0.075), ("sand", 0.075, 4.75), ("gravel", 4.75, 75.0), ("cobbles", 75.0, f64::INFINITY)];
 
@@ -184,7 +184,7 @@ pub(super) const HEIGHT: f64 = 36.0;
 
 const TEXT: f64 = 11.0;
 
-/// Draws the scales of US sieves and of the parts of a soil above a frame whose x is a size in mm.
+/// Draws the scales of US sieves and of soil fractions above a frame whose x is a size in mm.
 pub(super) fn sieves(svg: &mut Svg, frame: &Frame<'_>) {
     let Rect { left, top, right, bottom } = frame.area;
     let at = |size: f64| frame.x_at(size);
@@ -210,7 +210,7 @@ pub(super) fn sieves(svg: &mut Svg, frame: &Frame<'_>) {
                 svg.line((x, top - HEIGHT + 6.0), (x, bottom), paint);
             }
         }
-        // Beyond an end of the axis a part reaches to that end.
+        // A fraction that extends beyond the axis ends with it.
         let edges = [finest, coarsest].map(|mm| if mm > 0.0 && mm.is_finite() { at(mm) } else { None });
         let (one, other) = match (edges, at(finest.max(1e-9) * 2.0), at(coarsest.min(1e9) / 2.0)) {
             ([Some(a), Some(b)], ..) => (a, b),
@@ -270,7 +270,7 @@ mod tests {
                 assert!(places.windows(2).all(|pair| pair[0] < pair[1]), "{coarse_left}: {places:?}");
             }
         }
-        // A soil of sand alone, and one beyond every sieve.
+        // A soil of sand alone, and a soil beyond every sieve.
         let sand = figure(0.2, 2.0, false).inline("s", Size::Wide);
         assert!(
             x_of(&sand, "sand").is_some()

@@ -1,10 +1,10 @@
 //! Figures: axes, lines, areas, points and rules, drawn as SVG.
 //!
-//! A [`Figure`] holds the content; [`Figure::file`] and [`Figure::inline`] draw it. It suits the habits of
-//! geotechnical engineers (semi-logarithmic paper with its minor lines, depth downward, a name beside each
-//! curve) and pages that forbid everything but themselves: only presentation attributes, no script, no style
-//! element, no font or image from elsewhere. Colours are from Okabe and Ito, which colour-blind readers tell
-//! apart, and never the only difference between two curves: dashes, widths and symbols differ as well.
+//! A [`Figure`] holds the content; [`Figure::file`] and [`Figure::inline`] draw it. It follows the habits of
+//! geotechnical engineers (semi-logarithmic paper with minor lines, depth downward, a name beside each curve)
+//! and suits pages that forbid all content from elsewhere: it has only presentation attributes, no script, no
+//! style element, and no external font or image. Colours are by Okabe and Ito, which colour-blind readers can
+//! distinguish, and never the only difference between curves: dashes, widths and symbols differ as well.
 
 mod axis;
 mod curves;
@@ -81,7 +81,7 @@ mod tests {
 
     proptest::proptest! {
         #![proptest_config(proptest::prelude::ProptestConfig::with_cases(60))]
-        /// Names of any length, in any number, on figures of any size, beside the frame, above it and as
+        /// Draws names of any length and number on figures of any size: beside the frame, above it and as
         /// ticks.
         #[test]
         fn no_name_and_no_size_is_too_much(

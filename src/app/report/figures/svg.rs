@@ -1,14 +1,14 @@
 //! SVG text: elements, numbers, escaping, and the estimated width of a text; paths with few points; and
-//! places for labels beside their own curve, and on nothing else.
+//! positions for labels that are beside their own curve and cover nothing else.
 
 use std::fmt::Write;
 
 use voidwalk_core::text::visible;
 
-/// Generic families only: a figure looks the same as a file and in a page, and fetches nothing.
+/// Generic families only, so that a figure looks the same as a file and in a page, and fetches nothing.
 pub(super) const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 
-/// Placement of a text: in the middle of, before or behind its anchor.
+/// Alignment of a text with its anchor: centred on it, before it or after it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Anchor {
     Start,
@@ -26,7 +26,7 @@ impl Anchor {
     }
 }
 
-/// Characters as XML can hold them: markup escaped, hidden ones replaced.
+/// Characters in a form that XML can hold: markup escaped, hidden ones replaced.
 pub fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for character in text.chars() {
@@ -42,7 +42,7 @@ pub fn escape(text: &str) -> String {
     out
 }
 
-/// Width of a text in pixels, on the generous side: the reader's font is not known here.
+/// Estimated width of a text in pixels, rather too large: the reader's font is unknown.
 pub(super) fn width_of(text: &str, size: f64) -> f64 {
     let em: f64 = text
         .chars()
@@ -58,7 +58,7 @@ pub(super) fn width_of(text: &str, size: f64) -> f64 {
     em * size
 }
 
-/// The text in lines no wider than `width` pixels, broken at spaces.
+/// Text in lines at most `width` pixels wide, broken at spaces.
 pub(super) fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -73,15 +73,15 @@ pub(super) fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
     lines
 }
 
-/// A number with at most two decimals and no trailing zeros.
+/// Number with at most two decimals and no trailing zeros.
 pub(super) fn short(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// Elements, one after another. Only presentation attributes are written, never a `style`: a strict content
-/// security policy lets them pass.
+/// Sequence of elements. Only presentation attributes are written, never a `style`: a strict content security
+/// policy accepts them.
 #[derive(Default)]
 pub(super) struct Svg {
     text: String,
@@ -116,7 +116,7 @@ impl Svg {
         let _ = writeln!(self.text, r#"{}" {paint}/>"#, if closed { "Z" } else { "" });
     }
 
-    /// Text whose baseline passes through `at`; the content is escaped here and nowhere else.
+    /// Writes text whose baseline passes through `at`; the content is escaped here and nowhere else.
     pub(super) fn text(&mut self, at: (f64, f64), anchor: Anchor, content: &str, extra: &str) {
         let (x, y, anchor, content) = (short(at.0), short(at.1), anchor.word(), escape(content));
         let _ =
@@ -128,7 +128,7 @@ impl Svg {
     }
 }
 
-/// The point at a share of a path's length.
+/// Point at a fraction of a path's length.
 pub(super) fn along(path: &[(f64, f64)], share: f64) -> Option<(f64, f64)> {
     let length = |pair: &[(f64, f64)]| libm::hypot(pair[1].0 - pair[0].0, pair[1].1 - pair[0].1);
     let mut left = share * path.windows(2).map(length).sum::<f64>();
@@ -144,8 +144,8 @@ pub(super) fn along(path: &[(f64, f64)], share: f64) -> Option<(f64, f64)> {
     path.last().copied()
 }
 
-/// The path with as few points as keep it within a third of a pixel (Douglas and Peucker), after points that
-/// coincide with their predecessor are left out.
+/// Path with the minimum of points that keeps it within a third of a pixel (Douglas and Peucker), after
+/// dropping points that coincide with their predecessor.
 pub(super) fn simplify(points: impl Iterator<Item = (f64, f64)>) -> Vec<(f64, f64)> {
     const NEAR: f64 = 0.3;
     let mut path: Vec<(f64, f64)> = Vec::new();
@@ -214,7 +214,7 @@ impl Rect {
         point.0 > self.left && point.0 < self.right && point.1 > self.top && point.1 < self.bottom
     }
 
-    /// Tells if a point is inside or on the edge.
+    /// True if a point is inside or on the edge.
     pub(super) fn reaches(&self, (x, y): (f64, f64)) -> bool {
         (self.left..=self.right).contains(&x) && (self.top..=self.bottom).contains(&y)
     }
@@ -231,12 +231,12 @@ impl Rect {
     }
 }
 
-/// The drawn points, and the free space for labels.
+/// Drawn points, and the space that remains for labels.
 pub(super) struct Canvas {
     pub frame: Rect,
     /// Points on the drawn marks, a few pixels apart, each with the index of its mark.
     pub ink: Vec<((f64, f64), usize)>,
-    /// Labels and symbols that were placed.
+    /// Labels and symbols already placed.
     pub taken: Vec<Rect>,
 }
 
@@ -255,7 +255,7 @@ impl Canvas {
     }
 
     /// Takes and returns a free box of this size near one of the anchors (tried in order), or `None`. Other
-    /// marks are kept at a greater distance, so that a name is on its own curve's side of a neighbour.
+    /// marks are kept at a greater distance, so that a name stays on its own curve's side of a neighbour.
     pub(super) fn place(
         &mut self,
         anchors: &[(f64, f64)],

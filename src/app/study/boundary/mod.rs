@@ -1,16 +1,16 @@
-//! Boundaries of the model: the D15F/D85B at which, for a filter of some shape, no erosion turns into some,
-//! and some into continuing.
+//! Boundaries of the model: the D15F/D85B from which a filter of some shape lets some of the base erode, and
+//! the D15F/D85B from which erosion continues.
 //!
 //! # Method
 //! Each shape and density takes one packing. Packings are free of scale: a filter s times as large holds a
 //! base as the filter itself would hold one 1/s times as large, so nothing is packed again. Each network of a
-//! boundary is a replicate of a run, with its own streams of random numbers; they are the same at every
-//! ratio, and the network is the same to the bit. `search` describes the search; [`crate::outcome::boundary`]
-//! has median and band over networks. A thickness in mm is another number of layers at every ratio, but the
-//! first layers are always the same.
+//! boundary is a replicate of a run, with its own streams of random numbers; these are the same at every
+//! ratio, and so is the network, to the bit. `search` describes the search; [`crate::outcome::boundary`]
+//! gives the median and band over networks. A thickness in mm is another number of layers at every ratio, but
+//! the first layers are always the same.
 //!
-//! A base that is twice as large takes a filter twice as large, to the bit, for a thickness in layers or
-//! multiples of D50F.
+//! For a thickness in layers or multiples of D50F, a base twice as large takes a filter exactly twice as
+//! large.
 
 mod plan;
 #[cfg(test)]
@@ -51,13 +51,13 @@ pub use plan::{BoundaryOptions, Thickness, ThicknessList};
 /// Finds the boundaries and writes `boundary.csv` and, last, `boundary.json`.
 ///
 /// # Errors
-/// Settings that are wrong and a folder that cannot be claimed are refused before any work; then errors of a
-/// packing or a walk. After a stop or a kill the same command continues with the networks that are left.
+/// Wrong settings, or a folder that cannot be claimed, are refused before any work; then errors of a packing
+/// or a walk. After a stop or a kill the same command continues with the remaining networks.
 pub fn run(options: &BoundaryOptions, callbacks: &Callbacks) -> Result<Boundaries, RunError> {
     on_threads(options.prepare.threads, || run_within(options, BRACKET, callbacks))
 }
 
-/// Finds whatever is wrong, as [`run`] would before any work; claims and writes nothing.
+/// Reports all mistakes that [`run`] would find before any work; claims and writes nothing.
 pub fn check(options: &BoundaryOptions) -> Result<(), RunError> {
     on_threads(options.prepare.threads, || drafts(options, BRACKET).map(drop))
 }
@@ -82,17 +82,17 @@ fn run_within(
     })
 }
 
-/// D15F/D85B between which boundaries are searched.
+/// D15F/D85B between which [`run`] searches.
 const BRACKET: [f64; 2] = [0.5, 100.0];
 
-/// A density and thickness that has been found sound.
+/// Density and thickness found sound.
 struct DraftedRow {
     draft: Draft,
-    /// With a guess at a filter that is to be packed.
+    /// Row with a guess for a filter that is still to be packed.
     row: Row,
 }
 
-/// Whatever is wrong, before any work.
+/// Rows found sound. Errors: any mistake, before any work.
 fn drafts(options: &BoundaryOptions, bracket: [f64; 2]) -> Result<Vec<DraftedRow>, RunError> {
     plan(options)?.cases.into_iter().map(|planned| DraftedRow::new(planned, options, bracket)).collect()
 }
@@ -112,7 +112,7 @@ impl DraftedRow {
                     .into(),
             );
         };
-        // One millimetre if it is stated, else the unit.
+        // D0 counts as one millimetre if it is stated, else as the unit.
         let states_d0 = options.settings.iter().any(|setting| setting_name(setting) == "filter.d0_mm");
         let filter_has_size = states_d0 || !case.is_scale_free();
         let has_size = match scene.base.gradation() {
@@ -160,9 +160,9 @@ impl DraftedRow {
     }
 }
 
-/// Every row, each followed by the ends of the range in which its constriction curve is known, as a run walks
-/// them: for a guess the densest and the loosest, for a filter whose finer part was packed the coarser curve.
-/// An end that was asked for as a row of its own is not repeated.
+/// Every row, each followed by the ends of the range of its constriction curve, as a run walks them: the
+/// densest and the loosest for a guess, the coarser curve for a filter with only its finer part packed. An
+/// end that was asked for as a row of its own is not repeated.
 fn with_curve_ends(rows: Vec<Row>) -> Vec<Row> {
     let same = |a: &Row, b: &Row| a.density == b.density && a.thickness == b.thickness;
     let mut all: Vec<Row> = Vec::new();
@@ -177,7 +177,7 @@ fn with_curve_ends(rows: Vec<Row>) -> Vec<Row> {
     all
 }
 
-/// Hash of everything that the results follow from.
+/// Hash of everything that determines the results.
 fn work(rows: &[Row], bracket: [f64; 2]) -> String {
     let work_of_row = |row: &Row| {
         let base = row.stated.base.gradation.points();
@@ -189,7 +189,7 @@ fn work(rows: &[Row], bracket: [f64; 2]) -> String {
     kept::hash_of(&json!([METHOD, bracket, rows]).to_string())
 }
 
-/// Searches every network of every row that is not done, side by side, and keeps each as soon as it is done.
+/// Searches every missing network of every row, side by side, and saves each as soon as it is done.
 fn searched(
     rows: &[Row],
     bracket: [f64; 2],
@@ -211,7 +211,7 @@ fn searched(
     let (done, writing) = (Mutex::new(done), Mutex::new(()));
     let searching = Searching { rows, bracket, done, writing, kept, callbacks, begun_at_once };
     let ended = others.into_par_iter().try_for_each(|row| searching.row(row)).and_then(|()| {
-        // Ends that seem to hold more are searched if they may still set the answer.
+        // Ends that seem to hold more are searched if they may still decide the answer.
         let row_or_less = |row: usize| match searching.holds_clearly_more(row, &less[row])? {
             true => Ok(()),
             false => searching.row(row),
@@ -229,22 +229,22 @@ fn searched(
     Ok(done)
 }
 
-/// The networks of all rows, those that are done among them.
+/// Networks of all rows, including those already done.
 struct Searching<'a> {
     rows: &'a [Row],
     bracket: [f64; 2],
     done: Mutex<Vec<Done>>,
-    /// Held by the one thread that writes finished work.
+    /// Locked by the thread that writes finished work.
     writing: Mutex<()>,
     kept: &'a Kept<'a>,
     callbacks: &'a Callbacks<'a>,
-    /// Networks of a row that begin before its first has ended, and are in memory until they end.
+    /// Networks of a row that begin before its first has ended, and stay in memory until they end.
     begun_at_once: usize,
 }
 
 impl Searching<'_> {
-    /// Searches every network of a row that is not done. The first gives hints for the others; while its
-    /// second run is searched, some of them begin.
+    /// Searches every missing network of a row. The first gives hints for the others; some of them begin
+    /// while its second run is searched.
     fn row(&self, row: usize) -> Result<(), RunError> {
         let settings = &self.rows[row];
         let result = |network: u64| {
@@ -286,7 +286,7 @@ impl Searching<'_> {
         begun.and(whole)
     }
 
-    /// True if the first network of an end holds clearly more than these rows, so that it cannot set the
+    /// True if the first network of an end holds clearly more than these rows, so that it cannot decide the
     /// answer.
     fn holds_clearly_more(&self, row: usize, less: &[usize]) -> Result<bool, RunError> {
         let less: Vec<(usize, u64)> = less.iter().map(|&less| (less, self.rows[less].networks())).collect();
@@ -329,8 +329,8 @@ impl Searching<'_> {
         self.write()
     }
 
-    /// Writes finished work, unless another thread writes: that thread continues until nothing is left, so
-    /// that no search waits for a disk.
+    /// Writes finished work, unless another thread is writing: that thread continues until nothing is left,
+    /// so that no search waits for a disk.
     fn write(&self) -> Result<(), RunError> {
         loop {
             let Ok(writing) = self.writing.try_lock() else { return Ok(()) };
@@ -348,15 +348,15 @@ impl Searching<'_> {
     }
 }
 
-/// The first network of an end must hold at least this multiple of the greatest ratio among the networks of
-/// the end that holds least, or the square of the spread of those networks, if that is more. So even a
-/// network of the end that lies twice as far below its first as that spread holds more than the least of
-/// them.
+/// Minimum ratio that the first network of an end must hold, as a multiple of the greatest ratio among the
+/// networks of the end that holds least; the square of the spread of those networks counts if it is larger.
+/// Even a network of the end that lies twice as far below its first as that spread then holds more than the
+/// least of them.
 const CLEAR: f64 = 1.1;
 
-/// The ends of the same ranges that hold less than row `at` by the closed form for a lone particle: one for
-/// each row that it is an end of. Empty if it holds least itself, was asked for, or is an end of a row that
-/// is searched itself.
+/// For each row with row `at` as an end, the end of the same range that holds least by the closed form for a
+/// lone particle. Empty if that is row `at` itself, if row `at` was asked for, or if it is an end of a row
+/// that is itself searched.
 fn holding_less(rows: &[Row], at: usize) -> Vec<usize> {
     let row = &rows[at];
     if row.end_of.is_none() {
@@ -376,8 +376,8 @@ fn holding_less(rows: &[Row], at: usize) -> Vec<usize> {
     if least.contains(&at) { Vec::new() } else { least }
 }
 
-/// The ratio that the first network of an end must hold, so that it cannot set the answer beside rows that
-/// hold less, once all networks of those rows are done; `None` if the end is searched in any case.
+/// Ratio that the first network of an end must hold so that it cannot decide the answer beside rows that hold
+/// less, once all networks of those rows are done; `None` if the end is searched in any case.
 fn clear_of(done: &[Done], holding_less: &[(usize, u64)]) -> Option<f64> {
     let ratio = |&(row, networks): &(usize, u64)| {
         let of_row = done.iter().filter(|done| done.row == row);
@@ -391,8 +391,7 @@ fn clear_of(done: &[Done], holding_less: &[(usize, u64)]) -> Option<f64> {
     ratios?.into_iter().reduce(f64::max).filter(|ratio| ratio.is_finite() && *ratio > 0.0)
 }
 
-/// The ratio up to which a network holds; 0 if it erodes at every ratio of the search, `None` if it is
-/// unknown.
+/// Ratio up to which a network holds; 0 if it erodes at every ratio of the search, `None` if unknown.
 fn holds_to(found: &Found) -> Option<f64> {
     match (found.no_erosion, &found.no_erosion_beyond) {
         (Some(ratio), _) => Some(ratio),

@@ -1,4 +1,4 @@
-//! Options of a search of boundaries, and its plan: a case for each density and thickness.
+//! Options of a search for boundaries, and its plan: one case for each density and thickness.
 
 use std::path::{Path, PathBuf};
 
@@ -15,35 +15,35 @@ use voidwalk_core::schema::length::{LENGTHS, millimetres};
 use voidwalk_core::schema::setting_name;
 use voidwalk_core::walk::Engine;
 
-/// Default number of voids across a lattice: the same as in the study of real soils.
+/// Default number of voids across a lattice, as in the study of real soils.
 const ACROSS: u64 = 20;
 
-/// Default number of networks: the fewest that give percentiles.
+/// Default number of networks: the minimum for percentiles.
 const NETWORKS: u64 = 5;
 
-/// Settings that state how thick a filter is.
+/// Settings that state the thickness of a filter.
 const THICKNESSES: [&str; 4] =
     ["network.nz", "network.copies", "network.thickness_mm", "network.thickness_d50f"];
 
-/// Options of a search of boundaries, and the place of its results.
+/// Options of a search for boundaries, and the folder of its results.
 #[derive(Clone, Debug)]
 pub struct BoundaryOptions {
     /// Sieve table of the base; without it the settings define the base.
     pub base: Option<PathBuf>,
-    /// The filter's shape: a sieve table, a Cu, or a shipped curve's name; without it the settings define it.
+    /// Shape of the filter: a sieve table, a Cu or a shipped curve's name; by default from the settings.
     pub filter: Option<String>,
     /// Densities: a word, `friction=F` or `estimate=D`.
     pub densities: Vec<String>,
-    /// True if this very filter is packed; otherwise the library of packings gives its constrictions.
+    /// True if this very filter is packed; otherwise its constrictions come from the library of packings.
     pub pack: bool,
     /// Thicknesses.
     pub thicknesses: Vec<Thickness>,
-    /// Settings of the built-in scene, as `base.cu=3`.
+    /// Settings of the built-in scene, such as `base.cu=3`.
     pub settings: Vec<String>,
-    /// True if the base is walked as it was sampled. Otherwise a base with a size of its own is walked as
-    /// filter practice regrades it, unless `settings` contain `base.regrade`.
+    /// True if the base is walked as it was sampled. Otherwise a base with a size of its own is regraded as
+    /// in filter practice, unless `settings` contain `base.regrade`.
     pub as_sampled: bool,
-    /// True if base and filter are taken as they are given, though their sizes look exchanged.
+    /// True if base and filter are taken as given even if their sizes look exchanged.
     pub as_given: bool,
     /// Folder for the results.
     pub out: PathBuf,
@@ -125,15 +125,15 @@ impl std::str::FromStr for Thickness {
     }
 }
 
-/// Thicknesses with commas between them.
+/// Thicknesses separated by commas.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ThicknessList(pub Vec<Thickness>);
 
 impl std::str::FromStr for ThicknessList {
     type Err = String;
 
-    /// Reads a list. `1,5m` may be one thickness with a decimal comma: a list has no number without a unit if
-    /// another has one.
+    /// Reads a list. `1,5m` may be one thickness with a decimal comma: in a list, all numbers have a unit or
+    /// no number has one.
     fn from_str(text: &str) -> Result<Self, String> {
         let items: Vec<&str> = text.split(',').collect();
         let is_bare = |item: &&str| item.trim().parse::<f64>().is_ok();
@@ -228,7 +228,7 @@ fn thicknesses(options: &BoundaryOptions) -> Result<Vec<Option<String>>, RunErro
     }
 }
 
-/// The setting that an option states, unless `settings` state it again.
+/// Setting that an option states, unless `settings` state it again.
 fn stated(settings: &[String], option: &str, setting: String) -> Result<String, RunError> {
     let is_again = |name: &str| match option {
         "--thickness" => THICKNESSES.contains(&name),
@@ -242,9 +242,9 @@ fn stated(settings: &[String], option: &str, setting: String) -> Result<String, 
     }
 }
 
-/// The setting that states a shape: a Cu, a sieve table or a shipped name.
+/// Setting that states a shape: a Cu, a sieve table or the name of a shipped curve.
 fn shape_setting(shape: &str) -> String {
-    // Otherwise a name that reads as a number, or as anything else but text, would not stay text.
+    // In quotes, a name that reads as a number or the like stays text.
     let text = |name: &str| toml::Value::String(name.to_owned()).to_string();
     let file = shape.split('#').next().unwrap_or(shape);
     let is_file = shape.contains(['/', '\\', '#']) || Path::new(file).is_file();
@@ -290,8 +290,8 @@ fn scene(settings: &[String], as_given: bool) -> Result<Scene, RunError> {
     let is_lattice = matches!(scene.network.source(), NetworkSource::Cubic(_));
     if matches!(scene.network.extent(), Extent::Mm(_)) && !is_lattice {
         return Err(RunError::refused(
-            "a thickness in mm goes with a lattice: of a packing's own voids the filter's size says how many \
-             copies there are, and it is searched for; give network.copies or a multiple of D50F",
+            "a thickness in mm needs a lattice: for a packing's own voids it gives a number of copies only \
+             with the filter's size, which is searched for; give network.copies or a multiple of D50F",
         ));
     }
     let is_stated =
@@ -303,15 +303,15 @@ fn scene(settings: &[String], as_given: bool) -> Result<Scene, RunError> {
         scene.walk.replicates = NETWORKS;
     }
     if scene.walk.engine == Engine::Auto && !scene.leaves_openings() {
-        // Rows that move at once take less time, and a boundary is the ratio at which the expectation crosses
-        // 7.5 %.
+        // Rows that move together take less time, and a boundary is the ratio at which the expected mass
+        // crosses 7.5 %.
         scene.walk.engine = Engine::Expected;
     }
     scene.record.sensitivity.clear();
     Ok(scene)
 }
 
-/// A scene with a base that any filter can be drafted with, and with layers if a ratio decides them.
+/// Scene with a base for which any filter can be drafted, and with a number of layers if a ratio decides it.
 pub(super) fn with_any_base(scene: &Scene) -> Scene {
     let mut drafted = scene.clone();
     if matches!(scene.network.extent(), Extent::Mm(_)) {
@@ -332,7 +332,7 @@ pub(super) fn with_any_base(scene: &Scene) -> Scene {
     drafted
 }
 
-/// Refuses settings of a scene that a search of boundaries cannot use.
+/// Refuses settings of a scene that a search for boundaries cannot use.
 fn refuse(scene: &Scene) -> Result<(), RunError> {
     Err(RunError::refused(if scene.stop != StopRule::default() {
         "stop.target_error_pp and stop.decide_percent do not go with `boundary`: replicates says how many \

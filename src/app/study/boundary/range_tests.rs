@@ -1,5 +1,5 @@
-//! Filters whose constriction curve is known within a range only: the ends that are searched, and shown.
-//! Notes on boundaries: of thin filters, and of searches that end too soon.
+//! Filters whose constriction curve is known only within a range: the ends that are searched and shown. Notes
+//! on boundaries of thin filters, and of searches that end too soon.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -10,8 +10,8 @@ use crate::run::prepare::PrepareOptions;
 use voidwalk_practice::Note;
 use voidwalk_practice::design::RowNote;
 
-/// A guess at the constrictions is known over a range only. A run walks its ends as well, and so does a
-/// search of boundaries.
+/// A guess for the constrictions covers a range. A run walks its ends as well, and so does a search for
+/// boundaries.
 #[test]
 fn a_guess_at_the_constrictions_is_found_at_both_ends_of_its_range() {
     let folder = tempfile::tempdir().unwrap();
@@ -29,7 +29,7 @@ fn a_guess_at_the_constrictions_is_found_at_both_ends_of_its_range() {
     let guessed = rows(&guess);
     let names: Vec<&str> = guessed.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["estimate 0.5", "densest guess", "loosest guess"]);
-    // The denser, the finer its constrictions, and the coarser it may be.
+    // The denser a filter, the finer its constrictions, and the coarser it may be.
     assert!(guessed[1].1 > 1.2 * guessed[0].1 && guessed[0].1 > 1.2 * guessed[2].1, "{guessed:?}");
     let end_of: Vec<Option<&str>> = guess.boundaries.iter().map(|row| row.end_of.as_deref()).collect();
     assert_eq!(end_of, [None, Some("estimate 0.5"), Some("estimate 0.5")]);
@@ -38,7 +38,7 @@ fn a_guess_at_the_constrictions_is_found_at_both_ends_of_its_range() {
     assert_eq!(guess.least_held().unwrap().1.to_bits(), least.to_bits());
     let is_guess = |id: &str| guess.notes.iter().any(|row| row.note.id() == id);
     assert!(is_guess("guessed_constrictions") || is_guess("guessed_grains"), "{:?}", guess.notes);
-    // An end that is asked for itself is found once, with the same bits.
+    // An end that was asked for is searched only once, with the same bits.
     let asked = rows(&result("all", &["estimate=0", "estimate=1"]));
     let names: Vec<&str> = asked.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["loosest guess", "densest guess"]);
@@ -48,8 +48,8 @@ fn a_guess_at_the_constrictions_is_found_at_both_ends_of_its_range() {
     );
 }
 
-/// A filter of unknown density is loose, dense or between: its ends are searched, and the worse one counts.
-/// The ratios that networks hold scatter so much here that either end may be the worse.
+/// A filter of unknown density is loose, dense or in between: its ends are searched, and the worse end
+/// counts. The ratios that networks hold scatter so much here that either end may be the worse.
 #[test]
 fn a_filter_of_unknown_density_is_as_the_worse_of_its_ends() {
     let folder = tempfile::tempdir().unwrap();
@@ -72,7 +72,7 @@ fn a_filter_of_unknown_density_is_as_the_worse_of_its_ends() {
 }
 
 /// If the first network of an end holds clearly more than those of the worse end, its boundary is not
-/// searched; the worse end is searched as usual.
+/// searched. The worse end is searched as usual.
 #[test]
 fn an_end_that_holds_clearly_more_is_asked_for_one_ratio() {
     let folder = tempfile::tempdir().unwrap();
@@ -83,8 +83,7 @@ fn an_end_that_holds_clearly_more_is_asked_for_one_ratio() {
         ..tiny(&folder.path().join("out"), &["network.nz=6", "replicates=2"])
     };
     let all = searched(&options);
-    // The end that cannot set the answer has no row of its own, and a note on the row of the range reports
-    // it.
+    // The end that cannot decide the answer has no row of its own; a note on the row of the range reports it.
     let [unknown] = &all.boundaries[..] else { panic!("{:?}", all.boundaries) };
     assert_eq!(unknown.networks.len(), 2);
     let end = "dense, constrictions";
@@ -95,7 +94,7 @@ fn an_end_that_holds_clearly_more_is_asked_for_one_ratio() {
     assert!(!dense.is_empty() && dense.iter().all(|line| line.contains(",6 layers,1,")), "{dense:?}");
 }
 
-/// Stopped when one of two such ends is kept, and continued on three threads.
+/// Stops when one of two such ends is saved, and continues on three threads.
 #[test]
 fn a_search_goes_on_from_an_end_that_was_not_searched() {
     let folder = tempfile::tempdir().unwrap();
@@ -124,7 +123,7 @@ fn a_search_goes_on_from_an_end_that_was_not_searched() {
     assert_eq!(timeless(&searched(&plan("stopped", 3))), timeless(&whole));
 }
 
-/// An end that another row shares stays a row of its own, and is searched once.
+/// An end that is also a row of its own is shown, and is searched only once.
 #[test]
 fn the_worse_end_of_an_unknown_density_stays_where_another_row_needs_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -178,7 +177,7 @@ fn a_thickness_of_less_than_a_layer_is_not_passed_off_as_one() {
     assert!(thicker.len() == 1 && thicker[0].row.as_deref() == Some("loose, 0.05 mm"), "{thicker:?}");
 }
 
-/// An end of the range of a curve that holds more than was searched does not take the least ratio away.
+/// An end of the range that holds more than was searched leaves the minimum ratio in place.
 #[test]
 fn an_end_that_holds_all_that_was_searched_limits_nothing() {
     let folder = tempfile::tempdir().unwrap();
@@ -196,7 +195,7 @@ fn an_end_that_holds_all_that_was_searched_limits_nothing() {
     assert!(narrow.boundaries[1].no_erosion.is_none(), "{:?}", narrow.boundaries[1]);
     assert!(least(&wide).is_some() && least(&narrow) == least(&wide));
     assert!(!has(&narrow, "holds_everywhere"));
-    // A note reports that even the loosest holds everything, or holds nothing.
+    // A note reports if even the loosest end holds everything, or holds nothing.
     let short = result("short", [0.5, 0.9 * end(2).fold(f64::MAX, f64::min)]);
     assert!(least(&short).is_some() && has(&short, "holds_everywhere"));
     let high = result("high", [1.1 * end(2).fold(0.0, f64::max), 30.0]);

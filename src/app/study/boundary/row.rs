@@ -22,15 +22,15 @@ use voidwalk_core::network::{Network, Passage};
 use voidwalk_core::walk::{Clogged, PlainExits, SizeClasses, State, Walk, WalkControl};
 use voidwalk_practice::{Mistake, Note, ordered};
 
-/// Ratio at which a first guess takes the layers of a thickness in mm.
+/// Ratio assumed in a first guess of the layers of a thickness in mm.
 const USUAL_RATIO: f64 = 5.0;
 
-/// One density and thickness with its filter packed.
+/// One density and thickness with its packed filter.
 #[derive(Clone)]
 pub(super) struct Row {
     pub density: String,
     pub thickness: Thickness,
-    /// The filter and its network, with some base.
+    /// The filter and its network, with some base or other.
     pub case: Case,
     pub stated: StatedBase,
     /// The base in units of its D85.
@@ -40,14 +40,14 @@ pub(super) struct Row {
     /// True if the filter has a size of its own.
     pub filter_has_size: bool,
     pub limits: ResourceLimits,
-    /// The density whose constriction curve is known only within a range with this row as an end.
+    /// Density with this row as an end of the range of its constriction curve.
     pub end_of: Option<String>,
     /// The densities of the ends of its own range.
     pub ends: Vec<String>,
 }
 
 impl Row {
-    /// This row at the ends of the range in which the constriction curve is known.
+    /// Copies of this row for the ends of the range of its constriction curve.
     pub fn at_curve_ends(&self) -> Vec<Self> {
         let case = &self.case;
         let names_itself = case.filter.guessed_density.is_some() || case.filter.library.is_some();
@@ -69,33 +69,32 @@ impl Row {
         self.case.filter.gradation.d(15.0).unwrap_or(f64::NAN)
     }
 
-    /// Number of networks that are searched: 0 with an unknown density, whose ends are searched instead.
+    /// Number of networks to search: 0 for an unknown density, whose ends are searched instead.
     pub fn networks(&self) -> u64 {
         let is_unknown = self.case.scene.filter.library == Some(LibraryDensity::Unknown);
         let is_between_ends = is_unknown && self.end_of.is_none() && !self.ends.is_empty();
         if is_between_ends { 0 } else { self.case.scene.walk.replicates }
     }
 
-    /// Size of the filter at a ratio as a multiple of its size in the case, if the base has a size.
+    /// Size of the filter at a ratio, as a multiple of its size in the case, if the base has a size.
     pub fn factor(&self, ratio: f64) -> Option<f64> {
         Some(ratio * self.d85_mm? / self.d15f())
     }
 
-    /// Layers at a ratio, if they depend on it.
+    /// Layers at a ratio, if they depend on the ratio.
     pub fn layers(&self, ratio: f64) -> Option<u64> {
         let (mm, layer) = self.thickness_and_layer(ratio)?;
         Some((mm / layer).round().clamp(1.0, f64::from(u32::MAX)) as u64)
     }
 
-    /// The thickness that was asked for and the thickness of one layer (mm), if the layers depend on the
-    /// ratio.
+    /// Thickness that was asked for and thickness of one layer (mm), if the layers depend on the ratio.
     fn thickness_and_layer(&self, ratio: f64) -> Option<(f64, f64)> {
         let Thickness::Mm(mm) = self.thickness else { return None };
         let layer = self.case.filter.gradation.d_by_number(50.0).unwrap_or(self.case.filter.unit_mm);
         Some((mm, layer * self.factor(ratio)?))
     }
 
-    /// Thickness (mm) of the one layer that is walked at a ratio if less than half of one was asked for.
+    /// Thickness (mm) of the single layer that is walked at a ratio if less than half a layer was asked for.
     pub fn thicker_than_asked(&self, ratio: f64) -> Option<f64> {
         let (mm, layer) = self.thickness_and_layer(ratio)?;
         ((mm / layer).round() < 1.0).then_some(layer)
@@ -115,7 +114,7 @@ impl Row {
         Ok(case)
     }
 
-    /// Refuses more layers, or more memory, than there is, at a ratio near which the search begins.
+    /// Refuses too many layers, or more memory than there is, at a ratio near the start of the search.
     pub fn check_room(&self, bracket: [f64; 2]) -> Result<(), RunError> {
         let ratio = self.start().clamp(bracket[0], bracket[1]);
         match self.at(ratio) {
@@ -127,7 +126,7 @@ impl Row {
         }
     }
 
-    /// Side of the search of a ratio that cannot be walked.
+    /// Side of the search on which a ratio lies that cannot be walked.
     fn side(&self, ratio: f64) -> Beyond {
         let too_few = || -> Option<bool> {
             let Amount::MassRatio(mass_ratio, _) = self.case.scene.base.amount() else { return None };
@@ -140,20 +139,20 @@ impl Row {
         if too_few() == Some(true) { Beyond::Below } else { Beyond::Above }
     }
 
-    /// Boundary of a lone particle of one size, by the closed form: a start for the search.
+    /// Boundary for a lone particle of one size, by the closed form: the start of the search.
     pub fn start(&self) -> f64 {
         let layers = self.layers(USUAL_RATIO).unwrap_or(self.case.network.layers).max(1);
         self.d15f() / Passage::new(&self.case.filter.curve).coarsest_through(layers, 1.0 - THRESHOLD)
     }
 
-    /// Start nodes, which decide the number of ratios to try: more if walks are quick. The number of the
-    /// usual lattice if water flows, or for a network that is not a lattice.
+    /// Start nodes, which decide the number of ratios to try: more if walks are quick. With flow, or for a
+    /// network that is not a lattice, the number of the usual lattice.
     pub fn across(&self) -> u64 {
         if self.case.scene.is_lattice_by_area() { self.case.network.start_nodes } else { USUAL_ACROSS }
     }
 
-    /// Searches the boundary of the first run of network `number`, counted from 1. Errors: a walk that goes
-    /// wrong, or was stopped.
+    /// Searches the boundary of the first run of network `number`, counted from 1. Errors: a walk that fails
+    /// or was stopped.
     pub fn begun<'a>(
         &'a self,
         number: u64,
@@ -163,7 +162,7 @@ impl Row {
         Begun::new(self.network(number, callbacks), bracket, self.from(hint))
     }
 
-    /// The first network, if it holds this ratio. Errors: a walk that goes wrong, or was stopped.
+    /// Result for the first network if it holds this ratio. Errors: a walk that fails or was stopped.
     pub fn holding(
         &self,
         ratio: f64,
@@ -183,7 +182,7 @@ impl Row {
     }
 }
 
-/// True if the base itself cannot be walked: Eq. (2) gives too few particles or too many, or sizes are out of
+/// True if the base itself cannot be walked: Eq. (2) gives too few or too many particles, or sizes are out of
 /// range.
 fn is_of_base(error: &CaseError) -> bool {
     matches!(error, CaseError::Scene(_) | CaseError::Gradation(_) | CaseError::Number(_))
@@ -193,7 +192,7 @@ fn is_of_base(error: &CaseError) -> bool {
 pub(super) struct OneNetwork<'a> {
     row: &'a Row,
     seed: u64,
-    /// The network that was walked last, and its exits.
+    /// Network of the last walk, and its exits.
     network: Option<(Arc<Network>, PlainExits)>,
     /// Constrictions after the first run, by step.
     clogged: BTreeMap<i64, Clogged>,
@@ -207,7 +206,7 @@ impl Walker for OneNetwork<'_> {
             Err(error) if is_of_base(&error) => {
                 return Ok(Trial::CannotBe(self.row.side(ratio), error.to_string()));
             }
-            // A limit of this machine says nothing about the filter.
+            // A limit of this machine is no property of the filter.
             Err(error) => {
                 let text = format!(
                     "at D15F/D85B {ratio:.2}: {error}; networks that are done are kept: repeat the command \
@@ -236,13 +235,13 @@ impl Walker for OneNetwork<'_> {
     }
 }
 
-/// Number of size classes of a run whose record is not wanted: one class or two serve as well.
+/// Number of size classes in an unused record: one or two classes serve as well as more.
 const SIZE_CLASSES: usize = 2;
 
-/// Walks run `run` (1 or 2) of a case on the network of the replicate with this seed, from constrictions that
-/// are `clogged` at its start: the same bits as [`crate::run::walk_case`] gives. `open` are the network's
-/// exits, if they are known. Returns the eroded mass and the constrictions at the end. Errors: a walk that
-/// goes wrong, or that was stopped; particles that do not fit.
+/// Walks run `run` (1 or 2) of a case on the network of the replicate with this seed, starting with
+/// `clogged`: the same bits as in [`crate::run::walk_case`]. `open` are the network's exits, if known.
+/// Returns the eroded mass and the constrictions at the end. Errors: a walk that fails or was stopped;
+/// particles that do not fit.
 fn eroded(
     case: &Case,
     (network, open): (&Arc<Network>, Option<&PlainExits>),
@@ -264,10 +263,10 @@ fn eroded(
     Ok((Eroded::of(&state, case.pan_by_mass_only()), state.into_clogged()))
 }
 
-/// Fewer networks than these give no percentiles.
+/// Minimum number of networks that gives percentiles.
 const FEW_NETWORKS: u64 = 5;
 
-/// A base coarser than this (D85, mm) gets a note.
+/// D85 (mm) above which a base gets a note.
 const COARSE_BASE_MM: f64 = 10.0;
 
 /// Note on a number of base particles, which may differ from Eq. (2) at some ratios.
@@ -278,13 +277,13 @@ fn of_amount(row: &Row) -> Option<Note> {
     }
 }
 
-/// A row at one ratio with the sizes that it has there.
+/// Row at one ratio, with the sizes that it has there.
 pub(super) struct Judged {
-    /// The case with the sizes that filter and base have there; without a unit, sizes in units of D85B.
+    /// Case with the sizes of filter and base at the ratio; without a unit, sizes are in units of D85B.
     pub case: Case,
     d85_mm: Option<f64>,
     pub base_name: String,
-    /// Thickness of the real filter (mm), if nothing here has a size to compare it with.
+    /// Thickness of the real filter (mm), if the case has no size in mm to compare it with.
     real_thickness: Option<f64>,
 }
 
@@ -311,12 +310,12 @@ impl Judged {
         let mut real_thickness = None;
         if !has_size {
             real_thickness = case.scene.filter.thickness_mm.take();
-            // In multiples of an unknown size, neither soil has fines.
+            // If the size is unknown, neither soil has fines.
             (case.scene.filter.d0_mm, case.scene.base) = (Some(1.0), row.case.scene.base.clone());
         } else if let BaseGradation::Linear { d85: D85::AtDc(..) | D85::Ratio(_), .. } =
             case.scene.base.gradation()
         {
-            // The filter's size decides the base's.
+            // The filter's size decides the size of the base.
             let keys = &mut case.scene.base;
             (keys.d85_mm, keys.d85_at_dc, keys.dc_curve, keys.d15f_over_d85b) = (Some(d85), None, None, None);
         }
@@ -325,9 +324,9 @@ impl Judged {
         Ok(Self { case, d85_mm: row.d85_mm, base_name, real_thickness })
     }
 
-    /// Notes on the model for a reader, with `others`.
+    /// Notes on the model for a reader, including `others`.
     pub fn notes(&self, row: &Row, others: Vec<Note>) -> Vec<Note> {
-        // Repeated for every ratio below.
+        // Notes on the amount are given below for every ratio.
         let of_one = self.case.too_little_base().filter(|_| of_amount(row).is_some());
         let coarse =
             self.d85_mm.filter(|d85| *d85 > COARSE_BASE_MM).map(|d85_mm| Note::CoarseBase { d85_mm });
@@ -373,7 +372,7 @@ mod tests {
         }
     }
 
-    /// If particles arch, or leave openings, their moves depend on more than the network.
+    /// Moves depend on more than the network if particles arch or leave openings.
     #[test]
     fn known_exits_are_left_alone_where_others_are_needed() {
         for (other, engines) in [

@@ -1,30 +1,30 @@
 //! The search of one network: the minimum D15F/D85B at which its first run, and its second, erodes 7.5 %.
 //!
 //! # Method
-//! Ratios are tried on one fixed scale, steps of 0.5 %, whatever the bracket; every sixteenth step (8 %) is a
-//! *stop*. From a stop near the closed form for a lone particle the search goes by stops to one that holds
-//! and below which another holds too, and up to the first that erodes; between these two neighbours it halves
-//! the steps until two neighbouring ones are left. The second run goes by every other stop. So the result
-//! depends neither on a bracket that is wider than the ratios tried nor on the start of the search, unless
-//! the eroded mass does not rise with the ratio: then the smallest ratio that was seen to erode counts, and a
-//! note reports it.
+//! Ratios are tried on one fixed scale, in steps of 0.5 %, whatever the bracket; every sixteenth step (8 %)
+//! is a *stop*. The search starts at a stop near the closed form for a lone particle. It goes by stops to one
+//! that holds with another holding below it, and up to the first that erodes; between these two neighbours it
+//! halves the steps until two neighbouring ones are left. The second run goes by every other stop. So the
+//! result depends neither on a bracket wider than the ratios tried nor on the start of the search, unless the
+//! eroded mass does not rise with the ratio: then the smallest ratio seen to erode counts, and a note reports
+//! it.
 //!
-//! A walk scatters: on small networks of broad bases single ratios up to 8.7 % below this boundary were found
-//! to erode. So single steps down to 10 % below are tried besides, in either run, closer ones more often, and
-//! again below each that erodes. On lattices of less than 40 x 40 voids across the eroded mass scatters more,
-//! and a walk by area takes less time: more steps are tried there, and farther down, on ten across every step
+//! Walks scatter: on small networks of broad bases, single ratios up to 8.7 % below this boundary were found
+//! to erode. So single steps down to 10 % below it are also tried, in either run, more of them close to it,
+//! and again below each that erodes. On lattices of less than 40 x 40 voids across, the eroded mass scatters
+//! more and a walk by area takes less time: more steps are tried, and farther down, on ten across every step
 //! to 26 % below. The tries end early if the eroded mass falls steadily with the ratio: after five tries or
 //! more, if a straight line through them lies below the threshold by 15 % of it, and by eight times the
-//! scatter about the line. In 711 searches whose tries went all the way this rule halved the tries, and two
-//! boundaries rose, by 4 and 8 % (`results/boundary.md`).
+//! scatter about the line. In 711 full searches this halved the tries and raised two boundaries, by 4 and 8 %
+//! (`results/boundary.md`).
 //!
-//! Networks of one filter and base lie close together: with the boundaries of the first of them as a hint,
-//! the search of another steps away from there, 2 % and then ever more, until it has one that holds and one
-//! that erodes; two stops below are tried as well. If this finds nothing, the search goes by stops.
+//! Networks of one filter and base lie close together. With the boundaries of the first as a hint, the search
+//! of another steps away from there, first by 2 % and then by ever more, until it has one ratio that holds
+//! and one that erodes; two stops below are tried as well. If this finds nothing, the search goes by stops.
 //!
-//! The boundary of the second run is searched once the boundary of the first is known, so that other networks
-//! can begin meanwhile. The second run is walked only at ratios whose first run erodes, and only near the
-//! ratio from which it erodes itself: a ratio that holds in the first run holds in the second.
+//! The boundary of the second run is searched after the boundary of the first is known, so that other
+//! networks can begin meanwhile. The second run is walked only at ratios whose first run erodes, and only
+//! near the ratio from which it erodes itself: a ratio that holds in the first run holds in the second.
 
 use serde::{Deserialize, Serialize};
 
@@ -34,18 +34,18 @@ use crate::outcome::verdict::THRESHOLD;
 use crate::run::RunError;
 use voidwalk_practice::Note;
 
-/// Names this search: networks that another has found are not continued with.
+/// Version of this search: networks found by another version are not continued.
 pub(super) const METHOD: &str = "design search 9";
 
-/// Steps from stop to stop in the search of the second run, which is far from the first's if bases are broad.
+/// Steps between stops in the search of the second run, which is far from the first if bases are broad.
 const SECOND_STOP: i64 = 32;
 
-/// Why a search found no boundary.
+/// Reason why a search found no boundary.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum Ended {
     /// The smallest ratio of the search erodes.
     Erodes(f64),
-    /// All ratios down to this one erode; with the reason why smaller ones cannot be walked.
+    /// All ratios down to this one erode; the reason why smaller ones cannot be walked.
     ErodesTo(f64, String),
     /// The largest ratio of the search holds, in this run.
     Holds(u64, f64),
@@ -54,7 +54,7 @@ pub(super) enum Ended {
 }
 
 impl Ended {
-    /// The note for this many networks.
+    /// Note for this many networks.
     pub fn note(&self, networks: u64) -> Note {
         match self {
             Self::Erodes(ratio) => Note::ErodesToEnd { ratio: *ratio, networks },
@@ -82,9 +82,9 @@ pub(super) struct Found {
     pub continuing_beyond: Option<Beside>,
     /// True if some larger ratio was seen to hold.
     pub is_not_monotone: bool,
-    /// Every ratio that was walked, rising, with the eroded mass fraction in the first run and in the second.
+    /// Every ratio that was walked, in rising order, with the eroded mass fraction of either run.
     pub walks: Vec<(f64, f64, Option<f64>)>,
-    /// For an end of a range that cannot set its answer: a ratio that it holds, the only one that was tried.
+    /// For an end of a range that cannot decide the answer: the only ratio that was tried, which it holds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spared_at: Option<f64>,
 }
@@ -102,7 +102,7 @@ fn erodes_down_to(step: i64) -> Beside {
     (Beyond::Below, Ended::Erodes(ratio_at(step)))
 }
 
-/// Boundaries of another network of the same filter, as a start for this one.
+/// Boundaries of another network of the same filter, as a start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Hint {
     /// Both boundaries, if it has them.
@@ -125,21 +125,20 @@ pub(super) struct Start {
     pub ratio: f64,
     /// Boundaries of another network of the filter.
     pub hint: Hint,
-    /// Start nodes of a lattice that is walked by area; for another network, the number of the usual lattice.
+    /// Start nodes of a lattice that is walked by area; for other networks, the number of the usual lattice.
     pub across: u64,
 }
 
-/// A network whose first boundary has been searched, between the ratios of a bracket, and whose second is
-/// still to be searched.
+/// Network whose first boundary has been searched, within a bracket, and whose second has not.
 pub(super) struct Begun<W> {
     search: Search<W>,
-    /// The last step that holds and the first that erodes, as they were found first.
+    /// First result of the search: the last step that holds and the first that erodes.
     pair: Option<Pair>,
     found: Found,
 }
 
 impl<W: Walker> Begun<W> {
-    /// Searches the boundary of the first run; fails if a walk goes wrong, or was stopped.
+    /// Searches the boundary of the first run; fails if a walk fails or was stopped.
     pub fn new(walker: W, bracket: [f64; 2], start: Start) -> Result<Self, RunError> {
         let mut search = Search::new(walker, bracket, start.across);
         let mut result = Found::default();
@@ -175,8 +174,7 @@ impl<W: Walker> Begun<W> {
         Hint { boundaries: [self.found.no_erosion, None], ..Hint::of(&self.found) }
     }
 
-    /// Searches the boundary of the second run, near `hint` if it is given; fails if a walk goes wrong, or
-    /// was stopped.
+    /// Searches the boundary of the second run, near `hint` if given; fails if a walk fails or was stopped.
     pub fn ended(self, hint: Option<f64>) -> Result<Found, RunError> {
         let Self { mut search, pair, found: mut result } = self;
         if let Some(pair) = pair {
@@ -202,8 +200,7 @@ impl<W: Walker> Begun<W> {
 }
 
 /// Checks that the first run holds a ratio: at the next step above it, and at the steps below that a search
-/// tries as well. `None` if it erodes, or if the ratio is beyond the search; fails if a walk goes wrong, or
-/// was stopped.
+/// also tries. `None` if it erodes or lies beyond the search; fails if a walk fails or was stopped.
 pub(super) fn holding<W: Walker>(
     walker: W,
     bracket: [f64; 2],
@@ -216,8 +213,8 @@ pub(super) fn holding<W: Walker>(
 }
 
 impl<W: Walker> Search<W> {
-    /// The boundary of the first run near a hint, below which two stops hold as well; `None` if there is no
-    /// such boundary.
+    /// Boundary of the first run near a hint, with two stops below it that hold as well; `None` if there is
+    /// none.
     fn near_hint(&mut self, hint: Option<f64>) -> Result<Option<Pair>, RunError> {
         let Some(pair) = self.away_from(hint, 1)? else { return Ok(None) };
         let below = (pair.0 - 1).div_euclid(STOP) * STOP;
@@ -230,14 +227,14 @@ impl<W: Walker> Search<W> {
         Ok(Some(pair))
     }
 
-    /// The boundary of the first run, by stops.
+    /// Boundary of the first run, by stops.
     fn no_erosion(&mut self, start: i64) -> Result<Result<Pair, Beside>, RunError> {
         let lowest = self.stops[0];
         let top = match self.stop_that_erodes(start)? {
             Ok(top) => top,
             Err(beyond) => return Ok(Err(beyond)),
         };
-        // Down to two stops in a row that hold.
+        // Goes down to two successive stops that hold.
         let (mut least, mut held, mut at) = (top, 0, top);
         while held < 2 {
             at -= STOP;
@@ -259,7 +256,7 @@ impl<W: Walker> Search<W> {
         self.halved((least - STOP, least), 1).map(Ok)
     }
 
-    /// The first stop from `start` on upwards that erodes; if the base is too fine for any of them, the first
+    /// First stop from `start` upwards that erodes; if the base is too fine for any of them, the first stop
     /// downwards that can be walked.
     fn stop_that_erodes(&mut self, start: i64) -> Result<Result<i64, Beside>, RunError> {
         let [lowest, highest] = self.stops;
@@ -287,7 +284,7 @@ impl<W: Walker> Search<W> {
         }
     }
 
-    /// The boundary of the second run, from the boundary of the first upwards.
+    /// Boundary of the second run, upwards from the boundary of the first.
     fn continuing(&mut self, first: Pair) -> Result<Result<Pair, Beside>, RunError> {
         let mut at = (first.1 + SECOND_STOP - 1).div_euclid(SECOND_STOP) * SECOND_STOP;
         at = at.min(self.stops[1].max(first.1));
@@ -302,7 +299,7 @@ impl<W: Walker> Search<W> {
                 _ => (below, at) = (at, (at + SECOND_STOP).min(self.stops[1])),
             }
         }
-        // If the first run held, nothing continues.
+        // Nothing continues to erode if the first run held.
         self.halved((below, at), 2).map(Ok)
     }
 }
@@ -378,7 +375,7 @@ mod tests {
             let near = (hint[0] / 4.4 - 1.0).abs() < 0.03;
             assert!(!near || hinted.walks < plain.walks, "{} {}", hinted.walks, plain.walks);
         }
-        // Below a hint that is the upper one of two crossings the lower one is found.
+        // A hint at the upper of two crossings still finds the lower one.
         let dip = |s: f64| 0.075 + 0.02 * (s - 3.0) * (s - 4.0) * (s - 4.4);
         let start = Start { hint: near([Some(4.4), None]), ..from(7.0) };
         let result = search(&mut formula(dip, |_| 1.0), [0.5, 100.0], start).unwrap();
@@ -424,11 +421,11 @@ mod tests {
         let all = result(&mut formula(|_| 0.5, |_| 0.5), [0.5, 20.0]).no_erosion_beyond.unwrap();
         let Ended::Erodes(ratio) = all.1 else { panic!("{all:?}") };
         assert!(all.0 == Beyond::Below && (ratio - 0.487).abs() < 1e-3, "{ratio}");
-        // The boundary is beside the bracket: no number from its edge.
+        // The boundary is outside the bracket, whose edge gives no number.
         let beside = |bracket| result(&mut formula(|s| 0.075 + s - 4.4, |_| 1.0), bracket).no_erosion_beyond;
         assert_eq!(beside([5.0, 20.0]).unwrap().0, Beyond::Below);
         assert_eq!(beside([0.5, 4.0]).unwrap().0, Beyond::Above);
-        // Only the second run ends.
+        // Only the search of the second run ends.
         let some = result(&mut formula(|s| 0.075 + s - 4.4, |_| 0.01), [0.5, 20.0]);
         assert!(some.no_erosion.is_some() && some.continuing.is_none());
         assert!(matches!(some.continuing_beyond.unwrap().1, Ended::Holds(2, _)));
@@ -453,14 +450,14 @@ mod tests {
 
     #[test]
     fn of_several_crossings_the_smallest_counts_and_that_is_said() {
-        // Above 0.075 from 3 to 4, below to 4.4, above from there.
+        // Above 0.075 from 3 to 4, below it to 4.4, above it from there.
         let dip = |s: f64| 0.075 + 0.02 * (s - 3.0) * (s - 4.0) * (s - 4.4);
         let result = search(&mut formula(dip, |_| 1.0), [0.5, 100.0], from(7.0)).unwrap();
         assert!(result.is_not_monotone, "{result:?}");
         assert!((result.no_erosion.unwrap() / 3.0 - 1.0).abs() < 0.005, "{result:?}");
     }
 
-    /// Single ratios below the boundary of either run erode that lie between the stops: walks scatter.
+    /// Between the stops, single ratios below the boundary of either run erode, because walks scatter.
     #[test]
     fn a_single_ratio_that_erodes_below_the_boundary_counts() {
         let at = 4.4;
@@ -485,18 +482,18 @@ mod tests {
                 let part = f64::from(percent) / 100.0;
                 let (ratio, is_not_monotone) = boundary(run, part);
                 let is_seen = ratio < (1.0 - 0.9 * part) * at;
-                // If halving itself hits upon it, nothing above it is walked.
+                // If halving itself meets it, nothing above it is walked.
                 assert!(is_seen || !is_not_monotone, "run {run}, {percent} % below: {ratio}");
                 seen += u32::from(is_seen);
             }
-            // Nine single steps of twenty-one are tried.
+            // Nine of twenty-one single steps are tried.
             assert!(seen >= 3, "run {run}: {seen}");
         }
     }
 
     #[test]
     fn the_ends_of_a_bracket_are_walked() {
-        // A boundary just within the bracket, whose ends lie on no stop of the search.
+        // A boundary just within the bracket, whose ends are not at stops of the search.
         for at in [3.95, 4.05] {
             let result = |bracket| {
                 let mut line =
@@ -511,8 +508,8 @@ mod tests {
         }
     }
 
-    /// The single size of which 7.5 % of lone particles pass 60 layers of the published loose Cu 1.5 curve is
-    /// .19928 D0F = .17646 D15F: a closed form, worked out by others. It does not include blocking.
+    /// Single size at which 7.5 % of lone particles pass 60 layers of the published loose Cu 1.5 curve:
+    /// .19928 D0F = .17646 D15F, a closed form derived by others. It does not include blocking.
     #[test]
     fn lone_particles_of_one_size_have_the_boundary_of_the_closed_form() {
         let curve = find("shire2016-cu1.5-loose").unwrap().curve().unwrap();
@@ -526,8 +523,7 @@ mod tests {
 
     #[test]
     fn small_networks_are_tried_at_more_ratios() {
-        // A dip of one step, 20 % below a boundary about which erosion scatters: seen on a small network
-        // alone.
+        // Dip of one step, 20 % below a boundary about which erosion scatters; only a small network shows it.
         let dip = (4.4f64.ln() / 0.005).round() as i64 - 45;
         let step = |s: f64| (s.ln() / 0.005).round() as i64;
         let lowest = |across, scatter: f64| {
@@ -539,7 +535,7 @@ mod tests {
         };
         assert!(lowest(100, 0.003) < 3.6, "{}", lowest(100, 0.003));
         assert!(lowest(USUAL_ACROSS, 0.003) > 4.1, "{}", lowest(USUAL_ACROSS, 0.003));
-        // If erosion falls without scatter, the search stops before it comes so far down.
+        // If erosion falls without scatter, the search stops before this depth.
         assert!(lowest(100, 0.0) > 4.38, "{}", lowest(100, 0.0));
     }
 
@@ -554,14 +550,14 @@ mod tests {
         let mut steady = line();
         let at = holds(&mut steady, 4.0).unwrap();
         assert!((4.0..4.0 * 1.0051).contains(&at), "{at}");
-        // It falls steadily, which five walks below it show.
+        // It falls steadily, as five walks below it show.
         assert!((2..=7).contains(&steady.walks), "{}", steady.walks);
         assert_eq!(holds(&mut line(), 4.5), None);
         // Beyond the search, or with a base that cannot be walked.
         assert_eq!(holds(&mut line(), 101.0), None);
         assert_eq!(holds(&mut line(), 0.3), None);
         assert_eq!(holds(&mut Formula { possible: [5.0, 10.0], ..line() }, 4.0), None);
-        // A dip a few percent below is seen.
+        // A dip a few percent below is detected.
         let dips = |s: f64| if (3.8..3.85).contains(&s) { 0.08 } else { 0.074 };
         assert_eq!(holds(&mut formula(dips, |_| 1.0), 4.0), None);
         assert!(holds(&mut formula(|_| 0.074, |_| 1.0), 4.0).is_some());

@@ -19,10 +19,9 @@ use crate::words::grading;
 use voidwalk_practice::design::RowNote;
 use voidwalk_practice::{InputFile, Note};
 
-/// Ratio at which a row is judged if no boundary is known.
+/// Ratio at which a row is judged without a known boundary.
 const USUAL_RATIO: f64 = 4.0;
 
-/// The record.
 pub(super) fn boundaries(
     (rows, bracket): (&[Row], [f64; 2]),
     done: &[Done],
@@ -35,7 +34,7 @@ pub(super) fn boundaries(
             (!of_row.is_empty()).then(|| found_row(&rows[at], &of_row))
         })
         .collect();
-    // A row without networks is as the worst of its ends.
+    // A row without networks takes the result of the worst of its ends.
     let as_end = |row: &Row| {
         let ends = rows.iter().zip(&searched).filter(|(end, _)| is_in_range(row, end));
         let worst =
@@ -47,7 +46,7 @@ pub(super) fn boundaries(
     let results =
         rows.iter().zip(&searched).map(|(row, result)| result.clone().unwrap_or_else(|| as_end(row)));
     let mut results: Vec<FoundRow> = results.collect();
-    // An end of a range is not a filter on offer: it is judged with the row that it is an end of.
+    // An end of a range is not a filter on offer: it is judged with its row.
     let mut judgements = Vec::new();
     for (at, row) in rows.iter().enumerate().filter(|(_, row)| row.end_of.is_none()) {
         let name = format!("{}, {}", row.density, row.thickness);
@@ -94,18 +93,18 @@ pub(super) fn boundaries(
     })
 }
 
-/// A row from its networks, with the doubts about it.
+/// Row made from its networks, with the doubts about it.
 #[derive(Clone)]
 struct FoundRow {
     record: BoundaryRow,
     /// Networks that erode at every ratio of the search.
     eroding: u64,
-    /// For an end that cannot set the answer: the ratio that its first network holds; nothing more is known.
+    /// For an end that cannot decide the answer: the ratio that its first network holds, its only result.
     spared_at: Option<f64>,
 }
 
 impl FoundRow {
-    /// Why no ratio is known that holds.
+    /// Reason why no ratio is known to hold.
     fn unheld(&self) -> Option<Note> {
         let networks = self.record.networks.len() as u64;
         self.record.held().is_none().then_some(match self.eroding {
@@ -115,7 +114,7 @@ impl FoundRow {
     }
 }
 
-/// Order of two curves of a range by the ratio that they hold; one without such a ratio is the least.
+/// Order of two curves of a range by the ratio that they hold; a curve without one comes first.
 fn holds_less(a: &FoundRow, b: &FoundRow) -> Ordering {
     let [a, b] = [a, b].map(|result| result.record.held().unwrap_or(0.0));
     a.total_cmp(&b)
@@ -129,7 +128,7 @@ fn is_in_range(row: &Row, other: &Row) -> bool {
         && (*density == row.density || row.ends.contains(density))
 }
 
-/// Results of the row itself, if it was searched, and of the ends of its range.
+/// Results of the row itself, if it was searched, and of the ends of its range that were.
 fn range<'a>(row: &'a Row, rows: &'a [Row], results: &'a [FoundRow]) -> impl Iterator<Item = &'a FoundRow> {
     let in_range = rows.iter().zip(results).filter(move |(other, _)| is_in_range(row, other));
     in_range.map(|(_, result)| result).filter(|result| result.spared_at.is_none())
@@ -144,15 +143,15 @@ fn spared_ends(row: &Row, rows: &[Row], results: &[FoundRow]) -> Vec<Note> {
     in_range.filter_map(spared).collect()
 }
 
-/// The ratio that nearly all networks hold with every curve of the range; `None` if it is unknown for one of
-/// them. A curve whose networks hold all ratios of the search counts as holding to its end.
+/// Ratio that nearly all networks hold with every curve of the range; `None` if unknown for one of them. A
+/// curve whose networks hold all ratios of the search counts as holding up to its end.
 fn held_over_range(row: &Row, rows: &[Row], results: &[FoundRow]) -> Option<f64> {
     let held = range(row, rows, results).map(|result| result.record.held());
     held.reduce(|a, b| Some(a?.min(b?))).flatten()
 }
 
-/// Reason why the model has no boundary: networks erode at every ratio of the search, with some curve of the
-/// range, or they hold every one, and the end of the search is not a boundary.
+/// Reason why the model has no boundary: with some curve of the range networks erode at every ratio of the
+/// search, or they hold every one, and the end of the search is not a boundary.
 fn unbounded(row: &Row, rows: &[Row], results: &[FoundRow]) -> Option<Note> {
     if let Some(unheld) = range(row, rows, results).find_map(FoundRow::unheld) {
         return Some(unheld);
@@ -167,7 +166,7 @@ fn unbounded(row: &Row, rows: &[Row], results: &[FoundRow]) -> Option<Note> {
     })
 }
 
-/// The notes on all rows: those that not all of them have with the row's name.
+/// Notes on all rows; a note that some rows lack has the name of its row.
 fn all_notes(rows: Vec<(String, Vec<Note>)>, boundaries: &[BoundaryRow]) -> Vec<RowNote> {
     let mut all: Vec<RowNote> = Vec::new();
     for (name, notes) in &rows {
@@ -207,7 +206,7 @@ fn judged(
     Ok(judged.notes(row, why.chain(of_boundary).collect()))
 }
 
-/// `boundary.csv`.
+/// Text of `boundary.csv`.
 pub(super) fn csv(rows: &[Row], done: &[Done]) -> Vec<u8> {
     let of_network = |done: &Done| {
         let (walked, network) = (&rows[done.row], done.network);
@@ -238,7 +237,7 @@ fn settings(options: &BoundaryOptions) -> Vec<String> {
     base.chain(filter).chain(densities).chain(thicknesses).chain(ticks).chain(settings).collect()
 }
 
-/// Every file that was read for a row, the base's first.
+/// Every file that was read for a row, the base's file first.
 fn inputs(row: &Row) -> Vec<InputFile> {
     let mut files: Vec<InputFile> = Vec::new();
     for file in row.stated.inputs.iter().chain(&row.case.inputs).map(Input::file) {
@@ -251,7 +250,7 @@ fn inputs(row: &Row) -> Vec<InputFile> {
 
 fn base(row: &Row, name: &str) -> BaseStated {
     let (walked, given) = (&row.stated.base.gradation, row.stated.base.as_given());
-    // Nothing in mm is known about a base without a size.
+    // Sizes in mm are unknown for a base without a size.
     let cut = row.stated.base.regraded_from.as_ref().filter(|_| row.d85_mm.is_some());
     BaseStated {
         name: name.into(),
@@ -265,7 +264,7 @@ fn base(row: &Row, name: &str) -> BaseStated {
     }
 }
 
-/// One row of the record.
+/// Row of the record.
 fn found_row(row: &Row, done: &[&Done]) -> FoundRow {
     type End = fn(&Found) -> (Option<f64>, &Option<Beside>);
     let [first, second]: [End; 2] = [
@@ -290,12 +289,11 @@ fn found_row(row: &Row, done: &[&Done]) -> FoundRow {
     let ratio = no_erosion.as_ref().map_or(holds_to.unwrap_or(USUAL_RATIO), |boundary| boundary.median);
     let layers = row.layers(ratio).unwrap_or(row.case.network.layers);
     let of_layers = || {
-        // For a thickness in layers: the case's own thickness, with the filter as large as it is at the
-        // boundary.
+        // For a thickness in layers: the case's own thickness, with the filter scaled to the boundary.
         no_erosion.as_ref()?;
         Some(row.case.thickness()? * row.factor(ratio)?)
     };
-    // For a filter that is as thin as one layer, or thinner: the layer itself.
+    // For a filter no thicker than one layer: the thickness of the layer.
     let thicker = |boundary: &Option<Boundary>| {
         let greatest = boundary.as_ref().map(|boundary| boundary.high.unwrap_or(boundary.median));
         row.thicker(greatest.or(holds_to)?)
@@ -337,8 +335,8 @@ fn found_row(row: &Row, done: &[&Done]) -> FoundRow {
     FoundRow { record, eroding, spared_at: done.iter().find_map(|done| done.found.spared_at) }
 }
 
-/// The ratio that nearly all networks hold if their median lies above all ratios of the search: a network
-/// that erodes nowhere counts as holding to the greatest ratio that was walked on it.
+/// Ratio that nearly all networks hold if their median lies above all ratios of the search: a network that
+/// erodes nowhere counts as holding up to the greatest ratio walked on it.
 fn holds_to(done: &[&Done]) -> Option<f64> {
     let one = |done: &&Done| match (done.found.no_erosion, &done.found.no_erosion_beyond) {
         (Some(ratio), _) => Ok(ratio),
@@ -349,21 +347,21 @@ fn holds_to(done: &[&Done]) -> Option<f64> {
     low.ok()
 }
 
-/// Note on a base whose pan fraction alone is enough to erode.
+/// Note on a base whose pan fraction alone exceeds the erosion threshold.
 fn of_pan(row: &Row) -> Option<Note> {
     let pan = row.stated.base.gradation.pan_fraction();
     (pan >= THRESHOLD).then_some(Note::PanErodes { finest_percent: 100.0 * pan })
 }
 
-/// Networks whose no-erosion boundary is in doubt: the number that hold a ratio above an eroding one, if that
-/// is half or more of the networks that erode, and the number that erode.
+/// Numbers of networks with a doubtful no-erosion boundary, which hold a ratio above an eroding one, and of
+/// networks that erode; `None` if the first is less than half of the second.
 fn doubt(done: &[&Done]) -> Option<[u64; 2]> {
     let eroding: Vec<&&Done> = done.iter().filter(|network| network.found.no_erosion.is_some()).collect();
     let unsteady = eroding.iter().filter(|network| comes_and_goes(&network.found.walks)).count();
     (unsteady > 0 && 2 * unsteady >= eroding.len()).then_some([unsteady as u64, eroding.len() as u64])
 }
 
-/// True if some ratio holds in the first run above one that erodes, for walks in the order of their ratios.
+/// True if some ratio above an eroding one holds in the first run; walks are in the order of their ratios.
 fn comes_and_goes(walks: &[(f64, f64, Option<f64>)]) -> bool {
     let mut of_first = walks.iter().map(|walk| walk.1);
     of_first.any(|eroded| eroded >= THRESHOLD) && of_first.any(|eroded| eroded < THRESHOLD)
@@ -374,8 +372,8 @@ mod tests {
     use super::*;
     use crate::study::boundary::search::Ended;
 
-    /// A network whose first run erodes these percentages at ratios 1, 2 and on, and whose second run does at
-    /// 4.
+    /// Network whose first run erodes these percentages at ratios 1, 2 and so on, and whose second run erodes
+    /// at 4.
     fn network(first: &[f64]) -> Done {
         let walks: Vec<_> = (1u32..).zip(first).map(|(s, e)| (f64::from(s), e / 100.0, Some(0.0))).collect();
         let no_erosion = walks.iter().find(|walk| walk.1 >= THRESHOLD).map(|walk| walk.0);

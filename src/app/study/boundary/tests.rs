@@ -1,4 +1,4 @@
-//! Boundaries of small lattices, against scans by hand, in other sizes, brackets and threads.
+//! Boundaries of small lattices, compared with scans by hand and with other sizes, brackets and threads.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,7 +11,7 @@ use crate::run::{case_of, walk_case};
 use voidwalk_core::gradation::Gradation;
 use voidwalk_practice::design::RowNote;
 
-/// A lattice that takes moments, and few networks.
+/// Lattice that takes moments, and few networks.
 const SMALL: [&str; 4] = ["network.nx=9", "network.ny=9", "network.nz=10", "replicates=3"];
 
 /// D15F/D85B between which these tests search.
@@ -28,7 +28,7 @@ pub(super) fn options(out: &Path, more: &[&str]) -> BoundaryOptions {
     BoundaryOptions { out, settings, ..BoundaryOptions::default() }
 }
 
-/// Options with a smaller lattice still; the later of two settings counts.
+/// Options with an even smaller lattice; the later of two settings counts.
 pub(super) fn tiny(out: &Path, more: &[&str]) -> BoundaryOptions {
     let mut all: Vec<&str> = Vec::new();
     let key = |setting: &str| setting.split('=').next().unwrap_or_default().to_owned();
@@ -43,7 +43,7 @@ pub(super) fn searched(options: &BoundaryOptions) -> Boundaries {
     found_within(options, SHORT)
 }
 
-/// Boundaries between other D15F/D85B.
+/// Boundaries between the given D15F/D85B.
 pub(super) fn found_within(options: &BoundaryOptions, bracket: [f64; 2]) -> Boundaries {
     run_within(options, bracket, &Callbacks::default()).unwrap()
 }
@@ -112,7 +112,7 @@ fn boundaries_hang_neither_on_a_wide_bracket_nor_on_threads() {
     let (narrow, _) = result("narrow", [1.01, 12.3], 2);
     assert_eq!(one.boundaries[0].networks, narrow.boundaries[0].networks);
     assert_eq!(one.boundaries[0].no_erosion, narrow.boundaries[0].no_erosion);
-    // A bracket beside the boundary gives no number.
+    // A bracket that misses the boundary gives no number.
     let (beside, _) = result("beside", [0.8, 1.2], 2);
     let row = &beside.boundaries[0];
     assert!(row.no_erosion.is_none() && row.continuing.is_none());
@@ -121,9 +121,9 @@ fn boundaries_hang_neither_on_a_wide_bracket_nor_on_threads() {
     assert!(beside.notes.iter().any(|row| row.note.id() == "holds_everywhere"), "{:?}", beside.notes);
 }
 
-/// Scans with whole runs of scenes, in steps of 0.5 %: another way to make the base, to walk and to look. The
-/// bases are uniform, so that their erosion rises steeply: on so few voids the erosion of broad bases rises
-/// so slowly that a walk's own scatter moves the boundary by a tenth.
+/// Scans with whole runs of scenes, in steps of 0.5 %: another way to make the base, to walk and to search.
+/// The bases are uniform, so that their erosion rises steeply: on so few voids the erosion of broad bases
+/// rises so slowly that the scatter of a walk moves the boundary by a tenth.
 #[test]
 fn three_boundaries_are_those_of_scans_by_hand() {
     let folder = tempfile::tempdir().unwrap();
@@ -152,15 +152,15 @@ fn three_boundaries_are_those_of_scans_by_hand() {
         for (network, by_hand) in row.networks.iter().zip(by_hand) {
             let boundary = if run == 0 { network.no_erosion } else { network.continuing }.unwrap();
             let off = by_hand.unwrap() / boundary;
-            // A step of the scan, and the effect of other roundings of the base on single particles: an error
-            // below 3 % is not seen.
+            // One step of the scan, plus the effect of other roundings of the base on single particles. An
+            // error below 3 % goes unseen.
             let allowed = 0.97..1.03;
             assert!(allowed.contains(&off), "{cu} run {run}: {boundary} {by_hand:?}");
         }
     }
 }
 
-/// Compares bits of the walk itself with those of another engine.
+/// Compares bits of the walk with those of another engine.
 #[test]
 fn a_search_moves_the_expectation_of_what_blocks_nothing_unless_another_engine_is_named() {
     let folder = tempfile::tempdir().unwrap();
@@ -187,7 +187,7 @@ fn a_thickness_in_mm_takes_as_many_layers_as_the_filter_has_there() {
     let all = searched(&BoundaryOptions { base: Some(base), thicknesses, ..options });
     let [thin, thick, layers] = &all.boundaries[..] else { panic!() };
     for (row, mm) in [(thin, 10.0), (thick, 20.0)] {
-        // Each layer is as thick as D50F by number: for the built-in curve, 1.13 of D15F over D0F 1.129.
+        // Each layer is as thick as D50F by number: 1.13 D0F for the built-in curve, whose D15F is 1.129 D0F.
         let d15f = row.no_erosion.as_ref().unwrap().d15f_mm.unwrap().median;
         let filter = Gradation::linear_from_dx(15.0, d15f, 1.5).unwrap();
         let wanted = (mm / filter.d_by_number(50.0).unwrap()).round();
@@ -209,7 +209,7 @@ fn a_search_that_is_stopped_keeps_its_networks_and_goes_on_with_the_same_bits() 
     let whole = searched(&options(&folder.path().join("whole"), &[]));
     let (stop, path) = (AtomicBool::new(false), folder.path().join("stopped"));
     let prepare = PrepareOptions { threads: Some(1), ..PrepareOptions::default() };
-    // It replaces the work of others, but not its own.
+    // It replaces another's work, but not its own.
     let options = BoundaryOptions { prepare, overwrite: true, ..options(&path, &[]) };
     let callbacks = Callbacks {
         on_event: &|event| {
@@ -354,7 +354,7 @@ fn the_base_is_named_as_it_is_stated() {
     let folder = tempfile::tempdir().unwrap();
     let out = |name: &str| folder.path().join(name);
     assert_eq!(searched(&options(&out("linear"), &["base.cu=3"])).base.name, "linear, Cu 3");
-    // A millimetre that is stated is a size.
+    // A stated millimetre is a size.
     let base = of_base(folder.path(), "sand.csv", &[(0.1, 0.0), (0.2, 100.0)]);
     let sized = BoundaryOptions {
         base: Some(base),
@@ -366,7 +366,7 @@ fn the_base_is_named_as_it_is_stated() {
     assert!(sized.boundaries[0].no_erosion.as_ref().unwrap().d15f_mm.is_some());
 }
 
-/// Networks that erode at every ratio of a bracket leave no number to build on.
+/// Networks that erode at every ratio of a bracket give no usable ratio.
 #[test]
 fn a_boundary_below_the_bracket_leaves_no_ratio_that_holds() {
     let folder = tempfile::tempdir().unwrap();
@@ -377,7 +377,7 @@ fn a_boundary_below_the_bracket_leaves_no_ratio_that_holds() {
     let wide = all("wide", [0.5, 30.0]);
     let least =
         wide.boundaries[0].networks.iter().filter_map(|network| network.no_erosion).fold(f64::MAX, f64::min);
-    // The first bracket that begins above the least of the networks and below their median.
+    // First bracket that begins between the minimum of the networks and their median.
     let is_between = |all: &Boundaries| {
         all.boundaries[0].no_erosion.as_ref().is_some_and(|end| end.low.is_none() && end.high.is_some())
     };
@@ -412,7 +412,7 @@ fn an_end_has_to_hold_clearly_more() {
     };
     let near = |ratio: Option<f64>, wanted: f64| ratio.is_some_and(|ratio| (ratio - wanted).abs() < 1e-12);
     assert!(near(wanted(&[at(4.0)]), 4.4));
-    // 4 % apart, and 25 %.
+    // Networks 4 % apart, and 25 % apart.
     assert!(near(wanted(&[at(4.0), at(4.16)]), 4.16 * 1.1));
     assert!(near(wanted(&[at(5.0), at(4.0)]), 5.0 * 1.5625));
     let erodes = beyond(Beyond::Below, Ended::Erodes(0.5));

@@ -1,4 +1,4 @@
-//! The ratios of one network that have been tried, each once, and the steps by which both runs are searched.
+//! Ratios tried on one network, each once, and the steps by which both runs are searched.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use crate::outcome::verdict::THRESHOLD;
 use crate::outcome::{Eroded, Straight};
 use crate::run::RunError;
 
-/// Steps from stop to stop.
+/// Steps between stops.
 pub(super) const STOP: i64 = 16;
 
 /// First step away from a hint.
@@ -17,15 +17,15 @@ const NEAR: i64 = 4;
 pub(super) const USUAL_ACROSS: u64 = 1600;
 
 /// Steps below the smallest eroding ratio at which further runs are tried on that lattice: every step down to
-/// the first number, then at growing distances down to the second.
+/// the first number, then steps at growing distances down to the second.
 const USUAL_REACH: [f64; 2] = [4.0, 21.0];
 
-/// The most of either on a small one: 26 %.
+/// Maximum of both numbers on a small lattice: 26 %.
 const FARTHEST: f64 = 60.0;
 
 /// Steps below the smallest eroding ratio at which further runs are tried, on a lattice with this many start
-/// nodes. The scatter of the eroded mass falls with the root of their number, and the time of a walk grows
-/// with it. The first step is known after halving, but not below a single ratio that erodes.
+/// nodes. The scatter of the eroded mass falls with the square root of their number; the time of a walk grows
+/// with it. Halving has already tried the first step, but not below a single ratio that erodes.
 fn tried_below(across: u64) -> Vec<i64> {
     let spread = (USUAL_ACROSS as f64 / across.max(1) as f64).sqrt().max(1.0);
     let every = (USUAL_REACH[0] * spread * spread).min(FARTHEST) as i64;
@@ -35,12 +35,12 @@ fn tried_below(across: u64) -> Vec<i64> {
     (1..=every).chain(seldom).collect()
 }
 
-/// Result of a trial at one ratio.
+/// Result at one ratio.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Trial {
     /// Eroded mass.
     Eroded(Eroded),
-    /// The base cannot be walked at this ratio: it is too coarse (below) or too fine (above), and why.
+    /// The base is too coarse (below) or too fine (above) to be walked at this ratio; with the reason.
     CannotBe(Beyond, String),
 }
 
@@ -54,9 +54,9 @@ impl Trial {
     }
 }
 
-/// Walks of a search, each called once.
+/// Walker of a search; each walk is requested once.
 pub(super) trait Walker {
-    /// Run 1 or 2 at the D15F/D85B of a step; the second after a walk of the first.
+    /// Walks run 1 or 2 at the D15F/D85B of a step; run 2 only after run 1.
     fn walk(&mut self, run: u64, step: i64, ratio: f64) -> Result<Trial, RunError>;
 }
 
@@ -68,7 +68,7 @@ pub(super) fn ratio_at(step: i64) -> f64 {
     libm::exp(BETWEEN_STEPS * step as f64)
 }
 
-/// Steps up to a ratio, with their fraction.
+/// Number of steps up to a ratio, as a fraction.
 pub(super) fn steps_to(ratio: f64) -> f64 {
     libm::log(ratio) / BETWEEN_STEPS
 }
@@ -76,24 +76,24 @@ pub(super) fn steps_to(ratio: f64) -> f64 {
 /// Two neighbouring steps: the last that holds and the first that erodes.
 pub(super) type Pair = (i64, i64);
 
-/// Eroded mass at steps below a boundary, tried one after another, each below the one before.
+/// Eroded mass at steps below a boundary, tried in descending order.
 #[derive(Default)]
 struct Fall(Vec<(f64, f64, f64)>);
 
 impl Fall {
-    /// Least number of steps that tell a line from the scatter about it.
+    /// Minimum number of steps that distinguish a line from the scatter about it.
     const FEWEST: usize = 5;
-    /// Least distance of the last step below the threshold, as a fraction of the threshold.
+    /// Minimum distance of the last step below the threshold, as a fraction of the threshold.
     const CLEAR: f64 = 0.15;
-    /// Least distance between the last step and the threshold, in deviations from the line.
+    /// Minimum distance between the last step and the threshold, in deviations from the line.
     const DEVIATIONS: f64 = 8.0;
 
     fn add(&mut self, step: i64, eroded: f64) {
         self.0.push((step as f64, eroded, 1.0));
     }
 
-    /// True if the eroded mass falls away from the threshold so steadily that no step farther down erodes by
-    /// scatter: the last step is clear of it, and so is the straight line through all, by many deviations.
+    /// True if the eroded mass falls so steadily that no lower step erodes by scatter: both the last step and
+    /// the straight line through all steps are many deviations below the threshold.
     fn is_steady(&self) -> bool {
         let Some(&(step, eroded, _)) = self.0.last() else { return false };
         if self.0.len() < Self::FEWEST {
@@ -106,7 +106,7 @@ impl Fall {
     }
 }
 
-/// A search under way.
+/// Search under way.
 pub(super) struct Search<W> {
     walker: W,
     /// The first stop and the last.
@@ -121,7 +121,7 @@ impl<W: Walker> Search<W> {
     pub fn new(walker: W, bracket: [f64; 2], across: u64) -> Self {
         let up = |ratio: f64| (steps_to(ratio) / STOP as f64 - 1e-9).ceil() as i64 * STOP;
         let down = |ratio: f64| (steps_to(ratio) / STOP as f64 + 1e-9).floor() as i64 * STOP;
-        // Outwards, within the allowed range.
+        // Stops lie outside the bracket, but within the allowed range.
         let stops = [down(bracket[0]).max(up(BRACKETS[0])), up(bracket[1]).min(down(BRACKETS[1]))];
         Self { walker, stops, below: tried_below(across), tried: Default::default() }
     }
@@ -141,13 +141,13 @@ impl<W: Walker> Search<W> {
         }
     }
 
-    /// Every ratio that was walked, rising, with the eroded mass fraction in the first run and in the second.
+    /// Every ratio that was walked, in rising order, with the eroded mass fraction of either run.
     pub fn walks(&self) -> Vec<(f64, f64, Option<f64>)> {
         let walk = |step: &i64| Some((ratio_at(*step), self.eroded(1, *step)?, self.eroded(2, *step)));
         self.of_run(1).keys().filter_map(walk).collect()
     }
 
-    /// Tries a run at a step. Erosion continues if both runs erode: the second is walked only then.
+    /// Tries a run at a step. The second run is walked only if the first erodes: otherwise nothing continues.
     pub fn trial(&mut self, run: u64, step: i64) -> Result<Trial, RunError> {
         if run > 1 {
             let first = self.trial(1, step)?;
@@ -167,8 +167,8 @@ impl<W: Walker> Search<W> {
         Ok(self.trial(1, step)?.erodes() == Some(true))
     }
 
-    /// Steps away from a hint, ever farther, to one that holds and one that erodes, and halves the steps
-    /// between; `None` without a hint, or with a base that cannot be walked.
+    /// Steps away from a hint, ever farther, to one ratio that holds and one that erodes, and halves the
+    /// steps between them; `None` without a hint, or if the base cannot be walked.
     pub fn away_from(&mut self, hint: Option<f64>, run: u64) -> Result<Option<Pair>, RunError> {
         let hint = hint.map(|ratio| steps_to(ratio).round() as i64);
         let Some(hint) = hint.filter(|hint| (self.stops[0]..=self.stops[1]).contains(hint)) else {
@@ -203,14 +203,14 @@ impl<W: Walker> Search<W> {
         Ok((low, high))
     }
 
-    /// True if a step holds, and so do the steps below it that are tried as well.
+    /// True if a step holds together with the steps below it that are also tried.
     pub fn surely_holds(&mut self, step: i64) -> Result<bool, RunError> {
         let holds = self.trial(1, step)?.erodes() == Some(false);
         Ok(holds && self.smallest_that_erodes(step + 1, 1)? == step + 1)
     }
 
-    /// The smallest eroding step that is seen, starting from one that erodes, after trials of single steps
-    /// below it: all of them, or enough to show that the eroded mass falls steadily.
+    /// Smallest eroding step found by trials of single steps below one that erodes: all of them, or enough to
+    /// show that the eroded mass falls steadily.
     fn smallest_that_erodes(&mut self, boundary: i64, run: u64) -> Result<i64, RunError> {
         let (mut least, lowest) = (boundary, self.stops[0]);
         'again: loop {
@@ -238,8 +238,8 @@ impl<W: Walker> Search<W> {
         }
     }
 
-    /// The ratio from which a run erodes, starting from a step at which it does: the smallest of all that
-    /// were seen to; the step itself if it is the lowest of the search.
+    /// Ratio from which a run erodes, starting from a step at which it does: the smallest that was seen to
+    /// erode, or the step itself if it is the lowest of the search.
     pub fn boundary(&mut self, step: i64, run: u64) -> Result<Result<f64, i64>, RunError> {
         let least = self.smallest_that_erodes(step, run)?;
         let seen = self.of_run(run).iter().find(|(_, trial)| trial.erodes() == Some(true));
@@ -247,8 +247,8 @@ impl<W: Walker> Search<W> {
         Ok(if least > self.stops[0] { Ok(self.between((least - 1, least), run)) } else { Err(least) })
     }
 
-    /// The ratio at which 7.5 % erode, straight between two neighbouring steps; halfway if the lower one was
-    /// not walked.
+    /// Ratio at which 7.5 % erode, linear between two neighbouring steps; halfway if the lower was not
+    /// walked.
     fn between(&self, (low, high): Pair, run: u64) -> f64 {
         let part = match (self.eroded(run, low), self.eroded(run, high)) {
             (Some(a), Some(b)) if b > a && a <= THRESHOLD => ((THRESHOLD - a) / (b - a)).clamp(0.0, 1.0),

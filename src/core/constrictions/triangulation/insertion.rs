@@ -1,15 +1,15 @@
 //! Inserts one grain after another: each carves its cavity and fills it (Bowyer, Watson).
 //!
-//! The steps are identical in space, where tetrahedra with a corner at infinity close the triangulation, and
-//! on the torus, where a grain represents all its images at once. The torus is right as long as the cavity of
-//! a grain neither overlaps nor touches, facet to facet, the cavities of its own images; a violation is
+//! The steps are identical in space, where tetrahedra with a corner at infinity close the triangulation,
+//! and on the torus, where a grain represents all its images. The torus is valid as long as the cavity
+//! of a grain neither overlaps the cavities of its images nor shares a facet with them; a violation is
 //! detected ([`Wrapped`]).
 //!
 //! # Order
-//! Coarse to fine, each level along a Hilbert curve. Neighbours on the curve are neighbours in space, so a
-//! walk from the grain before is short; and each level is an even sample of the whole, so no cavity grows
-//! long (the purpose of the biased randomised order of Amenta, Choi & Rote, doi:10.1145/777792.777824,
-//! without the random numbers).
+//! Coarse to fine, each level along a Hilbert curve. Neighbours on the curve are neighbours in space, so
+//! a walk from the previous grain is short. Each level is an even sample of the whole, so no cavity
+//! becomes long (this is the purpose of the biased randomised order of Amenta, Choi & Rote,
+//! doi:10.1145/777792.777824, here without random numbers).
 
 use super::mesh::{Corner, GrainPoint, INFINITE, Mesh, NONE, Points, Shift, corner, grain, image};
 use super::predicates::{facets, in_conflict, orientation};
@@ -18,17 +18,17 @@ use std::cmp::Ordering;
 /// The cavity of a grain met the cavity of one of its images.
 pub(super) struct Wrapped;
 
-/// State of a tetrahedron in the insertion that numbered it.
+/// State of a tetrahedron in the current insertion.
 #[derive(Clone, Copy)]
 struct Mark {
     insertion: u32,
-    /// Bits 0..24: the translate in which it was met; bit 31: it is in the cavity.
+    /// Bits 0..24: the translate in which it was met; bit 31: set if it is in the cavity.
     state: u32,
 }
 
 const IN_CAVITY: u32 = 1 << 31;
 
-/// A facet of the cavity and the tetrahedron to be built on it.
+/// A facet of the cavity, and the tetrahedron to be built on it.
 #[derive(Clone, Copy)]
 struct Stand {
     grains: [u32; 4],
@@ -55,11 +55,11 @@ impl Edge {
     const UNUSED: Self = Self { insertion: 0, ends: [(0, Shift::ZERO); 2], tetrahedron: 0, facet: 0 };
 }
 
-/// A triangulation that grows.
+/// A triangulation under construction.
 pub(super) struct Builder<'a> {
     pub(super) mesh: Mesh,
     points: &'a Points,
-    /// Grain behind each point and its images, which breaks ties between coincident centres.
+    /// Grain of each point and its images; breaks ties between coincident centres.
     identity: &'a [u32],
     marks: Vec<Mark>,
     insertion: u32,
@@ -92,12 +92,12 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Makes a free triangulation of the first four points of `order` that span space: these points come
-    /// first in `order` afterwards. `None` if all lie in one plane.
+    /// Makes a free triangulation of the first four points of `order` that span space, and moves these
+    /// points to its front. `None` if all lie in one plane.
     pub(super) fn first(points: &'a Points, identity: &'a [u32], order: &mut [u32]) -> Option<Self> {
         let spanning = spanning(&points.at, order)?;
         for (place, at) in spanning.into_iter().enumerate() {
-            // Later places hold later positions, so no placed point moves.
+            // Later entries hold later positions, so no placed point moves.
             order[place..=at].rotate_right(1);
         }
         let mut corners = [order[0], order[1], order[2], order[3]];
@@ -109,7 +109,7 @@ impl<'a> Builder<'a> {
         let outer: [u32; 4] = std::array::from_fn(|i| {
             let mut outside = corners;
             outside[i] = INFINITE;
-            // The facet turns the other way as seen from infinity.
+            // Seen from infinity the facet turns the other way.
             outside.swap((i + 1) % 4, (i + 2) % 4);
             mesh.push(outside)
         });
@@ -152,7 +152,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Walks to a tetrahedron that holds the point, or to one beyond the hull that sees it.
+    /// Walks to a tetrahedron that contains the point, or to one beyond the hull that sees it.
     #[inline]
     fn locate<const PERIODIC: bool>(&self, at: &GrainPoint) -> (u32, Shift) {
         let (mut t, mut shift) = self.last;
@@ -172,7 +172,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Inserts point `p`, unless the others hide it.
+    /// Inserts point `p`, unless other points hide it.
     pub(super) fn insert<const PERIODIC: bool>(&mut self, p: u32) -> Result<(), Wrapped> {
         let at = self.points.at[p as usize];
         let start = self.locate::<PERIODIC>(&at);
@@ -294,7 +294,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// Links the two new tetrahedra that share an edge of the cavity's surface, once both are known.
+    /// Links the two new tetrahedra that share an edge of the cavity's surface, once both exist.
     #[inline(always)]
     fn pair(&mut self, mut ends: [(u32, Shift); 2], k: u32, facet: u32) {
         if ends[1] < ends[0] {
@@ -319,8 +319,8 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Corners brought to their stored translate, and the shift from there to where they are; `None` if the
-/// images reach over more than four cells.
+/// Moves corners to their stored translate, and returns the shift back; `None` if the images extend over
+/// more than four cells.
 pub(super) fn stored(grains: &[u32; 4], images: &[Shift; 4]) -> Option<([Corner; 4], Shift)> {
     if images.iter().all(|&i| i == Shift::ZERO) {
         return Some((*grains, Shift::ZERO));
@@ -334,14 +334,14 @@ pub(super) fn stored(grains: &[u32; 4], images: &[Shift; 4]) -> Option<([Corner;
     Some((corners, least))
 }
 
-/// Positions in `order`, ascending, of four points that span space.
+/// Finds the positions in `order`, ascending, of four points that span space.
 fn spanning(at: &[GrainPoint], order: &[u32]) -> Option<[usize; 4]> {
     let point = |i: usize| at[order[i] as usize];
     let a = point(0);
     let mut chosen = [0; 4];
     chosen[1] = (1..order.len()).find(|&i| point(i)[..3] != a[..3])?;
     let b = point(chosen[1]);
-    // Collinear with a and b: coplanar with any two points beside them, three tried.
+    // Collinear with a and b, so coplanar with any two other points; three are tried.
     let aside = |i: usize| {
         let c = point(i);
         (0..3).any(|axis| {
@@ -365,13 +365,13 @@ pub(super) fn free_order(at: &[GrainPoint]) -> Vec<u32> {
     levels(&sorted(at, low, extent), (at.len() / 64).max(1))
 }
 
-/// Bits per axis of a place on the curve.
+/// Bits per axis of a position on the curve.
 const BITS: u32 = 16;
 
-/// Growth of the number of grains from one level to the next, about.
+/// Approximate growth of the number of grains from one level to the next.
 const GROWTH: usize = 8;
 
-/// Distance along the Hilbert curve of a cell of a grid of 2^[`BITS`] cells a side (Skilling,
+/// Distance along the Hilbert curve of a cell in a grid of 2^[`BITS`] cells per side (Skilling,
 /// *Programming the Hilbert curve*, doi:10.1063/1.1751381).
 fn along_curve(mut x: [u32; 3]) -> u64 {
     let mut q = 1 << (BITS - 1);
@@ -424,7 +424,7 @@ pub(super) fn sorted(at: &[GrainPoint], low: [f64; 3], extent: f64) -> Vec<u32> 
     keyed.into_iter().map(|(_, i)| i).collect()
 }
 
-/// Reorders the points: every `stride`th first, then level by level the rest.
+/// Reorders the points: first every `stride`th, then the rest level by level.
 pub(super) fn levels(sorted: &[u32], mut stride: usize) -> Vec<u32> {
     let mut placed = vec![false; sorted.len()];
     let mut order = Vec::with_capacity(sorted.len());

@@ -1,18 +1,18 @@
 //! Grain centres on an integer grid, and the tetrahedra between them, in space or on the torus.
 //!
 //! # Grid
-//! `x + L` rounds, and a rounded image no longer lies on exactly the grain's sphere: facets then fail to pair
-//! across the boundary of a lattice. So centres, radii and cell lengths are first rounded to multiples of one
-//! power of two, 2^-50 of the largest length (a grain of a thousandth of the cell moves by 1e-12 of its size
-//! at most; centres that are already such multiples do not move). From there on every coordinate, every image
-//! up to seven cells away and every difference of two is an integer held exactly by an f64, every predicate
-//! has one exact answer, and that answer is the same for all images. A factor of two on all lengths changes
-//! the grid with them, hence no bit.
+//! `x + L` rounds, and a rounded image no longer lies on exactly the grain's sphere: facets then fail to
+//! pair across the boundary of a lattice. So centres, radii and cell lengths are first rounded to
+//! multiples of a power of two, 2^-50 of the largest length (a grain of a thousandth of the cell moves
+//! by at most 1e-12 of its size; centres that are already such multiples do not move). Every coordinate,
+//! every image up to seven cells away and every difference of two is then an integer that an f64 holds
+//! exactly, and every predicate has one exact answer, the same for all images. A factor of two on all
+//! lengths scales the grid too, and so changes no bit.
 //!
 //! # Tetrahedra
-//! Tetrahedron `t` is entry `t` of each column. Its corners are stored in one of its periodic translates; a
-//! walk that crosses a facet carries along the shift, in cells, of its present translate from the stored one.
-//! Without a cell all shifts are zero.
+//! Tetrahedron `t` is entry `t` of each column. Its corners are stored in one of its periodic
+//! translates; a walk that crosses facets keeps track of the shift, in cells, of its present translate
+//! from the stored one. Without a cell all shifts are zero.
 
 use crate::packing::{Cell, Packing};
 
@@ -47,18 +47,18 @@ pub fn edges(corners: &[GrainPoint; 4], corner: usize) -> [[f64; 3]; 3] {
     facet(corners, corner).map(|other| offset(&corners[corner], &other))
 }
 
-/// Six times the volume between three edges.
+/// Six times the volume spanned by three edges.
 pub fn six_volume([e, f, g]: &[[f64; 3]; 3]) -> f64 {
     dot(e, &cross(f, g)).abs()
 }
 
-/// Largest number of grains that a [`Corner`] can name.
+/// Maximum number of grains that a [`Corner`] can name.
 pub(super) const MOST_GRAINS: usize = (1 << GRAIN_BITS) - 1;
 
 /// Thickness of grains that lie in one plane, over the largest diameter.
 const FLAT: f64 = 1e-6;
 
-/// Bits of the largest length in grid units.
+/// Number of bits of the largest length in grid units.
 const BITS: i32 = 50;
 
 /// The grains of a packing on the grid.
@@ -68,18 +68,18 @@ pub(super) struct Points {
     pub(super) at: Vec<GrainPoint>,
     /// Cell lengths in grid units; `None` for free boundaries.
     pub(super) cell: Option<[f64; 3]>,
-    /// Displacement along each axis by a cell; zero for free boundaries.
+    /// Displacement by one cell along each axis; zero for free boundaries.
     period: [f64; 3],
-    /// Displacement by the six image bits of a corner.
+    /// Displacement for each value of a corner's six image bits.
     images: [[f64; 3]; 64],
     /// Length of a grid unit (mm), a power of two.
     pub(super) unit_mm: f64,
-    /// Origin that was subtracted from the coordinates before rounding (mm).
+    /// Origin subtracted from the coordinates before rounding (mm).
     pub(super) origin_mm: [f64; 3],
 }
 
 impl Points {
-    /// Checks a packing and puts it on the grid.
+    /// Checks a packing and places it on the grid.
     pub(super) fn new(packing: &Packing) -> Result<Self, TriangulationError> {
         let columns = [&packing.x, &packing.y, &packing.z];
         let (grains, largest_mm) = check(packing)?;
@@ -111,7 +111,7 @@ impl Points {
         Ok(Self { unit_mm, origin_mm, ..Self::of(at.collect(), cell) })
     }
 
-    /// Points that are on a grid already.
+    /// Makes points that are already on a grid.
     pub(super) fn of(at: Vec<GrainPoint>, cell: Option<[f64; 3]>) -> Self {
         let period = cell.unwrap_or([0.0; 3]);
         let along = |bits: usize, axis: usize| ((bits >> (2 * axis)) & 3) as f64 * period[axis];
@@ -141,7 +141,7 @@ impl Points {
         corners: &[Corner; 4],
         shift: Shift,
     ) -> [GrainPoint; 4] {
-        // Written out: the map of an array is not reliably unrolled.
+        // Written out, because the map of an array is not reliably unrolled.
         let [a, b, c, d] = *corners;
         let point = |c: Corner| match PERIODIC {
             true => self.corner(c, shift),
@@ -167,7 +167,7 @@ impl Points {
     }
 }
 
-/// Converts `value` to grid units, brought into `0 .. cell`.
+/// Converts `value` to grid units and wraps it into `0 .. cell`.
 fn wrapped(value: f64, length: f64, scale: f64, cell: f64) -> f64 {
     let inside = libm::rint((value - libm::floor(value / length) * length) * scale);
     if inside >= cell {
@@ -179,7 +179,7 @@ fn wrapped(value: f64, length: f64, scale: f64, cell: f64) -> f64 {
     }
 }
 
-/// Number of grains and largest diameter of a packing that can be triangulated.
+/// Checks that a packing can be triangulated; returns its number of grains and largest diameter.
 fn check(packing: &Packing) -> Result<(usize, f64), TriangulationError> {
     let grains = packing.diameter.len();
     let columns = [("x", &packing.x), ("y", &packing.y), ("z", &packing.z)];
@@ -231,7 +231,7 @@ pub enum TriangulationError {
         /// Rows of the diameter column.
         grains: usize,
     },
-    /// A coordinate that is not a number.
+    /// A coordinate that is not finite.
     #[error("grain {grain}: {column} = {value} mm, but a centre must be finite")]
     Centre {
         /// Index of the grain, from 0.
@@ -244,7 +244,7 @@ pub enum TriangulationError {
     /// A diameter that is not a size.
     #[error("grain {0}: diameter = {1} mm, but it must be finite and above 0")]
     Diameter(usize, f64),
-    /// Lengths (mm) so large or so small that their products leave the range of f64.
+    /// Lengths (mm) so large or so small that their products exceed the range of f64.
     #[error("the largest length is {0} mm, but it must lie between 1e-250 and 1e250")]
     Extent(f64),
     /// A cell in which a grain meets its own image.
@@ -263,7 +263,7 @@ pub enum TriangulationError {
     /// Free grains whose centres lie in one plane.
     #[error("the centres of all {0} grains lie in one plane: there is nothing to triangulate")]
     Coplanar(usize),
-    /// A periodic packing so empty that its tetrahedra reach across several cells.
+    /// A periodic packing so empty that its tetrahedra extend across several cells.
     #[error(
         "{0} grains are too few to fill this periodic cell: tetrahedra reach across several images of it"
     )]
@@ -286,7 +286,7 @@ impl Shift {
         [self.0 as i8, (self.0 >> 8) as i8, (self.0 >> 16) as i8].map(i32::from)
     }
 
-    /// Adds bytewise, without carries from one axis into the next.
+    /// Adds bytewise, without carry from one axis to the next.
     #[inline(always)]
     pub fn plus(self, other: Self) -> Self {
         const LOW: u32 = 0x7f7f_7f7f;
@@ -300,8 +300,8 @@ impl Shift {
     }
 }
 
-/// A corner: the grain in the low 26 bits, above them the shift of its image in cells (0 .. 3 along each
-/// axis, two bits each, x lowest).
+/// A corner: the grain in the low 26 bits, and above them the shift of its image in cells (0 .. 3 along
+/// each axis, two bits each, x lowest).
 pub(super) type Corner = u32;
 
 const GRAIN_BITS: u32 = 26;
@@ -324,7 +324,7 @@ pub(super) fn image(corner: Corner) -> Shift {
     Shift((bits & 3) | ((bits & 12) << 6) | ((bits & 48) << 12))
 }
 
-/// Makes the corner of a grain shifted by 0 .. 3 cells along each axis; `None` outside that range.
+/// Makes the corner of a grain shifted by 0 .. 3 cells along each axis; `None` for other shifts.
 pub(super) fn corner(grain: u32, image: Shift) -> Option<Corner> {
     let [x, y, z] = image.cells();
     let fits = |c: i32| (0..4).contains(&c);
@@ -361,7 +361,7 @@ impl Mesh {
         self.shifts[u as usize][j] = Shift::ZERO.minus(shift);
     }
 
-    /// Tells if a facet meets exactly one other, which meets it.
+    /// Tells if a facet is linked to exactly one other, which is linked back.
     pub(super) fn is_paired(&self, t: usize, i: usize) -> bool {
         let across = self.neighbours[t][i];
         let (u, j) = ((across / 4) as usize, (across % 4) as usize);
@@ -376,7 +376,7 @@ impl Mesh {
         self.corners[t as usize].iter().position(|&c| c == INFINITE)
     }
 
-    /// Drops dead and infinite tetrahedra; facets towards infinity get [`NONE`].
+    /// Removes dead and infinite tetrahedra; facets towards infinity get [`NONE`].
     pub(super) fn compact(mut self) -> Self {
         let mut renumber = vec![NONE; self.corners.len()];
         let mut kept = 0;

@@ -1,15 +1,15 @@
 //! The periodic regular (power, weighted Delaunay) triangulation of a packing.
 //!
 //! Its layers: [`mesh`] (grain centres on an integer grid, so that images are exact; tetrahedra and their
-//! adjacency), [`predicates`] (exact answers, ties broken), [`insertion`] (grain after grain, coarse to
-//! fine), here the first triangulation of the torus, [`sanity`] (checks of the result).
+//! adjacency), [`predicates`] (exact answers, ties broken), [`insertion`] (one grain after another, coarse
+//! to fine), the first triangulation of the torus (here), [`sanity`] (checks of the result).
 //!
 //! # The torus
-//! A few grains are triangulated first, in space, with their images within a margin around the cell; one
-//! tetrahedron of each class of translates is kept. If then every facet meets exactly one other and the
-//! volumes add up to the cell (both exact), this is a triangulation of the torus; and since tetrahedra that
-//! meet on it met in the free one, it is locally regular everywhere, hence the regular one. If not, the
-//! margin was too narrow. The other grains are inserted on the torus.
+//! A few grains are first triangulated in space, with their images within a margin around the cell; one
+//! tetrahedron of each class of translates is kept. If every facet then meets exactly one other and the
+//! volumes add up to the cell (both exact), this is a triangulation of the torus. Tetrahedra that meet
+//! on the torus met in the free triangulation, so it is locally regular everywhere, hence the regular
+//! one. If not, the margin was too narrow. The other grains are inserted on the torus.
 
 mod insertion;
 mod mesh;
@@ -31,11 +31,11 @@ use std::collections::HashMap;
 /// tried.
 const SAMPLES: [usize; 3] = [128, 1_024, 8_192];
 
-/// Tetrahedra of grain centres weighted by the square of their radii.
+/// Tetrahedra of grain centres, weighted by the squared radii.
 ///
-/// On a periodic packing every tetrahedron represents all its translates: the triangulation covers the torus,
-/// and its corners name a grain and the shift of that grain's image in cells. On a free packing it fills the
-/// convex hull of the centres.
+/// For a periodic packing every tetrahedron represents all its translates: the triangulation covers the
+/// torus, and its corners name a grain and the shift of that grain's image in cells. For a free packing
+/// it fills the convex hull of the centres.
 #[derive(Clone, Debug)]
 pub struct Triangulation {
     points: Points,
@@ -49,12 +49,12 @@ impl Triangulation {
     ///
     /// # Errors
     /// Fewer than four grains; an invalid centre or diameter; a periodic cell narrower than two of the
-    /// largest grain, or so empty that tetrahedra reach across it; free grains in one plane.
+    /// largest grain, or so empty that tetrahedra extend across it; free grains in one plane.
     pub fn new(packing: &Packing) -> Result<Self, TriangulationError> {
         Self::with_samples(packing, &SAMPLES)
     }
 
-    /// Triangulates like [`Triangulation::new`], with the sizes of the first samples to try.
+    /// Triangulates like [`Triangulation::new`], with the sizes of the first samples to be tried.
     pub(super) fn with_samples(packing: &Packing, samples: &[usize]) -> Result<Self, TriangulationError> {
         let points = Points::new(packing)?;
         let grains = points.at.len();
@@ -82,7 +82,7 @@ impl Triangulation {
         self.mesh.corners.len()
     }
 
-    /// Number of grains, hidden ones included.
+    /// Number of grains, including hidden ones.
     pub fn grains(&self) -> usize {
         self.points.at.len()
     }
@@ -97,7 +97,7 @@ impl Triangulation {
         self.mesh.corners[tetrahedron].map(|corner| image(corner).cells())
     }
 
-    /// Grains that are no corner, ascending: each lies inside others (by power distance).
+    /// Grains that are not a corner, ascending: each lies inside others (by power distance).
     pub fn hidden(&self) -> &[u32] {
         &self.hidden
     }
@@ -136,12 +136,12 @@ impl Triangulation {
         self.points.displacement(shift)
     }
 
-    /// A point in mm.
+    /// Converts a point to mm.
     pub(super) fn in_mm(&self, p: [f64; 3]) -> [f64; 3] {
         std::array::from_fn(|axis| p[axis] * self.points.unit_mm + self.points.origin_mm[axis])
     }
 
-    /// A point in mm, inside the cell.
+    /// Converts a point to mm and moves it into the cell.
     pub(super) fn inside_mm(&self, p: [f64; 3]) -> [f64; 3] {
         self.in_mm(match self.points.cell {
             Some(cell) => {
@@ -151,7 +151,7 @@ impl Triangulation {
         })
     }
 
-    /// Distance of the nearest images of two points in mm.
+    /// Distance of the nearest images of two points, in mm.
     pub(super) fn distance_mm(&self, a: &[f64; 3], b: &[f64; 3]) -> f64 {
         let d: [f64; 3] = std::array::from_fn(|axis| {
             let d = (a[axis] - b[axis]).abs();
@@ -178,12 +178,12 @@ impl Triangulation {
     }
 }
 
-/// Triangulates in space; `identity` names the grain behind each point. `None` if all lie in one plane.
+/// Triangulates in space; `identity` gives the grain of each point. `None` if all lie in one plane.
 fn free(points: &Points, identity: &[u32]) -> Option<Mesh> {
     let mut order = free_order(&points.at);
     let mut builder = Builder::first(points, identity, &mut order)?;
     for &p in &order[4..] {
-        // A cavity in space meets no image of itself.
+        // In space no cavity meets an image of itself.
         let _ = builder.insert::<false>(p);
     }
     Some(builder.mesh.compact())
@@ -228,10 +228,10 @@ fn duplicates(at: &[GrainPoint], hidden: &[u32]) -> Vec<[u32; 2]> {
 /// Margins to try, in cells.
 const MARGINS: [f64; 4] = [0.5, 1.0, 2.0, 3.0];
 
-/// Beyond this many images a wider margin is not tried.
+/// Maximum number of images for which a wider margin is tried.
 const MOST_IMAGES: usize = 20_000_000;
 
-/// A class of translates: its corners relative to the least of them, ascending.
+/// A class of translates: its corners relative to the smallest of them, ascending.
 type Class = [(u32, Shift); 4];
 
 /// Finds the periodic mesh of the grains in `sample`; `None` if they are too few to fill the cell.
@@ -277,7 +277,7 @@ impl Images {
         mesh.corners[t as usize].map(|c| (self.grain[grain(c) as usize], self.shift[grain(c) as usize]))
     }
 
-    /// One tetrahedron of each class, linked on the torus.
+    /// Keeps one tetrahedron of each class, linked on the torus.
     fn fold(&self, mesh: &Mesh, points: &Points, cell: [f64; 3]) -> Option<Mesh> {
         let mut folded = Mesh::default();
         // Origin of each kept tetrahedron, and the shift from its stored translate.
@@ -314,7 +314,7 @@ impl Images {
     }
 }
 
-/// Class of a tetrahedron, and the shift of its reference corner.
+/// Returns the class of a tetrahedron, and the shift of its reference corner.
 fn class(corners: &[(u32, Shift); 4]) -> (Class, Shift) {
     let mut class = *corners;
     class.sort_unstable_by_key(|&(grain, shift)| (grain, shift.cells()));
@@ -322,7 +322,7 @@ fn class(corners: &[(u32, Shift); 4]) -> (Class, Shift) {
     (class.map(|(grain, shift)| (grain, shift.minus(anchor))), anchor)
 }
 
-/// Six times the sum of all volumes, exactly, or the first tetrahedron that is not positive.
+/// Six times the sum of all volumes, exactly, or the first tetrahedron without positive volume.
 fn six_volumes(mesh: &Mesh, points: &Points) -> Result<Wide, usize> {
     let mut sum = Wide::ZERO;
     for (t, corners) in mesh.corners.iter().enumerate() {

@@ -1,21 +1,21 @@
 //! The two exact predicates of a regular triangulation.
 //!
 //! For a tetrahedron with corners 0..3 of positive orientation and a point `p`, [`facets`] gives for each
-//! corner the orientation of the tetrahedron with that corner replaced by `p` (is `p` beyond the facet
-//! opposite it?), and [`in_conflict`] tells if `p` lies closer, by power distance, than the corners allow:
+//! corner the orientation of the tetrahedron with that corner replaced by `p` (tells if `p` is beyond the
+//! opposite facet), and [`in_conflict`] tells if `p` is closer, by power distance, than the corners allow:
 //! with heights `h = |x|^2 - r^2`, if `p` lies below the plane through the four lifted corners.
 //!
-//! Both are determinants of differences, which are exact on the grid ([`super::mesh`]). They are evaluated
-//! in f64 with a bound on the rounding error that follows from the sizes of the differences; if the bound
-//! does not decide, in integers of 320 bits: a determinant is an integer below 2^272.
+//! Both are determinants of differences, which are exact on the grid ([`super::mesh`]). They are
+//! evaluated in f64, with a bound on the rounding error computed from the sizes of the differences; if
+//! the bound does not decide, in integers of 320 bits: a determinant is an integer below 2^272.
 //!
 //! # Ties
-//! Five centres on one sphere (every lattice) are separated by raising each height by a symbolic
-//! amount, the more the later the centre comes in lexicographic order of x, y, z (Edelsbrunner &
-//! Mücke, *Simulation of simplicity*, doi:10.1145/77635.77639; Devillers & Teillaud, *Perturbations
-//! for Delaunay and weighted Delaunay 3D triangulations*, doi:10.1016/j.comgeo.2010.09.010). The order
-//! of two points is the same for all their images, so facets pair across the boundary of the cell,
-//! and since only heights are moved no flat tetrahedron ever arises.
+//! Five centres on one sphere (as in every lattice) are separated by raising each height by a symbolic
+//! amount, which is larger the later the centre comes in lexicographic order of x, y, z (Edelsbrunner &
+//! Mücke, *Simulation of simplicity*, doi:10.1145/77635.77639; Devillers & Teillaud, *Perturbations for
+//! Delaunay and weighted Delaunay 3D triangulations*, doi:10.1016/j.comgeo.2010.09.010). The order of
+//! two points is the same for all their images, so facets pair across the boundary of the cell. Since
+//! only heights change, no flat tetrahedron ever arises.
 
 use super::mesh::{GrainPoint, dot, offset};
 use std::cmp::Ordering;
@@ -24,9 +24,9 @@ use std::ops::{Add, Mul, Neg, Sub};
 /// Half an ulp of 1.
 const U: f64 = f64::EPSILON / 2.0;
 
-/// A 3 x 3 minor errs by at most 28 U times the product of the largest differences per axis:
-/// 4 for a 2 x 2 minor, hence 8 for each of three products, 10 for their sum. 32 covers the bound's
-/// own rounding.
+/// A 3 x 3 minor has an error of at most 28 U times the product of the largest differences per axis: 4
+/// for a 2 x 2 minor, hence 8 for each of three products, 10 for their sum. 32 covers the bound's own
+/// rounding.
 const MINOR_BOUND: f64 = 32.0 * U;
 
 /// Four products of a height (relative error 4 U of its terms) and a minor (28 U on a value of at most
@@ -78,8 +78,8 @@ fn exact_minors(d: &[[f64; 3]; 4]) -> [Wide; 4] {
     minors_of(pair, [n[0][2], n[1][2], n[2][2], n[3][2]].map(Wide::from))
 }
 
-/// Finds the facet that a walk towards `p` should cross: the opposite corner of a facet that `p` lies
-/// strictly beyond, or `None` if the closed tetrahedron holds `p`.
+/// Finds the facet that a walk towards `p` should cross: returns the corner opposite a facet with `p`
+/// strictly beyond it, or `None` if the closed tetrahedron contains `p`.
 #[inline]
 pub(super) fn facets(corners: &[GrainPoint; 4], p: &GrainPoint) -> Option<usize> {
     let d = differences(corners, p);
@@ -100,9 +100,9 @@ pub(super) fn facets(corners: &[GrainPoint; 4], p: &GrainPoint) -> Option<usize>
     }
 }
 
-/// Orientation of four points: positive, negative, or zero in one plane.
+/// Orientation of four points: positive, negative, or zero if they lie in one plane.
 pub(super) fn orientation(corners: &[GrainPoint; 4]) -> i32 {
-    // The first difference, zero, enters the other three minors only.
+    // The first difference, which is zero, enters only the other three minors.
     let mut d = differences(corners, &corners[0]);
     d[0] = [1.0; 3];
     let (volume, bound) = (minors(&d)[0], MINOR_BOUND * magnitude(&d));
@@ -114,8 +114,8 @@ pub(super) fn volume(corners: &[GrainPoint; 4]) -> Wide {
     exact_minors(&differences(corners, &corners[0]))[0]
 }
 
-/// Tells if `p` removes the positively oriented tetrahedron. `order` compares corners (0..3) and `p` (4) if
-/// their centres and so their heights are the same.
+/// Tells if `p` removes the positively oriented tetrahedron. `order` compares corners (0..3) and `p` (4)
+/// whose centres, and so heights, are the same.
 #[inline]
 pub(super) fn in_conflict(
     corners: &[GrainPoint; 4],
@@ -199,7 +199,7 @@ pub(super) struct Wide([u64; LIMBS]);
 impl Wide {
     pub(super) const ZERO: Self = Self([0; LIMBS]);
 
-    /// -1, 0 or 1.
+    /// Sign: -1, 0 or 1.
     pub(super) fn sign(self) -> i32 {
         if self.0[LIMBS - 1] >> 63 == 1 { -1 } else { i32::from(self != Self::ZERO) }
     }

@@ -1,20 +1,20 @@
-//! Direct checks of the identities of every triangulation.
+//! Direct checks of identities that hold for every triangulation.
 
 use super::mesh::{Mesh, NONE, Shift, grain, image};
 use super::predicates::in_conflict;
 use super::{Triangulation, six_cells, six_volumes};
 use std::collections::HashSet;
 
-/// An identity of triangulations that does not hold.
+/// An identity of triangulations that is violated.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SanityError {
     /// Two tetrahedra disagree about the facet they share, or a facet has no partner.
     #[error("facet {1} of tetrahedron {0} is not shared by exactly two")]
     Facet(usize, usize),
-    /// A tetrahedron without volume, or turned inside out.
+    /// A tetrahedron without volume, or inverted.
     #[error("tetrahedron {0} is not positively oriented")]
     Orientation(usize),
-    /// Volumes that do not add up to the cell, by its volume.
+    /// Volumes that do not add up to the cell: the difference over its volume.
     #[error("volumes differ from the cell by {0:e} of it")]
     Volume(f64),
     /// A corner across a facet that should have removed the tetrahedron.
@@ -25,13 +25,13 @@ pub enum SanityError {
         "{vertices} vertices - {edges} edges + {facets} facets - {tetrahedra} tetrahedra is not {expected}"
     )]
     Euler {
-        /// Grains that are corners.
+        /// Number of grains that are corners.
         vertices: usize,
-        /// Edges.
+        /// Number of edges.
         edges: usize,
-        /// Facets.
+        /// Number of facets.
         facets: usize,
-        /// Tetrahedra.
+        /// Number of tetrahedra.
         tetrahedra: usize,
         /// 0 on the torus, 1 in space.
         expected: i64,
@@ -40,11 +40,11 @@ pub enum SanityError {
 
 impl Triangulation {
     /// Checks every identity: facets shared by exactly two, all tetrahedra positive, volumes adding up
-    /// to the cell (exactly, on the grid), local regularity at every facet, and V - E + F - T = 0 (1
-    /// for a free packing). Together they prove that this is the regular triangulation.
+    /// to the cell (exactly, on the grid), local regularity at every facet, and V - E + F - T = 0 (1 for
+    /// a free packing). Together they prove that this is the regular triangulation.
     ///
     /// # Errors
-    /// The first identity that does not hold.
+    /// The first identity that is violated.
     pub fn sanity_check(&self) -> Result<(), SanityError> {
         let mesh = &self.mesh;
         let mut hull = 0;
@@ -105,7 +105,7 @@ fn same_facet(mesh: &Mesh, t: usize, i: usize) -> bool {
     mesh.is_paired(t, i) && facet(t, i, Shift::ZERO) == facet(u, j, mesh.shifts[t][i])
 }
 
-/// Number of edges, each class of translates once.
+/// Number of edges, counting each class of translates once.
 fn edges(mesh: &Mesh) -> usize {
     let mut seen = HashSet::new();
     for corners in &mesh.corners {
@@ -122,7 +122,7 @@ fn edges(mesh: &Mesh) -> usize {
     seen.len()
 }
 
-/// The triangulation against brute force in exact arithmetic, against itself, and on lattices.
+/// Compares the triangulation with brute force in exact arithmetic, with itself, and with lattices.
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -137,7 +137,7 @@ mod tests {
         Key { seed: 20_261_121, purpose: Purpose::Packing, run: 0, increment: 0, chunk }.generator()
     }
 
-    /// Random grains, with any overlap, of diameters between two sizes.
+    /// Makes random grains, with any overlap, with diameters between two sizes.
     fn random(grains: usize, cell: Cell, extent: [f64; 3], sizes: [f64; 2], chunk: u64) -> Packing {
         let mut rng = key(chunk);
         let mut column = |low: f64, high: f64| -> Vec<f64> {
@@ -202,8 +202,8 @@ mod tests {
         regular
     }
 
-    /// Raises heights by actual powers of two in lexicographic order instead of symbols, and writes out the
-    /// determinant of the five lifted points.
+    /// Raises heights by actual powers of two in lexicographic order instead of symbols, and writes out
+    /// the determinant of the five lifted points.
     fn literal(points: &[[i64; 4]]) -> BTreeSet<[u32; 4]> {
         const STEP: usize = 400;
         let (rank, n) = (ranks(points), points.len());
@@ -222,7 +222,7 @@ mod tests {
         })
     }
 
-    /// Evaluates that determinant as a polynomial in the raises: the factor of height `i` is a volume.
+    /// Evaluates that determinant as a polynomial in the raises: the coefficient of height `i` is a volume.
     fn polynomial(points: &[[i64; 4]]) -> BTreeSet<[u32; 4]> {
         let rank = ranks(points);
         let heights: Vec<BigInt> = points.iter().map(height).collect();
@@ -253,7 +253,7 @@ mod tests {
         })
     }
 
-    /// Tetrahedra as sorted grains; translates of the same four grains remain apart by count.
+    /// Tetrahedra as sorted grains; translates of the same four grains are counted separately.
     fn tetrahedra(t: &Triangulation) -> Vec<[u32; 4]> {
         let mut all: Vec<[u32; 4]> = (0..t.tetrahedra())
             .map(|i| {
@@ -272,8 +272,8 @@ mod tests {
         Packing { cell: Cell::Free, x: column(0), y: column(1), z: column(2), diameter }
     }
 
-    /// Ten thousand sets of five to eight grains: a third on a grid of 4 x 4 x 4 (nothing but ties,
-    /// duplicates among them), a third on one of 32, a third with 40 bits.
+    /// Ten thousand sets of five to eight grains: a third on a grid of 4 x 4 x 4 (only ties, duplicates
+    /// among them), a third on a grid of 32, a third with 40 bits.
     #[test]
     fn small_sets_agree_with_brute_force() {
         let mut flat = 0;

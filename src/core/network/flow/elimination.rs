@@ -1,56 +1,57 @@
-//! Elimination of a network of conductances, void by void, with few of the links that this makes.
+//! Approximate elimination of a network of conductances, void by void, which keeps few of the new links.
 //!
-//! Eliminating a void joins all its neighbours with one another: done void by void until no void is left,
-//! this is Cholesky's factor, and soon everything is joined with everything. Here the neighbours of an
-//! eliminated void are joined by a tree instead: in rising order of their conductances `w` each is joined
-//! with one of those after it, chosen in proportion to their conductances, by the conductance that it would
-//! have to all of them together (Kyng & Sachdeva 2016, doi:10.1109/FOCS.2016.68; Gao, Kyng & Spielman 2023,
-//! arXiv:2303.00709). Averaged over the choices this is the network itself, and no elimination adds a link.
-//! Choices follow the golden ratio, so that they are spread evenly and always the same.
+//! Exact elimination of a void joins all its neighbours with one another. Repeated until no void is left,
+//! it gives the Cholesky factor, but the links soon fill the matrix. Here the neighbours of an eliminated
+//! void are joined by a tree instead: in rising order of conductance `w`, each is joined to one of the
+//! later neighbours, chosen in proportion to their conductances, by the conductance that it would have to
+//! all of them together (Kyng & Sachdeva 2016, doi:10.1109/FOCS.2016.68; Gao, Kyng & Spielman 2023,
+//! arXiv:2303.00709). Averaged over the choices this equals exact elimination, and no elimination adds a
+//! link. Choices follow the golden ratio, so that they are evenly spread and reproducible.
 //!
-//! Dead ends, which one link holds, go first, from their ends on: a clogged filter has many of them, and
-//! their elimination is exact. The others follow by number of neighbours, and among equals in turns that are
-//! scattered over the network, so that few of them meet; within a turn by row, so that memory is read in
-//! order.
+//! Dead ends (voids with one link) are eliminated first, from their ends inwards: a clogged filter has
+//! many of them, and their elimination is exact. The other voids follow by number of neighbours. Voids
+//! with equal numbers are eliminated in turns scattered over the network, so that few of them are
+//! neighbours, and within a turn by row, so that memory is read in order.
 
 use std::ops::Range;
 
-/// An approximate factor of a system of conductances: the preconditioner of its conjugate gradients.
+/// Approximate factor of a system of conductances, used as preconditioner of conjugate gradients.
 pub(super) struct Factor {
-    /// Row of the system by place in the order of elimination.
+    /// Row of the system, by place in the order of elimination.
     row: Vec<u32>,
-    /// Parts that places make up of one another, in the order of elimination.
+    /// Coefficients between places, in the order of elimination.
     parts: Vec<Parts>,
-    /// By place: reciprocal of the sum of its conductances at its elimination.
+    /// Reciprocal of the sum of conductances at elimination, by place.
     pivot: Vec<f64>,
-    /// Choices of neighbours that it took.
+    /// Number of choices of neighbours made.
     choices: u64,
 }
 
-/// Parts stored as one group: the parts of a place are padded with parts of 0, so that no loop over them ends
-/// where a processor does not expect it.
+/// Coefficients per group; the coefficients of a place are padded with 0, so that loop lengths are
+/// predictable.
 const TOGETHER: usize = 4;
 
-/// Parts of the pressure of one place that the pressures of later ones make up. Single precision is enough
-/// for an approximation.
+/// Coefficients that give the pressure of one place from the pressures of later places. Single precision
+/// is enough for an approximation.
 struct Parts {
     place: u32,
     by: [u32; TOGETHER],
     part: [f32; TOGETHER],
 }
 
-/// 2^64 over the golden ratio, and 2^32 over it.
+/// 2^64 and 2^32 divided by the golden ratio.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 const GOLDEN_32: u32 = 0x9e37_79b9;
 
 const TURNS: u32 = 6;
 
-/// Most sums that are counted without a branch: those of stars whose number of arms is known.
+/// Maximum number of sums counted without branches; it covers all stars with a number of arms known in
+/// advance.
 const COUNTED: usize = 16;
 
 impl Factor {
-    /// Makes the factor of the system whose row `i` conducts `ground[i]` to known pressures, and whose rows
-    /// are joined by `links`.
+    /// Builds the factor of the system in which row `i` has conductance `ground[i]` to known pressures and
+    /// `links` join the rows.
     pub(super) fn new(ground: &[f64], links: &[Link]) -> Self {
         let order = order(ground.len(), links);
         let mut rest = Rest::new(&order, ground, links);
@@ -59,7 +60,7 @@ impl Factor {
         factor
     }
 
-    /// Factor with nothing eliminated yet, and room for this many groups of parts.
+    /// Creates a factor with nothing eliminated and room for this many groups of coefficients.
     fn of_none(row: Vec<u32>, parts: usize) -> Self {
         let (parts, pivot) = (Vec::with_capacity(parts), Vec::with_capacity(row.len()));
         Self { row, parts, pivot, choices: 0 }
@@ -70,7 +71,7 @@ impl Factor {
         for place in places {
             let ground = rest.take(place, &mut meeting);
             let neighbours = &mut meeting.neighbours[..];
-            // Most have few: loops over a known number end where a processor expects it.
+            // Most places have few neighbours; loops of known length are predictable.
             macro_rules! of_number {
                 ($($few:literal)*) => {
                     match neighbours.len() {
@@ -101,7 +102,7 @@ impl Factor {
         self.give_way(rest, place, ground, neighbours, &mut vec![0.0; neighbours.len()]);
     }
 
-    /// Joins the neighbours of a place, which are sorted, by a tree instead of it; `sums` has their number.
+    /// Replaces a place by a tree that joins its sorted neighbours; `sums` has one entry per neighbour.
     #[inline(always)]
     fn give_way(&mut self, rest: &mut Rest, place: u32, ground: f64, met: &[(u32, f64)], sums: &mut [f64]) {
         let mut all = 0.0;
@@ -109,7 +110,7 @@ impl Factor {
             all += conductance;
             *sum = all;
         }
-        // A sum of 0, or one so small that its inverse is no number, gets 0: nothing is known there.
+        // If the sum is 0, or so small that its inverse is not finite, the pivot is 0.
         let pivot = Some(1.0 / (ground + all)).filter(|inverse| inverse.is_finite()).unwrap_or(0.0);
         self.pivot.push(pivot);
         for some in met.chunks(TOGETHER) {
@@ -132,7 +133,7 @@ impl Factor {
         }
     }
 
-    /// Solves the factor, once down and once up; `scratch` has a number for each row.
+    /// Solves with the factor, forwards and backwards; `scratch` has one entry per row.
     pub(super) fn solve(&self, residual: &[f64], scratch: &mut [f64], out: &mut [f64]) {
         scratch.iter_mut().zip(&self.row).for_each(|(value, &row)| *value = residual[row as usize]);
         for Parts { place, by, part } in &self.parts {
@@ -148,17 +149,16 @@ impl Factor {
     }
 }
 
-/// Key that rises with conductance, except between conductances that differ by a millionth.
+/// Key that rises with conductance; conductances within a millionth of each other may share a key.
 fn rising(conductance: f64) -> u64 {
-    // Bits of floats that are not negative rise as the floats do.
+    // The bits of non-negative floats are ordered like the floats.
     conductance.to_bits() >> 32
 }
 
-/// Neighbours in rising order of conductance; those that differ by a millionth in the order in which they
-/// were found.
+/// Sorts neighbours by rising conductance; conductances with equal keys keep their order.
 #[inline(always)]
 fn sorted<const N: usize>(neighbours: &[(u32, f64); N]) -> [(u32, f64); N] {
-    // Compared as floats, for which all processors have fast instructions: no two keys are equal.
+    // Compared as floats, which is fast on all processors; no two keys are equal.
     let key: [f64; N] = std::array::from_fn(|i| f64::from_bits(rising(neighbours[i].1) << 32 | i as u64));
     let mut sorted = [(0, 0.0); N];
     for i in 0..N {
@@ -167,7 +167,7 @@ fn sorted<const N: usize>(neighbours: &[(u32, f64); N]) -> [(u32, f64); N] {
     sorted
 }
 
-/// Number of these rising sums that do not exceed a share.
+/// Number of these rising sums that do not exceed `share`.
 #[inline(always)]
 fn passed(sums: &[f64], share: f64) -> usize {
     match sums.len() {
@@ -177,7 +177,8 @@ fn passed(sums: &[f64], share: f64) -> usize {
 }
 
 fn order(rows: usize, links: &[Link]) -> Vec<u32> {
-    // By row: the number of links left, and their other rows by exclusive or: once one is left, its row.
+    // By row: number of links left, and the exclusive or of their other rows, which is the last neighbour
+    // once one link is left.
     let mut left = vec![(0u32, 0u32); rows];
     for &Link { one, other, .. } in links {
         for (row, met) in [(one, other), (other, one)] {
@@ -220,11 +221,11 @@ pub(super) struct Link {
     pub conductance: f64,
 }
 
-/// Places that meet one place, each once. Serves one place after another.
+/// Neighbours of one place, each once; reused for one place after another.
 struct Meeting {
-    /// With their conductances, in the order in which they were found.
+    /// Neighbours with their conductances, in order of discovery.
     pub neighbours: Vec<(u32, f64)>,
-    /// By place: the place that it met last, and its position in `neighbours` then.
+    /// Last place of which each place was a neighbour, and its position in `neighbours` then.
     met: Vec<(u32, u32)>,
 }
 
@@ -244,26 +245,25 @@ impl Meeting {
     }
 }
 
-/// No handful, and no place.
+/// Marks a missing handful or place.
 const NONE: u32 = u32::MAX;
 
 const HANDFUL: usize = 6;
 
-/// Links of one place: the last that it was given, and where those before them are. A cache line; single
-/// precision is enough for an approximation, and a conductance that it cannot tell from 0 becomes the least
-/// that it can.
+/// Latest links of one place, and the index of earlier ones. It fills a cache line. Single precision is
+/// enough for an approximation; conductances that would round to 0 become the smallest positive float.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 struct Head {
     conductance: [f32; HANDFUL],
     to: [u32; HANDFUL],
-    /// Conductance to pressures that are known.
+    /// Conductance to known pressures.
     ground: f64,
     count: u32,
     before: u32,
 }
 
-/// Links of one place that precede others.
+/// Earlier links of one place.
 #[derive(Clone, Copy)]
 struct Handful {
     conductance: [f32; HANDFUL],
@@ -271,17 +271,17 @@ struct Handful {
     before: u32,
 }
 
-/// The rest of the system while rows are eliminated, by place: a link is kept with the one of its two places
-/// that is eliminated first.
+/// Remaining system during elimination, by place: a link is stored with whichever of its two places is
+/// eliminated first.
 struct Rest {
     head: Vec<Head>,
     handfuls: Vec<Handful>,
-    /// First handful of those that are free again.
+    /// First free handful.
     free: u32,
 }
 
 impl Rest {
-    /// Builds the system with places in this order of rows.
+    /// Builds the system with its rows in this order of elimination.
     pub(super) fn new(order: &[u32], ground: &[f64], links: &[Link]) -> Self {
         let mut place_of: Vec<u32> = vec![0; order.len()];
         order.iter().zip(0u32..).for_each(|(&row, place)| place_of[row as usize] = place);
@@ -320,7 +320,7 @@ impl Rest {
         head.count += 1;
     }
 
-    /// Removes a place: its neighbours go to `meeting`, and its conductance to known pressures is returned.
+    /// Removes a place: writes its neighbours to `meeting` and returns its conductance to known pressures.
     pub(super) fn take(&mut self, place: u32, meeting: &mut Meeting) -> f64 {
         meeting.neighbours.clear();
         let Head { conductance, to, ground, count, before } = self.head[place as usize];
@@ -346,7 +346,7 @@ mod tests {
     use super::*;
     use std::collections::BTreeSet;
 
-    /// A tree has nothing to approximate: a star of chains, one end of which leads to a known pressure.
+    /// A tree is solved without approximation: a star of chains with one end at a known pressure.
     #[test]
     fn a_tree_is_solved_exactly() {
         let links = [(0, 1, 2.0), (0, 2, 0.5), (0, 3, 1.0), (1, 4, 3.0), (2, 5, 0.25), (3, 6, 8.0)];
@@ -367,8 +367,8 @@ mod tests {
         }
     }
 
-    /// A lattice of 16 x 16 x 16 rows between known pressures above and below: links over six orders of
-    /// magnitude, three in ten blocked. Without a factor it takes thousands of rounds.
+    /// A lattice of 16 x 16 x 16 rows between known pressures above and below, with conductances over six
+    /// orders of magnitude and three links in ten blocked. Without a factor it takes thousands of rounds.
     #[test]
     fn few_rounds_do_on_a_lattice_that_clogs() {
         const N: usize = 16;
@@ -395,13 +395,13 @@ mod tests {
         };
         let (mut pressure, mut kept) = (vec![0.0; N * N * N], None);
         System::new(N * N * N, |_| true, fill).solve(&mut pressure, N, 1e-8, &mut kept).unwrap();
-        // 23; without the order 32, with links that are too large 42.
+        // It takes 23; without the order 32, with too large links 42.
         let rounds = kept.unwrap().rounds;
         assert!(rounds <= 28, "{rounds} rounds");
     }
 
-    /// Links among the four neighbours of an eliminated row conduct on average, over choices, as the star
-    /// did; links that are taken leave their room to those that come.
+    /// Averaged over choices, links among the four neighbours of an eliminated row conduct as much as the
+    /// star did; removed links leave their room to new ones.
     #[test]
     fn a_star_gives_way_to_trees_that_conduct_as_much() {
         const STARS: usize = 4000;
@@ -412,7 +412,7 @@ mod tests {
             conductance: arms[arm],
         };
         let links: Vec<Link> = (0..STARS).flat_map(|star| (0..4).map(move |arm| link(star, arm))).collect();
-        // Middles first, so that the others are left with the trees.
+        // Centres first, so that the trees are left.
         let order: Vec<u32> =
             (0..STARS).map(|s| 5 * s).chain((0..5 * STARS).filter(|i| i % 5 > 0)).map(|i| i as u32).collect();
         let mut factor = Factor::of_none(order, 0);
@@ -435,7 +435,7 @@ mod tests {
         }
     }
 
-    /// Every small number of sums, and larger ones, by shares on both sides of every sum.
+    /// All small numbers of sums and some larger ones, with shares on both sides of every sum.
     #[test]
     fn the_first_sum_beyond_a_share_is_found() {
         for many in [1, 3, COUNTED, COUNTED + 1, 40] {
@@ -447,8 +447,8 @@ mod tests {
         }
     }
 
-    /// All orders of five conductances; the second and third differ by less than a millionth and stay as they
-    /// were found.
+    /// All orders of five conductances; the second and third differ by less than a millionth and keep
+    /// their order.
     #[test]
     fn neighbours_are_sorted() {
         const CONDUCTANCES: [f64; 5] = [1e-300, 0.25, 0.25 * (1.0 + 1e-9), 0.75, 1.0];
@@ -468,7 +468,7 @@ mod tests {
         assert_eq!(orders, 120);
     }
 
-    /// Any number of neighbours: numbers that the loops know beforehand, and more.
+    /// Any number of neighbours, known to the loops in advance or larger.
     #[test]
     fn a_row_gives_way_whatever_it_meets() {
         for many in 0..40 {
@@ -481,7 +481,7 @@ mod tests {
             factor.eliminate(&mut rest, 0..1);
             let all: f64 = links.iter().map(|link| link.conductance).sum();
             assert!((factor.pivot[0] * (1.0 + all) - 1.0).abs() < 1e-14);
-            // A tree of the star's conductances, and the part that leads on through the star's ground.
+            // A tree of the star's conductances, and the conductance to ground that passes to the neighbours.
             let (mut meeting, mut links_of_tree, mut ground) = (Meeting::new(many as usize + 1), 0, 0.0);
             for place in 1..=many {
                 ground += rest.take(place, &mut meeting) - 1.0;
@@ -503,7 +503,7 @@ mod tests {
         }
     }
 
-    /// Thousands of links come and go in the room of the first.
+    /// Thousands of links reuse the memory of the first.
     #[test]
     fn room_of_links_is_used_again() {
         let links: Vec<Link> =
@@ -521,7 +521,7 @@ mod tests {
         }
     }
 
-    /// A place that is met again and again is one neighbour, with all that leads to it.
+    /// A place joined by several links is one neighbour, with the sum of their conductances.
     #[test]
     fn links_between_two_places_are_one() {
         let joined = [(0, 1, 1.0), (2, 0, 2.0), (0, 1, 4.0), (1, 2, 8.0), (1, 0, 16.0), (2, 0, 32.0)];
@@ -530,7 +530,7 @@ mod tests {
         let mut meeting = Meeting::new(3);
         rest.hold(0, 0.25);
         assert_eq!(rest.take(0, &mut meeting), 0.75);
-        // The first links that it was given follow those that came last.
+        // The earliest links come after the latest.
         meeting.neighbours.sort_by_key(|neighbour| neighbour.0);
         assert_eq!(meeting.neighbours, [(1, 21.0), (2, 34.0)]);
         rest.take(1, &mut meeting);

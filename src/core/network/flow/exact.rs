@@ -1,38 +1,38 @@
-//! Fluxes by elimination without subtraction, for conductances of any contrast.
+//! Fluxes by elimination without subtraction, for any contrast of conductances.
 //!
-//! A void is eliminated by joining its neighbours with one another: two of them by `g_j g_k / sum of g`. All
-//! numbers are positive and are multiplied, divided and added only, so each is known to a few roundings,
-//! however far conductances lie apart (Grassmann, Taksar & Heyman 1985, doi:10.1287/opre.33.5.1107).
-//! Pressures alone would not do: on the two sides of a constriction that conducts very well, they differ in
-//! digits that floats do not have. So falls of pressure are found instead, from the last void to the first:
-//! the fall from a void to a neighbour is the mean of the falls from its neighbours to that one, weighted by
-//! conductance. A fall times a conductance is a part of the whole flow, and so no flux is wrong by more than
-//! some roundings of the whole.
+//! A void is eliminated by joining each two of its neighbours by `g_j g_k / sum of g`. All numbers are
+//! positive and are only multiplied, divided and added, so each is accurate to a few roundings, however
+//! much conductances differ (Grassmann, Taksar & Heyman 1985, doi:10.1287/opre.33.5.1107). Pressures alone
+//! are not enough: across a constriction of very high conductance they differ by less than a float can
+//! hold. So pressure differences (falls) are computed instead, from the last void to the first: the fall
+//! from a void to a neighbour is the mean of the falls from all its neighbours to that neighbour, weighted
+//! by conductance. A fall times a conductance is a fraction of the total flow, so the error of a flux is
+//! at most some roundings of the total flow.
 
 use super::system::PAIRS;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Turn of a node that is not eliminated.
+/// Turn of a node that is never eliminated.
 const LAST: u32 = u32::MAX;
 
 #[derive(Clone, Copy, Debug)]
 struct Neighbour {
     node: u32,
-    /// Conductance to it, as a part of all conductance from the void.
+    /// Conductance to the neighbour, as a fraction of all conductance from the void.
     part: f64,
-    /// Pressure of the void minus the pressure of the neighbour.
+    /// Pressure of the void minus pressure of the neighbour.
     fall: f64,
 }
 
-/// Falls of pressure between neighbours, for a pressure of 1 at the first of two known nodes and 0 at the
-/// second. The known nodes follow the others.
+/// Pressure differences between neighbours, with pressure 1 at the first of two known nodes and 0 at the
+/// second. The known nodes come last.
 #[derive(Debug)]
 pub(super) struct Eliminated {
-    /// By node: its neighbours when it was eliminated, in rising order.
+    /// Neighbours of each node at its elimination, in rising order.
     rows: Vec<Vec<Neighbour>>,
     turn: Vec<u32>,
-    /// By node, the known ones at last.
+    /// Pressure by node, the known ones last.
     pub pressure: Vec<f64>,
     /// Conductance between the two known nodes.
     pub conductance: f64,
@@ -40,8 +40,8 @@ pub(super) struct Eliminated {
 
 impl Eliminated {
     /// Eliminates this many nodes, joined by `links` with one another and with two known nodes; `None` if
-    /// that takes too much work, or a conductance is no number. Every node is joined with both known ones by
-    /// some way.
+    /// that takes too much work or a conductance is not finite. Every node must be connected to both known
+    /// nodes.
     pub(super) fn new(nodes: usize, links: impl Iterator<Item = (u32, u32, f64)>) -> Option<Self> {
         let [high, low] = [nodes as u32, nodes as u32 + 1];
         let is_known = |node: u32| node >= high;
@@ -52,7 +52,7 @@ impl Eliminated {
                 conductance += g;
             }
             for (node, met_by) in [(one, other), (other, one)] {
-                // Known nodes have no row.
+                // Known nodes have no row here.
                 if let Some(row) = met.get_mut(node as usize) {
                     row.push((met_by, g));
                 }
@@ -110,7 +110,7 @@ impl Eliminated {
         Some(eliminated)
     }
 
-    /// Finds the pressure of a node, and its falls, from those of its neighbours.
+    /// Computes the pressure and the falls of a node from those of its neighbours.
     fn put_back(&mut self, node: usize) {
         let row = std::mem::take(&mut self.rows[node]);
         let fall = |to: &Neighbour| {
@@ -124,7 +124,7 @@ impl Eliminated {
         self.rows[node] = row.iter().zip(falls).map(|(other, fall)| Neighbour { fall, ..*other }).collect();
     }
 
-    /// Fall of pressure from a node to another that it is joined with.
+    /// Pressure difference between a node and a neighbour.
     pub(super) fn fall(&self, one: u32, other: u32) -> f64 {
         let [first, second] = [one, other].map(|node| self.turn[node as usize]);
         match (first == LAST, second == LAST) {
@@ -140,8 +140,8 @@ impl Eliminated {
     }
 }
 
-/// Neighbours of a node once its neighbour `gone`, with conductance `g`, is eliminated: the others, and those
-/// that it is joined with instead.
+/// Neighbours of a node after its neighbour `gone`, with conductance `g`, is eliminated: the remaining
+/// ones and the new ones.
 fn joined(row: &[(u32, f64)], of_gone: &[Neighbour], (gone, node): (u32, u32), g: f64) -> Vec<(u32, f64)> {
     let mut old = row.iter().copied().filter(|&(other, _)| other != gone).peekable();
     let new = of_gone.iter().filter(|met| met.node != node).map(|met| (met.node, g * met.part));
@@ -179,8 +179,8 @@ mod tests {
         }
     }
 
-    /// Two voids joined so well that their pressures do not differ in any digit: the flow between them is
-    /// known all the same.
+    /// Two voids joined by so high a conductance that their pressures agree in every digit: the flow
+    /// between them is still known.
     #[test]
     fn a_flux_is_known_where_pressures_do_not_differ() {
         let links = [(2, 0, 1.0), (0, 1, 1e20), (1, 3, 1.0), (0, 3, 0.5)];

@@ -1,142 +1,141 @@
-//! The equations of pressures in a network of conductances, their solution by conjugate gradients, and every
-//! number that decides when a flow counts as solved, with the error from which it protects.
+//! Equations for the pressures in a network of conductances, their solution by conjugate gradients, and
+//! all criteria for a solved flow, each with the error that it prevents.
 //!
-//! Sums run in a fixed order, so that a solution is the same to the bit with any instructions.
+//! Sums run in a fixed order, so that solutions are the same to the bit with any instruction set.
 
 use super::elimination::{Factor, Link};
 use std::ops::Range;
 
-/// Reason why no flow is known.
+/// Reason why the flow is unknown.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FlowError {
-    /// Conductances so far apart that pressures cannot be resolved.
+    /// Conductances that differ too much for pressures to be resolved.
     #[error(
         "the flow through the network cannot be solved: after {rounds} rounds the residual is \
          still {residual:.1e} \
-         of the inflow; constrictions whose conductances lie many orders apart do that"
+         of the inflow, because conductances lie too many orders apart"
     )]
     NotConverged {
-        /// Rounds.
+        /// Number of rounds.
         rounds: usize,
-        /// Residual over inflow.
+        /// Residual divided by the inflow.
         residual: f64,
     },
-    /// Conductances so far apart that the flow is lost in their rounding.
+    /// Conductances that differ so much that rounding hides the flow.
     #[error(
-        "the flow through the network cannot be told: as close as rounding lets pressures come, voids take \
-         in {off:.1e} of what passes the network more or less than they let out. Conductances lie too many \
-         orders apart: leave out constrictions that conduct many orders more than the ways through, blind \
-         ones too, since a way in that nothing can block conducts as constrictions do on average"
+        "the flow through the network cannot be determined: because of rounding, inflow and outflow of the \
+         voids differ by {off:.1e} of the flow through the network. Conductances lie too many orders apart: \
+         leave out constrictions that conduct many orders more than the ways through, also in dead ends, \
+         since a way in that nothing can block has the mean conductance of all constrictions"
     )]
     Unresolved {
-        /// Sum of the imbalances of all voids, over the flow through the filter.
+        /// Sum of the imbalances of all voids, divided by the flow through the filter.
         off: f64,
     },
 }
 
-/// Residual of conjugate gradients, as part of the inflow. Protects from pressures that are not the
-/// network's: fluxes then differ in the tenth digit.
+/// Residual of conjugate gradients, as a fraction of the inflow. Prevents wrong pressures: fluxes are then
+/// accurate to ten digits.
 pub(in crate::network) const CONVERGED: f64 = 1e-10;
 
-/// Residual where fluxes are small beside the inflow: the least that rounding allows.
+/// Residual if fluxes are small compared with the inflow: the minimum that rounding allows.
 pub(super) const CLOSEST: f64 = f64::EPSILON / 4.0;
 
-/// Possible loss of the sums of each row in rounding, as part of the flow through its known pressures.
+/// Possible rounding error of the sums of each row, as a fraction of the flow from its known pressures.
 pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// Residual that is taken, as part of the inflow, if rounding lets it come no closer.
+/// Largest residual accepted, as a fraction of the inflow, if rounding prevents a smaller one.
 const BEST_OF_ROUNDING: f64 = 1e-6;
 
-/// Mean flux of an inlet over the flux that the residual may account for, below which pressures are looked
-/// for more closely, and finally by elimination. Protects from fluxes of a clogging filter that are mostly
-/// residual.
+/// Minimum ratio of the mean inlet flux to the flux that the residual may account for. Below it pressures
+/// are solved more accurately, and finally by elimination. Prevents fluxes of a clogging filter that are
+/// mostly residual.
 pub(super) const CLEAR: f64 = 1e4;
 
-/// Least such ratio where neither is possible: below it the flow is refused. Protects from a filter that
-/// seems to hold because no flux tells where particles go.
+/// Minimum of the same ratio if neither is possible; below it the flow is refused. Prevents a filter from
+/// seeming to hold because the fluxes do not show where particles go.
 pub(super) const RESOLVED: f64 = 30.0;
 
-/// Possible error of fluxes, over the largest conductance found for the network; beyond it the flow is
-/// refused.
+/// Largest possible error of fluxes, relative to the largest conductance of the network so far; above it
+/// the flow is refused.
 pub(super) const KNOWN: f64 = 5e-7;
 
-/// Possible error of fluxes, over the present flow, for a reader of every flux.
+/// Largest possible error of fluxes, relative to the current flow, for uses of individual fluxes.
 pub(super) const CLOSELY: f64 = 1e-8;
 
 /// Fluxes below this fraction of the mean inlet flux count as zero, except the largest flux out of a void.
-/// Protects from ways that only the residual opens.
+/// Prevents paths that exist only because of the residual.
 pub(super) const NO_FLUX: f64 = 1e-8;
 
-/// Possible error of a flux found by elimination, over the flow through the filter.
+/// Largest possible error of a flux found by elimination, relative to the flow through the filter.
 pub(super) const ELIMINATED: f64 = 1e-12;
 
-/// Rounds of conjugate gradients, for each layer and a hundred besides, after which the flow is refused or
-/// found by elimination. Protects from a search without end.
+/// Maximum number of rounds of conjugate gradients for each layer, plus a hundred layers; after that the
+/// flow is refused or found by elimination. Prevents an endless search.
 pub(super) const ROUNDS: usize = 100;
 
-/// Most rounds with a factor of another system: this number, or this multiple of the rounds that its own
-/// system took, whichever is more. Protects from a factor that no longer fits.
+/// Maximum number of rounds with the factor of another system: this number, or this multiple of the rounds
+/// that its own system took, whichever is larger. Prevents the use of a factor that no longer fits.
 const ROUNDS_OF_ANOTHER: [usize; 2] = [60, 3];
 
-/// A factor is kept until more than one in this many exits have closed: so it serves while little closes from
-/// one solution to the next, and costs fewer rounds then than making another would.
+/// A factor is kept until more than one in this many exits have closed; until then the extra rounds cost
+/// less than a new factor.
 pub(super) const KEPT_UNTIL: usize = 100;
 
-/// Pairs of neighbours that an elimination looks at before it is given up: some seconds.
+/// Maximum number of pairs of neighbours in an elimination (some seconds).
 pub(super) const PAIRS: usize = 50_000_000;
 
-/// Sums that are made side by side: fixed, so that instructions change nothing.
+/// Number of parallel sums; fixed, so that results do not depend on the instruction set.
 const SIDE_BY_SIDE: usize = 8;
 
 const NONE: u32 = u32::MAX;
 
-/// Quality of the fit of pressures to their equations.
+/// Accuracy of pressures in their equations.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::network) struct Fit {
-    /// Residual over the inflow, both as roots of sums of squares.
+    /// Residual divided by the inflow, both as roots of sums of squares.
     pub residual: f64,
-    /// Sum of the imbalances of all voids, rounding included. No flux, and no sum of fluxes through a cut,
-    /// differs by more from the flux of the exact pressures: a unit of flow that is fed into a void passes no
-    /// constriction more than once.
+    /// Sum of the imbalances of all voids, including rounding. It bounds the error of every flux and of every
+    /// sum of fluxes through a cut, as a unit of flow fed into a void passes no constriction more than once.
     pub missing: f64,
 }
 
-/// A factor that serves one system after another of the same rows.
+/// Factor reused for successive systems with the same rows.
 pub(in crate::network) struct Kept {
     factor: Factor,
-    /// Rounds of the system that the factor was made for.
+    /// Number of rounds for the system of the factor.
     pub rounds: usize,
-    /// Exits that have closed since.
+    /// Number of exits closed since.
     pub closed: usize,
 }
 
-/// The equations of the voids inside: a row for each.
+/// Equations of the voids inside, one row for each.
 pub(in crate::network) struct System {
     void: Vec<u32>,
-    /// Row by void, or [`NONE`].
+    /// Row of each void, or [`NONE`].
     row_of: Vec<u32>,
     links: Vec<Link>,
-    /// By row: conductance to pressures that are known.
+    /// Conductance to known pressures, by row.
     ground: Vec<f64>,
-    /// By row: flow in from where pressure is known.
+    /// Inflow from known pressures, by row.
     inflow: Vec<f64>,
 }
 
-/// The numbers of conjugate gradients, by row.
+/// Vectors of conjugate gradients, by row.
 struct Columns {
     pressure: Vec<f64>,
-    /// Missing part of the right side.
+    /// Right-hand side minus the matrix times the pressures.
     residual: Vec<f64>,
     direction: Vec<f64>,
-    /// The matrix times one of these columns.
+    /// Matrix times one of these columns.
     product: Vec<f64>,
-    /// The residual, solved by the factor.
+    /// Residual after the preconditioner.
     solved: Vec<f64>,
     scratch: Vec<f64>,
 }
 
 impl System {
-    /// Builds the equations of the voids `inside`, out of this many, which `fill` joins.
+    /// Builds the equations of the `inside` ones of this many voids; `fill` joins them.
     pub(in crate::network) fn new(
         voids: usize,
         inside: impl Fn(u32) -> bool,
@@ -155,8 +154,8 @@ impl System {
         Some(self.row_of[void as usize]).filter(|&row| row != NONE)
     }
 
-    /// Joins two voids. One that is not inside has pressure 0; links between two of these, and from a void to
-    /// itself, are ignored.
+    /// Joins two voids. A void that is not inside has pressure 0; links between two such voids, and from a
+    /// void to itself, are ignored.
     pub(in crate::network) fn join(&mut self, one: u32, other: u32, conductance: f64) {
         match [one, other].map(|void| self.row(void)) {
             [None, None] => {}
@@ -166,22 +165,22 @@ impl System {
         }
     }
 
-    /// Joins a void that is inside with a known pressure.
+    /// Joins an inside void to a known pressure.
     pub(super) fn hold(&mut self, void: u32, conductance: f64, pressure: f64) {
         let row = self.row(void).expect("it is inside") as usize;
         self.ground[row] += conductance;
         self.inflow[row] += conductance * pressure;
     }
 
-    /// Adds an inflow into a void, if it is inside.
+    /// Adds an inflow to a void, if it is inside.
     pub(in crate::network) fn feed(&mut self, void: u32, inflow: f64) {
         if let Some(row) = self.row(void) {
             self.inflow[row as usize] += inflow;
         }
     }
 
-    /// Multiplies both sides by a power of two, which changes no digit of a solution, so that squares of very
-    /// large and very small conductances remain numbers. Returns that power.
+    /// Multiplies both sides by a power of two, so that squares of very large and very small conductances
+    /// stay finite and positive; the solution keeps every digit. Returns that power.
     fn normalise(&mut self) -> f64 {
         let mut diagonal = self.ground.clone();
         for link in &self.links {
@@ -198,10 +197,10 @@ impl System {
         unit
     }
 
-    /// Runs conjugate gradients from the present pressures, and again from where they end while the residual
-    /// that they carry along has left the true one, until the true one is about `within` of the inflow or
-    /// rounding lets it come no closer. `kept` holds a factor of nearly this system; if it is empty, or takes
-    /// too many rounds, a factor of this system is made and left there.
+    /// Runs conjugate gradients from the present pressures, and restarts them while the updated residual
+    /// differs from the true one, until the true residual is about `within` of the inflow or rounding
+    /// prevents a smaller one. `kept` holds the factor of a similar system; if it is empty or takes too
+    /// many rounds, a factor of this system is made and stored there.
     pub(in crate::network) fn solve(
         mut self,
         pressure: &mut [f64],
@@ -248,7 +247,7 @@ impl System {
         }
     }
 
-    /// Fit of the pressures of these columns, given their residual over the inflow.
+    /// Accuracy of the pressures of these columns, given their residual divided by the inflow.
     fn fit(&self, columns: &Columns, residual: f64) -> Fit {
         let off: f64 = columns.residual.iter().copied().map(f64::abs).sum();
         let held = self.ground.iter().zip(&columns.pressure).map(|(ground, p)| (ground * p).abs());
@@ -256,7 +255,8 @@ impl System {
         Fit { residual, missing: off + ROUNDING * known }
     }
 
-    /// Fit, and the rounds that it took, up to a limit. Pressures stay unchanged if these do not suffice.
+    /// Solves within a maximum number of rounds; returns the accuracy and the rounds. If the rounds are
+    /// not enough, pressures stay unchanged.
     fn solve_within(
         &self,
         pressure: &mut [f64],
@@ -270,7 +270,7 @@ impl System {
         loop {
             let size = self.find_residual(&mut columns);
             let is_close = size <= if rounds == 0 { 1.0 } else { 2.0 } * within * scale;
-            // They come no closer than rounding lets them.
+            // Rounding prevents a smaller residual.
             let is_stuck = size > 0.5 * before && size <= BEST_OF_ROUNDING * scale;
             if is_close || is_stuck {
                 self.void.iter().zip(&columns.pressure).for_each(|(&v, &p)| pressure[v as usize] = p);
@@ -285,8 +285,8 @@ impl System {
         }
     }
 
-    /// The matrix times a column. Goes link by link: loops over the links of each row would end where no
-    /// processor expects it.
+    /// Multiplies the matrix by a column, link by link: loops over the links of each row would have
+    /// unpredictable lengths.
     fn times(&self, x: &[f64], out: &mut [f64]) {
         out.iter_mut().zip(self.ground.iter().zip(x)).for_each(|(out, (ground, x))| *out = ground * x);
         for &Link { one, other, conductance } in &self.links {
@@ -296,7 +296,7 @@ impl System {
         }
     }
 
-    /// Finds the missing part of the right side, and its size.
+    /// Computes the residual; returns its norm.
     fn find_residual(&self, columns: &mut Columns) -> f64 {
         let Columns { pressure, residual, product, .. } = columns;
         self.times(pressure, product);
@@ -305,8 +305,8 @@ impl System {
         dot(residual, residual).sqrt()
     }
 
-    /// Runs conjugate gradients until the residual that they carry along, which begins at this size, is
-    /// small; returns the number of rounds.
+    /// Runs conjugate gradients until the updated residual, which starts at this norm, is small; returns
+    /// the number of rounds.
     fn descend(
         &self,
         factor: &Factor,
@@ -347,10 +347,10 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum()
 }
 
-/// Members in groups, each known by its smallest member. Ways are halved as they are followed, which keeps
-/// them short without a count of members (a logarithm on average).
+/// Disjoint groups, each identified by its smallest member. Paths are halved as they are followed, which
+/// keeps them short (logarithmic on average) without group sizes.
 pub(in crate::network) struct Together {
-    /// A member of the same group that is no larger: the smallest points at itself.
+    /// Member of the same group that is no larger; the smallest points at itself.
     towards: Vec<u32>,
 }
 
@@ -359,14 +359,14 @@ impl Together {
         Self { towards: (0..members as u32).collect() }
     }
 
-    /// Smallest member of the group of this one.
+    /// Smallest member of the group of `member`.
     pub(in crate::network) fn root(&mut self, mut member: u32) -> u32 {
         loop {
             let next = self.towards[member as usize];
             if next == member {
                 return member;
             }
-            // Halves the way for the next time.
+            // Halves the path for next time.
             let after = self.towards[next as usize];
             self.towards[member as usize] = after;
             member = after;
@@ -383,7 +383,7 @@ impl Together {
 mod tests {
     use super::*;
 
-    /// Fit and pressures of this many voids, from this pressure on, that `fill` joins.
+    /// Solves this many voids joined by `fill`, starting from this pressure; returns accuracy and pressures.
     fn solved(
         voids: u32,
         from: f64,
@@ -395,15 +395,15 @@ mod tests {
         (system.solve(&mut pressure, voids as usize, CONVERGED, kept).unwrap(), pressure)
     }
 
-    /// Joins voids one behind the other between known pressures.
+    /// Joins voids in a row between known pressures.
     fn chain(system: &mut System, voids: u32) {
         system.hold(0, 1.0, 1.0);
         system.hold(voids - 1, 2.0, 0.0);
         (0..voids - 1).for_each(|void| system.join(void, void + 1, 1.0 + f64::from(void % 7)));
     }
 
-    /// A column of voids that each also meet themselves: the same bits; if the factor knew of loops it would
-    /// take hundreds of rounds.
+    /// A column of voids that are also joined to themselves gives the same bits; a factor with these loops
+    /// would take hundreds of rounds.
     #[test]
     fn nothing_flows_from_a_void_to_itself() {
         const VOIDS: u32 = 500;
@@ -418,7 +418,7 @@ mod tests {
         assert!(without.is_sorted_by(|above, below| above > below));
     }
 
-    /// A factor of a network that conducts elsewhere makes way for one that fits.
+    /// A factor of a different network is replaced by one that fits.
     #[test]
     fn a_factor_that_does_not_serve_is_replaced() {
         const SIDE: u32 = 40;
@@ -450,16 +450,15 @@ mod tests {
         for kept in [&mut same, &mut other] {
             kept.as_mut().unwrap().closed = 7;
         }
-        // Equal to the bit, since it starts again from the same pressures, with the factor that it would have
-        // made.
+        // Equal to the bit: it restarts from the same pressures, with its own new factor.
         assert_eq!(solved_for(0, &mut other), pressure);
         assert_eq!(other.unwrap().closed, 0);
         assert_eq!(solved_for(0, &mut same), pressure);
         assert_eq!(same.unwrap().closed, 7, "one that serves stays");
     }
 
-    /// Links that single precision rounds to 0 beside one dead end that conducts enormously: the voids that
-    /// they hold are solved all the same.
+    /// Links that single precision rounds to 0 beside a dead end of enormous conductance: their voids are
+    /// still solved.
     #[test]
     fn conductances_that_single_precision_does_not_tell_apart_are_solved() {
         const VOIDS: u32 = 300;

@@ -1,7 +1,7 @@
 use super::*;
 use crate::network::{ExitRule, Link, LinkEnd, LinkedVoids};
 
-/// An undirected lattice whose diameters repeat in no pattern.
+/// Undirected lattice whose diameters have no pattern.
 fn lattice(shape: [u32; 3], rule: ExitRule, rho: f64) -> Network {
     let diameters = (0..3 * shape.iter().product::<u32>()).map(|c| 1.0 + (c * 7919 % 100) as f32 / 100.0);
     let lattice = Network::cubic_from_diameters(shape, diameters.collect(), 1.0).unwrap();
@@ -12,7 +12,7 @@ fn none_blocked(network: &Network) -> BitVec {
     BitVec::repeat(false, network.constrictions())
 }
 
-/// Asserts that pressures are those found without a factor from before; returns the solution found so.
+/// Asserts that pressures equal those found without an earlier factor; returns that solution.
 fn like_afresh(network: &Network, flow: &Flow, solve: impl Fn(&mut Flow) -> Permeability) -> Permeability {
     let mut afresh = Flow::new(network);
     let solution = solve(&mut afresh);
@@ -22,7 +22,7 @@ fn like_afresh(network: &Network, flow: &Flow, solve: impl Fn(&mut Flow) -> Perm
     solution
 }
 
-/// Conductances follow the present blocked set, whatever closed and opened again before.
+/// Conductances follow the current blocked set, regardless of earlier closing and reopening.
 #[test]
 fn conductances_follow_what_is_blocked() {
     let diameters = (0..3 * 4 * 3 * 5).map(|c| if c % 17 == 0 { 0.0 } else { 1.0 + 0.01 * c as f32 });
@@ -46,8 +46,8 @@ fn conductances_follow_what_is_blocked() {
     }
 }
 
-/// Blocks of voids are cut off one after another, some with a factor that is kept: pressures agree with those
-/// found without it, all the way to where no water comes through.
+/// Blocks of voids are cut off one after another, some with a kept factor: pressures agree with those
+/// found without it, until no water comes through.
 #[test]
 fn a_factor_serves_while_little_has_closed() {
     let [n, layers] = [12, 14];
@@ -57,7 +57,7 @@ fn a_factor_serves_while_little_has_closed() {
         let mut flow = Flow::new(&network);
         flow.solve(&network, &blocked).unwrap();
         let (mut served, mut made) = (0, 0);
-        // Two by two by one voids, with open ways between them and no way out.
+        // 2 x 2 x 1 voids, with open constrictions between them and no way out.
         let corners = (3 * n * n + 1..(layers - 3) * n * n).step_by(2 * n as usize + 5);
         for corner in corners.filter(|v| v % n < n - 1) {
             let block = [corner, corner + 1, corner + n, corner + n + 1];
@@ -86,8 +86,8 @@ fn a_factor_serves_while_little_has_closed() {
     }
 }
 
-/// Two chains of voids, one of which conducts next to nothing: once the other is blocked, squares of the
-/// remaining conductances vanish beside the squares of before.
+/// Two chains of voids, one with almost no conductance: once the other is blocked, squares of the
+/// remaining conductances vanish beside the earlier squares.
 #[test]
 fn next_to_nothing_is_solved_once_it_is_all_there_is() {
     const LONG: u32 = 8000;
@@ -108,16 +108,16 @@ fn next_to_nothing_is_solved_once_it_is_all_there_is() {
     flow.solve(&network, &blocked).unwrap();
     let inlet = network.exits(network.reservoir().unwrap()).next().unwrap();
     network.set_blocked(&mut blocked, inlet, true);
-    // An accuracy of half a millionth of the flow before says nothing of the flow now; but it is not the old
-    // one.
+    // An accuracy of half a millionth of the earlier flow says nothing about the current flow, but the
+    // flow is not the old one.
     let solution = flow.solve(&network, &blocked);
     let exact = 1.0 / (0..=LONG).map(|i| 1.0 / small(i)).sum::<f64>();
     let through = flow.through;
     assert!((through / exact - 1.0).abs() < 1e-6, "{through} for {exact}, {solution:?}");
 }
 
-/// Parts that shrink a few at a time, solved with a factor that is kept: pressures agree with those found
-/// without it. A later solution for blocked constrictions forgets those parts.
+/// Fractions that shrink a few at a time, solved with a kept factor: pressures agree with those found
+/// without it. A later solution for blocked constrictions discards the fractions.
 #[test]
 fn parts_are_solved_as_afresh_and_forgotten() {
     let network = lattice([10, 10, 10], ExitRule::Flux, 0.1);
@@ -157,7 +157,7 @@ fn parts_are_solved_as_afresh_and_forgotten() {
     }
 }
 
-/// A void that was cut off when a factor was made has no row there: once it opens, another is made.
+/// A void that was cut off when a factor was made has no row in it; once it opens, a new factor is made.
 #[test]
 fn what_opens_again_needs_another_factor() {
     let lattice = Network::cubic_from_diameters([8, 8, 8], vec![1.0; 3 * 512], 1.0).unwrap();
@@ -166,14 +166,14 @@ fn what_opens_again_needs_another_factor() {
     for (void, is_closed, is_kept) in [(200, true, false), (300, true, true), (200, false, false)] {
         network.exits(void).for_each(|c| network.set_blocked(&mut blocked, c, is_closed));
         flow.solve(&network, &blocked).unwrap();
-        // Twelve exits in some 3000 close.
+        // Twelve of some 3,000 exits close.
         assert_eq!(flow.kept.as_ref().unwrap().closed > 0, is_kept, "{void}");
     }
     like_afresh(&network, &flow, |flow| flow.solve(&network, &blocked).unwrap());
 }
 
-/// Each exit weighs by its outflow, and nothing where water flows in, or where it is blocked, though it
-/// leaks.
+/// The weight of an exit follows its outflow; it is 0 if water flows in, or if the exit is blocked, even
+/// if it leaks.
 #[test]
 fn exits_weigh_by_what_leaves_through_them() {
     for rule in [ExitRule::Flux, ExitRule::AreaAlongFlow] {

@@ -1,8 +1,8 @@
-//! Grains from files of VTK, as LIGGGHTS, Yade, MercuryDPM, MFIX and ParaView write them.
+//! Grains from VTK files, as written by LIGGGHTS, Yade, MercuryDPM, MFIX and ParaView.
 //!
-//! Points with an array called `diameter` or `radius` (`radii` in Yade), perhaps with a unit at the end as
-//! `diameter_mm`. [`legacy`] reads files before XML (`.vtk`, ASCII and binary), [`xml`] reads `.vtp` and
-//! `.vtu`. Neither format tells if boundaries are periodic.
+//! Points with an array called `diameter` or `radius` (`radii` in Yade), possibly with a unit at the
+//! end, as in `diameter_mm`. [`legacy`] reads the formats before XML (`.vtk`, ASCII and binary), [`xml`]
+//! reads `.vtp` and `.vtu`. Neither format tells if boundaries are periodic.
 
 pub(super) mod xml;
 
@@ -11,9 +11,9 @@ use crate::packing::tables::{DIAMETER, Named, RADIUS};
 
 /// Points of a file and their numbers.
 pub struct Points {
-    /// The line that names them, for messages.
+    /// Line that names them, for messages.
     pub line: usize,
-    /// x, y and z of each point in turn.
+    /// x, y and z of each point, one point after another.
     pub places: Vec<f64>,
     pub arrays: Vec<PointArray>,
 }
@@ -58,7 +58,7 @@ pub fn grains(file: &str, points: Points) -> Result<FileGrains, ImportError> {
     let grains = places.map(|(p, value)| [p[0], p[1], p[2], factor * value]).collect();
     let of_unit = |unit: LengthUnit| {
         let (array, unit) = (&size.name, unit.words());
-        format!("{file}: the array {array} is in {unit}, and so are the coordinates taken to be")
+        format!("{file}: the array {array} is in {unit}, and the coordinates are taken to be too")
     };
     let notes = name.unit.map(of_unit).into_iter().collect();
     Ok(FileGrains { grains, unit: name.unit, cell: FileCell::Unsaid, line: points.line, notes })
@@ -79,7 +79,7 @@ pub enum Number {
     F64,
 }
 
-/// Types of numbers with their names in XML and before XML.
+/// Number types with their names in XML and in the formats before XML.
 const NUMBERS: [(Number, &str, &[&str]); 10] = [
     (Number::I8, "Int8", &["char"]),
     (Number::U8, "UInt8", &["unsigned_char"]),
@@ -104,7 +104,7 @@ impl Number {
         }
     }
 
-    /// All numbers in a run of bytes; an incomplete rest is ignored.
+    /// Reads all numbers in a run of bytes; an incomplete rest is ignored.
     pub fn all(self, bytes: &[u8], is_big_endian: bool) -> Vec<f64> {
         bytes.chunks_exact(self.bytes()).map(|bytes| self.one(bytes, is_big_endian)).collect()
     }
@@ -198,7 +198,7 @@ struct Cursor<'a> {
     file: &'a str,
     content: &'a [u8],
     at: usize,
-    /// Number of lines begun, counted by line ends in a binary file too.
+    /// Line number, by counting line ends even in a binary file.
     line: usize,
     is_binary: bool,
 }
@@ -212,7 +212,7 @@ impl<'a> Cursor<'a> {
         ended(self.file, self.line, expected)
     }
 
-    /// The next line without its end.
+    /// Reads the next line, without its end.
     fn raw_line(&mut self) -> Option<String> {
         let rest = self.content.get(self.at..).filter(|rest| !rest.is_empty())?;
         let length = rest.iter().position(|&byte| byte == b'\n').unwrap_or(rest.len());
@@ -221,7 +221,7 @@ impl<'a> Cursor<'a> {
         Some(String::from_utf8_lossy(&rest[..length]).trim().to_owned())
     }
 
-    /// The words of the next line that is not blank.
+    /// Returns the words of the next line that is not blank.
     fn next_words(&mut self) -> Option<Vec<String>> {
         loop {
             let line = self.raw_line()?;
@@ -235,7 +235,7 @@ impl<'a> Cursor<'a> {
         self.next_words().ok_or_else(|| self.ended("further lines"))
     }
 
-    /// Passes over the next line if it is one of these, or else does not move.
+    /// Skips the next line if it passes the test; else does not move.
     fn skip_if(&mut self, is: impl Fn(&str) -> bool) -> bool {
         let before = (self.at, self.line);
         let is_skipped = self.next_words().is_some_and(|words| is(&words[0]));
@@ -275,7 +275,7 @@ impl<'a> Cursor<'a> {
         Ok(PointArray { line, name: name.to_owned(), values })
     }
 
-    /// Passes over the lists of the points of each cell: since VTK 9 as offsets and points.
+    /// Skips the lists of the points of each cell: since VTK 9 as offsets and points.
     fn cells(&mut self, count: &str, size: &str) -> Result<(), ImportError> {
         let before = (self.at, self.line);
         for (place, count) in [count, size].into_iter().enumerate() {
@@ -293,7 +293,7 @@ impl<'a> Cursor<'a> {
     fn numbers(&mut self, tuples: &str, components: usize, kind: &str) -> Result<Vec<f64>, ImportError> {
         let count = self.count(tuples)?.checked_mul(components);
         let left = self.content.len() - self.at;
-        // A number takes a byte at least, so a file can never ask for more memory than its own size.
+        // A number takes at least one byte, so a file can never ask for more memory than its own size.
         let Some(count) = count.filter(|&count| count <= left) else {
             return Err(self.ended(&format!("{tuples} times {components} numbers")));
         };
@@ -312,7 +312,7 @@ impl<'a> Cursor<'a> {
         (0..count).map(|_| self.number()).collect()
     }
 
-    /// The next number in text.
+    /// Reads the next number in text.
     fn number(&mut self) -> Result<f64, ImportError> {
         let rest = &self.content[self.at..];
         let begin = rest.iter().position(|byte| !byte.is_ascii_whitespace()).unwrap_or(rest.len());

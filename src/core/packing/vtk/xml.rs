@@ -1,5 +1,5 @@
-//! VTK files in XML, `.vtp` and `.vtu`: numbers in text, in Base64, or appended behind the XML in Base64 or
-//! raw; compressed by zlib or not.
+//! VTK files in XML, `.vtp` and `.vtu`: numbers as text, in Base64, or appended after the XML in Base64
+//! or raw; compressed by zlib or not.
 
 use super::{NUMBERS, Number, PointArray, Points, grains};
 use crate::packing::fields::{FileGrains, ImportError, PACKING_FILE_LIMIT_BYTES, ended, in_utf8, refused};
@@ -9,10 +9,10 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::io::Read;
 
-/// Types of files that are read.
+/// Accepted types of files.
 const TYPES: [&str; 2] = ["PolyData", "UnstructuredGrid"];
 
-/// Largest size of a block of compressed numbers, unpacked.
+/// Maximum unpacked size of a block of compressed numbers.
 const LARGEST_BLOCK: usize = 1 << 28;
 
 /// Reads the grains of a VTK file in XML.
@@ -22,15 +22,15 @@ pub fn xml(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
         |part: std::ops::Range<usize>| head.as_bytes()[part].iter().filter(|&&byte| byte == b'\n').count();
     let mut reader = Reader::from_str(head);
     reader.config_mut().expand_empty_elements = true;
-    // A file with appended data is cut off before its end.
+    // A file with appended data is cut before the end of its XML.
     reader.config_mut().check_end_names = false;
     let mut form =
         Form { file, line: 1, is_big_endian: false, header: Number::U32, is_zlib: false, appended };
     let mut points = Points { line: 1, places: Vec::new(), arrays: Vec::new() };
-    // Number of points in the pieces so far, and true once the file is complete.
+    // Number of points in the pieces so far; true once the file is complete.
     let (mut point_count, mut is_whole) = (0usize, form.appended.is_some());
     let (mut room, mut open): (Option<Room>, Option<Declared>) = (None, None);
-    // Depth within an array: notes of VTK on an array are elements of their own.
+    // Depth within an array: VTK's notes on an array are separate elements.
     let mut within: i64 = 0;
     let mut at = 0;
     loop {
@@ -122,7 +122,7 @@ fn keep(points: &mut Points, room: Room, array: Declared, form: &Form<'_>) -> Re
     }
 }
 
-/// Separates the XML from the data appended behind it.
+/// Separates the XML from the data appended after it.
 fn split<'a>(file: &str, content: &'a [u8]) -> Result<(&'a str, Option<Appended<'a>>), ImportError> {
     const OPENS: &[u8] = b"<AppendedData";
     let appended_at = content.windows(OPENS.len()).position(|window| window == OPENS);
@@ -153,7 +153,7 @@ struct Form<'a> {
     file: &'a str,
     line: usize,
     is_big_endian: bool,
-    /// Type of the whole numbers that give the length of what follows.
+    /// Integer type that gives the length of the data that follows.
     header: Number,
     is_zlib: bool,
     appended: Option<Appended<'a>>,
@@ -210,7 +210,7 @@ struct Declared {
 enum Place {
     Text,
     Base64,
-    /// Offset in bytes or characters behind the underscore.
+    /// Offset in bytes or characters after the underscore.
     Appended(usize),
 }
 
@@ -266,14 +266,14 @@ impl Declared {
     }
 }
 
-/// Bytes as encoded in the file; more may follow than belong to an array.
+/// Encoded bytes in the file; there may be more than an array needs.
 enum Coded<'a> {
     Raw(&'a [u8]),
     Base64(&'a [u8]),
 }
 
 impl Coded<'_> {
-    /// Decodes `bytes` bytes, and returns the place of the next run: runs in Base64 are filled up to whole
+    /// Decodes `bytes` bytes and returns the start of the next run: Base64 runs are padded to whole
     /// groups. If the run is longer, its first bytes are returned.
     fn run(&self, from: usize, bytes: usize) -> Option<(Vec<u8>, usize)> {
         match self {
@@ -291,7 +291,7 @@ impl Coded<'_> {
     }
 }
 
-/// Reads the bytes of an array behind its header, unpacked.
+/// Reads the bytes of an array after its header, unpacked.
 fn block(coded: &Coded<'_>, form: &Form<'_>) -> Option<Vec<u8>> {
     let word = form.header.bytes();
     let whole = |bytes: &[u8]| form.header.one(bytes, form.is_big_endian) as usize;
@@ -301,7 +301,7 @@ fn block(coded: &Coded<'_>, form: &Form<'_>) -> Option<Vec<u8>> {
         all.drain(..word);
         return Some(all);
     }
-    // Number of blocks, the unpacked size of each, of the last if it is shorter, and the packed size of each.
+    // Number of blocks, unpacked size of each, that of the last if it is shorter, and packed size of each.
     let (header, begin) = coded.run(0, first.checked_add(3)?.checked_mul(word)?)?;
     let sizes: Vec<usize> = header.chunks_exact(word).map(whole).collect();
     let (full, last) = (sizes[1], sizes[2]);

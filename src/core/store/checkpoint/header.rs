@@ -1,5 +1,5 @@
-//! The header of a checkpoint (its label, the table of its sections, and checksums), and the reasons for
-//! refusing it.
+//! The header of a checkpoint: its label, the table of its sections, and checksums. Reasons for refusing
+//! it.
 
 use crate::store::disk::{Call, ask};
 use bytemuck::{Pod, Zeroable};
@@ -58,11 +58,11 @@ pub(super) struct Entry {
     /// Number of elements.
     pub count: u64,
     pub offset: u64,
-    /// Checksums of its pieces.
+    /// Checksum of each piece.
     pub sums: Vec<u64>,
 }
 
-/// Encodes the header, filled up to a multiple of 4096 bytes.
+/// Encodes the header, padded to a multiple of 4096 bytes.
 pub(super) fn encode(label: &Label, sections: &[Section]) -> Vec<u8> {
     let sums: Vec<u64> = sections.iter().flat_map(Section::sums).collect();
     let length = size_of::<Fixed>() + size_of::<Row>() * sections.len() + 8 * sums.len() + 8;
@@ -103,7 +103,7 @@ pub(super) fn encode(label: &Label, sections: &[Section]) -> Vec<u8> {
     bytes
 }
 
-/// Reads the label, the sections and the length in bytes of the header, from a file of `length` bytes.
+/// Reads the label, the sections and the header's length in bytes, from a file of `length` bytes.
 pub(super) fn read(
     path: &Path,
     file: &mut impl Read,
@@ -118,7 +118,7 @@ pub(super) fn read(
     read(&mut bytes)?;
     let fixed: Fixed = bytemuck::pod_read_unaligned(&bytes);
     if fixed.magic != MAGIC {
-        return Err(corrupt("is no checkpoint of voidwalk".into()));
+        return Err(corrupt("is not a voidwalk checkpoint".into()));
     }
     if fixed.byte_order == BYTE_ORDER.swap_bytes() {
         return Err(CheckpointError::OtherByteOrder { file: path.to_owned() });
@@ -128,7 +128,7 @@ pub(super) fn read(
         return Err(CheckpointError::OtherVersion { file: path.to_owned(), found, expected });
     }
     if fixed.file_length != length {
-        return Err(corrupt(format!("has {length} bytes where its header says {}", fixed.file_length)));
+        return Err(corrupt(format!("has {length} bytes; its header says {}", fixed.file_length)));
     }
     let shortest = size_of::<Fixed>() as u64 + 8;
     if !(shortest..=LONGEST_HEADER.min(length)).contains(&fixed.header_length) {
@@ -152,8 +152,8 @@ pub(super) fn read(
     Ok((Label { identity, network, run, increment, generation }, sections, fixed.header_length))
 }
 
-/// Reads the sections of a file of `length` bytes, from the table and the checksums after it; or describes
-/// the error.
+/// Reads the sections of a file of `length` bytes from the table and the checksums after it; the error
+/// is a description.
 fn entries(table: &[u8], number: u64, length: u64) -> Result<Vec<Entry>, String> {
     let rows = usize::try_from(number).unwrap_or(usize::MAX).saturating_mul(size_of::<Row>());
     if number > MOST_SECTIONS || rows > table.len() {
@@ -187,11 +187,11 @@ fn field<const N: usize>(text: &str) -> [u8; N] {
 
 fn text(field: &[u8]) -> Result<String, String> {
     let end = field.iter().position(|&b| b == 0).unwrap_or(field.len());
-    let text = std::str::from_utf8(&field[..end]).map_err(|_| "a name in its header is no text")?;
+    let text = std::str::from_utf8(&field[..end]).map_err(|_| "a name in its header is not text")?;
     Ok(text.to_owned())
 }
 
-/// Subject of a checkpoint: a checkpoint of anything else is refused, even of another walk of the same scene.
+/// Subject of a checkpoint. Another subject is refused, even another walk of the same scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Identity {
     /// Fingerprint of the scene, or of the plan of a packing; at most 32 characters.
@@ -222,13 +222,13 @@ pub struct Label {
     pub network: u64,
     /// Run, counted from 1.
     pub run: u64,
-    /// Last whole increment.
+    /// Last completed increment.
     pub increment: u64,
     /// Number of the checkpoint under its name, counted from 1.
     pub generation: u64,
 }
 
-/// Bytes of a section that have a checksum of their own.
+/// Bytes per piece; each piece of a section has a checksum.
 pub(super) const PIECE: usize = 1 << 20;
 
 /// A column to be saved, in one or more parts.
@@ -254,7 +254,7 @@ impl<'a> Section<'a> {
         self.parts.iter().map(|part| part.len() as u64).sum()
     }
 
-    /// XXH3 of each piece, on all available threads.
+    /// XXH3 of each piece, computed on all available threads.
     pub(super) fn sums(&self) -> Vec<u64> {
         let mut pieces: Vec<Vec<&[u8]>> = Vec::new();
         let mut room = 0;
@@ -279,7 +279,7 @@ impl<'a> Section<'a> {
     }
 }
 
-/// Reasons for refusing a checkpoint. The remedy depends on the command, which names it.
+/// Reasons for refusing a checkpoint. The command names the remedy, which differs between commands.
 #[derive(Debug, thiserror::Error)]
 pub enum CheckpointError {
     /// The content of the file differs from what was written.
@@ -290,7 +290,7 @@ pub enum CheckpointError {
         /// Description of the damage.
         problem: String,
     },
-    /// The system fails to read the file, which may be whole.
+    /// The system fails to read the file, which may be intact.
     #[error(
         "{}: cannot be read: {source}; it is left as it is, and nothing was taken in its place",
         file.display()
@@ -301,7 +301,7 @@ pub enum CheckpointError {
         /// Error of the system.
         source: io::Error,
     },
-    /// The file is of another version of the format.
+    /// The file has another version of the format.
     #[error(
         "{}: was written by another version of voidwalk (checkpoint format {found}; this one reads \
          {expected}), which can finish it",
@@ -312,22 +312,22 @@ pub enum CheckpointError {
         file: PathBuf,
         /// Version of the file's format.
         found: u32,
-        /// Version that is read.
+        /// Version that this program reads.
         expected: u32,
     },
-    /// The file was written on a machine of another kind.
+    /// The file was written on a machine with another byte order.
     #[error("{}: was written by a machine with another byte order", file.display())]
     OtherByteOrder {
         /// The file.
         file: PathBuf,
     },
-    /// The scene, or the plan of the packing, is another one.
+    /// The scene, or the plan of the packing, differs.
     #[error("{}: is of another scene, or of another version of voidwalk", file.display())]
     OtherScene {
         /// The file.
         file: PathBuf,
     },
-    /// The scene is the same, but the walk is another one.
+    /// The scene is the same, but the walk differs.
     #[error("{}: is of another walk of this scene: {found}; expected: {expected}", file.display())]
     OtherWalk {
         /// The file.
@@ -337,7 +337,7 @@ pub enum CheckpointError {
         /// Walk asked for.
         expected: String,
     },
-    /// The walk is the same, but the network is another one.
+    /// The walk is the same, but the network differs.
     #[error("{}: is of another network", file.display())]
     OtherNetwork {
         /// The file.
@@ -346,12 +346,12 @@ pub enum CheckpointError {
 }
 
 impl CheckpointError {
-    /// Tells if the system failed to read the file, which may then be whole.
+    /// Tells if the system failed to read the file, which may then be intact.
     pub fn is_unreadable(&self) -> bool {
         matches!(self, Self::Unreadable { .. })
     }
 
-    /// Turns an error of reading into one of the checkpoint: a file that ends too early is corrupt.
+    /// Turns a read error into an error of the checkpoint: a file that ends too early is corrupt.
     pub(super) fn from_io(file: &Path, source: io::Error) -> Self {
         match source.kind() {
             io::ErrorKind::UnexpectedEof => Self::corrupt(file, "ends early"),

@@ -1,58 +1,58 @@
-//! Checkpoints: columns in a file that is either whole or refused.
+//! Checkpoints: columns in a file that is either read whole or refused.
 //!
 //! # Format 1
 //! A file holds, in this order (numbers are little-endian, as on every machine that voidwalk is built for):
 //!
-//! | bytes | field | what |
+//! | bytes | field | meaning |
 //! |---|---|---|
 //! | 8 | `magic` | `vwcheckp` |
-//! | 4 | `version` | of this format: 1; another is refused as [`CheckpointError::OtherVersion`] |
-//! | 4 | `byte_order` | 0x0a0b0c0d, which a machine of another byte order reads the other way round |
+//! | 4 | `version` | version of this format: 1; another is refused as [`CheckpointError::OtherVersion`] |
+//! | 4 | `byte_order` | 0x0a0b0c0d, read reversed on a machine of the other byte order |
 //! | 8 | `header_length` | bytes of the header, its checksum included |
 //! | 8 | `file_length` | bytes of the file |
 //! | 32 | `scene` | fingerprint of the scene (of a packing: of its plan), as text |
-//! | 8 | `part` | 0: a walk of the scene itself; from 1: of the sensitivity study |
-//! | 8 | `replicate` | which replicate, counted from 1 |
-//! | 8 | `seed` | of the replicate |
-//! | 8 | `n_base` | base particles of a run of the walk |
+//! | 8 | `part` | 0: a walk of the scene itself; from 1: a walk of the sensitivity study |
+//! | 8 | `replicate` | replicate, counted from 1 |
+//! | 8 | `seed` | seed of the replicate |
+//! | 8 | `n_base` | base particles per run |
 //! | 8 | `network` | fingerprint of the network; 0 for a finished replicate or a packing |
-//! | 8 | `run` | the run under way, counted from 1; 0 for a finished replicate or a packing |
-//! | 8 | `increment` | its last whole increment |
-//! | 8 | `generation` | which checkpoint of its name, counted from 1 |
+//! | 8 | `run` | current run, counted from 1; 0 for a finished replicate or a packing |
+//! | 8 | `increment` | last completed increment |
+//! | 8 | `generation` | number of the checkpoint under its name, counted from 1 |
 //! | 8 | `sections` | number of sections, at most 64 |
 //! | 24 | `program` | version of the program, as text |
-//! | 56 each | | a row a section, as below |
+//! | 56 each | | one row per section, as below |
 //! | 8 each | | XXH3-64 of every piece of 1 MiB of each section, in order |
-//! | 8 | | XXH3-64 of everything before: the end of the header |
+//! | 8 | | XXH3-64 of everything before it: the end of the header |
 //! | | | zeros up to a multiple of 4096, then the sections, each at a multiple of 64, zeros between |
 //!
 //! A row of the table: `name` (32 bytes, text), `element` (4, bytes of an element), zero (4), `count` (8,
 //! elements), `offset` (8, of its first byte in the file).
 //!
-//! Text is UTF-8 filled up with zeros. A packing leaves `part`, `replicate` and `n_base` 0. The checksums
-//! find accidents, not forgers.
+//! Text is UTF-8 padded with zeros. A packing leaves `part`, `replicate` and `n_base` 0. The checksums
+//! detect accidents, not forgery.
 //!
-//! A section is a column of numbers, or a record with named fields as JSON text, in which every
-//! floating-point number comes back bit for bit. The sections:
+//! A section is a column of numbers, or a record with named fields as JSON text that restores every
+//! floating-point number bit for bit. The sections:
 //!
 //! | checkpoint of | sections |
 //! |---|---|
 //! | a run under way | `done`, and those that `walk::SavedState` names |
-//! | a finished replicate | `done`: a record of its figures and rows, `run::checkpoints::Done` |
-//! | a study | `found`: a record of its networks or lattices that are done |
+//! | a finished replicate | `done`: a record of its results and rows, `run::checkpoints::Done` |
+//! | a study | `found`: a record of its finished networks or lattices |
 //! | a packing | `state`, see `packing::Compression::to_bytes`, and `seconds` (f64), spent so far |
 //!
 //! # Slots
-//! A checkpoint called `x` is stored in `x.0` or `x.1`, whichever is older, and is written whole before it
-//! gets its name. So the previous one remains until the next is on the disk, and is taken if the next turns
-//! out to be corrupt. A checkpoint that the system fails to read may be whole: no other is taken in its
-//! place, and the program ends with an error instead.
+//! A checkpoint named `x` is stored in `x.0` or `x.1`, whichever is older, and is written whole before
+//! it gets its name. The previous one remains until the next is on the disk, and is used if the next is
+//! corrupt. A checkpoint that the system fails to read may be intact: no other is used in its place, and
+//! the program ends with an error instead.
 //!
 //! # Read, not mapped
-//! A checkpoint is read piece by piece into the columns, and each piece is checked before it is used. It is
-//! not mapped: a mapped file that somebody cuts short ends the process (SIGBUS), and a mapped page can change
-//! after its sum was found right. The cost is one copy in memory; `results/faults.md` holds the seconds of a
-//! whole resume.
+//! A checkpoint is read piece by piece into the columns; each piece is checked before use. It is not
+//! mapped: a mapped file that is truncated ends the process (SIGBUS), and a mapped page can change after
+//! its checksum was verified. The cost is one copy in memory; `results/faults.md` gives the time of a
+//! whole resume in seconds.
 
 mod header;
 
@@ -108,7 +108,7 @@ impl Checkpoint {
     /// Opens a checkpoint and checks its header; `None` if there is no such file.
     ///
     /// # Errors
-    /// A file that is cut, corrupt, of another version or no checkpoint at all.
+    /// A file that is truncated, corrupt, of another version or not a checkpoint.
     pub fn open(path: &Path) -> Result<Option<Self>, CheckpointError> {
         let unreadable = |source| CheckpointError::from_io(path, source);
         let is_file = match path.symlink_metadata() {
@@ -117,7 +117,7 @@ impl Checkpoint {
             Ok(meta) => meta.is_file(),
         };
         if !is_file {
-            return Err(CheckpointError::corrupt(path, "is no regular file"));
+            return Err(CheckpointError::corrupt(path, "is not a regular file"));
         }
         let mut file = ask(Call::Read(path), || open_own(path)).map_err(unreadable)?;
         let length = file.metadata().map_err(unreadable)?.len();
@@ -125,7 +125,7 @@ impl Checkpoint {
         Self::with_header(path, header, length, Source::File(file)).map(Some)
     }
 
-    /// [`Checkpoint::open`] on the content of a file, called `name` in messages.
+    /// Parses the content of a file like [`Checkpoint::open`]; `name` is used in messages.
     pub fn parse(name: &str, content: Vec<u8>) -> Result<Self, CheckpointError> {
         let (path, length) = (Path::new(name), content.len() as u64);
         let header = header::read(path, &mut content.as_slice(), length)?;
@@ -148,7 +148,7 @@ impl Checkpoint {
         &self.path
     }
 
-    /// Makes the error for a checkpoint whose content is wrong although its checksums are right.
+    /// Makes the error for wrong content whose checksums are right.
     pub fn corrupt(&self, problem: impl Into<String>) -> CheckpointError {
         CheckpointError::corrupt(&self.path, problem)
     }
@@ -169,7 +169,7 @@ impl Checkpoint {
         Ok(())
     }
 
-    /// Number of elements of a section.
+    /// Returns the number of elements of a section.
     ///
     /// # Errors
     /// No such section, or elements of another size.
@@ -191,7 +191,7 @@ impl Checkpoint {
     /// # Errors
     /// Errors of [`Checkpoint::count`]; a piece whose checksum is wrong.
     pub fn read<T: Pod>(&self, name: &str) -> Result<Vec<T>, CheckpointError> {
-        // The header's length bounds the allocation: the file is as long as the header states.
+        // The allocation is bounded by the length in the header, which equals the file's.
         let mut all = Vec::with_capacity(self.count::<T>(name)?);
         self.read_pieces::<T>(name, |piece| all.extend_from_slice(piece))?;
         Ok(all)
@@ -218,7 +218,7 @@ impl Checkpoint {
         serde_json::from_slice(&text).map_err(|e| self.corrupt(format!("section {name}: {e}")))
     }
 
-    /// Reads a section piece by piece, each checked before it is handed on.
+    /// Reads a section piece by piece; each is checked before it is passed on.
     pub fn read_pieces<T: Pod>(&self, name: &str, mut take: impl FnMut(&[T])) -> Result<(), CheckpointError> {
         let entry = self.entry::<T>(name)?;
         let size = (entry.count * entry.element) as usize;
@@ -247,10 +247,10 @@ impl Checkpoint {
         read.map_err(|source| CheckpointError::from_io(&self.path, source))
     }
 
-    /// Reads and checks every piece of every section, and the gaps between them, in the order of the disk.
+    /// Reads and checks every piece of every section, and the gaps between them, in file order.
     ///
     /// # Errors
-    /// The first error.
+    /// The first problem found.
     pub fn check(&self) -> Result<(), CheckpointError> {
         let longest = self.sections.iter().map(|entry| entry.count * entry.element).max().unwrap_or(0);
         let mut bytes = vec![0; PIECE.min(longest.max(4096) as usize)];
@@ -270,7 +270,7 @@ impl Checkpoint {
     }
 }
 
-/// Gaps between the header and the sections, which follow one another to the end of the file.
+/// Finds the gaps between the header and the sections, which follow one another to the end of the file.
 fn gaps(sections: &[Entry], header: u64, length: u64) -> Result<Vec<(u64, usize)>, String> {
     let mut spans: Vec<(u64, u64)> = sections.iter().map(|e| (e.offset, e.count * e.element)).collect();
     spans.sort_unstable();
@@ -287,10 +287,10 @@ fn gaps(sections: &[Entry], header: u64, length: u64) -> Result<Vec<(u64, usize)
     Ok(gaps)
 }
 
-/// Finds the newest whole checkpoint of this name and the expected subject, and the errors of newer ones.
+/// Finds the newest intact checkpoint of this name and the expected subject, and the errors of newer ones.
 ///
 /// # Errors
-/// Checkpoints of this name exist, but no whole one of the expected subject; or the system fails to read one.
+/// Checkpoints of this name exist, none intact and of the expected subject; or the system fails to read one.
 pub fn newest(
     folder: &Path,
     name: &str,
@@ -331,7 +331,7 @@ fn slot(folder: &Path, name: &str, generation: u64) -> PathBuf {
 /// Saves a checkpoint in the slot of its generation.
 ///
 /// # Errors
-/// Error of the system; the other slot is then untouched, and so is the former content of this one.
+/// An error of the system; the other slot and the former content of this one are then unchanged.
 pub fn save(folder: &Path, name: &str, label: &Label, sections: &[Section]) -> Result<(), StoreError> {
     let header = header::encode(label, sections);
     write_whole_with(&slot(folder, name, label.generation), |file| {
@@ -398,7 +398,7 @@ mod tests {
         assert!(newest(root.path(), "y", &other).unwrap().0.is_none());
     }
 
-    /// A walk of the same scene is another walk if any part of its name differs.
+    /// A walk of the same scene is another walk if any part of its identity differs.
     #[test]
     fn another_walk_of_the_same_scene_is_refused() {
         let root = tempfile::tempdir().unwrap();

@@ -5,7 +5,7 @@ use rustix::thread::{CpuSet, sched_getaffinity, sched_setaffinity};
 use std::fs::read_to_string;
 use std::path::{Component, Path, PathBuf};
 
-/// Processors that this thread may use, by their numbers.
+/// Lists the processors that this thread may use, by number.
 pub fn processors() -> Vec<usize> {
     match sched_getaffinity(None) {
         Ok(set) => (0..CpuSet::MAX_CPU).filter(|&processor| set.is_set(processor)).collect(),
@@ -13,21 +13,21 @@ pub fn processors() -> Vec<usize> {
     }
 }
 
-/// Keeps this thread on a processor. If refused, the system places the thread.
+/// Binds this thread to a processor. If refused, the system places the thread.
 pub fn stay_on(processor: usize) {
     let mut one = CpuSet::new();
     one.set(processor);
     let _ = sched_setaffinity(None, &one);
 }
 
-/// Memory of the machine, and the part that the groups of this process leave it.
+/// Returns the memory of the machine and the part that the control groups of this process leave it.
 pub fn memory() -> Memory {
     let text = read_to_string("/proc/meminfo").unwrap_or_default();
     let bytes = |key: &str| -> Option<u64> {
         let line = text.lines().find(|line| line.starts_with(key))?;
         Some(line.split_whitespace().nth(1)?.parse::<u64>().ok()? * 1024)
     };
-    // A container has its share of the machine.
+    // A container gets only part of the machine.
     let available = bytes("MemAvailable:").into_iter().chain(memory_left()).min();
     Memory { total: bytes("MemTotal:"), available }
 }
@@ -39,38 +39,37 @@ pub fn processor() -> Option<String> {
     Some(name.to_owned())
 }
 
-/// Table of the mounts, in the form of `/proc/self/mountinfo`.
+/// Returns the table of mounts, in the form of `/proc/self/mountinfo`.
 pub fn mounts() -> Option<String> {
     read_to_string("/proc/self/mountinfo").ok()
 }
 
-/// Names of the files of a group with its limit and its use, and in `memory.stat` the pages of files that can
-/// be given back.
+/// File names of a group's limit and use, and the name in `memory.stat` of reclaimable file pages.
 struct Names {
     limit: &'static str,
     used: &'static str,
     idle: &'static str,
 }
 
-/// Version 1, with a hierarchy of its own for memory.
+/// Version 1: a separate hierarchy for memory.
 const V1: Names =
     Names { limit: "memory.limit_in_bytes", used: "memory.usage_in_bytes", idle: "total_inactive_file" };
-/// Version 2, with one hierarchy for all.
+/// Version 2: one hierarchy for everything.
 const V2: Names = Names { limit: "memory.max", used: "memory.current", idle: "inactive_file" };
 
-/// Bytes that the control groups of this process (a container, a service, a job) leave it; `None` if there is
-/// no limit, or nothing is known.
+/// Bytes that the control groups of this process (a container, a service, a job) leave it; `None` if
+/// there is no limit or nothing is known.
 ///
-/// A process is in a group, that group in another, and so on to the root; each may have a limit, and the use
-/// of a group counts in all those around it. So the least of `limit - used` along the path is left. Pages of
-/// files that were not used for a while are given back when room is needed, and count as free.
+/// A process is in a group, that group is in another, and so on to the root. Each may have a limit, and
+/// the use of a group counts in all groups above it, so the minimum of `limit - used` along the path is
+/// left. File pages that were not used for a while are reclaimed when needed, and count as free.
 fn memory_left() -> Option<u64> {
     let read = |path: &Path| std::fs::read_to_string(path).ok();
     let groups = read(Path::new("/proc/self/cgroup"))?;
     least_left(&groups, &read(Path::new("/proc/self/mountinfo"))?, read)
 }
 
-/// Finds the least memory left, from `/proc/self/cgroup`, `/proc/self/mountinfo`, and the files of the
+/// Finds the minimum memory left, from `/proc/self/cgroup`, `/proc/self/mountinfo`, and the files of the
 /// groups.
 fn least_left(groups: &str, mounts: &str, read: impl Fn(&Path) -> Option<String>) -> Option<u64> {
     let all = groups.lines().filter_map(|line| {
@@ -89,7 +88,7 @@ fn least_left(groups: &str, mounts: &str, read: impl Fn(&Path) -> Option<String>
     all.min()
 }
 
-/// Top folder of the hierarchy, and the folder of the group in it.
+/// Finds the top folder of the hierarchy, and the folder of the group in it.
 fn folder_of(path: &Path, mounts: &str, names: &Names) -> Option<(PathBuf, PathBuf)> {
     let version_1 = names.limit == V1.limit;
     let mut mounted = mounts.lines().rev().filter_map(|line| {
@@ -104,7 +103,7 @@ fn folder_of(path: &Path, mounts: &str, names: &Names) -> Option<(PathBuf, PathB
         wanted.then(|| (unescaped(root), unescaped(top)))
     });
     mounted.next().map(|(root, top)| {
-        // A container sees the mounted part of the hierarchy, and may know its place in the whole.
+        // A container sees the mounted part of the hierarchy, but may know its place in the whole.
         let inside = path
             .strip_prefix(&root)
             .ok()
@@ -114,16 +113,16 @@ fn folder_of(path: &Path, mounts: &str, names: &Names) -> Option<(PathBuf, PathB
     })
 }
 
-/// Decodes a path of `mountinfo`, with blanks and the like as octal numbers.
+/// Decodes a path of `mountinfo`, in which blanks and the like are octal numbers.
 fn unescaped(field: &str) -> PathBuf {
     let codes = [("\\040", " "), ("\\011", "\t"), ("\\012", "\n"), ("\\134", "\\")];
     codes.iter().fold(field.to_owned(), |text, (code, plain)| text.replace(code, plain)).into()
 }
 
-/// Memory that a group's limit leaves; `None` without a limit.
+/// Returns the memory that a group's limit leaves; `None` without a limit.
 fn left_in(folder: &Path, names: &Names, read: impl Fn(&Path) -> Option<String>) -> Option<u64> {
     let number = |name: &str| read(&folder.join(name))?.trim().parse::<u64>().ok();
-    // `max`, or a number beyond every memory, is no limit.
+    // `max`, or a number beyond any memory, means no limit.
     let limit = number(names.limit).filter(|limit| *limit < 1 << 60)?;
     let stat = read(&folder.join("memory.stat")).unwrap_or_default();
     let idle = stat.lines().find_map(|line| line.strip_prefix(names.idle)?.trim().parse::<u64>().ok());
@@ -137,7 +136,7 @@ mod tests {
 
     const MIB: u64 = 1 << 20;
 
-    /// Memory left, with these files of groups.
+    /// Returns the memory left, given these group files.
     fn left(groups: &str, mounts: &str, files: &[(&str, &str)]) -> Option<u64> {
         least_left(groups, mounts, |path| {
             let file = files.iter().find(|(name, _)| Path::new(name) == path);
@@ -182,7 +181,7 @@ mod tests {
         assert_eq!(left(groups, MOUNTS_2, &[&lower, &files[1..]].concat()), Some(4 * MIB));
     }
 
-    /// A container may see only its own part of the hierarchy, at the place of the whole.
+    /// A container may see only its own part of the hierarchy, mounted in place of the whole.
     #[test]
     fn a_container_that_sees_its_part_alone_finds_its_limit() {
         let mounts = "31 24 0:27 /docker/1f /sys/fs/cgroup/memory ro - cgroup cgroup rw,memory\n";

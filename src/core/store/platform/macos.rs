@@ -1,22 +1,22 @@
 //! Processors and memory on macOS.
 //!
-//! Facts about the machine come from the output of its own commands, which needs no call of the system that
-//! only a Mac could try; tests on every system read such output.
+//! Facts about the machine come from the output of its commands: no system call is needed that only a
+//! Mac could test, and tests on every system read such output.
 
 #[cfg(target_os = "macos")]
 use super::Memory;
 
-/// Empty: the system keeps no thread on one processor.
+/// Empty: the system binds no thread to a processor.
 #[cfg(target_os = "macos")]
 pub fn processors() -> Vec<usize> {
     Vec::new()
 }
 
-/// Does nothing: the system keeps no thread on one processor.
+/// Does nothing: the system binds no thread to a processor.
 #[cfg(target_os = "macos")]
 pub fn stay_on(_processor: usize) {}
 
-/// Memory of the machine, by `sysctl` and `vm_stat`.
+/// Returns the memory of the machine, by `sysctl` and `vm_stat`.
 #[cfg(target_os = "macos")]
 pub fn memory() -> Memory {
     Memory {
@@ -45,8 +45,8 @@ fn output_of(command: &str, words: &[&str]) -> Option<String> {
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Bytes of the pages that `vm_stat` lists as free or as only read ahead. Inactive pages are not all given
-/// back, and purgeable ones are counted among the active and inactive.
+/// Bytes of the pages that `vm_stat` lists as free or speculative. Inactive pages are not all
+/// reclaimable, and purgeable ones are counted among the active and inactive.
 pub(super) fn not_in_use(vm_stat: &str) -> Option<u64> {
     let mut lines = vm_stat.lines();
     let page = lines.next()?.split_once("page size of ")?.1.split(' ').next()?.parse::<u64>().ok()?;

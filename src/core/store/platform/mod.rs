@@ -1,17 +1,17 @@
-//! Services that differ from system to system: locks, places in files, the state of the disk when a call
-//! returns, processors, clocks, memory and signals.
+//! Services that differ between systems: locks, reads at an offset, guarantees of the disk, processors,
+//! clocks, memory and signals.
 //!
-//! No other file of the program names a system or a crate of one (`tests/house.rs` checks it). Each file here
-//! offers the same calls; the page of long runs (`voidwalk::docs`) lists what a system cannot promise.
+//! No other file of the program names a system or a system's crate (`tests/house.rs` checks this). Each file
+//! here offers the same calls; the page on long runs (`voidwalk::docs`) lists what a system cannot guarantee.
 //!
 //! | file | systems |
 //! |---|---|
 //! | `unix.rs` | files and clocks of Linux and macOS |
 //! | `linux.rs` | processors and memory on Linux |
-//! | `macos.rs` | the same on macOS |
+//! | `macos.rs` | processors and memory on macOS |
 //! | `windows.rs` | Windows |
-//! | `other.rs` | any other, as a page in a browser: no locks, no affinity, nothing known of the machine |
-//! | `process.rs` | requests to end the program; memory that it keeps on Linux with glibc |
+//! | `other.rs` | any other, such as a page in a browser: no locks, no affinity, machine unknown |
+//! | `process.rs` | requests to end the program; freed memory that it keeps on Linux with glibc |
 
 #[cfg(target_os = "linux")]
 mod linux;
@@ -56,7 +56,7 @@ pub struct Memory {
     pub available: Option<u64>,
 }
 
-/// The system and the kind of processor: `Linux x86_64`.
+/// Names the system and the kind of processor: `Linux x86_64`.
 pub fn system() -> String {
     let system = match std::env::consts::OS {
         "linux" => "Linux",
@@ -67,7 +67,7 @@ pub fn system() -> String {
     format!("{system} {}", std::env::consts::ARCH)
 }
 
-/// Makes a file `bytes` long by writing zeros, which are on the disk afterwards.
+/// Makes a file `bytes` long by writing zeros, and syncs it.
 #[cfg(any(unix, test))]
 fn write_zeros(mut file: &std::fs::File, bytes: u64) -> std::io::Result<()> {
     let zeros = vec![0; 1 << 20];
@@ -96,7 +96,7 @@ mod tests {
         (folder, path)
     }
 
-    /// Two handles of one process lock each other out, as two processes do.
+    /// Two handles of one process exclude each other, as two processes do.
     #[test]
     fn a_locked_file_keeps_others_out_and_is_read_by_all() {
         let (_folder, path) = file_of("who holds it");
@@ -189,7 +189,7 @@ mod tests {
         assert!(all.is_sorted());
     }
 
-    /// Output in the form of a Mac's.
+    /// Uses output in the form of a Mac's.
     #[test]
     fn free_memory_of_a_mac_is_read() {
         let text = "Mach Virtual Memory Statistics: (page size of 16384 bytes)\n\

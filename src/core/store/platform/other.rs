@@ -1,5 +1,5 @@
-//! A system known only through the standard library, such as a page in a browser. Calls that it does not have
-//! are errors, so that nothing is written without a lock.
+//! A system known only through the standard library, such as a page in a browser. Missing calls return
+//! errors, so that nothing is written without a lock.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom};
@@ -15,7 +15,7 @@ pub fn open_any(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
     options.open(path)
 }
 
-/// Not known: an error, so that no file counts as having a single name.
+/// Unknown: an error, so that no file counts as having a single name.
 pub fn has_other_names(_file: &File) -> io::Result<bool> {
     Err(io::ErrorKind::Unsupported.into())
 }
@@ -34,22 +34,22 @@ pub fn sync_folder(folder: &Path) -> io::Result<()> {
     File::open(folder)?.sync_all()
 }
 
-/// Makes a file `bytes` long; the allocation of its blocks is not known.
+/// Makes a file `bytes` long; its blocks may not be allocated.
 pub fn allocate(file: &File, bytes: u64) -> io::Result<()> {
     file.set_len(bytes)
 }
 
-/// Not known.
+/// Unknown.
 pub fn free_bytes(_folder: &Path) -> Option<u64> {
     None
 }
 
-/// Not known: true, so that nobody's files are removed.
+/// Unknown: true, so that nobody's files are removed.
 pub fn is_running(_process: &str) -> bool {
     true
 }
 
-/// Not known.
+/// Unknown.
 pub fn host_name() -> String {
     "unknown".to_owned()
 }
@@ -57,12 +57,12 @@ pub fn host_name() -> String {
 /// Step of the processor time of a thread (s): it does not advance.
 pub const THREAD_SECONDS_STEP: f64 = f64::INFINITY;
 
-/// Not known: no time passes.
+/// Unknown: no time passes.
 pub fn thread_seconds() -> f64 {
     0.0
 }
 
-/// Not known.
+/// Unknown.
 pub fn processors() -> Vec<usize> {
     Vec::new()
 }
@@ -70,17 +70,17 @@ pub fn processors() -> Vec<usize> {
 /// Does nothing.
 pub fn stay_on(_processor: usize) {}
 
-/// Not known.
+/// Unknown.
 pub fn memory() -> Memory {
     Memory::default()
 }
 
-/// Not known.
+/// Unknown.
 pub fn processor() -> Option<String> {
     None
 }
 
-/// Not known.
+/// Unknown.
 pub fn mounts() -> Option<String> {
     None
 }

@@ -1,14 +1,14 @@
-//! The process of the program: requests of the user, or the system, to end it, and the memory that it keeps.
+//! The process: requests of the user or the system to end it, and the freed memory that it keeps.
 
 use std::io;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, LazyLock};
 
-/// True if a request ends the program at once: while it reads and prepares there is nothing to save, and no
-/// loop need look for a request.
+/// True if a request ends the program at once: while it reads and prepares there is nothing to save, and
+/// no loop needs to check for requests.
 static AT_ONCE: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
-/// Makes requests end the program at once, until the first folder is taken.
+/// Makes requests end the program at once, until the first folder is locked.
 pub fn end_at_once() {
     AT_ONCE.store(true, Ordering::SeqCst);
 }
@@ -18,17 +18,17 @@ pub fn save_first() {
     AT_ONCE.store(false, Ordering::SeqCst);
 }
 
-/// Returns a flag that the first request to end sets; an interrupt (Ctrl-C) after that ends the program at
-/// once, and so does any request after [`end_at_once`], as it ends a program that does not listen.
+/// Returns a flag that the first request to end sets. A later interrupt (Ctrl-C), or any request after
+/// [`end_at_once`], ends the program at once, as it ends a program without a handler.
 ///
-/// On Linux and macOS the requests are SIGINT, SIGTERM, SIGHUP when the terminal is closed (but on Linux not
-/// under `nohup`), and SIGXCPU when the processor time is used up. SIGTERM may come several times: a
-/// cluster's scheduler sends it to a job's script, which hands it on, and to all of the job's processes. On
-/// Windows they are Ctrl-C, Ctrl-Break, the closing of the window, and the end of the session; for the last
-/// two the system gives the program some seconds.
+/// On Linux and macOS the requests are SIGINT, SIGTERM, SIGHUP when the terminal is closed (but on Linux
+/// not under `nohup`), and SIGXCPU when the processor time is used up. SIGTERM may come several times: a
+/// cluster's scheduler sends it to a job's script, which forwards it, and to all processes of the job.
+/// On Windows they are Ctrl-C, Ctrl-Break, closing the window, and the end of the session; for the last
+/// two the system gives the program a few seconds.
 ///
 /// # Errors
-/// Error of a system that takes no handler.
+/// An error of a system that accepts no handler.
 pub fn stop_on_request() -> io::Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(false));
     listen(&stop)?;
@@ -53,7 +53,7 @@ fn listen(stop: &Arc<AtomicBool>) -> io::Result<()> {
     super::windows::listen(stop, &AT_ONCE)
 }
 
-/// Does nothing: such a system offers no requests, only kills.
+/// Does nothing: such a system sends no requests and only kills.
 #[cfg(not(any(unix, windows)))]
 fn listen(_stop: &Arc<AtomicBool>) -> io::Result<()> {
     Ok(())
@@ -67,7 +67,7 @@ fn requests() -> impl Iterator<Item = i32> {
     [SIGINT, SIGTERM, SIGHUP, SIGXCPU].into_iter().filter(move |signal| !ignored(*signal))
 }
 
-/// Tells if the process was started with a signal ignored, by `/proc/self/status`.
+/// Tells if the process was started with a signal ignored, from `/proc/self/status`.
 #[cfg(unix)]
 fn is_ignored(status: &str, signal: i32) -> bool {
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -83,7 +83,7 @@ pub fn outlive_large_files() {
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, noticed);
 }
 
-/// Does nothing: only unix ends a program for such a write.
+/// Does nothing: only Unix ends a program for such a write.
 #[cfg(not(unix))]
 pub fn outlive_large_files() {}
 
@@ -101,24 +101,24 @@ mod tests {
     }
 }
 
-/// Largest block that is served from memory the program already has (bytes): glibc's upper limit.
+/// Largest block served from memory that the program already has (bytes): glibc's upper limit.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 const KEPT_BLOCK: i32 = 32 << 20;
 
-/// Free memory at the end of an arena that remains with the program (bytes).
+/// Free memory at the end of an arena that the program keeps (bytes).
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 const KEPT: i32 = 256 << 20;
 
-/// Keeps the memory freed by walks for the next ones. Each run needs some 10 MB of columns; with glibc's own
-/// settings they go back to the system at its end, which clears every page again for the next: a tenth of the
-/// time of a first look. The kept memory is at most what each thread once had in blocks of up to
-/// `KEPT_BLOCK`; larger ones go back at once. Only for a process that is the program's own: the setting
-/// holds for all of it.
+/// Keeps memory freed by walks for later ones. Each run needs some 10 MB of columns; with glibc's
+/// defaults they go back to the system at its end, and every page is cleared again for the next run: a
+/// tenth of the time of a first look. The kept memory is at most what each thread once held in blocks of
+/// up to `KEPT_BLOCK`; larger ones go back at once. Only for a process that is the program's own: the
+/// setting applies to the whole process.
 #[cfg(all(target_os = "linux", target_env = "gnu"))]
 pub fn keep_memory() {
     for (what, bytes) in [(libc::M_MMAP_THRESHOLD, KEPT_BLOCK), (libc::M_TRIM_THRESHOLD, KEPT)] {
-        // SAFETY: the call takes two numbers, and changes no memory that was handed out. It reports a value
-        // that it does not accept, and keeps its own.
+        // SAFETY: the call takes two numbers and changes no allocated memory. It reports a value that it
+        // does not accept, and then changes nothing.
         unsafe { libc::mallopt(what, bytes) };
     }
 }

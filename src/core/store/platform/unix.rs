@@ -9,12 +9,12 @@ use super::write_zeros;
 use rustix::fs::{FallocateFlags, OFlags};
 use rustix::time::{ClockId, clock_gettime};
 
-/// Opens a file of the program's own: a link is an error, and a pipe or the like is not waited for.
+/// Opens one of the program's own files: a link is an error, and a pipe or the like is not waited for.
 pub fn open_own(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
     options.custom_flags((OFlags::NOFOLLOW | OFlags::NONBLOCK).bits() as i32).open(path)
 }
 
-/// Opens a file of a user: a link is followed, and a pipe or the like is not waited for.
+/// Opens a user's file: a link is followed, and a pipe or the like is not waited for.
 pub fn open_any(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
     options.custom_flags(OFlags::NONBLOCK.bits() as i32).open(path)
 }
@@ -24,7 +24,7 @@ pub fn has_other_names(file: &File) -> io::Result<bool> {
     Ok(file.metadata()?.nlink() > 1)
 }
 
-/// Fills `bytes` from this place of a file on.
+/// Fills `bytes` from a file, starting at this offset.
 pub fn read_exact_at(file: &File, bytes: &mut [u8], offset: u64) -> io::Result<()> {
     file.read_exact_at(bytes, offset)
 }
@@ -34,7 +34,7 @@ pub fn try_lock(file: &File, shared: bool) -> Result<(), TryLockError> {
     if shared { file.try_lock_shared() } else { file.try_lock() }
 }
 
-/// Sends the names in a folder to the disk.
+/// Syncs the names in a folder.
 pub fn sync_folder(folder: &Path) -> io::Result<()> {
     File::open(folder)?.sync_all()
 }
@@ -53,11 +53,11 @@ pub fn free_bytes(folder: &Path) -> Option<u64> {
     Some(disk.f_bavail.saturating_mul(disk.f_frsize))
 }
 
-/// Tells if a process of this number runs.
+/// Tells if a process with this number is running.
 pub fn is_running(process: &str) -> bool {
     let number = process.parse::<u32>().ok().and_then(|number| i32::try_from(number).ok());
     let number = number.and_then(rustix::process::Pid::from_raw);
-    // A process of another user refuses the question, but exists.
+    // A process of another user cannot be queried, but exists.
     number.is_some_and(|number| {
         !matches!(rustix::process::test_kill_process(number), Err(rustix::io::Errno::SRCH))
     })

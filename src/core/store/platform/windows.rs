@@ -30,16 +30,16 @@ use super::Memory;
 /// Result of `GetExitCodeProcess` for a process that has not ended (STILL_ACTIVE).
 const STILL_ACTIVE: u32 = 259;
 
-/// Byte that is locked in place of the file, far behind its end: the system lets nobody read what another
-/// process has locked, and the file names the holder.
+/// Byte that is locked in place of the file, far beyond its end: the system lets nobody read what
+/// another process has locked, and the file names the holder.
 const LOCKED_BYTE: u64 = 1 << 62;
 
-/// Opens a file of the program's own; a link is opened itself, and is no file.
+/// Opens one of the program's own files; a link is opened itself, and is not a file.
 pub fn open_own(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
     options.custom_flags(FILE_FLAG_OPEN_REPARSE_POINT).open(path)
 }
 
-/// Opens a file of a user; the system never waits here.
+/// Opens a user's file; the system never waits here.
 pub fn open_any(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
     options.open(path)
 }
@@ -47,14 +47,14 @@ pub fn open_any(options: &mut OpenOptions, path: &Path) -> io::Result<File> {
 /// Tells if a file has more than one name.
 pub fn has_other_names(file: &File) -> io::Result<bool> {
     let mut about = BY_HANDLE_FILE_INFORMATION::default();
-    // SAFETY: the handle is open as long as `file` is borrowed, and the system writes a record of this type
-    // into `about`, which nothing else refers to.
+    // SAFETY: the handle is open as long as `file` is borrowed, and the system writes a record of this
+    // type into `about`, to which nothing else refers.
     let done = unsafe { GetFileInformationByHandle(file.as_raw_handle(), &raw mut about) };
     or_error(done)?;
     Ok(about.nNumberOfLinks > 1)
 }
 
-/// Fills `bytes` from this place of a file on.
+/// Fills `bytes` from a file, starting at this offset.
 pub fn read_exact_at(file: &File, mut bytes: &mut [u8], mut offset: u64) -> io::Result<()> {
     while !bytes.is_empty() {
         match file.seek_read(bytes, offset)? {
@@ -70,8 +70,8 @@ pub fn try_lock(file: &File, shared: bool) -> Result<(), TryLockError> {
     let exclusive = if shared { 0 } else { LOCKFILE_EXCLUSIVE_LOCK };
     let place = OVERLAPPED_0_0 { Offset: LOCKED_BYTE as u32, OffsetHigh: (LOCKED_BYTE >> 32) as u32 };
     let mut place = OVERLAPPED { Anonymous: OVERLAPPED_0 { Anonymous: place }, ..OVERLAPPED::default() };
-    // SAFETY: the handle is open as long as `file` is borrowed. It was not opened for overlapped work, so
-    // that the call has ended, and nothing refers to `place` any more, when it returns.
+    // SAFETY: the handle is open as long as `file` is borrowed. It was not opened for overlapped
+    // operations, so when the call returns it is complete and nothing refers to `place`.
     let done = unsafe {
         let how = exclusive | LOCKFILE_FAIL_IMMEDIATELY;
         LockFileEx(file.as_raw_handle(), how, 0, 1, 0, &raw mut place)
@@ -82,13 +82,13 @@ pub fn try_lock(file: &File, shared: bool) -> Result<(), TryLockError> {
     })
 }
 
-/// Does nothing: the system has no such call. It keeps the order of changes to names, so that after a power
-/// cut a folder is in a state that it had at some moment before.
+/// Does nothing: the system has no such call. It keeps the order of changes to names, so that after a
+/// power cut a folder is in some earlier state.
 pub fn sync_folder(_folder: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Makes a file `bytes` long; the file system allocates all of it then, unless it compresses the file.
+/// Makes a file `bytes` long; the file system allocates all of it, unless it compresses the file.
 pub fn allocate(file: &File, bytes: u64) -> io::Result<()> {
     file.set_len(bytes)
 }
@@ -105,18 +105,18 @@ pub fn free_bytes(folder: &Path) -> Option<u64> {
     (done != 0).then_some(free)
 }
 
-/// Tells if a process of this number runs.
+/// Tells if a process with this number is running.
 pub fn is_running(process: &str) -> bool {
     let Ok(number) = process.parse() else { return false };
     // SAFETY: the call takes and returns plain numbers.
     let handle = unsafe { OpenProcess(PROCESS_QUERY_LIMITED_INFORMATION, 0, number) };
     if handle.is_null() {
-        // A process of another user refuses the question, but exists.
+        // A process of another user cannot be queried, but exists.
         return io::Error::last_os_error().kind() == io::ErrorKind::PermissionDenied;
     }
     let mut code = 0;
-    // SAFETY: the handle is the open one from above, used for the last time in the second call, and the
-    // system writes one number into `code`.
+    // SAFETY: the handle is the open one from above, last used in the second call, and the system writes
+    // one number into `code`.
     unsafe {
         let asked = GetExitCodeProcess(handle, &raw mut code);
         CloseHandle(handle);
@@ -134,12 +134,12 @@ pub const THREAD_SECONDS_STEP: f64 = 0.016;
 
 /// Processor time of this thread (s).
 pub fn thread_seconds() -> f64 {
-    // SAFETY: the handle means this thread, and the system writes into the four places that it gets.
+    // SAFETY: the handle denotes this thread, and the system writes into the four places that it gets.
     seconds(|[a, b, c, d]| unsafe { GetThreadTimes(GetCurrentThread(), a, b, c, d) })
 }
 
-/// Seconds in the system and outside of it, the last two of the times that `ask` fills in: created, ended, in
-/// the system, outside of it.
+/// Processor time (s) in kernel and user mode, the last two of the times that `ask` fills in: creation,
+/// exit, kernel, user.
 fn seconds(ask: impl FnOnce([&mut FILETIME; 4]) -> i32) -> f64 {
     let mut times = [FILETIME::default(); 4];
     if ask(times.each_mut()) == 0 {
@@ -150,10 +150,10 @@ fn seconds(ask: impl FnOnce([&mut FILETIME; 4]) -> i32) -> f64 {
     1e-7 * (steps(times[2]) + steps(times[3])) as f64
 }
 
-/// Processors that this program may use, by their numbers in its group (of at most 64).
+/// Lists the processors that this program may use, by number in its group (of at most 64).
 pub fn processors() -> Vec<usize> {
     let (mut usable, mut all) = (0, 0);
-    // SAFETY: the handle means this process, and the system writes a number into both places.
+    // SAFETY: the handle denotes this process, and the system writes a number into both places.
     let done = unsafe { GetProcessAffinityMask(GetCurrentProcess(), &raw mut usable, &raw mut all) };
     if done == 0 {
         Vec::new()
@@ -162,15 +162,15 @@ pub fn processors() -> Vec<usize> {
     }
 }
 
-/// Keeps this thread on a processor. If refused, the system places the thread.
+/// Binds this thread to a processor. If refused, the system places the thread.
 pub fn stay_on(processor: usize) {
     if let Some(one) = 1usize.checked_shl(processor as u32) {
-        // SAFETY: the handle means this thread; the rest are plain numbers.
+        // SAFETY: the handle denotes this thread; the rest are plain numbers.
         unsafe { SetThreadAffinityMask(GetCurrentThread(), one) };
     }
 }
 
-/// Memory of the machine, and its unused part.
+/// Returns the memory of the machine, and its unused part.
 pub fn memory() -> Memory {
     let mut about =
         MEMORYSTATUSEX { dwLength: size_of::<MEMORYSTATUSEX>() as u32, ..MEMORYSTATUSEX::default() };
@@ -192,7 +192,7 @@ pub fn mounts() -> Option<String> {
     None
 }
 
-/// Flags that a request to end sets.
+/// Flags set by a request to end.
 #[cfg(feature = "process")]
 static STOPS: Mutex<Vec<Arc<AtomicBool>>> = Mutex::new(Vec::new());
 
@@ -200,18 +200,18 @@ static STOPS: Mutex<Vec<Arc<AtomicBool>>> = Mutex::new(Vec::new());
 #[cfg(feature = "process")]
 static AT_ONCE: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 
-/// Makes requests to end set the flag. `signal` of the C library will not do: it does not report a closed
-/// window, and differs from one such library to the next.
+/// Makes requests to end set the flag. `signal` of the C library is not enough: it does not report a
+/// closed window, and differs between C libraries.
 #[cfg(feature = "process")]
 pub fn listen(stop: &Arc<AtomicBool>, at_once: &Arc<AtomicBool>) -> io::Result<()> {
     let _ = AT_ONCE.set(Arc::clone(at_once));
     STOPS.lock().unwrap_or_else(PoisonError::into_inner).push(Arc::clone(stop));
-    // SAFETY: the handler is a function of the program itself, of the type that the system calls.
+    // SAFETY: the handler is a function of the program, of the type that the system calls.
     or_error(unsafe { SetConsoleCtrlHandler(Some(on_request), 1) })
 }
 
-/// Handles a request; the system calls this on a thread of its own. For requests other than interrupts the
-/// program ends when this returns: so it waits, for as long as the system lets it, until the state is saved
+/// Handles a request; the system calls this on a separate thread. For requests other than interrupts the
+/// program ends when this returns: so it waits, as long as the system allows, until the state is saved
 /// and the program ends by itself.
 #[cfg(feature = "process")]
 unsafe extern "system" fn on_request(kind: u32) -> i32 {
@@ -229,7 +229,7 @@ unsafe extern "system" fn on_request(kind: u32) -> i32 {
     1
 }
 
-/// Sets the flags; tells if one was set before.
+/// Sets the flags; tells if one was already set.
 #[cfg(feature = "process")]
 fn request(stops: &[Arc<AtomicBool>]) -> bool {
     stops.iter().fold(false, |was, stop| stop.swap(true, Ordering::SeqCst) || was)

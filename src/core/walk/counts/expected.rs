@@ -1,7 +1,7 @@
-//! The expectation of the passive particles given the history of blocking: one f64 a void, no draw.
+//! Expectation of the passive particles given the history of blocking: one f64 per void, no random draws.
 //!
-//! Sums run in an order fixed by the network alone, on one thread, so they are the same everywhere. Whole
-//! numbers for the tally are rounded from running sums, so that they add up.
+//! Sums run on one thread in an order fixed by the network, so they are the same everywhere. Integers for
+//! the tally are rounded from running sums, so that they add up.
 
 use super::binomial::as_unit;
 use super::passive::{Expected, NOTHING, retain};
@@ -9,12 +9,12 @@ use super::shares::Shares;
 use crate::network::Network;
 use crate::walk::Isa;
 
-/// The machinery that moves expectations; rebuilt from network and expectation, and never stored.
+/// Data for moving expectations; rebuilt from network and expectation, never stored.
 pub(super) struct ExpectedFlow {
     by_network: ByNetwork,
-    /// Voids that retain something, ascending.
+    /// Voids that retain particles, in ascending order.
     pub holding: Vec<u32>,
-    /// Sum that they retain.
+    /// Total retained.
     pub rests: f64,
 }
 
@@ -57,12 +57,12 @@ impl ExpectedFlow {
             ByNetwork::Lattice(flow) => flow.step(expected, &mut self.holding),
         }
         if self.holding.len() > known {
-            // Two runs, each rising: the voids known before, and the new ones.
+            // Two ascending sequences: the voids known before, and the new ones.
             self.holding.sort();
         }
         self.rests = resting(&self.holding, expected);
         if matches!(self.by_network, ByNetwork::Lattice(_)) {
-            // All that was inserted and had neither left nor come to rest.
+            // All particles inserted that had been neither eroded nor retained.
             expected.sums.moves += (expected.sums.inserted as f64 - eroded - self.rests).max(0.0);
         }
     }
@@ -72,12 +72,12 @@ fn resting(holding: &[u32], expected: &Expected) -> f64 {
     holding.iter().map(|&void| expected.retained[void as usize]).sum()
 }
 
-/// The step on any network: void by void, each into those that its exits lead to.
+/// Step on any network: each void in turn sends particles to its downstream voids.
 struct GeneralFlow {
-    /// By constriction: the share that takes it, among the particles that have not taken an earlier exit of
-    /// its void.
+    /// Fraction, by constriction, of the particles that take it, of those that have not taken an earlier
+    /// exit of the void.
     shares: Vec<f64>,
-    /// By void: expected number there after the step; 0 between two steps.
+    /// Expected number in each void after the step; 0 between steps.
     pub next: Vec<f64>,
 }
 
@@ -105,7 +105,7 @@ impl GeneralFlow {
         let targets = network.targets();
         let (mut moves, mut eroded) = (sums.moves, sums.eroded);
         for (void, n) in moving.iter_mut().enumerate() {
-            // Most of a thick filter is empty: nothing is written there.
+            // Most voids of a thick filter are empty: nothing is written for them.
             if *n == 0.0 {
                 continue;
             }
@@ -122,11 +122,11 @@ impl GeneralFlow {
             }
             moves += n;
             let exits = network.exits(void as u32);
-            // Behind an exit that takes all nothing is left for those after it.
+            // After an exit that takes all, nothing is left for later exits.
             for (share, &target) in self.shares[exits.clone()].iter().zip(&targets[exits]) {
                 let taken = n * share;
                 n -= taken;
-                // END is beyond every void.
+                // END is larger than any void.
                 match next.get_mut(target as usize) {
                     Some(there) => *there += taken,
                     None => eroded += taken,
@@ -138,18 +138,18 @@ impl GeneralFlow {
     }
 }
 
-/// The step on the cubic lattice: layer by layer and row by row, in place, each void from the three that lead
-/// there. The outflow of a void is known once its row is read; besides, a row needs only the outflow of the
-/// row before it along y and of the layer above it along z: buffers that stay in the first cache.
+/// Step on the cubic lattice, in place, by layers and rows: each void receives from the three voids that
+/// lead to it. A row needs its own outflow along x and only two buffers, which stay in the first-level
+/// cache: the outflow of the previous row along y and of the layer above along z.
 struct LatticeFlow {
     across: [usize; 2],
-    /// By void: the share that takes the first exit, and the share of the others that takes the second.
+    /// Fraction of each void that takes the first exit, and fraction of the rest that takes the second.
     shares: [Vec<f64>; 2],
-    /// Voids without an open exit, ascending.
+    /// Voids without an open exit, in ascending order.
     dead_ends: Vec<u32>,
-    /// By void of a row: outflow of the row before it along y.
+    /// Outflow of the previous row along y, by void of a row.
     along_y: Vec<f64>,
-    /// By void of a layer: outflow of the layer above it along z, and then its own.
+    /// Outflow along z of the layer above, later of the layer itself, by void of a layer.
     along_z: Vec<f64>,
     pub isa: Isa,
 }
@@ -191,10 +191,10 @@ impl LatticeFlow {
         }
         assert!(self.isa.is_available());
         match self.isa {
-            // SAFETY: the machine has the instructions.
+            // SAFETY: the machine supports the instructions.
             #[cfg(target_arch = "x86_64")]
             Isa::Avx512 => unsafe { vector::with_avx512(self, moving) },
-            // SAFETY: the machine has the instructions.
+            // SAFETY: the machine supports the instructions.
             #[cfg(target_arch = "x86_64")]
             Isa::Avx2 => unsafe { vector::with_avx2(self, moving) },
             _ => self.layers(moving, |row| row.step()),
@@ -204,7 +204,7 @@ impl LatticeFlow {
         }
     }
 
-    /// Moves layer by layer; `along_z` then holds the outflow of the last layer.
+    /// Moves layer by layer; at the end `along_z` holds the outflow of the last layer.
     #[inline(always)]
     fn layers(&mut self, moving: &mut [f64], mut step: impl FnMut(Row)) {
         let [nx, ny] = self.across;
@@ -216,7 +216,7 @@ impl LatticeFlow {
         for (here, (first, second)) in moving.chunks_exact_mut(plane).zip(shares) {
             let nothing_here = is_nothing(here);
             if nothing_here && nothing_above {
-                // Its outflow is as little as the outflow of the layer above.
+                // Its outflow is 0, like the outflow of the layer above.
                 continue;
             }
             nothing_above = nothing_here;
@@ -235,21 +235,21 @@ impl LatticeFlow {
     }
 }
 
-/// A row of a layer; all slices are as long as it.
+/// Row of a layer; all slices have its length.
 struct Row<'a> {
-    /// True if it is the first of its layer: the row before it is the last, whose voids come later.
+    /// True for the first row of a layer, whose previous row is the last, with later voids.
     is_first: bool,
     here: &'a mut [f64],
     first: &'a [f64],
     second: &'a [f64],
-    /// Outflow of the row before it along y, and then its own.
+    /// Outflow along y of the previous row, later of the row itself.
     along_y: &'a mut [f64],
-    /// Outflow of the layer above it along z, and then its own.
+    /// Outflow along z of the layer above, later of the row itself.
     along_z: &'a mut [f64],
 }
 
 impl Row<'_> {
-    /// Outflow of its last void along x, which leads to its first.
+    /// Outflow along x of the last void, which leads to the first.
     #[inline(always)]
     fn round(&self) -> f64 {
         let last = self.here.len() - 1;
@@ -262,7 +262,7 @@ impl Row<'_> {
         self.step_from(0, along_x);
     }
 
-    /// Moves the expectation in its voids from `begin` on, with this outflow of the void before along x.
+    /// Moves the expectation in the voids from `begin` on, with this outflow along x of the previous void.
     #[inline(always)]
     fn step_from(&mut self, begin: usize, mut along_x: f64) {
         let is_first = self.is_first;
@@ -276,31 +276,31 @@ impl Row<'_> {
     }
 }
 
-/// Outflow of a void along x, along y and along z. The last open exit is certain: the rest goes along z.
+/// Outflow of a void along x, y and z. The last open exit is certain: the rest goes along z.
 #[inline(always)]
 fn leave(here: f64, first: &f64, second: &f64) -> [f64; 3] {
-    // NaN counts as nothing, as in the vectors.
+    // NaN counts as 0, as in the vector code.
     let n = if here >= NOTHING { here } else { 0.0 };
     let along_x = n * first;
     let along_y = (n - along_x) * second;
     [along_x, along_y, n - along_x - along_y]
 }
 
-/// Adds up the arrivals in a void along z, x and y: from above, and then in the order of the voids that it
-/// comes from, as on any network, but for a single row.
+/// Adds the arrivals in a void along z, x and y: from above, then in the order of their source voids, as
+/// on any network except for a single row.
 #[inline(always)]
 fn arrive<T>(is_first: bool, [z, x, y]: [T; 3], add: impl Fn(T, T) -> T) -> T {
     if is_first { add(add(z, x), y) } else { add(add(z, y), x) }
 }
 
-/// Tells if nothing is expected in any of these voids; many at a time without a branch for each.
+/// Tells if nothing is expected in any of these voids; branch-free over many at a time.
 #[inline(always)]
 fn is_nothing(voids: &[f64]) -> bool {
     voids.chunks(64).all(|voids| voids.iter().fold(0, |bits, n| bits | n.to_bits()) == 0)
 }
 
-/// Rows by vectors. The outflow of a void along x comes to the next by a shift within registers: a store that
-/// is read again one place further on would have to reach the cache first.
+/// Vector code for rows. The outflow of a void along x reaches the next void by a shift in registers:
+/// storing and reloading it one place further on would wait for the cache.
 #[cfg(target_arch = "x86_64")]
 mod vector {
     use std::arch::x86_64::*;
@@ -342,7 +342,7 @@ mod vector {
         let buffers = along_y[..whole].as_chunks_mut::<LANES>().0.iter_mut();
         let buffers = buffers.zip(along_z[..whole].as_chunks_mut::<LANES>().0);
         for ((here, (first, second)), (y, z)) in parts.zip(shares).zip(buffers) {
-            // SAFETY: each is eight numbers.
+            // SAFETY: each has eight numbers.
             unsafe {
                 let n = _mm512_loadu_pd(here.as_ptr());
                 let n = _mm512_maskz_mov_pd(_mm512_cmp_pd_mask::<_CMP_GE_OQ>(n, nothing), n);
@@ -361,15 +361,15 @@ mod vector {
         }
         if whole < row.here.len() {
             let mut lanes = [0.0; LANES];
-            // SAFETY: they are eight numbers.
+            // SAFETY: the array has eight numbers.
             unsafe { _mm512_storeu_pd(lanes.as_mut_ptr(), before) };
             let (done, along_x) = by_four::<FIRST>(&mut row, whole, lanes[LANES - 1]);
             row.step_from(done, along_x);
         }
     }
 
-    /// Moves four voids of a row at a time, from one on, with this outflow of the void before along x;
-    /// returns the void reached, and the outflow of the last of these along x.
+    /// Moves four voids of a row at a time, from one on, with this outflow along x of the previous void;
+    /// returns the void reached and its predecessor's outflow along x.
     #[target_feature(enable = "avx2,popcnt")]
     #[inline]
     fn by_four<const FIRST: bool>(row: &mut Row, begin: usize, along_x: f64) -> (usize, f64) {
@@ -384,14 +384,14 @@ mod vector {
         let buffers = along_y[whole.clone()].as_chunks_mut::<LANES>().0.iter_mut();
         let buffers = buffers.zip(along_z[whole.clone()].as_chunks_mut::<LANES>().0);
         for ((here, (first, second)), (y, z)) in parts.zip(shares).zip(buffers) {
-            // SAFETY: each is four numbers.
+            // SAFETY: each has four numbers.
             unsafe {
                 let n = _mm256_loadu_pd(here.as_ptr());
                 let n = _mm256_and_pd(_mm256_cmp_pd::<_CMP_GE_OQ>(n, nothing), n);
                 let x = _mm256_mul_pd(n, _mm256_loadu_pd(first.as_ptr()));
                 let left = _mm256_sub_pd(n, x);
                 let leaves_y = _mm256_mul_pd(left, _mm256_loadu_pd(second.as_ptr()));
-                // The upper half of those before and the lower half of these; then each one place on.
+                // Upper half of the previous vector and lower half of this one; then a shift by one place.
                 let halves = _mm256_permute2f128_pd::<0x21>(before, x);
                 let shifted = _mm256_shuffle_pd::<0b0101>(halves, x);
                 let from = [_mm256_loadu_pd(z.as_ptr()), shifted, _mm256_loadu_pd(y.as_ptr())];
@@ -403,7 +403,7 @@ mod vector {
             }
         }
         let mut lanes = [0.0; LANES];
-        // SAFETY: they are four numbers.
+        // SAFETY: the array has four numbers.
         unsafe { _mm256_storeu_pd(lanes.as_mut_ptr(), before) };
         (whole.end, lanes[LANES - 1])
     }
@@ -423,8 +423,8 @@ mod tests {
         Network::cubic_from_diameters(shape, diameter, 1.0).unwrap()
     }
 
-    /// Walks while ever more constrictions close, by one of the two steps: the expectation after every
-    /// increment, and the voids that retain something.
+    /// Walks by one of the two steps while more and more constrictions close; returns the expectation
+    /// after every increment and the voids that retain particles.
     fn walked(network: &Network, is_general: bool, isa: Isa) -> Vec<(Expected, Vec<u32>)> {
         let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
         let mut shares = Shares::new(network, Ways::Unblocked(&blocked));
@@ -442,7 +442,7 @@ mod tests {
             }
             flow.step(network, &shares, &mut expected);
             if let ByNetwork::General(flow) = &flow.by_network {
-                // It adds to the numbers that it finds there.
+                // The step adds to these numbers.
                 assert!(flow.next.iter().all(|&n| n == 0.0));
             }
             all.push((expected.clone(), flow.holding.clone()));
@@ -458,7 +458,7 @@ mod tests {
         all
     }
 
-    /// Rows are moved as voids are one by one, to the bit; sums over all voids to rounding.
+    /// Rows and single voids give the same bits; sums over all voids agree to rounding.
     #[test]
     fn both_steps_move_the_same() {
         for shape in [[5, 4, 6], [8, 3, 5], [17, 2, 4], [29, 3, 4], [9, 10, 3], [1, 5, 4], [2, 2, 1]] {
@@ -511,7 +511,7 @@ mod tests {
         }
     }
 
-    /// Nowhere is an expectation no number; if one were, no instruction set would go its own way.
+    /// Expectations are never NaN; if one were, all instruction sets would treat it alike.
     #[test]
     fn what_is_no_number_leaves_no_void_on_any_instruction_set() {
         let network = lattice([13, 2, 3]);

@@ -1,11 +1,11 @@
 //! One increment of passive particles kept as counts per void.
 //!
-//! The voids are cut into blocks of fixed size, each with its own stream. Workers take blocks as they come
-//! and add the moving particles to a column of their own; the columns are then added. Integer sums do not
-//! depend on their order, so neither do the bits on the number of workers.
+//! The voids are divided into blocks of fixed size, each with its own stream. Workers take the next free
+//! block and add the moving particles to their own column; the columns are then added. Integer sums do not
+//! depend on order, so the result does not depend on the number of workers.
 //!
-//! A few particles in a void of three exits choose each by themselves, with one random word for both
-//! thresholds. More of them are split exit by exit, and draws for many voids are made at once.
+//! A few particles in a void with three exits choose individually, with one random word for both
+//! thresholds. Larger counts are split exit by exit, with draws for many voids at once.
 
 use super::binomial::{CERTAIN, Draws, FEW, FewTrials, Portable, fill, one};
 use super::passive::fraction;
@@ -24,13 +24,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 #[cfg(target_arch = "x86_64")]
 use super::binomial::{Avx2, Avx512};
 
-/// Voids that share a stream. Part of the definition of every stream: changing it changes results.
+/// Number of voids that share a stream. Part of the definition of every stream: changing it changes results.
 const BLOCK: usize = 1 << 10;
 
-/// Chunk number of the stream that inserts.
+/// Chunk number of the stream for insertion.
 const INSERTION: u64 = u64::MAX;
 
-/// With fewer occupied blocks, waking other threads costs more than they bring.
+/// Number of occupied blocks below which waking other threads does not pay.
 const ALONE: usize = 4;
 
 /// Result of one increment for the passive particles.
@@ -43,31 +43,32 @@ pub(super) struct Moved {
     pub stranded: Vec<(u32, u64)>,
 }
 
-/// The machinery that moves counts; rebuilt from network and counts, and never stored.
+/// Data for moving counts; rebuilt from network and counts, never stored.
 pub(super) struct Flow {
-    /// By block: the blocks that exits of its voids lead to.
+    /// Downstream blocks of each block.
     downstream: Vec<Vec<u32>>,
     occupied: Vec<bool>,
     workers: Vec<Worker>,
-    /// Particles that move: those inserted are added, and all are counted afresh in every step.
+    /// Number of moving particles: insertions are added, and every step recounts them.
     pub moving: u64,
     pub isa: Isa,
 }
 
 struct Worker {
-    /// By void: particles that this worker moved there; one entry more for those that left the filter.
+    /// Number of particles that this worker moved to each void; the last entry is for those that left the
+    /// filter.
     next: Vec<u64>,
-    /// By block: true if `next` may hold something.
+    /// True for each block where `next` may be non-zero.
     touched: Vec<bool>,
     moved: Moved,
     batch: Box<SplitBatch>,
 }
 
-/// Counts that are split over the exits of their voids, as columns: a row is a void whose particles are yet
-/// to choose between an exit and those after it.
+/// Counts to be split over the exits of their voids, as columns: each row is a void whose particles still
+/// have to choose between one exit and the later ones.
 struct SplitBatch {
     rows: usize,
-    /// The exit, as a constriction.
+    /// Exit, as a constriction.
     exit: [u32; BLOCK],
     count: [u64; BLOCK],
     probability: [u64; BLOCK],
@@ -92,8 +93,8 @@ impl Flow {
         }
     }
 
-    /// Puts `count` particles on start nodes, each drawn uniformly, or `evenly`: the same number on each, and
-    /// the rest on nodes of as many equal parts of them.
+    /// Puts `count` particles on start nodes, drawn uniformly or `evenly`: the same number on each, and
+    /// the remaining ones on one node in each of as many equal parts.
     pub fn insert(&mut self, network: &Network, count: u64, evenly: bool, key: Key, moving: &mut [u64]) {
         let nodes = network.start();
         let mut draws = Draws::new(Key { chunk: INSERTION, ..key });
@@ -145,7 +146,7 @@ impl Flow {
         self.gather(&occupied, moving)
     }
 
-    /// Adds the workers' columns and counts.
+    /// Adds the columns and counts of all workers.
     fn gather(&mut self, occupied: &[usize], moving: &mut [u64]) -> Moved {
         for &block in occupied {
             let end = moving.len().min((block + 1) * BLOCK);
@@ -180,7 +181,7 @@ impl Flow {
                 })
                 .sum::<u64>();
         }
-        // The division of these among workers depends on the threads; the order of the voids does not.
+        // The distribution over workers depends on threads; the order of voids does not.
         moved.stranded.sort_unstable();
         moved
     }
@@ -194,17 +195,17 @@ struct Block<'a> {
     voids: Range<usize>,
 }
 
-/// [`Worker::step`] with the instructions of `isa`, to the same bits.
+/// Performs [`Worker::step`] with the instructions of `isa`; the bits are the same for all.
 fn step(isa: Isa, worker: &mut Worker, block: Block) {
     assert!(isa.is_available());
     match isa {
-        // SAFETY: the machine has the instructions.
+        // SAFETY: the machine supports the instructions.
         #[cfg(target_arch = "x86_64")]
         Isa::Avx512 => unsafe { with_avx512(worker, block) },
-        // SAFETY: the machine has the instructions.
+        // SAFETY: the machine supports the instructions.
         #[cfg(target_arch = "x86_64")]
         Isa::Avx2 => unsafe { with_avx2(worker, block) },
-        // SAFETY: it has what every machine has.
+        // SAFETY: every machine supports these instructions.
         _ => unsafe { worker.step::<Portable>(block) },
     }
 }
@@ -218,17 +219,17 @@ struct CacheLine {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
 fn with_avx512(worker: &mut Worker, block: Block) {
-    // Has this stack begin where a line of the cache does. What the compiler sets aside there of vectors lies
-    // across two lines otherwise, or does not, as the callers have it.
+    // Aligns this stack frame to a cache line. Otherwise vectors stored there may cross two lines,
+    // depending on the callers.
     black_box(&mut MaybeUninit::<CacheLine>::uninit());
-    // SAFETY: this is called where the machine has AVX-512 only.
+    // SAFETY: only called if the machine supports AVX-512.
     unsafe { worker.step::<Avx512>(block) };
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,popcnt")]
 fn with_avx2(worker: &mut Worker, block: Block) {
-    // SAFETY: this is called where the machine has AVX2 only.
+    // SAFETY: only called if the machine supports AVX2.
     unsafe { worker.step::<Avx2>(block) };
 }
 
@@ -238,7 +239,7 @@ fn downstream(network: &Network, block: usize) -> Vec<u32> {
     let inner = network.targets()[exits].iter().filter(|&&target| target != END);
     let mut blocks: Vec<u32> = inner.map(|&target| target / BLOCK as u32).collect();
     if network.exit_rule().needs_flow() {
-        // Particles may wait where they are.
+        // Particles may wait in the block itself.
         blocks.push(block as u32);
     }
     blocks.sort_unstable();
@@ -250,17 +251,17 @@ impl Worker {
     /// Moves the particles of the voids of a block.
     ///
     /// # Safety
-    /// The machine has the instructions of `F`.
+    /// The machine supports the instructions of `F`.
     #[inline(always)]
     unsafe fn step<F: FewTrials>(&mut self, block: Block) {
         let Block { network, shares, key, counts, voids } = block;
         let Self { next, moved, batch, .. } = self;
         let (targets, outside) = (network.targets(), next.len() - 1);
-        // END is beyond every void.
+        // END is larger than any void.
         let mut arrive =
             |constriction: usize, n: u64| next[(targets[constriction] as usize).min(outside)] += n;
         let mut draws = Draws::new(key);
-        // SAFETY: as promised.
+        // SAFETY: as the caller promises.
         let mut few = unsafe { F::begin(&draws) };
         let (first, mut many, mut waiting) = (voids.start, [0; BLOCK / 64], Vec::new());
         for (word, counts) in counts[voids].chunks(64).enumerate() {
@@ -270,7 +271,7 @@ impl Worker {
                 let n = counts[void % 64];
                 if shares.waits(void) {
                     moved.waiting += n;
-                    // The particles of this void alone may be there yet.
+                    // Added to `next` after all splits.
                     waiting.push((void, n));
                 } else {
                     moved.stranded.push((void as u32, n));
@@ -307,15 +308,15 @@ impl Worker {
     }
 }
 
-/// Two bits for each of up to 64 voids: it holds particles, and it holds more than a few. With bits to go
-/// through, the contents of the next void need no guess.
+/// Two bits for each of up to 64 voids: set if it holds particles, and if it holds more than a few.
+/// Iterating over bits avoids branch misprediction.
 #[inline(always)]
 fn occupied_and_crowded(counts: &[u64]) -> [u64; 2] {
     let bit = |(i, &n): (usize, &u64)| [u64::from(n > 0) << i, u64::from(n > FEW) << i];
     counts.iter().enumerate().map(bit).fold([0; 2], |all, one| [all[0] | one[0], all[1] | one[1]])
 }
 
-/// The places of the ones in a word, from the lowest on.
+/// Positions of the ones in a word, from the lowest on.
 #[inline(always)]
 fn bits(mut word: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {
@@ -330,8 +331,8 @@ impl SplitBatch {
         Self { rows: 0, exit: [0; BLOCK], count: [0; BLOCK], probability: [0; BLOCK], taken: [0; BLOCK] }
     }
 
-    /// `n` particles face the open exit `exit` of a void: they are through if it is the last, else they are
-    /// row `row`. Returns the row after them.
+    /// Assigns `n` particles to the open exit `exit` of a void: if it is the last they pass, otherwise
+    /// they form row `row`. Returns the next row.
     #[inline(always)]
     fn face(
         &mut self,

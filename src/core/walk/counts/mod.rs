@@ -1,23 +1,23 @@
 //! Passive particles as counts per void (engines `counts` and `expected`).
 //!
-//! A base particle no coarser than any constriction that is open when its run starts is *passive*: it can
-//! block nothing, voids have no capacity, so it influences nobody. The coarser ones are walked one by one as
-//! ever; how many of an increment's share they are is binomial, with the sampler's exact word limit for its
-//! probability. The passive ones move beside them as one count a void: in each increment the share is put on
-//! the start nodes (multinomial), and each void's count is split over the exits that were open when the
-//! increment began (conditional binomials). Which passive particle is which is never known, nor asked. This
-//! is the distribution of the walk one by one, not an approximation of it.
+//! A base particle no coarser than any constriction open at the start of the run is *passive*: it cannot
+//! block anything, and voids have no capacity, so it affects no other particle. Coarser particles are
+//! walked one by one as usual; their number in an increment is binomial, with the exact word limit of the
+//! sampler as its probability. Passive particles move beside them as one count per void. In each increment
+//! new ones are put on the start nodes (multinomial), and the count of each void is split over the exits
+//! open at the start of the increment (conditional binomials). Individual passive particles are not
+//! distinguished. The distribution equals that of the walk one by one, without approximation.
 //!
 //! # Streams
-//! Increment `t` of run `r` draws the number of coarse particles from (seed, coarse share, `r`, `t`, 0), the
-//! start nodes of the passive ones from (seed, passive, `r`, `t`, 2^64 - 1), the splits of block `b` of voids
-//! from (seed, passive, `r`, `t`, `b`), and sizes of the passive particles that came to rest from (seed,
-//! passive size, `r`, `t`, 0). Threads appear nowhere in this.
+//! Increment `t` of run `r` draws the number of coarse particles from (seed, coarse share, `r`, `t`, 0),
+//! the start nodes of the passive ones from (seed, passive, `r`, `t`, 2^64 - 1), the splits of block `b`
+//! of voids from (seed, passive, `r`, `t`, `b`), and sizes of the passive particles eroded or retained
+//! from (seed, passive size, `r`, `t`, 0). None of this depends on threads.
 //!
 //! # Expected
-//! Engine `expected` walks the same coarse particles and moves the expectation of the passive ones given that
-//! history: the same figures without the scatter of the passive ones. Whole numbers are rounded from running
-//! sums. Its run ends when less than half a particle that is not trapped is expected to move.
+//! Engine `expected` walks the same coarse particles and moves the expectation of the passive ones, given
+//! that history: the same results without the scatter of passive particles. Integers are rounded from running
+//! sums. A run ends when the expected number of moving particles that are not trapped is below 0.5.
 
 mod binomial;
 mod expected;
@@ -39,11 +39,11 @@ use flow::Flow;
 use passive::PassiveSizes;
 pub(super) use shares::Shares;
 
-/// Voids to move expectations in, and particles to move one by one, from which both take so long that an idle
-/// thread is worth waking.
+/// Number of voids with expectations, and of particles walked one by one, above which a second thread is
+/// worth waking.
 const WORTH_A_THREAD: usize = 1 << 14;
 
-/// The machinery of the passive particles of a run; rebuilt from network and state, and never stored.
+/// Data for moving the passive particles of a run; rebuilt from network and state, never stored.
 pub struct PassiveWalk<'a> {
     sizes: PassiveSizes<'a>,
     pub(super) shares: Shares,
@@ -56,17 +56,17 @@ enum Mover {
     Expected(ExpectedFlow),
 }
 
-/// Voids that lead to an end or to a void without open exits: passive particles elsewhere are trapped.
+/// Voids that lead to the end or to a void without open exits; passive particles elsewhere are trapped.
 struct Trap {
-    /// Number of blocked constrictions that this holds for.
+    /// Number of blocked constrictions for which this is valid.
     blocked: u64,
     leads_out: Vec<bool>,
-    /// True if all voids do.
+    /// True if all voids lead out.
     none: bool,
 }
 
 impl<'a> PassiveWalk<'a> {
-    /// Prepares to move the passive particles of `state`, by the shares of its open exits if they are known;
+    /// Prepares to move the passive particles of `state`, with `known` shares of its open exits if given;
     /// `None` if all are walked one by one.
     pub fn new(network: &Network, supply: &'a Supply, state: &State, known: Option<Shares>) -> Option<Self> {
         let shares = || known.unwrap_or_else(|| Shares::new(network, Ways::Unblocked(&state.blocked)));
@@ -118,7 +118,7 @@ impl<'a> PassiveWalk<'a> {
             (Mover::Counts(flow), Passive::Counts(moving)) => {
                 let before = flow.moving;
                 let moved = flow.step(network, &self.shares, key, moving);
-                // Counted afresh, so that the check of the tally means something.
+                // Counted afresh, so that the check of the tally is meaningful.
                 tally.moving = tally.moving - before + flow.moving;
                 tally.particle_moves = tally.particle_moves.saturating_add(moved.moves);
                 self.count(moved.eroded, &moved.stranded, state);
@@ -131,8 +131,8 @@ impl<'a> PassiveWalk<'a> {
         }
     }
 
-    /// [`Self::step`] after `one_by_one`, which neither reads nor changes passive particles: beside it where
-    /// both take long enough for two threads.
+    /// Performs `one_by_one`, which neither reads nor changes passive particles, and [`Self::step`]: in
+    /// parallel if both take long enough.
     pub fn step_beside(
         &mut self,
         network: &Network,
@@ -162,7 +162,7 @@ impl<'a> PassiveWalk<'a> {
         }
     }
 
-    /// Adds the particles that left and those that stay in voids to the tally, with drawn sizes.
+    /// Adds the particles that left or were retained in voids to the tally, with drawn sizes.
     fn count(&self, eroded: u64, stranded: &[(u32, u64)], state: &mut State) {
         let retained: u64 = stranded.iter().map(|&(_, n)| n).sum();
         if eroded == 0 && retained == 0 {
@@ -193,7 +193,7 @@ impl<'a> PassiveWalk<'a> {
         let [retained, retained_now] = [before, now].map(|counted| counted.at_rest - counted.eroded);
         let tally = &mut state.tally;
         tally.particle_moves = tally.particle_moves.saturating_add(now.moves - before.moves);
-        // The earlier count is taken off first: the sums may come near 2^64.
+        // The earlier count is subtracted first, as the sums may come near 2^64.
         tally.eroded = tally.eroded - before.eroded + now.eroded;
         tally.passive_eroded = now.eroded;
         tally.eroded_mass += self.sizes.mass(now.eroded) - self.sizes.mass(before.eroded);
@@ -212,13 +212,13 @@ impl<'a> PassiveWalk<'a> {
         }
     }
 
-    /// Forgets the trap once exits lead elsewhere: who is trapped is not known any more.
+    /// Discards the trap after exits have changed direction.
     pub fn forget_trap(&mut self) {
         self.trap = None;
     }
 
-    /// Tells if every moving passive particle is trapped; to be asked when everything is inserted and nothing
-    /// can block any more.
+    /// Tells if every moving passive particle is trapped; called once everything is inserted and nothing
+    /// can be blocked any more.
     pub fn all_trapped(&mut self, network: &Network, state: &mut State) -> bool {
         let trapped = match &state.passive {
             Passive::OneByOne => return true,
@@ -250,7 +250,8 @@ impl<'a> PassiveWalk<'a> {
 }
 
 impl Trap {
-    /// The trap of the constrictions that are open now; nothing opens again, so their number names it.
+    /// Returns the trap for the current open constrictions; none reopens, so the number of blocked ones
+    /// identifies it.
     fn renew<'t>(known: &'t mut Option<Self>, network: &Network, state: &State) -> &'t Self {
         let blocked = state.tally.blocked;
         known.take_if(|trap| trap.blocked != blocked);
@@ -262,7 +263,7 @@ impl Trap {
     }
 }
 
-/// Voids from which open constrictions lead to an end, or to a void without open constrictions.
+/// Voids from which open constrictions lead to the end or to a void without open constrictions.
 fn leads_out(network: &Network, open: impl Fn(usize) -> bool) -> Vec<bool> {
     let ends = |void: &u32| {
         let mut exits = network.exits(*void).filter(|&c| open(c)).peekable();
@@ -282,16 +283,16 @@ mod tests {
 
     struct Flowed {
         eroded: Vec<f64>,
-        /// Moving in each void after increment [`LOOKED_AT`].
+        /// Number moving in each void after increment [`LOOKED_AT`].
         moving: Vec<f64>,
         retained: Vec<f64>,
     }
 
-    /// An increment after the last insertion, with much still moving.
+    /// Increment after the last insertion, with many particles still moving.
     const LOOKED_AT: usize = 70;
 
-    /// In the words of the model: areas of the exits that were open when the increment began, afresh for
-    /// every void.
+    /// Expectation as the model is stated: areas of the exits open at the start of the increment, computed
+    /// afresh for every void.
     fn expectation(network: &Network, history: &[Blocking], inserted: &[u64], increments: usize) -> Flowed {
         let mut closed = vec![false; network.constrictions()];
         let mut moving = vec![0.0; network.voids()];
@@ -333,8 +334,8 @@ mod tests {
         flowed
     }
 
-    /// Chi-square of counts against expectations of independent particles, each unlikely to be in any one
-    /// cell, as a z score.
+    /// Chi-square, as a z score, of counts against expectations of independent particles, each unlikely to
+    /// be in any one cell.
     fn z_score(observed: &[u64], expected: &[f64]) -> f64 {
         let (mut square, mut cells, mut e, mut f) = (0.0, 0.0, 0.0, 0.0);
         for (&observed, &expected) in observed.iter().zip(expected) {
@@ -355,10 +356,10 @@ mod tests {
         sums.iter().scan(0, |before, &sum| Some(sum - std::mem::replace(before, sum))).collect()
     }
 
-    /// Passive particles of a walk one by one, and counts that are moved through the blocking history of that
-    /// very walk, both against its expectation: eroded by increment, moving by void, and for counts retained
-    /// by void. Bound 4 on seven z scores. With 1.5e6 particles a total that is off by 1 % shows, and a
-    /// scatter of 10 % or so over the voids; one void that is wrong by 20 % would not.
+    /// Compares passive particles of a walk one by one, and counts moved through the blocking history of
+    /// that walk, with its expectation: eroded by increment, moving by void, and for counts retained by
+    /// void. Bound 4 on seven z scores. With 1.5e6 particles an error of 1 % in a total is detected, and a
+    /// scatter of about 10 % over the voids; an error of 20 % in one void is not.
     #[test]
     fn both_engines_follow_one_history() {
         let count = 3 * 12 * 12 * 20;
@@ -401,7 +402,7 @@ mod tests {
                 (sum as f64 - total) / (total * (1.0 - total / all)).sqrt(),
             ];
             assert!(z.iter().all(|z| z.abs() < 4.0), "{z:?}");
-            // The tests have something to look at.
+            // The tests have enough data.
             assert!(total > 5e4 && all - total > 5e4 && walked.history.len() > 500, "{total} {all}");
         };
         judge(&differences(&eroded), &moving, &flowed);
@@ -430,11 +431,11 @@ mod tests {
         }
         let flowed = expectation(&network, &walked.history, &differences(&inserted), increments);
         judge(&differences(&eroded), &moving, &flowed);
-        // No coarse particle walked here, so all that is retained is passive.
+        // No coarse particles are walked here, so all retained particles are passive.
         let z = z_score(&state.retained_in_voids, &flowed.retained);
         assert!(z.abs() < 4.0, "{z}");
 
-        // The expectation of the engine itself is the slow one, to rounding.
+        // The expectation of the engine equals the slow one, to rounding.
         let mut expected = Expected::new(network.voids());
         let open = BitVec::<usize>::repeat(false, network.constrictions());
         let mut shares = Shares::new(&network, Ways::Unblocked(&open));
@@ -459,7 +460,7 @@ mod tests {
         }
     }
 
-    /// The largest count that a number holds is exact to the last particle, and no sum on the way is larger.
+    /// The largest possible count is exact to the last particle, and no intermediate sum is larger.
     #[test]
     fn the_most_particles_that_can_be_are_conserved() {
         let network = Network::cubic_from_diameters([3, 3, 4], vec![1.0; 108], 1.0).unwrap();

@@ -1,9 +1,9 @@
-//! The passive particles of a state: numbers or expectations by void, and their sizes.
+//! Passive particles of a state: numbers or expectations by void, and sizes.
 //!
-//! The fate of a passive particle does not depend on its size, so the sizes of those eroded or retained are
-//! independent draws from the passive part of the base: the numbers by class are multinomial and drawn
-//! exactly, and the largest is one draw of the largest of the coarsest class that is not empty. Masses
-//! are counts times a mean: of the passive part for the sums of a run, of the class for size curves.
+//! The fate of a passive particle does not depend on its size, so the sizes of those eroded or retained
+//! are independent draws from the passive part of the base: the numbers by class are multinomial and drawn
+//! exactly, and the largest particle is drawn from the coarsest class that is not empty. Masses are counts
+//! times a mean mass: the mean of the passive part for the sums of a run, of the class for size curves.
 
 use super::binomial::{CERTAIN, Draws, one};
 use crate::gradation::SizeSampler;
@@ -11,14 +11,14 @@ use crate::network::Network;
 use crate::stream::{Key, Purpose};
 use crate::walk::tally::{SizeClasses, SizeCounts};
 
-/// Moving passive particles, where they are not walked one by one.
+/// Moving passive particles of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Passive {
-    /// Among the particles, like any other.
+    /// Walked one by one, like other particles.
     OneByOne,
-    /// Number that moves, by void.
+    /// Number of moving particles, by void.
     Counts(Vec<u64>),
-    /// Number that is expected to move, by void.
+    /// Expected number of moving particles, by void.
     Expected(Box<Expected>),
 }
 
@@ -30,7 +30,7 @@ impl Passive {
         }
     }
 
-    /// The expectation, where there is one.
+    /// Expectation, if this engine uses it.
     pub fn expected(&self) -> Option<&Expected> {
         match self {
             Passive::Expected(expected) => Some(expected),
@@ -39,17 +39,17 @@ impl Passive {
     }
 }
 
-/// Below this many particles a void counts as empty.
+/// Number of particles below which a void counts as empty.
 pub(super) const NOTHING: f64 = 1e-30;
 
 /// Expected numbers of passive particles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expected {
-    /// Moving, by void.
+    /// Expected number moving, by void.
     pub moving: Vec<f64>,
-    /// Retained for want of an open exit, by void.
+    /// Expected number retained for lack of an open exit, by void.
     pub retained: Vec<f64>,
-    /// By void: whole number retained that the state already counts.
+    /// Integer number retained that the state already counts, by void.
     pub counted_retained: Vec<u64>,
     /// Sums over the voids.
     pub sums: ExpectedSums,
@@ -59,25 +59,25 @@ pub struct Expected {
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExpectedSums {
-    /// Eroded.
+    /// Number eroded.
     pub eroded: f64,
-    /// Completed moves.
+    /// Number of completed moves.
     pub moves: f64,
-    /// Inserted.
+    /// Number inserted.
     pub inserted: u64,
-    /// The whole numbers that the state already counts.
+    /// Integers that the state already counts.
     pub counted: Counted,
 }
 
-/// Whole numbers of passive particles over the run so far.
+/// Integer numbers of passive particles over the run so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Counted {
-    /// Completed moves.
+    /// Number of completed moves.
     pub moves: u64,
-    /// Eroded.
+    /// Number eroded.
     pub eroded: u64,
-    /// Eroded or retained.
+    /// Number eroded or retained.
     pub at_rest: u64,
 }
 
@@ -98,8 +98,8 @@ impl Expected {
         network.start().iter().for_each(|&void| self.moving[void as usize] += part);
     }
 
-    /// Tells if more than a whole particle is expected to move in voids that lead out: seen from the last
-    /// voids on, where the last particles are, so that few voids have to be looked at.
+    /// Tells if more than one particle is expected to move in voids that lead out. Starts with the last
+    /// voids, where the last particles are, so that few voids are visited.
     pub(in crate::walk::counts) fn surely_moves(&self, leads_out: &[bool]) -> bool {
         let free = self.moving.iter().zip(leads_out).rev().filter(|(_, leads_out)| **leads_out);
         let mut sum = 0.0;
@@ -109,16 +109,16 @@ impl Expected {
         })
     }
 
-    /// Renews the whole numbers that the state counts, and returns those before and after. `holding` are the
-    /// voids that retain something, ascending, with their sum. With `trapped`, the particles that move beside
-    /// this many trapped ones are less than half a particle, and are counted at rest.
+    /// Updates the integers that the state counts; returns the old and the new ones. `holding`: voids that
+    /// retain particles, in ascending order, with their sum. With `trapped` (the expected number of
+    /// trapped particles), the other moving particles are fewer than 0.5 and are counted at rest.
     pub(in crate::walk::counts) fn count(
         &mut self,
         (holding, stranded): (&[u32], f64),
         trapped: Option<f64>,
         retained_in_voids: &mut [u64],
     ) -> [Counted; 2] {
-        // No sum is negative, and `floor` is a call where the machine may lack an instruction for it.
+        // No sum is negative, and `floor` is a function call on machines without an instruction for it.
         let whole = |x: f64| ((x + 0.5) as u64).min(self.sums.inserted);
         let mut at_rest = whole(self.sums.eroded + stranded);
         let mut eroded = whole(self.sums.eroded);
@@ -138,7 +138,7 @@ impl Expected {
                 }
                 last = upto;
             }
-            // The remainder of rounding goes to the last void that retains something.
+            // The remainder of rounding goes to the last void that retains particles.
             if let Some(&void) = holding.last() {
                 retained_in_voids[void as usize] += at_rest - last;
                 self.counted_retained[void as usize] += at_rest - last;
@@ -150,7 +150,7 @@ impl Expected {
     }
 }
 
-/// Adds `n` particles at rest in a void, which is added to `holding` if they are the first.
+/// Adds `n` retained particles to a void, and the void to `holding` if they are its first.
 pub(super) fn retain(void: usize, n: f64, retained: &mut [f64], holding: &mut Vec<u32>) {
     if retained[void] == 0.0 {
         holding.push(void as u32);
@@ -158,26 +158,26 @@ pub(super) fn retain(void: usize, n: f64, retained: &mut [f64], holding: &mut Ve
     retained[void] += n;
 }
 
-/// The passive part of a base, class by class.
+/// Passive part of a base, by size class.
 pub(super) struct PassiveSizes<'a> {
     sampler: &'a SizeSampler,
-    /// Words up to the upper bound of each class; the last is the number of passive words.
+    /// Number of words up to the upper bound of each class; the last is the number of passive words.
     words: Vec<u128>,
-    /// Share of the passive words up to the upper bound of each class.
+    /// Fraction of the passive words up to the upper bound of each class.
     share: Vec<f64>,
-    /// Probability that a passive particle, no finer than the class, is in it.
+    /// Probability that a passive particle not finer than the class is in it.
     probability: Vec<u64>,
     mean_cube: Vec<f64>,
     mean_cube_of_all: f64,
 }
 
 impl<'a> PassiveSizes<'a> {
-    /// The part of the base whose words are below `passive_words`.
+    /// Creates the part of the base drawn by words below `passive_words`.
     pub fn new(sampler: &'a SizeSampler, passive_words: u128, classes: &SizeClasses) -> Self {
         let bounds = classes.upper();
         let mut words: Vec<u128> =
             bounds.iter().map(|&bound| sampler.word_limit(bound).min(passive_words)).collect();
-        // Sizes above the last bound count in the last class.
+        // Sizes above the last bound belong to the last class.
         words[bounds.len() - 1] = passive_words;
         let (mut probability, mut mean_cube, mut before) = (Vec::new(), Vec::new(), 0);
         for &upto in &words {
@@ -191,7 +191,7 @@ impl<'a> PassiveSizes<'a> {
         Self { sampler, words, share, probability, mean_cube, mean_cube_of_all }
     }
 
-    /// Mass of `count` passive particles, expected.
+    /// Expected mass of `count` passive particles.
     pub fn mass(&self, count: u64) -> f64 {
         count as f64 * self.mean_cube_of_all
     }
@@ -216,8 +216,8 @@ impl<'a> PassiveSizes<'a> {
         self.sampler.part(from..self.words[class]).largest_of(n, draws.word())
     }
 
-    /// Raises the expected number of particles from `before` to `after`, rounded class by class so that the
-    /// sum stays exact.
+    /// Raises the expected number of particles from `before` to `after`, rounded by class so that the sum
+    /// stays exact.
     pub fn expect(&self, before: u64, after: u64, into: &mut SizeCounts) {
         if before == after {
             return;
@@ -233,14 +233,14 @@ impl<'a> PassiveSizes<'a> {
         }
     }
 
-    /// The median of the largest of `count` passive particles.
+    /// Median of the largest of `count` passive particles.
     pub fn median_largest(&self, count: u64) -> Option<f32> {
         let all = *self.words.last().expect("at least one class");
         self.sampler.part(0..all).largest_of(count, 1 << 63)
     }
 }
 
-/// Number of coarse particles in an increment's `share` of base particles, given that `passive_words` of the
+/// Number of coarse particles among the `share` base particles of an increment, if `passive_words` of the
 /// sampler's words draw passive ones.
 pub(in crate::walk) fn coarse_share(
     share: u64,
@@ -254,7 +254,7 @@ pub(in crate::walk) fn coarse_share(
     one(&mut Draws::new(key), share, fraction(all - passive_words, all))
 }
 
-/// `width / rest` as a 64-bit fraction.
+/// Ratio `width / rest` as a 64-bit fraction.
 pub(super) fn fraction(width: u128, rest: u128) -> u64 {
     match width {
         0 => 0,
@@ -267,10 +267,10 @@ pub(super) fn fraction(width: u128, rest: u128) -> u64 {
     }
 }
 
-/// Below this many particles a product with a share is right to one.
+/// Number of particles below which a product with a fraction is correct to one particle.
 const NEARLY_EXACT: u64 = 1 << 52;
 
-/// `count * words / all`, rounded; `share` is `words / all`.
+/// Rounded value of `count * words / all`; `share` is `words / all`.
 fn scaled(count: u64, words: u128, all: u128, share: f64) -> u64 {
     if words == all {
         return count;
@@ -281,7 +281,7 @@ fn scaled(count: u64, words: u128, all: u128, share: f64) -> u64 {
         let (whole, rest) = (product / all, product % all);
         return (whole + u128::from(rest >= all - rest)) as u64;
     }
-    // Divisions of 128 bits take ten times as long; they would be most of an increment of a small network.
+    // Divisions of 128 bits take ten times as long; they would dominate an increment of a small network.
     let mut rounded = (count as f64 * share + 0.5) as u64;
     while (2 * u128::from(rounded) + 1) * all <= 2 * product {
         rounded += 1;
@@ -311,8 +311,8 @@ mod tests {
         assert_eq!(fraction(3 << 40, 3 << 60), 1 << 44);
     }
 
-    /// Numbers by class against particles drawn one by one: chi-square over 20 classes. With 2e5 of each a
-    /// share that is off by about 1 % of itself would show.
+    /// Compares numbers by class with particles drawn one by one: chi-square over 20 classes. With 2e5 of
+    /// each, a relative error of about 1 % in a class is detected.
     #[test]
     fn classes_fill_as_if_every_particle_was_drawn() {
         let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.1, 2.0).unwrap(), 1.0).unwrap();
@@ -359,7 +359,7 @@ mod tests {
         assert_eq!(grown.number, at_once.number);
     }
 
-    /// Comparison with the division, at halves and next to them, and on both sides of the limit of division.
+    /// Compares with division, at and next to halves, and on both sides of `NEARLY_EXACT`.
     #[test]
     fn rounded_products_are_those_of_the_division() {
         let by_division = |count: u64, words: u128, all: u128| {

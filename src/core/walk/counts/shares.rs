@@ -5,10 +5,10 @@ use crate::network::Network;
 use crate::walk::exits::{self, VoidExits};
 use crate::walk::openings::Ways;
 
-/// Way that the passive particles of a void go.
+/// Route of the passive particles of a void.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::walk) enum Way {
-    /// No exit is open, and they rest.
+    /// No exit is open, and they are retained.
     None,
     /// No exit is open until the flow is solved again.
     Wait,
@@ -25,17 +25,17 @@ pub(in crate::walk) enum Way {
 /// Shares of the passive particles of every void by exit.
 #[derive(Clone)]
 pub(in crate::walk) struct Shares {
-    /// By constriction: the probability that a particle which has not taken an earlier exit of its void takes
-    /// this one, as a 64-bit fraction. The last open exit is certain; closed ones have 0.
+    /// Probability, by constriction, that a particle which has not taken an earlier exit of its void takes
+    /// this one, as a 64-bit fraction. The last open exit is certain; closed exits have 0.
     probability: Vec<u64>,
-    /// By constriction: number of exits to the next open one of its void; no open one is passed over.
+    /// Number of exits to the next open one of the void, by constriction; no open exit is skipped.
     on: Vec<u8>,
     route: Vec<Way>,
-    /// A bit for each void without an open exit.
+    /// Bit set for each void without an open exit.
     shut: Vec<u64>,
-    /// A bit for each void that has three exits.
+    /// Bit set for each void with three exits.
     of_three: Vec<u64>,
-    /// By void: the upper sixteen bits of its thresholds, 0 where it has not three exits.
+    /// Upper sixteen bits of the thresholds of each void; 0 if it does not have three exits.
     tops: Vec<[u16; 2]>,
 }
 
@@ -59,8 +59,8 @@ impl Shares {
 
     /// Renews the shares of one void.
     ///
-    /// They follow from the thresholds of the walk one by one, so that both engines give an exit the same
-    /// probability to 2^-64.
+    /// They follow from the thresholds of the walk one by one, so both engines give an exit the same
+    /// probability, to 2^-64.
     pub fn set(&mut self, network: &Network, of_void: VoidExits) {
         let VoidExits { void, thresholds, last_open: last, waits } = of_void;
         let exits = network.exits(void);
@@ -70,7 +70,7 @@ impl Shares {
                 Some(last) if e == last => CERTAIN,
                 Some(last) if e < last && thresholds[e] > before => {
                     let (width, rest) = (thresholds[e] - before, before.wrapping_neg());
-                    // Before the first open exit nothing is taken: all of 2^64 is left.
+                    // Before the first open exit nothing has been taken: all of 2^64 is left.
                     let of_rest =
                         if rest == 0 { width } else { ((u128::from(width) << 64) / u128::from(rest)) as u64 };
                     of_rest.min(CERTAIN - 1)
@@ -106,7 +106,7 @@ impl Shares {
         &self.probability
     }
 
-    /// The first open exit of a void from `exit` on; there is one.
+    /// First open exit of a void from `exit` on; it must exist.
     #[inline(always)]
     pub fn open_from(&self, mut exit: usize) -> usize {
         while self.probability[exit] == 0 {
@@ -115,21 +115,21 @@ impl Shares {
         exit
     }
 
-    /// The next open exit of its void after one that is open, and not certain.
+    /// Next open exit of the void after an open exit that is not certain.
     #[inline(always)]
     pub fn open_after(&self, exit: usize) -> usize {
         self.open_from(exit + usize::from(self.on[exit]))
     }
 
-    /// Thresholds for the first two of three exits, for one 64-bit draw: it picks the first exit below the
-    /// first threshold, else the second below the second, else the third. They do not hold beyond an exit
-    /// that is certain.
+    /// Thresholds of the first two of three exits for one 64-bit draw: below the first it picks the first
+    /// exit, otherwise below the second the second exit, otherwise the third. They are not valid after an
+    /// exit that is certain.
     #[inline(always)]
     pub fn thresholds_of_three(&self, exit: usize) -> [u64; 2] {
         let (first, second) = (self.probability[exit], self.probability[exit + 1]);
         let of_rest = second - ((u128::from(second) * u128::from(first)) >> 64) as u64;
-        // The sum is a probability and stays below 1, except beside an exit that is certain: there it wraps
-        // to the threshold that does not hold.
+        // The sum is a probability below 1, except after an exit that is certain: there it wraps to the
+        // threshold that is not valid.
         [first, first.wrapping_add(of_rest)]
     }
 
@@ -138,19 +138,19 @@ impl Shares {
         self.route[void]
     }
 
-    /// The upper sixteen bits of the thresholds of a void that has three exits.
+    /// Upper sixteen bits of the thresholds of a void with three exits.
     #[inline(always)]
     pub fn tops(&self, void: usize) -> [u16; 2] {
         self.tops[void]
     }
 
-    /// Two bits for each of the 64 voids of `word`: it has no open exit, and it has three exits.
+    /// Two bits for each of the 64 voids of `word`: set if it has no open exit, and if it has three exits.
     #[inline(always)]
     pub fn shut_and_of_three(&self, word: usize) -> [u64; 2] {
         [self.shut[word], self.of_three[word]]
     }
 
-    /// Tells if the particles of a void without open exits stay there until the flow is solved again.
+    /// Tells if the particles of a void without open exits wait there until the flow is solved again.
     pub fn waits(&self, void: usize) -> bool {
         self.route[void] == Way::Wait
     }
@@ -185,12 +185,12 @@ mod tests {
         assert_eq!(shares_of([1.0; 3], [false, true, false]).0[..2], [1 << 63, 0]);
         assert!(!shares_of([1.0; 3], [true; 3]).1);
         assert!(!shares_of([0.0; 3], [false; 3]).1);
-        // An exit with 1e24 times the area leaves the others possible.
+        // Beside an exit with 1e24 times their area the others remain possible.
         assert_eq!(shares_of([1e12, 1.0, 1.0], [false; 3]).0[0], CERTAIN - 1);
         assert_eq!(shares_of([1e12, 1.0, 1.0], [true, false, false]).0[1], 1 << 63);
     }
 
-    /// Up to the last exit the thresholds agree with the walk one by one, to a unit; the value beside a
+    /// Up to the last exit the thresholds agree with the walk one by one, to a unit; the value after a
     /// certain exit is not used.
     #[test]
     fn thresholds_of_three_exits_never_wrap_where_they_hold() {
@@ -211,7 +211,7 @@ mod tests {
         }
     }
 
-    /// More exits in a row are closed than one step can pass over, at either end and between open ones.
+    /// More exits in a row are closed than one step can skip, at either end and between open exits.
     #[test]
     fn the_next_open_exit_is_found_beyond_any_number_of_closed_ones() {
         let open = [0, 1, 256, 257, 600, 1111];
@@ -238,7 +238,7 @@ mod tests {
         }
     }
 
-    /// A void whose exits close and open again is what it was; its neighbours in the word of bits stay so.
+    /// A void whose exits close and reopen is unchanged; its neighbours in the word of bits are unaffected.
     #[test]
     fn a_void_is_shut_and_opened_again() {
         let diameters = (0..3 * 70).map(|c| 1.0 + 0.01 * c as f32).collect();

@@ -1,44 +1,45 @@
-//! Forms in which a draw reads the exits of a void: two words on a cubic lattice, and a record of few exits
-//! on other networks.
+//! Compact forms of the exits of a void: two words on a cubic lattice, a record of few exits on other
+//! networks.
 
 use bitvec::slice::BitSlice;
 
-/// Thresholds of a cubic lattice, two words a void, and its shape.
+/// Thresholds of a cubic lattice, two words per void, and its shape.
 ///
-/// A step reads the words that suit the particles of its chunk: both kinds say the same, but the one that
-/// says it with fewer bits leaves more draws open.
+/// A step reads the words that suit the particles of its chunk. Both kinds give the same exits, but words
+/// with fewer bits per threshold leave more draws undecided.
 #[derive(Clone)]
 pub(in crate::walk) struct Lattice {
-    /// For particles that are nearly all as fine as the finest open exit of the network. Bits 16..32: top
-    /// sixteen bits of the second threshold. Bits 2..16: top fourteen bits of the first. Bit 1: +y wraps. Bit
-    /// 0: +x wraps. A void without open exits has the first above the second.
+    /// Words for chunks of particles that are nearly all as fine as the finest open exit of the network.
+    /// Bits 16..32: top sixteen bits of the second threshold. Bits 2..16: top fourteen bits of the first.
+    /// Bit 1: +y wraps. Bit 0: +x wraps. If no exit is open, the first threshold is above the second.
     pub plain: Vec<u32>,
-    /// For coarser ones, unless widths are read: like `plain`, but bits 21..32: top eleven bits of the second
-    /// threshold, and bits 16..21: class of the void's finest open exit.
+    /// Words for chunks of coarser particles, unless widths are read. They are like `plain`, but bits
+    /// 21..32 are the top eleven bits of the second threshold, and bits 16..21 the class of the void's
+    /// finest open exit.
     pub classed: Vec<u32>,
-    /// Number that a move adds to the void, modulo 2^32. Bits 0 and 1 of the index: those of a word. Bit 2:
-    /// not the first exit. Bit 3: the third exit. With the latter alone there is no open exit: a void that
-    /// does not exist.
+    /// Number that a move adds to the void, modulo 2^32. Bits 0 and 1 of the index: bits 0 and 1 of the
+    /// word. Bit 2: not the first exit. Bit 3: the third exit. Bit 3 without bit 2 means no open exit and
+    /// leads to a void that does not exist.
     pub moves: [u32; 16],
-    /// Bits, as an integer, of a diameter that no open exit is finer than. Particles up to
-    /// `finest + (class << CLASS_SHIFT)`, compared as bits, pass every open exit of a void of that class.
+    /// Bits, as an integer, of a lower bound of the diameters of open exits. Particles up to `finest +
+    /// (class << CLASS_SHIFT)`, compared as bits, pass every open exit of a void of that class.
     pub finest: u32,
-    /// True if particles are held against widths: there are no words with classes.
+    /// True if particles are compared with widths; then there are no words with classes.
     pub by_widths: bool,
     nx: u32,
     plane: u32,
 }
 
-/// Bits of a diameter below its class: 32 classes in a factor of two.
+/// Number of bits of a diameter below its class: 32 classes per factor of two.
 pub(in crate::walk) const CLASS_SHIFT: u32 = 18;
 
 /// Bits of the class in a word of [`Lattice::classed`].
 pub(in crate::walk) const CLASS: u32 = 0x001f_0000;
 
-/// Class of a void whose finest open exit is this, at its place in a word.
+/// Class of a void with this finest open exit, at its place in a word.
 #[inline]
 fn class_of(finest: f32, of_all: u32) -> u32 {
-    // Nothing opens again.
+    // Exits never reopen.
     let class = finest.to_bits().checked_sub(of_all).expect("no open exit is finer") >> CLASS_SHIFT;
     (class << 16).min(CLASS)
 }
@@ -83,24 +84,23 @@ impl Lattice {
         self.plain[void as usize] = (second as u32) << 16 | (first as u32) << 2 | wraps;
     }
 
-    /// The words with or without classes.
+    /// Words with or without classes.
     pub fn words<R: Reads>(&self) -> &[u32] {
         if R::CLASSED { &self.classed } else { &self.plain }
     }
 
-    /// Bits of a word that belong to no threshold.
+    /// Mask of the bits of a word below the thresholds.
     pub const fn below<R: Reads>() -> u32 {
         if R::CLASSED { CLASS | 3 } else { 3 }
     }
 
-    /// Tells if no exit is open, by a plain word: thresholds of open ones rise.
+    /// Tells from a plain word if no exit is open: thresholds of open exits rise.
     #[inline(always)]
     pub fn has_no_exit(plain: u32) -> bool {
         plain & 0xfffc > plain >> 16
     }
 
-    /// Exit that a draw picks by a word, unless it equals a threshold as far as the word goes, or no exit is
-    /// open.
+    /// Exit picked by a draw; `None` if no exit is open, or if the bits of the word do not decide.
     #[inline(always)]
     pub fn pick<R: Reads>(word: u32, draw: u16) -> Option<u32> {
         let below = Self::below::<R>();
@@ -114,12 +114,12 @@ impl Lattice {
     }
 }
 
-/// Ways in which a kernel of the lattice finds out which particles a constriction stops.
+/// Methods by which a lattice kernel determines which particles a constriction stops.
 pub(in crate::walk) trait Reads {
-    /// By classes of the finest open exit of each void; else, and without widths, by the finest open exit of
-    /// the network.
+    /// Compares with the class of the finest open exit of the void; if false, and without widths, with the
+    /// finest open exit of the network.
     const CLASSED: bool = false;
-    /// By the width of the very exit that a particle has chosen.
+    /// Compares with the width of the chosen exit.
     const WIDTHS: bool = false;
     /// Particles that fit may jam.
     const JAMS: bool = false;
@@ -151,35 +151,35 @@ impl Reads for Jamming {
     const JAMS: bool = true;
 }
 
-/// Open exits of a void, if they are few; else the place of its exits.
+/// Open exits of a void if they are few, otherwise the range of its exits.
 #[derive(Clone, Copy)]
 #[repr(align(32))]
 pub struct FewExits {
-    /// Top sixteen bits of the threshold of each open exit but the last; the largest number after them.
+    /// Top sixteen bits of the threshold of each open exit except the last; unused entries are the maximum.
     pub top: [u16; FEW_EXITS],
-    /// Position of each open exit among all.
+    /// Position of each open exit among all exits of the void.
     pub position: [u8; FEW_EXITS],
     pub begin: u32,
-    /// Exits of a void whose open ones do not fit in here; 0 if they fit, all are closed, or there are more
-    /// exits than this can say.
+    /// Number of exits of a void whose open exits do not fit in here; 0 if they fit, all are closed, or
+    /// the number overflows.
     pub exits: u16,
-    /// True if it has an open exit, and no more than fit in here.
+    /// True if the void has open exits and they fit in here.
     pub is_few: bool,
 }
 
 pub const FEW_EXITS: usize = 8;
 
-/// Most exits that are counted without a branch.
+/// Maximum number of exits counted without branches.
 const COUNTED: usize = 64;
 
 impl FewExits {
     pub const NONE: Self =
         Self { top: [u16::MAX; FEW_EXITS], position: [0; FEW_EXITS], begin: 0, exits: 0, is_few: false };
 
-    /// Builds it for a void whose exits from `begin` on have these thresholds, which rise where an exit is
-    /// open; `last` is the position of its last open one.
+    /// Builds the record of a void whose exits from `begin` on have these thresholds, which rise at each
+    /// open exit; `last` is the position of the last open exit.
     pub fn new(begin: u32, thresholds: &[u64], last: usize) -> Self {
-        // It cannot be foreseen which exits are open: one that is closed leaves its place to the next.
+        // It is unpredictable which exits are open: a closed exit is overwritten by the next.
         let (mut top, mut position) = ([u16::MAX; FEW_EXITS + 1], [0; FEW_EXITS + 1]);
         let (mut before, mut open) = (0, 0);
         for (place, &threshold) in thresholds[..last].iter().enumerate() {
@@ -198,27 +198,27 @@ impl FewExits {
         }
     }
 
-    /// The exit that a draw picks by its top sixteen bits, unless they do not decide.
+    /// Exit picked by the top sixteen bits of a draw; `None` if they do not decide.
     #[inline(always)]
     pub fn chosen(&self, draw: u16) -> Option<usize> {
         let passed: u16 = self.top.iter().map(|&top| u16::from(top < draw)).sum();
         let is_tie = self.top.iter().fold(false, |tie, &top| tie | (top == draw));
-        // Thresholds rise, and the last exit has no threshold.
+        // Thresholds rise, and the last exit has none.
         (!is_tie).then(|| self.begin as usize + usize::from(self.position[usize::from(passed)]))
     }
 
-    /// Exit that a draw picks if more are open than fit in here, by the upper sixteen bits of all thresholds
-    /// of the network.
+    /// Exit picked by a draw from the upper sixteen bits of all thresholds of the network, if more exits
+    /// are open than fit in here.
     #[inline(always)]
     pub fn chosen_of(&self, tops: &[u16], draw: u16) -> Option<usize> {
         let tops = &tops[self.begin as usize..][..usize::from(self.exits)];
         let passed = if tops.len() <= COUNTED {
             tops.iter().map(|&top| u16::from(top < draw)).sum::<u16>().into()
         } else {
-            // A reservoir has thousands.
+            // A reservoir has thousands of exits.
             tops.partition_point(|&top| top < draw)
         };
-        // Thresholds rise, so an equal one comes first of those that are not passed.
+        // Thresholds rise, so an equal one is the first that is not passed.
         tops.get(passed).filter(|&&top| top != draw).map(|_| self.begin as usize + passed)
     }
 }
@@ -228,7 +228,7 @@ mod tests {
     use super::super::TWO_TO_64;
     use super::*;
 
-    /// Numbers of a plain congruence.
+    /// Numbers from a linear congruential generator.
     fn numbers(mut word: u64) -> impl FnMut() -> u64 {
         move || {
             word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -245,8 +245,8 @@ mod tests {
         sums.map(|sum| (sum / total * TWO_TO_64) as u64).collect()
     }
 
-    /// Any number of exits, closed ones among them, and every sixteen-bit draw: the exit by the definition,
-    /// whatever the other bits, or no exit if these decide.
+    /// Any number of exits, some closed, and every sixteen-bit draw: the exit by definition for any other
+    /// bits, or no exit if the other bits decide.
     #[test]
     fn few_exits_are_chosen_as_by_the_definition() {
         let mut next = numbers(1);
@@ -279,9 +279,8 @@ mod tests {
         }
     }
 
-    /// Many exits, some of them closed, at the end too: the exit that the definition picks for every draw
-    /// whose upper bits decide; other draws, and voids of more exits than can be counted, are left to the
-    /// long way.
+    /// Many exits, some closed, also at the end: the exit by definition for every draw whose upper bits
+    /// decide. Other draws, and voids with more exits than can be counted, are left to the slow path.
     #[test]
     fn many_exits_are_chosen_as_by_looking_at_each() {
         let mut next = numbers(5);
@@ -298,7 +297,7 @@ mod tests {
             if few.is_few {
                 continue;
             }
-            // Seven exits of other voids come before.
+            // Seven exits of other voids come first.
             let tops: Vec<u16> =
                 [9; 7].into_iter().chain(thresholds.iter().map(|t| (t >> 48) as u16)).collect();
             let mut decided = 0;

@@ -1,4 +1,4 @@
-//! The step on the cubic lattice with AVX2: eight particles at once.
+//! Step on the cubic lattice with AVX2: eight particles at once.
 //!
 //! Both thresholds of a void are compared with the draw in one instruction, as halves of the table's word.
 
@@ -11,10 +11,10 @@ use std::arch::x86_64::*;
 
 const WIDTH: usize = 8;
 
-/// Moves the particles of one chunk; returns how many still move.
+/// Moves the particles of one chunk; returns the number still moving.
 pub(super) fn step<R: Reads>(chunk: LatticeChunk) -> usize {
     assert!(Isa::Avx2.is_available() && fits_gathers(chunk.table));
-    // SAFETY: the machine has the instructions.
+    // SAFETY: the machine supports the instructions.
     unsafe { step_vectors::<R>(chunk) }
 }
 
@@ -40,7 +40,7 @@ fn step_vectors<R: Reads>(mut chunk: LatticeChunk) -> usize {
     chunk.step_rest::<R>(|| [next_block(&mut state), next_of_jams()], kept)
 }
 
-/// Predicts like the portable `predict` of [`super::lattice`].
+/// Works like the portable `predict` of [`super::lattice`].
 #[inline]
 #[target_feature(enable = "avx2,popcnt")]
 fn predict<R: Reads>(
@@ -58,7 +58,7 @@ fn predict<R: Reads>(
     // The first eight entries of `moves` belong to the first two exits.
     // SAFETY: `moves` has sixteen entries.
     let moves = unsafe { _mm256_loadu_si256(table.moves.as_ptr().cast()) };
-    // A draw into both halves of its word.
+    // Copies each draw into both halves of its word.
     let (low, high) = (_mm_set_epi64x(0x0706_0706_0504_0504, 0x0302_0302_0100_0100), 0x0808_0808_0808_0808);
     let twice = _mm256_set_m128i(_mm_add_epi8(low, _mm_set1_epi64x(high)), low);
     let zero = _mm256_setzero_si256();
@@ -78,8 +78,8 @@ fn predict<R: Reads>(
     let draws = draws.as_chunks::<2>().0.iter().zip(jam_draws.as_chunks::<2>().0);
     for (group, (draw, jam_draw)) in draws.enumerate() {
         let (at, place) = (begin + WIDTH * group, kept + WIDTH * group);
-        // SAFETY: eight entries from `at` on are within both columns, as asserted, and the voids within the
-        // table: entries written since they were checked lie before `at`.
+        // SAFETY: eight entries from `at` on are within both columns, as asserted, and the voids are
+        // within the table: entries written since the check lie before `at`.
         let (from, d, word) = unsafe {
             (
                 _mm256_loadu_si256(void.add(at).cast()),
@@ -91,7 +91,7 @@ fn predict<R: Reads>(
         let draw = unsafe { _mm_loadu_si128(draw.as_ptr().cast()) };
         let draw = _mm256_or_si256(_mm256_shuffle_epi8(_mm256_broadcastsi128_si256(draw), twice), below);
 
-        // Upper half: no less than the second threshold. Lower half: than the first.
+        // Upper half: draw at least the second threshold. Lower half: draw at least the first.
         let past = _mm256_cmpeq_epi16(_mm256_subs_epu16(word, draw), zero);
         let tie = _mm256_cmpeq_epi16(_mm256_or_si256(word, below), draw);
         let sideways = _mm256_or_si256(
@@ -102,8 +102,8 @@ fn predict<R: Reads>(
         let by = _mm256_castps_si256(_mm256_blendv_ps(by, downstream, _mm256_castsi256_ps(past)));
         let to = _mm256_add_epi32(from, by);
 
-        // The sign is set for: leaves (neither reaches 2^31), no open exit, a tie in either half, perhaps too
-        // coarse.
+        // The sign is set if the particle leaves (neither reaches 2^31), no exit is open, either half
+        // ties, or it may be too coarse.
         let out = _mm256_cmpgt_epi32(to, last);
         let closed = _mm256_andnot_si256(_mm256_slli_epi32::<16>(past), past);
         let tie = _mm256_or_si256(tie, _mm256_slli_epi32::<16>(tie));
@@ -113,7 +113,7 @@ fn predict<R: Reads>(
             passes = _mm256_add_epi32(finest, _mm256_slli_epi32::<{ CLASS_UP as i32 }>(class));
         }
         let coarse = if R::WIDTHS {
-            // The exit by its place: the second if past the first threshold alone, the third if past the
+            // Position of the exit: the second if past the first threshold only, the third if past the
             // second.
             let past_second = _mm256_srli_epi32::<31>(past);
             let past_either = _mm256_or_si256(_mm256_and_si256(past, _mm256_set1_epi32(1)), past_second);
@@ -154,8 +154,8 @@ fn load_reach(reach: &Reach) -> [__m256; 4] {
     [0, 1, 2, 3].map(|part| unsafe { _mm256_loadu_ps(parts[part].as_ptr()) })
 }
 
-/// Reach of eight draws: by [`Arching::class_of`](crate::walk::arching::Arching::class_of), whose lower three
-/// bits are a place in a register and whose upper two say in which.
+/// Reach of eight draws by [`Arching::class_of`](crate::walk::arching::Arching::class_of): its lower three
+/// bits are a place in a register, its upper two bits select the register.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn reach_of(reach: [__m256; 4], draws: __m128i) -> __m256 {
@@ -170,22 +170,22 @@ fn reach_of(reach: [__m256; 4], draws: __m128i) -> __m256 {
     _mm256_blendv_ps(lower, upper, _mm256_castsi256_ps(half))
 }
 
-/// Words of the table for eight voids: eight loads, which take less time than a gather.
+/// Words of the table for eight voids, by eight loads, which are faster than a gather.
 ///
-/// The voids, too, are loaded one by one: to take them out of a vector register takes longer. A compiler that
-/// sees that they are in one would.
+/// The voids are also loaded one by one, as extracting them from a vector register is slower. The volatile
+/// read keeps the compiler from doing that.
 ///
 /// # Safety
-/// There are eight entries at `voids`, each less than the table's length.
+/// There must be eight entries at `voids`, each less than the length of the table.
 #[inline]
 #[target_feature(enable = "avx2")]
 pub(super) unsafe fn look_up(table: &[u32], voids: *const u32) -> __m256i {
-    // SAFETY: as asked for.
+    // SAFETY: as the caller promises.
     let word = |j: usize| unsafe { *table.get_unchecked(voids.add(j).read_volatile() as usize) as i32 };
     _mm256_setr_epi32(word(0), word(1), word(2), word(3), word(4), word(5), word(6), word(7))
 }
 
-/// By mask of the lanes that are gone: the lanes that stay, in order, then any.
+/// Lanes that stay, in order, then any others, by mask of the lanes that are gone.
 static STAYING: [[u32; WIDTH]; 1 << WIDTH] = staying();
 
 const fn staying() -> [[u32; WIDTH]; 1 << WIDTH] {
@@ -205,7 +205,7 @@ const fn staying() -> [[u32; WIDTH]; 1 << WIDTH] {
     table
 }
 
-/// Closes up the block of particles from `kept` on over those that are gone; returns its new end.
+/// Compacts the block of particles from `kept` on, removing those that are gone; returns its new end.
 #[inline]
 #[target_feature(enable = "avx2,popcnt")]
 fn close_up(chunk: &mut LatticeChunk, kept: usize, gone: u64) -> usize {
@@ -228,7 +228,7 @@ fn close_up(chunk: &mut LatticeChunk, kept: usize, gone: u64) -> usize {
     end
 }
 
-/// The generators of a stream, four of them by register: one state word a row.
+/// Generators of a stream, four per register, with one state word per row.
 type State = [[__m256i; 2]; 4];
 
 #[inline]
@@ -241,7 +241,7 @@ fn load_state(lanes: &Lanes) -> State {
     })
 }
 
-/// [`Lanes::next_block`] in registers.
+/// Works like [`Lanes::next_block`], in registers.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn next_block(state: &mut State) -> [u64; LANES] {
@@ -252,7 +252,7 @@ fn next_block(state: &mut State) -> [u64; LANES] {
         for (row, word) in state.iter_mut().zip(next) {
             row[half] = word;
         }
-        // SAFETY: four words.
+        // SAFETY: the array has four words.
         unsafe { _mm256_storeu_si256(words.as_mut_ptr().cast(), out) };
     }
     words

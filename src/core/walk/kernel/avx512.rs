@@ -1,9 +1,9 @@
-//! The step on the cubic lattice with AVX-512: sixteen particles at once.
+//! Step on the cubic lattice with AVX-512: sixteen particles at once.
 //!
-//! The generator stays in four registers; constriction diameters are gathered for particles alone that may be
-//! coarser than the void's finest open exit. Particles that still move are brought together in a register and
-//! stored as whole vectors: the entries behind them have been read. Only draws that tie with a threshold are
-//! looked at one by one.
+//! The generator stays in four registers; constriction diameters are gathered only for particles that may
+//! be coarser than the void's finest open exit. Particles that still move are compacted in a register and
+//! stored as whole vectors, since the entries overwritten have been read. Only draws that tie with a
+//! threshold are processed one by one.
 
 use super::avx2;
 use super::lattice::{BLOCK, CLASS_UP, LatticeChunk, PAST_FIRST, PAST_SECOND, fits_gathers};
@@ -15,10 +15,10 @@ use std::arch::x86_64::*;
 
 const WIDTH: usize = 16;
 
-/// Moves the particles of one chunk; returns how many still move.
+/// Moves the particles of one chunk; returns the number still moving.
 pub(super) fn step<R: Reads>(chunk: LatticeChunk) -> usize {
     assert!(Isa::Avx512.is_available() && fits_gathers(chunk.table));
-    // SAFETY: the machine has the instructions.
+    // SAFETY: the machine supports the instructions.
     unsafe { step_vectors::<R>(chunk) }
 }
 
@@ -60,7 +60,7 @@ fn step_vectors<R: Reads>(mut chunk: LatticeChunk) -> usize {
             let word = unsafe { look_up(words, chunk.void.as_ptr().add(begin)) };
             let draw = _mm512_or_si512(_mm512_permutexvar_epi16(twice, draws), below);
 
-            // Upper half of a lane: no less than the second threshold. Lower half: than the first.
+            // Upper half of a lane: draw at least the second threshold. Lower half: draw at least the first.
             let past = _mm512_movm_epi16(_mm512_cmpge_epu16_mask(draw, word));
             let tie = _mm512_cmpeq_epu16_mask(_mm512_or_si512(word, below), draw);
             let past_first = _mm512_and_si512(past, _mm512_set1_epi32(PAST_FIRST as i32));
@@ -72,7 +72,7 @@ fn step_vectors<R: Reads>(mut chunk: LatticeChunk) -> usize {
                 index = decide(&chunk, begin, draws, half, tie, index);
             }
             let mut to = _mm512_add_epi32(from, _mm512_permutexvar_epi32(index, moves));
-            // Those without an open exit, too.
+            // Includes particles without an open exit.
             let out = _mm512_cmpge_epu32_mask(to, voids);
             let mut passes = finest;
             if R::CLASSED {
@@ -92,8 +92,8 @@ fn step_vectors<R: Reads>(mut chunk: LatticeChunk) -> usize {
                 let able = coarse & !stranded;
                 if able != 0 {
                     let constriction = constriction(from, index);
-                    // SAFETY: voids are less than the table's length (no lane is outside here) and exits less
-                    // than 3, so that constrictions are less than 3 times it, the number of widths.
+                    // SAFETY: voids are less than the length of the table (no lane is outside here) and exits
+                    // less than 3, so constrictions are less than 3 times that length, the number of widths.
                     let width = unsafe {
                         _mm512_mask_i32gather_epi32::<4>(zero, able, constriction, widths.as_ptr().cast())
                     };
@@ -132,16 +132,16 @@ fn step_vectors<R: Reads>(mut chunk: LatticeChunk) -> usize {
 /// Words of the table for sixteen voids, by [`avx2::look_up`].
 ///
 /// # Safety
-/// There are sixteen entries at `voids`, each less than the table's length.
+/// There must be sixteen entries at `voids`, each less than the length of the table.
 #[inline]
 #[target_feature(enable = "avx512f")]
 unsafe fn look_up(table: &[u32], voids: *const u32) -> __m512i {
-    // SAFETY: as asked for.
+    // SAFETY: as the caller promises.
     let (low, high) = unsafe { (avx2::look_up(table, voids), avx2::look_up(table, voids.add(WIDTH / 2))) };
     _mm512_inserti64x4::<1>(_mm512_castsi256_si512(low), high)
 }
 
-/// The order that brings draws `first .. first + 16` of a block into both halves of sixteen lanes.
+/// Permutation that puts draws `first .. first + 16` of a block into both halves of sixteen lanes.
 #[inline]
 #[target_feature(enable = "avx512f,avx512bw")]
 fn twice(first: i32) -> __m512i {
@@ -150,7 +150,7 @@ fn twice(first: i32) -> __m512i {
     _mm512_or_si512(draws, _mm512_slli_epi32::<16>(draws))
 }
 
-/// `index` with the exits that the draws with ties, in either half of a lane, pick by all of their bits.
+/// Resolves the ties in either half of a lane with all bits of the draws; returns `index` with these exits.
 #[cold]
 #[inline(never)]
 #[target_feature(enable = "avx512f")]
@@ -164,7 +164,7 @@ fn decide(
 ) -> __m512i {
     let words = block_of(draws);
     let mut indices = [0u32; WIDTH];
-    // SAFETY: sixteen entries.
+    // SAFETY: the array has sixteen entries.
     unsafe { _mm512_storeu_si512(indices.as_mut_ptr().cast(), index) };
     while ties != 0 {
         let j = ties.trailing_zeros() as usize / 2;
@@ -173,7 +173,7 @@ fn decide(
         let past = exit.map_or(PAST_SECOND, |exit| [0, PAST_FIRST, PAST_FIRST | PAST_SECOND][exit as usize]);
         indices[j] = indices[j] & 3 | past;
     }
-    // SAFETY: sixteen entries.
+    // SAFETY: the array has sixteen entries.
     unsafe { _mm512_loadu_si512(indices.as_ptr().cast()) }
 }
 
@@ -185,14 +185,14 @@ fn load_reach(reach: &Reach) -> [__m512; 2] {
     [0, 1].map(|part| unsafe { _mm512_loadu_ps(parts[part].as_ptr()) })
 }
 
-/// Sixteen draws of a block: its first or its second half.
+/// Sixteen draws of a block, its first or second half.
 #[inline]
 #[target_feature(enable = "avx512f")]
 fn half_of(draws: __m512i, half: usize) -> __m256i {
     if half == 0 { _mm512_castsi512_si256(draws) } else { _mm512_extracti64x4_epi64::<1>(draws) }
 }
 
-/// Reach of sixteen draws: by [`Arching::class_of`](crate::walk::arching::Arching::class_of).
+/// Reach of sixteen draws by [`Arching::class_of`](crate::walk::arching::Arching::class_of).
 #[inline]
 #[target_feature(enable = "avx512f")]
 fn reach_of(reach: [__m512; 2], draws: __m256i) -> __m512 {
@@ -203,9 +203,9 @@ fn reach_of(reach: [__m512; 2], draws: __m256i) -> __m512 {
     _mm512_permutex2var_ps(reach[0], class, reach[1])
 }
 
-/// Lanes that jam, of those that may: asked one by one, in order, with the constriction that each has chosen,
-/// its size and the block of the draws by which they jam. Those that leave or are stopped for another reason
-/// have a bit in `gone`; `kept` before this vector still move.
+/// Lanes that jam, of those that may, tested one by one in order, with the chosen constriction, the size
+/// and the block of draws for jamming. `gone` has a bit for each lane that leaves or is stopped for
+/// another reason; `kept` particles before this vector still move.
 #[inline(never)]
 #[target_feature(enable = "avx512f,popcnt")]
 fn jammed(
@@ -234,7 +234,7 @@ fn jammed(
     jammed
 }
 
-/// Constriction that each lane's draw picks, by the index of its move.
+/// Constriction picked by the draw of each lane, from the index of its move.
 #[inline]
 #[target_feature(enable = "avx512f")]
 fn constriction(from: __m512i, index: __m512i) -> __m512i {
@@ -246,7 +246,7 @@ fn constriction(from: __m512i, index: __m512i) -> __m512i {
     _mm512_mask_add_epi32(exit, past_second, exit, one)
 }
 
-/// Appends place and diameter of some lanes.
+/// Appends the place and the diameter of some lanes.
 #[inline]
 #[target_feature(enable = "avx512f")]
 fn note(column: &mut Vec<(u32, f32)>, place: __m512i, d: __m512i, lanes: __mmask16) {
@@ -267,7 +267,7 @@ fn note(column: &mut Vec<(u32, f32)>, place: __m512i, d: __m512i, lanes: __mmask
 #[target_feature(enable = "avx512f,popcnt")]
 fn note_eroded(column: &mut Vec<f32>, d: __m512i, eroded: __mmask16) {
     column.reserve(WIDTH);
-    // SAFETY: there is room for sixteen; as many of the first as lanes eroded are values.
+    // SAFETY: there is room for sixteen; the new length covers only the values of eroded lanes.
     unsafe {
         let end = column.as_mut_ptr().add(column.len());
         _mm512_storeu_si512(end.cast(), _mm512_maskz_compress_epi32(eroded, d));
@@ -275,7 +275,7 @@ fn note_eroded(column: &mut Vec<f32>, d: __m512i, eroded: __mmask16) {
     }
 }
 
-/// The generators of a stream, one state word by register.
+/// Generators of a stream, one state word per register.
 #[inline]
 #[target_feature(enable = "avx512f")]
 fn load_state(lanes: &Lanes) -> [__m512i; 4] {
@@ -283,7 +283,7 @@ fn load_state(lanes: &Lanes) -> [__m512i; 4] {
     lanes.state().each_ref().map(|row| unsafe { _mm512_loadu_si512(row.as_ptr().cast()) })
 }
 
-/// [`Lanes::next_block`] in registers.
+/// Works like [`Lanes::next_block`], in registers.
 #[inline]
 #[target_feature(enable = "avx512f")]
 fn next_block(state: &mut [__m512i; 4]) -> __m512i {
@@ -302,7 +302,7 @@ fn next_block(state: &mut [__m512i; 4]) -> __m512i {
 #[target_feature(enable = "avx512f")]
 fn block_of(block: __m512i) -> [u64; LANES] {
     let mut words = [0; LANES];
-    // SAFETY: eight words.
+    // SAFETY: the array has eight words.
     unsafe { _mm512_storeu_si512(words.as_mut_ptr().cast(), block) };
     words
 }

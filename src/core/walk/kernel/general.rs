@@ -1,4 +1,4 @@
-//! The step on any network: exits and targets by look-up.
+//! Step on any network: exits and targets by look-up.
 
 use super::lattice::fetch;
 use crate::network::{END, Network};
@@ -7,10 +7,10 @@ use crate::walk::Arching;
 use crate::walk::chunks::{Events, Jam};
 use crate::walk::exits::{General, NONE, WAIT};
 
-/// Particles between one that chooses and the one whose exits are asked for then.
+/// Number of particles by which exits are prefetched ahead.
 const AHEAD: usize = 24;
 
-/// Moves the particles of one chunk, which may arch; returns how many still move.
+/// Moves the particles of one chunk, which may arch; returns the number still moving.
 pub(super) fn step(
     network: &Network,
     table: &General,
@@ -20,7 +20,7 @@ pub(super) fn step(
     diameter: &mut [f32],
     events: &mut Events,
 ) -> usize {
-    // Two loops, one of them without arches.
+    // Two loops, one of them without arching.
     match jams {
         None => step_all(network, table, key, void, diameter, events, None),
         jams => step_all(network, table, key, void, diameter, events, jams),
@@ -39,8 +39,8 @@ impl<'a> Jams<'a> {
         Self { arching, extension: lanes.extension(), lanes, block: [0; LANES] }
     }
 
-    /// Jam of the particle at place `j` in this exit, which it fits; `rank` particles before it still move.
-    /// `None` if it passes.
+    /// Jam of the particle at place `j` in this exit, which it fits, or `None` if it passes; `rank`
+    /// particles before it still move.
     #[inline]
     fn jam(&self, j: usize, (exit, width): (u32, f32), d: f32, rank: usize) -> Option<Jam> {
         let draw = draw16(&self.block, j % DRAWS_PER_BLOCK);
@@ -53,7 +53,7 @@ impl<'a> Jams<'a> {
     }
 }
 
-/// The step; particles that fit may jam by `jams`.
+/// Performs the step; particles that fit may jam by `jams`.
 #[inline(always)]
 fn step_all(
     network: &Network,
@@ -74,8 +74,8 @@ fn step_all(
             jams.block = jams.lanes.next_block();
         }
         let particles = begin..void.len().min(begin + DRAWS_PER_BLOCK);
-        // All particles of a block choose before any moves: a distant read of one does not wait for another's
-        // move.
+        // All particles of a block choose before any of them moves, so that distant reads do not wait for
+        // moves.
         for (chosen, j) in chosen.iter_mut().zip(particles.clone()) {
             if let Some(&next) = void.get(j + AHEAD) {
                 fetch(&table.few, next as usize);
@@ -133,16 +133,16 @@ fn step_all(
     kept
 }
 
-/// Where a particle goes.
+/// Choice of a particle.
 #[derive(Clone, Copy)]
 enum Chosen {
-    /// Through this exit, where it fits.
+    /// This exit, if it fits.
     Exit(u32),
     None,
     Wait,
 }
 
-/// Exit by the definition: of any number of them, and with all bits of the draw where they are needed.
+/// Exit by definition, for any number of exits, with all bits of the draw if needed.
 #[cold]
 #[inline(never)]
 fn any(
@@ -164,7 +164,7 @@ fn any(
     Chosen::Exit(chosen.map_or(last_open, |e| (exits.start + e) as u32))
 }
 
-/// The first exit whose threshold exceeds the draw; sixteen bits decide unless they are equal.
+/// First exit whose threshold exceeds the draw; sixteen bits decide unless they are equal.
 #[inline]
 fn choose(thresholds: &[u64], draw: u16, index: usize, extension: Extension) -> Option<usize> {
     let is_above = |threshold: u64| {
@@ -174,8 +174,8 @@ fn choose(thresholds: &[u64], draw: u16, index: usize, extension: Extension) -> 
     if thresholds.len() <= LOOKED_AT {
         return thresholds.iter().position(|&threshold| is_above(threshold));
     }
-    // Thresholds rise. A reservoir has thousands: whole numbers are compared without a branch, and all bits
-    // of the draw are asked for in a tie alone.
+    // Thresholds rise. A reservoir has thousands of them: integers are compared without branches, and all
+    // bits of the draw are used only in a tie.
     let passed = thresholds.partition_point(|&threshold| threshold < u64::from(draw) << 48);
     let rest = &thresholds[passed..];
     let first = match rest.first() {
@@ -185,7 +185,7 @@ fn choose(thresholds: &[u64], draw: u16, index: usize, extension: Extension) -> 
     (first < rest.len()).then_some(passed + first)
 }
 
-/// Most exits that are looked at one after another.
+/// Maximum number of exits searched linearly.
 const LOOKED_AT: usize = 16;
 
 #[cfg(test)]
@@ -193,7 +193,7 @@ mod tests {
     use super::*;
     use crate::stream::Purpose;
 
-    /// Thousands of exits, many with equal upper bits or closed, against a look at each.
+    /// Thousands of exits, many closed or with equal upper bits, compared with a linear search.
     #[test]
     fn an_exit_of_thousands_is_found_as_by_looking_at_each() {
         let key = Key { seed: 3, purpose: Purpose::Step, run: 1, increment: 1, chunk: 0 };
@@ -207,7 +207,7 @@ mod tests {
         for exits in [17, 100, 3000] {
             let mut thresholds: Vec<u64> = (0..exits).map(|_| next()).collect();
             for first in (0..exits - 5).step_by(10) {
-                // Thresholds such as closed exits have, and others that differ below.
+                // Thresholds as of closed exits, and others that differ in lower bits.
                 thresholds[first + 1] = thresholds[first];
                 thresholds[first + 2] = thresholds[first] ^ 1 << 47;
                 thresholds[first + 3] = thresholds[first] ^ 0xff << 40;

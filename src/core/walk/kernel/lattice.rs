@@ -1,20 +1,19 @@
-//! The step on the cubic lattice: one table word a void, targets by arithmetic. The portable kernel, and the
-//! parts that the vector kernels share with it.
+//! Step on the cubic lattice: one table word per void, targets by arithmetic. This is the portable kernel,
+//! with the parts that the vector kernels share.
 //!
-//! It and the AVX2 kernel take a block of particles at a time. They predict where these go, without a branch,
-//! and say for which that may be wrong: a draw that equals a threshold as far as the table's word goes, no
-//! open exit, coarser than the void's finest open exit may be, leaves. Those few then go the long way
-//! ([`LatticeChunk::settle`]), one by one and in order.
+//! It and the AVX2 kernel process a block of particles at a time. They predict the moves without branches
+//! and mark those that may be wrong: the draw equals a threshold in the bits of the table word, no exit is
+//! open, the particle may be coarser than the void's finest open exit, or it leaves. Those few then take
+//! the slow path ([`LatticeChunk::settle`]), one by one and in order.
 //!
-//! The halves of a table word hold the two thresholds above other bits ([`Lattice::below`]); beside a draw
-//! with ones in place of those bits, a half is no greater exactly where the draw is no less than the
-//! threshold, unless the two are equal in the bits that the word has. Every kernel reads the words with
-//! classes or those without, whichever suit the chunk ([`reads_classes`]): both lead to the same bits.
+//! The halves of a table word hold the two thresholds above other bits ([`Lattice::below`]). Compared with
+//! a draw that has ones in place of those bits, a half is no greater if and only if the draw is at least
+//! the threshold, unless the two are equal in the bits of the word. Every kernel reads the words with or
+//! without classes, whichever suit the chunk ([`reads_classes`]): both give the same bits.
 //!
-//! Where particles arch, or blocked constrictions leave openings, a particle is held against the width of the
-//! exit that it chose. One that may jam is taken as larger than it is, as far as its draw reaches
-//! ([`Arching::reach`]): a particle that is then no finer than that width goes the long way, where the law
-//! decides.
+//! If particles arch or blocked constrictions leave openings, a particle is compared with the width of its
+//! chosen exit. If it may jam, its size is first multiplied by the reach of its draw ([`Arching::reach`]):
+//! a particle then no finer than the width takes the slow path, where the law decides.
 
 use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
 use crate::walk::arching::{Arching, Reach};
@@ -27,28 +26,28 @@ pub(super) const BLOCK: usize = 2 * DRAWS_PER_BLOCK;
 
 pub(super) type Draws = [u64; 2 * LANES];
 
-/// Shift from a class at its place in a word to its place in the bits of a diameter.
+/// Shift of a class from its place in a word to its place in the bits of a diameter.
 pub(super) const CLASS_UP: u32 = CLASS_SHIFT - CLASS.trailing_zeros();
 
-/// Bit of an index of [`Lattice::moves`]: the draw is no less than the first threshold.
+/// Bit of an index of [`Lattice::moves`]: the draw is at least the first threshold.
 pub(super) const PAST_FIRST: u32 = 4;
 
-/// Bit of an index of [`Lattice::moves`]: the draw is no less than the second threshold.
+/// Bit of an index of [`Lattice::moves`]: the draw is at least the second threshold.
 pub(super) const PAST_SECOND: u32 = 8;
 
-/// Particles between one that moves and the one whose columns are asked for then.
+/// Number of particles by which columns are prefetched ahead.
 const AHEAD: usize = 256;
 
-/// Entries of a column that come from memory together.
+/// Number of column entries in a cache line.
 const LINE: usize = 16;
 
-/// Asks for the first particles of a chunk, before anything is read of it.
+/// Prefetches the first particles of a chunk before any is read.
 pub(super) fn fetch_first(void: &[u32], diameter: &[f32]) {
     fetch_range(void, diameter, 0..AHEAD);
 }
 
-/// Asks for a range of particles, of this chunk or those that lie behind it: beside the words of the table,
-/// read in no order, the machine does not do so by itself in time.
+/// Prefetches a range of particles, of this chunk or the next ones: with random reads of table words in
+/// between, the processor does not prefetch them in time.
 #[inline(always)]
 fn fetch_range(void: &[u32], diameter: &[f32], range: Range<usize>) {
     for at in range.step_by(LINE) {
@@ -57,39 +56,39 @@ fn fetch_range(void: &[u32], diameter: &[f32], range: Range<usize>) {
     }
 }
 
-/// First particles of a chunk, which represent all of it.
+/// Number of first particles of a chunk that represent all of it.
 const SAMPLE: usize = 256;
 
-/// Particles of a sample that are not passive, up to which it takes less time to look at each of them than to
-/// read classes: at 3 in 100 it takes a third more.
+/// Maximum number of non-passive particles in a sample for which the slow path is faster than reading
+/// classes; at 3 in 100 it takes a third longer.
 const FEW_COARSE: usize = 1;
 
-/// Tells if the particles of a chunk are better off with words that have classes: more than a few are not
-/// passive. A question of time alone.
+/// Tells if words with classes are faster for a chunk: more than a few of its particles are not passive.
+/// Results do not depend on it.
 pub(super) fn reads_classes(diameter: &[f32], passive_limit: f32) -> bool {
     let sample = &diameter[..diameter.len().min(SAMPLE)];
     sample.iter().map(|&d| usize::from(d > passive_limit)).sum::<usize>() > FEW_COARSE
 }
 
-/// Tells if there is a void, and every constriction has a number that a gather can use as an offset.
+/// Tells if there is a void, and every constriction number can be the offset of a gather.
 #[cfg(target_arch = "x86_64")]
 pub(super) fn fits_gathers(table: &Lattice) -> bool {
     (1..=i32::MAX as usize).contains(&(3 * table.plain.len()))
 }
 
-/// The moving particles of one chunk, and the columns that their step reads and writes.
+/// Moving particles of one chunk, and the columns that their step reads and writes.
 pub(super) struct LatticeChunk<'a> {
     pub exits: &'a OpenExits<'a>,
     pub table: &'a Lattice,
     pub lanes: Lanes,
-    /// Law by which its particles arch, and their stream; only if they arch.
+    /// Law of arching and its stream, if particles arch.
     pub jams: Option<(&'a Arching, Lanes)>,
     pub void: &'a mut [u32],
     pub diameter: &'a mut [f32],
     pub events: &'a mut Events,
 }
 
-/// Moves the particles of one chunk; returns how many still move.
+/// Moves the particles of one chunk; returns the number still moving.
 #[inline(never)]
 pub(super) fn step<R: Reads>(mut chunk: LatticeChunk) -> usize {
     let mut lanes = chunk.lanes.clone();
@@ -116,8 +115,8 @@ pub(super) fn step<R: Reads>(mut chunk: LatticeChunk) -> usize {
     )
 }
 
-/// Particles whose ways are predicted at once: with 8 the compiler makes no vector code of it, and of 32 the
-/// registers do not hold the passes.
+/// Number of particles predicted at once: with 8 the compiler does not vectorise, and 32 do not fit in the
+/// registers.
 const PART: usize = 16;
 
 static BITS: [u32; PART] = {
@@ -130,10 +129,10 @@ static BITS: [u32; PART] = {
     bits
 };
 
-/// Predicts where the part of a block of particles from `begin` on goes, and writes it, and their diameters,
-/// from `kept` on. Where the prediction may be wrong there is a bit, and the void that the particle is in.
+/// Predicts the moves of part of a block of particles from `begin` on; writes voids and diameters from
+/// `kept` on. A particle whose prediction may be wrong gets a bit and keeps its void.
 ///
-/// Passes of arithmetic alone over halves of words and whole words: they compile to vector code.
+/// It consists of arithmetic passes over halves of words and whole words, which compile to vector code.
 #[inline]
 fn predict<R: Reads>(
     chunk: &mut LatticeChunk,
@@ -144,19 +143,19 @@ fn predict<R: Reads>(
     let (table, words) = (chunk.table, chunk.table.words::<R>());
     let (from, d): (&[u32; PART], &[f32; PART]) =
         (chunk.void[begin..].first_chunk().unwrap(), chunk.diameter[begin..].first_chunk().unwrap());
-    // One check for all: a check for each takes as long as the reads. Signed numbers compare in vector code.
+    // One check for all, as single checks take as long as the reads. Signed numbers compare in vector code.
     let signed = |void: u32| (void ^ 1 << 31) as i32;
     let end = signed(u32::try_from(words.len()).unwrap_or(u32::MAX));
     let outside = from.iter().fold(0, |outside, &from| outside | ones(signed(from) >= end));
     assert!(outside == 0, "a void beyond the lattice");
-    // A map takes a third longer.
+    // `map` takes a third longer.
     let mut word = [0; PART];
     for (word, &from) in word.iter_mut().zip(from) {
-        // SAFETY: no void is beyond the words, as asserted.
+        // SAFETY: every void has a word, as asserted.
         *word = unsafe { *words.get_unchecked(from as usize) };
     }
     let draws: [u16; PART] = bytemuck::cast(draws.map(u64::to_le));
-    // The size that counts, and the width of the exit that it chose.
+    // Effective size of each particle, and width of its chosen exit.
     let (mut size, mut width) = (*d, [f32::INFINITY; PART]);
     if R::JAMS {
         let jam_draws: [u16; PART] = bytemuck::cast(jam_draws.map(u64::to_le));
@@ -207,21 +206,21 @@ fn predict<R: Reads>(
     u64::from(rare)
 }
 
-/// All bits if `yes`, else 0: conditions as arithmetic.
+/// All bits if `yes`, otherwise 0, for conditions as arithmetic.
 #[inline(always)]
 fn ones(yes: bool) -> u32 {
     0u32.wrapping_sub(u32::from(yes))
 }
 
 impl<'a> LatticeChunk<'a> {
-    /// Asks for the columns some way behind the `count` particles from `begin` on.
+    /// Prefetches the columns some way ahead of the `count` particles from `begin` on.
     #[inline(always)]
     pub fn fetch_ahead(&self, begin: usize, count: usize) {
         fetch_range(self.void, self.diameter, begin + AHEAD..begin + AHEAD + count);
     }
 
-    /// Takes the particles of the block from `begin` on that have a bit in `rare` the long way, by the draws
-    /// of both streams; all were written from `kept` on. Returns a bit for each that is gone from there.
+    /// Sends the particles of the block from `begin` on with a bit in `rare` through the slow path, by the
+    /// draws of both streams; all were written from `kept` on. Returns a bit for each that is gone.
     #[inline]
     pub fn settle<R: Reads>(&mut self, begin: usize, draws: [&Draws; 2], mut rare: u64, kept: usize) -> u64 {
         let mut gone = 0u64;
@@ -238,7 +237,7 @@ impl<'a> LatticeChunk<'a> {
         gone
     }
 
-    /// Closes up the block of particles from `kept` on over those that are gone; returns its new end.
+    /// Compacts the block of particles from `kept` on, removing those that are gone; returns its new end.
     #[inline]
     fn close_up(&mut self, kept: usize, mut gone: u64) -> usize {
         let (mut done, mut end) = (kept, kept);
@@ -255,7 +254,7 @@ impl<'a> LatticeChunk<'a> {
         end
     }
 
-    /// Moves the particles left after whole blocks, by the blocks of both streams that come next; `kept`
+    /// Moves the particles left after whole blocks, by the next blocks of both streams; `kept` particles
     /// before them still move.
     pub fn step_rest<R: Reads>(
         &mut self,
@@ -280,8 +279,8 @@ impl<'a> LatticeChunk<'a> {
         kept
     }
 
-    /// Attempts the move of the particle at `place` by draw `index` of both streams in full; returns the void
-    /// where it is then, if it still moves. `rank` particles before it do.
+    /// Attempts the move of the particle at `place` by all bits of draw `index` of both streams; returns
+    /// its new void, if it still moves. `rank` particles before it still move.
     #[inline]
     fn attempt<R: Reads>(
         &mut self,
@@ -313,8 +312,8 @@ impl<'a> LatticeChunk<'a> {
         Some(to)
     }
 
-    /// Tells if a particle that fits jams in a constriction by draw `index`; a jam is noted, with the number
-    /// of particles before it that still move.
+    /// Tells if a particle that fits jams in a constriction by draw `index`; records a jam with `rank`,
+    /// the number of particles before it that still move.
     pub fn jams(&mut self, exit: u32, diameter: f32, [index, rank]: [usize; 2], draw: u16) -> bool {
         let Some((arching, lanes)) = &self.jams else { return false };
         let word = lanes.extension().complete(draw, index as u64);
@@ -325,7 +324,7 @@ impl<'a> LatticeChunk<'a> {
         jam.is_some()
     }
 
-    /// Stream by which particles jam, if they do; else the stream of the step, unused.
+    /// Stream for jamming; without jamming, the stream of the step, unused.
     pub fn jam_lanes<R: Reads>(&self) -> Lanes {
         let jams = self.jams.as_ref().filter(|_| R::JAMS);
         jams.map_or_else(|| self.lanes.clone(), |(_, lanes)| lanes.clone())
@@ -336,8 +335,7 @@ impl<'a> LatticeChunk<'a> {
         self.jams.as_ref().expect("particles jam").0.reach()
     }
 
-    /// Exit picked by a draw for which a word with classes may have too few bits; `None` where no exit is
-    /// open.
+    /// Exit picked by a draw if a word with classes may have too few bits; `None` if no exit is open.
     #[cold]
     pub fn undecided(&self, void: u32, index: usize, draw: u16) -> Option<u32> {
         let word = self.table.plain[void as usize];
@@ -355,7 +353,7 @@ impl<'a> LatticeChunk<'a> {
 }
 
 impl Lattice {
-    /// Void that exit `exit` of void `from` leads to; past the last void where it leaves.
+    /// Target of exit `exit` of void `from`; past the last void if the exit leaves the filter.
     #[inline(always)]
     fn target(&self, from: u32, exit: u32, word: u32) -> u32 {
         let index = word & 3 | [0, PAST_FIRST, PAST_FIRST | PAST_SECOND][exit as usize];
@@ -363,13 +361,13 @@ impl Lattice {
     }
 }
 
-/// Asks for an entry of a column, or of the memory behind it, before it is read.
+/// Prefetches an entry of a column, or of the memory after it.
 #[inline(always)]
 pub(super) fn fetch<T>(column: &[T], at: usize) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        // SAFETY: nothing is read, whatever the address.
+        // SAFETY: nothing is read at any address.
         unsafe { _mm_prefetch::<_MM_HINT_T0>(column.as_ptr().wrapping_add(at).cast()) };
     }
     #[cfg(not(target_arch = "x86_64"))]

@@ -1,4 +1,4 @@
-//! The step: every moving particle of a chunk attempts one move, those inserted in this increment included.
+//! Step: every moving particle of a chunk attempts one move, including those inserted in this increment.
 //!
 //! A kernel is a pure function of the network, the exits open at the start of the increment, the chunk and
 //! its stream; it writes to its own chunk and events only.
@@ -20,8 +20,8 @@ use crate::stream::{Key, Lanes, Purpose};
 use general::Jams;
 use lattice::LatticeChunk;
 
-/// Inserts this increment's particles and moves those of all chunks, in parallel where that pays; the results
-/// are in `events`.
+/// Inserts the particles of this increment and moves those of all chunks, in parallel if that pays;
+/// results are in `events`.
 pub(super) fn step(
     network: &Network,
     table: &ExitTable,
@@ -40,7 +40,7 @@ pub(super) fn step(
         table,
         ways: match &state.openings {
             None => Ways::Unblocked(&state.blocked),
-            // No lattice table exists where water sets the weights, and only such a table asks for them.
+            // Only lattice tables use these weights, and there is none if water sets the weights.
             Some(openings) => Ways::Openings(&openings.widths, Weighed::Whole),
         },
         widths: state.openings.as_ref().map_or(network.diameters(), |openings| &openings.widths),
@@ -65,14 +65,13 @@ pub(super) fn step(
     });
 }
 
-/// Attempted moves that take as long as a chunk with hardly any.
+/// Cost of a nearly empty chunk, in attempted moves.
 const EMPTY_CHUNK: u64 = 16;
 
-/// Attempted moves that take as long as inserting a particle and moving it once.
+/// Cost of inserting a particle and moving it once, in attempted moves.
 const INSERTED: u64 = 8;
 
-/// Moves the particles of one chunk; those that still move are brought together at the front, in order,
-/// and counted.
+/// Moves the particles of one chunk; those that still move are compacted at the front, in order, and counted.
 fn step_chunk(
     exits: &OpenExits,
     key: Key,
@@ -106,7 +105,7 @@ fn jam_lanes(key: Key) -> Lanes {
     Key { purpose: Purpose::Arching, ..key }.lanes()
 }
 
-/// The step on a lattice, by the data that it reads of each void.
+/// Performs the step on a lattice, for the data that it reads of each void.
 fn step_lattice<R: Reads>(chunk: LatticeChunk, isa: Isa) -> usize {
     match isa {
         #[cfg(target_arch = "x86_64")]
@@ -226,7 +225,7 @@ mod tests {
 
     const PORTABLE: Kernel = (Isa::Portable, Reading::Plain);
 
-    /// `count` values picked from `palette` by a plain congruence.
+    /// Picks `count` values from `palette` by a linear congruential generator.
     fn picked<T: Copy>(count: usize, palette: &[T], mut seed: u64) -> Vec<T> {
         let next = || {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -236,10 +235,10 @@ mod tests {
     }
 
     proptest! {
-        // An interpreter that checks every access is a thousand times slower.
+        // Under Miri the test is a thousand times slower.
         #![proptest_config(ProptestConfig::with_cases(if cfg!(miri) { 6 } else { 400 }))]
 
-        /// Any number of particles, passive, coarse, as wide as a constriction to the bit; closed
+        /// Any number of particles, passive, coarse or exactly as wide as a constriction; closed
         /// constrictions, voids without open exits, everything closed.
         #[test]
         fn every_kernel_leaves_the_same_behind(
@@ -285,7 +284,7 @@ mod tests {
         }
     }
 
-    /// The step by the definition: all 64 bits of every draw, every diameter looked at.
+    /// Performs the step by definition: all 64 bits of every draw, every diameter compared.
     fn by_definition(scene: &Scene, key: Key, reading: Reading, void: &[u32], diameter: &[f32]) -> After {
         let (network, blocked) = scene.made();
         let (mut lanes, mut block) = (key.lanes(), [0; LANES]);
@@ -324,7 +323,7 @@ mod tests {
         after
     }
 
-    /// Thresholds whose sixteen top bits equal the draw of a particle, just above and just below it.
+    /// Thresholds whose top sixteen bits equal the draw of a particle, just above and just below it.
     #[test]
     #[cfg_attr(miri, ignore = "hours of it")]
     fn a_draw_that_equals_a_threshold_is_decided_by_all_of_its_bits() {
@@ -335,7 +334,7 @@ mod tests {
         for place in 0..DRAWS_PER_BLOCK {
             let draw = draw16(&block, place);
             let share = (f64::from(draw) + 0.5) / 65536.0;
-            // The first of two open exits has this share of the area.
+            // The first of two open exits has this fraction of the area.
             let ratio = (share / (1.0 - share)).sqrt() as f32;
             for steps in -400i32..400 {
                 let first = f32::from_bits((ratio.to_bits() as i32 + 16 * steps) as u32);
@@ -353,7 +352,7 @@ mod tests {
                 for kernel in kernels() {
                     assert_eq!(after(&scene, key(3), kernel, &void, &diameter), expected, "{kernel:?}");
                 }
-                // The particle alone at its place: those before it are too coarse for anything.
+                // Only the particle at `place` can move: those before it are too coarse.
                 let mut diameter = vec![9e9; DRAWS_PER_BLOCK];
                 diameter[place] = 1e-6;
                 for kernel in kernels() {
@@ -365,7 +364,7 @@ mod tests {
         assert!(seen[0].min(seen[1]) > 100, "{seen:?} ties");
     }
 
-    /// A chunk's words are chosen by its first particles, and by no more of them than there are.
+    /// The words of a chunk are chosen by its first particles, even if there are few.
     #[test]
     fn words_with_classes_are_for_chunks_with_coarse_particles() {
         let chunk = |fine: usize, coarse: usize| [vec![1.0; fine], vec![1.5; coarse]].concat();
@@ -376,7 +375,7 @@ mod tests {
         );
     }
 
-    /// A column that a damaged file might hold: an error, never a read beyond the table.
+    /// A column from a damaged file gives an error, never a read beyond the table.
     #[test]
     fn a_void_that_does_not_exist_is_refused() {
         let scene = Scene { shape: [2, 2, 1], diameters: vec![1.0; 12], blocked: vec![false; 12] };

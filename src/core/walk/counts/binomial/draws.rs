@@ -1,9 +1,9 @@
-//! The random words of binomial draws, and few trials by them, each made.
+//! Random words for binomial draws, and small numbers of individual trials.
 
 use super::quantile::Normal;
 use crate::stream::{DRAWS_PER_BLOCK, Key, LANES, Lanes};
 
-/// The random words of one stream, one after another or a block at a time.
+/// Random words of one stream, one at a time or in blocks.
 pub(in crate::walk::counts) struct Draws {
     lanes: Lanes,
     block: [u64; LANES],
@@ -32,14 +32,14 @@ impl Draws {
         self.lanes.state()
     }
 
-    /// State word by lane, to be changed by callers that have drawn blocks in vector registers.
+    /// State words by lane, for update by callers that have drawn blocks in vector registers.
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub(super) fn state_mut(&mut self) -> &mut [[u64; LANES]; 4] {
         self.lanes.state_mut()
     }
 
-    /// A fresh block; words left of the current one stay for [`Draws::word`].
+    /// Draws a new block; remaining words of the current one are kept for [`Draws::word`].
     #[inline(always)]
     pub(super) fn block(&mut self) -> [u64; LANES] {
         self.lanes.next_blocks::<1>()[0]
@@ -48,7 +48,7 @@ impl Draws {
 
 /// Number of `n` uniform 64-bit words that are below each of two thresholds.
 ///
-/// Sixteen bits of each are drawn, and the other 48 where those are equal to a threshold's.
+/// Sixteen bits of each word are drawn, and the other 48 if those equal the top bits of a threshold.
 #[inline(always)]
 pub(in crate::walk::counts) fn below_both(draws: &mut Draws, n: u64, thresholds: [u64; 2]) -> [u64; 2] {
     let [first, second] = thresholds.map(|t| (t >> 48) as u16);
@@ -74,7 +74,7 @@ pub(in crate::walk::counts) fn below_both(draws: &mut Draws, n: u64, thresholds:
     below
 }
 
-/// Adds the words whose sixteen bits are equal to a threshold's, and that are below it.
+/// Adds the words below a threshold whose top sixteen bits are equal to it.
 #[cold]
 #[inline(never)]
 pub(super) fn complete(draws: &mut Draws, sixteens: &[u16], thresholds: [u64; 2], below: &mut [u64; 2]) {
@@ -92,7 +92,7 @@ pub(super) fn complete(draws: &mut Draws, sixteens: &[u16], thresholds: [u64; 2]
 /// Compares `n` uniform words with `p`, bit by bit; returns the number below.
 pub(super) fn by_bits(draws: &mut Draws, n: u64, p: u64) -> u64 {
     let (mut undecided, mut below, mut bits) = (n, 0, p);
-    // Once the rest of `p` is zero, words equal so far are not below.
+    // Once the rest of `p` is 0, words equal so far are not below it.
     while undecided > 0 && bits != 0 {
         let ones = ones_among(draws, undecided);
         let zeros = undecided - ones;
@@ -117,17 +117,17 @@ fn ones_among(draws: &mut Draws, m: u64) -> u64 {
     u64::from(ones + (draws.word() >> (64 - left)).count_ones())
 }
 
-/// Small numbers of trials, for void after void of one stream; the same bits as [`below_both`] with the
-/// instructions of any machine.
+/// Small numbers of trials for successive voids of one stream, with the same bits as [`below_both`] for
+/// any instruction set.
 pub(in crate::walk::counts) trait FewTrials {
-    /// Takes the stream's generators from where they are.
+    /// Loads the current state of the stream's generators.
     ///
     /// # Safety
-    /// The machine has the instructions that this is made with.
+    /// The machine supports the instructions of this type.
     unsafe fn begin(draws: &Draws) -> Self;
 
-    /// Counts the `n` uniform 64-bit words that are below each of two thresholds, whose upper sixteen bits
-    /// are `tops`; the whole is asked for where they do not decide.
+    /// Counts how many of `n` uniform 64-bit words are below each of two thresholds with upper sixteen
+    /// bits `tops`. The full thresholds are requested only if these do not decide.
     fn below_both(
         &mut self,
         draws: &mut Draws,
@@ -173,29 +173,29 @@ mod x86 {
     use super::{Draws, FewTrials, complete};
     use crate::stream::{DRAWS_PER_BLOCK, next_of_four};
 
-    /// With AVX-512: the generators' state words.
+    /// State words of the generators, for AVX-512.
     pub(in crate::walk::counts) struct Avx512([__m512i; 4]);
 
-    /// With AVX2: the state words of the lower and the upper four generators.
+    /// State words of the lower and the upper four generators, for AVX2.
     pub(in crate::walk::counts) struct Avx2([[__m256i; 4]; 2]);
 
-    /// Number of draws of a block below each threshold, and the block if a draw equals the top of a
+    /// Number of draws of a block below each threshold, and the block itself if a draw equals the top of a
     /// threshold.
     pub(in crate::walk::counts) type Counted = ([u32; 2], Option<[u16; DRAWS_PER_BLOCK]>);
 
-    /// Generators that stay in vector registers from void to void; in memory, every void would wait for the
-    /// store of the one before it.
+    /// Generators kept in vector registers from void to void; in memory, each void would wait for the
+    /// store of the previous one.
     trait InRegisters: Sized {
-        /// Takes them from where `draws` has them.
+        /// Loads the generators of `draws`.
         ///
         /// # Safety
-        /// The machine has the instructions that this is made with.
+        /// The machine supports the instructions of this type.
         unsafe fn load(draws: &Draws) -> Self;
 
-        /// The first `counted` draws of the next block.
+        /// Counts the first `counted` draws of the next block.
         ///
         /// # Safety
-        /// The machine has the instructions that this is made with.
+        /// The machine supports the instructions of this type.
         unsafe fn block(&mut self, counted: u64, tops: [u16; 2]) -> Counted;
 
         fn store(&self, draws: &mut Draws);
@@ -208,7 +208,7 @@ mod x86 {
             unsafe { V::load(draws) }
         }
 
-        /// Block by block; a block with a draw that equals the top of a threshold is completed with more
+        /// Works block by block; if a draw equals the top of a threshold, the block is completed with more
         /// bits.
         #[inline(always)]
         fn below_both(
@@ -221,7 +221,7 @@ mod x86 {
             let (mut below, mut left) = ([0, 0], n);
             while left > 0 {
                 let counted = left.min(DRAWS_PER_BLOCK as u64);
-                // SAFETY: whoever began has promised the instructions.
+                // SAFETY: the caller of `begin` promised the instructions.
                 let (less, block) = unsafe { self.block(counted, tops) };
                 if let Some(block) = block {
                     self.store(draws);
@@ -283,7 +283,7 @@ mod x86 {
             | _mm512_mask_cmpeq_epu16_mask(mask, block, second);
         let block = (same != 0).then(|| {
             let mut sixteens = [0; DRAWS_PER_BLOCK];
-            // SAFETY: as many sixteens as the vector has.
+            // SAFETY: the array is as large as the vector.
             unsafe { _mm512_storeu_si512(sixteens.as_mut_ptr().cast(), block) };
             sixteens
         });
@@ -317,8 +317,8 @@ mod x86 {
         }
     }
 
-    /// By number of draws that count: a bit for each, where packing two halves puts it (eight of the lower
-    /// half of the draws, eight of the upper one, then the others of each).
+    /// Masks by number of draws counted, with bits in the order given by packing two halves (eight draws
+    /// of the lower half, eight of the upper, then the others of each).
     const MASKS: [u32; DRAWS_PER_BLOCK + 1] = {
         let (mut masks, mut n) = ([0; DRAWS_PER_BLOCK + 1], 0);
         while n <= DRAWS_PER_BLOCK {
@@ -329,11 +329,11 @@ mod x86 {
         masks
     };
 
-    /// [`block_avx512`] in two halves.
+    /// Works like [`block_avx512`], in two halves.
     #[target_feature(enable = "avx2,popcnt")]
     #[inline]
     fn block_avx2(state: &mut [[__m256i; 4]; 2], counted: u64, tops: [u16; 2]) -> Counted {
-        // Unsigned numbers are compared as signed, less 2^15.
+        // Unsigned numbers are compared as signed numbers after subtracting 2^15.
         let sign = _mm256_set1_epi16(i16::MIN);
         let counts = MASKS[counted as usize];
         let blocks = [next_of_four(&mut state[0]), next_of_four(&mut state[1])];
@@ -348,7 +348,7 @@ mod x86 {
         let block = (same != 0).then(|| {
             let mut sixteens = [0; DRAWS_PER_BLOCK];
             for (sixteens, block) in sixteens.chunks_exact_mut(DRAWS_PER_BLOCK / 2).zip(blocks) {
-                // SAFETY: as many sixteens as the vector has.
+                // SAFETY: the array is as large as the vector.
                 unsafe { _mm256_storeu_si256(sixteens.as_mut_ptr().cast(), block) };
             }
             sixteens
@@ -356,7 +356,7 @@ mod x86 {
         (less, block)
     }
 
-    /// A bit for each sixteen of two halves that is negative, eight of one and of the other in turn.
+    /// Sets a bit for each negative 16-bit lane of two halves, in turns of eight from either half.
     #[target_feature(enable = "avx2,popcnt")]
     #[inline]
     fn packed(low: __m256i, high: __m256i) -> u32 {

@@ -1,21 +1,22 @@
-//! Exact binomial draws: the same bits on every machine, for any count and any probability.
+//! Exact binomial draws for any count and probability, with the same bits on every machine.
 //!
-//! A probability is a 64-bit fraction `p / 2^64`; [`CERTAIN`] stands for 1. The methods share the range:
+//! A probability is a 64-bit fraction `p / 2^64`; [`CERTAIN`] is 1. Each method covers part of the range:
 //!
-//! - *Trials*, for few of them: sixteen random bits each are compared with `p`, more where they are equal.
-//! - *Quantiles*, for a variance from 6 and up to 2^32 trials: one random word is turned into the number of
+//! - *Trials*, for small numbers: sixteen random bits each are compared with `p`, more bits if they are
+//!   equal.
+//! - *Quantiles*, for a variance of at least 6 and up to 2^32 trials: one random word gives the number of
 //!   successes.
 //! - *Bits*, for more trials with few successes: uniform words are compared with `p` bit by bit, all at
-//!   once. At each bit of `p` a random bit decides about half of the trials that are still open, so `n`
-//!   trials cost some `2 n` random bits.
+//!   once. At each bit of `p` a random bit decides about half of the undecided trials, so `n` trials cost
+//!   about `2 n` random bits.
 //! - *Inversion*, for large counts of rare events: probabilities are summed from 0 up.
-//! - *Transformed rejection*, for what is left: a mean from 10 of huge counts.
+//! - *Transformed rejection*, for the remaining cases: huge counts with a mean of at least 10.
 //!
-//! Beyond [`LARGEST`] trials, where f64 would lose whole numbers, a draw is the sum of draws.
+//! Above [`LARGEST`] trials, where f64 cannot hold every integer, a draw is the sum of several draws.
 //!
 //! [`fill`] draws for many pairs at once, in loops over eight lanes that the compiler turns into vector
-//! instructions. Only `+ - * /`, `sqrt` and the `libm` crate touch a float, so the instruction set changes no
-//! bit.
+//! instructions. Floats are only processed by `+ - * /`, `sqrt` and the `libm` crate, so the bits do not
+//! depend on the instruction set.
 
 mod draws;
 mod quantile;
@@ -28,16 +29,16 @@ use draws::{below_both, by_bits};
 pub(super) use quantile::{CERTAIN, as_unit};
 use quantile::{ROUNDER, ln_probability, rarer, turned};
 
-/// Most trials of a single draw by rejection or inversion.
+/// Maximum number of trials of a single draw by rejection or inversion.
 const LARGEST: u64 = 1 << 50;
 
-/// Up to this many trials, each is made, whatever the probability.
+/// Number of trials up to which each trial is made, for any probability.
 pub(super) const FEW: u64 = 64;
 
-/// Up to this many trials, bits are compared where the variance is small.
+/// Number of trials up to which bits are compared if the variance is small.
 const FEW_RARE: u64 = 2048;
 
-/// Number of `n` trials with probability `p` that succeed.
+/// Draws the number of successes in `n` trials with probability `p`.
 pub(super) fn one(draws: &mut Draws, n: u64, p: u64) -> u64 {
     if p == CERTAIN {
         n
@@ -51,7 +52,7 @@ pub(super) fn one(draws: &mut Draws, n: u64, p: u64) -> u64 {
     }
 }
 
-/// Draws into `k` the number of `n[i]` trials with probability `p[i]` that succeed, for every `i`.
+/// Draws into `k[i]` the number of successes in `n[i]` trials with probability `p[i]`, for every `i`.
 ///
 /// # Panics
 /// If the slices differ in length.
@@ -72,7 +73,7 @@ pub(super) fn fill(draws: &mut Draws, n: &[u64], p: &[u64], k: &mut [u64]) {
     }
 }
 
-/// Eight draws; the first `used` count.
+/// Makes eight draws; only the first `used` are needed.
 #[inline(always)]
 fn eight(draws: &mut Draws, used: usize, n: [u64; LANES], p: [u64; LANES]) -> [u64; LANES] {
     let words = draws.block();
@@ -89,7 +90,7 @@ fn eight(draws: &mut Draws, used: usize, n: [u64; LANES], p: [u64; LANES]) -> [u
     k
 }
 
-/// A draw that is neither by trials nor by quantiles.
+/// Draws by methods other than trials and quantiles.
 #[cold]
 fn by_other(draws: &mut Draws, n: u64, p: u64) -> u64 {
     if n <= FEW_RARE {
@@ -109,10 +110,10 @@ fn by_other(draws: &mut Draws, n: u64, p: u64) -> u64 {
     }
 }
 
-/// Sums probabilities from 0 up until they exceed a uniform draw.
+/// Draws by summing probabilities from 0 up until they exceed a uniform draw.
 fn by_inversion(draws: &mut Draws, n: u64, p: f64) -> u64 {
     let (odds, none) = (p / (1.0 - p), libm::exp(n as f64 * libm::log1p(-p)));
-    // No mean below 10 gets here but with a probability far below 2^-53.
+    // Means below 10 exceed this only with a probability far below 2^-53.
     const BEYOND: u64 = 200;
     loop {
         let (mut left, mut probability) = (unit(draws.word()), none);
@@ -126,15 +127,15 @@ fn by_inversion(draws: &mut Draws, n: u64, p: f64) -> u64 {
     }
 }
 
-/// Below this mean (of the rarer outcome) rejection does not hold.
+/// Minimum mean (of the rarer outcome) for which rejection is valid.
 const LEAST_MEAN: f64 = 10.0;
 
-/// Constants of Hoermann's BTRS: within this of 0, `u` may be accepted by `v` alone.
+/// Constant of Hoermann's BTRS: if `u` is within this distance of 0, `v` alone may accept it.
 const QUICK_U: f64 = 0.07;
 
 /// Transformed rejection for one pair with `p <= 1/2`, `n p >= 10` (BTRS; W. Hoermann 1993,
-/// doi:10.1080/00949659308811496), for counts too large for anything else: most draws are accepted by a
-/// squeeze, the others by their exact probability.
+/// doi:10.1080/00949659308811496), for counts too large for the other methods. A squeeze accepts most
+/// draws; the exact probability decides the others.
 #[derive(Clone, Copy)]
 struct Hat {
     pub n: f64,
@@ -175,23 +176,22 @@ impl Hat {
         (2.0 * self.a / us + self.b) * u + self.mean
     }
 
-    /// Factor of `v` before it is compared with the probability of the proposal over the probability of the
-    /// mode.
+    /// Factor for `v` before it is compared with the probability of the proposal divided by that of the mode.
     pub fn scale(&self, u: f64) -> f64 {
         let us = 0.5 - u.abs();
         let square = us * us;
         (2.83 * self.b + 5.1) * self.sigma * square / (self.b * (self.a + self.b * square))
     }
 
-    /// Logarithm of the probability of `k` over the probability of the mode.
+    /// Logarithm of the probability of `k` divided by that of the mode.
     pub fn ln_ratio(&self, k: f64) -> f64 {
-        // The likeliest outcome, or another as likely.
+        // Most likely outcome, or an equally likely one.
         let mode = whole((self.n + 1.0) * self.p - 0.5);
         ln_probability(self.n, self.p, self.q, k) - ln_probability(self.n, self.p, self.q, mode)
     }
 }
 
-/// The nearest whole number, for 0 or more and below 2^51: `floor(x + 1/2)` but for ties.
+/// Nearest integer for values from 0 to below 2^51: `floor(x + 1/2)` except for ties.
 fn whole(x: f64) -> f64 {
     (x + ROUNDER) - ROUNDER
 }
@@ -205,25 +205,25 @@ mod tests {
         Draws::new(Key { seed: 2024, purpose: Purpose::Passive, run: 9, increment: 1, chunk })
     }
 
-    /// `p` as a 64-bit fraction.
+    /// Probability `p` as a 64-bit fraction.
     fn fraction(p: f64) -> u64 {
         (p * 18_446_744_073_709_551_616.0) as u64
     }
 
-    /// Chi-square over its degrees of freedom, as a z score (Wilson and Hilferty).
+    /// Chi-square with its degrees of freedom as a z score (Wilson and Hilferty).
     fn z_of_chi_square(square: f64, freedom: f64) -> f64 {
         let part = 2.0 / (9.0 * freedom);
         (libm::cbrt(square / freedom) - (1.0 - part)) / part.sqrt()
     }
 
-    /// About this many cells a test; the more, the finer a fault that shows and the weaker it shows.
+    /// Approximate number of cells per test; more cells resolve finer errors with less power.
     const CELLS: f64 = 24.0;
 
-    /// Draws from Binomial(n, p) against its exact probabilities in cells about a quarter of a standard
+    /// Compares draws from Binomial(n, p) with exact probabilities in cells about a quarter of a standard
     /// deviation wide.
     ///
-    /// Above a million trials a cell's probability is summed over `k` in steps, which the density is smooth
-    /// enough for.
+    /// Above a million trials the probability of a cell is summed over `k` in steps, as the density is
+    /// smooth enough.
     fn z_score(n: u64, p: u64, sample: &[u64]) -> f64 {
         let (probability, q) = (as_unit(p), as_unit(p.wrapping_neg()));
         let mean = n as f64 * probability;
@@ -231,7 +231,7 @@ mod tests {
         let width = ((6.0 * sigma / CELLS).ceil() as u64).max(1);
         let low = ((mean - 3.0 * sigma).max(0.0)) as u64;
         let cells = ((6.0 * sigma / width as f64).ceil() as usize).max(1);
-        // Cell 0 is all below `low`, the last all above.
+        // Cell 0 holds all values below `low`, the last cell all above.
         let cell = |k: u64| if k < low { 0 } else { 1 + ((k - low) / width).min(cells as u64) as usize };
         let mut expected = vec![0.0; cells + 2];
         let pmf = |k: u64| libm::exp(ln_probability(n as f64, probability, q, k as f64));
@@ -242,12 +242,12 @@ mod tests {
             let mut at = begin;
             while at < end {
                 let span = step.min(end - at);
-                // The middle of the span, or the mean of the two middle ones.
+                // Middle value of the span, or the mean of the two middle values.
                 expected[c + 1] += span as f64 * 0.5 * (pmf(at + (span - 1) / 2) + pmf(at + span / 2));
                 at += span;
             }
         }
-        // Below: sums down from `low` until nothing is left to add; above is the rest.
+        // Cell 0: sums down from `low` until the terms vanish; the last cell is the rest.
         if low > 0 {
             let step = ((sigma / 400.0) as u64).max(1);
             let mut at = low;
@@ -263,7 +263,7 @@ mod tests {
             assert!(k <= n);
             observed[cell(k)] += 1.0;
         }
-        // Neighbouring cells join until each expects eight draws.
+        // Adjacent cells are merged until each expects eight draws.
         let (mut square, mut freedom, mut e, mut f) = (0.0, -1.0, 0.0, 0.0);
         for c in 0..cells + 2 {
             e += expected[c] * sample.len() as f64;
@@ -281,7 +281,7 @@ mod tests {
 
     const SAMPLE: usize = 20_000;
 
-    /// Pairs that use every method, the switches between them, and counts past 1e12.
+    /// Pairs for every method, the limits between methods, and counts above 1e12.
     fn pairs() -> Vec<(u64, f64)> {
         vec![
             (1, 0.3),
@@ -322,9 +322,9 @@ mod tests {
         ]
     }
 
-    /// Both ways to draw. 70 tests, bound 4 on each: a false alarm in 0.2 % of seeds, and this seed is fixed.
-    /// With 20,000 draws a shift of 4 % of a standard deviation, or 4 % in its size, would show; less would
-    /// not.
+    /// Tests both functions: 70 tests with bound 4 give a false alarm for 0.2 % of seeds, and this seed is
+    /// fixed. With 20,000 draws a shift by 4 % of the standard deviation, or a 4 % error in it, is
+    /// detected; smaller errors are not.
     #[test]
     fn draws_follow_the_binomial_distribution() {
         for (i, (n, p)) in pairs().into_iter().enumerate() {
@@ -340,7 +340,8 @@ mod tests {
         }
     }
 
-    /// The test above sees one success too many, a wrong n by one, and a probability off by a little.
+    /// The test above detects one success too many, an error of one in n, and a small error in the
+    /// probability.
     #[test]
     fn planted_faults_are_caught() {
         let mut words = draws(1000);
@@ -352,16 +353,15 @@ mod tests {
             assert!(!caught(n, p, &one), "{n} {p}");
             assert!(caught(n, p, &|w, n, p| one(w, n, p) + 1), "one too many: {n} {p}");
         }
-        // A trial too few moves the mean by p, which 20,000 draws show up to n of about 50.
+        // One trial too few shifts the mean by p, which 20,000 draws detect up to n of about 50.
         assert!(caught(7, 0.4, &|w, n, p| one(w, n - 1, p)));
         assert!(caught(33, 0.7, &|w, n, p| one(w, n - 1, p)));
-        // One too many is 3 % of a standard deviation for n = 3750: half of one in each draw's rounding is
-        // not seen, this is.
+        // One too many would be 3 % of a standard deviation for n = 3750; for n = 500 it is detected.
         assert!(caught(500, 0.3, &|w, n, p| one(w, n, p) + 1));
         assert!(caught(1_000_000_000_000, 0.3, &|w, n, p| one(w, n, p - (1 << 45))));
     }
 
-    /// Impossible and certain outcomes never depend on a draw.
+    /// Impossible and certain outcomes do not depend on draws.
     #[test]
     fn never_and_always_are_exact() {
         let mut words = draws(2000);
@@ -371,14 +371,13 @@ mod tests {
         let mut k = [7; 3];
         fill(&mut words, &[0, 9, 9_000_000], &[1 << 63, 0, CERTAIN], &mut k);
         assert_eq!(k, [0, 0, 9_000_000]);
-        // The smallest and the largest probability that are neither.
+        // Smallest and largest probability that are neither impossible nor certain.
         assert_eq!(one(&mut words, 1_000_000, 1), 0);
         assert_eq!(one(&mut words, 1_000_000, CERTAIN - 1), 1_000_000);
     }
 
-    /// BTRS is exact only if the squeeze lies below, and 1 above, what the exact test accepts: for every `u`
-    /// the largest acceptable `v` is at least the squeeze's where that is used, and at most 1. Scanned at
-    /// 4,000 values of `u` for each of some 60 pairs.
+    /// BTRS is exact only if, for every `u`, the largest acceptable `v` is at least the limit of the
+    /// squeeze (if that is used) and at most 1. Scanned at 4,000 values of `u` for each of about 60 pairs.
     #[test]
     fn the_squeeze_lies_inside_and_the_hat_outside() {
         let counts =
@@ -406,9 +405,9 @@ mod tests {
         assert!(scanned > 50, "{scanned}");
     }
 
-    /// Both counts of one call against the joint distribution of three outcomes, ties of sixteen bits
-    /// included: the thresholds share their top sixteen bits in two cases. Each of the three numbers, and so
-    /// their dependence, is binomial. Bound 4 on 12 tests; what shows is as above.
+    /// Compares both counts of one call with the joint distribution of three outcomes, including ties of
+    /// sixteen bits: the thresholds share their top sixteen bits in two cases. Each of the three numbers
+    /// is binomial, which tests their dependence. Bound 4 on 12 tests, with the power given above.
     #[test]
     fn two_thresholds_are_compared_with_the_same_words() {
         let tied = 0x5555_4000_0000_0000;
@@ -428,7 +427,7 @@ mod tests {
             for (part, probability) in [(0, first), (1, second), (2, second - first)] {
                 let count = |[a, b]: &[u64; 2]| [*a, *b, b - a][part];
                 let sample: Vec<u64> = drawn.iter().map(count).collect();
-                // The few outcomes that are possible here may all be missing in 2,000 draws of some 32 words.
+                // For extreme probabilities, an outcome may be missing from 2,000 draws of about 32 words.
                 if n as f64 * as_unit(probability) > 1.0 && n as f64 * as_unit(probability) < n as f64 - 1.0 {
                     let z = z_score(n, probability, &sample);
                     assert!(z < 4.0, "{n} {first} {second}, part {part}: {z}");
@@ -438,7 +437,7 @@ mod tests {
                 assert!(drawn.iter().all(|&[a, _]| a == 0));
             }
         }
-        // Where sixteen bits are equal to both thresholds', the same word is compared with both.
+        // If sixteen bits equal those of both thresholds, the same word is compared with both.
         let mut words = draws(4100);
         let (first, second) = (tied, tied + (1 << 47));
         let (mut between, mut below, mut runs) = (0, 0, 0.0);
@@ -448,26 +447,26 @@ mod tests {
             between += b - a;
             runs += 4096.0;
         }
-        // Expected: 125 between, and their standard deviation 11.2.
+        // Expected: 125 between, with a standard deviation of 11.2.
         let expected = runs * as_unit(second - first);
         assert!((between as f64 - expected).abs() < 4.0 * expected.sqrt(), "{between} {expected}");
         let sigma = (runs * as_unit(first) * (1.0 - as_unit(first))).sqrt();
         assert!((below as f64 - runs * as_unit(first)).abs() < 4.0 * sigma);
     }
 
-    /// With the instructions of every machine that this one can be: the same counts void after void, ties of
-    /// sixteen bits among them, and the same stream afterwards.
+    /// All instruction sets of this machine give the same counts void after void, including ties of
+    /// sixteen bits, and leave the stream in the same state.
     #[test]
     fn few_trials_are_the_same_with_any_instructions() {
         /// # Safety
-        /// The machine has the instructions of `F`.
+        /// The machine supports the instructions of `F`.
         unsafe fn drawn<F: FewTrials>() -> Vec<u64> {
             let (mut words, mut draws, mut all) = (draws(4200), draws(4300), Vec::new());
-            // SAFETY: as promised.
+            // SAFETY: as the caller promises.
             let mut few = unsafe { F::begin(&draws) };
             for void in 0..20_000 {
-                // Every number of trials, and thresholds; every seventh pair of these shares its top sixteen
-                // bits.
+                // Every number of trials, with random thresholds; every seventh pair of thresholds shares
+                // its top sixteen bits.
                 let (n, first) = (void % (FEW + 1), words.word());
                 let second = if void % 7 == 0 { first | 0xffff } else { words.word() };
                 let thresholds = [first.min(second), first.max(second)];
@@ -476,13 +475,14 @@ mod tests {
             }
             few.end(&mut draws);
             all.extend((0..100).map(|_| draws.word()));
-            // A tie at each place of a block, the first and the last among them: counted, and just not.
+            // A tie at each place of a block, including the first and the last: just counted, and just not
+            // counted.
             for place in 0..DRAWS_PER_BLOCK {
                 for n in [place, place + 1, DRAWS_PER_BLOCK] {
                     let mut draws = self::draws(4400);
                     let top = draw16(&self::draws(4400).block(), place);
                     let tie = u64::from(top) << 48 | 1 << 40;
-                    // SAFETY: as promised.
+                    // SAFETY: as the caller promises.
                     let mut few = unsafe { F::begin(&draws) };
                     all.extend(few.below_both(&mut draws, n as u64, [top; 2], || [tie, tie | 1 << 47]));
                     few.end(&mut draws);
@@ -491,24 +491,24 @@ mod tests {
             }
             all
         }
-        // SAFETY: it has what every machine has.
+        // SAFETY: every machine supports these instructions.
         let wanted = unsafe { drawn::<Portable>() };
         #[cfg(target_arch = "x86_64")]
         {
             use crate::walk::Isa;
-            // SAFETY: each is called where the machine has it.
+            // SAFETY: each is called only if the machine supports it.
             let results = [
                 Isa::Avx2.is_available().then(|| unsafe { drawn::<Avx2>() }),
                 Isa::Avx512.is_available().then(|| unsafe { drawn::<Avx512>() }),
             ];
             assert!(results.iter().flatten().all(|result| *result == wanted));
         }
-        // Some 20,000 x 32 draws, each equal to either threshold's top with 2^-15. Two numbers a void, 100
-        // words after them, three numbers for each tie.
+        // About 20,000 x 32 draws, each equal to the top of either threshold with probability 2^-15. Two
+        // numbers per void, then 100 words, then three numbers per tie.
         assert_eq!(wanted.len(), 40_100 + 3 * 3 * DRAWS_PER_BLOCK);
     }
 
-    /// Draws are part of the meaning of a seed: these may not change unnoticed.
+    /// Draws define the meaning of a seed: a change must not go unnoticed.
     #[test]
     fn draws_are_pinned() {
         let mut words = draws(3000);

@@ -1,23 +1,23 @@
-//! Binomial draws by inversion: one random word a draw, and an exact answer for every word.
+//! Binomial draws by inversion: one random word per draw, and an exact result for every word.
 //!
-//! The draw for a uniform `t` is the least `k` whose distribution function `F(k)` exceeds `t`. The
-//! Cornish-Fisher expansion (E. A. Cornish and R. A. Fisher 1938, doi:10.2307/1400905) to second order, about
-//! the variance less 1/12 as befits whole numbers, says where `F` crosses `t` to within [`Row::margin`]: it
-//! is off by less than half of that for every count and probability that [`holds`] admits, and the tests look
-//! at each. Where the crossing is farther than the margin from the middle between two whole numbers, the
-//! nearer one is the draw. Else, in one draw of a hundred or a thousand, `F` itself decides, summed from
-//! [`super::quantile`]. So the draw follows from `F` alone, not from the expansion.
+//! The draw for a uniform `t` is the smallest `k` whose distribution function `F(k)` exceeds `t`. The
+//! second-order Cornish-Fisher expansion (E. A. Cornish and R. A. Fisher 1938, doi:10.2307/1400905), with
+//! the variance reduced by 1/12 for integers, gives the point where `F` crosses `t` to within
+//! [`Row::margin`]. Its error is less than half of that for every count and probability that [`holds`]
+//! admits, as the tests check. If the crossing is farther than the margin from the middle between two
+//! integers, the nearer integer is the draw. Otherwise, in one draw of a hundred or a thousand, `F` itself
+//! decides, summed from [`super::quantile`]. So the draw depends only on `F`, not on the expansion.
 //!
-//! Only `+ - * /` and `sqrt` touch a float before `F` is asked, in loops over eight lanes that the compiler
-//! turns into vector instructions, and they round alike everywhere.
+//! Before `F` is computed, floats are only processed by `+ - * /` and `sqrt`, which round the same
+//! everywhere, in loops over eight lanes that the compiler turns into vector instructions.
 
 use crate::stream::LANES;
 use std::sync::OnceLock;
 
-/// Least variance for which the margin is known to hold.
+/// Minimum variance for which the margin is valid.
 const LEAST_VARIANCE: f64 = 6.0;
 
-/// Most trials: `F` is a sum over some standard deviations, which is to stay short.
+/// Maximum number of trials, so that `F`, a sum over some standard deviations, stays short.
 pub(super) const MOST_TRIALS: u64 = 1 << 32;
 
 const TWO_TO_MINUS_53: f64 = f64::EPSILON / 2.0;
@@ -29,17 +29,16 @@ pub(super) fn holds(n: u64, p: u64) -> bool {
     row.holds & (n <= MOST_TRIALS) & (p != CERTAIN)
 }
 
-/// One draw; `holds(n, p)`.
+/// Makes one draw; `holds(n, p)` must be true.
 #[inline(always)]
 pub(super) fn draw(normal: &Normal, n: u64, p: u64, word: u64) -> u64 {
     let (rare, sure) = propose(normal, n, p, word);
     if sure { turned(n, p, rare) } else { decide(n, p, word) }
 }
 
-/// Eight draws, and a bit for each that is not certain: `F` has to decide on it, or it cannot be drawn here.
+/// Makes eight draws, with a bit for each that is uncertain: `F` has to decide, or it cannot be drawn here.
 ///
-/// Everything is taken and returned by value: between columns that might overlap, the compiler would make one
-/// draw after another.
+/// Everything is passed by value: for columns that might overlap, the compiler would not vectorise the draws.
 #[inline(always)]
 pub(super) fn draw_eight(
     normal: &Normal,
@@ -61,12 +60,12 @@ pub(super) fn draw_eight(
 fn tail(word: u64) -> (f64, bool) {
     let upper = word >> 63 == 1;
     let folded = word ^ 0u64.wrapping_sub(word >> 63);
-    // 52 bits as a float between 2^52 and 2^53, less 2^52.
+    // 52 bits as a float between 2^52 and 2^53, minus 2^52.
     let whole = f64::from_bits(folded >> 11 | ROUNDER.to_bits()) - ROUNDER;
     ((whole + 0.5) * TWO_TO_MINUS_53, upper)
 }
 
-/// Number of times that the rarer outcome turns up; true if that is certain.
+/// Proposed number of the rarer outcome; true if it is certain.
 #[inline(always)]
 fn propose(normal: &Normal, n: u64, p: u64, word: u64) -> (u64, bool) {
     let row = Row::new(n, p);
@@ -79,18 +78,18 @@ fn propose(normal: &Normal, n: u64, p: u64, word: u64) -> (u64, bool) {
     (k, row.holds & (t >= FAR) & (off.abs() + row.margin(z) < 0.5))
 }
 
-/// Constants that the draws of one binomial distribution of the rarer outcome have in common.
+/// Constants of one binomial distribution of the rarer outcome.
 #[derive(Clone, Copy)]
 struct Row {
     n: f64,
     mean: f64,
-    /// Variance less 1/12: its inverse, its root, and the inverse of that.
+    /// Variance minus 1/12: its inverse, its root, and the inverse of the root.
     inverse: f64,
     root: f64,
     inverse_root: f64,
-    /// Third cumulant over the variance, about 1 - 2p.
+    /// Third cumulant divided by the variance, about 1 - 2p.
     skew: f64,
-    /// Fourth cumulant over the variance.
+    /// Fourth cumulant divided by the variance.
     kurtosis: f64,
     holds: bool,
 }
@@ -98,7 +97,7 @@ struct Row {
 impl Row {
     #[inline(always)]
     fn new(n: u64, p: u64) -> Self {
-        // Signed conversions are one instruction; 2^63 - 1 rounds to 2^63.
+        // Signed conversion is a single instruction; 2^63 - 1 rounds to 2^63.
         let rare = rarer(p) - (rarer(p) >> 63);
         let (n, p) = (n as i64 as f64, rare as i64 as f64 * TWO_TO_MINUS_64);
         let mean = n * p;
@@ -119,8 +118,8 @@ impl Row {
         }
     }
 
-    /// Approximate place where the distribution function crosses the normal one's value at `z`, on a scale on
-    /// which outcome `k` begins at `k - 1/2`.
+    /// Approximate point where the distribution function crosses the normal distribution function at `z`,
+    /// on a scale where outcome `k` begins at `k - 1/2`.
     #[inline(always)]
     fn crossing(&self, z: f64) -> f64 {
         let zz = z * z;
@@ -130,7 +129,7 @@ impl Row {
         self.mean + (self.root * z + (first + self.inverse_root * z * (fourth - third)))
     }
 
-    /// More than twice as far as the crossing is off at `z`: the expansion, then the table, then rounding.
+    /// Bound of more than twice the error of the crossing at `z`: of the expansion, the table and rounding.
     #[inline(always)]
     fn margin(&self, z: f64) -> f64 {
         const TABLE: f64 = 1.0 / (1 << 29) as f64;
@@ -140,13 +139,13 @@ impl Row {
     }
 }
 
-/// The draw by the distribution function itself.
+/// Draws by the distribution function itself.
 #[cold]
 #[inline(never)]
 pub(super) fn decide(n: u64, p: u64, word: u64) -> u64 {
     let (t, upper) = tail(word);
     let (rare, common) = (as_unit(rarer(p)), as_unit(rarer(p).wrapping_neg()));
-    // The upper tail of one outcome is the lower one of the other.
+    // The upper tail of one outcome is the lower tail of the other.
     let k = match upper {
         false => least_beyond(t, n as f64, rare, common),
         true => n as f64 - least_beyond(t, n as f64, common, rare),
@@ -154,14 +153,14 @@ pub(super) fn decide(n: u64, p: u64, word: u64) -> u64 {
     turned(n, p, k as u64)
 }
 
-/// The least `k` whose distribution function exceeds `t <= 1/2`, for `n` trials with probability `p = 1 - q`.
+/// Smallest `k` whose distribution function exceeds `t <= 1/2`, for `n` trials with probability `p = 1 - q`.
 fn least_beyond(t: f64, n: f64, p: f64, q: f64) -> f64 {
     let mean = n * p;
     let z = Normal::table().quantile(t.max(FAR));
     let mut k = (mean - z * (mean * q).sqrt()).round().clamp(0.0, n);
     let mut pmf = libm::exp(ln_probability(n, p, q, k));
     let mut below = distribution(n, p, q, k, pmf);
-    // Up to the first that exceeds, then down to the least.
+    // Up to a value that exceeds `t`, then down to the smallest.
     while below <= t && k < n {
         pmf *= (n - k) / (k + 1.0) * (p / q);
         k += 1.0;
@@ -175,7 +174,7 @@ fn least_beyond(t: f64, n: f64, p: f64, q: f64) -> f64 {
     k
 }
 
-/// Probability of at most `k`, whose own is `pmf`: summed downwards.
+/// Probability of at most `k`, summed downwards from `pmf`, the probability of `k`.
 fn distribution(n: f64, p: f64, q: f64, k: f64, pmf: f64) -> f64 {
     let odds = q / p;
     let (mut sum, mut term, mut at) = (pmf, pmf, k);
@@ -190,29 +189,29 @@ fn distribution(n: f64, p: f64, q: f64, k: f64, pmf: f64) -> f64 {
     sum
 }
 
-/// 2^52: adding it rounds a smaller float to a whole number.
+/// 2^52; adding it rounds a smaller float to an integer.
 pub(super) const ROUNDER: f64 = 4_503_599_627_370_496.0;
 const MANTISSA: u64 = (1 << 52) - 1;
 
 const ONE: u64 = 1023 << 52;
 
-/// Cells of the quantile table in each halving of the tail.
+/// Binary logarithm of the number of cells of the quantile table per halving of the tail.
 const CELL_BITS: u32 = 5;
 
-/// Halvings of the tail that the table covers, from 1/2 on.
+/// Number of halvings of the tail covered by the table, from 1/2 on.
 const HALVINGS: u64 = 14;
 
-/// The table begins at this tail, 4 standard deviations out.
+/// Smallest tail of the table, 4 standard deviations out.
 const FAR: f64 = 1.0 / 32768.0;
 
-/// Place of the first cell among all floats.
+/// Index of the first cell among all floats.
 const FIRST_CELL: u64 = (1023 - 1 - HALVINGS) << CELL_BITS;
 
-/// Cells, and some beyond them that are never used: an index cut to nine bits needs no check.
+/// Number of cells, including some that are never used: an index cut to nine bits needs no check.
 const CELLS: usize = 512;
 
-/// Cubic polynomials for the distance from the middle of a normal distribution beyond which a tail lies, by
-/// cells of the tail; the variable runs from 0 to 1 over a cell.
+/// Cubic polynomials for the normal quantile (distance from the mean) by cells of the tail; the variable
+/// runs from 0 to 1 over a cell.
 pub(super) struct Normal {
     cells: [[f64; 4]; CELLS],
 }
@@ -233,7 +232,7 @@ impl Normal {
         Self { cells }
     }
 
-    /// Where the tail `t` begins, for `t` from [`FAR`] to 1/2.
+    /// Distance from the mean at which the tail `t` begins, for `t` from [`FAR`] to 1/2.
     #[inline(always)]
     pub(super) fn quantile(&self, t: f64) -> f64 {
         let bits = t.to_bits();
@@ -244,8 +243,7 @@ impl Normal {
     }
 }
 
-/// The cubic through four values of `f` between 0 and 1, at the places where its error is least
-/// (Chebyshev's).
+/// Cubic through four values of `f` between 0 and 1, at the Chebyshev nodes, which minimise its error.
 fn cubic(f: impl Fn(f64) -> f64) -> [f64; 4] {
     let x = [
         -0.923_879_532_511_286_7,
@@ -273,11 +271,11 @@ fn density(z: f64) -> f64 {
     0.398_942_280_401_432_7 * libm::exp(-0.5 * z * z)
 }
 
-/// Where the tail `t <= 1/2` of the normal distribution begins, by Newton's method.
+/// Distance at which the tail `t <= 1/2` of the normal distribution begins, by Newton's method.
 pub(super) fn beyond(t: f64) -> f64 {
     let mut z = 0.0;
     loop {
-        // From the left of a convex function: every step goes right, until rounding ends it.
+        // Starts left on a convex function: every step goes right, until rounding ends the iteration.
         let step = (0.5 * libm::erfc(z * std::f64::consts::FRAC_1_SQRT_2) - t) / density(z);
         if step <= 1e-15 * z {
             return z;
@@ -289,8 +287,8 @@ pub(super) fn beyond(t: f64) -> f64 {
 /// Half of `ln(2 pi)`.
 const HALF_LN_TWO_PI: f64 = 0.918_938_533_204_672_8;
 
-/// `ln k! - ((k + 1/2) ln k - k + ln(2 pi) / 2)`, the error of Stirling's formula; `k` is whole and at least
-/// 1.
+/// `ln k! - ((k + 1/2) ln k - k + ln(2 pi) / 2)`, the error of Stirling's formula; `k` is an integer and
+/// at least 1.
 fn stirling_error(k: f64) -> f64 {
     if k < 16.0 {
         return libm::lgamma(k + 1.0) - ((k + 0.5) * libm::log(k) - k + HALF_LN_TWO_PI);
@@ -300,7 +298,7 @@ fn stirling_error(k: f64) -> f64 {
     (1.0 / 12.0 - (1.0 / 360.0 - (1.0 / 1260.0 - (1.0 / 1680.0 - tail) / kk) / kk) / kk) / k
 }
 
-/// `x ln(x / m) + m - x` without cancellation near `x = m`.
+/// Value of `x ln(x / m) + m - x` without cancellation near `x = m`.
 fn deviance(x: f64, m: f64) -> f64 {
     let difference = x - m;
     if difference.abs() >= 0.1 * (x + m) {
@@ -321,10 +319,10 @@ fn deviance(x: f64, m: f64) -> f64 {
     }
 }
 
-/// `ln P(k)` of `n` trials with probability `p`, where `q = 1 - p` is handed over to full precision; all of
-/// `n`, `k` are whole, `0 <= k <= n` and `0 < p < 1`. By the saddle-point expansion (C. Loader 2000, *Fast
-/// and accurate computation of binomial probabilities*): terms that cancel are never formed, so it is good to
-/// about 1e-15 of what matters however large `n` is.
+/// Logarithm of `P(k)` for `n` trials with probability `p`; `q = 1 - p` is passed to full precision. `n`
+/// and `k` are integers, `0 <= k <= n` and `0 < p < 1`. By the saddle-point expansion (C. Loader 2000,
+/// *Fast and accurate computation of binomial probabilities*): cancelling terms are never formed, so the
+/// relative error is about 1e-15 for any `n`.
 pub(super) fn ln_probability(n: f64, p: f64, q: f64, k: f64) -> f64 {
     if k == 0.0 {
         return n * libm::log1p(-p);
@@ -338,12 +336,12 @@ pub(super) fn ln_probability(n: f64, p: f64, q: f64, k: f64) -> f64 {
     exponent - HALF_LN_TWO_PI - 0.5 * libm::log(k / n * rest)
 }
 
-/// The probability 1.
+/// Probability 1.
 pub(in crate::walk::counts) const CERTAIN: u64 = u64::MAX;
 
 const TWO_TO_MINUS_64: f64 = 1.0 / 18_446_744_073_709_551_616.0;
 
-/// Successes, if the rarer outcome turned up `drawn` times.
+/// Number of successes, if the rarer outcome was drawn `drawn` times.
 #[inline(always)]
 pub(super) fn turned(n: u64, p: u64, drawn: u64) -> u64 {
     if p > 1 << 63 { n.wrapping_sub(drawn) } else { drawn }
@@ -355,7 +353,7 @@ pub(super) fn rarer(p: u64) -> u64 {
     p.min(p.wrapping_neg())
 }
 
-/// A share of 2^64 as a number; 1 for [`CERTAIN`].
+/// Fraction of 2^64 as a float; 1 for [`CERTAIN`].
 #[inline(always)]
 pub(in crate::walk::counts) fn as_unit(p: u64) -> f64 {
     p as f64 * TWO_TO_MINUS_64
@@ -365,7 +363,7 @@ pub(in crate::walk::counts) fn as_unit(p: u64) -> f64 {
 mod tests {
     use super::*;
 
-    /// `F(k)` and `1 - F(k)` for all `k` within 4.5 standard deviations, summed from both ends.
+    /// Values of `F(k)` and `1 - F(k)` for all `k` within 4.5 standard deviations, summed from both ends.
     fn distribution_by_sums(n: u64, p: f64, q: f64) -> Vec<(f64, f64, f64)> {
         let (mean, sigma) = (n as f64 * p, (n as f64 * p * q).sqrt());
         let (low, high) =
@@ -392,9 +390,9 @@ mod tests {
         probabilities.into_iter().flat_map(|p| variances.map(|v| row(p, v))).collect()
     }
 
-    /// Every place where the distribution function jumps: the expansion is off by less than half of the
-    /// margin there, and rises in between. 140 distributions, to 4.1 standard deviations, from the least
-    /// variance on; the error falls as the variance grows, faster than the margin does.
+    /// At every jump of the distribution function the error of the expansion is less than half of the
+    /// margin, and the expansion rises in between. Checked for 140 distributions from the minimum variance
+    /// on, to 4.1 standard deviations; the error falls faster with variance than the margin.
     #[test]
     fn the_expansion_keeps_to_half_of_its_margin() {
         let mut jumps = 0;
@@ -415,7 +413,7 @@ mod tests {
         assert!(jumps > 10_000, "{jumps}");
     }
 
-    /// Fast and slow draws agree for every word that is looked at, and both are the least `k` beyond.
+    /// Fast and slow draws agree for every word tested, and both are the smallest `k` beyond it.
     #[test]
     fn the_fast_draw_is_the_exact_one() {
         let normal = Normal::table();
@@ -445,7 +443,7 @@ mod tests {
         assert!(fast * 100 > all * 97 && fast < all, "{fast} of {all}");
     }
 
-    /// The ends of the words: the draws lie within the trials, far out as well.
+    /// Extreme words give draws within the number of trials.
     #[test]
     fn the_last_words_are_draws_too() {
         for (n, p) in
@@ -458,8 +456,8 @@ mod tests {
         }
     }
 
-    /// The table against Newton's method, at the ends of every cell and between: to less than half of what
-    /// the margin allows.
+    /// The table agrees with Newton's method, at the ends of every cell and between, to less than half of
+    /// what the margin allows.
     #[test]
     fn the_table_is_the_normal_quantile() {
         let normal = Normal::table();
@@ -473,7 +471,7 @@ mod tests {
         assert!((beyond(FAR) - 4.008).abs() < 1e-2);
     }
 
-    /// Against products formed term by term, which lose about `k` roundings.
+    /// Compares with products formed term by term, which have about `k` rounding errors.
     #[test]
     fn small_cases_are_products() {
         for (n, p) in [(1u64, 0.3), (7, 0.5), (40, 0.01), (300, 0.37), (1000, 0.499)] {
@@ -489,8 +487,7 @@ mod tests {
         }
     }
 
-    /// Neighbouring probabilities of huge `n` keep their exact ratio, which a difference of `ln n!` would
-    /// lose.
+    /// Adjacent probabilities of huge `n` keep their exact ratio, which a difference of `ln n!` would lose.
     #[test]
     fn neighbours_of_huge_counts_keep_their_ratio() {
         for n in [1e6f64, 1e9, 1e12, 1e15] {
