@@ -31,7 +31,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 pub const LANES: usize = 8;
 
 /// Sixteen-bit draws in one block of [`Lanes`].
-pub const DRAWS_PER_BLOCK: usize = 4 * LANES;
+pub(crate) const DRAWS_PER_BLOCK: usize = 4 * LANES;
 
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 const SILVER: u64 = 0xd1b5_4a32_d192_ed03;
@@ -118,7 +118,7 @@ impl Key {
 
     /// Makes words that can be read in any order.
     #[inline]
-    pub fn words(&self) -> Words {
+    pub(crate) fn words(&self) -> Words {
         let (a, b) = self.digest();
         Words { a, b }
     }
@@ -152,7 +152,7 @@ pub struct Lanes {
 
 /// Words by index: a hash of the key and the index, so that each costs the same.
 #[derive(Clone, Copy, Debug)]
-pub struct Words {
+pub(crate) struct Words {
     a: u64,
     b: u64,
 }
@@ -160,7 +160,7 @@ pub struct Words {
 impl Words {
     /// Word `index`.
     #[inline]
-    pub fn at(&self, index: u64) -> u64 {
+    pub(crate) fn at(&self, index: u64) -> u64 {
         mix(self.a ^ mix(self.b.wrapping_add(index.wrapping_mul(EXTENSION))))
     }
 }
@@ -170,14 +170,14 @@ impl Words {
 /// A function of the key and the index of the draw: it costs nothing until it is called, and leaves the
 /// stream unchanged.
 #[derive(Clone, Copy, Debug)]
-pub struct Extension {
+pub(crate) struct Extension {
     words: Words,
 }
 
 impl Extension {
     /// Completes draw `index` of the stream to 64 bits; `draw` is the top sixteen.
     #[inline]
-    pub fn complete(&self, draw: u16, index: u64) -> u64 {
+    pub(crate) fn complete(&self, draw: u16, index: u64) -> u64 {
         let low = self.words.at(index) >> 16;
         (u64::from(draw) << 48) | low
     }
@@ -186,7 +186,7 @@ impl Extension {
 impl Lanes {
     /// Returns the next word of each lane.
     #[inline(always)]
-    pub fn next_block(&mut self) -> [u64; LANES] {
+    pub(crate) fn next_block(&mut self) -> [u64; LANES] {
         let [s0, s1, s2, s3] = &mut self.state;
         let mut out = [0u64; LANES];
         for l in 0..LANES {
@@ -246,12 +246,12 @@ impl Lanes {
 
     /// Returns the next `N` blocks.
     #[cfg(not(target_arch = "x86_64"))]
-    pub fn next_blocks<const N: usize>(&mut self) -> [[u64; LANES]; N] {
+    pub(crate) fn next_blocks<const N: usize>(&mut self) -> [[u64; LANES]; N] {
         std::array::from_fn(|_| self.next_block())
     }
 
     /// Extension that completes the draws of this stream to 64 bits.
-    pub fn extension(&self) -> Extension {
+    pub(crate) fn extension(&self) -> Extension {
         self.extension
     }
 
@@ -312,19 +312,19 @@ pub(crate) fn next_of_four(state: &mut [std::arch::x86_64::__m256i; 4]) -> std::
 
 /// Sixteen-bit draw `j` of a block, `j < DRAWS_PER_BLOCK`.
 #[inline(always)]
-pub fn draw16(block: &[u64; LANES], j: usize) -> u16 {
+pub(crate) fn draw16(block: &[u64; LANES], j: usize) -> u16 {
     (block[j / 4] >> (16 * (j % 4))) as u16
 }
 
 /// Maps `word` to `0 .. n`, each value with the same probability to within `n / 2^64`.
 #[inline(always)]
-pub fn below(word: u64, n: u64) -> u64 {
+pub(crate) fn below(word: u64, n: u64) -> u64 {
     ((u128::from(word) * u128::from(n)) >> 64) as u64
 }
 
 /// Maps like [`below`] for fewer than 2^32 values, by products that vector code has.
 #[inline(always)]
-pub fn below_32(word: u64, n: u32) -> u32 {
+pub(crate) fn below_32(word: u64, n: u32) -> u32 {
     let (high, low) = (word >> 32, word & u64::from(u32::MAX));
     ((high * u64::from(n) + ((low * u64::from(n)) >> 32)) >> 32) as u32
 }

@@ -33,7 +33,7 @@ const WITHOUT_WIDTH: [RangeInclusive<char>; 10] = [
 ];
 
 /// Tells if a character changes the direction of writing around it.
-pub fn turns_direction(character: char) -> bool {
+pub(crate) fn turns_direction(character: char) -> bool {
     TURNING.iter().any(|range| range.contains(&character))
 }
 
@@ -74,7 +74,7 @@ pub fn quoted(word: &str) -> String {
 }
 
 /// Tells if a character means the same in a file name, an address and a table.
-pub fn is_plain(character: char) -> bool {
+pub(crate) fn is_plain(character: char) -> bool {
     character.is_ascii_alphanumeric() || "=.,-_".contains(character)
 }
 

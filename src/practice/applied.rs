@@ -149,7 +149,7 @@ pub enum RuleQuantity {
 
 impl RuleQuantity {
     /// A quantity that does not limit D15F, by its name.
-    pub const fn named(name: &'static str) -> Self {
+    pub(crate) const fn named(name: &'static str) -> Self {
         Self::Named(Cow::Borrowed(name))
     }
 

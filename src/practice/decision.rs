@@ -36,7 +36,7 @@ pub struct Decision {
     /// D15F that breaks this limit, if the filter keeps the others.
     pub beyond_dispersive: Option<BeyondDispersive>,
     /// Openings of two widely spaced sieves that decide the limit of design or the stability of the filter.
-    pub open_sieves: Option<RuleNote>,
+    pub(crate) open_sieves: Option<RuleNote>,
     /// True if the rule of drainage has no result.
     pub is_drainage_unknown: bool,
 }
@@ -64,7 +64,7 @@ pub enum Standing {
 
 impl Standing {
     /// Class of the standing: practice met, not met, or not known.
-    pub fn class(&self) -> PracticeClass {
+    pub(crate) fn class(&self) -> PracticeClass {
         match self {
             Self::Fails | Self::WashedOut | Self::NoMargin => PracticeClass::DoesNotMeet,
             Self::Unstable | Self::Unknown(_) | Self::Open(_) | Self::NoRules => PracticeClass::NotKnown,
@@ -254,7 +254,7 @@ pub struct Practice {
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub limit_at_most: bool,
     /// Class of such pairs in tests, by the boundaries of Foster and Fell.
-    pub tests: TestedClass,
+    pub(crate) tests: TestedClass,
     /// Range of D15F (mm) in which erosion began in tests of bases with such fines (Fell et al., Table
     /// 9.2); `None` for a dispersive base, which had other tests, and if fines or D85B are not known.
     pub range_of_tests_mm: Option<[f64; 2]>,

@@ -66,7 +66,7 @@ impl IfDispersive {
     }
 
     /// Strictest of several limits of one base; `None` if there are none.
-    pub fn strictest(all: &[Self]) -> Option<Self> {
+    pub(crate) fn strictest(all: &[Self]) -> Option<Self> {
         let least = all.iter().min_by(|a, b| a.d15f_max_mm.total_cmp(&b.d15f_max_mm))?;
         let at_most = all.iter().any(|limit| limit.at_most);
         // If the strictest limit is known, it is no lower than a limit that another curve leaves open.

@@ -51,13 +51,13 @@ pub struct FilterSizes {
     /// D15.
     pub d15_mm: Option<f64>,
     /// D50.
-    pub d50_mm: Option<f64>,
+    pub(crate) d50_mm: Option<f64>,
     /// D85.
     pub d85_mm: Option<f64>,
     /// D60 / D10.
     pub cu: Option<f64>,
     /// D30^2 / (D10 D60).
-    pub cc: Option<f64>,
+    pub(crate) cc: Option<f64>,
 }
 
 /// A base as practice describes it (mm); of an envelope, the curve that keeps the limit of design worst.
@@ -77,7 +77,7 @@ pub struct BaseSizes {
     /// Percent finer than 0.075 mm after regrading.
     pub fines_percent: Option<f64>,
     /// True if the base was regraded.
-    pub regraded: bool,
+    pub(crate) regraded: bool,
     /// Size on which the base was regraded.
     pub regraded_at_mm: Option<f64>,
     /// Reason for regrading or not.
@@ -93,7 +93,7 @@ pub struct BaseSizes {
     /// D60 / D10, before regrading.
     pub cu: Option<f64>,
     /// D30^2 / (D10 D60), before regrading.
-    pub cc: Option<f64>,
+    pub(crate) cc: Option<f64>,
 }
 
 impl PairRules {
@@ -326,7 +326,7 @@ impl Mistake {
 
     /// Looks for mistakes in two envelopes, with every base and the coarsest filter. A single sensible
     /// pair of curves prevents a refusal.
-    pub fn of_envelopes(bases: &[NamedCurve], filters: &[NamedCurve]) -> Option<Self> {
+    pub(crate) fn of_envelopes(bases: &[NamedCurve], filters: &[NamedCurve]) -> Option<Self> {
         let d15 = |curve: &NamedCurve| curve.1.d(15.0).unwrap_or(0.0);
         let (_, coarsest) = filters.iter().max_by(|a, b| d15(a).total_cmp(&d15(b)))?;
         let mut all = Vec::new();

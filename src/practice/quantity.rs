@@ -100,11 +100,11 @@ enum Digits {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantity {
     /// The number; percentages are in percent.
-    pub value: f64,
+    pub(crate) value: f64,
     /// Unit of the number.
-    pub unit: Unit,
+    pub(crate) unit: Unit,
     /// Role of the number.
-    pub role: NumberRole,
+    pub(crate) role: NumberRole,
     digits: Digits,
 }
 
@@ -199,7 +199,7 @@ impl Quantity {
     }
 
     /// Size for a table cell whose head names both units, with at most three digits.
-    pub fn in_both_units(self) -> String {
+    pub(crate) fn in_both_units(self) -> String {
         let few = self.in_digits(3);
         match self.unit {
             Unit::Size(SizeUnit::MmAndInches) => {
@@ -249,9 +249,9 @@ impl fmt::Display for Quantity {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
     /// Lower end.
-    pub low: Quantity,
+    pub(crate) low: Quantity,
     /// Upper end.
-    pub high: Quantity,
+    pub(crate) high: Quantity,
 }
 
 impl Span {

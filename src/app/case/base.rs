@@ -10,11 +10,11 @@ use voidwalk_practice::{Mistake, MistakeKind};
 
 /// Base with its derived values.
 #[derive(Clone, Debug)]
-pub struct CaseBase {
+pub(crate) struct CaseBase {
     /// Gradation as walked.
-    pub gradation: Gradation,
+    pub(crate) gradation: Gradation,
     /// Base as given, and the size (mm) on which it was regraded, if it is walked regraded.
-    pub regraded_from: Option<(Gradation, f64)>,
+    pub(crate) regraded_from: Option<(Gradation, f64)>,
 }
 
 impl CaseBase {
@@ -44,7 +44,7 @@ impl CaseBase {
     }
 
     /// Gradation as given, before any regrading.
-    pub fn as_given(&self) -> &Gradation {
+    pub(crate) fn as_given(&self) -> &Gradation {
         self.regraded_from.as_ref().map_or(&self.gradation, |(given, _)| given)
     }
 
@@ -95,24 +95,24 @@ fn given(scene: &Scene, filter: &CaseFilter, files: &mut Files) -> Result<Gradat
 }
 
 /// Mass ratio of Eq. (2) if the scene gives a number of particles: the paper's 5 %.
-pub const PAPER_MASS_RATIO: f64 = 0.05;
+pub(crate) const PAPER_MASS_RATIO: f64 = 0.05;
 
 /// Particles of a base in the walk.
 #[derive(Clone)]
-pub struct CaseSupply {
+pub(crate) struct CaseSupply {
     /// True if the base's pan fraction is walked as particles just finer than every constriction, false
     /// if it is counted by mass only.
-    pub pan_is_walked: bool,
+    pub(crate) pan_is_walked: bool,
     /// Sampler of particle sizes, in units of the reference length.
-    pub sampler: SizeSampler,
+    pub(crate) sampler: SizeSampler,
     /// Number of base particles in a run, by Eq. (2) or as given.
-    pub n_base: u64,
+    pub(crate) n_base: u64,
     /// Number of base particles by Eq. (2); `None` if the grains per void are not given.
-    pub n_base_eq2: Option<u64>,
+    pub(crate) n_base_eq2: Option<u64>,
     /// True if a cap made `n_base` smaller than by Eq. (2).
-    pub capped: bool,
+    pub(crate) capped: bool,
     /// Mass of base over mass of filter for `n_base` particles; `None` if the grains per void are not given.
-    pub mass_ratio: Option<f64>,
+    pub(crate) mass_ratio: Option<f64>,
 }
 
 impl CaseSupply {

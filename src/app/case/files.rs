@@ -22,10 +22,10 @@ const LARGEST_NETWORK: u64 = 1 << 36;
 const INPUTS: &str = "inputs";
 
 /// File with the user's names for the files in that folder, by their names there.
-pub const INPUT_NAMES: &str = "inputs/names.json";
+pub(crate) const INPUT_NAMES: &str = "inputs/names.json";
 
 /// All files that may be kept there.
-pub const INPUT_FILES: [&str; 15] = [
+pub(crate) const INPUT_FILES: [&str; 15] = [
     RECORD,
     "filter-curve.csv",
     "filter-sieve.csv",
@@ -92,11 +92,11 @@ const SIEVES: [&str; 2] = ["base.sieve", "filter.sieve"];
 
 /// Reads and remembers the files of a scene.
 #[derive(Default)]
-pub struct Files {
+pub(crate) struct Files {
     /// Files that were read, in order.
-    pub inputs: Vec<Input>,
+    pub(crate) inputs: Vec<Input>,
     /// Files read before for the same settings, which are not read again.
-    pub known: Vec<Input>,
+    pub(crate) known: Vec<Input>,
 }
 
 impl Files {
@@ -136,7 +136,7 @@ impl Files {
         Ok(())
     }
 
-    pub fn curve(
+    pub(crate) fn curve(
         &mut self,
         source: &CurveSource,
         setting: &'static str,
@@ -158,7 +158,7 @@ impl Files {
     }
 
     /// Curve of a packed filter; kept as if it had been given, with the packing's record.
-    pub fn packed(&mut self, packed: &PackedFilter) -> Result<Curve, CaseError> {
+    pub(crate) fn packed(&mut self, packed: &PackedFilter) -> Result<Curve, CaseError> {
         if let Some([curve, record]) = &packed.files {
             self.keep("filter.curve", curve, packed.curve_csv.clone().into_bytes())?;
             self.keep("filter.density", record, packed.record.clone())?;
@@ -166,7 +166,7 @@ impl Files {
         Ok(packed.curve.clone())
     }
 
-    pub fn sieve(
+    pub(crate) fn sieve(
         &mut self,
         path: &Path,
         d0_mm: Option<f64>,
@@ -186,7 +186,7 @@ impl Files {
     }
 
     /// Grains of a file, and its name for users.
-    pub fn packing(&mut self, path: &Path, scene: &Scene) -> Result<(String, Packing), CaseError> {
+    pub(crate) fn packing(&mut self, path: &Path, scene: &Scene) -> Result<(String, Packing), CaseError> {
         let (name, bytes) = self.read("network.packing", path, PACKING_FILE_LIMIT_BYTES, &scene.name)?;
         let options = ReadOptions { unit: scene.network.unit, cell: scene.network.cell };
         let read = Packing::parse_as(&name, bytes, &options);
@@ -198,12 +198,12 @@ impl Files {
     }
 
     /// Grains of a packed filter; kept as if they had been given.
-    pub fn packed_grains(&mut self, grains: &[u8]) -> Result<(String, Packing), CaseError> {
+    pub(crate) fn packed_grains(&mut self, grains: &[u8]) -> Result<(String, Packing), CaseError> {
         self.keep("network.packing", Path::new(GRAINS), grains.to_vec())?;
         Ok((GRAINS.into(), Packing::parse(GRAINS, grains).map_err(PackedError::from)?))
     }
 
-    pub fn network(&mut self, path: &Path, scene: &Scene, unit_mm: f64) -> Result<Network, CaseError> {
+    pub(crate) fn network(&mut self, path: &Path, scene: &Scene, unit_mm: f64) -> Result<Network, CaseError> {
         let (name, bytes) = self.read("network.file", path, LARGEST_NETWORK, &scene.name)?;
         if !scene.network.is_of_arrays() {
             let network = Network::from_csv(bytes, &name, unit_mm)?;
@@ -217,7 +217,7 @@ impl Files {
         let unit = scene.network.unit.ok_or_else(|| {
             scene.clash(format!(
                 "{name} does not say the unit of its diameters, and a guess may be wrong by a factor \
-                 of 1000; say it: network.unit = \"m\" (or \"cm\", \"mm\", \"um\", \
+                 of 1000; give it: network.unit = \"m\" (or \"cm\", \"mm\", \"um\", \
                  \"nm\"; OpenPNM has metres)"
             ))
         })?;

@@ -19,28 +19,28 @@ use voidwalk_core::packing::Packing;
 
 /// Filter with all its derived values.
 #[derive(Clone)]
-pub struct CaseFilter {
+pub(crate) struct CaseFilter {
     /// Gradation of the filter.
-    pub gradation: Gradation,
+    pub(crate) gradation: Gradation,
     /// Reference length: the smallest grain (mm).
-    pub unit_mm: f64,
+    pub(crate) unit_mm: f64,
     /// Constriction curve (mm).
-    pub curve: Curve,
+    pub(crate) curve: Curve,
     /// Further curves that are walked: the ends of the range of its own curve.
-    pub curve_ends: Vec<OtherCurve>,
+    pub(crate) curve_ends: Vec<OtherCurve>,
     /// Finest constriction (mm) of all curves that are walked, including the ends of its range: finer
     /// particles block nothing in any of them.
-    pub finest_mm: f64,
+    pub(crate) finest_mm: f64,
     /// Filter grains per void, known or guessed.
-    pub grains_per_void: Option<f64>,
+    pub(crate) grains_per_void: Option<f64>,
     /// Shipped filter that the curve comes from, if any.
-    pub shipped: Option<&'static ShippedFilter>,
+    pub(crate) shipped: Option<&'static ShippedFilter>,
     /// Packing on which the curve was measured, if made by the program.
-    pub packed: Option<PackedFilter>,
+    pub(crate) packed: Option<PackedFilter>,
     /// Entry of the library of packings, if the curve comes from there.
-    pub library: Option<LibraryFilter>,
+    pub(crate) library: Option<LibraryFilter>,
     /// Relative density, from 0 (loose) to 1 (dense), of a curve guessed from the gradation.
-    pub guessed_density: Option<f64>,
+    pub(crate) guessed_density: Option<f64>,
 }
 
 impl CaseFilter {
@@ -142,21 +142,21 @@ fn grains_per_void(scene: &Scene, stated: &StatedFilter, fixed: Option<&FixedNet
 
 /// Filter as stated, with the fields of [`CaseFilter`].
 pub(super) struct StatedFilter {
-    pub gradation: Gradation,
+    pub(crate) gradation: Gradation,
     /// Constriction curve in the unit in which it is stated; `None` if the network defines it.
-    pub curve: Option<Curve>,
-    pub shipped: Option<&'static ShippedFilter>,
-    pub packed: Option<PackedFilter>,
-    pub library: Option<LibraryFilter>,
-    pub guessed_density: Option<f64>,
+    pub(crate) curve: Option<Curve>,
+    pub(crate) shipped: Option<&'static ShippedFilter>,
+    pub(crate) packed: Option<PackedFilter>,
+    pub(crate) library: Option<LibraryFilter>,
+    pub(crate) guessed_density: Option<f64>,
     /// Measurements on the packing whose voids are the network.
-    pub graph: Option<Arc<GraphPacking>>,
+    pub(crate) graph: Option<Arc<GraphPacking>>,
 }
 
 impl StatedFilter {
     /// Reads the files of a filter; `packed` and `measured` are its packing and that packing's voids, if
     /// they already exist.
-    pub fn read(
+    pub(crate) fn read(
         scene: &Scene,
         packed: Option<PackedFilter>,
         measured: Option<Arc<GraphPacking>>,
@@ -226,22 +226,22 @@ fn gradation(
 
 /// Network that all replicates walk.
 #[derive(Clone)]
-pub struct FixedNetwork {
+pub(crate) struct FixedNetwork {
     /// The network.
-    pub network: Network,
+    pub(crate) network: Network,
     /// Finest constriction, in units of the reference length.
     pub(super) finest: f32,
     /// Packing whose voids form it; `None` for a network from a file.
-    pub packing: Option<CopiedPacking>,
+    pub(crate) packing: Option<CopiedPacking>,
 }
 
 /// Packing whose voids form a network, repeated along the flow.
 #[derive(Clone)]
-pub struct CopiedPacking {
+pub(crate) struct CopiedPacking {
     /// Number of copies.
-    pub copies: u32,
+    pub(crate) copies: u32,
     /// Total thickness of the copies (mm).
-    pub thickness_mm: f64,
+    pub(crate) thickness_mm: f64,
     /// Measurements on the packing.
     pub(super) graph: Arc<GraphPacking>,
 }
@@ -286,16 +286,16 @@ impl FixedNetwork {
 
 /// Measurements on the grains of a graph's packing.
 pub(super) struct GraphPacking {
-    pub graph: VoidGraph,
+    pub(crate) graph: VoidGraph,
     /// Constriction curve in mm.
-    pub curve: Curve,
-    pub gradation: Gradation,
+    pub(crate) curve: Curve,
+    pub(crate) gradation: Gradation,
 }
 
 impl GraphPacking {
     /// Reads the file named by the scene, or measures the filter's own packing; `None` if that does not
     /// exist yet.
-    pub fn read(
+    pub(crate) fn read(
         scene: &Scene,
         file: Option<&PathBuf>,
         packed: Option<&PackedFilter>,
@@ -318,7 +318,7 @@ impl GraphPacking {
     }
 
     /// Number of copies of the packing for this extent.
-    pub fn copies(&self, extent: Extent, d50f_mm: f64) -> u32 {
+    pub(crate) fn copies(&self, extent: Extent, d50f_mm: f64) -> u32 {
         let cell = self.graph.cell_mm[2];
         let thickness = match extent {
             Extent::Copies(copies) => return copies,

@@ -13,13 +13,13 @@ const GRAINS_ERROR_OF_PART: f64 = 0.25;
 
 /// Filter as found in the library.
 #[derive(Clone)]
-pub struct LibraryFilter {
+pub(crate) struct LibraryFilter {
     /// Constrictions found; those of the loose filter if its density is unknown.
-    pub found: FromLibrary,
+    pub(crate) found: FromLibrary,
     /// Finer part that was looked up, if the whole is too broad.
-    pub part: Option<PackedPart>,
+    pub(crate) part: Option<PackedPart>,
     /// Ends of the range of its curve.
-    pub ends: Vec<OtherCurve>,
+    pub(crate) ends: Vec<OtherCurve>,
 }
 
 impl LibraryFilter {
@@ -27,7 +27,7 @@ impl LibraryFilter {
     ///
     /// # Errors
     /// Cannot fail for a gradation with a known size.
-    pub fn find(filter: &Gradation, density: LibraryDensity) -> Result<Option<Self>, CurveError> {
+    pub(crate) fn find(filter: &Gradation, density: LibraryDensity) -> Result<Option<Self>, CurveError> {
         // Looks up the finer part that would be packed, if the whole could not be.
         let width = |gradation: &Gradation| width_by_largest(gradation, GRAINS_OF_PART, 1.0);
         let (looked_up, part) = match width(filter) < LEAST_WIDTH {
@@ -77,21 +77,21 @@ impl LibraryFilter {
 
 /// Other possible curve of the filter.
 #[derive(Clone)]
-pub struct OtherCurve {
+pub(crate) struct OtherCurve {
     /// Description of the curve.
-    pub name: String,
+    pub(crate) name: String,
     /// Constriction curve (mm).
-    pub curve: Curve,
+    pub(crate) curve: Curve,
     /// Grains per void of such a filter over those of the case's own curve; the amount of base is
     /// multiplied by it.
-    pub times_grains: f64,
+    pub(crate) times_grains: f64,
 }
 
 /// Ends of a guess by relative density.
 const END_GUESSES: [(f64, &str); 2] = [(1.0, "densest guess"), (0.0, "loosest guess")];
 
 /// Name of the guess at this relative density if it is an end.
-pub fn end_of_guess(relative_density: f64) -> Option<&'static str> {
+pub(crate) fn end_of_guess(relative_density: f64) -> Option<&'static str> {
     END_GUESSES.iter().find(|(density, _)| *density == relative_density).map(|(_, name)| *name)
 }
 

@@ -46,17 +46,17 @@ const EXIT_BYTES: [u64; 2] = [16, 16];
 
 /// Limits on memory and disk for the walks of a case.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ResourceLimits {
+pub(crate) struct ResourceLimits {
     /// Memory (bytes).
-    pub memory: u64,
+    pub(crate) memory: u64,
     /// Free disk for the results (bytes).
-    pub disk: u64,
+    pub(crate) disk: u64,
 }
 
 impl ResourceLimits {
     /// Takes the memory requested, or else 80 % of the available memory, and never more than that; and
     /// the free disk at `folder`.
-    pub fn new(asked: Option<u64>, available: u64, folder: &Path) -> Self {
+    pub(crate) fn new(asked: Option<u64>, available: u64, folder: &Path) -> Self {
         let share = available / 5 * 4;
         let there = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
         Self {
@@ -69,7 +69,7 @@ impl ResourceLimits {
 impl Case {
     /// Number of base particles in a run of `n_base` that are walked one by one: all, or those that may
     /// be coarser than the finest constriction.
-    pub fn one_by_one(&self, n_base: u64) -> u64 {
+    pub(crate) fn one_by_one(&self, n_base: u64) -> u64 {
         if self.takes_each(n_base) {
             return n_base;
         }
@@ -79,13 +79,13 @@ impl Case {
 
     /// True if all of `n_base` particles are walked one by one, whatever their sizes, on a network with
     /// its finest constriction.
-    pub fn takes_each(&self, n_base: u64) -> bool {
+    pub(crate) fn takes_each(&self, n_base: u64) -> bool {
         let passive = Engine::passive_share(n_base / self.increments(), self.passive_words());
         self.scene.walk.engine.takes_each(passive, self.network.start_nodes)
     }
 
     /// First random word that draws one of these particles.
-    pub fn first_word(&self, n_base: u64) -> u128 {
+    pub(crate) fn first_word(&self, n_base: u64) -> u128 {
         if self.takes_each(n_base) { 0 } else { self.passive_words() }
     }
 
@@ -143,7 +143,7 @@ impl Case {
     /// Bytes for the records of each void of the first replicate, if `record.voids` keeps them: at most
     /// one row for each void, or for each particle so far, after each increment of the list and at the
     /// end of each run.
-    pub fn kept_bytes(&self) -> u64 {
+    pub(crate) fn kept_bytes(&self) -> u64 {
         let Some(increments) = &self.scene.record.voids else { return 0 };
         let CaseNetwork { voids, constrictions, .. } = self.network;
         let [of_row, of_void, of_constriction] = KEPT_BYTES;
@@ -159,7 +159,7 @@ impl Case {
 
     /// Approximate bytes of one of its networks, and of the exits with which first runs on it may begin,
     /// in this case or another one with the same network.
-    pub fn shared_network_bytes(&self) -> [u64; 2] {
+    pub(crate) fn shared_network_bytes(&self) -> [u64; 2] {
         let CaseNetwork { voids, constrictions, .. } = self.network;
         let bytes = |[of_void, of_constriction]: [u64; 2]| {
             voids.saturating_mul(of_void).saturating_add(constrictions.saturating_mul(of_constriction))
@@ -169,7 +169,7 @@ impl Case {
     }
 
     /// Bytes to walk `n_base` particles on this many threads, including network and tallies.
-    pub fn bytes(&self, n_base: u64, threads: u64) -> u64 {
+    pub(crate) fn bytes(&self, n_base: u64, threads: u64) -> u64 {
         self.column_bytes(n_base).saturating_add(self.other_bytes(n_base, threads))
     }
 
@@ -188,7 +188,7 @@ impl Case {
     }
 
     /// Maximum bytes of the whole case at any time on this many threads, with all columns in memory.
-    pub fn peak_bytes(&self, threads: u64) -> u64 {
+    pub(crate) fn peak_bytes(&self, threads: u64) -> u64 {
         let peak = |case: &Case| {
             let n_base = case.most_particles();
             let walks = case.bytes(n_base, threads).saturating_mul(case.side_by_side(n_base, threads));
@@ -200,7 +200,7 @@ impl Case {
 
     /// Number of replicates of `n_base` particles that walk at the same time on this many threads: one,
     /// unless they are small.
-    pub fn side_by_side(&self, n_base: u64, threads: u64) -> u64 {
+    pub(crate) fn side_by_side(&self, n_base: u64, threads: u64) -> u64 {
         let all = self.bytes(n_base, threads).saturating_mul(threads);
         if all <= SIDE_BY_SIDE_BYTES.min(self.memory) { threads.max(1) } else { 1 }
     }
@@ -217,7 +217,12 @@ impl Case {
     ///
     /// # Errors
     /// [`CaseError::Memory`]: they fit in neither.
-    pub fn place(&mut self, room: &ResourceLimits, threads: u64, folder: &Path) -> Result<(), CaseError> {
+    pub(crate) fn place(
+        &mut self,
+        room: &ResourceLimits,
+        threads: u64,
+        folder: &Path,
+    ) -> Result<(), CaseError> {
         self.memory = room.memory;
         let has_room = self.has_room(room, threads);
         // If the scene itself does not fit, the studies are not to blame.
@@ -287,7 +292,7 @@ impl Case {
     }
 
     /// Location of the particles of a walk on this many threads, in words.
-    pub fn memory_in_words(&self, threads: u64) -> String {
+    pub(crate) fn memory_in_words(&self, threads: u64) -> String {
         let bytes = in_words(self.bytes(self.supply.n_base, threads));
         let limit = in_words(self.memory);
         let kept = match self.kept_bytes() {
@@ -307,7 +312,7 @@ impl Case {
 }
 
 /// Bytes in words, such as `1.6 GB`.
-pub fn in_words(bytes: u64) -> String {
+pub(crate) fn in_words(bytes: u64) -> String {
     let (mut value, mut unit) = (bytes as f64, "bytes");
     for larger in ["kB", "MB", "GB", "TB", "PB", "EB"] {
         if value < 1000.0 {

@@ -18,16 +18,18 @@ mod record;
 mod resolved;
 mod varied;
 
-pub use base::{CaseBase, CaseSupply, PAPER_MASS_RATIO};
+pub(crate) use base::{CaseBase, CaseSupply, PAPER_MASS_RATIO};
 pub use error::CaseError;
-pub use files::{INPUT_FILES, INPUT_NAMES};
-pub use filter::{CaseFilter, CopiedPacking, FixedNetwork};
-pub use library_filter::{LibraryFilter, OtherCurve, end_of_guess};
-pub use memory::{ResourceLimits, in_words};
-pub use network::{CaseNetwork, replicate_seed};
-pub use packed_filter::{GRAINS, Input, PackedError, PackedFilter, PackingPlan, RECORD};
-pub use record::base_record;
-pub use varied::StatedBase;
+pub(crate) use files::{INPUT_FILES, INPUT_NAMES};
+pub(crate) use filter::{CaseFilter, CopiedPacking, FixedNetwork};
+pub(crate) use library_filter::{LibraryFilter, OtherCurve, end_of_guess};
+pub(crate) use memory::{ResourceLimits, in_words};
+pub(crate) use network::CaseNetwork;
+pub use network::replicate_seed;
+pub use packed_filter::PackingPlan;
+pub(crate) use packed_filter::{GRAINS, Input, PackedError, PackedFilter, RECORD};
+pub(crate) use record::base_record;
+pub(crate) use varied::StatedBase;
 
 use crate::outcome::Modelled;
 use crate::outcome::record::{ArchingRecord, Ratios};
@@ -57,23 +59,23 @@ use voidwalk_practice::Note;
 #[derive(Clone)]
 pub struct Case {
     /// Scene of the case.
-    pub scene: Scene,
+    pub(crate) scene: Scene,
     /// The filter.
-    pub filter: CaseFilter,
+    pub(crate) filter: CaseFilter,
     /// The base.
-    pub base: CaseBase,
+    pub(crate) base: CaseBase,
     /// Note that base and filter look exchanged, or are in different units.
-    pub mistake: Option<Note>,
+    pub(crate) mistake: Option<Note>,
     /// Network of the filter.
-    pub network: CaseNetwork,
+    pub(crate) network: CaseNetwork,
     /// Particles of the base in the walk.
-    pub supply: CaseSupply,
+    pub(crate) supply: CaseSupply,
     /// Files that were read.
     pub inputs: Vec<Input>,
     /// Maximum memory for the walks (bytes): no limit until [`Case::place`] sets one.
-    pub memory: u64,
+    pub(crate) memory: u64,
     /// Location of the particles' columns.
-    pub placement: Placement,
+    pub(crate) placement: Placement,
 }
 
 impl Case {
@@ -96,7 +98,7 @@ impl Case {
     ///
     /// # Errors
     /// As for [`Case::new`]; also if the scene's filter is to be packed and has not been.
-    pub fn with_packed(
+    pub(crate) fn with_packed(
         scene: Scene,
         packed: Option<PackedFilter>,
         known: Vec<Input>,
@@ -149,12 +151,12 @@ impl Case {
     }
 
     /// Mass fraction of the base that is passive and counted by mass only.
-    pub fn pan_by_mass_only(&self) -> f64 {
+    pub(crate) fn pan_by_mass_only(&self) -> f64 {
         if self.supply.pan_is_walked { 0.0 } else { self.base.gradation.pan_fraction() }
     }
 
     /// Base with all particles that are walked.
-    pub fn base_as_walked(&self) -> Cow<'_, Gradation> {
+    pub(crate) fn base_as_walked(&self) -> Cow<'_, Gradation> {
         let (base, finest_mm) = (&self.base.gradation, self.filter.finest_mm);
         match self.supply.pan_is_walked {
             true => Cow::Owned(as_passive(base, finest_mm, &self.scene).expect("it was sampled")),
@@ -167,7 +169,7 @@ impl Case {
     /// # Errors
     /// No network with the scene's distribution of connectivity is found for this seed; [`Case::new`]
     /// reports all other errors.
-    pub fn network(&self, seed: u64) -> Result<Network, NetworkError> {
+    pub(crate) fn network(&self, seed: u64) -> Result<Network, NetworkError> {
         let network = self.clean_network(seed)?;
         Ok(match self.scene.exits.flow_tolerance {
             Some(tolerance) => network.with_flow_tolerance(tolerance),
@@ -198,30 +200,30 @@ impl Case {
     }
 
     /// Number of increments in which the base is inserted, a whole number so that all are equal.
-    pub fn increments(&self) -> u64 {
+    pub(crate) fn increments(&self) -> u64 {
         (1.0 / self.scene.walk.inject_share).round().max(1.0) as u64
     }
 
     /// Number of constriction curves that are walked: its own, and the ends of its range.
-    pub fn curves(&self) -> usize {
+    pub(crate) fn curves(&self) -> usize {
         1 + self.filter.curve_ends.len()
     }
 
     /// D15F over D85B and D95B.
-    pub fn ratios(&self) -> Ratios {
+    pub(crate) fn ratios(&self) -> Ratios {
         let d = |gradation: &Gradation, percent| gradation.d(percent).unwrap_or(f64::NAN);
         let (d15f, base) = (d(&self.filter.gradation, 15.0), &self.base.gradation);
         Ratios { d15f_over_d85b: d15f / d(base, 85.0), d15f_over_d95b: d15f / d(base, 95.0) }
     }
 
     /// Law of its arches at the concentration stated by the scene; `None` if particles do not arch.
-    pub fn arching(&self) -> Option<Arc<Arching>> {
+    pub(crate) fn arching(&self) -> Option<Arc<Arching>> {
         let concentration = self.scene.exits.concentration.unwrap_or(DENSEST);
         self.scene.law().map(|law| Arc::new(Arching::new(law, concentration)))
     }
 
     /// Record of its arches.
-    pub fn arching_record(&self) -> Option<ArchingRecord> {
+    pub(crate) fn arching_record(&self) -> Option<ArchingRecord> {
         let law = self.scene.law()?;
         Some(ArchingRecord {
             law: law.name.into(),
@@ -233,7 +235,7 @@ impl Case {
     }
 
     /// Mechanisms in its walks that other walks omit.
-    pub fn modelled(&self) -> Modelled {
+    pub(crate) fn modelled(&self) -> Modelled {
         Modelled {
             flow: self.scene.exit_rule().needs_flow(),
             arches: self.scene.law().is_some(),
@@ -242,7 +244,7 @@ impl Case {
     }
 
     /// Doubts about a verdict with arches and openings, which no test has checked.
-    pub fn unchecked_clogging(&self) -> impl Iterator<Item = Note> {
+    pub(crate) fn unchecked_clogging(&self) -> impl Iterator<Item = Note> {
         let arches = self.scene.law().map(|law| Note::Arches { law: law.name.into() });
         arches.into_iter().chain(self.scene.leaves_openings().then_some(Note::Openings {}))
     }

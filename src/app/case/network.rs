@@ -24,19 +24,19 @@ pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
 
 /// Size of a network.
 #[derive(Clone)]
-pub struct CaseNetwork {
+pub(crate) struct CaseNetwork {
     /// Number of voids.
-    pub voids: u64,
+    pub(crate) voids: u64,
     /// Number of constrictions in the first replicate.
-    pub constrictions: u64,
+    pub(crate) constrictions: u64,
     /// Number of start nodes.
-    pub start_nodes: u64,
+    pub(crate) start_nodes: u64,
     /// Number of layers.
-    pub layers: u64,
+    pub(crate) layers: u64,
     /// Connectivity and percent of the voids, if they differ.
-    pub connectivity: Vec<[f64; 2]>,
+    pub(crate) connectivity: Vec<[f64; 2]>,
     /// Network itself, if all replicates walk the same one.
-    pub fixed: Option<FixedNetwork>,
+    pub(crate) fixed: Option<FixedNetwork>,
 }
 
 impl CaseNetwork {
@@ -100,7 +100,7 @@ impl CaseNetwork {
     }
 
     /// Number of copies of the packing whose voids form it.
-    pub fn copies(&self) -> Option<u32> {
+    pub(crate) fn copies(&self) -> Option<u32> {
         self.packing().map(|packing| packing.copies)
     }
 }

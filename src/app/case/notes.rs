@@ -114,7 +114,7 @@ impl Case {
     }
 
     /// Notes a base smaller than by the paper's Eq. (2) and mass ratio.
-    pub fn too_little_base(&self) -> Option<Note> {
+    pub(crate) fn too_little_base(&self) -> Option<Note> {
         let ratio = self.scene.base.mass_ratio.unwrap_or(PAPER_MASS_RATIO);
         let particles = self.supply.n_base;
         match self.supply.n_base_eq2 {

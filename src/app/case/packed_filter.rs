@@ -17,9 +17,9 @@ use voidwalk_core::store::{StoreError, read_whole};
 use voidwalk_practice::InputFile;
 
 /// File of the packing's measurements; a folder with this file is complete.
-pub const RECORD: &str = "packing.json";
+pub(crate) const RECORD: &str = "packing.json";
 /// File of the grains.
-pub const GRAINS: &str = "grains.csv";
+pub(crate) const GRAINS: &str = "grains.csv";
 
 /// Filter grains per void if the constrictions are a guess and no number is given: the value of loose
 /// packings (`results/packing.md`).
@@ -38,27 +38,27 @@ const OF_FOUR: f64 = 0.2;
 
 /// Packed filter: data for a walk.
 #[derive(Clone, Debug)]
-pub struct PackedFilter {
+pub(crate) struct PackedFilter {
     /// Files of the curve and of the record; `None` for a placeholder.
-    pub files: Option<[PathBuf; 2]>,
+    pub(crate) files: Option<[PathBuf; 2]>,
     /// Constriction curve (mm).
-    pub curve: Curve,
+    pub(crate) curve: Curve,
     /// Constriction curve as CSV.
-    pub curve_csv: String,
+    pub(crate) curve_csv: String,
     /// Filter grains per void.
-    pub grains_per_void: f64,
+    pub(crate) grains_per_void: f64,
     /// Bytes of `packing.json`.
-    pub record: Vec<u8>,
+    pub(crate) record: Vec<u8>,
     /// Volume of the voids over the volume of the grains of the filter, known if the whole was packed.
-    pub void_ratio: Option<f64>,
+    pub(crate) void_ratio: Option<f64>,
     /// Part of the filter that was packed, if it is not the whole.
-    pub part: Option<PackedPart>,
+    pub(crate) part: Option<PackedPart>,
     /// Origin of the packing, if it was made for another filter of the same shape.
-    pub same_shape: Option<SameShape>,
+    pub(crate) same_shape: Option<SameShape>,
     /// Fraction of the grains, by number, that carry no load; `None` for a placeholder.
-    pub rattlers: Option<f64>,
+    pub(crate) rattlers: Option<f64>,
     /// Grains as CSV; `None` for a placeholder, or if a run kept only the curve.
-    pub grains: Option<Vec<u8>>,
+    pub(crate) grains: Option<Vec<u8>>,
 }
 
 /// Reason why a packing's folder cannot be used.
@@ -91,7 +91,7 @@ impl PackedFilter {
     ///
     /// # Errors
     /// The folder is damaged or holds another filter.
-    pub fn read(folder: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
+    pub(crate) fn read(folder: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
         let Some((record, read)) = read_record(folder)? else { return Ok(None) };
         if read.fingerprint != order.fingerprint() {
             let problem = "this is the packing of another recipe; name another folder";
@@ -108,7 +108,7 @@ impl PackedFilter {
     ///
     /// # Errors
     /// A packing of the filter is damaged.
-    pub fn find(packings: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
+    pub(crate) fn find(packings: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
         match Self::read(&packings.join(order.folder_name()), order)? {
             Some(filter) => Ok(Some(filter)),
             None => Self::of_same_shape(packings, order),
@@ -120,7 +120,7 @@ impl PackedFilter {
     ///
     /// # Errors
     /// A packing of the same shape is damaged.
-    pub fn of_same_shape(packings: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
+    pub(crate) fn of_same_shape(packings: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
         let Ok(entries) = std::fs::read_dir(packings) else { return Ok(None) };
         let usual_folder = packings.join(order.folder_name());
         let mut folders: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
@@ -186,7 +186,7 @@ impl PackedFilter {
     ///
     /// # Errors
     /// A file is missing or damaged.
-    pub fn kept(curve: &Path, grains_per_void: f64) -> Result<Self, PackedError> {
+    pub(crate) fn kept(curve: &Path, grains_per_void: f64) -> Result<Self, PackedError> {
         let record = curve.with_file_name(RECORD);
         let (curve_bytes, record_bytes) = (read(curve)?, read(&record)?);
         let packing: PackingRecord = from_json(&record_bytes).map_err(|e| refused(&record, e))?;
@@ -209,7 +209,7 @@ impl PackedFilter {
     ///
     /// # Errors
     /// Cannot fail for a gradation that can be packed.
-    pub fn placeholder(order: &PackingPlan) -> Result<Self, CurveError> {
+    pub(crate) fn placeholder(order: &PackingPlan) -> Result<Self, CurveError> {
         // Without friction, grains settle more densely.
         let loose = (order.compression.friction / 0.3).min(1.0);
         let [dense_curve, loose_curve] = [1.0, 0.0].map(|density| inscribed(&order.gradation, density));
@@ -276,26 +276,26 @@ const WIDE_PROTOCOL: u32 = 3;
 #[derive(Clone, Debug)]
 pub struct PackingPlan {
     /// Gradation that is packed: the filter's, or that of its finer part.
-    pub gradation: Gradation,
+    pub(crate) gradation: Gradation,
     /// Description of the gradation.
-    pub name: String,
+    pub(crate) name: String,
     /// True if the gradation is linear.
-    pub linear: bool,
+    pub(crate) linear: bool,
     /// Part of the filter that is packed, if it is not the whole.
-    pub part: Option<PackedPart>,
+    pub(crate) part: Option<PackedPart>,
     /// Height of the cell over its width.
-    pub aspect: f64,
+    pub(crate) aspect: f64,
     /// Settings of the compression.
-    pub compression: Compression,
+    pub(crate) compression: Compression,
     /// Overlap of two inscribed spheres above which their tetrahedra form one void.
-    pub merge_overlap: f64,
+    pub(crate) merge_overlap: f64,
     /// Files that were read.
-    pub inputs: Vec<Input>,
+    pub(crate) inputs: Vec<Input>,
 }
 
 impl PackingPlan {
     /// Fingerprint of all inputs of the grains.
-    pub fn fingerprint(&self) -> String {
+    pub(crate) fn fingerprint(&self) -> String {
         self.fingerprint_of(&pairs(&self.gradation))
     }
 
@@ -323,13 +323,13 @@ impl PackingPlan {
     }
 
     /// True if one packing, scaled, serves both plans.
-    pub fn has_shape_of(&self, other: &Self) -> bool {
+    pub(crate) fn has_shape_of(&self, other: &Self) -> bool {
         let points = pairs(&other.gradation);
         self.scale_from(&points).is_some() && self.fingerprint_of(&points) == other.fingerprint()
     }
 
     /// Name of the packing's folder among others.
-    pub fn folder_name(&self) -> String {
+    pub(crate) fn folder_name(&self) -> String {
         let cu = self.gradation.cu().map_or("graded".to_string(), |cu| format!("cu{:.3}", cu));
         let cu = cu.trim_end_matches('0').trim_end_matches('.');
         format!("{cu}-friction{}-{}", self.compression.friction, &self.fingerprint()[..8])
@@ -345,22 +345,22 @@ fn pairs(gradation: &Gradation) -> Vec<(f64, f64)> {
 #[derive(Clone, Debug)]
 pub struct Input {
     /// Setting that names the file.
-    pub setting: &'static str,
+    pub(crate) setting: &'static str,
     /// Path as first given by the user: a run that continues from the files in its folder reads it there.
-    pub name: String,
+    pub(crate) name: String,
     /// Name inside the run folder.
-    pub kept_as: String,
+    pub(crate) kept_as: String,
     /// Bytes of the file, shared by copies of a case.
     pub bytes: Arc<Vec<u8>>,
     /// Soil to use, if the file holds several.
-    pub soil: Option<String>,
+    pub(crate) soil: Option<String>,
     /// Assumptions made in reading the file.
-    pub notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
 }
 
 impl Input {
     /// Name and checksum of the file.
-    pub fn file(&self) -> InputFile {
+    pub(crate) fn file(&self) -> InputFile {
         InputFile::of(&self.name, &self.bytes)
     }
 }

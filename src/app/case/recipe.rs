@@ -27,7 +27,7 @@ const FRACTION: f64 = 0.65;
 
 impl PackingPlan {
     /// Plan of the packing for a scene, if its filter is to be packed and was not measured before.
-    pub fn of(scene: &Scene) -> Result<Option<Self>, CaseError> {
+    pub(crate) fn of(scene: &Scene) -> Result<Option<Self>, CaseError> {
         let spec = scene.packing_spec()?.filter(|_| scene.filter.measured.is_none());
         spec.as_ref().map(Self::new).transpose()
     }
@@ -37,7 +37,7 @@ impl PackingPlan {
     /// # Errors
     /// A file is refused, the gradation cannot be packed, or the cell is narrower than two of the largest
     /// grain.
-    pub fn new(recipe: &PackingSpec) -> Result<Self, CaseError> {
+    pub(crate) fn new(recipe: &PackingSpec) -> Result<Self, CaseError> {
         let mut files = Files::default();
         let (gradation, linear, name) = match &recipe.gradation {
             FilterGradation::Linear { d0_mm, cu } => {
@@ -119,7 +119,7 @@ impl PackingPlan {
 
     /// Approximate width of a tall cell over its largest grain, and the usual ratio, if the cell is
     /// narrower than usual because of a given number of grains or the program's maximum.
-    pub fn narrow_and_tall(&self) -> Option<(f64, f64)> {
+    pub(crate) fn narrow_and_tall(&self) -> Option<(f64, f64)> {
         let width = width_by_largest(&self.gradation, self.compression.grains, self.aspect);
         (self.aspect > 1.0 && width < 0.99 * CELLS_WIDTH).then_some((width, CELLS_WIDTH))
     }

@@ -17,12 +17,12 @@ const GRAVITY: f64 = 9.81;
 
 impl Case {
     /// Page of its run.
-    pub fn about_page(&self) -> AboutPage {
+    pub(crate) fn about_page(&self) -> AboutPage {
         self.scene.about.page(self.is_scale_free())
     }
 
     /// Files that were read, with checksums.
-    pub fn input_files(&self) -> Vec<InputFile> {
+    pub(crate) fn input_files(&self) -> Vec<InputFile> {
         self.inputs.iter().map(Input::file).collect()
     }
 
@@ -38,13 +38,13 @@ impl Case {
     }
 
     /// Name given by the user to each file, by its name in the folder of inputs.
-    pub fn input_names(&self) -> std::collections::BTreeMap<String, String> {
+    pub(crate) fn input_names(&self) -> std::collections::BTreeMap<String, String> {
         let kept = |input: &Input| input.kept_as.rsplit('/').next().unwrap_or_default().to_owned();
         self.inputs.iter().map(|input| (kept(input), input.name.clone())).collect()
     }
 
     /// Inputs as recorded in a run folder.
-    pub fn record(&self) -> record::Inputs {
+    pub(crate) fn record(&self) -> record::Inputs {
         let base_name = match &self.scene.base.gradation() {
             BaseGradation::Sieve(..) => self.name_of("base.sieve"),
             BaseGradation::Single(_) => "one size".into(),
@@ -169,7 +169,7 @@ impl Case {
 
     /// Summary of the network, if its constrictions have no direction. `k0_mm2` is the permeability of
     /// the clean filter, if known.
-    pub fn network_summary(&self, k0_mm2: Option<f64>) -> Option<record::NetworkSummary> {
+    pub(crate) fn network_summary(&self, k0_mm2: Option<f64>) -> Option<record::NetworkSummary> {
         let rule = self.scene.exit_rule();
         if rule == ExitRule::Area {
             return None;
@@ -203,7 +203,7 @@ impl Case {
 
     /// Modelled filter thickness: layers times D50F by number, or copies of a packing; `None` if a layer has
     /// no thickness.
-    pub fn thickness(&self) -> Option<f64> {
+    pub(crate) fn thickness(&self) -> Option<f64> {
         match &self.network.fixed {
             Some(fixed) => Some(fixed.packing.as_ref()?.thickness_mm),
             None => {
@@ -214,12 +214,12 @@ impl Case {
     }
 
     /// True for a sieve curve of the filter, false for an assumed straight line.
-    pub fn filter_is_measured(&self) -> bool {
+    pub(crate) fn filter_is_measured(&self) -> bool {
         matches!(self.scene.filter.gradation(), FilterGradation::Sieve(..))
     }
 
     /// Source of the constrictions.
-    pub fn curve_origin(&self) -> record::CurveOrigin {
+    pub(crate) fn curve_origin(&self) -> record::CurveOrigin {
         match (&self.filter.library, self.filter.guessed_density) {
             _ if self.filter.packed.is_some() => record::CurveOrigin::Packed,
             (Some(_), _) => record::CurveOrigin::Library,
@@ -240,7 +240,7 @@ impl Case {
 
     /// Positions of the voids of its network; `None` for a network from a file, which has no positions,
     /// and for a packing that does not exist yet.
-    pub fn places(&self) -> Option<Places> {
+    pub(crate) fn places(&self) -> Option<Places> {
         if let Some([nx, ny, nz]) = self.scene.network.source().shape() {
             let layer_mm = self.filter.gradation.d_by_number(50.0).unwrap_or(self.filter.unit_mm);
             let middle = |at: u32| (f64::from(at) + 0.5) * layer_mm;
@@ -267,7 +267,7 @@ impl Case {
 }
 
 /// Base as recorded in results.
-pub fn base_record(name: String, base: &Gradation) -> record::BaseRecord {
+pub(crate) fn base_record(name: String, base: &Gradation) -> record::BaseRecord {
     record::BaseRecord {
         name,
         cu: base.cu(),

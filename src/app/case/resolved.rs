@@ -51,7 +51,7 @@ impl Case {
     }
 
     /// Fingerprint of all inputs of the results: the resolved scene and its files.
-    pub fn fingerprint(&self) -> String {
+    pub(crate) fn fingerprint(&self) -> String {
         // No result depends on the cover.
         let scene = Scene { about: About::default(), ..self.resolved() };
         let mut protocol = if scene.exit_rule().needs_flow() { WATER_PROTOCOL } else { PROTOCOL };
@@ -82,7 +82,7 @@ impl Case {
 
     /// Key that two cases share only if [`Case::network`] builds the same network for this seed; `None`
     /// if a case has a single network, which already exists.
-    pub fn network_key(&self, seed: u64) -> Option<u128> {
+    pub(crate) fn network_key(&self, seed: u64) -> Option<u128> {
         let source = self.scene.network.source();
         if self.network.fixed.is_some() || matches!(source, NetworkSource::File(_)) {
             return None;
@@ -96,7 +96,7 @@ impl Case {
 
     /// True if its first runs begin with exits that depend only on the network, and passive particles
     /// take them.
-    pub fn begins_with_plain_exits(&self) -> bool {
+    pub(crate) fn begins_with_plain_exits(&self) -> bool {
         let scene = &self.scene;
         let has_counts = matches!(scene.walk.engine, Engine::Counts | Engine::Expected);
         has_counts && scene.is_lattice_by_area() && scene.law().is_none() && !scene.leaves_openings()

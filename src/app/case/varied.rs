@@ -18,18 +18,18 @@ const HALF_AND_TWICE: [f64; 2] = [0.5, 2.0];
 
 /// Base as a scene states it, with its sizes unchanged.
 #[derive(Clone, Debug)]
-pub struct StatedBase {
+pub(crate) struct StatedBase {
     /// Scene that states it.
-    pub scene: Scene,
+    pub(crate) scene: Scene,
     /// The base.
-    pub base: CaseBase,
+    pub(crate) base: CaseBase,
     /// Files that were read.
-    pub inputs: Vec<Input>,
+    pub(crate) inputs: Vec<Input>,
 }
 
 impl Case {
     /// Replaces only the constriction curve: base and amount of base are unchanged.
-    pub fn with_curve(&self, curve: Curve) -> Self {
+    pub(crate) fn with_curve(&self, curve: Curve) -> Self {
         let mut case = self.clone();
         case.filter.finest_mm = self.filter.finest_mm.min(curve.smallest());
         case.filter.curve = curve;
@@ -41,7 +41,7 @@ impl Case {
     ///
     /// # Errors
     /// A file is refused.
-    pub fn base_of(&self, scene: &Scene) -> Result<StatedBase, CaseError> {
+    pub(crate) fn base_of(&self, scene: &Scene) -> Result<StatedBase, CaseError> {
         let mut files = Files::default();
         let base = CaseBase::read(scene, &self.filter, &mut files)?;
         if scene.is_guarded && scene.filter.sieve.is_some() {
@@ -56,7 +56,7 @@ impl Case {
     /// # Errors
     /// The base cannot be walked: Eq. (2) gives too few or too many particles, sizes are out of range, or
     /// there are more constrictions than 32 bits can number.
-    pub fn with_base(&self, base: Gradation, layers: Option<u64>) -> Result<Self, CaseError> {
+    pub(crate) fn with_base(&self, base: Gradation, layers: Option<u64>) -> Result<Self, CaseError> {
         let mut case = self.clone();
         if let (Some(layers), NetworkSource::Cubic([nx, ny, _])) = (layers, self.scene.network.source()) {
             let shape = [nx, ny, u32::try_from(layers).unwrap_or(u32::MAX)];
@@ -76,7 +76,7 @@ impl Case {
     ///
     /// # Errors
     /// Sizes are out of range.
-    pub fn enlarged(&self, factor: f64, base: &StatedBase) -> Result<Self, CaseError> {
+    pub(crate) fn enlarged(&self, factor: f64, base: &StatedBase) -> Result<Self, CaseError> {
         let mut case = self.clone();
         (case.filter, case.base) = (case.filter.enlarged(factor)?, base.base.clone());
         if case.scene.filter.sieve.is_none() {
@@ -90,13 +90,13 @@ impl Case {
 
     /// True if a network of another base with the same filter has as many layers as this case's, so that
     /// both can share it.
-    pub fn has_layers_of(&self, network: &Network) -> bool {
+    pub(crate) fn has_layers_of(&self, network: &Network) -> bool {
         network.layers() as u64 == self.network.layers
     }
 
     /// Multiples of N_base that the sensitivity study walks: those requested, except those above a cap
     /// set by the user, those that give the case's own number, and repeated numbers.
-    pub fn sensitivity_factors(&self) -> Vec<f64> {
+    pub(crate) fn sensitivity_factors(&self) -> Vec<f64> {
         let (cap, n_base) = (self.cap(), self.supply.n_base);
         let mut factors = with_new_numbers(self.scene.record.sensitivity.clone(), n_base);
         factors.retain(|factor| factor * n_base as f64 <= cap);
@@ -116,13 +116,13 @@ impl Case {
     }
 
     /// Number of base particles times this factor, at least one.
-    pub fn times_base(&self, factor: f64) -> u64 {
+    pub(crate) fn times_base(&self, factor: f64) -> u64 {
         times(self.supply.n_base, factor)
     }
 
     /// Number of base particles for this multiple of the grains per void, up to a cap set by the user;
     /// unchanged if the user states the number.
-    pub fn base_by_grains(&self, times_grains: f64) -> u64 {
+    pub(crate) fn base_by_grains(&self, times_grains: f64) -> u64 {
         let is_by_mass = matches!(self.scene.base.amount(), Amount::MassRatio(..));
         let of_eq2 = self.supply.n_base_eq2.filter(|_| is_by_mass);
         of_eq2
@@ -139,7 +139,7 @@ impl Case {
     /// Multiples of the thickness that the study walks: those requested, or else half and twice if the
     /// number of base particles is studied. Excludes all for a network from a file, whose thickness is
     /// fixed, those that round to the case's own layers or copies, and repeated thicknesses.
-    pub fn thickness_factors(&self) -> Vec<f64> {
+    pub(crate) fn thickness_factors(&self) -> Vec<f64> {
         with_new_numbers(self.thickness_wanted(), self.thickness_parts())
     }
 
@@ -176,7 +176,7 @@ impl Case {
     ///
     /// # Errors
     /// There are more constrictions than 32 bits can number, or less than one base particle by Eq. (2).
-    pub fn of_thickness(&self, factor: f64) -> Result<Self, CaseError> {
+    pub(crate) fn of_thickness(&self, factor: f64) -> Result<Self, CaseError> {
         let parts = times(self.thickness_parts(), factor);
         let mut scene = self.scene.clone();
         scene.record.sensitivity.clear();
@@ -192,7 +192,7 @@ impl Case {
     }
 
     /// Parts of the program that this scene does not need.
-    pub fn left_out(&self) -> Vec<LeftOut> {
+    pub(crate) fn left_out(&self) -> Vec<LeftOut> {
         let filter = &self.filter;
         let mut left_out = vec![match &self.network.fixed {
             Some(fixed) if fixed.packing.is_some() => LeftOut::Lattice,

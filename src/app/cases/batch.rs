@@ -47,7 +47,7 @@ const OWN_LATTICE: [&str; 4] = ["network.nx", "network.ny", "network.file", "net
 
 /// Pairs to walk, and the depth of their walks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum BatchWalks {
+pub(crate) enum BatchWalks {
     /// A first look at every sample, and full walks of the three that govern each filter.
     #[default]
     GoverningInFull,
@@ -61,7 +61,7 @@ pub enum BatchWalks {
 
 /// Batch with its pairs worked out.
 #[derive(Clone, Debug)]
-pub struct BatchPlan {
+pub(crate) struct BatchPlan {
     /// Path of the samples, as it was given.
     samples: PathBuf,
     filters: Vec<BatchFilter>,
@@ -83,7 +83,7 @@ impl BatchPlan {
     /// # Errors
     /// A file that cannot be read; a filter that is named twice; several soils in place of one base; cases
     /// that do not fit into memory; no pair that can be walked.
-    pub fn new(
+    pub(crate) fn new(
         samples: &Path,
         filters: &[PathBuf],
         tables: &TableOptions,
@@ -141,7 +141,12 @@ impl BatchPlan {
     /// Replaces the paths of the samples and of each filter by these names, and rewords notes, which may hold
     /// paths, by `reworded`.
     #[must_use]
-    pub fn named(mut self, samples: &str, filters: &[String], reworded: impl Fn(&str) -> String) -> Self {
+    pub(crate) fn named(
+        mut self,
+        samples: &str,
+        filters: &[String],
+        reworded: impl Fn(&str) -> String,
+    ) -> Self {
         let of_filter = (self.rows.len() / self.filters.len().max(1)).max(1);
         for (at, row) in self.rows.iter_mut().enumerate() {
             row.rules.filter.clone_from(&filters[at / of_filter]);
@@ -184,12 +189,12 @@ impl BatchPlan {
     }
 
     /// True if page and terminal show inches as well as mm.
-    pub fn shows_inches(&self) -> bool {
+    pub(crate) fn shows_inches(&self) -> bool {
         self.campaign.cases.first().is_some_and(|case| case.scene.about.shows_inches())
     }
 
     /// Source of the constrictions of the walks, in a sentence.
-    pub fn constrictions_in_words(&self) -> String {
+    pub(crate) fn constrictions_in_words(&self) -> String {
         self.campaign.cases.first().map_or(String::new(), |case| case.scene.constrictions_in_words())
     }
 }
@@ -283,7 +288,7 @@ fn first_look(tables: &TableOptions) -> TableOptions {
 /// # Errors
 /// A folder that cannot be claimed is refused before any work; then see [`super::run()`]. If a pair cannot be
 /// walked to its end, no table is written. After a stop, the same call continues.
-pub fn run(
+pub(crate) fn run(
     plan: &BatchPlan,
     options: &CaseOptions,
     overwrite: bool,
@@ -317,7 +322,7 @@ pub fn run(
 ///
 /// # Errors
 /// The folder holds anything else, including another batch.
-pub fn found(plan: &BatchPlan, options: &CaseOptions) -> Result<Option<WalkedBatch>, RunError> {
+pub(crate) fn found(plan: &BatchPlan, options: &CaseOptions) -> Result<Option<WalkedBatch>, RunError> {
     if options.out.symlink_metadata().is_err() {
         return Ok(None);
     }
@@ -345,7 +350,7 @@ pub fn found(plan: &BatchPlan, options: &CaseOptions) -> Result<Option<WalkedBat
 
 impl BatchPlan {
     /// Rows, with the walk of each pair that has ended in this folder of the batch, successfully or not.
-    pub fn so_far(&self, folder: &Path) -> Vec<WalkedRow> {
+    pub(crate) fn so_far(&self, folder: &Path) -> Vec<WalkedRow> {
         let walked = |case: &String| {
             let planned = self.campaign.cases.iter().find(|planned| planned.name == *case)?;
             let place = format!("{WALKS}/{CASES}/{}", planned.folder_name());
@@ -358,7 +363,7 @@ impl BatchPlan {
     }
 
     /// Row of a case that was just finished in this folder, and its position among all.
-    pub fn walked_row(&self, folder: &Path, line: &LedgerLine) -> Option<(usize, WalkedRow)> {
+    pub(crate) fn walked_row(&self, folder: &Path, line: &LedgerLine) -> Option<(usize, WalkedRow)> {
         let at = self.cases.iter().position(|case| *case == line.case)?;
         let (walk, _) = self.walk(folder, format!("{WALKS}/{}", line.folder), &line.case).ok()?;
         Some((at, WalkedRow { walk: Some(walk), ..self.rows[at].clone() }))
@@ -372,7 +377,7 @@ impl BatchPlan {
 
     /// Number of its walks in this folder that were kept from an earlier call with another cover; their own
     /// pages show that cover.
-    pub fn with_other_cover(&self, folder: &Path) -> usize {
+    pub(crate) fn with_other_cover(&self, folder: &Path) -> usize {
         let is_other = |planned: &&PlannedCase| {
             let scene = folder.join(WALKS).join(CASES).join(planned.folder_name()).join("scene.toml");
             Scene::read(&scene, &[]).is_ok_and(|there| there.about.cover() != planned.scene.about.cover())

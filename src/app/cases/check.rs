@@ -18,55 +18,55 @@ use crate::run::replicates::{have_networks, runs_to_walk};
 /// Forecast of the cases of a plan; sizes and times are estimates.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct PlanCheck {
+pub(crate) struct PlanCheck {
     /// File of the plan.
-    pub plan: String,
+    pub(crate) plan: String,
     /// Its title.
-    pub title: String,
+    pub(crate) title: String,
     /// Its factors.
-    pub factors: Vec<String>,
+    pub(crate) factors: Vec<String>,
     /// Each case, in the order of the plan.
-    pub cases: Vec<CaseCheck>,
+    pub(crate) cases: Vec<CaseCheck>,
     /// Packings of filters that the cases need, each once.
-    pub packings: u64,
+    pub(crate) packings: u64,
     /// Number of these still to be made; until then sizes and times of their cases are guesses.
-    pub packings_to_make: u64,
+    pub(crate) packings_to_make: u64,
     /// Seconds of one core of this machine for these packings.
-    pub packing_core_seconds: f64,
+    pub(crate) packing_core_seconds: f64,
     /// Seconds of one core of this machine for all walks.
-    pub core_seconds: f64,
+    pub(crate) core_seconds: f64,
     /// Memory of the largest case (bytes).
-    pub bytes: u64,
+    pub(crate) bytes: u64,
     /// Cases that this machine walks at the same time.
-    pub cases_at_once: u64,
+    pub(crate) cases_at_once: u64,
     /// Memory that the program then takes (bytes).
-    pub bytes_at_once: u64,
+    pub(crate) bytes_at_once: u64,
     /// Memory that a case may take (bytes).
-    pub bytes_allowed: u64,
+    pub(crate) bytes_allowed: u64,
 }
 
 /// Forecast of one case.
 #[derive(Clone, Debug, Default, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct CaseCheck {
+pub(crate) struct CaseCheck {
     /// Its name.
-    pub case: String,
+    pub(crate) case: String,
     /// Base particles of a run.
-    pub n_base: u64,
+    pub(crate) n_base: u64,
     /// Runs to walk.
-    pub runs_to_walk: u64,
+    pub(crate) runs_to_walk: u64,
     /// Memory of a walk (bytes).
-    pub bytes: u64,
+    pub(crate) bytes: u64,
     /// Seconds of one core of this machine for its walks.
-    pub core_seconds: f64,
+    pub(crate) core_seconds: f64,
     /// Problem of the case; empty for a sound case, whose other fields are 0 otherwise.
     #[serde(skip_serializing_if = "String::is_empty")]
-    pub problem: String,
+    pub(crate) problem: String,
 }
 
 impl PlanCheck {
     /// Reason to refuse the plan, even if it can be forecast: its unsound cases.
-    pub fn refusal(&self) -> Option<RunError> {
+    pub(crate) fn refusal(&self) -> Option<RunError> {
         let wrong = self.cases.iter().filter(|case| !case.problem.is_empty());
         let wrong = wrong.map(|case| FailedCase { case: case.case.clone(), problem: case.problem.clone() });
         let wrong: Vec<FailedCase> = wrong.collect();
@@ -79,7 +79,7 @@ impl PlanCheck {
 ///
 /// # Errors
 /// The plan has no such part, or there is no such folder of packings.
-pub fn check_plan(plan: &CasePlan, options: &CaseOptions) -> Result<PlanCheck, RunError> {
+pub(crate) fn check_plan(plan: &CasePlan, options: &CaseOptions) -> Result<PlanCheck, RunError> {
     let wanted = wanted(plan, &options.part)?;
     let (limits, _) = options.rooms(&options.out, &wanted);
     let pool = threads(options.threads)?;

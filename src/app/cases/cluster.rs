@@ -28,41 +28,41 @@ const TASK_S: f64 = 600.0;
 
 /// Options of the job scripts.
 #[derive(Clone, Debug)]
-pub struct JobOptions {
+pub(crate) struct JobOptions {
     /// The program.
-    pub program: PathBuf,
+    pub(crate) program: PathBuf,
     /// Words between the program and its command: `-m voidwalk` if the program is Python.
-    pub words: Vec<String>,
+    pub(crate) words: Vec<String>,
     /// The plan's file.
-    pub plan: PathBuf,
+    pub(crate) plan: PathBuf,
     /// Tasks of the array; by default as many as take about ten minutes each.
-    pub tasks: Option<usize>,
+    pub(crate) tasks: Option<usize>,
 }
 
 /// The scripts that were written.
 #[derive(Clone, Debug)]
-pub struct WrittenJobs {
+pub(crate) struct WrittenJobs {
     /// Number of cases already done; if all are, nothing is written.
-    pub done: usize,
+    pub(crate) done: usize,
     /// Cases that the array walks.
-    pub cases: usize,
+    pub(crate) cases: usize,
     /// Tasks of the array.
-    pub tasks: usize,
+    pub(crate) tasks: usize,
     /// Packings that are made first, and the needs of the largest.
-    pub packings: (usize, TaskNeeds),
+    pub(crate) packings: (usize, TaskNeeds),
     /// Needs of the largest task.
-    pub walk: TaskNeeds,
+    pub(crate) walk: TaskNeeds,
     /// Processors of a task.
-    pub processors: u64,
+    pub(crate) processors: u64,
     /// The script that submits the jobs.
-    pub submit: PathBuf,
+    pub(crate) submit: PathBuf,
 }
 
 /// Writes job scripts for the unfinished cases of a plan into the campaign's folder.
 ///
 /// # Errors
 /// A wrong plan or case, a folder that cannot be claimed or written, a path that no script can hold.
-pub fn write_job_scripts(
+pub(crate) fn write_job_scripts(
     plan: &CasePlan,
     options: &CaseOptions,
     jobs: &JobOptions,
@@ -181,11 +181,11 @@ const SLACK_MIN: u64 = 10;
 
 /// Needs of one task of a job.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TaskNeeds {
+pub(crate) struct TaskNeeds {
     /// Seconds of the longest task, on its threads.
-    pub seconds: f64,
+    pub(crate) seconds: f64,
     /// Memory (bytes).
-    pub bytes: u64,
+    pub(crate) bytes: u64,
 }
 
 impl TaskNeeds {
@@ -195,13 +195,13 @@ impl TaskNeeds {
     }
 
     /// Time to request (minutes).
-    pub fn minutes(&self) -> u64 {
+    pub(crate) fn minutes(&self) -> u64 {
         let minutes = (TIME_MARGIN * self.seconds / 60.0).ceil() as u64 + SLACK_MIN;
         (minutes.div_ceil(5) * 5).min(LONGEST_MIN)
     }
 
     /// Memory to request (megabytes of 2^20 bytes).
-    pub fn megabytes(&self) -> u64 {
+    pub(crate) fn megabytes(&self) -> u64 {
         let megabytes = MEMORY_MARGIN * self.bytes as f64 / f64::from(1 << 20);
         (megabytes.ceil() as u64).div_ceil(100) * 100
     }

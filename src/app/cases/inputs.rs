@@ -12,21 +12,21 @@ use voidwalk_sheets::{SoilSample, envelope_in, file_and_soil, notes_in_file, sam
 
 /// Soils from files, each under a name of its own.
 pub(crate) struct InputSoils {
-    pub soils: Vec<SoilSample>,
+    pub(crate) soils: Vec<SoilSample>,
     /// Tables, in the order in which they were named; a folder is replaced by its tables.
     files: Vec<PathBuf>,
-    pub name: String,
+    pub(crate) name: String,
 }
 
 impl InputSoils {
     /// Reads every sample in files and folders, as [`samples_in`] does. Errors: a file that cannot be read as
     /// a table; a soil that is named twice.
-    pub fn samples(paths: &[PathBuf]) -> Result<Self, RunError> {
+    pub(crate) fn samples(paths: &[PathBuf]) -> Result<Self, RunError> {
         Self::read(paths, samples_in)
     }
 
     /// Reads every curve in files, as [`envelope_in`] does. Errors: as above; a path that is a folder.
-    pub fn envelope(paths: &[PathBuf]) -> Result<Self, RunError> {
+    pub(crate) fn envelope(paths: &[PathBuf]) -> Result<Self, RunError> {
         Self::read(paths, envelope_in)
     }
 
@@ -53,7 +53,7 @@ impl InputSoils {
 
     /// Assumptions made on these files and the others, one sentence each; every file occurs once. Errors: a
     /// file that cannot be read as a table.
-    pub fn notes(&self, others: &[PathBuf]) -> Result<Vec<String>, RunError> {
+    pub(crate) fn notes(&self, others: &[PathBuf]) -> Result<Vec<String>, RunError> {
         let mut read = HashSet::new();
         let mut all = Vec::new();
         for file in self.files.iter().chain(others).filter(|file| read.insert(*file)) {

@@ -129,7 +129,7 @@ impl<'a> Kept<'a> {
     }
 
     /// Keeps the results of this many parts; the previous checkpoint stays until this one is complete.
-    pub fn keep(&self, parts: usize, results: &impl Serialize) -> Result<(), RunError> {
+    pub(crate) fn keep(&self, parts: usize, results: &impl Serialize) -> Result<(), RunError> {
         let label = Label { identity: self.identity.clone(), generation: parts as u64, ..Label::default() };
         let record = serde_json::to_vec(results)?;
         let sections = [Section::new("found", &record)];
@@ -137,7 +137,7 @@ impl<'a> Kept<'a> {
     }
 
     /// Reports that the study was stopped with this many of its parts done.
-    pub fn stopped(&self, done: usize, all: usize) -> RunError {
+    pub(crate) fn stopped(&self, done: usize, all: usize) -> RunError {
         let (folder, parts) = (shown(self.folder.path()), self.name);
         RunError::Stopped(format!(
             "after {done} of {all} {parts}, which are kept in {folder}; continue with the same command"

@@ -9,22 +9,24 @@
 //!   [`check_plan`] reports the cost on this machine.
 //! - `kept` holds the results so far of a stopped study.
 
-pub mod batch;
+pub(crate) mod batch;
 mod check;
 pub(crate) mod cluster;
 pub(crate) mod inputs;
 pub(crate) mod kept;
-pub mod plan;
+pub(crate) mod plan;
 pub(crate) mod prepared;
 pub(crate) mod run;
 pub(crate) mod walk;
 
 pub(crate) use batch::pairs_of;
-pub use batch::{BatchPlan, BatchWalks};
-pub use check::{CaseCheck, PlanCheck, check_plan};
-pub use cluster::{JobOptions, WrittenJobs, write_job_scripts};
+pub(crate) use batch::{BatchPlan, BatchWalks};
+pub(crate) use check::{CaseCheck, PlanCheck, check_plan};
+pub(crate) use cluster::{JobOptions, WrittenJobs, write_job_scripts};
 pub(crate) use inputs::numbered;
 pub use plan::CasePlan;
-pub use prepared::{CasePart, FailedCase};
-pub use run::{CaseOptions, FinishedCases, check, collect, make_packing, names, run, unsound};
+pub use prepared::CasePart;
+pub(crate) use prepared::FailedCase;
+pub use run::{CaseOptions, run};
+pub(crate) use run::{FinishedCases, check, collect, make_packing, names, unsound};
 pub use walk::{CaseCallbacks, CaseEvent};

@@ -81,7 +81,7 @@ fn one() -> u64 {
 /// Choice of the seeds of the cases.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Seeds {
+pub(crate) enum Seeds {
     /// A seed of its own for each case.
     #[default]
     Own,
@@ -142,22 +142,22 @@ struct Single {
 #[derive(Clone, Debug)]
 pub struct PlannedCase {
     /// Its name in messages.
-    pub name: String,
+    pub(crate) name: String,
     /// Level by factor, in the order of the plan; empty for a case outside the cross.
-    pub levels: Vec<(String, String)>,
+    pub(crate) levels: Vec<(String, String)>,
     /// The scene.
-    pub scene: Scene,
+    pub(crate) scene: Scene,
 }
 
 /// Plan with its cases worked out.
 #[derive(Clone, Debug)]
 pub struct CasePlan {
     /// Name in errors.
-    pub file: String,
+    pub(crate) file: String,
     /// Title of the plan, in a line.
-    pub title: String,
+    pub(crate) title: String,
     /// Factors in the order of the plan.
-    pub factors: Vec<String>,
+    pub(crate) factors: Vec<String>,
     /// Cases: the cross, with the last factor varying fastest, then the single ones.
     pub cases: Vec<PlannedCase>,
 }
@@ -167,10 +167,10 @@ type Level = (String, Vec<String>);
 
 impl CasePlan {
     /// A plan to start from: every key with its meaning, as `voidwalk init --plan` prints it.
-    pub const INIT_TEXT: &str = include_str!("../data/plan.toml");
+    pub(crate) const INIT_TEXT: &str = include_str!("../data/plan.toml");
 
     /// True if a file has keys that only a plan has, even if it is otherwise wrong.
-    pub fn is_plan(path: &Path) -> bool {
+    pub(crate) fn is_plan(path: &Path) -> bool {
         let bytes = read_regular(path, LARGEST_FILE).ok().flatten().unwrap_or_default();
         hints::as_text(&bytes).is_ok_and(|text| match DeTable::parse(text) {
             Ok(table) => hints::is_plan(table.get_ref()),
@@ -304,13 +304,13 @@ impl CasePlan {
     }
 
     /// Name of its file without the folder, the same wherever the plan is walked.
-    pub fn file_name(&self) -> String {
+    pub(crate) fn file_name(&self) -> String {
         let name = Path::new(&self.file).file_name();
         name.map_or_else(|| self.file.clone(), |name| name.to_string_lossy().into_owned())
     }
 
     /// Case with this name.
-    pub fn case(&self, name: &str) -> Option<&PlannedCase> {
+    pub(crate) fn case(&self, name: &str) -> Option<&PlannedCase> {
         self.cases.iter().find(|case| case.name == name)
     }
 }

@@ -49,7 +49,7 @@ pub enum CasePart {
 
 impl CasePart {
     /// Parses the cases of a task as a user writes them, a file and a number: `tasks.tsv:3`.
-    pub fn task(text: &str) -> Result<Self, String> {
+    pub(crate) fn task(text: &str) -> Result<Self, String> {
         let parts = text.rsplit_once(':').filter(|(file, _)| !file.is_empty());
         let read = parts.and_then(|(file, number)| Some(Self::Task(file.into(), number.parse().ok()?)));
         read.ok_or_else(|| "write a file and a task's number as slurm/tasks.tsv:3".into())
@@ -58,11 +58,11 @@ impl CasePart {
 
 /// Unfinished case, and the reason.
 #[derive(Clone, Debug)]
-pub struct FailedCase {
+pub(crate) struct FailedCase {
     /// The case.
-    pub case: String,
+    pub(crate) case: String,
     /// Description of the problem.
-    pub problem: String,
+    pub(crate) problem: String,
 }
 
 /// Lists the unfinished cases, one per line.
@@ -76,7 +76,7 @@ pub(super) fn named(failed: &[FailedCase]) -> String {
 }
 
 /// Cases of a plan that a process has to handle.
-pub fn wanted<'a>(plan: &'a CasePlan, part: &CasePart) -> Result<Vec<&'a PlannedCase>, RunError> {
+pub(crate) fn wanted<'a>(plan: &'a CasePlan, part: &CasePart) -> Result<Vec<&'a PlannedCase>, RunError> {
     match part {
         CasePart::All => Ok(plan.cases.iter().collect()),
         CasePart::Named(name) => match plan.case(name) {
@@ -111,7 +111,7 @@ pub(super) struct Drafts<'a>(Vec<(&'a PlannedCase, Draft)>);
 
 impl<'a> Drafts<'a> {
     /// Works every case out, with guesses for filters that are still to be packed.
-    pub fn new(wanted: Vec<&'a PlannedCase>) -> Result<Self, RunError> {
+    pub(crate) fn new(wanted: Vec<&'a PlannedCase>) -> Result<Self, RunError> {
         let draft = |planned: &'a PlannedCase| match Draft::new(planned.scene.clone()) {
             Ok(draft) => Ok((planned, draft)),
             Err(error) => Err(RunError::Refused(format!("case {}: {error}", planned.name))),
@@ -120,7 +120,7 @@ impl<'a> Drafts<'a> {
     }
 
     /// Packings that the cases need, each shape once, in the order of the cases.
-    pub fn packings(&self) -> Vec<&PackingPlan> {
+    pub(crate) fn packings(&self) -> Vec<&PackingPlan> {
         let mut all: Vec<&PackingPlan> = Vec::new();
         for plan in self.0.iter().filter_map(|(_, draft)| draft.packing.as_ref()) {
             if !all.iter().any(|other| other.has_shape_of(plan)) {
@@ -131,7 +131,7 @@ impl<'a> Drafts<'a> {
     }
 
     /// Cases with their filters, each filter provided once; and cases that cannot be walked.
-    pub fn finish(
+    pub(crate) fn finish(
         self,
         mut filter: impl FnMut(&PackingPlan) -> Result<PackedFilter, RunError>,
         mut place: impl FnMut(&mut Case) -> Result<(), RunError>,
@@ -165,28 +165,28 @@ fn key(plan: &PackingPlan) -> String {
 }
 
 /// Case of a plan, worked out.
-pub struct PreparedCase<'a> {
-    pub planned: &'a PlannedCase,
-    pub case: Case,
+pub(crate) struct PreparedCase<'a> {
+    pub(crate) planned: &'a PlannedCase,
+    pub(crate) case: Case,
     /// Fingerprint of everything that determines its results.
-    pub fingerprint: String,
+    pub(crate) fingerprint: String,
 }
 
 impl PreparedCase<'_> {
     /// Folder of the results, inside the campaign's folder.
-    pub fn folder(&self) -> PathBuf {
+    pub(crate) fn folder(&self) -> PathBuf {
         // Ledger and table use this form on every system.
         PathBuf::from(format!("{CASES}/{}", self.planned.folder_name()))
     }
 
     /// Ledger line of the finished case, if exactly these results exist.
-    pub fn line(&self, out: &Path) -> Option<LedgerLine> {
+    pub(crate) fn line(&self, out: &Path) -> Option<LedgerLine> {
         self.read_line(out).ok().flatten()
     }
 
     /// Reads the line of the ledger; a file that exists but cannot be read is an error, not an unfinished
     /// case.
-    pub fn read_line(&self, out: &Path) -> Result<Option<LedgerLine>, StoreError> {
+    pub(crate) fn read_line(&self, out: &Path) -> Result<Option<LedgerLine>, StoreError> {
         let path = out.join(self.folder()).join(LINE);
         let bytes = match read_whole(&path) {
             Ok(bytes) => bytes,

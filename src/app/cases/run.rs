@@ -93,11 +93,11 @@ impl CaseOptions {
 /// Campaign after this process has done its part.
 pub struct FinishedCases {
     /// Finished cases in the order of the plan; `None` if this process handled only part of the plan.
-    pub lines: Option<Vec<LedgerLine>>,
+    pub(crate) lines: Option<Vec<LedgerLine>>,
     /// Cases that could not be walked.
-    pub failed: Vec<FailedCase>,
+    pub(crate) failed: Vec<FailedCase>,
     /// Number of cases that were handled.
-    pub cases: usize,
+    pub(crate) cases: usize,
 }
 
 impl FinishedCases {
@@ -118,7 +118,7 @@ impl FinishedCases {
 ///
 /// # Errors
 /// The plan has no such part; a case is wrong.
-pub fn names(plan: &CasePlan, part: &CasePart) -> Result<Vec<String>, RunError> {
+pub(crate) fn names(plan: &CasePlan, part: &CasePart) -> Result<Vec<String>, RunError> {
     let wanted = wanted(plan, part)?;
     Drafts::new(wanted.clone()).map(|_| wanted.iter().map(|case| case.name.clone()).collect())
 }
@@ -143,7 +143,7 @@ pub fn run(
 ///
 /// # Errors
 /// Cases that are wrong, or that do not fit into memory.
-pub fn check(plan: &CasePlan, options: &CaseOptions) -> Result<(), RunError> {
+pub(crate) fn check(plan: &CasePlan, options: &CaseOptions) -> Result<(), RunError> {
     let failed = unsound(plan, options)?;
     if failed.is_empty() { Ok(()) } else { Err(RunError::Refused(named(&failed))) }
 }
@@ -152,7 +152,7 @@ pub fn check(plan: &CasePlan, options: &CaseOptions) -> Result<(), RunError> {
 ///
 /// # Errors
 /// Sound cases that do not fit into memory.
-pub fn unsound(plan: &CasePlan, options: &CaseOptions) -> Result<Vec<FailedCase>, RunError> {
+pub(crate) fn unsound(plan: &CasePlan, options: &CaseOptions) -> Result<Vec<FailedCase>, RunError> {
     let wanted = wanted(plan, &options.part)?;
     let (limits, _) = options.rooms(&options.out, &wanted);
     let pool = threads(options.threads)?;
@@ -327,7 +327,7 @@ fn write_ledger(
 ///
 /// # Errors
 /// A folder without cases; missing cases, each with its state. Nothing is written then.
-pub fn collect(
+pub(crate) fn collect(
     plan: &CasePlan,
     options: &CaseOptions,
     callbacks: &Callbacks,
@@ -361,7 +361,7 @@ pub fn collect(
 ///
 /// # Errors
 /// There is no such packing; then as in `provide`.
-pub fn make_packing(
+pub(crate) fn make_packing(
     plan: &CasePlan,
     number: u64,
     options: &CaseOptions,

@@ -85,22 +85,22 @@ impl Default for CaseCallbacks<'_> {
 
 /// Runner of the cases of a campaign.
 pub(super) struct CaseRunner<'a> {
-    pub out: &'a Path,
-    pub threads: usize,
-    pub callbacks: &'a CaseCallbacks<'a>,
-    pub checkpoint_interval: CheckpointInterval,
+    pub(crate) out: &'a Path,
+    pub(crate) threads: usize,
+    pub(crate) callbacks: &'a CaseCallbacks<'a>,
+    pub(crate) checkpoint_interval: CheckpointInterval,
     /// Networks, if cases with one seed may share them.
-    pub networks: Option<SharedNetworks>,
+    pub(crate) networks: Option<SharedNetworks>,
     /// Job and task of a cluster.
-    pub job: Option<String>,
+    pub(crate) job: Option<String>,
     /// Command in a case's `manifest.json` that started it.
-    pub command: String,
+    pub(crate) command: String,
 }
 
 impl CaseRunner<'_> {
     /// Walks every unfinished case, and waits for those of other processes; returns those that cannot be
     /// walked. Fails only for reasons that concern all cases; finished ones stay finished.
-    pub fn run(&self, cases: &[PreparedCase]) -> Result<Vec<FailedCase>, RunError> {
+    pub(crate) fn run(&self, cases: &[PreparedCase]) -> Result<Vec<FailedCase>, RunError> {
         make_folder(&self.out.join(CASES))?;
         let (done, mut open): (Vec<&PreparedCase>, Vec<&PreparedCase>) =
             cases.iter().partition(|case| self.is_done(case));

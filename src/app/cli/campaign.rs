@@ -38,7 +38,7 @@ impl CampaignArgs {
 }
 
 /// Walks a plan's cases and collects their results, or does the requested part of this work.
-pub fn campaign(args: &CampaignArgs) -> Result<(), RunError> {
+pub(crate) fn campaign(args: &CampaignArgs) -> Result<(), RunError> {
     let (plan, options, quiet) = (CasePlan::read(&args.plan)?, args.options(), args.walk.quiet);
     if args.list {
         let names = cases::names(&plan, &options.part)?;

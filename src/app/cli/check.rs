@@ -17,14 +17,14 @@ use voidwalk_core::store::format;
 use voidwalk_practice::quantity::{SizeUnit, whole};
 
 impl SettingArgs {
-    pub fn prepare(&self, threads: Option<usize>) -> PrepareOptions {
+    pub(crate) fn prepare(&self, threads: Option<usize>) -> PrepareOptions {
         PrepareOptions { packings: self.packings.clone(), memory: self.memory, threads }
     }
 }
 
 impl SceneArgs {
     /// Scene that the arguments name, with their settings applied.
-    pub fn scene(&self) -> Result<Scene, RunError> {
+    pub(crate) fn scene(&self) -> Result<Scene, RunError> {
         let settings = &self.set.settings.assignments;
         Ok(match &self.scene {
             Some(path) => Scene::read(path, settings)?,
@@ -33,7 +33,7 @@ impl SceneArgs {
     }
 }
 
-pub fn check(args: &SceneArgs) -> Result<(), RunError> {
+pub(crate) fn check(args: &SceneArgs) -> Result<(), RunError> {
     if let Some(plan) = args.scene.as_deref().filter(|file| CasePlan::is_plan(file)) {
         return check_plan(plan, &args.set);
     }

@@ -6,7 +6,7 @@ use crate::outcome::record::Verdict;
 use crate::run::{Exit, RunError};
 
 /// Every exit code and its meaning; help, manual pages and guide show this table.
-pub const EXIT_CODES: [(u8, &str); 5] = [
+pub(crate) const EXIT_CODES: [(u8, &str); 5] = [
     (0, "done"),
     (Exit::Failed.code(), "failed"),
     (
@@ -18,14 +18,14 @@ pub const EXIT_CODES: [(u8, &str); 5] = [
 ];
 
 /// Table of exit codes in words, one line per code.
-pub fn in_words() -> String {
+pub(crate) fn in_words() -> String {
     let lines = EXIT_CODES.map(|(code, meaning)| format!("  {code}  {meaning}\n"));
     format!("Exit codes:\n{}", lines.concat())
 }
 
 /// Answers that are not accepted, by the worse of practice and model; an unknown answer is never accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum FailOn {
+pub(crate) enum FailOn {
     /// Some erosion, continuing erosion, undecided; practice not met or not known
     Some,
     /// Continuing erosion, undecided; practice not known, or not met with continuing erosion not excluded
@@ -34,10 +34,10 @@ pub enum FailOn {
 
 /// Answer of model and practice for a case.
 #[derive(Clone, Copy)]
-pub struct JudgedAnswer {
-    pub model: Verdict,
+pub(crate) struct JudgedAnswer {
+    pub(crate) model: Verdict,
     /// Class that practice counts as; `None` if no rule was applied.
-    pub practice: Option<Verdict>,
+    pub(crate) practice: Option<Verdict>,
 }
 
 impl FailOn {
@@ -60,7 +60,7 @@ impl FailOn {
 
 /// Ends a command by the verdicts of its cases, each with its name. The error names the cases that are not
 /// accepted, with the reasons of those that were not walked.
-pub fn accept<'a>(
+pub(crate) fn accept<'a>(
     fail_on: Option<FailOn>,
     cases: impl IntoIterator<Item = (&'a str, Result<JudgedAnswer, &'a str>)>,
 ) -> Result<(), RunError> {

@@ -55,7 +55,7 @@ const EXAMPLES: [Example; 38] = [
 ];
 
 /// Text for a user who types only `voidwalk`.
-pub const FIRST_WORDS: &str = "\
+pub(crate) const FIRST_WORDS: &str = "\
 Will this filter hold this soil? Type first, with two sieve tables (CSV, .xlsx, .ods, AGS4), the base before
 the filter:
 
@@ -78,7 +78,7 @@ static VERSION: LazyLock<String> = LazyLock::new(|| {
 });
 
 /// Arguments of the program, with examples and the version.
-pub fn command() -> Command {
+pub(crate) fn command() -> Command {
     let command = Arguments::command().version(VERSION.as_str()).after_help(exit::in_words());
     let template = format!(
         "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n\n{}\nOptions:\n{{options}}{{after-help}}",

@@ -26,7 +26,12 @@ use voidwalk_practice::{DesignedSamples, PairRules};
 use voidwalk_sheets::SoilSummary;
 
 /// Writes the built-in scene or a plan, or prints the settings or a JSON Schema.
-pub fn init(path: Option<&Path>, plan: bool, as_json: bool, schema: Option<String>) -> Result<(), RunError> {
+pub(crate) fn init(
+    path: Option<&Path>,
+    plan: bool,
+    as_json: bool,
+    schema: Option<String>,
+) -> Result<(), RunError> {
     if let Some(schema) = schema {
         to_stdout(&schema);
         return Ok(());
@@ -62,7 +67,7 @@ const TO_TRY: [[&str; 2]; 9] = [
 ];
 
 /// Writes the examples and prints commands to try.
-pub fn examples(folder: &Path) -> Result<(), RunError> {
+pub(crate) fn examples(folder: &Path) -> Result<(), RunError> {
     write_examples(folder)?;
     let mut text = String::new();
     for file in EXAMPLE_FILES {

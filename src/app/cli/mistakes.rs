@@ -16,7 +16,7 @@ use voidwalk_core::schema::KeyInfo;
 const FILES: usize = 1000;
 
 /// Adds a command to type instead to an error of the command line.
-pub fn explained(mut error: clap::Error, command: &Command, words: &[OsString]) -> clap::Error {
+pub(crate) fn explained(mut error: clap::Error, command: &Command, words: &[OsString]) -> clap::Error {
     let words: Vec<String> = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let text = |kind| match error.get(kind) {
         Some(ContextValue::String(text)) => Some(text.clone()),
@@ -124,7 +124,7 @@ fn is_table(word: &str) -> bool {
 
 /// Hint at a file that may be meant if something is refused: one whose name contains a space, so that the
 /// shell took it for two words; or, if a file is missing, one with a similar name.
-pub fn instead_of_files(words: &[OsString], is_missing: bool) -> Option<String> {
+pub(crate) fn instead_of_files(words: &[OsString], is_missing: bool) -> Option<String> {
     let words: Vec<String> = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     unquoted(&words).or_else(|| if is_missing { misspelt_file(&words) } else { None })
 }

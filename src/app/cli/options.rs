@@ -21,7 +21,7 @@ use voidwalk_core::schema::{KeyInfo, Value, setting_name};
 use voidwalk_core::store::format::FORMATS;
 
 /// Settings of a command.
-pub trait CommandSettings {
+pub(crate) trait CommandSettings {
     /// Full names of the settings that have an option of their own.
     const OPTIONS: &'static [&'static str];
 
@@ -61,9 +61,9 @@ settings! {
 }
 
 /// Settings given on a command line, by `--set` and by options of their own.
-pub struct SettingOptions<C> {
+pub(crate) struct SettingOptions<C> {
     /// Assignments, each as `KEY=VALUE`.
-    pub assignments: Vec<String>,
+    pub(crate) assignments: Vec<String>,
     command: PhantomData<C>,
 }
 
@@ -143,78 +143,78 @@ fn parser(key: KeyInfo) -> ValueParser {
 
 /// Options of a walk.
 #[derive(Args)]
-pub struct WalkArgs {
+pub(crate) struct WalkArgs {
     /// Worker threads; the result is the same for any number [default: one per core]
     #[arg(long, value_name = "N", value_parser = threads, allow_hyphen_values = true)]
-    pub threads: Option<usize>,
+    pub(crate) threads: Option<usize>,
     /// Save a checkpoint this often, such as 10min or 50increments; a stop (Ctrl-C, SIGTERM) always saves
     /// one [default: 10min; for a resumed run, its first setting]
     #[arg(long, value_name = "TIME")]
-    pub checkpoint_every: Option<CheckpointInterval>,
+    pub(crate) checkpoint_every: Option<CheckpointInterval>,
     /// Print no progress and no summary
     #[arg(long, short)]
-    pub quiet: bool,
+    pub(crate) quiet: bool,
 }
 
 /// Verdicts that the caller does not accept.
 #[derive(Args)]
-pub struct AcceptArgs {
+pub(crate) struct AcceptArgs {
     /// Exit with code 4 if the worse of practice and model is at least this bad: some or continuing erosion.
     /// Practice that is not met counts as some erosion, or as continuing if that is not excluded.
     /// Undecided counts as bad, as does practice that is not known. Results are written as usual
     #[arg(long, value_name = "VERDICT")]
-    pub fail_on: Option<FailOn>,
+    pub(crate) fail_on: Option<FailOn>,
 }
 
 /// Folder of a run's results, and options of the walk.
 #[derive(Args)]
-pub struct ResultArgs {
+pub(crate) struct ResultArgs {
     /// Folder for the results: new, empty, or made by voidwalk [default: the first free of voidwalk-run,
     /// voidwalk-run-2, ...]
     #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    pub(crate) out: Option<PathBuf>,
     /// Replace the results of an earlier run in --out
     #[arg(long)]
-    pub overwrite: bool,
+    pub(crate) overwrite: bool,
     /// Write verdict.xlsx, too: verdict, inputs, rules, runs, gradations, provenance
     #[cfg(feature = "xlsx")]
     #[arg(long)]
-    pub xlsx: bool,
+    pub(crate) xlsx: bool,
     /// Verdicts that are not accepted.
     #[command(flatten)]
-    pub accept: AcceptArgs,
+    pub(crate) accept: AcceptArgs,
     /// Options of the walk.
     #[command(flatten)]
-    pub walk: WalkArgs,
+    pub(crate) walk: WalkArgs,
 }
 
 /// Scene to use.
 #[derive(Args)]
-pub struct SceneArgs {
+pub(crate) struct SceneArgs {
     /// Scene (TOML), for check also the plan of a campaign [default: the built-in scene, a loose filter of Cu
     /// 1.5 and a base of Cu 1.5 at Dc5]
-    pub scene: Option<PathBuf>,
+    pub(crate) scene: Option<PathBuf>,
     /// Settings of the scene, and options of preparing it.
     #[command(flatten)]
-    pub set: SettingArgs,
+    pub(crate) set: SettingArgs,
 }
 
 /// Settings of a scene, and options of preparing it.
 #[derive(Args)]
-pub struct SettingArgs {
+pub(crate) struct SettingArgs {
     /// Settings of the scene.
     #[command(flatten)]
-    pub settings: SettingOptions<OfScene>,
+    pub(crate) settings: SettingOptions<OfScene>,
     /// Folder that keeps packings, so that each is made once
     #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
-    pub packings: PathBuf,
+    pub(crate) packings: PathBuf,
     /// Memory limit, such as 4GB: base particles beyond it are kept in mapped files in the run folder; the
     /// result is the same [default: 80 % of what is available]
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
-    pub memory: Option<u64>,
+    pub(crate) memory: Option<u64>,
     /// Print JSON
     #[arg(long)]
-    pub json: bool,
+    pub(crate) json: bool,
 }
 
 /// Parses a setting and its value.

@@ -12,7 +12,7 @@ use voidwalk_core::packing::ReadOptions;
 use voidwalk_core::store::format;
 use voidwalk_practice::quantity::{SizeUnit, whole};
 
-pub fn pack(args: &PackArgs) -> Result<(), RunError> {
+pub(crate) fn pack(args: &PackArgs) -> Result<(), RunError> {
     let spec = Scene::read_packing(&args.filter, &args.settings.assignments)?;
     let options = PackOptions {
         out: args.out.clone(),
@@ -62,7 +62,7 @@ fn summary(packing: &FinishedPacking) -> String {
     lines.into_iter().chain(part).map(|line| plain(&line) + "\n").collect()
 }
 
-pub fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
+pub(crate) fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
     let options = ConstrictionsOptions {
         merge_overlap: args.merge_overlap,
         facets: args.facets,

@@ -9,21 +9,21 @@ use serde::Serialize;
 use crate::run::RunError;
 use voidwalk_core::store::format::Format;
 
-pub use voidwalk_core::text::plain;
+pub(crate) use voidwalk_core::text::plain;
 use voidwalk_core::text::shell_word;
 use voidwalk_practice::quantity::THIN;
-pub use voidwalk_practice::quantity::{percent, whole};
+pub(crate) use voidwalk_practice::quantity::{percent, whole};
 
 /// The first failure to write to stdout.
 static LOST: OnceLock<String> = OnceLock::new();
 
 /// Prints words to stdout; [`whole_stdout`] reports a failure.
-pub fn to_stdout(text: &str) {
+pub(crate) fn to_stdout(text: &str) {
     as_it_is(&on_a_terminal(text));
 }
 
 /// Prints a record to stdout unchanged; failures are reported likewise.
-pub fn as_it_is(text: &str) {
+pub(crate) fn as_it_is(text: &str) {
     by_stdout(|| io::stdout().write_all(text.as_bytes()));
 }
 
@@ -33,7 +33,7 @@ fn on_a_terminal(text: &str) -> String {
 }
 
 /// Prints to stdout by a function; failures are reported likewise.
-pub fn by_stdout(print: impl FnOnce() -> io::Result<()>) {
+pub(crate) fn by_stdout(print: impl FnOnce() -> io::Result<()>) {
     let printed = print().and_then(|()| io::stdout().flush());
     // A reader that has left is no error of the program.
     if let Some(error) = printed.err().filter(|error| error.kind() != ErrorKind::BrokenPipe) {
@@ -42,31 +42,31 @@ pub fn by_stdout(print: impl FnOnce() -> io::Result<()>) {
 }
 
 /// Fails if anything could not be written to stdout, except to a closed pipe.
-pub fn whole_stdout() -> Result<(), RunError> {
+pub(crate) fn whole_stdout() -> Result<(), RunError> {
     LOST.get().map_or(Ok(()), |error| Err(RunError::failed(format!("cannot write to stdout: {error}"))))
 }
 
 /// Prints to stderr, where a failure cannot be reported.
-pub fn to_stderr(text: &str) {
+pub(crate) fn to_stderr(text: &str) {
     let _ = std::io::stderr().lock().write_all(on_a_terminal(text).as_bytes());
 }
 
 /// Word of a command, quoted for copying.
-pub fn to_copy(word: impl AsRef<Path>) -> String {
+pub(crate) fn to_copy(word: impl AsRef<Path>) -> String {
     plain(&shell_word(&word.as_ref().display().to_string()))
 }
 
 /// Path made safe for a terminal.
-pub fn shown(path: &Path) -> String {
+pub(crate) fn shown(path: &Path) -> String {
     plain(&path.display().to_string())
 }
 
-pub fn json(format: Format, record: &impl Serialize) -> Result<String, RunError> {
+pub(crate) fn json(format: Format, record: &impl Serialize) -> Result<String, RunError> {
     Ok(format.json(record)?)
 }
 
 /// Prints a result: its record as in its file, or its words unless it must be quiet.
-pub fn answer(
+pub(crate) fn answer(
     (as_json, quiet): (bool, bool),
     format: Format,
     record: &impl Serialize,
@@ -81,12 +81,12 @@ pub fn answer(
 }
 
 /// Count with its noun in the singular or plural: `1 replicate`.
-pub fn counted(n: u64, one: &str, many: &str) -> String {
+pub(crate) fn counted(n: u64, one: &str, many: &str) -> String {
     format!("{} {}", whole(n), if n == 1 { one } else { many })
 }
 
 /// Grains per void, or words for an unknown number.
-pub fn grains_per_void(grains: Option<f64>) -> String {
+pub(crate) fn grains_per_void(grains: Option<f64>) -> String {
     match grains {
         Some(grains) => format!("{} grains per void", (grains * 1e4).round() / 1e4),
         None => "grains per void not given".into(),
@@ -96,7 +96,7 @@ pub fn grains_per_void(grains: Option<f64>) -> String {
 const WIDTH: usize = 100;
 
 /// Text in lines that begin with this many spaces.
-pub fn wrapped(text: &str, indent: usize) -> Vec<String> {
+pub(crate) fn wrapped(text: &str, indent: usize) -> Vec<String> {
     let indent = " ".repeat(indent);
     let mut lines = vec![indent.clone()];
     for word in text.split_whitespace() {

@@ -23,7 +23,10 @@ use voidwalk_practice::quantity::whole;
 const BETWEEN_LINES: Duration = Duration::from_secs(5);
 
 /// Runs work that is shown on stderr and stopped by signals, and writes the pages of its results.
-pub fn followed<T>(quiet: bool, work: impl FnOnce(&Callbacks) -> Result<T, RunError>) -> Result<T, RunError> {
+pub(crate) fn followed<T>(
+    quiet: bool,
+    work: impl FnOnce(&Callbacks) -> Result<T, RunError>,
+) -> Result<T, RunError> {
     let stop = stop_on_signals()?;
     end_at_once();
     let display = Display { quiet, begun: Instant::now(), shown: Mutex::new(None) };
@@ -38,7 +41,7 @@ pub fn followed<T>(quiet: bool, work: impl FnOnce(&Callbacks) -> Result<T, RunEr
 }
 
 /// Callbacks of short work: its results get their pages, and a signal ends it as it ends any program.
-pub fn unfollowed() -> Callbacks<'static> {
+pub(crate) fn unfollowed() -> Callbacks<'static> {
     Callbacks {
         warn: &|warning| to_stderr(&format!("warning: {}\n", plain(warning))),
         on_results: &|kind, folder, run| Ok(page(kind, folder, run).map(drop)?),
@@ -67,7 +70,7 @@ pub fn page(kind: FolderKind, folder: &Path, run: Option<RunFiles>) -> Result<Pa
 }
 
 /// Flag that the first signal to end sets.
-pub fn stop_on_signals() -> Result<Arc<AtomicBool>, RunError> {
+pub(crate) fn stop_on_signals() -> Result<Arc<AtomicBool>, RunError> {
     stop_on_request().map_err(RunError::failed)
 }
 
@@ -313,7 +316,7 @@ const BETWEEN_CASES: Duration = Duration::from_secs(2);
 /// Time without a message after which the progress of a case is reported.
 const BETWEEN_RUNS: Duration = Duration::from_secs(5);
 
-pub struct CaseProgress {
+pub(crate) struct CaseProgress {
     quiet: bool,
     /// True if every event of a case gets a line, as in the log of a job.
     every_event: bool,
@@ -331,11 +334,11 @@ struct Lines {
 }
 
 impl CaseProgress {
-    pub fn new(quiet: bool, every_event: bool) -> Self {
+    pub(crate) fn new(quiet: bool, every_event: bool) -> Self {
         Self { quiet, every_event, shown: OnceLock::new() }
     }
 
-    pub fn followed<T>(
+    pub(crate) fn followed<T>(
         &self,
         work: impl FnOnce(&CaseCallbacks) -> Result<T, RunError>,
     ) -> Result<T, RunError> {

@@ -13,7 +13,7 @@ use super::{args::ServeArgs, print::whole_stdout, progress::stop_on_signals, run
 #[cfg(feature = "serve")]
 use crate::run::PrepareOptions;
 
-pub fn report(folder: &Path) -> Result<(), RunError> {
+pub(crate) fn report(folder: &Path) -> Result<(), RunError> {
     let Some(kind) = FolderKind::of(folder).filter(|kind| kind.has_page()) else {
         let problem = "holds no outcome.json, packing.json, campaign.json, batch.json, percolation.json, \
             boundary.json, designs.json or specification.json; name the folder of a finished run, packing, \
@@ -29,7 +29,7 @@ pub fn report(folder: &Path) -> Result<(), RunError> {
     Ok(())
 }
 
-pub fn export(folder: &Path) -> Result<(), RunError> {
+pub(crate) fn export(folder: &Path) -> Result<(), RunError> {
     let Some(kind) = FolderKind::of(folder).filter(|kind| *kind != FolderKind::Serve) else {
         let problem = "holds no finished work; name the folder of a run, a packing, constrictions, a \
                        campaign, a batch, a study or a specification";
@@ -55,7 +55,7 @@ pub fn export(folder: &Path) -> Result<(), RunError> {
 }
 
 #[cfg(feature = "serve")]
-pub fn serve(args: &ServeArgs) -> Result<(), RunError> {
+pub(crate) fn serve(args: &ServeArgs) -> Result<(), RunError> {
     let stop = stop_on_signals()?;
     let server = crate::serve::Server::open(crate::serve::ServeOptions {
         port: args.port,

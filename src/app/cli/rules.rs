@@ -23,7 +23,7 @@ use voidwalk_sheets::{curves_in_file, notes_in_file};
 const INDENT: usize = 14;
 
 /// Applies every rule to two sieve tables, or to the curves of two envelopes.
-pub fn rules(args: &RulesArgs) -> Result<(), RunError> {
+pub(crate) fn rules(args: &RulesArgs) -> Result<(), RunError> {
     let changes = args.settings.assignments.clone();
     let options = TableOptions { as_given: args.as_given, changes, ..TableOptions::default() }.of_rules()?;
     let filter = match &args.filters[..] {

@@ -31,7 +31,7 @@ use crate::run::FolderKind;
 #[cfg(feature = "xlsx")]
 use crate::run::folder::claim;
 
-pub fn run(args: &RunArgs) -> Result<(), RunError> {
+pub(crate) fn run(args: &RunArgs) -> Result<(), RunError> {
     let (scene, set, quiet) = (args.scene.scene()?, &args.scene.set, args.results.walk.quiet);
     let options = args.results.options(set);
     let run = followed(quiet, |callbacks| run::walk_scene(scene, &options, callbacks))?;
@@ -47,7 +47,7 @@ impl AcceptArgs {
 }
 
 impl ResultArgs {
-    pub fn options(&self, set: &SettingArgs) -> RunOptions {
+    pub(crate) fn options(&self, set: &SettingArgs) -> RunOptions {
         RunOptions {
             out: self.out.clone(),
             overwrite: self.overwrite,
@@ -58,7 +58,7 @@ impl ResultArgs {
     }
 
     /// Prints the results of a run, writes its workbook if requested, and ends by its verdict.
-    pub fn finish(&self, run: &FinishedRun, as_json: bool) -> Result<(), RunError> {
+    pub(crate) fn finish(&self, run: &FinishedRun, as_json: bool) -> Result<(), RunError> {
         answer((as_json, self.walk.quiet), format::OUTCOME, &run.outcome, || summary(run))?;
         #[cfg(feature = "xlsx")]
         if self.xlsx {
@@ -69,7 +69,7 @@ impl ResultArgs {
     }
 }
 
-pub fn resume(args: &ResumeArgs) -> Result<(), RunError> {
+pub(crate) fn resume(args: &ResumeArgs) -> Result<(), RunError> {
     let (walk, packings) = (&args.walk, args.folder.join("packings"));
     let options = RunOptions {
         prepare: PrepareOptions { packings, memory: args.memory, threads: walk.threads },
@@ -83,7 +83,7 @@ pub fn resume(args: &ResumeArgs) -> Result<(), RunError> {
 }
 
 /// Command line in words, even if it is not UTF-8.
-pub fn command_line() -> String {
+pub(crate) fn command_line() -> String {
     let words = START.get().map_or(&[][..], |start| &start.words);
     words.iter().map(|word| shell_word(&word.to_string_lossy())).collect::<Vec<_>>().join(" ")
 }
@@ -124,7 +124,7 @@ fn summary(run: &FinishedRun) -> String {
 }
 
 impl TableArgs {
-    pub fn options(&self) -> TableOptions {
+    pub(crate) fn options(&self) -> TableOptions {
         TableOptions {
             density: self.density,
             pack: self.pack,
@@ -136,7 +136,7 @@ impl TableArgs {
     }
 }
 
-pub fn judge(args: &JudgeArgs) -> Result<(), RunError> {
+pub(crate) fn judge(args: &JudgeArgs) -> Result<(), RunError> {
     let filter = match &args.filters[..] {
         [filter] if !args.each => filter,
         _ => return judge_each(args),
@@ -259,4 +259,4 @@ pub struct Start {
 }
 
 /// Start of this process, once it is known.
-pub static START: OnceLock<Start> = OnceLock::new();
+pub(crate) static START: OnceLock<Start> = OnceLock::new();

@@ -21,7 +21,7 @@ use voidwalk_core::store::format::FORMATS;
 use voidwalk_core::store::{StoreError, write_whole};
 
 /// Prints a script that completes commands, options and values of options.
-pub fn completions(shell: Shell) {
+pub(crate) fn completions(shell: Shell) {
     to_stdout(&script(shell));
 }
 
@@ -144,7 +144,7 @@ fn assignments() -> Vec<String> {
 }
 
 /// Writes manual pages of the program and of each of its commands.
-pub fn man(folder: &Path) -> Result<(), RunError> {
+pub(crate) fn man(folder: &Path) -> Result<(), RunError> {
     if let Some(file) = folder.ancestors().find(|part| part.exists() && !part.is_dir()) {
         let problem = "is a file; name a folder for the pages, a new one or one that is there";
         return Err(RunError::Refused(format!("{}: {problem}", shown(file))));

@@ -18,7 +18,7 @@ use std::path::Path;
 #[cfg(feature = "xlsx")]
 use crate::report::soil_template;
 
-pub fn soil(args: &SoilArgs) -> Result<(), RunError> {
+pub(crate) fn soil(args: &SoilArgs) -> Result<(), RunError> {
     #[cfg(feature = "xlsx")]
     if let Some(path) = &args.template {
         return template(path);

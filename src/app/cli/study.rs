@@ -36,7 +36,7 @@ const FOLDER: &str = "voidwalk-specification";
 const EACH_FOLDER: &str = "voidwalk-designs";
 
 /// Makes the specification for a base, or for each of many samples, and writes it into a folder.
-pub fn design(args: &DesignArgs) -> Result<(), RunError> {
+pub(crate) fn design(args: &DesignArgs) -> Result<(), RunError> {
     let takes = [About::texts(), OfSpecification::OPTIONS.iter().map(ToString::to_string).collect()].concat();
     let settings = &args.settings.assignments;
     let is_taken = |set: &str| takes.iter().any(|name| setting_name(set) == name);
@@ -111,7 +111,7 @@ fn designs_words(all: &DesignedSamples, out: &Path) -> String {
     text
 }
 
-pub fn boundary(args: &BoundaryArgs) -> Result<(), RunError> {
+pub(crate) fn boundary(args: &BoundaryArgs) -> Result<(), RunError> {
     let options = BoundaryOptions {
         base: args.base.clone(),
         filter: args.filter.clone(),
@@ -194,7 +194,7 @@ fn ratio(boundary: &Boundary, networks: u64, mm: fn(f64) -> String) -> String {
     format!("{size}D15F/D85B {median:.2}{}", of_networks(*low, *high, |ratio| format!("{ratio:.3}")))
 }
 
-pub fn percolation(args: &PercolationArgs) -> Result<(), RunError> {
+pub(crate) fn percolation(args: &PercolationArgs) -> Result<(), RunError> {
     let PercolationArgs { realisations, seed, .. } = *args;
     let plan = PercolationPlan { shapes: args.sizes.clone(), realisations, seed };
     let options =

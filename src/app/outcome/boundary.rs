@@ -12,70 +12,70 @@ use voidwalk_practice::design::RowNote;
 use voidwalk_practice::{InputFile, Note, SheetCover};
 
 /// Step of the scale of ratios on which boundaries are found: half a percent, in ln(D15F/D85B).
-pub const BETWEEN_STEPS: f64 = 0.005;
+pub(crate) const BETWEEN_STEPS: f64 = 0.005;
 
 /// Contents of `boundary.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Boundaries {
     /// Version of voidwalk.
-    pub version: String,
+    pub(crate) version: String,
     /// Commit that the program was built from; `None` if it is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub commit: Option<String>,
+    pub(crate) commit: Option<String>,
     /// Boundaries of the model, one row for each density and thickness, in the order requested.
-    pub boundaries: Vec<BoundaryRow>,
+    pub(crate) boundaries: Vec<BoundaryRow>,
     /// The base.
-    pub base: BaseStated,
+    pub(crate) base: BaseStated,
     /// Shape of the filter as named by the user.
-    pub filter: String,
+    pub(crate) filter: String,
     /// Name of its constriction curve.
-    pub curve_name: String,
+    pub(crate) curve_name: String,
     /// Cu of the filter.
-    pub filter_cu: Option<f64>,
+    pub(crate) filter_cu: Option<f64>,
     /// D15F of the filter as given (mm), if its sizes are given.
-    pub filter_d15_mm: Option<f64>,
+    pub(crate) filter_d15_mm: Option<f64>,
     /// Files that were read.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub inputs: Vec<InputFile>,
+    pub(crate) inputs: Vec<InputFile>,
     /// Eroded mass fraction from which a run counts as eroding.
-    pub threshold: f64,
+    pub(crate) threshold: f64,
     /// Number of networks for each boundary.
-    pub replicates: u64,
+    pub(crate) replicates: u64,
     /// Seed given by the user.
-    pub seed: u64,
+    pub(crate) seed: u64,
     /// Engine of the walks; `expected` moves base particles that can block nothing as their expectation.
-    pub engine: String,
+    pub(crate) engine: String,
     /// Range of D15F/D85B that was searched.
-    pub bracket: [f64; 2],
+    pub(crate) bracket: [f64; 2],
     /// Step of the search as a fraction of D15F/D85B.
-    pub step: f64,
+    pub(crate) step: f64,
     /// Notes on the model's boundaries, most important first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub notes: Vec<RowNote>,
+    pub(crate) notes: Vec<RowNote>,
     /// Processes that the model omits.
-    pub model_leaves_out: Vec<ModelLimit>,
+    pub(crate) model_leaves_out: Vec<ModelLimit>,
     /// Settings that were given, as on the command line.
-    pub settings: Vec<String>,
+    pub(crate) settings: Vec<String>,
     /// Cover of the sheet.
     #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
-    pub cover: SheetCover,
+    pub(crate) cover: SheetCover,
     /// True if the page shows inches beside mm.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub inches: bool,
+    pub(crate) inches: bool,
     /// Wall time (s).
-    pub seconds: f64,
+    pub(crate) seconds: f64,
 }
 
 impl Boundaries {
     /// True if the base particles that can block nothing moved as their expectation.
-    pub fn moves_expectation(&self) -> bool {
+    pub(crate) fn moves_expectation(&self) -> bool {
         self.engine == Engine::Expected.name()
     }
 
     /// Row with the lowest ratio that nearly all of its networks hold, and this ratio; `None` if no row
     /// has a known ratio.
-    pub fn least_held(&self) -> Option<(&BoundaryRow, f64)> {
+    pub(crate) fn least_held(&self) -> Option<(&BoundaryRow, f64)> {
         let held = |row| Some((row, BoundaryRow::held(row)?));
         let all: Vec<_> = self.boundaries.iter().map(held).collect::<Option<_>>()?;
         all.into_iter().min_by(|a, b| a.1.total_cmp(&b.1))
@@ -85,30 +85,30 @@ impl Boundaries {
 /// Properties of the base.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct BaseStated {
+pub(crate) struct BaseStated {
     /// Name of the base.
-    pub name: String,
+    pub(crate) name: String,
     /// D60/D10.
-    pub cu: Option<f64>,
+    pub(crate) cu: Option<f64>,
     /// D15 (mm) before regrading; `None` if the base has no sizes in mm.
-    pub d15_mm: Option<f64>,
+    pub(crate) d15_mm: Option<f64>,
     /// D85 (mm) as walked; `None` if the base has no sizes in mm.
-    pub d85_mm: Option<f64>,
+    pub(crate) d85_mm: Option<f64>,
     /// D95/D85.
-    pub d95_over_d85: Option<f64>,
+    pub(crate) d95_over_d85: Option<f64>,
     /// Size (mm) on which the base was regraded before the walk; `None` if it was walked as sampled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub regraded_at_mm: Option<f64>,
+    pub(crate) regraded_at_mm: Option<f64>,
     /// Mass fraction finer than the finest sieve, as walked.
-    pub tail_mass_fraction: f64,
+    pub(crate) tail_mass_fraction: f64,
     /// D85 (mm) before regrading, if it was regraded.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub d85_as_sampled_mm: Option<f64>,
+    pub(crate) d85_as_sampled_mm: Option<f64>,
 }
 
 impl BaseStated {
     /// D85 and the base that it belongs to; `None` if the base has no sizes in mm.
-    pub fn size(&self) -> Option<BaseSize> {
+    pub(crate) fn size(&self) -> Option<BaseSize> {
         let (regraded_at_mm, as_sampled_mm) = (self.regraded_at_mm, self.d85_as_sampled_mm);
         Some(BaseSize { d85_mm: self.d85_mm?, regraded_at_mm, as_sampled_mm })
     }
@@ -117,51 +117,51 @@ impl BaseStated {
 /// Boundaries of one density and thickness.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct BoundaryRow {
+pub(crate) struct BoundaryRow {
     /// Density of the filter.
-    pub density: String,
+    pub(crate) density: String,
     /// Thickness as requested, in words.
-    pub thickness: String,
+    pub(crate) thickness: String,
     /// Layers of voids; at the no-erosion boundary if the thickness is in mm.
-    pub layers: u64,
+    pub(crate) layers: u64,
     /// Thickness (mm); at the no-erosion boundary if it is in layers. `None` if sizes have no unit.
-    pub thickness_mm: Option<f64>,
+    pub(crate) thickness_mm: Option<f64>,
     /// Filter grains per void, Eq. (2).
-    pub grains_per_void: Option<f64>,
+    pub(crate) grains_per_void: Option<f64>,
     /// Boundary between no and some erosion; `None` if it lies beyond the range that can be walked.
-    pub no_erosion: Option<Boundary>,
+    pub(crate) no_erosion: Option<Boundary>,
     /// Notes on this boundary, or the reasons why there is none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub no_erosion_notes: Vec<Note>,
+    pub(crate) no_erosion_notes: Vec<Note>,
     /// D15F/D85B to which nearly all networks hold, if there is no boundary because more than half of
     /// them hold over the whole search.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub holds_to: Option<f64>,
+    pub(crate) holds_to: Option<f64>,
     /// Boundary between some and continuing erosion.
-    pub continuing: Option<Boundary>,
+    pub(crate) continuing: Option<Boundary>,
     /// Notes on this boundary, or the reasons why there is none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub continuing_notes: Vec<Note>,
+    pub(crate) continuing_notes: Vec<Note>,
     /// Note on a boundary that depends on few particles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub unsteady: Option<Note>,
+    pub(crate) unsteady: Option<Note>,
     /// Number of networks that held at a larger ratio than one that eroded, in either run; their smallest
     /// eroding ratio counts.
-    pub not_monotone: u64,
+    pub(crate) not_monotone: u64,
     /// Boundaries of each network.
-    pub networks: Vec<NetworkBoundaries>,
+    pub(crate) networks: Vec<NetworkBoundaries>,
     /// End of the density range with the lowest boundary, which gives this row. A filter of unknown
     /// density is searched only at its loose and its dense end.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub as_end: Option<String>,
+    pub(crate) as_end: Option<String>,
     /// Density for which this row is an end of the range of its constriction curve.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub end_of: Option<String>,
+    pub(crate) end_of: Option<String>,
 }
 
 impl BoundaryRow {
     /// Density in words, with the range that it is an end of, or with its worse end.
-    pub fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         match (&self.end_of, &self.as_end) {
             (Some(range), _) => format!("{} (an end of the range of {range})", self.density),
             (None, Some(end)) => format!("density {} (its worse end: {end})", self.density),
@@ -170,18 +170,18 @@ impl BoundaryRow {
     }
 
     /// Density whose networks were searched.
-    pub fn searched(&self) -> &str {
+    pub(crate) fn searched(&self) -> &str {
         self.as_end.as_ref().unwrap_or(&self.density)
     }
 
     /// Ratio that nearly all networks hold; `None` if it is unknown.
-    pub fn held(&self) -> Option<f64> {
+    pub(crate) fn held(&self) -> Option<f64> {
         self.no_erosion.as_ref().map_or(self.holds_to, Boundary::cautious)
     }
 
     /// Boundaries of no and of continuing erosion with the ends that are shown. For few networks the ends
     /// are the minimum and maximum, because the percentiles lie between two networks.
-    pub fn shown(&self) -> [Option<Boundary>; 2] {
+    pub(crate) fn shown(&self) -> [Option<Boundary>; 2] {
         let by_network =
             |read: fn(&NetworkBoundaries) -> Option<f64>| self.networks.iter().map(read).collect::<Vec<_>>();
         let both = [
@@ -192,7 +192,7 @@ impl BoundaryRow {
     }
 
     /// Number of networks that eroded at some ratio of the search.
-    pub fn eroding_networks(&self) -> usize {
+    pub(crate) fn eroding_networks(&self) -> usize {
         self.networks.iter().filter(|network| network.no_erosion.is_some()).count()
     }
 }
@@ -200,25 +200,25 @@ impl BoundaryRow {
 /// Boundary over networks: D15F/D85B, and D15F in mm.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct Boundary {
+pub(crate) struct Boundary {
     /// Median over networks.
-    pub median: f64,
+    pub(crate) median: f64,
     /// 5th percentile of networks; `None` if it depends on networks beyond the search, or for one network.
-    pub low: Option<f64>,
+    pub(crate) low: Option<f64>,
     /// 95th percentile of networks; `None` as for `low`.
-    pub high: Option<f64>,
+    pub(crate) high: Option<f64>,
     /// Side of the search on which the 5th percentile lies, if it lies beyond: below means that these
     /// networks erode at every ratio searched.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub low_beyond: Option<Beyond>,
+    pub(crate) low_beyond: Option<Beyond>,
     /// D15F (mm) of the filter, if the base has sizes in mm.
-    pub d15f_mm: Option<Range>,
+    pub(crate) d15f_mm: Option<Range>,
 }
 
 impl Boundary {
     /// Combines networks; `None` if their median lies beyond the search. `d85b_mm` is the base's size, if the
     /// filter is scaled.
-    pub fn of(networks: &[Result<f64, Beyond>], d85b_mm: Option<f64>) -> Option<Self> {
+    pub(crate) fn of(networks: &[Result<f64, Beyond>], d85b_mm: Option<f64>) -> Option<Self> {
         let [low, median, high] = spread(networks);
         let median = median.ok()?;
         let low_beyond = low.err();
@@ -247,7 +247,7 @@ impl Boundary {
 
     /// Ratio that all but a few networks hold: the 5th percentile, or the median of a single network;
     /// `None` if more than a few erode at every ratio searched.
-    pub fn cautious(&self) -> Option<f64> {
+    pub(crate) fn cautious(&self) -> Option<f64> {
         let median = (self.low_beyond != Some(Beyond::Below)).then_some(self.median);
         self.low.or(median)
     }
@@ -256,52 +256,52 @@ impl Boundary {
 /// Median and range of a size (mm).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct Range {
+pub(crate) struct Range {
     /// Median over networks.
-    pub median: f64,
+    pub(crate) median: f64,
     /// 5th percentile.
-    pub low: Option<f64>,
+    pub(crate) low: Option<f64>,
     /// 95th percentile.
-    pub high: Option<f64>,
+    pub(crate) high: Option<f64>,
 }
 
 /// Boundaries of one network; `None` if a boundary lies beyond the search.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct NetworkBoundaries {
+pub(crate) struct NetworkBoundaries {
     /// Network, counted from 1.
-    pub network: u64,
+    pub(crate) network: u64,
     /// D15F/D85B from which its first run erodes.
-    pub no_erosion: Option<f64>,
+    pub(crate) no_erosion: Option<f64>,
     /// D15F/D85B from which its second run erodes.
-    pub continuing: Option<f64>,
+    pub(crate) continuing: Option<f64>,
 }
 
 /// Row of `boundary.csv`: one ratio that was walked.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct WalkRow {
+pub(crate) struct WalkRow {
     /// Density, as in `boundary.json`.
-    pub density: String,
+    pub(crate) density: String,
     /// Thickness, as in `boundary.json`.
-    pub thickness: String,
+    pub(crate) thickness: String,
     /// Network, counted from 1.
-    pub network: u64,
+    pub(crate) network: u64,
     /// Ratio D15F/D85B.
-    pub d15f_over_d85b: f64,
+    pub(crate) d15f_over_d85b: f64,
     /// Eroded mass over inserted mass, first run.
-    pub eroded_first: f64,
+    pub(crate) eroded_first: f64,
     /// Eroded mass over inserted mass, second run; empty if it was not walked.
-    pub eroded_second: Option<f64>,
+    pub(crate) eroded_second: Option<f64>,
     /// Base of D85B: `as sampled`, or the size on which it was regraded; empty without a size.
-    pub d85b_of: String,
+    pub(crate) d85b_of: String,
 }
 
 /// Side of the search on which a value lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
-pub enum Beyond {
+pub(crate) enum Beyond {
     /// At smaller ratios.
     Below,
     /// At larger ratios.
@@ -313,7 +313,7 @@ const PERCENTILES: [f64; 3] = [5.0, 50.0, 95.0];
 
 /// True if the minimum and maximum of this number of networks are shown, because a percentile would lie
 /// between the last two.
-pub fn are_few(networks: u64) -> bool {
+pub(crate) fn are_few(networks: u64) -> bool {
     networks < 20
 }
 
@@ -324,7 +324,7 @@ pub fn are_few(networks: u64) -> bool {
 ///
 /// # Panics
 /// Panics if there is no value.
-pub fn spread(values: &[Result<f64, Beyond>]) -> [Result<f64, Beyond>; 3] {
+pub(crate) fn spread(values: &[Result<f64, Beyond>]) -> [Result<f64, Beyond>; 3] {
     let place = |value: &Result<f64, Beyond>| match value {
         Ok(value) => *value,
         Err(Beyond::Below) => f64::NEG_INFINITY,

@@ -29,7 +29,7 @@ use super::stopping::{ReplicateValues, statistic};
 use super::verdict::THRESHOLD;
 
 /// Minimum number of replicates of the scene to estimate its scatter.
-pub const FEWEST_OWN: usize = 5;
+pub(crate) const FEWEST_OWN: usize = 5;
 
 /// Maximum scatter of a point, as a multiple of the scene's scatter.
 const SCATTER: f64 = 2.0;
@@ -38,13 +38,13 @@ const SCATTER: f64 = 2.0;
 const KEPT: f64 = 1.0 / 3.0;
 
 /// Minimum number of the case's replicates to estimate the scatter at an end of its curve's range.
-pub const FEWEST_OF_RANGE: usize = 4;
+pub(crate) const FEWEST_OF_RANGE: usize = 4;
 
 /// Minimum scatter of an end, relative to its value: replicates of the case may agree by chance.
 const LEAST_SCATTER: f64 = 0.05;
 
 /// Error probability of the class of each of the two ends of a range, unless the scene sets another.
-pub const ERROR_OF_END: f64 = ERROR / 2.0;
+pub(crate) const ERROR_OF_END: f64 = ERROR / 2.0;
 
 /// Error probability of all looks and runs together, and of the intervals shown.
 const ERROR: f64 = 0.05;
@@ -54,7 +54,7 @@ const LOOKS: usize = 2;
 
 /// Numbers of replicates at which to look at a point of a study with `of_study` replicates, all of them
 /// last; `class` is the scene's class, from `replicates` of it.
-pub fn looks(class: Verdict, replicates: usize, of_study: u64) -> Vec<u64> {
+pub(crate) fn looks(class: Verdict, replicates: usize, of_study: u64) -> Vec<u64> {
     let may_stop = class == Verdict::Continuing && replicates >= FEWEST_OWN;
     let fewest = if may_stop { 1 } else { of_study };
     (fewest..=LOOKS as u64).filter(|&look| look < of_study).chain([of_study]).collect()
@@ -62,7 +62,11 @@ pub fn looks(class: Verdict, replicates: usize, of_study: u64) -> Vec<u64> {
 
 /// Eroded mass of each run at a clear point, with wide 95 % intervals; `None` if it is not clear.
 /// `scene[run]` holds the scene's replicates, `point[run]` the first ones of the point.
-pub fn clear(scene: &[ReplicateValues], class: Verdict, point: &[ReplicateValues]) -> Option<Vec<Statistic>> {
+pub(crate) fn clear(
+    scene: &[ReplicateValues],
+    class: Verdict,
+    point: &[ReplicateValues],
+) -> Option<Vec<Statistic>> {
     if class != Verdict::Continuing || scene.first()?.len() < FEWEST_OWN {
         return None;
     }
@@ -73,7 +77,7 @@ pub fn clear(scene: &[ReplicateValues], class: Verdict, point: &[ReplicateValues
 
 /// Eroded mass of each run at an end of the curve's range after its first replicate, with wide 95 %
 /// intervals; `None` unless its class, with this error probability, is clearly that of the curve itself.
-pub fn clear_end(
+pub(crate) fn clear_end(
     case: &[ReplicateValues],
     class: Verdict,
     end: &[ReplicateValues],

@@ -85,12 +85,12 @@ pub struct Campaign {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ModelledThickness {
     /// Layers of voids.
-    pub layers: u64,
+    pub(crate) layers: u64,
     /// Thickness along the flow (mm); `None` if the network does not give it.
-    pub mm: Option<f64>,
+    pub(crate) mm: Option<f64>,
     /// True if sizes are multiples of D0F instead of mm.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub scale_free: bool,
+    pub(crate) scale_free: bool,
 }
 
 /// Machine and time of a case.

@@ -107,22 +107,22 @@ impl ModelLimit {
 
 /// Features of a walk that other walks omit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Modelled {
+pub(crate) struct Modelled {
     /// Water directs particles.
-    pub flow: bool,
+    pub(crate) flow: bool,
     /// Particles arch.
-    pub arches: bool,
+    pub(crate) arches: bool,
     /// Blocked constrictions leave openings.
-    pub openings: bool,
+    pub(crate) openings: bool,
 }
 
 /// Features that the model of such a walk omits; shown beside every verdict.
-pub fn leaves_out(modelled: Modelled) -> Vec<ModelLimit> {
+pub(crate) fn leaves_out(modelled: Modelled) -> Vec<ModelLimit> {
     leaves_out_of_all([modelled])
 }
 
 /// Features that the models of all these cases omit.
-pub fn leaves_out_of_all(cases: impl IntoIterator<Item = Modelled>) -> Vec<ModelLimit> {
+pub(crate) fn leaves_out_of_all(cases: impl IntoIterator<Item = Modelled>) -> Vec<ModelLimit> {
     let cases: Vec<Modelled> = cases.into_iter().collect();
     let (with, without): (Vec<Modelled>, Vec<Modelled>) = cases.iter().partition(|case| case.flow);
     let hydraulics: &[ModelLimit] = match (with.is_empty(), without.is_empty()) {

@@ -28,7 +28,7 @@ pub struct RunMetrics {
     /// Entry of the run in `outcome.json`.
     pub run: Run,
     /// True if less than 7.5 % of the mass eroded.
-    pub below_threshold: bool,
+    pub(crate) below_threshold: bool,
 }
 
 /// Rows of one run in the CSV files.
@@ -76,16 +76,16 @@ fn eroded_mass_fraction(tally: &Tally, end: &Tally, pan_fraction: f64) -> f64 {
 
 /// Mass eroded in a finished run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Eroded {
+pub(crate) struct Eroded {
     /// Mass eroded over the mass inserted.
-    pub mass_fraction: f64,
+    pub(crate) mass_fraction: f64,
     /// True if less than 7.5 % of the mass eroded.
-    pub below_threshold: bool,
+    pub(crate) below_threshold: bool,
 }
 
 impl Eroded {
     /// Reads a run that has ended, with a base of this pan fraction by mass.
-    pub fn of(state: &State, pan_fraction: f64) -> Self {
+    pub(crate) fn of(state: &State, pan_fraction: f64) -> Self {
         let tally = &state.tally;
         let mass_fraction = eroded_mass_fraction(tally, tally, pan_fraction);
         let one_size = state.classes.upper().len() == 1 && pan_fraction == 0.0;
@@ -154,7 +154,7 @@ impl RunMetrics {
 
 impl Recorded {
     /// Rows of a finished run.
-    pub fn new(
+    pub(crate) fn new(
         network: &Network,
         state: &State,
         flow: Option<&FlowRecord>,
@@ -326,7 +326,7 @@ fn of_run(network: &Network, state: &State) -> Vec<ByConnectivity> {
 
 /// Particles retained and constrictions blocked in run `run` (counted from 1) of all replicates, by
 /// connectivity of the void (paper, Table 3).
-pub fn of_replicates(replicates: &[Replicate], run: u64) -> Vec<ByConnectivity> {
+pub(crate) fn of_replicates(replicates: &[Replicate], run: u64) -> Vec<ByConnectivity> {
     let runs = replicates.iter().flat_map(|r| &r.runs).filter(|r| r.run == run);
     let of_row = |row: &ByConnectivity| {
         let retained = [row.retained_in_constrictions, row.retained_in_voids];

@@ -10,26 +10,28 @@
 //! - `paper` gives results of the paper beside the walk.
 //! - [`percolation`] and [`boundary`] hold results of studies, [`ledger`] those of a campaign.
 
-pub mod boundary;
+pub(crate) mod boundary;
 pub(crate) mod early_stop;
 pub mod ledger;
-pub mod left_out;
+pub(crate) mod left_out;
 pub(crate) mod metrics;
 pub mod number_rows;
-pub mod packing;
+pub(crate) mod packing;
 pub(crate) mod paper;
-pub mod percolation;
+pub(crate) mod percolation;
 pub mod record;
 pub(crate) mod recorder;
-pub mod statistic;
-pub mod stopping;
-pub mod table;
+pub(crate) mod statistic;
+pub(crate) mod stopping;
+pub(crate) mod table;
 pub mod verdict;
 
-pub use left_out::{Modelled, leaves_out, leaves_out_of_all};
-pub use metrics::{Eroded, Recorded, RunId, RunMetrics};
-pub use paper::infiltration;
-pub use record::BaseSize;
-pub use recorder::{Recorder, Wanted};
+pub(crate) use left_out::{Modelled, leaves_out, leaves_out_of_all};
+pub(crate) use metrics::Eroded;
+pub use metrics::{Recorded, RunId, RunMetrics};
+pub(crate) use paper::infiltration;
+pub(crate) use record::BaseSize;
+pub(crate) use recorder::Recorder;
+pub use recorder::Wanted;
 pub(crate) use statistic::Straight;
-pub use voidwalk_core::gradation::CurvePoint;
+pub(crate) use voidwalk_core::gradation::CurvePoint;

@@ -8,15 +8,15 @@ use voidwalk_core::network::Passage;
 
 /// Row of Table 2.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PaperFilter {
+pub(crate) struct PaperFilter {
     /// D60 / D10 by mass of the linear gradation.
-    pub cu: f64,
+    pub(crate) cu: f64,
     /// Friction between grains during compression.
-    pub friction: f64,
+    pub(crate) friction: f64,
     /// Void ratio.
-    pub void_ratio: f64,
+    pub(crate) void_ratio: f64,
     /// D60 / D10 by number of the constrictions.
-    pub cu_csd: f64,
+    pub(crate) cu_csd: f64,
 }
 
 /// Table 2 of Shire & O'Sullivan, *A network model to assess base-filter combinations*.
@@ -30,7 +30,7 @@ const TABLE_2: [PaperFilter; 6] = [
 ];
 
 /// Filter of the paper with this linear gradation and friction, if there is one.
-pub fn filter(cu: f64, friction: f64) -> Option<PaperFilter> {
+pub(crate) fn filter(cu: f64, friction: f64) -> Option<PaperFilter> {
     TABLE_2.into_iter().find(|f| (f.cu - cu).abs() < 1e-6 && f.friction == friction)
 }
 
@@ -43,7 +43,7 @@ const PARTS: u32 = 400;
 /// Evaluates Eq. (1) for this base on a cubic lattice of `layers` layers with this constriction curve (mm).
 ///
 /// The pan fraction (finer than the finest sieve) is passive: all of it would leave.
-pub fn infiltration(curve: &Curve, base: &Gradation, layers: u64) -> Infiltration {
+pub(crate) fn infiltration(curve: &Curve, base: &Gradation, layers: u64) -> Infiltration {
     let passage = Passage::new(curve);
     let of_size = |percent: &f64| {
         let diameter_mm = base.d(*percent)?;

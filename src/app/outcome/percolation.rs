@@ -21,106 +21,106 @@ use super::statistic::{Straight, log_log_slope};
 use serde::{Deserialize, Serialize};
 
 /// Threshold of the infinite lattice: directed bond percolation on the simple cubic lattice.
-pub const INFINITE_LATTICE: f64 = 0.38222;
+pub(crate) const INFINITE_LATTICE: f64 = 0.38222;
 
 /// Exponent of the correlation length along the flow, directed percolation in 2 + 1 dimensions (Hinrichsen
 /// 2000).
-pub const NU_PARALLEL: f64 = 1.295;
+pub(crate) const NU_PARALLEL: f64 = 1.295;
 
 /// Ratio of the exponents along and across the flow, directed percolation in 2 + 1 dimensions.
-pub const Z: f64 = 1.766;
+pub(crate) const Z: f64 = 1.766;
 
 /// Contents of `percolation.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct PercolationStudy {
     /// Version of voidwalk.
-    pub version: String,
+    pub(crate) version: String,
     /// Seed given by the user.
-    pub seed: u64,
+    pub(crate) seed: u64,
     /// Number of realisations of each size.
-    pub realisations: u64,
+    pub(crate) realisations: u64,
     /// Thresholds of each size, ascending.
-    pub sizes: Vec<SizeThreshold>,
+    pub(crate) sizes: Vec<SizeThreshold>,
     /// Thresholds of each lattice that is not a cube, in order of its lengths; no relation is fitted to them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub boxes: Vec<BoxThreshold>,
+    pub(crate) boxes: Vec<BoxThreshold>,
     /// Relation of one length; `None` with fewer than two sizes or realisations.
-    pub one_length: Option<OneLength>,
+    pub(crate) one_length: Option<OneLength>,
     /// Relation of many starts; `None` with fewer than four sizes, or if no threshold fits.
-    pub many_starts: Option<ManyStarts>,
+    pub(crate) many_starts: Option<ManyStarts>,
     /// Slope of ln(standard deviation) against ln(size); `None` as for `one_length`.
-    pub sd_exponent: Option<f64>,
+    pub(crate) sd_exponent: Option<f64>,
     /// Threshold of the infinite lattice, [`INFINITE_LATTICE`].
-    pub infinite_lattice: f64,
+    pub(crate) infinite_lattice: f64,
     /// Wall time, s.
-    pub seconds: f64,
+    pub(crate) seconds: f64,
 }
 
 /// Threshold of one size.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct SizeThreshold {
+pub(crate) struct SizeThreshold {
     /// Number of voids along each side.
-    pub size: u64,
+    pub(crate) size: u64,
     /// Fraction of constrictions that are open at the threshold.
-    pub threshold: Statistic,
+    pub(crate) threshold: Statistic,
     /// Standard error of the standard deviation, for normal thresholds: sd / sqrt(2 (n - 1)).
-    pub sd_error: Option<f64>,
+    pub(crate) sd_error: Option<f64>,
 }
 
 /// Threshold of a lattice that is not a cube.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct BoxThreshold {
+pub(crate) struct BoxThreshold {
     /// Number of voids along x and y, and number of layers.
-    pub shape: [u32; 3],
+    pub(crate) shape: [u32; 3],
     /// Fraction of constrictions that are open at the threshold.
-    pub threshold: Statistic,
+    pub(crate) threshold: Statistic,
     /// Standard error of the standard deviation, as for a size.
-    pub sd_error: Option<f64>,
+    pub(crate) sd_error: Option<f64>,
 }
 
 /// Fit of `p(L) = threshold - amplitude L^(-1 / NU_PARALLEL)`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct OneLength {
+pub(crate) struct OneLength {
     /// Threshold of the infinite lattice.
-    pub threshold: f64,
+    pub(crate) threshold: f64,
     /// Standard error of the threshold, if the relation holds.
-    pub threshold_error: f64,
+    pub(crate) threshold_error: f64,
     /// Amplitude.
-    pub amplitude: f64,
+    pub(crate) amplitude: f64,
     /// Sum of squared deviations, each divided by its standard error.
-    pub chi_squared: f64,
+    pub(crate) chi_squared: f64,
     /// Degrees of freedom.
-    pub degrees: u64,
+    pub(crate) degrees: u64,
 }
 
 /// Fit of `L d^nu = offset + slope ln(L d^(nu / z))`, `d = threshold - p(L)`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct ManyStarts {
+pub(crate) struct ManyStarts {
     /// Threshold of the infinite lattice.
-    pub threshold: f64,
+    pub(crate) threshold: f64,
     /// Lower end of the threshold's 68 % interval.
-    pub threshold_low: f64,
+    pub(crate) threshold_low: f64,
     /// Upper end of the threshold's 68 % interval.
-    pub threshold_high: f64,
+    pub(crate) threshold_high: f64,
     /// Offset.
-    pub offset: f64,
+    pub(crate) offset: f64,
     /// Slope.
-    pub slope: f64,
+    pub(crate) slope: f64,
     /// Sum of squared deviations, each divided by its standard error.
-    pub chi_squared: f64,
+    pub(crate) chi_squared: f64,
     /// Degrees of freedom.
-    pub degrees: u64,
+    pub(crate) degrees: u64,
 }
 
 impl PercolationStudy {
     /// Combines the thresholds of each lattice: `(voids along x and y, and layers; one threshold for each
     /// realisation)`, cubes by ascending size.
-    pub fn new(seed: u64, thresholds: &[([u32; 3], Vec<f64>)], seconds: f64) -> Self {
+    pub(crate) fn new(seed: u64, thresholds: &[([u32; 3], Vec<f64>)], seconds: f64) -> Self {
         let (cubes, boxes): (Vec<_>, Vec<_>) = thresholds.iter().partition(|(shape, _)| is_cube(*shape));
         let of_size = |(shape, all): &&([u32; 3], Vec<f64>)| {
             let (threshold, sd_error) = of_lattice(all);
@@ -150,7 +150,7 @@ impl PercolationStudy {
     }
 
     /// All lattices, cubes first: name, threshold, and standard error of the standard deviation.
-    pub fn lattices(&self) -> impl Iterator<Item = (String, &Statistic, Option<f64>)> {
+    pub(crate) fn lattices(&self) -> impl Iterator<Item = (String, &Statistic, Option<f64>)> {
         let cubes = self.sizes.iter().map(|cube| (cube.size.to_string(), &cube.threshold, cube.sd_error));
         cubes.chain(
             self.boxes
@@ -161,13 +161,13 @@ impl PercolationStudy {
 }
 
 /// Name of a lattice by its lengths, such as 40 or 40x40x60.
-pub fn lattice_name(shape: [u32; 3]) -> String {
+pub(crate) fn lattice_name(shape: [u32; 3]) -> String {
     let lengths = if is_cube(shape) { &shape[..1] } else { &shape };
     lengths.iter().map(u32::to_string).collect::<Vec<_>>().join("x")
 }
 
 /// True if a lattice has the same length along x, y and z.
-pub fn is_cube(shape: [u32; 3]) -> bool {
+pub(crate) fn is_cube(shape: [u32; 3]) -> bool {
     shape == [shape[0]; 3]
 }
 

@@ -23,21 +23,21 @@ const LONGEST_SERIES: usize = 20_000;
 
 /// Sums and size curves of one run, as recorded.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
-pub struct Recorder {
+pub(crate) struct Recorder {
     /// Increment and sums.
-    pub series: Vec<(u64, Tally)>,
+    pub(crate) series: Vec<(u64, Tally)>,
     /// Increment, retained and eroded sizes.
-    pub sizes: Vec<(u64, SizeCounts, SizeCounts)>,
+    pub(crate) sizes: Vec<(u64, SizeCounts, SizeCounts)>,
     /// Contents of each void.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub voids: Vec<RetainedRow>,
+    pub(crate) voids: Vec<RetainedRow>,
     /// Number of times the series was thinned by half.
     thinned: u32,
 }
 
 impl Recorder {
     /// Records the requested data of a state after a whole increment.
-    pub fn observe(&mut self, wanted: &Wanted, state: &State) {
+    pub(crate) fn observe(&mut self, wanted: &Wanted, state: &State) {
         let t = state.increment;
         if self.series.len() >= LONGEST_SERIES {
             self.thinned += 1;
@@ -64,13 +64,13 @@ const OUTSIDE: i64 = -1;
 
 /// Positions of voids, for pictures: no result depends on them. Water flows along z, from 0.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Places {
+pub(crate) struct Places {
     /// Position (mm) of each void of the filter.
-    pub point_mm: Vec<[f64; 3]>,
+    pub(crate) point_mm: Vec<[f64; 3]>,
     /// Lengths (mm) over which the network repeats along x and y.
-    pub period_mm: [f64; 2],
+    pub(crate) period_mm: [f64; 2],
     /// Thickness of a layer (mm).
-    pub layer_mm: f64,
+    pub(crate) layer_mm: f64,
 }
 
 impl Places {
@@ -87,7 +87,7 @@ impl Places {
 }
 
 /// Constrictions of a network whose voids have these positions, each once.
-pub fn constrictions(network: &Network, places: &Places) -> Vec<ConstrictionRow> {
+pub(crate) fn constrictions(network: &Network, places: &Places) -> Vec<ConstrictionRow> {
     let filter = network.filter_voids() as u32;
     let mut rows = Vec::with_capacity(network.passages());
     for void in 0..network.voids() as u32 {
@@ -117,7 +117,7 @@ pub fn constrictions(network: &Network, places: &Places) -> Vec<ConstrictionRow>
 }
 
 /// Constrictions blocked in a run, in the order of blocking.
-pub fn blocked(network: &Network, state: &State) -> Vec<BlockedRow> {
+pub(crate) fn blocked(network: &Network, state: &State) -> Vec<BlockedRow> {
     let row = |blocking: &voidwalk_core::walk::Blocking| BlockedRow {
         run: state.run,
         increment: blocking.increment,
@@ -144,7 +144,7 @@ fn retained(state: &State) -> Vec<RetainedRow> {
 }
 
 /// Rows with the reservoir upstream of the filter as the outside instead of the void after the last.
-pub fn of_filter(network: &Network, rows: &[RetainedRow]) -> Vec<RetainedRow> {
+pub(crate) fn of_filter(network: &Network, rows: &[RetainedRow]) -> Vec<RetainedRow> {
     let filter = network.filter_voids() as i64;
     let void = |row: &RetainedRow| if row.void < filter { row.void } else { OUTSIDE };
     rows.iter().map(|row| RetainedRow { void: void(row), ..row.clone() }).collect()

@@ -20,7 +20,7 @@ impl Statistic {
     ///
     /// # Panics
     /// Panics if there is no value, or if `error` does not lie between 0 and 1.
-    pub fn with_error(values: &[f64], error: f64) -> Self {
+    pub(crate) fn with_error(values: &[f64], error: f64) -> Self {
         assert!(!values.is_empty(), "a mean of nothing");
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
@@ -37,24 +37,24 @@ impl Statistic {
     ///
     /// # Panics
     /// Panics if there is no value.
-    pub fn of_fraction(values: &[f64]) -> Self {
+    pub(crate) fn of_fraction(values: &[f64]) -> Self {
         let whole = Self::of(values);
         Self { low: whole.low.map(|l| l.max(0.0)), high: whole.high.map(|h| h.min(1.0)), ..whole }
     }
 }
 
 /// The 95 % interval of a fraction, limited to 0 and 1, if there is one.
-pub fn interval(statistic: &Statistic) -> Option<(f64, f64)> {
+pub(crate) fn interval(statistic: &Statistic) -> Option<(f64, f64)> {
     Some((statistic.low?.clamp(0.0, 1.0), statistic.high?.clamp(0.0, 1.0)))
 }
 
 /// The 95 % interval of a fraction, in percent.
-pub fn interval_in_percent(statistic: &Statistic) -> Option<(f64, f64)> {
+pub(crate) fn interval_in_percent(statistic: &Statistic) -> Option<(f64, f64)> {
     interval(statistic).map(|(low, high)| (100.0 * low, 100.0 * high))
 }
 
 /// The 95 % interval of a fraction, in percent, as text.
-pub fn percent_interval(statistic: &Statistic) -> Option<Span> {
+pub(crate) fn percent_interval(statistic: &Statistic) -> Option<Span> {
     interval(statistic).map(|(low, high)| percent(low).to(percent(high)))
 }
 
@@ -66,7 +66,7 @@ pub fn percent_interval(statistic: &Statistic) -> Option<Span> {
 ///
 /// # Panics
 /// Panics without a degree of freedom, or if `error` does not lie between 0 and 1.
-pub fn two_sided(degrees: u64, error: f64) -> f64 {
+pub(crate) fn two_sided(degrees: u64, error: f64) -> f64 {
     assert!(degrees > 0 && error > 0.0 && error < 1.0, "{degrees} degrees of freedom, error {error}");
     // The false position (Illinois): the excess falls from 1 - error to -error as the angle rises.
     let (mut low, mut high) = ((0.0, 1.0 - error), (FRAC_PI_2, -error));
@@ -107,12 +107,12 @@ fn within(degrees: u64, angle: f64) -> f64 {
 
 /// Straight line by weighted least squares.
 pub(crate) struct Straight {
-    pub offset: f64,
-    pub slope: f64,
+    pub(crate) offset: f64,
+    pub(crate) slope: f64,
     /// Standard error of the offset.
-    pub offset_error: f64,
+    pub(crate) offset_error: f64,
     /// Sum of squared deviations, each over its standard error.
-    pub chi_squared: f64,
+    pub(crate) chi_squared: f64,
 }
 
 impl Straight {

@@ -48,7 +48,7 @@ section! {
 
 /// Result of a look at the replicates.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Look {
+pub(crate) enum Look {
     /// Add replicates until there are this many.
     Until(u64),
     /// Stop, with this result.
@@ -56,28 +56,28 @@ pub enum Look {
 }
 
 /// Eroded mass fraction of each replicate, with `true` if it is below the threshold by exact comparison.
-pub type ReplicateValues = Vec<(f64, bool)>;
+pub(crate) type ReplicateValues = Vec<(f64, bool)>;
 
 impl StopRule {
     /// True if the number of replicates is fixed by the scene.
-    pub fn is_unset(&self) -> bool {
+    pub(crate) fn is_unset(&self) -> bool {
         self.target_error_pp.is_none() && self.decide_percent.is_none()
     }
 
     /// True if a target or a confidence level is set.
-    pub fn is_set(&self) -> bool {
+    pub(crate) fn is_set(&self) -> bool {
         !self.is_unset()
     }
 
     /// Number of replicates at look `look`, counted from 1, if the first look is at `first`.
-    pub fn replicates_at(&self, first: u64, look: u64) -> u64 {
+    pub(crate) fn replicates_at(&self, first: u64, look: u64) -> u64 {
         let grow = |n: u64| n.saturating_add(n.div_ceil(2)).min(self.most_replicates);
         (1..look).fold(first.max(FEWEST).min(self.most_replicates), |n, _| grow(n))
     }
 
     /// Looks at `runs[r][replicate]` of one of several constriction curves, which share the error; the
     /// first look is at `first` replicates.
-    pub fn look_at_one_of(&self, curves: usize, first: u64, runs: &[ReplicateValues]) -> Look {
+    pub(crate) fn look_at_one_of(&self, curves: usize, first: u64, runs: &[ReplicateValues]) -> Look {
         let replicates = runs.first().map_or(0, |values| values.len() as u64);
         let look = (1..)
             .find(|&k| self.replicates_at(first, k) >= replicates.min(self.most_replicates))
@@ -115,7 +115,7 @@ impl StopRule {
     }
 
     /// Error probability of the class of each constriction curve out of `curves`, if a verdict is requested.
-    pub fn error_of_curve(&self, curves: usize) -> Option<f64> {
+    pub(crate) fn error_of_curve(&self, curves: usize) -> Option<f64> {
         self.decide_percent.map(|percent| (1.0 - 0.01 * percent) / curves.max(1) as f64)
     }
 
@@ -160,7 +160,7 @@ impl StopRule {
 impl Stopping {
     /// Confidence level of a decided verdict, if it is below the usual level and the verdict is open at
     /// the usual level: `usual` is the verdict of the 95 % intervals.
-    pub fn less_than_usual(&self, usual: Verdict) -> Option<f64> {
+    pub(crate) fn less_than_usual(&self, usual: Verdict) -> Option<f64> {
         let percent = self.decide_percent.filter(|percent| *percent < 95.0)?;
         let is_decided = self.verdict.is_some_and(|verdict| verdict != Verdict::Undecided);
         (is_decided && self.verdict != Some(usual)).then_some(percent)
@@ -169,7 +169,7 @@ impl Stopping {
 
 /// Class of runs at a single look, with this error probability or the usual one of each run if smaller,
 /// and the worst class that their intervals allow.
-pub fn class_at(error: f64, runs: &[ReplicateValues]) -> [Verdict; 2] {
+pub(crate) fn class_at(error: f64, runs: &[ReplicateValues]) -> [Verdict; 2] {
     let error_of_run = (error / runs.len().max(1) as f64).min(USUAL_ERROR);
     let [first, second] = [0, 1].map(|run| runs.get(run).and_then(|run| lies(run, error_of_run)));
     let worst = classify(Some(first == Some(true)), Some(second == Some(true)));

@@ -27,7 +27,7 @@ use voidwalk_practice::quantity::{Quantity, percent, significant, whole};
 const WRITTEN: &str = "memory takes rows of numbers and names";
 
 /// Writes rows as CSV, one column for each field of their type; the header is present even without rows.
-pub fn csv_of<T: Serialize + DeserializeOwned>(rows: &[T]) -> Vec<u8> {
+pub(crate) fn csv_of<T: Serialize + DeserializeOwned>(rows: &[T]) -> Vec<u8> {
     let mut names: &[&str] = &[];
     // The call stops at the names, which are all that is needed.
     let _ = T::deserialize(Names(&mut names));
@@ -70,7 +70,7 @@ impl<'de> Deserializer<'de> for Names<'_> {
 }
 
 /// Columns of a table.
-pub struct Columns<'a, T>(Vec<Column<'a, T>>);
+pub(crate) struct Columns<'a, T>(Vec<Column<'a, T>>);
 
 /// Function that takes the cell of a column from a row.
 type OfRow<'a, T, C> = Box<dyn Fn(&T) -> C + 'a>;
@@ -90,20 +90,20 @@ struct Column<'a, T> {
 }
 
 /// Column as a page shows it.
-pub struct PageColumn<'a, T> {
+pub(crate) struct PageColumn<'a, T> {
     /// First name of the column in a file.
-    pub name: String,
+    pub(crate) name: String,
     /// Quantity of the column with its unit.
-    pub heading: Shown,
+    pub(crate) heading: Shown,
     /// Kind of the cells.
-    pub kind: ColumnKind,
+    pub(crate) kind: ColumnKind,
     /// Returns the cell of a row.
-    pub cell: Box<dyn Fn(&T) -> Shown + 'a>,
+    pub(crate) cell: Box<dyn Fn(&T) -> Shown + 'a>,
 }
 
 /// Kind of the cells of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ColumnKind {
+pub(crate) enum ColumnKind {
     /// Names of the rows.
     Name,
     /// Text.
@@ -120,22 +120,22 @@ impl<T> Default for Columns<'_, T> {
 
 impl<'a, T> Columns<'a, T> {
     /// Adds a column of a file; a page shows it if [`Self::page_number()`] or [`Self::page_text()`] follows.
-    pub fn column<C: TableCell>(self, name: impl Into<String>, cell: impl Fn(&T) -> C + 'a) -> Self {
+    pub(crate) fn column<C: TableCell>(self, name: impl Into<String>, cell: impl Fn(&T) -> C + 'a) -> Self {
         self.with(vec![name.into()], move |row| vec![cell(row).value()])
     }
 
     /// Adds a column of numbers of a file, with this number of decimals.
-    pub fn digits(self, name: &str, decimals: usize, value: impl Fn(&T) -> Option<f64> + 'a) -> Self {
+    pub(crate) fn digits(self, name: &str, decimals: usize, value: impl Fn(&T) -> Option<f64> + 'a) -> Self {
         self.column(name, move |row| fixed(value(row), decimals))
     }
 
     /// Adds a column of fractions in percent of a file.
-    pub fn percent(self, name: &str, value: impl Fn(&T) -> Option<f64> + 'a) -> Self {
+    pub(crate) fn percent(self, name: &str, value: impl Fn(&T) -> Option<f64> + 'a) -> Self {
         self.column(name, move |row| in_percent(value(row)))
     }
 
     /// Adds columns of a file for a fraction in percent and its interval; a page shows them as one column.
-    pub fn statistic(self, names: [&str; 3], value: impl Fn(&T) -> Option<Statistic> + 'a) -> Self {
+    pub(crate) fn statistic(self, names: [&str; 3], value: impl Fn(&T) -> Option<Statistic> + 'a) -> Self {
         self.with(names.map(String::from).to_vec(), move |row| {
             let ends = value(row)
                 .map_or([None; 3], |statistic| [Some(statistic.mean), statistic.low, statistic.high]);
@@ -150,7 +150,7 @@ impl<'a, T> Columns<'a, T> {
     }
 
     /// Adds a column of row names, which a page shows under this heading.
-    pub fn name<C: TableCell>(
+    pub(crate) fn name<C: TableCell>(
         self,
         name: impl Into<String>,
         heading: impl TableCell,
@@ -160,7 +160,7 @@ impl<'a, T> Columns<'a, T> {
     }
 
     /// Adds a column of text, which a page shows under this heading.
-    pub fn text<C: TableCell>(
+    pub(crate) fn text<C: TableCell>(
         self,
         name: impl Into<String>,
         heading: impl TableCell,
@@ -170,7 +170,7 @@ impl<'a, T> Columns<'a, T> {
     }
 
     /// Adds a column of numbers, which a page shows under this heading.
-    pub fn number<C: TableCell>(
+    pub(crate) fn number<C: TableCell>(
         self,
         name: impl Into<String>,
         heading: impl TableCell,
@@ -180,12 +180,20 @@ impl<'a, T> Columns<'a, T> {
     }
 
     /// Shows this number on a page instead of the last column.
-    pub fn page_number<C: TableCell>(self, heading: impl TableCell, cell: impl Fn(&T) -> C + 'a) -> Self {
+    pub(crate) fn page_number<C: TableCell>(
+        self,
+        heading: impl TableCell,
+        cell: impl Fn(&T) -> C + 'a,
+    ) -> Self {
         self.shown(ColumnKind::Number, heading, cell)
     }
 
     /// Shows this text on a page instead of the last column.
-    pub fn page_text<C: TableCell>(self, heading: impl TableCell, cell: impl Fn(&T) -> C + 'a) -> Self {
+    pub(crate) fn page_text<C: TableCell>(
+        self,
+        heading: impl TableCell,
+        cell: impl Fn(&T) -> C + 'a,
+    ) -> Self {
         self.shown(ColumnKind::Text, heading, cell)
     }
 
@@ -202,31 +210,31 @@ impl<'a, T> Columns<'a, T> {
     }
 
     /// Sets the heading of the last column in a workbook.
-    pub fn headed(mut self, heading: &'static str) -> Self {
+    pub(crate) fn headed(mut self, heading: &'static str) -> Self {
         self.last().heading = Some(heading);
         self
     }
 
     /// Moves the last column on a page before (below 0) or after (above 0) the others.
-    pub fn place(mut self, place: i8) -> Self {
+    pub(crate) fn place(mut self, place: i8) -> Self {
         self.last().place = place;
         self
     }
 
     /// Adds columns of the same rows that are described elsewhere.
-    pub fn and(mut self, more: Self) -> Self {
+    pub(crate) fn and(mut self, more: Self) -> Self {
         self.0.extend(more.0);
         self
     }
 
     /// Marks the last column as a detail.
-    pub fn detail(mut self) -> Self {
+    pub(crate) fn detail(mut self) -> Self {
         self.last().is_detail = true;
         self
     }
 
     /// Hides details on a page.
-    pub fn in_brief(mut self) -> Self {
+    pub(crate) fn in_brief(mut self) -> Self {
         self.0.iter_mut().filter(|column| column.is_detail).for_each(|column| column.page = None);
         self
     }
@@ -235,7 +243,7 @@ impl<'a, T> Columns<'a, T> {
     ///
     /// # Panics
     /// Panics if there is no column of that name.
-    pub fn only(mut self, names: &[&str]) -> Self {
+    pub(crate) fn only(mut self, names: &[&str]) -> Self {
         let column = |name: &&str| {
             let place = self.0.iter().position(|column| column.names[0] == **name);
             self.0.remove(place.unwrap_or_else(|| panic!("{name} is no column")))
@@ -244,7 +252,7 @@ impl<'a, T> Columns<'a, T> {
     }
 
     /// Turns columns of a part of a row into columns of the whole row.
-    pub fn of_part<W: 'a>(self, part: impl Fn(&W) -> &T + Copy + 'a) -> Columns<'a, W>
+    pub(crate) fn of_part<W: 'a>(self, part: impl Fn(&W) -> &T + Copy + 'a) -> Columns<'a, W>
     where
         T: 'a,
     {
@@ -265,13 +273,13 @@ impl<'a, T> Columns<'a, T> {
     }
 
     /// Columns that a page shows, in order.
-    pub fn of_page(mut self) -> impl Iterator<Item = PageColumn<'a, T>> {
+    pub(crate) fn of_page(mut self) -> impl Iterator<Item = PageColumn<'a, T>> {
         self.0.sort_by_key(|column| column.place);
         self.0.into_iter().filter_map(|column| column.page)
     }
 
     /// Writes the rows as CSV; no cell can be read as a formula.
-    pub fn csv<'r>(&self, rows: impl IntoIterator<Item = &'r T>) -> Vec<u8>
+    pub(crate) fn csv<'r>(&self, rows: impl IntoIterator<Item = &'r T>) -> Vec<u8>
     where
         T: 'r,
     {
@@ -285,12 +293,12 @@ impl<'a, T> Columns<'a, T> {
     }
 
     /// Values of a row in a file.
-    pub fn values(&self, row: &T) -> impl Iterator<Item = CellValue> {
+    pub(crate) fn values(&self, row: &T) -> impl Iterator<Item = CellValue> {
         self.0.iter().flat_map(|column| (column.cells)(row))
     }
 
     /// Headings in a workbook.
-    pub fn headings(&self) -> Vec<String> {
+    pub(crate) fn headings(&self) -> Vec<String> {
         let names = self.0.iter().flat_map(|column| column.names.iter().map(move |name| (column, name)));
         let heading = |(column, name): (&Column<T>, &String)| match (column.heading, &column.page) {
             (Some(heading), _) => heading.to_owned(),
@@ -309,7 +317,7 @@ fn inert(cell: String) -> String {
 
 /// Content of a cell in a file.
 #[derive(Clone, Debug, PartialEq)]
-pub enum CellValue {
+pub(crate) enum CellValue {
     /// Nothing.
     Empty,
     /// Words.
@@ -336,18 +344,18 @@ impl Display for CellValue {
 
 /// Cell or heading of a page.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Shown {
+pub(crate) struct Shown {
     /// Text of the cell.
-    pub text: String,
+    pub(crate) text: String,
     /// Smaller lines below the main text.
-    pub below: Vec<String>,
+    pub(crate) below: Vec<String>,
     /// Emphasis of the text.
-    pub emphasis: Option<Emphasis>,
+    pub(crate) emphasis: Option<Emphasis>,
 }
 
 /// Emphasis of the text of a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Emphasis {
+pub(crate) enum Emphasis {
     /// Colour for doubt.
     Doubt,
     /// A tick if kept, or a cross if not.
@@ -360,24 +368,24 @@ pub enum Emphasis {
 
 impl Shown {
     /// Adds a smaller line at the end, if there is one.
-    pub fn below(mut self, line: impl Into<Option<String>>) -> Self {
+    pub(crate) fn below(mut self, line: impl Into<Option<String>>) -> Self {
         self.below.extend(line.into());
         self
     }
 
     /// Joins the cell into one line.
-    pub fn line(self) -> String {
+    pub(crate) fn line(self) -> String {
         [&[self.text], &self.below[..]].concat().join("; ")
     }
 
     /// Emphasises the text if an emphasis is given.
-    pub fn emphasised(self, emphasis: impl Into<Option<Emphasis>>) -> Self {
+    pub(crate) fn emphasised(self, emphasis: impl Into<Option<Emphasis>>) -> Self {
         Self { emphasis: emphasis.into(), ..self }
     }
 }
 
 /// Content of a cell; without a value it is empty in a file and a dash on a page.
-pub trait TableCell {
+pub(crate) trait TableCell {
     /// Content in a file.
     fn value(self) -> CellValue;
 

@@ -15,13 +15,13 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Eroded mass fraction that divides the classes (paper, section 6).
-pub const THRESHOLD: f64 = 0.075;
+pub(crate) const THRESHOLD: f64 = 0.075;
 
 /// True for a run below the threshold, false for one above; `None` if open.
-pub type BelowThreshold = Option<bool>;
+pub(crate) type BelowThreshold = Option<bool>;
 
 /// Classifies two runs; the second may be missing.
-pub fn classify(first: BelowThreshold, second: BelowThreshold) -> Verdict {
+pub(crate) fn classify(first: BelowThreshold, second: BelowThreshold) -> Verdict {
     match (first, second) {
         (Some(true), _) => Verdict::None,
         (Some(false), Some(true)) => Verdict::Some,
@@ -36,19 +36,19 @@ pub(super) fn class_of(below: &[BelowThreshold]) -> Verdict {
 }
 
 /// True if less than 7.5 % eroded, by exact comparison: `eroded * 40 < inserted * 3`.
-pub fn below_by_mass(eroded: f64, inserted: f64) -> bool {
+pub(crate) fn below_by_mass(eroded: f64, inserted: f64) -> bool {
     eroded * 40.0 < inserted * 3.0
 }
 
 /// True if less than 7.5 % eroded, for particles of one size: exact, on integers.
-pub fn below_by_count(eroded: u64, inserted: u64) -> bool {
+pub(crate) fn below_by_count(eroded: u64, inserted: u64) -> bool {
     u128::from(eroded) * 40 < u128::from(inserted) * 3
 }
 
 /// Side of the mean over replicates: the side of its whole interval. For a single replicate, or for
 /// replicates of equal value, their exact side `is_below` decides, so that rounding of a mean decides
 /// nothing.
-pub fn below_by_interval(statistic: &Statistic, is_below: &[bool]) -> BelowThreshold {
+pub(crate) fn below_by_interval(statistic: &Statistic, is_below: &[bool]) -> BelowThreshold {
     let no_scatter = statistic.sd.is_none_or(|sd| sd < 1e-12);
     if no_scatter && is_below.iter().all(|&below| below == is_below[0]) {
         return is_below.first().copied();
@@ -77,12 +77,12 @@ pub enum UndecidedBy {
 
 impl UndecidedBy {
     /// Every cause.
-    pub const ALL: [Self; 3] = [Self::Curve, Self::SecondRun, Self::Replicates];
+    pub(crate) const ALL: [Self; 3] = [Self::Curve, Self::SecondRun, Self::Replicates];
 }
 
 impl Outcome {
     /// Cause that leaves the verdict undecided; `None` if it is decided.
-    pub fn undecided_by(&self) -> Option<UndecidedBy> {
+    pub(crate) fn undecided_by(&self) -> Option<UndecidedBy> {
         if self.model.class != Verdict::Undecided {
             return None;
         }
@@ -131,7 +131,7 @@ impl CurveRange {
     }
 
     /// Class that the whole range supports.
-    pub fn whole(&self) -> Verdict {
+    pub(crate) fn whole(&self) -> Verdict {
         match self.agrees() {
             true => self.verdict,
             false if self.worst_counts => self.worst(),
@@ -157,14 +157,14 @@ impl CurveRange {
     }
 
     /// True if the ends have the class of the curve itself.
-    pub fn agrees(&self) -> bool {
+    pub(crate) fn agrees(&self) -> bool {
         self.ends.iter().all(|end| end.walked.verdict == self.verdict)
     }
 }
 
 /// Runs of replicates received so far, in any order.
 #[derive(Clone, Debug, Default)]
-pub struct SoFar {
+pub(crate) struct SoFar {
     /// Eroded mass, and true if it is below the threshold, by replicate and run.
     walked: BTreeMap<u64, BTreeMap<u64, (f64, bool)>>,
 }
@@ -172,23 +172,23 @@ pub struct SoFar {
 /// Look at the complete replicates. It is not a verdict: more replicates follow, and an interval that is
 /// looked at repeatedly lies on the wrong side more often than its level states.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FirstLook {
+pub(crate) struct FirstLook {
     /// Number of complete replicates.
-    pub replicates: usize,
+    pub(crate) replicates: usize,
     /// Class that their intervals support; undecided if they support none.
-    pub class: Verdict,
+    pub(crate) class: Verdict,
     /// Eroded mass fraction, one per run.
-    pub eroded: Vec<Statistic>,
+    pub(crate) eroded: Vec<Statistic>,
 }
 
 impl SoFar {
     /// Adds a run of a replicate, both counted from 1.
-    pub fn add(&mut self, replicate: u64, run: u64, eroded_mass_fraction: f64, below_threshold: bool) {
+    pub(crate) fn add(&mut self, replicate: u64, run: u64, eroded_mass_fraction: f64, below_threshold: bool) {
         self.walked.entry(replicate).or_default().insert(run, (eroded_mass_fraction, below_threshold));
     }
 
     /// Looks at the replicates that have `runs` runs; `None` until one is complete.
-    pub fn look(&self, runs: u64) -> Option<FirstLook> {
+    pub(crate) fn look(&self, runs: u64) -> Option<FirstLook> {
         let is_whole = |walked: &&BTreeMap<u64, (f64, bool)>| (1..=runs).all(|run| walked.contains_key(&run));
         let whole: Vec<_> = self.walked.values().filter(is_whole).collect();
         if whole.is_empty() {

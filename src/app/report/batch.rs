@@ -42,7 +42,7 @@ const LINES: [(Colour, Dash); 6] = [
 
 /// Writes `batch.html` and `figures/*.svg` into the folder of a batch. A missing or malformed file is an
 /// error, and nothing is written then.
-pub fn write_batch(folder: &Path) -> Result<Written, ReportError> {
+pub(crate) fn write_batch(folder: &Path) -> Result<Written, ReportError> {
     let path = folder.join(RECORD);
     let batch: WalkedBatch = json(&path)?;
     if batch.rows.is_empty() {

@@ -23,7 +23,7 @@ use voidwalk_practice::Note;
 use voidwalk_practice::quantity::{NumberRole, SizeUnit, length, percent, significant, whole};
 
 /// Writes `boundary.html` and its figure into the folder that holds `boundary.json` and `boundary.csv`.
-pub fn write_boundary(folder: &Path) -> Result<Written, ReportError> {
+pub(crate) fn write_boundary(folder: &Path) -> Result<Written, ReportError> {
     let all: Boundaries = json(&folder.join("boundary.json"))?;
     let walks: Vec<(u64, WalkRow)> = rows(&folder.join("boundary.csv"))?;
     let walks: Vec<WalkRow> = walks.into_iter().map(|(_, row)| row).collect();

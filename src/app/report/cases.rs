@@ -16,14 +16,14 @@ const SHAPES: [Shape; 4] = [Shape::Circle, Shape::Diamond, Shape::Square, Shape:
 
 /// Case in a figure: x is a ratio, y a value with its interval.
 pub(super) struct AtRatio {
-    pub ratio: f64,
-    pub class: Verdict,
-    pub value: f64,
-    pub interval: Option<(f64, f64)>,
+    pub(crate) ratio: f64,
+    pub(crate) class: Verdict,
+    pub(crate) value: f64,
+    pub(crate) interval: Option<(f64, f64)>,
     /// True if the case has no erosion, but practice contradicts that.
-    pub is_against: bool,
+    pub(crate) is_against: bool,
     /// True if the ratio is only a lower bound.
-    pub is_bound: bool,
+    pub(crate) is_bound: bool,
 }
 
 /// Figure with one symbol per case, by class, over rules; `words` are its title and description.

@@ -11,11 +11,11 @@ use voidwalk_core::store::{Array, make_folder, npz, write_whole};
 
 /// Files that were written, and columns of words that were not.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Exported {
+pub(crate) struct Exported {
     /// The files.
-    pub files: Vec<PathBuf>,
+    pub(crate) files: Vec<PathBuf>,
     /// Columns of words, as `TABLE.COLUMN`.
-    pub words: Vec<String>,
+    pub(crate) words: Vec<String>,
 }
 
 /// Writes `export/arrays.npz`, with an array `TABLE.COLUMN` for each numeric column of every CSV table in the
@@ -25,7 +25,7 @@ pub struct Exported {
 ///
 /// # Errors
 /// [`ReportError`] names the file that cannot be read, is not a table, or cannot be written.
-pub fn export(folder: &Path) -> Result<Exported, ReportError> {
+pub(crate) fn export(folder: &Path) -> Result<Exported, ReportError> {
     let tables = tables(folder)?;
     let (mut arrays, mut words) = (Vec::new(), Vec::new());
     for (name, table) in &tables {

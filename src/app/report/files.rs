@@ -17,7 +17,7 @@ pub(super) fn text(path: &Path) -> Result<String, ReportError> {
 }
 
 /// Reads a file of JSON.
-pub fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
+pub(crate) fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
     from_json(text(path)?.as_bytes()).map_err(|error| form(path, &error))
 }
 
@@ -36,7 +36,7 @@ pub(super) fn malformed(path: &Path, line: u64, message: String) -> ReportError 
 }
 
 /// Reads a file of JSON lines, such as `ledger.jsonl`.
-pub fn lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ReportError> {
+pub(crate) fn lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ReportError> {
     lines_of(path, &text(path)?)
 }
 

@@ -70,7 +70,7 @@ fn colour(headline: Option<Headline>) -> &'static str {
 }
 
 /// The colour of the answer to a pair.
-pub fn colour_of(outcome: &Outcome) -> &'static str {
+pub(crate) fn colour_of(outcome: &Outcome) -> &'static str {
     colour(outcome.headline)
 }
 

@@ -16,16 +16,16 @@ use voidwalk_practice::quantity::SizeUnit;
 use voidwalk_practice::{AboutPage, Decision};
 
 pub(super) struct RunFolder {
-    pub outcome: Outcome,
+    pub(crate) outcome: Outcome,
     /// Decision of practice on its pair.
-    pub decision: Decision,
-    pub manifest: Manifest,
+    pub(crate) decision: Decision,
+    pub(crate) manifest: Manifest,
     /// The packing of the filter, if the program made it.
-    pub packing: Option<PackingRecord>,
+    pub(crate) packing: Option<PackingRecord>,
     /// `scene.toml`, verbatim.
-    pub scene: String,
-    pub about: AboutPage,
-    pub rows: RunRows,
+    pub(crate) scene: String,
+    pub(crate) about: AboutPage,
+    pub(crate) rows: RunRows,
 }
 
 impl RunFolder {

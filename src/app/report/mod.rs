@@ -42,20 +42,21 @@ mod walks;
 #[cfg(feature = "xlsx")]
 mod workbook;
 
-pub use batch::write_batch;
-pub use boundary::write_boundary;
+pub(crate) use batch::write_batch;
+pub(crate) use boundary::write_boundary;
 pub use campaign::{campaign_page, write_campaign};
-pub use export::{Exported, export};
+pub(crate) use export::{Exported, export};
 pub use files::ReportError;
-pub use first_page::colour_of;
+pub(crate) use first_page::colour_of;
 pub use folder::about_page;
 pub use network_walk::{network_walk_brief, network_walk_page};
-pub use packing::write_packing;
-pub use page::{run_brief, run_page, write, write_walked};
-pub use percolation::write_percolation;
-pub use section::Written;
-pub use soils::soils_figure;
-pub use specification::write_designs;
-pub use specification::write_specification;
+pub(crate) use packing::write_packing;
+pub(crate) use page::write_walked;
+pub use page::{run_brief, run_page, write};
+pub(crate) use percolation::write_percolation;
+pub(crate) use section::Written;
+pub(crate) use soils::soils_figure;
+pub(crate) use specification::write_designs;
+pub(crate) use specification::write_specification;
 #[cfg(feature = "xlsx")]
-pub use workbook::{soil_template, write_verdict_workbook};
+pub(crate) use workbook::{soil_template, write_verdict_workbook};

@@ -27,7 +27,7 @@ struct Packed {
 
 /// Writes `report.html` and `figures/*.svg` into the folder of a packing. A missing or malformed file is an
 /// error, and nothing is written then.
-pub fn write_packing(folder: &Path) -> Result<Written, ReportError> {
+pub(crate) fn write_packing(folder: &Path) -> Result<Written, ReportError> {
     let packed = Packed {
         record: json(&folder.join("packing.json"))?,
         summary: json(&folder.join("constrictions.json"))?,

@@ -38,7 +38,7 @@ pub fn write(folder: &Path) -> Result<Written, ReportError> {
 }
 
 /// Writes the page of a run that was just walked, like [`write()`] but without reading its files.
-pub fn write_walked(folder: &Path, files: RunFiles) -> Result<Written, ReportError> {
+pub(crate) fn write_walked(folder: &Path, files: RunFiles) -> Result<Written, ReportError> {
     let (page, figures) = drawn(&RunFolder::from_files(folder, files)?);
     write_page(folder, "report.html", &figures, &page)
 }

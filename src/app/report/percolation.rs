@@ -15,7 +15,7 @@ use crate::outcome::table::Columns;
 use voidwalk_practice::quantity::{duration, significant, whole};
 
 /// Writes `report.html` and its figures into the folder of a percolation study, from its `percolation.json`.
-pub fn write_percolation(folder: &Path) -> Result<Written, ReportError> {
+pub(crate) fn write_percolation(folder: &Path) -> Result<Written, ReportError> {
     let study: &PercolationStudy = &json(&folder.join("percolation.json"))?;
     let title = "Percolation threshold of the directed cubic lattice";
     let what = html! { p {

@@ -15,21 +15,21 @@ const STYLE: &str = include_str!("page.css");
 const STYLE_HASH: &str = "mDepA0nhVqGFzpjx3fdu2udUK7V6SF3ya+Kp73qFFQA=";
 
 /// Figure of a page with its caption.
-pub struct Drawn {
+pub(crate) struct Drawn {
     /// File name without the ending; unique on the page.
-    pub name: &'static str,
-    pub caption: String,
-    pub figure: Figure,
+    pub(crate) name: &'static str,
+    pub(crate) caption: String,
+    pub(crate) figure: Figure,
 }
 
 impl Drawn {
-    pub fn new(name: &'static str, figure: Figure, caption: impl Into<String>) -> Self {
+    pub(crate) fn new(name: &'static str, figure: Figure, caption: impl Into<String>) -> Self {
         Self { name, caption: caption.into(), figure }
     }
 }
 
 /// Content security policy of every page, which allows nothing from elsewhere.
-pub fn content_policy() -> String {
+pub(crate) fn content_policy() -> String {
     // The style is named by its hash, so that a style injected by a hostile name has no effect.
     format!("default-src 'none'; style-src 'sha256-{STYLE_HASH}'; base-uri 'none'; form-action 'none'")
 }
@@ -95,7 +95,7 @@ fn with_contents(main: &str) -> String {
 }
 
 /// Text from outside without non-text characters; maud escapes the markup in it.
-pub fn clean(text: &str) -> String {
+pub(crate) fn clean(text: &str) -> String {
     text.chars().map(visible).collect()
 }
 
@@ -112,7 +112,7 @@ pub(super) fn unbroken(text: &str) -> String {
 }
 
 /// Figure as an element of the page, in all its sizes; the style shows the size that fits.
-pub fn drawing(drawn: &Drawn) -> Markup {
+pub(crate) fn drawing(drawn: &Drawn) -> Markup {
     let wide = drawn.figure.inline(&format!("{}-wide", drawn.name), Size::Wide);
     let narrow = drawn.figure.inline(&format!("{}-narrow", drawn.name), Size::Narrow);
     let sheet =

@@ -21,7 +21,7 @@ use voidwalk_sheets::us_sieve;
 
 /// SVG figure of percent finer by mass against size (mm), from the name and points of each soil; with coarse
 /// sizes on the left if requested, as in the United States.
-pub fn soils_figure<'a>(
+pub(crate) fn soils_figure<'a>(
     soils: impl IntoIterator<Item = (&'a str, &'a [CurvePoint])>,
     coarse_left: bool,
 ) -> String {

@@ -25,7 +25,7 @@ use voidwalk_practice::{DesignedSample, DesignedSamples};
 
 /// Writes `specification.html`, its figure and `specification.xlsx` into the folder of a specification, from
 /// its `specification.json`.
-pub fn write_specification(folder: &Path) -> Result<Written, ReportError> {
+pub(crate) fn write_specification(folder: &Path) -> Result<Written, ReportError> {
     let design: Specification = json(&folder.join("specification.json"))?;
     let names = html! {
         (titled_by_file("Base", "Base", &design.base)) @if design.dispersive { ", dispersive" }
@@ -180,7 +180,7 @@ const LISTED: usize = 2000;
 
 /// Writes `designs.html` and `figures/designs.svg` into the folder of the designs of many samples. A missing
 /// or malformed file is an error, and nothing is written then.
-pub fn write_designs(folder: &Path) -> Result<Written, ReportError> {
+pub(crate) fn write_designs(folder: &Path) -> Result<Written, ReportError> {
     let path = folder.join(RECORD);
     let all: DesignedSamples = json(&path)?;
     if all.rows.is_empty() {

@@ -13,22 +13,22 @@ use voidwalk_practice::quantity::SizeUnit;
 /// Results of walks and their rows.
 #[derive(Clone, Copy)]
 pub(super) struct Walks<'a> {
-    pub verdict: Verdict,
-    pub summary: &'a [RunSummary],
-    pub replicates: &'a [Replicate],
+    pub(crate) verdict: Verdict,
+    pub(crate) summary: &'a [RunSummary],
+    pub(crate) replicates: &'a [Replicate],
     /// Eroded mass fraction that divides the classes.
-    pub threshold: f64,
+    pub(crate) threshold: f64,
     /// Fraction of the base inserted in each increment.
-    pub inject_share: f64,
+    pub(crate) inject_share: f64,
     /// Gradation of the base: rows of size and percent finer by mass.
-    pub base: &'a [[f64; 2]],
+    pub(crate) base: &'a [[f64; 2]],
     /// Unit of sizes after the first sheet: mm alone, or D0F.
-    pub unit: SizeUnit,
+    pub(crate) unit: SizeUnit,
     /// D15F (mm), if the filter is known.
-    pub d15f_mm: Option<f64>,
+    pub(crate) d15f_mm: Option<f64>,
     /// Modelled thickness of the filter, if it has one.
-    pub thickness_mm: Option<f64>,
-    pub rows: &'a RunRows,
+    pub(crate) thickness_mm: Option<f64>,
+    pub(crate) rows: &'a RunRows,
 }
 
 impl Walks<'_> {
@@ -42,13 +42,13 @@ impl Walks<'_> {
 #[derive(Default)]
 pub(super) struct RunRows {
     /// Rows by (run, replicate).
-    pub series: BTreeMap<(u64, u64), Vec<SeriesRow>>,
+    pub(crate) series: BTreeMap<(u64, u64), Vec<SeriesRow>>,
     /// Rows by (run, replicate).
-    pub layers: BTreeMap<(u64, u64), Vec<LayerRow>>,
+    pub(crate) layers: BTreeMap<(u64, u64), Vec<LayerRow>>,
     /// Rows by (run, replicate, increment).
-    pub retained: BTreeMap<(u64, u64, u64), Vec<SizeRow>>,
+    pub(crate) retained: BTreeMap<(u64, u64, u64), Vec<SizeRow>>,
     /// Rows by (run, replicate, increment).
-    pub eroded: BTreeMap<(u64, u64, u64), Vec<SizeRow>>,
+    pub(crate) eroded: BTreeMap<(u64, u64, u64), Vec<SizeRow>>,
 }
 
 type Numbered<T> = Vec<(u64, T)>;

@@ -29,7 +29,7 @@ const SPECIFICATION: &str = "specification.xlsx";
 
 /// Writes `verdict.xlsx` into `into`, from the files of a finished run folder: the answer, the inputs, every
 /// rule with its formula and source, every run, both gradations, and the program version.
-pub fn write_verdict_workbook(folder: &Path, into: &Path) -> Result<PathBuf, ReportError> {
+pub(crate) fn write_verdict_workbook(folder: &Path, into: &Path) -> Result<PathBuf, ReportError> {
     let path = into.join(VERDICT);
     write_whole(&path, &verdict_workbook(folder)?)?;
     Ok(path)
@@ -61,7 +61,7 @@ pub(super) fn write_specification_workbook(
 /// assert!(bytes.starts_with(b"PK"));
 /// # Ok::<(), voidwalk_app::report::ReportError>(())
 /// ```
-pub fn soil_template() -> Result<Vec<u8>, ReportError> {
+pub(crate) fn soil_template() -> Result<Vec<u8>, ReportError> {
     bytes(Path::new("template"), "voidwalk: sieve tables", &template_sheets())
 }
 

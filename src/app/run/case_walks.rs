@@ -27,21 +27,21 @@ use crate::outcome::record::{
 use crate::outcome::stopping::class_at;
 
 /// Everything walked for the verdict of a case, and the resulting class.
-pub struct CaseWalks {
-    pub replicates: Vec<ReplicateResult>,
-    pub summary: Vec<RunSummary>,
+pub(crate) struct CaseWalks {
+    pub(crate) replicates: Vec<ReplicateResult>,
+    pub(crate) summary: Vec<RunSummary>,
     /// Result of a rule that adds replicates.
-    pub stopping: Option<Stopping>,
+    pub(crate) stopping: Option<Stopping>,
     /// Ends of the range of the curve; `None` if the curve has no range.
-    pub range: Option<CurveRange>,
-    pub verdict: Verdict,
+    pub(crate) range: Option<CurveRange>,
+    pub(crate) verdict: Verdict,
     /// Confidence level (%) at which the rule decided, if below the usual level.
-    pub low_level_percent: Option<f64>,
+    pub(crate) low_level_percent: Option<f64>,
 }
 
 impl CaseWalks {
     /// Walks everything that decides a case's verdict: its replicates and, on their random numbers, the rest.
-    pub fn walk(case: &Case, context: &ReplicateContext) -> Result<Self, RunError> {
+    pub(crate) fn walk(case: &Case, context: &ReplicateContext) -> Result<Self, RunError> {
         // Ends do not wait for the last replicate.
         let (walked, begun) = rayon::join(|| replicates(case, context), || begin_ends(case, context));
         let (replicates, begun) = (walked?, begun?);
@@ -140,11 +140,11 @@ fn of_end(
 
 /// Results of the studies; empty if they are left out.
 #[derive(Clone, Default)]
-pub struct Studies {
+pub(crate) struct Studies {
     /// Other numbers of base particles, and the case's own.
-    pub sensitivity: Vec<Sensitivity>,
+    pub(crate) sensitivity: Vec<Sensitivity>,
     /// Filters of other thicknesses, and the case's own.
-    pub thickness: Vec<OfThickness>,
+    pub(crate) thickness: Vec<OfThickness>,
 }
 
 /// Another number of base particles, or another thickness.
@@ -183,7 +183,7 @@ fn points(case: &Case) -> Vec<Point<'_>> {
 
 impl Studies {
     /// Walks the studies of a case whose verdict is known.
-    pub fn walk(case: &Case, walks: &CaseWalks, context: &ReplicateContext) -> Result<Self, RunError> {
+    pub(crate) fn walk(case: &Case, walks: &CaseWalks, context: &ReplicateContext) -> Result<Self, RunError> {
         let (of_case, class, mut points) = (&walks.replicates, walks.verdict, points(case));
         let own_values = values_by_run(of_case);
         let most = case.scene.record.sensitivity_replicates;

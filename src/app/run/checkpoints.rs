@@ -22,31 +22,31 @@ use voidwalk_core::store::{Folder, StoreError, files_in, make_folder, remove_fol
 use voidwalk_core::walk::{SavedState, State};
 
 /// Folder of the checkpoints, inside the run's folder.
-pub const FOLDER: &str = "checkpoint";
+pub(crate) const FOLDER: &str = "checkpoint";
 
 /// Finished part of a replicate.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Done {
-    pub complete: bool,
-    pub runs: Vec<Run>,
+pub(crate) struct Done {
+    pub(crate) complete: bool,
+    pub(crate) runs: Vec<Run>,
     /// True, by run, if the eroded mass was below the threshold.
-    pub below: Vec<bool>,
-    pub recorded: Recorded,
+    pub(crate) below: Vec<bool>,
+    pub(crate) recorded: Recorded,
     /// Records of the current run.
-    pub recorder: Recorder,
+    pub(crate) recorder: Recorder,
 }
 
 /// Identity of a walk of a case: a checkpoint belongs to one walk only.
 #[derive(Clone, Copy, Debug)]
-pub struct WalkId {
+pub(crate) struct WalkId {
     /// 0 for the walks of the scene itself. From 1: walks of the sensitivity study, then those at the ends of
     /// the constriction curve's range, then those of other thicknesses. From 2^32: those of the margin.
-    pub part: u64,
+    pub(crate) part: u64,
     /// Replicate, counted from 1.
-    pub replicate: u64,
-    pub seed: u64,
+    pub(crate) replicate: u64,
+    pub(crate) seed: u64,
     /// Base particles of each run.
-    pub n_base: u64,
+    pub(crate) n_base: u64,
 }
 
 impl WalkId {
@@ -98,7 +98,7 @@ impl fmt::Display for CheckpointInterval {
 }
 
 /// Saves the replicates of one case.
-pub struct Checkpoints {
+pub(crate) struct Checkpoints {
     folder: PathBuf,
     scene: String,
     every: CheckpointInterval,
@@ -110,7 +110,7 @@ pub struct Checkpoints {
 
 impl Checkpoints {
     /// Checkpoints of the case with this fingerprint, in a run's folder.
-    pub fn new(folder: &Folder, scene: &str, every: CheckpointInterval) -> Result<Self, StoreError> {
+    pub(crate) fn new(folder: &Folder, scene: &str, every: CheckpointInterval) -> Result<Self, StoreError> {
         let path = folder.path().join(FOLDER);
         make_folder(&path)?;
         Ok(Self {
@@ -124,7 +124,7 @@ impl Checkpoints {
     }
 
     /// Fingerprint of the scene of the checkpoints in a run's folder; `None` without an intact checkpoint.
-    pub fn scene_in(folder: &Path) -> Result<Option<String>, CheckpointError> {
+    pub(crate) fn scene_in(folder: &Path) -> Result<Option<String>, CheckpointError> {
         let folder = folder.join(FOLDER);
         let files = files_in(&folder)
             .map_err(|e| CheckpointError::Unreadable { file: folder, source: std::io::Error::other(e) })?;
@@ -139,12 +139,12 @@ impl Checkpoints {
     }
 
     /// True if a run's folder holds checkpoints.
-    pub fn is_in(folder: &Path) -> Result<bool, StoreError> {
+    pub(crate) fn is_in(folder: &Path) -> Result<bool, StoreError> {
         Ok(!files_in(&folder.join(FOLDER))?.is_empty())
     }
 
     /// True if a walk that was last saved at `last` must be saved after this increment.
-    pub fn is_due(&self, last: Instant, increment: u64, stop: bool) -> bool {
+    pub(crate) fn is_due(&self, last: Instant, increment: u64, stop: bool) -> bool {
         stop || match self.every {
             CheckpointInterval::Time(time) => last.elapsed() >= time,
             CheckpointInterval::Increments(number) => increment.is_multiple_of(number),
@@ -153,7 +153,7 @@ impl Checkpoints {
 
     /// Loads a replicate: its finished part, and the checkpoint of the current run. Errors: it has
     /// checkpoints, but none is intact and belongs to this very walk.
-    pub fn load(&self, walk: WalkId) -> Result<Option<(Done, Checkpoint)>, CheckpointError> {
+    pub(crate) fn load(&self, walk: WalkId) -> Result<Option<(Done, Checkpoint)>, CheckpointError> {
         let name = walk.name();
         let (saved, refused) = newest(&self.folder, &name, &self.identity(walk))?;
         if let Ok(mut all) = self.passed_over.lock() {
@@ -166,12 +166,12 @@ impl Checkpoints {
         Ok(Some((saved.read_record("done")?, saved)))
     }
 
-    pub fn passed_over(&self) -> Vec<String> {
+    pub(crate) fn passed_over(&self) -> Vec<String> {
         self.passed_over.lock().map(|all| all.clone()).unwrap_or_default()
     }
 
     /// Saves a walk after a complete increment. If saving fails, the previous checkpoint stays.
-    pub fn save_walk(
+    pub(crate) fn save_walk(
         &self,
         walk: WalkId,
         network: &Network,
@@ -193,7 +193,7 @@ impl Checkpoints {
     }
 
     /// Accepts a finished replicate, which is written with the next checkpoint of any replicate.
-    pub fn save_finished(&self, walk: WalkId, done: &Done) {
+    pub(crate) fn save_finished(&self, walk: WalkId, done: &Done) {
         let text = serde_json::to_vec(done).expect("figures are numbers and words");
         let label = self.next_label(walk);
         if let Ok(mut waiting) = self.waiting.lock() {
@@ -202,7 +202,7 @@ impl Checkpoints {
     }
 
     /// Writes the finished replicates that are not on disk yet.
-    pub fn flush(&self) -> Result<(), StoreError> {
+    pub(crate) fn flush(&self) -> Result<(), StoreError> {
         let waiting = self.waiting.lock().map(|mut w| std::mem::take(&mut *w)).unwrap_or_default();
         for (name, (label, text)) in &waiting {
             save(&self.folder, name, label, &[Section::new("done", text)])?;
@@ -211,7 +211,7 @@ impl Checkpoints {
     }
 
     /// Removes every checkpoint: the results are complete.
-    pub fn clear(&self) -> Result<(), StoreError> {
+    pub(crate) fn clear(&self) -> Result<(), StoreError> {
         remove_folder(&self.folder)
     }
 
@@ -232,7 +232,7 @@ impl Checkpoints {
 }
 
 /// Removes the checkpoints in a run's folder, whichever scene they belong to.
-pub fn discard(folder: &Path) -> Result<(), StoreError> {
+pub(crate) fn discard(folder: &Path) -> Result<(), StoreError> {
     remove_folder(&folder.join(FOLDER))
 }
 

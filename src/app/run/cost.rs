@@ -89,7 +89,7 @@ const GIVING_WAY: f64 = 1.8;
 /// Seconds to measure the constrictions around a grain, and to write it.
 const MEASURED_GRAIN_S: f64 = 5e-5;
 /// Seconds to read a packing and measure its constrictions.
-pub const MEASURING_S: f64 = 5.0;
+pub(crate) const MEASURING_S: f64 = 5.0;
 /// Seconds to collect a case into a campaign's ledger.
 const COLLECTING_S: f64 = 0.05;
 /// Memory of collecting: the minimum, and for each case (bytes).
@@ -108,12 +108,12 @@ const SOLVE_S: f64 = 6.5e-7;
 impl Case {
     /// Estimated time of the whole case on one thread of a machine of 2024, without its packing (s): rough,
     /// and the same on every machine. It leaves out replicates that a rule may add.
-    pub fn core_seconds(&self) -> f64 {
+    pub(crate) fn core_seconds(&self) -> f64 {
         self.foreseen().seconds
     }
 
     /// Core seconds on this machine, from the pace of the case's pilot walks.
-    pub fn core_seconds_here(&self) -> f64 {
+    pub(crate) fn core_seconds_here(&self) -> f64 {
         let Foreseen { seconds, besides, took, predicted, .. } = self.foreseen();
         (seconds - besides) * pace(took, predicted) + besides
     }
@@ -225,7 +225,7 @@ impl Case {
     }
 
     /// Memory of the whole program if its walks take this much (bytes).
-    pub fn program_bytes(&self, walks: u64) -> u64 {
+    pub(crate) fn program_bytes(&self, walks: u64) -> u64 {
         let CaseNetwork { voids, constrictions, .. } = self.network;
         // A network is being built, and a page is being written.
         walks.saturating_add(PROGRAM_BYTES).saturating_add(100 * (voids + constrictions))
@@ -284,7 +284,7 @@ fn pace(took: f64, predicted: f64) -> f64 {
 impl PackingPlan {
     /// Estimated time of the packing on one thread of a machine of 2024 (s): rough, and the same on every
     /// machine.
-    pub fn core_seconds(&self) -> f64 {
+    pub(crate) fn core_seconds(&self) -> f64 {
         // Stiffer grains move in shorter steps.
         let stiffness = libm::sqrt((self.compression.stiffness_ratio / 0.1).max(0.1));
         let grains = self.compression.grains as f64;
@@ -294,7 +294,7 @@ impl PackingPlan {
     }
 
     /// Core seconds on this machine, from the pace of a small packing.
-    pub fn core_seconds_here(&self) -> f64 {
+    pub(crate) fn core_seconds_here(&self) -> f64 {
         self.core_seconds() * pace(small_packing_seconds(), SMALL_PACKING_S)
     }
 
@@ -304,7 +304,7 @@ impl PackingPlan {
     }
 
     /// Typical number of steps of packings of this friction and width of gradation.
-    pub fn usual_steps(&self) -> u64 {
+    pub(crate) fn usual_steps(&self) -> u64 {
         let cu = self.line_cu();
         let (at_1_5, power, most) = STEPS;
         let steps = (at_1_5 * libm::pow(cu / 1.5, power)).min(most);
@@ -316,24 +316,24 @@ impl PackingPlan {
     }
 
     /// Maximum memory of packing it (bytes).
-    pub fn program_bytes(&self) -> u64 {
+    pub(crate) fn program_bytes(&self) -> u64 {
         PROGRAM_BYTES + self.compression.grains as u64 * GRAIN_BYTES
     }
 }
 
 /// Time of a case on this many threads of its own (s).
-pub fn seconds_on(case: &Case, threads: u64) -> f64 {
+pub(crate) fn seconds_on(case: &Case, threads: u64) -> f64 {
     case.core_seconds() / (threads as f64 * BUSY)
 }
 
 /// Time (s) and memory (bytes) of collecting this many cases, with `measuring_s` for the packing of each.
-pub fn collecting(cases: usize, measuring_s: f64) -> (f64, u64) {
+pub(crate) fn collecting(cases: usize, measuring_s: f64) -> (f64, u64) {
     let bytes = COLLECTING_BYTES.0 + cases as u64 * COLLECTING_BYTES.1;
     (cases as f64 * (COLLECTING_S + measuring_s), bytes)
 }
 
 /// Seconds in words: `40 s`, `12 min`, `3.5 h`.
-pub fn duration(seconds: f64) -> String {
+pub(crate) fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 90.0 => format!("{:.0} s", s.ceil()),
         s if s < 5400.0 => format!("{:.0} min", s / 60.0),

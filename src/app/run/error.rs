@@ -25,7 +25,7 @@ pub enum Exit {
 
 impl Exit {
     /// Exit code of the program.
-    pub const fn code(self) -> u8 {
+    pub(crate) const fn code(self) -> u8 {
         match self {
             Self::Refused => 2,
             Self::Stopped => 3,
@@ -36,7 +36,7 @@ impl Exit {
 }
 
 /// Error of any kind, to be shown to a user.
-pub type AnyError = Box<dyn std::error::Error + Send + Sync>;
+pub(crate) type AnyError = Box<dyn std::error::Error + Send + Sync>;
 
 /// Reason for the early end of a command; [`RunError::exit`] distinguishes refused, stopped and failed
 /// commands.

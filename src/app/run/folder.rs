@@ -59,7 +59,7 @@ pub enum FolderKind {
 
 impl FolderKind {
     /// Every kind. A packing comes before constrictions because its folder holds constrictions, too.
-    pub const ALL: [Self; 10] = [
+    pub(crate) const ALL: [Self; 10] = [
         Self::Run,
         Self::Packing,
         Self::Campaign,
@@ -73,7 +73,7 @@ impl FolderKind {
     ];
 
     /// Name for users.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Run => "run",
             Self::Packing => "packing",
@@ -89,7 +89,7 @@ impl FolderKind {
     }
 
     /// Format of its record.
-    pub fn format(self) -> Format {
+    pub(crate) fn format(self) -> Format {
         match self {
             Self::Run => format::OUTCOME,
             Self::Packing => format::PACKING,
@@ -105,7 +105,7 @@ impl FolderKind {
     }
 
     /// Record of a finished folder, from which its page is made.
-    pub fn record(self) -> &'static str {
+    pub(crate) fn record(self) -> &'static str {
         self.format().file
     }
 
@@ -207,7 +207,7 @@ impl FolderKind {
 
     /// True if the work in a folder is finished, its page included; the work of a campaign or a server can
     /// always be extended.
-    pub fn is_finished(self, folder: &Path) -> Result<bool, RunError> {
+    pub(crate) fn is_finished(self, folder: &Path) -> Result<bool, RunError> {
         let has = |name: &str| folder.join(name).symlink_metadata().is_ok();
         Ok(!has(MARK)
             && match self {
@@ -257,7 +257,7 @@ pub fn claim(path: &Path, kind: FolderKind, overwrite: bool) -> Result<Folder, R
 /// Removes the files of earlier work of this kind from a claimed folder, except the checkpoints of a run,
 /// before other work writes its first file. The first removal makes the folder unfinished; files that the
 /// program does not recognise as its own stay.
-pub fn clear(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
+pub(crate) fn clear(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
     let files = kind.files();
     if kind == FolderKind::Packing && folder.has(RECORD) {
         // Otherwise, without the record, its constrictions would be taken for those of a user's own grains.
@@ -272,7 +272,7 @@ pub fn clear(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
 }
 
 /// Clears a claimed folder, and marks it as unfinished work of this kind.
-pub fn begin(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
+pub(crate) fn begin(folder: &Folder, kind: FolderKind) -> Result<(), StoreError> {
     clear(folder, kind)?;
     Unfinished::new(kind, String::new()).begin(folder)
 }
@@ -382,28 +382,32 @@ pub(crate) fn shown(path: &Path) -> String {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Unfinished {
     /// Name of the folder's kind for users.
-    pub kind: String,
+    pub(crate) kind: String,
     /// Fingerprint of everything that determines the results.
-    pub work: String,
+    pub(crate) work: String,
     /// Interval between saves of a run, as it was given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub checkpoint_every: Option<String>,
+    pub(crate) checkpoint_every: Option<String>,
 }
 
 impl Unfinished {
     /// Mark of this work; empty if only its kind is known.
-    pub fn new(kind: FolderKind, work: String) -> Self {
+    pub(crate) fn new(kind: FolderKind, work: String) -> Self {
         Self { kind: kind.name().into(), work, checkpoint_every: None }
     }
 
     /// Reads the mark in a folder; `None` without work under way, an empty mark if the file is corrupt.
-    pub fn read(folder: &Folder) -> Result<Option<Self>, StoreError> {
+    pub(crate) fn read(folder: &Folder) -> Result<Option<Self>, StoreError> {
         let bytes = folder.read(MARK)?;
         Ok(bytes.map(|bytes| serde_json::from_slice(&bytes).unwrap_or_default()))
     }
 
     /// Record of this very work, if everything but its page has been written.
-    pub fn whole<T: DeserializeOwned>(&self, folder: &Folder, record: &str) -> Result<Option<T>, StoreError> {
+    pub(crate) fn whole<T: DeserializeOwned>(
+        &self,
+        folder: &Folder,
+        record: &str,
+    ) -> Result<Option<T>, StoreError> {
         if Self::read(folder)?.as_ref() != Some(self) {
             return Ok(None);
         }
@@ -411,7 +415,7 @@ impl Unfinished {
     }
 
     /// Marks a folder, unless it has this mark already.
-    pub fn begin(&self, folder: &Folder) -> Result<(), StoreError> {
+    pub(crate) fn begin(&self, folder: &Folder) -> Result<(), StoreError> {
         if Self::read(folder)?.as_ref() == Some(self) {
             return Ok(());
         }
@@ -419,7 +423,7 @@ impl Unfinished {
     }
 
     /// Removes the mark: the work is finished.
-    pub fn end(folder: &Folder) -> Result<(), StoreError> {
+    pub(crate) fn end(folder: &Folder) -> Result<(), StoreError> {
         folder.remove(MARK)
     }
 }

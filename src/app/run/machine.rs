@@ -7,18 +7,18 @@ use crate::case::Case;
 use voidwalk_core::store::platform;
 
 /// Description of the machine.
-pub struct Machine {
+pub(crate) struct Machine {
     /// Name of the machine.
-    pub host: String,
+    pub(crate) host: String,
     /// System, processor and memory.
-    pub description: String,
+    pub(crate) description: String,
     /// Memory that a run may take (bytes).
-    pub available: u64,
+    pub(crate) available: u64,
 }
 
 impl Machine {
     /// Asks the system.
-    pub fn here() -> Self {
+    pub(crate) fn here() -> Self {
         let memory = platform::memory();
         let model = platform::processor().unwrap_or_else(|| "unknown processor".into());
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
@@ -74,7 +74,7 @@ pub(crate) fn on_each(count: usize, work: impl Fn() -> Result<(), RunError> + Sy
 }
 
 /// Reads a size in bytes as users write it: `4GB`, `500 MB`, `1.5GiB`.
-pub fn bytes_from_words(text: &str) -> Result<u64, String> {
+pub(crate) fn bytes_from_words(text: &str) -> Result<u64, String> {
     let digits = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
     let unit = match text[digits.len()..].to_lowercase().as_str() {
         "" | "b" => 1.0,
@@ -98,7 +98,7 @@ pub fn bytes_from_words(text: &str) -> Result<u64, String> {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Allocation {
     /// Job, with its task if it belongs to an array, as Slurm writes it: `12_3`.
-    pub job: String,
+    pub(crate) job: String,
     processors: Option<usize>,
     /// Memory (bytes).
     memory: Option<u64>,
@@ -106,7 +106,7 @@ pub(crate) struct Allocation {
 
 impl Allocation {
     /// The job of this process; `None` outside a job.
-    pub fn here() -> Option<Self> {
+    pub(crate) fn here() -> Option<Self> {
         Self::of(|name| std::env::var(name).ok())
     }
 
@@ -139,23 +139,23 @@ const LITTLE_BYTES: u64 = 1 << 30;
 /// that request its memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CasesAtOnce {
-    pub cases: u64,
+    pub(crate) cases: u64,
     /// Bytes that the process takes then.
-    pub bytes: u64,
+    pub(crate) bytes: u64,
 }
 
 impl CasesAtOnce {
     /// Counts these cases in a job whose script requests their memory. Cases beyond those that keep the
     /// threads busy are added only if the job stays small with them: no job requests twice the memory to fill
     /// threads that idle at the end of a case.
-    pub fn of_job(cases: &[&Case], threads: u64) -> Self {
+    pub(crate) fn of_job(cases: &[&Case], threads: u64) -> Self {
         let of_room = |spare| Self::where_there_is_room(cases, threads, spare, u64::MAX);
         let with_spare = of_room(1);
         if with_spare.bytes <= threads.saturating_mul(LITTLE_BYTES) { with_spare } else { of_room(0) }
     }
 
     /// Counts these cases in this process.
-    pub fn here(cases: &[&Case], threads: u64) -> Self {
+    pub(crate) fn here(cases: &[&Case], threads: u64) -> Self {
         let in_job = Allocation::here().is_some_and(|job| job.memory.is_some());
         Self::within(cases, threads, Machine::here().available, in_job)
     }

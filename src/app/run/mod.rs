@@ -14,7 +14,7 @@ pub(crate) mod callbacks;
 pub(crate) mod case_walks;
 pub(crate) mod checkpoints;
 pub(crate) mod cost;
-pub mod error;
+pub(crate) mod error;
 pub mod folder;
 pub mod machine;
 mod network_record;
@@ -26,16 +26,23 @@ pub mod results;
 pub(crate) mod shared_networks;
 pub(crate) mod walk;
 
-pub use callbacks::{Callbacks, Event};
+pub use callbacks::Callbacks;
+pub use callbacks::Event;
 pub use checkpoints::CheckpointInterval;
-pub use error::{Exit, RunError};
+pub use error::Exit;
+pub use error::RunError;
 pub use folder::FolderKind;
-pub use network_walk::{GivenFilter, NetworkOutcome, NetworkWalk, WalkedNetwork, walk_networks};
-pub use pack::{ConstrictionsOptions, FinishedPacking, PackOptions, measure_constrictions, pack};
-pub use prepare::{Check, PackingCheck, check};
-pub use prepare::{EXAMPLE_FILES, ExampleFile, write_examples};
-pub use prepare::{PrepareOptions, prepare, write_built_in, write_new};
-pub use walk::{FinishedRun, RunOptions, resume, walk_case, walk_case_recorded, walk_scene};
+pub use network_walk::{GivenFilter, NetworkWalk, walk_networks};
+pub(crate) use network_walk::{NetworkOutcome, WalkedNetwork};
+pub(crate) use pack::{ConstrictionsOptions, FinishedPacking, PackOptions, measure_constrictions, pack};
+pub use prepare::check;
+pub(crate) use prepare::{Check, PackingCheck};
+pub(crate) use prepare::{EXAMPLE_FILES, ExampleFile, write_examples};
+pub use prepare::{PrepareOptions, prepare};
+pub(crate) use prepare::{write_built_in, write_new};
+pub(crate) use walk::FinishedRun;
+pub use walk::walk_case_recorded;
+pub use walk::{RunOptions, resume, walk_case, walk_scene};
 
 /// The case of the built-in scene with these settings.
 #[cfg(test)]

@@ -79,7 +79,7 @@ fn given(network: &Network, networks: usize) -> GivenNetwork {
 
 impl NetworkOutcome {
     /// Notes on the class; `network` is the first of this many networks.
-    pub fn notes(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> Vec<Note> {
+    pub(crate) fn notes(&self, plan: &NetworkWalk, network: &Network, networks: usize) -> Vec<Note> {
         let walked = || self.replicates.iter().map(|walked| &walked.result);
         let layers = network.layers() as u64;
         let mut notes = said_by_walks(self.verdict, walked(), &plan.base, plan.increments, (layers, false));

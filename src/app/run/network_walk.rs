@@ -67,7 +67,7 @@ pub struct NetworkOutcome {
     /// Class that the replicates together support.
     pub verdict: Verdict,
     /// Statistics over the replicates, by run.
-    pub summary: Vec<RunSummary>,
+    pub(crate) summary: Vec<RunSummary>,
     /// Every replicate, in order.
     pub replicates: Vec<WalkedNetwork>,
 }
@@ -149,7 +149,7 @@ impl NetworkWalk {
     }
 
     /// D15F (mm) by mass, if known.
-    pub fn d15f_mm(&self) -> Option<f64> {
+    pub(crate) fn d15f_mm(&self) -> Option<f64> {
         self.filter.as_ref()?.gradation.d(15.0)
     }
 

@@ -41,17 +41,17 @@ const LOOK: Duration = Duration::from_millis(500);
 
 /// Options of packing a filter; only `overwrite` changes the resulting files.
 #[derive(Clone, Debug)]
-pub struct PackOptions {
+pub(crate) struct PackOptions {
     /// Folder for the packing; by default a folder of its own in `packings`.
-    pub out: Option<PathBuf>,
+    pub(crate) out: Option<PathBuf>,
     /// Folder in which packings are kept.
-    pub packings: PathBuf,
+    pub(crate) packings: PathBuf,
     /// True if an existing packing is made again.
-    pub overwrite: bool,
+    pub(crate) overwrite: bool,
     /// Worker threads; by default the number that a cluster's job has, else one per core.
-    pub threads: Option<usize>,
+    pub(crate) threads: Option<usize>,
     /// Interval between saves of the compression.
-    pub checkpoint_interval: Duration,
+    pub(crate) checkpoint_interval: Duration,
 }
 
 impl Default for PackOptions {
@@ -67,15 +67,15 @@ impl Default for PackOptions {
 }
 
 /// Finished packing.
-pub struct FinishedPacking {
+pub(crate) struct FinishedPacking {
     /// Its folder.
-    pub folder: PathBuf,
+    pub(crate) folder: PathBuf,
     /// Text of `packing.json`, unchanged.
-    pub json: String,
+    pub(crate) json: String,
     /// Contents of `packing.json`.
-    pub record: PackingRecord,
+    pub(crate) record: PackingRecord,
     /// Results needed for a walk.
-    pub filter: PackedFilter,
+    pub(crate) filter: PackedFilter,
 }
 
 /// Packs a filter into a folder, continuing a packing there that was stopped.
@@ -83,7 +83,7 @@ pub struct FinishedPacking {
 /// # Errors
 /// A filter that cannot be packed or a folder that cannot be claimed is refused before any work. After a stop
 /// the next call continues.
-pub fn pack(
+pub(crate) fn pack(
     spec: &PackingSpec,
     options: &PackOptions,
     callbacks: &Callbacks,
@@ -116,7 +116,11 @@ pub(super) fn with_time(error: CaseError) -> RunError {
 
 /// Provides the packing of a scene's filter: an existing one of the filter itself or of the same shape in
 /// another size, else a new one, which is kept. Waits for a packing that another process is making.
-pub fn provide(plan: &PackingPlan, packings: &Path, callbacks: &Callbacks) -> Result<PackedFilter, RunError> {
+pub(crate) fn provide(
+    plan: &PackingPlan,
+    packings: &Path,
+    callbacks: &Callbacks,
+) -> Result<PackedFilter, RunError> {
     let path = packings.join(plan.folder_name());
     let has_page = || path.join(MARK).symlink_metadata().is_err();
     if let Some(filter) = PackedFilter::read(&path, plan)?.filter(|_| has_page()) {
@@ -350,17 +354,17 @@ fn slice(packing: &Packing, cell_mm: f64, height_mm: f64) -> Vec<[f64; 4]> {
 
 /// Options of measuring constrictions.
 #[derive(Clone, Debug)]
-pub struct ConstrictionsOptions {
+pub(crate) struct ConstrictionsOptions {
     /// Overlap from which two inscribed spheres count as one void.
-    pub merge_overlap: f64,
+    pub(crate) merge_overlap: f64,
     /// Facets between voids that count as constrictions of the curve.
-    pub facets: Facets,
+    pub(crate) facets: Facets,
     /// Options that complete the file of grains.
-    pub read: ReadOptions,
+    pub(crate) read: ReadOptions,
     /// Folder for the results.
-    pub out: PathBuf,
+    pub(crate) out: PathBuf,
     /// True if earlier results there are replaced.
-    pub overwrite: bool,
+    pub(crate) overwrite: bool,
 }
 
 impl Default for ConstrictionsOptions {
@@ -381,7 +385,7 @@ impl Default for ConstrictionsOptions {
 ///
 /// # Errors
 /// Grains that are refused or do not fit their cell; a folder that cannot be claimed or written.
-pub fn measure_constrictions(
+pub(crate) fn measure_constrictions(
     packing: &Path,
     options: &ConstrictionsOptions,
     callbacks: &Callbacks,

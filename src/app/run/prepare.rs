@@ -48,17 +48,17 @@ impl PrepareOptions {
 }
 
 /// Scene found sound, and the packing that it needs.
-pub struct Draft {
+pub(crate) struct Draft {
     scene: Scene,
     /// Case, with a guess for a filter that is still to be packed.
-    pub case: Case,
+    pub(crate) case: Case,
     /// Packing that is still to be made for it.
-    pub packing: Option<PackingPlan>,
+    pub(crate) packing: Option<PackingPlan>,
 }
 
 impl Draft {
     /// Works a scene out, with a guess for a filter that is still to be packed.
-    pub fn new(scene: Scene) -> Result<Self, RunError> {
+    pub(crate) fn new(scene: Scene) -> Result<Self, RunError> {
         let packing = PackingPlan::of(&scene).map_err(with_time)?;
         let placeholder = packing.as_ref().map(PackedFilter::placeholder).transpose();
         let known = packing.as_ref().map_or(Vec::new(), |packing| packing.inputs.clone());
@@ -68,7 +68,7 @@ impl Draft {
 
     /// Finishes the case, with the packed filter if it needs one; no file is read again. Errors: a packed
     /// filter that turns out unsuitable.
-    pub fn finished(self, filter: Option<PackedFilter>) -> Result<Case, RunError> {
+    pub(crate) fn finished(self, filter: Option<PackedFilter>) -> Result<Case, RunError> {
         match filter {
             Some(_) => Ok(Case::with_packed(self.scene, filter, self.case.inputs)?),
             None => Ok(self.case),
@@ -112,12 +112,12 @@ pub(crate) fn prepare_into<F: AsRef<Path>>(
 }
 
 /// Writes the built-in scene, with comments, as a start for another; refuses to replace a file.
-pub fn write_built_in(path: &Path) -> Result<(), RunError> {
+pub(crate) fn write_built_in(path: &Path) -> Result<(), RunError> {
     write_new(path, Scene::init_text().as_bytes())
 }
 
 /// Writes a file; refuses to replace one.
-pub fn write_new(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
+pub(crate) fn write_new(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
     if path.symlink_metadata().is_ok() {
         return Err(refused(path, "exists already; name a new file"));
     }
@@ -129,41 +129,41 @@ pub fn write_new(path: &Path, bytes: &[u8]) -> Result<(), RunError> {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Check {
     /// Base particles of a run.
-    pub n_base: u64,
+    pub(crate) n_base: u64,
     /// Base particles by Eq. (2), if the grains per void are known.
-    pub n_base_eq2: Option<u64>,
+    pub(crate) n_base_eq2: Option<u64>,
     /// True if a cap made `n_base` smaller than Eq. (2).
-    pub capped: bool,
+    pub(crate) capped: bool,
     /// Filter grains per void, if known.
-    pub grains_per_void: Option<f64>,
+    pub(crate) grains_per_void: Option<f64>,
     /// Mass of base over mass of filter, if known.
-    pub mass_ratio: Option<f64>,
+    pub(crate) mass_ratio: Option<f64>,
     /// Maximum number of base particles that are walked one by one.
-    pub one_by_one: u64,
+    pub(crate) one_by_one: u64,
     /// Runs to walk.
-    pub runs_to_walk: u64,
+    pub(crate) runs_to_walk: u64,
     /// Maximum number of increments of insertion of a run.
-    pub increments: u64,
+    pub(crate) increments: u64,
     /// Memory of a walk (bytes).
-    pub bytes: u64,
+    pub(crate) bytes: u64,
     /// Memory that the walks may take (bytes).
-    pub bytes_allowed: u64,
+    pub(crate) bytes_allowed: u64,
     /// Memory in words.
-    pub memory: String,
+    pub(crate) memory: String,
     /// Seconds of one core of this machine for the walks, without the packing.
-    pub core_seconds: f64,
+    pub(crate) core_seconds: f64,
     /// True if the particles are in files mapped into memory.
-    pub particles_on_disk: bool,
+    pub(crate) particles_on_disk: bool,
     /// Size ratios of filter and base.
-    pub ratios: Ratios,
+    pub(crate) ratios: Ratios,
     /// The packing that is needed.
-    pub packing: Option<PackingCheck>,
+    pub(crate) packing: Option<PackingCheck>,
     /// Inputs of the run.
-    pub inputs: Inputs,
+    pub(crate) inputs: Inputs,
     /// Parts of the program that are not needed.
-    pub left_out: Vec<LeftOut>,
+    pub(crate) left_out: Vec<LeftOut>,
     /// Notes for the user.
-    pub notes: Vec<Note>,
+    pub(crate) notes: Vec<Note>,
     /// Reason why a run would still be refused: too little memory.
     #[serde(skip)]
     pub refusal: Option<CaseError>,
@@ -172,17 +172,17 @@ pub struct Check {
 /// The packing that a scene needs.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct PackingCheck {
+pub(crate) struct PackingCheck {
     /// Grains.
-    pub grains: u64,
+    pub(crate) grains: u64,
     /// Its folder.
-    pub folder: PathBuf,
+    pub(crate) folder: PathBuf,
     /// True if it exists; until then the filter's constrictions and grains per void are guesses.
-    pub is_made: bool,
+    pub(crate) is_made: bool,
     /// Steps of its compression.
-    pub steps: u64,
+    pub(crate) steps: u64,
     /// Seconds of one core of this machine that it takes; if it exists, of one core of 2024.
-    pub core_seconds: f64,
+    pub(crate) core_seconds: f64,
 }
 
 /// Forecasts a run of a scene, here and with these options; packs nothing and writes nothing.
@@ -241,13 +241,13 @@ fn check_here(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError>
 
 /// An example: its file name, a description, and its text.
 #[derive(Clone, Copy, Debug)]
-pub struct ExampleFile {
+pub(crate) struct ExampleFile {
     /// Its name.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     /// Description of its contents.
-    pub what: &'static str,
+    pub(crate) what: &'static str,
     /// Its whole text.
-    pub text: &'static str,
+    pub(crate) text: &'static str,
 }
 
 /// Example of this name in `src/app/data/examples`.
@@ -258,7 +258,7 @@ macro_rules! example {
 }
 
 /// Every example.
-pub const EXAMPLE_FILES: [ExampleFile; 8] = [
+pub(crate) const EXAMPLE_FILES: [ExampleFile; 8] = [
     example!("base.csv", "a base: openings in mm, percent finer by mass"),
     example!("filter.csv", "a filter for it"),
     example!("filter-fine.csv", "a finer one"),
@@ -273,7 +273,7 @@ pub const EXAMPLE_FILES: [ExampleFile; 8] = [
 ///
 /// # Errors
 /// [`RunError::Refused`] if a file exists already, or the folder is a file; nothing is written then.
-pub fn write_examples(folder: &Path) -> Result<(), RunError> {
+pub(crate) fn write_examples(folder: &Path) -> Result<(), RunError> {
     let places = EXAMPLE_FILES.map(|file| folder.join(file.name));
     if let Some(taken) = places.iter().find(|path| path.symlink_metadata().is_ok()) {
         return Err(refused(taken, "exists already; nothing was written. Name another folder"));

@@ -32,13 +32,13 @@ use voidwalk_practice::Note;
 
 /// Callbacks, checkpoints and shared networks for walking replicates.
 #[derive(Clone, Copy)]
-pub struct ReplicateContext<'a> {
+pub(crate) struct ReplicateContext<'a> {
     /// Follow the walks and stop them.
-    pub callbacks: &'a Callbacks<'a>,
+    pub(crate) callbacks: &'a Callbacks<'a>,
     /// Save finished work for the next start; without them nothing is saved.
-    pub checkpoints: Option<&'a Checkpoints>,
+    pub(crate) checkpoints: Option<&'a Checkpoints>,
     /// Networks shared with other cases; without them each replicate builds its own.
-    pub networks: Option<&'a SharedNetworks>,
+    pub(crate) networks: Option<&'a SharedNetworks>,
 }
 
 impl ReplicateContext<'_> {
@@ -59,9 +59,9 @@ pub struct ReplicateResult {
     pub replicate: Replicate,
     pub recorded: Recorded,
     /// The engine that walked the first run.
-    pub engine: Engine,
+    pub(crate) engine: Engine,
     /// Shortcuts that the first run took.
-    pub left_out: Vec<Shortcut>,
+    pub(crate) left_out: Vec<Shortcut>,
     /// True, by run, if less than 7.5 % of the mass eroded.
     pub(super) below: Vec<bool>,
 }
@@ -217,7 +217,7 @@ pub(super) fn left_out_of_first_run(case: &Case) -> Result<Vec<Shortcut>, RunErr
 /// Checks that every replicate that will be walked for certain has a network. A network with a distribution
 /// of connectivity is searched for at random, and the search may fail for single replicates. Errors: a
 /// replicate without a network; a stop.
-pub fn have_networks(case: &Case, callbacks: &Callbacks) -> Result<(), RunError> {
+pub(crate) fn have_networks(case: &Case, callbacks: &Callbacks) -> Result<(), RunError> {
     if !matches!(case.scene.network.source(), NetworkSource::Connected(..)) {
         return Ok(());
     }
@@ -373,7 +373,7 @@ pub(super) fn said_by_walks<'a>(
 
 /// Number of runs walked for a case: its own, those of the ends of its curve's range, and those of its
 /// studies, as far as known before the walk.
-pub fn runs_to_walk(case: &Case) -> u64 {
+pub(crate) fn runs_to_walk(case: &Case) -> u64 {
     let first = first_replicates(case);
     let of_ends = replicates_of_end(first) * case.filter.curve_ends.len() as u64;
     let points = (case.sensitivity_factors().len() + case.thickness_factors().len()) as u64;

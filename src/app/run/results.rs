@@ -23,7 +23,7 @@ use voidwalk_practice::{Decision, IfDispersive, Note, dispersion, ordered, rules
 
 /// Outcome of a walked case with these earlier notes, and the decision of practice on its pair. `studies` is
 /// empty if they follow later.
-pub fn outcome(
+pub(crate) fn outcome(
     case: &Case,
     noted: &[Note],
     walks: &CaseWalks,
@@ -126,7 +126,7 @@ fn eroded_percent(summary: &[RunSummary], range: Option<&CurveRange>) -> Vec<[f6
 }
 
 /// Writes the files from which a run can be started again: the resolved scene and its input files.
-pub fn write_scene(folder: &Folder, case: &Case) -> Result<(), StoreError> {
+pub(crate) fn write_scene(folder: &Folder, case: &Case) -> Result<(), StoreError> {
     let mut files = Together::in_folder(folder.path());
     for input in &case.inputs {
         files.add(&input.kept_as, &input.bytes)?;
@@ -183,7 +183,7 @@ pub(super) fn left_out(case: &Case, of_run: &[Shortcut]) -> Vec<LeftOut> {
 ///
 /// # Errors
 /// The record of its packing cannot be read.
-pub fn files(
+pub(crate) fn files(
     case: &Case,
     (outcome, decision): (Outcome, Decision),
     walked: &[ReplicateResult],
@@ -202,7 +202,7 @@ pub fn files(
 ///
 /// # Errors
 /// Errors of the folder; no file is left half written.
-pub fn write(folder: &Folder, case: &Case, run: &RunFiles) -> Result<(), RunError> {
+pub(crate) fn write(folder: &Folder, case: &Case, run: &RunFiles) -> Result<(), RunError> {
     // They go first, so that a folder whose files are being replaced is not taken for finished.
     for name in ["manifest.json", "outcome.json"] {
         folder.remove(name)?;
@@ -242,7 +242,7 @@ fn add_voids(files: &mut Together, case: &Case, recorded: &Recorded) -> Result<(
 }
 
 /// Contents of a JSON file in this format.
-pub fn json(format: Format, record: &impl Serialize) -> Result<Vec<u8>, RunError> {
+pub(crate) fn json(format: Format, record: &impl Serialize) -> Result<Vec<u8>, RunError> {
     let text = format.json(record).map_err(|e| RunError::Format { file: format.file, source: e.into() })?;
     Ok(text.into_bytes())
 }

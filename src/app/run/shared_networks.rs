@@ -20,20 +20,20 @@ const PART: u64 = 16;
 type KeptExits = Arc<OnceLock<PlainExits>>;
 
 /// Network to walk, and its exits if they are kept.
-pub struct NetworkToWalk {
-    pub network: Arc<Network>,
+pub(crate) struct NetworkToWalk {
+    pub(crate) network: Arc<Network>,
     exits: Option<KeptExits>,
 }
 
 impl NetworkToWalk {
     /// Network that is not shared.
-    pub fn own(network: Network) -> Self {
+    pub(crate) fn own(network: Network) -> Self {
         Self { network: Arc::new(network), exits: None }
     }
 
     /// Exits with which the first run of a case begins, computed by the first case that asks for them. `None`
     /// if they are not kept, or if the case begins with other exits.
-    pub fn exits(&self, case: &Case) -> Option<&PlainExits> {
+    pub(crate) fn exits(&self, case: &Case) -> Option<&PlainExits> {
         let kept = self.exits.as_ref().filter(|_| case.begins_with_plain_exits())?;
         if kept.get().is_none() {
             // No case waits here: two cases that compute the exits get the same bits.
@@ -59,25 +59,25 @@ impl KeptNetwork {
 }
 
 /// Networks, each under the key of its inputs.
-pub struct SharedNetworks {
+pub(crate) struct SharedNetworks {
     kept: Mutex<VecDeque<KeptNetwork>>,
     most_bytes: u64,
 }
 
 impl SharedNetworks {
     /// Memory for kept networks if walks and networks together may take this much (bytes).
-    pub fn bytes(memory: u64) -> u64 {
+    pub(crate) fn bytes(memory: u64) -> u64 {
         MOST_BYTES.min(memory / PART)
     }
 
     /// Creates an empty store of at most this many bytes. Exits are dropped before networks, the oldest
     /// first.
-    pub fn new(most_bytes: u64) -> Self {
+    pub(crate) fn new(most_bytes: u64) -> Self {
         Self { kept: Mutex::default(), most_bytes }
     }
 
     /// Network of the replicate of a case with this seed, as built by [`Case::network`].
-    pub fn get(&self, case: &Case, seed: u64) -> Result<NetworkToWalk, NetworkError> {
+    pub(crate) fn get(&self, case: &Case, seed: u64) -> Result<NetworkToWalk, NetworkError> {
         let Some(key) = case.network_key(seed) else {
             return Ok(NetworkToWalk::own(case.network(seed)?));
         };

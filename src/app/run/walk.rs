@@ -46,11 +46,11 @@ pub struct FinishedRun {
     /// Its folder.
     pub folder: PathBuf,
     /// Result of the walk, as in `outcome.json`.
-    pub outcome: Outcome,
+    pub(crate) outcome: Outcome,
     /// The decision of practice on its pair.
-    pub decision: Decision,
+    pub(crate) decision: Decision,
     /// Unit of sizes in its scene (`about.units`).
-    pub unit: SizeUnit,
+    pub(crate) unit: SizeUnit,
 }
 
 /// Walks a scene and writes its folder; continues from checkpoints of a stopped run of this very scene.

@@ -314,24 +314,24 @@ const NO_COVER: [&str; 2] = ["coarse_left", "units"];
 
 impl About {
     /// True if inches are shown beside mm.
-    pub fn shows_inches(&self) -> bool {
+    pub(crate) fn shows_inches(&self) -> bool {
         self.units == Some(SheetUnits::Us)
     }
 
     /// Full names of the settings of the cover that are texts.
-    pub fn texts() -> Vec<String> {
+    pub(crate) fn texts() -> Vec<String> {
         let of_cover = Self::keys().into_iter().filter(|key| !NO_COVER.contains(&key.name));
         of_cover.map(|key| key.full_name()).collect()
     }
 
     /// Page of a run, whose sizes may be multiples of D0F.
-    pub fn page(&self, scale_free: bool) -> AboutPage {
+    pub(crate) fn page(&self, scale_free: bool) -> AboutPage {
         let unit = SizeUnit::of(scale_free, self.shows_inches());
         AboutPage { cover: self.cover(), coarse_left: self.coarse_left == Some(true), unit }
     }
 
     /// Cover of the sheet, without a date if the scene states none.
-    pub fn cover(&self) -> SheetCover {
+    pub(crate) fn cover(&self) -> SheetCover {
         SheetCover {
             project: self.project.clone(),
             number: self.number.clone(),
@@ -347,13 +347,13 @@ impl About {
 
 /// Section `packing`: settings of the measured packing, and of the compression of its grains.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct PackingKeys {
+pub(crate) struct PackingKeys {
     /// Settings of grains and voids.
     #[serde(flatten)]
-    pub filter: FilterPacking,
+    pub(crate) filter: FilterPacking,
     /// Settings of the compression; friction and number of grains are not set here.
     #[serde(flatten)]
-    pub compression: packing::Settings,
+    pub(crate) compression: packing::Settings,
 }
 
 /// Section `packing`, if density or friction requires a packing.

@@ -11,7 +11,7 @@ use voidwalk_core::packing;
 
 /// Gradation of the filter by mass.
 #[derive(Clone, Debug, PartialEq)]
-pub enum FilterGradation {
+pub(crate) enum FilterGradation {
     /// Linear on semi-log paper from `d0_mm`; without `cu`, the value of the shipped curve.
     Linear {
         /// Smallest grain (mm).
@@ -25,7 +25,7 @@ pub enum FilterGradation {
 
 /// Gradation of the base by mass.
 #[derive(Clone, Debug, PartialEq)]
-pub enum BaseGradation {
+pub(crate) enum BaseGradation {
     /// Linear on semi-log paper with a given D85B.
     Linear {
         /// D60 / D10.
@@ -41,7 +41,7 @@ pub enum BaseGradation {
 
 /// Setting that defines D85B.
 #[derive(Clone, Debug, PartialEq)]
-pub enum D85 {
+pub(crate) enum D85 {
     /// Size (mm).
     Mm(f64),
     /// Constriction size at this percent of the filter's curve, or of another one.
@@ -52,7 +52,7 @@ pub enum D85 {
 
 /// Number of base particles.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Amount {
+pub(crate) enum Amount {
     /// Mass of base over mass of filter, Eq. (2), and a cap.
     MassRatio(f64, Option<u64>),
     /// Fixed number.
@@ -87,7 +87,7 @@ pub enum Extent {
 
 impl Extent {
     /// Thickness (mm) of the filter, if the scene states one.
-    pub fn thickness_mm(self, d50f_mm: f64) -> Option<f64> {
+    pub(crate) fn thickness_mm(self, d50f_mm: f64) -> Option<f64> {
         match self {
             Self::Mm(mm) => Some(mm),
             Self::D50F(multiple) => Some(multiple * d50f_mm),
@@ -103,7 +103,7 @@ const MASS_RATIO: f64 = 0.05;
 const VOIDS: [u64; 3] = [40, 40, USUAL_LAYERS];
 
 /// Default number of layers of voids: the paper's value.
-pub const USUAL_LAYERS: u64 = 60;
+pub(crate) const USUAL_LAYERS: u64 = 60;
 
 impl Filter {
     pub(super) fn fill_in(&mut self) {
@@ -113,7 +113,7 @@ impl Filter {
     }
 
     /// Gradation of the filter by mass.
-    pub fn gradation(&self) -> FilterGradation {
+    pub(crate) fn gradation(&self) -> FilterGradation {
         match &self.sieve {
             Some(path) => FilterGradation::Sieve(path.clone(), self.d0_mm),
             None => FilterGradation::Linear { d0_mm: self.d0_mm.unwrap_or(1.0), cu: self.cu },
@@ -129,7 +129,7 @@ impl Base {
     }
 
     /// Gradation of the base by mass.
-    pub fn gradation(&self) -> BaseGradation {
+    pub(crate) fn gradation(&self) -> BaseGradation {
         if let Some(path) = &self.sieve {
             return BaseGradation::Sieve(path.clone(), self.d0_mm);
         }
@@ -144,13 +144,13 @@ impl Base {
     }
 
     /// Setting that defines D85B of a linear gradation.
-    pub fn d85(&self) -> Option<D85> {
+    pub(crate) fn d85(&self) -> Option<D85> {
         let at_dc = self.d85_at_dc.map(|percent| D85::AtDc(percent, self.dc_curve.clone()));
         self.d85_mm.map(D85::Mm).or(at_dc).or(self.d15f_over_d85b.map(D85::Ratio))
     }
 
     /// Amount of base.
-    pub fn amount(&self) -> Amount {
+    pub(crate) fn amount(&self) -> Amount {
         match self.n_base {
             Some(n) => Amount::Number(n),
             None => Amount::MassRatio(self.mass_ratio.unwrap_or(MASS_RATIO), self.cap),
@@ -160,7 +160,7 @@ impl Base {
 
 impl NetworkKeys {
     /// True for a file of arrays, whose constrictions can be passed both ways.
-    pub fn is_of_arrays(&self) -> bool {
+    pub(crate) fn is_of_arrays(&self) -> bool {
         let ending = |path: &PathBuf| path.extension().map(|ending| ending.to_ascii_lowercase());
         self.file.as_ref().and_then(ending).is_some_and(|ending| ending == "npz")
     }
@@ -178,7 +178,7 @@ impl NetworkKeys {
     }
 
     /// Thickness along the flow.
-    pub fn extent(&self) -> Extent {
+    pub(crate) fn extent(&self) -> Extent {
         match (self.copies, self.thickness_mm, self.thickness_d50f) {
             (Some(copies), ..) => Extent::Copies(copies as u32),
             (None, Some(mm), _) => Extent::Mm(mm),
@@ -188,19 +188,19 @@ impl NetworkKeys {
     }
 
     /// Sets the number of layers of a lattice of this thickness.
-    pub fn set_layers(&mut self, layers: u64) {
+    pub(crate) fn set_layers(&mut self, layers: u64) {
         self.nz = Some(layers);
         (self.thickness_mm, self.thickness_d50f) = (None, None);
     }
 
     /// Limits the width of a lattice to this many voids in both directions.
-    pub fn narrow_to(&mut self, across: u64) {
+    pub(crate) fn narrow_to(&mut self, across: u64) {
         let narrow = |width: Option<u64>, usual: u64| Some(width.unwrap_or(usual).min(across));
         (self.nx, self.ny) = (narrow(self.nx, VOIDS[0]), narrow(self.ny, VOIDS[1]));
     }
 
     /// Sets the number of copies of a packing in its graph.
-    pub fn set_copies(&mut self, copies: u64) {
+    pub(crate) fn set_copies(&mut self, copies: u64) {
         self.copies = Some(copies);
         (self.thickness_mm, self.thickness_d50f) = (None, None);
     }
@@ -234,7 +234,7 @@ impl NetworkSource {
 
 impl Record {
     /// Data to record of a run.
-    pub fn wanted(&self) -> Wanted {
+    pub(crate) fn wanted(&self) -> Wanted {
         Wanted {
             series_every: self.series_every,
             size_curves: self.size_curves.clone(),
@@ -246,21 +246,21 @@ impl Record {
 
 /// Specification of the packing of a filter.
 #[derive(Clone, Debug, PartialEq)]
-pub struct PackingSpec {
+pub(crate) struct PackingSpec {
     /// Gradation to pack; a linear one has a `cu`.
-    pub gradation: FilterGradation,
+    pub(crate) gradation: FilterGradation,
     /// Number of grains, if given by the user.
-    pub grains: Option<usize>,
+    pub(crate) grains: Option<usize>,
     /// Height of the cell over its width.
-    pub aspect: f64,
+    pub(crate) aspect: f64,
     /// Percent by mass to pack, from the finest grain up, if given by the user.
-    pub coarsest: Option<f64>,
+    pub(crate) coarsest: Option<f64>,
     /// Compression of the grains; its number of grains counts only if given by the user.
-    pub compression: packing::Settings,
+    pub(crate) compression: packing::Settings,
     /// Overlap of two inscribed spheres above which their tetrahedra form one void.
-    pub merge_overlap: f64,
+    pub(crate) merge_overlap: f64,
     /// Name of the file in errors.
-    pub file: String,
+    pub(crate) file: String,
 }
 
 impl PackingSpec {
@@ -268,7 +268,7 @@ impl PackingSpec {
     ///
     /// # Errors
     /// The gradation is missing, or the settings of the compression cannot be used together.
-    pub fn new(filter: &Filter, packing: &PackingKeys, file: &str) -> Result<Self, SceneError> {
+    pub(crate) fn new(filter: &Filter, packing: &PackingKeys, file: &str) -> Result<Self, SceneError> {
         let clash = |problem: String| SceneError::Clash { file: file.to_owned(), problem };
         let gradation = filter.gradation();
         if matches!(gradation, FilterGradation::Linear { cu: None, .. }) {

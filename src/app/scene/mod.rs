@@ -11,14 +11,20 @@ mod reference;
 mod tables;
 mod values;
 
-pub use keys::{About, Base, ExitKeys, Filter, FilterPacking, NetworkKeys, PackingKeys, Record, WalkKeys};
-pub use meaning::{
+pub(crate) use keys::{
+    About, Base, ExitKeys, Filter, FilterPacking, NetworkKeys, PackingKeys, Record, WalkKeys,
+};
+pub(crate) use meaning::{
     Amount, BaseGradation, D85, Extent, FilterGradation, NetworkSource, PackingSpec, USUAL_LAYERS,
 };
-pub use reference::{ExclusiveSettings, SceneReference, SectionReference, SettingReference, WayReference};
-pub use tables::{TableOptions, keep_soils, quoted};
-pub use values::{CurveSource, Density, LibraryDensity, NetworkMadeOf, Regrade, SheetUnits};
-pub use voidwalk_core::schema::{Origin, SceneError};
+pub(crate) use reference::{
+    ExclusiveSettings, SceneReference, SectionReference, SettingReference, WayReference,
+};
+pub use tables::TableOptions;
+pub(crate) use tables::{keep_soils, quoted};
+pub use values::{CurveSource, Density};
+pub(crate) use values::{LibraryDensity, NetworkMadeOf, Regrade, SheetUnits};
+pub(crate) use voidwalk_core::schema::{Origin, SceneError};
 
 use crate::outcome::stopping::StopRule;
 use keys::{GROUPS, concentrations, packing_keys};
@@ -47,30 +53,30 @@ pub struct Scene {
     pub name: String,
     /// True if base and filter were named as a pair, which is refused if they look exchanged.
     #[serde(skip)]
-    pub is_guarded: bool,
+    pub(crate) is_guarded: bool,
     /// Settings without a section, such as seed, engine and replicates.
     #[serde(flatten)]
-    pub walk: WalkKeys,
+    pub(crate) walk: WalkKeys,
     /// Rule that ends the addition of replicates, if their number is not fixed.
     #[serde(skip_serializing_if = "StopRule::is_unset")]
-    pub stop: StopRule,
+    pub(crate) stop: StopRule,
     /// The filter.
     pub filter: Filter,
     /// Packing of the filter, if it is packed.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub packing: Option<PackingKeys>,
+    pub(crate) packing: Option<PackingKeys>,
     /// The base soil.
-    pub base: Base,
+    pub(crate) base: Base,
     /// Choice of exits by particles.
     #[serde(rename = "walk", skip_serializing_if = "is_unset")]
-    pub exits: ExitKeys,
+    pub(crate) exits: ExitKeys,
     /// The network.
     pub network: NetworkKeys,
     /// Results to keep.
-    pub record: Record,
+    pub(crate) record: Record,
     /// Further entries for the first page of the report.
     #[serde(skip_serializing_if = "is_unset")]
-    pub about: About,
+    pub(crate) about: About,
 }
 
 fn is_unset<T: Default + PartialEq>(section: &T) -> bool {
@@ -108,7 +114,7 @@ impl Scene {
 
     /// Scene of a plan's case: the built-in scene or one from a file, with the case's settings, one list
     /// for each group stated together.
-    pub fn planned(
+    pub(crate) fn planned(
         base: Option<&Path>,
         assignments: &[Vec<String>],
         origin: &Origin,
@@ -157,7 +163,7 @@ impl Scene {
     ///
     /// # Errors
     /// See [`Scene::read`]; also if neither density nor friction is given.
-    pub fn read_packing(path: &Path, assignments: &[String]) -> Result<PackingSpec, SceneError> {
+    pub(crate) fn read_packing(path: &Path, assignments: &[String]) -> Result<PackingSpec, SceneError> {
         let mut s = GivenSettings::read(path, &NAMES)?;
         s.set_together(assignments, &NAMES, &Origin::CommandLine)?;
         s.check_groups(GROUPS)?;
@@ -174,7 +180,7 @@ impl Scene {
     ///
     /// # Errors
     /// Its gradation is missing.
-    pub fn packing_spec(&self) -> Result<Option<PackingSpec>, SceneError> {
+    pub(crate) fn packing_spec(&self) -> Result<Option<PackingSpec>, SceneError> {
         let spec = |packing| PackingSpec::new(&self.filter, packing, &self.name);
         self.packing.as_ref().map(spec).transpose()
     }
@@ -185,22 +191,22 @@ impl Scene {
     }
 
     /// Error for settings of this scene that clash.
-    pub fn clash(&self, problem: impl Into<String>) -> SceneError {
+    pub(crate) fn clash(&self, problem: impl Into<String>) -> SceneError {
         SceneError::Clash { file: self.name.clone(), problem: problem.into() }
     }
 
     /// True if blocked constrictions leave openings.
-    pub fn leaves_openings(&self) -> bool {
+    pub(crate) fn leaves_openings(&self) -> bool {
         self.exits.blocked == Some(BlockedAs::Open)
     }
 
     /// Law of arching, if particles arch.
-    pub fn law(&self) -> Option<&'static Law> {
+    pub(crate) fn law(&self) -> Option<&'static Law> {
         self.exits.arching?.law()
     }
 
     /// Rule by which particles choose among the exits of a void.
-    pub fn exit_rule(&self) -> ExitRule {
+    pub(crate) fn exit_rule(&self) -> ExitRule {
         self.exits.exit.unwrap_or(match self.network.kind {
             Some(NetworkMadeOf::Graph) => ExitRule::Flux,
             _ if self.network.is_of_arrays() => ExitRule::Flux,
@@ -209,7 +215,7 @@ impl Scene {
     }
 
     /// True if particles walk the directed cubic lattice and choose among its exits by area.
-    pub fn is_lattice_by_area(&self) -> bool {
+    pub(crate) fn is_lattice_by_area(&self) -> bool {
         matches!(self.network.source(), NetworkSource::Cubic(_)) && self.exit_rule() == ExitRule::Area
     }
 

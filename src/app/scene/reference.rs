@@ -15,69 +15,69 @@ const WIDTH: usize = 96;
 /// All settings of a scene, and which exclude each other. Values are written as in TOML.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct SceneReference {
+pub(crate) struct SceneReference {
     /// Sections in the order in which they are written.
-    pub sections: Vec<SectionReference>,
+    pub(crate) sections: Vec<SectionReference>,
     /// Groups of settings that state one fact in different ways; a scene uses one way of each.
-    pub exclusive: Vec<ExclusiveSettings>,
+    pub(crate) exclusive: Vec<ExclusiveSettings>,
 }
 
 /// Section of a scene.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct SectionReference {
+pub(crate) struct SectionReference {
     /// Name of the section; empty for the settings at the top.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     /// Subject of the section.
-    pub about: String,
+    pub(crate) about: String,
     /// Settings of the section.
-    pub settings: Vec<SettingReference>,
+    pub(crate) settings: Vec<SettingReference>,
 }
 
 /// Setting of a scene.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct SettingReference {
+pub(crate) struct SettingReference {
     /// Full name, such as `base.cu`.
-    pub name: String,
+    pub(crate) name: String,
     /// Type of the value in TOML.
     #[serde(rename = "type")]
-    pub toml_type: &'static str,
+    pub(crate) toml_type: &'static str,
     /// Allowed values.
-    pub allowed: String,
+    pub(crate) allowed: String,
     /// Value if a scene does not set it; absent if it then has no value.
-    pub default: Option<String>,
+    pub(crate) default: Option<String>,
     /// Value in the built-in scene; absent if it is not set there.
-    pub built_in: Option<String>,
+    pub(crate) built_in: Option<String>,
     /// Example of a value.
-    pub example: String,
+    pub(crate) example: String,
     /// Meaning of the setting.
-    pub meaning: String,
+    pub(crate) meaning: String,
 }
 
 /// Settings that exclude each other.
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct ExclusiveSettings {
+pub(crate) struct ExclusiveSettings {
     /// Statement that they make, such as `give the base`.
-    pub says: &'static str,
+    pub(crate) says: &'static str,
     /// Ways to make the statement. A name that ends in a point is a whole section.
-    pub alternatives: Vec<WayReference>,
+    pub(crate) alternatives: Vec<WayReference>,
 }
 
 /// One way to make the statement of [`ExclusiveSettings`].
 #[derive(Clone, Debug, Serialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct WayReference {
+pub(crate) struct WayReference {
     /// Settings that make the statement, each alone.
-    pub by: &'static [&'static str],
+    pub(crate) by: &'static [&'static str],
     /// Settings allowed only with these.
-    pub with: &'static [&'static str],
+    pub(crate) with: &'static [&'static str],
 }
 
 impl Scene {
     /// All settings, section by section, in the order in which they are written.
-    pub fn keys() -> Vec<KeyInfo> {
+    pub(crate) fn keys() -> Vec<KeyInfo> {
         sections().into_iter().flat_map(|(_, keys)| keys).collect()
     }
 
@@ -108,7 +108,7 @@ impl Scene {
     }
 
     /// Reference for programs: every setting with its type, default and allowed values.
-    pub fn reference() -> SceneReference {
+    pub(crate) fn reference() -> SceneReference {
         let section = |(about, keys): (&[&str], Vec<KeyInfo>)| SectionReference {
             name: keys.first().map_or("", |key| key.section),
             about: for_users(about),

@@ -104,7 +104,7 @@ impl TableOptions {
     ///
     /// # Errors
     /// A value is not allowed.
-    pub fn of_rules(&self) -> Result<PairOptions, SceneError> {
+    pub(crate) fn of_rules(&self) -> Result<PairOptions, SceneError> {
         let is_one = |change: &&String| OF_RULES.contains(&setting_name(change));
         let stated: Vec<String> = self.changes.iter().filter(is_one).cloned().collect();
         let scene = Scene::built_in(&stated)?;
@@ -148,7 +148,7 @@ impl Scene {
     }
 
     /// Source of the filter's constrictions in a sentence.
-    pub fn constrictions_in_words(&self) -> String {
+    pub(crate) fn constrictions_in_words(&self) -> String {
         let filter = &self.filter;
         if let Some(friction) = filter.friction {
             return format!("The filter's grains are packed, with friction {friction}.");
@@ -182,7 +182,11 @@ impl Scene {
 ///
 /// # Errors
 /// [`SceneError::Clash`] names the setting and the soil.
-pub fn keep_soils(changes: &[String], base: Option<&str>, filter: Option<&str>) -> Result<(), SceneError> {
+pub(crate) fn keep_soils(
+    changes: &[String],
+    base: Option<&str>,
+    filter: Option<&str>,
+) -> Result<(), SceneError> {
     for (role, named, names) in [("base", base, &BASE[..]), ("filter", filter, &FILTER)] {
         if let (Some(named), Some(name)) = (named, set_among(changes, names)) {
             return Err(clash(format!(
@@ -205,7 +209,7 @@ fn set_among<'a>(changes: &[String], names: &[&'a str]) -> Option<&'a str> {
 }
 
 /// Path as a TOML string, so that one like `1e5` remains a name.
-pub fn quoted(path: &Path) -> Result<String, SceneError> {
+pub(crate) fn quoted(path: &Path) -> Result<String, SceneError> {
     let text = path.to_str().ok_or_else(|| SceneError::Clash {
         file: path.display().to_string(),
         problem: "its name is not UTF-8 text; give it another".into(),

@@ -113,7 +113,7 @@ words! {
 
 impl LibraryDensity {
     /// Relative density from 0 (loose) to 1 (dense); 0.5 if it is unknown.
-    pub fn relative(self) -> f64 {
+    pub(crate) fn relative(self) -> f64 {
         match self {
             Self::Loose => 0.0,
             Self::Intermediate | Self::Unknown => 0.5,
@@ -164,7 +164,7 @@ words! {
 
 /// Percent of the voids by connectivity, as written in a scene.
 #[derive(Clone, Debug, PartialEq)]
-pub struct VoidConnectivity(pub Connectivity);
+pub(crate) struct VoidConnectivity(pub(crate) Connectivity);
 
 const TABLE_3: &str = "table3";
 

@@ -18,30 +18,30 @@ use voidwalk_practice::{BatchFilter, BatchRow, BatchTable, PairOptions, PairRule
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct AskedBatch {
+pub(crate) struct AskedBatch {
     /// Number of the sheet whose soils are all samples; for walks of `filters`, the one base.
-    pub base: String,
-    pub filters: Vec<String>,
+    pub(crate) base: String,
+    pub(crate) filters: Vec<String>,
     /// Pairs to walk, and the depth: `governing`, `look`, `alone`, or `filters` for one base.
-    pub walks: String,
+    pub(crate) walks: String,
     #[serde(flatten)]
-    pub tables: AskedTables,
+    pub(crate) tables: AskedTables,
 }
 
 /// Options that accompany two sheets.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
-pub struct AskedTables {
+pub(crate) struct AskedTables {
     /// Density in one word, or empty.
-    pub density: String,
+    pub(crate) density: String,
     /// True if this very filter is packed.
-    pub pack: bool,
-    pub quick: bool,
+    pub(crate) pack: bool,
+    pub(crate) quick: bool,
     /// True if the base is walked as sampled, not as practice regrades it.
-    pub as_sampled: bool,
+    pub(crate) as_sampled: bool,
     /// True if base and filter are taken as given even if they look exchanged.
-    pub as_given: bool,
-    pub changes: Vec<String>,
+    pub(crate) as_given: bool,
+    pub(crate) changes: Vec<String>,
 }
 
 const FILTERS: usize = 6;
@@ -54,13 +54,13 @@ fn filter_paths(sheets: &Sheets, named: &[impl AsRef<str>]) -> Result<Vec<PathBu
 }
 
 /// Names of these filters on the page: their own names, numbered if two agree.
-pub fn filter_names(sheets: &Sheets, paths: &[PathBuf]) -> Vec<String> {
+pub(crate) fn filter_names(sheets: &Sheets, paths: &[PathBuf]) -> Vec<String> {
     numbered(paths.iter().map(|path| sheets.as_named(&path.display().to_string())).collect())
 }
 
 impl AskedBatch {
     /// Pairs to walk; an unknown word is an error.
-    pub fn walks(&self) -> Result<BatchWalks, String> {
+    pub(crate) fn walks(&self) -> Result<BatchWalks, String> {
         match self.walks.as_str() {
             "governing" => Ok(BatchWalks::GoverningInFull),
             "look" => Ok(BatchWalks::FirstLook),
@@ -70,7 +70,7 @@ impl AskedBatch {
         }
     }
 
-    pub fn sheets(&self, sheets: &Sheets) -> Result<(PathBuf, Vec<PathBuf>), String> {
+    pub(crate) fn sheets(&self, sheets: &Sheets) -> Result<(PathBuf, Vec<PathBuf>), String> {
         let filters = filter_paths(sheets, &self.filters)?;
         let base = if self.has_one_base() { &self.base } else { whole_sheet(&self.base) };
         Ok((sheets.path(base)?, filters))
@@ -80,7 +80,7 @@ impl AskedBatch {
         self.walks == "filters"
     }
 
-    pub fn title(&self, samples: &str, filters: &[String]) -> String {
+    pub(crate) fn title(&self, samples: &str, filters: &[String]) -> String {
         let every = if self.has_one_base() { "" } else { "Every sample of " };
         format!("{every}{samples} on {}", filters.join(", "))
     }
@@ -123,13 +123,13 @@ fn class_of(row: &BatchRow, is_doubted: bool) -> Option<&'static str> {
     }
 }
 
-pub fn so_far(rows: &[WalkedRow], inches: bool) -> Value {
+pub(crate) fn so_far(rows: &[WalkedRow], inches: bool) -> Value {
     let columns = walked_columns(SizeUnit::of(false, inches));
     table(columns, rows, |row| class_of(&row.rules, row.is_doubted()))
 }
 
 /// JSON of a finished batch for the page: its table, and the answers for a client on each filter.
-pub fn of_batch(batch: &WalkedBatch) -> Value {
+pub(crate) fn of_batch(batch: &WalkedBatch) -> Value {
     let rules: Vec<BatchRow> = batch.rows.iter().map(|row| row.rules.clone()).collect();
     let unit = SizeUnit::of(false, batch.inches);
     let lines = |filter: &BatchFilter| -> Vec<String> {
@@ -148,7 +148,7 @@ pub fn of_batch(batch: &WalkedBatch) -> Value {
 const SHOWN: [&str; 7] = ["result", "rule", "authority", "quantity", "value", "limit", "note"];
 
 /// Rules in groups with their results for the pair; the page computes nothing.
-pub fn rules_of_pair(pair: &PairRules) -> Value {
+pub(crate) fn rules_of_pair(pair: &PairRules) -> Value {
     let decision = pair.decision();
     let listed = decision.listed();
     let part = |(role, title)| {
@@ -180,7 +180,7 @@ pub fn rules_of_pair(pair: &PairRules) -> Value {
 const MOST_SHOWN: usize = 1000;
 
 /// Rules on all samples in the sheet of a base, against filters.
-pub fn samples(
+pub(crate) fn samples(
     sheets: &Sheets,
     base: &str,
     filters: &[&str],
@@ -201,7 +201,7 @@ pub fn samples(
 }
 
 /// JSON of the samples for the page, with sentences on each filter.
-pub fn of_samples(samples: &BatchTable) -> Value {
+pub(crate) fn of_samples(samples: &BatchTable) -> Value {
     let all = &samples.rows;
     let rows = &all[..all.len().min(MOST_SHOWN)];
     let cut = (rows.len() < all.len())

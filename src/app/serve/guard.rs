@@ -15,26 +15,26 @@ use std::time::{Duration, Instant};
 use super::http::Request;
 
 #[derive(Clone, Debug)]
-pub struct Guard {
+pub(crate) struct Guard {
     token: String,
     port: u16,
 }
 
 impl Guard {
     /// Creates a secret for this port; fails if the system gives no random bytes.
-    pub fn new(port: u16) -> io::Result<Self> {
+    pub(crate) fn new(port: u16) -> io::Result<Self> {
         // A secret must not follow from any seed, so it is not a number of `voidwalk_core::stream`.
         let mut bytes = [0u8; 16];
         getrandom::fill(&mut bytes)?;
         Ok(Self { token: bytes.iter().map(|byte| format!("{byte:02x}")).collect(), port })
     }
 
-    pub fn address(&self) -> String {
+    pub(crate) fn address(&self) -> String {
         format!("http://127.0.0.1:{}/{}/", self.port, self.token)
     }
 
     /// Path below the secret; `None` if the request is not allowed.
-    pub fn path<'a>(&self, request: &'a Request) -> Option<&'a str> {
+    pub(crate) fn path<'a>(&self, request: &'a Request) -> Option<&'a str> {
         if !request.field("host").is_some_and(|name| self.is_host(name)) {
             return None;
         }
@@ -78,7 +78,7 @@ const GRACE: Duration = Duration::from_secs(1);
 const LOOK: Duration = Duration::from_millis(50);
 
 #[derive(Default)]
-pub struct Connections {
+pub(crate) struct Connections {
     /// Connections in the order of their arrival.
     open: Mutex<Vec<Connection>>,
     /// Number of connections so far, which numbers each of them uniquely.
@@ -94,7 +94,7 @@ struct Connection {
 }
 
 /// Place of a connection, until it is dropped.
-pub struct Place {
+pub(crate) struct Place {
     connections: Arc<Connections>,
     id: u64,
 }
@@ -106,7 +106,7 @@ impl Connections {
 
     /// Waits for a place for a connection: if all are taken, the oldest connection without the secret is
     /// ended. Fails if there are no more file handles.
-    pub fn place(self: &Arc<Self>, stream: &TcpStream) -> io::Result<Place> {
+    pub(crate) fn place(self: &Arc<Self>, stream: &TcpStream) -> io::Result<Place> {
         let shed = Some(stream.try_clone()?);
         let mut open = self.locked();
         while open.len() >= MOST {
@@ -127,7 +127,7 @@ impl Connections {
 
 impl Place {
     /// Protects a connection that has shown the secret from being ended for others.
-    pub fn keep(&self) {
+    pub(crate) fn keep(&self) {
         if let Some(one) = self.connections.locked().iter_mut().find(|one| one.id == self.id) {
             one.shed = None;
         }

@@ -17,7 +17,7 @@ const HEAD: usize = 16 << 10;
 const FIELDS: usize = 64;
 
 /// Maximum body of a request (bytes): a workbook.
-pub const BODY: u64 = 32 << 20;
+pub(crate) const BODY: u64 = 32 << 20;
 
 /// Time limits for the head of a request, and for its body as a whole.
 const ARRIVAL: (Duration, Duration) = (Duration::from_secs(10), Duration::from_secs(60));
@@ -30,10 +30,10 @@ const DRAIN: (Duration, u64) = (Duration::from_secs(1), 2 * BODY);
 
 /// A request whose body has not been read.
 #[derive(Debug)]
-pub struct Request {
-    pub method: String,
-    pub path: String,
-    pub query: String,
+pub(crate) struct Request {
+    pub(crate) method: String,
+    pub(crate) path: String,
+    pub(crate) query: String,
     fields: Vec<(String, String)>,
     /// Beginning of the body, which came with the head.
     begun: Vec<u8>,
@@ -42,7 +42,7 @@ pub struct Request {
 
 impl Request {
     /// Value of a header field; `None` if it is missing or repeated.
-    pub fn field(&self, name: &str) -> Option<&str> {
+    pub(crate) fn field(&self, name: &str) -> Option<&str> {
         let mut values = self.fields.iter().filter(|(field, _)| field.eq_ignore_ascii_case(name));
         match (values.next(), values.next()) {
             (Some((_, value)), None) => Some(value),
@@ -50,11 +50,11 @@ impl Request {
         }
     }
 
-    pub fn has(&self, name: &str) -> bool {
+    pub(crate) fn has(&self, name: &str) -> bool {
         self.fields.iter().any(|(field, _)| field.eq_ignore_ascii_case(name))
     }
 
-    pub fn parameter(&self, name: &str) -> Option<String> {
+    pub(crate) fn parameter(&self, name: &str) -> Option<String> {
         let pairs = self.query.split('&').filter_map(|pair| pair.split_once('='));
         pairs.into_iter().find(|(key, _)| *key == name).map(|(_, value)| decoded(value))
     }
@@ -84,40 +84,40 @@ fn decoded(text: &str) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-pub struct Answer {
-    pub status: u16,
+pub(crate) struct Answer {
+    pub(crate) status: u16,
     /// Type of the body.
-    pub kind: &'static str,
-    pub body: Body,
+    pub(crate) kind: &'static str,
+    pub(crate) body: Body,
     /// Content security policy; without one, nothing at all is allowed.
-    pub policy: Option<String>,
+    pub(crate) policy: Option<String>,
     /// Name under which a browser saves it.
-    pub download: Option<String>,
+    pub(crate) download: Option<String>,
 }
 
-pub enum Body {
+pub(crate) enum Body {
     Bytes(Vec<u8>),
     /// Content of a file from its start, with its length.
     File(std::fs::File, u64),
 }
 
 impl Answer {
-    pub fn new(status: u16, kind: &'static str, body: impl Into<Vec<u8>>) -> Self {
+    pub(crate) fn new(status: u16, kind: &'static str, body: impl Into<Vec<u8>>) -> Self {
         Self { status, kind, body: Body::Bytes(body.into()), policy: None, download: None }
     }
 
-    pub fn file(kind: &'static str, file: std::fs::File) -> io::Result<Self> {
+    pub(crate) fn file(kind: &'static str, file: std::fs::File) -> io::Result<Self> {
         let length = file.metadata()?.len();
         Ok(Self { body: Body::File(file, length), ..Self::new(200, kind, "") })
     }
 
     /// Answer with a value as JSON for the page, without hidden characters.
-    pub fn json(status: u16, mut value: Value) -> Self {
+    pub(crate) fn json(status: u16, mut value: Value) -> Self {
         show(&mut value);
         Self::new(status, "application/json; charset=utf-8", value.to_string())
     }
 
-    pub fn problem(status: u16, words: &str) -> Self {
+    pub(crate) fn problem(status: u16, words: &str) -> Self {
         Self::json(status, serde_json::json!({ "problem": words }))
     }
 }
@@ -171,7 +171,7 @@ impl Write for Until<'_> {
 }
 
 /// Reads the head of a request; a bad head gives its answer.
-pub fn read_head(stream: &mut TcpStream) -> io::Result<Result<Request, Answer>> {
+pub(crate) fn read_head(stream: &mut TcpStream) -> io::Result<Result<Request, Answer>> {
     let mut stream = Until::new(stream, ARRIVAL.0, ARRIVAL.0);
     let mut bytes = Vec::new();
     loop {
@@ -226,7 +226,10 @@ fn request(parsed: &httparse::Request, begun: Vec<u8>) -> Result<Request, Answer
 }
 
 /// Reads the body of a request; a body that is too large is not read and gives its answer.
-pub fn read_body(request: &mut Request, stream: &mut TcpStream) -> io::Result<Result<Vec<u8>, Answer>> {
+pub(crate) fn read_body(
+    request: &mut Request,
+    stream: &mut TcpStream,
+) -> io::Result<Result<Vec<u8>, Answer>> {
     if request.length > BODY {
         let words = format!("too large: at most {} MB", BODY >> 20);
         return Ok(Err(Answer::problem(413, &words)));
@@ -245,7 +248,7 @@ pub fn read_body(request: &mut Request, stream: &mut TcpStream) -> io::Result<Re
     Ok(Ok(bytes))
 }
 
-pub fn send(stream: &mut TcpStream, answer: Answer) -> io::Result<()> {
+pub(crate) fn send(stream: &mut TcpStream, answer: Answer) -> io::Result<()> {
     let (length, refused) = match &answer.body {
         Body::Bytes(bytes) => (bytes.len() as u64, answer.status >= 400),
         Body::File(_, length) => (*length, false),

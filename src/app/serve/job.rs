@@ -27,7 +27,7 @@ use voidwalk_practice::Decision;
 use voidwalk_practice::quantity::SizeUnit;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum JobState {
+pub(crate) enum JobState {
     Waiting,
     Running,
     Stopped,
@@ -37,7 +37,7 @@ pub enum JobState {
 }
 
 impl JobState {
-    pub fn words(self) -> &'static str {
+    pub(crate) fn words(self) -> &'static str {
         match self {
             Self::Waiting => "waiting",
             Self::Running => "running",
@@ -49,36 +49,36 @@ impl JobState {
     }
 }
 
-pub struct Job {
-    pub id: usize,
-    pub title: String,
+pub(crate) struct Job {
+    pub(crate) id: usize,
+    pub(crate) title: String,
     /// Sheets of the request, as the page names them.
-    pub asked: Value,
+    pub(crate) asked: Value,
     /// Name of its folder inside the server's folder.
-    pub folder: String,
-    pub work: Work,
-    pub state: JobState,
-    pub message: String,
-    pub result: Value,
-    pub live: Arc<Mutex<Live>>,
-    pub stop: Arc<AtomicBool>,
+    pub(crate) folder: String,
+    pub(crate) work: Work,
+    pub(crate) state: JobState,
+    pub(crate) message: String,
+    pub(crate) result: Value,
+    pub(crate) live: Arc<Mutex<Live>>,
+    pub(crate) stop: Arc<AtomicBool>,
 }
 
 impl Job {
     /// Creates a job with no work done.
-    pub fn new(id: usize, title: String, folder: String, work: Work, state: JobState) -> Self {
+    pub(crate) fn new(id: usize, title: String, folder: String, work: Work, state: JobState) -> Self {
         let (live, stop) = (Arc::default(), Arc::default());
         let (message, result, asked) = (String::new(), Value::Null, Value::Null);
         Self { id, title, asked, folder, work, state, message, result, live, stop }
     }
 
-    pub fn can_begin(&self) -> bool {
+    pub(crate) fn can_begin(&self) -> bool {
         self.state == JobState::Waiting && !matches!(self.work, Work::Nothing)
     }
 
     /// True if it can continue, because it ended early in a folder that the command line would resume. A
     /// request refused before any work would be refused again.
-    pub fn can_continue(&self, root: &Path) -> bool {
+    pub(crate) fn can_continue(&self, root: &Path) -> bool {
         let ended_early = match self.state {
             JobState::Stopped | JobState::Failed => true,
             JobState::Refused => has_scene(&root.join(&self.folder)),
@@ -88,7 +88,7 @@ impl Job {
     }
 
     /// JSON of the job for the page; messages pass through `named`.
-    pub fn snapshot(&self, all: &[Job], root: &Path, named: &impl Fn(&str) -> String) -> Value {
+    pub(crate) fn snapshot(&self, all: &[Job], root: &Path, named: &impl Fn(&str) -> String) -> Value {
         let waits = |job: &&Job| job.state == JobState::Waiting && job.id < self.id;
         let page = ["report.html", "batch.html"]
             .into_iter()
@@ -130,11 +130,11 @@ fn all_said(value: &Value, named: &impl Fn(&str) -> String) -> Value {
 }
 
 /// True if a folder holds the scene of a run that has begun, which the command line can resume.
-pub fn has_scene(folder: &Path) -> bool {
+pub(crate) fn has_scene(folder: &Path) -> bool {
     folder.join("scene.toml").is_file()
 }
 
-pub fn how_to_continue(folder: &Path) -> String {
+pub(crate) fn how_to_continue(folder: &Path) -> String {
     let resume = match has_scene(folder) {
         true => format!(", or `voidwalk resume {}`,", shell_word(&folder.display().to_string())),
         false => String::new(),
@@ -143,10 +143,10 @@ pub fn how_to_continue(folder: &Path) -> String {
 }
 
 /// Action on finished results.
-pub type OnResults = fn(FolderKind, &Path, Option<RunFiles>) -> Result<(), AnyError>;
+pub(crate) type OnResults = fn(FolderKind, &Path, Option<RunFiles>) -> Result<(), AnyError>;
 
 #[derive(Clone)]
-pub enum Work {
+pub(crate) enum Work {
     Judge(Box<Scene>),
     Batch(Box<BatchPlan>),
     /// Work described by its folder, which is planned again when the job continues.
@@ -159,7 +159,7 @@ pub enum Work {
 
 impl Work {
     /// Prefix of the name of its folder.
-    pub fn name(&self) -> &'static str {
+    pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::Batch(_) => "batch",
             _ => "run",
@@ -168,17 +168,17 @@ impl Work {
 }
 
 /// Settings shared by all jobs of a server.
-pub struct WorkContext {
-    pub root: PathBuf,
-    pub prepare: PrepareOptions,
+pub(crate) struct WorkContext {
+    pub(crate) root: PathBuf,
+    pub(crate) prepare: PrepareOptions,
     /// Command that started it, for its folder.
-    pub command: String,
-    pub on_results: OnResults,
+    pub(crate) command: String,
+    pub(crate) on_results: OnResults,
 }
 
 impl WorkContext {
     /// Does a job, and returns the JSON of its result for the page.
-    pub fn work(
+    pub(crate) fn work(
         &self,
         folder: &Path,
         work: &Work,
@@ -232,7 +232,7 @@ impl WorkContext {
     }
 }
 
-pub fn of_cases(folder: &Path, prepare: &PrepareOptions, command: &str) -> CaseOptions {
+pub(crate) fn of_cases(folder: &Path, prepare: &PrepareOptions, command: &str) -> CaseOptions {
     CaseOptions {
         out: folder.to_owned(),
         part: CasePart::All,
@@ -262,7 +262,7 @@ fn of_run(outcome: &Outcome, decision: &Decision) -> Value {
     })
 }
 
-pub const LAST: usize = 999_999;
+pub(crate) const LAST: usize = 999_999;
 
 fn number(name: &str) -> Option<usize> {
     let (kind, id) = name.split_once('-')?;
@@ -272,7 +272,7 @@ fn number(name: &str) -> Option<usize> {
 }
 
 /// The `most` newest jobs that an earlier server left, oldest first.
-pub fn earlier(root: &Path, most: usize) -> Vec<Job> {
+pub(crate) fn earlier(root: &Path, most: usize) -> Vec<Job> {
     let entries = std::fs::read_dir(root).into_iter().flatten().flatten();
     let folders = entries.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir()));
     let names = folders.filter_map(|entry| entry.file_name().into_string().ok());
@@ -345,21 +345,21 @@ const LARGEST: u64 = 4 << 20;
 
 /// Request of a job, and its end if it cannot continue.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct JobFile {
+pub(crate) struct JobFile {
     /// Kind of job, as the request names it.
-    pub kind: String,
-    pub title: String,
-    pub asked: Value,
-    pub request: Value,
+    pub(crate) kind: String,
+    pub(crate) title: String,
+    pub(crate) asked: Value,
+    pub(crate) request: Value,
     /// Word `refused` or `failed`, with the message.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub ended: Option<(String, String)>,
+    pub(crate) ended: Option<(String, String)>,
 }
 
 impl JobFile {
     /// Stores this in the job's folder, which is made if missing. Fails for a link, for a folder that is not
     /// the program's own or is in use, and for a request that is too large.
-    pub fn write(&self, folder: &Path) -> Result<(), RunError> {
+    pub(crate) fn write(&self, folder: &Path) -> Result<(), RunError> {
         let bytes = serde_json::to_vec_pretty(self)?;
         if bytes.len() as u64 > LARGEST {
             return Err(RunError::Refused(format!("the request is larger than {} MB", LARGEST >> 20)));
@@ -369,7 +369,7 @@ impl JobFile {
     }
 
     /// Reads the file in a job's folder; `None` in other folders.
-    pub fn read(folder: &Path) -> Option<Self> {
+    pub(crate) fn read(folder: &Path) -> Option<Self> {
         let bytes = read_regular(&folder.join(FILE), LARGEST).ok()??;
         serde_json::from_slice(&bytes).ok()
     }

@@ -26,7 +26,7 @@ const WAITING: usize = 20;
 /// Maximum number of jobs listed; the earliest finished are dropped, but their folders stay.
 const LISTED: usize = 200;
 
-pub struct JobQueue {
+pub(crate) struct JobQueue {
     context: WorkContext,
     all: Mutex<Vec<Job>>,
     last: AtomicUsize,
@@ -36,7 +36,7 @@ pub struct JobQueue {
 
 impl JobQueue {
     /// Jobs of an earlier server in `root`, and no others yet.
-    pub fn new(root: &Path, prepare: PrepareOptions, command: String, on_results: OnResults) -> Self {
+    pub(crate) fn new(root: &Path, prepare: PrepareOptions, command: String, on_results: OnResults) -> Self {
         let all = earlier(root, LISTED);
         let last = AtomicUsize::new(all.iter().map(|job| job.id).max().unwrap_or(0));
         let context = WorkContext { root: root.to_owned(), prepare, command, on_results };
@@ -60,7 +60,7 @@ impl JobQueue {
     }
 
     /// Adds a job, stores its request in its folder, and returns its number; refuses if too many wait.
-    pub fn add(&self, file: JobFile, work: Work) -> Result<usize, RunError> {
+    pub(crate) fn add(&self, file: JobFile, work: Work) -> Result<usize, RunError> {
         let has_room = |all: &[Job]| self.has_room(all).map_err(RunError::Refused);
         has_room(&self.locked())?;
         let path = |id: &usize| self.context.root.join(format!("{}-{id}", work.name()));
@@ -88,7 +88,7 @@ impl JobQueue {
     }
 
     /// Stops a job, or removes it from the queue.
-    pub fn stop(&self, id: usize) -> Result<(), String> {
+    pub(crate) fn stop(&self, id: usize) -> Result<(), String> {
         let mut all = self.locked();
         let job = all.iter_mut().find(|job| job.id == id).ok_or("there is no such job")?;
         match job.state {
@@ -102,7 +102,7 @@ impl JobQueue {
     }
 
     /// Stored request of a job that can continue; `None` if the run in its folder is to be resumed.
-    pub fn kept(&self, id: usize) -> Result<Option<JobFile>, String> {
+    pub(crate) fn kept(&self, id: usize) -> Result<Option<JobFile>, String> {
         let folder = {
             let mut all = self.locked();
             let job = self.that_continues(&mut all, id)?;
@@ -123,13 +123,13 @@ impl JobQueue {
     }
 
     /// True if a job's folder holds the scene of a run that has begun, which can be resumed.
-    pub fn has_scene(&self, id: usize) -> bool {
+    pub(crate) fn has_scene(&self, id: usize) -> bool {
         let all = self.locked();
         all.iter().any(|job| job.id == id && has_scene(&self.context.root.join(&job.folder)))
     }
 
     /// Continues a job that was stopped or has failed, with its work planned again.
-    pub fn resume(&self, id: usize, work: Work) -> Result<(), String> {
+    pub(crate) fn resume(&self, id: usize, work: Work) -> Result<(), String> {
         let folder = {
             let mut all = self.locked();
             self.has_room(&all)?;
@@ -151,7 +151,7 @@ impl JobQueue {
     }
 
     /// Stops all jobs and starts no more; returns the numbers of jobs that were running or waiting.
-    pub fn stop_all(&self) -> Vec<usize> {
+    pub(crate) fn stop_all(&self) -> Vec<usize> {
         let mut all = self.locked();
         self.ends.store(true, Ordering::Relaxed);
         let open = all.iter_mut().filter(|job| matches!(job.state, JobState::Waiting | JobState::Running));
@@ -166,7 +166,7 @@ impl JobQueue {
     }
 
     /// Result of these jobs once nothing is walked any more: an error if one failed, else if one is not done.
-    pub fn ended(&self, ids: &[usize]) -> Result<(), RunError> {
+    pub(crate) fn ended(&self, ids: &[usize]) -> Result<(), RunError> {
         let all = self.locked();
         let in_state =
             |state: JobState| all.iter().filter(move |job| ids.contains(&job.id) && job.state == state);
@@ -186,18 +186,18 @@ impl JobQueue {
         }
     }
 
-    pub fn folder(&self, name: &str) -> Option<PathBuf> {
+    pub(crate) fn folder(&self, name: &str) -> Option<PathBuf> {
         self.locked().iter().any(|job| job.folder == name).then(|| self.context.root.join(name))
     }
 
     /// All jobs, newest first; messages pass through `named`.
-    pub fn snapshot(&self, named: impl Fn(&str) -> String) -> Value {
+    pub(crate) fn snapshot(&self, named: impl Fn(&str) -> String) -> Value {
         let all = self.locked();
         all.iter().rev().map(|job| job.snapshot(&all, &self.context.root, &named)).collect()
     }
 
     /// Walks one job after another, until `over`.
-    pub fn work_until(&self, over: &AtomicBool) {
+    pub(crate) fn work_until(&self, over: &AtomicBool) {
         while !over.load(Ordering::Relaxed) {
             let Some(next) = self.next() else { continue };
             let (id, folder, work, live, stop) = next;

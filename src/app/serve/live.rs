@@ -18,7 +18,7 @@ const WARNINGS: usize = 50;
 const LINES: usize = 12;
 
 #[derive(Clone, Debug, Default)]
-pub struct Live {
+pub(crate) struct Live {
     /// Grains of the packing, steps done, and usual number of steps.
     packing: Option<[u64; 3]>,
     waits_for_packing: bool,
@@ -26,19 +26,19 @@ pub struct Live {
     runs: [u64; 2],
     walked: SoFar,
     /// Numbers of cases done and in all.
-    pub cases: [usize; 2],
+    pub(crate) cases: [usize; 2],
     done: Vec<Value>,
     /// Cases being walked, with their numbers of runs done and to be walked.
     walking: BTreeMap<String, [u64; 2]>,
     case: String,
     /// Rows of a batch, with the walks so far; true if they show inches.
-    pub batch: Option<(Vec<WalkedRow>, bool)>,
+    pub(crate) batch: Option<(Vec<WalkedRow>, bool)>,
     lines: Vec<String>,
-    pub warnings: Vec<String>,
+    pub(crate) warnings: Vec<String>,
 }
 
 impl Live {
-    pub fn tell(&mut self, event: Event) {
+    pub(crate) fn tell(&mut self, event: Event) {
         match event {
             Event::PackingElsewhere { .. } => self.waits_for_packing = true,
             Event::PackingBegun(plan) => {
@@ -69,7 +69,7 @@ impl Live {
         }
     }
 
-    pub fn tell_case(&mut self, case: &str, event: CaseEvent) {
+    pub(crate) fn tell_case(&mut self, case: &str, event: CaseEvent) {
         match event {
             CaseEvent::Begun { .. } | CaseEvent::Waiting => self.case = case.to_owned(),
             CaseEvent::Walked { done, runs } => {
@@ -89,26 +89,26 @@ impl Live {
     }
 
     /// Removes the rows of a finished batch, whose result has the table.
-    pub fn end_batch(&mut self) {
+    pub(crate) fn end_batch(&mut self) {
         if let Some((rows, _)) = &mut self.batch {
             *rows = Vec::new();
         }
     }
 
-    pub fn walked_pair(&mut self, at: usize, row: WalkedRow) {
+    pub(crate) fn walked_pair(&mut self, at: usize, row: WalkedRow) {
         if let Some(there) = self.batch.as_mut().and_then(|(rows, _)| rows.get_mut(at)) {
             *there = row;
         }
     }
 
-    pub fn warn(&mut self, warning: &str) {
+    pub(crate) fn warn(&mut self, warning: &str) {
         if self.warnings.len() < WARNINGS && !self.warnings.iter().any(|earlier| earlier == warning) {
             self.warnings.push(warning.to_owned());
         }
     }
 
     /// State for the page, of a case that is walked in `runs` runs.
-    pub fn snapshot(&self, runs: u64) -> Value {
+    pub(crate) fn snapshot(&self, runs: u64) -> Value {
         let table = self.batch.as_ref().filter(|(rows, _)| !rows.is_empty());
         json!({
             "packing": self.packing.map(|[grains, steps, usual]| json!({

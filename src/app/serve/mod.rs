@@ -24,7 +24,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-pub use job::OnResults;
+pub(crate) use job::OnResults;
 
 use crate::run::folder::{FolderKind, claim};
 use crate::run::{PrepareOptions, RunError};
@@ -93,7 +93,7 @@ impl Server {
     }
 
     /// Folder of sheets and results.
-    pub fn folder(&self) -> &Path {
+    pub(crate) fn folder(&self) -> &Path {
         self.folder.path()
     }
 

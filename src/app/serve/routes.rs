@@ -64,12 +64,12 @@ struct Planned {
 }
 
 /// Everything that a request may reach.
-pub struct Routes {
-    pub guard: Guard,
-    pub sheets: Sheets,
-    pub jobs: JobQueue,
-    pub prepare: PrepareOptions,
-    pub root: PathBuf,
+pub(crate) struct Routes {
+    pub(crate) guard: Guard,
+    pub(crate) sheets: Sheets,
+    pub(crate) jobs: JobQueue,
+    pub(crate) prepare: PrepareOptions,
+    pub(crate) root: PathBuf,
 }
 
 /// Failed request: its status and message.
@@ -100,7 +100,7 @@ fn on_page(message: &str) -> String {
 
 impl Routes {
     /// Answers a request.
-    pub fn answer(&self, mut request: Request, stream: &mut TcpStream) -> io::Result<Answer> {
+    pub(crate) fn answer(&self, mut request: Request, stream: &mut TcpStream) -> io::Result<Answer> {
         let Some(path) = self.guard.path(&request).map(str::to_owned) else {
             let words = "not allowed: open the address that voidwalk serve has printed, with its secret";
             return Ok(Answer::problem(403, words));

@@ -24,13 +24,13 @@ const LAST: usize = 100_000;
 const NAME: [(usize, usize); 2] = [(60, 180), (8, 32)];
 
 #[derive(Debug, Serialize)]
-pub struct Sheet {
-    pub id: usize,
-    pub name: String,
+pub(crate) struct Sheet {
+    pub(crate) id: usize,
+    pub(crate) name: String,
     /// Soils that can be chosen, the first ones of the file, as `voidwalk soil` reads them.
-    pub soils: Vec<SoilSummary>,
+    pub(crate) soils: Vec<SoilSummary>,
     /// Number of soils in the file.
-    pub in_all: usize,
+    pub(crate) in_all: usize,
 }
 
 impl Sheet {
@@ -44,7 +44,7 @@ impl Sheet {
     }
 }
 
-pub struct Sheets {
+pub(crate) struct Sheets {
     folder: PathBuf,
     kept: Mutex<Kept>,
 }
@@ -58,7 +58,7 @@ struct Kept {
 
 impl Sheets {
     /// Sheets of an earlier server below `root`, and no others yet.
-    pub fn new(root: &Path) -> Self {
+    pub(crate) fn new(root: &Path) -> Self {
         let folder = root.join(FOLDER);
         let mut kept = Kept::default();
         // A folder of sheets that is a link or unreadable counts as empty.
@@ -76,7 +76,7 @@ impl Sheets {
     }
 
     /// Adds a sheet, if soils can be read from it and there is room.
-    pub fn add(&self, name: &str, bytes: &[u8]) -> Result<Arc<Sheet>, String> {
+    pub(crate) fn add(&self, name: &str, bytes: &[u8]) -> Result<Arc<Sheet>, String> {
         let size = bytes.len() as u64;
         {
             let mut kept = self.locked();
@@ -127,12 +127,12 @@ impl Sheets {
         Err("no room: too many sheets in this folder".into())
     }
 
-    pub fn all(&self) -> Vec<Arc<Sheet>> {
+    pub(crate) fn all(&self) -> Vec<Arc<Sheet>> {
         self.locked().sheets.clone()
     }
 
     /// Path of a sheet that a page names by its number, with the soil after a `#`: `3#Filter A`.
-    pub fn path(&self, named: &str) -> Result<PathBuf, String> {
+    pub(crate) fn path(&self, named: &str) -> Result<PathBuf, String> {
         let (id, soil) = named.split_once('#').map_or((named, None), |(id, soil)| (id, Some(soil)));
         let sheets = self.all();
         let sheet = id.parse().ok().and_then(|id: usize| sheets.into_iter().find(|sheet| sheet.id == id));
@@ -150,7 +150,7 @@ impl Sheets {
     }
 
     /// Message as the command line would give it, but with the sheet's name and no folder.
-    pub fn as_named(&self, message: &str) -> String {
+    pub(crate) fn as_named(&self, message: &str) -> String {
         let mut text = message.to_owned();
         let folder = format!("{}/", self.folder.display());
         while let Some(at) = text.find(&folder) {

@@ -82,7 +82,7 @@ impl PercolationPlan {
     ///
     /// # Errors
     /// A length of 0, or too many constrictions for 32 bits.
-    pub fn checked(mut self) -> Result<Self, NetworkError> {
+    pub(crate) fn checked(mut self) -> Result<Self, NetworkError> {
         self.shapes.sort_unstable_by_key(|&shape| (!is_cube(shape), shape));
         self.shapes.dedup();
         for &shape in &self.shapes {

@@ -99,7 +99,10 @@ pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specif
 /// # Errors
 /// Samples that cannot be read, a sample that is not a base, or a folder that cannot be claimed are refused
 /// before anything is written.
-pub fn specify_each(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<DesignedSamples, RunError> {
+pub(crate) fn specify_each(
+    options: &SpecifyOptions,
+    callbacks: &Callbacks,
+) -> Result<DesignedSamples, RunError> {
     let input = InputSoils::samples(&options.bases)?;
     input.soils.iter().try_for_each(is_a_base)?;
     let row = |sample: &SoilSample| {

@@ -3,7 +3,7 @@
 
 pub(crate) mod walks;
 
-pub use walks::PlannedWalk;
+pub(crate) use walks::PlannedWalk;
 
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{Manifest, ModelLimit, Outcome, Ratios, Statistic, Verdict, commit};
@@ -33,7 +33,7 @@ pub struct RunFiles {
 
 /// Class of practice for comparison with verdicts: the worst that is not excluded; `None` if no rule of
 /// design was applied.
-pub fn counts_as(decision: &Decision) -> Option<Verdict> {
+pub(crate) fn counts_as(decision: &Decision) -> Option<Verdict> {
     let coarse = match decision.tests {
         TestedClass::Continuing => Verdict::Continuing,
         TestedClass::Unknown if decision.is_beyond_tests => Verdict::Undecided,
@@ -54,88 +54,88 @@ pub fn counts_as(decision: &Decision) -> Option<Verdict> {
 /// Contents of `batch.json`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct WalkedBatch {
+pub(crate) struct WalkedBatch {
     /// Version of the program.
-    pub version: String,
+    pub(crate) version: String,
     /// Commit that the program was built from; `None` if it is not known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub commit: Option<String>,
+    pub(crate) commit: Option<String>,
     /// Hash of all inputs of the rows: samples, filters and settings.
-    pub work: String,
+    pub(crate) work: String,
     /// Seed of every walk.
-    pub seed: u64,
+    pub(crate) seed: u64,
     /// Samples as named by the user.
-    pub samples: String,
+    pub(crate) samples: String,
     /// Filters of the batch.
-    pub filters: Vec<BatchFilter>,
+    pub(crate) filters: Vec<BatchFilter>,
     /// Curve of the one base as sampled, rows of (size in mm, percent finer by mass); absent if each soil
     /// is a sample.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub base: Vec<[f64; 2]>,
+    pub(crate) base: Vec<[f64; 2]>,
     /// One row for each filter and sample, grouped by filter.
-    pub rows: Vec<WalkedRow>,
+    pub(crate) rows: Vec<WalkedRow>,
     /// Assumptions about the files, one sentence each.
-    pub notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
     /// Eroded mass fraction that divides the classes: 0.075.
-    pub threshold: f64,
+    pub(crate) threshold: f64,
     /// Cover of the sheet.
     #[serde(default, skip_serializing_if = "SheetCover::is_unset")]
-    pub cover: SheetCover,
+    pub(crate) cover: SheetCover,
     /// True if page and terminal show inches beside mm.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub inches: bool,
+    pub(crate) inches: bool,
     /// Processes that every walk omits.
-    pub model_leaves_out: Vec<ModelLimit>,
+    pub(crate) model_leaves_out: Vec<ModelLimit>,
 }
 
 /// One sample and one filter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct WalkedRow {
+pub(crate) struct WalkedRow {
     /// Answer of practice.
     #[serde(flatten)]
-    pub rules: BatchRow,
+    pub(crate) rules: BatchRow,
     /// Rank by the rules: 1 for the sample that governs the filter, 2 and 3 for the next.
-    pub governs: Option<u64>,
+    pub(crate) governs: Option<u64>,
     /// Result of the walk; `None` if there was none.
-    pub walk: Option<SampleWalk>,
+    pub(crate) walk: Option<SampleWalk>,
     /// Reason why it was not walked; empty if it was.
     #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub not_walked: String,
+    pub(crate) not_walked: String,
 }
 
 /// Result of the walk of one sample.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct SampleWalk {
+pub(crate) struct SampleWalk {
     /// Folder of its results, inside the batch's folder.
-    pub folder: String,
+    pub(crate) folder: String,
     /// True if it was walked in full, false for a first look.
-    pub in_full: bool,
+    pub(crate) in_full: bool,
     /// Answer of practice; `None` without two sieve curves in mm.
-    pub headline: Option<Headline>,
+    pub(crate) headline: Option<Headline>,
     /// Class supported by all replicates together.
-    pub verdict: Verdict,
+    pub(crate) verdict: Verdict,
     /// Class of practice; `None` without a rule.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub by_practice: Option<Verdict>,
+    pub(crate) by_practice: Option<Verdict>,
     /// Number of replicates.
-    pub replicates: u64,
+    pub(crate) replicates: u64,
     /// D15F over D85B and D95B.
-    pub ratios: Ratios,
+    pub(crate) ratios: Ratios,
     /// D85B, and the base that it belongs to.
-    pub base: Option<BaseSize>,
+    pub(crate) base: Option<BaseSize>,
     /// Eroded mass fraction of each run.
-    pub runs: Vec<Statistic>,
+    pub(crate) runs: Vec<Statistic>,
     /// Minimum and maximum eroded mass fraction over the range of the constriction curve, one pair for
     /// each run; empty if the curve has no range.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub curve_range: Vec<[f64; 2]>,
+    pub(crate) curve_range: Vec<[f64; 2]>,
 }
 
 impl SampleWalk {
     /// Takes the results of the outcome in this folder.
-    pub fn of(outcome: &Outcome, folder: String, in_full: bool) -> Self {
+    pub(crate) fn of(outcome: &Outcome, folder: String, in_full: bool) -> Self {
         let range = outcome.curve_range.as_ref();
         Self {
             folder,
@@ -154,7 +154,7 @@ impl SampleWalk {
 
 impl WalkedBatch {
     /// Builds a batch of these rows.
-    pub fn new(samples: String, filters: Vec<BatchFilter>, rows: Vec<WalkedRow>) -> Self {
+    pub(crate) fn new(samples: String, filters: Vec<BatchFilter>, rows: Vec<WalkedRow>) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
             commit: commit(),
@@ -167,17 +167,17 @@ impl WalkedBatch {
     }
 
     /// True for one base and several filters instead of samples.
-    pub fn has_one_base(&self) -> bool {
+    pub(crate) fn has_one_base(&self) -> bool {
         !self.base.is_empty()
     }
 
     /// Rows of a filter.
-    pub fn of_filter(&self, filter: &str) -> impl Iterator<Item = &WalkedRow> {
+    pub(crate) fn of_filter(&self, filter: &str) -> impl Iterator<Item = &WalkedRow> {
         self.rows.iter().filter(move |row| row.rules.filter == filter)
     }
 
     /// Samples that govern a filter, strictest first.
-    pub fn governing(&self, filter: &str) -> Vec<&WalkedRow> {
+    pub(crate) fn governing(&self, filter: &str) -> Vec<&WalkedRow> {
         let mut rows: Vec<&WalkedRow> = self.of_filter(filter).filter(|row| row.governs.is_some()).collect();
         rows.sort_by_key(|row| row.governs);
         rows
@@ -186,18 +186,18 @@ impl WalkedBatch {
 
 impl WalkedRow {
     /// True if the walk erodes.
-    pub fn erodes(&self) -> bool {
+    pub(crate) fn erodes(&self) -> bool {
         let class = self.walk.as_ref().map(|walk| walk.verdict);
         matches!(class, Some(Verdict::Some | Verdict::Continuing))
     }
 
     /// True if a rule that is met is in doubt: another rule is not kept, or the walk erodes.
-    pub fn is_doubted(&self) -> bool {
+    pub(crate) fn is_doubted(&self) -> bool {
         self.is_against_practice() || self.erodes()
     }
 
     /// True if a rule of retention or of the filter's internal stability is not kept.
-    pub fn is_against_practice(&self) -> bool {
+    pub(crate) fn is_against_practice(&self) -> bool {
         let breaks = |walk: &SampleWalk| walk.by_practice.is_some_and(|class| class != Verdict::None);
         self.walk.as_ref().is_some_and(breaks) || self.rules.met == Some(false) || self.rules.may_lose_fines
     }

@@ -20,36 +20,36 @@ const FEWEST_ACROSS: u32 = 10;
 
 /// Base, filter and network of a walk to come.
 #[derive(Clone)]
-pub struct PlannedWalk<'a> {
+pub(crate) struct PlannedWalk<'a> {
     /// Base as walked.
-    pub base: &'a Gradation,
+    pub(crate) base: &'a Gradation,
     /// Base as stated, if it is walked regraded.
-    pub regraded_from: Option<&'a Gradation>,
+    pub(crate) regraded_from: Option<&'a Gradation>,
     /// Finest constriction (mm): a pan fraction of the base that may be coarser counts as finer.
-    pub finest_constriction_mm: f64,
+    pub(crate) finest_constriction_mm: f64,
     /// Filter, if it is known.
-    pub filter: Option<&'a Gradation>,
+    pub(crate) filter: Option<&'a Gradation>,
     /// True for a sieve curve of the filter, false for an assumed straight line.
-    pub filter_is_measured: bool,
+    pub(crate) filter_is_measured: bool,
     /// True if sizes are multiples of D0F.
-    pub scale_free: bool,
+    pub(crate) scale_free: bool,
     /// Number of voids of a given network.
-    pub given_voids: Option<u64>,
+    pub(crate) given_voids: Option<u64>,
     /// Number of voids along each axis of a lattice.
-    pub lattice: Option<[u32; 3]>,
+    pub(crate) lattice: Option<[u32; 3]>,
     /// Number of layers of voids.
-    pub layers: u64,
+    pub(crate) layers: u64,
     /// True if water flows.
-    pub flows: bool,
+    pub(crate) flows: bool,
     /// Number of increments in which the base is inserted.
-    pub increments: u64,
+    pub(crate) increments: u64,
     /// Number of replicates.
-    pub replicates: u64,
+    pub(crate) replicates: u64,
 }
 
 impl PlannedWalk<'_> {
     /// Notes on inputs that are unchecked or unknown, in no order.
-    pub fn notes(&self) -> Vec<Note> {
+    pub(crate) fn notes(&self) -> Vec<Note> {
         let notes = [
             self.fines(),
             self.broad_base(),
@@ -168,29 +168,29 @@ fn not_as_uniform(soil: &str, cu: Option<f64>, [low, high]: [f64; 2]) -> Option<
 const CLOGGED: f64 = 5e-4;
 
 /// Data of a walk that raise doubts.
-pub struct Walked<'a> {
+pub(crate) struct Walked<'a> {
     /// Replicates of the walk.
-    pub replicates: Vec<&'a Replicate>,
+    pub(crate) replicates: Vec<&'a Replicate>,
     /// Replicate, run and increment after which water was first found not to flow; in order.
-    pub clogged: Vec<[u64; 3]>,
+    pub(crate) clogged: Vec<[u64; 3]>,
     /// Base of the walk.
-    pub base: &'a Gradation,
+    pub(crate) base: &'a Gradation,
     /// Fraction of the base inserted in each increment.
-    pub share: f64,
+    pub(crate) share: f64,
     /// Number of layers of the network.
-    pub layers: u64,
+    pub(crate) layers: u64,
     /// True if blocked constrictions leave openings.
-    pub openings: bool,
+    pub(crate) openings: bool,
 }
 
 /// True if this fraction of the clean filter's permeability is treated as zero. With openings little
 /// passes, but water flows.
-pub fn is_clogged(k_over_k0: f64, openings: bool) -> bool {
+pub(crate) fn is_clogged(k_over_k0: f64, openings: bool) -> bool {
     k_over_k0 <= if openings { 0.0 } else { CLOGGED }
 }
 
 /// Notes reasons in the walk to distrust a class that does not erode continually.
-pub fn notes(verdict: Verdict, walked: &Walked) -> Vec<Note> {
+pub(crate) fn notes(verdict: Verdict, walked: &Walked) -> Vec<Note> {
     // The first run separates "no erosion" from the other classes, the second "some" from "continuing".
     let run = match verdict {
         Verdict::None => 1,
@@ -347,7 +347,7 @@ impl Outcome {
 }
 
 /// Note on a filter of which this part was packed.
-pub fn packed_part(part: &PackedPart) -> Note {
+pub(crate) fn packed_part(part: &PackedPart) -> Note {
     let PackedPart { percent: part_percent, largest_mm, finer_by, sizes_missing_above, .. } = *part;
     let finer_percent = 100.0 * finer_by;
     match (sizes_missing_above, part_percent >= FLOATING_PERCENT) {

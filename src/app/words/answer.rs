@@ -11,11 +11,11 @@ use voidwalk_practice::rules::{FILTER_FINES, FILTER_GREATEST_SIZE, PERMEABILITY}
 use voidwalk_practice::{AppliedRule, Decision, Note, RuleQuantity, RuleRole, TestedClass};
 
 /// Maximum number of notes in a brief verdict and in the answer on boundaries, which counts the others.
-pub const FOREMOST: usize = 3;
+pub(crate) const FOREMOST: usize = 3;
 
 /// First line of every face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FirstLine {
+pub(crate) enum FirstLine {
     /// Answer of practice.
     Practice,
     /// Class of the walk.
@@ -26,7 +26,7 @@ pub enum FirstLine {
 
 impl FirstLine {
     /// Name before the line.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Practice => "Practice",
             Self::Model => "Model (research)",
@@ -36,7 +36,11 @@ impl FirstLine {
 }
 
 /// First lines of every face; without two sieve curves in mm, only the model's.
-pub fn first_lines(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> Vec<(FirstLine, String)> {
+pub(crate) fn first_lines(
+    outcome: &Outcome,
+    decision: &Decision,
+    unit: SizeUnit,
+) -> Vec<(FirstLine, String)> {
     let line = (FirstLine::Model, model(&outcome.model));
     match decision.headline {
         Some(_) => vec![
@@ -49,13 +53,13 @@ pub fn first_lines(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> Ve
 }
 
 /// The most important notes, at most [`FOREMOST`], and the number of the others.
-pub fn foremost(outcome: &Outcome) -> (&[Note], usize) {
+pub(crate) fn foremost(outcome: &Outcome) -> (&[Note], usize) {
     let (first, rest) = outcome.notes.split_at(outcome.notes.len().min(FOREMOST));
     (first, rest.len())
 }
 
 /// Class of a walk, and mass eroded in each run.
-pub fn model(model: &Model) -> String {
+pub(crate) fn model(model: &Model) -> String {
     let part = |percentage: f64| percent((percentage / 100.0).max(0.0));
     let run = |(run, [low, high]): (usize, &[f64; 2])| {
         let eroded = part(*low).to(part(*high));
@@ -227,7 +231,7 @@ fn few_fines(most: f64) -> String {
 }
 
 /// Reason why a class is undecided, in a sentence without its end.
-pub fn undecided_by(cause: UndecidedBy) -> &'static str {
+pub(crate) fn undecided_by(cause: UndecidedBy) -> &'static str {
     match cause {
         UndecidedBy::Curve => {
             "the constriction curve is known within a range only, and its ends do not give one class"
@@ -242,13 +246,13 @@ pub fn undecided_by(cause: UndecidedBy) -> &'static str {
 }
 
 /// Capitalises the first letter of a text.
-pub fn capital(text: &str) -> String {
+pub(crate) fn capital(text: &str) -> String {
     let mut chars = text.chars();
     chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
 }
 
 /// Meaning of a class in a sentence, for runs with these means.
-pub fn meaning(verdict: Verdict, summary: &[RunSummary], threshold: f64) -> String {
+pub(crate) fn meaning(verdict: Verdict, summary: &[RunSummary], threshold: f64) -> String {
     let limit = format!("{}\u{202f}%", (1e4 * threshold).round() / 1e2);
     match verdict {
         Verdict::None => format!(
@@ -297,7 +301,7 @@ fn undecided(summary: &[RunSummary], threshold: f64, limit: &str) -> String {
 /// let words = walked.look(1).and_then(|look| so_far(&look, 10)).unwrap();
 /// assert!(words.starts_with("after 3 of 10 replicates, not yet final: undecided; first run 29.5"));
 /// ```
-pub fn so_far(look: &FirstLook, wanted: u64) -> Option<String> {
+pub(crate) fn so_far(look: &FirstLook, wanted: u64) -> Option<String> {
     let interval = |statistic: &Statistic| Some((statistic.low?, statistic.high?));
     let runs = look.eroded.iter().zip(["first run", "second run"]).map(|(statistic, run)| {
         let (low, high) = interval(statistic)?;

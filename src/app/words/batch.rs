@@ -13,14 +13,14 @@ use voidwalk_practice::quantity::{
 use voidwalk_practice::{BatchFilter, BatchRow, IfDispersive};
 
 /// Words for a sample whose limit is open.
-pub const MAY_GOVERN: &str = "may govern, as its limit is not known or may be lower";
+pub(crate) const MAY_GOVERN: &str = "may govern, as its limit is not known or may be lower";
 
 /// Reason why a pair is neither judged nor walked.
-pub const EXCHANGED: &str = "base and filter look exchanged";
+pub(crate) const EXCHANGED: &str = "base and filter look exchanged";
 
 /// Columns of a batch in its file, and under their headings on a terminal and a page, with sizes in this
 /// unit. Details are the columns that the table of walks omits.
-pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, BatchRow> {
+pub(crate) fn columns<'a>(unit: SizeUnit) -> Columns<'a, BatchRow> {
     let size = move |mm: Option<f64>| mm.map(|mm| length(mm, unit).in_cell());
     let limit = move |row: &BatchRow| {
         let at_most = if row.limit_at_most { " at most" } else { "" };
@@ -58,7 +58,7 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, BatchRow> {
 }
 
 /// Columns of `batch.csv`, and under their headings of a terminal and a page, with sizes in this unit.
-pub fn walked_columns<'a>(unit: SizeUnit) -> Columns<'a, WalkedRow> {
+pub(crate) fn walked_columns<'a>(unit: SizeUnit) -> Columns<'a, WalkedRow> {
     let walk = |row: &WalkedRow| row.walk.clone();
     let of_walk = Columns::default()
         .number("governs", "Governs", |row: &WalkedRow| row.governs)
@@ -86,7 +86,7 @@ pub fn walked_columns<'a>(unit: SizeUnit) -> Columns<'a, WalkedRow> {
 }
 
 /// D15F of the filter and its limit, with enough digits to tell them apart.
-pub fn d15f_and_limit(row: &BatchRow, unit: SizeUnit) -> [Option<String>; 2] {
+pub(crate) fn d15f_and_limit(row: &BatchRow, unit: SizeUnit) -> [Option<String>; 2] {
     beside_limit([row.d15f_mm, row.limit_mm], false, Unit::Size(unit))
 }
 
@@ -139,7 +139,7 @@ const DRAINAGE_UNKNOWN: &str = "drainage not known";
 
 /// Number of samples that the filter retains, and the governing samples, one sentence each; the curves of
 /// an envelope are named.
-pub fn of_filter(filter: &BatchFilter, rows: &[BatchRow], unit: SizeUnit) -> Vec<String> {
+pub(crate) fn of_filter(filter: &BatchFilter, rows: &[BatchRow], unit: SizeUnit) -> Vec<String> {
     let BatchFilter { name, curves, .. } = filter;
     let mut lines = vec![format!("{name}: {}", counts(rows, name))];
     if curves.len() > 1 {
@@ -168,7 +168,7 @@ pub fn of_filter(filter: &BatchFilter, rows: &[BatchRow], unit: SizeUnit) -> Vec
 
 /// Number of samples that a filter retains; unless it drains all, also the numbers that it may not drain
 /// and for which drainage is unknown.
-pub fn counts(rows: &[BatchRow], filter: &str) -> String {
+pub(crate) fn counts(rows: &[BatchRow], filter: &str) -> String {
     let in_filter = || rows.iter().filter(|row| row.filter == filter);
     let samples = in_filter().count();
     let one_or_more = if samples == 1 { "sample" } else { "samples" };
@@ -189,7 +189,7 @@ pub fn counts(rows: &[BatchRow], filter: &str) -> String {
 
 /// Sample with the largest minimum D15F for drainage, in words; `None` if the filter drains all, or
 /// without a limit.
-pub fn governs_drainage(rows: &[BatchRow], filter: &str, unit: SizeUnit) -> Option<String> {
+pub(crate) fn governs_drainage(rows: &[BatchRow], filter: &str, unit: SizeUnit) -> Option<String> {
     let undrained = rows.iter().filter(|row| row.filter == filter && row.drains != Some(true));
     let limits = undrained.filter_map(|row| Some((row.d15f_min_mm?, row)));
     let (least, row) = limits.max_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -202,7 +202,7 @@ pub fn governs_drainage(rows: &[BatchRow], filter: &str, unit: SizeUnit) -> Opti
 
 /// Samples of a filter that may govern, and those to which nothing was applied, one sentence each without
 /// its end.
-pub fn open_limits(rows: &[BatchRow], filter: &str) -> Vec<String> {
+pub(crate) fn open_limits(rows: &[BatchRow], filter: &str) -> Vec<String> {
     let names = |rows: Vec<&BatchRow>| {
         let names: Vec<&str> = rows.iter().map(|row| row.sample.as_str()).collect();
         (!names.is_empty()).then(|| names.join(", "))
@@ -215,7 +215,7 @@ pub fn open_limits(rows: &[BatchRow], filter: &str) -> Vec<String> {
 
 /// Sentences without their ends on the walks of a filter: number of samples, kinds of walks and classes,
 /// then the samples for which the walk is stricter than practice.
-pub fn walks(batch: &WalkedBatch, filter: &str, unit: SizeUnit) -> Vec<String> {
+pub(crate) fn walks(batch: &WalkedBatch, filter: &str, unit: SizeUnit) -> Vec<String> {
     let rows: Vec<&WalkedRow> = batch.of_filter(filter).collect();
     let walks: Vec<&SampleWalk> = rows.iter().filter_map(|row| row.walk.as_ref()).collect();
     let not_walked = rows.len() - walks.len();
@@ -240,7 +240,7 @@ pub fn walks(batch: &WalkedBatch, filter: &str, unit: SizeUnit) -> Vec<String> {
 }
 
 /// Answer of practice and walk on the sample, or the reason why it was not walked.
-pub fn answer(row: &WalkedRow) -> String {
+pub(crate) fn answer(row: &WalkedRow) -> String {
     let Some(walk) = &row.walk else { return format!("not walked: {}", row.not_walked) };
     let practice = walk.headline.map(|headline| format!("{}; ", headline.words()));
     format!("{}{} in the model", practice.unwrap_or_default(), walk.verdict.words())

@@ -4,12 +4,12 @@ use crate::outcome::boundary::{Boundaries, are_few};
 use voidwalk_practice::quantity::{NumberRole, SizeUnit, greatest_length, significant};
 
 /// Range of networks that is shown: for few networks the minimum and maximum.
-pub fn share_of_networks(networks: u64) -> &'static str {
+pub(crate) fn share_of_networks(networks: u64) -> &'static str {
     if are_few(networks) { "least and most" } else { "5 to 95 % range" }
 }
 
 /// Ends of a boundary over networks, as `4.77 to 4.97`, with their meaning.
-pub fn over_networks(ends: &str, networks: u64) -> String {
+pub(crate) fn over_networks(ends: &str, networks: u64) -> String {
     match are_few(networks) {
         true => format!("{ends} over {networks} networks"),
         false => format!("{ends}, {} of {networks} networks", share_of_networks(networks)),
@@ -17,12 +17,12 @@ pub fn over_networks(ends: &str, networks: u64) -> String {
 }
 
 /// Range of networks drawn in figures; with few networks it is read between two of them.
-pub fn drawn_of_networks(networks: u64) -> &'static str {
+pub(crate) fn drawn_of_networks(networks: u64) -> &'static str {
     if are_few(networks) { "interpolated 5 to 95 % range" } else { "5 to 95 % range" }
 }
 
 /// Lowest D15F/D85B that nearly all networks hold, and its D15F if the base has sizes in mm.
-pub fn held(boundaries: &Boundaries, unit: SizeUnit) -> String {
+pub(crate) fn held(boundaries: &Boundaries, unit: SizeUnit) -> String {
     let Some((row, ratio)) = boundaries.least_held() else {
         return "no D15F/D85B is known that nearly all networks hold".into();
     };

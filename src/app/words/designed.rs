@@ -131,7 +131,7 @@ fn for_all(all: &DesignedSamples, unit: SizeUnit) -> String {
 
 /// Sentences without their ends on the governing samples with their limits, and on the open samples; `again`
 /// is the advice for a dispersive sample, as [`DESIGN_EACH_AGAIN`](super::specification::DESIGN_EACH_AGAIN).
-pub fn lines(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Vec<String> {
+pub(crate) fn lines(all: &DesignedSamples, again: &str, unit: SizeUnit) -> Vec<String> {
     let mut sentences = vec![for_all(all, unit)];
     for (at, row) in all.governing().into_iter().enumerate() {
         let what = if at == 0 { "Governing sample" } else { "Then" };
@@ -204,7 +204,7 @@ fn clause(limit: IfDispersive, unit: SizeUnit) -> String {
 }
 
 /// Columns of `designs.csv`, and under their headings of a terminal and a page, with sizes in this unit.
-pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
+pub(crate) fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
     let drains = move |row: &DesignedSample| {
         let at_most = if row.d15f_min_at_most { " at most" } else { "" };
         row.d15f_min_mm.map(|least| format!("{}{at_most}", least_length(least, unit).in_cell()))

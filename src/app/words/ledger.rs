@@ -9,14 +9,14 @@ use voidwalk_practice::quantity::{SizeUnit, length, percent, significant, whole}
 use voidwalk_sheets::us_sieve;
 
 /// Thickness of a modelled filter, as `60 layers, 93.1 mm`.
-pub fn thickness(filter: &ModelledThickness) -> String {
+pub(crate) fn thickness(filter: &ModelledThickness) -> String {
     let unit = if filter.scale_free { "D0F" } else { "mm" };
     let size = filter.mm.map_or("no size in particular".into(), |mm| format!("{mm:.1} {unit}"));
     format!("{} {}, {size}", whole(filter.layers), if filter.layers == 1 { "layer" } else { "layers" })
 }
 
 /// Columns of `cases.csv` and of the page's table.
-pub fn columns(factors: &[String]) -> Columns<'_, LedgerLine> {
+pub(crate) fn columns(factors: &[String]) -> Columns<'_, LedgerLine> {
     // The levels identify the case, if there are any.
     let case = |line: &LedgerLine| if line.levels.is_empty() { shorten(&line.case, 60) } else { "".into() };
     let columns = Columns::default().column("case", |line: &LedgerLine| line.case.clone());
@@ -104,14 +104,14 @@ impl<'a, T: 'a> Columns<'a, T> {
 }
 
 /// Grading of a base: as sampled, or the sieve on which it is regraded.
-pub fn grading(base: &BaseSize) -> String {
+pub(crate) fn grading(base: &BaseSize) -> String {
     let regraded = |at| format!("regraded on {} mm", significant(at));
     base.regraded_at_mm.map_or_else(|| "as sampled".into(), regraded)
 }
 
 /// Full text, as `D85B 1.80 mm, regraded on 4.75 mm (as sampled 12.8 mm)`; if inches are shown, with
 /// inches after each D85 and the name of a US sieve.
-pub fn base_size(base: &BaseSize, unit: SizeUnit) -> String {
+pub(crate) fn base_size(base: &BaseSize, unit: SizeUnit) -> String {
     let size = |mm: f64| length(mm, unit).to_string();
     let before = base.as_sampled_mm.filter(|_| base.regraded_at_mm.is_some());
     let before = before.map_or(String::new(), |d85| format!(" (as sampled {})", size(d85)));

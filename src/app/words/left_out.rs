@@ -36,7 +36,7 @@ fn parts(limit: ModelLimit) -> (&'static str, &'static str) {
 }
 
 /// Limit of the model in words.
-pub fn model_limit(limit: ModelLimit) -> String {
+pub(crate) fn model_limit(limit: ModelLimit) -> String {
     match parts(limit) {
         (brief, "") => brief.to_owned(),
         (brief, rest) => format!("{brief}: {rest}"),
@@ -44,10 +44,10 @@ pub fn model_limit(limit: ModelLimit) -> String {
 }
 
 /// Checks that no rule covers because no text with their numbers was read.
-pub const NOT_COVERED: &str = "Not checked: segregation by D90F and D10F, excessive erosion.";
+pub(crate) const NOT_COVERED: &str = "Not checked: segregation by D90F and D10F, excessive erosion.";
 
 /// Limits of the model that matter most to a designer, in one line; the page lists all.
-pub fn left_out_line(limits: &[ModelLimit]) -> String {
+pub(crate) fn left_out_line(limits: &[ModelLimit]) -> String {
     let mut names: Vec<&str> = Vec::new();
     if limits.iter().any(|limit| [ModelLimit::Hydraulics, ModelLimit::HydraulicsElsewhere].contains(limit)) {
         names.push("hydraulics");
@@ -61,7 +61,7 @@ pub fn left_out_line(limits: &[ModelLimit]) -> String {
 }
 
 /// Limits of the model and checks that no rule covers, in two sentences.
-pub fn left_out_in_brief(limits: &[ModelLimit]) -> String {
+pub(crate) fn left_out_in_brief(limits: &[ModelLimit]) -> String {
     let brief: Vec<&str> = limits.iter().map(|limit| parts(*limit).0).collect();
     format!("The model leaves out: {}. {NOT_COVERED}", brief.join("; "))
 }
@@ -70,7 +70,7 @@ pub fn left_out_in_brief(limits: &[ModelLimit]) -> String {
 const AMOUNTS: &str = "sensitivity to the number of base particles";
 
 /// Part of the program that a scene does not need, as part of a sentence; sizes are in this unit.
-pub fn left_out(part: &LeftOut, unit: &str) -> String {
+pub(crate) fn left_out(part: &LeftOut, unit: &str) -> String {
     let times = |factors: &[f64]| {
         factors.iter().map(|factor| format!("x{}", given(*factor))).collect::<Vec<_>>().join(", ")
     };
@@ -127,7 +127,7 @@ pub fn left_out(part: &LeftOut, unit: &str) -> String {
 }
 
 /// Several parts that a scene does not need, in words.
-pub fn left_out_words(parts: &[LeftOut], unit: &str) -> String {
+pub(crate) fn left_out_words(parts: &[LeftOut], unit: &str) -> String {
     parts.iter().map(|part| left_out(part, unit)).collect::<Vec<_>>().join("; ")
 }
 

@@ -7,18 +7,20 @@
 //!   parts omitted from an answer.
 
 mod answer;
-pub mod batch;
-pub mod boundary;
-pub mod designed;
-pub mod ledger;
-pub mod left_out;
+pub(crate) mod batch;
+pub(crate) mod boundary;
+pub(crate) mod designed;
+pub(crate) mod ledger;
+pub(crate) mod left_out;
 mod note;
 mod practice;
-pub mod products;
-pub mod rule;
+pub(crate) mod products;
+pub(crate) mod rule;
 pub mod specification;
 
-pub use answer::{FOREMOST, FirstLine, capital, first_lines, foremost, meaning, next, so_far, undecided_by};
-pub use ledger::{base_size, grading};
-pub use note::{row_note, sentence, setting};
-pub use practice::{dispersive_limit, judged_alone, practice_line};
+pub use answer::next;
+pub(crate) use answer::{FOREMOST, FirstLine, capital, first_lines, foremost, meaning, so_far, undecided_by};
+pub(crate) use ledger::{base_size, grading};
+pub(crate) use note::row_note;
+pub use note::{sentence, setting};
+pub(crate) use practice::{dispersive_limit, judged_alone, practice_line};

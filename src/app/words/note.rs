@@ -24,7 +24,7 @@ pub fn setting(note: &Note) -> String {
 }
 
 /// Sentence of a note on a part of boundaries or of a specification, after the name of that part.
-pub fn row_note(row: &RowNote, unit: SizeUnit) -> String {
+pub(crate) fn row_note(row: &RowNote, unit: SizeUnit) -> String {
     let words = sentence(&row.note, unit);
     row.row.as_ref().map_or(words.clone(), |name| format!("{name}: {words}"))
 }

@@ -14,7 +14,7 @@ use voidwalk_practice::{
 };
 
 /// Note that the rules that are met were judged for a single curve of each soil; `None` for envelopes.
-pub fn judged_alone(outcome: &Outcome, decision: &Decision) -> Option<&'static str> {
+pub(crate) fn judged_alone(outcome: &Outcome, decision: &Decision) -> Option<&'static str> {
     let is_envelope = outcome.notes.iter().any(|note| matches!(note, Note::Envelope { .. }));
     (decision.standing == Standing::Met && !is_envelope).then_some(
         "Judged for these two gradations alone. The coarsest filter and the finest base that the works allow \
@@ -24,7 +24,7 @@ pub fn judged_alone(outcome: &Outcome, decision: &Decision) -> Option<&'static s
 
 /// Line of practice: headline, D15F and the limit of design, class of tests, other rules that are not
 /// kept, and the limit that the filter breaks if the base is dispersive.
-pub fn practice_line(decision: &Decision, unit: SizeUnit) -> String {
+pub(crate) fn practice_line(decision: &Decision, unit: SizeUnit) -> String {
     let (Some(headline), Some(design)) = (decision.headline, decision.applied(DESIGN)) else {
         return "the limit of design was not applied".into();
     };
@@ -176,7 +176,7 @@ pub(super) fn beside_dispersive(limit: IfDispersive, d15f_mm: f64, unit: SizeUni
 }
 
 /// Limit of D15F. A limit that no source gives is never stated as the limit of other bases.
-pub fn dispersive_limit(limit: IfDispersive, unit: SizeUnit) -> String {
+pub(crate) fn dispersive_limit(limit: IfDispersive, unit: SizeUnit) -> String {
     let most = greatest_length(limit.d15f_max_mm, unit).to_string();
     match limit.lacks.filter(|_| limit.at_most) {
         Some(DispersiveLack::AnyLimit) => {

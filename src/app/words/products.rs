@@ -26,7 +26,7 @@ fn cu_of(side: &str, cu: f64) -> String {
 }
 
 /// Names of products whose limits are to be checked; `None` if there are none.
-pub fn to_be_checked(products: &[ProductMargin]) -> Option<String> {
+pub(crate) fn to_be_checked(products: &[ProductMargin]) -> Option<String> {
     let checked = products.iter().filter(|product| is_to_be_checked(&product.source));
     let named: Vec<&str> = checked.map(|product| product.product.as_str()).collect();
     (!named.is_empty()).then(|| format!("Limits to be checked against the standard: {}.", named.join(", ")))
@@ -34,7 +34,7 @@ pub fn to_be_checked(products: &[ProductMargin]) -> Option<String> {
 
 /// Columns of `specification_products.csv` and of a workbook, and under their headings the columns of a
 /// page, with sizes in this unit.
-pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, ProductMargin> {
+pub(crate) fn columns<'a>(unit: SizeUnit) -> Columns<'a, ProductMargin> {
     let margin = |by: Option<f64>| by.map_or("not given".shown(), |by| significant(by).shown());
     Columns::default()
         .name("product", "Product", |product: &ProductMargin| product.product.clone())
@@ -58,7 +58,7 @@ pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, ProductMargin> {
 }
 
 /// Result of a standard product beside a specification.
-pub fn product(specification: &Specification, product: &ProductMargin) -> String {
+pub(crate) fn product(specification: &Specification, product: &ProductMargin) -> String {
     match product.fits() {
         Some(true) => "fits".into(),
         Some(false) if product.not_kept.is_empty() => "does not fit".into(),
@@ -71,7 +71,7 @@ pub fn product(specification: &Specification, product: &ProductMargin) -> String
 }
 
 /// Standard products that fit, or the closest one, in sentences, the last without its end.
-pub fn products(specification: &Specification) -> String {
+pub(crate) fn products(specification: &Specification) -> String {
     let fitting = specification.products.iter().filter(|product| product.fits() == Some(true));
     let fitting: Vec<&str> = fitting.map(|product| product.product.as_str()).collect();
     if !fitting.is_empty() {

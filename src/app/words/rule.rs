@@ -11,10 +11,10 @@ use voidwalk_practice::rules::PERMEABILITY_LEAST;
 use voidwalk_practice::{AppliedRule, RuleNote, RuleRole, RuleUnit, ValueBound};
 
 /// Note beside lists of limits, for readers who compare them with unrounded numbers.
-pub const LIMITS_ROUNDED: &str = "Limits are rounded to the safe side.";
+pub(crate) const LIMITS_ROUNDED: &str = "Limits are rounded to the safe side.";
 
 /// Parts in which rules of practice are listed, with their headings.
-pub const PARTS: [(RuleRole, &str); 5] = [
+pub(crate) const PARTS: [(RuleRole, &str); 5] = [
     (RuleRole::Retention, "The filter retains the base"),
     (RuleRole::Continuation, "Coarser filters: where erosion still ends"),
     (RuleRole::Drainage, "The filter drains the base"),
@@ -24,7 +24,7 @@ pub const PARTS: [(RuleRole, &str); 5] = [
 
 /// Columns of rules: those of a workbook, and under their headings those from which other faces choose,
 /// with sizes in this unit.
-pub fn columns<'a>(unit: SizeUnit) -> Columns<'a, AppliedRule> {
+pub(crate) fn columns<'a>(unit: SizeUnit) -> Columns<'a, AppliedRule> {
     Columns::default()
         .name("rule", "Rule", |rule: &AppliedRule| rule.name.clone())
         .text("authority", "Authority", |rule| {
@@ -96,19 +96,19 @@ fn shown_result(rule: &AppliedRule) -> Shown {
 }
 
 /// Value of a rule as `= 0.8`, or as `at most 0.8` if sieves give only a bound.
-pub fn value(rule: &AppliedRule, unit: SizeUnit) -> Option<String> {
+pub(crate) fn value(rule: &AppliedRule, unit: SizeUnit) -> Option<String> {
     let [value, _] = value_and_limit(rule, unit);
     value.map(|value| format!("{} {value}", value_begins(rule)))
 }
 
 /// Limit of a rule with the words around it.
-pub fn limit(rule: &AppliedRule, unit: SizeUnit) -> Option<String> {
+pub(crate) fn limit(rule: &AppliedRule, unit: SizeUnit) -> Option<String> {
     let [_, limit] = value_and_limit(rule, unit);
     limit.map(|limit| format!("{} {limit}{}", limit_begins(rule), limit_ends(rule)))
 }
 
 /// Result of a rule in words.
-pub fn result(result: RuleResult) -> &'static str {
+pub(crate) fn result(result: RuleResult) -> &'static str {
     match result {
         RuleResult::Met => "met",
         RuleResult::NotMet => "not met",
@@ -122,7 +122,7 @@ pub fn result(result: RuleResult) -> &'static str {
 }
 
 /// Words before a limit: minimum, maximum, or boundary beyond which erosion continues.
-pub fn limit_begins(rule: &AppliedRule) -> &'static str {
+pub(crate) fn limit_begins(rule: &AppliedRule) -> &'static str {
     match (rule.role, rule.at_least, rule.limit_at_most) {
         (RuleRole::Continuation, ..) => "continuing beyond",
         // D15B is finer than the finest sieve, and a sufficient value is known.
@@ -134,7 +134,7 @@ pub fn limit_begins(rule: &AppliedRule) -> &'static str {
 }
 
 /// Words after a limit that is itself unknown.
-pub fn limit_ends(rule: &AppliedRule) -> &'static str {
+pub(crate) fn limit_ends(rule: &AppliedRule) -> &'static str {
     match (rule.limit_at_most, rule.at_least) {
         (true, true) => " is enough",
         (true, false) => " or less",
@@ -143,7 +143,7 @@ pub fn limit_ends(rule: &AppliedRule) -> &'static str {
 }
 
 /// Words before a value that is only a bound.
-pub fn value_begins(rule: &AppliedRule) -> &'static str {
+pub(crate) fn value_begins(rule: &AppliedRule) -> &'static str {
     match rule.value_bound {
         None => "=",
         Some(ValueBound::AtMost) => "at most",
@@ -153,7 +153,7 @@ pub fn value_begins(rule: &AppliedRule) -> &'static str {
 
 /// Value and limit of a rule with their unit, if known, and in inches if these are shown: with enough
 /// digits to tell them apart, so that a value beyond its limit never reads as within it.
-pub fn value_and_limit(rule: &AppliedRule, unit: SizeUnit) -> [Option<String>; 2] {
+pub(crate) fn value_and_limit(rule: &AppliedRule, unit: SizeUnit) -> [Option<String>; 2] {
     let unit = match rule.unit {
         RuleUnit::One => Unit::None,
         RuleUnit::Percent => Unit::Percent,
@@ -164,7 +164,7 @@ pub fn value_and_limit(rule: &AppliedRule, unit: SizeUnit) -> [Option<String>; 2
 }
 
 /// Notes of rules beside their results, as part of a sentence.
-pub fn rule_notes(notes: &[RuleNote], unit: SizeUnit) -> String {
+pub(crate) fn rule_notes(notes: &[RuleNote], unit: SizeUnit) -> String {
     notes.iter().map(|note| rule_note(*note, unit)).collect::<Vec<_>>().join("; ")
 }
 
@@ -298,7 +298,7 @@ pub(super) fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
 }
 
 /// Data missing for a result, without an introductory word; `None` if nothing is missing.
-pub fn missing(note: RuleNote) -> Option<&'static str> {
+pub(crate) fn missing(note: RuleNote) -> Option<&'static str> {
     Some(match note {
         RuleNote::NeedsFinesOfBase => "finer sieves of the base, to tell whether it has 15 % fines or more",
         RuleNote::NeedsD85B => "the base's D85",
@@ -325,7 +325,7 @@ fn between(unit: SizeUnit, what: &str, from: f64, to: f64) -> String {
 }
 
 /// Reason why practice regrades a base or not, as part of a sentence.
-pub fn regrade_reason(reason: RegradeReason) -> String {
+pub(crate) fn regrade_reason(reason: RegradeReason) -> String {
     let cause = match reason.cause {
         RegradeCause::Gap(from) => &*format!(
             "gap-graded: next to nothing between {} mm and four times that",

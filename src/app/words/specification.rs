@@ -20,10 +20,10 @@ use voidwalk_practice::rules::{
 };
 
 /// Advice for a base found to be dispersive.
-pub const DESIGN_AGAIN: &str = "design again for a dispersive base";
+pub(crate) const DESIGN_AGAIN: &str = "design again for a dispersive base";
 
 /// Advice for samples found to be dispersive.
-pub const DESIGN_EACH_AGAIN: &str = "design again for dispersive soils";
+pub(crate) const DESIGN_EACH_AGAIN: &str = "design again for dispersive soils";
 
 /// Band to specify: D15F of both sides, and Cu. `None` without a band.
 ///
@@ -37,7 +37,7 @@ pub const DESIGN_EACH_AGAIN: &str = "design again for dispersive soils";
 /// assert_eq!(band.as_deref(), Some("D15F from 0.140 to 0.700\u{202f}mm, Cu from 2 to 6"));
 /// # Ok::<(), voidwalk_core::gradation::GradationError>(())
 /// ```
-pub fn band(specification: &Specification, unit: SizeUnit) -> Option<String> {
+pub(crate) fn band(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let [least, most] = specification.band.as_ref()?.d15_mm();
     let is_open =
         specification.d15f_min_at_most && specification.d15f_min_mm.is_some_and(|drains| drains >= least);
@@ -47,7 +47,7 @@ pub fn band(specification: &Specification, unit: SizeUnit) -> Option<String> {
 
 /// Reason why the band begins above the minimum D15F that drains the base, or ends below the maximum that
 /// retains it, in a sentence without its end; `None` if neither is the case.
-pub fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
+pub(crate) fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let [least, most] = specification.band.as_ref()?.d15_mm();
     if let Some(retains) = specification.d15f_max_mm.filter(|max| most < max * (1.0 - 1e-9)) {
         let [retains, most] = [retains, most].map(|mm| greatest_length(mm, unit).to_string());
@@ -67,7 +67,7 @@ pub fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
 
 /// Gap in a specification: the maximum D90F, which keeps a filter from segregating, because no text with
 /// its numbers could be read. `None` without a band.
-pub fn still_to_set(specification: &Specification, unit: SizeUnit) -> Option<String> {
+pub(crate) fn still_to_set(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let least = specification.band.as_ref().map(SizeBand::least_d10_mm)?;
     Some(format!(
         "Not a complete specification: there is no limit above D60F, and the maximum D90F is still to be set \
@@ -91,7 +91,7 @@ pub fn beside_limits(specification: &Specification, unit: SizeUnit) -> Option<St
 
 /// Warning in a sentence without its end that the maximum D15F has no margin, if it equals the tests'
 /// boundary of no erosion.
-pub fn without_margin(specification: &Specification, unit: SizeUnit) -> Option<String> {
+pub(crate) fn without_margin(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let (curve, limit) = specification.strictest()?;
     let fines = curve.fines_percent.filter(|_| curve.without_margin)?;
     let why = match (specification.dispersive && fines >= FEW_FINES, range_of_tests(fines, curve.d85_mm?)) {
@@ -120,7 +120,7 @@ pub fn without_margin(specification: &Specification, unit: SizeUnit) -> Option<S
 }
 
 /// Maximum D15F and the origin of its rule.
-pub fn limit(specification: &Specification, unit: SizeUnit) -> String {
+pub(crate) fn limit(specification: &Specification, unit: SizeUnit) -> String {
     match specification.strictest() {
         Some((curve, limit)) => {
             format!("D15F {} ({})", greatest_length(limit, unit), curve.d15f_max_rule)
@@ -131,7 +131,7 @@ pub fn limit(specification: &Specification, unit: SizeUnit) -> String {
 
 /// Maximum D15F if the base is dispersive, and the advice, such as [`DESIGN_AGAIN`], in sentences, the
 /// last without its end; `None` if all holds for such a base too, or if dispersion is stated.
-pub fn if_dispersive(specification: &Specification, again: &str, unit: SizeUnit) -> Option<String> {
+pub(crate) fn if_dispersive(specification: &Specification, again: &str, unit: SizeUnit) -> Option<String> {
     let most = specification.d15f_max_mm.unwrap_or(f64::INFINITY);
     let limit =
         specification.if_dispersive.filter(|limit| beside_dispersive(*limit, most, unit).is_some())?;
@@ -179,7 +179,7 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
         ),
         NoBand::LimitNotKnown { curve, needs } => {
             let why =
-                if needs.is_empty() { "the limit may be lower".into() } else { rule_notes(needs, unit) };
+                if needs.is_empty() { "the limit can only be lower".into() } else { rule_notes(needs, unit) };
             format!("The maximum D15F is not known for {curve}: {why}.")
         }
         NoBand::NoRule => "No rule of retention covers this base.".into(),
@@ -188,7 +188,7 @@ pub fn no_band(why: &NoBand, unit: SizeUnit) -> String {
 
 /// Number of a step with its unit: a minimum rounded up, a maximum or a size that enters a table rounded
 /// down; `None` if unknown.
-pub fn step_value(value: &StepValue, unit: SizeUnit) -> Option<String> {
+pub(crate) fn step_value(value: &StepValue, unit: SizeUnit) -> Option<String> {
     let number = value.value?;
     Some(match (value.unit.as_str(), value.role()) {
         ("mm", Some(at_least)) => length(number, unit).role(NumberRole::of_limit(at_least)).to_string(),
@@ -199,7 +199,7 @@ pub fn step_value(value: &StepValue, unit: SizeUnit) -> Option<String> {
 }
 
 /// Step of the procedure in words.
-pub fn step_name(step: StepName) -> &'static str {
+pub(crate) fn step_name(step: StepName) -> &'static str {
     match step {
         StepName::Plot => "Plot the gradation of the base",
         StepName::FindGravel => "Find out whether the base has gravel or a gap",
@@ -217,7 +217,7 @@ pub fn step_name(step: StepName) -> &'static str {
 }
 
 /// Remarks on a step in sentences.
-pub fn step_notes(step: &SpecificationStep, unit: SizeUnit) -> String {
+pub(crate) fn step_notes(step: &SpecificationStep, unit: SizeUnit) -> String {
     let remark = match step.does {
         StepName::KeepUniform => format!(
             "Cu of each delivery lies between {LEAST_CU} and {MOST_CU}. {D15_OVER_D10} is D15/D10 of a side \
@@ -264,7 +264,7 @@ fn step_note(note: &StepNote, unit: SizeUnit) -> String {
             format!("Set by {name}.")
         }
         StepNote::SetBy { rule: None, curve: None } => String::new(),
-        StepNote::LimitNotKnown { needs } if needs.is_empty() => "The limit may be lower.".into(),
+        StepNote::LimitNotKnown { needs } if needs.is_empty() => "The limit can only be lower.".into(),
         StepNote::LimitNotKnown { needs: notes } | StepNote::OfRule { notes } => {
             format!("{}.", capital(&rule_notes(notes, unit)))
         }
@@ -298,7 +298,7 @@ fn gap(flattest: Option<[f64; 2]>, unit: SizeUnit) -> String {
 }
 
 /// Columns of limits at each sieve, on a page and in a workbook.
-pub fn limit_columns<'a>() -> Columns<'a, SieveLimit> {
+pub(crate) fn limit_columns<'a>() -> Columns<'a, SieveLimit> {
     Columns::default()
         .name("sieve", "Sieve", |limit: &SieveLimit| limit.sieve.clone())
         .number("opening_mm", "Opening (mm)", |limit| limit.opening_mm)
@@ -313,27 +313,27 @@ pub fn limit_columns<'a>() -> Columns<'a, SieveLimit> {
 
 /// Row of `specification_steps.csv`: one number of a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StepRow {
+pub(crate) struct StepRow {
     /// Number of the step.
-    pub step: u64,
+    pub(crate) step: u64,
     /// Name of the step.
-    pub does: String,
+    pub(crate) does: String,
     /// Name of the number; empty if the step has no number.
-    pub quantity: String,
+    pub(crate) quantity: String,
     /// The number.
-    pub value: Option<f64>,
+    pub(crate) value: Option<f64>,
     /// Unit of the number.
-    pub unit: String,
+    pub(crate) unit: String,
     /// Formula of the step.
-    pub formula: String,
+    pub(crate) formula: String,
     /// Remarks for the reader.
-    pub note: String,
+    pub(crate) note: String,
     /// Source of formula and numbers.
-    pub source: String,
+    pub(crate) source: String,
 }
 
 /// Numbers of a step as rows; a step without a number gives one row.
-pub fn step_rows(step: &SpecificationStep) -> Vec<StepRow> {
+pub(crate) fn step_rows(step: &SpecificationStep) -> Vec<StepRow> {
     let row = |value: Option<&StepValue>| StepRow {
         step: step.step,
         does: step_name(step.does).to_owned(),

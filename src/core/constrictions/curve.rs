@@ -16,7 +16,7 @@ pub enum CurveUnit {
 
 impl CurveUnit {
     /// Returns the name of the diameter column in this unit.
-    pub fn field(self) -> &'static str {
+    pub(crate) fn field(self) -> &'static str {
         match self {
             CurveUnit::Mm => "diameter_mm",
             CurveUnit::D0f => "diameter_over_d0f",

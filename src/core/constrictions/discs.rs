@@ -28,11 +28,11 @@ const RINGS: usize = 2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ConstrictionDisc {
     /// Centre in the stored translate of the requested tetrahedron.
-    pub centre: [f64; 3],
+    pub(crate) centre: [f64; 3],
     /// Radius; zero if the grains leave no room.
-    pub radius: f64,
+    pub(crate) radius: f64,
     /// True if another grain cuts into the circle tangent to the three.
-    pub cut: bool,
+    pub(crate) cut: bool,
 }
 
 /// The plane of a facet: coordinates along `u` and `v`, and `w` normal to it.
@@ -160,8 +160,8 @@ fn beyond(
 /// A tangent circle or sphere: its centre and radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Tangent<const N: usize> {
-    pub centre: [f64; N],
-    pub radius: f64,
+    pub(crate) centre: [f64; N],
+    pub(crate) radius: f64,
 }
 
 /// `(|d|^2 - delta^2) / 2`.

@@ -65,7 +65,7 @@ pub struct VoidGraph {
     /// Volume outside the grains (mm3) by void.
     pub volume_mm3: Vec<f64>,
     /// Number of grains that are not hidden.
-    pub grains: usize,
+    pub(crate) grains: usize,
     /// Sum of their diameters cubed (mm3).
     pub cubes_mm3: f64,
     /// Sauter mean of the grains, sum d^3 / sum d^2 (mm).
@@ -73,7 +73,7 @@ pub struct VoidGraph {
     /// Smallest grain (mm).
     pub d0_mm: f64,
     /// Porosity: volume of the voids over the volume of the cell.
-    pub porosity: f64,
+    pub(crate) porosity: f64,
 }
 
 impl VoidGraph {

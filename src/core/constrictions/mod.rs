@@ -24,7 +24,8 @@ pub use inscribed::inscribed;
 pub use library::{FromLibrary, from_library};
 pub use shipped::{ShippedFilter, find, shipped};
 pub use summary::Summary;
-pub use triangulation::{SanityError, Triangulation, TriangulationError};
+pub(crate) use triangulation::SanityError;
+pub use triangulation::{Triangulation, TriangulationError};
 
 use crate::packing::Packing;
 use discs::{ConstrictionDisc, disc};
@@ -96,25 +97,25 @@ pub struct Constrictions {
     /// Its centre x, y, z (mm), by void; a corner of the void if there is no such sphere.
     pub void_centre_mm: Vec<[f64; 3]>,
     /// Number of facets between voids that are closed by grains.
-    pub closed: usize,
+    pub(crate) closed: usize,
     /// Number of constrictions whose disc was made smaller by a fourth grain.
-    pub cut: usize,
+    pub(crate) cut: usize,
     /// Number of tetrahedra.
-    pub tetrahedra: usize,
+    pub(crate) tetrahedra: usize,
     /// Grains inside others, ascending; they are ignored.
-    pub hidden: Vec<u32>,
+    pub(crate) hidden: Vec<u32>,
     /// Pairs of grains with the same centre, to a thousandth of the smaller diameter.
-    pub duplicates: Vec<[u32; 2]>,
+    pub(crate) duplicates: Vec<[u32; 2]>,
     /// Pairs of grains nearer than a quarter of the smaller diameter.
-    pub near: Vec<[u32; 2]>,
+    pub(crate) near: Vec<[u32; 2]>,
     /// Volume of voids over volume of grains (overlaps counted twice).
-    pub void_ratio: f64,
+    pub(crate) void_ratio: f64,
     /// Smallest grain (mm).
-    pub d0_mm: f64,
+    pub(crate) d0_mm: f64,
     /// Overlap from which two tetrahedra share a void.
-    pub merge_overlap: f64,
+    pub(crate) merge_overlap: f64,
     /// Selection of the facets between voids.
-    pub counted: Facets,
+    pub(crate) counted: Facets,
     /// Region for statistics.
     region: Region,
     /// Number of grains in the region, without hidden ones.
@@ -344,17 +345,17 @@ impl Constrictions {
     }
 
     /// Number of grains used for statistics.
-    pub fn grains(&self) -> usize {
+    pub(crate) fn grains(&self) -> usize {
         self.grains
     }
 
     /// Number of voids used for statistics.
-    pub fn voids(&self) -> usize {
+    pub(crate) fn voids(&self) -> usize {
         self.void_centre_mm.iter().filter(|centre| self.region.holds(centre)).count()
     }
 
     /// Number of constrictions used for statistics.
-    pub fn constrictions(&self) -> usize {
+    pub(crate) fn constrictions(&self) -> usize {
         self.centre_mm.iter().filter(|centre| self.region.holds(centre)).count()
     }
 
@@ -364,7 +365,7 @@ impl Constrictions {
     }
 
     /// Number of voids by number of constrictions: entry `n` counts those with `n`.
-    pub fn connectivity(&self) -> Vec<usize> {
+    pub(crate) fn connectivity(&self) -> Vec<usize> {
         let mut of_void = vec![0usize; self.void_centre_mm.len()];
         for &v in self.upstream.iter().chain(&self.downstream) {
             of_void[v as usize] += 1;
@@ -382,7 +383,7 @@ impl Constrictions {
     }
 
     /// Mean number of constrictions per void.
-    pub fn mean_connectivity(&self) -> f64 {
+    pub(crate) fn mean_connectivity(&self) -> f64 {
         let counts = self.connectivity();
         let ends: usize = counts.iter().enumerate().map(|(n, voids)| n * voids).sum();
         ends as f64 / counts.iter().sum::<usize>() as f64

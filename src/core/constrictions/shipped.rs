@@ -34,11 +34,11 @@ pub struct ShippedFilter {
     /// Void ratio of the packing.
     pub void_ratio: f64,
     /// Source of the void ratio.
-    pub void_ratio_source: String,
+    pub(crate) void_ratio_source: String,
     /// Number of grains per void of a similar packing, N_p / N_voids.
     pub grains_per_void: f64,
     /// Source of the grains per void.
-    pub grains_per_void_source: String,
+    pub(crate) grains_per_void_source: String,
     /// Authors to be named.
     pub attribution: String,
     /// Licence of the curve.

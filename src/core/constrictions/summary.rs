@@ -32,7 +32,7 @@ pub struct Summary {
     /// D_c60 / D_c10.
     pub cu_csd: f64,
     /// Smallest grain (mm).
-    pub d0_mm: f64,
+    pub(crate) d0_mm: f64,
     /// Diameter (mm) that this percentage of the constrictions by number do not exceed, by percentage.
     pub dc_mm: serde_json::Map<String, serde_json::Value>,
     /// Mean number of constrictions per void.
@@ -42,15 +42,15 @@ pub struct Summary {
     /// Overlap from which two tetrahedra share a void.
     pub merge_overlap: f64,
     /// Selection of the facets between voids.
-    pub counted_facets: Facets,
+    pub(crate) counted_facets: Facets,
     /// Number of constrictions whose disc was made smaller by a fourth grain.
-    pub cut_constrictions: usize,
+    pub(crate) cut_constrictions: usize,
     /// Number of facets between voids that are closed by grains.
-    pub closed_facets: usize,
+    pub(crate) closed_facets: usize,
     /// Grains that lie inside others, counted from 0.
-    pub hidden_grains: Vec<u32>,
+    pub(crate) hidden_grains: Vec<u32>,
     /// Pairs of grains with the same centre.
-    pub duplicate_grains: Vec<[u32; 2]>,
+    pub(crate) duplicate_grains: Vec<[u32; 2]>,
     /// Notes on these grains.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
@@ -121,7 +121,7 @@ impl Constrictions {
     }
 
     /// Writes the constrictions for ParaView: points (mm) with their diameter and the voids they join.
-    pub fn to_vtp(&self) -> String {
+    pub(crate) fn to_vtp(&self) -> String {
         let column = |voids: &[u32]| voids.iter().map(|&v| f64::from(v)).collect::<Vec<_>>();
         let (upstream, downstream) = (column(&self.upstream), column(&self.downstream));
         vtp_points(

@@ -217,11 +217,11 @@ pub enum GradationError {
 #[error("{name} = {value:?} is not allowed; allowed: {allowed}")]
 pub struct NumberError {
     /// Name of the number.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     /// The number.
-    pub value: f64,
+    pub(crate) value: f64,
     /// Allowed values.
-    pub allowed: String,
+    pub(crate) allowed: String,
 }
 
 impl NumberError {

@@ -15,7 +15,7 @@ use super::{END, Network, NetworkError};
 use crate::constrictions::Curve;
 
 /// Table 3 of the paper: connectivity, and percent of the voids.
-pub const TABLE_3: [(u32, f64); 5] = [(4, 3.5), (5, 22.8), (6, 47.6), (7, 22.6), (8, 3.5)];
+pub(crate) const TABLE_3: [(u32, f64); 5] = [(4, 3.5), (5, 22.8), (6, 47.6), (7, 22.6), (8, 3.5)];
 
 /// First block of the random stream for diameters of diagonals; blocks of the lattice begin at 0.
 const FIRST_DIAGONAL_BLOCK: u64 = 1 << 32;

@@ -31,7 +31,7 @@ pub struct Permeability {
     /// Flow times viscosity for a pressure difference of 1 across the network.
     pub conductance: f64,
     /// Permeability (mm2), if the lengths of the network are known.
-    pub k_mm2: Option<f64>,
+    pub(crate) k_mm2: Option<f64>,
 }
 
 struct Passage {
@@ -144,7 +144,7 @@ impl Flow {
     }
 
     /// Absolute flux through an exit divided by the inflow; 0 without inflow.
-    pub fn share(&self, exit: usize) -> f64 {
+    pub(crate) fn share(&self, exit: usize) -> f64 {
         let through = self.through;
         if through > 0.0 { (self.flux[exit] / through).abs() } else { 0.0 }
     }
@@ -191,7 +191,11 @@ impl Flow {
     ///
     /// # Errors
     /// Errors of [`Flow::solve`].
-    pub fn solve_parts(&mut self, network: &Network, parts: &[f64]) -> Result<Permeability, FlowError> {
+    pub(crate) fn solve_parts(
+        &mut self,
+        network: &Network,
+        parts: &[f64],
+    ) -> Result<Permeability, FlowError> {
         assert_eq!(parts.len(), self.open.len(), "one part for each exit");
         // No constriction counts as blocked now, however much it leaked.
         let mut changed = std::mem::replace(&mut self.blocked, BitVec::repeat(false, parts.len()));

@@ -25,17 +25,22 @@ mod reach;
 mod undirected;
 
 pub use arrays::ArrayOptions;
-pub use columns::{CONDUCTANCE_EXPONENT, NO_EXIT, NetworkColumns};
-pub use connectivity::{Connectivity, TABLE_3};
+pub use columns::NO_EXIT;
+pub use columns::{CONDUCTANCE_EXPONENT, NetworkColumns};
+pub use connectivity::Connectivity;
+pub(crate) use connectivity::TABLE_3;
 pub use cubic::percolation_threshold;
 pub use exit_rule::ExitRule;
 pub use file::NetworkError;
-pub use flow::{Flow, FlowError, Permeability};
+pub(crate) use flow::Permeability;
+pub use flow::{Flow, FlowError};
 pub use graph::{GraphShape, permeability_mm2};
-pub use passage::{FirstPassage, Passage};
-pub use possible_exits::TOLERANCE_PERCENT;
-pub use reach::Reachability;
-pub use undirected::{FLOW_TOLERANCE, Link, LinkEnd, LinkedVoids, WIDE, flow_error_pp};
+pub(crate) use passage::FirstPassage;
+pub use passage::Passage;
+pub(crate) use possible_exits::TOLERANCE_PERCENT;
+pub(crate) use reach::Reachability;
+pub use undirected::{FLOW_TOLERANCE, WIDE, flow_error_pp};
+pub use undirected::{Link, LinkEnd, LinkedVoids};
 
 use exit_rule::{Undirected, hash_column};
 

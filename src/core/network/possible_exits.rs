@@ -23,7 +23,7 @@ use super::{END, NetworkError};
 use crate::stream::{Key, Purpose, below};
 
 /// Allowed error of the percentage of each connectivity (percent of all voids).
-pub const TOLERANCE_PERCENT: f64 = 0.05;
+pub(crate) const TOLERANCE_PERCENT: f64 = 0.05;
 
 pub(super) const SLOTS: usize = 6;
 

@@ -3,17 +3,17 @@
 use super::{END, NO_LAYER, Network, WIDE};
 
 /// Voids joined to the start and to the end by paths through passable constrictions (breadth-first).
-pub struct Reachability {
+pub(crate) struct Reachability {
     /// True for each void that can be reached from a start node.
-    pub from_start: Vec<bool>,
+    pub(crate) from_start: Vec<bool>,
     /// True for each void from which the end can be reached.
-    pub to_end: Vec<bool>,
+    pub(crate) to_end: Vec<bool>,
 }
 
 impl Network {
     /// Follows the constrictions that `passable` admits, downstream from the start nodes and
     /// upstream from the end.
-    pub fn reach(&self, passable: impl Fn(usize) -> bool) -> Reachability {
+    pub(crate) fn reach(&self, passable: impl Fn(usize) -> bool) -> Reachability {
         let from_start = self.distances(&passable).into_iter().map(|d| d != NO_LAYER).collect();
         Reachability { from_start, to_end: self.leading_to_end(&passable) }
     }
@@ -156,7 +156,7 @@ impl Network {
 
     /// Constrictions by downstream void (`begin`, `entrances`): `entrances[begin[v] .. begin[v + 1]]` lead
     /// into void `v`, in ascending order.
-    pub fn entrances(&self) -> (Vec<u32>, Vec<u32>) {
+    pub(crate) fn entrances(&self) -> (Vec<u32>, Vec<u32>) {
         let inner = || self.target.iter().enumerate().filter(|&(_, &t)| t != END);
         let mut begin = vec![0u32; self.voids() + 1];
         for (_, &target) in inner() {

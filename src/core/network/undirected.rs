@@ -283,7 +283,7 @@ impl Network {
     }
 
     /// Number of blocked constrictions, each counted once.
-    pub fn blocked_count(&self, blocked: &bitvec::slice::BitSlice) -> u64 {
+    pub(crate) fn blocked_count(&self, blocked: &bitvec::slice::BitSlice) -> u64 {
         match &self.undirected {
             None => blocked.count_ones() as u64,
             Some(_) => blocked.iter_ones().filter(|&c| self.counts(c)).count() as u64,

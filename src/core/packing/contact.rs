@@ -43,50 +43,50 @@ const BLOCK: usize = 64;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Law {
     /// True for Hertz contacts, false for linear springs.
-    pub hertz: bool,
+    pub(crate) hertz: bool,
     /// `2 E*` for Hertz, the spring constant for linear springs.
-    pub stiffness: f64,
+    pub(crate) stiffness: f64,
     /// Ratio of tangential to normal stiffness.
-    pub tangential: f64,
+    pub(crate) tangential: f64,
     /// Damping coefficient over `sqrt(m kn)`.
-    pub damping: f64,
-    pub friction: f64,
+    pub(crate) damping: f64,
+    pub(crate) friction: f64,
     /// True to cut the normal force at zero.
-    pub clip: bool,
+    pub(crate) clip: bool,
 }
 
 /// Input of one step, except the grains.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Now {
-    pub cell: f64,
-    pub aspect: Aspect,
+    pub(crate) cell: f64,
+    pub(crate) aspect: Aspect,
     /// Relative growth of the cell per unit of time.
-    pub strain_rate: f64,
-    pub step: f64,
+    pub(crate) strain_rate: f64,
+    pub(crate) step: f64,
     /// Reach for a new pick of the close pairs, if one is due.
-    pub pick: Option<Reach>,
+    pub(crate) pick: Option<Reach>,
 }
 
 /// Grains as read by the contact pass.
 #[derive(Clone, Copy)]
 pub(super) struct Grains<'a> {
     /// Position in units of the cell; radius.
-    pub position: &'a [[f64; 4]],
+    pub(crate) position: &'a [[f64; 4]],
     /// Velocity relative to the deforming cell; mass.
-    pub velocity: &'a [[f64; 4]],
+    pub(crate) velocity: &'a [[f64; 4]],
     /// Angular velocity; unused.
-    pub spin: &'a [[f64; 4]],
-    pub chunk: &'a [u16],
+    pub(crate) spin: &'a [[f64; 4]],
+    pub(crate) chunk: &'a [u16],
 }
 
 /// Forces for the grains of another chunk.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Outbox {
-    pub grain: Vec<u32>,
+    pub(crate) grain: Vec<u32>,
     /// Force; normal stiffness.
-    pub force: Vec<[f64; 4]>,
+    pub(crate) force: Vec<[f64; 4]>,
     /// Torque; zero.
-    pub torque: Vec<[f64; 4]>,
+    pub(crate) torque: Vec<[f64; 4]>,
 }
 
 impl Outbox {
@@ -104,15 +104,15 @@ pub(super) struct Work {
     /// Indices of the close pairs that touch.
     hits: Vec<u32>,
     /// Forces for the other chunks, by chunk.
-    pub outbox: Vec<Outbox>,
+    pub(crate) outbox: Vec<Outbox>,
     /// Sum of normal force times distance of the centres.
-    pub virial: f64,
-    pub normal: f64,
-    pub contacts: u64,
+    pub(crate) virial: f64,
+    pub(crate) normal: f64,
+    pub(crate) contacts: u64,
 }
 
 impl Work {
-    pub fn new(chunks: usize) -> Self {
+    pub(crate) fn new(chunks: usize) -> Self {
         Self {
             block: Box::default(),
             hits: Vec::new(),

@@ -176,13 +176,13 @@ pub(super) const NAMES: [&str; 4] = ["x", "y", "z", "diameter"];
 /// Grains as given by a file.
 pub(super) struct FileGrains {
     /// x, y, z and diameter of each grain, in the file's unit.
-    pub grains: Vec<[f64; 4]>,
-    pub unit: Option<LengthUnit>,
-    pub cell: FileCell,
+    pub(crate) grains: Vec<[f64; 4]>,
+    pub(crate) unit: Option<LengthUnit>,
+    pub(crate) cell: FileCell,
     /// Line that names the columns, for messages.
-    pub line: usize,
+    pub(crate) line: usize,
     /// Notes to the user on how the file was read.
-    pub notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
 }
 
 /// Boundaries according to a file.
@@ -252,12 +252,12 @@ impl LengthUnit {
     }
 
     /// Full name, in the plural.
-    pub fn words(self) -> &'static str {
+    pub(crate) fn words(self) -> &'static str {
         self.described().1
     }
 
     /// Length of the unit (mm).
-    pub fn mm(self) -> f64 {
+    pub(crate) fn mm(self) -> f64 {
         self.described().2
     }
 }

@@ -44,9 +44,10 @@ mod vtk;
 
 pub use fields::{ImportError, LengthUnit, PACKING_FILE_LIMIT_BYTES};
 pub use import::{CellOption, ReadOptions};
-pub use neighbours::Reach;
+pub(crate) use neighbours::Reach;
 pub use protocol::{CompressionProgress, PackReport, compress};
-pub use settings::{Contact, PackingError, Settings, is_wide};
+pub(crate) use settings::Contact;
+pub use settings::{PackingError, Settings, is_wide};
 pub use state::{Compression, Measure, Stage};
 
 use crate::gradation::Gradation;

@@ -39,39 +39,39 @@ pub(super) struct Aspect {
 
 impl Aspect {
     /// Maximum ratio of height to width.
-    pub const TALLEST: f64 = 100.0;
+    pub(crate) const TALLEST: f64 = 100.0;
 
     /// Makes the aspect of a cell that is `height` times as tall as wide.
-    pub fn new(height: f64) -> Self {
+    pub(crate) fn new(height: f64) -> Self {
         Self { height, per_height: 1.0 / height }
     }
 
     /// Ratio of height to width.
-    pub fn height(self) -> f64 {
+    pub(crate) fn height(self) -> f64 {
         self.height
     }
 
     /// Maps a difference of two positions along z to its nearest image; for a cube it gives the same
     /// bits as [`nearest`].
     #[inline(always)]
-    pub fn nearest(self, d: f64) -> f64 {
+    pub(crate) fn nearest(self, d: f64) -> f64 {
         d - self.height * ((d * self.per_height + ROUND) - ROUND)
     }
 
     /// Square of the distance of the nearest images of two positions.
     #[inline(always)]
-    pub fn square(self, p: &[f64], q: &[f64]) -> f64 {
+    pub(crate) fn square(self, p: &[f64], q: &[f64]) -> f64 {
         let [x, y, z] = [nearest(q[0] - p[0]), nearest(q[1] - p[1]), self.nearest(q[2] - p[2])];
         x * x + y * y + z * z
     }
 
     /// Number of cells along z, none flatter than the width of a cell if there are `across` along x.
-    pub fn along(self, across: usize) -> usize {
+    pub(crate) fn along(self, across: usize) -> usize {
         (across as f64 * self.height) as usize
     }
 
     /// Moves a position into the cell.
-    pub fn wrapped(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    pub(crate) fn wrapped(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let inside = |s: f64, length: f64| {
             let s = s - length * libm::floor(s / length);
             if s < length { s } else { 0.0 }
@@ -85,9 +85,9 @@ impl Aspect {
 #[serde(deny_unknown_fields)]
 pub struct Reach {
     /// Fraction of the sum of the radii.
-    pub relative: f64,
+    pub(crate) relative: f64,
     /// Additional length.
-    pub absolute: f64,
+    pub(crate) absolute: f64,
 }
 
 impl Reach {
@@ -120,29 +120,29 @@ pub(super) type Memory = [f64; 4];
 /// Pairs listed by the grains `first .. last`.
 #[derive(Clone, Debug, Default)]
 pub(super) struct GrainChunk {
-    pub first: usize,
+    pub(crate) first: usize,
     /// One past the last grain.
-    pub last: usize,
+    pub(crate) last: usize,
     /// First pair of grain `first + g`; one entry more than there are grains.
-    pub start: Vec<u32>,
+    pub(crate) start: Vec<u32>,
     /// The smaller grain of each pair.
-    pub neighbour: Vec<u32>,
+    pub(crate) neighbour: Vec<u32>,
     /// The close pairs, in list order: larger grain, smaller grain.
-    pub close: Vec<[u32; 2]>,
+    pub(crate) close: Vec<[u32; 2]>,
     /// Index of each close pair among the listed pairs.
-    pub close_pair: Vec<u32>,
-    pub memory: Vec<Memory>,
+    pub(crate) close_pair: Vec<u32>,
+    pub(crate) memory: Vec<Memory>,
 }
 
 impl GrainChunk {
     /// The pairs listed by grain `i` of this chunk.
     #[inline(always)]
-    pub fn pairs(&self, i: usize) -> std::ops::Range<usize> {
+    pub(crate) fn pairs(&self, i: usize) -> std::ops::Range<usize> {
         self.start[i - self.first] as usize..self.start[i - self.first + 1] as usize
     }
 
     /// Picks new close pairs; those that remain keep their memory, and those that touch remain.
-    pub fn pick(&mut self, position: &[[f64; 4]], cell: f64, aspect: Aspect, reach: Reach) {
+    pub(crate) fn pick(&mut self, position: &[[f64; 4]], cell: f64, aspect: Aspect, reach: Reach) {
         let per_cell = 1.0 / cell;
         let old_pair = std::mem::take(&mut self.close_pair);
         let old_memory = std::mem::take(&mut self.memory);
@@ -331,7 +331,7 @@ pub(super) struct Remembered {
 
 impl Remembered {
     /// Collects the memory of each close pair.
-    pub fn collect(chunks: &[GrainChunk], rank: &[u32]) -> Self {
+    pub(crate) fn collect(chunks: &[GrainChunk], rank: &[u32]) -> Self {
         let contacts = || {
             let pairs = chunks.iter().flat_map(|chunk| chunk.close.iter().zip(&chunk.memory));
             let touching = pairs.filter(|(_, memory)| memory[3] > 0.0);
@@ -348,7 +348,7 @@ impl Remembered {
     }
 
     /// Restores the memories to the pairs of new lists, as close pairs.
-    pub fn restore(&self, chunks: &mut [GrainChunk], rank: &[u32]) {
+    pub(crate) fn restore(&self, chunks: &mut [GrainChunk], rank: &[u32]) {
         for chunk in chunks {
             for i in chunk.first..chunk.last {
                 for pair in chunk.pairs(i) {

@@ -52,7 +52,7 @@ pub struct CompressionProgress {
     /// Root mean square unbalanced force over the mean contact force.
     pub unbalanced: f64,
     /// Time step, reduced units.
-    pub step: f64,
+    pub(crate) step: f64,
 }
 
 /// Result of a compression.
@@ -197,7 +197,7 @@ impl Compression {
     }
 
     /// Progress of the compression.
-    pub fn progress(&self) -> CompressionProgress {
+    pub(crate) fn progress(&self) -> CompressionProgress {
         CompressionProgress {
             stage: self.now.stage,
             steps: self.now.steps,

@@ -52,8 +52,8 @@ pub struct Measure {
 /// Energies in reduced units (pressure times smallest diameter cubed).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Energy {
-    pub kinetic: f64,
-    pub elastic: f64,
+    pub(crate) kinetic: f64,
+    pub(crate) elastic: f64,
 }
 
 fn is_zero(saved: &f64) -> bool {
@@ -63,72 +63,72 @@ fn is_zero(saved: &f64) -> bool {
 /// State that the protocol keeps between its checks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct HoldState {
+pub(crate) struct HoldState {
     /// Step from which all criteria have held.
-    pub since: u64,
+    pub(crate) since: u64,
     /// Number of additional steps that the grains' own masses would have taken for this time, if some
     /// grains are given a larger mass.
     #[serde(default, skip_serializing_if = "is_zero")]
-    pub saved: f64,
+    pub(crate) saved: f64,
     /// Mean coordination number at that step.
-    pub coordination: f64,
+    pub(crate) coordination: f64,
     /// Void ratio at that step.
-    pub void_ratio: f64,
+    pub(crate) void_ratio: f64,
     /// True once the pressure has been near its target; the drag is then raised.
-    pub braking: bool,
+    pub(crate) braking: bool,
     /// Values before the friction was switched.
-    pub before: Option<Measure>,
+    pub(crate) before: Option<Measure>,
 }
 
 /// State of a compression, except its columns, as it is stored.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Moment {
-    pub settings: u64,
-    pub grains: usize,
+    pub(crate) settings: u64,
+    pub(crate) grains: usize,
     /// Number of close pairs; like `friction` and `makes_heavier`, set when the state is stored.
-    pub close_pairs: usize,
-    pub stage: Stage,
-    pub steps: u64,
-    pub time: f64,
-    pub step: f64,
+    pub(crate) close_pairs: usize,
+    pub(crate) stage: Stage,
+    pub(crate) steps: u64,
+    pub(crate) time: f64,
+    pub(crate) step: f64,
     /// Smallest diameter (mm): the unit of length.
-    pub unit_mm: f64,
+    pub(crate) unit_mm: f64,
     /// Width of the cell.
-    pub cell: f64,
+    pub(crate) cell: f64,
     /// Fixed ratio of height to width of the cell; omitted for a cube.
     #[serde(default = "cube", skip_serializing_if = "is_cube")]
-    pub aspect: f64,
+    pub(crate) aspect: f64,
     /// Relative growth of the cell per unit of time.
-    pub strain_rate: f64,
-    pub friction: f64,
+    pub(crate) strain_rate: f64,
+    pub(crate) friction: f64,
     /// True if crowded grains are given a larger mass.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub makes_heavier: bool,
+    pub(crate) makes_heavier: bool,
     /// Step in which the lists were made; the width of the cell at that step, and the reach.
-    pub listed_at: u64,
-    pub listed_cell: f64,
-    pub reach: Reach,
+    pub(crate) listed_at: u64,
+    pub(crate) listed_cell: f64,
+    pub(crate) reach: Reach,
     /// Step in which the close pairs were picked; the width of the cell at that step, and the reach.
-    pub picked_at: u64,
-    pub picked_cell: f64,
-    pub close: Reach,
+    pub(crate) picked_at: u64,
+    pub(crate) picked_cell: f64,
+    pub(crate) close: Reach,
     /// Farthest move of any grain since the close pairs were picked, in units of the cell; infinite
     /// before the first pick, stored as `null`.
     #[serde(deserialize_with = "or_infinite")]
-    pub moved: f64,
-    pub contacts: u64,
+    pub(crate) moved: f64,
+    pub(crate) contacts: u64,
     /// Mean contact pressure over its target, in the last step, as for all fields below.
-    pub pressure: f64,
+    pub(crate) pressure: f64,
     /// Largest sum of contact stiffness over the mass used for the grain.
-    pub stiffest: f64,
+    pub(crate) stiffest: f64,
     /// Sum of the mass used for a grain times its squared velocity.
-    pub twice_kinetic: f64,
+    pub(crate) twice_kinetic: f64,
     /// Sum of the squared unbalanced forces.
-    pub unbalanced: f64,
+    pub(crate) unbalanced: f64,
     /// Mean normal force of the contacts.
-    pub mean_normal: f64,
-    pub hold: HoldState,
+    pub(crate) mean_normal: f64,
+    pub(crate) hold: HoldState,
 }
 
 fn cube() -> f64 {
@@ -332,12 +332,12 @@ impl Compression {
     }
 
     /// Mean contact pressure of the last step, over its target.
-    pub fn pressure(&self) -> f64 {
+    pub(crate) fn pressure(&self) -> f64 {
         self.now.pressure
     }
 
     /// Void ratio: volume of the cell over the volume of the grains, minus 1.
-    pub fn void_ratio(&self) -> f64 {
+    pub(crate) fn void_ratio(&self) -> f64 {
         self.cell_volume() / self.grain_volume() - 1.0
     }
 

@@ -51,13 +51,13 @@ const SAME_SIZE: f64 = 0.01;
 
 /// A name in a header, and the unit at its end, if any.
 pub(super) struct Named {
-    pub name: String,
-    pub unit: Option<LengthUnit>,
+    pub(crate) name: String,
+    pub(crate) unit: Option<LengthUnit>,
 }
 
 impl Named {
     /// Parses a name such as `X_mm`, `"Diameter (m)"` or `Points:0`.
-    pub fn of(text: &str) -> Self {
+    pub(crate) fn of(text: &str) -> Self {
         let text = text.trim().trim_matches('"').trim().to_lowercase();
         for unit in LengthUnit::ALL {
             let name = unit.name();

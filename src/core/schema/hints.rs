@@ -80,7 +80,7 @@ pub fn of_line(text: &str, line: usize) -> Option<String> {
 
 /// Describes the error in a value of the setting `name` that should be a number, if it is a usual
 /// mistake. A corrected number is suggested only if the setting's unit is certain.
-pub fn of_value(name: &str, value: &str) -> Option<String> {
+pub(crate) fn of_value(name: &str, value: &str) -> Option<String> {
     let number = value.trim();
     if let Some((whole, part)) = decimal_comma(number) {
         return Some(format!("a decimal point, not a comma: {whole}.{part}"));

@@ -13,7 +13,8 @@ mod settings;
 
 use serde::Serialize;
 
-pub use allowed::{Allowed, Leaf, Value, above_zero, any, length, only, whole, within, words};
+pub use allowed::length;
+pub use allowed::{Allowed, Leaf, Value, above_zero, any, only, whole, within, words};
 pub use settings::setting_name;
 pub use settings::{Alternative, GivenSettings, Group, Names, Origin, SceneError};
 

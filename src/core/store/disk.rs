@@ -122,7 +122,7 @@ pub(super) struct PartFile {
 }
 
 impl PartFile {
-    pub fn beside(folder: &Path) -> io::Result<Self> {
+    pub(crate) fn beside(folder: &Path) -> io::Result<Self> {
         static NUMBER: AtomicU64 = AtomicU64::new(0);
         loop {
             let number = NUMBER.fetch_add(1, Ordering::Relaxed);
@@ -142,12 +142,12 @@ impl PartFile {
 
     /// Syncs the file. After an error the file is abandoned: a second sync may report success although
     /// nothing was written.
-    pub fn sync(&mut self) -> io::Result<()> {
+    pub(crate) fn sync(&mut self) -> io::Result<()> {
         self.sent()?;
         ask(Call::Sync(&self.path), || self.file.sync_all())
     }
 
-    pub fn rename(mut self, to: &Path) -> io::Result<()> {
+    pub(crate) fn rename(mut self, to: &Path) -> io::Result<()> {
         ask(Call::Rename(&self.path, to), || std::fs::rename(&self.path, to))?;
         self.whole = true;
         Ok(())
@@ -162,7 +162,7 @@ impl PartFile {
     }
 
     /// Starts syncing all written bytes and the length; [`Self::sent`] waits for the end.
-    pub fn send_all(&mut self) -> io::Result<()> {
+    pub(crate) fn send_all(&mut self) -> io::Result<()> {
         self.send_by(File::sync_all)
     }
 
@@ -180,7 +180,7 @@ impl PartFile {
     }
 
     /// Waits for the sync under way; the system reports an error only once.
-    pub fn sent(&mut self) -> io::Result<()> {
+    pub(crate) fn sent(&mut self) -> io::Result<()> {
         match self.sending.take().map(JoinHandle::join) {
             None => Ok(()),
             Some(Ok(result)) => result,
@@ -261,7 +261,7 @@ pub fn why_not_read(path: &Path, largest: u64) -> String {
 }
 
 /// Writes a limit on a file's size in words.
-pub fn in_mb(bytes: u64) -> String {
+pub(crate) fn in_mb(bytes: u64) -> String {
     match bytes >> 30 {
         0 => format!("{} MB", bytes >> 20),
         gb => format!("{gb} GB"),

@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 use std::{fs, io};
 
 /// Name of the lock file, which marks a folder as ours.
-pub const LOCK_FILE: &str = ".voidwalk.lock";
+pub(crate) const LOCK_FILE: &str = ".voidwalk.lock";
 
 /// Time for which a shared folder is retried: another process may hold it alone while it clears up.
 const ASK_FOR: Duration = Duration::from_millis(500);

@@ -163,7 +163,7 @@ fn at_the_neck(ratio: f64, concentration: f64) -> f64 {
 }
 
 /// Number of particles in an arch over a constriction `ratio` times their size: R^2 + 1, at least 2.
-pub fn in_arch(ratio: f64) -> u32 {
+pub(crate) fn in_arch(ratio: f64) -> u32 {
     (ratio * ratio + 1.0).round().max(2.0) as u32
 }
 
@@ -225,7 +225,7 @@ impl Arching {
 
     /// Minimum `R` at which nothing arches at this concentration: [`Law::widest`], or less if jams in
     /// wider constrictions are too rare for any draw.
-    pub fn stops_to(&self) -> f64 {
+    pub(crate) fn stops_to(&self) -> f64 {
         self.stops_to
     }
 

@@ -10,12 +10,12 @@ use std::iter;
 
 /// Columns of one chunk: at most `CHUNK` entries of every column, and its events.
 pub(super) struct ChunkColumns<'a> {
-    pub chunk: u64,
-    pub void: &'a mut [u32],
-    pub diameter: &'a mut [f32],
+    pub(crate) chunk: u64,
+    pub(crate) void: &'a mut [u32],
+    pub(crate) diameter: &'a mut [f32],
     /// Number of moving particles, which are at the front of the columns.
-    pub live: &'a mut u32,
-    pub events: &'a mut Events,
+    pub(crate) live: &'a mut u32,
+    pub(crate) events: &'a mut Events,
 }
 
 /// Number of moving particles above which several threads are faster than one.
@@ -117,22 +117,22 @@ thread_local! {
 #[derive(Default)]
 pub(super) struct Events {
     /// Number of particles inserted into the chunk.
-    pub inserted: u32,
-    pub inserted_mass: f64,
-    pub moves: u64,
+    pub(crate) inserted: u32,
+    pub(crate) inserted_mass: f64,
+    pub(crate) moves: u64,
     /// Diameters of the particles that left, in particle order; summed and dropped once the chunk is done.
-    pub eroded: Vec<f32>,
+    pub(crate) eroded: Vec<f32>,
     eroded_count: u64,
     /// Constriction and diameter of the particles that were stopped, in particle order.
-    pub stopped: Vec<(u32, f32)>,
+    pub(crate) stopped: Vec<(u32, f32)>,
     /// Particles that jammed, in particle order; not included in the stopped or moving ones.
-    pub jams: Vec<Jam>,
+    pub(crate) jams: Vec<Jam>,
     /// Void and diameter of the particles without an open exit, in particle order.
-    pub stranded: Vec<(u32, f32)>,
+    pub(crate) stranded: Vec<(u32, f32)>,
     /// Number of particles that wait until the flow is solved again.
-    pub waiting: u64,
+    pub(crate) waiting: u64,
     /// Number of passive particles inserted.
-    pub passive_inserted: u32,
+    pub(crate) passive_inserted: u32,
     passive_eroded: u64,
     sizes: Option<[SizeCounts; 2]>,
     eroded_mass: f64,
@@ -141,7 +141,7 @@ pub(super) struct Events {
 
 impl Events {
     /// Clears the last increment but keeps the memory.
-    pub fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.inserted = 0;
         self.inserted_mass = 0.0;
         self.passive_inserted = 0;
@@ -153,14 +153,14 @@ impl Events {
     }
 
     /// Takes this thread's buffer, with room for `count` eroded particles.
-    pub fn lend_buffer(&mut self, count: usize) {
+    pub(crate) fn lend_buffer(&mut self, count: usize) {
         self.eroded = ERODED.take();
         self.eroded.clear();
         self.eroded.reserve(count);
     }
 
     /// Sums over the chunk and returns the buffer; called on the thread that processed the chunk.
-    pub fn sum(&mut self, classes: &SizeClasses, passive_limit: f32) {
+    pub(crate) fn sum(&mut self, classes: &SizeClasses, passive_limit: f32) {
         self.eroded_count = self.eroded.len() as u64;
         self.passive_eroded = self.eroded.iter().map(|&d| u64::from(d <= passive_limit)).sum();
         self.eroded_mass = self.eroded.iter().map(|&d| cube(d)).sum();
@@ -254,11 +254,11 @@ pub(super) fn merge(
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Jam {
     /// Number of moving particles before it in its chunk.
-    pub rank: u32,
-    pub exit: u32,
-    pub diameter: f32,
+    pub(crate) rank: u32,
+    pub(crate) exit: u32,
+    pub(crate) diameter: f32,
     /// Number of particles in the arch that it starts.
-    pub particles: u32,
+    pub(crate) particles: u32,
 }
 
 /// Keeps the arches of an increment and releases the other jammed particles; consumes the jams of all chunks.

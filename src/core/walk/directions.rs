@@ -103,7 +103,7 @@ impl<'a> Past<'a> {
 
 impl Directions {
     /// Computes the directions for the history of `state` and sets them in the network.
-    pub fn new(network: &mut Network, state: &State) -> Result<Self, FlowError> {
+    pub(crate) fn new(network: &mut Network, state: &State) -> Result<Self, FlowError> {
         let clean_filter: BitVec = BitVec::repeat(false, network.constrictions());
         let mut flow = Flow::new(network);
         let clean = flow.solve(network, &clean_filter)?;
@@ -136,7 +136,7 @@ impl Directions {
     }
 
     /// Widths to which the weights of exits refer, if blocked constrictions leave openings.
-    pub fn weighed(&self) -> Weighed<'_> {
+    pub(crate) fn weighed(&self) -> Weighed<'_> {
         match self.rule {
             ExitRule::Flux => Weighed::Solved(&self.widths_then, CONDUCTS),
             _ => Weighed::Whole,
@@ -178,7 +178,7 @@ impl Directions {
 
     /// Solves the flow and sets the directions of the network, if due in the increment that `state`
     /// begins; returns true if it did.
-    pub fn renew(&mut self, network: &mut Network, state: &State) -> Result<bool, FlowError> {
+    pub(crate) fn renew(&mut self, network: &mut Network, state: &State) -> Result<bool, FlowError> {
         let changes = state.changes();
         let is_due = self.is_due(network, state, state.increment, changes);
         if is_due {
@@ -189,7 +189,7 @@ impl Directions {
     }
 
     /// Solves the flow at the end of a run and sets the directions of the network.
-    pub fn end(mut self, network: &mut Network, state: &State) -> Result<FlowRecord, FlowError> {
+    pub(crate) fn end(mut self, network: &mut Network, state: &State) -> Result<FlowRecord, FlowError> {
         let changes = state.changes();
         if changes > self.changes_then {
             self.count(network, state, changes);

@@ -13,14 +13,14 @@ pub(super) use forms::{CLASS, CLASS_SHIFT, Classed, Jamming, Lattice, Plain, Rea
 
 #[derive(Clone, Copy)]
 pub(super) struct VoidExits<'a> {
-    pub void: u32,
+    pub(crate) void: u32,
     /// Threshold of each exit on the 64-bit scale.
-    pub thresholds: &'a [u64],
+    pub(crate) thresholds: &'a [u64],
     /// Position of the last open exit, or `None` if all exits are closed.
-    pub last_open: Option<usize>,
+    pub(crate) last_open: Option<usize>,
     /// True if all exits are closed and particles wait: in the last solution water left the void through
     /// exits that have been blocked since.
-    pub waits: bool,
+    pub(crate) waits: bool,
 }
 
 /// Number of voids that a thread renews at a time.
@@ -105,7 +105,7 @@ const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
 
 /// Exit thresholds of all voids, in a form suited to the network.
 #[derive(Clone)]
-pub struct ExitTable {
+pub(crate) struct ExitTable {
     pub(super) form: Form,
     /// Instruction set that reads it.
     pub(super) isa: Isa,
@@ -125,14 +125,14 @@ pub(super) enum Form {
 #[derive(Clone)]
 pub(super) struct General {
     /// Threshold of each constriction, and its upper sixteen bits.
-    pub threshold: Vec<u64>,
-    pub top: Vec<u16>,
+    pub(crate) threshold: Vec<u64>,
+    pub(crate) top: Vec<u16>,
     /// Last open exit of each void as a constriction, or `NONE`, or `WAIT`.
-    pub last_open: Vec<u32>,
+    pub(crate) last_open: Vec<u32>,
     /// Exits of each void if few are open, in half a cache line.
-    pub few: Vec<FewExits>,
+    pub(crate) few: Vec<FewExits>,
     /// Target void and width of each constriction, adjacent in memory.
-    pub beyond: Vec<(u32, f32)>,
+    pub(crate) beyond: Vec<(u32, f32)>,
 }
 
 /// Marks a void without an open exit.
@@ -147,19 +147,19 @@ fn waits(network: &Network, void: u32) -> bool {
 
 /// Network and exits open at the start of the increment, for a kernel to read.
 pub(super) struct OpenExits<'a> {
-    pub network: &'a Network,
-    pub table: &'a ExitTable,
-    pub ways: Ways<'a>,
+    pub(crate) network: &'a Network,
+    pub(crate) table: &'a ExitTable,
+    pub(crate) ways: Ways<'a>,
     /// Current width of each constriction.
-    pub widths: &'a [f32],
-    pub passive_limit: f32,
+    pub(crate) widths: &'a [f32],
+    pub(crate) passive_limit: f32,
     /// Law of arching; only with a table of the general form, or one that reads widths.
-    pub arching: Option<&'a Arching>,
+    pub(crate) arching: Option<&'a Arching>,
 }
 
 impl ExitTable {
     /// Builds the table with `blocked` constrictions closed.
-    pub fn new(network: &Network, blocked: &BitSlice) -> Self {
+    pub(crate) fn new(network: &Network, blocked: &BitSlice) -> Self {
         Self::empty(network, blocked).filled(network, Ways::Unblocked(blocked))
     }
 

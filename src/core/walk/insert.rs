@@ -19,7 +19,7 @@ pub(super) struct Insertion<'a> {
 
 impl<'a> Insertion<'a> {
     /// Prepares the insertion for the current increment of `state`.
-    pub fn new(network: &'a Network, supply: &'a Supply, isa: Isa, state: &State) -> Self {
+    pub(crate) fn new(network: &'a Network, supply: &'a Supply, isa: Isa, state: &State) -> Self {
         let increment = state.increment;
         Self {
             network,
@@ -32,17 +32,17 @@ impl<'a> Insertion<'a> {
     }
 
     /// Number of base particles inserted in this increment.
-    pub fn share(&self) -> u64 {
+    pub(crate) fn share(&self) -> u64 {
         self.inserted.end - self.inserted.start
     }
 
     /// First chunk that receives particles, if there are any.
-    pub fn first_chunk(&self) -> usize {
+    pub(crate) fn first_chunk(&self) -> usize {
         self.inserted.start as usize / CHUNK
     }
 
     /// Appends the particles of a chunk to its columns; records their number and mass in its events.
-    pub fn append(&self, columns: &mut ChunkColumns) {
+    pub(crate) fn append(&self, columns: &mut ChunkColumns) {
         let ChunkColumns { chunk, void, diameter, live, events } = columns;
         let begin = *chunk * CHUNK as u64;
         let (first, end) = (self.inserted.start.max(begin), self.inserted.end.min(begin + CHUNK as u64));
@@ -76,25 +76,25 @@ type Words = [[u64; LANES]; 2 * BATCH / LANES];
 /// Each step of a draw is a loop over a whole batch, so that it is vectorised. Only masses are added one
 /// after another, as the result depends on their order.
 struct Drawing<'a> {
-    pub network: &'a Network,
-    pub supply: &'a Supply,
-    pub key: Key,
+    pub(crate) network: &'a Network,
+    pub(crate) supply: &'a Supply,
+    pub(crate) key: Key,
     /// Number of particles that the increment inserts before these.
-    pub before: u64,
-    pub passive_limit: f32,
-    pub void: &'a mut [u32],
-    pub diameter: &'a mut [f32],
+    pub(crate) before: u64,
+    pub(crate) passive_limit: f32,
+    pub(crate) void: &'a mut [u32],
+    pub(crate) diameter: &'a mut [f32],
 }
 
 struct Drawn {
     /// Sum of diameters cubed, in particle order.
-    pub mass: f64,
-    pub passive: u32,
+    pub(crate) mass: f64,
+    pub(crate) passive: u32,
 }
 
 impl Drawing<'_> {
     /// Draws them with the instructions of `isa`; the bits are the same for all.
-    pub fn draw(self, isa: Isa) -> Drawn {
+    pub(crate) fn draw(self, isa: Isa) -> Drawn {
         assert!(isa.is_available());
         match isa {
             // SAFETY: the machine supports the instructions.

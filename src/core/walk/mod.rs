@@ -68,14 +68,23 @@ mod state;
 mod supply;
 mod tally;
 
-pub use arching::{Arching, DENSEST, LAWS, Law, LawName};
-pub use counts::{Counted, Expected, ExpectedSums, Passive};
-pub use directions::{FlowRecord, FlowSolution};
-pub use engine::{Engine, Finest, Isa, RunPlan, Shortcut, threads};
-pub use exits::ExitTable;
-pub use openings::{BlockedAs, Clogged, Narrowing, Openings, residual_opening};
-pub use saved::{SavedState, from_words, to_words};
-pub use state::{Blocking, CHUNK, Particles, State};
+pub use arching::LAWS;
+pub use arching::{Arching, DENSEST, Law, LawName};
+pub use counts::Expected;
+pub use counts::Passive;
+pub(crate) use counts::{Counted, ExpectedSums};
+pub use directions::FlowRecord;
+pub use directions::FlowSolution;
+pub use engine::{Engine, Finest, RunPlan, Shortcut};
+pub use engine::{Isa, threads};
+pub(crate) use exits::ExitTable;
+pub(crate) use openings::Openings;
+pub use openings::{BlockedAs, Clogged};
+pub use openings::{Narrowing, residual_opening};
+pub(crate) use saved::to_words;
+pub use saved::{SavedState, from_words};
+pub(crate) use state::Particles;
+pub use state::{Blocking, CHUNK, State};
 pub use supply::{Sampling, Supply};
 pub use tally::{SizeClasses, SizeCounts, Tally, WalkError};
 
@@ -101,7 +110,7 @@ pub enum WalkControl {
 }
 
 /// Callback after each increment, for recording, progress and requests to stop.
-pub type Observer<'a> = dyn FnMut(&State) -> WalkControl + Send + 'a;
+pub(crate) type Observer<'a> = dyn FnMut(&State) -> WalkControl + Send + 'a;
 
 /// Run in progress: data rebuilt from network and state, never stored.
 pub struct Walk<'a> {
@@ -408,7 +417,7 @@ struct Search {
 }
 
 impl Search {
-    pub fn new(network: &Network, arching: Option<&Arching>) -> Self {
+    pub(crate) fn new(network: &Network, arching: Option<&Arching>) -> Self {
         let voids = network.voids();
         Self {
             seen: vec![0; voids],
@@ -422,7 +431,7 @@ impl Search {
         }
     }
 
-    pub fn all_trapped(&mut self, network: &Network, state: &State) -> bool {
+    pub(crate) fn all_trapped(&mut self, network: &Network, state: &State) -> bool {
         let chunks = state.particles.live.len();
         let mut trapped = HashSet::new();
         // Starts with the last inserted particles: trapped ones remain and are at the front.

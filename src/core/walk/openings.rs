@@ -245,7 +245,7 @@ pub(super) enum Weighed<'a> {
 
 impl Ways<'_> {
     #[inline]
-    pub fn weight(&self, network: &Network, c: usize) -> f64 {
+    pub(crate) fn weight(&self, network: &Network, c: usize) -> f64 {
         match *self {
             Self::Unblocked(blocked) => network.exit_weight(c) * f64::from(u8::from(!blocked[c])),
             Self::Openings(widths, weighed) => weighed.weight(network, c, widths[c]),
@@ -256,7 +256,7 @@ impl Ways<'_> {
 impl Weighed<'_> {
     /// Weight of an exit with this width. Not inlined, so that the check for blocked exits can be inlined.
     #[inline(never)]
-    pub fn weight(&self, network: &Network, c: usize, width: f32) -> f64 {
+    pub(crate) fn weight(&self, network: &Network, c: usize, width: f32) -> f64 {
         let whole = f64::from(network.diameters()[c]);
         let part = |width: f32, exponent| part_kept(f64::from(width) / whole, exponent);
         let weight = network.exit_weight(c);

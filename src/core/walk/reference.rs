@@ -33,7 +33,7 @@ pub struct Reference<'a> {
     seed: u64,
     run: u64,
     /// Last completed increment.
-    pub increment: u64,
+    pub(crate) increment: u64,
     /// Moving particles, in order of insertion.
     pub moving: Vec<Particle>,
     /// Eroded particles, in order of leaving.

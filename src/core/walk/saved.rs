@@ -335,7 +335,7 @@ impl<'a> Place<'a> {
 const IN_64: usize = (u64::BITS / usize::BITS) as usize;
 
 /// Packs bits into words, the first bit lowest in the first word; unused bits are 0.
-pub fn to_words(bits: &BitVec) -> Vec<u64> {
+pub(crate) fn to_words(bits: &BitVec) -> Vec<u64> {
     let join = |parts: &[usize]| parts.iter().rev().fold(0, |word, &part| up(word) | part as u64);
     let mut words: Vec<u64> = bits.as_raw_slice().chunks(IN_64).map(join).collect();
     if let (Some(last), unused @ 1..) = (words.last_mut(), words_for(bits.len()) * 64 - bits.len()) {
@@ -373,14 +373,14 @@ const MOST_INCREMENTS: u64 = 1 << 62;
 /// Checksums protect a checkpoint from accidents, not from forgery with new checksums. A forged state may
 /// give wrong results, but it must not index beyond a column, overflow a sum, or walk for ever.
 struct Forgery<'a> {
-    pub supply: &'a Supply,
-    pub increment: u64,
-    pub tally: &'a Tally,
+    pub(crate) supply: &'a Supply,
+    pub(crate) increment: u64,
+    pub(crate) tally: &'a Tally,
 }
 
 impl Forgery<'_> {
     /// Tells if chunks can hold this many moving particles: at most as many as were inserted into each.
-    pub fn live_can_be(&self, live: &[u32]) -> bool {
+    pub(crate) fn live_can_be(&self, live: &[u32]) -> bool {
         let inserted = self.supply.inserted(self.increment);
         let into = |chunk: usize| inserted.saturating_sub((chunk * CHUNK) as u64).min(CHUNK as u64);
         live.iter().enumerate().all(|(chunk, &n)| u64::from(n) <= into(chunk))
@@ -388,7 +388,7 @@ impl Forgery<'_> {
 
     /// Finds an impossible number in a state whose columns have the right lengths and whose tally is
     /// consistent.
-    pub fn fault(&self, state: &State) -> Option<&'static str> {
+    pub(crate) fn fault(&self, state: &State) -> Option<&'static str> {
         let (tally, supply) = (self.tally, self.supply);
         let passive = supply.passive_inserted(self.increment);
         let inserting = self.increment < supply.increments();

@@ -73,7 +73,7 @@ impl Particles {
 #[derive(Debug)]
 pub struct State {
     /// Seed of the replicate.
-    pub seed: u64,
+    pub(crate) seed: u64,
     /// Run, counted from 1.
     pub run: u64,
     /// Last completed increment, counted from 1; 0 before the first.
@@ -82,7 +82,7 @@ pub struct State {
     pub finished: bool,
     /// Size of the finest open constriction at the start of the run, or less if particles arch. Particles
     /// up to this diameter are *passive*: no constriction can stop them in this run.
-    pub passive_limit: f32,
+    pub(crate) passive_limit: f32,
     /// Moving base particles that are walked one by one.
     pub particles: Particles,
     /// Moving base particles that are not walked one by one.
@@ -203,7 +203,7 @@ impl State {
 
     /// Current width of the constriction of an exit.
     #[inline]
-    pub fn width(&self, network: &Network, exit: usize) -> f32 {
+    pub(crate) fn width(&self, network: &Network, exit: usize) -> f32 {
         self.openings.as_ref().map_or(network.diameters()[exit], |openings| openings.widths[exit])
     }
 

@@ -69,12 +69,12 @@ impl Supply {
     }
 
     /// Tells if blocked constrictions leave openings.
-    pub fn leaves_openings(&self) -> bool {
+    pub(crate) fn leaves_openings(&self) -> bool {
         self.leaves_openings
     }
 
     /// Law of arching; `None` if particles do not arch.
-    pub fn arching(&self) -> Option<&Arching> {
+    pub(crate) fn arching(&self) -> Option<&Arching> {
         self.arching.as_deref()
     }
 
@@ -113,7 +113,7 @@ impl Supply {
 
     /// Creates a supply of the sizes drawn by words from `first_word` on, with `shares[t - 1]` particles
     /// in increment `t`.
-    pub fn coarse_part(sampler: SizeSampler, first_word: u64, shares: &[u64]) -> Self {
+    pub(crate) fn coarse_part(sampler: SizeSampler, first_word: u64, shares: &[u64]) -> Self {
         let running = shares.iter().scan(0, |sum, &share| {
             *sum += share;
             Some(*sum)
@@ -123,7 +123,7 @@ impl Supply {
     }
 
     /// Number of increments in which particles are inserted.
-    pub fn increments(&self) -> u64 {
+    pub(crate) fn increments(&self) -> u64 {
         self.inserted.len() as u64
     }
 
@@ -138,7 +138,7 @@ impl Supply {
     }
 
     /// Words below this value draw particles kept as counts.
-    pub fn passive_words(&self) -> u128 {
+    pub(crate) fn passive_words(&self) -> u128 {
         self.passive.words
     }
 
@@ -158,7 +158,7 @@ impl Supply {
     }
 
     /// Tells if start nodes are spread evenly.
-    pub fn is_stratified(&self) -> bool {
+    pub(crate) fn is_stratified(&self) -> bool {
         self.strata.is_some()
     }
 
@@ -168,7 +168,7 @@ impl Supply {
     }
 
     /// Diameter of all base particles, if they have one size.
-    pub fn single_size(&self) -> Option<f32> {
+    pub(crate) fn single_size(&self) -> Option<f32> {
         let size = self.sampler.smallest();
         (size == self.sampler.largest()).then_some(size)
     }
@@ -180,7 +180,7 @@ impl Supply {
 
     /// Diameter of the base particle drawn by `word`.
     #[inline]
-    pub fn diameter(&self, word: u64) -> f32 {
+    pub(crate) fn diameter(&self, word: u64) -> f32 {
         self.sampler.diameter(self.word(word))
     }
 
@@ -189,7 +189,7 @@ impl Supply {
     /// # Panics
     /// If the slices differ in length.
     #[inline(always)]
-    pub fn fill(&self, words: &mut [u64], out: &mut [f32]) {
+    pub(crate) fn fill(&self, words: &mut [u64], out: &mut [f32]) {
         if self.first_word != 0 {
             words.iter_mut().for_each(|word| *word = self.word(*word));
         }
@@ -274,7 +274,7 @@ struct Strata {
 
 impl Strata {
     /// Creates the strata of a run that inserts at most `most` (at least 1) particles in each increment.
-    pub fn new(seed: u64, run: u64, most: u64, increments: u64) -> Self {
+    pub(crate) fn new(seed: u64, run: u64, most: u64, increments: u64) -> Self {
         let strata = u128::from(most) * u128::from(increments);
         let all = 1u128 << 64;
         Self {
@@ -288,7 +288,7 @@ impl Strata {
     }
 
     /// Strata of one increment that inserts `count` particles.
-    pub fn increment(&self, increment: u64, count: u64) -> IncrementStrata<'_> {
+    pub(crate) fn increment(&self, increment: u64, count: u64) -> IncrementStrata<'_> {
         let key =
             |increment| Key { seed: self.seed, purpose: Purpose::Strata, run: self.run, increment, chunk: 0 };
         IncrementStrata {
@@ -314,7 +314,7 @@ pub(super) struct IncrementStrata<'a> {
 impl IncrementStrata<'_> {
     /// Start node (of `nodes`) of particle `m` of the increment, from random `word`.
     #[inline]
-    pub fn node(&self, m: u64, word: u64, nodes: u64) -> usize {
+    pub(crate) fn node(&self, m: u64, word: u64, nodes: u64) -> usize {
         let place = u128::from(m) * u128::from(nodes) + u128::from(below(word, nodes));
         match u64::try_from(place) {
             Ok(place) => (place / self.count) as usize,
@@ -324,7 +324,7 @@ impl IncrementStrata<'_> {
 
     /// Word of the sampler for particle `m` of the increment, from random `word`.
     #[inline]
-    pub fn size_word(&self, m: u64, word: u64) -> u64 {
+    pub(crate) fn size_word(&self, m: u64, word: u64) -> u64 {
         let strata = self.strata;
         let group = strata.within_increment.image(m, self.groups, 0);
         let stratum = group * strata.within_group.size

@@ -111,7 +111,7 @@ impl SizeClasses {
 
     /// Class of a diameter; sizes above the last bound belong to the last class.
     #[inline]
-    pub fn of(&self, diameter: f32) -> usize {
+    pub(crate) fn of(&self, diameter: f32) -> usize {
         let bucket = (diameter.to_bits() >> BELOW_BUCKET).saturating_sub(self.first_bucket) as usize;
         let (class, bound) = self.guide[bucket.min(self.guide.len() - 1)];
         let mut class = class as usize + usize::from(bound < diameter);
@@ -136,7 +136,7 @@ pub struct SizeCounts {
 
 impl SizeCounts {
     /// Creates empty counts.
-    pub fn new(classes: &SizeClasses) -> Self {
+    pub(crate) fn new(classes: &SizeClasses) -> Self {
         Self { number: vec![0; classes.upper.len()], mass: vec![0.0; classes.upper.len()] }
     }
 
@@ -153,7 +153,7 @@ impl SizeCounts {
     }
 
     /// Adds the numbers and masses of `other`.
-    pub fn merge(&mut self, other: &Self) {
+    pub(crate) fn merge(&mut self, other: &Self) {
         for (sum, n) in self.number.iter_mut().zip(&other.number) {
             *sum += n;
         }

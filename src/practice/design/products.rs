@@ -42,11 +42,11 @@ pub const LEAST_CU: f64 = 2.0;
 /// Product with the limits of its standard.
 pub(super) struct Product {
     /// Name of the product.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     /// Sieve (mm), minimum and maximum percent finer; ascending.
-    pub limits: &'static [(f64, f64, f64)],
+    pub(crate) limits: &'static [(f64, f64, f64)],
     /// Source of the limits.
-    pub source: &'static str,
+    pub(crate) source: &'static str,
 }
 
 /// Products sold by name.
@@ -140,13 +140,13 @@ impl Product {
     }
 
     /// D15 (mm) of the fine and the coarse side.
-    pub fn d15_mm(&self) -> [f64; 2] {
+    pub(crate) fn d15_mm(&self) -> [f64; 2] {
         self.sides().map(|side| size_at(&side, 15.0))
     }
 
     /// Requirements of a band, other than on D15F, that the two sides do not keep; a delivery may lie
     /// anywhere between them.
-    pub fn not_kept(&self) -> Vec<NotKept> {
+    pub(crate) fn not_kept(&self) -> Vec<NotKept> {
         let sides = self.sides();
         let mut not_kept = Vec::new();
         let of_sides: [fn(f64) -> NotKept; 2] =

@@ -16,7 +16,7 @@ pub struct SizeBand {
     pub sizes: Vec<BandSize>,
     /// Fine side up to its D60: size (mm) and percent finer, ascending. No source was read for the range
     /// above it.
-    pub fine_side: Vec<[f64; 2]>,
+    pub(crate) fine_side: Vec<[f64; 2]>,
     /// Coarse side up to its D60: size (mm) and percent finer, ascending.
     pub coarse_side: Vec<[f64; 2]>,
 }
@@ -66,7 +66,7 @@ impl SizeBand {
     /// coarse side continues straight down to 0 %. The fine side begins at its D5, a fifth of the coarse
     /// side's but at least 0.075 mm; at most 5 % is finer. `None` if a D60 is not below 75 mm, or if the
     /// coarse side has more than 5 % finer than 0.075 mm.
-    pub fn of(d15: [f64; 2], d60: [f64; 2]) -> Option<Self> {
+    pub(crate) fn of(d15: [f64; 2], d60: [f64; 2]) -> Option<Self> {
         let on =
             |side: usize, percent: f64| d15[side] * libm::pow(d60[side] / d15[side], (percent - 15.0) / 45.0);
         if d60.iter().any(|size| *size >= GREATEST_SIZE_MM) {
@@ -90,7 +90,7 @@ impl SizeBand {
 
     /// Both sides, the fine one first, continued straight up to 100 % but to at most 75 mm; used only for
     /// their internal stability.
-    pub fn continued(&self) -> [Vec<[f64; 2]>; 2] {
+    pub(crate) fn continued(&self) -> [Vec<[f64; 2]>; 2] {
         [&self.fine_side, &self.coarse_side].map(|side| {
             let [d15, d60] = [15.0, 60.0].map(|percent| size_at(side, percent));
             let top = (d60 * libm::pow(d60 / d15, 40.0 / 45.0)).min(GREATEST_SIZE_MM);
@@ -119,7 +119,7 @@ impl SizeBand {
     }
 
     /// Limits at the sieves of a series, from the coarsest sieve within the D60 of the coarse side down.
-    pub fn limits(&self, series: SieveSeries) -> Vec<SieveLimit> {
+    pub(crate) fn limits(&self, series: SieveSeries) -> Vec<SieveLimit> {
         let limit = |&opening_mm: &f64| {
             let [min, max] = self.percent_finer(opening_mm);
             let [min_percent_finer, most] = whole([min?, max.unwrap_or(100.0)]);
@@ -187,7 +187,7 @@ impl SieveSeries {
     }
 
     /// Name of the sieve with this opening (mm).
-    pub fn name(self, opening_mm: f64) -> String {
+    pub(crate) fn name(self, opening_mm: f64) -> String {
         let in_mm = || format!("{opening_mm} mm");
         match self {
             Self::Us => us_sieve(opening_mm).unwrap_or_else(in_mm),
@@ -226,15 +226,15 @@ pub(super) const LEAST_SHAPE: f64 = 1.0;
 /// Side of a band as a soil.
 pub(super) struct Side {
     /// `fine` or `coarse`.
-    pub name: &'static str,
-    pub kezdi: Option<SoilSplit>,
-    pub kenney_lau: Option<ShapeIndex>,
+    pub(crate) name: &'static str,
+    pub(crate) kezdi: Option<SoilSplit>,
+    pub(crate) kenney_lau: Option<ShapeIndex>,
 }
 
 impl Side {
     /// Both sides; an index is `None` for a side of one size. The line drawn below D5 of the fine side
     /// limits the fines and is not part of a gradation.
-    pub fn both(band: &SizeBand) -> [Self; 2] {
+    pub(crate) fn both(band: &SizeBand) -> [Self; 2] {
         let [fine, coarse] = band.continued();
         [("fine", fine), ("coarse", coarse)].map(|(name, points)| {
             let soil = Gradation::of_rows(&points).ok();
@@ -244,7 +244,7 @@ impl Side {
     }
 
     /// Authors of the rules that the side does not keep.
-    pub fn authorities(&self) -> Vec<String> {
+    pub(crate) fn authorities(&self) -> Vec<String> {
         let kezdi = self.kezdi.filter(|index| index.value > MOST_KEZDI).map(|_| "Kézdi".to_owned());
         let shape =
             self.kenney_lau.filter(|index| index.value < LEAST_SHAPE).map(|_| "Kenney and Lau".to_owned());
@@ -252,7 +252,7 @@ impl Side {
     }
 
     /// True if both indices are known.
-    pub fn is_known(&self) -> bool {
+    pub(crate) fn is_known(&self) -> bool {
         self.kezdi.is_some() && self.kenney_lau.is_some()
     }
 }

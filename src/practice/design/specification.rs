@@ -7,7 +7,8 @@ use super::size_band::SieveSeries;
 use crate::Note;
 use serde::{Deserialize, Serialize};
 
-pub use super::size_band::{BandSize, SieveLimit, SizeBand};
+pub use super::size_band::SizeBand;
+pub(crate) use super::size_band::{BandSize, SieveLimit};
 use crate::{IfDispersive, InputFile, RuleNote, SheetCover};
 use voidwalk_core::gradation::RegradeReason;
 
@@ -80,24 +81,24 @@ pub struct SpecifiedCurve {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub regraded: Vec<[f64; 2]>,
     /// D15 (mm) before regrading; `None` if it is finer than the finest sieve.
-    pub d15_mm: Option<f64>,
+    pub(crate) d15_mm: Option<f64>,
     /// Size on which the curve was regraded (mm).
-    pub regraded_at_mm: Option<f64>,
+    pub(crate) regraded_at_mm: Option<f64>,
     /// D85 (mm) after regrading.
     pub d85_mm: Option<f64>,
     /// Percent finer than 0.075 mm after regrading.
     pub fines_percent: Option<f64>,
     /// NRCS category, 1 to 4.
-    pub category: Option<u8>,
+    pub(crate) category: Option<u8>,
     /// Maximum D15F (mm) that retains the curve; `None` if it is not known.
-    pub d15f_max_mm: Option<f64>,
+    pub(crate) d15f_max_mm: Option<f64>,
     /// Rule that sets the maximum.
     pub d15f_max_rule: String,
     /// True if the maximum has no margin: tests showed erosion below it, or no erosion only up to it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub without_margin: bool,
     /// Minimum D15F (mm) that drains the curve.
-    pub d15f_min_mm: Option<f64>,
+    pub(crate) d15f_min_mm: Option<f64>,
 }
 
 /// Step of the procedure.

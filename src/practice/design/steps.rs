@@ -18,27 +18,27 @@ use voidwalk_core::gradation::{FEW_FINES, FINES_MM, GAP_PERCENT, GRAVEL_MM, Gap,
 /// Control points of a band: D15 and D60 (mm) of its fine and its coarse side.
 #[derive(Clone, Copy)]
 pub(super) struct Control {
-    pub d15: [f64; 2],
-    pub d60: [f64; 2],
+    pub(crate) d15: [f64; 2],
+    pub(crate) d60: [f64; 2],
 }
 
 /// Facts that the steps state.
 pub(super) struct Findings<'a> {
-    pub read: &'a [ReadCurve],
+    pub(crate) read: &'a [ReadCurve],
     /// Curve that sets the maximum D15F.
-    pub strictest: Option<&'a ReadCurve>,
-    pub unknown: Option<&'a ReadCurve>,
+    pub(crate) strictest: Option<&'a ReadCurve>,
+    pub(crate) unknown: Option<&'a ReadCurve>,
     /// Curve that sets the minimum D15F.
-    pub coarsest: Option<&'a ReadCurve>,
-    pub d15f_max: Option<f64>,
-    pub control: Option<Control>,
+    pub(crate) coarsest: Option<&'a ReadCurve>,
+    pub(crate) d15f_max: Option<f64>,
+    pub(crate) control: Option<Control>,
     /// True if the band lies at the finer end of the allowed sizes.
-    pub finer: bool,
+    pub(crate) finer: bool,
 }
 
 impl Findings<'_> {
     /// Every step, in order.
-    pub fn steps(&self, band: Option<&SizeBand>) -> Vec<SpecificationStep> {
+    pub(crate) fn steps(&self, band: Option<&SizeBand>) -> Vec<SpecificationStep> {
         let steps = [
             self.gradation(),
             self.gravel(),
@@ -332,24 +332,24 @@ const FLAT_PERCENT: f64 = 2.0 * GAP_PERCENT;
 
 /// Curve of the base with the results of the rules.
 pub(super) struct ReadCurve {
-    pub record: SpecifiedCurve,
+    pub(crate) record: SpecifiedCurve,
     /// Curve as sampled.
     base: Gradation,
-    pub dispersive: bool,
-    pub soil: BaseSoil,
+    pub(crate) dispersive: bool,
+    pub(crate) soil: BaseSoil,
     /// Flattest part, which may be a gap.
-    pub flattest: Option<Gap>,
-    pub design: Option<AppliedRule>,
-    pub retention: Option<AppliedRule>,
-    pub drainage: Option<AppliedRule>,
+    pub(crate) flattest: Option<Gap>,
+    pub(crate) design: Option<AppliedRule>,
+    pub(crate) retention: Option<AppliedRule>,
+    pub(crate) drainage: Option<AppliedRule>,
     /// Lower bound of the minimum D15F (mm) by the sieves; 0 if no sieve bounds it.
     drains_from: f64,
     /// Reasons for an unknown maximum D15F.
-    pub unknown: Option<Vec<RuleNote>>,
+    pub(crate) unknown: Option<Vec<RuleNote>>,
 }
 
 impl ReadCurve {
-    pub fn of((name, base): &NamedCurve, dispersive: bool) -> Self {
+    pub(crate) fn of((name, base): &NamedCurve, dispersive: bool) -> Self {
         let any = Gradation::linear_from_dx(15.0, ANY_D15F, 1.5).expect("sizes of a sand");
         let rules = apply(&RuleInputs { dispersive, ..RuleInputs::of_soils(base, &any) });
         let soil = BaseSoil::of(base, false);
@@ -410,21 +410,21 @@ impl ReadCurve {
         })
     }
 
-    pub fn greatest(&self) -> f64 {
+    pub(crate) fn greatest(&self) -> f64 {
         self.record.d15f_max_mm.unwrap_or(f64::INFINITY)
     }
 
     /// True if the minimum D15F is not known exactly and is at most the one given.
-    pub fn least_at_most(&self) -> bool {
+    pub(crate) fn least_at_most(&self) -> bool {
         self.drainage.as_ref().is_some_and(|rule| rule.limit_at_most)
     }
 
     /// Certain lower bound of the minimum D15F.
-    pub fn certain_least(&self) -> f64 {
+    pub(crate) fn certain_least(&self) -> f64 {
         if self.least_at_most() { self.drains_from } else { self.least() }
     }
 
-    pub fn least(&self) -> f64 {
+    pub(crate) fn least(&self) -> f64 {
         self.record.d15f_min_mm.unwrap_or(0.0)
     }
 }

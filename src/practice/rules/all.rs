@@ -15,7 +15,7 @@ pub const TESTS_NO_EROSION: &str = "foster-fell-no-erosion";
 pub const TESTS_CONTINUING: &str = "foster-fell-continuing";
 
 /// Probability of continuing erosion into an open joint.
-pub const CONSTRICTED_EXIT: &str = "constricted-exit";
+pub(crate) const CONSTRICTED_EXIT: &str = "constricted-exit";
 
 /// Rule of drainage of the base.
 pub const PERMEABILITY: &str = "permeability";
@@ -33,14 +33,14 @@ pub const PERMEABILITY_LEAST: &str = "permeability-em-1901";
 pub const TERZAGHI: &str = "terzaghi";
 
 /// Id of Kezdi's criterion of internal stability.
-pub const KEZDI: &str = "kezdi";
+pub(crate) const KEZDI: &str = "kezdi";
 
 /// Id of Kenney and Lau's criterion of internal stability.
-pub const KENNEY_LAU: &str = "kenney-lau";
+pub(crate) const KENNEY_LAU: &str = "kenney-lau";
 
 /// Id of Li and Fannin's criterion of internal stability, which takes the milder of Kenney and Lau's and
 /// Kezdi's at every size.
-pub const LI_FANNIN: &str = "li-fannin";
+pub(crate) const LI_FANNIN: &str = "li-fannin";
 
 /// Publication with Table 9.2.
 const FELL: &str = "Fell, MacGregor, Stapledon & Bell, Geotechnical Engineering of Dams, Table 9.2 (after \

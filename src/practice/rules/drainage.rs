@@ -22,7 +22,7 @@ pub const MOST_CU: f64 = 6.0;
 pub const WIDEST_BAND: f64 = 5.0;
 
 /// Checks that the filter drains the base: D15F is at least `times` D15B, before regrading.
-pub fn permeability(inputs: &RuleInputs, times: f64) -> Judged {
+pub(crate) fn permeability(inputs: &RuleInputs, times: f64) -> Judged {
     let least = if inputs.scale_free { 0.0 } else { LEAST_D15F_MM };
     let (d15f, d15b) = (inputs.d15f(), inputs.base.coarse_d(15.0));
     let of_base = times * d15b.unwrap_or(inputs.base.smallest_mm());
@@ -61,7 +61,7 @@ pub fn permeability(inputs: &RuleInputs, times: f64) -> Judged {
 }
 
 /// Checks that the filter has few fines.
-pub fn fines(inputs: &RuleInputs) -> Judged {
+pub(crate) fn fines(inputs: &RuleInputs) -> Judged {
     const MOST: Option<f64> = Some(MOST_FINES_PERCENT);
     if inputs.scale_free || !inputs.filter_is_measured {
         return Judged { limit: MOST, ..Judged::default() }.lacking(RuleNote::NeedsCurveOfFilterInMm);
@@ -78,7 +78,7 @@ pub fn fines(inputs: &RuleInputs) -> Judged {
 }
 
 /// Checks that the filter has no cobbles.
-pub fn greatest_size(inputs: &RuleInputs) -> Judged {
+pub(crate) fn greatest_size(inputs: &RuleInputs) -> Judged {
     const MOST: Option<f64> = Some(GREATEST_SIZE_MM);
     match inputs.scale_free || !inputs.filter_is_measured {
         true => Judged { limit: MOST, ..Judged::default() }.lacking(RuleNote::NeedsCurveOfFilterInMm),
@@ -87,7 +87,7 @@ pub fn greatest_size(inputs: &RuleInputs) -> Judged {
 }
 
 /// Checks that the filter is uniform enough: a band of broader curves leaves room for gap-graded ones.
-pub fn uniformity(inputs: &RuleInputs) -> Judged {
+pub(crate) fn uniformity(inputs: &RuleInputs) -> Judged {
     const MOST: Option<f64> = Some(MOST_CU);
     match (inputs.filter_is_measured, inputs.filter.cu()) {
         (false, _) => Judged { limit: MOST, ..Judged::default() }.lacking(RuleNote::NeedsCurveOfFilter),
@@ -110,7 +110,7 @@ pub fn uniformity(inputs: &RuleInputs) -> Judged {
 const BAND: [f64; 2] = [5.0, 60.0];
 
 /// Checks that the band of the filter is narrow: ratio of its coarse side to its fine side.
-pub fn band(inputs: &RuleInputs) -> Judged {
+pub(crate) fn band(inputs: &RuleInputs) -> Judged {
     if inputs.filter_curves.len() < 2 {
         return Judged::left_out();
     }

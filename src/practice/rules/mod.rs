@@ -26,7 +26,8 @@ pub use all::{
 pub use drainage::{GREATEST_SIZE_MM, LEAST_D15F_MM, MOST_CU, MOST_FINES_PERCENT, WIDEST_BAND};
 pub(crate) use open::{OpenBase, sieved_limit};
 pub use retention::{DESIGN_FLOOR_MM, range_of_tests, tested_range};
-pub use rule::{BaseSoil, FilterRule, RuleInputs, broad_base};
+pub(crate) use rule::FilterRule;
+pub use rule::{BaseSoil, RuleInputs, broad_base};
 
 /// Applies all rules to these inputs.
 pub fn apply(inputs: &RuleInputs) -> Vec<AppliedRule> {

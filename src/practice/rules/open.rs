@@ -48,7 +48,7 @@ impl Choice {
 }
 
 /// All possible curves of a base; the bits of a curve's index are its choices.
-pub struct OpenBase {
+pub(crate) struct OpenBase {
     choices: Vec<Choice>,
     curves: Vec<(Gradation, BaseSoil)>,
     /// Curves with the mass inside a wide step instead of at its ends, and this step.
@@ -57,7 +57,7 @@ pub struct OpenBase {
 
 impl OpenBase {
     /// Curves of a base; empty if its table leaves nothing open. Only wide steps hide a gap.
-    pub fn of(base: &Gradation, scale_free: bool) -> Self {
+    pub(crate) fn of(base: &Gradation, scale_free: bool) -> Self {
         if scale_free {
             return Self { choices: Vec::new(), curves: Vec::new(), hidden: Vec::new() };
         }
@@ -100,7 +100,7 @@ impl OpenBase {
 }
 
 /// All possible curves of a filter.
-pub struct OpenFilter {
+pub(crate) struct OpenFilter {
     steps: Vec<Step>,
     curves: Vec<Gradation>,
     /// Curves read as straight lines where next to nothing passes.
@@ -111,7 +111,7 @@ pub struct OpenFilter {
 
 impl OpenFilter {
     /// Curves of a filter; empty if its table leaves nothing open.
-    pub fn of(filter: &Gradation, is_measured: bool) -> Self {
+    pub(crate) fn of(filter: &Gradation, is_measured: bool) -> Self {
         let steps = if is_measured { filter.open_steps() } else { Vec::new() };
         let curves = if steps.is_empty() { Vec::new() } else { spread(filter, &steps, |_, _| true) };
         let passes = |_: usize, step: &Step| filter.percent_finer_by_mass(step.to_mm) > MOST_HIDDEN_PERCENT;
@@ -175,7 +175,7 @@ fn spread(curve: &Gradation, steps: &[Step], by_ends: impl Fn(usize, &Step) -> b
 }
 
 /// Judges one rule for two soils and the open questions of their tables; `None` if it was not requested.
-pub fn judged_over(
+pub(crate) fn judged_over(
     rule: &FilterRule,
     inputs: &RuleInputs,
     base: &OpenBase,
@@ -391,18 +391,23 @@ fn is_moved(here: &Judged, there: &Judged) -> bool {
 }
 
 /// Limit of a rule of D15F over all readings that the table of a base leaves open.
-pub struct SievedLimit {
+pub(crate) struct SievedLimit {
     /// Strictest limit.
-    pub strictest: f64,
+    pub(crate) strictest: f64,
     /// Mildest limit.
-    pub mildest: f64,
+    pub(crate) mildest: f64,
     /// Widely spaced sieves that the limit depends on.
-    pub depends_on: Option<RuleNote>,
+    pub(crate) depends_on: Option<RuleNote>,
 }
 
 /// Limit of a rule of D15F for a base in mm, over all readings that its table leaves `open`; `None`
 /// without a limit.
-pub fn sieved_limit(id: &str, base: &Gradation, open: &OpenBase, dispersive: bool) -> Option<SievedLimit> {
+pub(crate) fn sieved_limit(
+    id: &str,
+    base: &Gradation,
+    open: &OpenBase,
+    dispersive: bool,
+) -> Option<SievedLimit> {
     let rule = RULES.iter().find(|rule| rule.id == id)?;
     let filter = Gradation::linear_from_dx(15.0, 1.0, 1.5).ok()?;
     let inputs = RuleInputs { dispersive, ..RuleInputs::of_soils(base, &filter) };

@@ -32,7 +32,7 @@ impl Limit {
 pub const DESIGN_FLOOR_MM: f64 = 0.2;
 
 /// Sherard and Dunnigan's limit of design; for a dispersive base, with the limits for dispersive soils.
-pub fn sherard_dunnigan(inputs: &RuleInputs) -> Judged {
+pub(crate) fn sherard_dunnigan(inputs: &RuleInputs) -> Judged {
     let limit = |fines: f64, d85b: f64| match (inputs.dispersive, fines) {
         (false, fines) if fines > 85.0 => Limit::Is((9.0 * d85b).max(DESIGN_FLOOR_MM)),
         (true, fines) if fines > 85.0 => Limit::Is((6.4 * d85b).max(DESIGN_FLOOR_MM)),
@@ -51,7 +51,7 @@ pub fn sherard_dunnigan(inputs: &RuleInputs) -> Judged {
 }
 
 /// Foster and Fell's boundary of no erosion; for a dispersive base, with their limits for dispersive soils.
-pub fn no_erosion(inputs: &RuleInputs) -> Judged {
+pub(crate) fn no_erosion(inputs: &RuleInputs) -> Judged {
     let limit = |fines: f64, d85b: f64| match (inputs.dispersive, fines) {
         (false, fines) if fines > 85.0 => Limit::Is(9.0 * d85b),
         (true, fines) if fines > 85.0 => Limit::Is(6.4 * d85b),
@@ -154,7 +154,7 @@ fn base_as_read(inputs: &RuleInputs) -> Option<RuleNote> {
 }
 
 /// Terzaghi's ratio, for bases with few fines.
-pub fn terzaghi(inputs: &RuleInputs) -> Judged {
+pub(crate) fn terzaghi(inputs: &RuleInputs) -> Judged {
     let d85b = Some(inputs.size_of_base(85.0)).filter(|size| size.is_known).map(|size| size.most);
     let value = inputs.coarse_d15f().zip(d85b).map(|(d15f, d85b)| d15f / d85b);
     let judged = Judged::of(value, Some(4.0));
@@ -172,7 +172,7 @@ const CLEAR_TO_MM: f64 = 2.0;
 
 /// Foster and Fell's boundary of continuing erosion. It is no limit if their tests found no clear boundary,
 /// and has no result if this is not known. Beyond it, the rule is broken in both cases.
-pub fn continuing(inputs: &RuleInputs) -> Judged {
+pub(crate) fn continuing(inputs: &RuleInputs) -> Judged {
     let (d15f, d95b) = (inputs.coarse_d15f(), inputs.size_of_base(95.0));
     let judged = Judged::of(d15f, Some(9.0 * d95b.most));
     let is_beyond = d15f.is_some_and(|d15f| d15f > 9.0 * d95b.most);
@@ -210,7 +210,7 @@ const PROBABILITY: [(f64, f64); 5] = [(0.5, 0.0001), (0.75, 0.001), (1.0, 0.1), 
 const CLOSED: f64 = 0.4;
 
 /// Probability of continuing erosion into a joint, if a joint is given.
-pub fn constricted(inputs: &RuleInputs) -> Judged {
+pub(crate) fn constricted(inputs: &RuleInputs) -> Judged {
     let Some(joint) = inputs.joint_mm else { return Judged::left_out() };
     let Some(d95b) = inputs.base_soil.gradation.d(95.0) else {
         return Judged::of(None, None).lacking(RuleNote::NeedsD95B);
@@ -267,7 +267,7 @@ const KENNEY: f64 = 0.2;
 const FAR_FINER: f64 = 0.1;
 
 /// Largest particle that passes, by Kenney et al.
-pub fn largest_passing(inputs: &RuleInputs) -> Judged {
+pub(crate) fn largest_passing(inputs: &RuleInputs) -> Judged {
     let value = inputs.largest_eroded_over_d15f;
     let judged = Judged { applies: value.is_some(), ..Judged::of(value, Some(KENNEY)) };
     // If the whole base is that fine, its size says nothing about the openings.
@@ -284,7 +284,7 @@ pub fn largest_passing(inputs: &RuleInputs) -> Judged {
 }
 
 /// Boundary of the paper: maximum D15F over a size of the base as walked.
-pub fn paper(inputs: &RuleInputs, percent: f64, limit: f64) -> Judged {
+pub(crate) fn paper(inputs: &RuleInputs, percent: f64, limit: f64) -> Judged {
     let value = inputs.d15f().zip(inputs.walked_base.d(percent)).map(|(d15f, size)| d15f / size);
     Judged::of(value, Some(limit)).noted(RuleNote::ResultOfModel)
 }

@@ -10,24 +10,24 @@ pub struct FilterRule {
     /// Name in `outcome.json` and in `voidwalk rules --json`.
     pub id: &'static str,
     /// Author as sentences cite it; empty if nobody is cited.
-    pub authority: &'static str,
+    pub(crate) authority: &'static str,
     /// Further authorities whose texts state the rule.
-    pub stated_by: &'static [&'static str],
+    pub(crate) stated_by: &'static [&'static str],
     /// Statement of the rule.
-    pub says: &'static str,
+    pub(crate) says: &'static str,
     /// Role of the rule.
-    pub role: RuleRole,
+    pub(crate) role: RuleRole,
     /// Soils that the rule was made for.
-    pub applies_to: &'static str,
+    pub(crate) applies_to: &'static str,
     /// Quantity that the rule limits. A rule of retention also limits a design if [`RuleQuantity`] has a
     /// variant for its quantity.
-    pub quantity: RuleQuantity,
+    pub(crate) quantity: RuleQuantity,
     /// Limit in words.
-    pub formula: &'static str,
+    pub(crate) formula: &'static str,
     /// True if the limit is a minimum, false if it is a maximum.
-    pub at_least: bool,
+    pub(crate) at_least: bool,
     /// Unit of value and limit; mm also means multiples of D0F.
-    pub unit: RuleUnit,
+    pub(crate) unit: RuleUnit,
     /// Source of the rule.
     pub source: &'static str,
     pub(super) pairing: Pairing,
@@ -59,57 +59,57 @@ pub(super) enum Pairing {
 #[derive(Clone, Default)]
 pub(super) struct Judged {
     /// True if the rule was made for these soils.
-    pub applies: bool,
-    pub value: Option<f64>,
+    pub(crate) applies: bool,
+    pub(crate) value: Option<f64>,
     /// Side on which the true value lies, if the value is a bound.
-    pub value_bound: Option<ValueBound>,
-    pub limit: Option<f64>,
+    pub(crate) value_bound: Option<ValueBound>,
+    pub(crate) limit: Option<f64>,
     /// True if the limit is not known exactly and is at most `limit`.
-    pub limit_at_most: bool,
+    pub(crate) limit_at_most: bool,
     /// Result if it does not follow from value and limit.
-    pub met: Option<bool>,
+    pub(crate) met: Option<bool>,
     /// Input missing for a result.
-    pub needs: Option<RuleNote>,
-    pub notes: Vec<RuleNote>,
+    pub(crate) needs: Option<RuleNote>,
+    pub(crate) notes: Vec<RuleNote>,
     /// Remainder of the filter without the largest part that it may lose by this rule.
-    pub without_finer: Option<WithoutFiner>,
+    pub(crate) without_finer: Option<WithoutFiner>,
     /// True if the rule was not requested; it is not listed.
-    pub is_left_out: bool,
+    pub(crate) is_left_out: bool,
 }
 
 impl Judged {
     /// Rule that applies, with its value and limit if known.
-    pub fn of(value: Option<f64>, limit: Option<f64>) -> Self {
+    pub(crate) fn of(value: Option<f64>, limit: Option<f64>) -> Self {
         Self { applies: true, value, limit, ..Self::default() }
     }
 
     /// Marks the limit as an upper bound of the true one.
-    pub fn at_most(self) -> Self {
+    pub(crate) fn at_most(self) -> Self {
         Self { limit_at_most: true, ..self }
     }
 
     /// Marks the value as a bound of the true one.
-    pub fn bound(self, side: ValueBound) -> Self {
+    pub(crate) fn bound(self, side: ValueBound) -> Self {
         Self { value_bound: Some(side), ..self }
     }
 
-    pub fn noted(mut self, note: impl Into<Option<RuleNote>>) -> Self {
+    pub(crate) fn noted(mut self, note: impl Into<Option<RuleNote>>) -> Self {
         self.notes.extend(note.into());
         self
     }
 
     /// Marks the rule as not made for these soils.
-    pub fn not_for(self, why: RuleNote) -> Self {
+    pub(crate) fn not_for(self, why: RuleNote) -> Self {
         Self { applies: false, notes: vec![why], ..self }
     }
 
     /// Rule that was not requested.
-    pub fn left_out() -> Self {
+    pub(crate) fn left_out() -> Self {
         Self { is_left_out: true, ..Self::default() }
     }
 
     /// Marks the rule as lacking an input.
-    pub fn lacking(self, needs: RuleNote) -> Self {
+    pub(crate) fn lacking(self, needs: RuleNote) -> Self {
         Self { needs: Some(needs), ..self }
     }
 }
@@ -199,8 +199,8 @@ impl<'a> RuleInputs<'a> {
 
 /// Size of a base, or its upper bound.
 pub(crate) struct SizeBound {
-    pub most: f64,
-    pub is_known: bool,
+    pub(crate) most: f64,
+    pub(crate) is_known: bool,
 }
 
 /// Knowledge of the fines of a base.
@@ -259,19 +259,19 @@ pub(super) fn judged(rule: &FilterRule, inputs: &RuleInputs) -> Option<Judged> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct BaseSoil {
     /// The soil after regrading, or the soil itself without regrading.
-    pub gradation: Gradation,
+    pub(crate) gradation: Gradation,
     /// Size on which the soil was regraded (mm).
-    pub regraded_at_mm: Option<f64>,
+    pub(crate) regraded_at_mm: Option<f64>,
     /// Reason for regrading or not.
-    pub why: RegradeReason,
+    pub(crate) why: RegradeReason,
     /// Size (mm) below which practice uses the soil, if no sieve gives the sizes there; it is their upper
     /// bound.
-    pub hidden_below_mm: Option<f64>,
+    pub(crate) hidden_below_mm: Option<f64>,
     /// Percent finer than 0.075 mm after regrading; `None` if the finest sieve is coarser and leaves a tail.
-    pub fines_percent: Option<f64>,
+    pub(crate) fines_percent: Option<f64>,
     /// NRCS category after regrading, 1 to 4: more than 85 %, 40 to 85 %, 15 to 40 %, less than 15 %
     /// fines; `None` if the fines are not known closely enough.
-    pub category: Option<u8>,
+    pub(crate) category: Option<u8>,
 }
 
 impl BaseSoil {

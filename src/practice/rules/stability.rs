@@ -11,7 +11,7 @@ const KEZDI: f64 = 4.0;
 pub(super) const MOST_HIDDEN_PERCENT: f64 = 5.0;
 
 /// Kezdi's ratio over the range of splits that is judged.
-pub fn kezdi(inputs: &RuleInputs) -> Judged {
+pub(crate) fn kezdi(inputs: &RuleInputs) -> Judged {
     let filter = inputs.filter;
     let [from, to] = KEZDI_RANGE.map(|of_fine_d85| of_fine_d85 / 0.85);
     let tail = 100.0 * filter.pan_fraction();
@@ -32,7 +32,7 @@ pub fn kezdi(inputs: &RuleInputs) -> Judged {
 }
 
 /// Index of the shape curve: Kenney and Lau's, or Li and Fannin's, which combines theirs and Kezdi's.
-pub fn shape(inputs: &RuleInputs, index_of: fn(&Gradation) -> Option<ShapeIndex>) -> Judged {
+pub(crate) fn shape(inputs: &RuleInputs, index_of: fn(&Gradation) -> Option<ShapeIndex>) -> Judged {
     let (filter, shape) = (inputs.filter, index_of(inputs.filter));
     let most = filter.loose_percent().unwrap_or(f64::NAN);
     let at_f = |shape: ShapeIndex| match 100.0 * filter.pan_fraction() {
@@ -72,7 +72,7 @@ fn is_uniform(filter: &Gradation) -> bool {
 /// Burenkova's range of uniformity, for soils like those on which Wan and Fell assessed it. They found no
 /// clear boundary, and uniform stones without fines to lose lie below it. Above it her own zone III is
 /// also suffusive; Wan and Fell tested no soil there and expect such soils to be stable.
-pub fn burenkova(inputs: &RuleInputs) -> Judged {
+pub(crate) fn burenkova(inputs: &RuleInputs) -> Judged {
     let filter = inputs.filter;
     if !inputs.filter_is_measured {
         return Judged::default().lacking(RuleNote::NeedsCurveOfFilter);
@@ -97,7 +97,7 @@ pub fn burenkova(inputs: &RuleInputs) -> Judged {
 }
 
 /// Wan and Fell's probability of instability, given as contours without a limit.
-pub fn wan_fell(inputs: &RuleInputs) -> Judged {
+pub(crate) fn wan_fell(inputs: &RuleInputs) -> Judged {
     let filter = inputs.filter;
     if !inputs.filter_is_measured || inputs.scale_free {
         return Judged::default().lacking(RuleNote::NeedsCurveOfFilter);

@@ -29,7 +29,8 @@ pub enum Verdict {
 
 impl Verdict {
     /// Every class, in the order of `replicate_verdicts`.
-    pub const ALL: [Verdict; 4] = [Verdict::None, Verdict::Some, Verdict::Continuing, Verdict::Undecided];
+    pub(crate) const ALL: [Verdict; 4] =
+        [Verdict::None, Verdict::Some, Verdict::Continuing, Verdict::Undecided];
 
     /// Name in `outcome.json` and in every table.
     pub fn words(self) -> &'static str {
@@ -190,20 +191,20 @@ pub struct OfThickness {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CurveRange {
     /// Class by the curve itself.
-    pub verdict: Verdict,
+    pub(crate) verdict: Verdict,
     /// Other curves of the range: its ends.
-    pub ends: Vec<CurveEnd>,
+    pub(crate) ends: Vec<CurveEnd>,
     /// True if the worst class of the range is the verdict, as for a filter walked both loose and dense;
     /// otherwise ends that differ leave it undecided.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub worst_counts: bool,
+    pub(crate) worst_counts: bool,
     /// Worst class that the walks of the range allow at the confidence level of the verdict, if one was
     /// requested; otherwise it follows from the 95 % intervals.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub could_be: Option<Verdict>,
+    pub(crate) could_be: Option<Verdict>,
     /// Minimum and maximum eroded mass fraction over the whole range, one pair for each run: the ends of
     /// the 95 % intervals, or the means of a single replicate.
-    pub eroded_mass_fraction: Vec<[f64; 2]>,
+    pub(crate) eroded_mass_fraction: Vec<[f64; 2]>,
 }
 
 /// Replicates walked with another constriction curve; all other inputs and all random numbers are equal.

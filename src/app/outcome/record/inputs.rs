@@ -159,34 +159,34 @@ pub struct NetworkRecord {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct NetworkSummary {
     /// `lattice`, `graph` or `file`.
-    pub kind: String,
+    pub(crate) kind: String,
     /// Exit rule of the particles: `flux`, `area-along-flow` or `height`.
-    pub exit: String,
+    pub(crate) exit: String,
     /// Number of voids.
-    pub voids: u64,
+    pub(crate) voids: u64,
     /// Number of constrictions, each counted once.
-    pub constrictions: u64,
+    pub(crate) constrictions: u64,
     /// Number of inlets from the reservoir.
-    pub inlets: u64,
+    pub(crate) inlets: u64,
     /// Number of equal copies of a packing, one behind the other; `None` for a lattice.
-    pub copies: Option<u64>,
+    pub(crate) copies: Option<u64>,
     /// Number of layers of voids.
-    pub layers: u64,
+    pub(crate) layers: u64,
     /// Modelled filter thickness (mm).
-    pub thickness_mm: Option<f64>,
+    pub(crate) thickness_mm: Option<f64>,
     /// Permeability of the clean filter (m2); `None` without water or if lengths have no unit.
-    pub k0_m2: Option<f64>,
+    pub(crate) k0_m2: Option<f64>,
     /// Hydraulic conductivity of the clean filter for water at 10 C (m/s); `None` as for `k0_m2`.
-    pub k0_m_per_s: Option<f64>,
+    pub(crate) k0_m_per_s: Option<f64>,
     /// Fraction of the inflow that may close before the flow is solved again (`walk.flow_tolerance`);
     /// `None` without water.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub flow_tolerance: Option<f64>,
+    pub(crate) flow_tolerance: Option<f64>,
     /// Maximum difference in eroded mass (percentage points) between such walks and walks of tolerance 0,
     /// on eleven filters (graph.md); `None` if it was not measured: with arches, with openings, with
     /// exits by area, and for tolerances above 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub flow_error_pp: Option<f64>,
+    pub(crate) flow_error_pp: Option<f64>,
 }
 
 /// Origin of a network.
@@ -219,18 +219,18 @@ pub struct Ratios {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct BaseSize {
     /// D85 by mass.
-    pub d85_mm: f64,
+    pub(crate) d85_mm: f64,
     /// Size on which the base was regraded; `None` if it is as sampled.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub regraded_at_mm: Option<f64>,
+    pub(crate) regraded_at_mm: Option<f64>,
     /// D85 before regrading, if the base was regraded and the sieves give it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub as_sampled_mm: Option<f64>,
+    pub(crate) as_sampled_mm: Option<f64>,
 }
 
 impl BaseRecord {
     /// D85, and the base that it belongs to.
-    pub fn size(&self) -> BaseSize {
+    pub(crate) fn size(&self) -> BaseSize {
         BaseSize {
             d85_mm: self.d85_mm,
             regraded_at_mm: self.regraded_at_mm,
@@ -241,7 +241,7 @@ impl BaseRecord {
 
 impl Inputs {
     /// D85 of the base, and the base that it belongs to; `None` if sizes have no unit.
-    pub fn base_size(&self) -> Option<BaseSize> {
+    pub(crate) fn base_size(&self) -> Option<BaseSize> {
         (!self.scale_free).then(|| self.base.size())
     }
 }

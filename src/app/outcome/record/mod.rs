@@ -16,16 +16,18 @@ mod answer;
 mod inputs;
 
 pub use super::left_out::{LeftOut, ModelLimit};
-pub use super::number_rows::{
+pub(crate) use super::number_rows::{
     BlockedRow, ConstrictionRow, FlowRow, LayerRow, RetainedRow, SeriesRow, SizeRow, VoidRow,
 };
-pub use answer::{
-    Classed, CurveEnd, CurveRange, Model, OfThickness, Sensitivity, ShortOf, Statistic, Stopping, Verdict,
-};
+pub(crate) use answer::ShortOf;
+pub use answer::{Classed, Model, OfThickness, Sensitivity, Stopping};
+pub use answer::{CurveEnd, CurveRange};
+pub use answer::{Statistic, Verdict};
+pub use inputs::SampledBase;
 pub use inputs::{
-    BaseRecord, BaseSize, ConstrictionsRecord, CurveOrigin, FilterRecord, Inputs, NetworkKind, NetworkRecord,
-    NetworkSummary, Ratios, SampledBase,
+    BaseRecord, ConstrictionsRecord, CurveOrigin, FilterRecord, Inputs, NetworkKind, NetworkRecord, Ratios,
 };
+pub(crate) use inputs::{BaseSize, NetworkSummary};
 
 use super::left_out::Modelled;
 use serde::{Deserialize, Serialize};
@@ -136,7 +138,7 @@ impl Outcome {
     }
 
     /// Features of its walk.
-    pub fn modelled(&self) -> Modelled {
+    pub(crate) fn modelled(&self) -> Modelled {
         let with_flow =
             |exit: &str| ExitRule::ALL.iter().any(|rule| rule.name() == exit && rule.needs_flow());
         Modelled {
@@ -152,16 +154,16 @@ impl Outcome {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct ArchingRecord {
     /// Name of the law in a scene.
-    pub law: String,
+    pub(crate) law: String,
     /// Publication of the law.
-    pub source: String,
+    pub(crate) source: String,
     /// Parts of the source that were read, and assumptions.
-    pub basis: String,
+    pub(crate) basis: String,
     /// Range in which arches form: size of the constriction over size of the particle.
-    pub range_of_ratio: [f64; 2],
+    pub(crate) range_of_ratio: [f64; 2],
     /// Solids fraction of the suspension that enters the filter, volume of particles over volume of
     /// suspension; `None` if the law does not depend on it.
-    pub concentration: Option<f64>,
+    pub(crate) concentration: Option<f64>,
 }
 
 /// New network, walked once or twice.
@@ -334,7 +336,7 @@ pub struct InfiltrationSize {
 }
 
 /// Commit that this program was built from, if known.
-pub fn commit() -> Option<String> {
+pub(crate) fn commit() -> Option<String> {
     option_env!("VOIDWALK_COMMIT").map(String::from)
 }
 
@@ -369,59 +371,59 @@ pub struct Manifest {
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct NetworkWalkRecord {
     /// Class supported by all replicates together.
-    pub verdict: Verdict,
+    pub(crate) verdict: Verdict,
     /// Notes in the order of every face.
-    pub notes: Vec<Note>,
+    pub(crate) notes: Vec<Note>,
     /// Seed given by the user.
-    pub seed: u64,
+    pub(crate) seed: u64,
     /// Base particles inserted in each run.
-    pub n_base: u64,
+    pub(crate) n_base: u64,
     /// Base particles by Eq. (2), if the filter and its grains per void are known.
-    pub n_base_eq2: Option<u64>,
+    pub(crate) n_base_eq2: Option<u64>,
     /// Filter grains per void, if known.
-    pub grains_per_void: Option<f64>,
+    pub(crate) grains_per_void: Option<f64>,
     /// Mass of base over mass of filter, of Eq. (2).
-    pub mass_ratio: f64,
+    pub(crate) mass_ratio: f64,
     /// Number of equal increments in which they were inserted.
-    pub increments: u64,
+    pub(crate) increments: u64,
     /// Name of the engine.
-    pub engine: String,
+    pub(crate) engine: String,
     /// Results of each replicate, in order.
-    pub replicates: Vec<Replicate>,
+    pub(crate) replicates: Vec<Replicate>,
     /// Statistics of each run over the replicates, in order.
-    pub summary: Vec<RunSummary>,
+    pub(crate) summary: Vec<RunSummary>,
     /// Eroded mass fraction that divides the classes: 0.075.
-    pub threshold: f64,
+    pub(crate) threshold: f64,
     /// Parts of the program that this walk did not need.
-    pub left_out: Vec<LeftOut>,
+    pub(crate) left_out: Vec<LeftOut>,
     /// Processes that the model omits.
-    pub model_leaves_out: Vec<ModelLimit>,
+    pub(crate) model_leaves_out: Vec<ModelLimit>,
     /// The base.
-    pub base: BaseRecord,
+    pub(crate) base: BaseRecord,
     /// D15 of the filter by mass (mm), if the filter is known.
-    pub d15f_mm: Option<f64>,
+    pub(crate) d15f_mm: Option<f64>,
     /// Network that was walked.
-    pub network: GivenNetwork,
+    pub(crate) network: GivenNetwork,
     /// Version of the program.
-    pub version: String,
+    pub(crate) version: String,
 }
 
 /// Networks that were given; the numbers are those of the first.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct GivenNetwork {
+pub(crate) struct GivenNetwork {
     /// Number of networks, which the replicates take in turn.
-    pub networks: u64,
+    pub(crate) networks: u64,
     /// Exit rule of the particles.
-    pub exit: String,
+    pub(crate) exit: String,
     /// Number of voids.
-    pub voids: u64,
+    pub(crate) voids: u64,
     /// Number of constrictions, each counted once.
-    pub constrictions: u64,
+    pub(crate) constrictions: u64,
     /// Number of layers of voids.
-    pub layers: u64,
+    pub(crate) layers: u64,
     /// Rows of (diameter, percent smaller by number) of its open constrictions, diameters ascending (mm).
-    pub diameters: Vec<[f64; 2]>,
+    pub(crate) diameters: Vec<[f64; 2]>,
 }
 
 /// Fields that are not results.

@@ -2,23 +2,23 @@
 
 /// Spacing of values along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scale {
+pub(crate) enum Scale {
     Linear,
     Log,
 }
 
 /// Grid line with its label; without text it is a minor line.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tick {
-    pub at: f64,
+pub(crate) struct Tick {
+    pub(crate) at: f64,
     /// Label, one entry per line.
-    pub text: Vec<String>,
+    pub(crate) text: Vec<String>,
     /// Rank of the label: if two labels overlap, the one of lower rank is kept.
-    pub rank: u8,
+    pub(crate) rank: u8,
 }
 
 impl Tick {
-    pub fn new(at: f64, text: &[&str]) -> Tick {
+    pub(crate) fn new(at: f64, text: &[&str]) -> Tick {
         Tick { at, text: text.iter().map(|line| (*line).to_owned()).collect(), rank: 0 }
     }
 }
@@ -26,19 +26,19 @@ impl Tick {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// Measured quantity, with the unit.
-    pub label: String,
-    pub scale: Scale,
-    pub low: f64,
-    pub high: f64,
+    pub(crate) label: String,
+    pub(crate) scale: Scale,
+    pub(crate) low: f64,
+    pub(crate) high: f64,
     /// Grid lines, including minor ones.
-    pub ticks: Vec<Tick>,
+    pub(crate) ticks: Vec<Tick>,
     /// True if values increase downwards (depth) or, on a horizontal axis, to the left (coarse sizes first).
-    pub downward: bool,
+    pub(crate) downward: bool,
 }
 
 impl Axis {
     /// Linear axis from `low` to `high`, widened to half steps of 1, 2 or 5.
-    pub fn linear(label: &str, low: f64, high: f64) -> Axis {
+    pub(crate) fn linear(label: &str, low: f64, high: f64) -> Axis {
         let (low, high) = if high > low { (low, high) } else { (low, low + 1.0) };
         let step = tidy_step((high - low) / 6.0);
         let (first, last) = ((2.0 * low / step + 1e-9).floor(), (2.0 * high / step - 1e-9).ceil());
@@ -54,7 +54,7 @@ impl Axis {
     }
 
     /// Axis of percent from 0 to 100, with a line every 10.
-    pub fn percent(label: &str) -> Axis {
+    pub(crate) fn percent(label: &str) -> Axis {
         let ticks = (0..=10u8)
             .map(|ten| Tick {
                 at: f64::from(ten) * 10.0,
@@ -98,25 +98,25 @@ impl Axis {
         Axis { label: label.to_owned(), scale: Scale::Log, low, high, ticks, downward: false }
     }
 
-    pub fn with_ticks(mut self, ticks: Vec<Tick>) -> Axis {
+    pub(crate) fn with_ticks(mut self, ticks: Vec<Tick>) -> Axis {
         self.ticks = ticks;
         self
     }
 
-    pub fn downward(mut self) -> Axis {
+    pub(crate) fn downward(mut self) -> Axis {
         self.downward = true;
         self
     }
 
     /// Limits the axis to exactly `low` and `high`; ticks beyond them are removed.
-    pub fn within(mut self, low: f64, high: f64) -> Axis {
+    pub(crate) fn within(mut self, low: f64, high: f64) -> Axis {
         (self.low, self.high) = (low, high);
         self.ticks.retain(|tick| (low..=high).contains(&tick.at));
         self
     }
 
     /// Downward axis of named rows, counted from 1.
-    pub fn rows(names: impl IntoIterator<Item = String>) -> Axis {
+    pub(crate) fn rows(names: impl IntoIterator<Item = String>) -> Axis {
         let ticks: Vec<Tick> =
             (1..).zip(names).map(|(row, name): (u32, _)| Tick::new(f64::from(row), &[&name])).collect();
         let high = ticks.len() as f64 + 0.7;
@@ -124,7 +124,7 @@ impl Axis {
     }
 
     /// Position of a value: 0 at `low`, 1 at `high`; `None` if the scale cannot show the value.
-    pub fn position(&self, value: f64) -> Option<f64> {
+    pub(crate) fn position(&self, value: f64) -> Option<f64> {
         let position = match self.scale {
             Scale::Linear => (value - self.low) / (self.high - self.low),
             Scale::Log if value > 0.0 => libm::log10(value / self.low) / libm::log10(self.high / self.low),
@@ -135,7 +135,7 @@ impl Axis {
 }
 
 /// Minimum and maximum of the positive values; 0.1 and 1 if there are none.
-pub fn positive_range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+pub(crate) fn positive_range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let positive = values.filter(|v| *v > 0.0 && v.is_finite());
     let (low, high) =
         positive.fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), v| (low.min(v), high.max(v)));

@@ -10,7 +10,7 @@ const MOST: usize = 16;
 impl Figure {
     /// Names of the curves that a reader can hide, in the order of their classes `curve-1` ...; empty for
     /// fewer than two.
-    pub fn curves(&self) -> Vec<String> {
+    pub(crate) fn curves(&self) -> Vec<String> {
         let mut names = Vec::new();
         for name in self.marks.iter().filter_map(|mark| curve_of(self, mark)) {
             if !names.contains(&name) {

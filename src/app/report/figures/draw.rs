@@ -16,7 +16,7 @@ impl Figure {
     }
 
     /// Draws the figure as an element of a page; `id` must differ from the id of any other element there.
-    pub fn inline(&self, id: &str, size: Size) -> String {
+    pub(crate) fn inline(&self, id: &str, size: Size) -> String {
         draw(self, size, id, "")
     }
 }

@@ -4,7 +4,7 @@ use super::axis::Axis;
 
 /// Size of a figure; text is equally large in all sizes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Size {
+pub(crate) enum Size {
     /// For a page or a file: 720 pixels wide unless the figure says otherwise.
     Wide,
     /// For a telephone: 358 pixels wide unless the figure says otherwise.
@@ -52,30 +52,30 @@ impl Figure {
     }
 
     /// Sets other widths and heights in pixels.
-    pub fn sizes(mut self, wide: (f64, f64), narrow: (f64, f64)) -> Figure {
+    pub(crate) fn sizes(mut self, wide: (f64, f64), narrow: (f64, f64)) -> Figure {
         (self.wide, self.narrow) = (wide, narrow);
         self
     }
 
     /// Sets width and height in pixels on the first printed sheet, beside a table.
-    pub fn sheet(mut self, size: (f64, f64)) -> Figure {
+    pub(crate) fn sheet(mut self, size: (f64, f64)) -> Figure {
         self.sheet = Some(size);
         self
     }
 
     /// True if it has a size of its own on the first printed sheet.
-    pub fn has_sheet(&self) -> bool {
+    pub(crate) fn has_sheet(&self) -> bool {
         self.sheet.is_some()
     }
 
     /// Makes the frame a square, as large as possible: equal axes then have equal scales.
-    pub fn square(mut self) -> Figure {
+    pub(crate) fn square(mut self) -> Figure {
         self.square = true;
         self
     }
 
     /// Adds US sieve numbers and the limits of fines, sand and gravel above the frame: x is a size in mm.
-    pub fn sieves(mut self) -> Figure {
+    pub(crate) fn sieves(mut self) -> Figure {
         self.sieves = true;
         self
     }
@@ -91,14 +91,14 @@ impl Figure {
     }
 
     /// Draws symbols of one kind; the first carries the name of all.
-    pub fn add_points(&mut self, name: &str, points: impl IntoIterator<Item = Point>) {
+    pub(crate) fn add_points(&mut self, name: &str, points: impl IntoIterator<Item = Point>) {
         for (index, point) in points.into_iter().enumerate() {
             self.add(if index == 0 { point.label(name) } else { point });
         }
     }
 
     /// True if it is taller than wide, so that it needs a printed page for itself.
-    pub fn is_tall(&self) -> bool {
+    pub(crate) fn is_tall(&self) -> bool {
         self.wide.1 > 1.1 * self.wide.0
     }
 }
@@ -130,12 +130,12 @@ impl Line {
     }
 
     /// Solid line through rows of records: x, y.
-    pub fn of_rows(rows: &[[f64; 2]], colour: Colour) -> Line {
+    pub(crate) fn of_rows(rows: &[[f64; 2]], colour: Colour) -> Line {
         Line::new(rows.iter().map(|&[x, y]| (x, y)).collect(), colour)
     }
 
     /// Sets the width in pixels.
-    pub fn width(mut self, width: f64) -> Line {
+    pub(crate) fn width(mut self, width: f64) -> Line {
         self.width = width;
         self
     }
@@ -146,13 +146,13 @@ impl Line {
     }
 
     /// Sets the opacity: 1 is opaque.
-    pub fn opacity(mut self, opacity: f64) -> Line {
+    pub(crate) fn opacity(mut self, opacity: f64) -> Line {
         self.opacity = opacity;
         self
     }
 
     /// Marks the line as a limit, which a reader of a page cannot hide.
-    pub fn stays(mut self) -> Line {
+    pub(crate) fn stays(mut self) -> Line {
         self.stays = true;
         self
     }
@@ -167,7 +167,7 @@ pub struct Area {
 }
 
 impl Area {
-    pub fn new(outline: Vec<(f64, f64)>, colour: Colour, opacity: f64) -> Area {
+    pub(crate) fn new(outline: Vec<(f64, f64)>, colour: Colour, opacity: f64) -> Area {
         Area { outline, colour, opacity, label: None }
     }
 }
@@ -199,25 +199,25 @@ impl Point {
         Point { at: (x, y), colour, shape, filled: true, x_interval, y_interval, drop: false, label: None }
     }
 
-    pub fn hollow(mut self) -> Point {
+    pub(crate) fn hollow(mut self) -> Point {
         self.filled = false;
         self
     }
 
     /// Adds a bar along x from low to high.
-    pub fn x_interval(mut self, interval: Option<(f64, f64)>) -> Point {
+    pub(crate) fn x_interval(mut self, interval: Option<(f64, f64)>) -> Point {
         self.x_interval = interval;
         self
     }
 
     /// Adds a bar along y from low to high.
-    pub fn y_interval(mut self, interval: Option<(f64, f64)>) -> Point {
+    pub(crate) fn y_interval(mut self, interval: Option<(f64, f64)>) -> Point {
         self.y_interval = interval;
         self
     }
 
     /// Adds a dotted line down to the x axis, where its value can be read.
-    pub fn dropped(mut self) -> Point {
+    pub(crate) fn dropped(mut self) -> Point {
         self.drop = true;
         self
     }
@@ -225,7 +225,7 @@ impl Point {
 
 /// Axis that a [`Rule`] crosses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Across {
+pub(crate) enum Across {
     /// At one x, vertical.
     X,
     /// At one y, horizontal.
@@ -243,11 +243,11 @@ pub struct Rule {
 }
 
 impl Rule {
-    pub fn new(across: Across, at: f64, colour: Colour) -> Rule {
+    pub(crate) fn new(across: Across, at: f64, colour: Colour) -> Rule {
         Rule { across, at, colour, dash: Dash::Solid, label: None }
     }
 
-    pub fn dash(mut self, dash: Dash) -> Rule {
+    pub(crate) fn dash(mut self, dash: Dash) -> Rule {
         self.dash = dash;
         self
     }
@@ -256,9 +256,9 @@ impl Rule {
 /// Circle to scale; its diameter is a length on the x axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disc {
-    pub centre: (f64, f64),
-    pub diameter: f64,
-    pub colour: Colour,
+    pub(crate) centre: (f64, f64),
+    pub(crate) diameter: f64,
+    pub(crate) colour: Colour,
 }
 
 /// Mark that is drawn between the axes.
@@ -299,22 +299,22 @@ labels!(Line, Area, Point, Rule);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Colour {
     /// For lines, areas and symbols.
-    pub line: &'static str,
+    pub(crate) line: &'static str,
     /// For text, with a contrast of at least 4.5 on white.
-    pub text: &'static str,
+    pub(crate) text: &'static str,
 }
 
 // Colours by Okabe and Ito.
-pub const BLACK: Colour = Colour { line: "#000000", text: "#000000" };
+pub(crate) const BLACK: Colour = Colour { line: "#000000", text: "#000000" };
 pub const BLUE: Colour = Colour { line: "#0072B2", text: "#00598C" };
 pub const GREEN: Colour = Colour { line: "#009E73", text: "#00684C" };
-pub const ORANGE: Colour = Colour { line: "#E69F00", text: "#855C00" };
+pub(crate) const ORANGE: Colour = Colour { line: "#E69F00", text: "#855C00" };
 pub const VERMILLION: Colour = Colour { line: "#D55E00", text: "#A34700" };
-pub const PURPLE: Colour = Colour { line: "#CC79A7", text: "#8E3F6C" };
-pub const GREY: Colour = Colour { line: "#767676", text: "#555555" };
+pub(crate) const PURPLE: Colour = Colour { line: "#CC79A7", text: "#8E3F6C" };
+pub(crate) const GREY: Colour = Colour { line: "#767676", text: "#555555" };
 
 /// Colour from a ramp of light to dark blue, for ordered curves.
-pub fn ramp(index: usize, count: usize) -> Colour {
+pub(crate) fn ramp(index: usize, count: usize) -> Colour {
     const BLUES: [Colour; 6] = [
         Colour { line: "#8CC5E3", text: "#1F6F9C" },
         Colour { line: "#5BA7D1", text: "#1F6F9C" },

@@ -13,12 +13,11 @@ mod figure;
 mod frame;
 mod svg;
 
-pub use axis::{Axis, Tick, positive_range};
-pub use figure::{
-    Across, Area, BLACK, BLUE, Colour, Dash, Disc, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Point, Rule,
-    Shape, Size, VERMILLION, ramp,
-};
-pub use voidwalk_core::text::shorten;
+pub use axis::Axis;
+pub(crate) use axis::{Tick, positive_range};
+pub(crate) use figure::{Across, Area, BLACK, Disc, GREY, ORANGE, PURPLE, Rule, Size, ramp};
+pub use figure::{BLUE, Colour, Dash, Figure, GREEN, Line, Point, Shape, VERMILLION};
+pub(crate) use voidwalk_core::text::shorten;
 
 #[cfg(test)]
 mod tests {

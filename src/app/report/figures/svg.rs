@@ -27,7 +27,7 @@ impl Anchor {
 }
 
 /// Characters in a form that XML can hold: markup escaped, hidden ones replaced.
-pub fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for character in text.chars() {
         match character {
@@ -196,10 +196,10 @@ pub(super) const GAP: f64 = 9.0;
 /// A rectangle: left, top, right, bottom, in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rect {
-    pub left: f64,
-    pub top: f64,
-    pub right: f64,
-    pub bottom: f64,
+    pub(crate) left: f64,
+    pub(crate) top: f64,
+    pub(crate) right: f64,
+    pub(crate) bottom: f64,
 }
 
 impl Rect {
@@ -233,11 +233,11 @@ impl Rect {
 
 /// Drawn points, and the space that remains for labels.
 pub(super) struct Canvas {
-    pub frame: Rect,
+    pub(crate) frame: Rect,
     /// Points on the drawn marks, a few pixels apart, each with the index of its mark.
-    pub ink: Vec<((f64, f64), usize)>,
+    pub(crate) ink: Vec<((f64, f64), usize)>,
     /// Labels and symbols already placed.
-    pub taken: Vec<Rect>,
+    pub(crate) taken: Vec<Rect>,
 }
 
 impl Canvas {

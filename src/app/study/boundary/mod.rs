@@ -46,7 +46,8 @@ use row::Row;
 use search::{Done, Found, Hint, METHOD};
 use voidwalk_core::schema::setting_name;
 
-pub use plan::{BoundaryOptions, Thickness, ThicknessList};
+pub use plan::BoundaryOptions;
+pub(crate) use plan::{Thickness, ThicknessList};
 
 /// Finds the boundaries and writes `boundary.csv` and, last, `boundary.json`.
 ///
@@ -58,7 +59,7 @@ pub fn run(options: &BoundaryOptions, callbacks: &Callbacks) -> Result<Boundarie
 }
 
 /// Reports all mistakes that [`run`] would find before any work; claims and writes nothing.
-pub fn check(options: &BoundaryOptions) -> Result<(), RunError> {
+pub(crate) fn check(options: &BoundaryOptions) -> Result<(), RunError> {
     on_threads(options.prepare.threads, || drafts(options, BRACKET).map(drop))
 }
 

@@ -127,7 +127,7 @@ impl std::str::FromStr for Thickness {
 
 /// Thicknesses separated by commas.
 #[derive(Clone, Debug, PartialEq)]
-pub struct ThicknessList(pub Vec<Thickness>);
+pub(crate) struct ThicknessList(pub(crate) Vec<Thickness>);
 
 impl std::str::FromStr for ThicknessList {
     type Err = String;

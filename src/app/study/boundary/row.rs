@@ -28,27 +28,27 @@ const USUAL_RATIO: f64 = 5.0;
 /// One density and thickness with its packed filter.
 #[derive(Clone)]
 pub(super) struct Row {
-    pub density: String,
-    pub thickness: Thickness,
+    pub(crate) density: String,
+    pub(crate) thickness: Thickness,
     /// The filter and its network, with some base or other.
-    pub case: Case,
-    pub stated: StatedBase,
+    pub(crate) case: Case,
+    pub(crate) stated: StatedBase,
     /// The base in units of its D85.
-    pub base: Gradation,
+    pub(crate) base: Gradation,
     /// D85B (mm), if the base has a size of its own.
-    pub d85_mm: Option<f64>,
+    pub(crate) d85_mm: Option<f64>,
     /// True if the filter has a size of its own.
-    pub filter_has_size: bool,
-    pub limits: ResourceLimits,
+    pub(crate) filter_has_size: bool,
+    pub(crate) limits: ResourceLimits,
     /// Density with this row as an end of the range of its constriction curve.
-    pub end_of: Option<String>,
+    pub(crate) end_of: Option<String>,
     /// The densities of the ends of its own range.
-    pub ends: Vec<String>,
+    pub(crate) ends: Vec<String>,
 }
 
 impl Row {
     /// Copies of this row for the ends of the range of its constriction curve.
-    pub fn at_curve_ends(&self) -> Vec<Self> {
+    pub(crate) fn at_curve_ends(&self) -> Vec<Self> {
         let case = &self.case;
         let names_itself = case.filter.guessed_density.is_some() || case.filter.library.is_some();
         let at_end = |end: &OtherCurve| {
@@ -65,24 +65,24 @@ impl Row {
     }
 
     /// D15F in the case's own unit.
-    pub fn d15f(&self) -> f64 {
+    pub(crate) fn d15f(&self) -> f64 {
         self.case.filter.gradation.d(15.0).unwrap_or(f64::NAN)
     }
 
     /// Number of networks to search: 0 for an unknown density, whose ends are searched instead.
-    pub fn networks(&self) -> u64 {
+    pub(crate) fn networks(&self) -> u64 {
         let is_unknown = self.case.scene.filter.library == Some(LibraryDensity::Unknown);
         let is_between_ends = is_unknown && self.end_of.is_none() && !self.ends.is_empty();
         if is_between_ends { 0 } else { self.case.scene.walk.replicates }
     }
 
     /// Size of the filter at a ratio, as a multiple of its size in the case, if the base has a size.
-    pub fn factor(&self, ratio: f64) -> Option<f64> {
+    pub(crate) fn factor(&self, ratio: f64) -> Option<f64> {
         Some(ratio * self.d85_mm? / self.d15f())
     }
 
     /// Layers at a ratio, if they depend on the ratio.
-    pub fn layers(&self, ratio: f64) -> Option<u64> {
+    pub(crate) fn layers(&self, ratio: f64) -> Option<u64> {
         let (mm, layer) = self.thickness_and_layer(ratio)?;
         Some((mm / layer).round().clamp(1.0, f64::from(u32::MAX)) as u64)
     }
@@ -95,19 +95,19 @@ impl Row {
     }
 
     /// Thickness (mm) of the single layer that is walked at a ratio if less than half a layer was asked for.
-    pub fn thicker_than_asked(&self, ratio: f64) -> Option<f64> {
+    pub(crate) fn thicker_than_asked(&self, ratio: f64) -> Option<f64> {
         let (mm, layer) = self.thickness_and_layer(ratio)?;
         ((mm / layer).round() < 1.0).then_some(layer)
     }
 
     /// Note on a layer that is thicker than the thickness asked for.
-    pub fn thicker(&self, ratio: f64) -> Option<Note> {
+    pub(crate) fn thicker(&self, ratio: f64) -> Option<Note> {
         let layer_mm = self.thicker_than_asked(ratio)?;
         Some(Note::LayerThicker { ratio, layer_mm, thickness: self.thickness.to_string() })
     }
 
     /// The case at a ratio.
-    pub fn at(&self, ratio: f64) -> Result<Case, CaseError> {
+    pub(crate) fn at(&self, ratio: f64) -> Result<Case, CaseError> {
         let base = self.base.scaled(self.d15f() / ratio)?;
         let mut case = self.case.with_base(base, self.layers(ratio))?;
         case.place(&self.limits, rayon::current_num_threads() as u64, std::path::Path::new("."))?;
@@ -115,7 +115,7 @@ impl Row {
     }
 
     /// Refuses too many layers, or more memory than there is, at a ratio near the start of the search.
-    pub fn check_room(&self, bracket: [f64; 2]) -> Result<(), RunError> {
+    pub(crate) fn check_room(&self, bracket: [f64; 2]) -> Result<(), RunError> {
         let ratio = self.start().clamp(bracket[0], bracket[1]);
         match self.at(ratio) {
             Err(error) if !is_of_base(&error) => Err(RunError::Refused(format!(
@@ -140,20 +140,20 @@ impl Row {
     }
 
     /// Boundary for a lone particle of one size, by the closed form: the start of the search.
-    pub fn start(&self) -> f64 {
+    pub(crate) fn start(&self) -> f64 {
         let layers = self.layers(USUAL_RATIO).unwrap_or(self.case.network.layers).max(1);
         self.d15f() / Passage::new(&self.case.filter.curve).coarsest_through(layers, 1.0 - THRESHOLD)
     }
 
     /// Start nodes, which decide the number of ratios to try: more if walks are quick. With flow, or for a
     /// network that is not a lattice, the number of the usual lattice.
-    pub fn across(&self) -> u64 {
+    pub(crate) fn across(&self) -> u64 {
         if self.case.scene.is_lattice_by_area() { self.case.network.start_nodes } else { USUAL_ACROSS }
     }
 
     /// Searches the boundary of the first run of network `number`, counted from 1. Errors: a walk that fails
     /// or was stopped.
-    pub fn begun<'a>(
+    pub(crate) fn begun<'a>(
         &'a self,
         number: u64,
         (bracket, hint): ([f64; 2], Hint),
@@ -163,7 +163,7 @@ impl Row {
     }
 
     /// Result for the first network if it holds this ratio. Errors: a walk that fails or was stopped.
-    pub fn holding(
+    pub(crate) fn holding(
         &self,
         ratio: f64,
         bracket: [f64; 2],
@@ -280,15 +280,15 @@ fn of_amount(row: &Row) -> Option<Note> {
 /// Row at one ratio, with the sizes that it has there.
 pub(super) struct Judged {
     /// Case with the sizes of filter and base at the ratio; without a unit, sizes are in units of D85B.
-    pub case: Case,
+    pub(crate) case: Case,
     d85_mm: Option<f64>,
-    pub base_name: String,
+    pub(crate) base_name: String,
     /// Thickness of the real filter (mm), if the case has no size in mm to compare it with.
     real_thickness: Option<f64>,
 }
 
 impl Judged {
-    pub fn new(row: &Row, ratio: f64) -> Result<Self, RunError> {
+    pub(crate) fn new(row: &Row, ratio: f64) -> Result<Self, RunError> {
         let (has_size, d85) = (row.d85_mm.is_some(), row.d85_mm.unwrap_or(1.0));
         let mut stated = row.stated.clone();
         if !has_size {
@@ -325,7 +325,7 @@ impl Judged {
     }
 
     /// Notes on the model for a reader, including `others`.
-    pub fn notes(&self, row: &Row, others: Vec<Note>) -> Vec<Note> {
+    pub(crate) fn notes(&self, row: &Row, others: Vec<Note>) -> Vec<Note> {
         // Notes on the amount are given below for every ratio.
         let of_one = self.case.too_little_base().filter(|_| of_amount(row).is_some());
         let coarse =

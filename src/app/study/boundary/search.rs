@@ -55,7 +55,7 @@ pub(super) enum Ended {
 
 impl Ended {
     /// Note for this many networks.
-    pub fn note(&self, networks: u64) -> Note {
+    pub(crate) fn note(&self, networks: u64) -> Note {
         match self {
             Self::Erodes(ratio) => Note::ErodesToEnd { ratio: *ratio, networks },
             Self::ErodesTo(ratio, reason) => {
@@ -73,28 +73,28 @@ pub(super) type Beside = (Beyond, Ended);
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Found {
     /// D15F/D85B from which the first run erodes 7.5 %.
-    pub no_erosion: Option<f64>,
+    pub(crate) no_erosion: Option<f64>,
     /// Reason why there is no such ratio.
-    pub no_erosion_beyond: Option<Beside>,
+    pub(crate) no_erosion_beyond: Option<Beside>,
     /// D15F/D85B from which the second run does too.
-    pub continuing: Option<f64>,
+    pub(crate) continuing: Option<f64>,
     /// Reason why there is no such ratio.
-    pub continuing_beyond: Option<Beside>,
+    pub(crate) continuing_beyond: Option<Beside>,
     /// True if some larger ratio was seen to hold.
-    pub is_not_monotone: bool,
+    pub(crate) is_not_monotone: bool,
     /// Every ratio that was walked, in rising order, with the eroded mass fraction of either run.
-    pub walks: Vec<(f64, f64, Option<f64>)>,
+    pub(crate) walks: Vec<(f64, f64, Option<f64>)>,
     /// For an end of a range that cannot decide the answer: the only ratio that was tried, which it holds.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub spared_at: Option<f64>,
+    pub(crate) spared_at: Option<f64>,
 }
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Done {
-    pub row: usize,
+    pub(crate) row: usize,
     /// Network, counted from 1.
-    pub network: u64,
-    pub found: Found,
+    pub(crate) network: u64,
+    pub(crate) found: Found,
 }
 
 /// Reports that the smallest ratio of the search erodes.
@@ -106,12 +106,12 @@ fn erodes_down_to(step: i64) -> Beside {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Hint {
     /// Both boundaries, if it has them.
-    pub boundaries: [Option<f64>; 2],
-    pub erodes_to_end: bool,
+    pub(crate) boundaries: [Option<f64>; 2],
+    pub(crate) erodes_to_end: bool,
 }
 
 impl Hint {
-    pub fn of(result: &Found) -> Self {
+    pub(crate) fn of(result: &Found) -> Self {
         let is_beyond = |side: &Option<Beside>| matches!(side, Some((_, Ended::Erodes(_))));
         let all_erode = result.walks.iter().all(|(_, eroded, _)| *eroded >= THRESHOLD);
         let erodes_to_end = is_beyond(&result.no_erosion_beyond) && all_erode;
@@ -122,11 +122,11 @@ impl Hint {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Start {
     /// Ratio at which a search without a hint begins.
-    pub ratio: f64,
+    pub(crate) ratio: f64,
     /// Boundaries of another network of the filter.
-    pub hint: Hint,
+    pub(crate) hint: Hint,
     /// Start nodes of a lattice that is walked by area; for other networks, the number of the usual lattice.
-    pub across: u64,
+    pub(crate) across: u64,
 }
 
 /// Network whose first boundary has been searched, within a bracket, and whose second has not.
@@ -139,7 +139,7 @@ pub(super) struct Begun<W> {
 
 impl<W: Walker> Begun<W> {
     /// Searches the boundary of the first run; fails if a walk fails or was stopped.
-    pub fn new(walker: W, bracket: [f64; 2], start: Start) -> Result<Self, RunError> {
+    pub(crate) fn new(walker: W, bracket: [f64; 2], start: Start) -> Result<Self, RunError> {
         let mut search = Search::new(walker, bracket, start.across);
         let mut result = Found::default();
         let stops = search.stops;
@@ -170,12 +170,12 @@ impl<W: Walker> Begun<W> {
     }
 
     /// Hint for the boundary of the first run on other networks.
-    pub fn hint(&self) -> Hint {
+    pub(crate) fn hint(&self) -> Hint {
         Hint { boundaries: [self.found.no_erosion, None], ..Hint::of(&self.found) }
     }
 
     /// Searches the boundary of the second run, near `hint` if given; fails if a walk fails or was stopped.
-    pub fn ended(self, hint: Option<f64>) -> Result<Found, RunError> {
+    pub(crate) fn ended(self, hint: Option<f64>) -> Result<Found, RunError> {
         let Self { mut search, pair, found: mut result } = self;
         if let Some(pair) = pair {
             let second = match search.away_from(hint, 2)? {

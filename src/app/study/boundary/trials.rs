@@ -46,7 +46,7 @@ pub(super) enum Trial {
 
 impl Trial {
     /// True if 7.5 % or more eroded; `None` if the base cannot be walked.
-    pub fn erodes(&self) -> Option<bool> {
+    pub(crate) fn erodes(&self) -> Option<bool> {
         match self {
             Self::Eroded(eroded) => Some(!eroded.below_threshold),
             Self::CannotBe(..) => None,
@@ -110,7 +110,7 @@ impl Fall {
 pub(super) struct Search<W> {
     walker: W,
     /// The first stop and the last.
-    pub stops: [i64; 2],
+    pub(crate) stops: [i64; 2],
     /// Steps below the smallest ratio that erodes, at which further runs are tried.
     below: Vec<i64>,
     /// Trials of the first run and of the second, by step.
@@ -118,7 +118,7 @@ pub(super) struct Search<W> {
 }
 
 impl<W: Walker> Search<W> {
-    pub fn new(walker: W, bracket: [f64; 2], across: u64) -> Self {
+    pub(crate) fn new(walker: W, bracket: [f64; 2], across: u64) -> Self {
         let up = |ratio: f64| (steps_to(ratio) / STOP as f64 - 1e-9).ceil() as i64 * STOP;
         let down = |ratio: f64| (steps_to(ratio) / STOP as f64 + 1e-9).floor() as i64 * STOP;
         // Stops lie outside the bracket, but within the allowed range.
@@ -130,7 +130,7 @@ impl<W: Walker> Search<W> {
         &self.tried[run as usize - 1]
     }
 
-    pub fn is_tried(&self, run: u64, step: i64) -> bool {
+    pub(crate) fn is_tried(&self, run: u64, step: i64) -> bool {
         self.of_run(run).contains_key(&step)
     }
 
@@ -142,13 +142,13 @@ impl<W: Walker> Search<W> {
     }
 
     /// Every ratio that was walked, in rising order, with the eroded mass fraction of either run.
-    pub fn walks(&self) -> Vec<(f64, f64, Option<f64>)> {
+    pub(crate) fn walks(&self) -> Vec<(f64, f64, Option<f64>)> {
         let walk = |step: &i64| Some((ratio_at(*step), self.eroded(1, *step)?, self.eroded(2, *step)));
         self.of_run(1).keys().filter_map(walk).collect()
     }
 
     /// Tries a run at a step. The second run is walked only if the first erodes: otherwise nothing continues.
-    pub fn trial(&mut self, run: u64, step: i64) -> Result<Trial, RunError> {
+    pub(crate) fn trial(&mut self, run: u64, step: i64) -> Result<Trial, RunError> {
         if run > 1 {
             let first = self.trial(1, step)?;
             if first.erodes() != Some(true) {
@@ -163,13 +163,13 @@ impl<W: Walker> Search<W> {
     }
 
     /// True if the first run erodes at a step.
-    pub fn erodes(&mut self, step: i64) -> Result<bool, RunError> {
+    pub(crate) fn erodes(&mut self, step: i64) -> Result<bool, RunError> {
         Ok(self.trial(1, step)?.erodes() == Some(true))
     }
 
     /// Steps away from a hint, ever farther, to one ratio that holds and one that erodes, and halves the
     /// steps between them; `None` without a hint, or if the base cannot be walked.
-    pub fn away_from(&mut self, hint: Option<f64>, run: u64) -> Result<Option<Pair>, RunError> {
+    pub(crate) fn away_from(&mut self, hint: Option<f64>, run: u64) -> Result<Option<Pair>, RunError> {
         let hint = hint.map(|ratio| steps_to(ratio).round() as i64);
         let Some(hint) = hint.filter(|hint| (self.stops[0]..=self.stops[1]).contains(hint)) else {
             return Ok(None);
@@ -192,7 +192,7 @@ impl<W: Walker> Search<W> {
     }
 
     /// Halves the steps between one that holds and one that erodes.
-    pub fn halved(&mut self, (mut low, mut high): Pair, run: u64) -> Result<Pair, RunError> {
+    pub(crate) fn halved(&mut self, (mut low, mut high): Pair, run: u64) -> Result<Pair, RunError> {
         while high - low > 1 {
             let middle = low + (high - low) / 2;
             match self.trial(run, middle)?.erodes() {
@@ -204,7 +204,7 @@ impl<W: Walker> Search<W> {
     }
 
     /// True if a step holds together with the steps below it that are also tried.
-    pub fn surely_holds(&mut self, step: i64) -> Result<bool, RunError> {
+    pub(crate) fn surely_holds(&mut self, step: i64) -> Result<bool, RunError> {
         let holds = self.trial(1, step)?.erodes() == Some(false);
         Ok(holds && self.smallest_that_erodes(step + 1, 1)? == step + 1)
     }
@@ -240,7 +240,7 @@ impl<W: Walker> Search<W> {
 
     /// Ratio from which a run erodes, starting from a step at which it does: the smallest that was seen to
     /// erode, or the step itself if it is the lowest of the search.
-    pub fn boundary(&mut self, step: i64, run: u64) -> Result<Result<f64, i64>, RunError> {
+    pub(crate) fn boundary(&mut self, step: i64, run: u64) -> Result<Result<f64, i64>, RunError> {
         let least = self.smallest_that_erodes(step, run)?;
         let seen = self.of_run(run).iter().find(|(_, trial)| trial.erodes() == Some(true));
         let least = seen.map_or(least, |(step, _)| *step);
@@ -258,7 +258,7 @@ impl<W: Walker> Search<W> {
     }
 
     /// True if a ratio holds above one that erodes, in either run.
-    pub fn is_not_monotone(&self) -> bool {
+    pub(crate) fn is_not_monotone(&self) -> bool {
         self.tried.iter().any(|trials| {
             let mut erodes = trials.values().filter_map(Trial::erodes);
             erodes.any(|erodes| erodes) && erodes.any(|erodes| !erodes)

@@ -17,38 +17,38 @@
 use crate::packing::{Cell, Packing};
 
 /// Centre x, y, z and radius in grid units: integers, exact in f64.
-pub type GrainPoint = [f64; 4];
+pub(crate) type GrainPoint = [f64; 4];
 
 /// Vector from one point to another.
 #[inline(always)]
-pub fn offset(from: &[f64], to: &[f64]) -> [f64; 3] {
+pub(crate) fn offset(from: &[f64], to: &[f64]) -> [f64; 3] {
     [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
 }
 
 /// Inner product.
 #[inline(always)]
-pub fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+pub(crate) fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Cross product.
 #[inline(always)]
-pub fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+pub(crate) fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// Facet opposite a corner of a tetrahedron.
-pub fn facet(corners: &[GrainPoint; 4], corner: usize) -> [GrainPoint; 3] {
+pub(crate) fn facet(corners: &[GrainPoint; 4], corner: usize) -> [GrainPoint; 3] {
     [1, 2, 3].map(|k| corners[(corner + k) % 4])
 }
 
 /// Edges of a tetrahedron from a corner to the others.
-pub fn edges(corners: &[GrainPoint; 4], corner: usize) -> [[f64; 3]; 3] {
+pub(crate) fn edges(corners: &[GrainPoint; 4], corner: usize) -> [[f64; 3]; 3] {
     facet(corners, corner).map(|other| offset(&corners[corner], &other))
 }
 
 /// Six times the volume spanned by three edges.
-pub fn six_volume([e, f, g]: &[[f64; 3]; 3]) -> f64 {
+pub(crate) fn six_volume([e, f, g]: &[[f64; 3]; 3]) -> f64 {
     dot(e, &cross(f, g)).abs()
 }
 
@@ -272,29 +272,29 @@ pub enum TriangulationError {
 
 /// Whole cells along x, y, z: one signed byte each, x lowest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Shift(pub(super) u32);
+pub(crate) struct Shift(pub(super) u32);
 
 impl Shift {
-    pub const ZERO: Self = Self(0);
+    pub(crate) const ZERO: Self = Self(0);
 
-    pub fn new(cells: [i32; 3]) -> Self {
+    pub(crate) fn new(cells: [i32; 3]) -> Self {
         Self(cells.iter().rev().fold(0, |word, &c| (word << 8) | (c as u32 & 0xff)))
     }
 
     #[inline(always)]
-    pub fn cells(self) -> [i32; 3] {
+    pub(crate) fn cells(self) -> [i32; 3] {
         [self.0 as i8, (self.0 >> 8) as i8, (self.0 >> 16) as i8].map(i32::from)
     }
 
     /// Adds bytewise, without carry from one axis to the next.
     #[inline(always)]
-    pub fn plus(self, other: Self) -> Self {
+    pub(crate) fn plus(self, other: Self) -> Self {
         const LOW: u32 = 0x7f7f_7f7f;
         Self(((self.0 & LOW) + (other.0 & LOW)) ^ ((self.0 ^ other.0) & !LOW))
     }
 
     #[inline(always)]
-    pub fn minus(self, other: Self) -> Self {
+    pub(crate) fn minus(self, other: Self) -> Self {
         const HIGH: u32 = 0x8080_8080;
         Self(((self.0 | HIGH) - (other.0 & !HIGH)) ^ ((self.0 ^ !other.0) & HIGH))
     }

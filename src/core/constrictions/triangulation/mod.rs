@@ -17,7 +17,7 @@ mod predicates;
 mod sanity;
 
 pub use mesh::TriangulationError;
-pub use sanity::SanityError;
+pub(crate) use sanity::SanityError;
 
 pub(super) use mesh::{GrainPoint, Shift, cross, dot, edges, facet, offset, six_volume};
 
@@ -83,7 +83,7 @@ impl Triangulation {
     }
 
     /// Number of grains, including hidden ones.
-    pub fn grains(&self) -> usize {
+    pub(crate) fn grains(&self) -> usize {
         self.points.at.len()
     }
 
@@ -98,12 +98,12 @@ impl Triangulation {
     }
 
     /// Grains that are not a corner, ascending: each lies inside others (by power distance).
-    pub fn hidden(&self) -> &[u32] {
+    pub(crate) fn hidden(&self) -> &[u32] {
         &self.hidden
     }
 
     /// Pairs of a hidden grain and another with the same centre.
-    pub fn duplicates(&self) -> &[[u32; 2]] {
+    pub(crate) fn duplicates(&self) -> &[[u32; 2]] {
         &self.duplicates
     }
 

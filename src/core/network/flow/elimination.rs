@@ -216,15 +216,15 @@ fn order(rows: usize, links: &[Link]) -> Vec<u32> {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Link {
-    pub one: u32,
-    pub other: u32,
+    pub(crate) one: u32,
+    pub(crate) other: u32,
     pub conductance: f64,
 }
 
 /// Neighbours of one place, each once; reused for one place after another.
 struct Meeting {
     /// Neighbours with their conductances, in order of discovery.
-    pub neighbours: Vec<(u32, f64)>,
+    pub(crate) neighbours: Vec<(u32, f64)>,
     /// Last place of which each place was a neighbour, and its position in `neighbours` then.
     met: Vec<(u32, u32)>,
 }

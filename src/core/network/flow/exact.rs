@@ -33,9 +33,9 @@ pub(super) struct Eliminated {
     rows: Vec<Vec<Neighbour>>,
     turn: Vec<u32>,
     /// Pressure by node, the known ones last.
-    pub pressure: Vec<f64>,
+    pub(crate) pressure: Vec<f64>,
     /// Conductance between the two known nodes.
-    pub conductance: f64,
+    pub(crate) conductance: f64,
 }
 
 impl Eliminated {

@@ -94,19 +94,19 @@ const NONE: u32 = u32::MAX;
 #[derive(Clone, Copy, Debug)]
 pub(in crate::network) struct Fit {
     /// Residual divided by the inflow, both as roots of sums of squares.
-    pub residual: f64,
+    pub(crate) residual: f64,
     /// Sum of the imbalances of all voids, including rounding. It bounds the error of every flux and of every
     /// sum of fluxes through a cut, as a unit of flow fed into a void passes no constriction more than once.
-    pub missing: f64,
+    pub(crate) missing: f64,
 }
 
 /// Factor reused for successive systems with the same rows.
 pub(in crate::network) struct Kept {
     factor: Factor,
     /// Number of rounds for the system of the factor.
-    pub rounds: usize,
+    pub(crate) rounds: usize,
     /// Number of exits closed since.
-    pub closed: usize,
+    pub(crate) closed: usize,
 }
 
 /// Equations of the voids inside, one row for each.

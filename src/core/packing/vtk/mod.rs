@@ -10,23 +10,23 @@ use crate::packing::fields::{FileCell, FileGrains, ImportError, LengthUnit, NAME
 use crate::packing::tables::{DIAMETER, Named, RADIUS};
 
 /// Points of a file and their numbers.
-pub struct Points {
+pub(crate) struct Points {
     /// Line that names them, for messages.
-    pub line: usize,
+    pub(crate) line: usize,
     /// x, y and z of each point, one point after another.
-    pub places: Vec<f64>,
-    pub arrays: Vec<PointArray>,
+    pub(crate) places: Vec<f64>,
+    pub(crate) arrays: Vec<PointArray>,
 }
 
 /// One array of numbers.
-pub struct PointArray {
-    pub line: usize,
-    pub name: String,
-    pub values: Vec<f64>,
+pub(crate) struct PointArray {
+    pub(crate) line: usize,
+    pub(crate) name: String,
+    pub(crate) values: Vec<f64>,
 }
 
 /// Turns the points into grains.
-pub fn grains(file: &str, points: Points) -> Result<FileGrains, ImportError> {
+pub(crate) fn grains(file: &str, points: Points) -> Result<FileGrains, ImportError> {
     let named = |called: &[&str]| -> Vec<(&PointArray, Named)> {
         let all = points.arrays.iter().map(|array| (array, Named::of(&array.name)));
         all.filter(|(_, named)| called.contains(&named.name.as_str())).collect()
@@ -66,7 +66,7 @@ pub fn grains(file: &str, points: Points) -> Result<FileGrains, ImportError> {
 
 /// Type of the numbers of an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Number {
+pub(crate) enum Number {
     I8,
     U8,
     I16,
@@ -95,7 +95,7 @@ const NUMBERS: [(Number, &str, &[&str]); 10] = [
 
 impl Number {
     /// Size in bytes.
-    pub fn bytes(self) -> usize {
+    pub(crate) fn bytes(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
             Self::I16 | Self::U16 => 2,
@@ -105,11 +105,11 @@ impl Number {
     }
 
     /// Reads all numbers in a run of bytes; an incomplete rest is ignored.
-    pub fn all(self, bytes: &[u8], is_big_endian: bool) -> Vec<f64> {
+    pub(crate) fn all(self, bytes: &[u8], is_big_endian: bool) -> Vec<f64> {
         bytes.chunks_exact(self.bytes()).map(|bytes| self.one(bytes, is_big_endian)).collect()
     }
 
-    pub fn one(self, bytes: &[u8], is_big_endian: bool) -> f64 {
+    pub(crate) fn one(self, bytes: &[u8], is_big_endian: bool) -> f64 {
         let mut little = [0; 8];
         for (k, slot) in little.iter_mut().take(bytes.len()).enumerate() {
             *slot = if is_big_endian { bytes[bytes.len() - 1 - k] } else { bytes[k] };
@@ -128,7 +128,7 @@ impl Number {
 }
 
 /// Reads the grains of a file that begins with `# vtk DataFile`.
-pub fn legacy(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
+pub(crate) fn legacy(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
     let mut cursor = Cursor { file, content, at: 0, line: 0, is_binary: false };
     let heading = [cursor.raw_line(), cursor.raw_line()];
     if heading.iter().any(Option::is_none) {

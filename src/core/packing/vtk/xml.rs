@@ -16,7 +16,7 @@ const TYPES: [&str; 2] = ["PolyData", "UnstructuredGrid"];
 const LARGEST_BLOCK: usize = 1 << 28;
 
 /// Reads the grains of a VTK file in XML.
-pub fn xml(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
+pub(crate) fn xml(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
     let (head, appended) = split(file, content)?;
     let line_ends =
         |part: std::ops::Range<usize>| head.as_bytes()[part].iter().filter(|&&byte| byte == b'\n').count();

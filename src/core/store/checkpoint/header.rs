@@ -52,14 +52,14 @@ struct Row {
 /// A section of a file.
 #[derive(Debug)]
 pub(super) struct Entry {
-    pub name: String,
+    pub(crate) name: String,
     /// Bytes of an element.
-    pub element: u64,
+    pub(crate) element: u64,
     /// Number of elements.
-    pub count: u64,
-    pub offset: u64,
+    pub(crate) count: u64,
+    pub(crate) offset: u64,
     /// Checksum of each piece.
-    pub sums: Vec<u64>,
+    pub(crate) sums: Vec<u64>,
 }
 
 /// Encodes the header, padded to a multiple of 4096 bytes.
@@ -234,7 +234,7 @@ pub(super) const PIECE: usize = 1 << 20;
 /// A column to be saved, in one or more parts.
 pub struct Section<'a> {
     /// Name, at most 32 bytes.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     pub(super) element: usize,
     pub(super) parts: Vec<&'a [u8]>,
 }
@@ -246,7 +246,7 @@ impl<'a> Section<'a> {
     }
 
     /// Makes a section of a column from its parts, one after another.
-    pub fn parts<T: Pod>(name: &'static str, parts: impl IntoIterator<Item = &'a [T]>) -> Self {
+    pub(crate) fn parts<T: Pod>(name: &'static str, parts: impl IntoIterator<Item = &'a [T]>) -> Self {
         Self { name, element: size_of::<T>(), parts: parts.into_iter().map(bytemuck::cast_slice).collect() }
     }
 

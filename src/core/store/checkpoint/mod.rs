@@ -157,7 +157,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// [`CheckpointError::OtherScene`] or [`CheckpointError::OtherWalk`].
-    pub fn expect(&self, expected: &Identity) -> Result<(), CheckpointError> {
+    pub(crate) fn expect(&self, expected: &Identity) -> Result<(), CheckpointError> {
         let (identity, file) = (&self.label.identity, self.path.clone());
         if identity.scene != expected.scene {
             return Err(CheckpointError::OtherScene { file });
@@ -173,7 +173,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// No such section, or elements of another size.
-    pub fn count<T: Pod>(&self, name: &str) -> Result<usize, CheckpointError> {
+    pub(crate) fn count<T: Pod>(&self, name: &str) -> Result<usize, CheckpointError> {
         self.entry::<T>(name).map(|entry| entry.count as usize)
     }
 
@@ -201,7 +201,7 @@ impl Checkpoint {
     ///
     /// # Errors
     /// Errors of [`Checkpoint::read`]; another number of elements.
-    pub fn read_exact<T: Pod>(&self, name: &str, count: usize) -> Result<Vec<T>, CheckpointError> {
+    pub(crate) fn read_exact<T: Pod>(&self, name: &str, count: usize) -> Result<Vec<T>, CheckpointError> {
         let elements = self.count::<T>(name)?;
         if elements != count {
             return Err(self.corrupt(format!("section {name} has {elements} elements, not {count}")));
@@ -219,7 +219,11 @@ impl Checkpoint {
     }
 
     /// Reads a section piece by piece; each is checked before it is passed on.
-    pub fn read_pieces<T: Pod>(&self, name: &str, mut take: impl FnMut(&[T])) -> Result<(), CheckpointError> {
+    pub(crate) fn read_pieces<T: Pod>(
+        &self,
+        name: &str,
+        mut take: impl FnMut(&[T]),
+    ) -> Result<(), CheckpointError> {
         let entry = self.entry::<T>(name)?;
         let size = (entry.count * entry.element) as usize;
         let mut words: Vec<T> = vec![T::zeroed(); PIECE.min(size).div_ceil(size_of::<T>())];

@@ -13,9 +13,9 @@ use crate::walk::Isa;
 pub(super) struct ExpectedFlow {
     by_network: ByNetwork,
     /// Voids that retain particles, in ascending order.
-    pub holding: Vec<u32>,
+    pub(crate) holding: Vec<u32>,
     /// Total retained.
-    pub rests: f64,
+    pub(crate) rests: f64,
 }
 
 enum ByNetwork {
@@ -24,7 +24,7 @@ enum ByNetwork {
 }
 
 impl ExpectedFlow {
-    pub fn new(network: &Network, shares: &Shares, expected: &Expected) -> Self {
+    pub(crate) fn new(network: &Network, shares: &Shares, expected: &Expected) -> Self {
         let holding = expected.retained.iter().enumerate().filter(|(_, n)| **n > 0.0);
         let holding: Vec<u32> = holding.map(|(void, _)| void as u32).collect();
         Self {
@@ -37,20 +37,20 @@ impl ExpectedFlow {
         }
     }
 
-    pub fn set_isa(&mut self, isa: Isa) {
+    pub(crate) fn set_isa(&mut self, isa: Isa) {
         if let ByNetwork::Lattice(flow) = &mut self.by_network {
             flow.isa = isa;
         }
     }
 
-    pub fn set(&mut self, network: &Network, shares: &Shares, void: u32) {
+    pub(crate) fn set(&mut self, network: &Network, shares: &Shares, void: u32) {
         match &mut self.by_network {
             ByNetwork::General(flow) => flow.set(network, shares, void),
             ByNetwork::Lattice(flow) => flow.set(shares, void),
         }
     }
 
-    pub fn step(&mut self, network: &Network, shares: &Shares, expected: &mut Expected) {
+    pub(crate) fn step(&mut self, network: &Network, shares: &Shares, expected: &mut Expected) {
         let (known, eroded) = (self.holding.len(), expected.sums.eroded);
         match &mut self.by_network {
             ByNetwork::General(flow) => flow.step(network, shares, expected, &mut self.holding),
@@ -78,22 +78,22 @@ struct GeneralFlow {
     /// exit of the void.
     shares: Vec<f64>,
     /// Expected number in each void after the step; 0 between steps.
-    pub next: Vec<f64>,
+    pub(crate) next: Vec<f64>,
 }
 
 impl GeneralFlow {
-    pub fn new(shares: &Shares, voids: usize) -> Self {
+    pub(crate) fn new(shares: &Shares, voids: usize) -> Self {
         let shares = shares.probability().iter().map(|&p| as_unit(p)).collect();
         Self { shares, next: vec![0.0; voids] }
     }
 
-    pub fn set(&mut self, network: &Network, shares: &Shares, void: u32) {
+    pub(crate) fn set(&mut self, network: &Network, shares: &Shares, void: u32) {
         let exits = network.exits(void);
         let news = &shares.probability()[exits.clone()];
         self.shares[exits].iter_mut().zip(news).for_each(|(old, &p)| *old = as_unit(p));
     }
 
-    pub fn step(
+    pub(crate) fn step(
         &mut self,
         network: &Network,
         shares: &Shares,
@@ -151,11 +151,11 @@ struct LatticeFlow {
     along_y: Vec<f64>,
     /// Outflow along z of the layer above, later of the layer itself, by void of a layer.
     along_z: Vec<f64>,
-    pub isa: Isa,
+    pub(crate) isa: Isa,
 }
 
 impl LatticeFlow {
-    pub fn new(shape: [u32; 3], shares: &Shares) -> Self {
+    pub(crate) fn new(shape: [u32; 3], shares: &Shares) -> Self {
         let across = [shape[0] as usize, shape[1] as usize];
         let (of_void, _) = shares.probability().as_chunks::<3>();
         let voids = of_void.len();
@@ -170,7 +170,7 @@ impl LatticeFlow {
         }
     }
 
-    pub fn set(&mut self, shares: &Shares, void: u32) {
+    pub(crate) fn set(&mut self, shares: &Shares, void: u32) {
         if !shares.leads_on(void as usize)
             && let Err(place) = self.dead_ends.binary_search(&void)
         {
@@ -181,7 +181,7 @@ impl LatticeFlow {
         }
     }
 
-    pub fn step(&mut self, expected: &mut Expected, holding: &mut Vec<u32>) {
+    pub(crate) fn step(&mut self, expected: &mut Expected, holding: &mut Vec<u32>) {
         let Expected { moving, retained, sums, .. } = expected;
         for void in self.dead_ends.iter().map(|&void| void as usize) {
             let n = std::mem::take(&mut moving[void]);

@@ -36,11 +36,11 @@ const ALONE: usize = 4;
 /// Result of one increment for the passive particles.
 #[derive(Debug, Default)]
 pub(super) struct Moved {
-    pub moves: u64,
-    pub waiting: u64,
-    pub eroded: u64,
+    pub(crate) moves: u64,
+    pub(crate) waiting: u64,
+    pub(crate) eroded: u64,
     /// Void and number of particles without an open exit.
-    pub stranded: Vec<(u32, u64)>,
+    pub(crate) stranded: Vec<(u32, u64)>,
 }
 
 /// Data for moving counts; rebuilt from network and counts, never stored.
@@ -50,8 +50,8 @@ pub(super) struct Flow {
     occupied: Vec<bool>,
     workers: Vec<Worker>,
     /// Number of moving particles: insertions are added, and every step recounts them.
-    pub moving: u64,
-    pub isa: Isa,
+    pub(crate) moving: u64,
+    pub(crate) isa: Isa,
 }
 
 struct Worker {
@@ -76,7 +76,7 @@ struct SplitBatch {
 }
 
 impl Flow {
-    pub fn new(network: &Network, moving: &[u64]) -> Self {
+    pub(crate) fn new(network: &Network, moving: &[u64]) -> Self {
         let blocks = moving.len().div_ceil(BLOCK);
         let worker = || Worker {
             next: vec![0; moving.len() + 1],
@@ -95,7 +95,14 @@ impl Flow {
 
     /// Puts `count` particles on start nodes, drawn uniformly or `evenly`: the same number on each, and
     /// the remaining ones on one node in each of as many equal parts.
-    pub fn insert(&mut self, network: &Network, count: u64, evenly: bool, key: Key, moving: &mut [u64]) {
+    pub(crate) fn insert(
+        &mut self,
+        network: &Network,
+        count: u64,
+        evenly: bool,
+        key: Key,
+        moving: &mut [u64],
+    ) {
         let nodes = network.start();
         let mut draws = Draws::new(Key { chunk: INSERTION, ..key });
         let mut left = count;
@@ -126,7 +133,7 @@ impl Flow {
         }
     }
 
-    pub fn step(&mut self, network: &Network, shares: &Shares, key: Key, moving: &mut [u64]) -> Moved {
+    pub(crate) fn step(&mut self, network: &Network, shares: &Shares, key: Key, moving: &mut [u64]) -> Moved {
         let occupied: Vec<usize> = (0..self.occupied.len()).filter(|&b| self.occupied[b]).collect();
         let next_block = AtomicUsize::new(0);
         let (counts, downstream, isa) = (&*moving, &self.downstream, self.isa);

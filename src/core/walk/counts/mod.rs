@@ -25,8 +25,10 @@ mod flow;
 mod passive;
 mod shares;
 
+pub use passive::Expected;
+pub use passive::Passive;
 pub(super) use passive::coarse_share;
-pub use passive::{Counted, Expected, ExpectedSums, Passive};
+pub(crate) use passive::{Counted, ExpectedSums};
 
 use super::exits::VoidExits;
 use super::openings::Ways;
@@ -44,7 +46,7 @@ pub(super) use shares::Shares;
 const WORTH_A_THREAD: usize = 1 << 14;
 
 /// Data for moving the passive particles of a run; rebuilt from network and state, never stored.
-pub struct PassiveWalk<'a> {
+pub(crate) struct PassiveWalk<'a> {
     sizes: PassiveSizes<'a>,
     pub(super) shares: Shares,
     mover: Mover,
@@ -68,7 +70,12 @@ struct Trap {
 impl<'a> PassiveWalk<'a> {
     /// Prepares to move the passive particles of `state`, with `known` shares of its open exits if given;
     /// `None` if all are walked one by one.
-    pub fn new(network: &Network, supply: &'a Supply, state: &State, known: Option<Shares>) -> Option<Self> {
+    pub(crate) fn new(
+        network: &Network,
+        supply: &'a Supply,
+        state: &State,
+        known: Option<Shares>,
+    ) -> Option<Self> {
         let shares = || known.unwrap_or_else(|| Shares::new(network, Ways::Unblocked(&state.blocked)));
         let (shares, mover) = match &state.passive {
             Passive::OneByOne => return None,
@@ -87,14 +94,14 @@ impl<'a> PassiveWalk<'a> {
         })
     }
 
-    pub fn set_isa(&mut self, isa: Isa) {
+    pub(crate) fn set_isa(&mut self, isa: Isa) {
         match &mut self.mover {
             Mover::Counts(flow) => flow.isa = isa,
             Mover::Expected(flow) => flow.set_isa(isa),
         }
     }
 
-    pub fn insert(&mut self, network: &Network, supply: &Supply, state: &mut State) {
+    pub(crate) fn insert(&mut self, network: &Network, supply: &Supply, state: &mut State) {
         let inserted =
             supply.passive_inserted(state.increment) - supply.passive_inserted(state.increment - 1);
         let tally = &mut state.tally;
@@ -112,7 +119,7 @@ impl<'a> PassiveWalk<'a> {
         }
     }
 
-    pub fn step(&mut self, network: &Network, state: &mut State) {
+    pub(crate) fn step(&mut self, network: &Network, state: &mut State) {
         let (key, tally) = (state.key(Purpose::Passive), &mut state.tally);
         match (&mut self.mover, &mut state.passive) {
             (Mover::Counts(flow), Passive::Counts(moving)) => {
@@ -133,7 +140,7 @@ impl<'a> PassiveWalk<'a> {
 
     /// Performs `one_by_one`, which neither reads nor changes passive particles, and [`Self::step`]: in
     /// parallel if both take long enough.
-    pub fn step_beside(
+    pub(crate) fn step_beside(
         &mut self,
         network: &Network,
         state: &mut State,
@@ -205,7 +212,7 @@ impl<'a> PassiveWalk<'a> {
         tally.largest_eroded = tally.largest_eroded.max(largest);
     }
 
-    pub fn set(&mut self, network: &Network, of_void: VoidExits) {
+    pub(crate) fn set(&mut self, network: &Network, of_void: VoidExits) {
         self.shares.set(network, of_void);
         if let Mover::Expected(flow) = &mut self.mover {
             flow.set(network, &self.shares, of_void.void);
@@ -213,13 +220,13 @@ impl<'a> PassiveWalk<'a> {
     }
 
     /// Discards the trap after exits have changed direction.
-    pub fn forget_trap(&mut self) {
+    pub(crate) fn forget_trap(&mut self) {
         self.trap = None;
     }
 
     /// Tells if every moving passive particle is trapped; called once everything is inserted and nothing
     /// can be blocked any more.
-    pub fn all_trapped(&mut self, network: &Network, state: &mut State) -> bool {
+    pub(crate) fn all_trapped(&mut self, network: &Network, state: &mut State) -> bool {
         let trapped = match &state.passive {
             Passive::OneByOne => return true,
             Passive::Counts(moving) => {

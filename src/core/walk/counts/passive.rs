@@ -60,7 +60,7 @@ pub struct Expected {
 #[serde(deny_unknown_fields)]
 pub struct ExpectedSums {
     /// Number eroded.
-    pub eroded: f64,
+    pub(crate) eroded: f64,
     /// Number of completed moves.
     pub moves: f64,
     /// Number inserted.
@@ -74,11 +74,11 @@ pub struct ExpectedSums {
 #[serde(deny_unknown_fields)]
 pub struct Counted {
     /// Number of completed moves.
-    pub moves: u64,
+    pub(crate) moves: u64,
     /// Number eroded.
     pub eroded: u64,
     /// Number eroded or retained.
-    pub at_rest: u64,
+    pub(crate) at_rest: u64,
 }
 
 impl Expected {
@@ -173,7 +173,7 @@ pub(super) struct PassiveSizes<'a> {
 
 impl<'a> PassiveSizes<'a> {
     /// Creates the part of the base drawn by words below `passive_words`.
-    pub fn new(sampler: &'a SizeSampler, passive_words: u128, classes: &SizeClasses) -> Self {
+    pub(crate) fn new(sampler: &'a SizeSampler, passive_words: u128, classes: &SizeClasses) -> Self {
         let bounds = classes.upper();
         let mut words: Vec<u128> =
             bounds.iter().map(|&bound| sampler.word_limit(bound).min(passive_words)).collect();
@@ -192,12 +192,12 @@ impl<'a> PassiveSizes<'a> {
     }
 
     /// Expected mass of `count` passive particles.
-    pub fn mass(&self, count: u64) -> f64 {
+    pub(crate) fn mass(&self, count: u64) -> f64 {
         count as f64 * self.mean_cube_of_all
     }
 
     /// Adds `count` particles with drawn sizes; returns the largest of them, if there are any.
-    pub fn draw(&self, count: u64, draws: &mut Draws, into: &mut SizeCounts) -> Option<f32> {
+    pub(crate) fn draw(&self, count: u64, draws: &mut Draws, into: &mut SizeCounts) -> Option<f32> {
         let (mut left, mut coarsest) = (count, None);
         for class in 0..self.words.len() {
             if left == 0 {
@@ -218,7 +218,7 @@ impl<'a> PassiveSizes<'a> {
 
     /// Raises the expected number of particles from `before` to `after`, rounded by class so that the sum
     /// stays exact.
-    pub fn expect(&self, before: u64, after: u64, into: &mut SizeCounts) {
+    pub(crate) fn expect(&self, before: u64, after: u64, into: &mut SizeCounts) {
         if before == after {
             return;
         }
@@ -234,7 +234,7 @@ impl<'a> PassiveSizes<'a> {
     }
 
     /// Median of the largest of `count` passive particles.
-    pub fn median_largest(&self, count: u64) -> Option<f32> {
+    pub(crate) fn median_largest(&self, count: u64) -> Option<f32> {
         let all = *self.words.last().expect("at least one class");
         self.sampler.part(0..all).largest_of(count, 1 << 63)
     }

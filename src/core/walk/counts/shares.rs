@@ -40,13 +40,13 @@ pub(in crate::walk) struct Shares {
 }
 
 impl Shares {
-    pub fn new(network: &Network, ways: Ways) -> Self {
+    pub(crate) fn new(network: &Network, ways: Ways) -> Self {
         let mut shares = Self::empty(network);
         exits::of_each(network, ways, 0..network.voids() as u32, |exits| shares.set(network, exits));
         shares
     }
 
-    pub fn empty(network: &Network) -> Self {
+    pub(crate) fn empty(network: &Network) -> Self {
         Self {
             probability: vec![0; network.constrictions()],
             on: vec![1; network.constrictions()],
@@ -61,7 +61,7 @@ impl Shares {
     ///
     /// They follow from the thresholds of the walk one by one, so both engines give an exit the same
     /// probability, to 2^-64.
-    pub fn set(&mut self, network: &Network, of_void: VoidExits) {
+    pub(crate) fn set(&mut self, network: &Network, of_void: VoidExits) {
         let VoidExits { void, thresholds, last_open: last, waits } = of_void;
         let exits = network.exits(void);
         let mut before = 0u64;
@@ -102,13 +102,13 @@ impl Shares {
         }
     }
 
-    pub fn probability(&self) -> &[u64] {
+    pub(crate) fn probability(&self) -> &[u64] {
         &self.probability
     }
 
     /// First open exit of a void from `exit` on; it must exist.
     #[inline(always)]
-    pub fn open_from(&self, mut exit: usize) -> usize {
+    pub(crate) fn open_from(&self, mut exit: usize) -> usize {
         while self.probability[exit] == 0 {
             exit += usize::from(self.on[exit]);
         }
@@ -117,7 +117,7 @@ impl Shares {
 
     /// Next open exit of the void after an open exit that is not certain.
     #[inline(always)]
-    pub fn open_after(&self, exit: usize) -> usize {
+    pub(crate) fn open_after(&self, exit: usize) -> usize {
         self.open_from(exit + usize::from(self.on[exit]))
     }
 
@@ -125,7 +125,7 @@ impl Shares {
     /// exit, otherwise below the second the second exit, otherwise the third. They are not valid after an
     /// exit that is certain.
     #[inline(always)]
-    pub fn thresholds_of_three(&self, exit: usize) -> [u64; 2] {
+    pub(crate) fn thresholds_of_three(&self, exit: usize) -> [u64; 2] {
         let (first, second) = (self.probability[exit], self.probability[exit + 1]);
         let of_rest = second - ((u128::from(second) * u128::from(first)) >> 64) as u64;
         // The sum is a probability below 1, except after an exit that is certain: there it wraps to the
@@ -134,29 +134,29 @@ impl Shares {
     }
 
     #[inline(always)]
-    pub fn route(&self, void: usize) -> Way {
+    pub(crate) fn route(&self, void: usize) -> Way {
         self.route[void]
     }
 
     /// Upper sixteen bits of the thresholds of a void with three exits.
     #[inline(always)]
-    pub fn tops(&self, void: usize) -> [u16; 2] {
+    pub(crate) fn tops(&self, void: usize) -> [u16; 2] {
         self.tops[void]
     }
 
     /// Two bits for each of the 64 voids of `word`: set if it has no open exit, and if it has three exits.
     #[inline(always)]
-    pub fn shut_and_of_three(&self, word: usize) -> [u64; 2] {
+    pub(crate) fn shut_and_of_three(&self, word: usize) -> [u64; 2] {
         [self.shut[word], self.of_three[word]]
     }
 
     /// Tells if the particles of a void without open exits wait there until the flow is solved again.
-    pub fn waits(&self, void: usize) -> bool {
+    pub(crate) fn waits(&self, void: usize) -> bool {
         self.route[void] == Way::Wait
     }
 
     #[inline]
-    pub fn leads_on(&self, void: usize) -> bool {
+    pub(crate) fn leads_on(&self, void: usize) -> bool {
         !matches!(self.route[void], Way::None | Way::Wait)
     }
 }

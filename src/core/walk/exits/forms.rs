@@ -12,20 +12,20 @@ pub(in crate::walk) struct Lattice {
     /// Words for chunks of particles that are nearly all as fine as the finest open exit of the network.
     /// Bits 16..32: top sixteen bits of the second threshold. Bits 2..16: top fourteen bits of the first.
     /// Bit 1: +y wraps. Bit 0: +x wraps. If no exit is open, the first threshold is above the second.
-    pub plain: Vec<u32>,
+    pub(crate) plain: Vec<u32>,
     /// Words for chunks of coarser particles, unless widths are read. They are like `plain`, but bits
     /// 21..32 are the top eleven bits of the second threshold, and bits 16..21 the class of the void's
     /// finest open exit.
-    pub classed: Vec<u32>,
+    pub(crate) classed: Vec<u32>,
     /// Number that a move adds to the void, modulo 2^32. Bits 0 and 1 of the index: bits 0 and 1 of the
     /// word. Bit 2: not the first exit. Bit 3: the third exit. Bit 3 without bit 2 means no open exit and
     /// leads to a void that does not exist.
-    pub moves: [u32; 16],
+    pub(crate) moves: [u32; 16],
     /// Bits, as an integer, of a lower bound of the diameters of open exits. Particles up to `finest +
     /// (class << CLASS_SHIFT)`, compared as bits, pass every open exit of a void of that class.
-    pub finest: u32,
+    pub(crate) finest: u32,
     /// True if particles are compared with widths; then there are no words with classes.
-    pub by_widths: bool,
+    pub(crate) by_widths: bool,
     nx: u32,
     plane: u32,
 }
@@ -45,7 +45,7 @@ fn class_of(finest: f32, of_all: u32) -> u32 {
 }
 
 impl Lattice {
-    pub fn new(voids: usize, nx: u32, plane: u32, finest: u32) -> Self {
+    pub(crate) fn new(voids: usize, nx: u32, plane: u32, finest: u32) -> Self {
         let moves = std::array::from_fn(|index| match index {
             0 | 2 => 1,
             1 | 3 => 1u32.wrapping_sub(nx),
@@ -57,14 +57,14 @@ impl Lattice {
         Self { plain: vec![0; voids], classed: vec![0; voids], moves, finest, by_widths: false, nx, plane }
     }
 
-    pub fn set(&mut self, void: u32, thresholds: &[u64], last_open: Option<usize>, finest: f32) {
+    pub(crate) fn set(&mut self, void: u32, thresholds: &[u64], last_open: Option<usize>, finest: f32) {
         self.set_plain(void, thresholds, last_open);
         let (class, plain) = (class_of(finest, self.finest), self.plain[void as usize]);
         self.classed[void as usize] = (plain >> 21) << 21 | class | plain & 0xffff;
     }
 
     /// Recomputes the class of every void; no open exit is finer than `finest`.
-    pub fn class_anew(&mut self, diameters: &[f32], blocked: &BitSlice, finest: f32) {
+    pub(crate) fn class_anew(&mut self, diameters: &[f32], blocked: &BitSlice, finest: f32) {
         self.finest = finest.to_bits();
         let of_voids = diameters.as_chunks::<3>().0.iter().zip(&mut self.classed);
         for (void, (diameters, word)) in of_voids.enumerate() {
@@ -74,7 +74,7 @@ impl Lattice {
         }
     }
 
-    pub fn set_plain(&mut self, void: u32, thresholds: &[u64], last_open: Option<usize>) {
+    pub(crate) fn set_plain(&mut self, void: u32, thresholds: &[u64], last_open: Option<usize>) {
         let (x, row) = (void % self.nx, void % self.plane);
         let wraps = u32::from(x + 1 == self.nx) | u32::from(row + self.nx >= self.plane) << 1;
         let [first, second] = match last_open {
@@ -85,24 +85,24 @@ impl Lattice {
     }
 
     /// Words with or without classes.
-    pub fn words<R: Reads>(&self) -> &[u32] {
+    pub(crate) fn words<R: Reads>(&self) -> &[u32] {
         if R::CLASSED { &self.classed } else { &self.plain }
     }
 
     /// Mask of the bits of a word below the thresholds.
-    pub const fn below<R: Reads>() -> u32 {
+    pub(crate) const fn below<R: Reads>() -> u32 {
         if R::CLASSED { CLASS | 3 } else { 3 }
     }
 
     /// Tells from a plain word if no exit is open: thresholds of open exits rise.
     #[inline(always)]
-    pub fn has_no_exit(plain: u32) -> bool {
+    pub(crate) fn has_no_exit(plain: u32) -> bool {
         plain & 0xfffc > plain >> 16
     }
 
     /// Exit picked by a draw; `None` if no exit is open, or if the bits of the word do not decide.
     #[inline(always)]
-    pub fn pick<R: Reads>(word: u32, draw: u16) -> Option<u32> {
+    pub(crate) fn pick<R: Reads>(word: u32, draw: u16) -> Option<u32> {
         let below = Self::below::<R>();
         let [first, second] = [word | below, (word | below) >> 16].map(|half| half as u16);
         let [to_first, to_second] = [draw | below as u16, draw | (below >> 16) as u16];
@@ -154,31 +154,31 @@ impl Reads for Jamming {
 /// Open exits of a void if they are few, otherwise the range of its exits.
 #[derive(Clone, Copy)]
 #[repr(align(32))]
-pub struct FewExits {
+pub(crate) struct FewExits {
     /// Top sixteen bits of the threshold of each open exit except the last; unused entries are the maximum.
-    pub top: [u16; FEW_EXITS],
+    pub(crate) top: [u16; FEW_EXITS],
     /// Position of each open exit among all exits of the void.
-    pub position: [u8; FEW_EXITS],
-    pub begin: u32,
+    pub(crate) position: [u8; FEW_EXITS],
+    pub(crate) begin: u32,
     /// Number of exits of a void whose open exits do not fit in here; 0 if they fit, all are closed, or
     /// the number overflows.
-    pub exits: u16,
+    pub(crate) exits: u16,
     /// True if the void has open exits and they fit in here.
-    pub is_few: bool,
+    pub(crate) is_few: bool,
 }
 
-pub const FEW_EXITS: usize = 8;
+pub(crate) const FEW_EXITS: usize = 8;
 
 /// Maximum number of exits counted without branches.
 const COUNTED: usize = 64;
 
 impl FewExits {
-    pub const NONE: Self =
+    pub(crate) const NONE: Self =
         Self { top: [u16::MAX; FEW_EXITS], position: [0; FEW_EXITS], begin: 0, exits: 0, is_few: false };
 
     /// Builds the record of a void whose exits from `begin` on have these thresholds, which rise at each
     /// open exit; `last` is the position of the last open exit.
-    pub fn new(begin: u32, thresholds: &[u64], last: usize) -> Self {
+    pub(crate) fn new(begin: u32, thresholds: &[u64], last: usize) -> Self {
         // It is unpredictable which exits are open: a closed exit is overwritten by the next.
         let (mut top, mut position) = ([u16::MAX; FEW_EXITS + 1], [0; FEW_EXITS + 1]);
         let (mut before, mut open) = (0, 0);
@@ -200,7 +200,7 @@ impl FewExits {
 
     /// Exit picked by the top sixteen bits of a draw; `None` if they do not decide.
     #[inline(always)]
-    pub fn chosen(&self, draw: u16) -> Option<usize> {
+    pub(crate) fn chosen(&self, draw: u16) -> Option<usize> {
         let passed: u16 = self.top.iter().map(|&top| u16::from(top < draw)).sum();
         let is_tie = self.top.iter().fold(false, |tie, &top| tie | (top == draw));
         // Thresholds rise, and the last exit has none.
@@ -210,7 +210,7 @@ impl FewExits {
     /// Exit picked by a draw from the upper sixteen bits of all thresholds of the network, if more exits
     /// are open than fit in here.
     #[inline(always)]
-    pub fn chosen_of(&self, tops: &[u16], draw: u16) -> Option<usize> {
+    pub(crate) fn chosen_of(&self, tops: &[u16], draw: u16) -> Option<usize> {
         let tops = &tops[self.begin as usize..][..usize::from(self.exits)];
         let passed = if tops.len() <= COUNTED {
             tops.iter().map(|&top| u16::from(top < draw)).sum::<u16>().into()

@@ -35,7 +35,7 @@ pub(super) struct Jams<'a> {
 }
 
 impl<'a> Jams<'a> {
-    pub fn new(arching: &'a Arching, lanes: Lanes) -> Self {
+    pub(crate) fn new(arching: &'a Arching, lanes: Lanes) -> Self {
         Self { arching, extension: lanes.extension(), lanes, block: [0; LANES] }
     }
 

@@ -78,14 +78,14 @@ pub(super) fn fits_gathers(table: &Lattice) -> bool {
 
 /// Moving particles of one chunk, and the columns that their step reads and writes.
 pub(super) struct LatticeChunk<'a> {
-    pub exits: &'a OpenExits<'a>,
-    pub table: &'a Lattice,
-    pub lanes: Lanes,
+    pub(crate) exits: &'a OpenExits<'a>,
+    pub(crate) table: &'a Lattice,
+    pub(crate) lanes: Lanes,
     /// Law of arching and its stream, if particles arch.
-    pub jams: Option<(&'a Arching, Lanes)>,
-    pub void: &'a mut [u32],
-    pub diameter: &'a mut [f32],
-    pub events: &'a mut Events,
+    pub(crate) jams: Option<(&'a Arching, Lanes)>,
+    pub(crate) void: &'a mut [u32],
+    pub(crate) diameter: &'a mut [f32],
+    pub(crate) events: &'a mut Events,
 }
 
 /// Moves the particles of one chunk; returns the number still moving.
@@ -215,14 +215,20 @@ fn ones(yes: bool) -> u32 {
 impl<'a> LatticeChunk<'a> {
     /// Prefetches the columns some way ahead of the `count` particles from `begin` on.
     #[inline(always)]
-    pub fn fetch_ahead(&self, begin: usize, count: usize) {
+    pub(crate) fn fetch_ahead(&self, begin: usize, count: usize) {
         fetch_range(self.void, self.diameter, begin + AHEAD..begin + AHEAD + count);
     }
 
     /// Sends the particles of the block from `begin` on with a bit in `rare` through the slow path, by the
     /// draws of both streams; all were written from `kept` on. Returns a bit for each that is gone.
     #[inline]
-    pub fn settle<R: Reads>(&mut self, begin: usize, draws: [&Draws; 2], mut rare: u64, kept: usize) -> u64 {
+    pub(crate) fn settle<R: Reads>(
+        &mut self,
+        begin: usize,
+        draws: [&Draws; 2],
+        mut rare: u64,
+        kept: usize,
+    ) -> u64 {
         let mut gone = 0u64;
         while rare != 0 {
             let j = rare.trailing_zeros() as usize;
@@ -256,7 +262,7 @@ impl<'a> LatticeChunk<'a> {
 
     /// Moves the particles left after whole blocks, by the next blocks of both streams; `kept` particles
     /// before them still move.
-    pub fn step_rest<R: Reads>(
+    pub(crate) fn step_rest<R: Reads>(
         &mut self,
         mut next_blocks: impl FnMut() -> [[u64; LANES]; 2],
         mut kept: usize,
@@ -314,7 +320,7 @@ impl<'a> LatticeChunk<'a> {
 
     /// Tells if a particle that fits jams in a constriction by draw `index`; records a jam with `rank`,
     /// the number of particles before it that still move.
-    pub fn jams(&mut self, exit: u32, diameter: f32, [index, rank]: [usize; 2], draw: u16) -> bool {
+    pub(crate) fn jams(&mut self, exit: u32, diameter: f32, [index, rank]: [usize; 2], draw: u16) -> bool {
         let Some((arching, lanes)) = &self.jams else { return false };
         let word = lanes.extension().complete(draw, index as u64);
         let width = self.exits.widths[exit as usize];
@@ -325,19 +331,19 @@ impl<'a> LatticeChunk<'a> {
     }
 
     /// Stream for jamming; without jamming, the stream of the step, unused.
-    pub fn jam_lanes<R: Reads>(&self) -> Lanes {
+    pub(crate) fn jam_lanes<R: Reads>(&self) -> Lanes {
         let jams = self.jams.as_ref().filter(|_| R::JAMS);
         jams.map_or_else(|| self.lanes.clone(), |(_, lanes)| lanes.clone())
     }
 
     /// Reach of draws, if particles jam.
-    pub fn reach(&self) -> &'a Reach {
+    pub(crate) fn reach(&self) -> &'a Reach {
         self.jams.as_ref().expect("particles jam").0.reach()
     }
 
     /// Exit picked by a draw if a word with classes may have too few bits; `None` if no exit is open.
     #[cold]
-    pub fn undecided(&self, void: u32, index: usize, draw: u16) -> Option<u32> {
+    pub(crate) fn undecided(&self, void: u32, index: usize, draw: u16) -> Option<u32> {
         let word = self.table.plain[void as usize];
         if Lattice::has_no_exit(word) {
             return None;

@@ -12,12 +12,12 @@ pub(in crate::walk::counts) struct Draws {
 }
 
 impl Draws {
-    pub fn new(key: Key) -> Self {
+    pub(crate) fn new(key: Key) -> Self {
         Self { lanes: key.lanes(), block: [0; LANES], used: LANES, normal: Normal::table() }
     }
 
     #[inline(always)]
-    pub fn word(&mut self) -> u64 {
+    pub(crate) fn word(&mut self) -> u64 {
         if self.used == LANES {
             self.block = self.lanes.next_block();
             self.used = 0;

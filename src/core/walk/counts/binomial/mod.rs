@@ -138,17 +138,17 @@ const QUICK_U: f64 = 0.07;
 /// draws; the exact probability decides the others.
 #[derive(Clone, Copy)]
 struct Hat {
-    pub n: f64,
-    pub p: f64,
+    pub(crate) n: f64,
+    pub(crate) p: f64,
     q: f64,
     mean: f64,
     sigma: f64,
     a: f64,
-    pub b: f64,
+    pub(crate) b: f64,
 }
 
 impl Hat {
-    pub fn new(n: u64, p: u64) -> Self {
+    pub(crate) fn new(n: u64, p: u64) -> Self {
         let (n, p, q) = (n as f64, as_unit(rarer(p)), as_unit(rarer(p).wrapping_neg()));
         let mean = n * p;
         let sigma = (mean * q).sqrt();
@@ -156,7 +156,7 @@ impl Hat {
         Self { n, p, q, mean, sigma, a: -0.0873 + 0.0248 * b + 0.01 * p, b }
     }
 
-    pub fn draw(&self, draws: &mut Draws) -> u64 {
+    pub(crate) fn draw(&self, draws: &mut Draws) -> u64 {
         loop {
             let (u, v) = (unit(draws.word()) - 0.5, unit(draws.word()));
             let at = self.propose(u);
@@ -171,20 +171,20 @@ impl Hat {
         }
     }
 
-    pub fn propose(&self, u: f64) -> f64 {
+    pub(crate) fn propose(&self, u: f64) -> f64 {
         let us = 0.5 - u.abs();
         (2.0 * self.a / us + self.b) * u + self.mean
     }
 
     /// Factor for `v` before it is compared with the probability of the proposal divided by that of the mode.
-    pub fn scale(&self, u: f64) -> f64 {
+    pub(crate) fn scale(&self, u: f64) -> f64 {
         let us = 0.5 - u.abs();
         let square = us * us;
         (2.83 * self.b + 5.1) * self.sigma * square / (self.b * (self.a + self.b * square))
     }
 
     /// Logarithm of the probability of `k` divided by that of the mode.
-    pub fn ln_ratio(&self, k: f64) -> f64 {
+    pub(crate) fn ln_ratio(&self, k: f64) -> f64 {
         // Most likely outcome, or an equally likely one.
         let mode = whole((self.n + 1.0) * self.p - 0.5);
         ln_probability(self.n, self.p, self.q, k) - ln_probability(self.n, self.p, self.q, mode)

@@ -217,7 +217,7 @@ pub(super) struct Normal {
 }
 
 impl Normal {
-    pub fn table() -> &'static Self {
+    pub(crate) fn table() -> &'static Self {
         static TABLE: OnceLock<Box<Normal>> = OnceLock::new();
         TABLE.get_or_init(|| Box::new(Self::new()))
     }
