@@ -37,7 +37,7 @@ fn eroded(
 /// The chance that a particle which passes every open constriction leaves, over uniform start nodes. A void without an open exit keeps
 /// what enters it.
 fn leaves(network: &Network) -> f64 {
-    network.first_passage(0.1, |_| false).unwrap().from_start(network).0
+    network.first_passage(0.1, |_| false).unwrap().at_start(network).0
 }
 
 fn covers(values: &[f64], answer: f64) -> bool {

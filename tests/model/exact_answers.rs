@@ -42,7 +42,7 @@ fn the_first_particle_passes_a_given_network_as_the_linear_solve_says() {
     for network_seed in 0..20 {
         let network = Network::cubic([5, 5, 4], &curve, 1.0, network_seed).unwrap();
         let d = curve.dc(10.0).unwrap();
-        let (p, _) = network.first_passage(d as f32, |_| false).unwrap().from_start(&network);
+        let (p, _) = network.first_passage(d as f32, |_| false).unwrap().at_start(&network);
         let lone = one_size(d, 1, 1);
         let n = 4000;
         let passed = (0..n).filter(|&s| walk(&network, &lone, 1000 * network_seed + s).0.tally.eroded == 1);
@@ -125,7 +125,7 @@ fn narrow_lattices_take_longer() {
         let mut solved = Vec::new();
         for seed in 0..400 {
             let network = Network::cubic([width, width, 60], &curve, 1.0, seed).unwrap();
-            solved.push(network.first_passage(0.0, |_| false).unwrap().from_start(&network).1);
+            solved.push(network.first_passage(0.0, |_| false).unwrap().at_start(&network).1);
             if seed < 10 {
                 let (state, _) = walk(&network, &one_size(0.1, 20_000, 1), seed);
                 let walked = state.tally.particle_moves as f64 / 20_000.0;
@@ -316,6 +316,6 @@ fn very_long_and_very_wide_networks_run() {
     let moves = state.tally.particle_moves as f64 / 100_000.0;
     assert!((moves - 3.0).abs() < 4.0 * (6.0f64 / 100_000.0).sqrt(), "{moves}");
     let small = equal([2, 2, 2]);
-    let (leaves, moves) = small.first_passage(0.5, |_| false).unwrap().from_start(&small);
+    let (leaves, moves) = small.first_passage(0.5, |_| false).unwrap().at_start(&small);
     assert!((leaves - 1.0).abs() < 1e-9 && (moves - 6.0).abs() < 1e-9);
 }

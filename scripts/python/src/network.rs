@@ -282,7 +282,7 @@ impl Network {
         py.detach(|| {
             let (inner, _) = self.with_directions()?;
             let passage = inner.first_passage(size, |_| false).map_err(|error| of_network(&error))?;
-            Ok(passage.from_start(&inner))
+            Ok(passage.at_start(&inner))
         })
     }
 

@@ -21,12 +21,11 @@ pub(crate) mod walk;
 
 pub(crate) use batch::pairs_of;
 pub(crate) use batch::{BatchPlan, BatchWalks};
-pub(crate) use check::{CaseCheck, PlanCheck, check_plan};
+pub(crate) use check::{PlanCheck, check_plan};
 pub(crate) use cluster::{JobOptions, WrittenJobs, write_job_scripts};
 pub(crate) use inputs::numbered;
 pub use plan::CasePlan;
 pub use prepared::CasePart;
-pub(crate) use prepared::FailedCase;
 pub use run::{CaseOptions, run};
-pub(crate) use run::{FinishedCases, check, collect, make_packing, names, unsound};
+pub(crate) use run::{collect, make_packing, names};
 pub use walk::{CaseCallbacks, CaseEvent};

@@ -138,16 +138,6 @@ pub fn run(
     run_around(plan, options, callbacks, |_, walk| walk())
 }
 
-/// Checks that the cases are sound and fit into memory, as far as that is known before their filters are
-/// packed; claims and writes nothing.
-///
-/// # Errors
-/// Cases that are wrong, or that do not fit into memory.
-pub(crate) fn check(plan: &CasePlan, options: &CaseOptions) -> Result<(), RunError> {
-    let failed = unsound(plan, options)?;
-    if failed.is_empty() { Ok(()) } else { Err(RunError::Refused(named(&failed))) }
-}
-
 /// Cases that are wrong in themselves, in the order of the plan; claims and writes nothing.
 ///
 /// # Errors

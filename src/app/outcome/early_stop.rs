@@ -14,6 +14,7 @@
 //!   error is 5 % over both looks and all runs (Bonferroni).
 //! - In every replicate, each run is above the threshold, like the scene's run on the same network, and
 //!   keeps at least a third of its distance from it. A point that moves more may scatter more.
+//!
 //! The assumption is that a point scatters at most twice as much as the scene; `results/precision.md`
 //! counts how often it fails and how often it misleads.
 //!

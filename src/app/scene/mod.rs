@@ -11,19 +11,15 @@ mod reference;
 mod tables;
 mod values;
 
-pub(crate) use keys::{
-    About, Base, ExitKeys, Filter, FilterPacking, NetworkKeys, PackingKeys, Record, WalkKeys,
-};
+pub(crate) use keys::{About, Base, ExitKeys, Filter, NetworkKeys, PackingKeys, Record, WalkKeys};
 pub(crate) use meaning::{
     Amount, BaseGradation, D85, Extent, FilterGradation, NetworkSource, PackingSpec, USUAL_LAYERS,
 };
-pub(crate) use reference::{
-    ExclusiveSettings, SceneReference, SectionReference, SettingReference, WayReference,
-};
+pub(crate) use reference::SceneReference;
 pub use tables::TableOptions;
 pub(crate) use tables::{keep_soils, quoted};
 pub use values::{CurveSource, Density};
-pub(crate) use values::{LibraryDensity, NetworkMadeOf, Regrade, SheetUnits};
+pub(crate) use values::{LibraryDensity, NetworkMadeOf, Regrade};
 pub(crate) use voidwalk_core::schema::{Origin, SceneError};
 
 use crate::outcome::stopping::StopRule;

@@ -45,6 +45,7 @@ macro_rules! words {
             $($(#[$what])* #[serde(rename = $word)] $variant,)*
         }
 
+        #[allow(dead_code, reason = "some words are only read")]
         impl $kind {
             /// All values.
             pub const ALL: [Self; [$($word),*].len()] = [$(Self::$variant),*];

@@ -24,7 +24,6 @@ pub use inscribed::inscribed;
 pub use library::{FromLibrary, from_library};
 pub use shipped::{ShippedFilter, find, shipped};
 pub use summary::Summary;
-pub(crate) use triangulation::SanityError;
 pub use triangulation::{Triangulation, TriangulationError};
 
 use crate::packing::Packing;

@@ -42,7 +42,6 @@ pub use sieve::from_rows;
 pub use sieve::{CurvePoint, FIELDS, FINES_MM, GRAVEL_MM};
 pub use sieve::{End, Step};
 pub use sieve::{TIE, USUAL_STEP, WIDE_STEP};
-pub(crate) use stability::UniformityFactors;
 pub use stability::{KEZDI_RANGE, ShapeIndex, SoilSplit, WIDE_LOOSE_PERCENT};
 pub use supply::{BaseSupply, base_particles};
 pub use table::{Comma, FILE_LIMIT_BYTES, Row, allowed_percent, allowed_size};

@@ -28,17 +28,14 @@ pub use arrays::ArrayOptions;
 pub use columns::NO_EXIT;
 pub use columns::{CONDUCTANCE_EXPONENT, NetworkColumns};
 pub use connectivity::Connectivity;
-pub(crate) use connectivity::TABLE_3;
+#[cfg(test)]
+use connectivity::TABLE_3;
 pub use cubic::percolation_threshold;
 pub use exit_rule::ExitRule;
 pub use file::NetworkError;
-pub(crate) use flow::Permeability;
 pub use flow::{Flow, FlowError};
 pub use graph::{GraphShape, permeability_mm2};
-pub(crate) use passage::FirstPassage;
 pub use passage::Passage;
-pub(crate) use possible_exits::TOLERANCE_PERCENT;
-pub(crate) use reach::Reachability;
 pub use undirected::{FLOW_TOLERANCE, WIDE, flow_error_pp};
 pub use undirected::{Link, LinkEnd, LinkedVoids};
 

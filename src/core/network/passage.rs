@@ -138,7 +138,7 @@ pub struct FirstPassage {
 
 impl FirstPassage {
     /// Mean of both over the start nodes, each being equally probable.
-    pub fn from_start(&self, network: &Network) -> (f64, f64) {
+    pub fn at_start(&self, network: &Network) -> (f64, f64) {
         let mean = |values: &[f64]| {
             let sum: f64 = network.start().iter().map(|&void| values[void as usize]).sum();
             sum / network.start().len() as f64
@@ -345,7 +345,7 @@ mod tests {
     #[test]
     fn equal_constrictions_take_three_moves_a_layer() {
         let network = Network::cubic_from_diameters([3, 2, 7], vec![0.5; 126], 1.0).unwrap();
-        let (leaves, moves) = network.first_passage(0.5, |_| false).unwrap().from_start(&network);
+        let (leaves, moves) = network.first_passage(0.5, |_| false).unwrap().at_start(&network);
         assert!((leaves - 1.0).abs() < 1e-12 && (moves - 21.0).abs() < 1e-9, "{leaves} {moves}");
         assert_eq!(network.first_passage(0.6, |_| false).unwrap().leaves, vec![0.0; 42]);
     }
@@ -371,7 +371,7 @@ mod tests {
         let passage = |narrow: f64| {
             let text = format!("from,to,diameter_mm\nstart,0,\n0,0,1\n0,end,{narrow}\n");
             let network = Network::from_csv(text.as_bytes(), "n.csv", 1.0).unwrap();
-            network.first_passage(0.0, |_| false).map(|passage| passage.from_start(&network))
+            network.first_passage(0.0, |_| false).map(|passage| passage.at_start(&network))
         };
         let (leaves, moves) = passage(0.01).unwrap();
         assert!((leaves - 1.0).abs() < 1e-9 && (moves / 10_001.0 - 1.0).abs() < 1e-6, "{leaves} {moves}");

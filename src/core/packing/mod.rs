@@ -44,9 +44,7 @@ mod vtk;
 
 pub use fields::{ImportError, LengthUnit, PACKING_FILE_LIMIT_BYTES};
 pub use import::{CellOption, ReadOptions};
-pub(crate) use neighbours::Reach;
 pub use protocol::{CompressionProgress, PackReport, compress};
-pub(crate) use settings::Contact;
 pub use settings::{PackingError, Settings, is_wide};
 pub use state::{Compression, Measure, Stage};
 

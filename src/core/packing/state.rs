@@ -331,11 +331,6 @@ impl Compression {
         self.spin.iter().map(|w| [w[0], w[1], w[2]]).collect()
     }
 
-    /// Mean contact pressure of the last step, over its target.
-    pub(crate) fn pressure(&self) -> f64 {
-        self.now.pressure
-    }
-
     /// Void ratio: volume of the cell over the volume of the grains, minus 1.
     pub(crate) fn void_ratio(&self) -> f64 {
         self.cell_volume() / self.grain_volume() - 1.0

@@ -15,7 +15,6 @@ pub use column::Column;
 pub use column::Placement;
 pub(crate) use disk::in_mb;
 pub use disk::{open_regular, read_regular, why_not_read};
-pub(crate) use folder::LOCK_FILE;
 pub use folder::{Folder, folder_name, is_device};
 pub use npz::{Array, Npz, Numbers, npz};
 pub use whole::{StoreError, Together, files_in, make_folder, read_whole, remove_folder, write_whole};

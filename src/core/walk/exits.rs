@@ -159,6 +159,7 @@ pub(super) struct OpenExits<'a> {
 
 impl ExitTable {
     /// Builds the table with `blocked` constrictions closed.
+    #[cfg(test)]
     pub(crate) fn new(network: &Network, blocked: &BitSlice) -> Self {
         Self::empty(network, blocked).filled(network, Ways::Unblocked(blocked))
     }

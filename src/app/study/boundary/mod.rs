@@ -58,11 +58,6 @@ pub fn run(options: &BoundaryOptions, callbacks: &Callbacks) -> Result<Boundarie
     on_threads(options.prepare.threads, || run_within(options, BRACKET, callbacks))
 }
 
-/// Reports all mistakes that [`run`] would find before any work; claims and writes nothing.
-pub(crate) fn check(options: &BoundaryOptions) -> Result<(), RunError> {
-    on_threads(options.prepare.threads, || drafts(options, BRACKET).map(drop))
-}
-
 /// Runs a search between these D15F/D85B.
 fn run_within(
     options: &BoundaryOptions,

@@ -17,7 +17,6 @@ mod predicates;
 mod sanity;
 
 pub use mesh::TriangulationError;
-pub(crate) use sanity::SanityError;
 
 pub(super) use mesh::{GrainPoint, Shift, cross, dot, edges, facet, offset, six_volume};
 

@@ -28,7 +28,7 @@ mod shares;
 pub use passive::Expected;
 pub use passive::Passive;
 pub(super) use passive::coarse_share;
-pub(crate) use passive::{Counted, ExpectedSums};
+pub(crate) use passive::ExpectedSums;
 
 use super::exits::VoidExits;
 use super::openings::Ways;
