@@ -352,7 +352,11 @@ fn defined(code: &str) -> BTreeSet<String> {
     names
 }
 
-/// Which file uses names of which: re-exports are followed to where a name is defined.
+fn is_reexport(line: &str) -> bool {
+    line.starts_with("pub use") || line.starts_with("pub(crate) use")
+}
+
+/// Files that use names of each file: re-exports are followed to the definition of a name.
 fn arrows(sources: &[Source]) -> BTreeMap<usize, BTreeSet<usize>> {
     let by_module: BTreeMap<&str, usize> =
         sources.iter().enumerate().map(|(index, source)| (source.module.as_str(), index)).collect();
@@ -377,21 +381,15 @@ fn arrows(sources: &[Source]) -> BTreeMap<usize, BTreeSet<usize>> {
     };
     let mut arrows: BTreeMap<usize, BTreeSet<usize>> = BTreeMap::new();
     for (index, source) in sources.iter().enumerate() {
-        let body: String = source
-            .code
-            .lines()
-            .filter(|line| !line.starts_with("pub use"))
-            .flat_map(|line| [line, "\n"])
-            .collect();
+        let body: String =
+            source.code.lines().filter(|line| !is_reexport(line)).flat_map(|line| [line, "\n"]).collect();
         for (module, name) in &imports[index] {
             let is_used =
                 body.matches(name.as_str()).count() > usize::from(body.contains(&format!("use {name}")));
             if let Some(file) = home(module, name).filter(|&file| file != index && is_used) {
                 // A re-export that the file itself does not use is no arrow of its own.
-                let reexported = source
-                    .code
-                    .lines()
-                    .any(|line| line.starts_with("pub use") && line.contains(name.as_str()));
+                let reexported =
+                    source.code.lines().any(|line| is_reexport(line) && line.contains(name.as_str()));
                 if !reexported || body.contains(name.as_str()) {
                     arrows.entry(index).or_default().insert(file);
                 }

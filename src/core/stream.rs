@@ -10,7 +10,7 @@
 //! - [`Key::lanes`] is [`Lanes`]: eight xoshiro256++ generators side by side, for chunked columns.
 //!   Its output is a sequence of blocks of eight words; word `w` of the whole stream is word
 //!   `w / 8` of generator `w % 8`. Sixteen-bit draw `j` is bits `16 (j % 4) ..` of word `j / 4`.
-//! - [`Key::words`] is [`Words`]: words by index, for use in any order (permutations).
+//! - `Key::words` is `Words`: words by index, for use in any order (permutations).
 //!
 //! # How a key becomes a state
 //! The five key words are hashed by XXH3 to 128 bits `(a, b)`; state word `i` is

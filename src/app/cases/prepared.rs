@@ -42,7 +42,7 @@ pub enum CasePart {
     All,
     /// The case of this name.
     Named(String),
-    /// The cases of one task: the list that [`write_job_scripts`](super::write_job_scripts) wrote, and the
+    /// The cases of one task: the list that `write_job_scripts` wrote, and the
     /// task's number.
     Task(PathBuf, u64),
 }

@@ -128,7 +128,7 @@ pub(crate) fn names(plan: &CasePlan, part: &CasePart) -> Result<Vec<String>, Run
 ///
 /// # Errors
 /// A wrong plan or case, or a folder that cannot be claimed, is refused before any work; then errors that
-/// concern all cases. Errors of single cases are in [`FinishedCases::failed`]. After a stop, the same call
+/// concern all cases. Errors of single cases are in `FinishedCases::failed`. After a stop, the same call
 /// continues.
 pub fn run(
     plan: &CasePlan,

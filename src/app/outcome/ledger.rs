@@ -39,7 +39,7 @@ pub struct LedgerLine {
     pub with_openings: bool,
     /// Identifiers of rules of practice that apply to these soils and are not kept.
     pub rules_not_met: Vec<String>,
-    /// Number of replicates in each class, in the order of [`Verdict::ALL`].
+    /// Number of replicates in each class, in the order of `Verdict::ALL`.
     pub replicate_verdicts: [u64; 4],
     /// Number of replicates.
     pub replicates: u64,

@@ -1,14 +1,14 @@
 //! Results of a walk: series, size curves, blocked by layer, and the verdict with its uncertainty.
 //!
-//! - [`record`] defines names and types of everything in a run folder, [`packing`] of a packing folder,
-//!   [`number_rows`] of tables of numbers alone; [`table`] describes the tables of files and pages.
-//! - `recorder` records a running walk, `metrics` gives the numbers of a run at its end, [`statistic`]
+//! - [`record`] defines names and types of everything in a run folder, `packing` of a packing folder,
+//!   [`number_rows`] of tables of numbers alone; `table` describes the tables of files and pages.
+//! - `recorder` records a running walk, `metrics` gives the numbers of a run at its end, `statistic`
 //!   those of several.
-//! - [`verdict`] classifies replicates by eroded mass; [`stopping`] decides how many are needed,
+//! - [`verdict`] classifies replicates by eroded mass; `stopping` decides how many are needed,
 //!   `early_stop` how many for a study.
-//! - [`left_out`] lists what a scene does not need and what the model omits.
+//! - `left_out` lists what a scene does not need and what the model omits.
 //! - `paper` gives results of the paper beside the walk.
-//! - [`percolation`] and [`boundary`] hold results of studies, [`ledger`] those of a campaign.
+//! - `percolation` and `boundary` hold results of studies, [`ledger`] those of a campaign.
 
 pub(crate) mod boundary;
 pub(crate) mod early_stop;

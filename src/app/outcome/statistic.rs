@@ -8,7 +8,7 @@ impl Statistic {
     /// Mean, sample standard deviation and 95 % interval of the mean (Student's t) of independent values.
     ///
     /// One value has neither standard deviation nor interval. For values between 0 and 1 see
-    /// [`Statistic::of_fraction`].
+    /// `Statistic::of_fraction`.
     ///
     /// # Panics
     /// Panics if there is no value.

@@ -21,7 +21,7 @@ pub(crate) fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
     from_json(text(path)?.as_bytes()).map_err(|error| form(path, &error))
 }
 
-/// Reads JSON like [`json()`], but from a text without the file's beginning; `path` names it in errors.
+/// Reads JSON like `json()`, but from a text without the file's beginning; `path` names it in errors.
 pub fn json_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, ReportError> {
     serde_json::from_str(text).map_err(|error| form(path, &error))
 }

@@ -1,7 +1,7 @@
 //! Report: one page and its figures, made from a finished run folder alone.
 //!
 //! [`write()`] reads the files of a run and walks nothing; the other `write_` functions read other folders.
-//! They write `figures/*.svg`, each a separate file, and the page. [`write_walked()`] writes the page of a
+//! They write `figures/*.svg`, each a separate file, and the page. `write_walked()` writes the page of a
 //! run that was just walked, from the contents of its files. [`run_page()`] and [`network_walk_page()`]
 //! return pages of walks in memory as text; [`run_brief()`] and [`network_walk_brief()`] return the verdict
 //! alone, for a notebook.

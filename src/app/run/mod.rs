@@ -2,8 +2,8 @@
 //!
 //! - [`walk_scene`] and [`resume`] walk a scene into a folder, [`walk_case`] walks a case in memory,
 //!   [`walk_networks`] walks networks from elsewhere.
-//! - [`pack`](pack::pack) packs a filter, [`measure_constrictions`] measures a packing from elsewhere.
-//! - [`check`](prepare::check) forecasts a run by the cost model of `cost`.
+//! - `pack` packs a filter, `measure_constrictions` measures a packing from elsewhere.
+//! - `check` forecasts a run by the cost model of `cost`.
 //! - [`Callbacks`] follow the work and stop it, [`RunError`] gives the reason for an early end, and
 //!   [`folder::claim`] guards every folder.
 //!

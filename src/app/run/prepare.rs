@@ -188,7 +188,7 @@ pub(crate) struct PackingCheck {
 /// Forecasts a run of a scene, here and with these options; packs nothing and writes nothing.
 ///
 /// # Errors
-/// All mistakes of the scene, memory apart: see [`Check::refusal`].
+/// All mistakes of the scene, memory apart: see `Check::refusal`.
 pub fn check(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> {
     on_threads(options.threads, || check_here(scene, options))
 }

@@ -1,6 +1,6 @@
 //! Scene: one base-filter combination and the plan of its walk, as stated by the user.
 //!
-//! Every setting is declared once, in `keys` or by its stage ([`StopRule`], packing's
+//! Every setting is declared once, in `keys` or by its stage (`StopRule`, packing's
 //! [`Settings`](voidwalk_core::packing::Settings)); a [`Scene`] holds them all. Those declarations define
 //! the commented text of [`Scene::init_text`], the allowed and refused settings, and the resolved scene
 //! that a run writes and that identifies it. Setting names must not change.

@@ -1,6 +1,6 @@
 //! Figures: axes, lines, areas, points and rules, drawn as SVG.
 //!
-//! A [`Figure`] holds the content; [`Figure::file`] and [`Figure::inline`] draw it. It follows the habits of
+//! A `Figure` holds the content; `Figure::file` and `Figure::inline` draw it. It follows the habits of
 //! geotechnical engineers (semi-logarithmic paper with minor lines, depth downward, a name beside each curve)
 //! and suits pages that forbid all content from elsewhere: it has only presentation attributes, no script, no
 //! style element, and no external font or image. Colours are by Okabe and Ito, which colour-blind readers can

@@ -5,7 +5,7 @@
 //! Each shape and density takes one packing. Packings are free of scale: a filter s times as large holds a
 //! base as the filter itself would hold one 1/s times as large, so nothing is packed again. Each network of a
 //! boundary is a replicate of a run, with its own streams of random numbers; these are the same at every
-//! ratio, and so is the network, to the bit. `search` describes the search; [`crate::outcome::boundary`]
+//! ratio, and so is the network, to the bit. `search` describes the search; `crate::outcome::boundary`
 //! gives the median and band over networks. A thickness in mm is another number of layers at every ratio, but
 //! the first layers are always the same.
 //!

@@ -189,7 +189,7 @@ impl Checkpoint {
     /// Reads a whole section.
     ///
     /// # Errors
-    /// Errors of [`Checkpoint::count`]; a piece whose checksum is wrong.
+    /// Errors of `Checkpoint::count`; a piece whose checksum is wrong.
     pub fn read<T: Pod>(&self, name: &str) -> Result<Vec<T>, CheckpointError> {
         // The allocation is bounded by the length in the header, which equals the file's.
         let mut all = Vec::with_capacity(self.count::<T>(name)?);

@@ -26,9 +26,9 @@ mod passive;
 mod shares;
 
 pub use passive::Expected;
+pub(crate) use passive::ExpectedSums;
 pub use passive::Passive;
 pub(super) use passive::coarse_share;
-pub(crate) use passive::ExpectedSums;
 
 use super::exits::VoidExits;
 use super::openings::Ways;
