@@ -10,9 +10,9 @@ use voidwalk_practice::{Mistake, MistakeKind};
 
 /// Base with its derived values.
 #[derive(Clone, Debug)]
-pub(crate) struct CaseBase {
+pub struct CaseBase {
     /// Gradation as walked.
-    pub(crate) gradation: Gradation,
+    pub gradation: Gradation,
     /// Base as given, and the size (mm) on which it was regraded, if it is walked regraded.
     pub(crate) regraded_from: Option<(Gradation, f64)>,
 }
@@ -99,16 +99,16 @@ pub(crate) const PAPER_MASS_RATIO: f64 = 0.05;
 
 /// Particles of a base in the walk.
 #[derive(Clone)]
-pub(crate) struct CaseSupply {
+pub struct CaseSupply {
     /// True if the base's pan fraction is walked as particles just finer than every constriction, false
     /// if it is counted by mass only.
     pub(crate) pan_is_walked: bool,
     /// Sampler of particle sizes, in units of the reference length.
     pub(crate) sampler: SizeSampler,
     /// Number of base particles in a run, by Eq. (2) or as given.
-    pub(crate) n_base: u64,
+    pub n_base: u64,
     /// Number of base particles by Eq. (2); `None` if the grains per void are not given.
-    pub(crate) n_base_eq2: Option<u64>,
+    pub n_base_eq2: Option<u64>,
     /// True if a cap made `n_base` smaller than by Eq. (2).
     pub(crate) capped: bool,
     /// Mass of base over mass of filter for `n_base` particles; `None` if the grains per void are not given.

@@ -19,13 +19,13 @@ use voidwalk_core::packing::Packing;
 
 /// Filter with all its derived values.
 #[derive(Clone)]
-pub(crate) struct CaseFilter {
+pub struct CaseFilter {
     /// Gradation of the filter.
     pub(crate) gradation: Gradation,
     /// Reference length: the smallest grain (mm).
     pub(crate) unit_mm: f64,
     /// Constriction curve (mm).
-    pub(crate) curve: Curve,
+    pub curve: Curve,
     /// Further curves that are walked: the ends of the range of its own curve.
     pub(crate) curve_ends: Vec<OtherCurve>,
     /// Finest constriction (mm) of all curves that are walked, including the ends of its range: finer
@@ -144,7 +144,7 @@ fn grains_per_void(scene: &Scene, stated: &StatedFilter, fixed: Option<&FixedNet
 pub(super) struct StatedFilter {
     pub(crate) gradation: Gradation,
     /// Constriction curve in the unit in which it is stated; `None` if the network defines it.
-    pub(crate) curve: Option<Curve>,
+    pub curve: Option<Curve>,
     pub(crate) shipped: Option<&'static ShippedFilter>,
     pub(crate) packed: Option<PackedFilter>,
     pub(crate) library: Option<LibraryFilter>,
@@ -288,7 +288,7 @@ impl FixedNetwork {
 pub(super) struct GraphPacking {
     pub(crate) graph: VoidGraph,
     /// Constriction curve in mm.
-    pub(crate) curve: Curve,
+    pub curve: Curve,
     pub(crate) gradation: Gradation,
 }
 

@@ -61,15 +61,15 @@ pub struct Case {
     /// Scene of the case.
     pub(crate) scene: Scene,
     /// The filter.
-    pub(crate) filter: CaseFilter,
+    pub filter: CaseFilter,
     /// The base.
-    pub(crate) base: CaseBase,
+    pub base: CaseBase,
     /// Note that base and filter look exchanged, or are in different units.
     pub(crate) mistake: Option<Note>,
     /// Network of the filter.
     pub(crate) network: CaseNetwork,
     /// Particles of the base in the walk.
-    pub(crate) supply: CaseSupply,
+    pub supply: CaseSupply,
     /// Files that were read.
     pub inputs: Vec<Input>,
     /// Maximum memory for the walks (bytes): no limit until [`Case::place`] sets one.

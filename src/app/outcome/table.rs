@@ -4,15 +4,6 @@
 //!
 //! [`csv_of()`] writes rows whose fields are the columns of a file. For other rows, [`Columns`] describes
 //! each column.
-//!
-//! ```
-//! use voidwalk_app::outcome::table::Columns;
-//! let columns = Columns::default().name("case", "Case", |row: &(&str, f64)| row.0.to_owned());
-//! let columns = columns.digits("ratio", 2, |row| Some(row.1)).page_number("D15F/D85B", |row| row.1);
-//! assert_eq!(columns.csv(&[("=1", 0.125), ("b", 3.0)]), b"case,ratio\n'=1,0.12\nb,3.00\n");
-//! let shown: Vec<String> = columns.of_page().map(|column| (column.cell)(&("b", 3.0)).text).collect();
-//! assert_eq!(shown, ["b", "3.00"]);
-//! ```
 
 use super::record::{Statistic, Verdict};
 use super::statistic::percent_interval;
@@ -514,5 +505,15 @@ mod tests {
         assert_eq!(whole.csv(&[(3, true)]), b"a,b,c\n3,6,true\n");
         let shown: Vec<String> = whole.in_brief().of_page().map(|column| column.heading.text).collect();
         assert_eq!(shown, ["B", "C"]);
+    }
+
+    #[test]
+    fn columns_make_a_file_and_a_page() {
+        use crate::outcome::table::Columns;
+        let columns = Columns::default().name("case", "Case", |row: &(&str, f64)| row.0.to_owned());
+        let columns = columns.digits("ratio", 2, |row| Some(row.1)).page_number("D15F/D85B", |row| row.1);
+        assert_eq!(columns.csv(&[("=1", 0.125), ("b", 3.0)]), b"case,ratio\n'=1,0.12\nb,3.00\n");
+        let shown: Vec<String> = columns.of_page().map(|column| (column.cell)(&("b", 3.0)).text).collect();
+        assert_eq!(shown, ["b", "3.00"]);
     }
 }

@@ -55,12 +55,6 @@ pub(super) fn write_specification_workbook(
 
 /// Workbook to fill in, with one column per soil, for [`voidwalk_sheets::soils_in_file`], as bytes. A clock
 /// before 1970 is an error.
-///
-/// ```
-/// let bytes = voidwalk_app::report::soil_template()?;
-/// assert!(bytes.starts_with(b"PK"));
-/// # Ok::<(), voidwalk_app::report::ReportError>(())
-/// ```
 pub(crate) fn soil_template() -> Result<Vec<u8>, ReportError> {
     bytes(Path::new("template"), "voidwalk: sieve tables", &template_sheets())
 }
@@ -516,5 +510,12 @@ mod tests {
         assert_eq!(soils[0].points, soils[1].points);
         // Of the sieves that everything passes, only the finest becomes a row.
         assert_eq!((soils[0].points.len(), soils[0].points[0].row()), (8, [0.075, 38.0]));
+    }
+
+    #[test]
+    fn a_template_is_a_zip() -> Result<(), crate::report::ReportError> {
+        let bytes = crate::report::soil_template()?;
+        assert!(bytes.starts_with(b"PK"));
+        Ok(())
     }
 }

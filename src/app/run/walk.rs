@@ -46,7 +46,7 @@ pub struct FinishedRun {
     /// Its folder.
     pub folder: PathBuf,
     /// Result of the walk, as in `outcome.json`.
-    pub(crate) outcome: Outcome,
+    pub outcome: Outcome,
     /// The decision of practice on its pair.
     pub(crate) decision: Decision,
     /// Unit of sizes in its scene (`about.units`).
@@ -125,6 +125,18 @@ pub fn resume(folder: &Path, options: &RunOptions, callbacks: &Callbacks) -> Res
 
 /// Walks a case in memory and writes nothing. Uses the thread pool that it is called in, else one thread per
 /// core.
+///
+/// ```
+/// use voidwalk_app::case::Case;
+/// use voidwalk_app::run::{Callbacks, walk_case};
+/// use voidwalk_app::scene::Scene;
+///
+/// let settings = ["replicates=2", "base.n_base=20000", "record.sensitivity=[]"].map(String::from);
+/// let case = Case::new(Scene::built_in(&settings)?)?;
+/// let outcome = walk_case(&case, &Callbacks::default())?;
+/// assert_eq!(outcome.replicates.len(), 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
 /// A walk that fails or was stopped.

@@ -62,7 +62,7 @@ pub struct Scene {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) packing: Option<PackingKeys>,
     /// The base soil.
-    pub(crate) base: Base,
+    pub base: Base,
     /// Choice of exits by particles.
     #[serde(rename = "walk", skip_serializing_if = "is_unset")]
     pub(crate) exits: ExitKeys,

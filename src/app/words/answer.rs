@@ -290,17 +290,6 @@ fn undecided(summary: &[RunSummary], threshold: f64, limit: &str) -> String {
 
 /// Look in one line, for a verdict with `wanted` replicates; `None` for one replicate, which says nothing
 /// about scatter.
-///
-/// ```
-/// use voidwalk_app::outcome::verdict::SoFar;
-/// use voidwalk_app::words::so_far;
-/// let mut walked = SoFar::default();
-/// for (replicate, eroded) in [(1, 0.31), (2, 0.33), (3, 0.32)] {
-///     walked.add(replicate, 1, eroded, false);
-/// }
-/// let words = walked.look(1).and_then(|look| so_far(&look, 10)).unwrap();
-/// assert!(words.starts_with("after 3 of 10 replicates, not yet final: undecided; first run 29.5"));
-/// ```
 pub(crate) fn so_far(look: &FirstLook, wanted: u64) -> Option<String> {
     let interval = |statistic: &Statistic| Some((statistic.low?, statistic.high?));
     let runs = look.eroded.iter().zip(["first run", "second run"]).map(|(statistic, run)| {
@@ -312,4 +301,19 @@ pub(crate) fn so_far(look: &FirstLook, wanted: u64) -> Option<String> {
     Some(format!(
         "after {replicates} of {wanted} replicates, not yet final: {class}; {runs} of the mass eroded"
     ))
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn an_interim_look_states_its_replicates_and_intervals() {
+        use crate::outcome::verdict::SoFar;
+        use crate::words::so_far;
+        let mut walked = SoFar::default();
+        for (replicate, eroded) in [(1, 0.31), (2, 0.33), (3, 0.32)] {
+            walked.add(replicate, 1, eroded, false);
+        }
+        let words = walked.look(1).and_then(|look| so_far(&look, 10)).unwrap();
+        assert!(words.starts_with("after 3 of 10 replicates, not yet final: undecided; first run 29.5"));
+    }
 }

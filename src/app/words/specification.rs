@@ -26,17 +26,6 @@ pub(crate) const DESIGN_AGAIN: &str = "design again for a dispersive base";
 pub(crate) const DESIGN_EACH_AGAIN: &str = "design again for dispersive soils";
 
 /// Band to specify: D15F of both sides, and Cu. `None` without a band.
-///
-/// ```
-/// use voidwalk_core::Gradation;
-/// use voidwalk_practice::{design::Specification, quantity::SizeUnit};
-/// use voidwalk_practice::SpecificationOptions;
-/// let clay = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)])?;
-/// let core = Specification::of("core", &[("core".into(), clay)], SpecificationOptions::default());
-/// let band = voidwalk_app::words::specification::band(&core, SizeUnit::Mm);
-/// assert_eq!(band.as_deref(), Some("D15F from 0.140 to 0.700\u{202f}mm, Cu from 2 to 6"));
-/// # Ok::<(), voidwalk_core::gradation::GradationError>(())
-/// ```
 pub(crate) fn band(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let [least, most] = specification.band.as_ref()?.d15_mm();
     let is_open =
@@ -513,5 +502,17 @@ mod tests {
                 .contains("at least 0.100\u{202f}mm to drain it and at most 0.0640\u{202f}mm to retain it")
         );
         assert!(!why(0.1).contains("less broad") && why(0.2).contains("less broad"));
+    }
+
+    #[test]
+    fn a_band_states_both_sides_and_cu() -> Result<(), voidwalk_core::gradation::GradationError> {
+        use voidwalk_core::Gradation;
+        use voidwalk_practice::SpecificationOptions;
+        use voidwalk_practice::{design::Specification, quantity::SizeUnit};
+        let clay = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)])?;
+        let core = Specification::of("core", &[("core".into(), clay)], SpecificationOptions::default());
+        let band = crate::words::specification::band(&core, SizeUnit::Mm);
+        assert_eq!(band.as_deref(), Some("D15F from 0.140 to 0.700\u{202f}mm, Cu from 2 to 6"));
+        Ok(())
     }
 }

@@ -349,12 +349,12 @@ impl Constrictions {
     }
 
     /// Number of voids used for statistics.
-    pub(crate) fn voids(&self) -> usize {
+    pub fn voids(&self) -> usize {
         self.void_centre_mm.iter().filter(|centre| self.region.holds(centre)).count()
     }
 
     /// Number of constrictions used for statistics.
-    pub(crate) fn constrictions(&self) -> usize {
+    pub fn constrictions(&self) -> usize {
         self.centre_mm.iter().filter(|centre| self.region.holds(centre)).count()
     }
 

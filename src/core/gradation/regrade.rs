@@ -66,6 +66,14 @@ impl Gradation {
     /// not broadly graded. If the fraction finer than a gap has such grains, and the fines or the
     /// gradation that make the rule apply, it is regraded on No. 4 too: the manual stops at the gap,
     /// which gives a coarser limit. Every percent is divided by the percent passing.
+    ///
+    /// ```
+    /// use voidwalk_core::gradation::Gradation;
+    /// let till = Gradation::from_points(&[(0.075, 35.0), (4.75, 92.0), (19.0, 100.0)], None)?;
+    /// let regraded = till.regraded();
+    /// assert_eq!((regraded.at_mm, regraded.gradation.largest_mm()), (Some(4.75), 4.75));
+    /// # Ok::<(), voidwalk_core::gradation::GradationError>(())
+    /// ```
     pub fn regraded(&self) -> Regraded {
         self.regraded_as(self)
     }

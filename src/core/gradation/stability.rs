@@ -68,6 +68,14 @@ impl Gradation {
     /// Index of Kenney and Lau: the minimum of H / F over F up to [`Gradation::loose_percent`].
     ///
     /// `None` for a single size, or if D_10 lies in a pan fraction or the pan fraction reaches beyond F.
+    ///
+    /// ```
+    /// use voidwalk_core::gradation::Gradation;
+    /// // 20 % of fines, then a gap of a factor 10: nothing between D and 4 D at F = 20 %.
+    /// let gap = Gradation::from_points(&[(0.1, 0.0), (0.2, 20.0), (2.0, 20.0), (20.0, 100.0)], None)?;
+    /// assert_eq!(gap.kenney_lau().unwrap().value, 0.0);
+    /// # Ok::<(), voidwalk_core::gradation::GradationError>(())
+    /// ```
     pub fn kenney_lau(&self) -> Option<ShapeIndex> {
         self.least_of_next(self.loose_percent()?, |finer| finer)
     }

@@ -42,6 +42,17 @@ impl Network {
     ///
     /// In an undirected network, ways in and out have the mean conductance of all constrictions.
     ///
+    /// ```
+    /// use voidwalk_core::network::{ExitRule, Network, NetworkColumns};
+    /// let columns = NetworkColumns {
+    ///     voids: 2, conns: &[[0, 1]], diameter_mm: &[0.5], conductance: None, inlets: &[0], outlets: &[1],
+    ///     rule: ExitRule::Flux, rho: 0.0, unit_mm: 1.0,
+    /// };
+    /// let (network, exit) = Network::from_columns(&columns)?;
+    /// assert_eq!((network.passages(), network.twin(exit[0] as usize).is_some()), (1, true));
+    /// # Ok::<(), voidwalk_core::network::NetworkError>(())
+    /// ```
+    ///
     /// # Errors
     /// Columns of unequal length; a void that does not exist; an invalid diameter or conductance; no
     /// constriction, inlet, way out or open path; a rule by height, which the columns do not contain.

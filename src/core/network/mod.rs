@@ -48,6 +48,15 @@ pub const END: u32 = u32::MAX;
 pub const NO_LAYER: u32 = u32::MAX;
 
 /// Voids, constrictions and start nodes, as columns.
+///
+/// ```
+/// use voidwalk_core::{Network, constrictions::find};
+/// let curve = find("cu1.5-loose")?.curve()?.in_mm(1.0)?;
+/// // Three constrictions lead on from each void of the lattice.
+/// let network = Network::cubic([10, 10, 20], &curve, 1.0, 7)?;
+/// assert_eq!((network.voids(), network.constrictions()), (2000, 6000));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Network {
     /// First exit of each void, with one extra entry at the end: the exits of void `v` are constrictions

@@ -131,9 +131,9 @@ const LEAST_SWEEPS: usize = 1 << 12;
 #[derive(Clone, Debug, PartialEq)]
 pub struct FirstPassage {
     /// Probability of leaving the filter.
-    pub(crate) leaves: Vec<f64>,
+    pub leaves: Vec<f64>,
     /// Mean number of completed moves, including the one that leaves.
-    pub(crate) moves: Vec<f64>,
+    pub moves: Vec<f64>,
 }
 
 impl FirstPassage {

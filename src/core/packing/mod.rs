@@ -65,6 +65,19 @@ pub enum Cell {
 }
 
 /// Filter grains as columns; grain `i` is entry `i` of each column.
+///
+/// ```
+/// use voidwalk_core::packing::{Cell, Packing};
+/// let packing = Packing {
+///     cell: Cell::Periodic([2.0; 3]),
+///     x: vec![0.0, 1.0],
+///     y: vec![0.0, 1.0],
+///     z: vec![0.0, 1.0],
+///     diameter: vec![1.0, 0.7],
+/// };
+/// assert_eq!(Packing::parse("grains.csv", packing.to_csv().as_bytes())?, packing);
+/// # Ok::<(), voidwalk_core::packing::ImportError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Packing {
     /// Cell containing the grains.
@@ -151,6 +164,13 @@ pub(crate) fn vtp_points(points: &[[f64; 3]], columns: &[(&str, &[f64])]) -> Str
 /// strata by number: the sample follows the gradation much more closely than independent draws would.
 ///
 /// A pan fraction is left out: its grains are too fine to form the skeleton, and their number is unknown.
+///
+/// ```
+/// use voidwalk_core::{gradation::Gradation, packing::draw};
+/// let filter = Gradation::linear_from_d0(1.0, 1.5).unwrap();
+/// let diameter_mm = draw(&filter, 1000, 1);
+/// assert!(diameter_mm[0] <= 2.25 && diameter_mm[999] >= 1.0);
+/// ```
 pub fn draw(gradation: &Gradation, grains: usize, seed: u64) -> Vec<f64> {
     let mut generator = stream(seed, 0);
     let mut diameter: Vec<f64> = (0..grains)

@@ -62,6 +62,25 @@ impl Engine {
 const WORTH_TWICE: u128 = 13;
 
 /// Plan of one run: an engine, and the passive part of the base.
+///
+/// ```
+/// use bitvec::vec::BitVec;
+/// use voidwalk_core::gradation::{Gradation, SizeSampler};
+/// use voidwalk_core::network::Network;
+/// use voidwalk_core::walk::{Engine, RunPlan, SizeClasses, State, Walk, WalkControl};
+///
+/// let network = Network::cubic_from_diameters([4, 4, 6], vec![1.0; 288], 1.0)?;
+/// let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.2, 1.5)?, 1.0)?;
+/// let open: BitVec = BitVec::repeat(false, network.constrictions());
+/// let plan = RunPlan::new(Engine::Auto, &network, &sampler, &open, 10_000_000_000);
+/// assert_eq!(plan.engine(), Engine::Counts);
+/// let supply = plan.supply(sampler, 1_000_000_000_000, 100, 7, 1);
+/// let classes = SizeClasses::logarithmic(0.2, 0.45, 32);
+/// let mut state = State::new(&network, &supply, classes, open, 7, 1);
+/// Walk::new(&network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue)?;
+/// assert_eq!(state.tally.eroded, 1_000_000_000_000);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct RunPlan {
     engine: Engine,

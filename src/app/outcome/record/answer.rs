@@ -29,8 +29,7 @@ pub enum Verdict {
 
 impl Verdict {
     /// Every class, in the order of `replicate_verdicts`.
-    pub(crate) const ALL: [Verdict; 4] =
-        [Verdict::None, Verdict::Some, Verdict::Continuing, Verdict::Undecided];
+    pub const ALL: [Verdict; 4] = [Verdict::None, Verdict::Some, Verdict::Continuing, Verdict::Undecided];
 
     /// Name in `outcome.json` and in every table.
     pub fn words(self) -> &'static str {
