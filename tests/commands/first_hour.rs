@@ -108,7 +108,7 @@ fn every_mistake_is_answered_with_a_way_out() {
         (
             "run small.toml --out thesis",
             2,
-            &["thesis/.voidwalk.lock: is no lock file", "name another folder"],
+            &["thesis/.voidwalk.lock: is not a voidwalk lock file", "name another folder"],
         ),
     ];
     let before = fs::read_dir(root.path()).unwrap().count();

@@ -285,7 +285,7 @@ fn fifty_samples_of_an_ags_file_are_one_table_and_the_strictest_govern() {
     fs::write(&csv, "mine").unwrap();
     let again = voidwalk(&words);
     assert!(
-        again.status.code() == Some(2) && String::from_utf8_lossy(&again.stderr).contains("is there already")
+        again.status.code() == Some(2) && String::from_utf8_lossy(&again.stderr).contains("exists already")
     );
     let envelope = voidwalk(&["rules", &site, &filters[0], &filters[1]]);
     let refused = String::from_utf8_lossy(&envelope.stderr);

@@ -226,10 +226,10 @@ fn init_writes_a_scene_that_check_understands() {
     let root = tempfile::tempdir().unwrap();
     let path = root.path().join("scene.toml");
     assert!(voidwalk(&["init", path.to_str().unwrap()]).status.success());
-    refused(&voidwalk(&["init", path.to_str().unwrap()]), &["is there already"]);
+    refused(&voidwalk(&["init", path.to_str().unwrap()]), &["exists already"]);
     let plan = root.path().join("plan.toml");
     assert!(voidwalk(&["init", "--plan", plan.to_str().unwrap()]).status.success());
-    refused(&voidwalk(&["init", "--plan", plan.to_str().unwrap()]), &["is there already"]);
+    refused(&voidwalk(&["init", "--plan", plan.to_str().unwrap()]), &["exists already"]);
     let output = voidwalk(&["init", "--plan"]);
     assert_eq!(fs::read(&plan).unwrap(), output.stdout);
     let output = voidwalk(&["campaign", plan.to_str().unwrap(), "--list"]);

@@ -60,7 +60,7 @@ fn the_curves_of_a_file_are_drawn_where_asked() {
     assert!(text.contains(">BH1 1.50 1.50<") && text.contains(">BH2 3.00 3.00<"), "{text}");
     let again = voidwalk(&["soil", &soils("gradings.ags"), "--figure", at]);
     assert!(again.status.code() == Some(2));
-    assert!(String::from_utf8_lossy(&again.stderr).contains("is there already"));
+    assert!(String::from_utf8_lossy(&again.stderr).contains("exists already"));
 }
 
 #[test]

@@ -305,7 +305,7 @@ fn the_template_is_read_back_as_soils() {
     refused(&call(root.path(), &steps), "name one: site.xlsx#Base");
     assert!(!root.path().join("voidwalk-specification").exists());
     done(&call(root.path(), &["design", "site.xlsx#Base", "-q"]));
-    refused(&call(root.path(), &["soil", "--template", "site.xlsx"]), "is there already");
+    refused(&call(root.path(), &["soil", "--template", "site.xlsx"]), "exists already");
     refused(&call(root.path(), &["soil", "--template", "site.csv"]), "ends in .xlsx");
     assert_eq!(call(root.path(), &["soil"]).status.code(), Some(2));
     assert_eq!(call(root.path(), &["soil", "site.xlsx", "--template", "b.xlsx"]).status.code(), Some(2));
