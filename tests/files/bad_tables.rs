@@ -70,7 +70,7 @@ fn a_folder_a_missing_file_and_a_huge_file_are_refused() {
 #[test]
 fn an_endless_file_is_refused() {
     let message = read_gradation("/dev/zero", None).unwrap_err().to_string();
-    assert!(message.contains("/dev/zero") && message.contains("no regular file"), "{message}");
+    assert!(message.contains("/dev/zero") && message.contains("not a regular file"), "{message}");
 }
 
 #[test]

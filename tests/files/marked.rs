@@ -105,7 +105,7 @@ fn an_unknown_entity_does_not_glue_its_neighbours() {
 fn a_table_within_a_cell_does_not_hide_the_rows_behind_it() {
     let nested = "<table:table-cell><table:table table:name=\"B\"><table:table-row><table:table-cell/>\
                   </table:table-row></table:table></table:table-cell>";
-    assert!(read(&ods("", nested)).unwrap_err().contains("a table of its own"));
+    assert!(read(&ods("", nested)).unwrap_err().contains("a cell contains a table"));
 }
 
 #[test]
