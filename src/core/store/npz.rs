@@ -284,8 +284,8 @@ mod tests {
             ("<f8", "(1, 1, 1)", "3 dimensions"),
             ("<f8", "()", "0 dimensions"),
             ("<f8", "(2,)", "ends after 1 of its 2 numbers"),
-            ("<f8", "(99999999999, 99999999999999)", "no array"),
-            ("<f8", "(x,)", "no array"),
+            ("<f8", "(99999999999, 99999999999999)", "not a NumPy array"),
+            ("<f8", "(x,)", "not a NumPy array"),
         ] {
             let error = parsed(kind, "False", shape, &[0; 8]).unwrap_err();
             assert!(error.contains(message), "{kind} {shape}: {error}");
