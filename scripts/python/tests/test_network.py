@@ -243,5 +243,5 @@ def test_a_walk_has_notes_with_a_sentence_each() -> None:
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes here")
 def test_a_pipe_is_no_network(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
-    with pytest.raises(ValueError, match="no regular file"):
+    with pytest.raises(ValueError, match="not a regular file"):
         vw.Network.from_file(tmp_path / "pipe")
