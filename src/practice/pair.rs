@@ -444,4 +444,21 @@ mod tests {
         assert_eq!(Mistake::find(&till, &c33, false), None);
         assert_eq!(Mistake::find(&c33, &till, false).unwrap().kind, MistakeKind::Exchanged);
     }
+
+    /// Fell et al. give 0.5 mm for a dispersive base of this category.
+    #[test]
+    fn a_limit_that_a_dispersive_base_would_have_is_in_the_headline() {
+        let base = [("soil".to_owned(), curve(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)]))];
+        let judged = |d15f: f64, dispersive| {
+            let filter = curve(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)]);
+            let options = PairOptions { dispersive, ..PairOptions::default() };
+            PairRules::of_envelopes(&base, &[("soil".to_owned(), filter)], options)
+        };
+        let pair = judged(0.61, false);
+        assert_eq!(pair.headline, Some(Headline::MeetsUnlessDispersive));
+        assert_eq!(pair.if_dispersive.map(|limit| limit.d15f_max_mm), Some(0.5));
+        assert_eq!(judged(0.45, false).headline, Some(Headline::Meets));
+        let stated = judged(0.61, true);
+        assert!(stated.headline == Some(Headline::DoesNotMeet) && stated.if_dispersive.is_none());
+    }
 }

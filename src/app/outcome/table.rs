@@ -509,7 +509,6 @@ mod tests {
 
     #[test]
     fn columns_make_a_file_and_a_page() {
-        use crate::outcome::table::Columns;
         let columns = Columns::default().name("case", "Case", |row: &(&str, f64)| row.0.to_owned());
         let columns = columns.digits("ratio", 2, |row| Some(row.1)).page_number("D15F/D85B", |row| row.1);
         assert_eq!(columns.csv(&[("=1", 0.125), ("b", 3.0)]), b"case,ratio\n'=1,0.12\nb,3.00\n");

@@ -305,10 +305,11 @@ pub(crate) fn so_far(look: &FirstLook, wanted: u64) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
+
     #[test]
     fn an_interim_look_states_its_replicates_and_intervals() {
         use crate::outcome::verdict::SoFar;
-        use crate::words::so_far;
         let mut walked = SoFar::default();
         for (replicate, eroded) in [(1, 0.31), (2, 0.33), (3, 0.32)] {
             walked.add(replicate, 1, eroded, false);

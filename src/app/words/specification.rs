@@ -511,7 +511,7 @@ mod tests {
         use voidwalk_practice::{design::Specification, quantity::SizeUnit};
         let clay = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)])?;
         let core = Specification::of("core", &[("core".into(), clay)], SpecificationOptions::default());
-        let band = crate::words::specification::band(&core, SizeUnit::Mm);
+        let band = band(&core, SizeUnit::Mm);
         assert_eq!(band.as_deref(), Some("D15F from 0.140 to 0.700\u{202f}mm, Cu from 2 to 6"));
         Ok(())
     }

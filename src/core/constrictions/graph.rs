@@ -465,4 +465,12 @@ mod tests {
         });
         assert!(power.iter().all(|p| (p - power[0]).abs() < 1e-12), "{power:?}");
     }
+
+    #[test]
+    fn an_equilateral_facet_loses_half_a_circle() {
+        let h = 3f64.sqrt() / 2.0;
+        let facet = [[0.0, 0.0, 0.0, 0.5], [1.0, 0.0, 0.0, 0.5], [0.5, h, 0.0, 0.5]];
+        let half_circle = std::f64::consts::PI / 8.0;
+        assert!((open_area(&facet) - (0.5 * h - half_circle)).abs() < 1e-15);
+    }
 }

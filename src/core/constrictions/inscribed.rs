@@ -247,4 +247,11 @@ mod tests {
         }
         assert!(dc(1.0, 0.0) >= 0.154_700 && dc(1.0, 100.0) <= 2.25 * 0.154_701);
     }
+
+    /// Equal grains: `2 / sqrt(3) - 1` between three, `sqrt(2) - 1` between four.
+    #[test]
+    fn known_circles() {
+        assert!((between_three([1.0; 3]) - 0.154_700_538).abs() < 1e-9);
+        assert!((between_four([1.0; 4]) - 0.414_213_562).abs() < 1e-6);
+    }
 }

@@ -385,4 +385,10 @@ mod tests {
             assert!(error.contains(message), "{error}, not {message}");
         }
     }
+
+    #[test]
+    fn directed_constrictions_lead_from_the_first_void_to_the_second() {
+        let down = NetworkColumns { conns: &CHAIN_DOWN, rule: ExitRule::Area, ..CHAIN };
+        assert!(Network::from_columns(&down).is_ok());
+    }
 }

@@ -17,7 +17,7 @@ fn like_afresh(network: &Network, flow: &Flow, solve: impl Fn(&mut Flow) -> Perm
     let mut afresh = Flow::new(network);
     let solution = solve(&mut afresh);
     for (v, (kept, anew)) in flow.pressure.iter().zip(&afresh.pressure).enumerate() {
-        assert!((kept - anew).abs() < 1e-7, "void {v}: {kept} for {anew}");
+        assert!((kept - anew).abs() < 1e-8, "void {v}: {kept} for {anew}");
     }
     solution
 }
