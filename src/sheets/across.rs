@@ -5,18 +5,18 @@ use super::content::{
     begins_with_words, holds_several, is_blank, is_data, is_text, is_value, is_words, percentage,
     refuse_short, refused_row, row_below,
 };
-use super::grid::{Grid, GridRow};
+use super::grid::{Grid, GridRow, joined};
 use super::heading::{Retained, Role, role, says_finer, says_sample, unit, words};
-use super::languages::list;
-use super::layout::{Layout, ROWS_OF_TITLES, SoilColumn, is_heading, says_soil};
-use super::size::{Opening, Unit, goes_one_way, opening};
+use super::languages::Words;
+use super::layout::{Layout, MOST_NAMED, ROWS_OF_TITLES, SoilColumn, is_heading, says_soil};
+use super::size::{Form, Opening, Unit, goes_one_way, opening};
 use std::collections::HashMap;
+use std::ops::Range;
 use voidwalk_core::gradation::{TableError, percent_is_allowed, shortened};
 
 /// Minimum number of openings: fewer bare numbers may mean anything, and fewer named openings make no curve.
 const LEAST_OPENINGS: usize = 3;
 const LEAST_NAMED: usize = 2;
-const MOST_NAMED: usize = 6;
 
 /// The openings of a table that lies on its side.
 struct Openings {
@@ -29,6 +29,17 @@ struct Openings {
     bare: bool,
 }
 
+/// A table on its side.
+struct Across<'a> {
+    grid: &'a Grid,
+    /// Index of the row of openings.
+    at: usize,
+    heading: &'a GridRow,
+    openings: Openings,
+    /// Indices of the rows with a soil each.
+    soils: Range<usize>,
+}
+
 /// Finds the table of a grid that lies on its side, and returns it upright with its layout; `None` if
 /// there is none.
 pub(super) fn find(grid: &Grid) -> Result<Option<(Grid, Layout)>, TableError> {
@@ -36,22 +47,23 @@ pub(super) fn find(grid: &Grid) -> Result<Option<(Grid, Layout)>, TableError> {
     if upper.iter().any(|row| is_heading(row) && says_soil(row) && openings(row).is_none_or(|o| o.bare)) {
         return Ok(None);
     }
-    let table = upper.iter().enumerate().find_map(|(at, row)| {
-        let openings = openings(row)?;
-        let soils = soils(row, &grid.rows[at + 1..], &openings.columns)?;
-        Some((at, openings, soils))
+    let table = upper.iter().enumerate().find_map(|(at, heading)| {
+        let openings = openings(heading)?;
+        let soils = soils(heading, &grid.rows[at + 1..], &openings.columns)?;
+        let soils = at + 1 + soils.start..at + 1 + soils.end;
+        Some(Across { grid, at, heading, openings, soils })
     });
-    let Some((at, openings, soils)) = table else { return Ok(None) };
-    if openings.bare && !are_openings(grid, at, &openings.columns) {
+    let Some(table) = table else { return Ok(None) };
+    if table.openings.bare && !table.has_openings() {
         return match upper.iter().any(is_heading) {
             true => Ok(None),
-            false => Err(refused_percents(grid, at, &openings.columns)),
+            false => Err(table.refused_percents()),
         };
     }
-    refuse_second(grid, at, &soils, &openings.columns)?;
-    refuse_other_openings(grid, at, &soils, &openings.columns)?;
-    refuse_lost(grid, at, &soils, &openings.columns)?;
-    Ok(Some(upright(grid, at, &openings, &soils)))
+    table.refuse_second()?;
+    table.refuse_other_openings()?;
+    table.refuse_lost()?;
+    Ok(Some(table.upright()))
 }
 
 /// Finds the openings of a row after its words, rising or falling, and the pan after them.
@@ -73,16 +85,13 @@ fn openings_from(row: &GridRow, first: usize) -> Option<Openings> {
         }
         heads.push(head);
     }
-    let read: Vec<(f64, bool)> = heads
-        .iter()
-        .filter_map(|head| match opening(&head.text)? {
-            (Opening::Mm(size), _) => Some((size, false)),
-            (Opening::Bare(size), _) => Some((size, head.role.is_none())),
-            _ => None,
-        })
-        .collect();
-    let bare = read.iter().all(|(_, bare)| *bare);
-    let one_way = goes_one_way(&read.iter().map(|(size, _)| *size).collect::<Vec<_>>());
+    let (mut sizes, mut bare) = (Vec::new(), true);
+    for head in &heads {
+        let Some((Opening::Mm(size) | Opening::Bare(size), form)) = opening(&head.text) else { continue };
+        bare &= form == Form::Plain && head.role.is_none();
+        sizes.push(size);
+    }
+    let one_way = goes_one_way(&sizes);
     let least = if bare { LEAST_OPENINGS } else { LEAST_NAMED };
     if heads.len() < least || !one_way && !mixes_units(&heads) {
         return None;
@@ -102,88 +111,8 @@ fn mixes_units(heads: &[Head]) -> bool {
     heads.iter().any(|head| head.role.is_some()) && heads.iter().any(is_bare)
 }
 
-/// True if a row of bare numbers contains openings, by the words to its left or by its numbers, and is
-/// not a row of percents beside the name of a soil.
-fn are_openings(grid: &Grid, at: usize, columns: &[usize]) -> bool {
-    let row = &grid.rows[at];
-    let labels: Vec<&str> = (0..columns[0]).map(|c| row.cell(c)).filter(|cell| !is_blank(cell)).collect();
-    if labels.iter().any(|label| role(label) == Role::Size || is_of_names(label)) {
-        return true;
-    }
-    if let Some(above) = text_above(grid, at, columns) {
-        let says_size = |row: &GridRow| row.cells.iter().any(|cell| role(cell) == Role::Size);
-        return labels.is_empty() && says_size(above);
-    }
-    let sizes = || columns.iter().filter_map(|&c| percentage(row.cell(c)));
-    let (least, most) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
-    labels.is_empty() || most > 100.0 || most > 1.0 && least < LEAST_PERCENT
-}
-
-/// Minimum value in a row of percents; openings (mm) may be smaller.
-const LEAST_PERCENT: f64 = 0.1;
-
-/// Returns the row of words above numbers, such as percents under headings that are not understood.
-fn text_above<'a>(grid: &'a Grid, at: usize, columns: &[usize]) -> Option<&'a GridRow> {
-    let is_words = |row: &&GridRow| {
-        let words = columns.iter().filter(|&&c| !row.cell(c).is_empty() && !is_value(row.cell(c))).count();
-        2 * words >= columns.len()
-    };
-    grid.rows[..at].iter().rev().find(is_words)
-}
-
-/// Makes the error for a row of percents beside the name of a soil without openings.
-fn refused_percents(grid: &Grid, at: usize, columns: &[usize]) -> TableError {
-    let row = &grid.rows[at];
-    let name = (0..columns[0]).map(|c| row.cell(c)).find(|cell| !is_blank(cell)).unwrap_or_default();
-    if let Some(above) = text_above(grid, at, columns) {
-        let is_unread = |c: &usize| !above.cell(*c).is_empty() && head(above.cell(*c)).is_none();
-        let column = columns.iter().copied().find(is_unread).unwrap_or(columns[0]);
-        let allowed = format!(
-            "an opening above the percents of \"{}\", such as P#200, Passing 19 mm or 0.075 mm",
-            shortened(name)
-        );
-        return grid.refused(above.line, column, "heading", above.cell(column), allowed);
-    }
-    let allowed = "Sample or Sieve (mm) beside these numbers if they are openings, or a row of openings \
-                   above them if they are percents";
-    grid.refused(row.line, 0, "heading", name, allowed)
-}
-
-fn is_between(columns: &[usize], c: usize) -> bool {
-    columns.first().is_some_and(|&first| first <= c) && columns.last().is_some_and(|&last| c <= last)
-}
-
-/// Refuses headings beside the openings that name more openings or seem to do so.
-fn refuse_other_openings(
-    grid: &Grid,
-    at: usize,
-    soils: &[usize],
-    columns: &[usize],
-) -> Result<(), TableError> {
-    let row = &grid.rows[at];
-    let is_beside =
-        |c: usize| columns.first() == Some(&(c + 1)) || columns.last() == c.checked_sub(1).as_ref();
-    let is_percents = |c: usize| {
-        let cells = soils.iter().map(|&soil| grid.rows[at + 1 + soil].cell(c)).filter(|cell| !is_blank(cell));
-        let mut percents = cells.map(|cell| percentage(cell).is_some_and(percent_is_allowed)).peekable();
-        percents.peek().is_some() && percents.all(|is_percent| is_percent)
-    };
-    let is_other = |c: &usize| {
-        let cell = row.cell(*c);
-        let is_named = is_broken(cell) || head(cell).is_some_and(|head| head.role.is_some());
-        !is_between(columns, *c) && (is_named || is_beside(*c) && is_misspelt(cell) && is_percents(*c))
-    };
-    match row.filled().find(is_other) {
-        Some(c) => {
-            let allowed = "an opening, such as P#200, Passing 19 mm or 0.075 mm, beside the other openings";
-            Err(grid.refused(row.line, c, "heading", row.cell(c), allowed))
-        }
-        None => Ok(()),
-    }
-}
-
 /// Rows below that contain one soil each: words, then percents.
-fn soils(heading: &GridRow, below: &[GridRow], openings: &[usize]) -> Option<Vec<usize>> {
+fn soils(heading: &GridRow, below: &[GridRow], openings: &[usize]) -> Option<Range<usize>> {
     // A number is a name only below a heading of names; below a heading of openings it is an opening.
     let of_names = |c: usize| !heading.cell(c).is_empty() && role(heading.cell(c)) == Role::Other;
     let is_sieve = |cell: &str| opening(cell).is_some_and(|(o, _)| !matches!(o, Opening::Class(..)));
@@ -204,150 +133,228 @@ fn soils(heading: &GridRow, below: &[GridRow], openings: &[usize]) -> Option<Vec
         named && values >= 2 && 2 * values > filled
     };
     let first = below.iter().position(|row| !is_text(row))?;
-    let soils: Vec<usize> = (first..below.len()).take_while(|&r| is_soil(&below[r])).collect();
-    (!soils.is_empty()).then_some(soils)
+    let count = below[first..].iter().take_while(|row| is_soil(row)).count();
+    (count > 0).then_some(first..first + count)
 }
 
-/// Refuses rows below the soils that also look like a table, instead of ignoring them.
-fn refuse_second(grid: &Grid, at: usize, soils: &[usize], columns: &[usize]) -> Result<(), TableError> {
-    let after = at + 1 + soils.last().map_or(0, |last| last + 1);
-    let heading = &grid.rows[at];
-    let label = |row: &GridRow| row.filled().next().map(|c| row.cell(c).to_lowercase());
-    for (index, row) in grid.rows.iter().enumerate().skip(at + 1) {
-        let again = openings(row).is_some() && label(row) == label(heading);
-        let beyond = index >= after && (is_data(row) && !begins_with_words(row) || openings(row).is_some());
-        if again || beyond {
-            let column = row.filled().next().unwrap_or(columns[0]);
-            let allowed = "one row of openings, and the rows of soils directly below it: keep each table \
-                           in a file or a sheet of its own";
-            return Err(grid.refused(row.line, column, "row", row.cell(column), allowed));
-        }
-    }
-    Ok(())
-}
+/// Minimum value in a row of percents; openings (mm) may be smaller.
+const LEAST_PERCENT: f64 = 0.1;
 
-/// Refuses rows of soils that cannot be read, openings that would be ignored, and values without an
-/// opening.
-fn refuse_lost(grid: &Grid, at: usize, soils: &[usize], openings: &[usize]) -> Result<(), TableError> {
-    let (heading, last) = (&grid.rows[at], openings[openings.len() - 1]);
-    let refused =
-        |row: &GridRow, c: usize, allowed: &str| Err(grid.refused(row.line, c, "row", row.cell(c), allowed));
-    let is_opening = |row: &GridRow, c: usize| opening(row.cell(c)).is_some();
-    if let Some(above) = grid.rows[..at].iter().find(|row| {
-        row.filled().any(|c| !is_opening(row, c) && holds_several(row.cell(c)))
-            || openings.iter().filter(|&&c| is_opening(row, c)).count() >= LEAST_OPENINGS
-    }) {
-        let c = above.filled().next().unwrap_or(0);
-        return refused(above, c, "openings in cells of their own, all rising or all falling");
+impl<'a> Across<'a> {
+    fn rows(&self) -> &'a [GridRow] {
+        &self.grid.rows[self.soils.clone()]
     }
-    let rows: Vec<&GridRow> = soils.iter().map(|&soil| &grid.rows[at + 1 + soil]).collect();
-    for row in &rows {
-        refuse_short(grid, row, "", last)?;
-        let is_size = |&c: &usize| role(row.cell(c)) == Role::Size && !is_value(row.cell(c));
-        if let Some(c) = (0..openings[0]).find(is_size) {
-            return refused(row, c, "one row of openings");
-        }
-        if let Some(c) =
-            (last + 1..row.cells.len()).find(|&c| is_value(row.cell(c)) && heading.cell(c).is_empty())
-        {
-            return refused(row, c, "an opening above each value");
-        }
-    }
-    if let Some(c) = (last + 1..heading.cells.len()).find(|&c| is_opening(heading, c)) {
-        return refused(heading, c, "openings side by side");
-    }
-    let is_soil = |row: &GridRow| openings.iter().filter(|&&c| is_value(row.cell(c))).count() > 1;
-    let Some(end) = grid.rows.iter().rposition(is_soil) else { return Ok(()) };
-    for (index, row) in grid.rows.iter().enumerate().skip(at + 1).filter(|(_, row)| is_text(row)) {
-        let is_near = index < end || row.line == grid.rows[end].line + 1;
-        let several = || row.filled().find(|&c| holds_several(row.cell(c)));
-        let column = several().or_else(|| row_below(row)).filter(|_| is_near);
-        if let Some(column) = column {
-            return Err(refused_row(grid, row, column));
-        }
-    }
-    Ok(())
-}
 
-fn upright(grid: &Grid, at: usize, openings: &Openings, soils: &[usize]) -> (Grid, Layout) {
-    let Openings { columns, texts, retained, .. } = openings;
-    let heading = &grid.rows[at];
-    let rows_of_soils: Vec<&GridRow> = soils.iter().map(|&soil| &grid.rows[at + 1 + soil]).collect();
-    let turned = |(&c, text): (&usize, &String)| GridRow {
-        line: c + 1,
-        cells: std::iter::once(text.clone())
-            .chain(rows_of_soils.iter().map(|row| row.cell(c).to_owned()))
-            .collect(),
-        text: None,
-        open: false,
-    };
-    let beside = (0..heading.cells.len()).filter(|&c| !is_between(columns, c)).map(|c| heading.cell(c));
-    let words_above: Vec<&str> = grid.rows[..at]
-        .iter()
-        .rev()
-        .flat_map(|row| row.cells.iter())
-        .map(String::as_str)
-        .chain(beside)
-        .filter(|cell| cell.contains(char::is_alphabetic) && opening(cell).is_none())
-        .collect();
-    let stated_unit = |text: &&str| match (role(text), unit(text)) {
-        (Role::Other, _) => None,
-        (_, Ok(Some(unit))) if unit != Unit::SieveNumber => Some(unit),
-        _ => None,
-    };
-    let stated_retained =
-        words_above.iter().map(|text| role(text)).find(|role| matches!(role, Role::Retained(_)));
-    let (names, unread) = names(&grid.rows[..=at], &rows_of_soils, columns[0]);
-    let soil = |(index, row): (usize, &&GridRow)| {
-        let words = (0..columns[0]).map(|c| row.cell(c)).filter(|cell| !cell.is_empty());
-        let stated = words.map(role).find(|role| matches!(role, Role::Finer | Role::Retained(_)));
-        let role = stated.or(*retained).or(stated_retained).unwrap_or(Role::Other);
-        SoilColumn { column: index + 1, heading: names[index].clone(), role, end: None }
-    };
-    let named = |c: usize| rows_of_soils.iter().any(|row| percentage(row.cell(c)).is_some());
-    let last = columns[columns.len() - 1];
-    let mut unused: Vec<String> = unread
-        .into_iter()
-        .chain(last + 1..heading.cells.len().max(last + 1))
-        .filter(|&c| named(c))
-        .map(|c| format!("{} (\"{}\")", grid.column_label(c), shortened(heading.cell(c))))
-        .collect();
-    if unused.len() > MOST_NAMED {
-        let more = format!("and {} more", unused.len() - MOST_NAMED);
-        unused.splice(MOST_NAMED.., [more]);
+    fn last(&self) -> usize {
+        self.openings.columns[self.openings.columns.len() - 1]
     }
-    let mut notes = vec!["openings read across: a row for each soil".to_owned()];
-    if !unused.is_empty() {
-        notes.push(format!("not used: {}", unused.join(", ")));
+
+    /// True if a row of bare numbers contains openings, by the words to its left or by its numbers, and is
+    /// not a row of percents beside the name of a soil.
+    fn has_openings(&self) -> bool {
+        let (row, columns) = (self.heading, &self.openings.columns);
+        let labels: Vec<&str> = (0..columns[0]).map(|c| row.cell(c)).filter(|cell| !is_blank(cell)).collect();
+        if labels.iter().any(|label| role(label) == Role::Size || is_of_names(label)) {
+            return true;
+        }
+        if let Some(above) = self.text_above() {
+            let says_size = |row: &GridRow| row.cells.iter().any(|cell| role(cell) == Role::Size);
+            return labels.is_empty() && says_size(above);
+        }
+        let sizes = || columns.iter().filter_map(|&c| percentage(row.cell(c)));
+        let (least, most) = (sizes().fold(f64::INFINITY, f64::min), sizes().fold(0.0, f64::max));
+        labels.is_empty() || most > 100.0 || most > 1.0 && least < LEAST_PERCENT
     }
-    let after = at + 1 + soils.last().map_or(0, |last| last + 1);
-    if let Some(row) = grid.rows.get(after) {
-        let begins = row.filled().find(|&c| is_words(row.cell(c))).map_or("", |c| row.cell(c));
-        notes.push(format!(
-            "the rest from {} on (\"{}\") was left out",
-            grid.row_label(row.line),
-            shortened(begins)
-        ));
+
+    /// Returns the row of words above numbers, such as percents under headings that are not understood.
+    fn text_above(&self) -> Option<&'a GridRow> {
+        let columns = &self.openings.columns;
+        let is_words = |row: &&GridRow| {
+            let words =
+                columns.iter().filter(|&&c| !row.cell(c).is_empty() && !is_value(row.cell(c))).count();
+            2 * words >= columns.len()
+        };
+        self.grid.rows[..self.at].iter().rev().find(is_words)
     }
-    let layout = Layout {
-        unit: words_above.iter().find_map(stated_unit),
-        soils: rows_of_soils.iter().enumerate().map(soil).collect(),
-        headed: true,
-        notes,
-        ..Layout::default()
-    };
-    let lines = std::iter::once(heading).chain(rows_of_soils.iter().copied()).map(|row| row.line).collect();
-    let turned = grid.with_rows(columns.iter().zip(texts).map(turned).collect());
-    (Grid { left: 0, across: Some(lines), part: None, ..turned }, layout)
+
+    /// Makes the error for a row of percents beside the name of a soil without openings.
+    fn refused_percents(&self) -> TableError {
+        let (grid, row, columns) = (self.grid, self.heading, &self.openings.columns);
+        let name = (0..columns[0]).map(|c| row.cell(c)).find(|cell| !is_blank(cell)).unwrap_or_default();
+        if let Some(above) = self.text_above() {
+            let is_unread = |c: &usize| !above.cell(*c).is_empty() && head(above.cell(*c)).is_none();
+            let column = columns.iter().copied().find(is_unread).unwrap_or(columns[0]);
+            let allowed = format!(
+                "an opening above the percents of \"{}\", such as P#200, Passing 19 mm or 0.075 mm",
+                shortened(name)
+            );
+            return grid.refused(above.line, column, "heading", above.cell(column), allowed);
+        }
+        let allowed = "Sample or Sieve (mm) beside these numbers if they are openings, or a row of openings \
+                       above them if they are percents";
+        grid.refused(row.line, 0, "heading", name, allowed)
+    }
+
+    fn is_between(&self, c: usize) -> bool {
+        (self.openings.columns[0]..=self.last()).contains(&c)
+    }
+
+    /// Refuses headings beside the openings that name more openings or seem to do so.
+    fn refuse_other_openings(&self) -> Result<(), TableError> {
+        let (row, first, last) = (self.heading, self.openings.columns[0], self.last());
+        let is_beside = |c: usize| c + 1 == first || c == last + 1;
+        let is_percents = |c: usize| {
+            let cells = self.rows().iter().map(|row| row.cell(c)).filter(|cell| !is_blank(cell));
+            let mut percents = cells.map(|cell| percentage(cell).is_some_and(percent_is_allowed)).peekable();
+            percents.peek().is_some() && percents.all(|is_percent| is_percent)
+        };
+        let is_other = |c: &usize| {
+            let cell = row.cell(*c);
+            let is_named = is_broken(cell) || head(cell).is_some_and(|head| head.role.is_some());
+            !self.is_between(*c) && (is_named || is_beside(*c) && is_misspelt(cell) && is_percents(*c))
+        };
+        match row.filled().find(is_other) {
+            Some(c) => {
+                let allowed =
+                    "an opening, such as P#200, Passing 19 mm or 0.075 mm, beside the other openings";
+                Err(self.grid.refused(row.line, c, "heading", row.cell(c), allowed))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// Refuses rows below the soils that also look like a table, instead of ignoring them.
+    fn refuse_second(&self) -> Result<(), TableError> {
+        let &Across { grid, at, heading, .. } = self;
+        let label = |row: &GridRow| row.filled().next().map(|c| row.cell(c).to_lowercase());
+        for (index, row) in grid.rows.iter().enumerate().skip(at + 1) {
+            let again = openings(row).is_some() && label(row) == label(heading);
+            let beyond = index >= self.soils.end
+                && (is_data(row) && !begins_with_words(row) || openings(row).is_some());
+            if again || beyond {
+                let column = row.filled().next().unwrap_or(self.openings.columns[0]);
+                let allowed = "one row of openings, and the rows of soils directly below it: keep each table \
+                               in a file or a sheet of its own";
+                return Err(grid.refused(row.line, column, "row", row.cell(column), allowed));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses rows of soils that cannot be read, openings that would be ignored, and values without an
+    /// opening.
+    fn refuse_lost(&self) -> Result<(), TableError> {
+        let &Across { grid, at, heading, .. } = self;
+        let (openings, last) = (&self.openings.columns, self.last());
+        let refused = |row: &GridRow, c: usize, allowed: &str| {
+            Err(grid.refused(row.line, c, "row", row.cell(c), allowed))
+        };
+        let is_opening = |row: &GridRow, c: usize| opening(row.cell(c)).is_some();
+        if let Some(above) = grid.rows[..at].iter().find(|row| {
+            row.filled().any(|c| !is_opening(row, c) && holds_several(row.cell(c)))
+                || openings.iter().filter(|&&c| is_opening(row, c)).count() >= LEAST_OPENINGS
+        }) {
+            let c = above.filled().next().unwrap_or(0);
+            return refused(above, c, "openings in cells of their own, all rising or all falling");
+        }
+        for row in self.rows() {
+            refuse_short(grid, row, "", last)?;
+            let is_size = |&c: &usize| role(row.cell(c)) == Role::Size && !is_value(row.cell(c));
+            if let Some(c) = (0..openings[0]).find(is_size) {
+                return refused(row, c, "one row of openings");
+            }
+            if let Some(c) =
+                (last + 1..row.cells.len()).find(|&c| is_value(row.cell(c)) && heading.cell(c).is_empty())
+            {
+                return refused(row, c, "an opening above each value");
+            }
+        }
+        if let Some(c) = (last + 1..heading.cells.len()).find(|&c| is_opening(heading, c)) {
+            return refused(heading, c, "openings side by side");
+        }
+        let is_soil = |row: &GridRow| openings.iter().filter(|&&c| is_value(row.cell(c))).count() > 1;
+        let Some(end) = grid.rows.iter().rposition(is_soil) else { return Ok(()) };
+        for (index, row) in grid.rows.iter().enumerate().skip(at + 1).filter(|(_, row)| is_text(row)) {
+            let is_near = index < end || row.line == grid.rows[end].line + 1;
+            let several = || row.filled().find(|&c| holds_several(row.cell(c)));
+            let column = several().or_else(|| row_below(row)).filter(|_| is_near);
+            if let Some(column) = column {
+                return Err(refused_row(grid, row, column));
+            }
+        }
+        Ok(())
+    }
+
+    fn upright(&self) -> (Grid, Layout) {
+        let &Across { grid, at, heading, .. } = self;
+        let Openings { columns, texts, retained, .. } = &self.openings;
+        let soils = self.rows();
+        let turned = |(&c, text): (&usize, &String)| GridRow {
+            line: c + 1,
+            cells: [text.clone()].into_iter().chain(soils.iter().map(|row| row.cell(c).to_owned())).collect(),
+            text: None,
+            open: false,
+        };
+        let beside = (0..heading.cells.len()).filter(|&c| !self.is_between(c)).map(|c| heading.cell(c));
+        let words_above: Vec<&str> = grid.rows[..at]
+            .iter()
+            .rev()
+            .flat_map(|row| row.cells.iter())
+            .map(String::as_str)
+            .chain(beside)
+            .filter(|cell| cell.contains(char::is_alphabetic) && opening(cell).is_none())
+            .collect();
+        let stated_unit = |text: &&str| match (role(text), unit(text)) {
+            (Role::Other, _) => None,
+            (_, Ok(Some(unit))) if unit != Unit::SieveNumber => Some(unit),
+            _ => None,
+        };
+        let stated_retained =
+            words_above.iter().map(|text| role(text)).find(|role| matches!(role, Role::Retained(_)));
+        let (names, unread) = names(&grid.rows[..=at], soils, columns[0]);
+        let soil = |(index, row): (usize, &GridRow)| {
+            let words = (0..columns[0]).map(|c| row.cell(c)).filter(|cell| !cell.is_empty());
+            let stated = words.map(role).find(|role| matches!(role, Role::Finer | Role::Retained(_)));
+            let role = stated.or(*retained).or(stated_retained).unwrap_or(Role::Other);
+            SoilColumn { column: index + 1, heading: names[index].clone(), role, end: None }
+        };
+        let named = |c: usize| soils.iter().any(|row| percentage(row.cell(c)).is_some());
+        let last = self.last();
+        let unused: Vec<String> = unread
+            .into_iter()
+            .chain(last + 1..heading.cells.len().max(last + 1))
+            .filter(|&c| named(c))
+            .map(|c| format!("{} (\"{}\")", grid.column_label(c), shortened(heading.cell(c))))
+            .collect();
+        let mut notes = vec!["openings read across: a row for each soil".to_owned()];
+        if !unused.is_empty() {
+            notes.push(format!("not used: {}", joined(unused, MOST_NAMED)));
+        }
+        if let Some(row) = grid.rows.get(self.soils.end) {
+            let begins = row.filled().find(|&c| is_words(row.cell(c))).map_or("", |c| row.cell(c));
+            let (place, begins) = (grid.row_label(row.line), shortened(begins));
+            notes.push(format!("the rest from {place} on (\"{begins}\") was left out"));
+        }
+        let layout = Layout {
+            unit: words_above.iter().find_map(stated_unit),
+            soils: soils.iter().enumerate().map(soil).collect(),
+            headed: true,
+            notes,
+            ..Layout::default()
+        };
+        let lines = [heading].into_iter().chain(soils).map(|row| row.line).collect();
+        let turned = grid.with_rows(columns.iter().zip(texts).map(turned).collect());
+        (Grid { left: 0, across: Some(lines), part: None, ..turned }, layout)
+    }
 }
 
 /// Words before or after an opening that mean finer.
-const FINER: [&str; 17] = list(
+static FINER: Words = Words::of(
     "p|pass|passing|passed|percent|percentage|pct|perc|finer|smaller|than|through|minus|cum|cumul|\
      cumulative|undersize",
 );
-const RETAINED: [&str; 6] = ["ret", "retained", "coarser", "plus", "oversize", "cr"];
-const BETWEEN: [&str; 8] = ["on", "sieve", "sieves", "size", "the", "by", "mass", "weight"];
+static RETAINED: Words = Words::of("ret|retained|coarser|plus|oversize|cr");
+static BETWEEN: Words = Words::of("on|sieve|sieves|size|the|by|mass|weight");
 
 /// An opening as the heading of a column.
 struct Head {
@@ -362,14 +369,14 @@ fn without_words(heading: &str) -> (String, Option<Role>) {
     let (mut rest, mut stated, mut retained, mut cumulative) = (small.as_str(), false, false, None);
     let mut take = |word: &str, stated: &mut bool| {
         let is_retained =
-            RETAINED.contains(&word) || matches!(role(word), Role::Retained(Retained { percent: true, .. }));
+            RETAINED.has(word) || matches!(role(word), Role::Retained(Retained { percent: true, .. }));
         retained |= is_retained;
         if word.starts_with("cum") {
             cumulative = Some(true);
         }
-        let is_word = is_retained || FINER.contains(&word) || says_finer(word);
+        let is_word = is_retained || FINER.has(word) || says_finer(word);
         *stated |= is_word;
-        is_word || *stated && BETWEEN.contains(&word)
+        is_word || *stated && BETWEEN.has(word)
     };
     loop {
         let bare = rest.trim_start_matches([' ', '%', '.', ':', '<', '≤', '(', '-']);
@@ -436,18 +443,18 @@ fn is_misspelt(heading: &str) -> bool {
 
 /// True if a heading announces names below it and is not itself a name: `Sample no.`, `Hole`.
 fn is_of_names(heading: &str) -> bool {
-    const BESIDE: [&str; 18] = list(
+    static BESIDE: Words = Words::of(
         "no|nr|number|id|ref|reference|type|test|trial|hole|bore|location|station|description|bh|tp|\
          lab|layer",
     );
     let words = words(heading);
-    !words.is_empty() && words.iter().all(|word| says_sample(word) || BESIDE.contains(&word.as_str()))
+    !words.is_empty() && words.iter().all(|word| says_sample(word) || BESIDE.has(word))
 }
 
 /// Names of the soils in `rows` below `headings`, whose openings begin in column `end`, and the columns
 /// that are not used for names. A name consists of the first column and those announced as names; a
 /// depth and other columns are added only if names would otherwise be equal.
-fn names(headings: &[GridRow], rows: &[&GridRow], end: usize) -> (Vec<String>, Vec<usize>) {
+fn names(headings: &[GridRow], rows: &[GridRow], end: usize) -> (Vec<String>, Vec<usize>) {
     /// Maximum number of additional columns used to tell soils with the same name apart.
     const MOST_MORE: usize = 8;
     let head = |c: usize| {

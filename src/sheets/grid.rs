@@ -95,10 +95,9 @@ impl Grid {
 
     /// Name of a column of this grid: `column D` of a sheet, `column 4` of a text.
     pub(super) fn column_label(&self, column: usize) -> String {
-        match &self.sheet {
-            Some(_) => format!("column {}", letters((self.left + column) as u32)),
-            None => format!("column {}", self.left + column + 1),
-        }
+        let column = self.left + column;
+        let name = if self.sheet.is_some() { letters(column as u32) } else { (column + 1).to_string() };
+        format!("column {name}")
     }
 
     pub(super) fn width(&self) -> usize {
@@ -107,17 +106,10 @@ impl Grid {
 
     /// Makes a part of the same file from these rows.
     pub(super) fn with_rows(&self, rows: Vec<GridRow>) -> Grid {
-        Grid {
-            file: self.file.clone(),
-            sheet: self.sheet.clone(),
-            delimiter: self.delimiter,
-            rows,
-            commented: self.commented.clone(),
-            notes: self.notes.clone(),
-            left: self.left,
-            across: None,
-            part: self.part.clone(),
-        }
+        let (file, sheet, part) = (self.file.clone(), self.sheet.clone(), self.part.clone());
+        let (commented, notes) = (self.commented.clone(), self.notes.clone());
+        let (delimiter, left) = (self.delimiter, self.left);
+        Grid { file, sheet, delimiter, rows, commented, notes, left, across: None, part }
     }
 
     /// Splits the grid into these adjacent ranges of columns; each part omits the rows that are empty in
@@ -135,8 +127,7 @@ impl Grid {
                 if range.start >= row.cells.len() {
                     break;
                 }
-                let mut cells = row.cells[range.start..range.end.min(row.cells.len())].to_vec();
-                cells.truncate(cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1));
+                let cells = trimmed(row.cells[range.start..range.end.min(row.cells.len())].to_vec());
                 if !cells.is_empty() {
                     let text = row.text.clone();
                     part.rows.push(GridRow { line: row.line, cells, text, open: row.open });
@@ -176,11 +167,16 @@ impl Grid {
     }
 }
 
+/// Drops the empty cells at the end of a row.
+pub(super) fn trimmed(mut cells: Vec<String>) -> Vec<String> {
+    cells.truncate(cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1));
+    cells
+}
+
 /// `line 5`, `rows 5, 7, 8`, `lines 5, 7 and 12 more`.
 pub(super) fn listed<T>(word: &str, all: &[T], name: impl Fn(&T) -> String) -> String {
     const MOST: usize = 8;
-    let shown: Vec<String> = all.iter().take(MOST).map(name).collect();
-    let shown = shown.join(", ");
+    let shown = all.iter().take(MOST).map(name).collect::<Vec<String>>().join(", ");
     match all.len() {
         1 => format!("{word} {shown}"),
         n if n > MOST => format!("{word}s {shown} and {} more", n - MOST),
@@ -188,12 +184,16 @@ pub(super) fn listed<T>(word: &str, all: &[T], name: impl Fn(&T) -> String) -> S
     }
 }
 
-/// Names of soils, shortened; if there are many, only the first ones.
-pub(super) fn names_listed(names: &[String]) -> String {
-    const MOST: usize = 12;
-    let mut shown: Vec<String> = names.iter().take(MOST).map(|name| shortened(&plain(name))).collect();
-    if names.len() > MOST {
-        shown.push(format!("and {} more", names.len() - MOST));
+/// Joins names; if there are more than `most`, only the first ones.
+pub(super) fn joined(mut names: Vec<String>, most: usize) -> String {
+    if names.len() > most {
+        let more = format!("and {} more", names.len() - most);
+        names.splice(most.., [more]);
     }
-    shown.join(", ")
+    names.join(", ")
+}
+
+/// Names of soils, shortened; if there are many, only the first ones.
+pub(super) fn names_listed<T: AsRef<str>>(names: &[T]) -> String {
+    joined(names.iter().map(|name| shortened(&plain(name.as_ref()))).collect(), 12)
 }

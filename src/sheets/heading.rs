@@ -1,8 +1,7 @@
 //! Meaning of a column's heading.
 
 use super::languages::{
-    any, list, say_cumulative, say_finer, say_inches, say_individual, say_micrometres, say_millimetres,
-    say_retained, say_size,
+    CUMULATED, FINER, INCH, INDIVIDUAL, MASS, MICROMETRE, MILLIMETRE, RETAINED, SIZE, Words,
 };
 use super::size::Unit;
 
@@ -26,42 +25,24 @@ pub(super) struct Retained {
     pub(super) cumulative: Option<bool>,
 }
 
-const FINER: [&str; 24] = list(
-    "percent|finer|passing|pct|percentage|pass|cumulative|smaller|durchgang|siebdurchgang|passant|\
-     passants|tamisat|pasa|pasante|passed|massendurchgang|perp|undersize|massenanteil|doorval|\
-     przesiew|passa|passing%",
-);
-const RETAINED: [&str; 14] = list(
-    "retained|coarser|rückstand|siebrückstand|rueckstand|refus|retenido|retenu|oversize|retain|ret|\
-     rest|zeefrest|trattenuto",
-);
-const SIZE: [&str; 46] = list(
-    "opening|size|sieve|diameter|mm|d|openings|aperture|siebgröße|sieböffnung|korngröße|\
-     korndurchmesser|maschenweite|tamis|ouverture|diamètre|diametre|tamiz|abertura|particle|phi|φ|\
-     screen|mesh|sieves|sizes|korndurchm|siebweite|um|µm|μm|micron|microns|grain|grains|größe|grösse|\
-     korn|sieb|malla|maille|dia|diam|apertura|luz|zeef",
-);
-const MASS: [&str; 11] =
-    ["mass", "weight", "masse", "gewicht", "wt", "peso", "g", "gram", "grams", "kg", "grammes"];
-const GRAMS: [&str; 5] = ["g", "gram", "grams", "kg", "grammes"];
-const CUMULATIVE: [&str; 7] = ["cumulative", "cum", "cumul", "accumulated", "total", "coarser", "cumulated"];
-const INDIVIDUAL: [&str; 8] = ["individual", "each", "single", "partial", "on", "interval", "per", "ind"];
 /// Words of a column's name, in small letters.
 pub(super) fn words(name: &str) -> Vec<String> {
     name.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).map(str::to_lowercase).collect()
 }
 
+fn any(words: &[String], list: &[&str]) -> bool {
+    words.iter().any(|word| list.contains(&word.as_str()))
+}
+
 /// True if a heading says cumulative. `of total`, `total mass`, `total sample` only name the whole to
 /// which the percents refer.
 fn is_cumulative(words: &[String]) -> bool {
-    const OF: [&str; 8] = ["of", "the", "du", "del", "do", "von", "vom", "der"];
-    const WHOLE: [&str; 10] =
-        ["mass", "weight", "wt", "dry", "sample", "soil", "specimen", "aggregate", "masse", "peso"];
-    let is = |at: Option<&String>, list: &[&str]| at.is_some_and(|word| list.contains(&word.as_str()));
+    static CUMULATIVE: Words = Words::of("cumulative|cum|cumul|accumulated|total|coarser|cumulated");
+    static OF: Words = Words::of("of|the|du|del|do|von|vom|der");
+    static WHOLE: Words = Words::of("mass|weight|wt|dry|sample|soil|specimen|aggregate|masse|peso");
     words.iter().enumerate().any(|(at, word)| {
-        let of_whole =
-            is(at.checked_sub(1).map(|before| &words[before]), &OF) || is(words.get(at + 1), &WHOLE);
-        CUMULATIVE.contains(&word.as_str()) && !(word == "total" && of_whole)
+        let of_whole = || at > 0 && OF.has(&words[at - 1]) || words.get(at + 1).is_some_and(|w| WHOLE.has(w));
+        CUMULATIVE.has(word) && !(word == "total" && of_whole())
     })
 }
 
@@ -91,9 +72,7 @@ fn is_letter_of_sample(name: &str, words: &[String], letter: &str) -> bool {
     let is_bracketed = ['(', '['].iter().any(|sign| name.to_lowercase().contains(&format!("{sign}{letter}")));
     let others = || words.iter().filter(|word| *word != letter);
     let is_alone = others().next().is_none() || words[0] == letter && is_length(name);
-    let is_weighed = others().any(|word| MASS.contains(&word.as_str()) || RETAINED.contains(&word.as_str()))
-        || say_retained(words)
-        || name.contains(", g");
+    let is_weighed = others().any(|word| MASS.has(word)) || RETAINED.any(words) || name.contains(", g");
     !(is_bracketed || is_alone || letter == "g" && is_weighed)
 }
 
@@ -104,30 +83,30 @@ fn is_length(name: &str) -> bool {
 /// True if a text says that a table continues below the finest sieve, with a hydrometer or another
 /// sedimentation test.
 pub(super) fn says_sedimentation(text: &str) -> bool {
-    const STEMS: [&str; 10] =
-        list("hydrom|sediment|sédiment|areom|aräom|aréom|schlämm|schlaemm|densim|pipette");
-    words(text).iter().any(|word| STEMS.iter().any(|stem| word.starts_with(stem)))
+    static TESTS: Words =
+        Words::of("hydrom*|sediment*|sédiment*|areom*|aräom*|aréom*|schlämm*|schlaemm*|densim*|pipette*");
+    TESTS.any(&words(text))
 }
 
 pub(super) fn says_mean(name: &str) -> bool {
-    const MEAN: [&str; 12] =
-        list("average|avg|ave|mean|mittel|mittelwert|moyenne|media|promedio|média|gemiddelde|średnia");
-    any(&words(name), &MEAN)
+    static MEAN: Words =
+        Words::of("average|avg|ave|mean|mittel|mittelwert|moyenne|media|promedio|média|gemiddelde|średnia");
+    MEAN.any(&words(name))
 }
 
 pub(super) fn says_limit(name: &str) -> bool {
-    const LIMIT: [&str; 10] =
-        list("min|max|minimum|maximum|limit|limits|mínimo|máximo|untergrenze|obergrenze");
-    any(&words(name), &LIMIT)
+    static LIMIT: Words =
+        Words::of("min|max|minimum|maximum|limit|limits|mínimo|máximo|untergrenze|obergrenze");
+    LIMIT.any(&words(name))
 }
 
 /// `Sample no.`, `Borehole:`: words that precede the name of a soil.
 pub(super) fn says_sample(text: &str) -> bool {
-    const SAMPLE: [&str; 15] = list(
+    static SAMPLE: Words = Words::of(
         "sample|samples|specimen|soil|material|probe|borehole|boring|bohrung|name|échantillon|\
          echantillon|muestra|pit|source",
     );
-    any(&words(text), &SAMPLE)
+    SAMPLE.any(&words(text))
 }
 
 /// True if the heading of percents says that they refer to the fines only.
@@ -142,72 +121,61 @@ pub(super) fn says_of_fines(text: &str) -> bool {
 /// cumulative ones.
 pub(super) fn says_finer(name: &str) -> bool {
     const VAGUE: [&str; 6] = ["percent", "pct", "percentage", "cumulative", "massenanteil", "perp"];
-    let words = words(name);
-    say_finer(&words)
-        || words.iter().any(|word| FINER.contains(&word.as_str()) && !VAGUE.contains(&word.as_str()))
+    words(name).iter().any(|word| FINER.has(word) && !VAGUE.contains(&word.as_str()))
 }
 
 /// True if a heading says that percents finer or retained are cumulative.
 pub(super) fn says_cumulative(name: &str) -> bool {
-    let words = words(name);
-    words.iter().any(|word| word.starts_with("cum")) || say_cumulative(&words)
+    CUMULATED.any(&words(name))
 }
 
 /// True for the heading of a weighing that still includes the sieve or its tare.
 pub(super) fn is_weighing(name: &str) -> bool {
-    const TARE: [&str; 14] =
-        list("tare|gross|empty|tara|brutto|bruto|container|dish|leer|leeres|vide|vacío|vacio|vuoto");
-    const AND: [&str; 10] = ["and", "with", "plus", "und", "mit", "et", "avec", "y", "con", "com"];
-    const SOIL: [&str; 11] =
-        list("soil|sample|material|boden|probe|sol|échantillon|suelo|muestra|solo|retained");
+    static TARE: Words =
+        Words::of("tare|gross|empty|tara|brutto|bruto|container|dish|leer|leeres|vide|vacío|vacio|vuoto");
+    static AND: Words = Words::of("and|with|plus|und|mit|et|avec|y|con|com");
+    static SOIL: Words =
+        Words::of("soil|sample|material|boden|probe|sol|échantillon|suelo|muestra|solo|retained");
     let words = words_of_column(name);
     let has_unit = !matches!(unit(name), Ok(None | Some(Unit::SieveNumber)) | Err(()));
-    let (size, mass) = (any(&words, &SIZE) || say_size(&words), any(&words, &MASS));
-    let both = name.contains(['+', '&']) || any(&words, &AND);
-    mass && !has_unit
-        && (any(&words, &TARE)
-            || both && size && any(&words, &SOIL)
-            || size && !any(&words, &RETAINED) && !say_retained(&words))
+    let size = SIZE.any(&words);
+    let both = name.contains(['+', '&']) || AND.any(&words);
+    MASS.any(&words)
+        && !has_unit
+        && (TARE.any(&words) || both && size && SOIL.any(&words) || size && !RETAINED.any(&words))
 }
 
 pub(super) fn role(name: &str) -> Role {
     let words = words_of_column(name);
-    if is_characteristic(&words) {
-        return Role::Other;
-    }
-    if is_weighing(name) {
+    if is_characteristic(&words) || is_weighing(name) {
         return Role::Other;
     }
     // `Core with 5% lime` is a name.
     let is_sign = |(at, _): (usize, &str)| !name[..at].trim_end().ends_with(|c: char| c.is_ascii_digit());
     let percent =
         name.match_indices('%').any(is_sign) || any(&words, &["percent", "pct", "percentage", "prozent"]);
-    let mass = any(&words, &MASS);
-    let size = any(&words, &SIZE) || say_size(&words);
-    let cumulative = match (is_cumulative(&words), any(&words, &INDIVIDUAL) || say_individual(&words)) {
-        (true, _) => Some(true),
-        (false, true) => Some(false),
-        (false, false) => None,
-    };
+    let (mass, size) = (MASS.any(&words), SIZE.any(&words));
+    let cumulative = if is_cumulative(&words) { Some(true) } else { INDIVIDUAL.any(&words).then_some(false) };
     let has_digit = name.contains(|c: char| c.is_ascii_digit());
-    let is_bound = ["passing", "pass", "passed", "retained", "oversize", "undersize"];
-    if is_length(name) && any(&words, &is_bound) && !percent && !mass && !has_digit {
+    let bounds = ["passing", "pass", "passed", "retained", "oversize", "undersize"];
+    if is_length(name) && any(&words, &bounds) && !percent && !mass && !has_digit {
         // `Passing (mm)`, `Retained on (mm)`: bounds of a class.
         return Role::Size;
     }
     // `Ref. cum. (%)`, but not `Sample ref.`.
     let is_short = any(&words, &["ref"]) && (percent || mass);
-    if any(&words, &RETAINED) || say_retained(&words) || is_short {
-        let percent = percent || !mass;
-        return Role::Retained(Retained { percent, cumulative });
+    if RETAINED.any(&words) || is_short {
+        return Role::Retained(Retained { percent: percent || !mass, cumulative });
     }
-    if percent || any(&words, &FINER) || say_finer(&words) || any(&words, &["fraction", "ratio"]) && !size {
+    if percent || FINER.any(&words) || any(&words, &["fraction", "ratio"]) && !size {
         return Role::Finer;
     }
     match (size, mass) {
         (true, _) => Role::Size,
         // `mass` alone may mean the mass that passes; grams are weighed on the sieves.
-        (false, true) if any(&words, &GRAMS) => Role::Retained(Retained { percent: false, cumulative }),
+        (false, true) if any(&words, &["g", "gram", "grams", "kg", "grammes"]) => {
+            Role::Retained(Retained { percent: false, cumulative })
+        }
         _ => Role::Other,
     }
 }
@@ -224,11 +192,11 @@ pub(super) fn unit(name: &str) -> Result<Option<Unit>, ()> {
     }
     let words = [words(name), words(&parted)].concat();
     let last_is_in = words.last().is_some_and(|word| word == "in") || name.contains("(in");
-    Ok(Some(if say_micrometres(name, &words) {
+    Ok(Some(if is_micrometres(name, &words) {
         Unit::Micrometre
-    } else if say_millimetres(&words) {
+    } else if MILLIMETRE.any(&words) {
         Unit::Mm
-    } else if say_inches(&words) || last_is_in || name.contains('"') {
+    } else if INCH.any(&words) || last_is_in || name.contains('"') {
         Unit::Inch
     } else if any(&words, &["phi", "φ", "ϕ", "krumbein"]) {
         Unit::Phi
@@ -246,20 +214,20 @@ pub(super) fn unit(name: &str) -> Result<Option<Unit>, ()> {
     }))
 }
 
+/// True if a name or its words mean micrometres rather than mm.
+fn is_micrometres(name: &str, words: &[String]) -> bool {
+    const PARTS: [&str; 8] =
+        ["微米", "㎛", "1/1000 mm", "1/1000mm", "10^-3 mm", "10-3 mm", "10⁻³ mm", "0.001 mm"];
+    PARTS.iter().any(|part| name.contains(part)) || !MILLIMETRE.any(words) && MICROMETRE.any(words)
+}
+
 /// True if a heading of openings ends with a word in brackets that names neither a unit nor sieves.
 fn is_unknown(name: &str) -> bool {
-    const OTHER: [&str; 14] = [
-        "us", "uss", "astm", "aashto", "iso", "din", "en", "standard", "nominal", "square", "round", "x",
-        "a", "b",
-    ];
+    static OTHER: Words = Words::of("us|uss|astm|aashto|iso|din|en|standard|nominal|square|round|x|a|b");
     let Some((_, bracketed)) = name.rsplit_once(['(', '[']) else { return false };
     let (all, bracketed) = (words(name), words(bracketed));
     let [word] = &bracketed[..] else { return false };
-    (any(&all, &SIZE) || say_size(&all))
-        && word.chars().all(char::is_alphabetic)
-        && !any(&bracketed, &SIZE)
-        && !any(&bracketed, &OTHER)
-        && !say_size(&bracketed)
+    SIZE.any(&all) && word.chars().all(char::is_alphabetic) && !SIZE.has(word) && !OTHER.has(word)
 }
 
 #[cfg(test)]

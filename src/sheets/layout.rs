@@ -3,12 +3,14 @@
 use super::content::{
     Column, begins_with_words, columns, is_data, is_short_opening, is_text, is_value, percentage, whole_row,
 };
-use super::grid::{Grid, GridRow};
+use super::grid::{Grid, GridRow, joined};
 use super::heading::{Role, is_weighing, role, says_sample, unit, words};
 use super::size::{Opening, Unit, goes_one_way, opening};
 use voidwalk_core::gradation::{TableError, shortened};
 
 pub(super) const ROWS_OF_TITLES: usize = 60;
+/// Maximum number of unused columns named in a note.
+pub(super) const MOST_NAMED: usize = 6;
 
 /// Allowed headings of openings, in words.
 const UNITS: &str = "openings in mm (opening_mm), or in cm, um, inches or phi";
@@ -199,7 +201,14 @@ fn with_headings(grid: &Grid, headings: Headings) -> Result<Layout, TableError> 
     let is_used = |c: &usize| values.binary_search(c).is_ok() || sizes.contains(c);
     layout.accounted =
         (0..columns.len()).filter(|&c| columns[c].with_values).filter(|c| !is_used(c)).collect();
-    layout.notes.extend(not_used(grid, &heads, &layout.accounted));
+    let name = |&c: &usize| match heads.get(c).map(String::as_str).unwrap_or_default() {
+        "" => format!("{} (no heading)", grid.column_label(c)),
+        head => format!("{} (\"{}\")", grid.column_label(c), shortened(head)),
+    };
+    if !layout.accounted.is_empty() {
+        let names = joined(layout.accounted.iter().map(name).collect(), MOST_NAMED);
+        layout.notes.push(format!("not used: {names}"));
+    }
     Ok(layout)
 }
 
@@ -270,20 +279,6 @@ fn refuse_unnamed_openings(
                    percents to their right, or percents (% passing) of a soil";
     let line = grid.rows[first.saturating_sub(1)].line;
     Err(grid.refused(line, column, "heading", &heads[column], allowed))
-}
-
-/// Makes a note of the columns with numbers that are not read.
-fn not_used(grid: &Grid, heads: &[String], unused: &[usize]) -> Option<String> {
-    const MOST: usize = 6;
-    let name = |&c: &usize| match heads.get(c).map(String::as_str).unwrap_or_default() {
-        "" => format!("{} (no heading)", grid.column_label(c)),
-        head => format!("{} (\"{}\")", grid.column_label(c), shortened(head)),
-    };
-    let mut named: Vec<String> = unused.iter().take(MOST).map(name).collect();
-    if unused.len() > MOST {
-        named.push(format!("and {} more", unused.len() - MOST));
-    }
-    (!named.is_empty()).then(|| format!("not used: {}", named.join(", ")))
 }
 
 /// True if a table has the header of a constriction curve: percents by number of constrictions.

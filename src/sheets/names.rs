@@ -5,34 +5,34 @@ use super::blocks::Block;
 use super::content::{is_data, is_value};
 use super::grid::{GridRow, names_listed};
 use super::heading::{Role, role, says_of_fines, says_sample, says_sedimentation, words};
-use super::languages::list;
+use super::languages::Words;
 use super::layout::End;
 use super::soil::Soil;
 use std::collections::HashMap;
+use std::path::Path;
 use voidwalk_core::gradation::{FIELDS, Row, TableError};
 use voidwalk_core::text::plain;
 
 /// Refuses to count soils whose names say that they are not samples, such as the mean of others.
-pub(super) fn ask_about(
-    file: &str,
-    names: &[&str],
+pub(super) fn refuse_none<'a>(
+    file: &Path,
+    names: impl Iterator<Item = &'a str>,
     is_none: fn(&str) -> bool,
-    what: &str,
+    kind: &str,
 ) -> Result<(), TableError> {
-    let (none, samples): (Vec<&str>, Vec<&str>) = names.iter().partition(|name| is_none(name));
-    if none.is_empty() || names.len() < 2 {
+    let (none, samples): (Vec<&str>, Vec<&str>) = names.partition(|name| is_none(name));
+    if none.is_empty() || none.len() + samples.len() < 2 {
         return Ok(());
     }
-    let first = samples.first().or(none.first()).map_or(String::new(), |name| plain(name));
-    let quoted = |names: Vec<&str>| names_listed(&names.into_iter().map(str::to_owned).collect::<Vec<_>>());
-    let beside = if samples.is_empty() { String::new() } else { format!("{}, and ", quoted(samples)) };
-    let soils = format!("{beside}{what}: {}", quoted(none));
-    Err(TableError::SeveralSoils { file: file.to_owned(), soils, first })
+    let first = plain(samples.first().unwrap_or(&none[0]));
+    let beside = if samples.is_empty() { String::new() } else { format!("{}, and ", names_listed(&samples)) };
+    let soils = format!("{beside}{kind}, which are not samples: {}", names_listed(&none));
+    Err(TableError::SeveralSoils { file: file.display().to_string(), soils, first })
 }
 
 /// Beginnings of lines above a table that do not name a soil.
-const NO_NAME: [&str; 14] =
-    list("date|datum|project|projekt|projet|client|depth|tiefe|tested|laboratory|lab|job|astm|page");
+static NO_NAME: Words =
+    Words::of("date|datum|project|projekt|projet|client|depth|tiefe|tested|laboratory|lab|job|astm|page");
 
 fn title_in(row: &GridRow) -> Option<&str> {
     let cells: Vec<&str> = row.filled().take(3).map(|c| row.cell(c)).collect();
@@ -41,7 +41,7 @@ fn title_in(row: &GridRow) -> Option<&str> {
             let of_one = words(one);
             let is_name = role(one) == Role::Other
                 && !is_value(one)
-                && of_one.first().is_some_and(|word| !NO_NAME.contains(&word.as_str()));
+                && of_one.first().is_some_and(|word| !NO_NAME.has(word));
             is_name.then_some(one)
         }
         [label, value] if says_sample(label) => Some(value),

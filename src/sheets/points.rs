@@ -1,11 +1,11 @@
 //! Converts a column of a table to openings in mm and percents finer.
 
 use super::content::{bound, is_blank, is_date, is_value, is_words, percentage, range, refuse_short};
-use super::extent::{Extent, check_commas, refuse_lost};
+use super::extent::{Extent, Reading, check_commas, refuse_lost};
 use super::grid::{Grid, listed};
 use super::heading::Role;
 use super::layout::{End, Layout, SoilColumn, fields};
-use super::retained::{Weighed, percents_finer, refuse_contradiction, says_fraction, says_percent};
+use super::retained::{percents_finer, refuse_contradiction, says_fraction, says_percent, scale_fractions};
 use super::size::{Entry, Form, Opening, Unit, opening, unmarked};
 use super::soil::{Kind, Soil};
 use super::{roles, units};
@@ -22,68 +22,60 @@ const LEAST_BOUND: f64 = 1.0;
 /// Soils of a table, column by column.
 pub(super) fn soils(grid: &Grid, layout: &Layout) -> Result<Vec<Result<Soil, TableError>>, TableError> {
     let extent = Extent::of(grid, layout)?;
-    let last = last_column(grid, layout, &extent);
-    for row in extent.rows(grid, layout) {
-        refuse_short(grid, row, row.cell(extent.column_of_size(layout, row)), last)?;
+    let last = last_column(&extent);
+    for row in extent.rows() {
+        refuse_short(grid, row, row.cell(extent.column_of_size(row)), last)?;
     }
-    let soils: Vec<_> = layout.soils.iter().map(|column| soil(grid, layout, &extent, column)).collect();
-    refuse_contradiction(grid, layout, &extent, &soils)?;
-    refuse_lost(grid, layout, &extent, &soils)?;
+    let soils: Vec<_> = layout.soils.iter().map(|column| soil(&extent, column)).collect();
+    refuse_contradiction(&extent, &soils)?;
+    refuse_lost(&extent, &soils)?;
     Ok(soils)
 }
 
 /// Finds the last column that has a value in most of the rows.
-fn last_column(grid: &Grid, layout: &Layout, extent: &Extent) -> usize {
-    let mut values: Vec<usize> = Vec::new();
-    let mut rows = 0;
-    for row in extent.rows(grid, layout) {
-        rows += 1;
-        values.resize(values.len().max(row.cells.len()), 0);
+fn last_column(extent: &Extent) -> usize {
+    let rows: Vec<_> = extent.rows().collect();
+    let mut values = vec![0; rows.iter().map(|row| row.cells.len()).max().unwrap_or(0)];
+    for row in &rows {
         row.filled().filter(|&c| is_value(row.cell(c))).for_each(|c| values[c] += 1);
     }
-    let first = layout.soils.iter().map(|soil| soil.column).min().unwrap_or(0);
-    values.iter().rposition(|&n| 2 * n > rows).unwrap_or(0).max(layout.size).max(first)
+    let first = extent.layout.soils.iter().map(|soil| soil.column).min().unwrap_or(0);
+    values.iter().rposition(|&n| 2 * n > rows.len()).unwrap_or(0).max(extent.layout.size).max(first)
 }
 
-fn soil(grid: &Grid, layout: &Layout, extent: &Extent, column: &SoilColumn) -> Result<Soil, TableError> {
-    let mut notes = grid.notes.clone();
-    notes.extend(layout.notes.iter().chain(&extent.notes).cloned());
-    let (mut entries, missing) = entries(grid, layout, extent, column, &mut notes)?;
-    let unit = units::of_bare(grid, layout, column.role, &entries, &mut notes)?;
+fn soil(extent: &Extent, column: &SoilColumn) -> Result<Soil, TableError> {
+    let (grid, layout) = (extent.grid, extent.layout);
+    let notes = [&grid.notes[..], &layout.notes, &extent.notes].concat();
+    let mut reading = Reading { extent, grid, layout, column, notes };
+    let (mut entries, missing) = entries(&mut reading)?;
+    let unit = units::of_bare(&mut reading, &entries)?;
     for entry in &mut entries {
-        let own = if entry.form == Form::Plain { unit } else { Unit::Mm };
+        let unit = if entry.form == Form::Plain { unit } else { Unit::Mm };
+        let mm = |value: f64| in_mm(&reading, entry, value, unit);
         entry.opening = match entry.opening {
-            Opening::Bare(value) => in_mm(grid, entry, value, unit)?,
-            Opening::Mm(mm) => in_mm(grid, entry, mm, Unit::Mm)?,
-            Opening::Below(value) => match in_mm(grid, entry, value, own)? {
-                Opening::Mm(mm) => Opening::Below(mm),
-                other => other,
+            Opening::Bare(value) | Opening::Mm(value) | Opening::Below(value) => match mm(value)? {
+                // Nothing passes the pan.
+                0.0 => Opening::Pan,
+                mm if matches!(entry.opening, Opening::Below(_)) => Opening::Below(mm),
+                mm => Opening::Mm(mm),
             },
             Opening::Class(one, other) => {
-                let mm = |value: f64| match value {
-                    f64::INFINITY => Ok(value),
-                    value => match in_mm(grid, entry, value, own)? {
-                        Opening::Mm(mm) => Ok(mm),
-                        _ => Ok(0.0),
-                    },
-                };
-                let (one, other) = (mm(one)?, mm(other)?);
+                let bound = |value: f64| if value == f64::INFINITY { Ok(value) } else { mm(value) };
+                let (one, other) = (bound(one)?, bound(other)?);
                 Opening::Class(one.max(other), one.min(other))
             }
             other => other,
         };
     }
-    units::say_names(&entries, unit, &mut notes);
-    let role = roles::settle(grid, layout, column, &mut entries, &mut notes)?;
-    let mut rows = match role {
+    units::say_names(&entries, unit, &mut reading.notes);
+    let mut rows = match roles::settle(&mut reading, &mut entries)? {
         Role::Retained(retained) => {
-            let (heading, column, below) = (&*column.heading, column.column, &*extent.below);
-            let weighed = Weighed { grid, column, heading, retained, below, missing: &missing };
-            weighed.scale_fractions(&mut entries, &mut notes)?;
-            percents_finer(&weighed, &entries, &mut notes)?
+            scale_fractions(&mut reading, retained, &mut entries)?;
+            percents_finer(&mut reading, retained, &entries, &missing)?
         }
-        _ => finer(grid, column, &entries, &mut notes)?,
+        _ => finer(&mut reading, &entries)?,
     };
+    let mut notes = reading.notes;
     let Some(top) = rows.iter_mut().max_by(|a, b| a.size.total_cmp(&b.size)) else {
         return Err(TableError::NoRows { file: grid.place(), header: layout.headed });
     };
@@ -111,21 +103,16 @@ fn soil(grid: &Grid, layout: &Layout, extent: &Extent, column: &SoilColumn) -> R
 }
 
 /// Rows of the table as written, and the lines of openings with an empty value cell.
-fn entries(
-    grid: &Grid,
-    layout: &Layout,
-    extent: &Extent,
-    column: &SoilColumn,
-    notes: &mut Vec<String>,
-) -> Result<(Vec<Entry>, Vec<usize>), TableError> {
+fn entries(reading: &mut Reading) -> Result<(Vec<Entry>, Vec<usize>), TableError> {
+    let &mut Reading { extent, grid, layout, column, .. } = reading;
     let retained = matches!(column.role, Role::Retained(_));
     let (mut entries, mut without, mut missing) = (Vec::new(), Vec::new(), Vec::new());
     let mut marked: Option<String> = None;
     let (mut with_sign, mut plain) = (false, None);
-    for row in extent.rows(grid, layout) {
+    for row in extent.rows() {
         let line = row.line;
         let value = row.cell(column.column);
-        let at = extent.column_of_size(layout, row);
+        let at = extent.column_of_size(row);
         let size = row.cell(at);
         let read = opening(size);
         if is_blank(value) {
@@ -153,7 +140,10 @@ fn entries(
             return Err(fields(grid, row));
         }
         let Some((opening, form)) = read else {
-            return Err(grid.refused(line, at, FIELDS[0], size, allowed_opening(size)));
+            let date = "an opening; this is a date, into which spreadsheets turn fractions such as 3/8: write \
+                        3/8 in";
+            let allowed = if is_date(size) { date.into() } else { allowed_size() };
+            return Err(grid.refused(line, at, FIELDS[0], size, allowed));
         };
         if matches!(opening, Opening::Bare(value) if !value.is_finite()) {
             return Err(grid.refused(line, at, FIELDS[0], size, allowed_size()));
@@ -165,7 +155,8 @@ fn entries(
             return Err(grid.refused(line, column.column, FIELDS[1], value, allowed));
         }
         if let Some(most) = bound {
-            notes.push(format!("{value} in {} read as {most} %, its upper bound", grid.row_label(line)));
+            let row = grid.row_label(line);
+            reading.notes.push(format!("{value} in {row} read as {most} %, its upper bound"));
         }
         let value_read = percentage(value)
             .or(bound)
@@ -192,26 +183,18 @@ fn entries(
     }
     if !without.is_empty() {
         let have = if without.len() == 1 { "has" } else { "have" };
-        notes.push(format!(
-            "{} {have} no percent: left out",
-            listed(grid.row_word(), &without, |&line| grid.row_name(line))
-        ));
+        let rows = listed(grid.row_word(), &without, |&line| grid.row_name(line));
+        reading.notes.push(format!("{rows} {have} no percent: left out"));
     }
-    notes.extend(marked.map(|cell| format!("marks of footnotes, as in {cell}, left out")));
-    check_commas(grid, layout, extent, column, notes)?;
+    reading.notes.extend(marked.map(|cell| format!("marks of footnotes, as in {cell}, left out")));
+    check_commas(reading)?;
     Ok((entries, missing))
 }
 
-/// Describes the allowed forms of an opening; spreadsheets turn `3/8` into a date.
-fn allowed_opening(text: &str) -> String {
-    let date = "an opening; this is a date, into which spreadsheets turn fractions such as 3/8: write 3/8 in";
-    if is_date(text) { date.into() } else { allowed_size() }
-}
-
-fn in_mm(grid: &Grid, entry: &Entry, value: f64, unit: Unit) -> Result<Opening, TableError> {
+/// Converts a size of an entry to mm; 0 remains 0 in units of length.
+fn in_mm(reading: &Reading, entry: &Entry, value: f64, unit: Unit) -> Result<f64, TableError> {
     if value == 0.0 && unit != Unit::Phi {
-        // Nothing passes the pan.
-        return Ok(Opening::Pan);
+        return Ok(0.0);
     }
     let allowed = match unit {
         Unit::SieveNumber => "the number of a US sieve (4, 10, 40, 200 ...), as the heading says".to_owned(),
@@ -219,17 +202,12 @@ fn in_mm(grid: &Grid, entry: &Entry, value: f64, unit: Unit) -> Result<Opening, 
         _ => allowed_size(),
     };
     let mm = unit.mm(value).filter(|&mm| size_is_allowed(mm) && (unit == Unit::Phi || value > 0.0));
-    mm.map(Opening::Mm).ok_or_else(|| grid.refused(entry.line, entry.column, FIELDS[0], &entry.text, allowed))
+    mm.ok_or_else(|| reading.refused_size(entry, allowed))
 }
 
 /// Rows of a column in percent finer, or in fractions.
-fn finer(
-    grid: &Grid,
-    column: &SoilColumn,
-    entries: &[Entry],
-    notes: &mut Vec<String>,
-) -> Result<Vec<Row>, TableError> {
-    let factor = fractions(grid, column, entries, notes)?;
+fn finer(reading: &mut Reading, entries: &[Entry]) -> Result<Vec<Row>, TableError> {
+    let factor = fractions(reading, entries)?;
     let sieves = entries.iter().filter_map(|entry| match entry.opening {
         Opening::Mm(size) => Some((size, entry.value)),
         _ => None,
@@ -240,42 +218,38 @@ fn finer(
         let size = match entry.opening {
             Opening::Mm(size) | Opening::Below(size) => size,
             Opening::Total => {
-                notes.push(format!("the total in {} was left out", grid.row_label(entry.line)));
+                let row = reading.grid.row_label(entry.line);
+                reading.notes.push(format!("the total in {row} was left out"));
                 continue;
             }
             Opening::Pan if entry.value == 0.0 => {
-                notes.push("the pan was left out".into());
+                reading.notes.push("the pan was left out".into());
                 continue;
             }
             Opening::Pan if Some(entry.value) == finest => {
-                notes.push("the percent of the pan, equal to that of the finest sieve, was left out".into());
+                let note = "the percent of the pan, equal to that of the finest sieve, was left out";
+                reading.notes.push(note.into());
                 continue;
             }
             Opening::Pan | Opening::Bare(_) | Opening::Class(..) => {
                 let allowed = "0, or nothing: the pan lets nothing pass (or a heading that says retained)";
-                let value = entry.value.to_string();
-                return Err(grid.refused(entry.line, column.column, FIELDS[1], &value, allowed));
+                return Err(reading.refused_value(entry.line, entry.value, allowed));
             }
         };
         rows.push(Row { line: entry.line, size, percent: entry.value * factor });
     }
-    let falls = |rows: &[Row]| rows.is_sorted_by(|a, b| a.size >= b.size);
+    let falls = rows.is_sorted_by(|a: &Row, b| a.size >= b.size);
     let rises = rows.is_sorted_by(|a, b| a.size <= b.size);
-    if !falls(&rows) && !rises && entries.iter().all(|entry| entry.form > Form::Plain) {
+    if !falls && !rises && entries.iter().all(|entry| entry.form > Form::Plain) {
         let note = "rows not in order of size, each with its unit or the name of its sieve, sorted";
-        notes.push(note.into());
+        reading.notes.push(note.into());
         rows.sort_by(|a, b| b.size.total_cmp(&a.size));
     }
     Ok(rows)
 }
 
 /// Factor that converts values to percents: 100 for fractions of 1.
-fn fractions(
-    grid: &Grid,
-    column: &SoilColumn,
-    entries: &[Entry],
-    notes: &mut Vec<String>,
-) -> Result<f64, TableError> {
+fn fractions(reading: &mut Reading, entries: &[Entry]) -> Result<f64, TableError> {
     let of_sieves = || entries.iter().filter(|entry| !matches!(entry.opening, Opening::Total));
     let Some(top) = of_sieves().max_by(|a, b| a.value.total_cmp(&b.value)) else { return Ok(1.0) };
     let is_broken = |entry: &&Entry| entry.value > 0.0 && entry.value < 1.0;
@@ -288,25 +262,21 @@ fn fractions(
     {
         let allowed = "percents from 0 to 100; these look like fractions from 0 to 1 below a 100: write them \
                        in percent, or 1 for 100";
-        let value = entry.value.to_string();
-        return Err(grid.refused(entry.line, column.column, FIELDS[1], &value, allowed));
+        return Err(reading.refused_value(entry.line, entry.value, allowed));
     }
     if top.value > 1.0 || broken == 0 {
         return Ok(1.0);
     }
-    let (says_percent, says_fraction) = (says_percent(&column.heading), says_fraction(&column.heading));
-    if top.value == 1.0 && (says_fraction || !says_percent || grid.sheet.is_some()) {
-        notes.push("values from 0 to 1 read as fractions: 1 is 100 %".into());
+    let heading = &reading.column.heading;
+    let (says_percent, says_fraction) = (says_percent(heading), says_fraction(heading));
+    if top.value == 1.0 && (says_fraction || !says_percent || reading.grid.sheet.is_some()) {
+        reading.notes.push("values from 0 to 1 read as fractions: 1 is 100 %".into());
         return Ok(100.0);
     }
-    let allowed = match says_percent && top.value == 1.0 {
-        true => {
-            "100 at the coarsest size; these look like fractions from 0 to 1 under a heading of percents: \
-                 write percents, or `fraction` in the heading"
-        }
-        false => {
-            "100 at the coarsest size; these look like fractions from 0 to 1, of which the coarsest must be 1"
-        }
+    let rest = match says_percent && top.value == 1.0 {
+        true => " under a heading of percents: write percents, or `fraction` in the heading",
+        false => ", of which the coarsest must be 1",
     };
-    Err(grid.refused(top.line, column.column, FIELDS[1], &top.value.to_string(), allowed))
+    let allowed = format!("100 at the coarsest size; these look like fractions from 0 to 1{rest}");
+    Err(reading.refused_value(top.line, top.value, allowed))
 }

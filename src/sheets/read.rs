@@ -2,12 +2,12 @@
 
 use super::blocks::Block;
 use super::content::whole_row;
-use super::grid::{Grid, names_listed};
+use super::grid::{Grid, Place, names_listed};
 use super::heading::{Role, says_limit, says_mean};
 use super::layout::{Layout, SoilColumn};
 use super::names::Read;
 use super::soil::{Soil, SoilSummary};
-use super::units::{TAKEN_AS_MM, states_unit};
+use super::units::{TAKEN_AS_MM, WITH_UNIT, states_unit};
 use super::workbook::{Zipped, unreadable};
 use super::{ags, blocks, names, ods, points, roles, text, xlsx};
 use std::collections::{HashMap, HashSet};
@@ -34,23 +34,23 @@ impl Soil {
     /// Errors of [`Soil::all`] for this soil; several soils, or no soil with this name.
     pub fn one(file: &str, bytes: &[u8], name: Option<&str>) -> Result<Soil, GradationError> {
         let mut soils = tables(file, bytes, name)?;
+        let all =
+            |soils: &[Named]| -> Vec<String> { soils.iter().map(|(names, _)| names[0].clone()).collect() };
+        let (file, names) = (file.to_owned(), all(&soils));
         if let Some(name) = name {
-            let all: Vec<String> = soils.iter().map(|(names, _)| names[0].clone()).collect();
             soils.retain(|(names, _)| is_named(names, name));
             if soils.is_empty() {
-                let (file, name, soils) = (file.to_owned(), shortened(name), names_listed(&all));
+                let (name, soils) = (shortened(name), names_listed(&names));
                 return Err(TableError::NoSuchSoil { file, name, soils }.into());
             }
         }
         if soils.len() > 1 {
-            let all: Vec<String> = soils.iter().map(|(names, _)| names[0].clone()).collect();
-            let (soils, first) = (names_listed(&all), plain(&all[0]));
-            return Err(TableError::SeveralSoils { file: file.to_owned(), soils, first }.into());
+            let names = all(&soils);
+            let (soils, first) = (names_listed(&names), plain(&names[0]));
+            return Err(TableError::SeveralSoils { file, soils, first }.into());
         }
-        match soils.pop() {
-            Some((_, soil)) => Ok(soil?),
-            None => Err(TableError::NoRows { file: file.into(), header: false }.into()),
-        }
+        let (_, soil) = soils.pop().ok_or(TableError::NoRows { file, header: false })?;
+        Ok(soil?)
     }
 }
 
@@ -82,7 +82,7 @@ fn tables(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, 
     if bytes.len() as u64 > FILE_LIMIT_BYTES {
         return Err(TableError::TooLarge { file: file.into(), limit: FILE_LIMIT_BYTES });
     }
-    if is_zip(bytes) {
+    if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06") {
         return of_workbook(file, bytes, wanted);
     }
     let (text, note) = text::decoded(file, bytes)?;
@@ -112,18 +112,14 @@ fn tables(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Named>, 
 /// Refuses openings that were taken as mm if a comment names another unit.
 fn refuse_commented_unit(file: &str, text: &str, soils: &[Named]) -> Result<(), TableError> {
     let is_taken = |soil: &Soil| soil.notes.iter().any(|note| note == TAKEN_AS_MM);
-    if !soils.iter().any(|(_, soil)| soil.as_ref().is_ok_and(is_taken)) {
-        return Ok(());
-    }
     let mut comments = text.lines().enumerate().filter(|(_, line)| line.trim_start().starts_with('#'));
-    match comments.find(|(_, line)| states_unit(line)) {
-        Some((index, line)) => {
-            let allowed = "openings whose heading names their unit, as Size (mm) or Size (um)".into();
-            let (file, line, value) = (file.to_owned(), index + 1, shortened(line));
-            Err(TableError::Header { file, line, value, allowed })
-        }
-        None => Ok(()),
+    if soils.iter().any(|(_, soil)| soil.as_ref().is_ok_and(is_taken))
+        && let Some((index, line)) = comments.find(|(_, line)| states_unit(line))
+    {
+        let (file, line, value) = (file.to_owned(), index + 1, shortened(line));
+        return Err(TableError::Header { file, line, value, allowed: WITH_UNIT.into() });
     }
+    Ok(())
 }
 
 fn of_ags(tables: Vec<(String, Grid, Layout)>) -> Result<Vec<Named>, TableError> {
@@ -228,22 +224,16 @@ fn named(tables: Vec<Read>) -> Vec<Named> {
                     // `% passing` is not a name.
                     name.clear();
                 } else if name.is_empty() || times[&folded(&name)] > 1 {
-                    let place = grid.place_of(table.block.line(), column.column);
-                    let letters = letters(place.column as u32);
-                    name = match (grid.across.is_some(), several) {
-                        (true, _) => format!(
-                            "{name} ({} {})",
-                            if grid.sheet.is_some() { "row" } else { "line" },
-                            place.line
-                        ),
-                        (false, true) if grid.sheet.is_some() => {
-                            format!("{name} (cell {letters}{})", place.line)
-                        }
-                        (false, true) => format!("{name} (line {}, column {})", place.line, place.column + 1),
-                        (false, false) => format!("{name} (column {letters})"),
-                    }
-                    .trim()
-                    .to_owned();
+                    let Place { line, column } = grid.place_of(table.block.line(), column.column);
+                    let letters = letters(column as u32);
+                    let place = match (grid.across.is_some(), several, grid.sheet.is_some()) {
+                        (true, _, true) => format!("row {line}"),
+                        (true, _, false) => format!("line {line}"),
+                        (false, true, true) => format!("cell {letters}{line}"),
+                        (false, true, false) => format!("line {line}, column {}", column + 1),
+                        (false, false, _) => format!("column {letters}"),
+                    };
+                    name = format!("{name} ({place})").trim().to_owned();
                 }
                 match &grid.sheet {
                     Some(sheet) if single => vec![sheet.clone(), name],
@@ -280,9 +270,12 @@ fn soils_of_file(path: &Path) -> Result<Vec<Soil>, GradationError> {
 /// Reads the soils of a file as samples; the mean of others is refused with a question.
 fn samples_of_file(path: &Path) -> Result<Vec<Soil>, GradationError> {
     let soils = soils_of_file(path)?;
-    let names: Vec<&str> = soils.iter().map(Soil::name).collect();
-    names::ask_about(&path.display().to_string(), &names, says_mean, "means, which are not samples")?;
+    names::refuse_none(path, soils.iter().map(Soil::name), says_mean, "means")?;
     Ok(soils)
+}
+
+fn curve(soil: &Soil, d0_mm: Option<f64>) -> Result<(String, Gradation), GradationError> {
+    Ok((soil.name.clone(), soil.gradation(d0_mm)?))
 }
 
 /// Reads summaries of the soils of a file, or of the one that `path` names after a `#`.
@@ -292,14 +285,7 @@ pub fn soils_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<SoilSummary>
 
 /// Reads names and sieve curves of the soils of a file, or of the one that `path` names after a `#`.
 pub fn curves_in_file(path: &Path, d0_mm: Option<f64>) -> Result<Vec<(String, Gradation)>, GradationError> {
-    let named = |soil: &Soil| Ok((soil.name.clone(), soil.gradation(d0_mm)?));
-    samples_of_file(path)?.iter().map(named).collect()
-}
-
-/// Reads curves like [`curves_in_file`], including soils that are not samples.
-fn all_in_file(path: &Path) -> Result<Vec<(String, Gradation)>, GradationError> {
-    let named = |soil: &Soil| Ok((soil.name.clone(), soil.gradation(None)?));
-    soils_of_file(path)?.iter().map(named).collect()
+    samples_of_file(path)?.iter().map(|soil| curve(soil, d0_mm)).collect()
 }
 
 /// Lists the assumptions about the soils of a file, or about the one that `path` names after a `#`,
@@ -330,11 +316,6 @@ pub fn read_gradation(path: impl AsRef<Path>, d0_mm: Option<f64>) -> Result<Grad
 /// Reads the content of a file like [`read_gradation`]; messages call it `name`.
 pub fn parse_gradation(name: &str, content: &[u8], d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
     Soil::one(name, content, None)?.gradation(d0_mm)
-}
-
-/// True if a file is a zip, as workbooks are.
-fn is_zip(bytes: &[u8]) -> bool {
-    bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06")
 }
 
 /// Reads the sheets that are not empty.
@@ -373,9 +354,7 @@ const ENDINGS: [&str; 5] = ["csv", "txt", "xlsx", "ods", "ags"];
 pub fn samples_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
     in_files(path, &|file| {
         let curves = curves_in_file(file, None)?;
-        let names: Vec<&str> = curves.iter().map(|(name, _)| name.as_str()).collect();
-        let what = "limits, which are not samples";
-        names::ask_about(&file.display().to_string(), &names, says_limit, what)?;
+        names::refuse_none(file, curves.iter().map(|(name, _)| name.as_str()), says_limit, "limits")?;
         Ok(curves)
     })
 }
@@ -390,7 +369,7 @@ pub fn envelope_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
 /// # Errors
 /// A folder without a table; a file that cannot be read as one.
 pub fn named_soils_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
-    in_files(path, &all_in_file)
+    in_files(path, &|file| soils_of_file(file)?.iter().map(|soil| curve(soil, None)).collect())
 }
 
 type Curves<'a> = &'a dyn Fn(&Path) -> Result<Vec<(String, Gradation)>, GradationError>;
@@ -399,8 +378,8 @@ fn in_files(path: &Path, curves: Curves) -> Result<Vec<SoilSample>, GradationErr
     if !path.is_dir() {
         return in_file(path, curves);
     }
-    let folder = || path.display().to_string();
-    let read = |source| TableError::Read { file: folder(), source };
+    let folder = path.display().to_string();
+    let read = |source| TableError::Read { file: folder.clone(), source };
     let mut files = Vec::new();
     for entry in std::fs::read_dir(path).map_err(read)? {
         let file = entry.map_err(read)?.path();
@@ -411,22 +390,20 @@ fn in_files(path: &Path, curves: Curves) -> Result<Vec<SoilSample>, GradationErr
         }
     }
     if files.is_empty() {
-        return Err(TableError::NoTables { folder: folder(), endings: ENDINGS.join(", .") }.into());
+        return Err(TableError::NoTables { folder, endings: ENDINGS.join(", .") }.into());
     }
     files.sort();
     // Names that some disks and some readers treat as equal count as equal.
-    let lower = |stem: &str| stem.to_lowercase();
-    let stem = |file: &PathBuf| file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let stems: Vec<String> = files.iter().map(stem).collect();
+    let lower = |file: &PathBuf| file.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
     let mut samples = Vec::new();
-    for (file, stem) in files.iter().zip(&stems) {
-        let is_alone = stems.iter().filter(|other| lower(other) == lower(stem)).count() == 1;
-        let whole = || file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let stem = if is_alone { stem.clone() } else { whole() };
+    for file in &files {
+        let is_alone = files.iter().filter(|other| lower(other) == lower(file)).count() == 1;
+        let stem = if is_alone { file.file_stem() } else { file.file_name() };
+        let stem = stem.unwrap_or_default().to_string_lossy();
         let of_file = in_file(file, curves)?;
         let several = of_file.len() > 1;
         samples.extend(of_file.into_iter().map(|sample| {
-            let name = if several { format!("{stem}/{}", sample.name) } else { stem.clone() };
+            let name = if several { format!("{stem}/{}", sample.name) } else { stem.to_string() };
             SoilSample { name, ..sample }
         }));
     }
@@ -438,8 +415,8 @@ fn in_file(path: &Path, curves: Curves) -> Result<Vec<SoilSample>, GradationErro
     let several = curves.len() > 1;
     let (file, _) = file_and_soil(path);
     let sample = |(name, curve): (String, Gradation)| {
-        let path =
-            if several { PathBuf::from(format!("{}#{name}", file.display())) } else { path.to_owned() };
+        let named = || PathBuf::from(format!("{}#{name}", file.display()));
+        let path = if several { named() } else { path.to_owned() };
         SoilSample { name, path, curve }
     };
     Ok(curves.into_iter().map(sample).collect())

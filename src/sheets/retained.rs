@@ -1,11 +1,11 @@
 //! Retained values, by mass or in percent: converted to percents finer, or compared with those that are read.
 
 use super::content::{is_words, percentage};
-use super::extent::{Below, Extent};
-use super::grid::{Grid, GridRow};
+use super::extent::{Below, Extent, Reading};
+use super::grid::GridRow;
 use super::heading::{Retained, Role, role, says_of_fines, words};
-use super::languages::list;
-use super::layout::{Layout, head};
+use super::languages::Words;
+use super::layout::head;
 use super::size::{Entry, Opening, is_washed, opening};
 use super::soil::Soil;
 use std::collections::HashMap;
@@ -28,131 +28,113 @@ pub(super) fn says_fraction(heading: &str) -> bool {
     small.contains("fraction") || small.contains("ratio")
 }
 
-pub(super) struct Weighed<'a> {
-    pub(super) grid: &'a Grid,
-    pub(super) column: usize,
-    pub(super) heading: &'a str,
-    pub(super) retained: Retained,
-    pub(super) below: &'a [Below],
-    /// Lines of openings without a value.
-    pub(super) missing: &'a [usize],
+/// Converts fractions of 1 to percents if the heading calls them fractions.
+pub(super) fn scale_fractions(
+    reading: &mut Reading,
+    retained: Retained,
+    entries: &mut [Entry],
+) -> Result<(), TableError> {
+    let is_broken = |entry: &&Entry| entry.value > 0.0 && entry.value < 1.0;
+    let (true, Some(broken)) = (retained.percent, entries.iter().find(is_broken)) else {
+        return Ok(());
+    };
+    if entries.iter().any(|entry| entry.value > 1.0) {
+        return Ok(());
+    }
+    let heading = &reading.column.heading;
+    if !says_fraction(heading) || says_percent(heading) {
+        let allowed = "percents up to 100, with the pan; these look like fractions from 0 to 1: write \
+                       percents, or `fraction` in the heading";
+        return Err(reading.refused_value(broken.line, broken.value, allowed));
+    }
+    reading.notes.push("values from 0 to 1 read as fractions: 1 is 100 %".into());
+    entries.iter_mut().for_each(|entry| entry.value = tidy(100.0 * entry.value));
+    Ok(())
 }
 
-impl Weighed<'_> {
-    fn refused(&self, line: usize, value: f64, allowed: &str) -> TableError {
-        self.grid.refused(line, self.column, FIELDS[1], &value.to_string(), allowed)
+/// Refuses values without a pan that end far below 100 under a plain `Retained`: they may be grams.
+fn refuse_unsaid(reading: &Reading, line: usize, end: f64) -> Result<(), TableError> {
+    let is_stated = |cell: &str| says_percent(cell) || says_fraction(cell);
+    let any_cell = || reading.grid.rows.iter().any(|row| is_stated(row.cell(reading.column.column)));
+    let is_retained = matches!(role(&reading.column.heading), Role::Retained(_));
+    if end >= NEARLY_ALL || !is_retained || any_cell() {
+        return Ok(());
     }
+    let allowed = "% or g in the heading, or what is retained in the pan: these may be percents or grams";
+    Err(reading.refused_value(line, end, allowed))
+}
 
-    /// Converts fractions of 1 to percents if the heading calls them fractions.
-    pub(super) fn scale_fractions(
-        &self,
-        entries: &mut [Entry],
-        notes: &mut Vec<String>,
-    ) -> Result<(), TableError> {
-        let is_broken = |entry: &&Entry| entry.value > 0.0 && entry.value < 1.0;
-        let (true, Some(broken)) = (self.retained.percent, entries.iter().find(is_broken)) else {
-            return Ok(());
-        };
-        if entries.iter().any(|entry| entry.value > 1.0) {
-            return Ok(());
+/// Checks stated masses. Mass washed out or lost is a part of the whole; a mass above, beside or
+/// below the table that differs from the mass of all rows is refused or noted.
+fn check_stated(reading: &mut Reading, percent: bool, whole: f64) -> Result<(), TableError> {
+    static LOST: Words =
+        Words::of("wash|washed|washing|loss|losses|lost|fines|minus|through|decanted|silt|clay");
+    static MASS: Words = Words::of("mass|weight|masse|gewicht|wt");
+    static ALL: Words = Words::of("total|initial|dry|sample|specimen|start|original|before");
+    static TARE: Words = Words::of("tare|container|dish|can|pan|wet|with");
+    static PART: Words =
+        Words::of("after|washed|retained|water|sieve|unit|density|subsample|passing|fines|minimum|required");
+    let &mut Reading { extent, grid, column, .. } = reading;
+    let column = column.column;
+    for row in extent.below.iter().chain(&stated(extent)) {
+        let Some((first, value)) = row.value else { continue };
+        let of_row = words(&row.words);
+        let is_below = extent.below.iter().any(|below| below.line == row.line);
+        if is_below && value > 0.0 && LOST.any(&of_row) {
+            let allowed = "the pan as the last row of what is retained, with all that was washed out or \
+                           lost: it is a part of the whole";
+            return Err(grid.refused(row.line, row.column, FIELDS[0], &row.words, allowed));
         }
-        if !says_fraction(self.heading) || says_percent(self.heading) {
-            let allowed = "percents up to 100, with the pan; these look like fractions from 0 to 1: write \
-                           percents, or `fraction` in the heading";
-            return Err(self.refused(broken.line, broken.value, allowed));
+        // A row of masses has one for each column of masses after its words.
+        let of_soil = grid.rows.iter().find(|other| row.column < column && other.line == row.line);
+        let in_column = of_soil.and_then(|row| percentage(row.cell(column)));
+        let (place, value) = in_column.map_or((first, value), |value| (column, value));
+        let is_all = ALL.any(&of_row) && !TARE.any(&of_row) && !PART.any(&of_row);
+        let is_near = |value: f64| (value - whole).abs() <= 0.01 * whole;
+        let is_same = [value, 1000.0 * value, value / 1000.0].into_iter().any(is_near);
+        let has = |name: &str| of_row.iter().any(|word| word == name);
+        let is_mass = MASS.any(&of_row) || is_below && has("total");
+        let is_a_part = !is_all && (value < whole || !is_below);
+        if percent || value <= 0.0 || !is_mass || is_same || is_a_part {
+            continue;
         }
-        notes.push("values from 0 to 1 read as fractions: 1 is 100 %".into());
-        entries.iter_mut().for_each(|entry| entry.value = tidy(100.0 * entry.value));
-        Ok(())
+        let sum = tidy(whole);
+        if has("dry") && !TARE.any(&of_row) {
+            let allowed = match value > whole {
+                true => format!(
+                    "all of it in the table, whose masses come to {sum}: with the pan, and all that was \
+                     washed out"
+                ),
+                false => format!("at least the {sum} to which the masses of the table come"),
+            };
+            return Err(grid.refused(row.line, place, "dry mass", &value.to_string(), allowed));
+        }
+        let place = if is_below { "below it" } else { "beside it" };
+        reading.notes.push(format!(
+            "the masses of the table come to {sum}, and \"{}\" {place} is {value}: was anything washed out \
+             or lost?",
+            row.words
+        ));
     }
+    Ok(())
+}
 
-    /// Refuses values without a pan that end far below 100 under a plain `Retained`: they may be grams.
-    fn refuse_unsaid(&self, line: usize, end: f64) -> Result<(), TableError> {
-        let is_stated = |cell: &str| says_percent(cell) || says_fraction(cell);
-        let any_cell = || self.grid.rows.iter().any(|row| is_stated(row.cell(self.column)));
-        let is_retained = matches!(role(self.heading), Role::Retained(_));
-        if !self.retained.percent || end >= NEARLY_ALL || !is_retained || any_cell() {
-            return Ok(());
+/// Words and the number after them, above the table or beside it.
+fn stated(extent: &Extent) -> Vec<Below> {
+    let mut stated = Vec::new();
+    let is_other = |row: &&GridRow| extent.below.iter().all(|below| below.line != row.line);
+    for row in extent.grid.rows.iter().filter(is_other) {
+        let says = |cell: &str| is_words(cell) || matches!(opening(cell), Some((Opening::Total, _)));
+        for column in row.filled().filter(|&c| says(row.cell(c))) {
+            let cell = row.cell(column);
+            let (words, inside) = cell.rsplit_once([':', '=']).unwrap_or((cell, ""));
+            let next = || row.filled().find(|&c| c > column);
+            let behind = || next().and_then(|c| Some((c, mass(row.cell(c))?)));
+            let value = mass(inside).map(|value| (column, value)).or_else(behind);
+            stated.push(Below { line: row.line, column, words: words.trim().to_owned(), value });
         }
-        let allowed = "% or g in the heading, or what is retained in the pan: these may be percents or grams";
-        Err(self.refused(line, end, allowed))
     }
-
-    /// Checks stated masses. Mass washed out or lost is a part of the whole; a mass above, beside or
-    /// below the table that differs from the mass of all rows is refused or noted.
-    fn check_stated(&self, whole: f64, notes: &mut Vec<String>) -> Result<(), TableError> {
-        const LOST: [&str; 12] = [
-            "wash", "washed", "washing", "loss", "losses", "lost", "fines", "minus", "through", "decanted",
-            "silt", "clay",
-        ];
-        const MASS: [&str; 6] = ["mass", "weight", "masse", "gewicht", "wt", "total"];
-        const ALL: [&str; 8] =
-            ["total", "initial", "dry", "sample", "specimen", "start", "original", "before"];
-        const TARE: [&str; 7] = ["tare", "container", "dish", "can", "pan", "wet", "with"];
-        const PART: [&str; 12] =
-            list("after|washed|retained|water|sieve|unit|density|subsample|passing|fines|minimum|required");
-        for row in self.below.iter().chain(&self.stated()) {
-            let Some((first, value)) = row.value else { continue };
-            let of_row = words(&row.words);
-            let any = |list: &[&str]| of_row.iter().any(|word| list.contains(&word.as_str()));
-            let is_below = self.below.iter().any(|below| below.line == row.line);
-            if is_below && value > 0.0 && any(&LOST) {
-                let allowed = "the pan as the last row of what is retained, with all that was washed out or \
-                               lost: it is a part of the whole";
-                return Err(self.grid.refused(row.line, row.column, FIELDS[0], &row.words, allowed));
-            }
-            // A row of masses has one for each column of masses after its words.
-            let is_before = row.column < self.column;
-            let of_soil = self.grid.rows.iter().find(|other| is_before && other.line == row.line);
-            let in_column = of_soil.and_then(|row| percentage(row.cell(self.column)));
-            let (column, value) = in_column.map_or((first, value), |value| (self.column, value));
-            let is_all = any(&ALL) && !any(&TARE) && !any(&PART);
-            let is_near = |value: f64| (value - whole).abs() <= 0.01 * whole;
-            let is_same = [value, 1000.0 * value, value / 1000.0].into_iter().any(is_near);
-            let is_mass = any(&MASS[..if is_below { 6 } else { 5 }]);
-            if self.retained.percent || value <= 0.0 || !is_mass || is_same {
-                continue;
-            }
-            if !is_all && (value < whole || !is_below) {
-                continue;
-            }
-            let sum = tidy(whole);
-            if any(&["dry"]) && !any(&TARE) {
-                let allowed = match value > whole {
-                    true => format!(
-                        "all of it in the table, whose masses come to {sum}: with the pan, and all that was \
-                         washed out"
-                    ),
-                    false => format!("at least the {sum} to which the masses of the table come"),
-                };
-                return Err(self.grid.refused(row.line, column, "dry mass", &value.to_string(), allowed));
-            }
-            let place = if is_below { "below it" } else { "beside it" };
-            notes.push(format!(
-                "the masses of the table come to {sum}, and \"{}\" {place} is {value}: was anything washed \
-                     out or lost?",
-                row.words
-            ));
-        }
-        Ok(())
-    }
-
-    /// Words and the number after them, above the table or beside it.
-    fn stated(&self) -> Vec<Below> {
-        let mut stated = Vec::new();
-        for row in self.grid.rows.iter().filter(|row| self.below.iter().all(|below| below.line != row.line)) {
-            let says = |cell: &str| is_words(cell) || matches!(opening(cell), Some((Opening::Total, _)));
-            for column in row.filled().filter(|&c| says(row.cell(c))) {
-                let cell = row.cell(column);
-                let (words, inside) = cell.rsplit_once([':', '=']).unwrap_or((cell, ""));
-                let next = || row.filled().find(|&c| c > column);
-                let behind = || next().and_then(|c| Some((c, mass(row.cell(c))?)));
-                let value = mass(inside).map(|value| (column, value)).or_else(behind);
-                stated.push(Below { line: row.line, column, words: words.trim().to_owned(), value });
-            }
-        }
-        stated
-    }
+    stated
 }
 
 fn mass(cell: &str) -> Option<f64> {
@@ -165,22 +147,24 @@ fn tidy(sum: f64) -> f64 {
 }
 
 pub(super) fn percents_finer(
-    weighed: &Weighed,
+    reading: &mut Reading,
+    Retained { percent, cumulative }: Retained,
     entries: &[Entry],
-    notes: &mut Vec<String>,
+    missing: &[usize],
 ) -> Result<Vec<Row>, TableError> {
+    let &mut Reading { grid, column, .. } = reading;
     let mut sieves: Vec<(usize, f64, f64)> = Vec::new();
-    if let Some((line, text)) = weighed.grid.commented.first() {
+    if let Some((line, text)) = grid.commented.first() {
         let allowed = "every row of what is retained, as each is a part of the whole: take away this row or \
                        the # before it";
-        return Err(weighed.grid.refused(*line, 0, FIELDS[0], text, allowed));
+        return Err(grid.refused(*line, 0, FIELDS[0], text, allowed));
     }
     let (mut pans, mut total) = (Vec::new(), None);
     for entry in entries {
         match entry.opening {
             Opening::Mm(size) => sieves.push((entry.line, size, entry.value)),
             Opening::Total if total.is_some_and(|total| total != entry.value) => {
-                return Err(weighed.refused(entry.line, entry.value, "one total"));
+                return Err(reading.refused_value(entry.line, entry.value, "one total"));
             }
             Opening::Total => total = Some(entry.value),
             _ => pans.push(entry),
@@ -192,12 +176,11 @@ pub(super) fn percents_finer(
     let washed = pans.iter().find(|entry| is_washed(&entry.text));
     if let Some(part) = washed.or(pans.get(1)).filter(|_| !is_whole) {
         let allowed = "one row for the pan, the last, with all that was washed out or lost, as it is a \
-                       part of \
-                       the whole; or a row for the total, to which all of them sum";
-        return Err(weighed.grid.refused(part.line, part.column, FIELDS[0], &part.text, allowed));
+                       part of the whole; or a row for the total, to which all of them sum";
+        return Err(reading.refused_size(part, allowed));
     }
     let refused_size = |&(line, size, _): &(usize, f64, f64), allowed: String| {
-        weighed.grid.refused(line, weighed.column, FIELDS[0], &size.to_string(), allowed)
+        grid.refused(line, column.column, FIELDS[0], &size.to_string(), allowed)
     };
     let is_turn = |w: &[(usize, f64, f64)]| (w[0].1 - w[1].1) * (w[1].1 - w[2].1) < 0.0;
     if let Some(turn) = sieves.windows(3).find(|three| is_turn(three)) {
@@ -207,7 +190,7 @@ pub(super) fn percents_finer(
     sieves.sort_by(|a, b| b.1.total_cmp(&a.1));
     let Some(&(first_line, _, first)) = sieves.first() else { return Ok(Vec::new()) };
     if let Some(pair) = sieves.windows(2).find(|pair| pair[0].1 == pair[1].1) {
-        let allowed = format!("every size once (it is also in {})", weighed.grid.row_label(pair[0].0));
+        let allowed = format!("every size once (it is also in {})", grid.row_label(pair[0].0));
         return Err(refused_size(&pair[1], allowed));
     }
     let on_sieves: f64 = sieves.iter().map(|sieve| sieve.2).sum();
@@ -215,36 +198,29 @@ pub(super) fn percents_finer(
     let last = pan.map_or(sieves[sieves.len() - 1].2, |(_, mass)| mass);
     let rises = sieves.windows(2).all(|w| w[0].2 <= w[1].2)
         && pan.is_none_or(|(_, mass)| mass >= sieves[sieves.len() - 1].2);
-    let percent = weighed.retained.percent;
     let near = |a: f64, b: f64| (a - b).abs() <= ROUNDED / 100.0 * b.abs().max(1e-12);
     let whole = if percent { Some(100.0) } else { total };
-    let can_be_single = match whole {
-        Some(whole) if pan.is_some() => near(all, whole),
-        Some(whole) => all <= whole * (1.0 + ROUNDED / 100.0),
+    let can_end_at = |sum: f64| match whole {
+        Some(whole) if pan.is_some() => near(sum, whole),
+        Some(whole) => sum <= whole * (1.0 + ROUNDED / 100.0),
         None => pan.is_some(),
     };
-    let can_be_cumulative = rises
-        && match whole {
-            Some(whole) if pan.is_some() => near(last, whole),
-            Some(whole) => last <= whole * (1.0 + ROUNDED / 100.0),
-            None => pan.is_some(),
-        };
-    let cumulative = match (weighed.retained.cumulative, can_be_single, can_be_cumulative) {
+    let cumulative = match (cumulative, can_end_at(all), rises && can_end_at(last)) {
         (Some(true), _, true) | (None, false, true) => true,
         (Some(false), true, _) | (None, true, false) => false,
         (None, true, true) => {
             let allowed =
                 "a heading that says whether each value is `cumulative` or `individual`: both fit the values";
-            return Err(weighed.refused(first_line, first, allowed));
+            return Err(reading.refused_value(first_line, first, allowed));
         }
         _ if whole.is_none() && pan.is_none() => {
             let allowed = "masses with that in the pan, or their total, without which percents are not known";
-            return Err(weighed.refused(sieves[sieves.len() - 1].0, last, allowed));
+            return Err(reading.refused_value(sieves[sieves.len() - 1].0, last, allowed));
         }
         (Some(true), _, false) => {
             let allowed = "values retained that rise towards the finer sieves, to 100 % at most, as the \
                            heading says cumulative";
-            return Err(weighed.refused(first_line, first, allowed));
+            return Err(reading.refused_value(first_line, first, allowed));
         }
         _ => {
             let allowed = format!(
@@ -252,20 +228,20 @@ pub(super) fn percents_finer(
                  that rise towards the finer sieves",
                 tidy(all)
             );
-            return Err(weighed.refused(first_line, first, &allowed));
+            return Err(reading.refused_value(first_line, first, allowed));
         }
     };
     if !cumulative
-        && let Some(&line) = weighed.missing.first()
+        && let Some(&line) = missing.first()
         && !whole.is_some_and(|whole| near(all, whole))
     {
         let allowed =
             "what is retained on every sieve, 0 where nothing is; leave out a sieve that was not used";
-        return Err(weighed.grid.refused(line, weighed.column, FIELDS[1], "", allowed));
+        return Err(grid.refused(line, column.column, FIELDS[1], "", allowed));
     }
     if percent && let Some(total) = total.filter(|&total| !near(total, 100.0) && !near(total, all)) {
         let allowed = format!("the sum of the percents ({}) or 100 as their total", tidy(all));
-        return Err(weighed.refused(first_line, total, &allowed));
+        return Err(reading.refused_value(first_line, total, allowed));
     }
     let whole = match (cumulative, pan) {
         (false, Some(_)) => all,
@@ -273,12 +249,11 @@ pub(super) fn percents_finer(
         _ => whole.unwrap_or(all),
     };
     if whole <= 0.0 {
-        return Err(weighed.refused(first_line, first, "masses of which any is above 0"));
+        return Err(reading.refused_value(first_line, first, "masses of which any is above 0"));
     }
-    weighed.check_stated(whole, notes)?;
-    if pan.is_none() && total.is_none() {
-        let end = if cumulative { last } else { all };
-        weighed.refuse_unsaid(sieves[sieves.len() - 1].0, end)?;
+    check_stated(reading, percent, whole)?;
+    if percent && pan.is_none() && total.is_none() {
+        refuse_unsaid(reading, sieves[sieves.len() - 1].0, if cumulative { last } else { all })?;
     }
     let mut coarser = 0.0;
     let mut rows = Vec::new();
@@ -290,10 +265,10 @@ pub(super) fn percents_finer(
     }
     let what = if percent { "percents" } else { "masses" };
     let how = if cumulative { "cumulative " } else { "" };
-    notes.push(format!("{how}{what} retained turned into percent finer"));
+    reading.notes.push(format!("{how}{what} retained turned into percent finer"));
     let rest = rows.last().map_or(0.0, |row| row.percent);
     if percent && !cumulative && pan.is_none() && rest > ROUNDED {
-        notes.push(format!(
+        reading.notes.push(format!(
             "the percents retained sum to {}, without the pan: the missing {} % were taken as finer than the \
              finest sieve",
             tidy(all),
@@ -308,37 +283,30 @@ const ROUNDED_TO_WHOLE: f64 = 1.5;
 
 /// Refuses a retained column that agrees with no soil.
 pub(super) fn refuse_contradiction(
-    grid: &Grid,
-    layout: &Layout,
     extent: &Extent,
     soils: &[Result<Soil, TableError>],
 ) -> Result<(), TableError> {
+    let (grid, layout) = (extent.grid, extent.layout);
     let read: Vec<&Soil> = soils.iter().filter_map(|soil| soil.as_ref().ok()).collect();
     if grid.across.is_some() || !layout.headed || read.len() < soils.len() {
         return Ok(());
     }
-    let width = extent.rows(grid, layout).map(|row| row.cells.len()).max().unwrap_or(0);
+    let width = extent.rows().map(|row| row.cells.len()).max().unwrap_or(0);
     for column in (0..width).filter(|&c| layout.soils.iter().all(|soil| soil.column != c)) {
         let heading = head(&grid.rows[layout.at..layout.first], column);
         let Role::Retained(retained) = role(&heading) else { continue };
         if says_of_fines(&heading) {
             continue;
         }
-        let values: HashMap<usize, f64> = extent
-            .rows(grid, layout)
-            .filter_map(|row| Some((row.line, percentage(row.cell(column))?)))
-            .collect();
-        let is_pan = |row: &&GridRow| {
-            let size = opening(row.cell(extent.column_of_size(layout, row)));
-            matches!(size, Some((Opening::Pan | Opening::Below(_), _)))
-        };
-        let pans: Vec<usize> = extent.rows(grid, layout).filter(is_pan).map(|row| row.line).collect();
-        let percents = |soil: &&Soil| differs(soil, &values, &pans);
-        let masses = |soil: &&Soil| masses_differ(soil, &values, &pans);
-        let differing: Vec<Option<usize>> = match retained.percent {
-            true => read.iter().map(percents).collect(),
-            false => read.iter().map(masses).collect(),
-        };
+        let value = |row: &GridRow| Some((row.line, percentage(row.cell(column))?));
+        let values: HashMap<usize, f64> = extent.rows().filter_map(value).collect();
+        let is_pan = |row: &&GridRow| matches!(extent.opening(row), Some(Opening::Pan | Opening::Below(_)));
+        let pans: Vec<usize> = extent.rows().filter(is_pan).map(|row| row.line).collect();
+        let differing = read.iter().map(|soil| match retained.percent {
+            true => percents_differ(soil, &values, &pans),
+            false => masses_differ(soil, &values, &pans),
+        });
+        let differing: Vec<Option<usize>> = differing.collect();
         if let Some(Some(line)) = differing.first().filter(|_| differing.iter().all(Option::is_some)) {
             let allowed = format!(
                 "{} retained that agree with the percents in {}, or one of the two columns alone",
@@ -380,7 +348,7 @@ fn masses_differ(soil: &Soil, masses: &HashMap<usize, f64>, pans: &[usize]) -> O
 }
 
 /// Finds the first line in which percents retained, on each sieve or cumulative, differ from the curve.
-fn differs(soil: &Soil, retained: &HashMap<usize, f64>, pans: &[usize]) -> Option<usize> {
+fn percents_differ(soil: &Soil, retained: &HashMap<usize, f64>, pans: &[usize]) -> Option<usize> {
     let mut rows: Vec<_> = soil.rows.iter().filter(|row| retained.contains_key(&row.line)).collect();
     rows.sort_by(|a, b| b.size.total_cmp(&a.size));
     let is_fraction = rows.len() > 1 && rows.iter().all(|row| retained[&row.line] <= 1.0);

@@ -2,49 +2,37 @@
 //! towards the finer sieves, and a second column of openings (the same in another unit, or the bounds of
 //! classes).
 
-use super::extent::Extent;
+use super::extent::{Extent, Reading};
 use super::grid::{Grid, GridRow};
 use super::heading::{Retained, Role, role, says_cumulative, says_finer, unit};
-use super::layout::{Headings, Layout, SoilColumn, head};
+use super::layout::{Headings, Layout, head};
 use super::size::{Entry, Form, Opening, Unit, near, opening};
-use std::collections::HashSet;
 use voidwalk_core::gradation::{FIELDS, TableError, shortened};
 
 /// Determines the role of a column. Classes among its rows, with bounds in mm, become the sieves below
 /// them.
-pub(super) fn settle(
-    grid: &Grid,
-    layout: &Layout,
-    column: &SoilColumn,
-    entries: &mut Vec<Entry>,
-    notes: &mut Vec<String>,
-) -> Result<Role, TableError> {
-    let is_class = |entry: &Entry| matches!(entry.opening, Opening::Class(..));
-    match entries.iter().find(|entry| is_class(entry)) {
+pub(super) fn settle(reading: &mut Reading, entries: &mut Vec<Entry>) -> Result<Role, TableError> {
+    match entries.iter().find(|entry| matches!(entry.opening, Opening::Class(..))) {
         Some(class) => {
-            let role = of_classes(grid, layout, column, class, notes)?;
-            as_sieves(grid, entries)?;
+            let role = of_classes(reading, class)?;
+            as_sieves(reading, entries)?;
             Ok(role)
         }
-        None if rises_in_known_sizes(layout, column, entries) => {
-            notes.push("cumulative percents that rise towards the finer sizes read as retained".into());
+        None if rises_in_known_sizes(reading, entries) => {
+            let note = "cumulative percents that rise towards the finer sizes read as retained";
+            reading.notes.push(note.into());
             Ok(Role::Retained(Retained { percent: true, cumulative: Some(true) }))
         }
-        None => Ok(column.role),
+        None => Ok(reading.column.role),
     }
 }
 
 /// A class contains the mass retained between two sieves.
-fn of_classes(
-    grid: &Grid,
-    layout: &Layout,
-    column: &SoilColumn,
-    class: &Entry,
-    notes: &mut Vec<String>,
-) -> Result<Role, TableError> {
-    if class.form == Form::Plain && layout.unit.is_none() {
+fn of_classes(reading: &mut Reading, class: &Entry) -> Result<Role, TableError> {
+    let column = reading.column;
+    if class.form == Form::Plain && reading.layout.unit.is_none() {
         let allowed = "classes with their unit, in the heading as Fraction (mm) or in each cell";
-        return Err(grid.refused(class.line, class.column, FIELDS[0], &class.text, allowed));
+        return Err(reading.refused_size(class, allowed));
     }
     if let Role::Retained(_) = column.role {
         return Ok(column.role);
@@ -52,24 +40,23 @@ fn of_classes(
     if says_finer(&column.heading) || says_cumulative(&column.heading) {
         let allowed = "percents of each class, as their openings are the bounds of classes, or one opening \
                        in each row";
-        return Err(grid.refused(class.line, column.column, "heading", &column.heading, allowed));
+        return Err(reading.grid.refused(class.line, column.column, "heading", &column.heading, allowed));
     }
-    notes.push(format!("percents of classes such as {} read as retained on the finer sieve", class.text));
+    let class = &class.text;
+    reading.notes.push(format!("percents of classes such as {class} read as retained on the finer sieve"));
     Ok(Role::Retained(Retained { percent: true, cumulative: Some(false) }))
 }
 
 /// Replaces each class by its lower sieve, and adds above the coarsest class the sieve that all passes.
-fn as_sieves(grid: &Grid, entries: &mut Vec<Entry>) -> Result<(), TableError> {
+fn as_sieves(reading: &Reading, entries: &mut Vec<Entry>) -> Result<(), TableError> {
     let bounds = |entry: &Entry| match entry.opening {
         Opening::Class(upper, lower) => Some((upper, lower)),
         Opening::Below(upper) => Some((upper, 0.0)),
         _ => None,
     };
-    let refused = |entry: &Entry, allowed: &str| {
-        Err(grid.refused(entry.line, entry.column, FIELDS[0], &entry.text, allowed))
-    };
     if let Some(entry) = entries.iter().find(|entry| matches!(entry.opening, Opening::Mm(_))) {
-        return refused(entry, "the bounds of a class in each row, as the other rows have");
+        let allowed = "the bounds of a class in each row, as the other rows have";
+        return Err(reading.refused_size(entry, allowed));
     }
     let mut order: Vec<usize> = (0..entries.len()).filter(|&at| bounds(&entries[at]).is_some()).collect();
     let lower = |at: usize| bounds(&entries[at]).map_or(0.0, |(_, lower)| lower);
@@ -77,7 +64,8 @@ fn as_sieves(grid: &Grid, entries: &mut Vec<Entry>) -> Result<(), TableError> {
     for pair in order.windows(2) {
         let (above, below) = (lower(pair[0]), bounds(&entries[pair[1]]).map_or(0.0, |(upper, _)| upper));
         if (above - below).abs() > 1e-9 * above {
-            return refused(&entries[pair[1]], "classes that follow each other, with one bound in common");
+            let allowed = "classes that follow each other, with one bound in common";
+            return Err(reading.refused_size(&entries[pair[1]], allowed));
         }
     }
     let Some(&coarsest) = order.first() else { return Ok(()) };
@@ -99,11 +87,9 @@ fn as_sieves(grid: &Grid, entries: &mut Vec<Entry>) -> Result<(), TableError> {
 
 /// True if percents headed only as cumulative are retained: their sizes, whose unit is given, fall while
 /// they rise.
-fn rises_in_known_sizes(layout: &Layout, column: &SoilColumn, entries: &[Entry]) -> bool {
-    let is_known = |entry: &Entry| match layout.unit {
-        Some(unit) => unit != Unit::SieveNumber,
-        None => entry.form != Form::Plain,
-    };
+fn rises_in_known_sizes(&Reading { layout, column, .. }: &Reading, entries: &[Entry]) -> bool {
+    let is_known =
+        |entry: &Entry| layout.unit.map_or(entry.form != Form::Plain, |unit| unit != Unit::SieveNumber);
     if column.role != Role::Finer || !says_cumulative(&column.heading) || says_finer(&column.heading) {
         return false;
     }
@@ -135,8 +121,9 @@ pub(super) fn settle_bounds(grid: &mut Grid, layout: &mut Layout) -> Result<(), 
     if grid.across.is_some() {
         return Ok(());
     }
-    let extent = Extent::of(grid, layout)?;
-    let rows: Vec<&GridRow> = extent.rows(grid, layout).collect();
+    let lines: Vec<usize> = Extent::of(grid, layout)?.rows().map(|row| row.line).collect();
+    let is_in_table = |row: &&GridRow| lines.binary_search(&row.line).is_ok();
+    let rows: Vec<&GridRow> = grid.rows.iter().filter(is_in_table).collect();
     let width = rows.iter().map(|row| row.cells.len()).max().unwrap_or(0);
     let unit_of_size = unit(&heading(grid, layout, layout.size));
     let mut bounds = None;
@@ -172,7 +159,7 @@ pub(super) fn settle_bounds(grid: &mut Grid, layout: &mut Layout) -> Result<(), 
         }
     }
     match bounds {
-        Some((second, is_lower)) => read_classes(grid, layout, &extent, second, is_lower),
+        Some((second, is_lower)) => read_classes(grid, layout, &lines, second, is_lower),
         None => Ok(()),
     }
 }
@@ -255,7 +242,7 @@ fn refused(grid: &Grid, rows: &[&GridRow], column: usize, pairs: &[Pair]) -> Tab
 fn read_classes(
     grid: &mut Grid,
     layout: &mut Layout,
-    extent: &Extent,
+    lines: &[usize],
     second: usize,
     is_lower: bool,
 ) -> Result<(), TableError> {
@@ -275,11 +262,10 @@ fn read_classes(
         let allowed = "the unit of the other bounds of the classes";
         return Err(grid.refused_heading(grid.rows[layout.at].line, &heading(grid, layout, lower), allowed));
     }
-    let lines: Vec<usize> = extent.rows(grid, layout).map(|row| row.line).collect();
     let (Some(&first), Some(&last)) = (lines.first(), lines.last()) else { return Ok(()) };
-    let in_table: HashSet<usize> = lines.into_iter().collect();
+    let is_in_table = |row: &GridRow| lines.binary_search(&row.line).is_ok();
     let upper_mm = |row: &GridRow| in_mm(row.cell(upper), unit).unwrap_or(0.0);
-    let rows = grid.rows.iter().enumerate().filter(|(_, row)| in_table.contains(&row.line));
+    let rows = grid.rows.iter().enumerate().filter(|(_, row)| is_in_table(row));
     let Some((index, top)) = rows.max_by(|a, b| upper_mm(a.1).total_cmp(&upper_mm(b.1))) else {
         return Ok(());
     };
@@ -289,7 +275,7 @@ fn read_classes(
     top.cells.swap(upper, lower);
     top.cells[upper].clear();
     layout.soils.iter().for_each(|soil| top.cells[soil.column] = "0".into());
-    for row in grid.rows.iter_mut().filter(|row| in_table.contains(&row.line)) {
+    for row in grid.rows.iter_mut().filter(|row| is_in_table(row)) {
         if row.cell(lower).is_empty() && row.line == finest && upper_mm(row) > 0.0 {
             row.cells[lower] = "Pan".into();
         }

@@ -1,6 +1,6 @@
 //! A cell that names an opening: a number, a number with its unit, a US sieve, the pan.
 
-use super::languages::{is_pan, is_total, list};
+use super::languages::{PAN, TOTAL, Words};
 use voidwalk_core::gradation::number;
 use voidwalk_core::schema::length::fraction;
 
@@ -114,11 +114,11 @@ pub(super) enum Form {
 
 /// True if a text names mass washed out of a sample before sieving.
 pub(super) fn is_washed(text: &str) -> bool {
-    const NAMES: [&str; 6] =
-        list("fines washed out|washed out|loss by washing|loss on washing|lost by washing|washing loss");
+    static NAMES: Words =
+        Words::of("fines washed out|washed out|loss by washing|loss on washing|lost by washing|washing loss");
     let small = text.to_lowercase();
     let name = small.trim_end_matches([' ', ':', '.']);
-    NAMES.contains(&name.strip_suffix("(g)").unwrap_or(name).trim())
+    NAMES.has(name.strip_suffix("(g)").unwrap_or(name).trim())
 }
 
 /// `Total`, `Total dry mass before washing`.
@@ -140,11 +140,11 @@ pub(super) fn opening(text: &str) -> Option<(Opening, Form)> {
     let is_unit = |word: &str| ["g", "kg", "gr", "grams"].contains(&word.trim_matches([')', ' ']));
     let plain = if within.contains('%') || is_unit(within) { text } else { before };
     let plain = plain.trim_end_matches([' ', ':', '.', ',']);
-    const PAN: [&str; 7] = ["pan", "the pan", "bottom", "receiver", "rest", "tray", "base pan"];
-    if PAN.contains(&plain.trim_start_matches("bottom ")) || is_pan(plain) || is_washed(text) {
+    static ENGLISH: Words = Words::of("pan|the pan|bottom|receiver|rest|tray|base pan");
+    if ENGLISH.has(plain.trim_start_matches("bottom ")) || PAN.has(plain) || is_washed(text) {
         return Some((Opening::Pan, Form::Plain));
     }
-    if is_sum(plain) || is_total(plain) {
+    if is_sum(plain) || TOTAL.has(plain) {
         return Some((Opening::Total, Form::Plain));
     }
     if let Some(rest) =

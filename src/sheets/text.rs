@@ -1,7 +1,7 @@
 //! Bytes to text, by the encoding of the file; text to rows of cells.
 
 use super::content::{is_blank, is_value};
-use super::grid::{Grid, GridRow, Line, listed};
+use super::grid::{Grid, GridRow, Line, listed, trimmed};
 use super::size::{opening, us_sieve_number};
 use std::rc::Rc;
 use voidwalk_core::gradation::TableError;
@@ -72,14 +72,11 @@ fn refuse_other_formats(file: &str, bytes: &[u8]) -> Result<(), TableError> {
         (b"{\\rtf", "a text document (.rtf)"),
         (&[0x1f, 0x8b], "compressed (gzip)"),
     ];
-    if let Some((_, what)) = KNOWN.iter().find(|(start, _)| bytes.starts_with(start)) {
-        return Err(other(file, (*what).to_owned()));
-    }
+    let known = KNOWN.iter().find(|(start, _)| bytes.starts_with(start)).map(|(_, is)| (*is).to_owned());
     let small = file.to_lowercase();
-    match [".xlsx", ".ods"].iter().find(|ending| small.ends_with(**ending)) {
-        Some(ending) => Err(other(file, format!("not a workbook, though its name ends in {ending}"))),
-        None => Ok(()),
-    }
+    let named = [".xlsx", ".ods"].iter().find(|ending| small.ends_with(**ending));
+    let named = named.map(|ending| format!("not a workbook, though its name ends in {ending}"));
+    known.or(named).map_or(Ok(()), |is| Err(other(file, is)))
 }
 
 fn other(file: &str, is: String) -> TableError {
@@ -120,12 +117,8 @@ pub(super) fn grid(file: &str, text: &str, delimiter: char) -> Grid {
         at += 1;
         if is_comment(&content) {
             let is_amid = || grid.rows.iter().any(|row| row.filled().take(2).count() == 2);
-            let is_row = match marked(&content, delimiter) {
-                Some(Marked::Numbers) => true,
-                Some(Marked::Number) => is_amid(),
-                _ => false,
-            };
-            if is_row {
+            let marked = marked(&content, delimiter);
+            if marked == Some(Marked::Numbers) || marked == Some(Marked::Number) && is_amid() {
                 comments.push(line);
                 grid.commented.push((line, content.trim().to_owned()));
             }
@@ -140,19 +133,17 @@ pub(super) fn grid(file: &str, text: &str, delimiter: char) -> Grid {
             content = lines[at - 1..=end].join(" ");
             at = end + 1;
         }
-        let (mut cells, open) = all_cells(&content, delimiter);
+        let (cells, open) = all_cells(&content, delimiter);
         let written = cells.len();
-        cells.truncate(filled(&cells));
+        let cells = trimmed(cells);
         if !cells.is_empty() {
             let text = Line { text: content.trim().to_owned(), cells: written };
             grid.rows.push(GridRow { line, cells, text: Some(Rc::new(text)), open });
         }
     }
     if !comments.is_empty() {
-        grid.notes.push(format!(
-            "{} with # and a number that is no US sieve taken as comments",
-            listed("line", &comments, usize::to_string)
-        ));
+        let lines = listed("line", &comments, usize::to_string);
+        grid.notes.push(format!("{lines} with # and a number that is no US sieve taken as comments"));
     }
     grid
 }
@@ -194,10 +185,6 @@ fn marked(line: &str, delimiter: char) -> Option<Marked> {
 
 fn is_comment(line: &str) -> bool {
     marked(line, ',').is_some_and(|marked| marked != Marked::Sieve)
-}
-
-fn filled(cells: &[String]) -> usize {
-    cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |last| last + 1)
 }
 
 /// Cells of one line, trimmed and unquoted, including empty cells at the end; true if a quote is not

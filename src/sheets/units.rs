@@ -1,12 +1,12 @@
 //! Unit of openings that have none: from the numbers, from a column or a row of units, or from a title.
 
-use super::grid::{Grid, GridRow};
+use super::extent::Reading;
+use super::grid::GridRow;
 use super::heading::{Retained, Role, role, unit, words};
-use super::languages::say_inches;
-use super::layout::Layout;
+use super::languages::INCH;
 use super::size::{Entry, Form, Opening, Unit, goes_one_way, is_us_sieve_of_inches, us_sieve};
 use std::collections::HashMap;
-use voidwalk_core::gradation::{FIELDS, TableError};
+use voidwalk_core::gradation::TableError;
 
 /// US sieves in decimal inches, with the usual roundings, that are not the opening of a metric sieve.
 /// The first few are also used in mm: one of them alone proves nothing.
@@ -29,23 +29,17 @@ pub(super) const TAKEN_AS_MM: &str = "openings without a unit taken as mm";
 
 /// Unit of openings that are bare numbers: the unit of the heading; mm if no other opening is in inches;
 /// otherwise the unit in which the openings only rise or only fall.
-pub(super) fn of_bare(
-    grid: &Grid,
-    layout: &Layout,
-    role: Role,
-    entries: &[Entry],
-    notes: &mut Vec<String>,
-) -> Result<Unit, TableError> {
-    refuse_other_series(grid, layout, entries)?;
-    let stated = beside(grid, layout, entries)?;
+pub(super) fn of_bare(reading: &mut Reading, entries: &[Entry]) -> Result<Unit, TableError> {
+    refuse_other_series(reading, entries)?;
+    let stated = beside(reading, entries)?;
     if matches!(stated, None | Some(Unit::Mm)) {
-        refuse_micrometres(grid, entries)?;
+        refuse_micrometres(reading, entries)?;
     }
     let is_no_sieve = |entry: &Entry| match entry.opening {
         Opening::Bare(value) => value != 0.0 && Unit::SieveNumber.mm(value).is_none(),
         _ => false,
     };
-    refuse_other_unit(grid, layout, entries, stated)?;
+    refuse_other_unit(reading, entries, stated)?;
     match stated {
         // Headings also say `Sieve no.` above openings in mm.
         Some(Unit::SieveNumber) if entries.iter().any(is_no_sieve) => {}
@@ -57,10 +51,8 @@ pub(super) fn of_bare(
         |entry: &Entry| matches!(entry.opening, Opening::Bare(value) if is_whole_sieve_number(value));
     let Some(first) = entries.iter().find(bare) else { return Ok(Unit::Mm) };
     let any = |form: Form| entries.iter().any(|entry| entry.form == form);
-    let refused =
-        |allowed: &str| Err(grid.refused(first.line, first.column, FIELDS[0], &first.text, allowed));
-    if let Some(entry) = first_sieve_number(entries, role) {
-        if layout.unit == Some(Unit::SieveNumber) {
+    if let Some(entry) = first_sieve_number(entries, reading.column.role) {
+        if reading.layout.unit == Some(Unit::SieveNumber) {
             // An opening that is not a sieve number is refused separately.
             return Ok(Unit::SieveNumber);
         }
@@ -69,12 +61,13 @@ pub(super) fn of_bare(
             "No. {text} or {text} mm: no unit is given, and these look like US sieve numbers; write No. \
              {text}, or head the column Sieve No.; sizes in mm need mm in the heading, as Sieve (mm)"
         );
-        return Err(grid.refused(entry.line, entry.column, FIELDS[0], text, allowed));
+        return Err(reading.refused_size(entry, allowed));
     }
     if any(Form::Inches) || any(Form::UsNumber) {
         match (goes_one_way_in(entries, Unit::Mm), goes_one_way_in(entries, Unit::Inch)) {
             (false, true) => {
-                notes.push("openings without a unit read as inches, as those around them are".into());
+                let note = "openings without a unit read as inches, as those around them are";
+                reading.notes.push(note.into());
                 return Ok(Unit::Inch);
             }
             (true, false) => {
@@ -82,21 +75,25 @@ pub(super) fn of_bare(
                 if let Some(entry) = entries.iter().find(is_either) {
                     let text = &entry.text;
                     let allowed = format!("No. {text} or {text} mm, as other rows are in inches");
-                    return Err(grid.refused(entry.line, entry.column, FIELDS[0], text, allowed));
+                    return Err(reading.refused_size(entry, allowed));
                 }
             }
             (false, false) if !any(Form::Inches) => {}
             (true, true) if !any(Form::Inches) && !is_series_of_inches(entries) => {}
-            _ => return refused("an opening with its unit (mm or in), as other rows are in inches"),
+            _ => {
+                let allowed = "an opening with its unit (mm or in), as other rows are in inches";
+                return Err(reading.refused_size(first, allowed));
+            }
         }
     } else if is_series_of_inches(entries) {
         let text = &first.text;
-        return refused(&format!(
+        let allowed = format!(
             "{text} in or {text} mm: no unit is given, and all openings are those of US sieves in inches; \
              write the unit in the heading, as Sieve (in) or Sieve (mm)"
-        ));
+        );
+        return Err(reading.refused_size(first, allowed));
     }
-    notes.push(TAKEN_AS_MM.into());
+    reading.notes.push(TAKEN_AS_MM.into());
     Ok(Unit::Mm)
 }
 
@@ -105,7 +102,7 @@ const LEAST_MICROMETRES: f64 = 25.0;
 
 /// Refuses openings whose finer part seems to be in micrometres and whose coarser part in mm: they only
 /// rise or only fall if the finer ones are divided by a thousand.
-fn refuse_micrometres(grid: &Grid, entries: &[Entry]) -> Result<(), TableError> {
+fn refuse_micrometres(reading: &Reading, entries: &[Entry]) -> Result<(), TableError> {
     let sizes: Vec<(f64, &Entry)> = entries
         .iter()
         .filter_map(|entry| match entry.opening {
@@ -139,7 +136,7 @@ fn refuse_micrometres(grid: &Grid, entries: &[Entry]) -> Result<(), TableError> 
             "{text} um ({} mm) beside {other}, if these are micrometres: write the unit in each cell",
             value / 1e3
         );
-        return Err(grid.refused(entry.line, entry.column, FIELDS[0], text, allowed));
+        return Err(reading.refused_size(entry, allowed));
     }
     Ok(())
 }
@@ -268,10 +265,11 @@ pub(super) fn say_names(entries: &[Entry], unit: Unit, notes: &mut Vec<String>) 
 }
 
 /// Allowed values in the error for openings without a unit beside them.
-const ALLOWED: &str = "openings whose heading names their unit, as Size (mm) or Size (um)";
+pub(super) const WITH_UNIT: &str = "openings whose heading names their unit, as Size (mm) or Size (um)";
 
 /// Unit of bare openings as stated beside them: in the heading or in a column of units.
-fn beside(grid: &Grid, layout: &Layout, entries: &[Entry]) -> Result<Option<Unit>, TableError> {
+fn beside(reading: &Reading, entries: &[Entry]) -> Result<Option<Unit>, TableError> {
+    let &Reading { grid, layout, .. } = reading;
     let bare: HashMap<usize, &Entry> =
         entries.iter().filter(|e| matches!(e.opening, Opening::Bare(_))).map(|e| (e.line, e)).collect();
     let mut stated = layout.unit.filter(|unit| *unit != Unit::SieveNumber);
@@ -293,7 +291,7 @@ fn beside(grid: &Grid, layout: &Layout, entries: &[Entry]) -> Result<Option<Unit
     }
     match bare.values().next() {
         Some(entry) if count > 0 && count < rows && layout.unit.is_none() => {
-            Err(grid.refused(entry.line, entry.column, FIELDS[0], &entry.text, ALLOWED))
+            Err(reading.refused_size(entry, WITH_UNIT))
         }
         _ => Ok(stated.or(layout.unit)),
     }
@@ -301,12 +299,7 @@ fn beside(grid: &Grid, layout: &Layout, entries: &[Entry]) -> Result<Option<Unit
 
 /// Refuses bare openings if a title or a row of units states their unit, or if they are sieves in
 /// another unit than the assumed one.
-fn refuse_other_unit(
-    grid: &Grid,
-    layout: &Layout,
-    entries: &[Entry],
-    unit: Option<Unit>,
-) -> Result<(), TableError> {
+fn refuse_other_unit(reading: &Reading, entries: &[Entry], unit: Option<Unit>) -> Result<(), TableError> {
     const MICROMETRES: [f64; 18] = [
         45.0, 53.0, 63.0, 75.0, 90.0, 106.0, 125.0, 150.0, 180.0, 212.0, 250.0, 300.0, 355.0, 425.0, 500.0,
         600.0, 710.0, 850.0,
@@ -320,10 +313,10 @@ fn refuse_other_unit(
     let sizes: Vec<f64> = entries.iter().filter_map(bare).collect();
     let Some(first) = entries.iter().find(|entry| bare(entry).is_some()) else { return Ok(()) };
     if unit.is_none() {
-        for row in titles(grid, layout) {
+        for row in titles(reading) {
             if let Some(cell) = row.cells.iter().find(|cell| states_unit(cell)) {
-                let allowed = format!("{ALLOWED}; this names one that is not mm");
-                return Err(grid.refused_heading(row.line, cell, &allowed));
+                let allowed = format!("{WITH_UNIT}; this names one that is not mm");
+                return Err(reading.grid.refused_heading(row.line, cell, &allowed));
             }
         }
     }
@@ -333,7 +326,7 @@ fn refuse_other_unit(
     let text = &first.text;
     let refused = |why: &str| {
         let allowed = format!("{text} um or {text} mm: {why}; write the unit in the heading");
-        Err(grid.refused(first.line, first.column, FIELDS[0], text, allowed))
+        Err(reading.refused_size(first, allowed))
     };
     match unit {
         None if all_bare
@@ -355,7 +348,7 @@ fn refuse_other_unit(
 }
 
 /// Refuses numbers of sieves if the sheet names a series that is not the United States one.
-fn refuse_other_series(grid: &Grid, layout: &Layout, entries: &[Entry]) -> Result<(), TableError> {
+fn refuse_other_series(reading: &Reading, entries: &[Entry]) -> Result<(), TableError> {
     let (mut numbered, mut bare, mut whole, mut largest) = (None, None, true, 0.0f64);
     for entry in entries {
         if let Opening::Bare(value) = entry.opening {
@@ -365,17 +358,19 @@ fn refuse_other_series(grid: &Grid, layout: &Layout, entries: &[Entry]) -> Resul
         }
         numbered = numbered.or(Some(entry).filter(|e| e.form == Form::UsNumber));
     }
-    let may_be_numbers = matches!(layout.unit, None | Some(Unit::SieveNumber)) && whole && largest >= 100.0;
+    let may_be_numbers =
+        matches!(reading.layout.unit, None | Some(Unit::SieveNumber)) && whole && largest >= 100.0;
     let Some(entry) = numbered.or(bare.filter(|_| may_be_numbers)) else { return Ok(()) };
-    let named = titles(grid, layout).flat_map(|row| &row.cells).find_map(|cell| other_series(cell));
+    let named = titles(reading).flat_map(|row| &row.cells).find_map(|cell| other_series(cell));
     let Some(series) = named else { return Ok(()) };
     let allowed =
         format!("openings in mm: the sheet names {series}, whose numbers are not those of US sieves");
-    Err(grid.refused(entry.line, entry.column, FIELDS[0], &entry.text, allowed))
+    Err(reading.refused_size(entry, allowed))
 }
 
-fn titles<'a>(grid: &'a Grid, layout: &Layout) -> impl Iterator<Item = &'a GridRow> {
-    grid.rows[..layout.first.min(grid.rows.len())].iter()
+fn titles<'a>(reading: &Reading<'a>) -> impl Iterator<Item = &'a GridRow> {
+    let rows = &reading.grid.rows;
+    rows[..reading.layout.first.min(rows.len())].iter()
 }
 
 /// Series of sieves named by a text, if it is not the United States one.
@@ -419,7 +414,7 @@ pub(super) fn states_unit(text: &str) -> bool {
     let is_stated = |word: &String| match unit(word) {
         Ok(Some(Unit::Micrometre)) => true,
         Ok(Some(Unit::Phi)) => all.len() > 1,
-        Ok(Some(Unit::Inch)) => say_inches(&all),
+        Ok(Some(Unit::Inch)) => INCH.any(&all),
         _ => false,
     };
     let units: Vec<&String> = all.iter().filter(|word| is_stated(word) && !behind_number(word)).collect();

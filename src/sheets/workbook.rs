@@ -2,11 +2,13 @@
 //! several formats; and number formats that write text around a number, such as the unit in `0" µm"`.
 
 use super::grid::{Grid, GridRow, listed};
+use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::collections::HashSet;
 use std::io::{Cursor, Read};
 use std::mem::take;
 use std::ops::Range;
+use std::str::FromStr;
 use voidwalk_core::gradation::{TableError, letters};
 use zip::ZipArchive;
 
@@ -53,6 +55,11 @@ impl<'a> Zipped<'a> {
         self.names.iter().any(|part| part == name)
     }
 
+    /// Reads the text of a part that may be missing.
+    pub(super) fn text_if_any(&mut self, name: &str) -> Result<String, TableError> {
+        if self.has(name) { self.text(name) } else { Ok(String::new()) }
+    }
+
     /// Reads the text of a part. The limit applies to the unpacked bytes, whatever size the zip declares.
     pub(super) fn text(&mut self, name: &str) -> Result<String, TableError> {
         let file = self.file.clone();
@@ -75,6 +82,34 @@ pub(super) fn unreadable(file: &str, why: &str) -> TableError {
 /// Makes the error for a workbook that is larger than any workbook of soils.
 pub(super) fn too_large(file: &str, how: &str) -> TableError {
     unreadable(file, &format!("it is too large ({how}); keep the sheet with the soils alone"))
+}
+
+/// Reader of a part's XML; an empty element has a start and an end.
+pub(super) struct Xml<'a> {
+    reader: Reader<&'a [u8]>,
+    pub(super) file: &'a str,
+    broken: &'static str,
+}
+
+impl<'a> Xml<'a> {
+    /// Starts to read; `broken` describes text that is not XML.
+    pub(super) fn new(file: &'a str, text: &'a str, broken: &'static str) -> Xml<'a> {
+        let mut reader = Reader::from_str(text);
+        reader.config_mut().expand_empty_elements = true;
+        Xml { reader, file, broken }
+    }
+
+    pub(super) fn next(&mut self) -> Result<Event<'a>, TableError> {
+        self.reader.read_event().map_err(|_| self.broken())
+    }
+
+    pub(super) fn broken(&self) -> TableError {
+        unreadable(self.file, self.broken)
+    }
+}
+
+pub(super) fn number<T: FromStr>(element: &BytesStart, name: &str) -> Option<T> {
+    attribute(element, name)?.parse().ok()
 }
 
 pub(super) fn attribute(element: &BytesStart, name: &str) -> Option<String> {
@@ -216,8 +251,8 @@ impl<'a> Cells<'a> {
         let columns: Vec<String> =
             (0..width).filter(|&c| is_filled[c]).filter(is_hidden).map(|c| letters(c as u32)).collect();
         for (word, all) in [("row", rows), ("column", columns)].iter().filter(|(_, all)| !all.is_empty()) {
-            grid.notes
-                .push(format!("{} of the sheet, though hidden, read", listed(word, all, String::clone)));
+            let places = listed(word, all, String::clone);
+            grid.notes.push(format!("{places} of the sheet, though hidden, read"));
         }
         self.grid
     }
@@ -299,29 +334,20 @@ pub(super) fn parts_of(code: &str) -> (String, String, String) {
     let (mut before, mut after, mut plain) = (String::new(), String::new(), String::new());
     let (mut chars, mut quoted, mut is_first) = (code.chars(), false, true);
     while let Some(c) = chars.next() {
-        let literal = match c {
-            '"' => {
-                quoted = !quoted;
-                None
-            }
-            c if quoted => Some(c),
-            '\\' => chars.next(),
+        let mut literal = None;
+        match c {
+            '"' => quoted = !quoted,
+            ' ' | '<' | '>' => literal = Some(c),
+            c if quoted => literal = Some(c),
+            '\\' => literal = chars.next(),
             // A space as wide as a character, or a character that fills the cell.
-            '_' | '*' => {
-                chars.next();
-                None
-            }
-            '[' => {
-                chars.by_ref().take_while(|&c| c != ']').for_each(drop);
-                None
-            }
-            ' ' | '<' | '>' => Some(c),
+            '_' | '*' => drop(chars.next()),
+            '[' => chars.by_ref().take_while(|&c| c != ']').for_each(drop),
             c => {
                 is_first &= c != ';';
                 plain.push(c);
-                None
             }
-        };
+        }
         if let Some(c) = literal.filter(|_| is_first) {
             if plain.is_empty() { before.push(c) } else { after.push(c) }
         }

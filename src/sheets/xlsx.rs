@@ -2,9 +2,9 @@
 
 use super::grid::Grid;
 use super::workbook::{
-    Budget, Cells, Kind, Runs, Zipped, as_shown, attribute, characters, parts_of, tidy, too_large, unreadable,
+    Budget, Cells, Kind, Runs, Xml, Zipped, as_shown, attribute, characters, number, parts_of, tidy,
+    too_large, unreadable,
 };
-use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::collections::HashMap;
 use voidwalk_core::gradation::{Position, TableError};
@@ -29,14 +29,8 @@ pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, Table
     if names.len() > MOST_SHEETS {
         return Err(too_large(file, &format!("{} sheets", names.len())));
     }
-    let strings = match zipped.has("xl/sharedStrings.xml") {
-        true => shared_strings(file, &zipped.text("xl/sharedStrings.xml")?)?,
-        false => Vec::new(),
-    };
-    let styles = match zipped.has("xl/styles.xml") {
-        true => styles(file, &zipped.text("xl/styles.xml")?)?,
-        false => Vec::new(),
-    };
+    let strings = shared_strings(file, &zipped.text_if_any("xl/sharedStrings.xml")?)?;
+    let styles = styles(file, &zipped.text_if_any("xl/styles.xml")?)?;
     let (mut sheets, mut budget) = (Vec::new(), Budget::new());
     for (name, id, hidden) in names {
         let Some(target) = targets.get(&id) else { continue };
@@ -53,20 +47,20 @@ pub(super) fn sheets(file: &str, zipped: &mut Zipped) -> Result<Vec<Grid>, Table
     Ok(sheets)
 }
 
-fn broken(file: &str) -> TableError {
-    unreadable(file, "its XML is broken")
+fn xml<'a>(file: &'a str, text: &'a str) -> Xml<'a> {
+    Xml::new(file, text, "its XML is broken")
 }
 
 fn visit_elements(
     file: &str,
     text: &str,
     name: &str,
-    mut visit: impl FnMut(&quick_xml::events::BytesStart),
+    mut visit: impl FnMut(&BytesStart),
 ) -> Result<(), TableError> {
-    let mut reader = Reader::from_str(text);
+    let mut xml = xml(file, text);
     loop {
-        match reader.read_event().map_err(|_| broken(file))? {
-            Event::Start(e) | Event::Empty(e) if e.local_name().as_ref() == name => visit(&e),
+        match xml.next()? {
+            Event::Start(e) if e.local_name().as_ref() == name => visit(&e),
             Event::Eof => return Ok(()),
             _ => {}
         }
@@ -74,11 +68,10 @@ fn visit_elements(
 }
 
 fn shared_strings(file: &str, text: &str) -> Result<Vec<String>, TableError> {
-    let mut reader = Reader::from_str(text);
-    reader.config_mut().expand_empty_elements = true;
+    let mut xml = xml(file, text);
     let (mut strings, mut rich, mut phonetic) = (Vec::new(), Rich::default(), false);
     loop {
-        let event = reader.read_event().map_err(|_| broken(file))?;
+        let event = xml.next()?;
         match &event {
             Event::Start(e) if e.local_name().as_ref() == "rPh" => phonetic = true,
             Event::End(e) if e.local_name().as_ref() == "rPh" => phonetic = false,
@@ -91,11 +84,8 @@ fn shared_strings(file: &str, text: &str) -> Result<Vec<String>, TableError> {
             }
             Event::Eof => return Ok(strings),
             Event::Start(e) => rich.start(e),
-            _ => {
-                if let Some(more) = characters(&event).filter(|_| !phonetic) {
-                    rich.push(&more);
-                }
-            }
+            _ if !phonetic => rich.extend(&event),
+            _ => {}
         }
     }
 }
@@ -121,8 +111,11 @@ impl Rich {
         }
     }
 
-    fn push(&mut self, more: &str) {
-        self.runs.push(more, self.kind, &self.format);
+    /// Adds the characters of an event, if it has any.
+    fn extend(&mut self, event: &Event) {
+        if let Some(more) = characters(event) {
+            self.runs.push(&more, self.kind, &self.format);
+        }
     }
 }
 
@@ -137,19 +130,18 @@ enum Style {
 fn styles(file: &str, text: &str) -> Result<Vec<Style>, TableError> {
     let mut formats: HashMap<u32, Style> = HashMap::new();
     visit_elements(file, text, "numFmt", |e| {
-        let id = attribute(e, "numFmtId").and_then(|id| id.parse().ok());
+        let id = number(e, "numFmtId");
         let code = attribute(e, "formatCode").unwrap_or_default();
         formats.extend(id.map(|id| (id, of_format(&code))));
     })?;
-    let mut reader = Reader::from_str(text);
+    let mut xml = xml(file, text);
     let (mut within, mut styles) = (false, Vec::new());
     loop {
-        match reader.read_event().map_err(|_| broken(file))? {
+        match xml.next()? {
             Event::Start(e) if e.local_name().as_ref() == "cellXfs" => within = true,
             Event::End(e) if e.local_name().as_ref() == "cellXfs" => return Ok(styles),
-            Event::Start(e) | Event::Empty(e) if within && e.local_name().as_ref() == "xf" => {
-                let id = attribute(&e, "numFmtId").and_then(|id| id.parse::<u32>().ok()).unwrap_or(0);
-                styles.push(match id {
+            Event::Start(e) if within && e.local_name().as_ref() == "xf" => {
+                styles.push(match number(&e, "numFmtId").unwrap_or(0) {
                     9 | 10 => Style::Percent,
                     14..=22 | 27..=36 | 45..=47 | 50..=58 => Style::Date,
                     id => formats.get(&id).cloned().unwrap_or_else(|| of_format("")),
@@ -191,47 +183,45 @@ struct Context<'a> {
 
 impl Context<'_> {
     fn sheet(&self, text: &str, budget: &mut Budget) -> Result<Grid, TableError> {
-        let mut reader = Reader::from_str(text);
-        reader.config_mut().expand_empty_elements = true;
+        let mut xml = xml(self.file, text);
         let mut cells = Cells::new(self.file, self.sheet, budget);
         let (mut row, mut column) = (0usize, 0usize);
         let is_hidden = |e: &BytesStart| attribute(e, "hidden").is_some_and(|h| h == "1" || h == "true");
         let (mut before, mut within) = (None, false);
         loop {
-            match reader.read_event().map_err(|_| broken(self.file))? {
-                Event::Start(e) if e.local_name().as_ref() == "sheetData" => within = true,
+            match xml.next()? {
+                Event::Start(e) => match e.local_name().as_ref() {
+                    "sheetData" => within = true,
+                    "col" if is_hidden(&e) => {
+                        if let (Some(first), Some(last)) = (number::<usize>(&e, "min"), number(&e, "max")) {
+                            cells.hide_columns(first.saturating_sub(1)..last);
+                        }
+                    }
+                    "row" => {
+                        row = number(&e, "r").map_or(row, |r: usize| r.saturating_sub(1));
+                        column = 0;
+                        if before.replace(row) == Some(row) {
+                            let why = format!("its row {} occurs twice in sheet \"{}\"", row + 1, self.sheet);
+                            return Err(unreadable(self.file, &why));
+                        }
+                        if is_hidden(&e) {
+                            cells.hide_row(row);
+                        }
+                    }
+                    "c" => {
+                        if let Some(place) = attribute(&e, "r").and_then(|place| place_of(&place)) {
+                            (row, column) = place;
+                        }
+                        let text = self.value(&mut xml, &e, row, column)?;
+                        cells.put(row, column, &text)?;
+                        column += 1;
+                    }
+                    _ => {}
+                },
                 Event::End(e) if e.local_name().as_ref() == "sheetData" => within = false,
-                Event::Start(e) if e.local_name().as_ref() == "col" && is_hidden(&e) => {
-                    let end = |name| attribute(&e, name).and_then(|n| n.parse::<usize>().ok());
-                    if let (Some(first), Some(last)) = (end("min"), end("max")) {
-                        cells.hide_columns(first.saturating_sub(1)..last);
-                    }
-                }
-                Event::Start(e) if e.local_name().as_ref() == "row" => {
-                    let given = attribute(&e, "r").and_then(|r| r.parse::<usize>().ok());
-                    row = given.map_or(row, |r| r.saturating_sub(1));
-                    column = 0;
-                    if before.replace(row) == Some(row) {
-                        let why = format!("its row {} occurs twice in sheet \"{}\"", row + 1, self.sheet);
-                        return Err(unreadable(self.file, &why));
-                    }
-                    if is_hidden(&e) {
-                        cells.hide_row(row);
-                    }
-                }
                 Event::End(e) if e.local_name().as_ref() == "row" => row = row.saturating_add(1),
-                Event::Start(e) if e.local_name().as_ref() == "c" => {
-                    if let Some((r, c)) = attribute(&e, "r").and_then(|place| place_of(&place)) {
-                        (row, column) = (r, c);
-                    }
-                    let style = attribute(&e, "s").and_then(|s| s.parse::<usize>().ok()).unwrap_or(0);
-                    let kind = attribute(&e, "t").unwrap_or_default();
-                    let text = self.value(&mut reader, &kind, style, row, column)?;
-                    cells.put(row, column, &text)?;
-                    column += 1;
-                }
                 // A truncated part lacks rows.
-                Event::Eof if within => return Err(broken(self.file)),
+                Event::Eof if within => return Err(xml.broken()),
                 Event::Eof => return Ok(cells.done(self.hidden)),
                 _ => {}
             }
@@ -240,16 +230,15 @@ impl Context<'_> {
 
     fn value(
         &self,
-        reader: &mut Reader<&[u8]>,
-        kind: &str,
-        style: usize,
+        xml: &mut Xml,
+        cell: &BytesStart,
         row: usize,
         column: usize,
     ) -> Result<String, TableError> {
         let (mut value, mut inline, mut formula) = (String::new(), Rich::default(), false);
         let mut within = String::new();
         loop {
-            let event = reader.read_event().map_err(|_| broken(self.file))?;
+            let event = xml.next()?;
             match &event {
                 Event::Start(e) => {
                     within = e.local_name().as_ref().to_owned();
@@ -258,18 +247,13 @@ impl Context<'_> {
                 }
                 Event::End(e) if e.local_name().as_ref() == "c" => break,
                 Event::End(_) => within.clear(),
-                Event::Eof => return Err(broken(self.file)),
-                _ => {
-                    if let Some(more) = characters(&event) {
-                        match within.as_str() {
-                            "v" => value.push_str(&more),
-                            "t" => inline.push(&more),
-                            _ => {}
-                        }
-                    }
-                }
+                Event::Eof => return Err(xml.broken()),
+                _ if within == "v" => value.extend(characters(&event)),
+                _ if within == "t" => inline.extend(&event),
+                _ => {}
             }
         }
+        let kind = attribute(cell, "t").unwrap_or_default();
         if formula && value.is_empty() && kind != "str" {
             let at = Position {
                 file: format!("{}, sheet \"{}\"", self.file, self.sheet),
@@ -280,7 +264,7 @@ impl Context<'_> {
             let allowed = "a formula with its value: open the workbook in a spreadsheet program and save it";
             return Err(TableError::Value { at, value: String::new(), allowed: allowed.into() });
         }
-        Ok(match kind {
+        Ok(match kind.as_str() {
             "s" => {
                 let text = value.parse().ok().and_then(|n: usize| self.strings.get(n)).cloned();
                 text.ok_or_else(|| unreadable(self.file, "a cell refers to a missing text"))?
@@ -289,15 +273,15 @@ impl Context<'_> {
             "str" | "e" => value,
             "d" => format!("{value} (a date)"),
             "b" => if value == "1" { "TRUE" } else { "FALSE" }.to_owned(),
-            _ => self.number(&value, style),
+            _ => self.shown(&value, number(cell, "s").unwrap_or(0)),
         })
     }
 
     /// Formats a number as the sheet displays it: with its percent sign, or as a date.
-    fn number(&self, value: &str, style: usize) -> String {
+    fn shown(&self, value: &str, style: usize) -> String {
         let Ok(number) = value.parse::<f64>() else { return value.to_owned() };
         // Spreadsheets display fifteen digits of a computed number.
-        let rounded = format!("{:.14e}", number).parse::<f64>().map_or(value.to_owned(), |n| n.to_string());
+        let rounded = format!("{number:.14e}").parse::<f64>().map_or(value.to_owned(), |n| n.to_string());
         match self.styles.get(style) {
             Some(Style::Percent) => format!("{}%", (number * 100.0 * 1e9).round() / 1e9),
             Some(Style::Date) => format!("day {number} (a date)"),

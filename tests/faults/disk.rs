@@ -63,23 +63,21 @@ struct Notes(Mutex<File>);
 impl Disk for Notes {
     fn call(&self, call: Call<'_>, act: &mut dyn FnMut() -> io::Result<()>) -> io::Result<()> {
         let result = act();
-        let (path, bytes): (&Path, &[u8]) = match call {
-            Call::Sign(path, bytes) | Call::Write(path, bytes) => (path, bytes),
-            Call::Rename(from, to) => (from, to.as_os_str().as_encoded_bytes()),
-            Call::List(path)
-            | Call::MakeFolder(path)
-            | Call::RemoveFolder(path)
-            | Call::Lock(path)
-            | Call::Create(path)
-            | Call::Sync(path)
-            | Call::SyncFolder(path)
-            | Call::Map(path, _)
-            | Call::Read(path)
-            | Call::Remove(path) => (path, &[]),
+        let (kind, path, bytes): (&str, &Path, &[u8]) = match call {
+            Call::List(path) => ("list", path, &[]),
+            Call::MakeFolder(path) => ("make", path, &[]),
+            Call::RemoveFolder(path) => ("clear", path, &[]),
+            Call::Lock(path) => ("lock", path, &[]),
+            Call::Sign(path, bytes) => ("sign", path, bytes),
+            Call::Create(path) => ("create", path, &[]),
+            Call::Write(path, bytes) => ("write", path, bytes),
+            Call::Sync(path) => ("sync", path, &[]),
+            Call::Rename(from, to) => ("rename", from, to.as_os_str().as_encoded_bytes()),
+            Call::SyncFolder(path) => ("names", path, &[]),
+            Call::Map(path, _) => ("map", path, &[]),
+            Call::Read(path) => ("read", path, &[]),
+            Call::Remove(path) => ("remove", path, &[]),
         };
-        let kind = format!("{call:?}").split(' ').next().unwrap().to_string();
-        let kind = if matches!(call, Call::SyncFolder(_)) { "names".into() } else { kind };
-        let kind = if matches!(call, Call::RemoveFolder(_)) { "clear".into() } else { kind };
         let mut notes = self.0.lock().unwrap();
         for part in [kind.as_bytes(), &[u8::from(result.is_ok())], path.as_os_str().as_encoded_bytes(), bytes]
         {
@@ -93,7 +91,7 @@ impl Disk for Notes {
 /// One call that was noted.
 #[derive(Clone, Debug)]
 pub struct Noted {
-    /// First word of what [`Call`] shows of itself; `names` for syncing a folder, `clear` for removing one.
+    /// A word for the call; `names` for syncing a folder, `clear` for removing one.
     pub kind: String,
     /// Whether it succeeded.
     pub done: bool,

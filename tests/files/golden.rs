@@ -66,7 +66,7 @@ fn checkpoints_of_another_version_of_the_format_are_refused_by_name() {
         bytes[8..12].copy_from_slice(&version.to_le_bytes());
         fs::write(folder.path().join("x.0"), bytes).unwrap();
         let error = newest(folder.path(), "x", &SmallRun::identity()).unwrap_err();
-        assert!(matches!(error, CheckpointError::OtherVersion { .. }), "{error}");
+        assert!(matches!(error, CheckpointError::Other { .. }), "{error}");
         let said = format!("checkpoint format {version}; this one reads {VERSION}");
         assert!(error.to_string().contains(&said), "{error}");
     }

@@ -10,7 +10,8 @@ use voidwalk_core::constrictions::{Curve, ShippedFilter, find};
 use voidwalk_core::gradation::Gradation;
 use voidwalk_core::network::{ArrayOptions, Network, NetworkError};
 use voidwalk_core::packing::{PACKING_FILE_LIMIT_BYTES, Packing, ReadOptions};
-use voidwalk_core::store::{read_regular, why_not_read};
+use voidwalk_core::schema::read_file;
+use voidwalk_core::store::read_regular;
 use voidwalk_sheets::{Soil, file_and_soil};
 
 /// Maximum size of a sieve table or curve (bytes); a larger one is refused before it is read.
@@ -118,12 +119,7 @@ impl Files {
         let is_plain = scene == BUILT_IN_NAME && SIEVES.contains(&setting);
         let by = if is_plain { String::new() } else { format!(", named by {setting}") };
         let named = format!("{file}{by}{}", of_windows(path));
-        let io = |source| SceneError::File { file: named.clone(), source };
-        let Some(bytes) = read_regular(path, largest).map_err(io)? else {
-            let problem = why_not_read(path, largest);
-            return Err(SceneError::Syntax { file: named, at: String::new(), problem }.into());
-        };
-        self.keep(setting, path, bytes)?;
+        self.keep(setting, path, read_file(path, &named, largest)?)?;
         Ok((file, &self.inputs[self.inputs.len() - 1].bytes))
     }
 

@@ -33,8 +33,8 @@ use serde::Deserialize;
 use toml::de::DeTable;
 
 use crate::scene::{Origin, Scene, SceneError};
-use voidwalk_core::schema::{hints, setting_name};
-use voidwalk_core::store::{folder_name, read_regular, why_not_read};
+use voidwalk_core::schema::{hints, read_file, setting_name};
+use voidwalk_core::store::{folder_name, read_regular};
 use voidwalk_core::text::is_hidden;
 
 /// Maximum number of cases; more are taken for a mistake.
@@ -184,13 +184,7 @@ impl CasePlan {
     /// # Errors
     /// A file that cannot be read or is not a plan, two cases of one name, a case with refused settings.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        let file = path.display().to_string();
-        let io = |source| SceneError::File { file: file.clone(), source };
-        let syntax = |at: String, problem: String| SceneError::Syntax { file: file.clone(), at, problem };
-        let Some(bytes) = read_regular(path, LARGEST_FILE).map_err(io)? else {
-            return Err(syntax(String::new(), why_not_read(path, LARGEST_FILE)));
-        };
-        Self::parse(&bytes, path)
+        Self::parse(&read_file(path, &path.display().to_string(), LARGEST_FILE)?, path)
     }
 
     /// Applies [`CasePlan::read`] to the content of a file; files named in its scenes are looked up beside

@@ -23,7 +23,7 @@ use crate::scene::NetworkSource;
 use crate::verdict::walks::{self, Walked, is_clogged};
 use voidwalk_core::gradation::Gradation;
 use voidwalk_core::network::{Network, NetworkError};
-use voidwalk_core::store::checkpoint::{Checkpoint, CheckpointError};
+use voidwalk_core::store::checkpoint::Checkpoint;
 use voidwalk_core::walk::{
     Clogged, Engine, FlowRecord, PlainExits, RunPlan, Shortcut, SizeClasses, State, Supply, Walk,
     WalkControl, WalkError, from_words,
@@ -308,9 +308,7 @@ impl RunContext<'_> {
         let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
         if let Some(saved) = saved {
             if saved.label.network != network.fingerprint() {
-                return Err(RunError::Checkpoint(CheckpointError::OtherNetwork {
-                    file: saved.path().to_owned(),
-                }));
+                return Err(RunError::Checkpoint(saved.of_another_network()));
             }
             state.restore(network, &supply, &saved).map_err(RunError::Checkpoint)?;
         }

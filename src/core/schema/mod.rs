@@ -15,8 +15,7 @@ use serde::Serialize;
 
 pub use allowed::length;
 pub use allowed::{Allowed, Leaf, Value, above_zero, any, only, whole, within, words};
-pub use settings::setting_name;
-pub use settings::{Alternative, GivenSettings, Group, Names, Origin, SceneError};
+pub use settings::{Alternative, GivenSettings, Group, Names, Origin, SceneError, read_file, setting_name};
 
 /// Description of a setting for the user, and its allowed values.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@
 //! the command line replaces the others, and a file that gives both is refused.
 
 use super::{Allowed, Leaf, Value, hints};
-use crate::store::{read_regular, why_not_read};
+use crate::store::{in_mb, read_regular};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -61,6 +61,26 @@ pub enum SceneError {
         /// Description of the clash.
         problem: String,
     },
+}
+
+/// Reads a user's file of at most `largest` bytes, which errors call `file`.
+///
+/// # Errors
+/// A file that cannot be read, is not a regular file or is too large.
+pub fn read_file(path: &Path, file: &str, largest: u64) -> Result<Vec<u8>, SceneError> {
+    let read = read_regular(path, largest);
+    if let Some(bytes) = read.map_err(|source| SceneError::File { file: file.into(), source })? {
+        return Ok(bytes);
+    }
+    let largest = in_mb(largest);
+    let problem = match std::fs::metadata(path) {
+        Ok(metadata) if metadata.is_dir() => format!("is a folder; allowed: a file of at most {largest}"),
+        Ok(metadata) if !metadata.is_file() => {
+            format!("is a pipe, a device or a socket; allowed: a regular file of at most {largest}")
+        }
+        _ => format!("is larger than {largest}; allowed: a file up to that size"),
+    };
+    Err(SceneError::Syntax { file: file.into(), at: String::new(), problem })
 }
 
 /// Origin of a setting.
@@ -163,11 +183,7 @@ impl GivenSettings {
     /// The file cannot be read, is not TOML, or sets an unknown name.
     pub fn read(path: &Path, names: &Names) -> Result<Self, SceneError> {
         let file = path.display().to_string();
-        let io = |source| SceneError::File { file: file.clone(), source };
-        let Some(bytes) = read_regular(path, LARGEST_FILE).map_err(io)? else {
-            let problem = why_not_read(path, LARGEST_FILE);
-            return Err(SceneError::Syntax { file, at: String::new(), problem });
-        };
+        let bytes = read_file(path, &file, LARGEST_FILE)?;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         Self::parse(&bytes, &file, folder, names)
     }
@@ -456,9 +472,15 @@ mod tests {
     #[test]
     fn what_is_no_toml_is_refused_with_its_line() {
         assert!(parse("seed = 1\nbase = \n").unwrap_err().to_string().starts_with("s.toml, line 2: "));
-        assert!(GivenSettings::read(Path::new("/"), &names()).is_err());
-        let missing = GivenSettings::read(Path::new("/no/such"), &names()).unwrap_err();
-        assert!(missing.to_string().starts_with("/no/such"));
+        let read = |path: &Path, most| read_file(path, "a", most).unwrap_err().to_string();
+        assert!(read(Path::new("/no/such"), 9).starts_with("a: "));
+        assert_eq!(read(Path::new("/"), 16 << 20), "a: is a folder; allowed: a file of at most 16 MB");
+        if cfg!(unix) {
+            assert!(read(Path::new("/dev/null"), 9).starts_with("a: is a pipe, a device or a socket; "));
+        }
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), "long").unwrap();
+        assert_eq!(read(file.path(), 3), "a: is larger than 0 MB; allowed: a file up to that size");
     }
 
     proptest! {

@@ -128,26 +128,21 @@ impl fmt::Display for Format {
 pub fn from_json<T: serde::de::DeserializeOwned>(text: &[u8]) -> Result<T, serde_json::Error> {
     let read = serde_json::from_slice(text);
     // Read second: if the file is not JSON, the parser's own error names the line.
-    match serde_json::from_slice(text).ok().and_then(|beginning: Beginning| refused(&beginning)) {
-        Some(problem) => Err(serde_json::Error::custom(problem)),
-        None => read,
-    }
-}
-
-/// Reason for refusing a beginning; `None` if its format is known.
-fn refused(beginning: &Beginning) -> Option<String> {
+    let Ok(beginning) = serde_json::from_slice::<Beginning>(text) else { return read };
     let this = concat!("this is voidwalk ", env!("CARGO_PKG_VERSION"));
     let Some(form) = beginning.format.as_str() else {
-        return Some(format!("this file does not begin with the name and number of its format; {this}"));
+        let problem = format!("this file does not begin with the name and number of its format; {this}");
+        return Err(serde_json::Error::custom(problem));
     };
     if FORMATS.iter().any(|format| format.to_string() == form) {
-        return None;
+        return read;
     }
     let by = beginning.voidwalk.as_str().unwrap_or("of no known version");
     let name = form.strip_prefix("voidwalk-").and_then(|form| form.rsplit_once('/')).map(|(name, _)| name);
     let known = FORMATS.iter().find(|format| name == Some(format.name));
     let reads = known.map_or(String::new(), |known| format!(", which reads {known}"));
-    Some(format!("this file is in the format {form} of voidwalk {by}; {this}{reads}"))
+    let problem = format!("this file is in the format {form} of voidwalk {by}; {this}{reads}");
+    Err(serde_json::Error::custom(problem))
 }
 
 #[cfg(test)]

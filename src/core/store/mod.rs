@@ -14,7 +14,7 @@ mod whole;
 pub use column::Column;
 pub use column::Placement;
 pub(crate) use disk::in_mb;
-pub use disk::{open_regular, read_regular, why_not_read};
+pub use disk::{open_regular, read_regular};
 pub use folder::{Folder, folder_name, is_device};
 pub use npz::{Array, Npz, Numbers, npz};
 pub use whole::{StoreError, Together, files_in, make_folder, read_whole, remove_folder, write_whole};

@@ -132,57 +132,48 @@ fn parse(bytes: &[u8]) -> Result<Array, String> {
         return Err(format!("has the shape ({rows}, 0); rows of 1 or more numbers are allowed"));
     }
     let count = rows.checked_mul(columns.unwrap_or(1)).ok_or_else(no_array)?;
-    let numbers = numbers(kind, data, count)?;
-    let numbers = match columns.filter(|_| by_column) {
-        Some(columns) => match numbers {
-            Numbers::Float(all) => Numbers::Float(by_rows(&all, rows, columns)),
-            Numbers::Whole(all) => Numbers::Whole(by_rows(&all, rows, columns)),
-            Numbers::Truth(all) => Numbers::Truth(by_rows(&all, rows, columns)),
-        },
-        None => numbers,
-    };
-    Ok(Array { rows, columns, numbers })
-}
-
-/// Turns column order into row order.
-fn by_rows<T: Copy>(all: &[T], rows: usize, columns: usize) -> Vec<T> {
-    (0..rows).flat_map(|row| (0..columns).map(move |column| all[column * rows + row])).collect()
-}
-
-fn numbers(kind: &str, data: &[u8], count: usize) -> Result<Numbers, String> {
-    fn decoded<const N: usize, T>(
-        data: &[u8],
-        count: usize,
-        one: impl Fn([u8; N]) -> T,
-    ) -> Result<Vec<T>, String> {
-        let (chunks, _) = data.as_chunks::<N>();
-        match chunks.get(..count) {
-            Some(chunks) => Ok(chunks.iter().map(|bytes| one(*bytes)).collect()),
-            None => Err(format!("ends after {} of its {count} numbers", chunks.len())),
-        }
-    }
-    Ok(match kind {
-        "<f8" => Numbers::Float(decoded(data, count, f64::from_le_bytes)?),
-        "<f4" => Numbers::Float(decoded(data, count, |bytes| f64::from(f32::from_le_bytes(bytes)))?),
-        "<i8" => Numbers::Whole(decoded(data, count, i64::from_le_bytes)?),
-        "<u8" => {
-            let whole =
-                decoded(data, count, |bytes| i64::try_from(u64::from_le_bytes(bytes)).unwrap_or(i64::MAX))?;
-            Numbers::Whole(whole)
-        }
-        "<i4" => Numbers::Whole(decoded(data, count, |bytes| i32::from_le_bytes(bytes).into())?),
-        "<u4" => Numbers::Whole(decoded(data, count, |bytes| u32::from_le_bytes(bytes).into())?),
-        "<i2" => Numbers::Whole(decoded(data, count, |bytes| i16::from_le_bytes(bytes).into())?),
-        "<u2" => Numbers::Whole(decoded(data, count, |bytes| u16::from_le_bytes(bytes).into())?),
-        "|i1" => Numbers::Whole(decoded(data, count, |bytes| i8::from_le_bytes(bytes).into())?),
-        "|u1" => Numbers::Whole(decoded(data, count, |bytes| u8::from_le_bytes(bytes).into())?),
-        "|b1" => Numbers::Truth(decoded(data, count, |[byte]: [u8; 1]| byte != 0)?),
+    let stored = Stored { data, count, by_column: columns.filter(|_| by_column) };
+    let numbers = match kind {
+        "<f8" => Numbers::Float(stored.read(f64::from_le_bytes)?),
+        "<f4" => Numbers::Float(stored.read(|bytes| f64::from(f32::from_le_bytes(bytes)))?),
+        "<i8" => Numbers::Whole(stored.read(i64::from_le_bytes)?),
+        "<u8" => Numbers::Whole(stored.read(|bytes| u64::from_le_bytes(bytes).min(i64::MAX as u64) as i64)?),
+        "<i4" => Numbers::Whole(stored.read(|bytes| i32::from_le_bytes(bytes).into())?),
+        "<u4" => Numbers::Whole(stored.read(|bytes| u32::from_le_bytes(bytes).into())?),
+        "<i2" => Numbers::Whole(stored.read(|bytes| i16::from_le_bytes(bytes).into())?),
+        "<u2" => Numbers::Whole(stored.read(|bytes| u16::from_le_bytes(bytes).into())?),
+        "|i1" => Numbers::Whole(stored.read(|bytes| i8::from_le_bytes(bytes).into())?),
+        "|u1" => Numbers::Whole(stored.read(|bytes| u8::from_le_bytes(bytes).into())?),
+        "|b1" => Numbers::Truth(stored.read(|[byte]: [u8; 1]| byte != 0)?),
         other => {
             return Err(format!(
                 "has numbers of type {other}; f4, f8, i1 to i8, u1 to u8 (little-endian) and b1 are read"
             ));
         }
-    })
+    };
+    Ok(Array { rows, columns, numbers })
+}
+
+/// Numbers as stored: `count` of them, column by column if the number of columns is given, else row by row.
+struct Stored<'a> {
+    data: &'a [u8],
+    count: usize,
+    by_column: Option<usize>,
+}
+
+impl Stored<'_> {
+    fn read<const N: usize, T>(&self, one: impl Fn([u8; N]) -> T) -> Result<Vec<T>, String> {
+        let (chunks, count) = (self.data.as_chunks::<N>().0, self.count);
+        let Some(chunks) = chunks.get(..count) else {
+            return Err(format!("ends after {} of its {count} numbers", chunks.len()));
+        };
+        let Some(columns) = self.by_column.filter(|_| count > 0) else {
+            return Ok(chunks.iter().map(|bytes| one(*bytes)).collect());
+        };
+        let rows = count / columns;
+        let place = |at: usize| (at % columns) * rows + at / columns;
+        Ok((0..count).map(|at| one(chunks[place(at)])).collect())
+    }
 }
 
 /// Writes an `.npz` of these arrays, compressed; the same arrays give the same bytes.

@@ -207,21 +207,16 @@ impl State {
         let wrong = |what: &str| saved.corrupt(format!("{what} cannot belong to this run"));
         let record: Record = saved.read_record("state")?;
         let forgery = Forgery { supply, increment: record.increment, tally: &record.tally };
-        let other = |walk: String, expected: String| CheckpointError::OtherWalk {
-            file: saved.path().to_owned(),
-            found: walk,
-            expected,
-        };
         let name = |seed: u64, run: u64, kind: &PassiveKind| {
             format!("seed {seed}, run {run}, passive particles {kind:?}")
         };
         let saved_walk = name(record.seed, record.run, &record.passive);
         let expected = name(self.seed, self.run, &PassiveKind::new(&self.passive));
         if saved_walk != expected {
-            return Err(other(saved_walk, expected));
+            return Err(saved.of_another_walk(&saved_walk, &expected));
         }
         if record.constrictions != self.blocked.len() || record.passive_limit != finite(self.passive_limit) {
-            return Err(CheckpointError::OtherNetwork { file: saved.path().to_owned() });
+            return Err(saved.of_another_network());
         }
         let live: Vec<u32> = saved.read_exact("live", self.particles.live.len())?;
         if !forgery.live_can_be(&live) {

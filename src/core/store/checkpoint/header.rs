@@ -110,6 +110,7 @@ pub(super) fn read(
     length: u64,
 ) -> Result<(Label, Vec<Entry>, u64), CheckpointError> {
     let corrupt = |problem: String| CheckpointError::corrupt(path, problem);
+    let other = |problem: String| CheckpointError::Other { file: path.to_owned(), problem };
     let mut read = |bytes: &mut [u8]| {
         let read = ask(Call::Read(path), || file.read_exact(bytes));
         read.map_err(|source| CheckpointError::from_io(path, source))
@@ -121,11 +122,14 @@ pub(super) fn read(
         return Err(corrupt("is not a voidwalk checkpoint".into()));
     }
     if fixed.byte_order == BYTE_ORDER.swap_bytes() {
-        return Err(CheckpointError::OtherByteOrder { file: path.to_owned() });
+        return Err(other("was written by a machine with another byte order".into()));
     }
     if fixed.version != VERSION {
-        let (found, expected) = (fixed.version, VERSION);
-        return Err(CheckpointError::OtherVersion { file: path.to_owned(), found, expected });
+        return Err(other(format!(
+            "was written by another version of voidwalk (checkpoint format {}; this one reads {VERSION}), \
+             which can finish it",
+            fixed.version
+        )));
     }
     if fixed.file_length != length {
         return Err(corrupt(format!("has {length} bytes; its header says {}", fixed.file_length)));
@@ -301,47 +305,13 @@ pub enum CheckpointError {
         /// Error of the system.
         source: io::Error,
     },
-    /// The file has another version of the format.
-    #[error(
-        "{}: was written by another version of voidwalk (checkpoint format {found}; this one reads \
-         {expected}), which can finish it",
-        file.display()
-    )]
-    OtherVersion {
+    /// The subject of the file differs: another version of the format, machine, scene, walk or network.
+    #[error("{}: {problem}", file.display())]
+    Other {
         /// The file.
         file: PathBuf,
-        /// Version of the file's format.
-        found: u32,
-        /// Version that this program reads.
-        expected: u32,
-    },
-    /// The file was written on a machine with another byte order.
-    #[error("{}: was written by a machine with another byte order", file.display())]
-    OtherByteOrder {
-        /// The file.
-        file: PathBuf,
-    },
-    /// The scene, or the plan of the packing, differs.
-    #[error("{}: is of another scene, or of another version of voidwalk", file.display())]
-    OtherScene {
-        /// The file.
-        file: PathBuf,
-    },
-    /// The scene is the same, but the walk differs.
-    #[error("{}: is of another walk of this scene: {found}; expected: {expected}", file.display())]
-    OtherWalk {
-        /// The file.
-        file: PathBuf,
-        /// Walk of the file.
-        found: String,
-        /// Walk asked for.
-        expected: String,
-    },
-    /// The walk is the same, but the network differs.
-    #[error("{}: is of another network", file.display())]
-    OtherNetwork {
-        /// The file.
-        file: PathBuf,
+        /// Description of the difference.
+        problem: String,
     },
 }
 

@@ -6,7 +6,7 @@
 //! | bytes | field | meaning |
 //! |---|---|---|
 //! | 8 | `magic` | `vwcheckp` |
-//! | 4 | `version` | version of this format: 1; another is refused as [`CheckpointError::OtherVersion`] |
+//! | 4 | `version` | version of this format: 1; another is refused |
 //! | 4 | `byte_order` | 0x0a0b0c0d, read reversed on a machine of the other byte order |
 //! | 8 | `header_length` | bytes of the header, its checksum included |
 //! | 8 | `file_length` | bytes of the file |
@@ -138,8 +138,8 @@ impl Checkpoint {
         length: u64,
         source: Source,
     ) -> Result<Self, CheckpointError> {
-        let gaps = gaps(&sections, header, length);
-        let gaps = gaps.map_err(|problem| CheckpointError::corrupt(path, problem))?;
+        let apart = || CheckpointError::corrupt(path, "its sections do not follow one another");
+        let gaps = gaps(&sections, header, length).ok_or_else(apart)?;
         Ok(Self { label, path: path.to_owned(), source, sections, gaps })
     }
 
@@ -153,18 +153,28 @@ impl Checkpoint {
         CheckpointError::corrupt(&self.path, problem)
     }
 
+    /// Makes the error for another network.
+    pub fn of_another_network(&self) -> CheckpointError {
+        self.other("is of another network".into())
+    }
+
+    /// Makes the error for another walk of the same scene.
+    pub(crate) fn of_another_walk(&self, walk: &str, expected: &str) -> CheckpointError {
+        self.other(format!("is of another walk of this scene: {walk}; expected: {expected}"))
+    }
+
+    fn other(&self, problem: String) -> CheckpointError {
+        CheckpointError::Other { file: self.path.clone(), problem }
+    }
+
     /// Checks that the checkpoint has the expected subject.
-    ///
-    /// # Errors
-    /// [`CheckpointError::OtherScene`] or [`CheckpointError::OtherWalk`].
-    pub(crate) fn expect(&self, expected: &Identity) -> Result<(), CheckpointError> {
-        let (identity, file) = (&self.label.identity, self.path.clone());
+    fn expect(&self, expected: &Identity) -> Result<(), CheckpointError> {
+        let identity = &self.label.identity;
         if identity.scene != expected.scene {
-            return Err(CheckpointError::OtherScene { file });
+            return Err(self.other("is of another scene, or of another version of voidwalk".into()));
         }
         if identity != expected {
-            let (identity, expected) = (identity.to_string(), expected.to_string());
-            return Err(CheckpointError::OtherWalk { file, found: identity, expected });
+            return Err(self.of_another_walk(&identity.to_string(), &expected.to_string()));
         }
         Ok(())
     }
@@ -238,12 +248,11 @@ impl Checkpoint {
     /// Fills `bytes` with piece `piece` of a section, and checks it.
     fn read_piece(&self, entry: &Entry, piece: usize, bytes: &mut [u8]) -> Result<(), CheckpointError> {
         self.read_at(entry.offset + (piece * PIECE) as u64, bytes)?;
-        match xxh3_64(bytes) == entry.sums[piece] {
-            true => Ok(()),
-            false => {
-                Err(self.corrupt(format!("section {}, piece {piece}: its checksum is wrong", entry.name)))
-            }
+        if xxh3_64(bytes) != entry.sums[piece] {
+            let name = &entry.name;
+            return Err(self.corrupt(format!("section {name}, piece {piece}: its checksum is wrong")));
         }
+        Ok(())
     }
 
     fn read_at(&self, offset: u64, bytes: &mut [u8]) -> Result<(), CheckpointError> {
@@ -274,8 +283,9 @@ impl Checkpoint {
     }
 }
 
-/// Finds the gaps between the header and the sections, which follow one another to the end of the file.
-fn gaps(sections: &[Entry], header: u64, length: u64) -> Result<Vec<(u64, usize)>, String> {
+/// Finds the gaps between the header and the sections; `None` if these do not follow one another to the end
+/// of the file.
+fn gaps(sections: &[Entry], header: u64, length: u64) -> Option<Vec<(u64, usize)>> {
     let mut spans: Vec<(u64, u64)> = sections.iter().map(|e| (e.offset, e.count * e.element)).collect();
     spans.sort_unstable();
     spans.push((length, 0));
@@ -283,12 +293,12 @@ fn gaps(sections: &[Entry], header: u64, length: u64) -> Result<Vec<(u64, usize)
     for (offset, size) in spans {
         match offset.checked_sub(at) {
             Some(gap) if gap < 4096 => gaps.push((at, gap as usize)),
-            _ => return Err("its sections do not follow one another".into()),
+            _ => return None,
         }
         at = offset + size;
     }
     gaps.retain(|&(_, gap)| gap > 0);
-    Ok(gaps)
+    Some(gaps)
 }
 
 /// Finds the newest intact checkpoint of this name and the expected subject, and the errors of newer ones.
@@ -342,20 +352,15 @@ pub fn save(folder: &Path, name: &str, label: &Label, sections: &[Section]) -> R
         file.write_all(&header)?;
         let mut at = header.len() as u64;
         for section in sections {
-            pad(file, &mut at, 64)?;
+            let gap = at.next_multiple_of(64) - at;
+            file.write_all(&[0; 64][..gap as usize])?;
             for part in &section.parts {
                 file.write_all(part)?;
             }
-            at += section.bytes();
+            at += gap + section.bytes();
         }
         Ok(())
     })
-}
-
-fn pad(file: &mut dyn Write, at: &mut u64, to: u64) -> io::Result<()> {
-    let gap = at.next_multiple_of(to) - *at;
-    *at += gap;
-    file.write_all(&[0; 4096][..gap as usize])
 }
 
 #[cfg(test)]
@@ -398,7 +403,8 @@ mod tests {
             assert!(checkpoint.read::<u32>("words").is_err() && checkpoint.read::<u64>("none").is_err());
         }
         let other = Identity { scene: "other".into(), ..identity() };
-        assert!(matches!(newest(root.path(), "x", &other), Err(CheckpointError::OtherScene { .. })));
+        let error = newest(root.path(), "x", &other).unwrap_err().to_string();
+        assert!(error.ends_with("x.1: is of another scene, or of another version of voidwalk"), "{error}");
         assert!(newest(root.path(), "y", &other).unwrap().0.is_none());
     }
 
@@ -413,9 +419,7 @@ mod tests {
             Identity { seed: 2, ..identity() },
             Identity { n_base: 5, ..identity() },
         ] {
-            let error = newest(root.path(), "x", &other).unwrap_err();
-            assert!(matches!(error, CheckpointError::OtherWalk { .. }), "{error}");
-            let message = error.to_string();
+            let message = newest(root.path(), "x", &other).unwrap_err().to_string();
             let both = message.contains(&identity().to_string()) && message.contains(&other.to_string());
             assert!(both && message.contains("x.1: is of another walk of this scene"), "{message}");
         }
