@@ -33,7 +33,7 @@ const WITHOUT_WIDTH: [RangeInclusive<char>; 10] = [
 ];
 
 /// Tells if a character changes the direction of writing around it.
-pub(crate) fn turns_direction(character: char) -> bool {
+fn turns_direction(character: char) -> bool {
     TURNING.iter().any(|range| range.contains(&character))
 }
 

@@ -9,7 +9,7 @@ use super::grid::{Grid, GridRow, joined};
 use super::heading::{Retained, Role, role, says_finer, says_sample, unit, words};
 use super::languages::Words;
 use super::layout::{Layout, MOST_NAMED, ROWS_OF_TITLES, SoilColumn, is_heading, says_soil};
-use super::size::{Form, Opening, Unit, goes_one_way, opening};
+use super::size::{Form, Opening, Unit, goes_one_way, opening, positive_size};
 use std::collections::HashMap;
 use std::ops::Range;
 use voidwalk_core::gradation::{TableError, percent_is_allowed, shortened};
@@ -314,7 +314,7 @@ impl<'a> Across<'a> {
         let (names, unread) = names(&grid.rows[..=at], soils, columns[0]);
         let soil = |(index, row): (usize, &GridRow)| {
             let words = (0..columns[0]).map(|c| row.cell(c)).filter(|cell| !cell.is_empty());
-            let stated = words.map(role).find(|role| matches!(role, Role::Finer | Role::Retained(_)));
+            let stated = words.map(role).find(|role| role.has_values());
             let role = stated.or(*retained).or(stated_retained).unwrap_or(Role::Other);
             SoilColumn { column: index + 1, heading: names[index].clone(), role, end: None }
         };
@@ -413,10 +413,7 @@ fn without_words(heading: &str) -> (String, Option<Role>) {
 }
 
 fn is_size(text: &str) -> bool {
-    match opening(text) {
-        Some((Opening::Mm(size) | Opening::Bare(size), _)) => size > 0.0 && size.is_finite(),
-        _ => false,
-    }
+    positive_size(text).is_some_and(f64::is_finite)
 }
 
 /// Returns the opening named by a heading, with or without words about percents around it.

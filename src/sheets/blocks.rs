@@ -5,8 +5,8 @@ use super::across::says_depth;
 use super::content::{begins_with_words, is_blank, is_data, is_text, is_value, percentage, whole_row};
 use super::grid::{Grid, GridRow};
 use super::heading::{Role, role, says_sample, words};
-use super::layout::{Headings, Layout, fields, find, headings, is_heading, says_soil};
-use super::size::{Opening, goes_one_way, opening};
+use super::layout::{Headings, Layout, SoilColumn, fields, find, headings, is_heading, says_soil};
+use super::size::{Opening, goes_one_way, opening, positive_size};
 use super::{across, roles};
 use std::collections::HashMap;
 use std::ops::Range;
@@ -93,15 +93,14 @@ fn regions(grid: &Grid, width: usize) -> Vec<Range<usize>> {
     for (index, row) in grid.rows.iter().enumerate() {
         // Skips rows of numbers quickly: numbers are never headings.
         let sizes: Vec<usize> = row.filled().filter(|&c| is_size_heading(row.cell(c))).collect();
-        let is_table = sizes.len() > 1
-            || sizes.len() == 1
-                && row.filled().any(|c| matches!(role(row.cell(c)), Role::Finer | Role::Retained(_)));
+        let is_table =
+            sizes.len() > 1 || sizes.len() == 1 && row.filled().any(|c| role(row.cell(c)).has_values());
         if is_table {
             top = top.or(Some(index));
             sizes.into_iter().for_each(|c| anchors[c] = true);
         }
     }
-    let Some(top) = top else { return std::iter::once(0..width).collect() };
+    let Some(top) = top else { return ranges(vec![0], width) };
     let mut filled = vec![false; width];
     for row in &grid.rows[top..] {
         row.filled().for_each(|c| filled[c] = true);
@@ -115,37 +114,39 @@ fn regions(grid: &Grid, width: usize) -> Vec<Range<usize>> {
         }
         column = end + 1;
     }
-    if let Some(first) = starts.first_mut() {
-        *first = 0;
+    match starts.first_mut() {
+        Some(first) => *first = 0,
+        None => starts.push(0),
     }
-    let ends = starts.iter().skip(1).copied().chain([width]);
-    let regions: Vec<Range<usize>> =
-        starts.iter().copied().zip(ends).map(|(start, end)| start..end).collect();
-    if regions.is_empty() { std::iter::once(0..width).collect() } else { regions }
+    ranges(starts, width)
+}
+
+/// Ranges that begin at `starts`, each up to the next, the last up to `end`.
+fn ranges(starts: Vec<usize>, end: usize) -> Vec<Range<usize>> {
+    let ends: Vec<usize> = starts.iter().skip(1).copied().chain([end]).collect();
+    starts.into_iter().zip(ends).map(|(start, end)| start..end).collect()
 }
 
 /// Rows of each of the tables one below another, with the titles above it.
 fn bands(grid: &Grid) -> Vec<Range<usize>> {
     let rows = &grid.rows;
-    let whole = || std::iter::once(0..rows.len()).collect();
-    let (Some(Headings { at, first, .. }), Some(data)) = headings(grid) else { return whole() };
+    let (Some(Headings { at, first, .. }), Some(data)) = headings(grid) else {
+        return ranges(vec![0], rows.len());
+    };
     let is_next = |r: &usize| {
         is_heading(&rows[*r])
             && (says_soil(&rows[*r]) || rows.get(r + 1).is_some_and(is_data))
             && rows[r + 1..].iter().take(4).any(is_data)
     };
     let later: Vec<usize> = (data.max(first)..rows.len()).filter(is_next).collect();
-    let (mut bands, mut start, mut at) = (Vec::new(), 0, at);
-    for (place, &next) in later.iter().enumerate() {
-        let end = later.get(place + 1).copied().unwrap_or(rows.len());
+    let (mut starts, mut at) = (vec![0], at);
+    for Range { start: next, end } in ranges(later, rows.len()) {
         if !goes_on(&rows[at..next], &rows[next], &rows[next + 1..end]) {
-            let cut = title_above(&rows[..next], at + 1);
-            bands.push(start..cut);
-            (start, at) = (cut, next);
+            starts.push(title_above(&rows[..next], at + 1));
+            at = next;
         }
     }
-    bands.push(start..rows.len());
-    bands
+    ranges(starts, rows.len())
 }
 
 /// Index of the first row of a title above the end of `rows`; titles above `least` are ignored.
@@ -230,6 +231,9 @@ fn side_by_side(band: Grid, several: bool) -> Result<Vec<Block>, TableError> {
 fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableError> {
     let Headings { at, first, roles, .. } = headings;
     let rows = &grid.rows[*first..];
+    let heading = &grid.rows[*at];
+    let refused =
+        |c: usize, allowed: &str| grid.refused(heading.line, c, "heading", heading.cell(c), allowed);
     let mut holds = vec![(false, false); roles.len()];
     for row in rows {
         for c in row.filled().take_while(|&c| c < roles.len()) {
@@ -238,7 +242,7 @@ fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableEr
             *openings |= matches!(opening(row.cell(c)), Some((Opening::Mm(_) | Opening::Bare(_), _)));
         }
     }
-    let named = roles.iter().any(|role| matches!(role, Role::Finer | Role::Retained(_)));
+    let named = roles.iter().any(|role| role.has_values());
     // `Some(true)` for openings, `Some(false)` for values, `None` for anything else.
     let kind = |c: usize| match roles[c] {
         Role::Size if holds[c].1 => Some(true),
@@ -257,17 +261,15 @@ fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableEr
         }
     }
     if !begins && !ends && starts.len() > 1 {
-        let c = kinds[0].0;
         let allowed = "openings to the left of the values, or to the right of them, in all of the tables \
                        that stand side by side";
-        return Err(grid.refused(grid.rows[*at].line, c, "heading", grid.rows[*at].cell(c), allowed));
+        return Err(refused(kinds[0].0, allowed));
     }
     let mut groups: Vec<Range<usize>> = Vec::new();
     // First openings of the last group; true if all of its values are retained.
     let (mut openings_before, mut retained_before) = (None, false);
     let mut rest = &kinds[..];
-    for (place, &start) in starts.iter().enumerate() {
-        let end = starts.get(place + 1).copied().unwrap_or(grid.width());
+    for Range { start, end } in ranges(starts, grid.width()) {
         let (group, after) = rest.split_at(rest.partition_point(|(c, _)| *c < end));
         rest = after;
         let openings = group.iter().find(|(_, size)| *size).map(|(c, _)| *c);
@@ -283,9 +285,8 @@ fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableEr
                 last.end = end;
             }
             Some(_) if !some => {
-                let c = openings.unwrap_or(start);
                 let allowed = "percents to the right of these openings, as they differ from those before";
-                return Err(grid.refused(grid.rows[*at].line, c, "heading", grid.rows[*at].cell(c), allowed));
+                return Err(refused(openings.unwrap_or(start), allowed));
             }
             _ => {
                 groups.push(start..end);
@@ -299,21 +300,18 @@ fn groups(grid: &Grid, headings: &Headings) -> Result<Vec<Range<usize>>, TableEr
 
 /// Refuses values after an empty column if they could belong to several adjacent tables.
 fn refuse_far_values(grid: &Grid, layout: &Layout) -> Result<(), TableError> {
-    let columns: Vec<usize> = layout.soils.iter().map(|soil| soil.column).collect();
-    let mut filled = vec![false; columns.last().map_or(0, |last| last + 1)];
+    let mut filled = vec![false; layout.soils.last().map_or(0, |last| last.column + 1)];
     for row in &grid.rows[layout.at..] {
         for (is_filled, cell) in filled.iter_mut().zip(&row.cells) {
             *is_filled |= !cell.is_empty();
         }
     }
-    let is_empty = |c: usize| !filled[c];
-    for pair in columns.windows(2) {
-        if (pair[0] + 1..pair[1]).any(is_empty) {
-            let heading = &layout.soils[0].heading;
-            let heading = layout.soils.iter().find(|s| s.column == pair[1]).map_or(heading, |s| &s.heading);
+    for pair in layout.soils.windows(2) {
+        if (pair[0].column + 1..pair[1].column).any(|c| !filled[c]) {
+            let SoilColumn { column, heading, .. } = &pair[1];
             let allowed = "openings of its own to its left, as the other tables have: an empty column \
                            parts it from those of the table before it";
-            return Err(grid.refused(grid.rows[layout.at].line, pair[1], "heading", heading, allowed));
+            return Err(grid.refused(grid.rows[layout.at].line, *column, "heading", heading, allowed));
         }
     }
     Ok(())
@@ -324,8 +322,7 @@ fn refuse_other_headings(grid: &Grid, line: usize) -> Result<(), TableError> {
     for row in grid.rows.iter().filter(|row| row.line > line && !is_text(row)) {
         let Some(size) = row.filled().find(|&c| is_size_heading(row.cell(c))) else { continue };
         let mut right = row.filled().filter(|&c| c > size).take(3);
-        let of_soil = |c: usize| matches!(role(row.cell(c)), Role::Finer | Role::Retained(_));
-        if right.any(|c| !is_value(row.cell(c)) && of_soil(c)) {
+        if right.any(|c| !is_value(row.cell(c)) && role(row.cell(c)).has_values()) {
             let allowed = "a table whose headings are in one row with those of the tables beside it, or \
                            below the numbers of the one above it";
             return Err(grid.refused(row.line, size, "heading", row.cell(size), allowed));
@@ -362,9 +359,8 @@ fn by_sample(grid: &Grid, layout: &Layout) -> Result<Vec<(String, Grid)>, TableE
             row.cell(c).clone_into(&mut last[c]);
         }
         let joined = |columns: &[usize]| {
-            let cells: Vec<&str> =
-                columns.iter().map(|&c| last[c].as_str()).filter(|c| !c.is_empty()).collect();
-            cells.join(" ")
+            let cells = columns.iter().map(|&c| last[c].as_str()).filter(|c| !c.is_empty());
+            cells.collect::<Vec<_>>().join(" ")
         };
         rows.push((joined(&samples), joined(&depths), row));
     }
@@ -386,11 +382,8 @@ fn by_sample(grid: &Grid, layout: &Layout) -> Result<Vec<(String, Grid)>, TableE
                        sample";
         return Err(grid.refused(rows[0].2.line, samples[0], "row", keys[0].0, allowed));
     }
-    let size = |row: &(String, String, &GridRow)| match opening(row.2.cell(layout.size))?.0 {
-        Opening::Mm(size) | Opening::Bare(size) if size > 0.0 => Some(size),
-        _ => None,
-    };
-    if of_fractions && goes_one_way(&rows.iter().filter_map(size).collect::<Vec<_>>()) {
+    let sizes = rows.iter().filter_map(|row| positive_size(row.2.cell(layout.size)));
+    if of_fractions && goes_one_way(&sizes.collect::<Vec<_>>()) {
         return Ok(Vec::new());
     }
     if keys.len().saturating_mul(width) > MOST_PLACES {

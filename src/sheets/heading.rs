@@ -25,6 +25,13 @@ pub(super) struct Retained {
     pub(super) cumulative: Option<bool>,
 }
 
+impl Role {
+    /// True for the role of percents or masses.
+    pub(super) fn has_values(self) -> bool {
+        matches!(self, Role::Finer | Role::Retained(_))
+    }
+}
+
 /// Words of a column's name, in small letters.
 pub(super) fn words(name: &str) -> Vec<String> {
     name.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).map(str::to_lowercase).collect()

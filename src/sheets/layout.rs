@@ -5,7 +5,7 @@ use super::content::{
 };
 use super::grid::{Grid, GridRow, joined};
 use super::heading::{Role, is_weighing, role, says_sample, unit, words};
-use super::size::{Opening, Unit, goes_one_way, opening};
+use super::size::{Unit, goes_one_way, opening, positive_size};
 use voidwalk_core::gradation::{TableError, shortened};
 
 pub(super) const ROWS_OF_TITLES: usize = 60;
@@ -259,20 +259,10 @@ fn refuse_unnamed_openings(
     first: usize,
     [left, right]: [usize; 2],
 ) -> Result<(), TableError> {
-    let rows = &grid.rows[first..];
     let Some(column) = (left + 1..right).rev().find(|&c| columns[c].with_values) else { return Ok(()) };
-    if role(&heads[column]) != Role::Other {
-        return Ok(());
-    }
-    let sizes: Vec<f64> = rows
-        .iter()
-        .filter(|row| is_value(row.cell(right)))
-        .filter_map(|row| match opening(row.cell(column)) {
-            Some((Opening::Mm(size) | Opening::Bare(size), _)) if size > 0.0 => Some(size),
-            _ => None,
-        })
-        .collect();
-    if sizes.len() < 2 || !goes_one_way(&sizes) {
+    let rows = grid.rows[first..].iter().filter(|row| is_value(row.cell(right)));
+    let sizes: Vec<f64> = rows.filter_map(|row| positive_size(row.cell(column))).collect();
+    if role(&heads[column]) != Role::Other || sizes.len() < 2 || !goes_one_way(&sizes) {
         return Ok(());
     }
     let allowed = "a heading that says what these numbers are: openings (such as Sieve (mm)) for the \
@@ -295,10 +285,7 @@ fn spread(rows: &[GridRow], samples: Option<&GridRow>, mut heads: Vec<String>) -
     let (top, below) = (&rows[0], &rows[1..]);
     for column in 1..heads.len() {
         let before = roles[column - 1];
-        if !top.cell(column).is_empty()
-            || roles[column] != Role::Other
-            || !matches!(before, Role::Finer | Role::Retained(_))
-        {
+        if !top.cell(column).is_empty() || roles[column] != Role::Other || !before.has_values() {
             continue;
         }
         let in_both = |row: &GridRow| !row.cell(column).is_empty() && !row.cell(column - 1).is_empty();

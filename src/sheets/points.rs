@@ -7,7 +7,7 @@ use super::heading::Role;
 use super::layout::{End, Layout, SoilColumn, fields};
 use super::retained::{percents_finer, refuse_contradiction, says_fraction, says_percent, scale_fractions};
 use super::size::{Entry, Form, Opening, Unit, opening, unmarked};
-use super::soil::{Kind, Soil};
+use super::soil::Soil;
 use super::{roles, units};
 use std::collections::HashMap;
 use voidwalk_core::gradation::{
@@ -98,8 +98,9 @@ fn soil(extent: &Extent, column: &SoilColumn) -> Result<Soil, TableError> {
         [grid.place_of(row.line, of_size), grid.place_of(row.line, column.column)]
     };
     let places = rows.iter().map(place).collect();
-    let (name, file, kind) = (column.heading.clone(), grid.place(), Kind::of(grid));
-    Ok(Soil { name, file, rows, places, kind, notes })
+    let (name, file) = (column.heading.clone(), grid.place());
+    let (in_sheet, across) = (grid.sheet.is_some(), grid.across.is_some());
+    Ok(Soil { name, file, rows, places, in_sheet, across, notes })
 }
 
 /// Rows of the table as written, and the lines of openings with an empty value cell.

@@ -298,7 +298,7 @@ pub(super) fn agree(grid: &Grid, headings: &Headings, a: usize, b: usize) -> boo
         match (any_in_mm(row.cell(a), unit_a), any_in_mm(row.cell(b), unit_b)) {
             (Some(one), Some(other)) if near(one, other) => both += 1,
             (None, None) => {}
-            (Some(_), None) | (None, Some(_)) | (Some(_), Some(_)) => return false,
+            _ => return false,
         }
     }
     both > 0

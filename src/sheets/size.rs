@@ -166,6 +166,14 @@ pub(super) fn opening(text: &str) -> Option<(Opening, Form)> {
     })
 }
 
+/// Size named by a cell, in mm or in the column's unit, if it is above 0.
+pub(super) fn positive_size(cell: &str) -> Option<f64> {
+    match opening(cell)?.0 {
+        Opening::Mm(size) | Opening::Bare(size) if size > 0.0 => Some(size),
+        _ => None,
+    }
+}
+
 /// Particles between two sieves: `9.5-4.75`, `4.75 to 2 mm`, `-No. 4 +No. 10`, `> 19`.
 fn class(text: &str) -> Option<(Opening, Form)> {
     let sieve = |text: &str| match opening(text.trim())? {

@@ -1,6 +1,6 @@
 //! A soil as given in a file: its table, and the assumptions made when reading it.
 
-use super::grid::{Grid, Place};
+use super::grid::Place;
 use serde::Serialize;
 use voidwalk_core::gradation::{
     CurvePoint, FINES_MM, GRAVEL_MM, Gradation, GradationError, Row, from_rows, letters,
@@ -14,28 +14,11 @@ pub struct Soil {
     pub(super) rows: Vec<Row>,
     /// Places of the opening and the percent of each row.
     pub(super) places: Vec<[Place; 2]>,
-    pub(super) kind: Kind,
+    /// True for a table in a sheet, false for one in a text.
+    pub(super) in_sheet: bool,
+    /// True for a table across, with a column per sieve.
+    pub(super) across: bool,
     pub(super) notes: Vec<String>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
-    Lines,
-    Rows,
-    /// Across: one column per sieve, in a sheet or a text.
-    Across {
-        sheet: bool,
-    },
-}
-
-impl Kind {
-    pub(super) fn of(grid: &Grid) -> Kind {
-        match (&grid.across, &grid.sheet) {
-            (Some(_), sheet) => Kind::Across { sheet: sheet.is_some() },
-            (None, Some(_)) => Kind::Rows,
-            (None, None) => Kind::Lines,
-        }
-    }
 }
 
 impl Soil {
@@ -57,10 +40,9 @@ impl Soil {
         // Counts rows from 1: lines of the file repeat in parts that are side by side.
         let counted = |(index, row): (usize, &Row)| Row { line: index + 1, ..*row };
         let rows = self.rows.iter().enumerate().map(counted).collect();
-        let in_sheet = matches!(self.kind, Kind::Rows | Kind::Across { sheet: true });
         let place = |row: usize, percent: bool| {
             let place = self.places[row - 1][usize::from(percent)];
-            (place.line, in_sheet.then_some(place.column as u32))
+            (place.line, self.in_sheet.then_some(place.column as u32))
         };
         from_rows(&self.file, rows, d0_mm).map_err(|error| match error {
             GradationError::Table(error) => error.placed(place, |row| self.row_label(row)).into(),
@@ -70,14 +52,14 @@ impl Soil {
 
     fn row_label(&self, row: usize) -> String {
         let Place { line, column } = self.places[row - 1][1];
-        match self.kind {
-            Kind::Lines => format!("line {line}"),
-            Kind::Rows if self.places.iter().any(|places| places[1].column != column) => {
-                format!("cell {}{line}", letters(column as u32))
-            }
-            Kind::Rows => format!("row {line}"),
-            Kind::Across { sheet: true } => format!("column {}", letters(column as u32)),
-            Kind::Across { sheet: false } => format!("column {}", column + 1),
+        let letters = letters(column as u32);
+        let is_split = || self.places.iter().any(|places| places[1].column != column);
+        match (self.across, self.in_sheet) {
+            (true, true) => format!("column {letters}"),
+            (true, false) => format!("column {}", column + 1),
+            (false, true) if is_split() => format!("cell {letters}{line}"),
+            (false, true) => format!("row {line}"),
+            (false, false) => format!("line {line}"),
         }
     }
 }

@@ -194,8 +194,8 @@ pub(super) fn sync_folder(folder: &Path) -> io::Result<()> {
     ask(Call::SyncFolder(folder), || platform::sync_folder(folder))
 }
 
-/// Reads a whole file; a link is refused.
-pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
+/// Reads a whole file that the program wrote itself; a link is refused.
+pub fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
     ask(Call::Read(path), || {
         let mut bytes = Vec::new();
         open_own(path)?.read_to_end(&mut bytes)?;
@@ -205,8 +205,8 @@ pub(super) fn read(path: &Path) -> io::Result<Vec<u8>> {
 
 /// Opens one of the program's own files for reading: a regular file, not a link.
 pub(super) fn open_own(path: &Path) -> io::Result<File> {
-    regular(platform::open_own(File::options().read(true), path)?)?
-        .ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "is not a regular file"))
+    let file = regular(platform::open_own(File::options().read(true), path)?)?;
+    file.ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "is not a regular file"))
 }
 
 /// Returns the file; `None` if it is a folder, a pipe, a socket or a device.
@@ -259,7 +259,7 @@ mod tests {
             assert_eq!(read_regular(path, largest).unwrap(), expected, "{}", path.display());
         }
         assert_eq!([in_mb(16 << 20), in_mb(4 << 30)], ["16 MB", "4 GB"]);
-        assert_eq!(read(&text).unwrap(), b"abc");
-        assert_eq!(read(&pipe).unwrap_err().to_string(), "is not a regular file");
+        assert_eq!(read_whole(&text).unwrap(), b"abc");
+        assert_eq!(read_whole(&pipe).unwrap_err().to_string(), "is not a regular file");
     }
 }

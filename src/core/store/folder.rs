@@ -10,7 +10,9 @@
 //! - Names of folders and files are valid on every system, and no system confuses two of them.
 
 use super::disk::{Call, PART, ask};
-use super::whole::{StoreError, is_empty, make_folder, make_folders, remove_folder, sync, write_whole};
+use super::whole::{
+    StoreError, expect_folder, is_empty, make_folder, make_folders, remove_folder, sync, write_whole,
+};
 use super::{disk, platform};
 use crate::text::is_plain;
 use std::fs::{File, TryLockError};
@@ -20,7 +22,7 @@ use std::time::{Duration, Instant};
 use std::{fs, io};
 
 /// Name of the lock file, which marks a folder as ours.
-pub(crate) const LOCK_FILE: &str = ".voidwalk.lock";
+const LOCK_FILE: &str = ".voidwalk.lock";
 
 /// Time for which a shared folder is retried: another process may hold it alone while it clears up.
 const ASK_FOR: Duration = Duration::from_millis(500);
@@ -63,13 +65,8 @@ impl Folder {
         let path: &Path = &path.components().collect::<PathBuf>();
         let mut marked = false;
         match fs::symlink_metadata(path) {
-            Ok(meta) if meta.is_symlink() => {
-                return Err(StoreError::NotAFolder { path: path.to_owned(), what: "a symbolic link" });
-            }
-            Ok(meta) if !meta.is_dir() => {
-                return Err(StoreError::NotAFolder { path: path.to_owned(), what: "a file" });
-            }
-            Ok(_) => {
+            Ok(meta) => {
+                expect_folder(path, &meta)?;
                 let is_file = |name| path.join(name).symlink_metadata().is_ok_and(|m| m.is_file());
                 // In this order: a process that has just locked an empty folder leaves its lock file in it.
                 let empty = is_empty(path).map_err(StoreError::io(path, "read the folder"))?;
@@ -116,7 +113,7 @@ impl Folder {
     /// Reads a file of the folder; `None` if it is missing.
     pub fn read(&self, name: &str) -> Result<Option<Vec<u8>>, StoreError> {
         let path = self.path.join(name);
-        match disk::read(&path) {
+        match disk::read_whole(&path) {
             Ok(bytes) => Ok(Some(bytes)),
             Err(e) if e.kind() == io::ErrorKind::NotFound => Ok(None),
             Err(source) => Err(StoreError::io(&path, "read")(source)),
@@ -212,7 +209,7 @@ fn lock(path: &Path, shared: bool) -> Result<Lock, StoreError> {
 fn holder(path: &Path) -> String {
     let begun = Instant::now();
     loop {
-        let text = disk::read(path).unwrap_or_default();
+        let text = disk::read_whole(path).unwrap_or_default();
         let text = String::from_utf8_lossy(&text);
         match text.lines().next() {
             Some(line) => return line.chars().take(200).collect(),

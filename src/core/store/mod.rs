@@ -11,10 +11,9 @@ mod npz;
 pub mod platform;
 mod whole;
 
-pub use column::Column;
-pub use column::Placement;
+pub use column::{Column, Placement};
 pub(crate) use disk::in_mb;
-pub use disk::{open_regular, read_regular};
+pub use disk::{open_regular, read_regular, read_whole};
 pub use folder::{Folder, folder_name, is_device};
 pub use npz::{Array, Npz, Numbers, npz};
-pub use whole::{StoreError, Together, files_in, make_folder, read_whole, remove_folder, write_whole};
+pub use whole::{StoreError, Together, files_in, make_folder, remove_folder, write_whole};

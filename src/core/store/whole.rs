@@ -5,14 +5,10 @@
 
 use super::disk;
 use super::disk::{Call, PartFile, ask};
+use std::fs::Metadata;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
-
-/// Reads a whole file that the program wrote itself.
-pub fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
-    disk::read(path)
-}
 
 /// Writes a whole file: afterwards the file holds all of it, or its former content.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
@@ -134,13 +130,16 @@ pub(super) fn make_folders(path: &Path) -> io::Result<()> {
 /// # Errors
 /// A link or a file in its place, or an error of the system.
 pub fn make_folder(path: &Path) -> Result<(), StoreError> {
-    let not = |what| Err(StoreError::NotAFolder { path: path.to_owned(), what });
     match path.symlink_metadata() {
-        Ok(meta) if meta.is_symlink() => not("a symbolic link"),
-        Ok(meta) if !meta.is_dir() => not("a file"),
-        Ok(_) => Ok(()),
+        Ok(meta) => expect_folder(path, &meta),
         Err(_) => make_folders(path).map_err(StoreError::io(path, "make the folder")),
     }
+}
+
+/// Refuses a link or a file in place of a folder.
+pub(super) fn expect_folder(path: &Path, meta: &Metadata) -> Result<(), StoreError> {
+    let what = if meta.is_symlink() { "a symbolic link" } else { "a file" };
+    if meta.is_dir() { Ok(()) } else { Err(StoreError::NotAFolder { path: path.to_owned(), what }) }
 }
 
 /// Removes a folder with all its content, if it exists.
