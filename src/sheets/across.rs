@@ -517,14 +517,11 @@ mod tests {
         for heading in ["% ret #4", "Rückstand 4 mm", "Cum. % retained on 4.75 mm", "+4.75 mm"] {
             assert!(matches!(head(heading).unwrap().role, Some(Role::Retained(_))), "{heading}");
         }
-        for heading in ["LL", "PI (%)", "Sample", "P80 (um)", "D60", "Depth (m)", "Gravel %", "Cu", "P", "%"]
-        {
+        for heading in "LL|PI (%)|Sample|P80 (um)|D60|Depth (m)|Gravel %|Cu|P|%".split('|') {
             assert!(head(heading).is_none(), "{heading}");
         }
         assert!(["P#4x", "% pass 3//4", "Passing No. 201"].into_iter().all(is_broken));
-        assert!(
-            ["#2OO", "0..075", "PO.O75", "#200x", "#lOO", "No. 2OO", "O.O75"].into_iter().all(is_misspelt)
-        );
+        assert!("#2OO|0..075|PO.O75|#200x|#lOO|No. 2OO|O.O75".split('|').all(is_misspelt));
         for other in ["LL", "PI", "Cu", "D60", "Moisture (%)", "P80 (um)", "CaCO3 (%)", "USCS", "LL1"] {
             assert!(!is_misspelt(other), "{other}");
         }

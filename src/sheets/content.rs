@@ -251,9 +251,7 @@ mod tests {
 
     #[test]
     fn words_are_told_from_openings_with_a_slip_of_the_pen() {
-        for words in
-            ["Dry mass (g)", "D10", "Cu", "Notes:", "LL", "w (%)", "Fineness modulus", "Gs", "No data"]
-        {
+        for words in "Dry mass (g)|D10|Cu|Notes:|LL|w (%)|Fineness modulus|Gs|No data".split('|') {
             assert!(is_words(words), "{words}");
         }
         for other in "O.075|l9|x1.18|4.75*|9.500,00|No. 4|No 4a|US 199|04-Mar|Mar-04||-|Pan|'9.5".split('|') {

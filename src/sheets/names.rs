@@ -3,7 +3,7 @@
 
 use super::blocks::Block;
 use super::content::{is_data, is_value};
-use super::grid::{GridRow, names_listed};
+use super::grid::{GridRow, Place, names_listed};
 use super::heading::{Role, role, says_of_fines, says_sample, says_sedimentation, words};
 use super::languages::Words;
 use super::layout::End;
@@ -212,23 +212,17 @@ fn continues(sieves: &Read, table: &Read) -> Result<bool, TableError> {
             top.0 <= HYDROMETER_MM && top.0 <= 1.1 * last.0 && last.1 < 100.0 && (top.1 == 100.0 || of_fines);
     }
     if !goes_on && seems {
-        let (Some(first), Some(Some([_, last]))) = (below.first(), above.first().map(|soil| ends(soil)))
-        else {
-            return Ok(false);
-        };
-        let Some(index) =
-            (0..first.rows.len()).max_by(|&a, &b| first.rows[a].size.total_cmp(&first.rows[b].size))
-        else {
-            return Ok(false);
-        };
+        let last = above.first().and_then(|soil| ends(soil));
+        let rows = below.first().map_or(&[][..], |soil| &soil.rows[..]);
+        let row = rows.iter().max_by(|a, b| a.size.total_cmp(&b.size));
+        let (Some([_, last]), Some(row)) = (last, row) else { return Ok(false) };
         let allowed = format!(
             "sizes below {} mm and percents of the whole soil, at most {}, as this table continues the \
              sieves; a soil of its own goes to a file or sheet of its own",
             last.0, last.1
         );
-        let (grid, row) = (&table.block.grid, first.rows[index]);
         let (column, percent) = (layout.soils[0].column, row.percent.to_string());
-        return Err(grid.refused(row.line, column, FIELDS[1], &percent, allowed));
+        return Err(table.block.grid.refused(row.line, column, FIELDS[1], &percent, allowed));
     }
     Ok(goes_on)
 }
@@ -236,9 +230,9 @@ fn continues(sieves: &Read, table: &Read) -> Result<bool, TableError> {
 fn join(sieves: &mut Read, table: Read) {
     for (upper, lower) in sieves.soils.iter_mut().zip(table.soils) {
         let (Ok(upper), Ok(mut lower)) = (upper.as_mut(), lower) else { continue };
-        let falls = |soil: &Soil| match (soil.rows.first(), soil.rows.last()) {
-            (Some(first), Some(last)) => first.size >= last.size,
-            _ => true,
+        let falls = |soil: &Soil| {
+            let ends = soil.rows.first().zip(soil.rows.last());
+            ends.is_none_or(|(first, last)| first.size >= last.size)
         };
         let descends = falls(upper);
         if falls(&lower) != descends && lower.rows.len() > 1 {
@@ -246,19 +240,14 @@ fn join(sieves: &mut Read, table: Read) {
             lower.places.reverse();
         }
         // The finest sieve may be in both.
-        let shared = |lower: &Soil| {
-            let row = if descends { lower.rows.first() } else { lower.rows.last() };
-            row.is_some_and(|row| upper.rows.iter().any(|u| u.size == row.size))
-        };
-        if shared(&lower) {
+        let row = if descends { lower.rows.first() } else { lower.rows.last() };
+        if row.is_some_and(|row| upper.rows.iter().any(|u| u.size == row.size)) {
             let at = if descends { 0 } else { lower.rows.len() - 1 };
             lower.rows.remove(at);
             lower.places.remove(at);
         }
-        let (first, last) = match (lower.places.first(), lower.places.last()) {
-            (Some(first), Some(last)) => (first[1].line, last[1].line),
-            _ => (table.block.line(), table.block.line()),
-        };
+        let line = |place: Option<&[Place; 2]>| place.map_or(table.block.line(), |place| place[1].line);
+        let (first, last) = (line(lower.places.first()), line(lower.places.last()));
         let grid = &table.block.grid;
         let note = format!(
             "{}s {} to {} of {} continue the sieves below the finest of them",
@@ -267,7 +256,7 @@ fn join(sieves: &mut Read, table: Read) {
             grid.row_name(first.max(last)),
             grid.column_label(table.block.layout.soils[0].column),
         );
-        let new = lower.notes.iter().filter(|note| !upper.notes.contains(note)).cloned().collect::<Vec<_>>();
+        let new: Vec<String> = lower.notes.into_iter().filter(|note| !upper.notes.contains(note)).collect();
         upper.notes.extend(new);
         upper.notes.push(note);
         let at = if descends { upper.rows.len() } else { 0 };

@@ -141,8 +141,8 @@ fn entries(reading: &mut Reading) -> Result<(Vec<Entry>, Vec<usize>), TableError
             return Err(fields(grid, row));
         }
         let Some((opening, form)) = read else {
-            let date = "an opening; this is a date, into which spreadsheets turn fractions such as 3/8: write \
-                        3/8 in";
+            let date = "an opening; this is a date, into which spreadsheets turn fractions such as 3/8: \
+                        write 3/8 in";
             let allowed = if is_date(size) { date.into() } else { allowed_size() };
             return Err(grid.refused(line, at, FIELDS[0], size, allowed));
         };

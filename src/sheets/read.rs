@@ -159,19 +159,17 @@ fn of_workbook(file: &str, bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Nam
             Err(error) => refusals.push((sheet, error)),
         }
     }
-    if let Some(at) =
-        refusals.iter().position(|(sheet, _)| wanted.is_some_and(|w| folded(w) == folded(sheet)))
-        && soils.iter().all(|(names, _)| wanted.is_some_and(|w| !is_named(names, w)))
+    if let Some(wanted) = wanted
+        && !soils.iter().any(|(names, _)| is_named(names, wanted))
+        && let Some(at) = refusals.iter().position(|(sheet, _)| folded(wanted) == folded(sheet))
     {
         return Err(refusals.swap_remove(at).1);
     }
-    let all: Vec<String> = refusals.iter().map(|(sheet, _)| format!("\"{sheet}\"")).collect();
-    if soils.is_empty()
-        && let Some((_, error)) = refusals.into_iter().next()
-    {
-        return Err(error);
+    if soils.is_empty() && !refusals.is_empty() {
+        return Err(refusals.swap_remove(0).1);
     }
-    if !all.is_empty() && wanted.is_none() {
+    if !refusals.is_empty() && wanted.is_none() {
+        let all: Vec<String> = refusals.iter().map(|(sheet, _)| format!("\"{sheet}\"")).collect();
         let note = format!("no table was found in sheet {}", names_listed(&all));
         soils.iter_mut().filter_map(|(_, soil)| soil.as_mut().ok()).for_each(|s| s.notes.push(note.clone()));
     }
@@ -468,16 +466,14 @@ mod tests {
         };
         let one = |name: &str| read_gradation(root.path().join(format!("a.csv#{name}")), None);
         write("Min,Result,Max");
-        assert!(
-            samples_in(&path).unwrap_err().to_string().contains("limits, which are not samples: Min, Max")
-        );
+        let error = samples_in(&path).unwrap_err().to_string();
+        assert!(error.contains("limits, which are not samples: Min, Max"), "{error}");
         assert_eq!(curves_in_file(&path, None).unwrap().len(), 3);
         assert_eq!(named_soils_in(&path).unwrap().len(), 3);
         assert_eq!(samples_in(&root.path().join("a.csv#Result")).unwrap().len(), 1);
         write("Test 1 % passing,Average % passing,Test 2 % passing");
-        assert!(
-            curves_in_file(&path, None).unwrap_err().to_string().contains("means, which are not samples")
-        );
+        let error = curves_in_file(&path, None).unwrap_err().to_string();
+        assert!(error.contains("means, which are not samples"), "{error}");
         assert!(samples_in(&path).is_err() && named_soils_in(&path).is_ok());
         assert_eq!(one("Average % passing").unwrap().percent_finer_if_known(0.5), Some(45.0));
         write("Upper shell,Lower shell,Core");

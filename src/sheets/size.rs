@@ -254,8 +254,7 @@ fn metric(text: &str) -> Option<f64> {
 
 /// `No. 4`, `#200`, `200 mesh`, `3/8"`, `1 1/2 in`.
 fn us(text: &str) -> Option<(Opening, Form)> {
-    let mut text = text;
-    let mut is_us = false;
+    let (mut text, mut is_us) = (text, false);
     for lead in ["u.s. ", "us ", "uss ", "u.s.", "astm ", "sieve ", "standard ", "std ", "std. ", "sieve "] {
         let rest = text.strip_prefix(lead).map(str::trim);
         is_us |= rest.is_some() && lead.starts_with('u');
@@ -266,19 +265,13 @@ fn us(text: &str) -> Option<(Opening, Form)> {
         is_us |= rest.is_some() && end.starts_with('(');
         text = rest.unwrap_or(text);
     }
-    if let Some(mm) = us_sieve_number(text).filter(|_| is_us) {
+    const LEADS: [&str; 12] =
+        ["no.", "no ", "no", "nº", "n°", "№", "nr.", "nr ", "num.", "number ", "#", "mesh "];
+    let alone = us_sieve_number(text).filter(|_| is_us);
+    let led = || LEADS.iter().find_map(|lead| us_sieve_number(text.strip_prefix(lead)?.trim()));
+    let ended = || ["mesh", "#"].iter().find_map(|end| us_sieve_number(text.strip_suffix(end)?.trim()));
+    if let Some(mm) = alone.or_else(led).or_else(ended) {
         return Some((Opening::Mm(mm), Form::UsNumber));
-    }
-    for lead in ["no.", "no ", "nº", "n°", "№", "nr.", "nr ", "num.", "number ", "#", "mesh "] {
-        if let Some(mm) = text.strip_prefix(lead).and_then(|rest| us_sieve_number(rest.trim())) {
-            return Some((Opening::Mm(mm), Form::UsNumber));
-        }
-    }
-    for (lead, end) in [("no", ""), ("", "mesh"), ("", "#")] {
-        let inner = text.strip_prefix(lead).and_then(|rest| rest.strip_suffix(end)).map(str::trim);
-        if let Some(mm) = inner.filter(|inner| *inner != text).and_then(us_sieve_number) {
-            return Some((Opening::Mm(mm), Form::UsNumber));
-        }
     }
     const MARKS: [&str; 13] =
         ["\"", "''", "″", "”", "“", "’’", "inches", "inch", "in.", "in", "zoll", "pouces", "-in."];
@@ -444,17 +437,12 @@ mod tests {
 
     #[test]
     fn thousands_and_footnotes_are_told_from_numbers() {
-        assert_eq!(
-            ["1,254.6", "1.254,6", "12,345,678.9"].map(with_thousands),
-            [Some(1254.6), Some(1254.6), Some(12345678.9)]
-        );
-        assert_eq!(
-            ["1,254", "1254.6", "0,254.6", "1,25.6", "1,254.", "1.2,3"].map(with_thousands),
-            [None; 6]
-        );
-        assert_eq!(
-            ["0.075*", "22.7 (1)", "11.3(a)**", "5 (No. 4)", "(1)"].map(unmarked),
-            ["0.075", "22.7", "11.3", "5 (No. 4)", "(1)"]
-        );
+        let read = ["1,254.6", "1.254,6", "12,345,678.9"].map(with_thousands);
+        assert_eq!(read, [1254.6, 1254.6, 12345678.9].map(Some));
+        for other in ["1,254", "1254.6", "0,254.6", "1,25.6", "1,254.", "1.2,3"] {
+            assert_eq!(with_thousands(other), None, "{other}");
+        }
+        let bare = ["0.075*", "22.7 (1)", "11.3(a)**", "5 (No. 4)", "(1)"].map(unmarked);
+        assert_eq!(bare, ["0.075", "22.7", "11.3", "5 (No. 4)", "(1)"]);
     }
 }

@@ -360,42 +360,36 @@ mod tests {
     use super::*;
     use crate::content::percentage;
 
-    fn text(parts: &[(&str, Kind, &str)]) -> String {
-        let mut runs = Runs::default();
-        parts.iter().for_each(|(more, kind, format)| runs.push(more, *kind, format));
-        runs.text()
-    }
-
     #[test]
     fn raised_struck_and_glued_digits_are_not_those_of_the_number_beside_them() {
-        let plain = |text| (text, Kind::Plain, "");
-        assert_eq!(percentage(&text(&[plain("95"), ("1", Kind::Raised, "")])), Some(95.0));
-        assert_eq!(percentage(&text(&[plain("95"), ("a", Kind::Raised, "")])), Some(95.0));
-        assert_eq!(percentage(&text(&[plain("9"), plain("5"), plain(".5")])), Some(95.5));
-        for parts in [
-            [("1", Kind::Raised, ""), plain("95")],
-            [("97", Kind::Struck, ""), plain("95")],
-            [plain("95"), ("7", Kind::Struck, "")],
-            [plain("95"), ("1", Kind::Plain, "small")],
-            [("", Kind::Plain, ""), ("95", Kind::Struck, "")],
-        ] {
+        let text = |parts: &[(&str, Kind)]| {
+            let mut runs = Runs::default();
+            parts.iter().for_each(|(more, kind)| runs.push(more, *kind, ""));
+            runs.text()
+        };
+        let (plain, raised, struck) = (Kind::Plain, Kind::Raised, Kind::Struck);
+        assert_eq!(percentage(&text(&[("95", plain), ("a", raised)])), Some(95.0));
+        assert_eq!(percentage(&text(&[("9", plain), ("5", plain), (".5", plain)])), Some(95.5));
+        for parts in
+            [[("1", raised), ("95", plain)], [("97", struck), ("95", plain)], [("", plain), ("95", struck)]]
+        {
             assert_eq!(percentage(&text(&parts)), None, "{parts:?}");
         }
-        assert_eq!(text(&[plain("cm"), ("3", Kind::Raised, "")]), "cm3");
+        assert_eq!(text(&[("cm", plain), ("3", raised)]), "cm3");
     }
 
     #[test]
     fn units_in_formats_are_kept() {
-        let shown = |code: &str| {
+        for (code, shown) in [
+            ("\"No. \"0", "No. 425"),
+            ("0.0\" g\"", "425"),
+            ("0.0_D_M", "425"),
+            ("0;-0\" in\"", "425"),
+            ("#,##0.0\"%\"", "425"),
+        ] {
             let (before, after, _) = parts_of(code);
-            as_shown(&before, "425", &after)
-        };
-        assert_eq!(
-            ["0\" µm\"", "0\\ \\µ\\m", "\"No. \"0", "0.0\" g\"", "0.0_D_M", "0;-0\" in\"", "#,##0.0\"%\""]
-                .map(shown),
-            ["425 µm", "425 µm", "No. 425", "425", "425", "425", "425"]
-        );
-        assert_eq!(around("1.180,5 µm"), ("", " µm"));
-        assert_eq!(around("-5"), ("", ""));
+            assert_eq!(as_shown(&before, "425", &after), shown, "{code}");
+        }
+        assert_eq!([around("1.180,5 µm"), around("-5")], [("", " µm"), ("", "")]);
     }
 }

@@ -310,12 +310,9 @@ mod tests {
 
     #[test]
     fn places_and_formats_are_read() {
-        assert_eq!(
-            [place_of("A1"), place_of("B7"), place_of("AA10")],
-            [Some((0, 0)), Some((6, 1)), Some((9, 26))]
-        );
-        assert_eq!([place_of("7"), place_of("A0"), place_of("AAAA1"), place_of("")], [None; 4]);
-        assert!(of_format("0.0%") == Style::Percent);
+        assert_eq!(["A1", "B7", "AA10"].map(place_of), [Some((0, 0)), Some((6, 1)), Some((9, 26))]);
+        assert_eq!(["7", "A0", "AAAA1", ""].map(place_of), [None; 4]);
+        assert_eq!(of_format("0.0%"), Style::Percent);
         for code in ["dd\\-mmm", "m", "m:ss", "[s]", "[hh]:mm", "h AM/PM"] {
             assert_eq!(of_format(code), Style::Date, "{code}");
         }

@@ -17,7 +17,7 @@ pub struct Allowed<T> {
     /// Parser for values written as text, if text is accepted.
     of_text: Option<fn(&str) -> Option<T>>,
     /// Common values, offered for shell completion.
-    offered: Vec<String>,
+    pub offered: Vec<String>,
 }
 
 impl<T> Allowed<T> {
@@ -40,11 +40,6 @@ impl<T: Leaf> Allowed<T> {
     /// Adds common values for shell completion.
     pub fn offering(self, words: &[&str]) -> Self {
         Self { offered: words.iter().map(|word| (*word).to_owned()).collect(), ..self }
-    }
-
-    /// Common values.
-    pub fn offered(&self) -> &[String] {
-        &self.offered
     }
 
     /// Type in TOML.

@@ -22,9 +22,6 @@ const UNITS: [(&str, &[Unit]); 4] = [
     ("kg/m3", &[("kg/m3", [1.0, 1.0])]),
 ];
 
-/// Words that some users write after a count.
-const COUNTED: [&str; 1] = ["layers"];
-
 /// Settings that are percentages.
 const PERCENTAGES: [&str; 2] = ["d85_at_dc", "coarsest"];
 
@@ -90,15 +87,15 @@ pub(crate) fn of_value(name: &str, value: &str) -> Option<String> {
     // A number that is not above 0 is wrong in any unit.
     let given = digits.parse().ok().filter(|given: &f64| *given > 0.0)?;
     // A name may be written with its section.
-    let name = name.rsplit('.').next().unwrap_or(name).trim();
-    let known = UNITS.iter().find(|(_, units)| units.iter().any(|(other, _)| *other == unit));
-    if unit != "%" && !COUNTED.contains(&unit) && known.is_none() {
+    let name = parts(name).1.trim();
+    let is_unit = UNITS.iter().any(|(_, units)| units.iter().any(|(other, _)| *other == unit));
+    if !is_unit && !["%", "layers"].contains(&unit) {
         return None;
     }
     let alone = || Some(format!("the number alone, without its unit: {digits}"));
-    if let Some((setting_unit, units)) =
-        UNITS.iter().find(|(setting_unit, _)| name.to_lowercase().ends_with(&ending(setting_unit)))
-    {
+    let ending = |unit: &str| format!("_{}", unit.to_lowercase().replace('/', "_"));
+    let is_in = |unit: &str| name.to_lowercase().ends_with(&ending(unit));
+    if let Some((setting_unit, units)) = UNITS.iter().find(|(setting_unit, _)| is_in(setting_unit)) {
         return match units.iter().find(|(other, _)| *other == unit) {
             Some((other, _)) if other == setting_unit => alone(),
             Some((_, [above, below])) => {
@@ -115,11 +112,6 @@ pub(crate) fn of_value(name: &str, value: &str) -> Option<String> {
         "layers" if name == "nz" => alone(),
         _ => Some("a number that has no unit".into()),
     }
-}
-
-/// Ending of the names of settings in a unit.
-fn ending(unit: &str) -> String {
-    format!("_{}", unit.to_lowercase().replace('/', "_"))
 }
 
 /// Drops the last digits, which a conversion may get wrong.
@@ -153,7 +145,9 @@ const NAMED: usize = 30;
 
 /// Suggests `did you mean ...` if a known name resembles `name`; else lists the names in its section.
 pub(super) fn instead_of(name: &str, known: &[String]) -> String {
-    let sections = sections(known);
+    let sections = known.iter().map(|known| parts(known).0).filter(|section| !section.is_empty());
+    let mut sections: Vec<&str> = sections.collect();
+    sections.dedup();
     // A section by itself, as `[filtre]`.
     if !name.contains('.')
         && let Some(section) = sections.iter().find(|section| is_like(section, name))
@@ -161,25 +155,33 @@ pub(super) fn instead_of(name: &str, known: &[String]) -> String {
     {
         return format!("did you mean [{section}]?");
     }
-    let last = |name: &str| name.rsplit('.').next().unwrap_or_default().to_owned();
+    let (section, last) = parts(name);
     let distance = |known: &&String| {
         let whole = damerau_levenshtein(known, name);
-        (whole.min(damerau_levenshtein(&last(known), &last(name)) + 1), whole)
+        (whole.min(damerau_levenshtein(parts(known).1, last) + 1), whole)
     };
     let nearest = known.iter().min_by_key(distance);
-    let nearest = nearest.filter(|known| is_like(known, name) || is_like(&last(known), &last(name)));
+    let nearest = nearest.filter(|known| is_like(known, name) || is_like(parts(known).1, last));
     let begins = || known.iter().find(|known| name.len() > 2 && known.starts_with(name));
     if let Some(nearest) = nearest.or_else(begins) {
         return format!("did you mean `{nearest}`?");
     }
-    let section = name.rsplit_once('.').map_or("", |(section, _)| section);
-    let of_section: Vec<&str> = known.iter().filter_map(|known| in_section(known, section)).collect();
-    if !section.is_empty() && !of_section.is_empty() {
-        return format!("[{section}] has {}", listed(&of_section));
+    let listed = |section: &str| {
+        let names = known.iter().map(|known| parts(known)).filter(|(other, _)| *other == section);
+        let names: Vec<&str> = names.map(|(_, name)| name).collect();
+        let more = if names.len() > NAMED { ", ..." } else { "" };
+        format!("{}{more}", names[..names.len().min(NAMED)].join(", "))
+    };
+    if sections.contains(&section) {
+        return format!("[{section}] has {}", listed(section));
     }
-    let top: Vec<&str> = known.iter().filter_map(|known| in_section(known, "")).collect();
     let sections: Vec<String> = sections.iter().map(|section| format!("[{section}]")).collect();
-    format!("there are {}; and {} without a section", sections.join(", "), listed(&top))
+    format!("there are {}; and {} without a section", sections.join(", "), listed(""))
+}
+
+/// Splits the full name of a setting into its section, empty if it has none, and its name there.
+fn parts(name: &str) -> (&str, &str) {
+    name.rsplit_once('.').unwrap_or(("", name))
 }
 
 /// Tells if two names differ by few letters, relative to their length.
@@ -187,28 +189,9 @@ fn is_like(known: &str, name: &str) -> bool {
     damerau_levenshtein(known, name) <= (name.chars().count() / 3).clamp(1, 3)
 }
 
-fn sections(known: &[String]) -> Vec<&str> {
-    let mut sections: Vec<&str> = known.iter().filter_map(|name| Some(name.split_once('.')?.0)).collect();
-    sections.dedup();
-    sections
-}
-
-/// Returns the name inside a section, if it is in that section.
-fn in_section<'a>(name: &'a str, section: &str) -> Option<&'a str> {
-    match name.rsplit_once('.') {
-        Some((its_section, name)) => (its_section == section).then_some(name),
-        None => section.is_empty().then_some(name),
-    }
-}
-
-fn listed(names: &[&str]) -> String {
-    let more = if names.len() > NAMED { ", ..." } else { "" };
-    format!("{}{more}", names[..names.len().min(NAMED)].join(", "))
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{instead_of, *};
+    use super::*;
 
     #[test]
     fn usual_mistakes_are_known() {

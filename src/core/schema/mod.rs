@@ -187,7 +187,7 @@ macro_rules! section {
                         doc: [$($doc),*].concat().trim().to_owned(),
                         toml_type: allowed.toml_type(),
                         default,
-                        offered: allowed.offered().to_vec(),
+                        offered: allowed.offered,
                         allowed: allowed.words,
                         shown: written.unwrap_or_default(),
                         is_set: stringify!($state) == "set",

@@ -198,9 +198,7 @@ fn lock(path: &Path, shared: bool) -> Result<Lock, StoreError> {
     }
     match platform::try_lock(&file, shared) {
         Ok(()) => Ok(Lock(file)),
-        Err(TryLockError::WouldBlock) => {
-            Err(StoreError::Held { path: folder.to_owned(), holder: holder(path) })
-        }
+        Err(TryLockError::WouldBlock) => Err(StoreError::Held { path: folder.into(), holder: holder(path) }),
         Err(TryLockError::Error(source)) => Err(StoreError::io(folder, "lock the folder")(source)),
     }
 }

@@ -68,7 +68,6 @@ use serde::de::DeserializeOwned;
 use std::cmp::Reverse;
 use std::fs::File;
 use std::io;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::xxh3_64;
 
@@ -141,11 +140,6 @@ impl Checkpoint {
         let apart = || CheckpointError::corrupt(path, "its sections do not follow one another");
         let gaps = gaps(&sections, header, length).ok_or_else(apart)?;
         Ok(Self { label, path: path.to_owned(), source, sections, gaps })
-    }
-
-    /// Path of the file.
-    pub fn path(&self) -> &Path {
-        &self.path
     }
 
     /// Makes the error for wrong content whose checksums are right.

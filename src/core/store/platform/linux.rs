@@ -7,10 +7,8 @@ use std::path::{Component, Path, PathBuf};
 
 /// Lists the processors that this thread may use, by number.
 pub fn processors() -> Vec<usize> {
-    match sched_getaffinity(None) {
-        Ok(set) => (0..CpuSet::MAX_CPU).filter(|&processor| set.is_set(processor)).collect(),
-        Err(_) => Vec::new(),
-    }
+    let set = sched_getaffinity(None).unwrap_or_default();
+    (0..CpuSet::MAX_CPU).filter(|&processor| set.is_set(processor)).collect()
 }
 
 /// Binds this thread to a processor. If refused, the system places the thread.

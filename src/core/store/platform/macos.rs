@@ -32,12 +32,6 @@ pub fn processor() -> Option<String> {
     Some(name.trim().to_owned()).filter(|name| !name.is_empty())
 }
 
-/// `None`: the table of mounts has another form here.
-#[cfg(target_os = "macos")]
-pub fn mounts() -> Option<String> {
-    None
-}
-
 /// Output of a command.
 #[cfg(target_os = "macos")]
 fn output_of(command: &str, words: &[&str]) -> Option<String> {

@@ -79,8 +79,3 @@ pub fn memory() -> Memory {
 pub fn processor() -> Option<String> {
     None
 }
-
-/// Unknown.
-pub fn mounts() -> Option<String> {
-    None
-}

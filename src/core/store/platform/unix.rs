@@ -73,10 +73,6 @@ pub const THREAD_SECONDS_STEP: f64 = 1e-6;
 
 /// Processor time of this thread (s).
 pub fn thread_seconds() -> f64 {
-    seconds(ClockId::ThreadCPUTime)
-}
-
-fn seconds(clock: ClockId) -> f64 {
-    let time = clock_gettime(clock);
+    let time = clock_gettime(ClockId::ThreadCPUTime);
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }

@@ -132,17 +132,12 @@ pub fn host_name() -> String {
 /// Step of the processor time of a thread (s): the step of the system's own clock.
 pub const THREAD_SECONDS_STEP: f64 = 0.016;
 
-/// Processor time of this thread (s).
+/// Processor time of this thread (s), in kernel and user mode.
 pub fn thread_seconds() -> f64 {
-    // SAFETY: the handle denotes this thread, and the system writes into the four places that it gets.
-    seconds(|[a, b, c, d]| unsafe { GetThreadTimes(GetCurrentThread(), a, b, c, d) })
-}
-
-/// Processor time (s) in kernel and user mode, the last two of the times that `ask` fills in: creation,
-/// exit, kernel, user.
-fn seconds(ask: impl FnOnce([&mut FILETIME; 4]) -> i32) -> f64 {
     let mut times = [FILETIME::default(); 4];
-    if ask(times.each_mut()) == 0 {
+    let [creation, exit, kernel, user] = times.each_mut();
+    // SAFETY: the handle denotes this thread, and the system writes into the four places that it gets.
+    if unsafe { GetThreadTimes(GetCurrentThread(), creation, exit, kernel, user) } == 0 {
         return 0.0;
     }
     // Counted in steps of 100 ns.
@@ -185,11 +180,6 @@ pub fn memory() -> Memory {
 /// Family and model of the processor.
 pub fn processor() -> Option<String> {
     std::env::var("PROCESSOR_IDENTIFIER").ok()
-}
-
-/// `None`: the system has no such table.
-pub fn mounts() -> Option<String> {
-    None
 }
 
 /// Flags set by a request to end.
