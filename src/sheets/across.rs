@@ -184,9 +184,9 @@ impl<'a> Across<'a> {
         if let Some(above) = self.text_above() {
             let is_unread = |c: &usize| !above.cell(*c).is_empty() && head(above.cell(*c)).is_none();
             let column = columns.iter().copied().find(is_unread).unwrap_or(columns[0]);
+            let name = shortened(name);
             let allowed = format!(
-                "an opening above the percents of \"{}\", such as P#200, Passing 19 mm or 0.075 mm",
-                shortened(name)
+                "an opening above the percents of \"{name}\", such as P#200, Passing 19 mm or 0.075 mm"
             );
             return grid.refused(above.line, column, "heading", above.cell(column), allowed);
         }
@@ -213,14 +213,11 @@ impl<'a> Across<'a> {
             let is_named = is_broken(cell) || head(cell).is_some_and(|head| head.role.is_some());
             !self.is_between(*c) && (is_named || is_beside(*c) && is_misspelt(cell) && is_percents(*c))
         };
-        match row.filled().find(is_other) {
-            Some(c) => {
-                let allowed =
-                    "an opening, such as P#200, Passing 19 mm or 0.075 mm, beside the other openings";
-                Err(self.grid.refused(row.line, c, "heading", row.cell(c), allowed))
-            }
-            None => Ok(()),
+        if let Some(c) = row.filled().find(is_other) {
+            let allowed = "an opening, such as P#200, Passing 19 mm or 0.075 mm, beside the other openings";
+            return Err(self.grid.refused(row.line, c, "heading", row.cell(c), allowed));
         }
+        Ok(())
     }
 
     /// Refuses rows below the soils that also look like a table, instead of ignoring them.

@@ -151,23 +151,18 @@ fn soils_of_rows(
         return Err(refused(line, "GRAG", allowed));
     }
     if soils.is_empty() {
-        return Err(TableError::Format {
-            file: empty().place(),
-            is: "AGS4 without a row in its group GRAT (gradings)".into(),
-        });
+        let is = "AGS4 without a row in its group GRAT (gradings)".into();
+        return Err(TableError::Format { file: empty().place(), is });
     }
     let soils = soils.into_iter().map(|(name, mut grid, types, (columns, unit))| {
         in_order(&mut grid, columns);
         if types.len() > 1 {
-            let types = types.into_iter().take(8).collect::<Vec<_>>().join(", ");
-            grid.notes.push(format!(
-                "the tests of several kinds (GRAT_TYPE {}) read as one curve",
-                shortened(&types)
-            ));
+            let types = shortened(&types.into_iter().take(8).collect::<Vec<_>>().join(", "));
+            grid.notes.push(format!("the tests of several kinds (GRAT_TYPE {types}) read as one curve"));
         }
         if summary.is_some() {
-            grid.notes
-                .push("the group GRAG, which summarises gradings, was ignored: sizes are from GRAT".into());
+            let note = "the group GRAG, which summarises gradings, was ignored: sizes are from GRAT";
+            grid.notes.push(note.into());
         }
         let soil = SoilColumn { column: columns[1], heading: name.clone(), role: Role::Finer, end: None };
         // The headings of AGS4 define the other columns.
@@ -191,7 +186,7 @@ fn in_order(grid: &mut Grid, columns: [usize; 2]) {
         same
     });
     if !twice.is_empty() {
-        grid.notes
-            .push(format!("{} left out, the same as a row before", listed("line", &twice, String::clone)));
+        let lines = listed("line", &twice, String::clone);
+        grid.notes.push(format!("{lines} left out, the same as a row before"));
     }
 }

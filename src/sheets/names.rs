@@ -249,13 +249,9 @@ fn join(sieves: &mut Read, table: Read) {
         let line = |place: Option<&[Place; 2]>| place.map_or(table.block.line(), |place| place[1].line);
         let (first, last) = (line(lower.places.first()), line(lower.places.last()));
         let grid = &table.block.grid;
-        let note = format!(
-            "{}s {} to {} of {} continue the sieves below the finest of them",
-            grid.row_word(),
-            grid.row_name(first.min(last)),
-            grid.row_name(first.max(last)),
-            grid.column_label(table.block.layout.soils[0].column),
-        );
+        let (word, column) = (grid.row_word(), grid.column_label(table.block.layout.soils[0].column));
+        let (from, to) = (grid.row_name(first.min(last)), grid.row_name(first.max(last)));
+        let note = format!("{word}s {from} to {to} of {column} continue the sieves below the finest of them");
         let new: Vec<String> = lower.notes.into_iter().filter(|note| !upper.notes.contains(note)).collect();
         upper.notes.extend(new);
         upper.notes.push(note);

@@ -151,11 +151,11 @@ fn entries(reading: &mut Reading) -> Result<(Vec<Entry>, Vec<usize>), TableError
         }
         let of_range = |(least, most): (f64, f64)| if column.end == Some(End::Least) { least } else { most };
         let bound = bound(value).filter(|_| !retained);
-        if let Some(most) = bound.filter(|&most| most > LEAST_BOUND) {
-            let allowed = format!("a number: below {most} it may be anything from 0 to {most}");
-            return Err(grid.refused(line, column.column, FIELDS[1], value, allowed));
-        }
         if let Some(most) = bound {
+            if most > LEAST_BOUND {
+                let allowed = format!("a number: below {most} it may be anything from 0 to {most}");
+                return Err(grid.refused(line, column.column, FIELDS[1], value, allowed));
+            }
             let row = grid.row_label(line);
             reading.notes.push(format!("{value} in {row} read as {most} %, its upper bound"));
         }

@@ -268,11 +268,10 @@ pub(super) fn percents_finer(
     reading.notes.push(format!("{how}{what} retained turned into percent finer"));
     let rest = rows.last().map_or(0.0, |row| row.percent);
     if percent && !cumulative && pan.is_none() && rest > ROUNDED {
+        let (sum, rest) = (tidy(all), tidy(rest));
         reading.notes.push(format!(
-            "the percents retained sum to {}, without the pan: the missing {} % were taken as finer than the \
-             finest sieve",
-            tidy(all),
-            tidy(rest)
+            "the percents retained sum to {sum}, without the pan: the missing {rest} % were taken as finer \
+             than the finest sieve"
         ));
     }
     Ok(rows)

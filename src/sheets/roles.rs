@@ -150,11 +150,8 @@ pub(super) fn settle_bounds(grid: &mut Grid, layout: &mut Layout) -> Result<(), 
             return Err(refused(grid, &rows, column, &pairs));
         } else if says_size && !pairs.is_empty() {
             layout.accounted.push(column);
-            layout.notes.push(format!(
-                "not used: {} (\"{}\")",
-                grid.column_label(column),
-                shortened(&heading)
-            ));
+            let (place, heading) = (grid.column_label(column), shortened(&heading));
+            layout.notes.push(format!("not used: {place} (\"{heading}\")"));
             layout.other_size = layout.other_size.filter(|&other| other != column);
         }
     }
@@ -247,12 +244,11 @@ fn read_classes(
     is_lower: bool,
 ) -> Result<(), TableError> {
     let (upper, lower) = if is_lower { (layout.size, second) } else { (second, layout.size) };
-    let names = [upper, lower].map(|c| grid.column_label(c));
+    let [name, other] = [upper, lower].map(|c| grid.column_label(c));
     if let Some(soil) = layout.soils.iter().find(|soil| !matches!(soil.role, Role::Retained(_))) {
         let allowed = format!(
-            "`retained` in the heading of what is in each class, as {} and {} are bounds of classes; \
-             percents finer go with one column of openings",
-            names[0], names[1]
+            "`retained` in the heading of what is in each class, as {name} and {other} are bounds of \
+             classes; percents finer go with one column of openings"
         );
         return Err(grid.refused_heading(grid.rows[layout.at].line, &soil.heading, &allowed));
     }
@@ -285,7 +281,7 @@ fn read_classes(
     }
     grid.rows.insert(at, top);
     (layout.size, layout.other_size, layout.unit) = (lower, None, unit);
-    layout.notes.push(format!("{} and {} read as the bounds of classes", names[0], names[1]));
+    layout.notes.push(format!("{name} and {other} read as the bounds of classes"));
     Ok(())
 }
 

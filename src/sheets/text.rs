@@ -49,17 +49,15 @@ fn windows_1252(bytes: &[u8]) -> String {
 /// Recognises UTF-16 by its mark, or by the zeros in every other byte. Returns true if the high byte
 /// comes first, and the length of the mark.
 fn utf16(bytes: &[u8]) -> Option<(bool, usize)> {
-    match bytes {
-        [0xff, 0xfe, ..] => return Some((false, 2)),
-        [0xfe, 0xff, ..] => return Some((true, 2)),
-        _ => {}
-    }
     let start = &bytes[..bytes.len().min(200) & !1];
     let zeros = |from: usize| start.iter().skip(from).step_by(2).filter(|&&b| b == 0).count();
     let (even, odd, most) = (zeros(0), zeros(1), start.len() * 2 / 5);
-    match start.len() >= 8 {
-        true if odd > most && even == 0 => Some((false, 0)),
-        true if even > most && odd == 0 => Some((true, 0)),
+    match bytes {
+        [0xff, 0xfe, ..] => Some((false, 2)),
+        [0xfe, 0xff, ..] => Some((true, 2)),
+        _ if start.len() < 8 => None,
+        _ if odd > most && even == 0 => Some((false, 0)),
+        _ if even > most && odd == 0 => Some((true, 0)),
         _ => None,
     }
 }

@@ -46,7 +46,7 @@ pub(super) use files::{read_exact_at, sync_folder, try_lock};
 
 pub use files::{THREAD_SECONDS_STEP, free_bytes, host_name, thread_seconds};
 #[cfg(target_os = "linux")]
-pub use linux::mounts;
+pub use machine::mounts;
 pub use machine::{memory, processor, processors};
 
 pub(crate) use machine::stay_on;

@@ -14,7 +14,7 @@ pub fn end_at_once() {
 }
 
 /// Makes requests only set the flag of [`stop_on_request`]: otherwise work would be lost.
-pub fn save_first() {
+pub(crate) fn save_first() {
     AT_ONCE.store(false, Ordering::SeqCst);
 }
 
