@@ -4,9 +4,9 @@
     scripts/checks/three_faces.py --python target/python/bin/python [--binary target/release/voidwalk] [--pairs 500] [--seed 1]
 
 Each pair is written as two sheets and given to `voidwalk rules`, to `serve` and to `voidwalk.rules`, some said to be dispersive, some
-beside an open joint, some exchanged, some as given. Compared are every rule with its value and limit, D85B with the size that it was regraded on,
-the order of the rules (of the page the sizes of the base and the rules that are not met), or the words of the refusal. Exit code 1 where any
-two differ. The environment of --python has the package.
+beside an open joint, some exchanged, some as given. Compared are every rule with its value and limit, D85B with the size that it was
+regraded on, the order of the rules (of the page the sizes of the base and the rules that are not met), or the words of the refusal. Exit
+code 1 where any two differ. The environment of --python has the package.
 """
 
 import json

@@ -62,8 +62,7 @@ except ImportError:
     pass
 
 figure, (left, right) = plt.subplots(1, 2, figsize=(9, 4), layout="constrained")
-left.plot(found["csd.diameter"], found["csd.percent_smaller"])
-left.set(xlabel="constriction diameter (mm)", ylabel="smaller by number (%)", title="Constriction sizes")
+found.plot(left).set_title("Constriction sizes")
 connectivity = np.bincount(found["throat.conns"].ravel(), minlength=len(found["pore.coords"]))
 right.scatter(found["pore.diameter"], connectivity, s=4, alpha=0.3)
 right.set(xlabel="void diameter (mm)", ylabel="constrictions of the void", title="Voids")

@@ -17,7 +17,7 @@ SAID: Dict[str, List[str]] = {
     "sieve_curves": ["D15F / D85B", "Result("],
     "dem_packing": ["Packing(2000 grains", "grains per void", "Dc85"],
     "openpnm_clogging": ["Network(", "WalkResult("],
-    "parameter_study": ["Cu of the base", "continuing erosion"],
+    "parameter_study": ["eroded_1", "continuing erosion"],
     "paper_figure_13": [
         "continuing erosion: Result(model: ",
         "some erosion: Result(model: ",

@@ -182,10 +182,6 @@ def pack(
     progress : callable, True or None
         Told of each look at the work, a :class:`Progress`; ``True`` shows a bar where tqdm is installed.
 
-    Returns
-    -------
-    Packing
-
     Raises
     ------
     ValueError

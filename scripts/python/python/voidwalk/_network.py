@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _voidwalk
-from ._arrays import Floats, Ints, floats, frozen, ints, names, pores, whole
+from ._arrays import Floats, Ints, floats, frozen, ints, pores, whole
 from ._boxes import box
 from ._grains import MERGE_OVERLAP, Constrictions, Packing
 from ._plots import Axes, plot_network
@@ -178,10 +178,6 @@ class Network:
         reference_mm : float, optional
             As for the class; `d0_mm` without it.
 
-        Returns
-        -------
-        Network
-
         Examples
         --------
         >>> import voidwalk as vw
@@ -227,10 +223,6 @@ class Network:
             How a particle chooses: as for the class, or by area among the exits that lead upwards in z.
         rho, merge_overlap : float
             As for the class and for :func:`constrictions`.
-
-        Returns
-        -------
-        Network
         """
         if isinstance(packing, Constrictions):
             merge_overlap, packing = packing.merge_overlap, packing.packing
@@ -287,10 +279,6 @@ class Network:
             Length (mm) of the unit of `pn`: OpenPNM's is the metre.
         exit, rho, count, reference_mm
             As for the class.
-
-        Returns
-        -------
-        Network
 
         Examples
         --------
@@ -462,10 +450,6 @@ class Network:
             Where to; a new figure without it.
         blocked : array_like of bool, shape (n,), optional
             Which constrictions are blocked, as a run of ``Result.blocked``.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
         """
         layer, ends = self.layer, self.conns
         # A constriction belongs to the layer of the void that it leads from.
@@ -478,10 +462,6 @@ class Network:
         Constrictions that lead outside end in boundary pores of their own, so that every conns names two pores.
         ``pore.inlets`` and ``pore.outlets`` are masks. Which way a constriction leads is only in the order of
         its two pores.
-
-        Returns
-        -------
-        dict of ndarray
         """
         conns = np.array(self.conns)
         before, behind = np.flatnonzero(conns[:, 0] < 0), np.flatnonzero(conns[:, 1] < 0)
@@ -527,9 +507,7 @@ class Network:
 
     def __repr__(self) -> str:
         inlets = int(len(self.inlets) + np.count_nonzero(self.conns[:, 0] < 0))
-        return (
-            f"Network({self.count} voids, {len(self)} constrictions, {inlets} inlets, exit by {self.exit})"
-        )
+        return f"Network({self.count} voids, {len(self)} constrictions, {inlets} inlets, exit by {self.exit})"
 
     def _repr_html_(self) -> str:
         sizes = self.diameter[self.diameter > 0]
@@ -575,4 +553,4 @@ def _side(pn: Mapping[str, object], given: Union[None, str, ArrayLike], name: st
     for label in labels:
         if label in pn and np.asarray(pn[label]).any():
             return np.asarray(pn[label], dtype=bool)
-    raise ValueError(f"{name}: the network has no pores labelled {names(labels)}; give their numbers")
+    raise ValueError(f"{name}: the network has no pores labelled {', '.join(labels)}; give their numbers")

@@ -168,10 +168,6 @@ def schema(name: str) -> Dict[str, object]:
     name : str
         The name of its form without number, as ``"outcome"`` for ``outcome.json``.
 
-    Returns
-    -------
-    dict
-
     Examples
     --------
     >>> import voidwalk as vw

@@ -83,10 +83,6 @@ class Gradation:
         percent : float
             Which one: `size_mm` is ``D_percent``; D0 by default.
 
-        Returns
-        -------
-        Gradation
-
         Examples
         --------
         >>> import voidwalk as vw
@@ -122,10 +118,6 @@ class Gradation:
             Which of several soils.
         d0_mm : float, optional
             As for the class.
-
-        Returns
-        -------
-        Gradation
         """
         soils = _voidwalk.Gradation.in_file(os.fspath(path), d0_mm)
         if soil is None and len(soils) == 1:
@@ -154,10 +146,6 @@ class Gradation:
             Names of the columns with openings (mm) and percent finer by mass.
         d0_mm : float, optional
             As for the class.
-
-        Returns
-        -------
-        Gradation
         """
         for name in (size, percent):
             if name not in frame:
@@ -199,19 +187,8 @@ class Gradation:
         return self._native.points()
 
     def plot(self, ax: Optional[Axes] = None, *, label: Optional[str] = None) -> Axes:
-        """Draws percent finer by mass against size (mm) by matplotlib.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Where to; a new figure without it.
-        label : str, optional
-            Its name in the legend.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-        """
+        """Draws percent finer by mass against size (mm) by matplotlib: in `ax`, or in a new figure; `label` is its name in the
+        legend."""
         return plot_gradation(*self.points(), label, ax)
 
     def base_particles(self, filter: Gradation, voids: int, grains_per_void: float, mass_ratio: float = 0.05) -> int:
@@ -227,10 +204,6 @@ class Gradation:
             Filter grains per void, as :func:`constrictions` measures it.
         mass_ratio : float
             Mass of the base over mass of the filter.
-
-        Returns
-        -------
-        int
 
         Examples
         --------
