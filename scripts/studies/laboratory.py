@@ -183,23 +183,23 @@ class Models(Walks):
         print(*cell, row, f"{seconds:.0f} s", flush=True)
         return dict(zip(CELL, cell)) | row | {"cpu_seconds": round(seconds, 1)}
 
+    def first_runs(self, cell, ratio, share):
+        """What erodes in the first runs with this share of the base in an increment, and how much water flows at their end."""
+        outcomes = self.outcomes(cell, self.settings(cell, ratio) | {"runs": 1, "inject_share": share})
+        runs = [replicate["runs"][0] for outcome in outcomes for replicate in outcome["replicates"]]
+        return eroded_of(runs) | {"k_over_k0": f"{statistics.mean(run['k_over_k0'] for run in runs):.3g}"}
+
     def experiment(self, of):
-        """What one test of the experiment would give: mass that passes in the first run, in percent, and how much water flows at its end."""
+        """What one test of the experiment would give."""
         ratio, law, concentration, blocked, share = of
         cell = ("boundary", *BEADS, "1", "lattice", "flux", law, concentration, blocked)
-        settings = self.settings(cell, ratio) | {"runs": 1, "inject_share": share}
-        runs = [replicate["runs"][0] for replicate in self.outcome(settings)["replicates"]]
-        print(*of, flush=True)
-        return dict(zip(EXPERIMENT_CELL, of)) | eroded_of(runs) | {"k_over_k0": f"{statistics.mean(run['k_over_k0'] for run in runs):.3g}"}
+        return dict(zip(EXPERIMENT_CELL, of)) | self.first_runs(cell, ratio, share)
 
     def increments(self, of):
-        """What erodes with this share of the base in an increment, in percent: mean, least and most; and how much water flows then."""
+        """What erodes just below a boundary with this share of the base in an increment."""
         *pair, law, concentration, ratio, share = of
         cell = ("boundary", *pair, "graph", BY_AREA, law, concentration, "closed")
-        runs = [outcome["replicates"][0]["runs"][0] for outcome in self.outcomes(cell, self.settings(cell, ratio) | {"inject_share": share})]
-        print(*of, flush=True)
-        kept = statistics.mean(run["k_over_k0"] for run in runs)
-        return dict(zip(INCREMENTS_CELL, of)) | eroded_of(runs) | {"k_over_k0": f"{kept:.3g}"}
+        return dict(zip(INCREMENTS_CELL, of)) | self.first_runs(cell, ratio, share)
 
     @staticmethod
     def time():

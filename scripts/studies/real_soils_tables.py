@@ -3,8 +3,8 @@
 
     scripts/studies/real_soils_tables.py [--results results] [--write]
 
-Reads `real-soils.csv` and `real-soils-bases.csv`, prints the tables that `real-soils.md` takes its numbers from, and with
---write draws `real-soils.svg`. Needs NumPy, SciPy and Matplotlib.
+Reads `real-soils.csv` and `real-soils-bases.csv`, of walks by `scripts/studies/real_soils.py` of 516d681f, prints the tables that
+`real-soils.md` takes its numbers from, and with --write draws `real-soils.svg`. Needs NumPy, SciPy and Matplotlib.
 """
 
 import argparse
