@@ -85,17 +85,6 @@ class Network:
         "grains_per_void": "Filter grains per void, where known: of lattices with a shipped or measured curve, and "
         "of packings; else None.",
     }
-    _native: _voidwalk.Network
-    _made: Tuple[str, Mapping[str, object]]
-    conns: Ints
-    diameter: Floats
-    inlets: Ints
-    outlets: Ints
-    coords: Optional[Floats]
-    conductance: Optional[Floats]
-    rho: float
-    filter: Optional[Gradation]
-    grains_per_void: Optional[float]
 
     def __init__(
         self,
@@ -113,27 +102,24 @@ class Network:
     ) -> None:
         self.conns = frozen(ints("conns", conns, None, 2))
         self.diameter = frozen(floats("diameter", diameter, len(self.conns)))
-        self.conductance = None
-        if conductance is not None:
-            self.conductance = frozen(floats("conductance", conductance, len(self.conns)))
+        self.conductance = None if conductance is None else frozen(floats("conductance", conductance, len(self.conns)))
         if count is None:
             count = _count(self.conns, inlets, outlets, coords)
         self.inlets = frozen(pores("inlets", inlets, count))
         self.outlets = frozen(pores("outlets", outlets, count))
         self.coords = None if coords is None else frozen(floats("coords", coords, count, 3))
         self.rho = float(rho)
-        self.filter, self.grains_per_void = None, None
+        self.filter: Optional[Gradation] = None
+        self.grains_per_void: Optional[float] = None
         self._native = _voidwalk.Network.from_columns(
             whole("count", count), self.conns, self.diameter, self.conductance, self.inlets, self.outlets, exit,
             self.rho, float(reference_mm),
         )
-        self._made = (
-            "",
-            dict(
-                conns=self.conns, diameter=self.diameter, inlets=self.inlets, outlets=self.outlets, exit=exit,
-                conductance=self.conductance, rho=self.rho, count=count, coords=self.coords, reference_mm=reference_mm,
-            ),
+        made = dict(
+            conns=self.conns, diameter=self.diameter, inlets=self.inlets, outlets=self.outlets, exit=exit,
+            conductance=self.conductance, rho=self.rho, count=count, coords=self.coords, reference_mm=reference_mm,
         )
+        self._made: Tuple[str, Mapping[str, object]] = ("", made)
 
     @classmethod
     def _of(

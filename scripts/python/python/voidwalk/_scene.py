@@ -55,7 +55,6 @@ class Scene:
     """
 
     __slots__ = ("_native",)
-    _native: _voidwalk.Scene
 
     def __init__(self, scene: Union[Scene, Stated] = None, settings: Optional[Settings] = None) -> None:
         self._native = native_scene(scene, settings)

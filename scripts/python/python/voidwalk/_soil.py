@@ -58,7 +58,6 @@ class Gradation:
     """
 
     __slots__ = ("_native",)
-    _native: _voidwalk.Gradation
 
     def __init__(self, size_mm: ArrayLike, percent_finer: ArrayLike, d0_mm: Optional[float] = None) -> None:
         sizes, percents = floats("size_mm", size_mm, None), floats("percent_finer", percent_finer, None)
@@ -263,14 +262,12 @@ class Curve:
         "filter": "Gradation of the filter of a shipped curve, a straight line, or None.",
         "grains_per_void": "Filter grains per void where the curve was measured, or None.",
     }
-    _native: _voidwalk.Curve
-    filter: Optional[Gradation]
-    grains_per_void: Optional[float]
 
     def __init__(self, percent_smaller: ArrayLike, diameter_mm: ArrayLike) -> None:
         percents = floats("percent_smaller", percent_smaller, None)
         self._native = _voidwalk.Curve.from_points(percents, floats("diameter_mm", diameter_mm, None))
-        self.filter, self.grains_per_void = None, None
+        self.filter: Optional[Gradation] = None
+        self.grains_per_void: Optional[float] = None
 
     @classmethod
     def _of(cls, native: _voidwalk.Curve, filter: Optional[Gradation], grains_per_void: Optional[float]) -> Curve:
