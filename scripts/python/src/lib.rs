@@ -16,7 +16,6 @@ mod scenes;
 mod soil;
 mod studies;
 mod tables;
-mod two_tables;
 mod walks;
 mod work;
 
