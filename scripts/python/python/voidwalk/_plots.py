@@ -132,7 +132,7 @@ def _curves(outcome: Outcome, retained: Sizes, eroded: Sizes, ax: Optional[Axes]
         lines["Filter"] = inputs["filter"]["gradation"]
         lines["Constrictions, by number"] = inputs["filter"]["constrictions"]
     for label, points in lines.items():
-        drawn.plot(*zip(*points), label=label)
+        drawn.plot([point[0] for point in points], [point[1] for point in points], label=label)
     for table, label in ((retained, "Retained, run 1"), (eroded, "Eroded, run 1")):
         chosen = (table["run"] == 1) & (table["replicate"] == 1) if len(table.get("run", ())) else np.zeros(0, bool)
         if chosen.any():
