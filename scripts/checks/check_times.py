@@ -33,7 +33,7 @@ SCENES = {
     "built-in": "",
     "base Cu 3": "base.cu=3",
     "particles engine": f"engine=particles replicates=2 {ALONE}",
-    "cap 200 000": "base.cu=3 base.cap=2e5",
+    "cap 200 000": "base.cu=3 base.cap=2e5 replicates=10",
     "connectivity of Table 3": f"network.connectivity=table3 replicates=3 {ALONE}",
     "one coarse size, n_base 1e6": "base.single_mm=0.3 base.n_base=1e6",
     "one fine size, n_base 1e6": f"base.single_mm=0.2 base.n_base=1e6 {ALONE}",

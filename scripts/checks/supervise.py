@@ -501,11 +501,13 @@ def table(supervisor, commands, trials, works):
             "had ended"]
     rows = lambda place, key: [sum(n for of, n in supervisor.count.items() if of[place] == key and of[2] == how) for how in hows]
     line = lambda *cells: print("| " + " | ".join(map(str, cells)) + " |")
-    line("\n| command", "unbroken", "works", "harms", *hows)
+    print()
+    line("command", "unbroken", "works", "harms", *hows)
     print("|---" * (len(hows) + 4) + "|")
     for command in commands:
         line(command, supervisor.notes[command], works[command], trials[command], *rows(0, command))
-    line("\n| harm", *hows)
+    print()
+    line("harm", *hows)
     print("|---" * (len(hows) + 1) + "|")
     for harm in sorted({harm for _, harm, _ in supervisor.count}):
         line(harm, *rows(1, harm))
