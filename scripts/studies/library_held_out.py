@@ -3,9 +3,9 @@
 
     scripts/studies/library_held_out.py --out FOLDER [--binary target/release/voidwalk] [--jobs 2]
 
-Writes results/library-held-out.csv: a coarse concave gradation, and the first four shapes of a fixed draw at each distance from the library's
-nearest shape, loose and dense. They are never part of the fit: a test in src/core/constrictions/library.rs compares the library with them. FOLDER keeps
-every packing, so a run that was stopped goes on.
+Writes results/library-held-out.csv: a coarse concave gradation, and the first four shapes of a fixed draw at each distance from the
+library's nearest shape, loose and dense. They are never part of the fit: a test in src/core/constrictions/library.rs compares the library
+with them. FOLDER keeps every packing, so a run that was stopped goes on.
 """
 
 import math

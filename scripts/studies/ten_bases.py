@@ -4,9 +4,9 @@
     scripts/studies/ten_bases.py [--out target/ten-bases] [--binary target/release/voidwalk]
     VOIDWALK_ISA=avx2 scripts/studies/ten_bases.py --out other    # as on a machine without AVX-512
 
-Five bases that are linear on semi-log paper (D85 0.2 mm) and five sieve tables, on the filter cu1.5-loose. A base that is done is not walked
-again: the same command continues. Settings are the program's defaults. Prints a table in Markdown: boundaries with their 5 to 95 % over
-networks, ratios walked, processor time, wall time, and the machine's load when each began and ended.
+Five bases that are linear on semi-log paper (D85 0.2 mm) and five sieve tables, on the filter cu1.5-loose. A base that is done is not
+walked again: the same command continues. Settings are the program's defaults. Prints a table in Markdown: boundaries with their 5 to 95 %
+over networks, ratios walked, processor time, wall time, and the machine's load when each began and ended.
 """
 
 import json
@@ -85,7 +85,8 @@ def main():
         row, cu = one["boundary"]["boundaries"][0], one["boundary"]["base"]["cu"]
         print(f"| {name} | {'not known' if cu is None else f'{cu:.2f}'} | {words(row['no_erosion'], row.get('no_erosion_notes', []))} "
               f"| {words(row['continuing'], row.get('continuing_notes', []))} | {row['not_monotone']} of {len(row['networks'])} "
-              f"| {one['walks']} | {one['processor_s']:.0f} | {one['wall_s']:.0f} | {one['load'][0]:.0f} to {one['load'][1]:.0f} |", flush=True)
+              f"| {one['walks']} | {one['processor_s']:.0f} | {one['wall_s']:.0f} | {one['load'][0]:.0f} to {one['load'][1]:.0f} |",
+              flush=True)
 
 
 if __name__ == "__main__":
