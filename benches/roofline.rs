@@ -3,8 +3,8 @@
 //!
 //! First the machine's limits: bytes copied a second by size of the copy, a random read, multiplications and
 //! additions a second. Then the kernels, all of them in each of seven turns. Prints a line of JSON for each,
-//! with nanoseconds of processor time an item in every turn; `scripts/peers/roofline.py` puts bytes and
-//! operations beside them.
+//! with nanoseconds of processor time an item in every turn; `results/speed.md` says how far each kernel
+//! is from its limit.
 
 use std::hint::black_box;
 use std::rc::Rc;

@@ -71,15 +71,14 @@ class Browser:
     def show(self, tab, url, width, height):
         self.ask("Emulation.setDeviceMetricsOverride", tab,
                  width=width, height=height, deviceScaleFactor=1, mobile=False)
-        self.events = [event for event in self.events if event.get("method") != "Page.loadEventFired"]
-        self.ask("Page.navigate", tab, url=url)
-        self.wait("Page.loadEventFired")
+        self.load(tab, "Page.navigate", url=url)
 
-    def close(self):
-        self.ask("Browser.close")
-
-    def wait(self, method):
-        while not any(event.get("method") == method for event in self.events):
+    def load(self, tab, method, **params):
+        """Has a page loaded, and waits until it is."""
+        is_end = lambda event: event.get("method") == "Page.loadEventFired"
+        self.events = [event for event in self.events if not is_end(event)]
+        self.ask(method, tab, **params)
+        while not any(map(is_end, self.events)):
             self.events.append(self.read())
 
     def __enter__(self):
@@ -87,7 +86,7 @@ class Browser:
 
     def __exit__(self, *_):
         try:
-            self.close()
+            self.ask("Browser.close")
             self.process.wait(timeout=10)
         except (subprocess.TimeoutExpired, SystemExit, OSError):
             self.process.kill()

@@ -72,7 +72,7 @@ class Tab:
     """The page in a tab."""
 
     def __init__(self, browser, url, pictures, width=1280, height=900):
-        self.browser, self.url, self.pictures, self.width, self.height = browser, url, pictures, width, height
+        self.browser, self.pictures = browser, pictures
         self.tab = browser.open(url, width, height)
 
     def run(self, script):
@@ -86,15 +86,6 @@ class Tab:
             time.sleep(0.1)
         self.picture("not-reached")
         raise SystemExit(f"not reached within {seconds} s: {script}\n{self.run('document.body.innerText')}")
-
-    def again(self):
-        self.browser.show(self.tab, "about:blank", self.width, self.height)
-        self.browser.show(self.tab, self.url, self.width, self.height)
-
-    def reload(self):
-        self.browser.events = [event for event in self.browser.events if event.get("method") != "Page.loadEventFired"]
-        self.browser.ask("Page.reload", self.tab)
-        self.browser.wait("Page.loadEventFired")
 
     def paste(self, role, text):
         box = f'document.querySelector(\'.sheet[data-role="{role}"]\')'
@@ -278,7 +269,7 @@ def look(browser, url, pictures, workbook, root, process, binary):
     tab.picture("08-more-so-far")
 
     # A page that is loaded again, and another tab, find the job and the sheets.
-    tab.reload()
+    browser.load(tab.tab, "Page.reload")
     tab.until("document.querySelector('.job .so-far') && document.querySelector('.sheet[data-role=base] select').value === '1'")
     tab.until("document.querySelectorAll('#rules tr').length > 10")
     other = Tab(browser, url, pictures, 390, 800)

@@ -5,25 +5,17 @@
     scripts/checks/same_bits.py --binary target/release/voidwalk check results/same-bits.json
     scripts/checks/same_bits.py --binary target/release/voidwalk --isa avx2 check results/same-bits.json
 
-For changes of the code that must change no result. `record` writes down what the program gives; `check` works the same scenes and says
-of each `same` or what differs, with exit code 1 where anything does. Run, resume, pack, constrictions, campaign and
-percolation have scenes. Some scenes only vary another in a way that may change nothing (threads, instructions, mapped columns, a kill, the
-run's own scene.toml): they have no record of their own, and `record` too fails where they give anything else than the one they vary.
+For changes of the code that must change no result. `record` writes down what the program gives; `check` works the same scenes and says of
+each `same` or what differs, with exit code 1 where anything does. Some scenes only vary another in a way that may change nothing (threads,
+instructions, mapped columns, a kill, the run's own scene.toml): they have no record of their own, and `record` too fails where they give
+anything else than the one they vary.
 
-Compared are
-- every byte of CSV files: series, layers, retained, eroded, grains, constrictions, cases, percolation;
-- every number of JSON files, with true, false, null and the words that are results (WORDS).
-Left out are
-- times: no two calls take the same;
-- names, notes and all other text, that of rules too, and pages and figures: their wording may change, and their numbers are those
-  that are compared;
-- rules of practice and what they say of a pair: they read the sieve curves alone, grow in number, and have tests of their own;
-- the settings that packing.json repeats: their names may change, and the grains show their values;
-- manifests, fingerprints and ledgers, which say who worked when.
+Compared are every byte of CSV files, and every number of JSON files, with true, false, null and the words that are results (WORDS). Left
+out are times; names, notes and other text, pages and figures; rules of practice, which grow in number and have tests of their own; the
+settings that packing.json repeats; manifests, fingerprints and ledgers, which say who worked when.
 
 The record holds the first 16 digits of the SHA-256 of each of these. Of JSON it holds the numbers too, so that `check` can say which
-differ; of lists longer than ROWS only a hash. `--keep` keeps the files, to look at what differs in a CSV file. Recorded on x86-64
-Linux; Python 3's standard library only.
+differ; of lists longer than ROWS only a hash. `--keep` keeps the files, to look at what differs in a CSV file. Recorded on x86-64 Linux.
 """
 
 import argparse
@@ -75,9 +67,7 @@ RUNS = {
     "a base that is held": ["base.d85_at_dc=60"],
     "a wide base": ["base.cu=6", "base.d85_at_dc=50", "base.mass_ratio=0.02"],
     "base by d85_mm": ["filter.d0_mm=2.5", "base.d85_mm=0.55"],
-    "base by Dc of another filter": [
-        "filter.curve=shire2016-cu1.5-dense", "base.d85_at_dc=7.5", "base.dc_curve=shire2016-cu1.5-loose",
-    ],
+    "base by Dc of another filter": ["filter.curve=shire2016-cu1.5-dense", "base.d85_at_dc=7.5", "base.dc_curve=shire2016-cu1.5-loose"],
     "base by D15F/D85B": ["base.d15f_over_d85b=5.2"],
     "base of one size": ["base.single_mm=0.21"],
     "base of one size, counts": ["base.single_mm=0.15", "engine=counts"],
@@ -94,9 +84,7 @@ RUNS = {
     "filter Cu 3": ["filter.curve=cu3-loose", "base.mass_ratio=0.02"],
     "filter Cu 6 in mm": ["filter.curve=cu6-friction0.7", "filter.d0_mm=0.8", "base.mass_ratio=0.01"],
     "filter guessed": ["filter.estimate=0.3", "filter.cu=1.5", "filter.grains_per_void=0.6"],
-    "filter by sieve guessed": [
-        "filter.estimate=1", "filter.sieve=filter.csv", "filter.grains_per_void=0.5", "base.mass_ratio=0.02",
-    ],
+    "filter by sieve guessed": ["filter.estimate=1", "filter.sieve=filter.csv", "filter.grains_per_void=0.5", "base.mass_ratio=0.02"],
     "filter packed loose": ["filter.density=loose", *FEW_GRAINS],
     "filter packed by friction": [
         "filter.friction=0.15", *FEW_GRAINS[:2], "filter.sieve=narrow.csv", "packing.seed=5", "packing.final_friction=0.3",
@@ -105,9 +93,7 @@ RUNS = {
     "connectivity of Table 3": ["network.connectivity=table3"],
     "connectivity of one's own, counts": ["network.connectivity={ 5 = 25, 6 = 50, 7 = 25 }", "engine=counts"],
     "network from a file": ["network.file=network.csv", "base.single_mm=0.3", "base.n_base=40000"],
-    "network from a file, counts": [
-        "network.file=network.csv", "base.cu=3", "base.d85_mm=0.4", "base.n_base=40000", "engine=counts",
-    ],
+    "network from a file, counts": ["network.file=network.csv", "base.cu=3", "base.d85_mm=0.4", "base.n_base=40000", "engine=counts"],
     "network from a file, stratified": [
         "network.file=network.csv", "base.cu=2", "base.d85_mm=0.4", "base.n_base=10000", "sampling=stratified",
     ],
@@ -308,7 +294,7 @@ class Program:
 
     def run(self, folder, sets, scene="small.toml", threads=None, isa=None, memory=None, kill=False, again=False):
         room = ["--memory", memory] if memory else []
-        words = ["run", *([scene] if scene else []), "--out", "out", "-q", *settings(sets), *room]
+        words = ["run", *filter(None, [scene]), "--out", "out", "-q", *settings(sets), *room]
         if kill:
             self.kill(folder, *words, "--checkpoint-every", "1increment", watched="out/checkpoint/*", after=KILL_RUN)
             words = ["resume", "out", "-q", *room]

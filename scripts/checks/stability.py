@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Stiff or extreme scenes and packings: what must happen, what happened, and the time that it took.
+"""Extreme scenes and lattices of grains: what must happen, what happened, and the time that it took.
 
     scripts/checks/stability.py [--binary target/release/voidwalk]
 
@@ -56,30 +56,17 @@ def within(folder, name):
     return at
 
 
-def first(outcome, run=0):
-    return outcome["replicates"][0]["runs"][run]
+def first(outcome):
+    return outcome["replicates"][0]["runs"][0]
 
 
 def write(folder, name, text):
-    (folder / name).write_bytes(text if isinstance(text, bytes) else text.encode())
+    (folder / name).write_text(text)
     return name
 
 
-def network(folder, rows, start=(0,)):
-    lines = ["from,to,diameter_mm", *(f"start,{void}," for void in start), *rows]
-    return "network.file=" + write(folder, "network.csv", "\n".join(lines) + "\n")
-
-
-def refusals(folder, cases):
-    """Scenes that are refused: settings, and a word that the message must have. The slowest of them, in s."""
-    slowest = 0.0
-    for sets, word in cases:
-        begun = time.time()
-        message = walk(folder, *sets, code=2)
-        slowest = max(slowest, time.time() - begun)
-        assert word in message, f"{sets}: {message} lacks {word}"
-    assert slowest < 1.0, f"{slowest} s"
-    return f"{len(cases)} refused, the slowest in {slowest * 1000:.0f} ms"
+def network(folder, rows):
+    return "network.file=" + write(folder, "network.csv", "\n".join(["from,to,diameter_mm", "start,0,", *rows]) + "\n")
 
 
 @case("Walk", "every base particle passive", "100 % eroded, nothing blocked, 3 moves a layer, the report says that no walk was needed")
@@ -154,11 +141,11 @@ def _(folder):
 
 @case("Walk", "N_base = 0, 1, 99, 100, 101", "refused for 0, else exactly N inserted")
 def _(folder):
-    refused = refusals(folder, [(["base.n_base=0"], "base.n_base")])
+    assert "base.n_base" in walk(folder, "base.n_base=0", code=2)
     for n in [1, 99, 100, 101]:
         at = within(folder, n)
         assert first(walk(at, *LATTICE, f"base.n_base={n}"))["inserted"] == n
-    return f"{refused}; 1, 99, 100 and 101 inserted"
+    return "0 refused; 1, 99, 100 and 101 inserted"
 
 
 @case("Walk", "N_base = 1e12; nx = 1e9", "one by one: refused with the bytes needed and available; by count: 1e12 runs")
@@ -189,63 +176,6 @@ def _(folder):
         said.append(f"{name}: {'walked' if done.returncode == 0 else 'refused: ' + done.stderr.strip().split(': ', 1)[-1][:120]}")
         assert done.returncode == 0 or name == "vertical step", said[-1]
     return "; ".join(said)
-
-
-def pack(folder, name, gradation, *sets):
-    """Packs; the record and the seconds, or what it said where it could not."""
-    at = within(folder, name)
-    write(at, "filter.toml", f"[filter]\n{gradation}\n")
-    begun = time.time()
-    done = called(at, "pack", "filter.toml", sets=sets)
-    seconds = time.time() - begun
-    record = json.loads((at / "out/packing.json").read_text()) if done.returncode == 0 else None
-    return record, seconds, done.stderr.strip().splitlines()[-1:] or [""]
-
-
-def final(record):
-    """The state of a packing after its last friction."""
-    return record["after"] or record["before"]
-
-
-@case("Packing", "stiffness over six decades, Cu 1.5, 600 grains, friction 0 (ratio 1 is the paper's 27 GPa)",
-      "settles, and the void ratio moves little down to the default; refused where overlaps mean nothing")
-def _(folder):
-    rows, ratios = [], {}
-    for ratio in ["1", "0.1", "0.01", "0.001", "0.0001", "0.00001", "0.000001"]:
-        record, seconds, said = pack(folder, ratio, "d0_mm = 1\ncu = 1.5\nfriction = 0.0", "packing.grains=600", f"packing.stiffness_ratio={ratio}")
-        if record is None:
-            assert "would overlap" in said[0], said
-            rows.append(f"{ratio}: refused, grains would overlap too much ({seconds:.1f} s)")
-        else:
-            ratios[ratio] = final(record)["void_ratio"]
-            rows.append(f"{ratio}: e {final(record)['void_ratio']:.4f}, {seconds:.0f} s")
-    assert abs(ratios["1"] - ratios["0.1"]) < 0.01, ratios
-    return "; ".join(rows)
-
-
-@case("Packing", "friction 0 to 1, Cu 1.5, 600 grains", "the void ratio rises with friction, and hardly above 0.5; friction 0 has no torque and a coordination near 6")
-def _(folder):
-    rows, last = [], 0.0
-    for friction in ["0.0", "0.1", "0.3", "0.5", "0.7", "1.0"]:
-        record, seconds, said = pack(folder, friction, f"d0_mm = 1\ncu = 1.5\nfriction = {friction}", "packing.grains=600",
-                                     f"packing.final_friction={friction}")
-        assert record, said
-        e = final(record)["void_ratio"]
-        rows.append(f"{friction}: e {e:.4f}, {seconds:.0f} s")
-        assert e > last - 0.02, rows
-        last = e
-    return "; ".join(rows)
-
-
-@case("Packing", "a whole packing with size ratio 100", "settles, or says why not; neighbour search and triangulation hold")
-def _(folder):
-    # A gap: a thousandth of the mass is a hundred times finer, about a thousand fines a coarse grain.
-    table = write(folder, "gap.csv", "opening_mm,percent_finer\n0.1,0\n0.11,0.1\n9,0.1\n9.5,50\n10,100\n")
-    record, seconds, said = pack(folder, "gap", f"sieve = \"../{table}\"\nfriction = 0.0", "packing.grains=12000", "packing.max_steps=60000")
-    if record is None:
-        assert "not settled" in said[0] or "no constriction" in said[0], said[0]
-        return f"refused after {seconds:.0f} s: {said[0][:200]}"
-    return f"e {final(record)['void_ratio']:.4f} in {seconds:.0f} s"
 
 
 @case("Triangulation", "simple cubic, FCC, HCP, BCC: exact, scaled by 1e-6 and 1e6, jittered by 1e-16, 1e-12, 1e-6",

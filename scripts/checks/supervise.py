@@ -25,6 +25,7 @@ prints a table. How a trial goes depends on its name, and on how quick the machi
 """
 
 import argparse
+import collections
 import csv
 import io
 import json
@@ -120,8 +121,8 @@ HARMS = ["kill", "kill", "kill", "kill", "kill", "stop", "full", "cut", "flip", 
 # What a record says of the clock, the machine and the call.
 TIMES = {"seconds", "made", "threads", "host", "machine", "started", "finished", "command"}
 LOCK, MARK, PART = ".voidwalk.lock", ".voidwalk.unfinished", ".voidwalk-part-"
-RECORDS = ("outcome.json", "packing.json", "percolation.json", "boundary.json", "specification.json", "constrictions.json", "batch.json", "designs.json", "case.json")
-PAGES = ("report.html", "boundary.html", "specification.html", "batch.html", "designs.html")
+RECORDS = [f"{name}.json" for name in "outcome packing percolation boundary specification constrictions batch designs case".split()]
+PAGES = [f"{name}.html" for name in "report boundary specification batch designs".split()]
 
 
 class Find(Exception):
@@ -159,15 +160,12 @@ def made_alike(name, data):
     if name == LOCK:
         return b""
     if name.endswith((".json", ".jsonl")):
-        text, values, at = data.decode(errors="replace"), [], 0
-        while text[at:].strip():
-            at += len(text[at:]) - len(text[at:].lstrip())
-            try:
-                value, at = json.JSONDecoder().raw_decode(text, at)
-            except json.JSONDecodeError:
-                return data  # harmed: like no other
-            values.append(alike(value))
-        return "\n".join(json.dumps(value) for value in values).encode()
+        text = data.decode(errors="replace")
+        try:
+            values = [json.loads(line) for line in (text.splitlines() if name.endswith(".jsonl") else [text])]
+        except json.JSONDecodeError:
+            return data  # harmed: like no other
+        return "\n".join(json.dumps(alike(value)) for value in values).encode()
     if name.endswith(".csv") and TIMES & set(data.split(b"\n", 1)[0].decode(errors="replace").split(",")):
         rows = list(csv.reader(io.StringIO(data.decode())))
         clock = {at for at, column in enumerate(rows[0]) if column in TIMES}
@@ -178,20 +176,14 @@ def made_alike(name, data):
 
 
 def files_of(folder):
-    found = {}
-    for at, _, names in os.walk(folder):
-        for name in names:
-            path = os.path.join(at, name)
-            with open(path, "rb") as file:
-                found[os.path.relpath(path, folder)] = file.read()
-    return found
+    return {str(path.relative_to(folder)): path.read_bytes() for path in pathlib.Path(folder).rglob("*") if path.is_file()}
 
 
 class Supervisor:
     def __init__(self, binary, python, at):
         self.binary, self.python, self.at = binary, python, at
         self.ready = {}  # command: files to begin with, what unbroken work leaves, what was there before, seconds
-        self.count = {}
+        self.count = collections.Counter()  # by command, harm and what came of it
         self.notes = {}
 
     def program(self, words):
@@ -226,18 +218,14 @@ class Supervisor:
         with tempfile.TemporaryDirectory(dir=self.at) as room:
             copy = os.path.join(room, os.path.basename(inside))
             shutil.copytree(own, copy)
-            shown = lambda folder: {
-                name: data for name, data in files_of(folder).items()
-                if name in PAGES or pathlib.Path(name).parts[0] == "figures"
-            }
+            shown = lambda folder: {name: data for name, data in files_of(folder).items() if name in PAGES or name.startswith("figures/")}
             self.must(["report", os.path.basename(inside)], room)
             if shown(copy) != shown(own):
                 differ = [n for n in shown(copy) if shown(copy)[n] != shown(own).get(n)]
                 raise Find(f"the page of {inside} is not that of its files: {differ}")
             for name, data in files_of(copy).items():
                 if name.endswith((".json", ".jsonl")):
-                    with open(os.path.join(copy, name), "wb") as file:
-                        file.write(made_alike(os.path.basename(name), data))
+                    pathlib.Path(copy, name).write_bytes(made_alike(os.path.basename(name), data))
             self.must(["report", os.path.basename(inside)], room)
             return {os.path.join(inside, name): data for name, data in shown(copy).items()}
 
@@ -246,8 +234,7 @@ class Supervisor:
         at = os.path.join(self.at, f"{command}-unbroken")
         os.mkdir(at)
         for name, text in {**FILES, "grains.csv": grains(9), "fewer.csv": grains(7)}.items():
-            with open(os.path.join(at, name), "w") as file:
-                file.write(text)
+            pathlib.Path(at, name).write_text(text)
         if before:
             self.must(before, at)
         begin = os.path.join(self.at, f"{command}-begin")
@@ -257,8 +244,8 @@ class Supervisor:
         self.must(work, at)
         seconds = time.monotonic() - begun
         self.ready[command] = (begin, self.whole(at, folders), old, seconds)
-        size = sum(map(len, files_of(os.path.join(at, "r")).values()))
-        self.notes[command] = f"{seconds:.2f} s, {len(files_of(os.path.join(at, 'r')))} files, {size / 1e6:.1f} MB"
+        files = files_of(os.path.join(at, "r"))
+        self.notes[command] = f"{seconds:.2f} s, {len(files)} files, {sum(map(len, files.values())) / 1e6:.1f} MB"
         shutil.rmtree(at)
 
     def trial(self, command, seed, most):
@@ -272,10 +259,7 @@ class Supervisor:
         try:
             harms = Trial(self, command, at, chance, seconds, old, log).harmed(min(most, chance.randint(1, 6)))
             found = self.whole(at, WORKS[command][2])
-            names = sorted(set(found) ^ set(expected))
-            if names:
-                raise Find(f"names differ: {names}")
-            differ = sorted(name for name in expected if found[name] != expected[name])
+            differ = sorted(name for name in {**found, **expected} if found.get(name) != expected.get(name))
             if differ:
                 raise Find(f"these differ from unbroken work: {differ}")
             left = [name for name in files_of(at) if PART in name]
@@ -300,13 +284,11 @@ class Trial:
         work = WORKS[self.command][0]
         if self.old is not None and self.is_old():
             return work
-        plain = [word for word in work if word != "--overwrite"]
-        resumable = {"run", "judge"} & set(work) and os.path.isfile(os.path.join(self.out, "scene.toml"))
-        if resumable and work[0] == "python" and self.chance.random() < 0.5:
+        if not ({"run", "judge"} & set(work) and os.path.isfile(os.path.join(self.out, "scene.toml"))):
+            return [word for word in work if word != "--overwrite"]
+        if work[0] == "python" and self.chance.random() < 0.5:
             return ["python", "resume", "r"]
-        if resumable:
-            return ["resume", "r", "-q"] + (["--checkpoint-every", "5increments"] if self.chance.random() < 0.3 else [])
-        return plain
+        return ["resume", "r", "-q"] + (["--checkpoint-every", "5increments"] if self.chance.random() < 0.3 else [])
 
     def is_old(self):
         """Whether what was there before is still there, whole."""
@@ -320,10 +302,9 @@ class Trial:
     def is_begun(self):
         return os.path.isdir(self.out) and os.path.exists(os.path.join(self.out, MARK)) or self.is_campaign
 
-    def did(self, harm, how):
-        key = (self.command, harm, how)
-        self.all.count[key] = self.all.count.get(key, 0) + 1
-        self.log.append(f"{harm}: {how}")
+    def did(self, harm, how, what=""):
+        self.all.count[self.command, harm, how] += 1
+        self.log.append(f"{harm}: {how}{what}")
 
     def find(self, what, done=None):
         said = f" (exit {done.returncode}: {done.stderr.strip()[-600:]})" if done else ""
@@ -337,42 +318,29 @@ class Trial:
         return not self.is_campaign and not has(MARK) and whole and not (self.old and self.is_old())
 
     def harmed(self, wanted):
-        harms = 0
-        while harms < wanted:
-            if harms and self.is_done():
-                return harms
+        """Harms the work so many times, unless it ends before; the number of harms."""
+        for harms in range(1, wanted + 1):
             harm = self.chance.choice(HARMS)
-            if harm in ("cut", "flip", "other"):
+            if harm in ("cut", "flip", "other") and not self.is_begun():
                 # Something must have begun.
-                ended = self.kill("kill") if not self.is_begun() else False
-                if ended or not self.is_begun():
-                    harms += 1
-                    if ended:
-                        return harms
-                    continue
-            ended = getattr(self, harm)(harm)
-            harms += 1
-            if ended:
+                ended = self.kill("kill")
+                if not ended and self.is_begun():
+                    ended = getattr(self, harm)(harm)
+            else:
+                ended = getattr(self, harm)(harm)
+            if ended or self.is_done():
                 return harms
-        self.end()
-        return harms
-
-    def end(self):
-        if self.is_done():
-            return
         words = self.words()
         done = self.all.call(words, self.at)
         if done.returncode != 0:
             self.find(f"{' '.join(words)} did not end well", done)
-
-    def started(self, words, **more):
-        return subprocess.Popen(self.all.program(words), cwd=self.at, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                                text=True, errors="replace", **more)
+        return wanted
 
     def signalled(self, number):
         """Sends a signal after a random time, short ones as well as long ones; gives the exit code and what was said."""
         words = self.words()
-        child = self.started(words)
+        child = subprocess.Popen(self.all.program(words), cwd=self.at, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                                 errors="replace")
         time.sleep(1.05 * self.seconds * self.chance.random() ** 2)
         child.send_signal(number)
         said = child.communicate(timeout=600)[1]
@@ -428,13 +396,10 @@ class Trial:
                 shutil.copytree(held, self.out, dirs_exist_ok=True)
             state = os.statvfs(self.out)
             free = int(2 ** self.chance.uniform(0, 9)) * state.f_bsize
-            with open(os.path.join(self.out, ".voidwalk-part-4999999-0"), "wb") as ballast:
+            with open(os.path.join(self.out, "ballast"), "wb") as ballast:
                 os.posix_fallocate(ballast.fileno(), 0, state.f_bavail * state.f_frsize - free)
-            # What looks like a part of a process that is gone would be cleared away.
-            os.rename(os.path.join(self.out, ".voidwalk-part-4999999-0"), os.path.join(self.out, "ballast"))
             if not begun:
-                with open(os.path.join(self.out, LOCK), "w"):
-                    pass
+                pathlib.Path(self.out, LOCK).touch()
             done = self.all.call(words, self.at)
             os.remove(os.path.join(self.out, "ballast"))
             back = os.path.join(self.at, "back")
@@ -460,55 +425,43 @@ class Trial:
         # Results that are written have no sums: once a record is there, only the record itself is looked at again.
         written = {os.path.dirname(name): name for name in sorted(files_of(self.out), reverse=True) if os.path.basename(name) in RECORDS}
         under = lambda name: next((r for at, r in written.items() if name.startswith(f"{at}/" if at else "")), None)
-        names = sorted(name for name in files_of(self.out) if os.path.basename(name) != LOCK and under(name) in (None, name))
         # What was there before and stays as it was, as a finished case that is no part of this work, is nobody's to look at.
         expected = self.all.ready[self.command][1]
         stays = lambda name: self.old is not None and self.old.get(f"r/{name}", 0) == expected.get(f"r/{name}", 1)
-        names = [name for name in names if not stays(name)]
-        if not names:
-            return False
-        name = self.chance.choice(names)
-        path = os.path.join(self.out, name)
-        return self.changed(harm, name, lambda data: data[: self.chance.randrange(len(data))] if data else data, path)
+        is_looked_at = lambda name: os.path.basename(name) != LOCK and under(name) in (None, name) and not stays(name)
+        return self.changed(harm, is_looked_at, lambda data: data and data[: self.chance.randrange(len(data))])
 
     def flip(self, harm):
-        ours = lambda name: os.path.basename(os.path.dirname(name)) == "checkpoint" or name[-2:] in (".0", ".1")
-        names = sorted(name for name in files_of(self.out) if ours(name) and PART not in name)
-        if not names:
-            return False
-        name = self.chance.choice(names)
+        is_checkpoint = lambda name: os.path.basename(os.path.dirname(name)) == "checkpoint" or name[-2:] in (".0", ".1")
 
         def flipped(data):
             at = self.chance.randrange(8 * max(len(data), 1))
             return data and data[: at // 8] + bytes([data[at // 8] ^ 1 << at % 8]) + data[at // 8 + 1 :]
 
-        return self.changed(harm, name, flipped, os.path.join(self.out, name))
+        return self.changed(harm, lambda name: is_checkpoint(name) and PART not in name, flipped)
 
-    def changed(self, harm, name, change, path):
-        """A file changes. It is noticed and refused, and put back; or the work ends as unbroken work does."""
-        before = files_of(self.at)
-        words = self.words()
-        with open(path, "rb") as file:
-            data = file.read()
-        with open(path, "wb") as file:
-            file.write(change(data))
+    def changed(self, harm, may, change):
+        """A file that may change does. It is noticed and refused, and put back; or the work ends as unbroken work does."""
+        names = sorted(filter(may, files_of(self.out)))
+        if not names:
+            return False
+        name = self.chance.choice(names)
+        path, before, words = pathlib.Path(self.out, name), files_of(self.at), self.words()
+        data = path.read_bytes()
+        path.write_bytes(change(data))
         done = self.all.call(words, self.at)
         if done.returncode == 0:
-            self.did(harm, "went on")
-            self.log[-1] += f" ({name})"
+            self.did(harm, "went on", f" ({name})")
             return True
         if not is_clear(done):
             self.find(f"{harm} of {name}", done)
         after = files_of(self.at)
         # The user puts it back; but for the file itself, a refusal has changed nothing that cannot be made again.
-        if done.returncode == 2:
-            lost = [n for n in before if n not in after and os.path.basename(n) != LOCK and PART not in n]
-            if lost:
-                self.find(f"{harm} of {name} was refused, and files are gone: {lost}", done)
-        self.did(harm, "refused")
-        self.log[-1] += f" ({name})"
-        with open(path, "wb") as file:
-            file.write(data)
+        lost = [n for n in before if n not in after and os.path.basename(n) != LOCK and PART not in n]
+        if done.returncode == 2 and lost:
+            self.find(f"{harm} of {name} was refused, and files are gone: {lost}", done)
+        self.did(harm, "refused", f" ({name})")
+        path.write_bytes(data)
         return False
 
     def other(self, harm):
@@ -543,22 +496,21 @@ class Trial:
 
 
 def table(supervisor, commands, trials, works):
+    """What came of the harms, by command and by harm, as two tables in Markdown."""
     hows = ["killed", "while a file was written", "stopped", "ended by it", "ended with an error", "had room", "went on", "refused",
             "had ended"]
-    print("\n| command | unbroken | works | harms | " + " | ".join(hows) + " | other folders |")
-    print("|---" * (len(hows) + 5) + "|")
-    total = [0] * (len(hows) + 2)
+    rows = lambda place, key: [sum(n for of, n in supervisor.count.items() if of[place] == key and of[2] == how) for how in hows]
+    line = lambda *cells: print("| " + " | ".join(map(str, cells)) + " |")
+    print()
+    line("command", "unbroken", "works", "harms", *hows)
+    print("|---" * (len(hows) + 4) + "|")
     for command in commands:
-        of = [sum(n for (c, _, how), n in supervisor.count.items() if c == command and how == one) for one in hows]
-        row = [works[command], trials[command], *of]
-        total = [a + b for a, b in zip(total, row)]
-        print(f"| {command} | {supervisor.notes[command]} | " + " | ".join(map(str, row)) + " | 0 |")
-    print("| all | | " + " | ".join(map(str, total)) + " | 0 |\n")
-    print("| harm | " + " | ".join(hows) + " |")
+        line(command, supervisor.notes[command], works[command], trials[command], *rows(0, command))
+    print()
+    line("harm", *hows)
     print("|---" * (len(hows) + 1) + "|")
     for harm in sorted({harm for _, harm, _ in supervisor.count}):
-        of = [sum(n for (_, h, how), n in supervisor.count.items() if h == harm and how == one) for one in hows]
-        print(f"| {harm} | " + " | ".join(map(str, of)) + " |")
+        line(harm, *rows(1, harm))
 
 
 def main():

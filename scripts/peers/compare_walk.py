@@ -92,18 +92,14 @@ def counts(build, scale):
     for label, program in (("plain C++", "walk_cpp"), ("plain Rust", "walk_rust")):
         plain[label] = values([f"{build}/{program}", "200000000", CURVE, "graded", str(SEED), "110"])["ns_step_all"]
     best = min(plain.values())
+    cost = " and ".join(f"{ns:.1f} ns a step ({label})" for label, ns in plain.items())
     lines = [
-        "",
-        "## Engine `counts`: whole first runs",
-        "",
-        "The plain walks' first 110 increments with 2e8 particles (a whole run takes minutes) cost "
-        + " and ".join(f"{ns:.1f} ns a step ({label})" for label, ns in plain.items())
-        + ". The ratio is the faster of these times the completed moves, over the run's processor time: a plain walk on one "
-        "core against all that counts need, its coarse particles included. Least of three runs; 1e12 is of a wider base (Cu 24), "
-        "of which as many particles are coarse as of 2e8 at Cu 4.5.",
-        "",
-        "| walk | N | processor s | wall s | increments | walked one by one | moves | ratio to plain | peak MB |",
-        "|---|---|---|---|---|---|---|---|---|",
+        "\n## Engine `counts`: whole first runs\n\n"
+        f"The plain walks' first 110 increments with 2e8 particles cost {cost}. The ratio is the faster of these times the completed\n"
+        "moves, over the run's processor time, its coarse particles included. Least of three runs; 1e12 is of a wider base (Cu 24), of\n"
+        "which as many particles are coarse as of 2e8 at Cu 4.5.\n\n"
+        "| walk | N | processor s | wall s | increments | walked one by one | moves | ratio to plain | peak MB |\n"
+        "|---|---|---|---|---|---|---|---|---|"
     ]
     known = isas(scale, "counts", "1", "2", "2", "2", "1")
     cases = [(isa, 1, "200000000", "4.5") for isa in reversed(known)]

@@ -3,10 +3,11 @@
 
     scripts/studies/arches.py --out results/arches.csv [--law marin-2018] [--binary target/release/voidwalk] [--threads 2]
 
-Filters from the library of packings, bases linear on semi-log paper, 10 x 10 x 60 voids unless the cell says otherwise, five replicates at each
-ratio. A ratio is bracketed by a factor of 1.25 and halved to 2 %, up to 16. `no_erosion` is where the mean crosses 7.5 %, `least` and `most` where
-the first and the last of the five replicates do, by interpolation between the ratios walked. Cells that are in the CSV already are not walked again.
-`--law`: only cells of these laws. `concentration`: of `marin-2018`, the solids fraction of the suspension that enters the filter.
+Filters from the library of packings, bases linear on semi-log paper, 10 x 10 x 60 voids unless the cell says otherwise, five replicates
+at each ratio. A ratio is bracketed by a factor of 1.25 and halved to 2 %, up to 16. `no_erosion` is where the mean crosses 7.5 %, `least`
+and `most` where the first and the last of the five replicates do, by interpolation between the ratios walked. Cells that are in the CSV
+already are not walked again. `--law`: only cells of these laws. `concentration`: of `marin-2018`, the solids fraction of the suspension
+that enters the filter.
 """
 
 import csv

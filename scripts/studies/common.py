@@ -1,4 +1,5 @@
-"""What the studies share: their command line, calls of the program and what they cost, sheets of soils, and kept lines and tables."""
+"""What the studies share, and some checks: their command line, calls of the program and what they cost, sheets of soils, kept lines and
+tables, figures."""
 
 import argparse
 import csv
@@ -33,6 +34,14 @@ def spent(words, **how):
     return done, after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
 
 
+def bench(name):
+    """The path of a benchmark, which is compiled where it has to be."""
+    command = ["cargo", "bench", "--bench", name, "--no-run", "--message-format=json"]
+    told = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout
+    messages = [json.loads(line) for line in told.splitlines() if line.startswith("{")]
+    return next(one["executable"] for one in messages if one.get("executable") and one["target"]["name"] == name)
+
+
 def sheet(path, points):
     """Writes the sieve table of points (mm, percent finer)."""
     path.write_text("size_mm,percent_finer\n" + "".join(f"{size},{percent}\n" for size, percent in points))
@@ -55,3 +64,13 @@ def table(path, rows):
         writer = csv.DictWriter(file, rows[0].keys(), lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
+
+
+def pyplot():
+    """Matplotlib's, which draws the same bytes every time."""
+    import matplotlib
+    from matplotlib import pyplot as made
+
+    matplotlib.use("svg")
+    matplotlib.rcParams |= {"svg.hashsalt": "voidwalk", "svg.fonttype": "none", "font.size": 9}
+    return made

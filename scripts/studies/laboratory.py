@@ -4,22 +4,24 @@
     scripts/studies/laboratory.py --work FOLDER [--out results/laboratory] [--increments results/laboratory-increments.csv]
         [--experiment results/laboratory-experiment.csv] [--binary target/release/voidwalk] [--minutes 40]
 
-Walks the cells of `plan` in their order into OUT.csv until so many minutes of processor time are used; cells that are there already are not walked
-again. `laboratory_page.py` draws OUT.svg from it and prints what OUT.md says. FOLDER keeps the packings of the graphs.
+Walks the cells of `plan` in their order into OUT.csv until so many minutes of processor time are used; cells that are there already are
+not walked again. `laboratory_page.py` draws OUT.svg from it and prints what OUT.md says. FOLDER keeps the packings of the graphs.
 
-Filters from the library of packings, bases linear on semi-log paper (Cu 1: one size), two runs, five replicates. Lattice: 10 x 10 x 60 voids.
-Graph: the voids of five packings, one a replicate, as thick as 60 layers, rounded up to whole copies of the packing. A constriction of a graph has
-no direction, so that area alone leads nowhere: "by area" exits are chosen by area among those that water leaves by, and the first run alone is walked. Of a packing that is the finer part of its filter the base is that of the whole.
+Filters from the library of packings, bases linear on semi-log paper (Cu 1: one size), two runs, five replicates. Lattice: 10 x 10 x 60
+voids. Graph: the voids of five packings, one a replicate, as thick as 60 layers, rounded up to whole copies of the packing. A
+constriction of a graph has no direction, so that area alone leads nowhere: "by area" exits are chosen by area among those that water
+leaves by, and the first run alone is walked. Of a packing that is the finer part of its filter the base is that of the whole.
 
-Boundaries are D15F/D85B at which 7.5 % of the mass erodes in the first run and in the second, bracketed to 4 %: where the mean crosses, and where the
-first and the last replicate do, by interpolation. Ratios are walked until every replicate holds at the least and erodes at the greatest, or the cell
-has used its time. `k_over_k0`: at the end of the first run, at the greatest ratio below its boundary. Rows `largest`: the largest eroded particle by
-D0F, over bases of Cu 1.2 in steps of 3 %, of those bases whose own largest particle did not pass.
+Boundaries are D15F/D85B at which 7.5 % of the mass erodes in the first run and in the second, bracketed to 4 %: where the mean crosses,
+and where the first and the last replicate do, by interpolation. Ratios are walked until every replicate holds at the least and erodes at
+the greatest, or the cell has used its time. `k_over_k0`: at the end of the first run, at the greatest ratio below its boundary. Rows
+`largest`: the largest eroded particle by D0F, over bases of Cu 1.2 in steps of 3 %, of those bases whose own largest particle did not
+pass.
 
 `--experiment`: what each law predicts for uniform beads on beads (mass passed in the first run, k/k0), into this CSV and nothing else.
 
-`--increments`: what erodes on graphs by area just below the boundary, by the share of the base that an increment inserts, into this CSV and nothing
-else.
+`--increments`: what erodes on graphs by area just below the boundary, by the share of the base that an increment inserts, into this CSV
+and nothing else.
 """
 
 import concurrent.futures
@@ -183,23 +185,23 @@ class Models(Walks):
         print(*cell, row, f"{seconds:.0f} s", flush=True)
         return dict(zip(CELL, cell)) | row | {"cpu_seconds": round(seconds, 1)}
 
+    def first_runs(self, cell, ratio, share):
+        """What erodes in the first runs with this share of the base in an increment, and how much water flows at their end."""
+        outcomes = self.outcomes(cell, self.settings(cell, ratio) | {"runs": 1, "inject_share": share})
+        runs = [replicate["runs"][0] for outcome in outcomes for replicate in outcome["replicates"]]
+        return eroded_of(runs) | {"k_over_k0": f"{statistics.mean(run['k_over_k0'] for run in runs):.3g}"}
+
     def experiment(self, of):
-        """What one test of the experiment would give: mass that passes in the first run, in percent, and how much water flows at its end."""
+        """What one test of the experiment would give."""
         ratio, law, concentration, blocked, share = of
         cell = ("boundary", *BEADS, "1", "lattice", "flux", law, concentration, blocked)
-        settings = self.settings(cell, ratio) | {"runs": 1, "inject_share": share}
-        runs = [replicate["runs"][0] for replicate in self.outcome(settings)["replicates"]]
-        print(*of, flush=True)
-        return dict(zip(EXPERIMENT_CELL, of)) | eroded_of(runs) | {"k_over_k0": f"{statistics.mean(run['k_over_k0'] for run in runs):.3g}"}
+        return dict(zip(EXPERIMENT_CELL, of)) | self.first_runs(cell, ratio, share)
 
     def increments(self, of):
-        """What erodes with this share of the base in an increment, in percent: mean, least and most; and how much water flows then."""
+        """What erodes just below a boundary with this share of the base in an increment."""
         *pair, law, concentration, ratio, share = of
         cell = ("boundary", *pair, "graph", BY_AREA, law, concentration, "closed")
-        runs = [outcome["replicates"][0]["runs"][0] for outcome in self.outcomes(cell, self.settings(cell, ratio) | {"inject_share": share})]
-        print(*of, flush=True)
-        kept = statistics.mean(run["k_over_k0"] for run in runs)
-        return dict(zip(INCREMENTS_CELL, of)) | eroded_of(runs) | {"k_over_k0": f"{kept:.3g}"}
+        return dict(zip(INCREMENTS_CELL, of)) | self.first_runs(cell, ratio, share)
 
     @staticmethod
     def time():

@@ -3,19 +3,17 @@
 
     scripts/studies/library_held_out.py --out FOLDER [--binary target/release/voidwalk] [--jobs 2]
 
-Writes results/library-held-out.csv: a coarse concave gradation, and the first four shapes of a fixed draw at each distance from the library's
-nearest shape, loose and dense. They are never part of the fit: a test in src/core/constrictions/library.rs compares the library with them. FOLDER keeps
-every packing, so a run that was stopped goes on.
+Writes results/library-held-out.csv: a coarse concave gradation, and the first four shapes of a fixed draw at each distance from the
+library's nearest shape, loose and dense. They are never part of the fit: a test in src/core/constrictions/library.rs compares the library
+with them. FOLDER keeps every packing, so a run that was stopped goes on.
 """
 
-import concurrent.futures
 import math
 import random
 from pathlib import Path
 
-import common
 from fit_library import HEAD, SHAPE, TABLE, by_surface, row_of, table_head
-from library_of_packings import bell, cu_of, gap, kinked, pack, power, that_fits
+from library_of_packings import arguments, bell, cu_of, gap, kinked, made, pack, power, that_fits
 
 OUT = Path(__file__).parents[2] / "results/library-held-out.csv"
 # Distances at which the library states another error.
@@ -75,14 +73,7 @@ def chosen():
 
 
 def main():
-    parser = common.parser(__doc__)
-    parser.add_argument("--out", type=Path, required=True)
-    parser.add_argument("--jobs", type=int, default=2)
-    options = parser.parse_args()
-    options.out.mkdir(parents=True, exist_ok=True)
-    kept = options.out / "held-out.jsonl"
-    made = common.lines_of(kept)
-    there = {packing["key"] for packing in made}
+    options = arguments(__doc__)
 
     def one(job):
         key, (family, points, far), density, seed = job
@@ -91,16 +82,10 @@ def main():
         return about | pack(options.binary, options.out, key, part, density, grains, seed)
 
     jobs = [(f"{k:03}-{density}", shape, density, 2001 + k) for k, shape in enumerate(chosen()) for density in DENSITIES]
-    jobs = [job for job in jobs if job[0] not in there]
-    print(f"{len(made)} packings are there, {len(jobs)} to make", flush=True)
-    with concurrent.futures.ThreadPoolExecutor(options.jobs) as workers:
-        for packing in workers.map(one, jobs):
-            made.append(packing)
-            common.keep(kept, packing)
-            print(packing["key"], packing["family"], f"{packing['distance']:.3f}", packing.get("refused", ""), flush=True)
-    rows = [row_of(packing) for packing in sorted(made, key=lambda packing: packing["key"]) if "dc" in packing]
+    packings = made(options, "held-out.jsonl", jobs, one)
+    rows = [row_of(packing) for packing in sorted(packings, key=lambda packing: packing["key"]) if "dc" in packing]
     OUT.write_text(HEAD.replace("fit_library.py", "library_held_out.py, never fitted") + "\n".join([table_head(), *rows]) + "\n")
-    print(f"{OUT}: {len(rows)} packings; refused: {len(made) - len(rows)}")
+    print(f"{OUT}: {len(rows)} packings; refused: {len(packings) - len(rows)}")
 
 
 if __name__ == "__main__":

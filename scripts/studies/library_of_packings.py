@@ -15,7 +15,6 @@ import math
 import random
 import shutil
 import subprocess
-import threading
 from pathlib import Path
 
 import common
@@ -210,37 +209,45 @@ def at(curve, percent):
     return curve[-1][0]
 
 
-def main():
-    parser = common.parser(__doc__)
+def arguments(doc):
+    parser = common.parser(doc)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--jobs", type=int, default=2)
-    options = parser.parse_args()
+    return parser.parse_args()
+
+
+def made(options, name, jobs, one):
+    """The packings of these jobs, whose first parts are their keys: from FOLDER/name, which gets a line for each that is made now."""
     options.out.mkdir(parents=True, exist_ok=True)
-    kept = options.out / "packings.jsonl"
-    there = {packing["key"] for packing in common.lines_of(kept)}
-    lock = threading.Lock()
+    kept = options.out / name
+    packings = common.lines_of(kept)
+    there = {packing["key"] for packing in packings}
+    jobs = [job for job in jobs if job[0] not in there]
+    print(f"{len(there)} packings are there, {len(jobs)} to make", flush=True)
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as workers:
+        for packing in workers.map(one, jobs):
+            packings.append(packing)
+            common.keep(kept, packing)
+            print(packing["key"], packing["family"], packing.get("refused", ""), flush=True)
+    return packings
+
+
+def main():
+    options = arguments(__doc__)
 
     def one(job):
         key, family, points, density, seed = job
-        whole = cu_of(points)
         part, grains = that_fits(points, BROAD["grains"] if int(key[:3]) >= DRAWN else GRAINS[1])
-        about = {"key": key, "family": family, "density": density, "seed": seed, "cu": whole, "grains": grains}
-        line = about | {"percent": 100 * points_share(points, part), "points": part}
-        line |= pack(options.binary, options.out, key, part, density, grains, seed)
-        with lock:
-            common.keep(kept, line)
+        about = {"key": key, "family": family, "density": density, "seed": seed, "cu": cu_of(points), "grains": grains}
+        about |= {"percent": 100 * points_share(points, part), "points": part}
+        return about | pack(options.binary, options.out, key, part, density, grains, seed)
 
     jobs = []
     for k, (family, points) in enumerate(itertools.chain(shapes(), broad_shapes())):
         for density in FRICTIONS:
             seeds = [1 + k, 1001 + k] if k % 12 == 0 else [1 + k]
             jobs += [(f"{k:03}-{density}-{seed}", family, points, density, seed) for seed in seeds]
-    jobs = [job for job in jobs if job[0] not in there]
-    print(f"{len(there)} packings are there, {len(jobs)} to make")
-    with concurrent.futures.ThreadPoolExecutor(options.jobs) as workers:
-        for done, _ in enumerate(workers.map(one, jobs), 1):
-            if done % 10 == 0:
-                print(f"{done} of {len(jobs)}", flush=True)
+    made(options, "packings.jsonl", jobs, one)
 
 
 def points_share(whole, part):

@@ -3,11 +3,12 @@
 
     scripts/studies/openings.py --out results/openings.csv --flow results/openings-flow.csv [--binary target/release/voidwalk]
 
-Filters from the library of packings, bases linear on semi-log paper, five replicates. `--out`: D15F/D85B at which 7.5 % of the base erodes in the
-first run, 10 x 10 x 60 voids, bracketed to 4 %; `no_erosion` is where the mean crosses, `least` and `most` where the first and the last replicate
-do, by interpolation; a `least` that is the least ratio walked (4, or 4 / 1.25 and so on) is at most that. `--flow`:
-10 x 10 x 30 voids with water (exit = flux), two runs; k/k0 at the end of each, mean, least and most. Blocked constrictions are closed or open; what
-is closed is walked by engine `expected` without water, all else one by one. Rows that are there already are not walked again.
+Filters from the library of packings, bases linear on semi-log paper, five replicates. `--out`: D15F/D85B at which 7.5 % of the base
+erodes in the first run, 10 x 10 x 60 voids, bracketed to 4 %; `no_erosion` is where the mean crosses, `least` and `most` where the first
+and the last replicate do, by interpolation; a `least` that is the least ratio walked (4, or 4 / 1.25 and so on) is at most that.
+`--flow`: 10 x 10 x 30 voids with water (exit = flux), two runs; k/k0 at the end of each, mean, least and most. Blocked constrictions are
+closed or open; what is closed is walked by engine `expected` without water, all else one by one. Rows that are there already are not
+walked again.
 """
 
 from pathlib import Path

@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """Error against run time: what a second of processor time buys, by engine, sampling, replicates and number of particles.
 
-    scripts/studies/precision.py [SCENE] [--binary target/release/voidwalk] [--out results/precision/whole-runs]
+    scripts/studies/precision.py [--binary target/release/voidwalk] [--out results/precision/whole-runs]
     scripts/studies/precision.py --across 14 --replicates 16 --networks 16 --most 1e5 --out target/precision      # a quick look
     scripts/studies/precision.py --tiers sampling bias --set base.cu=4.5 --set base.d15f_over_d85b=6.5            # a part, of another scene
 
-Runs the program as whole processes and reads their folders. SCENE is a scene file [default: the built-in scene], and --set changes it.
+Runs the program as whole processes and reads their folders. --set changes the built-in scene.
 The seed and the options alone say what is walked, so the same call gives the same numbers; only columns with `seconds` or `merit` in
 their name differ. A time is the processor time of a whole process on one thread, with its network, its files and its page, over the
-number of its replicates. --jobs N runs N processes side by side. An eroded mass is a fraction of the first run.
+number of its replicates. An eroded mass is a fraction of the first run.
 
 Three tiers, each with its CSV files and figures in --out:
 
@@ -20,15 +20,13 @@ exact     Probabilities of leaving that this script works out by itself, on rand
 sampling  The scatter of the eroded mass over replicates, on new networks and on one, and how the error of a mean falls with replicates.
 bias      One setting changed at a time: share of the base, caps, width, length, injection. Paired by replicate where the networks stay.
 
-Needs Matplotlib.
+Needs SciPy and Matplotlib.
 """
 
-import concurrent.futures
 import csv
 import datetime
 import json
 import math
-import os
 import random
 import statistics
 import subprocess
@@ -36,8 +34,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-import matplotlib
-from matplotlib import pyplot
+from scipy import stats
 
 import common
 
@@ -57,60 +54,34 @@ CAPS = [100_000, 1_000_000, 10_000_000, 50_000_000, 200_000_000]
 WIDTHS, LENGTHS, INJECTED = [10, 20, 40], [15, 30, 60, 120], [0.002, 0.01, 0.05, 0.1, 1.0]
 # Okabe and Ito.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#000000", "#56B4E9"]
-matplotlib.use("svg")
-matplotlib.rcParams |= {"svg.hashsalt": "voidwalk", "svg.fonttype": "none", "font.size": 9}
 
 
 class Program:
     """The program, called with one thread and its settings."""
 
     def __init__(self, args):
-        self.binary, self.scene, self.folder = args.binary, args.scene, Path(args.folder)
+        self.binary, self.folder = args.binary, Path(args.folder)
 
     def check(self, settings):
-        said = subprocess.run([self.binary, "check", *self.scene, "--json", *common.sets(settings)], check=True, capture_output=True, text=True)
+        said = subprocess.run([self.binary, "check", "--json", *common.sets(settings)], check=True, capture_output=True, text=True)
         return json.loads(said.stdout)
 
-    def run(self, settings, scene=None, keep=None):
+    def run(self, settings, keep=None):
         """Its outcome and processor time; `keep` reads the folder before it goes."""
         words = common.sets([*PLAIN, *settings])
         with tempfile.TemporaryDirectory(dir=self.folder) as out:
-            command = [self.binary, "run", *(self.scene if scene is None else scene), "-q", "--overwrite", "--threads", "1", "--out", out]
-            with tempfile.TemporaryFile() as said:
-                process = subprocess.Popen([str(part) for part in [*command, *words]], stdout=said, stderr=said)
-                _, status, used = os.wait4(process.pid, 0)
-                process.returncode = os.waitstatus_to_exitcode(status)
-                if process.returncode:
-                    said.seek(0)
-                    raise SystemExit(f"{' '.join(map(str, command + words))}\n{said.read().decode()}")
+            command = [self.binary, "run", "-q", "--overwrite", "--threads", "1", "--out", out]
+            done, seconds = common.spent([*command, *words], capture_output=True, text=True)
+            if done.returncode:
+                raise SystemExit(f"{' '.join(map(str, command + words))}\n{done.stdout}{done.stderr}")
             outcome = json.loads((Path(out) / "outcome.json").read_text())
-            return outcome, used.ru_utime + used.ru_stime, keep and keep(Path(out))
+            return outcome, seconds, keep and keep(Path(out))
 
     def replicates(self, settings, count, seed):
         """Eroded mass fraction of each replicate's first run, processor time of one, base particles of one."""
         outcome, seconds, _ = self.run([*settings, f"replicates={count}", f"seed={seed}"])
         values = [replicate["runs"][0]["eroded_mass_fraction"] for replicate in outcome["replicates"]]
         return {"values": values, "seconds": seconds / count, "n_base": outcome["n_base"]}
-
-
-def within(degrees, angle):
-    """The share of Student's distribution between -t and t, t = sqrt(degrees) tan(angle)."""
-    cosine, odd = math.cos(angle), degrees % 2
-    term, k = (cosine, 2) if odd else (1.0, 1)
-    total = 0.0 if degrees == 1 else term
-    while k + 1 < degrees:
-        term *= k / (k + 1) * cosine * cosine
-        total += term
-        k += 2
-    return 2 / math.pi * (angle + math.sin(angle) * total) if odd else math.sin(angle) * total
-
-
-def student(degrees, error):
-    low, high = 0.0, math.pi / 2
-    for _ in range(200):
-        middle = (low + high) / 2
-        low, high = (middle, high) if within(degrees, middle) < 1 - error else (low, middle)
-    return math.sqrt(degrees) * math.tan(low)
 
 
 def sd_interval(values, known_mean=None):
@@ -139,7 +110,7 @@ def difference(found, reference, paired):
         mean, variance = statistics.fmean(found) - statistics.fmean(reference), sum(parts)
         below = sum(part * part / (len(values) - 1) for part, values in zip(parts, (found, reference)))
         degrees = max(int(variance * variance / below), 1) if below else 1
-    half = student(degrees, 0.05) * math.sqrt(variance)
+    half = stats.t.ppf(0.975, degrees) * math.sqrt(variance)
     return mean, mean - half, mean + half
 
 
@@ -234,14 +205,14 @@ def exact(args, program):
         counts = [10**power for power in range(2, 13) if 10**power <= most]
         for place, particles in enumerate(counts):
 
-            def walk(of, particles=particles, place=place, engine=engine):
+            def walk(of):
                 together = [f"engine={engine}", f"base.n_base={particles}", "replicates=1"]
                 settings = ["base.n_base=1", f"replicates={particles}"] if engine == ALONE else together
                 settings += [f"network.file={of['file']}", f"base.single_mm={of['diameter']!r}", "inject_share=1"]
-                outcome, seconds, _ = program.run([*filters, *settings, f"seed={of['seed'] + 1_000_003 * (place + 1)}"], scene=[])
+                outcome, seconds, _ = program.run([*filters, *settings, f"seed={of['seed'] + 1_000_003 * (place + 1)}"])
                 return sum(replicate["runs"][0]["eroded"] for replicate in outcome["replicates"]) / particles, seconds
 
-            walked = list(args.pool.map(walk, known[name, way]))
+            walked = list(map(walk, known[name, way]))
             variances = [of["exact"] * (1 - of["exact"]) / particles for of in known[name, way]]
             off = [found - of["exact"] for (found, _), of in zip(walked, known[name, way])]
             z = [o / math.sqrt(v) if engine != "expected" and v * particles**2 >= 50 else None for o, v in zip(off, variances)]
@@ -276,7 +247,7 @@ def sampling(args, program):
     of_one = [*(setting for setting in args.set if not setting.startswith("network.")), *of_size, f"base.n_base={n_base}"]
     lines, rows = [], []
     for kind, settings in [("new networks", args.narrow), ("one network", [*of_one, f"network.file={path}"])]:
-        walked = args.pool.map(lambda more: program.replicates([*settings, *more], args.replicates, args.seed), VARIANTS.values())
+        walked = map(lambda more: program.replicates([*settings, *more], args.replicates, args.seed), VARIANTS.values())
         first = None
         for variant, found in zip(VARIANTS, walked):
             values, seconds = found["values"], found["seconds"]
@@ -317,7 +288,7 @@ def bias(args, program):
     changes += [("length", f"{n} layers", n, [f"network.nz={n}"], False) for n in LENGTHS if n != args.shape["nz"]]
     changes += [("injection", f"{100 * share:g} % an increment", share, [f"inject_share={share}"], True)
                 for share in INJECTED if abs(share / injected - 1) > 1e-6]
-    walked = list(args.pool.map(lambda of: program.replicates([*args.narrow, *of[3]], args.replicates, args.seed), changes))
+    walked = list(map(lambda of: program.replicates([*args.narrow, *of[3]], args.replicates, args.seed), changes))
     rows = []
     for (factor, level, at, _, paired), found in zip(changes, walked):
         is_reference = found is walked[0]
@@ -337,6 +308,7 @@ def bias(args, program):
 def figure(path, title, labels, points, joined=True):
     """Points (series, x, y, low, high) along two logarithmic axes, as SVG, with a guide of slope -1/2 through the first."""
     points = [point for point in points if point[1] > 0 and point[2] > 0]
+    pyplot = common.pyplot()
     drawn, ax = pyplot.subplots(figsize=(8.4, 5))
     for number, name in enumerate(dict.fromkeys(point[0] for point in points)):
         x, y, low, high = zip(*(point[1:] for point in points if point[0] == name))
@@ -355,7 +327,6 @@ def figure(path, title, labels, points, joined=True):
 
 def arguments():
     parser = common.parser(__doc__)
-    parser.add_argument("scene", nargs="*", help="a scene file, of a lattice")
     parser.add_argument("--out", type=Path, default=common.ROOT / "results/precision/whole-runs")
     parser.add_argument("--tiers", nargs="+", choices=TIERS, default=TIERS)
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="a setting of the scene")
@@ -364,7 +335,6 @@ def arguments():
     parser.add_argument("--across", type=int, default=20, help="voids across the lattice, each way, for sampling and bias")
     parser.add_argument("--networks", type=int, default=32, help="of the tier exact")
     parser.add_argument("--most", type=float, default=1e6, help="particles of the tier exact, walked one by one")
-    parser.add_argument("--jobs", type=int, default=1, help="processes side by side")
     return parser.parse_args()
 
 
@@ -372,7 +342,7 @@ def main():
     args = arguments()
     (args.out / "figures").mkdir(parents=True, exist_ok=True)
     args.figure = lambda name, *what, **how: figure(args.out / "figures" / f"{name}.svg", *what, **how)
-    with tempfile.TemporaryDirectory() as args.folder, concurrent.futures.ThreadPoolExecutor(args.jobs) as args.pool:
+    with tempfile.TemporaryDirectory() as args.folder:
         program = Program(args)
         args.narrow = [*args.set, f"network.nx={args.across}", f"network.ny={args.across}"]
         network = program.check(args.narrow)["inputs"]["network"]

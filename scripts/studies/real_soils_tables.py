@@ -3,8 +3,8 @@
 
     scripts/studies/real_soils_tables.py [--results results] [--write]
 
-Reads `real-soils.csv` and `real-soils-bases.csv`, prints the tables that `real-soils.md` takes its numbers from, and with
---write draws `real-soils.svg`. Needs NumPy, SciPy and Matplotlib.
+Reads `real-soils.csv` and `real-soils-bases.csv`, of walks by `scripts/studies/real_soils.py` of 516d681f, prints the tables that
+`real-soils.md` takes its numbers from, and with --write draws `real-soils.svg`. Needs NumPy, SciPy and Matplotlib.
 """
 
 import argparse
@@ -14,7 +14,8 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import norm
 
-TOP = Path(__file__).resolve().parents[2]
+import common
+
 SEED = 3604
 FOLDS = 10
 QUANTILES = np.arange(0.05, 0.951, 0.05)
@@ -279,13 +280,9 @@ def rescued(data, what):
 
 def figure(data, found, path):
     """The ratio over the steepness of the base, and the reliability diagram."""
-    import matplotlib
+    from matplotlib import ticker
 
-    matplotlib.use("svg")
-    import matplotlib.pyplot as plt
-    import matplotlib.ticker
-
-    plt.rcParams |= {"svg.hashsalt": "voidwalk", "svg.fonttype": "none", "font.size": 9, "font.family": "sans-serif"}
+    plt = common.pyplot()
     drawn, (left, right) = plt.subplots(1, 2, figsize=(11, 4.6), width_ratios=[1.5, 1])
     ratio = data.ratio()
     colours = ["#7b3294", "#c2410c", "#e08214", "#2c7fb8", "#1b7837"]
@@ -299,9 +296,9 @@ def figure(data, found, path):
     left.set(ylabel="D15F of no erosion: walk / centre of the tests", ylim=(0.015, 2.2))
     ticks_of = ((left.xaxis, (1.5, 2, 3, 4, 6, 10, 20, 40, 60)), (left.yaxis, (0.02, 0.05, 0.1, 0.2, 0.5, 1, 2)))
     for axis, ticks in ticks_of:
-        axis.set_major_locator(matplotlib.ticker.FixedLocator(ticks))
-        axis.set_minor_locator(matplotlib.ticker.NullLocator())
-        axis.set_major_formatter(matplotlib.ticker.FormatStrFormatter("%g"))
+        axis.set_major_locator(ticker.FixedLocator(ticks))
+        axis.set_minor_locator(ticker.NullLocator())
+        axis.set_major_formatter(ticker.FormatStrFormatter("%g"))
     left.legend(frameon=True, framealpha=1, edgecolor="none", fontsize=7.5, loc="lower left")
     right.plot([0, 1], [0, 1], color="0.6", lw=0.8)
     for name, colour, word in (("walk", "#2c7fb8", "by the walk"), ("rule", "#1b7837", "by the tests' range alone")):
@@ -318,7 +315,7 @@ def figure(data, found, path):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--results", type=Path, default=TOP / "results")
+    parser.add_argument("--results", type=Path, default=common.ROOT / "results")
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
     data = Data(options.results)

@@ -1,25 +1,22 @@
 #!/usr/bin/env python3
 """How void ratio, constriction curve and run time of a packing depend on the settings of its compression.
 
-    python3 scripts/studies/study_packing.py [--set narrow|wide|table2] [--grains 5000] [--seeds 1,2,3] [--work DIR]
+    scripts/studies/study_packing.py [--set narrow|wide|table2] [--grains 5000] [--seeds 1,2,3] [--work target/study-packing]
 
-Every row is the protocol with its default settings, but a tenth of the stiffness (half the time), and except for what it names, for each of the seeds; the table gives the mean over the
-seeds and, after the sign, the standard deviation of one packing. `narrow` is Cu 1.5, dense and loose; `wide` is Cu 3, dense and
-loose, and Cu 6; `table2` is the six filters of the paper with the numbers of grains that go with them, one row each (then --grains is ignored). One thread,
-so that CPU seconds mean something on a busy machine. Prints Markdown; every run is also kept as a JSON line in DIR/runs.jsonl, and is
-not done again if it is there (delete the file after a change of the program).
+`narrow` is Cu 1.5, dense and loose; `wide` is Cu 3, dense and loose, and Cu 6: every row is the protocol with its default settings, but for
+a tenth of the stiffness (half the time) and what it names. `table2` is the six filters of the paper with the numbers of grains that go with
+them (then --grains is ignored). The table in Markdown gives the mean over the seeds and, after the sign, the standard deviation of one
+packing. One thread, so that CPU seconds mean something on a busy machine. Every run is kept as a JSON line in WORK/runs.jsonl, and is not
+done again if it is there (delete the file after a change of the program).
 
 Dc5, Dc50 and Cu_CSD are those of `voidwalk constrictions`; diameters are relative to the smallest grain of the gradation.
 """
 
-import argparse
 import json
 import os
 import pathlib
 import statistics
 import subprocess
-import sys
-import tempfile
 
 import common
 
@@ -51,10 +48,9 @@ VARIANTS = {
     "twice the hold": {"hold_steps": 8000},
 }
 
-FILTERS = {
-    "narrow": [(1.5, 0.0), (1.5, 0.3)],
-    "wide": [(3.0, 0.0), (3.0, 0.3), (6.0, 0.7)],
-}
+FILTERS = {"narrow": [(1.5, 0.0), (1.5, 0.3)], "wide": [(3.0, 0.0), (3.0, 0.3), (6.0, 0.7)]}
+HEAD = ["void ratio", "with friction 0.3", "coordination without rattlers", "rattler fraction", "Dc5", "Dc50", "Cu_CSD", "steps", "CPU s"]
+DIGITS = {"void_ratio_before": 4, "void_ratio": 4, "coordination_held": 2, "rattlers": 3, "dc5": 4, "dc50": 4, "cu_csd": 3}
 
 # Cu, friction, grains, void ratio of the paper's Table 2.
 TABLE2 = [
@@ -63,23 +59,8 @@ TABLE2 = [
 ]
 
 
-def built():
-    """Paths of the benchmark and of the program."""
-    run = subprocess.run(["cargo", "build", "--release", "--bins", "--message-format=json"],
-                         cwd=common.ROOT, check=True, capture_output=True, text=True)
-    bench = subprocess.run(["cargo", "bench", "--bench", "packing", "--no-run", "--message-format=json"],
-                           cwd=common.ROOT, check=True, capture_output=True, text=True)
-
-    def path(out, name):
-        messages = [json.loads(line) for line in out.stdout.splitlines() if line.startswith("{")]
-        return next(m["executable"] for m in messages if m.get("executable") and m["target"]["name"] == name)
-
-    return path(bench, "packing"), path(run, "voidwalk")
-
-
-def one(programs, settings, work):
+def one(pack, voidwalk, settings, work):
     """One packing and its curve."""
-    pack, voidwalk = programs
     table = work / "packing.csv"
     command = [pack, "threads=1", f"out={table}", *(f"{k}={v}" for k, v in settings.items())]
     done, seconds = common.spent(command, check=True, capture_output=True, text=True)
@@ -99,40 +80,35 @@ def spread(lines, field, digits):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = common.parser(__doc__)
     parser.add_argument("--set", choices=["narrow", "wide", "table2"], default="narrow")
     parser.add_argument("--grains", type=int, default=5000)
     parser.add_argument("--seeds", default="1,2,3")
-    parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path(tempfile.gettempdir()) / "study-packing")
+    parser.add_argument("--work", type=pathlib.Path, default=common.ROOT / "target/study-packing")
     options = parser.parse_args()
     options.work.mkdir(parents=True, exist_ok=True)
     kept = options.work / "runs.jsonl"
     known = {json.dumps(entry["settings"], sort_keys=True): entry["result"] for entry in common.lines_of(kept)}
-    programs = built()
+    pack = common.bench("packing")
 
     def result(settings):
         key = json.dumps(settings, sort_keys=True)
         if key not in known:
-            known[key] = one(programs, settings, options.work)
+            known[key] = one(pack, options.binary, settings, options.work)
             common.keep(kept, {"settings": settings, "result": known[key], "load": os.getloadavg()[0]})
         return known[key]
 
     seeds = [int(s) for s in options.seeds.split(",")]
-    head = ["void ratio", "with friction 0.3", "coordination without rattlers", "rattler fraction", "Dc5", "Dc50", "Cu_CSD", "steps", "CPU s"]
 
     def row(name, lines):
-        cells = [
-            spread(lines, "void_ratio_before", 4), spread(lines, "void_ratio", 4), spread(lines, "coordination_held", 2),
-            spread(lines, "rattlers", 3), spread(lines, "dc5", 4), spread(lines, "dc50", 4), spread(lines, "cu_csd", 3),
-            f"{statistics.fmean(line['steps'] for line in lines):.0f}",
-            f"{statistics.fmean(line['cpu_s'] for line in lines):.1f}",
-        ]
+        cells = [spread(lines, field, digits) for field, digits in DIGITS.items()]
+        cells += [f"{statistics.fmean(line[field] for line in lines):.{digits}f}" for field, digits in (("steps", 0), ("cpu_s", 1))]
         settled = sum(line["settled"] for line in lines)
         note = "" if settled == len(lines) else f" ({settled} of {len(lines)} at rest)"
         print(f"| {name}{note} | " + " | ".join(cells) + " |", flush=True)
 
     def header(first):
-        print(f"| {first} | " + " | ".join(head) + " |\n|" + "---|" * (len(head) + 1), flush=True)
+        print(f"| {first} | " + " | ".join(HEAD) + " |\n|" + "---|" * (len(HEAD) + 1), flush=True)
 
     if options.set == "table2":
         header("Cu, friction, grains (void ratio of the paper)")
@@ -149,4 +125,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

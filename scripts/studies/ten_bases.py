@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
 """How coarse may the filter be, for ten bases: the boundaries of `voidwalk boundary`, and what they cost.
 
-    scripts/studies/ten_bases.py [--out target/ten-bases] [--binary target/release/voidwalk] [--filter cu1.5-loose] [--threads 2] [--set KEY=VALUE]
-    scripts/studies/ten_bases.py --only "linear, Cu 1.5"          # one of them
+    scripts/studies/ten_bases.py [--out target/ten-bases] [--binary target/release/voidwalk]
     VOIDWALK_ISA=avx2 scripts/studies/ten_bases.py --out other    # as on a machine without AVX-512
 
-Five bases that are linear on semi-log paper (D85 0.2 mm) and five sieve tables. A base that is done is not walked again: the same command
-continues. Settings are the program's defaults but for --set. Prints a table in Markdown: boundaries with their 5 to 95 % over networks, ratios walked, processor time, wall time, and the
-machine's load when each began and ended. Python 3's standard library only.
+Five bases that are linear on semi-log paper (D85 0.2 mm) and five sieve tables, on the filter cu1.5-loose. A base that is done is not
+walked again: the same command continues. Settings are the program's defaults. Prints a table in Markdown: boundaries with their 5 to 95 %
+over networks, ratios walked, processor time, wall time, and the machine's load when each began and ended.
 """
 
 import json
@@ -30,12 +29,12 @@ TABLES = {
 }
 
 
-def bases(args):
-    """Name, and how boundary is told."""
+def bases(folder):
+    """Name, and words of the command line."""
     for cu in LINEAR:
-        yield f"linear, Cu {cu:g}", ["--set", f"base.cu={cu:g}", "--set", "base.d85_mm=0.2"]
+        yield f"linear, Cu {cu:g}", common.sets([f"base.cu={cu:g}", "base.d85_mm=0.2"])
     for name, points in TABLES.items():
-        path = args.out / (name.replace(" ", "-") + ".csv")
+        path = folder / (name.replace(" ", "-") + ".csv")
         common.sheet(path, points)
         yield name, [path]
 
@@ -43,20 +42,17 @@ def bases(args):
 def walk(args, name, told):
     folder = args.out / "boundary"
     shutil.rmtree(folder, ignore_errors=True)
-    command = [args.binary, "boundary", *told, "--filter", args.filter, "--threads", args.threads, "--out", folder, "--quiet"]
+    command = [args.binary, "boundary", *told, "--filter", "cu1.5-loose", "--threads", "2", "--out", folder, "--quiet"]
     load, begun = os.getloadavg()[0], time.monotonic()
-    done, seconds = common.spent(command + common.sets(args.set))
+    done, seconds = common.spent(command)
     wall = time.monotonic() - begun
     if done.returncode:
         sys.exit(f"{name}: voidwalk ended with {done.returncode}")
     walks = (folder / "boundary.csv").read_text().splitlines()[1:]
     return {
-        "base": name,
-        "boundary": json.loads((folder / "boundary.json").read_text()),
+        "base": name, "boundary": json.loads((folder / "boundary.json").read_text()),
         "walks": len(walks) + sum(not line.endswith(",") for line in walks),
-        "processor_s": seconds,
-        "wall_s": wall,
-        "load": [load, os.getloadavg()[0]],
+        "processor_s": seconds, "wall_s": wall, "load": [load, os.getloadavg()[0]],
     }
 
 
@@ -68,38 +64,29 @@ def words(found, notes):
     return f"{found['median']:.3f} ({band})" + (f"; D15F {mm['median']:.3f} mm" if mm else "")
 
 
-def table(done):
-    print("| base | Cu | no erosion up to D15F/D85B (5 to 95 %) | continuing from | not monotone | walks | processor s | wall s | load |")
-    print("|---|---|---|---|---|---|---|---|---|")
-    for one in done:
-        row, cu = one["boundary"]["boundaries"][0], one["boundary"]["base"]["cu"]
-        print(f"| {one['base']} | {'not known' if cu is None else f'{cu:.2f}'} | {words(row['no_erosion'], row.get('no_erosion_notes', []))} "
-              f"| {words(row['continuing'], row.get('continuing_notes', []))} | {row['not_monotone']} of {len(row['networks'])} "
-              f"| {one['walks']} | {one['processor_s']:.0f} | {one['wall_s']:.0f} | {one['load'][0]:.0f} to {one['load'][1]:.0f} |")
-
-
 def main():
     parser = common.parser(__doc__)
     parser.add_argument("--out", type=pathlib.Path, default=common.ROOT / "target/ten-bases")
-    parser.add_argument("--filter", default="cu1.5-loose")
-    parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE")
-    parser.add_argument("--only", action="append", default=[], metavar="BASE", help="the bases with these names")
     args = parser.parse_args()
     args.out.mkdir(parents=True, exist_ok=True)
     kept = args.out / "done.jsonl"
     done = {one["base"]: one for one in common.lines_of(kept)}
     version = subprocess.run([args.binary, "--version"], capture_output=True, text=True, check=True).stdout.strip()
-    asked = {"filter": args.filter, "set": args.set, "version": version, "isa": os.environ.get("VOIDWALK_ISA")}
-    wanted = [(name, told) for name, told in bases(args) if name in args.only or not args.only]
-    for name, told in wanted:
-        if name in done and done[name].get("asked") != asked:
-            sys.exit(f"{kept}: {name} was found with {done[name].get('asked')}, not {asked}: give these, or another --out")
+    asked = {"version": version, "isa": os.environ.get("VOIDWALK_ISA")}
+    print("| base | Cu | no erosion up to D15F/D85B (5 to 95 %) | continuing from | not monotone | walks | processor s | wall s | load |")
+    print("|---|---|---|---|---|---|---|---|---|")
+    for name, told in bases(args.out):
         if name not in done:
             done[name] = {**walk(args, name, told), "asked": asked}
             common.keep(kept, done[name])
-            print(f"{name}: {done[name]['processor_s']:.0f} s of processor time", file=sys.stderr)
-    table([done[name] for name, _ in wanted])
+        one = done[name]
+        if one["asked"] != asked:
+            sys.exit(f"{kept}: {name} was found with {one['asked']}, not {asked}: give these, or another --out")
+        row, cu = one["boundary"]["boundaries"][0], one["boundary"]["base"]["cu"]
+        print(f"| {name} | {'not known' if cu is None else f'{cu:.2f}'} | {words(row['no_erosion'], row.get('no_erosion_notes', []))} "
+              f"| {words(row['continuing'], row.get('continuing_notes', []))} | {row['not_monotone']} of {len(row['networks'])} "
+              f"| {one['walks']} | {one['processor_s']:.0f} | {one['wall_s']:.0f} | {one['load'][0]:.0f} to {one['load'][1]:.0f} |",
+              flush=True)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ use voidwalk::run::machine::threads as pool;
 use voidwalk::run::{Event, RunError};
 
 use crate::arrays::{Grains, of_packing, of_rows};
-use crate::problem::{of_constrictions, refused};
+use crate::problem::refused;
 use crate::soil::{Gradation, density_named};
 use crate::work::at_work;
 
@@ -98,11 +98,11 @@ pub fn measure<'py>(
     let facets = if on_both_hulls { Facets::OnBothHulls } else { Facets::All };
     let (constrictions, graph, curve, summary) = at_work(py, None, |_| {
         pool(threads)?.install(|| {
-            let refused = |error: ConstrictionsError| of_constrictions(&error);
-            let t = Triangulation::new(&grains).map_err(|error| refused(error.into()))?;
+            let t = Triangulation::new(&grains)
+                .map_err(|error| RunError::refused(ConstrictionsError::from(error)))?;
             let constrictions =
-                Constrictions::from_triangulation(&t, merge_overlap, facets).map_err(refused)?;
-            constrictions.check().map_err(refused)?;
+                Constrictions::from_triangulation(&t, merge_overlap, facets).map_err(RunError::refused)?;
+            constrictions.check().map_err(RunError::refused)?;
             // Grains without a cell, and voids that run through it, have no graph; nor do only some facets.
             let graph = VoidGraph::of(&t, merge_overlap).ok().filter(|_| facets == Facets::All);
             let curve = constrictions.curve().map_err(RunError::refused)?;

@@ -16,7 +16,6 @@ mod scenes;
 mod soil;
 mod studies;
 mod tables;
-mod two_tables;
 mod walks;
 mod work;
 
@@ -27,29 +26,20 @@ use pyo3::prelude::*;
 #[pymodule(gil_used = false)]
 mod _voidwalk {
     #[pymodule_export]
-    use crate::command::command;
-    #[pymodule_export]
-    use crate::grains::{measure, pack, read_packing};
-    #[pymodule_export]
-    use crate::network::Network;
-    #[pymodule_export]
-    use crate::notes::note_sentences;
-    #[pymodule_export]
-    use crate::pages::{report, run_brief, run_page, walk_brief, walk_page};
-    #[pymodule_export]
-    use crate::problem::VoidwalkError;
-    #[pymodule_export]
-    use crate::rules::rules;
-    #[pymodule_export]
-    use crate::scenes::{Scene, campaign, init_text, resume, run, run_in_memory};
-    #[pymodule_export]
-    use crate::soil::{Curve, Gradation};
-    #[pymodule_export]
-    use crate::studies::{boundary, percolation, schema, soils, specification, specification_words};
-    #[pymodule_export]
-    use crate::walks::{replicate_seed, walk};
-    #[pymodule_export]
-    use crate::work::Progress;
+    use crate::{
+        command::command,
+        grains::{measure, pack, read_packing},
+        network::Network,
+        notes::note_sentences,
+        pages::{report, run_brief, run_page, walk_brief, walk_page},
+        problem::VoidwalkError,
+        rules::rules,
+        scenes::{Scene, campaign, init_text, resume, run, run_in_memory},
+        soil::{Curve, Gradation},
+        studies::{boundary, percolation, schema, soils, specification, specification_words},
+        walks::{replicate_seed, walk},
+        work::Progress,
+    };
     use pyo3::prelude::*;
 
     #[pymodule_init]

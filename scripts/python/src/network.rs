@@ -16,7 +16,7 @@ use voidwalk::run::machine::threads as pool;
 use voidwalk::store::read_regular;
 
 use crate::arrays::{Grains, column, of_rows, rows, voids};
-use crate::problem::{failed, of_constrictions, of_network, refused};
+use crate::problem::{failed, of_network, refused};
 use crate::soil::Curve;
 use crate::work::at_work;
 
@@ -158,8 +158,7 @@ impl Network {
         }
         let network = at_work(py, None, |_| {
             pool(None)?.install(|| {
-                let measured = VoidGraph::measure(&grains, merge_overlap);
-                let (_, graph) = measured.map_err(|error| of_constrictions(&error))?;
+                let (_, graph) = VoidGraph::measure(&grains, merge_overlap).map_err(RunError::refused)?;
                 let shape = GraphShape { copies, rule, rho, unit_mm: graph.d0_mm };
                 network::Network::of_graph(&graph, shape).map_err(RunError::refused)
             })

@@ -3,7 +3,6 @@
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyValueError};
 use pyo3::prelude::*;
-use voidwalk::constrictions::ConstrictionsError;
 use voidwalk::network::NetworkError;
 use voidwalk::run::{Exit, RunError};
 use voidwalk::text::is_hidden;
@@ -72,9 +71,4 @@ pub fn of_network(error: &NetworkError) -> PyErr {
         NetworkError::NarrowWayOut { .. } => failed(error),
         _ => refused(error),
     }
-}
-
-/// Error of a packing whose constrictions are wanted.
-pub fn of_constrictions(error: &ConstrictionsError) -> RunError {
-    RunError::refused(error)
 }

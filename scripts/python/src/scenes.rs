@@ -11,12 +11,13 @@ use voidwalk::practice::ordered;
 use voidwalk::practice::quantity::SizeUnit;
 use voidwalk::run::machine::threads as pool;
 use voidwalk::run::{self as runs, CheckpointInterval, Event, PrepareOptions, RunOptions, results};
+use voidwalk::scene::TableOptions;
 use voidwalk::schema::SceneError;
 use voidwalk::store::format;
 
 use crate::problem::{failed, of_run, refused};
+use crate::soil::density_named;
 use crate::tables::of_recorded;
-use crate::two_tables::Tables;
 use crate::work::at_work;
 
 /// Name in errors of settings that come from a dict.
@@ -52,6 +53,19 @@ impl Manner {
         let Self(memory, threads, _, command) = self;
         let part = CasePart::default();
         Ok(CaseOptions { out, part, packings, memory, threads, checkpoint_interval, command })
+    }
+}
+
+/// Options of a scene of two tables: density, then true if it is packed, is quick, is as sampled, is as
+/// given, and settings as `name=value`.
+#[derive(FromPyObject)]
+pub struct Tables(Option<String>, bool, bool, bool, bool, Vec<String>);
+
+impl Tables {
+    pub fn options(self) -> PyResult<TableOptions> {
+        let Self(density, pack, quick, as_sampled, as_given, changes) = self;
+        let density = density.map(|word| density_named(&word)).transpose()?;
+        Ok(TableOptions { density, pack, quick, as_sampled, as_given, changes })
     }
 }
 

@@ -18,20 +18,6 @@ import voidwalk as vw
 
 MODULE = [sys.executable, "-m", "voidwalk"]
 BASE = "size_mm,percent\n0.5,100\n0.25,80\n0.125,45\n0.063,12\n"
-PLAN = """\
-title = "Two bases"
-seed = 1
-
-[set]
-replicates = 2
-network = { nx = 10, ny = 10, nz = 16 }
-record = { sensitivity = [] }
-
-[[factor]]
-name = "cu"
-setting = "base.cu"
-values = [1.5, 3]
-"""
 FILTER = "size_mm,percent\n8,100\n4,85\n2,55\n1,25\n0.5,5\n"
 
 
@@ -117,7 +103,7 @@ def test_a_run_names_the_command_that_began_it(small: Dict[str, Any], tmp_path: 
 
 @pytest.mark.skipif(os.name == "nt", reason="scripts of a cluster are for sh")
 def test_a_job_script_starts_the_package_again(tmp_path: Path) -> None:
-    (tmp_path / "plan.toml").write_text(PLAN)
+    (tmp_path / "plan.toml").write_text('[[factor]]\nname = "cu"\nsetting = "base.cu"\nvalues = [1.5, 3]\n')
     done = said([*MODULE, "campaign", "plan.toml", "--out", "out", "--slurm"], tmp_path)
     assert done.returncode == 0, done.stderr
     script = (tmp_path / "out" / "slurm" / "array.sh").read_text()

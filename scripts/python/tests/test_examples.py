@@ -17,12 +17,8 @@ SAID: Dict[str, List[str]] = {
     "sieve_curves": ["D15F / D85B", "Result("],
     "dem_packing": ["Packing(2000 grains", "grains per void", "Dc85"],
     "openpnm_clogging": ["Network(", "WalkResult("],
-    "parameter_study": ["Cu of the base", "continuing erosion"],
-    "paper_figure_13": [
-        "continuing erosion: Result(model: ",
-        "some erosion: Result(model: ",
-        "no erosion: Result(model: ",
-    ],
+    "parameter_study": ["eroded_1", "continuing erosion"],
+    "paper_figure_13": [f"{words} erosion: Result(model: " for words in ("continuing", "some", "no")],
 }
 NEEDS = {"parameter_study": "pandas"}
 

@@ -17,6 +17,13 @@ from voidwalk import settings
 from voidwalk.settings import SceneSettings
 
 
+def held_by_mypy(folder: Path, *words: str) -> None:
+    """Mypy has nothing to say."""
+    pytest.importorskip("mypy")
+    said = subprocess.run([sys.executable, "-m", *words], capture_output=True, text=True, cwd=folder)
+    assert said.returncode == 0, said.stdout + said.stderr
+
+
 def test_the_version_is_that_of_the_crate() -> None:
     manifests = [ROOT / "Cargo.toml", ROOT / "scripts" / "python" / "Cargo.toml"]
     for manifest in manifests:
@@ -46,18 +53,12 @@ def test_every_name_says_what_it_is() -> None:
 
 
 def test_the_stubs_are_those_of_the_binary(tmp_path: Path) -> None:
-    pytest.importorskip("mypy")
-    command = [sys.executable, "-m", "mypy.stubtest", "voidwalk._voidwalk", "--mypy-config-file", "/dev/null"]
-    said = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
-    assert said.returncode == 0, said.stdout + said.stderr
+    held_by_mypy(tmp_path, "mypy.stubtest", "voidwalk._voidwalk", "--mypy-config-file", "/dev/null")
 
 
 def test_the_package_is_typed_strictly(tmp_path: Path) -> None:
-    pytest.importorskip("mypy")
     assert (Path(vw.__file__).parent / "py.typed").exists()
-    command = [sys.executable, "-m", "mypy", "--strict", "-p", "voidwalk"]
-    said = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
-    assert said.returncode == 0, said.stdout + said.stderr
+    held_by_mypy(tmp_path, "mypy", "--strict", "-p", "voidwalk")
 
 
 def test_nothing_that_a_user_touches_is_of_any_type() -> None:
@@ -84,15 +85,12 @@ def test_the_settings_of_a_scene_are_those_of_the_program() -> None:
 
 
 def test_the_examples_are_typed_strictly(tmp_path: Path) -> None:
-    pytest.importorskip("mypy")
     page = (ROOT / "src" / "docs" / "python.md").read_text(encoding="utf-8")
     guide = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
     assert len(guide) > 2
     (tmp_path / "guide.py").write_text("".join(guide), encoding="utf-8")
     for example in [tmp_path / "guide.py", *sorted((ROOT / "scripts" / "examples").glob("*.py"))]:
-        command = [sys.executable, "-m", "mypy", "--strict", str(example)]
-        said = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path)
-        assert said.returncode == 0, said.stdout + said.stderr
+        held_by_mypy(tmp_path, "mypy", "--strict", str(example))
 
 
 def test_what_the_readme_shows_runs_without_a_warning() -> None:

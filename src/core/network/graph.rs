@@ -168,8 +168,7 @@ mod tests {
     /// Touching body-centred and face-centred cubic lattices: closed form of the scheme. All throats are
     /// equal, so they share void and surface equally, and pressure falls evenly along the axis: k is the
     /// sum of g dz^2 over the throats of a cell of edge 1, divided by its volume. It is within 10 % of the
-    /// Stokes flow through the same grains, solved by `scripts/studies/stokes_lattices.py` (k / D^2 to
-    /// 0.2 %; the tables are in `results/graph.md`).
+    /// Stokes flow through the same grains (k / D^2 to 0.2 %), by lattice Boltzmann (`results/graph.md`).
     #[test]
     fn permeability_of_body_centred_and_face_centred_cubic_packings() {
         let pi = std::f64::consts::PI;

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Optional, Sequence, Tuple, TypeVar, Union
+from typing import Optional, Tuple, TypeVar, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -109,8 +109,3 @@ def threads_or_none(threads: Optional[int]) -> Optional[int]:
     if number > 4096:
         raise ValueError(f"threads = {number} is not allowed; a whole number from 1 to 4096")
     return number
-
-
-def names(items: Sequence[str]) -> str:
-    """Names in a row."""
-    return ", ".join(items)

@@ -77,10 +77,6 @@ class Packing:
         "cell": "Lengths (mm) of the periodic cell, or None.",
         "reached": "What a compression reached: void ratio, pressure (kPa), coordination number and more.",
     }
-    coords: Floats
-    diameter: Floats
-    cell: Optional[Tuple[float, float, float]]
-    reached: Reached
 
     def __init__(self, coords: ArrayLike, diameter: ArrayLike, cell: Optional[ArrayLike] = None) -> None:
         self.coords = frozen(floats("coords", coords, None, 3))
@@ -89,7 +85,7 @@ class Packing:
             grain = int(np.argmax(self.diameter <= 0))
             raise ValueError(f"diameter[{grain}] = {self.diameter[grain]} is not allowed; a size above 0 is needed")
         self.cell = cell_lengths(cell)
-        self.reached = {}
+        self.reached: Reached = {}
 
     @property
     def _columns(self) -> Tuple[Floats, Floats, Optional[Tuple[float, float, float]]]:
@@ -181,10 +177,6 @@ def pack(
         One per core without it.
     progress : callable, True or None
         Told of each look at the work, a :class:`Progress`; ``True`` shows a bar where tqdm is installed.
-
-    Returns
-    -------
-    Packing
 
     Raises
     ------

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _voidwalk
-from ._arrays import Floats, Ints, floats, frozen, ints, names, pores, whole
+from ._arrays import Floats, Ints, floats, frozen, ints, pores, whole
 from ._boxes import box
 from ._grains import MERGE_OVERLAP, Constrictions, Packing
 from ._plots import Axes, plot_network
@@ -85,17 +85,6 @@ class Network:
         "grains_per_void": "Filter grains per void, where known: of lattices with a shipped or measured curve, and "
         "of packings; else None.",
     }
-    _native: _voidwalk.Network
-    _made: Tuple[str, Mapping[str, object]]
-    conns: Ints
-    diameter: Floats
-    inlets: Ints
-    outlets: Ints
-    coords: Optional[Floats]
-    conductance: Optional[Floats]
-    rho: float
-    filter: Optional[Gradation]
-    grains_per_void: Optional[float]
 
     def __init__(
         self,
@@ -113,27 +102,24 @@ class Network:
     ) -> None:
         self.conns = frozen(ints("conns", conns, None, 2))
         self.diameter = frozen(floats("diameter", diameter, len(self.conns)))
-        self.conductance = None
-        if conductance is not None:
-            self.conductance = frozen(floats("conductance", conductance, len(self.conns)))
+        self.conductance = None if conductance is None else frozen(floats("conductance", conductance, len(self.conns)))
         if count is None:
             count = _count(self.conns, inlets, outlets, coords)
         self.inlets = frozen(pores("inlets", inlets, count))
         self.outlets = frozen(pores("outlets", outlets, count))
         self.coords = None if coords is None else frozen(floats("coords", coords, count, 3))
         self.rho = float(rho)
-        self.filter, self.grains_per_void = None, None
+        self.filter: Optional[Gradation] = None
+        self.grains_per_void: Optional[float] = None
         self._native = _voidwalk.Network.from_columns(
             whole("count", count), self.conns, self.diameter, self.conductance, self.inlets, self.outlets, exit,
             self.rho, float(reference_mm),
         )
-        self._made = (
-            "",
-            dict(
-                conns=self.conns, diameter=self.diameter, inlets=self.inlets, outlets=self.outlets, exit=exit,
-                conductance=self.conductance, rho=self.rho, count=count, coords=self.coords, reference_mm=reference_mm,
-            ),
+        made = dict(
+            conns=self.conns, diameter=self.diameter, inlets=self.inlets, outlets=self.outlets, exit=exit,
+            conductance=self.conductance, rho=self.rho, count=count, coords=self.coords, reference_mm=reference_mm,
         )
+        self._made: Tuple[str, Mapping[str, object]] = ("", made)
 
     @classmethod
     def _of(
@@ -177,10 +163,6 @@ class Network:
             As for the class.
         reference_mm : float, optional
             As for the class; `d0_mm` without it.
-
-        Returns
-        -------
-        Network
 
         Examples
         --------
@@ -227,10 +209,6 @@ class Network:
             How a particle chooses: as for the class, or by area among the exits that lead upwards in z.
         rho, merge_overlap : float
             As for the class and for :func:`constrictions`.
-
-        Returns
-        -------
-        Network
         """
         if isinstance(packing, Constrictions):
             merge_overlap, packing = packing.merge_overlap, packing.packing
@@ -287,10 +265,6 @@ class Network:
             Length (mm) of the unit of `pn`: OpenPNM's is the metre.
         exit, rho, count, reference_mm
             As for the class.
-
-        Returns
-        -------
-        Network
 
         Examples
         --------
@@ -462,10 +436,6 @@ class Network:
             Where to; a new figure without it.
         blocked : array_like of bool, shape (n,), optional
             Which constrictions are blocked, as a run of ``Result.blocked``.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
         """
         layer, ends = self.layer, self.conns
         # A constriction belongs to the layer of the void that it leads from.
@@ -478,10 +448,6 @@ class Network:
         Constrictions that lead outside end in boundary pores of their own, so that every conns names two pores.
         ``pore.inlets`` and ``pore.outlets`` are masks. Which way a constriction leads is only in the order of
         its two pores.
-
-        Returns
-        -------
-        dict of ndarray
         """
         conns = np.array(self.conns)
         before, behind = np.flatnonzero(conns[:, 0] < 0), np.flatnonzero(conns[:, 1] < 0)
@@ -527,9 +493,7 @@ class Network:
 
     def __repr__(self) -> str:
         inlets = int(len(self.inlets) + np.count_nonzero(self.conns[:, 0] < 0))
-        return (
-            f"Network({self.count} voids, {len(self)} constrictions, {inlets} inlets, exit by {self.exit})"
-        )
+        return f"Network({self.count} voids, {len(self)} constrictions, {inlets} inlets, exit by {self.exit})"
 
     def _repr_html_(self) -> str:
         sizes = self.diameter[self.diameter > 0]
@@ -575,4 +539,4 @@ def _side(pn: Mapping[str, object], given: Union[None, str, ArrayLike], name: st
     for label in labels:
         if label in pn and np.asarray(pn[label]).any():
             return np.asarray(pn[label], dtype=bool)
-    raise ValueError(f"{name}: the network has no pores labelled {names(labels)}; give their numbers")
+    raise ValueError(f"{name}: the network has no pores labelled {', '.join(labels)}; give their numbers")

@@ -175,21 +175,16 @@ def plot_specification(outcome: Specification, ax: Optional[Axes]) -> Axes:
     for number, curve in enumerate(outcome["curves"]):
         name, colour = curve["curve"] if several else "Base", f"C{number % 10}"
         regraded = curve.get("regraded")
-        _line(drawn, curve["gradation"], f"{name}, as sampled" if regraded else name, colour, "--" if regraded else "-")
+        label, style = (f"{name}, as sampled", "--") if regraded else (name, "-")
+        drawn.plot(*zip(*curve["gradation"]), style, color=colour, label=label)
         if regraded:
-            _line(drawn, regraded, f"{name}, regraded", colour, "-")
+            drawn.plot(*zip(*regraded), color=colour, label=f"{name}, regraded")
     band = outcome["band"]
     if band is not None:
-        _line(drawn, band["fine_side"], "Filter, fine side", "black", "-")
-        _line(drawn, band["coarse_side"], "Filter, coarse side", "black", "-.")
-        outline = band["fine_side"] + band["coarse_side"][::-1]
-        drawn.fill([point[0] for point in outline], [point[1] for point in outline], color="black", alpha=0.1)
+        drawn.plot(*zip(*band["fine_side"]), color="black", label="Filter, fine side")
+        drawn.plot(*zip(*band["coarse_side"]), "-.", color="black", label="Filter, coarse side")
+        drawn.fill(*zip(*band["fine_side"], *band["coarse_side"][::-1]), color="black", alpha=0.1)
     return _semi_log(drawn, _SIZE, _PERCENT_BY_MASS)
-
-
-def _line(ax: Axes, points: Sequence[Sequence[float]], label: str, colour: str, style: str) -> None:
-    """A curve of points (x, y)."""
-    ax.plot([point[0] for point in points], [point[1] for point in points], label=label, color=colour, linestyle=style)
 
 
 def plot_boundaries(outcome: Boundaries, walks: Walked, ax: Optional[Axes]) -> Axes:

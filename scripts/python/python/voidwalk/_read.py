@@ -19,17 +19,7 @@ __all__ = ["read"]
 def read(
     folder: Union[str, "os.PathLike[str]"],
 ) -> Union[Result, CampaignResult, Boundaries, Specification, Packing]:
-    """What lies in a finished folder of a run, a campaign, a study of boundaries, a specification or a packing.
-
-    Parameters
-    ----------
-    folder : path-like
-        The folder.
-
-    Returns
-    -------
-    Result, CampaignResult, Boundaries, Specification or Packing
-    """
+    """What lies in a finished folder of a run, a campaign, a study of boundaries, a specification or a packing."""
     place = Path(folder)
 
     def record(name: str) -> str:

@@ -35,29 +35,12 @@ Figure = Literal["progress", "layers", "curves", "rules"]
 #: The names of its tables.
 TableName = Literal["series", "layers", "retained", "eroded", "flow", "retained_by_void", "blockings"]
 
-#: The tables of a result, and the file of each in the folder of a run.
-_TABLES = {
-    "series": "series.csv",
-    "layers": "layers.csv",
-    "retained": "retained.csv",
-    "eroded": "eroded.csv",
-    "flow": "flow.csv",
-    "retained_by_void": "retained_by_void.csv",
-    "blockings": "blocked.csv",
-}
+#: The tables of a result.
+_TABLES = ("series", "layers", "retained", "eroded", "flow", "retained_by_void", "blockings")
 
 
 class _Walked:
     """The numbers and tables of a walk, on a scene's networks or on given ones."""
-
-    outcome: Union[Outcome, WalkOutcome]
-    series: Series
-    layers: Layers
-    retained: Sizes
-    eroded: Sizes
-    flow: Flow
-    retained_by_void: RetainedByVoid
-    blockings: Blockings
 
     def __init__(self, outcome: Union[Outcome, WalkOutcome], tables: Dict[str, Table]) -> None:
         self.outcome = outcome
@@ -148,10 +131,6 @@ class _Walked:
             was retained and eroded; how near each rule of practice is to its limit.
         ax : matplotlib.axes.Axes, optional
             Where to; a new figure without it.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
         """
         return plot_result(cast(Outcome, self.outcome), (self.series, self.layers, self.retained, self.eroded), what, ax)
 
@@ -251,7 +230,6 @@ class Result(_Walked):
     """
 
     outcome: Outcome
-    folder: Optional[Path]
 
     def __init__(
         self,
@@ -331,7 +309,6 @@ class WalkResult(_Walked):
     """
 
     outcome: WalkOutcome
-    blocked: NDArray[np.bool_]
 
     def __init__(self, outcome: WalkOutcome, tables: Dict[str, Table], blocked: NDArray[np.bool_]) -> None:
         super().__init__(outcome, tables)
@@ -396,9 +373,6 @@ class CampaignResult:
         The columns of ``cases.csv``: a row a case.
     """
 
-    folder: Path
-    cases: Table
-
     def __init__(self, folder: Path) -> None:
         self.folder, self.cases = folder, read_csv(folder / "cases.csv")
 
@@ -441,5 +415,6 @@ def read_csv(path: Path) -> Table:
 def read_run(folder: Path) -> Result:
     """The result of a run folder."""
     outcome = json.loads((folder / "outcome.json").read_text(encoding="utf-8"))
-    tables = {name: read_csv(folder / file) for name, file in _TABLES.items() if (folder / file).exists()}
+    files = {name: folder / f"{'blocked' if name == 'blockings' else name}.csv" for name in _TABLES}
+    tables = {name: read_csv(file) for name, file in files.items() if file.exists()}
     return Result(outcome, tables, folder=folder)

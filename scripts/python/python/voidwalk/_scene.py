@@ -55,7 +55,6 @@ class Scene:
     """
 
     __slots__ = ("_native",)
-    _native: _voidwalk.Scene
 
     def __init__(self, scene: Union[Scene, Stated] = None, settings: Optional[Settings] = None) -> None:
         self._native = native_scene(scene, settings)
@@ -167,10 +166,6 @@ def schema(name: str) -> Dict[str, object]:
     ----------
     name : str
         The name of its form without number, as ``"outcome"`` for ``outcome.json``.
-
-    Returns
-    -------
-    dict
 
     Examples
     --------

@@ -58,7 +58,6 @@ class Gradation:
     """
 
     __slots__ = ("_native",)
-    _native: _voidwalk.Gradation
 
     def __init__(self, size_mm: ArrayLike, percent_finer: ArrayLike, d0_mm: Optional[float] = None) -> None:
         sizes, percents = floats("size_mm", size_mm, None), floats("percent_finer", percent_finer, None)
@@ -82,10 +81,6 @@ class Gradation:
             One of its sizes (mm).
         percent : float
             Which one: `size_mm` is ``D_percent``; D0 by default.
-
-        Returns
-        -------
-        Gradation
 
         Examples
         --------
@@ -122,10 +117,6 @@ class Gradation:
             Which of several soils.
         d0_mm : float, optional
             As for the class.
-
-        Returns
-        -------
-        Gradation
         """
         soils = _voidwalk.Gradation.in_file(os.fspath(path), d0_mm)
         if soil is None and len(soils) == 1:
@@ -154,10 +145,6 @@ class Gradation:
             Names of the columns with openings (mm) and percent finer by mass.
         d0_mm : float, optional
             As for the class.
-
-        Returns
-        -------
-        Gradation
         """
         for name in (size, percent):
             if name not in frame:
@@ -199,19 +186,8 @@ class Gradation:
         return self._native.points()
 
     def plot(self, ax: Optional[Axes] = None, *, label: Optional[str] = None) -> Axes:
-        """Draws percent finer by mass against size (mm) by matplotlib.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Where to; a new figure without it.
-        label : str, optional
-            Its name in the legend.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-        """
+        """Draws percent finer by mass against size (mm) by matplotlib: in `ax`, or in a new figure; `label` is its name in the
+        legend."""
         return plot_gradation(*self.points(), label, ax)
 
     def base_particles(self, filter: Gradation, voids: int, grains_per_void: float, mass_ratio: float = 0.05) -> int:
@@ -227,10 +203,6 @@ class Gradation:
             Filter grains per void, as :func:`constrictions` measures it.
         mass_ratio : float
             Mass of the base over mass of the filter.
-
-        Returns
-        -------
-        int
 
         Examples
         --------
@@ -290,14 +262,12 @@ class Curve:
         "filter": "Gradation of the filter of a shipped curve, a straight line, or None.",
         "grains_per_void": "Filter grains per void where the curve was measured, or None.",
     }
-    _native: _voidwalk.Curve
-    filter: Optional[Gradation]
-    grains_per_void: Optional[float]
 
     def __init__(self, percent_smaller: ArrayLike, diameter_mm: ArrayLike) -> None:
         percents = floats("percent_smaller", percent_smaller, None)
         self._native = _voidwalk.Curve.from_points(percents, floats("diameter_mm", diameter_mm, None))
-        self.filter, self.grains_per_void = None, None
+        self.filter: Optional[Gradation] = None
+        self.grains_per_void: Optional[float] = None
 
     @classmethod
     def _of(cls, native: _voidwalk.Curve, filter: Optional[Gradation], grains_per_void: Optional[float]) -> Curve:

@@ -23,11 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["Specification", "specification"]
 
 #: The tables of a specification, and the file of each.
-_TABLES = {
-    "limits": "specification.csv",
-    "steps": "specification_steps.csv",
-    "products": "specification_products.csv",
-}
+_TABLES = {"limits": "specification.csv", "steps": "specification_steps.csv", "products": "specification_products.csv"}
 
 
 class Specification:
@@ -42,10 +38,6 @@ class Specification:
     folder : pathlib.Path or None
         Folder of the specification, where it has one.
     """
-
-    outcome: SpecificationRecord
-    tables: Dict[str, Table]
-    folder: Optional[Path]
 
     def __init__(self, outcome: SpecificationRecord, tables: Dict[str, Table], folder: Optional[Path] = None) -> None:
         self.outcome, self.tables, self.folder = outcome, tables, folder
@@ -117,17 +109,7 @@ class Specification:
         return frame
 
     def plot(self, ax: Optional[Axes] = None) -> Axes:
-        """Draws the curves of the base and both sides of the band, by matplotlib.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Where to; a new figure without it.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-        """
+        """Draws the curves of the base and both sides of the band, by matplotlib: in `ax`, or in a new figure."""
         return plot_specification(self.outcome, ax)
 
     def report(self) -> Path:
@@ -141,11 +123,10 @@ class Specification:
         facts = {"By the rules of practice alone": self.answer}
         if self.note is not None:
             facts["Beside the limits"] = self.note
-        shown = [(of["min_percent_finer"], of["max_percent_finer"]) for of in self.limits]
-        rows = [
-            (of["sieve"], f"{of['opening_mm']:g}", f"{least:g}", "" if most is None else f"{most:g}")
-            for of, (least, most) in zip(self.limits, shown)
-        ]
+        rows = []
+        for of in self.limits:
+            least, most = of["min_percent_finer"], of["max_percent_finer"]
+            rows.append((of["sieve"], f"{of['opening_mm']:g}", f"{least:g}", "" if most is None else f"{most:g}"))
         heading = ("Sieve", "Opening (mm)", "Least finer (%)", "Greatest finer (%)")
         return box(f"Specification of a filter for {self.outcome['base']}", facts, heading, rows)
 
@@ -187,10 +168,6 @@ def specification(
         Whether the results of an earlier call in `out` are replaced.
     progress
         As for :func:`run`.
-
-    Returns
-    -------
-    Specification
 
     Raises
     ------

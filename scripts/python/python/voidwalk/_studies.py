@@ -44,10 +44,6 @@ class Boundaries:
         Folder of the study, where it has one.
     """
 
-    outcome: BoundariesRecord
-    walks: Walked
-    folder: Optional[Path]
-
     def __init__(self, outcome: BoundariesRecord, walks: Walked, folder: Optional[Path] = None) -> None:
         self.outcome, self.walks, self.folder = outcome, walks, folder
 
@@ -72,17 +68,8 @@ class Boundaries:
         return frame
 
     def plot(self, ax: Optional[Axes] = None) -> Axes:
-        """Draws the eroded mass against D15F/D85B on every network, and both boundaries, by matplotlib.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Where to; a new figure without it.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-        """
+        """Draws the eroded mass against D15F/D85B on every network, and both boundaries, by matplotlib: in `ax`, or in a new
+        figure."""
         return plot_boundaries(self.outcome, self.walks, ax)
 
     def report(self) -> Path:
@@ -159,10 +146,6 @@ def boundary(
         As for :func:`judge`.
     overwrite, packings, memory, progress
         As for :func:`run`.
-
-    Returns
-    -------
-    Boundaries
 
     Raises
     ------

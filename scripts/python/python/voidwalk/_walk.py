@@ -99,10 +99,6 @@ def walk(
         Told of the walk some twenty times a second, a :class:`Progress`; an exception in it ends the walk and
         is raised. ``True`` shows a bar where tqdm is installed.
 
-    Returns
-    -------
-    WalkResult
-
     Raises
     ------
     ValueError
@@ -265,10 +261,6 @@ def resume(
         Its folder.
     threads, memory, checkpoint_every, progress
         As for :func:`run`.
-
-    Returns
-    -------
-    Result
     """
     how = manner("resume", memory, threads, checkpoint_every)
     with Following(progress) as callback:
@@ -298,10 +290,6 @@ def campaign(
         As for :func:`run`; progress counts cases.
     packings : path-like, optional
         Folder in which packings of filters are kept; one in `out` without it.
-
-    Returns
-    -------
-    CampaignResult
 
     Raises
     ------
