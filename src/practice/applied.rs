@@ -393,7 +393,7 @@ mod tests {
     #[test]
     fn a_quantity_is_written_by_its_name_and_read_back() {
         // No named quantity has the name of a limit of D15F.
-        for quantity in RULES.iter().map(|rule| &rule.quantity) {
+        for quantity in RULES.iter().map(|rule| rule.quantity) {
             let text = serde_json::to_string(quantity).unwrap();
             assert_eq!(text, format!("\"{quantity}\""));
             assert_eq!(serde_json::from_str::<RuleQuantity>(&text).unwrap(), *quantity);

@@ -21,7 +21,7 @@ pub struct FilterRule {
     pub(crate) applies_to: &'static str,
     /// Quantity that the rule limits. A rule of retention also limits a design if [`RuleQuantity`] has a
     /// variant for its quantity.
-    pub(crate) quantity: RuleQuantity,
+    pub(crate) quantity: &'static RuleQuantity,
     /// Limit in words.
     pub(crate) formula: &'static str,
     /// True if the limit is a minimum, false if it is a maximum.
