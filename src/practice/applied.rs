@@ -148,7 +148,6 @@ pub enum RuleQuantity {
 }
 
 impl RuleQuantity {
-    /// A quantity that does not limit D15F, by its name.
     pub(crate) const fn named(name: &'static str) -> Self {
         Self::Named(Cow::Borrowed(name))
     }
@@ -196,6 +195,7 @@ macro_rules! notes {
         #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
         #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema), schemars(with = "schema::RuleNote"))]
         #[serde(tag = "id", content = "numbers", rename_all = "snake_case")]
+        #[allow(missing_docs)]
         pub enum RuleNote {
             $($(#[$doc])* $id $(($($type),*))?,)*
         }
@@ -232,29 +232,21 @@ macro_rules! notes {
 
 notes! {
     // Missing inputs.
-    /// The fines of the base.
     NeedsFinesOfBase,
-    /// D85 of the base.
     NeedsD85B,
-    /// D95 of the base.
     NeedsD95B,
-    /// D15 of the base.
     NeedsD15B,
     /// D15 of the filter, which D0F would also give.
     NeedsD15F,
     /// D15 of the filter, which only sieves give.
     NeedsD15FSieved,
-    /// D10 of the filter.
     NeedsD10F,
-    /// The fines of the filter.
     NeedsFinesOfFilter,
     /// Sieves of the filter over the range in which the curves of a band are compared.
     NeedsSievesOfFilter,
     /// Gradation of the filter's finest part, for an index of its shape.
     NeedsFinestPartOfFilter,
-    /// A sieve curve of the filter.
     NeedsCurveOfFilter,
-    /// A sieve curve of the filter with a unit.
     NeedsCurveOfFilterInMm,
     /// A dispersion test of a base with 15 to 40 % fines.
     NeedsTestOfDispersive,
@@ -262,23 +254,16 @@ notes! {
     NeedsErosion,
 
     // Openings (mm) of two widely spaced sieves around a size.
-    /// D15 of the filter.
     D15FBetween(f64, f64),
-    /// D15 of the base.
     D15BBetween(f64, f64),
-    /// D85 of the base.
     D85BBetween(f64, f64),
-    /// D95 of the base.
     D95BBetween(f64, f64),
-    /// Sizes of the filter.
     FilterBetween(f64, f64),
-    /// Sizes of the base.
     BaseBetween(f64, f64),
 
     // Readings of the base.
     /// The other limit (mm) of a base with a flat part, which may be a gap.
     FlatBase(f64),
-    /// The base is dispersive.
     Dispersive,
     /// NRCS category of the base.
     Category(u8),
@@ -358,7 +343,6 @@ notes! {
     BurenkovaSoils,
     /// The filter is in Burenkova's third zone, above this D90/D60.
     BurenkovaThirdZone(f64),
-    /// The filter is uniform.
     UniformFilter,
 }
 

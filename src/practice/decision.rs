@@ -63,7 +63,6 @@ pub enum Standing {
 }
 
 impl Standing {
-    /// Class of the standing: practice met, not met, or not known.
     pub(crate) fn class(&self) -> PracticeClass {
         match self {
             Self::Fails | Self::WashedOut | Self::NoMargin => PracticeClass::DoesNotMeet,

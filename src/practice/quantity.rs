@@ -101,9 +101,7 @@ enum Digits {
 pub struct Quantity {
     /// The number; percentages are in percent.
     pub(crate) value: f64,
-    /// Unit of the number.
     pub(crate) unit: Unit,
-    /// Role of the number.
     pub(crate) role: NumberRole,
     digits: Digits,
 }
@@ -222,12 +220,10 @@ impl Quantity {
         })
     }
 
-    /// Inches in brackets, if the unit shows them.
     fn inches_text(self) -> String {
         self.inches().map_or_else(String::new, |inches| bracket(&inches))
     }
 
-    /// Text after the digits.
     fn unit_text(self) -> String {
         match self.unit {
             Unit::None | Unit::Count => String::new(),
@@ -248,9 +244,7 @@ impl fmt::Display for Quantity {
 /// read alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
-    /// Lower end.
     pub(crate) low: Quantity,
-    /// Upper end.
     pub(crate) high: Quantity,
 }
 
@@ -436,7 +430,6 @@ fn few_digits(value: f64, digits: u8) -> String {
     ((value * scale).round() / scale).to_string()
 }
 
-/// Number with a fixed number of decimals.
 fn fixed(value: f64, decimals: usize) -> String {
     if value.abs() < 1e7 { format!("{value:.decimals$}") } else { as_given(value) }
 }

@@ -21,29 +21,21 @@ const FEWEST_ACROSS: u32 = 10;
 /// Base, filter and network of a walk to come.
 #[derive(Clone)]
 pub(crate) struct PlannedWalk<'a> {
-    /// Base as walked.
     pub(crate) base: &'a Gradation,
     /// Base as stated, if it is walked regraded.
     pub(crate) regraded_from: Option<&'a Gradation>,
     /// Finest constriction (mm): a pan fraction of the base that may be coarser counts as finer.
     pub(crate) finest_constriction_mm: f64,
-    /// Filter, if it is known.
     pub(crate) filter: Option<&'a Gradation>,
     /// True for a sieve curve of the filter, false for an assumed straight line.
     pub(crate) filter_is_measured: bool,
-    /// True if sizes are multiples of D0F.
     pub(crate) scale_free: bool,
-    /// Number of voids of a given network.
     pub(crate) given_voids: Option<u64>,
-    /// Number of voids along each axis of a lattice.
     pub(crate) lattice: Option<[u32; 3]>,
-    /// Number of layers of voids.
     pub(crate) layers: u64,
-    /// True if water flows.
     pub(crate) flows: bool,
     /// Number of increments in which the base is inserted.
     pub(crate) increments: u64,
-    /// Number of replicates.
     pub(crate) replicates: u64,
 }
 
@@ -167,17 +159,13 @@ fn not_as_uniform(soil: &str, cu: Option<f64>, [low, high]: [f64; 2]) -> Option<
 /// Fraction of the clean filter's permeability below which it is treated as zero and shown as 0.0 %.
 const CLOGGED: f64 = 5e-4;
 
-/// Data of a walk that raise doubts.
 pub(crate) struct Walked<'a> {
-    /// Replicates of the walk.
     pub(crate) replicates: Vec<&'a Replicate>,
     /// Replicate, run and increment after which water was first found not to flow; in order.
     pub(crate) clogged: Vec<[u64; 3]>,
-    /// Base of the walk.
     pub(crate) base: &'a Gradation,
     /// Fraction of the base inserted in each increment.
     pub(crate) share: f64,
-    /// Number of layers of the network.
     pub(crate) layers: u64,
     /// True if blocked constrictions leave openings.
     pub(crate) openings: bool,

@@ -16,16 +16,12 @@ pub(crate) const FOREMOST: usize = 3;
 /// First line of every face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FirstLine {
-    /// Answer of practice.
     Practice,
-    /// Class of the walk.
     Model,
-    /// Step to take next.
     Next,
 }
 
 impl FirstLine {
-    /// Name before the line.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Practice => "Practice",
@@ -85,7 +81,6 @@ pub fn next(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> String {
 struct Pair<'a> {
     decision: &'a Decision,
     d15f_mm: f64,
-    /// Class of the model.
     class: Verdict,
     unit: SizeUnit,
 }

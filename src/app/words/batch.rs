@@ -90,12 +90,10 @@ pub(crate) fn d15f_and_limit(row: &BatchRow, unit: SizeUnit) -> [Option<String>;
     beside_limit([row.d15f_mm, row.limit_mm], false, Unit::Size(unit))
 }
 
-/// D15F and its limit for table cells whose head names the unit.
 fn d15f_and_limit_in_cells(row: &BatchRow, unit: SizeUnit) -> [Option<String>; 2] {
     beside_limit_in_cells([row.d15f_mm, row.limit_mm], false, Unit::Size(unit))
 }
 
-/// Result of a row.
 fn result(row: &BatchRow) -> &'static str {
     match row.met {
         Some(true) if row.breaks_if_dispersive => "met unless the base is dispersive",
@@ -268,7 +266,6 @@ fn dispersive_samples(rows: &[&WalkedRow], unit: SizeUnit) -> Option<String> {
     (!open.is_empty()).then_some(sentence)
 }
 
-/// Number of walks in each class.
 fn classes(walks: &[&SampleWalk]) -> String {
     let count = |class| walks.iter().filter(|walk| walk.verdict == class).count();
     let counted = Verdict::ALL.into_iter().filter(|class| count(*class) > 0);

@@ -39,7 +39,6 @@ pub(crate) fn practice_line(decision: &Decision, unit: SizeUnit) -> String {
     format!("{}: {}", headline.words(), clauses.join("; "))
 }
 
-/// D15F with the limit of design.
 fn of_design(rule: &AppliedRule, standing: Standing, unit: SizeUnit) -> String {
     let [value, limit] = value_and_limit(rule, unit);
     let known = format!("D15F {}", value.as_deref().unwrap_or("unknown"));

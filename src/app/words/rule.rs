@@ -65,7 +65,6 @@ fn value_is(bound: ValueBound) -> &'static str {
     }
 }
 
-/// Kind of a known limit.
 fn limit_is(rule: &AppliedRule) -> &'static str {
     match (rule.at_least, rule.limit_at_most) {
         _ if rule.role == RuleRole::Continuation => "a boundary: continuing erosion beyond it",
@@ -107,7 +106,6 @@ pub(crate) fn limit(rule: &AppliedRule, unit: SizeUnit) -> Option<String> {
     limit.map(|limit| format!("{} {limit}{}", limit_begins(rule), limit_ends(rule)))
 }
 
-/// Result of a rule in words.
 pub(crate) fn result(result: RuleResult) -> &'static str {
     match result {
         RuleResult::Met => "met",

@@ -303,21 +303,15 @@ pub(crate) fn limit_columns<'a>() -> Columns<'a, SieveLimit> {
 /// Row of `specification_steps.csv`: one number of a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StepRow {
-    /// Number of the step.
     pub(crate) step: u64,
-    /// Name of the step.
     pub(crate) does: String,
     /// Name of the number; empty if the step has no number.
     pub(crate) quantity: String,
-    /// The number.
     pub(crate) value: Option<f64>,
-    /// Unit of the number.
     pub(crate) unit: String,
-    /// Formula of the step.
     pub(crate) formula: String,
     /// Remarks for the reader.
     pub(crate) note: String,
-    /// Source of formula and numbers.
     pub(crate) source: String,
 }
 

@@ -41,11 +41,9 @@ pub const LEAST_CU: f64 = 2.0;
 
 /// Product with the limits of its standard.
 pub(super) struct Product {
-    /// Name of the product.
     pub(crate) name: &'static str,
     /// Sieve (mm), minimum and maximum percent finer; ascending.
     pub(crate) limits: &'static [(f64, f64, f64)],
-    /// Source of the limits.
     pub(crate) source: &'static str,
 }
 

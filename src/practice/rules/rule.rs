@@ -13,9 +13,7 @@ pub struct FilterRule {
     pub(crate) authority: &'static str,
     /// Further authorities whose texts state the rule.
     pub(crate) stated_by: &'static [&'static str],
-    /// Statement of the rule.
     pub(crate) says: &'static str,
-    /// Role of the rule.
     pub(crate) role: RuleRole,
     /// Soils that the rule was made for.
     pub(crate) applies_to: &'static str,
