@@ -6,10 +6,10 @@ pub mod specification;
 mod steps;
 
 use crate::rules::{GREATEST_SIZE_MM, MOST_CU, NamedCurve, WIDEST_BAND};
-use crate::{Note, SheetCover};
+use crate::{IfDispersive, Note, SheetCover};
 use size_band::{D15_OVER_D10, Side};
 use specification::{NoBand, SizeBand, margins};
-use steps::{Control, Findings, ReadCurve};
+use steps::{Control, Findings, ReadCurve, any_filter};
 
 pub use size_band::SieveSeries;
 pub use specification::{RowNote, Specification, SpecificationStep};
@@ -51,9 +51,11 @@ impl Specification {
         let at_most = coarsest.is_some_and(ReadCurve::least_at_most);
         let certain = read.iter().map(ReadCurve::certain_least).fold(0.0, f64::max);
         let no_band = no_band((d15f_min, at_most), d15f_max, unknown, band.is_some());
-        let if_dispersive = if options.dispersive.is_none() { steps::if_dispersive(bases) } else { None };
+        let if_dispersive =
+            options.dispersive.is_none().then(|| IfDispersive::of_bases(bases, &any_filter())).flatten();
+        let (sides, finer) = (band.as_ref(), options.finer);
         let facts =
-            Findings { read: &read, strictest, unknown, coarsest, d15f_max, control, finer: options.finer };
+            Findings { read: &read, strictest, unknown, coarsest, d15f_max, control, band: sides, finer };
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
             commit: None,
@@ -63,15 +65,15 @@ impl Specification {
             cover: SheetCover::default(),
             inches: false,
             inputs: Vec::new(),
-            steps: facts.steps(band.as_ref()),
+            steps: facts.steps(),
             curves: read.iter().map(|curve| curve.record.clone()).collect(),
-            notes: steps::notes(&read).into_iter().chain(notes_of_sides(band.as_ref())).collect(),
+            notes: steps::notes(&read).into_iter().chain(notes_of_sides(sides)).collect(),
             d15f_min_mm: d15f_min,
             d15f_min_at_most: at_most,
             d15f_max_mm: d15f_max,
-            finer: options.finer,
+            finer,
             if_dispersive,
-            limits: band.as_ref().map(|band| band.limits(options.sieves)).unwrap_or_default(),
+            limits: sides.map(|band| band.limits(options.sieves)).unwrap_or_default(),
             products: margins((d15f_min, certain), d15f_max),
             no_band,
             band,
