@@ -102,7 +102,7 @@ pub struct SpecifiedCurve {
 }
 
 /// Step of the procedure.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct SpecificationStep {
     /// Number of the step, from 1.
@@ -121,12 +121,11 @@ pub struct SpecificationStep {
 }
 
 /// Name of a step of the procedure.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum StepName {
     /// Plot the gradation of the base.
-    #[default]
     Plot,
     /// Find gravel and gaps in the base.
     FindGravel,
