@@ -131,8 +131,5 @@ pub(crate) fn band(inputs: &RuleInputs) -> Judged {
     let judged = Judged::of(Some(ratio), Some(WIDEST_BAND)).noted(RuleNote::AtPercentFiner(percent));
     // Below the finest sieve the band may be wider.
     let pan = inputs.filter_curves.iter().map(|curve| 100.0 * curve.pan_fraction()).fold(0.0, f64::max);
-    match pan > BAND[0] {
-        true => judged.bound(ValueBound::AtLeast).noted(RuleNote::BandFrom(pan)),
-        false => judged,
-    }
+    if pan > BAND[0] { judged.bound(ValueBound::AtLeast).noted(RuleNote::BandFrom(pan)) } else { judged }
 }
