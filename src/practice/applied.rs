@@ -188,7 +188,7 @@ pub enum RuleRole {
     Walk,
 }
 
-/// Declares the notes; a test can make each of them with any number.
+/// Declares the notes; a test can make each of them with any number. Faces have their words.
 macro_rules! notes {
     ($($(#[$doc:meta])* $id:ident $(($($type:ty),*))?,)*) => {
         /// A note of a rule beside its result.
@@ -269,21 +269,14 @@ notes! {
     Category(u8),
     /// The base was regraded on this size (mm).
     RegradedOn(f64),
-    /// The rule reads the base as sampled, without regrading.
     BeforeRegrading,
-    /// Sizes have no unit: the base is taken as a sand without fines.
     TakenAsSand,
-    /// The model walked the base as it is.
     ResultOfModel,
 
     // Facts on a limit or a value.
-    /// The filter is coarser than any possible limit of the base.
     BeyondAnyLimit,
-    /// Tests found no clear boundary for such bases, so the number is no limit.
     NoClearBoundary,
-    /// The filter is beyond the boundary, though tests found no clear one for such bases.
     BeyondUnclearBoundary,
-    /// The filter is within the boundary of continuing erosion; excessive erosion is not judged.
     ExcessiveNotJudged,
     /// Formula of the limit from fines and D85B: its factor, the fines content (%) at which it ends, and
     /// the fines content of the base (%).
@@ -293,13 +286,11 @@ notes! {
     /// D15B is finer than the finest sieve, and this multiple of it is smaller (mm) than the minimum for
     /// any filter.
     LeastGoverns(f64, f64),
-    /// D15F is finer than the filter's finest sieve and at most the value.
     D15FAtMost,
     /// D15B is finer than the base's finest sieve: the limit is at most the one given.
     LimitAtMost,
     /// D15B is finer than the base's finest sieve: the limit is at least the one given.
     LimitAtLeast,
-    /// D10 is finer than the filter's finest sieve: Cu is at least the value.
     CuAtLeast,
     /// Finest sieve of the filter (mm): the value is at most the percent that passes it.
     FinestSieveOfFilter(f64),
@@ -309,9 +300,7 @@ notes! {
     BandFrom(f64),
     /// Width of a joint (mm), D95B (mm), and their ratio.
     Joint(f64, f64, f64),
-    /// The probability is below the smallest that the source states.
     LessThanSource,
-    /// The largest particle that passed is compared with published tests.
     ChecksWalk,
     /// Factor by which the largest passing particle is finer than in tests, though coarser ones stay.
     FarFinerThanTests(f64),
@@ -329,17 +318,13 @@ notes! {
     ShapeAbovePan(f64, f64, f64),
     /// D90/D15, and the range of D90/D60 that is stable by Burenkova.
     BurenkovaRange(f64, f64, f64),
-    /// Sand and gravel with few fines, by Wan and Fell.
     WanFellSand,
-    /// Silt, sand and gravel with some clay, by Wan and Fell.
     WanFellSilt,
-    /// The source states contours of the probability of instability.
     WanFellContours,
 
     // Reasons why a rule does not apply to these soils.
     /// Fines content of the base (%), for which other limits apply.
     LimitsByFines(f64),
-    /// The filter is coarser or broader than the soils that Burenkova tested.
     BurenkovaSoils,
     /// The filter is in Burenkova's third zone, above this D90/D60.
     BurenkovaThirdZone(f64),

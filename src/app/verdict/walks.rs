@@ -365,8 +365,11 @@ mod tests {
     use super::*;
     use crate::test_soils::curve;
 
-    fn replicate(runs: &[(f64, u64, Option<f64>)]) -> Replicate {
-        let run = |(number, &(eroded, trapped, k)): (u64, &(f64, u64, Option<f64>))| {
+    /// Eroded mass fraction, trapped particles and permeability of a run.
+    type OneRun = (f64, u64, Option<f64>);
+
+    fn replicate(runs: &[OneRun]) -> Replicate {
+        let run = |(number, &(eroded, trapped, k)): (u64, &OneRun)| {
             serde_json::json!({
                 "run": number, "eroded_mass_fraction": eroded, "eroded_number_fraction": eroded,
                 "largest_eroded_mm": null, "largest_eroded_over_d15f": null, "blocked": 0,
@@ -381,16 +384,11 @@ mod tests {
         serde_json::from_value(replicate).unwrap()
     }
 
-    fn doubts(verdict: Verdict, runs: &[(f64, u64, Option<f64>)], clogged: &[[u64; 3]]) -> Vec<Note> {
+    fn doubts(verdict: Verdict, runs: &[OneRun], clogged: &[[u64; 3]]) -> Vec<Note> {
         with_openings(verdict, runs, clogged, false)
     }
 
-    fn with_openings(
-        verdict: Verdict,
-        runs: &[(f64, u64, Option<f64>)],
-        clogged: &[[u64; 3]],
-        openings: bool,
-    ) -> Vec<Note> {
+    fn with_openings(verdict: Verdict, runs: &[OneRun], clogged: &[[u64; 3]], openings: bool) -> Vec<Note> {
         let (base, replicate) = (Gradation::linear_from_d0(0.1, 3.0).unwrap(), replicate(runs));
         let (replicates, clogged) = (vec![&replicate], clogged.to_vec());
         let walked = Walked { replicates, clogged, base: &base, share: 0.01, layers: 30, openings };
@@ -476,24 +474,19 @@ mod tests {
         };
         assert_eq!(ids(&plan), [""; 0]);
         // Each pair of soils has its findings in mm and in multiples of D0F.
+        let of_hidden = ["fines_not_sieved", "cu_at_least", "pan_passive"];
         for (base, in_mm, free) in [
-            (&silt, vec!["cohesive_fines"], vec![]),
-            (
-                &hidden,
-                vec!["fines_not_sieved", "cu_at_least", "pan_passive"],
-                vec!["cu_at_least", "pan_passive"],
-            ),
-            (&till, vec!["not_regraded", "cu_unchecked", "unstable_base"], vec!["cu_unchecked"]),
-            (&broad, vec!["broadly_graded", "cu_unchecked"], vec!["cu_unchecked"]),
+            (&silt, &["cohesive_fines"][..], &[][..]),
+            (&hidden, &of_hidden, &of_hidden[1..]),
+            (&till, &["not_regraded", "cu_unchecked", "unstable_base"], &["cu_unchecked"]),
+            (&broad, &["broadly_graded", "cu_unchecked"], &["cu_unchecked"]),
         ] {
             let plan = PlannedWalk { base, ..plan.clone() };
             assert_eq!(ids(&plan), in_mm);
             assert_eq!(ids(&PlannedWalk { scale_free: true, ..plan }), free);
         }
-        assert_eq!(
-            ids(&PlannedWalk { base: &till, regraded_from: Some(&till), ..plan.clone() }),
-            ["broad_base", "cu_unchecked", "unstable_base"]
-        );
+        let regraded = PlannedWalk { base: &till, regraded_from: Some(&till), ..plan.clone() };
+        assert_eq!(ids(&regraded), ["broad_base", "cu_unchecked", "unstable_base"]);
         let gap_graded = PlannedWalk { filter: Some(&gap), ..plan.clone() };
         assert_eq!(ids(&gap_graded), ["cu_unchecked", "gap_graded"]);
         assert_eq!(ids(&PlannedWalk { filter_is_measured: false, ..gap_graded }), ["cu_unchecked"]);
@@ -501,17 +494,16 @@ mod tests {
         let wide = Gradation::linear_from_dx(85.0, 0.4, 4.6).unwrap();
         assert_eq!(ids(&PlannedWalk { base: &wide, scale_free: true, ..plan.clone() }), ["cu_unchecked"]);
         let mostly_hidden = curve(&[(0.3, 65.0), (1.0, 100.0)]);
-        assert!(
-            ids(&PlannedWalk { base: &mostly_hidden, ..plan.clone() }).contains(&"cu_unknown".to_owned())
-        );
+        let hidden_plan = PlannedWalk { base: &mostly_hidden, ..plan.clone() };
+        assert!(ids(&hidden_plan).contains(&"cu_unknown".to_owned()));
         // 14 % finer than 0.002 mm, D60 of 0.2 mm.
         let clayey = curve(&[(0.002, 14.0), (0.2, 60.0), (0.4, 100.0)]);
-        let open = PlannedWalk { base: &clayey, ..plan.clone() };
-        let least = open.notes().into_iter().find_map(|note| match note {
-            Note::CuAtLeast { over_cu, d10_mm, .. } => Some([over_cu, d10_mm]),
-            _ => None,
-        });
-        assert!(least.is_some_and(|[cu, d10]| (cu - 100.0).abs() < 1e-9 && d10 == 0.002), "{least:?}");
+        let open = PlannedWalk { base: &clayey, ..plan.clone() }.notes();
+        let is_least = |note: &Note| {
+            matches!(*note, Note::CuAtLeast { over_cu, d10_mm, .. }
+                if (over_cu - 100.0).abs() < 1e-9 && d10_mm == 0.002)
+        };
+        assert!(open.iter().any(is_least), "{open:?}");
         // A Cu above 3 may be above 4.5.
         let narrow = curve(&[(0.1, 14.0), (0.3, 60.0), (0.4, 100.0)]);
         let within = PlannedWalk { base: &narrow, ..plan.clone() };
