@@ -163,10 +163,7 @@ impl PairRules {
                 notes.push(Note::Envelope { soil: whose.into(), curves: names(curves) });
             }
         }
-        let if_dispersive = match options.dispersive {
-            true => None,
-            false => IfDispersive::of_bases(bases, filter),
-        };
+        let if_dispersive = if options.dispersive { None } else { IfDispersive::of_bases(bases, filter) };
         let range = tested_range(&RuleInputs {
             dispersive: options.dispersive,
             ..RuleInputs::with_soil(base, soil, filter)

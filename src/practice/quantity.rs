@@ -565,7 +565,8 @@ mod tests {
             for at_least in [false, true] {
                 for part in [1e-2, 1e-3, 1e-4, 1e-6, -1e-2, -1e-3, -1e-4, -1e-6] {
                     let value = limit * (1.0 + part);
-                    let [shown, most] = apart(value, limit, at_least).map(|text| text.parse().unwrap());
+                    let [shown, most] =
+                        apart(value, limit, at_least).map(|text| text.parse::<f64>().unwrap());
                     let is_order = shown != most && (shown < most) == (value < limit);
                     assert!(is_order, "{value} {limit}: {shown} {most}");
                     let hair = limit * 1e-8;

@@ -36,10 +36,8 @@ impl RuleResult {
 pub fn result_of(rule: &AppliedRule) -> RuleResult {
     match rule.met.filter(|_| rule.applies) {
         Some(true) if rule.role == RuleRole::Continuation => {
-            match rule.notes.contains(&RuleNote::ExcessiveNotJudged) {
-                true => RuleResult::ExcessiveNotJudged,
-                false => RuleResult::NotReached,
-            }
+            let is_open = rule.notes.contains(&RuleNote::ExcessiveNotJudged);
+            if is_open { RuleResult::ExcessiveNotJudged } else { RuleResult::NotReached }
         }
         Some(true) => RuleResult::Met,
         Some(false) => RuleResult::NotMet,
@@ -115,11 +113,10 @@ pub(super) fn listed(rules: &[AppliedRule]) -> Vec<Cow<'_, AppliedRule>> {
     };
     let is_one = without_margin(rules).is_some();
     let once = rules.iter().filter(|rule| !(repeats(rule) || is_one && rule.id == TESTS_NO_EROSION));
-    once.map(|rule| match is_one && rule.id == DESIGN {
-        true => Cow::Owned(of_dispersive(rule)),
-        false => Cow::Borrowed(rule),
-    })
-    .collect()
+    let named = |rule| {
+        if is_one && rule.id == DESIGN { Cow::Owned(of_dispersive(rule)) } else { Cow::Borrowed(rule) }
+    };
+    once.map(named).collect()
 }
 
 /// Limit of design of a dispersive base, under the name of its authors.

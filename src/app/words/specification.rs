@@ -38,20 +38,17 @@ pub(crate) fn band(specification: &Specification, unit: SizeUnit) -> Option<Stri
 /// retains it, in a sentence without its end; `None` if neither is the case.
 pub(crate) fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let [least, most] = specification.band.as_ref()?.d15_mm();
-    if let Some(retains) = specification.d15f_max_mm.filter(|max| most < max * (1.0 - 1e-9)) {
-        let [retains, most] = [retains, most].map(|mm| greatest_length(mm, unit).to_string());
-        return Some(format!(
-            "The maximum D15F that retains the base is {retains}; this maximum is lowered to {most}, so that \
-             the band is no wider than {WIDEST_BAND} to 1"
-        ));
-    }
-    let drains = specification.d15f_min_mm.filter(|drains| least > drains * (1.0 + 1e-9))?;
-    let at_most = if specification.d15f_min_at_most { "not known, and at most " } else { "" };
-    let [drains, least] = [drains, least].map(|mm| least_length(mm, unit).to_string());
-    Some(format!(
-        "The minimum D15F that drains the base is {at_most}{drains}; this minimum is raised to {least}, so \
-         that the band is no wider than {WIDEST_BAND} to 1"
-    ))
+    let lowered = specification.d15f_max_mm.filter(|max| most < max * (1.0 - 1e-9));
+    let moved = if let Some(retains) = lowered {
+        let [retains, most] = [retains, most].map(|mm| greatest_length(mm, unit));
+        format!("maximum D15F that retains the base is {retains}; this maximum is lowered to {most}")
+    } else {
+        let drains = specification.d15f_min_mm.filter(|drains| least > drains * (1.0 + 1e-9))?;
+        let at_most = if specification.d15f_min_at_most { "not known, and at most " } else { "" };
+        let [drains, least] = [drains, least].map(|mm| least_length(mm, unit));
+        format!("minimum D15F that drains the base is {at_most}{drains}; this minimum is raised to {least}")
+    };
+    Some(format!("The {moved}, so that the band is no wider than {WIDEST_BAND} to 1"))
 }
 
 /// Gap in a specification: the maximum D90F, which keeps a filter from segregating, because no text with
@@ -327,9 +324,10 @@ pub(crate) fn step_rows(step: &SpecificationStep) -> Vec<StepRow> {
         note: step_notes(step, SizeUnit::Mm),
         source: step.source.clone(),
     };
-    match step.values.is_empty() {
-        true => vec![row(None)],
-        false => step.values.iter().map(|value| row(Some(value))).collect(),
+    if step.values.is_empty() {
+        vec![row(None)]
+    } else {
+        step.values.iter().map(|value| row(Some(value))).collect()
     }
 }
 

@@ -80,10 +80,10 @@ pub(crate) fn fines(inputs: &RuleInputs) -> Judged {
 /// Checks that the filter has no cobbles.
 pub(crate) fn greatest_size(inputs: &RuleInputs) -> Judged {
     const MOST: Option<f64> = Some(GREATEST_SIZE_MM);
-    match inputs.scale_free || !inputs.filter_is_measured {
-        true => Judged { limit: MOST, ..Judged::default() }.lacking(RuleNote::NeedsCurveOfFilterInMm),
-        false => Judged::of(Some(inputs.filter.largest_mm()), MOST),
+    if inputs.scale_free || !inputs.filter_is_measured {
+        return Judged { limit: MOST, ..Judged::default() }.lacking(RuleNote::NeedsCurveOfFilterInMm);
     }
+    Judged::of(Some(inputs.filter.largest_mm()), MOST)
 }
 
 /// Checks that the filter is uniform enough: a band of broader curves leaves room for gap-graded ones.

@@ -238,9 +238,8 @@ pub(super) fn judged(rule: &FilterRule, inputs: &RuleInputs) -> Option<Judged> {
     if judged.is_left_out {
         return None;
     }
-    let keeps = |(value, limit): (f64, f64)| match rule.at_least {
-        true => value >= limit * (1.0 - TIE),
-        false => value <= limit * (1.0 + TIE),
+    let keeps = |(value, limit): (f64, f64)| {
+        if rule.at_least { value >= limit * (1.0 - TIE) } else { value <= limit * (1.0 + TIE) }
     };
     let met = judged.met.or_else(|| judged.value.zip(judged.limit).map(keeps));
     // A broken upper bound of a maximum, or a kept upper bound of a minimum, settles the result.
