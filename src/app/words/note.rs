@@ -99,21 +99,15 @@ fn listed(items: &[String]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use std::collections::BTreeSet;
     use std::fs;
     use std::path::Path;
 
-    use super::*;
-    use voidwalk_practice::note::Sample;
-
-    fn all(number: f64, count: u64, name: &str) -> Vec<Note> {
-        Note::all_with(&Sample { number, count, name: name.into() })
-    }
-
     /// Clients read each sentence alone; a short one is understood at once.
     #[test]
     fn every_sentence_has_at_most_25_words() {
-        for note in all(12.5, 3, "some") {
+        for note in Note::all_with(12.5, 3, "some") {
             for words in [sentence(&note, SizeUnit::Mm), setting(&note)] {
                 assert!(words.split_whitespace().count() <= 25, "{words}");
             }
@@ -126,7 +120,7 @@ mod tests {
         let long = "a name ".repeat(200);
         for number in [0.0, 1e-300, -1.0, 12.345, 1e300, f64::NAN, f64::INFINITY] {
             for (count, name) in [(0, ""), (1, "x"), (u64::MAX, &*long), (2, "two\nlines {and} braces")] {
-                for note in all(number, count, name) {
+                for note in Note::all_with(number, count, name) {
                     for words in [sentence(&note, SizeUnit::MmAndInches), setting(&note)] {
                         assert!(!words.contains("NaN") && !words.contains("inf "), "{words}");
                         assert!(name.contains('{') || !words.contains(['{', '}']), "{words}");
@@ -146,7 +140,7 @@ mod tests {
     #[test]
     fn every_row_is_whole_and_every_number_is_used() {
         let mut ids = BTreeSet::new();
-        for (place, note) in all(12.5, 3, "some").into_iter().enumerate() {
+        for (place, note) in Note::all_with(12.5, 3, "some").into_iter().enumerate() {
             let (entry, id, record) = (note.entry(), note.id(), serde_json::to_value(&note).unwrap());
             assert_eq!(note.place(), place);
             assert!(ids.insert(id.clone()), "{id} is there twice");
@@ -200,7 +194,7 @@ mod tests {
                 }
             }
         }
-        for note in all(1.0, 1, "") {
+        for note in Note::all_with(1.0, 1, "") {
             let debug = format!("{note:?}");
             let name = debug.split(' ').next().unwrap();
             assert!(code.contains(&format!("Note::{name}")), "{name} is reported nowhere");
