@@ -18,28 +18,28 @@ use voidwalk_core::gradation::{FEW_FINES, FINES_MM, GAP_PERCENT, GRAVEL_MM, Gap,
 /// Control points of a band: D15 and D60 (mm) of its fine and its coarse side.
 #[derive(Clone, Copy)]
 pub(super) struct Control {
-    pub(crate) d15: [f64; 2],
-    pub(crate) d60: [f64; 2],
+    pub(super) d15: [f64; 2],
+    pub(super) d60: [f64; 2],
 }
 
 /// Facts that the steps state.
 pub(super) struct Findings<'a> {
-    pub(crate) read: &'a [ReadCurve],
+    pub(super) read: &'a [ReadCurve],
     /// Curve that sets the maximum D15F.
-    pub(crate) strictest: Option<&'a ReadCurve>,
-    pub(crate) unknown: Option<&'a ReadCurve>,
+    pub(super) strictest: Option<&'a ReadCurve>,
+    pub(super) unknown: Option<&'a ReadCurve>,
     /// Curve that sets the minimum D15F.
-    pub(crate) coarsest: Option<&'a ReadCurve>,
-    pub(crate) d15f_max: Option<f64>,
-    pub(crate) control: Option<Control>,
-    pub(crate) band: Option<&'a SizeBand>,
+    pub(super) coarsest: Option<&'a ReadCurve>,
+    pub(super) d15f_max: Option<f64>,
+    pub(super) control: Option<Control>,
+    pub(super) band: Option<&'a SizeBand>,
     /// True if the band lies at the finer end of the allowed sizes.
-    pub(crate) finer: bool,
+    pub(super) finer: bool,
 }
 
 impl Findings<'_> {
     /// Every step, in order.
-    pub(crate) fn steps(&self) -> Vec<SpecificationStep> {
+    pub(super) fn steps(&self) -> Vec<SpecificationStep> {
         let steps = [
             self.gradation(),
             self.gravel(),
@@ -304,24 +304,24 @@ const FLAT_PERCENT: f64 = 2.0 * GAP_PERCENT;
 
 /// Curve of the base with the results of the rules.
 pub(super) struct ReadCurve {
-    pub(crate) record: SpecifiedCurve,
+    pub(super) record: SpecifiedCurve,
     /// Curve as sampled.
     base: Gradation,
-    pub(crate) dispersive: bool,
-    pub(crate) soil: BaseSoil,
+    dispersive: bool,
+    soil: BaseSoil,
     /// Flattest part, which may be a gap.
-    pub(crate) flattest: Option<Gap>,
-    pub(crate) design: Option<AppliedRule>,
-    pub(crate) retention: Option<AppliedRule>,
-    pub(crate) drainage: Option<AppliedRule>,
+    flattest: Option<Gap>,
+    design: Option<AppliedRule>,
+    retention: Option<AppliedRule>,
+    drainage: Option<AppliedRule>,
     /// Lower bound of the minimum D15F (mm) by the sieves; 0 if no sieve bounds it.
     drains_from: f64,
     /// Reasons for an unknown maximum D15F.
-    pub(crate) unknown: Option<Vec<RuleNote>>,
+    pub(super) unknown: Option<Vec<RuleNote>>,
 }
 
 impl ReadCurve {
-    pub(crate) fn of((name, base): &NamedCurve, dispersive: bool) -> Self {
+    pub(super) fn of((name, base): &NamedCurve, dispersive: bool) -> Self {
         let rules = apply(&RuleInputs { dispersive, ..RuleInputs::of_soils(base, &any_filter()) });
         let soil = BaseSoil::of(base, false);
         let open = OpenBase::of(base, false);
@@ -381,21 +381,21 @@ impl ReadCurve {
         })
     }
 
-    pub(crate) fn greatest(&self) -> f64 {
+    pub(super) fn greatest(&self) -> f64 {
         self.record.d15f_max_mm.unwrap_or(f64::INFINITY)
     }
 
     /// True if the minimum D15F is not known exactly and is at most the one given.
-    pub(crate) fn least_at_most(&self) -> bool {
+    pub(super) fn least_at_most(&self) -> bool {
         self.drainage.as_ref().is_some_and(|rule| rule.limit_at_most)
     }
 
     /// Certain lower bound of the minimum D15F.
-    pub(crate) fn certain_least(&self) -> f64 {
+    pub(super) fn certain_least(&self) -> f64 {
         if self.least_at_most() { self.drains_from } else { self.least() }
     }
 
-    pub(crate) fn least(&self) -> f64 {
+    pub(super) fn least(&self) -> f64 {
         self.record.d15f_min_mm.unwrap_or(0.0)
     }
 }
