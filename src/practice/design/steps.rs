@@ -482,28 +482,24 @@ mod tests {
         let between = "(40 - A)/25 (4 D85B - 0.7) + 0.7 mm";
         let fell = "1.6 ((35 - A)/20 (4 D85B - 0.7) + 0.7 mm)";
         let [nine, least] = ["9 D85B, not less than 0.2 mm", "6.4 D85B, not less than 0.2 mm"];
-        for (id, fines, dispersive, condition, formula) in [
-            (DESIGN, 90.0, false, "A > 85 %", nine),
-            (DESIGN, 40.0, false, "A 40 to 85 %", "0.7 mm"),
-            (DESIGN, 39.0, false, "A 15 to 40 %", between),
-            (DESIGN, 14.0, false, "A < 15 %", "4 D85B"),
-            (DESIGN, 90.0, true, "A > 85 %", least),
-            (DESIGN, 40.0, true, "40 to 85 %", "0.5 mm"),
-            (DESIGN, 39.0, true, "A 15 to 40 %", between),
-            (DESIGN, 14.0, true, "A < 15 %", "4 D85B"),
-            (TESTS_NO_EROSION, 90.0, false, "A > 85 %", "9 D85B"),
-            (TESTS_NO_EROSION, 35.0, false, "A 35 to 85 %", "0.7 mm"),
-            (TESTS_NO_EROSION, 34.0, false, "A 15 to 35 %", fell),
-            (TESTS_NO_EROSION, 14.0, false, "A < 15 %", "7 D85B"),
-            (TESTS_NO_EROSION, 90.0, true, "A > 85 %", "6.4 D85B"),
-            (TESTS_NO_EROSION, 35.0, true, "35 to 85 %", "0.5 mm"),
-            (TESTS_NO_EROSION, 34.0, true, "A 15 to 35 %", fell),
-            (TESTS_NO_EROSION, 14.0, true, "A < 15 %", "7 D85B"),
+        let below_40 = ("A 15 to 40 %", between);
+        let below_35 = ("A 15 to 35 %", fell);
+        for (id, fines, usual, of_dispersive) in [
+            (DESIGN, 90.0, ("A > 85 %", nine), ("A > 85 %", least)),
+            (DESIGN, 40.0, ("A 40 to 85 %", "0.7 mm"), ("40 to 85 %", "0.5 mm")),
+            (DESIGN, 39.0, below_40, below_40),
+            (DESIGN, 14.0, ("A < 15 %", "4 D85B"), ("A < 15 %", "4 D85B")),
+            (TESTS_NO_EROSION, 90.0, ("A > 85 %", "9 D85B"), ("A > 85 %", "6.4 D85B")),
+            (TESTS_NO_EROSION, 35.0, ("A 35 to 85 %", "0.7 mm"), ("35 to 85 %", "0.5 mm")),
+            (TESTS_NO_EROSION, 34.0, below_35, below_35),
+            (TESTS_NO_EROSION, 14.0, ("A < 15 %", "7 D85B"), ("A < 15 %", "7 D85B")),
         ] {
             let rule = rules.iter().find(|rule| rule.id == id).unwrap();
-            let is_at_most = dispersive && (15.0..=39.0).contains(&fines) && fines != 35.0;
-            let wanted = Item { condition, formula, is_at_most };
-            assert_eq!(item(rule, fines, dispersive), Some(wanted), "{id} {fines} {dispersive}");
+            for (dispersive, (condition, formula)) in [(false, usual), (true, of_dispersive)] {
+                let is_at_most = dispersive && [39.0, 34.0].contains(&fines);
+                let wanted = Item { condition, formula, is_at_most };
+                assert_eq!(item(rule, fines, dispersive), Some(wanted), "{id} {fines} {dispersive}");
+            }
         }
     }
 }
