@@ -146,16 +146,15 @@ mod tests {
     use specification::{StepName, StepNote};
     use voidwalk_core::gradation::{GAP_PERCENT, Gradation};
 
-    fn specified_with(points: &[(f64, f64)], options: SpecificationOptions) -> Specification {
+    fn specified_if(points: &[(f64, f64)], dispersive: Option<bool>) -> Specification {
+        let options = SpecificationOptions { dispersive, ..SpecificationOptions::default() };
         Specification::of("base", &soil(points), options)
     }
 
     fn specified(points: &[(f64, f64)]) -> Specification {
-        specified_with(points, SpecificationOptions::default())
+        specified_if(points, None)
     }
 
-    const DISPERSIVE: SpecificationOptions =
-        SpecificationOptions { dispersive: Some(true), sieves: SieveSeries::Us, finer: false };
     const GAP: [(f64, f64); 4] = [(0.08, 0.0), (0.3, 40.0), (2.4, 41.0), (4.0, 100.0)];
 
     fn near(value: Option<f64>, wanted: f64) -> bool {
@@ -188,7 +187,7 @@ mod tests {
     #[test]
     fn the_limits_of_the_other_categories_by_hand() {
         assert!(near(specified(&DESIGN_CLAY).d15f_max_mm, 9.0 * 0.05));
-        let dispersive = specified_with(&DESIGN_CLAY, DISPERSIVE);
+        let dispersive = specified_if(&DESIGN_CLAY, Some(true));
         assert!(near(dispersive.d15f_max_mm, 6.4 * 0.05) && dispersive.dispersive);
         let silty = specified(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)]);
         assert!(near(silty.d15f_max_mm, (40.0 - 25.0) / 25.0 * (4.0 - 0.7) + 0.7));
@@ -289,8 +288,7 @@ mod tests {
     #[test]
     fn without_a_known_limit_or_room_between_both_there_is_no_band_and_it_is_said_why() {
         let without = |points: &[(f64, f64)], dispersive| {
-            let options = SpecificationOptions { dispersive, ..SpecificationOptions::default() };
-            let specified = specified_with(points, options);
+            let specified = specified_if(points, dispersive);
             assert!(specified.band.is_none() && specified.limits.is_empty(), "{points:?}");
             specified
         };
@@ -345,26 +343,25 @@ mod tests {
     /// The limit of a silt is 0.7 mm, or 0.5 mm if it is dispersive; with 25 % fines no source has a limit.
     #[test]
     fn a_base_of_which_nobody_has_said_whether_it_is_dispersive_has_the_limit_of_one_that_is() {
-        let silt = [(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)];
-        let limit = |points: &[(f64, f64)], dispersive| {
-            let options = SpecificationOptions { dispersive, ..SpecificationOptions::default() };
-            specified_with(points, options).if_dispersive
+        let limit = |fines: f64, dispersive| {
+            let silt = [(0.01, 0.0), (0.075, fines), (0.3, 92.0), (0.6, 100.0)];
+            specified_if(&silt, dispersive).if_dispersive
         };
-        let known = limit(&silt, None).unwrap();
+        let known = limit(45.0, None).unwrap();
         assert_eq!((known.d15f_max_mm, known.at_most, known.lacks), (0.5, false, None));
-        let open = limit(&[(0.01, 0.0), (0.075, 25.0), (0.3, 92.0), (0.6, 100.0)], None).unwrap();
+        let open = limit(25.0, None).unwrap();
         assert_eq!((open.at_most, open.lacks), (true, Some(DispersiveLack::AnyLimit)));
         // Few fines, and an explicit answer.
-        assert_eq!(limit(&[(0.01, 0.0), (0.075, 10.0), (0.3, 92.0), (0.6, 100.0)], None), None);
-        assert_eq!([Some(true), Some(false)].map(|dispersive| limit(&silt, dispersive)), [None, None]);
+        assert_eq!([limit(10.0, None), limit(45.0, Some(true)), limit(45.0, Some(false))], [None; 3]);
     }
 
     /// The minimum D15F of 0.1 mm stays, and the maximum is lowered from 0.7 to 0.5 mm.
     #[test]
     fn a_finer_band_lowers_its_maximum_and_keeps_its_minimum() {
-        let specified =
-            |finer| specified_with(&CORE, SpecificationOptions { finer, ..SpecificationOptions::default() });
-        let [coarser, finer] = [false, true].map(specified);
+        let [coarser, finer] = [false, true].map(|finer| {
+            let options = SpecificationOptions { finer, ..SpecificationOptions::default() };
+            Specification::of("core", &soil(&CORE), options)
+        });
         for (specified, [least, most]) in [(&coarser, [0.14, 0.7]), (&finer, [0.1, 0.5])] {
             let d15 = specified.band.as_ref().unwrap().d15_mm().map(Some);
             assert!(near(d15[0], least) && near(d15[1], most), "{d15:?}");
@@ -379,10 +376,8 @@ mod tests {
     /// Each rule for the fines of this base, with its numbers: 37.8 % fines and a D85B of 1.80 mm.
     #[test]
     fn the_step_of_retention_has_the_formula_of_the_category_with_its_numbers() {
-        let formula = |points: &[(f64, f64)], dispersive| {
-            let options = SpecificationOptions { dispersive, ..SpecificationOptions::default() };
-            specified_with(points, options).steps.swap_remove(4).formula
-        };
+        let formula =
+            |points: &[(f64, f64)], dispersive| specified_if(points, dispersive).steps.swap_remove(4).formula;
         let begins = |formula: String, words: &str| {
             let rest = formula.strip_prefix("Sherard and Dunnigan's limit of design");
             assert!(rest.is_some_and(|rest| rest.starts_with(words)), "{formula}");
