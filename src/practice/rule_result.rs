@@ -113,10 +113,10 @@ pub(super) fn listed(rules: &[AppliedRule]) -> Vec<Cow<'_, AppliedRule>> {
     };
     let is_one = without_margin(rules).is_some();
     let once = rules.iter().filter(|rule| !(repeats(rule) || is_one && rule.id == TESTS_NO_EROSION));
-    let named = |rule| {
+    once.map(|rule| {
         if is_one && rule.id == DESIGN { Cow::Owned(of_dispersive(rule)) } else { Cow::Borrowed(rule) }
-    };
-    once.map(named).collect()
+    })
+    .collect()
 }
 
 /// Limit of design of a dispersive base, under the name of its authors.
