@@ -113,8 +113,9 @@ pub(super) fn listed(rules: &[AppliedRule]) -> Vec<Cow<'_, AppliedRule>> {
     };
     let is_one = without_margin(rules).is_some();
     let once = rules.iter().filter(|rule| !(repeats(rule) || is_one && rule.id == TESTS_NO_EROSION));
-    once.map(|rule| {
-        if is_one && rule.id == DESIGN { Cow::Owned(of_dispersive(rule)) } else { Cow::Borrowed(rule) }
+    once.map(|rule| match is_one && rule.id == DESIGN {
+        true => Cow::Owned(of_dispersive(rule)),
+        false => Cow::Borrowed(rule),
     })
     .collect()
 }
