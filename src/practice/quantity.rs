@@ -15,7 +15,6 @@ use std::fmt;
 /// Narrow no-break space: it groups thousands and precedes units. A terminal shows a plain space.
 pub const THIN: char = '\u{202f}';
 
-/// Length of an inch in millimetres.
 const INCH_MM: f64 = 25.4;
 
 /// Unit of sizes on a sheet.
@@ -395,7 +394,6 @@ fn within(limit: f64, digits: i32, at_least: bool) -> f64 {
     whole_within(limit * parts, at_least) / parts
 }
 
-/// Text of a limit rounded inward.
 fn digits_within(limit: f64, digits: i32, at_least: bool) -> String {
     let shown = within(limit, digits, at_least);
     // Decimals are those of the unrounded limit: rounding up to a power of ten does not change them.

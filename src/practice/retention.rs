@@ -207,7 +207,6 @@ mod tests {
         assert!(washout(&rules).is_none());
     }
 
-    /// D15F of the judged filter.
     const D15F: f64 = 1.6;
 
     fn rules_of(base: &Gradation) -> Vec<AppliedRule> {

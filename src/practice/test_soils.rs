@@ -19,7 +19,6 @@ pub(crate) fn filter(d15f: f64) -> Vec<(String, Gradation)> {
 
 pub(crate) const SAND: [(f64, f64); 2] = [(0.2, 0.0), (0.6, 100.0)];
 
-/// A core with 60 % fines.
 pub(crate) const CORE: [(f64, f64); 3] = [(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)];
 
 /// A clay with a D85B of 0.05 mm and 90 % fines, and a clean sand with a D85B of 0.5 mm.

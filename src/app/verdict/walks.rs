@@ -136,7 +136,6 @@ impl PlannedWalk<'_> {
         is_late.then_some(Note::AllOnItsWay { increments: self.increments, layers: self.layers })
     }
 
-    /// Notes that the replicates say little about their own scatter.
     fn few_replicates(&self) -> Option<Note> {
         match self.replicates {
             1 => Some(Note::OneReplicate {}),
@@ -242,7 +241,6 @@ impl Walked<'_> {
         mass.clamp(share, 1.0)
     }
 
-    /// Notes that the second run erodes though the first does not.
     fn more_in_the_second(&self) -> Option<Note> {
         let eroded: Vec<f64> = self.of_run(2).map(|run| run.eroded_mass_fraction).collect();
         let mean = eroded.iter().sum::<f64>() / eroded.len().max(1) as f64;
@@ -287,7 +285,6 @@ impl Outcome {
         }
     }
 
-    /// Notes that the second run may erode though the first does not.
     fn second_run_may_erode(&self) -> Option<Note> {
         let mean = self.summary.get(1)?.eroded_mass_fraction.mean;
         let [_, most_percent] = *self.model.eroded_percent.get(1)?;
@@ -295,7 +292,6 @@ impl Outcome {
         (self.model.class == Verdict::None && may).then_some(Note::SecondRunMayErode { most_percent })
     }
 
-    /// Notes that the modelled part of the filter is thinner than its largest grain.
     fn thinner_than_grain(&self) -> Option<Note> {
         let modelled_mm = self.inputs.network.thickness_mm?;
         let [grain_mm, _] = *self.inputs.filter.gradation.last()?;

@@ -234,7 +234,6 @@ pub(crate) fn undecided_by(cause: UndecidedBy) -> &'static str {
     }
 }
 
-/// Capitalises the first letter of a text.
 pub(crate) fn capital(text: &str) -> String {
     let mut chars = text.chars();
     chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())

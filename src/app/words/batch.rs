@@ -132,7 +132,6 @@ fn besides(row: &BatchRow, unit: SizeUnit) -> String {
     all.join("; ")
 }
 
-/// Words for drainage without a result.
 const DRAINAGE_UNKNOWN: &str = "drainage not known";
 
 /// Number of samples that the filter retains, and the governing samples, one sentence each; the curves of
@@ -287,7 +286,6 @@ mod tests {
 
     const GRAVEL: [(f64, f64); 2] = [(10.0, 0.0), (30.0, 100.0)];
 
-    /// Filter with a D15F of 0.725 mm.
     const FILTER: [(f64, f64); 2] = [(0.5, 0.0), (2.0, 100.0)];
 
     fn row(name: &str, base: &[(f64, f64)], filter: &[NamedCurve]) -> BatchRow {

@@ -12,7 +12,6 @@ use voidwalk_practice::{
 /// Kind of note, and the beginning of its warning for several samples.
 type Caution = (fn(&Note) -> bool, &'static str);
 
-/// Warnings of a specification on a base.
 const CAUTIONS: [Caution; 5] = [
     (|note| matches!(note, Note::UnstableBase { .. }), "Not internally stable by Kenney and Lau"),
     (

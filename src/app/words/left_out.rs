@@ -35,7 +35,6 @@ fn parts(limit: ModelLimit) -> (&'static str, &'static str) {
     }
 }
 
-/// Limit of the model in words.
 pub(crate) fn model_limit(limit: ModelLimit) -> String {
     match parts(limit) {
         (brief, "") => brief.to_owned(),
@@ -66,7 +65,6 @@ pub(crate) fn left_out_in_brief(limits: &[ModelLimit]) -> String {
     format!("The model leaves out: {}. {NOT_COVERED}", brief.join("; "))
 }
 
-/// Study of the number of base particles.
 const AMOUNTS: &str = "sensitivity to the number of base particles";
 
 /// Part of the program that a scene does not need, as part of a sentence; sizes are in this unit.

@@ -57,7 +57,6 @@ pub(crate) fn columns<'a>(unit: SizeUnit) -> Columns<'a, AppliedRule> {
         .column("Id", |rule| rule.id.clone())
 }
 
-/// Word for the value of a rule if sieves give only a bound.
 fn value_is(bound: ValueBound) -> &'static str {
     match bound {
         ValueBound::AtMost => "an upper bound",

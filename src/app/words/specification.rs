@@ -19,7 +19,6 @@ use voidwalk_practice::rules::{
     range_of_tests,
 };
 
-/// Advice for a base found to be dispersive.
 pub(crate) const DESIGN_AGAIN: &str = "design again for a dispersive base";
 
 /// Advice for samples found to be dispersive.
@@ -105,7 +104,6 @@ pub(crate) fn without_margin(specification: &Specification, unit: SizeUnit) -> O
     Some(format!("This limit has no margin: {why}"))
 }
 
-/// Maximum D15F and the origin of its rule.
 pub(crate) fn limit(specification: &Specification, unit: SizeUnit) -> String {
     match specification.strictest() {
         Some((curve, limit)) => {
@@ -184,7 +182,6 @@ pub(crate) fn step_value(value: &StepValue, unit: SizeUnit) -> Option<String> {
     })
 }
 
-/// Step of the procedure in words.
 pub(crate) fn step_name(step: StepName) -> &'static str {
     match step {
         StepName::Plot => "Plot the gradation of the base",

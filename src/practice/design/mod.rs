@@ -104,7 +104,6 @@ pub fn no_band_between((min, at_most): (f64, bool), max: f64) -> Option<NoBand> 
     no_band((Some(min), at_most), Some(max), None, band.is_some())
 }
 
-/// Reason why there is no band.
 fn no_band(
     (min, at_most): (Option<f64>, bool),
     max: Option<f64>,
@@ -264,7 +263,6 @@ mod tests {
         assert!(matches!(notes(&both)[3], Note::UnstableSide { .. }), "{:?}", both.notes);
     }
 
-    /// Specification of a base of two curves.
     fn both(one: &str, points: &[(f64, f64)], other: &str, others: &[(f64, f64)]) -> Specification {
         let curves = [(one.to_owned(), curve(points)), (other.to_owned(), curve(others))];
         Specification::of("site", &curves, SpecificationOptions::default())

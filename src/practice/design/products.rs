@@ -51,7 +51,6 @@ pub(super) struct Product {
     pub(super) source: &'static str,
 }
 
-/// Products sold by name.
 pub(super) const PRODUCTS: [Product; 5] = [
     Product {
         name: "ASTM C33 fine aggregate",

@@ -186,7 +186,6 @@ impl SieveSeries {
         }
     }
 
-    /// Name of the sieve with this opening (mm).
     pub(crate) fn name(self, opening_mm: f64) -> String {
         let in_mm = || format!("{opening_mm} mm");
         match self {
@@ -251,7 +250,6 @@ impl Side {
         kezdi.into_iter().chain(shape).collect()
     }
 
-    /// True if both indices are known.
     pub(crate) fn is_known(&self) -> bool {
         self.kezdi.is_some() && self.kenney_lau.is_some()
     }

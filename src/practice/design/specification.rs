@@ -1,6 +1,4 @@
 //! Specification of a filter for a base: its steps, its band, and standard products beside it.
-//!
-//! `verdict` makes it from the rules of practice, with its words.
 
 use super::products::{NotKept, PRODUCTS, Product};
 use super::size_band::SieveSeries;
@@ -305,7 +303,6 @@ impl ProductMargin {
         }
     }
 
-    /// The smaller of the two margins.
     fn margin(&self) -> f64 {
         self.drains_by.unwrap_or(f64::INFINITY).min(self.holds_by.unwrap_or(f64::INFINITY))
     }

@@ -38,7 +38,6 @@ pub(super) struct Findings<'a> {
 }
 
 impl Findings<'_> {
-    /// Every step, in order.
     pub(super) fn steps(&self) -> Vec<SpecificationStep> {
         let steps = [
             self.gradation(),
@@ -263,7 +262,6 @@ const SEGREGATION: &str = "FEMA (2011), cited by U.S. Army Corps of Engineers, F
 const REGRADING: &str = "U.S. Army Corps of Engineers, Filter Evaluation manual (RMC-CPD-2023-04), chapter \
                          Base Gradation, after Sherard and Dunnigan (1989)";
 
-/// Step without its number.
 fn step(
     does: StepName,
     formula: impl Into<String>,
@@ -360,7 +358,6 @@ impl ReadCurve {
         }
     }
 
-    /// Notes on the base itself.
     fn notes(&self) -> Vec<Note> {
         let unstable = self.base.known_kenney_lau().filter(|index| index.value < 1.0);
         let unstable =
@@ -390,7 +387,6 @@ impl ReadCurve {
         self.drainage.as_ref().is_some_and(|rule| rule.limit_at_most)
     }
 
-    /// Certain lower bound of the minimum D15F.
     pub(super) fn certain_least(&self) -> f64 {
         if self.least_at_most() { self.drains_from } else { self.least() }
     }

@@ -60,7 +60,6 @@ pub(crate) fn permeability(inputs: &RuleInputs, times: f64) -> Judged {
     Judged { limit_at_most: d15b.is_none() && judged.limit == Some(limit), ..judged }
 }
 
-/// Checks that the filter has few fines.
 pub(crate) fn fines(inputs: &RuleInputs) -> Judged {
     const MOST: Option<f64> = Some(MOST_FINES_PERCENT);
     if inputs.scale_free || !inputs.filter_is_measured {
@@ -77,7 +76,6 @@ pub(crate) fn fines(inputs: &RuleInputs) -> Judged {
     }
 }
 
-/// Checks that the filter has no cobbles.
 pub(crate) fn greatest_size(inputs: &RuleInputs) -> Judged {
     const MOST: Option<f64> = Some(GREATEST_SIZE_MM);
     if inputs.scale_free || !inputs.filter_is_measured {

@@ -37,7 +37,6 @@ impl Choice {
         }
     }
 
-    /// Ratio of the two sieves.
     fn width(self) -> f64 {
         self.step().map_or(1.0, |step| step.ratio())
     }
