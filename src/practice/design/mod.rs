@@ -400,7 +400,8 @@ mod tests {
         assert!(silty.ends_with(end), "{silty}");
         begins(
             silty,
-            ", category 3, A 15 to 40 %, dispersive: at most (40 - A)/25 (4 D85B - 0.7) + 0.7 mm = (40 - 25)/25",
+            ", category 3, A 15 to 40 %, dispersive: at most (40 - A)/25 (4 D85B - 0.7) + 0.7 mm = \
+             (40 - 25)/25",
         );
         // If the fines are not known, the formula is given whole.
         begins(formula(&[(0.2, 20.0), (0.5, 85.0), (1.0, 100.0)], None), ": A > 85 %: 9 D85B, ");
