@@ -218,7 +218,7 @@ pub struct Mistake {
     /// Note if they are not refused.
     pub note: Note,
     /// D15 and D50 of the base, and of the filter.
-    sizes: [[Bounds; 2]; 2],
+    sizes: Box<[[Bounds; 2]; 2]>,
     /// Size (mm) on which the base was regraded for this D50.
     regraded_at_mm: Option<f64>,
 }
@@ -261,7 +261,7 @@ impl fmt::Display for Bounds {
 
 impl fmt::Display for Mistake {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [[d15b, d50b], [d15f, d50f]] = &self.sizes;
+        let [[d15b, d50b], [d15f, d50f]] = &*self.sizes;
         match self.kind {
             MistakeKind::Unit => write!(
                 f,
@@ -330,6 +330,7 @@ impl Mistake {
         let [[d15b, d50b], of_filter @ [d15f, d50f]] = sizes;
         if d50b.least > HOPELESS * d50f.most && d15b.most > d15f.least && !scale_free {
             let note = Note::UnitDoubtful { base_d50_mm: d50b.least, filter_d50_mm: d50f.most };
+            let sizes = Box::new(sizes);
             return Some(Self { kind: MistakeKind::Unit, note, sizes, regraded_at_mm: None });
         }
         let BaseSoil { gradation, regraded_at_mm, .. } = BaseSoil::of(base, scale_free);
@@ -341,10 +342,11 @@ impl Mistake {
         if is_far || (d15b.least > d15f.most && regraded.least > d50f.most) {
             let kind = if is_far { MistakeKind::Exchanged } else { MistakeKind::Coarser };
             let note = Note::FilesExchanged { base_d15_mm: d15b.most, filter_d15_mm: d15f.most };
-            return Some(Self { kind, note, sizes: [[d15b, regraded], of_filter], regraded_at_mm });
+            let sizes = Box::new([[d15b, regraded], of_filter]);
+            return Some(Self { kind, note, sizes, regraded_at_mm });
         }
         let note = Note::FilterOfBoulders { d50_mm: d50f.least };
-        let kind = MistakeKind::Boulders;
+        let (kind, sizes) = (MistakeKind::Boulders, Box::new(sizes));
         (d50f.least > BOULDERS_MM && !scale_free).then_some(Self { kind, note, sizes, regraded_at_mm: None })
     }
 
