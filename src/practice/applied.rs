@@ -148,7 +148,6 @@ pub enum RuleQuantity {
 }
 
 impl RuleQuantity {
-    /// A quantity that does not limit D15F, by its name.
     pub(crate) const fn named(name: &'static str) -> Self {
         Self::Named(Cow::Borrowed(name))
     }
@@ -189,13 +188,14 @@ pub enum RuleRole {
     Walk,
 }
 
-/// Declares the notes; a test can make each of them with any number.
+/// Declares the notes; a test can make each of them with any number. Faces have their words.
 macro_rules! notes {
     ($($(#[$doc:meta])* $id:ident $(($($type:ty),*))?,)*) => {
         /// A note of a rule beside its result.
         #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
         #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema), schemars(with = "schema::RuleNote"))]
         #[serde(tag = "id", content = "numbers", rename_all = "snake_case")]
+        #[allow(missing_docs)]
         pub enum RuleNote {
             $($(#[$doc])* $id $(($($type),*))?,)*
         }
@@ -232,29 +232,21 @@ macro_rules! notes {
 
 notes! {
     // Missing inputs.
-    /// The fines of the base.
     NeedsFinesOfBase,
-    /// D85 of the base.
     NeedsD85B,
-    /// D95 of the base.
     NeedsD95B,
-    /// D15 of the base.
     NeedsD15B,
     /// D15 of the filter, which D0F would also give.
     NeedsD15F,
     /// D15 of the filter, which only sieves give.
     NeedsD15FSieved,
-    /// D10 of the filter.
     NeedsD10F,
-    /// The fines of the filter.
     NeedsFinesOfFilter,
     /// Sieves of the filter over the range in which the curves of a band are compared.
     NeedsSievesOfFilter,
     /// Gradation of the filter's finest part, for an index of its shape.
     NeedsFinestPartOfFilter,
-    /// A sieve curve of the filter.
     NeedsCurveOfFilter,
-    /// A sieve curve of the filter with a unit.
     NeedsCurveOfFilterInMm,
     /// A dispersion test of a base with 15 to 40 % fines.
     NeedsTestOfDispersive,
@@ -262,43 +254,29 @@ notes! {
     NeedsErosion,
 
     // Openings (mm) of two widely spaced sieves around a size.
-    /// D15 of the filter.
     D15FBetween(f64, f64),
-    /// D15 of the base.
     D15BBetween(f64, f64),
-    /// D85 of the base.
     D85BBetween(f64, f64),
-    /// D95 of the base.
     D95BBetween(f64, f64),
-    /// Sizes of the filter.
     FilterBetween(f64, f64),
-    /// Sizes of the base.
     BaseBetween(f64, f64),
 
     // Readings of the base.
     /// The other limit (mm) of a base with a flat part, which may be a gap.
     FlatBase(f64),
-    /// The base is dispersive.
     Dispersive,
     /// NRCS category of the base.
     Category(u8),
     /// The base was regraded on this size (mm).
     RegradedOn(f64),
-    /// The rule reads the base as sampled, without regrading.
     BeforeRegrading,
-    /// Sizes have no unit: the base is taken as a sand without fines.
     TakenAsSand,
-    /// The model walked the base as it is.
     ResultOfModel,
 
     // Facts on a limit or a value.
-    /// The filter is coarser than any possible limit of the base.
     BeyondAnyLimit,
-    /// Tests found no clear boundary for such bases, so the number is no limit.
     NoClearBoundary,
-    /// The filter is beyond the boundary, though tests found no clear one for such bases.
     BeyondUnclearBoundary,
-    /// The filter is within the boundary of continuing erosion; excessive erosion is not judged.
     ExcessiveNotJudged,
     /// Formula of the limit from fines and D85B: its factor, the fines content (%) at which it ends, and
     /// the fines content of the base (%).
@@ -308,13 +286,11 @@ notes! {
     /// D15B is finer than the finest sieve, and this multiple of it is smaller (mm) than the minimum for
     /// any filter.
     LeastGoverns(f64, f64),
-    /// D15F is finer than the filter's finest sieve and at most the value.
     D15FAtMost,
     /// D15B is finer than the base's finest sieve: the limit is at most the one given.
     LimitAtMost,
     /// D15B is finer than the base's finest sieve: the limit is at least the one given.
     LimitAtLeast,
-    /// D10 is finer than the filter's finest sieve: Cu is at least the value.
     CuAtLeast,
     /// Finest sieve of the filter (mm): the value is at most the percent that passes it.
     FinestSieveOfFilter(f64),
@@ -324,9 +300,7 @@ notes! {
     BandFrom(f64),
     /// Width of a joint (mm), D95B (mm), and their ratio.
     Joint(f64, f64, f64),
-    /// The probability is below the smallest that the source states.
     LessThanSource,
-    /// The largest particle that passed is compared with published tests.
     ChecksWalk,
     /// Factor by which the largest passing particle is finer than in tests, though coarser ones stay.
     FarFinerThanTests(f64),
@@ -344,21 +318,16 @@ notes! {
     ShapeAbovePan(f64, f64, f64),
     /// D90/D15, and the range of D90/D60 that is stable by Burenkova.
     BurenkovaRange(f64, f64, f64),
-    /// Sand and gravel with few fines, by Wan and Fell.
     WanFellSand,
-    /// Silt, sand and gravel with some clay, by Wan and Fell.
     WanFellSilt,
-    /// The source states contours of the probability of instability.
     WanFellContours,
 
     // Reasons why a rule does not apply to these soils.
     /// Fines content of the base (%), for which other limits apply.
     LimitsByFines(f64),
-    /// The filter is coarser or broader than the soils that Burenkova tested.
     BurenkovaSoils,
     /// The filter is in Burenkova's third zone, above this D90/D60.
     BurenkovaThirdZone(f64),
-    /// The filter is uniform.
     UniformFilter,
 }
 
@@ -393,7 +362,7 @@ mod tests {
     #[test]
     fn a_quantity_is_written_by_its_name_and_read_back() {
         // No named quantity has the name of a limit of D15F.
-        for quantity in RULES.iter().map(|rule| &rule.quantity) {
+        for quantity in RULES.iter().map(|rule| rule.quantity) {
             let text = serde_json::to_string(quantity).unwrap();
             assert_eq!(text, format!("\"{quantity}\""));
             assert_eq!(serde_json::from_str::<RuleQuantity>(&text).unwrap(), *quantity);

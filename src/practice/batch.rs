@@ -13,6 +13,7 @@ use crate::{
     TestedClass,
 };
 use serde::{Deserialize, Serialize};
+use std::cmp::Ordering;
 use std::path::PathBuf;
 use voidwalk_sheets::SoilSample;
 
@@ -172,16 +173,13 @@ impl BatchRow {
         // The remainder of a filter that may lose its own fines is unknown, as on the page of the pair.
         let unknown = decision.standing.class() == PracticeClass::NotKnown
             || retaining(rules).filter(is_size).any(|rule| rule.met.is_none());
-        let met = match decision.breaks(RuleRole::Retention) || decision.breaks(RuleRole::Continuation) {
-            true => Some(false),
-            false if decision.washout.is_some() => Some(false),
-            false => (!unknown && strictest.is_some()).then_some(true),
-        };
+        let fails = decision.breaks(RuleRole::Retention)
+            || decision.breaks(RuleRole::Continuation)
+            || decision.washout.is_some();
+        let met = if fails { Some(false) } else { (!unknown && strictest.is_some()).then_some(true) };
         let drainage = decision.applied(PERMEABILITY);
-        let drains = match decision.breaks(RuleRole::Drainage) {
-            true => Some(false),
-            false => drainage.and_then(|rule| rule.met),
-        };
+        let breaks = decision.breaks(RuleRole::Drainage);
+        let drains = if breaks { Some(false) } else { drainage.and_then(|rule| rule.met) };
         let greatest = drainage.and_then(strictest_by_sieves);
         let leaves_d15f_open = |rule: &AppliedRule| rule.met.is_none() && d15f_between(&rule.needs).is_some();
         let joint = |rule: &AppliedRule| JointErosion {
@@ -216,7 +214,7 @@ impl BatchRow {
 /// clean sand.
 fn whose(rules: &[AppliedRule], strictest: &AppliedRule, limit: f64) -> String {
     let is_same = |rule: &&AppliedRule| {
-        let is_limit = rule.limit.is_some_and(|own_limit| (own_limit - limit).abs() <= 1e-9 * limit);
+        let is_limit = rule.limit.is_some_and(|of_rule| (of_rule - limit).abs() <= 1e-9 * limit);
         rule.role == RuleRole::Retention && rule.applies && rule.quantity == RuleQuantity::D15F && is_limit
     };
     credit(rules.iter().find(is_same).unwrap_or(strictest)).to_owned()
@@ -225,11 +223,17 @@ fn whose(rules: &[AppliedRule], strictest: &AppliedRule, limit: f64) -> String {
 /// Samples that govern a filter, strictest first: at most `most` of those with the lowest limit. Equal
 /// limits are ordered by D85B, smallest first.
 pub fn governing<'r>(rows: &'r [BatchRow], filter: &str, most: usize) -> Vec<&'r BatchRow> {
-    let of_filter = rows.iter().filter(|row| row.filter == filter);
-    let mut limits: Vec<(f64, &BatchRow)> = of_filter.filter_map(|row| Some((row.limit_mm?, row))).collect();
-    let d85b = |row: &BatchRow| row.d85b_mm.unwrap_or(f64::INFINITY);
-    limits.sort_by(|a, b| a.0.total_cmp(&b.0).then(d85b(a.1).total_cmp(&d85b(b.1))));
-    limits.into_iter().map(|(_, row)| row).take(most).collect()
+    let has_limit = |row: &&BatchRow| row.filter == filter && row.limit_mm.is_some();
+    let mut limits: Vec<&BatchRow> = rows.iter().filter(has_limit).collect();
+    limits.sort_by(|a, b| strictest_first([a.limit_mm, a.d85b_mm], [b.limit_mm, b.d85b_mm]));
+    limits.truncate(most);
+    limits
+}
+
+/// Order by the limit, and by D85B among equal limits; unknown sizes come last.
+fn strictest_first(a: [Option<f64>; 2], b: [Option<f64>; 2]) -> Ordering {
+    let [a, b] = [a, b].map(|sizes| sizes.map(|mm| mm.unwrap_or(f64::INFINITY)));
+    a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]))
 }
 
 /// Number of further samples whose limit equals the last governing one.
@@ -421,9 +425,8 @@ impl DesignedSamples {
     /// first if equal.
     pub fn new(samples: String, mut rows: Vec<DesignedSample>) -> Self {
         let mut order: Vec<usize> = (0..rows.len()).filter(|&at| rows[at].d15f_max_mm.is_some()).collect();
-        let key = |row: &DesignedSample| [row.d15f_max_mm, row.d85b_mm].map(|mm| mm.unwrap_or(f64::INFINITY));
-        let less = |a: [f64; 2], b: [f64; 2]| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]));
-        order.sort_by(|&a, &b| less(key(&rows[a]), key(&rows[b])));
+        let sizes = |at: usize| [rows[at].d15f_max_mm, rows[at].d85b_mm];
+        order.sort_by(|&a, &b| strictest_first(sizes(a), sizes(b)));
         for (rank, &at) in (1..).zip(order.iter().take(NAMED)) {
             rows[at].governs = Some(rank);
         }

@@ -63,7 +63,6 @@ pub enum Standing {
 }
 
 impl Standing {
-    /// Class of the standing: practice met, not met, or not known.
     pub(crate) fn class(&self) -> PracticeClass {
         match self {
             Self::Fails | Self::WashedOut | Self::NoMargin => PracticeClass::DoesNotMeet,
@@ -78,8 +77,12 @@ impl Decision {
     /// it is finer than the finest sieve).
     pub fn new(rules: &[AppliedRule], if_dispersive: Option<IfDispersive>, d15f_mm: Option<f64>) -> Self {
         let [no_erosion, continuing] = [TESTS_NO_EROSION, TESTS_CONTINUING].map(|id| met_of(rules, id));
-        let is_unclear = |rule: &AppliedRule| rule.notes.contains(&RuleNote::BeyondUnclearBoundary);
-        let facts = Self {
+        let is_unclear = |rule: &AppliedRule| {
+            rule.id == TESTS_CONTINUING && rule.notes.contains(&RuleNote::BeyondUnclearBoundary)
+        };
+        let is_open_drainage =
+            |rule: &AppliedRule| rule.id == PERMEABILITY && rule.applies && rule.met.is_none();
+        let mut decision = Self {
             rules: rules.to_vec(),
             // Without a known D15F the limits are still in mm.
             d15f: d15f_mm.unwrap_or(1.0),
@@ -93,20 +96,17 @@ impl Decision {
                 _ => TestedClass::Unknown,
             },
             is_beyond_tests: no_erosion == Some(false),
-            is_beyond_unclear: rules.iter().any(|rule| rule.id == TESTS_CONTINUING && is_unclear(rule)),
+            is_beyond_unclear: rules.iter().any(is_unclear),
             washout: washout(rules),
             is_strictest_open: open_retention(rules).is_some(),
             if_dispersive,
             beyond_dispersive: if_dispersive.and_then(|limit| limit.broken_by(rules, d15f_mm)),
             open_sieves: open_sieves(rules),
-            is_drainage_unknown: false,
+            is_drainage_unknown: rules.iter().any(is_open_drainage),
         };
-        let facts = Self {
-            standing: facts.stand(),
-            is_drainage_unknown: facts.applied(PERMEABILITY).is_some_and(|rule| rule.met.is_none()),
-            ..facts
-        };
-        Self { headline: facts.answer(), ..facts }
+        decision.standing = decision.stand();
+        decision.headline = decision.answer();
+        decision
     }
 
     /// Returns the rule with this id if it was made for these soils.
@@ -208,16 +208,16 @@ impl Decision {
             let is_wanted = |rule: &&AppliedRule| (rule.quantity == RuleQuantity::D15F) == of_size;
             self.broken(RuleRole::Drainage).find(is_wanted).and_then(|rule| rule.limit)
         };
-        let [unstable, placing] = [RuleRole::Stability, RuleRole::Placing].map(|role| self.breaks(role));
-        let authorities =
-            || self.broken(RuleRole::Stability).map(|rule| authority(rule).to_owned()).collect();
-        let quantities =
-            || self.broken(RuleRole::Placing).map(|rule| rule.quantity.name().to_owned()).collect();
+        let named = |role: RuleRole, name: fn(&AppliedRule) -> &str| -> Vec<String> {
+            self.broken(role).map(|rule| name(rule).to_owned()).collect()
+        };
+        let authorities = named(RuleRole::Stability, authority);
+        let quantities = named(RuleRole::Placing, |rule| rule.quantity.name());
         [
-            unstable.then(|| Note::LosesFines { authorities: authorities() }),
+            (!authorities.is_empty()).then_some(Note::LosesFines { authorities }),
             limit(true).map(|least_d15f_mm| Note::TooFineToDrain { least_d15f_mm }),
             limit(false).map(|most_fines_percent| Note::FinesOfFilter { most_fines_percent }),
-            placing.then(|| Note::MaySegregate { quantities: quantities() }),
+            (!quantities.is_empty()).then_some(Note::MaySegregate { quantities }),
             self.limit_without_margin().map(|most_d15f_mm| Note::LimitWithoutMargin { most_d15f_mm }),
         ]
         .into_iter()
@@ -399,11 +399,8 @@ mod tests {
         ] {
             let decision = PairRules::of(&curve(base), &filter(d15f)[0].1).decision();
             assert_eq!(decision.tests, class, "{d15f}");
-            let is_worse_open = match class {
-                TestedClass::Unknown => decision.is_beyond_tests,
-                class => class == TestedClass::Some,
-            };
-            assert_eq!(is_worse_open, !excluded, "{d15f}");
+            let is_open = class == TestedClass::Unknown && decision.is_beyond_tests;
+            assert_eq!(is_open || class == TestedClass::Some, !excluded, "{d15f}");
             assert_eq!(decision.is_beyond_unclear, d15f == 40.0);
         }
     }

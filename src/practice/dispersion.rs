@@ -181,21 +181,18 @@ mod tests {
     /// but then beyond 0.500 mm.
     #[test]
     fn what_is_left_of_an_unstable_filter_is_judged_by_the_limit_of_a_dispersive_base_too() {
-        let base = curve(&with_fines(45.0));
-        let of_gap = |scale: f64| {
+        // Beyond 0.700 mm the filter does not hold the base in any case.
+        for (scale, is_washed_out, is_beyond) in [(0.1, false, false), (0.2, false, true), (0.3, true, false)]
+        {
             let gap = [(0.30, 0.0), (0.36, 15.0), (2.4, 15.0), (6.0, 100.0)];
             let filter = curve(&gap.map(|(size, percent)| (scale * size, percent)));
-            let pair = PairRules::of(&base, &filter);
-            (pair.if_dispersive.unwrap(), pair.rules, filter.d(15.0))
-        };
-        let (limit, rules, d15f) = of_gap(0.2);
-        assert!(!limit.is_broken_by(d15f.unwrap()));
-        assert!(limit.broken_by(&rules, d15f).unwrap().without_percent.is_some());
-        // Beyond 0.700 mm the filter does not hold the base in any case.
-        let (limit, rules, d15f) = of_gap(0.3);
-        assert!(washout(&rules).is_some() && limit.broken_by(&rules, d15f).is_none());
-        let (limit, rules, d15f) = of_gap(0.1);
-        assert!(limit.broken_by(&rules, d15f).is_none());
+            let PairRules { if_dispersive, rules, .. } = PairRules::of(&curve(&with_fines(45.0)), &filter);
+            let (limit, d15f) = (if_dispersive.unwrap(), filter.d(15.0));
+            let beyond = limit.broken_by(&rules, d15f);
+            assert_eq!((washout(&rules).is_some(), beyond.is_some()), (is_washed_out, is_beyond), "{scale}");
+            assert!(!limit.is_broken_by(d15f.unwrap()));
+            assert!(beyond.is_none_or(|beyond| beyond.without_percent.is_some()));
+        }
     }
 
     #[test]

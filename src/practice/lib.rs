@@ -47,4 +47,4 @@ pub use design::{SpecificationOptions, least_of_band, no_band_between};
 pub use dispersion::{DispersiveLack, IfDispersive};
 pub use note::{Note, ordered};
 pub use page::{AboutPage, InputFile, SheetCover};
-pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules};
+pub use pair::{BaseSizes, FilterSizes, Mistake, MistakeKind, PairOptions, PairRules, Refusal};

@@ -20,11 +20,18 @@ pub struct Entry {
     pub setting: &'static str,
 }
 
+/// Several names in a note.
+type NameList = Vec<String>;
+
 macro_rules! notes {
     (@setting) => { "" };
     (@setting $setting:literal) => { $setting };
+    (@any f64 $number:ident $count:ident $text:ident) => { $number };
+    (@any u64 $number:ident $count:ident $text:ident) => { $count };
+    (@any String $number:ident $count:ident $text:ident) => { $text.to_owned() };
+    (@any NameList $number:ident $count:ident $text:ident) => { vec![$text.to_owned(); 2] };
     ($(
-        $name:ident { $($number:ident: $kind:ty),* $(,)? }
+        $name:ident { $($number:ident: $kind:ident),* $(,)? }
             $label:literal $page:literal $sentence:literal $($setting:literal)?;
     )*) => {
         /// A note with its numbers, in the order of every face.
@@ -73,10 +80,10 @@ macro_rules! notes {
                 record["id"].as_str().unwrap_or_default().to_owned()
             }
 
-            /// Every note with these numbers and this name, for tests of a face.
+            /// Every note with this number, count and text, for tests of a face.
             #[doc(hidden)]
-            pub fn all_with(sample: &Sample) -> Vec<Self> {
-                vec![$(Self::$name { $($number: sample.clone().into()),* }),*]
+            pub fn all_with(number: f64, count: u64, text: &str) -> Vec<Self> {
+                vec![$(Self::$name { $($number: notes!(@any $kind number count text)),* }),*]
             }
         }
 
@@ -114,14 +121,14 @@ notes! {
          {distance_pp} from 7.5 %.";
 
     // Results of practice besides retention.
-    LosesFines { authorities: Vec<String> } "internal stability" "rules.md"
+    LosesFines { authorities: NameList } "internal stability" "rules.md"
         "The filter may lose its finer part by {authorities}.";
     TooFineToDrain { least_d15f_mm: f64 } "drainage" "rules.md"
         "The filter may be too fine to drain the base: practice asks for a D15F of at least {least_d15f_mm}.";
     FinesOfFilter { most_fines_percent: f64 } "drainage" "rules.md"
         "The filter has fines and may not drain: practice allows at most {most_fines_percent} finer than \
          0.075 mm.";
-    MaySegregate { quantities: Vec<String> } "segregation" "rules.md"
+    MaySegregate { quantities: NameList } "segregation" "rules.md"
         "The filter may segregate when it is placed ({quantities}).";
     DispersionNotKnown { most_d15f_mm: f64 } "dispersion" "rules.md"
         "Whether the base is dispersive is not stated; if it is, D15F must be at most {most_d15f_mm}."
@@ -348,7 +355,7 @@ notes! {
          exchanged, or its sizes micrometres?";
     FilterOfBoulders { d50_mm: f64 } "tables" "soils.md"
         "The filter's D50 is {d50_mm}: are its sizes micrometres under a header in mm?";
-    UnstableSide { side: String, authorities: Vec<String> } "stability of the band" "design.md"
+    UnstableSide { side: String, authorities: NameList } "stability of the band" "design.md"
         "The {side} side of the band is not internally stable by {authorities}: judge each delivery by its \
          own gradation.";
     BroadBase { cu: f64 } "grading of the base" "design.md"
@@ -373,7 +380,7 @@ notes! {
          do not tell.";
     ReadAs { file: String, reading: String } "file" "soils.md"
         "{file}: {reading}.";
-    Envelope { soil: String, curves: Vec<String> } "envelope" "rules.md"
+    Envelope { soil: String, curves: NameList } "envelope" "rules.md"
         "The {soil} is taken as the envelope of its curves ({curves})."
         "FILE#NAME takes one of them.";
     PanOfFilter { finest_percent: f64 } "finest part" "soils.md"
@@ -407,42 +414,6 @@ notes! {
          its volume).";
     NoRoom { voids_percent: f64 } "full voids" "graph.md"
         "Particles rest in up to {voids_percent} of the voids that have no volume between the grains.";
-}
-
-/// Numbers and a name for a note of a test.
-#[doc(hidden)]
-#[derive(Clone)]
-pub struct Sample {
-    /// Every number.
-    pub number: f64,
-    /// Every count.
-    pub count: u64,
-    /// Every name.
-    pub name: String,
-}
-
-impl From<Sample> for f64 {
-    fn from(sample: Sample) -> Self {
-        sample.number
-    }
-}
-
-impl From<Sample> for u64 {
-    fn from(sample: Sample) -> Self {
-        sample.count
-    }
-}
-
-impl From<Sample> for String {
-    fn from(sample: Sample) -> Self {
-        sample.name
-    }
-}
-
-impl From<Sample> for Vec<String> {
-    fn from(sample: Sample) -> Self {
-        vec![sample.name; 2]
-    }
 }
 
 /// The notes of a case, each once, in the order of their table.

@@ -4,6 +4,7 @@ use crate::quantity::significant;
 use crate::rules::{BaseSoil, NamedCurve, RuleInputs, apply_and_decide, tested_range};
 use crate::{AppliedRule, Decision, Headline, IfDispersive, Note, Practice};
 use serde::Serialize;
+use std::fmt;
 use voidwalk_core::gradation::{Gradation, RegradeReason};
 
 /// Result of the rules of practice for two sieve curves, without a walk.
@@ -162,10 +163,7 @@ impl PairRules {
                 notes.push(Note::Envelope { soil: whose.into(), curves: names(curves) });
             }
         }
-        let if_dispersive = match options.dispersive {
-            true => None,
-            false => IfDispersive::of_bases(bases, filter),
-        };
+        let if_dispersive = if options.dispersive { None } else { IfDispersive::of_bases(bases, filter) };
         let range = tested_range(&RuleInputs {
             dispersive: options.dispersive,
             ..RuleInputs::with_soil(base, soil, filter)
@@ -212,15 +210,17 @@ impl PairRules {
     }
 }
 
-/// Two tables that are unlikely to be a base and its filter.
+/// Error of two tables that are unlikely to be a base and its filter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mistake {
-    /// Error text if the two are refused.
-    pub sentence: String,
-    /// Note if they are not refused.
-    pub note: Note,
     /// Kind of mistake.
     pub kind: MistakeKind,
+    /// Note if they are not refused.
+    pub note: Note,
+    /// D15 and D50 of the base, and of the filter.
+    sizes: Box<[[Bounds; 2]; 2]>,
+    /// Size (mm) on which the base was regraded for this D50.
+    regraded_at_mm: Option<f64>,
 }
 
 /// Kind of mistake in two tables.
@@ -236,7 +236,8 @@ pub enum MistakeKind {
     Boulders,
 }
 
-/// Bounds of a size; they differ if the size is finer than the finest sieve.
+/// Bounds of a size (mm); they differ if the size is finer than the finest sieve.
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Bounds {
     least: f64,
     most: f64,
@@ -249,9 +250,54 @@ impl Bounds {
             None => Self { least: 0.0, most: soil.smallest_mm() },
         }
     }
+}
 
-    fn words(&self) -> String {
-        if self.least > 0.0 { format!("{:.3} mm", self.most) } else { format!("below {:.3} mm", self.most) }
+impl fmt::Display for Bounds {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let below = if self.least > 0.0 { "" } else { "below " };
+        write!(f, "{below}{:.3} mm", self.most)
+    }
+}
+
+impl fmt::Display for Mistake {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [[d15b, d50b], [d15f, d50f]] = &*self.sizes;
+        match self.kind {
+            MistakeKind::Unit => write!(
+                f,
+                "the base (D50 {d50b}) is {:.0} times as coarse as the filter (D50 {d50f}): are its sizes \
+                 micrometres under a header in mm, or are the two files exchanged?",
+                d50b.least / d50f.most
+            ),
+            MistakeKind::Exchanged | MistakeKind::Coarser => {
+                let regraded = self.regraded_at_mm.map(|at| format!(" regraded on {} mm", significant(at)));
+                write!(
+                    f,
+                    "the base is coarser than the filter (D15 {d15b} against {d15f}, D50 {d50b}{} against \
+                     {d50f}): are the two files exchanged? Or its sizes micrometres under a header in mm?",
+                    regraded.unwrap_or_default()
+                )
+            }
+            MistakeKind::Boulders => write!(
+                f,
+                "the filter's D50 is {:.0} mm: are its sizes micrometres under a header in mm?",
+                d50f.least
+            ),
+        }
+    }
+}
+
+/// Error of a refusal: the mistake, and the setting that says that the two are as given.
+pub struct Refusal<'a>(pub &'a Mistake, pub &'a str);
+
+impl fmt::Display for Refusal<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(mistake, as_given) = self;
+        write!(
+            f,
+            "{mistake} The base is named first, then the filter: exchange the two, or say that they are as \
+             given ({as_given})"
+        )
     }
 }
 
@@ -280,18 +326,12 @@ impl Mistake {
         const FINER: f64 = 2.0;
         /// No filter is coarser than this (D50, mm).
         const BOULDERS_MM: f64 = 300.0;
-        let [d15f, d50f] = [15.0, 50.0].map(|percent| Bounds::of(filter, percent));
-        let [d15b, d50b] = [15.0, 50.0].map(|percent| Bounds::of(base, percent));
+        let sizes = [base, filter].map(|soil| [15.0, 50.0].map(|percent| Bounds::of(soil, percent)));
+        let [[d15b, d50b], of_filter @ [d15f, d50f]] = sizes;
         if d50b.least > HOPELESS * d50f.most && d15b.most > d15f.least && !scale_free {
-            let sentence = format!(
-                "the base (D50 {}) is {:.0} times as coarse as the filter (D50 {}): are its sizes \
-                 micrometres under a header in mm, or are the two files exchanged?",
-                d50b.words(),
-                d50b.least / d50f.most,
-                d50f.words()
-            );
             let note = Note::UnitDoubtful { base_d50_mm: d50b.least, filter_d50_mm: d50f.most };
-            return Some(Self { sentence, note, kind: MistakeKind::Unit });
+            let sizes = Box::new(sizes);
+            return Some(Self { kind: MistakeKind::Unit, note, sizes, regraded_at_mm: None });
         }
         let BaseSoil { gradation, regraded_at_mm, .. } = BaseSoil::of(base, scale_free);
         let regraded = Bounds::of(&gradation, 50.0);
@@ -300,28 +340,14 @@ impl Mistake {
         let is_fine = regraded_at_mm.is_some() && looked_at.most < d15f.least;
         let is_far = d15b.least > FINER * d15f.most && !is_fine;
         if is_far || (d15b.least > d15f.most && regraded.least > d50f.most) {
-            let how =
-                regraded_at_mm.map_or(String::new(), |at| format!(" regraded on {} mm", significant(at)));
-            let sentence = format!(
-                "the base is coarser than the filter (D15 {} against {}, D50 {}{how} against {}): are \
-                 the two files exchanged? Or its sizes micrometres under a header in mm?",
-                d15b.words(),
-                d15f.words(),
-                regraded.words(),
-                d50f.words()
-            );
             let kind = if is_far { MistakeKind::Exchanged } else { MistakeKind::Coarser };
             let note = Note::FilesExchanged { base_d15_mm: d15b.most, filter_d15_mm: d15f.most };
-            return Some(Self { sentence, note, kind });
+            let sizes = Box::new([[d15b, regraded], of_filter]);
+            return Some(Self { kind, note, sizes, regraded_at_mm });
         }
-        (d50f.least > BOULDERS_MM && !scale_free).then(|| Self {
-            sentence: format!(
-                "the filter's D50 is {:.0} mm: are its sizes micrometres under a header in mm?",
-                d50f.least
-            ),
-            note: Note::FilterOfBoulders { d50_mm: d50f.least },
-            kind: MistakeKind::Boulders,
-        })
+        let note = Note::FilterOfBoulders { d50_mm: d50f.least };
+        let (kind, sizes) = (MistakeKind::Boulders, Box::new(sizes));
+        (d50f.least > BOULDERS_MM && !scale_free).then_some(Self { kind, note, sizes, regraded_at_mm: None })
     }
 
     /// Looks for mistakes in two envelopes, with every base and the coarsest filter. A single sensible
@@ -340,20 +366,6 @@ impl Mistake {
     /// True if the two tables are refused unless the user says they are as given.
     pub fn is_refused(&self) -> bool {
         matches!(self.kind, MistakeKind::Unit | MistakeKind::Exchanged)
-    }
-
-    /// Text of the refusal on the command line.
-    pub fn refusal(&self) -> String {
-        self.refusal_unless("--as-given")
-    }
-
-    /// Text of the refusal if another setting says that the two are as given.
-    pub fn refusal_unless(&self, as_given: &str) -> String {
-        format!(
-            "{} The base is named first, then the filter: exchange the two, or say that they are as given \
-             ({as_given})",
-            self.sentence
-        )
     }
 }
 
@@ -400,23 +412,14 @@ mod tests {
         assert_eq!(mistake(0.2, 2.0), None);
         let exchanged = mistake(2.0, 0.2).unwrap();
         assert_eq!(exchanged.kind, MistakeKind::Exchanged);
-        assert!(exchanged.refusal().contains("are the two files exchanged?"));
-        assert!(exchanged.refusal().ends_with("(--as-given)"));
+        let refusal = Refusal(&exchanged, "--as-given").to_string();
+        assert!(refusal.contains("are the two files exchanged?") && refusal.ends_with("(--as-given)"));
         // 318 um read as mm.
         let micrometres = mistake(200.0, 2.0).unwrap();
-        assert!(micrometres.sentence.contains("micrometres under a header in mm"));
+        assert!(micrometres.to_string().contains("micrometres under a header in mm"));
         assert_eq!(micrometres.kind, MistakeKind::Unit);
         let boulders = mistake(0.2, 400.0).unwrap();
-        assert!(boulders.sentence.contains("the filter's D50 is 800 mm") && !boulders.is_refused());
-    }
-
-    /// A natural sand slightly coarser than its filter sand gets a warning and is not refused.
-    #[test]
-    fn two_soils_that_are_close_are_no_exchange() {
-        let sand = |d15: f64| Gradation::linear_from_dx(15.0, d15, 2.0).unwrap();
-        let close = Mistake::find(&sand(0.3), &sand(0.18), false).unwrap();
-        assert!(close.kind == MistakeKind::Coarser && !close.is_refused());
-        assert!(Mistake::find(&sand(0.37), &sand(0.18), false).unwrap().is_refused());
+        assert!(boulders.to_string().contains("the filter's D50 is 800 mm") && !boulders.is_refused());
     }
 
     /// A gravel regraded on a gap: practice uses its silt, which cannot be mistaken for a filter.
@@ -432,33 +435,26 @@ mod tests {
         assert_eq!(Mistake::find(&gravel, &filter, false), None);
     }
 
-    /// A till whose D50 is above the D50 of its filter sand.
+    /// A till whose D50 is above the D50 of its filter sand, and sands close to their filter, which get a
+    /// warning.
     #[test]
-    fn a_broad_till_is_no_exchange() {
+    fn a_broad_till_and_two_soils_that_are_close_are_no_exchange() {
         let till = [(0.002, 2.0), (0.02, 15.0), (0.075, 22.0), (0.425, 34.0), (5.0, 50.0), (75.0, 100.0)];
         let till = curve(&till);
         let c33 =
             [(0.075, 1.5), (0.15, 5.0), (0.3, 17.5), (0.6, 42.5), (1.18, 67.5), (2.36, 90.0), (9.5, 100.0)];
         let c33 = curve(&c33);
         assert!(till.d(50.0) > c33.d(50.0) && till.d(15.0).unwrap() < 0.021);
-        assert_eq!(Mistake::find(&till, &c33, false), None);
-        assert_eq!(Mistake::find(&c33, &till, false).unwrap().kind, MistakeKind::Exchanged);
-    }
-
-    /// Fell et al. give 0.5 mm for a dispersive base of this category.
-    #[test]
-    fn a_limit_that_a_dispersive_base_would_have_is_in_the_headline() {
-        let base = [("soil".to_owned(), curve(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)]))];
-        let judged = |d15f: f64, dispersive| {
-            let filter = curve(&[(0.9 * d15f, 0.0), (d15f, 15.0), (2.0 * d15f, 100.0)]);
-            let options = PairOptions { dispersive, ..PairOptions::default() };
-            PairRules::of_envelopes(&base, &[("soil".to_owned(), filter)], options)
-        };
-        let pair = judged(0.61, false);
-        assert_eq!(pair.headline, Some(Headline::MeetsUnlessDispersive));
-        assert_eq!(pair.if_dispersive.map(|limit| limit.d15f_max_mm), Some(0.5));
-        assert_eq!(judged(0.45, false).headline, Some(Headline::Meets));
-        let stated = judged(0.61, true);
-        assert!(stated.headline == Some(Headline::DoesNotMeet) && stated.if_dispersive.is_none());
+        let sand = |d15: f64| Gradation::linear_from_dx(15.0, d15, 2.0).unwrap();
+        for (base, filter, kind, is_refused) in [
+            (&till, &c33, None, false),
+            (&c33, &till, Some(MistakeKind::Exchanged), true),
+            (&sand(0.3), &sand(0.18), Some(MistakeKind::Coarser), false),
+            (&sand(0.37), &sand(0.18), Some(MistakeKind::Exchanged), true),
+        ] {
+            let mistake = Mistake::find(base, filter, false);
+            assert_eq!(mistake.as_ref().is_some_and(Mistake::is_refused), is_refused);
+            assert_eq!(mistake.map(|mistake| mistake.kind), kind);
+        }
     }
 }

@@ -1,12 +1,12 @@
 //! Numbers as text: a quantity has a value, a unit and a role, and every face shows it alike.
 //!
 //! ```
-//! use voidwalk_practice::quantity::{NumberRole, SizeUnit, duration, length, percent, whole};
+//! use voidwalk_practice::quantity::{SizeUnit, duration, greatest_length, percent, whole};
 //! assert_eq!(percent(0.0666).to_string(), "6.66\u{202f}%");
 //! assert_eq!(whole(96_000).to_string(), "96\u{202f}000");
 //! assert_eq!(duration(600.0).to_string(), "10.0\u{202f}min");
 //! // A limit is rounded to its safe side, in mm and in inches.
-//! let most = length(0.7, SizeUnit::MmAndInches).role(NumberRole::Greatest);
+//! let most = greatest_length(0.7, SizeUnit::MmAndInches);
 //! assert_eq!(most.to_string(), "0.700\u{202f}mm (0.0275\u{202f}in)");
 //! ```
 
@@ -15,7 +15,6 @@ use std::fmt;
 /// Narrow no-break space: it groups thousands and precedes units. A terminal shows a plain space.
 pub const THIN: char = '\u{202f}';
 
-/// Length of an inch in millimetres.
 const INCH_MM: f64 = 25.4;
 
 /// Unit of sizes on a sheet.
@@ -101,9 +100,7 @@ enum Digits {
 pub struct Quantity {
     /// The number; percentages are in percent.
     pub(crate) value: f64,
-    /// Unit of the number.
     pub(crate) unit: Unit,
-    /// Role of the number.
     pub(crate) role: NumberRole,
     digits: Digits,
 }
@@ -222,12 +219,10 @@ impl Quantity {
         })
     }
 
-    /// Inches in brackets, if the unit shows them.
     fn inches_text(self) -> String {
         self.inches().map_or_else(String::new, |inches| bracket(&inches))
     }
 
-    /// Text after the digits.
     fn unit_text(self) -> String {
         match self.unit {
             Unit::None | Unit::Count => String::new(),
@@ -248,9 +243,7 @@ impl fmt::Display for Quantity {
 /// read alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
-    /// Lower end.
     pub(crate) low: Quantity,
-    /// Upper end.
     pub(crate) high: Quantity,
 }
 
@@ -315,7 +308,7 @@ fn both_beside(
         let alone = |number: Quantity| {
             let digits = match number.role {
                 NumberRole::Value => digits_of(number.value, DIGITS),
-                NumberRole::Least | NumberRole::Greatest => digits_within(number.value, DIGITS, at_least),
+                _ => digits_within(number.value, DIGITS, at_least),
             };
             without_zeros(&digits, unit).to_owned() + &named(number) + &number.inches_text()
         };
@@ -401,7 +394,6 @@ fn within(limit: f64, digits: i32, at_least: bool) -> f64 {
     whole_within(limit * parts, at_least) / parts
 }
 
-/// Text of a limit rounded inward.
 fn digits_within(limit: f64, digits: i32, at_least: bool) -> String {
     let shown = within(limit, digits, at_least);
     // Decimals are those of the unrounded limit: rounding up to a power of ten does not change them.
@@ -427,7 +419,6 @@ fn three_digits(value: f64) -> String {
     if size > magnitude { rounded(size) } else { text }
 }
 
-/// At most this many significant digits, without trailing zeros.
 fn few_digits(value: f64, digits: u8) -> String {
     if !(1e-4..1e6).contains(&value.abs()) {
         return three_digits(value);
@@ -436,12 +427,10 @@ fn few_digits(value: f64, digits: u8) -> String {
     ((value * scale).round() / scale).to_string()
 }
 
-/// Number with a fixed number of decimals.
 fn fixed(value: f64, decimals: usize) -> String {
     if value.abs() < 1e7 { format!("{value:.decimals$}") } else { as_given(value) }
 }
 
-/// Number with its digits as given.
 fn as_given(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
@@ -463,7 +452,7 @@ fn percent_digits(percent: f64) -> String {
     }
 }
 
-/// Whole number with its thousands grouped, from five digits on.
+/// Thousands are grouped from five digits on.
 fn grouped(value: f64) -> String {
     let digits = format!("{value:.0}");
     if digits.len() < 5 {
@@ -479,7 +468,6 @@ fn grouped(value: f64) -> String {
     out
 }
 
-/// A time in the unit that fits.
 fn seconds(seconds: f64) -> (String, &'static str) {
     if seconds < 100.0 {
         (three_digits(seconds), "s")
@@ -542,9 +530,8 @@ mod tests {
                 assert_eq!(length(size.shown(), unit).role(role).to_string(), size.to_string());
             }
         }
-        let most = length(0.7, unit).role(NumberRole::Greatest);
-        assert_eq!(most.in_cell(), "0.700 (0.0275\u{202f}in)");
-        assert_eq!(length(0.14, unit).role(NumberRole::Least).in_cell(), "0.140 (0.00552\u{202f}in)");
+        assert_eq!(greatest_length(0.7, unit).in_cell(), "0.700 (0.0275\u{202f}in)");
+        assert_eq!(least_length(0.14, unit).in_cell(), "0.140 (0.00552\u{202f}in)");
         assert_eq!(limits(0.14, 0.7, SizeUnit::Mm).to_string(), "0.140 to 0.700\u{202f}mm");
         assert_eq!(limits(0.14, 0.7, unit).in_cell(), "0.140 to 0.700 (0.00552 to 0.0275\u{202f}in)");
         assert_eq!(length(0.82, SizeUnit::D0f).to_string(), "0.820\u{202f}D0F");
@@ -574,18 +561,14 @@ mod tests {
         for step in 0..2000 {
             let limit = 0.05 * libm::pow(1.005, f64::from(step % 700));
             for at_least in [false, true] {
-                for part in [1e-2, 1e-3, 1e-4, 1e-6] {
-                    let values = [limit * (1.0 - part), limit * (1.0 + part)];
-                    for value in values {
-                        let shown = apart(value, limit, at_least);
-                        let [shown, most] = shown.map(|text| text.parse::<f64>().unwrap());
-                        assert!(
-                            shown != most && (shown < most) == (value < limit),
-                            "{value} {limit}: {shown} {most}"
-                        );
-                        let hair = limit * 1e-8;
-                        assert!(if at_least { most >= limit - hair } else { most <= limit + hair });
-                    }
+                for part in [1e-2, 1e-3, 1e-4, 1e-6, -1e-2, -1e-3, -1e-4, -1e-6] {
+                    let value = limit * (1.0 + part);
+                    let [shown, most] =
+                        apart(value, limit, at_least).map(|text| text.parse::<f64>().unwrap());
+                    let is_order = shown != most && (shown < most) == (value < limit);
+                    assert!(is_order, "{value} {limit}: {shown} {most}");
+                    let hair = limit * 1e-8;
+                    assert!(if at_least { most >= limit - hair } else { most <= limit + hair });
                 }
             }
         }

@@ -1,19 +1,11 @@
 //! Properties over thousands of random soils: missing sieves and a worse soil never improve a filter, one
 //! curve in two notations gives the same answer, and an envelope is as bad as its worst curve.
 //!
-//! Exceptions for missing sieves: up to [`USUAL_STEP`] practice reads a straight line, so leaving out a
-//! sieve between two that are no further apart may change an answer. A base hides a gap only between
-//! sieves further apart than [`WIDE_STEP`], and a filter hides nothing of its own stability where 5 % or
-//! less pass. Single sieves can decide if a curve is flat enough to be a gap, so bases with fewer sieves
-//! are exempt.
-//!
-//! A worse soil:
-//! - a dispersive base breaks every rule that it would break otherwise, and its limits are never wider;
-//! - an open joint removes no result;
-//! - with more of its fines sieved, a base breaks every limit of D15F that it broke before, and keeps every
-//!   one that it kept before. Exceptions: Cu and fines decide if a base with gravel is regraded. Without
-//!   sieves for them it is regraded, which is the stricter reading; finer sieves may show that regrading is
-//!   not needed, and widen its limits. From 15 % fines, limits by fines replace Terzaghi's ratio.
+//! Exceptions: up to [`USUAL_STEP`] practice reads a straight line, a base hides a gap only beyond
+//! [`WIDE_STEP`], and a filter hides nothing of its own stability where 5 % or less pass. Single sieves can
+//! decide if a curve is flat enough to be a gap, so bases with fewer sieves are exempt. Without sieves for
+//! its Cu and fines a base with gravel is regraded, which is the stricter reading: finer sieves may show
+//! that it is not needed, and widen its limits. From 15 % fines, limits by fines replace Terzaghi's ratio.
 
 use crate::decision::Standing;
 use crate::rules::{BaseSoil, NamedCurve, RuleInputs, apply};
@@ -133,10 +125,8 @@ fn leaving_sieves_out_never_makes_a_filter_meet_practice() {
             let left = place(base_left, filter_left).class();
             met += usize::from(left == PracticeClass::Meets);
             failed += usize::from(class == PracticeClass::DoesNotMeet);
-            assert!(
-                class != PracticeClass::DoesNotMeet || left != PracticeClass::Meets,
-                "{base:?} {filter:?}: {base_left:?} {filter_left:?}"
-            );
+            let is_better = class == PracticeClass::DoesNotMeet && left == PracticeClass::Meets;
+            assert!(!is_better, "{base:?} {filter:?}: {base_left:?} {filter_left:?}");
         }
     }
     assert!(failed > 100 && met > 30, "{failed} {met}");
@@ -159,20 +149,18 @@ fn no_sparse_table_meets_practice_where_what_it_hides_does_not() {
                     let [(from, low), (to, high)] = [step[0], step[1]];
                     let end = chance.next();
                     if to > least * (1.0 + 1e-6) * from && high > low && high > 5.0 {
-                        let half =
-                            if to > WIDE_STEP * (1.0 + 1e-6) * from { 0.5 * (low + high) } else { high };
+                        let is_wide = to > WIDE_STEP * (1.0 + 1e-6) * from;
                         let inner = match end {
-                            ..0.33 => high,
-                            ..0.67 => low,
-                            _ => half,
+                            0.33..0.67 => low,
+                            0.67.. if is_wide => 0.5 * (low + high),
+                            _ => high,
                         };
                         let count = libm::ceil(libm::log(to / from) / libm::log(2.0)) as i32;
-                        let between =
-                            (1..count).map(|i| from * libm::pow(to / from, f64::from(i) / f64::from(count)));
-                        let mut sizes: Points = between.map(|size| (size, inner)).collect();
-                        sizes.extend([(from * 1.001, inner), (to / 1.001, inner)]);
-                        sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
-                        full.extend(sizes);
+                        let part = |i: i32| from * libm::pow(to / from, f64::from(i) / f64::from(count));
+                        let mut sizes: Vec<f64> = (1..count).map(part).collect();
+                        sizes.extend([from * 1.001, to / 1.001]);
+                        sizes.sort_by(f64::total_cmp);
+                        full.extend(sizes.into_iter().map(|size| (size, inner)));
                     }
                     full.push((to, high));
                 }
@@ -182,11 +170,8 @@ fn no_sparse_table_meets_practice_where_what_it_hides_does_not() {
             let filter = filled(&tables[1], USUAL_STEP, &mut chance);
             compared += usize::from(base != tables[0] || filter != tables[1]);
             let at = place(&base, &filter);
-            let class = at.class();
-            assert!(
-                class != PracticeClass::DoesNotMeet && at != Standing::Unstable,
-                "{tables:?}: {base:?} {filter:?}"
-            );
+            let is_worse = at.class() == PracticeClass::DoesNotMeet || at == Standing::Unstable;
+            assert!(!is_worse, "{tables:?}: {base:?} {filter:?}");
         }
     }
     assert!(met > 10 && compared > 50, "{met} {compared}");
@@ -204,7 +189,7 @@ fn is_same(a: Option<f64>, b: Option<f64>) -> bool {
 fn same_rules(base: [&Gradation; 2], filter: [&Gradation; 2], tables: &dyn std::fmt::Debug) {
     let [one, other] = [0, 1].map(|i| PairRules::of(base[i], filter[i]).rules);
     for (one, other) in one.iter().zip(&other) {
-        let left = |rule: &crate::AppliedRule| rule.without_finer.map(|left| left.d15f);
+        let left = |rule: &AppliedRule| rule.without_finer.map(|left| left.d15f);
         let is_same = is_same(one.value, other.value)
             && is_same(one.limit, other.limit)
             && is_same(left(one), left(other))
@@ -237,31 +222,26 @@ fn a_curve_is_one_curve_in_every_notation() {
     for round in 0..100 {
         let tables = chance.pair(2.6);
         // Sizes and percents are rounded to the digits of a sheet.
-        let tables = tables.map(|table| -> Points {
-            table
-                .into_iter()
-                .map(|(size, percent)| (format!("{size:.3e}").parse().unwrap(), percent))
-                .collect()
-        });
-        let read =
-            |text: String| voidwalk_sheets::parse_gradation("sheet.csv", text.as_bytes(), None).unwrap();
-        let sheet = |heading: &str, points: &Points, row: &dyn Fn(usize) -> [f64; 2]| {
-            let rows = (0..points.len()).map(|i| format!("{},{}\n", row(i)[0], row(i)[1]));
-            read(heading.to_owned() + "\n" + &rows.collect::<String>())
+        let rounded = |(size, percent): (f64, f64)| (format!("{size:.3e}").parse().unwrap(), percent);
+        let tables = tables.map(|table| table.into_iter().map(rounded).collect::<Points>());
+        let sheet = |heading: &str, points: &Points, row: Row| {
+            let row = |(size, percent): &(f64, f64)| row(*size, *percent).map(|number| number.to_string());
+            let rows: Vec<String> = points.iter().map(|point| row(point).join(",")).collect();
+            let text = format!("{heading}\n{}\n", rows.join("\n"));
+            voidwalk_sheets::parse_gradation("sheet.csv", text.as_bytes(), None).unwrap()
         };
-        let plain = tables
-            .clone()
-            .map(|points| sheet("size_mm,percent_finer", &points, &|i| [points[i].0, points[i].1]));
-        let other = tables.clone().map(|points| match round % 5 {
-            0 => sheet("size_mm,finer", &points, &|i| [points[i].0, points[i].1 / 100.0]),
-            1 => sheet("size_cm,percent_finer", &points, &|i| [points[i].0 / 10.0, points[i].1]),
-            2 => sheet("size_um,percent_finer", &points, &|i| [points[i].0 * 1000.0, points[i].1]),
-            3 => sheet("size_in,percent_finer", &points, &|i| [points[i].0 / 25.4, points[i].1]),
-            _ => {
-                sheet("size_mm,cumulative percent retained", &points, &|i| [points[i].0, 100.0 - points[i].1])
-            }
-        });
-        same_rules([&plain[0], &other[0]], [&plain[1], &other[1]], &(round % 5, &tables));
+        type Row = fn(f64, f64) -> [f64; 2];
+        const NOTATIONS: [(&str, Row); 5] = [
+            ("size_mm,finer", |size, percent| [size, percent / 100.0]),
+            ("size_cm,percent_finer", |size, percent| [size / 10.0, percent]),
+            ("size_um,percent_finer", |size, percent| [size * 1000.0, percent]),
+            ("size_in,percent_finer", |size, percent| [size / 25.4, percent]),
+            ("size_mm,cumulative percent retained", |size, percent| [size, 100.0 - percent]),
+        ];
+        let (heading, row) = NOTATIONS[round % 5];
+        let plain = tables.each_ref().map(|points| sheet("size_mm,percent_finer", points, |a, b| [a, b]));
+        let other = tables.each_ref().map(|points| sheet(heading, points, row));
+        same_rules([&plain[0], &other[0]], [&plain[1], &other[1]], &(heading, &tables));
     }
 }
 
@@ -385,10 +365,8 @@ fn a_dispersive_base_or_an_open_joint_never_breaks_fewer_rules() {
         for (before, after) in plain.iter().zip(&dispersive) {
             assert_eq!(before.id, after.id);
             // The limit is no wider, and no rule is kept that was not kept before.
-            assert!(
-                before.limit.is_none_or(|limit| after.limit.is_some_and(|narrower| narrower <= limit)),
-                "{after:?}"
-            );
+            let is_within = |limit| after.limit.is_some_and(|narrower| narrower <= limit);
+            assert!(before.limit.is_none_or(is_within), "{after:?}");
             assert!(after.met != Some(true) || before.met == Some(true), "{before:?} {after:?}");
             let is_bound = after.limit_at_most && !before.limit_at_most;
             by_bound += usize::from(is_bound && after.met == Some(false));
@@ -498,13 +476,9 @@ fn an_envelope_is_as_bad_as_the_worst_of_its_curves() {
         let options = PairOptions { dispersive, joint_mm: Some(0.5), as_given: true };
         let all = PairRules::of_envelopes(&bases, &filters, options).rules;
         let one = std::slice::from_ref;
-        let pairs: Vec<Vec<AppliedRule>> = filters
-            .iter()
-            .flat_map(|filter| {
-                let pair = |base| PairRules::of_envelopes(one(base), one(filter), options).rules;
-                bases.iter().map(pair)
-            })
-            .collect();
+        let places = filters.iter().flat_map(|filter| bases.iter().map(move |base| (base, filter)));
+        let alone = |(base, filter)| PairRules::of_envelopes(one(base), one(filter), options).rules;
+        let pairs: Vec<Vec<AppliedRule>> = places.map(alone).collect();
         for rule in all.iter().filter(|rule| rule.id != "filter-band") {
             let alone = pairs.iter().flatten().filter(|other| other.id == rule.id).map(rank);
             assert_eq!(Some(rank(rule)), alone.min(), "{} of {bases:?} and {filters:?}", rule.id);
@@ -547,23 +521,16 @@ fn drained_pair(chance: &mut Chance) -> Option<(Gradation, Gradation, bool)> {
 #[test]
 fn sensible_pairs_pass_in_their_order_and_are_refused_in_the_other() {
     let mut chance = Chance(20_261_124);
-    let (mut all, mut draining, mut refused, mut missed, mut missed_draining) = (0, 0, 0, 0, 0);
+    let (mut all, mut draining, mut missed, mut missed_draining) = (0, 0, 0, 0);
     while all < 5000 {
         let Some((base, filter, drains)) = drained_pair(&mut chance) else { continue };
-        let is_refused = |base: &Gradation, filter: &Gradation| {
-            Mistake::find(base, filter, false).is_some_and(|m| m.is_refused())
-        };
+        let is_refused = |base, filter| Mistake::find(base, filter, false).is_some_and(|m| m.is_refused());
+        assert!(!is_refused(&base, &filter), "{base:?} {filter:?}");
+        let is_missed = !is_refused(&filter, &base);
         all += 1;
         draining += usize::from(drains);
-        refused += usize::from(is_refused(&base, &filter));
-        let is_missed = !is_refused(&filter, &base);
         missed += usize::from(is_missed);
         missed_draining += usize::from(is_missed && drains);
     }
-    println!(
-        "{all} pairs, {draining} drain: {refused} refused in the right order; exchanged, {missed} of all and \
-         {missed_draining} of those that drain are not refused"
-    );
-    assert_eq!(refused, 0);
     assert!(missed * 50 < all && missed_draining * 200 < draining, "{missed} {missed_draining}");
 }

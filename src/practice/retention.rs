@@ -149,8 +149,11 @@ mod tests {
         PairRules::of(&curve(base), &curve(filter)).rules
     }
 
+    /// The same gravel with a fifth of its sizes retains the base without its finer part, too.
     #[test]
     fn a_filter_that_is_too_coarse_without_its_finer_part_is_found_with_both_limits() {
+        let finer = rules(&GRAVEL_0_32.map(|(size, percent)| (0.2 * size, percent)), &REGRADED_TILL);
+        assert!(met_of(&finer, LI_FANNIN) == Some(false) && washout(&finer).is_none());
         let rules = rules(&GRAVEL_0_32, &REGRADED_TILL);
         let washed = washout(&rules).unwrap();
         assert!((washed.left.percent - 19.4).abs() < 0.05 && (washed.left.d15f - 2.83).abs() < 0.01);
@@ -164,8 +167,7 @@ mod tests {
     #[test]
     fn the_boundary_of_continuing_erosion_is_said_where_what_is_left_is_beyond_it() {
         let gap = [(0.3, 0.0), (0.36, 15.0), (5.0, 15.0), (12.0, 100.0)];
-        let rules = rules(&gap, &SAND);
-        assert!(washout(&rules).unwrap().continues);
+        assert!(washout(&rules(&gap, &SAND)).unwrap().continues);
     }
 
     #[test]
@@ -195,14 +197,6 @@ mod tests {
         assert!(washout(&rules).is_some());
     }
 
-    #[test]
-    fn what_is_left_of_a_finer_filter_retains_the_base_all_the_same() {
-        let finer = GRAVEL_0_32.map(|(size, percent)| (0.2 * size, percent));
-        let rules = rules(&finer, &REGRADED_TILL);
-        assert_eq!(met_of(&rules, LI_FANNIN), Some(false));
-        assert!(washout(&rules).is_none());
-    }
-
     /// A straight line of Cu 60 is not stable by Kenney and Lau alone.
     #[test]
     fn one_of_several_criteria_is_a_doubt_alone() {
@@ -213,15 +207,10 @@ mod tests {
         assert!(washout(&rules).is_none());
     }
 
-    /// D15F of the judged filter.
     const D15F: f64 = 1.6;
 
     fn rules_of(base: &Gradation) -> Vec<AppliedRule> {
         PairRules::of(base, &Gradation::linear_from_dx(15.0, D15F, 1.5).unwrap()).rules
-    }
-
-    fn rules_of_sand() -> Vec<AppliedRule> {
-        rules_of(&Gradation::linear_from_dx(85.0, 0.4, 3.0).unwrap())
     }
 
     fn limit_of(rules: &[AppliedRule], id: &str) -> Option<f64> {
@@ -229,19 +218,14 @@ mod tests {
         limit(rule, judged_d15f(rules, D15F)).map(|(_, limit)| limit)
     }
 
-    #[test]
-    fn the_limit_of_a_ratio_is_one_of_a_size() {
-        let all = rules_of_sand();
-        assert!((limit_of(&all, "terzaghi").unwrap() - 1.6).abs() < 1e-9);
-        assert!((limit_of(&all, "foster-fell-no-erosion").unwrap() - 2.8).abs() < 1e-9);
-        assert!((limit_of(&all, "paper-no-erosion").unwrap() - 2.0).abs() < 1e-9);
-        assert_eq!(limit_of(&all, "filter-uniformity"), None);
-    }
-
     /// Terzaghi's limit on a ratio may be less than Sherard and Dunnigan's on a size by the last digit.
     #[test]
-    fn limits_that_differ_by_rounding_are_those_of_design() {
-        let mut all = rules_of_sand();
+    fn the_limit_of_a_ratio_is_one_of_a_size_and_design_counts_where_they_differ_by_rounding() {
+        let mut all = rules_of(&Gradation::linear_from_dx(85.0, 0.4, 3.0).unwrap());
+        for (id, limit) in [("terzaghi", 1.6), (TESTS_NO_EROSION, 2.8), ("paper-no-erosion", 2.0)] {
+            assert!((limit_of(&all, id).unwrap() - limit).abs() < 1e-9, "{id}");
+        }
+        assert_eq!(limit_of(&all, "filter-uniformity"), None);
         let place = all.iter().position(|rule| rule.id == "terzaghi").unwrap();
         let of_design = limit_of(&all, DESIGN).unwrap();
         for (factor, id) in [(1.0 - 1e-15, DESIGN), (1.0 + 1e-15, DESIGN), (0.99, "terzaghi")] {

@@ -19,6 +19,13 @@ pub(crate) fn filter(d15f: f64) -> Vec<(String, Gradation)> {
 
 pub(crate) const SAND: [(f64, f64); 2] = [(0.2, 0.0), (0.6, 100.0)];
 
+pub(crate) const CORE: [(f64, f64); 3] = [(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)];
+
+/// A clay with a D85B of 0.05 mm and 90 % fines, and a clean sand with a D85B of 0.5 mm.
+pub(crate) const DESIGN_CLAY: [(f64, f64); 5] =
+    [(0.001, 0.0), (0.02, 60.0), (0.05, 85.0), (0.075, 90.0), (0.3, 100.0)];
+pub(crate) const DESIGN_SAND: [(f64, f64); 4] = [(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)];
+
 /// The till of the first trial: 35 % finer than 0.075 mm, 92 % finer than 4.75 mm.
 pub(crate) const TILL: [(f64, f64); 5] =
     [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];

@@ -2,7 +2,7 @@
 
 use pyo3::prelude::*;
 use voidwalk::practice::rules::NamedCurve;
-use voidwalk::practice::{PairOptions, PairRules};
+use voidwalk::practice::{PairOptions, PairRules, Refusal};
 use voidwalk::store::format;
 
 use crate::problem::{failed, refused};
@@ -28,6 +28,6 @@ pub fn rules(
     };
     let options = PairOptions { dispersive, joint_mm, as_given };
     let pair = PairRules::guarded(&named(bases), &named(filters), options)
-        .map_err(|mistake| refused(mistake.refusal_unless("as_given=True")))?;
+        .map_err(|mistake| refused(Refusal(&mistake, "as_given=True").to_string()))?;
     format::RULES.json(&pair).map_err(failed)
 }

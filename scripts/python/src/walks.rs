@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use voidwalk::case;
 use voidwalk::outcome::{Recorded, Wanted};
-use voidwalk::practice::Mistake;
+use voidwalk::practice::{Mistake, Refusal};
 use voidwalk::run::machine::threads as pool;
 use voidwalk::run::{GivenFilter, NetworkWalk, walk_networks};
 use voidwalk::walk::{Engine, Sampling};
@@ -75,7 +75,7 @@ pub fn walk<'py>(
         Mistake::find(&plan.base, &filter.gradation, false).filter(|_| filter.is_measured && !as_given)
     };
     if let Some(mistake) = plan.filter.as_ref().and_then(exchanged).filter(Mistake::is_refused) {
-        return Err(refused(mistake.refusal_unless("as_given=True")));
+        return Err(refused(Refusal(&mistake, "as_given=True").to_string()));
     }
     if n_base.is_none() {
         let eq2 = given.first().map_or(Ok(None), |network| plan.eq2(network, mass_ratio)).map_err(refused)?;

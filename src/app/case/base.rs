@@ -6,7 +6,7 @@ use super::files::Files;
 use super::filter::CaseFilter;
 use crate::scene::{Amount, BaseGradation, D85, FilterGradation, Regrade, Scene, SceneError};
 use voidwalk_core::gradation::{BaseSupply, Gradation, GradationError, SizeSampler, base_particles};
-use voidwalk_practice::{Mistake, MistakeKind};
+use voidwalk_practice::{Mistake, MistakeKind, Refusal};
 
 /// Base with its derived values.
 #[derive(Clone, Debug)]
@@ -60,10 +60,10 @@ impl CaseBase {
         match (mistake, &scene.base.sieve, &scene.filter.sieve) {
             (Some(mistake), Some(base), Some(filter)) if scene.is_guarded && mistake.is_refused() => {
                 let file = format!("base {}, filter {}", base.display(), filter.display());
-                Err(SceneError::Clash { file, problem: mistake.refusal() }.into())
+                Err(SceneError::Clash { file, problem: Refusal(&mistake, "--as-given").to_string() }.into())
             }
             (Some(mistake), Some(_), _) if mistake.kind == MistakeKind::Unit => {
-                Err(scene.clash(mistake.sentence).into())
+                Err(scene.clash(mistake.to_string()).into())
             }
             (mistake, ..) => Ok(mistake),
         }

@@ -126,7 +126,7 @@ impl Case {
         let supply =
             CaseSupply::new(&scene, &filter, network.voids, &base.gradation, is_packed).map_err(|error| {
                 match &mistake {
-                    Some(mistake) if scene.base.sieve.is_some() => scene.clash(&mistake.sentence).into(),
+                    Some(mistake) if scene.base.sieve.is_some() => scene.clash(mistake.to_string()).into(),
                     _ => error,
                 }
             })?;

@@ -17,7 +17,7 @@ use voidwalk_core::store::format;
 use voidwalk_practice::batch::{NAMED, governing};
 use voidwalk_practice::quantity::{SizeUnit, significant};
 use voidwalk_practice::rule_result::{RuleResult, result_of};
-use voidwalk_practice::{AppliedRule, BatchFilter, BatchRow, PairOptions, PairRules, RuleNote};
+use voidwalk_practice::{AppliedRule, BatchFilter, BatchRow, PairOptions, PairRules, Refusal, RuleNote};
 use voidwalk_sheets::{curves_in_file, notes_in_file};
 
 const INDENT: usize = 14;
@@ -37,7 +37,7 @@ pub(crate) fn rules(args: &RulesArgs) -> Result<(), RunError> {
     let filters = curves_in_file(filter, None).map_err(RunError::refused)?;
     let pair = PairRules::guarded(&bases, &filters, options).map_err(|mistake| {
         let files = format!("base {}, filter {}", shown(&args.base), shown(filter));
-        RunError::Refused(format!("{files}: {}", mistake.refusal()))
+        RunError::Refused(format!("{files}: {}", Refusal(&mistake, "--as-given")))
     })?;
     let assumed = |path| notes_in_file(path).map_err(RunError::refused);
     let notes = [("base", assumed(&args.base)?), ("filter", assumed(filter)?)];

@@ -31,7 +31,7 @@ use voidwalk_core::schema::KeyInfo;
 use voidwalk_core::store::open_regular;
 use voidwalk_core::text::is_plain_part;
 use voidwalk_practice::quantity::SizeUnit;
-use voidwalk_practice::{BatchTable, PairOptions, PairRules};
+use voidwalk_practice::{BatchTable, PairOptions, PairRules, Refusal};
 use voidwalk_sheets::curves_in_file;
 
 const PAGE: &str = include_str!("page.html");
@@ -266,7 +266,7 @@ impl Routes {
         };
         let options = pair_options(request)?;
         let pair = PairRules::guarded(&curves("base")?, &curves("filter")?, options)
-            .map_err(|mistake| wrong(mistake.refusal()))?;
+            .map_err(|mistake| wrong(Refusal(&mistake, "--as-given").to_string()))?;
         Ok(Answer::json(200, rules_of_pair(&pair)))
     }
 

@@ -21,29 +21,21 @@ const FEWEST_ACROSS: u32 = 10;
 /// Base, filter and network of a walk to come.
 #[derive(Clone)]
 pub(crate) struct PlannedWalk<'a> {
-    /// Base as walked.
     pub(crate) base: &'a Gradation,
     /// Base as stated, if it is walked regraded.
     pub(crate) regraded_from: Option<&'a Gradation>,
     /// Finest constriction (mm): a pan fraction of the base that may be coarser counts as finer.
     pub(crate) finest_constriction_mm: f64,
-    /// Filter, if it is known.
     pub(crate) filter: Option<&'a Gradation>,
     /// True for a sieve curve of the filter, false for an assumed straight line.
     pub(crate) filter_is_measured: bool,
-    /// True if sizes are multiples of D0F.
     pub(crate) scale_free: bool,
-    /// Number of voids of a given network.
     pub(crate) given_voids: Option<u64>,
-    /// Number of voids along each axis of a lattice.
     pub(crate) lattice: Option<[u32; 3]>,
-    /// Number of layers of voids.
     pub(crate) layers: u64,
-    /// True if water flows.
     pub(crate) flows: bool,
     /// Number of increments in which the base is inserted.
     pub(crate) increments: u64,
-    /// Number of replicates.
     pub(crate) replicates: u64,
 }
 
@@ -144,7 +136,6 @@ impl PlannedWalk<'_> {
         is_late.then_some(Note::AllOnItsWay { increments: self.increments, layers: self.layers })
     }
 
-    /// Notes that the replicates say little about their own scatter.
     fn few_replicates(&self) -> Option<Note> {
         match self.replicates {
             1 => Some(Note::OneReplicate {}),
@@ -167,17 +158,13 @@ fn not_as_uniform(soil: &str, cu: Option<f64>, [low, high]: [f64; 2]) -> Option<
 /// Fraction of the clean filter's permeability below which it is treated as zero and shown as 0.0 %.
 const CLOGGED: f64 = 5e-4;
 
-/// Data of a walk that raise doubts.
 pub(crate) struct Walked<'a> {
-    /// Replicates of the walk.
     pub(crate) replicates: Vec<&'a Replicate>,
     /// Replicate, run and increment after which water was first found not to flow; in order.
     pub(crate) clogged: Vec<[u64; 3]>,
-    /// Base of the walk.
     pub(crate) base: &'a Gradation,
     /// Fraction of the base inserted in each increment.
     pub(crate) share: f64,
-    /// Number of layers of the network.
     pub(crate) layers: u64,
     /// True if blocked constrictions leave openings.
     pub(crate) openings: bool,
@@ -254,7 +241,6 @@ impl Walked<'_> {
         mass.clamp(share, 1.0)
     }
 
-    /// Notes that the second run erodes though the first does not.
     fn more_in_the_second(&self) -> Option<Note> {
         let eroded: Vec<f64> = self.of_run(2).map(|run| run.eroded_mass_fraction).collect();
         let mean = eroded.iter().sum::<f64>() / eroded.len().max(1) as f64;
@@ -299,7 +285,6 @@ impl Outcome {
         }
     }
 
-    /// Notes that the second run may erode though the first does not.
     fn second_run_may_erode(&self) -> Option<Note> {
         let mean = self.summary.get(1)?.eroded_mass_fraction.mean;
         let [_, most_percent] = *self.model.eroded_percent.get(1)?;
@@ -307,7 +292,6 @@ impl Outcome {
         (self.model.class == Verdict::None && may).then_some(Note::SecondRunMayErode { most_percent })
     }
 
-    /// Notes that the modelled part of the filter is thinner than its largest grain.
     fn thinner_than_grain(&self) -> Option<Note> {
         let modelled_mm = self.inputs.network.thickness_mm?;
         let [grain_mm, _] = *self.inputs.filter.gradation.last()?;
@@ -377,8 +361,11 @@ mod tests {
     use super::*;
     use crate::test_soils::curve;
 
-    fn replicate(runs: &[(f64, u64, Option<f64>)]) -> Replicate {
-        let run = |(number, &(eroded, trapped, k)): (u64, &(f64, u64, Option<f64>))| {
+    /// Eroded mass fraction, trapped particles and permeability of a run.
+    type OneRun = (f64, u64, Option<f64>);
+
+    fn replicate(runs: &[OneRun]) -> Replicate {
+        let run = |(number, &(eroded, trapped, k)): (u64, &OneRun)| {
             serde_json::json!({
                 "run": number, "eroded_mass_fraction": eroded, "eroded_number_fraction": eroded,
                 "largest_eroded_mm": null, "largest_eroded_over_d15f": null, "blocked": 0,
@@ -393,16 +380,11 @@ mod tests {
         serde_json::from_value(replicate).unwrap()
     }
 
-    fn doubts(verdict: Verdict, runs: &[(f64, u64, Option<f64>)], clogged: &[[u64; 3]]) -> Vec<Note> {
+    fn doubts(verdict: Verdict, runs: &[OneRun], clogged: &[[u64; 3]]) -> Vec<Note> {
         with_openings(verdict, runs, clogged, false)
     }
 
-    fn with_openings(
-        verdict: Verdict,
-        runs: &[(f64, u64, Option<f64>)],
-        clogged: &[[u64; 3]],
-        openings: bool,
-    ) -> Vec<Note> {
+    fn with_openings(verdict: Verdict, runs: &[OneRun], clogged: &[[u64; 3]], openings: bool) -> Vec<Note> {
         let (base, replicate) = (Gradation::linear_from_d0(0.1, 3.0).unwrap(), replicate(runs));
         let (replicates, clogged) = (vec![&replicate], clogged.to_vec());
         let walked = Walked { replicates, clogged, base: &base, share: 0.01, layers: 30, openings };
@@ -488,24 +470,19 @@ mod tests {
         };
         assert_eq!(ids(&plan), [""; 0]);
         // Each pair of soils has its findings in mm and in multiples of D0F.
+        let of_hidden = ["fines_not_sieved", "cu_at_least", "pan_passive"];
         for (base, in_mm, free) in [
-            (&silt, vec!["cohesive_fines"], vec![]),
-            (
-                &hidden,
-                vec!["fines_not_sieved", "cu_at_least", "pan_passive"],
-                vec!["cu_at_least", "pan_passive"],
-            ),
-            (&till, vec!["not_regraded", "cu_unchecked", "unstable_base"], vec!["cu_unchecked"]),
-            (&broad, vec!["broadly_graded", "cu_unchecked"], vec!["cu_unchecked"]),
+            (&silt, &["cohesive_fines"][..], &[][..]),
+            (&hidden, &of_hidden, &of_hidden[1..]),
+            (&till, &["not_regraded", "cu_unchecked", "unstable_base"], &["cu_unchecked"]),
+            (&broad, &["broadly_graded", "cu_unchecked"], &["cu_unchecked"]),
         ] {
             let plan = PlannedWalk { base, ..plan.clone() };
             assert_eq!(ids(&plan), in_mm);
             assert_eq!(ids(&PlannedWalk { scale_free: true, ..plan }), free);
         }
-        assert_eq!(
-            ids(&PlannedWalk { base: &till, regraded_from: Some(&till), ..plan.clone() }),
-            ["broad_base", "cu_unchecked", "unstable_base"]
-        );
+        let regraded = PlannedWalk { base: &till, regraded_from: Some(&till), ..plan.clone() };
+        assert_eq!(ids(&regraded), ["broad_base", "cu_unchecked", "unstable_base"]);
         let gap_graded = PlannedWalk { filter: Some(&gap), ..plan.clone() };
         assert_eq!(ids(&gap_graded), ["cu_unchecked", "gap_graded"]);
         assert_eq!(ids(&PlannedWalk { filter_is_measured: false, ..gap_graded }), ["cu_unchecked"]);
@@ -513,17 +490,16 @@ mod tests {
         let wide = Gradation::linear_from_dx(85.0, 0.4, 4.6).unwrap();
         assert_eq!(ids(&PlannedWalk { base: &wide, scale_free: true, ..plan.clone() }), ["cu_unchecked"]);
         let mostly_hidden = curve(&[(0.3, 65.0), (1.0, 100.0)]);
-        assert!(
-            ids(&PlannedWalk { base: &mostly_hidden, ..plan.clone() }).contains(&"cu_unknown".to_owned())
-        );
+        let hidden_plan = PlannedWalk { base: &mostly_hidden, ..plan.clone() };
+        assert!(ids(&hidden_plan).contains(&"cu_unknown".to_owned()));
         // 14 % finer than 0.002 mm, D60 of 0.2 mm.
         let clayey = curve(&[(0.002, 14.0), (0.2, 60.0), (0.4, 100.0)]);
-        let open = PlannedWalk { base: &clayey, ..plan.clone() };
-        let least = open.notes().into_iter().find_map(|note| match note {
-            Note::CuAtLeast { over_cu, d10_mm, .. } => Some([over_cu, d10_mm]),
-            _ => None,
-        });
-        assert!(least.is_some_and(|[cu, d10]| (cu - 100.0).abs() < 1e-9 && d10 == 0.002), "{least:?}");
+        let open = PlannedWalk { base: &clayey, ..plan.clone() }.notes();
+        let is_least = |note: &Note| {
+            matches!(*note, Note::CuAtLeast { over_cu, d10_mm, .. }
+                if (over_cu - 100.0).abs() < 1e-9 && d10_mm == 0.002)
+        };
+        assert!(open.iter().any(is_least), "{open:?}");
         // A Cu above 3 may be above 4.5.
         let narrow = curve(&[(0.1, 14.0), (0.3, 60.0), (0.4, 100.0)]);
         let within = PlannedWalk { base: &narrow, ..plan.clone() };

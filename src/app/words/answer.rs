@@ -2,7 +2,7 @@
 
 use super::practice::{beside_dispersive, practice_line};
 use super::rule::missing;
-use crate::outcome::record::{Model, Outcome, RunSummary, Statistic, Verdict};
+use crate::outcome::record::{Model, Outcome, RunSummary, Verdict};
 use crate::outcome::verdict::{FirstLook, UndecidedBy};
 use voidwalk_core::gradation::FINES_MM;
 use voidwalk_practice::decision::Standing;
@@ -16,16 +16,12 @@ pub(crate) const FOREMOST: usize = 3;
 /// First line of every face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FirstLine {
-    /// Answer of practice.
     Practice,
-    /// Class of the walk.
     Model,
-    /// Step to take next.
     Next,
 }
 
 impl FirstLine {
-    /// Name before the line.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Practice => "Practice",
@@ -85,7 +81,6 @@ pub fn next(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> String {
 struct Pair<'a> {
     decision: &'a Decision,
     d15f_mm: f64,
-    /// Class of the model.
     class: Verdict,
     unit: SizeUnit,
 }
@@ -110,9 +105,7 @@ impl Pair<'_> {
                 let by_rules = self.drainage().or_else(|| self.placing()).or_else(|| self.fines());
                 by_rules.or_else(|| self.missing_drainage()).unwrap_or_else(|| match self.class {
                     Verdict::None => "nothing by these rules".into(),
-                    Verdict::Some | Verdict::Continuing | Verdict::Undecided => {
-                        "have this pair tested".into()
-                    }
+                    _ => "have this pair tested".into(),
                 })
             }
         }
@@ -148,18 +141,17 @@ impl Pair<'_> {
 
     /// Filter with a D15F of at most this (mm) and at least the D15F that drains the base.
     fn sized(&self, filter: &str, most: f64) -> String {
-        let drainage = self.drainage_rule().filter(|rule| !rule.limit_at_most);
-        let (drains, dry) = match self.drainage_rule().and_then(|rule| rule.limit) {
-            Some(least) if least <= most => {
-                (format!(" and at least {}", least_length(least, self.unit)), None)
+        let rule = self.decision.applied(PERMEABILITY);
+        let (mut drains, mut dry) = (String::new(), None);
+        if let Some((limit, rule)) = rule.and_then(|rule| Some((rule.limit?, rule))) {
+            let least = least_length(limit, self.unit);
+            if limit <= most {
+                drains = format!(" and at least {least}");
+            } else if !rule.limit_at_most {
+                // A limit known only by an upper bound may be lower, and perhaps allowed.
+                dry = Some(format!("drainage asks for at least {least}: compare permeabilities"));
             }
-            // A limit known only by an upper bound may be lower, and perhaps allowed.
-            Some(least) if drainage.is_some() => {
-                let least = least_length(least, self.unit).to_string();
-                (String::new(), Some(format!("drainage asks for at least {least}: compare permeabilities")))
-            }
-            Some(_) | None => (String::new(), None),
-        };
+        }
         let beside = self.beside_dispersive(most).into_iter().chain(dry).collect::<Vec<_>>().join("; ");
         let beside = if beside.is_empty() { beside } else { format!(" ({beside})") };
         format!("take {filter} with D15F at most {}{beside}{drains}", greatest_length(most, self.unit))
@@ -176,15 +168,12 @@ impl Pair<'_> {
         self.decision.strictest().map(|(_, limit)| (limit, self.decision.is_strictest_open))
     }
 
-    fn drainage_rule(&self) -> Option<&AppliedRule> {
-        self.decision.applied(PERMEABILITY)
-    }
-
     fn drainage(&self) -> Option<String> {
-        let (of_size, of_fines): (Vec<&AppliedRule>, Vec<&AppliedRule>) =
-            self.decision.broken(RuleRole::Drainage).partition(|rule| rule.quantity == RuleQuantity::D15F);
-        let fines = of_fines.iter().find_map(|rule| rule.limit);
-        let least = of_size.iter().find_map(|rule| rule.limit);
+        let limit = |of_size: bool| {
+            let mut broken = self.decision.broken(RuleRole::Drainage);
+            broken.find_map(|rule| rule.limit.filter(|_| (rule.quantity == RuleQuantity::D15F) == of_size))
+        };
+        let (least, fines) = (limit(true), limit(false));
         let clean = fines.map_or_else(String::new, |most| format!(" and {}", few_fines(most)));
         match (least, self.greatest()) {
             (Some(least), Some((most, false))) if most >= least => {
@@ -220,7 +209,7 @@ impl Pair<'_> {
 
     /// Data missing to judge drainage.
     fn missing_drainage(&self) -> Option<String> {
-        let need = self.drainage_rule().filter(|rule| rule.met.is_none())?.needs.first()?;
+        let need = self.decision.applied(PERMEABILITY).filter(|rule| rule.met.is_none())?.needs.first()?;
         missing(*need).map(|need| format!("get {need}: drainage is not known"))
     }
 }
@@ -245,7 +234,6 @@ pub(crate) fn undecided_by(cause: UndecidedBy) -> &'static str {
     }
 }
 
-/// Capitalises the first letter of a text.
 pub(crate) fn capital(text: &str) -> String {
     let mut chars = text.chars();
     chars.next().map_or(String::new(), |c| c.to_uppercase().chain(chars).collect())
@@ -273,7 +261,7 @@ pub(crate) fn meaning(verdict: Verdict, summary: &[RunSummary], threshold: f64) 
 fn undecided(summary: &[RunSummary], threshold: f64, limit: &str) -> String {
     let straddles = |run: &&RunSummary| {
         let eroded = &run.eroded_mass_fraction;
-        eroded.low.zip(eroded.high).is_some_and(|(low, high)| low < threshold && threshold <= high)
+        eroded.low.is_some_and(|low| low < threshold) && eroded.high.is_some_and(|high| threshold <= high)
     };
     let name = |run: &RunSummary| if run.run == 1 { "first run" } else { "second run" };
     let runs: Vec<&str> = summary.iter().filter(straddles).map(name).collect();
@@ -291,10 +279,8 @@ fn undecided(summary: &[RunSummary], threshold: f64, limit: &str) -> String {
 /// Look in one line, for a verdict with `wanted` replicates; `None` for one replicate, which says nothing
 /// about scatter.
 pub(crate) fn so_far(look: &FirstLook, wanted: u64) -> Option<String> {
-    let interval = |statistic: &Statistic| Some((statistic.low?, statistic.high?));
     let runs = look.eroded.iter().zip(["first run", "second run"]).map(|(statistic, run)| {
-        let (low, high) = interval(statistic)?;
-        Some(format!("{run} {:.1} to {:.1} %", 100.0 * low, 100.0 * high))
+        Some(format!("{run} {:.1} to {:.1} %", 100.0 * statistic.low?, 100.0 * statistic.high?))
     });
     let runs = runs.collect::<Option<Vec<String>>>()?.join(", ");
     let (replicates, class) = (look.replicates, look.class.words());

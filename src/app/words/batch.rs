@@ -90,12 +90,10 @@ pub(crate) fn d15f_and_limit(row: &BatchRow, unit: SizeUnit) -> [Option<String>;
     beside_limit([row.d15f_mm, row.limit_mm], false, Unit::Size(unit))
 }
 
-/// D15F and its limit for table cells whose head names the unit.
 fn d15f_and_limit_in_cells(row: &BatchRow, unit: SizeUnit) -> [Option<String>; 2] {
     beside_limit_in_cells([row.d15f_mm, row.limit_mm], false, Unit::Size(unit))
 }
 
-/// Result of a row.
 fn result(row: &BatchRow) -> &'static str {
     match row.met {
         Some(true) if row.breaks_if_dispersive => "met unless the base is dispersive",
@@ -134,7 +132,6 @@ fn besides(row: &BatchRow, unit: SizeUnit) -> String {
     all.join("; ")
 }
 
-/// Words for drainage without a result.
 const DRAINAGE_UNKNOWN: &str = "drainage not known";
 
 /// Number of samples that the filter retains, and the governing samples, one sentence each; the curves of
@@ -268,7 +265,6 @@ fn dispersive_samples(rows: &[&WalkedRow], unit: SizeUnit) -> Option<String> {
     (!open.is_empty()).then_some(sentence)
 }
 
-/// Number of walks in each class.
 fn classes(walks: &[&SampleWalk]) -> String {
     let count = |class| walks.iter().filter(|walk| walk.verdict == class).count();
     let counted = Verdict::ALL.into_iter().filter(|class| count(*class) > 0);
@@ -280,21 +276,25 @@ mod tests {
     use super::*;
     use crate::outcome::record::Ratios;
     use crate::test_soils::{GRAVEL_0_32, REGRADED_TILL, curve, filter, soil};
-    use voidwalk_core::gradation::Gradation;
     use voidwalk_practice::batch::JointErosion;
     use voidwalk_practice::retention::retention;
     use voidwalk_practice::rules::NamedCurve;
     use voidwalk_practice::{PairOptions, PairRules, TestedClass};
     use voidwalk_sheets::SoilSample;
 
-    fn row(name: &str, curve: &Gradation, filter: &[NamedCurve], options: PairOptions) -> BatchRow {
-        let sample = SoilSample { name: name.into(), path: name.into(), curve: curve.clone() };
-        BatchRow::of(&sample, ("F", filter), options)
+    const SAND: [(f64, f64); 2] = [(0.08, 0.0), (0.3, 100.0)];
+
+    const GRAVEL: [(f64, f64); 2] = [(10.0, 0.0), (30.0, 100.0)];
+
+    const FILTER: [(f64, f64); 2] = [(0.5, 0.0), (2.0, 100.0)];
+
+    fn row(name: &str, base: &[(f64, f64)], filter: &[NamedCurve]) -> BatchRow {
+        row_with(name, base, filter, PairOptions::default())
     }
 
-    /// Filter with a D15F of 0.725 mm, linear from 0.5 to 2 mm.
-    fn named_filter() -> Vec<NamedCurve> {
-        vec![("F".to_owned(), curve(&[(0.5, 0.0), (2.0, 100.0)]))]
+    fn row_with(name: &str, base: &[(f64, f64)], filter: &[NamedCurve], options: PairOptions) -> BatchRow {
+        let sample = SoilSample { name: name.into(), path: name.into(), curve: curve(base) };
+        BatchRow::of(&sample, ("F", filter), options)
     }
 
     fn batch_filter(d15f_mm: Option<f64>) -> BatchFilter {
@@ -302,9 +302,7 @@ mod tests {
     }
 
     fn walked(sample: &str, met: bool, walk: Option<(Verdict, Verdict, bool)>) -> WalkedRow {
-        let base = curve(&[(0.08, 0.0), (0.3, 100.0)]);
-        let rules =
-            BatchRow { if_dispersive: None, ..row(sample, &base, &named_filter(), PairOptions::default()) };
+        let rules = BatchRow { met: Some(met), if_dispersive: None, ..row(sample, &SAND, &soil(&FILTER)) };
         let walk = walk.map(|(verdict, by_practice, in_full)| SampleWalk {
             folder: String::new(),
             in_full,
@@ -318,7 +316,7 @@ mod tests {
             curve_range: Vec::new(),
         });
         let not_walked = if walk.is_none() { "no table".into() } else { String::new() };
-        WalkedRow { rules: BatchRow { met: Some(met), ..rules }, governs: None, walk, not_walked }
+        WalkedRow { rules, governs: None, walk, not_walked }
     }
 
     #[test]
@@ -329,10 +327,8 @@ mod tests {
             walked("C", true, Some((Verdict::Some, Verdict::None, false))),
             walked("D", true, None),
         ];
-        let against: Vec<bool> = rows.iter().map(WalkedRow::is_against_practice).collect();
-        assert_eq!(against, [false, true, false, false]);
-        let doubted: Vec<bool> = rows.iter().map(WalkedRow::is_doubted).collect();
-        assert_eq!(doubted, [false, true, true, false]);
+        assert!(rows.iter().map(WalkedRow::is_against_practice).eq([false, true, false, false]));
+        assert!(rows.iter().map(WalkedRow::is_doubted).eq([false, true, true, false]));
         assert_eq!(answer(&rows[3]), "not walked: no table");
         let batch = WalkedBatch::new("s.csv".into(), vec![batch_filter(None)], rows);
         assert!(walks(&batch, "F", SizeUnit::Mm)[0].contains("2 no erosion, 1 some erosion"));
@@ -354,11 +350,8 @@ mod tests {
             sand.clone(),
         ];
         let words = dispersive_samples(&rows.each_ref(), SizeUnit::Mm).unwrap();
-        assert!(
-            words.contains(" 3 samples ") && words.contains("A (D15F at most 0.500\u{202f}mm)"),
-            "{words}"
-        );
-        assert!(!words.contains("B ("), "{words}");
+        assert!(words.contains(" 3 samples ") && !words.contains("B ("), "{words}");
+        assert!(words.contains("A (D15F at most 0.500\u{202f}mm)"), "{words}");
         assert_eq!(dispersive_samples(&[&sand], SizeUnit::Mm), None);
         let batch = WalkedBatch::new("s.csv".into(), vec![batch_filter(None)], rows.to_vec());
         let last = walks(&batch, "F", SizeUnit::Mm).pop().unwrap();
@@ -366,22 +359,20 @@ mod tests {
     }
 
     fn rows() -> Vec<BatchRow> {
-        let filter = named_filter();
-        let samples = [
-            ("sand", curve(&[(0.08, 0.0), (0.3, 100.0)])),
-            ("fine sand", curve(&[(0.076, 0.0), (0.15, 100.0)])),
-            ("silty", curve(&[(0.01, 0.0), (0.075, 60.0), (0.4, 100.0)])),
-            ("open", curve(&[(0.4, 30.0), (1.0, 100.0)])),
-            ("gravel", curve(&[(10.0, 0.0), (30.0, 100.0)])),
+        let samples: [(&str, &[(f64, f64)]); 5] = [
+            ("sand", &SAND),
+            ("fine sand", &[(0.076, 0.0), (0.15, 100.0)]),
+            ("silty", &[(0.01, 0.0), (0.075, 60.0), (0.4, 100.0)]),
+            ("open", &[(0.4, 30.0), (1.0, 100.0)]),
+            ("gravel", &GRAVEL),
         ];
-        let row_of = |(name, base): &(&str, Gradation)| row(name, base, &filter, PairOptions::default());
-        samples.iter().map(row_of).collect()
+        samples.map(|(name, base)| row(name, base, &soil(&FILTER))).into()
     }
 
     #[test]
     fn a_row_is_what_the_rules_say_of_the_pair_alone() {
-        let (rows, filter) = (rows(), &named_filter()[0].1);
-        let pair = PairRules::of(&curve(&[(0.08, 0.0), (0.3, 100.0)]), filter);
+        let (rows, filter) = (rows(), curve(&FILTER));
+        let pair = PairRules::of(&curve(&SAND), &filter);
         let d15f = filter.d(15.0).unwrap();
         assert_eq!(rows[0].d15f_mm, Some(d15f));
         assert_eq!(rows[0].limit_mm, retention(&pair.rules, d15f).map(|(_, limit)| limit));
@@ -403,20 +394,14 @@ mod tests {
         let texts = |d15f: f64, limit: f64| {
             let row = BatchRow { d15f_mm: Some(d15f), limit_mm: Some(limit), ..rows().remove(0) };
             let shown = |unit| {
-                let columns = columns(unit);
-                let columns: Vec<_> = columns.of_page().collect();
-                let cell = |heading: &str| {
+                let columns: Vec<_> = columns(unit).of_page().collect();
+                ["D15F, mm", "Limit, mm"].map(|heading| {
                     let column = columns.iter().find(|column| column.heading.text == heading).unwrap();
                     (column.cell)(&row).text
-                };
-                [cell("D15F, mm"), cell("Limit, mm")]
+                })
             };
-            let filter = batch_filter(Some(d15f));
-            (
-                shown(SizeUnit::Mm),
-                shown(SizeUnit::MmAndInches),
-                of_filter(&filter, std::slice::from_ref(&row), SizeUnit::Mm),
-            )
+            let [mm, inches] = [SizeUnit::Mm, SizeUnit::MmAndInches].map(shown);
+            (mm, inches, of_filter(&batch_filter(Some(d15f)), std::slice::from_ref(&row), SizeUnit::Mm))
         };
         let (mm, inches, lines) = texts(2.376, 2.3784);
         assert_eq!(mm, ["2.376", "2.378"]);
@@ -445,16 +430,12 @@ mod tests {
 
     #[test]
     fn a_row_that_a_dispersive_base_would_break_is_met_on_that_condition_alone() {
-        let silt = curve(&[(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)]);
-        let row_with = |d15f: f64| row("silt", &silt, &filter(d15f), PairOptions::default());
-        let (beyond, within) = (row_with(0.61), row_with(0.45));
+        let silt = [(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)];
+        let [beyond, within] = [0.61, 0.45].map(|d15f| row("silt", &silt, &filter(d15f)));
         assert_eq!((beyond.met, beyond.breaks_if_dispersive), (Some(true), true));
         assert_eq!((within.met, within.breaks_if_dispersive), (Some(true), false));
         let sentence = counts(&[beyond], "F");
-        assert!(
-            sentence.contains("1 met (1 of them unless the base is dispersive), 0 not met"),
-            "{sentence}"
-        );
+        assert!(sentence.contains("1 met (1 of them unless the base is dispersive), 0 not met"));
     }
 
     /// A filter that is too coarse without its finer part is not met in the table either. A filter with a
@@ -464,37 +445,34 @@ mod tests {
     fn a_filter_that_is_too_coarse_without_its_finer_part_is_not_met() {
         let scaled = |scale: f64| {
             let filter = soil(&GRAVEL_0_32.map(|(size, percent)| (scale * size, percent)));
-            row("till", &curve(&REGRADED_TILL), &filter, PairOptions::default())
+            row("till", &REGRADED_TILL, &filter)
         };
         let (coarse, fine) = (scaled(1.0), scaled(0.1));
         assert_eq!((coarse.met, coarse.may_lose_fines), (Some(false), true));
         assert!((coarse.too_coarse_without_percent.unwrap() - 19.4).abs() < 0.05, "{coarse:?}");
-        assert_eq!((fine.met, fine.may_lose_fines), (None, true));
-        assert_eq!(fine.too_coarse_without_percent, None);
+        assert_eq!((fine.met, fine.may_lose_fines, fine.too_coarse_without_percent), (None, true, None));
         assert!(counts(&[coarse], "F").starts_with("of 1 sample 0 met, 1 not met"));
     }
 
     #[test]
     fn doubtful_tables_and_joints_stand_in_the_note() {
-        let filter = named_filter();
-        let gravel = curve(&[(10.0, 0.0), (30.0, 100.0)]);
-        let given = row("gravel", &gravel, &filter, PairOptions { as_given: true, ..PairOptions::default() });
+        let options = PairOptions { as_given: true, ..PairOptions::default() };
+        let given = row_with("gravel", &GRAVEL, &soil(&FILTER), options);
         assert!(given.limit_mm.is_some() && given.notes.len() == 1, "{given:?}");
-        let sand = curve(&[(0.08, 0.0), (0.3, 100.0)]);
-        let joint =
-            |mm| row("sand", &sand, &filter, PairOptions { joint_mm: Some(mm), ..Default::default() });
-        assert_eq!(joint(2.0).joint, Some(JointErosion { percent: Some(90.0), is_below_source: false }));
         // D95B = 0.3 (0.08/0.3)^(1/20): 0.45 of it lies below the table of the source.
-        let d95b = sand.d(95.0).unwrap();
-        assert_eq!(joint(0.45 * d95b).joint, Some(JointErosion { percent: None, is_below_source: true }));
+        let d95b = curve(&SAND).d(95.0).unwrap();
+        for (mm, percent) in [(2.0, Some(90.0)), (0.45 * d95b, None)] {
+            let options = PairOptions { joint_mm: Some(mm), ..PairOptions::default() };
+            let joint = row_with("sand", &SAND, &soil(&FILTER), options).joint;
+            assert_eq!(joint, Some(JointErosion { percent, is_below_source: percent.is_none() }));
+        }
     }
 
     /// Samples with 40 to 85 % fines have the same limit, 0.7 mm. The finer sample comes first.
     #[test]
     fn of_equal_limits_the_finer_base_governs_and_the_others_are_counted() {
-        let filter = named_filter();
-        let coarsest = |at: usize| curve(&[(0.01, 0.0), (0.075, 60.0), (0.8 - 0.1 * at as f64, 100.0)]);
-        let numbered = |at| row(&format!("S{at}"), &coarsest(at), &filter, PairOptions::default());
+        let base = |at: usize| [(0.01, 0.0), (0.075, 60.0), (0.8 - 0.1 * at as f64, 100.0)];
+        let numbered = |at| row(&format!("S{at}"), &base(at), &soil(&FILTER));
         let rows: Vec<BatchRow> = (0..5).map(numbered).collect();
         let named = governing(&rows, "F", 3);
         assert!(named.iter().all(|row| row.limit_mm == Some(0.7)), "{named:?}");
@@ -506,9 +484,8 @@ mod tests {
     /// The limit of a base whose fines were not sieved is an upper bound, whether D15F is known or not.
     #[test]
     fn a_d15f_in_the_pan_hides_no_limit_that_is_one_at_most() {
-        let filter = vec![("F".to_owned(), curve(&[(0.5, 30.0), (2.0, 100.0)]))];
-        let open = row("open", &curve(&[(0.3, 25.0), (1.0, 100.0)]), &filter, PairOptions::default());
-        assert!(open.d15f_mm.is_none() && open.limit_mm.is_some() && open.limit_at_most, "{open:?}");
-        assert_eq!(open.met, None);
+        let open = row("open", &[(0.3, 25.0), (1.0, 100.0)], &soil(&[(0.5, 30.0), (2.0, 100.0)]));
+        assert_eq!((open.d15f_mm, open.met), (None, None));
+        assert!(open.limit_mm.is_some() && open.limit_at_most, "{open:?}");
     }
 }

@@ -12,7 +12,6 @@ use voidwalk_practice::{
 /// Kind of note, and the beginning of its warning for several samples.
 type Caution = (fn(&Note) -> bool, &'static str);
 
-/// Warnings of a specification on a base.
 const CAUTIONS: [Caution; 5] = [
     (|note| matches!(note, Note::UnstableBase { .. }), "Not internally stable by Kenney and Lau"),
     (
@@ -239,7 +238,7 @@ pub(crate) fn columns<'a>(unit: SizeUnit) -> Columns<'a, DesignedSample> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_soils::curve;
+    use crate::test_soils::{CORE, curve};
     use crate::words::specification::DESIGN_EACH_AGAIN;
     use voidwalk_practice::SpecificationOptions;
     use voidwalk_practice::design::Specification;
@@ -263,21 +262,18 @@ mod tests {
     #[test]
     fn the_least_d15f_of_practice_governs() {
         // 60 % fines: 0.7 mm. A clean sand: 4 D85B.
-        let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
+        let core = row("core", &CORE);
         let sand = row("sand", &[(0.1, 0.0), (0.5, 100.0)]);
         let limit = sand.d15f_max_mm.unwrap();
         assert!(core.d15f_max_mm == Some(0.7) && (limit - 4.0 * sand.d85b_mm.unwrap()).abs() < 1e-9);
         let by_practice = designed(vec![sand.clone(), core.clone()]);
         let sentences = lines_of(&by_practice);
-        assert_eq!(
-            sentences[1],
-            format!("Governing sample core: D15F up to 0.700\u{202f}mm (practice: {})", core.rule)
-        );
-        assert!(
-            sentences[0].starts_with("A filter for all 2 samples: D15F from ")
-                && sentences[0].ends_with("0.700\u{202f}mm")
-        );
-        assert_eq!(by_practice.rows.iter().map(|row| row.governs).collect::<Vec<_>>(), [Some(2), Some(1)]);
+        let governing =
+            format!("Governing sample core: D15F up to 0.700\u{202f}mm (practice: {})", core.rule);
+        assert_eq!(sentences[1], governing);
+        assert!(sentences[0].starts_with("A filter for all 2 samples: D15F from "), "{}", sentences[0]);
+        assert!(sentences[0].ends_with("0.700\u{202f}mm"), "{}", sentences[0]);
+        assert!(by_practice.rows.iter().map(|row| row.governs).eq([Some(2), Some(1)]));
         let csv = String::from_utf8(columns(SizeUnit::Mm).csv(&by_practice.rows)).unwrap();
         assert!(
             csv.starts_with("sample,group,category,fines_percent,regraded_at_mm,d85b_mm,d15f_max_mm,rule,")
@@ -304,34 +300,25 @@ mod tests {
     fn samples_that_no_one_filter_serves_are_said() {
         let fine = row("fine", &[(0.01, 0.0), (0.05, 100.0)]);
         let coarse = row("coarse", &[(0.5, 0.0), (4.0, 100.0)]);
-        let all = designed(vec![fine, coarse]);
-        let sentence = for_all(&all, SizeUnit::Mm);
+        let sentence = for_all(&designed(vec![fine, coarse]), SizeUnit::Mm);
         assert!(sentence.starts_with("No one filter serves all 2 samples: coarse needs D15F "), "{sentence}");
-        let none = designed(Vec::new());
-        assert_eq!(for_all(&none, SizeUnit::Mm), "No maximum D15F is known for any sample");
-    }
-
-    /// Each of these gravels has a D60F beyond the maximum size; between their limits there is no band.
-    #[test]
-    fn a_sample_without_a_band_of_its_own_is_not_served() {
-        let t1 =
-            row("T1", &[(37.5, 100.0), (19.0, 80.0), (9.5, 60.0), (4.75, 40.0), (2.0, 10.0), (1.0, 0.0)]);
-        let t2 =
-            row("T2", &[(37.5, 100.0), (19.0, 95.0), (9.5, 75.0), (4.75, 50.0), (2.0, 20.0), (1.0, 0.0)]);
+        let none = for_all(&designed(Vec::new()), SizeUnit::Mm);
+        assert_eq!(none, "No maximum D15F is known for any sample");
+        // Each of these gravels has a D60F beyond the maximum size; between their limits there is no band.
+        let t1 = [(37.5, 100.0), (19.0, 80.0), (9.5, 60.0), (4.75, 40.0), (2.0, 10.0), (1.0, 0.0)];
+        let t2 = [(37.5, 100.0), (19.0, 95.0), (9.5, 75.0), (4.75, 50.0), (2.0, 20.0), (1.0, 0.0)];
+        let [t1, t2] = [("T1", t1), ("T2", t2)].map(|(name, points)| row(name, &points));
         assert!(t1.no_band.is_some() && t1.d15f_max_mm.is_some(), "{t1:?}");
-        let why = no_band(t1.no_band.as_ref().unwrap(), SizeUnit::Mm);
+        let why = format!("No band for T1: {}", without_band(&t1, SizeUnit::Mm));
         let sentences = lines_of(&designed(vec![t1, t2]));
         assert!(sentences[0].starts_with("No filter is known that serves all 2 samples"), "{}", sentences[0]);
-        assert!(
-            sentences.contains(&format!("No band for T1: {}", why.trim_end_matches('.'))),
-            "{sentences:?}"
-        );
+        assert!(sentences.contains(&why), "{sentences:?}");
     }
 
     #[test]
     fn both_ends_are_of_the_samples_that_are_settled_and_a_bound_on_drainage_refuses_nothing() {
         // The open sample drains only from a D15F far above the limit of the settled one.
-        let core = row("core", &[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]);
+        let core = row("core", &CORE);
         let gravel = DesignedSample { d15f_max_mm: None, ..row("g", &[(1.0, 0.0), (9.0, 100.0)]) };
         assert!(gravel.d15f_min_mm.unwrap() > 1.0);
         let sentences = lines_of(&designed(vec![core.clone(), gravel]));
@@ -340,26 +327,15 @@ mod tests {
             "A filter for the 1 sample that is settled (1 is not): D15F from 0.140 to 0.700\u{202f}mm (the \
              minimum that drains is 0.100\u{202f}mm; it is raised so that the band is no wider than 5 to 1)"
         );
-        assert!(
-            sentences.iter().any(|line| line.ends_with("mm (this sample is not settled)")),
-            "{sentences:?}"
-        );
-        let one = designed(vec![core.clone()]);
-        let sentence = for_all(&one, SizeUnit::Mm);
-        assert!(
-            sentence.starts_with("A filter for the sample: D15F from 0.140 to 0.700\u{202f}mm (the"),
-            "{sentence}"
-        );
-        let open = DesignedSample {
-            path: "other".into(),
-            d15f_min_mm: Some(2.0),
-            d15f_min_at_most: true,
-            ..core.clone()
-        };
-        let sentence = for_all(&designed(vec![core, open]), SizeUnit::Mm);
-        assert!(
-            sentence.starts_with("It is not known whether one filter serves all 2 samples: core drains"),
-            "{sentence}"
-        );
+        assert!(sentences.iter().any(|line| line.ends_with("mm (this sample is not settled)")));
+        let open = DesignedSample { path: "other".into(), d15f_min_at_most: true, ..core.clone() };
+        let open = DesignedSample { d15f_min_mm: Some(2.0), ..open };
+        for (rows, words) in [
+            (vec![core.clone()], "A filter for the sample: D15F from 0.140 to 0.700\u{202f}mm (the"),
+            (vec![core, open], "It is not known whether one filter serves all 2 samples: core drains"),
+        ] {
+            let sentence = for_all(&designed(rows), SizeUnit::Mm);
+            assert!(sentence.starts_with(words), "{sentence}");
+        }
     }
 }

@@ -1,10 +1,4 @@
 //! English: sentences in which faces express records.
-//!
-//! - `first_lines()` gives the lines of practice and model at the top of every face.
-//! - [`sentence()`] fills a note's sentence with its numbers; [`setting()`] names the setting that
-//!   changes it.
-//! - `rule`: rules of practice and their notes; `meaning()`: a class of the model; `left_out`:
-//!   parts omitted from an answer.
 
 mod answer;
 pub(crate) mod batch;

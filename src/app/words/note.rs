@@ -99,27 +99,17 @@ fn listed(items: &[String]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use std::collections::BTreeSet;
     use std::fs;
     use std::path::Path;
 
-    use super::*;
-    use voidwalk_practice::note::Sample;
-
-    fn all(number: f64, count: u64, name: &str) -> Vec<Note> {
-        Note::all_with(&Sample { number, count, name: name.into() })
-    }
-
     /// Clients read each sentence alone; a short one is understood at once.
     #[test]
     fn every_sentence_has_at_most_25_words() {
-        for note in all(12.5, 3, "some") {
+        for note in Note::all_with(12.5, 3, "some") {
             for words in [sentence(&note, SizeUnit::Mm), setting(&note)] {
-                assert!(
-                    words.split_whitespace().count() <= 25,
-                    "{}: {words}",
-                    words.split_whitespace().count()
-                );
+                assert!(words.split_whitespace().count() <= 25, "{words}");
             }
         }
     }
@@ -130,7 +120,7 @@ mod tests {
         let long = "a name ".repeat(200);
         for number in [0.0, 1e-300, -1.0, 12.345, 1e300, f64::NAN, f64::INFINITY] {
             for (count, name) in [(0, ""), (1, "x"), (u64::MAX, &*long), (2, "two\nlines {and} braces")] {
-                for note in all(number, count, name) {
+                for note in Note::all_with(number, count, name) {
                     for words in [sentence(&note, SizeUnit::MmAndInches), setting(&note)] {
                         assert!(!words.contains("NaN") && !words.contains("inf "), "{words}");
                         assert!(name.contains('{') || !words.contains(['{', '}']), "{words}");
@@ -150,15 +140,12 @@ mod tests {
     #[test]
     fn every_row_is_whole_and_every_number_is_used() {
         let mut ids = BTreeSet::new();
-        for (place, note) in all(12.5, 3, "some").into_iter().enumerate() {
-            let (entry, record) = (note.entry(), serde_json::to_value(&note).unwrap());
-            let id = record["id"].as_str().unwrap().to_owned();
+        for (place, note) in Note::all_with(12.5, 3, "some").into_iter().enumerate() {
+            let (entry, id, record) = (note.entry(), note.id(), serde_json::to_value(&note).unwrap());
             assert_eq!(note.place(), place);
             assert!(ids.insert(id.clone()), "{id} is there twice");
-            assert!(
-                !entry.label.is_empty() && Path::new(SOURCES).join("docs").join(entry.page).exists(),
-                "{id}"
-            );
+            let page = Path::new(SOURCES).join("docs").join(entry.page);
+            assert!(!entry.label.is_empty() && page.exists(), "{id}");
             let begin = entry.sentence.chars().next().unwrap();
             assert!((begin.is_uppercase() || begin == '{') && entry.sentence.ends_with(['.', '?']), "{id}");
             for name in record["numbers"].as_object().into_iter().flat_map(|numbers| numbers.keys()) {
@@ -178,16 +165,16 @@ mod tests {
 
     #[test]
     fn numbers_have_the_unit_and_the_side_of_their_names() {
-        let text = |name: &str, value: f64| measured(name, value, SizeUnit::Mm);
-        assert_eq!(
-            [text("fines_percent", 35.24), text("fines_percent", 100.0)],
-            ["35.2\u{202f}%", "100\u{202f}%"]
-        );
-        assert_eq!(
-            [text("sieve_mm", 0.075), text("most_d15f_mm", 0.2859)],
-            ["0.075\u{202f}mm", "0.285\u{202f}mm"]
-        );
-        assert_eq!([text("least_d15f_mm", 0.2851), text("least_cu", 8.7655)], ["0.286\u{202f}mm", "8.77"]);
+        for (name, value, text) in [
+            ("fines_percent", 35.24, "35.2\u{202f}%"),
+            ("fines_percent", 100.0, "100\u{202f}%"),
+            ("sieve_mm", 0.075, "0.075\u{202f}mm"),
+            ("most_d15f_mm", 0.2859, "0.285\u{202f}mm"),
+            ("least_d15f_mm", 0.2851, "0.286\u{202f}mm"),
+            ("least_cu", 8.7655, "8.77"),
+        ] {
+            assert_eq!(measured(name, value, SizeUnit::Mm), text);
+        }
         assert_eq!(counted(1, Some("copy|copies")), "1 copy");
         assert_eq!(counted(12_000, Some("replicate")), "12\u{202f}000 replicates");
     }
@@ -207,7 +194,7 @@ mod tests {
                 }
             }
         }
-        for note in all(1.0, 1, "") {
+        for note in Note::all_with(1.0, 1, "") {
             let debug = format!("{note:?}");
             let name = debug.split(' ').next().unwrap();
             assert!(code.contains(&format!("Note::{name}")), "{name} is reported nowhere");

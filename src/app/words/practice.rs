@@ -39,7 +39,6 @@ pub(crate) fn practice_line(decision: &Decision, unit: SizeUnit) -> String {
     format!("{}: {}", headline.words(), clauses.join("; "))
 }
 
-/// D15F with the limit of design.
 fn of_design(rule: &AppliedRule, standing: Standing, unit: SizeUnit) -> String {
     let [value, limit] = value_and_limit(rule, unit);
     let known = format!("D15F {}", value.as_deref().unwrap_or("unknown"));
@@ -135,30 +134,26 @@ fn without_finer(washout: &Washout, unit: SizeUnit) -> String {
 /// Other rules that are not kept and that the headline does not name.
 fn besides(decision: &Decision, headline: Headline) -> Vec<&'static str> {
     let breaks = |role| decision.breaks(role);
-    let loses = [Headline::MayLoseFiner, Headline::TooCoarseWithoutFiner].contains(&headline);
-    let drains = breaks(RuleRole::Drainage);
+    let dry = breaks(RuleRole::Drainage);
     let all = [
-        (breaks(RuleRole::Stability) && !loses, "may lose its finer part"),
-        (drains && headline != Headline::MayNotDrain, "may not drain"),
-        (breaks(RuleRole::Placing) && headline != Headline::MaySegregate, "may segregate"),
-        (
-            !drains && decision.is_drainage_unknown && headline != Headline::DrainageNotKnown,
-            "drainage not known",
-        ),
+        (breaks(RuleRole::Stability), Headline::MayLoseFiner, "may lose its finer part"),
+        (dry, Headline::MayNotDrain, "may not drain"),
+        (breaks(RuleRole::Placing), Headline::MaySegregate, "may segregate"),
+        (!dry && decision.is_drainage_unknown, Headline::DrainageNotKnown, "drainage not known"),
     ];
-    all.into_iter().filter(|(holds, _)| *holds).map(|(_, words)| words).collect()
+    // This headline names the finer part, too.
+    let named = if headline == Headline::TooCoarseWithoutFiner { Headline::MayLoseFiner } else { headline };
+    all.into_iter().filter(|(holds, says, _)| *holds && *says != named).map(|(.., words)| words).collect()
 }
 
 /// Filter that is too coarse only for a dispersive base, in a clause.
 pub(super) fn beyond_dispersive(beyond: &BeyondDispersive, unit: SizeUnit) -> String {
     let at_most = if beyond.limit.at_most { "at most " } else { "" };
-    let [value, most] =
-        beside_limit([Some(beyond.d15f_mm), Some(beyond.limit.d15f_max_mm)], false, Unit::Size(unit))
-            .map(Option::unwrap_or_default);
-    let without = beyond.without_percent.map(|part| {
+    let numbers = [Some(beyond.d15f_mm), Some(beyond.limit.d15f_max_mm)];
+    let [value, most] = beside_limit(numbers, false, Unit::Size(unit)).map(Option::unwrap_or_default);
+    let without = beyond.without_percent.map_or_else(String::new, |part| {
         format!(" (D15F {value} without the filter's finest {} %)", significant(part).decimals(1))
     });
-    let without = without.unwrap_or_default();
     format!("dispersive base: limit {at_most}{most}, not kept{without}")
 }
 
@@ -256,7 +251,6 @@ mod tests {
             let headline = if breaks { Headline::MeetsUnlessDispersive } else { Headline::Meets };
             assert_eq!(pair.headline, Some(headline));
             let line = practice_line(&pair.decision(), SizeUnit::Mm);
-            assert_eq!(line.starts_with(Headline::MeetsUnlessDispersive.words()), breaks, "{line}");
             assert_eq!(line.contains("dispersive base: limit 0.500\u{202f}mm"), breaks, "{line}");
         }
         let stated = judged(0.61, true);
@@ -316,7 +310,7 @@ mod tests {
             &SILTY,
             &CLAY,
         ];
-        let (mut checked, mut missed) = (0, Vec::new());
+        let mut checked = 0;
         for step in 0..60 {
             let by = libm::pow(1.01, f64::from(step));
             for base in bases {
@@ -350,16 +344,13 @@ mod tests {
                                     true => back >= mm * (1.0 - 1e-9),
                                     false => back <= mm * (1.0 + 1e-9),
                                 });
-                                if !is_within {
-                                    missed.push(format!("{}: {text}", rule.id));
-                                }
+                                assert!(is_within, "{}: {text}", rule.id);
                             }
                         }
                     }
                 }
             }
         }
-        let first = &missed[..missed.len().min(6)];
-        assert!(checked > 1000 && missed.is_empty(), "{checked} {} {first:#?}", missed.len());
+        assert!(checked > 1000, "{checked}");
     }
 }

@@ -96,21 +96,17 @@ pub(crate) fn products(specification: &Specification) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use voidwalk_core::gradation::Gradation;
+    use crate::test_soils::{CORE, soil};
     use voidwalk_practice::SpecificationOptions;
 
     /// A core of category 2, for which 0.100 to 0.700 mm is allowed. C33 sand has a D15 of 0.178 to
     /// 0.424 mm and a Cu of 4.0 and 4.2, and leaves the band at 1.18 mm.
     #[test]
     fn a_product_is_tested_with_its_own_sides_and_not_by_the_band_that_was_drawn() {
-        let base = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)]).unwrap();
-        let core = Specification::of("core", &[("core".into(), base)], SpecificationOptions::default());
+        let core = Specification::of("core", &soil(&CORE), SpecificationOptions::default());
         let fits: Vec<_> = core.products.iter().filter(|product| product.fits() == Some(true)).collect();
-        assert_eq!(
-            fits.iter().map(|product| &*product.product).collect::<Vec<_>>(),
-            ["ASTM C33 fine aggregate"]
-        );
-        assert_eq!(product(&core, fits[0]), "fits");
+        let [sand] = fits[..] else { panic!("{fits:?}") };
+        assert_eq!((&*sand.product, &*product(&core, sand)), ("ASTM C33 fine aggregate", "fits"));
         // No. 8 stone may be delivered with a Cu of 1.6.
         let stone = core.products.iter().find(|product| product.product.contains("No. 8 ")).unwrap();
         let [NotKept::CuOfCoarseSide { cu }, ..] = stone.not_kept[..] else { panic!("{stone:?}") };

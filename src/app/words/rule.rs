@@ -57,7 +57,6 @@ pub(crate) fn columns<'a>(unit: SizeUnit) -> Columns<'a, AppliedRule> {
         .column("Id", |rule| rule.id.clone())
 }
 
-/// Word for the value of a rule if sieves give only a bound.
 fn value_is(bound: ValueBound) -> &'static str {
     match bound {
         ValueBound::AtMost => "an upper bound",
@@ -65,7 +64,6 @@ fn value_is(bound: ValueBound) -> &'static str {
     }
 }
 
-/// Kind of a known limit.
 fn limit_is(rule: &AppliedRule) -> &'static str {
     match (rule.at_least, rule.limit_at_most) {
         _ if rule.role == RuleRole::Continuation => "a boundary: continuing erosion beyond it",
@@ -107,7 +105,6 @@ pub(crate) fn limit(rule: &AppliedRule, unit: SizeUnit) -> Option<String> {
     limit.map(|limit| format!("{} {limit}{}", limit_begins(rule), limit_ends(rule)))
 }
 
-/// Result of a rule in words.
 pub(crate) fn result(result: RuleResult) -> &'static str {
     match result {
         RuleResult::Met => "met",
@@ -170,131 +167,126 @@ pub(crate) fn rule_notes(notes: &[RuleNote], unit: SizeUnit) -> String {
 
 /// Note of a rule as part of a sentence.
 pub(super) fn rule_note(note: RuleNote, unit: SizeUnit) -> String {
-    let text = match note {
-        RuleNote::D15FBetween(from, to) => return between(unit, "D15F lies", from, to),
-        RuleNote::D15BBetween(from, to) => return between(unit, "D15B lies", from, to),
-        RuleNote::D85BBetween(from, to) => return between(unit, "D85B lies", from, to),
-        RuleNote::D95BBetween(from, to) => return between(unit, "D95B lies", from, to),
-        RuleNote::FilterBetween(from, to) => {
-            return between(unit, "sizes of the filter are not known", from, to);
-        }
-        RuleNote::BaseBetween(from, to) => return between(unit, "sizes of the base are not known", from, to),
-        RuleNote::FlatBase(limit) => {
-            let limit = greatest_length(limit, unit).to_string();
-            return format!("the base may be gap-graded: the stricter limit; the other is {limit}");
-        }
-        RuleNote::Dispersive => "dispersive",
-        RuleNote::Category(category) => return format!("base category {category}"),
-        RuleNote::RegradedOn(size) => return format!("base regraded on {}", length(size, unit)),
-        RuleNote::BeforeRegrading => "base before regrading",
-        RuleNote::TakenAsSand => "sizes are multiples of D0F: taken as a sand without fines",
-        RuleNote::ResultOfModel => "a result of the model, for the base as it is walked",
-        RuleNote::BeyondAnyLimit => "beyond any possible limit",
-        RuleNote::NoClearBoundary => {
-            "not a limit: with 15 to 85 % fines and D95B above 2 mm tests identified no boundary of \
-                 continuing erosion (Fell et al., section 9.3.2); the manual of the Corps has one in a \
-                 figure alone"
-        }
-        RuleNote::BeyondUnclearBoundary => {
-            "beyond 9 D95B, though with 15 to 85 % fines and D95B above 2 mm tests identified no \
-                 boundary of continuing erosion (Fell et al., section 9.3.2)"
-        }
-        RuleNote::ExcessiveNotJudged => "continuing erosion not reached; excessive erosion not judged",
+    let between = |what: &str, from: f64, to: f64| {
+        let [low, high] = [from, to].map(|sieve| length(sieve, unit).in_digits(6));
+        format!("{what} between {} and {high}: test the sieves between", low.in_cell())
+    };
+    let places = |number: f64, decimals: u8| significant(number).decimals(decimals);
+    match note {
+        RuleNote::D15FBetween(from, to) => between("D15F lies", from, to),
+        RuleNote::D15BBetween(from, to) => between("D15B lies", from, to),
+        RuleNote::D85BBetween(from, to) => between("D85B lies", from, to),
+        RuleNote::D95BBetween(from, to) => between("D95B lies", from, to),
+        RuleNote::FilterBetween(from, to) => between("sizes of the filter are not known", from, to),
+        RuleNote::BaseBetween(from, to) => between("sizes of the base are not known", from, to),
+        RuleNote::FlatBase(limit) => format!(
+            "the base may be gap-graded: the stricter limit; the other is {}",
+            greatest_length(limit, unit)
+        ),
+        RuleNote::Category(category) => format!("base category {category}"),
+        RuleNote::RegradedOn(size) => format!("base regraded on {}", length(size, unit)),
         RuleNote::ByFines(times, until, fines) => {
             let [width, until] = [until - FEW_FINES, until].map(given);
             let fines = given((100.0 * fines).round() / 100.0);
             let times = if times == 1.0 { String::new() } else { format!("{} ", given(times)) };
-            let by_fines = format!("[({until} - {fines})/{width} (4 D85B - 0.7) + 0.7]");
-            return format!("{times}{by_fines} mm for {fines} % fines");
+            format!("{times}[({until} - {fines})/{width} (4 D85B - 0.7) + 0.7] mm for {fines} % fines")
         }
         RuleNote::FloorGoverns(times, size) => {
-            return format!("its floor: {} D85B would be {}", given(times), greatest_length(size, unit));
+            format!("its floor: {} D85B would be {}", given(times), greatest_length(size, unit))
         }
         RuleNote::LeastGoverns(times, size) => {
-            return format!("its floor: {} D15B is below {}", given(times), least_length(size, unit));
+            format!("its floor: {} D15B is below {}", given(times), least_length(size, unit))
         }
-        RuleNote::D15FAtMost => "D15F is finer than the finest sieve: at most this",
-        RuleNote::LimitAtMost => "D15B is finer than the finest sieve: no more than this is needed",
-        RuleNote::LimitAtLeast => "D15B is finer than the finest sieve; the limit is never less than this",
-        RuleNote::CuAtLeast => "D10 is finer than the finest sieve: Cu is at least this",
         RuleNote::FinestSieveOfFilter(size) => {
-            return format!("the finest sieve is {}: at most what passes it", length(size, unit));
+            format!("the finest sieve is {}: at most what passes it", length(size, unit))
         }
-        RuleNote::AtPercentFiner(percent) => {
-            return format!("at {} % finer", significant(percent).decimals(0));
-        }
+        RuleNote::AtPercentFiner(percent) => format!("at {} % finer", places(percent, 0)),
         RuleNote::BandFrom(percent) => {
-            return format!(
-                "compared from {} % finer, as there is no finer sieve",
-                significant(percent).decimals(0)
-            );
+            format!("compared from {} % finer, as there is no finer sieve", places(percent, 0))
         }
-        RuleNote::Joint(joint, d95b, ratio) => {
-            let [d95b, ratio] = [significant(d95b).decimals(3), significant(ratio).decimals(2)];
-            return format!("joint of {} mm, D95B {d95b} mm: JOS/D95B = {ratio}; steady flow", given(joint));
-        }
-        RuleNote::LessThanSource => "less than 0.01 %",
-        RuleNote::ChecksWalk => "checks the walk against their tests, not the filter",
+        RuleNote::Joint(joint, d95b, ratio) => format!(
+            "joint of {} mm, D95B {} mm: JOS/D95B = {}; steady flow",
+            given(joint),
+            places(d95b, 3),
+            places(ratio, 2)
+        ),
         RuleNote::FarFinerThanTests(times) => {
             let times = significant(times).in_digits(2);
-            return format!("{times} times finer: the openings walked are not those of such tests");
+            format!("{times} times finer: the openings walked are not those of such tests")
         }
-        RuleNote::KezdiAt(split, coarse, fine) => {
-            let [coarse, fine] = [coarse, fine].map(significant);
-            return format!(
-                "split at {} % finer: D'15 of the coarser part {coarse} mm, d'85 of the finer part {fine} mm",
-                significant(split).decimals(1)
-            );
-        }
+        RuleNote::KezdiAt(split, coarse, fine) => format!(
+            "split at {} % finer: D'15 of the coarser part {} mm, d'85 of the finer part {} mm",
+            places(split, 1),
+            significant(coarse),
+            significant(fine)
+        ),
         RuleNote::KezdiSplits(from, to) => {
-            return format!(
-                "judged over splits at {} to {} % finer",
-                significant(from).decimals(1),
-                significant(to).decimals(1)
-            );
+            format!("judged over splits at {} to {} % finer", places(from, 1), places(to, 1))
         }
         RuleNote::KezdiHidden(share) => {
-            let share = significant(share).decimals(0);
-            return format!("not known for the {share} % finer than the finest sieve");
+            format!("not known for the {} % finer than the finest sieve", places(share, 0))
         }
         RuleNote::ShapeAt(at, most) => {
-            return format!("at F = {} %, judged up to F = {} %", significant(at).decimals(1), given(most));
+            format!("at F = {} %, judged up to F = {} %", places(at, 1), given(most))
         }
-        RuleNote::ShapeAbovePan(at, from, most) => {
-            let [at, from] = [at, from].map(|percent| significant(percent).decimals(1));
-            return format!(
-                "at F = {at} %, judged from F = {from} % (finest sieve) up to F = {} %",
-                given(most)
-            );
-        }
+        RuleNote::ShapeAbovePan(at, from, most) => format!(
+            "at F = {} %, judged from F = {} % (finest sieve) up to F = {} %",
+            places(at, 1),
+            places(from, 1),
+            given(most)
+        ),
         RuleNote::BurenkovaRange(whole, low, high) => {
-            let [whole, low, high] = [whole, low, high].map(|value| significant(value).decimals(2));
-            return format!("h'' = D90/D15 = {whole}; the range is {low} to {high}");
-        }
-        RuleNote::WanFellSand => "as sand and gravel with up to 10 % of fines that are not plastic",
-        RuleNote::WanFellSilt => {
-            "as silt, sand and gravel with up to 10 % of clay and a plasticity index of up to 12"
-        }
-        RuleNote::WanFellContours => {
-            "the source states contours from 5 to 95 % and no limit, and is unsure of soils with less \
-                 than 15 % of finer fraction"
+            let [whole, low, high] = [whole, low, high].map(|value| places(value, 2));
+            format!("h'' = D90/D15 = {whole}; the range is {low} to {high}")
         }
         RuleNote::LimitsByFines(percent) => {
-            let percent = significant(percent).decimals(0);
-            return format!("{percent} % of the base is fines: limits by fines apply instead");
+            format!("{} % of the base is fines: limits by fines apply instead", places(percent, 0))
         }
-        RuleNote::BurenkovaSoils => "for grains of up to 100 mm and a Cu of up to 200",
-        RuleNote::BurenkovaThirdZone(high) => {
-            return format!(
-                "h' is above {}: Burenkova's third zone, where Wan and Fell have no tests and expect \
-                     no loss of fines",
-                significant(high).decimals(2)
-            );
+        RuleNote::BurenkovaThirdZone(high) => format!(
+            "h' is above {}: Burenkova's third zone, where Wan and Fell have no tests and expect no loss of \
+             fines",
+            places(high, 2)
+        ),
+        RuleNote::Dispersive => "dispersive".into(),
+        RuleNote::BeforeRegrading => "base before regrading".into(),
+        RuleNote::TakenAsSand => "sizes are multiples of D0F: taken as a sand without fines".into(),
+        RuleNote::ResultOfModel => "a result of the model, for the base as it is walked".into(),
+        RuleNote::BeyondAnyLimit => "beyond any possible limit".into(),
+        RuleNote::NoClearBoundary => {
+            "not a limit: with 15 to 85 % fines and D95B above 2 mm tests identified no boundary of \
+             continuing erosion (Fell et al., section 9.3.2); the manual of the Corps has one in a figure \
+             alone"
+                .into()
         }
-        RuleNote::UniformFilter => "the filter is neither broadly graded (Cu of 6 and more) nor gap-graded",
-        _ => return missing(note).map_or_else(String::new, |need| format!("needs {need}")),
-    };
-    text.into()
+        RuleNote::BeyondUnclearBoundary => {
+            "beyond 9 D95B, though with 15 to 85 % fines and D95B above 2 mm tests identified no boundary \
+             of continuing erosion (Fell et al., section 9.3.2)"
+                .into()
+        }
+        RuleNote::ExcessiveNotJudged => "continuing erosion not reached; excessive erosion not judged".into(),
+        RuleNote::D15FAtMost => "D15F is finer than the finest sieve: at most this".into(),
+        RuleNote::LimitAtMost => "D15B is finer than the finest sieve: no more than this is needed".into(),
+        RuleNote::LimitAtLeast => {
+            "D15B is finer than the finest sieve; the limit is never less than this".into()
+        }
+        RuleNote::CuAtLeast => "D10 is finer than the finest sieve: Cu is at least this".into(),
+        RuleNote::LessThanSource => "less than 0.01 %".into(),
+        RuleNote::ChecksWalk => "checks the walk against their tests, not the filter".into(),
+        RuleNote::WanFellSand => "as sand and gravel with up to 10 % of fines that are not plastic".into(),
+        RuleNote::WanFellSilt => {
+            "as silt, sand and gravel with up to 10 % of clay and a plasticity index of up to 12".into()
+        }
+        RuleNote::WanFellContours => {
+            "the source states contours from 5 to 95 % and no limit, and is unsure of soils with less than \
+             15 % of finer fraction"
+                .into()
+        }
+        RuleNote::BurenkovaSoils => "for grains of up to 100 mm and a Cu of up to 200".into(),
+        RuleNote::UniformFilter => {
+            "the filter is neither broadly graded (Cu of 6 and more) nor gap-graded".into()
+        }
+        _ => missing(note).map_or_else(String::new, |need| format!("needs {need}")),
+    }
 }
 
 /// Data missing for a result, without an introductory word; `None` if nothing is missing.
@@ -319,36 +311,27 @@ pub(crate) fn missing(note: RuleNote) -> Option<&'static str> {
     })
 }
 
-fn between(unit: SizeUnit, what: &str, from: f64, to: f64) -> String {
-    let [low, high] = [from, to].map(|sieve| length(sieve, unit).in_digits(6));
-    format!("{what} between {} and {}: test the sieves between", low.in_cell(), high)
-}
-
 /// Reason why practice regrades a base or not, as part of a sentence.
 pub(crate) fn regrade_reason(reason: RegradeReason) -> String {
-    let cause = match reason.cause {
-        RegradeCause::Gap(from) => &*format!(
-            "gap-graded: next to nothing between {} mm and four times that",
-            significant(from).decimals(3)
-        ),
-        RegradeCause::GapAmongGravel(from) => &*format!(
-            "gap-graded: next to nothing between {} mm and four times that; what is finer is regraded on \
-                 No. 4 (4.75 mm)",
-            significant(from).decimals(3)
-        ),
-        RegradeCause::GravelAndFines => "grains coarser than No. 4 (4.75 mm) and 15 % fines or more",
-        RegradeCause::BroadGravel => "broadly graded, with grains coarser than No. 4 (4.75 mm)",
-        RegradeCause::GravelOfUnknownCu => {
-            "grains coarser than No. 4 (4.75 mm), and Cu is not known: taken as broadly graded"
-        }
-        RegradeCause::NarrowGravel => "less than 15 % fines and not broadly graded",
-        RegradeCause::NoGravel => "nothing is coarser than No. 4 (4.75 mm)",
-        RegradeCause::NoUnit => "sizes are multiples of D0F",
+    let gap = |from| {
+        let from = significant(from).decimals(3);
+        format!("gap-graded: next to nothing between {from} mm and four times that")
     };
-    match reason.nothing_passes {
-        true => format!("{cause}; but no known size of it passes that sieve: left as it is"),
-        false => cause.to_owned(),
-    }
+    let cause = match reason.cause {
+        RegradeCause::Gap(from) => gap(from),
+        RegradeCause::GapAmongGravel(from) => gap(from) + "; what is finer is regraded on No. 4 (4.75 mm)",
+        RegradeCause::GravelAndFines => "grains coarser than No. 4 (4.75 mm) and 15 % fines or more".into(),
+        RegradeCause::BroadGravel => "broadly graded, with grains coarser than No. 4 (4.75 mm)".into(),
+        RegradeCause::GravelOfUnknownCu => {
+            "grains coarser than No. 4 (4.75 mm), and Cu is not known: taken as broadly graded".into()
+        }
+        RegradeCause::NarrowGravel => "less than 15 % fines and not broadly graded".into(),
+        RegradeCause::NoGravel => "nothing is coarser than No. 4 (4.75 mm)".into(),
+        RegradeCause::NoUnit => "sizes are multiples of D0F".into(),
+    };
+    let left =
+        if reason.nothing_passes { "; but no known size of it passes that sieve: left as it is" } else { "" };
+    cause + left
 }
 
 #[cfg(test)]

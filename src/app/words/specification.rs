@@ -19,7 +19,6 @@ use voidwalk_practice::rules::{
     range_of_tests,
 };
 
-/// Advice for a base found to be dispersive.
 pub(crate) const DESIGN_AGAIN: &str = "design again for a dispersive base";
 
 /// Advice for samples found to be dispersive.
@@ -38,20 +37,17 @@ pub(crate) fn band(specification: &Specification, unit: SizeUnit) -> Option<Stri
 /// retains it, in a sentence without its end; `None` if neither is the case.
 pub(crate) fn raised(specification: &Specification, unit: SizeUnit) -> Option<String> {
     let [least, most] = specification.band.as_ref()?.d15_mm();
-    if let Some(retains) = specification.d15f_max_mm.filter(|max| most < max * (1.0 - 1e-9)) {
-        let [retains, most] = [retains, most].map(|mm| greatest_length(mm, unit).to_string());
-        return Some(format!(
-            "The maximum D15F that retains the base is {retains}; this maximum is lowered to {most}, so that \
-             the band is no wider than {WIDEST_BAND} to 1"
-        ));
-    }
-    let drains = specification.d15f_min_mm.filter(|drains| least > drains * (1.0 + 1e-9))?;
-    let at_most = if specification.d15f_min_at_most { "not known, and at most " } else { "" };
-    let [drains, least] = [drains, least].map(|mm| least_length(mm, unit).to_string());
-    Some(format!(
-        "The minimum D15F that drains the base is {at_most}{drains}; this minimum is raised to {least}, so \
-         that the band is no wider than {WIDEST_BAND} to 1"
-    ))
+    let lowered = specification.d15f_max_mm.filter(|max| most < max * (1.0 - 1e-9));
+    let moved = if let Some(retains) = lowered {
+        let [retains, most] = [retains, most].map(|mm| greatest_length(mm, unit));
+        format!("maximum D15F that retains the base is {retains}; this maximum is lowered to {most}")
+    } else {
+        let drains = specification.d15f_min_mm.filter(|drains| least > drains * (1.0 + 1e-9))?;
+        let at_most = if specification.d15f_min_at_most { "not known, and at most " } else { "" };
+        let [drains, least] = [drains, least].map(|mm| least_length(mm, unit));
+        format!("minimum D15F that drains the base is {at_most}{drains}; this minimum is raised to {least}")
+    };
+    Some(format!("The {moved}, so that the band is no wider than {WIDEST_BAND} to 1"))
 }
 
 /// Gap in a specification: the maximum D90F, which keeps a filter from segregating, because no text with
@@ -108,7 +104,6 @@ pub(crate) fn without_margin(specification: &Specification, unit: SizeUnit) -> O
     Some(format!("This limit has no margin: {why}"))
 }
 
-/// Maximum D15F and the origin of its rule.
 pub(crate) fn limit(specification: &Specification, unit: SizeUnit) -> String {
     match specification.strictest() {
         Some((curve, limit)) => {
@@ -187,7 +182,6 @@ pub(crate) fn step_value(value: &StepValue, unit: SizeUnit) -> Option<String> {
     })
 }
 
-/// Step of the procedure in words.
 pub(crate) fn step_name(step: StepName) -> &'static str {
     match step {
         StepName::Plot => "Plot the gradation of the base",
@@ -303,21 +297,15 @@ pub(crate) fn limit_columns<'a>() -> Columns<'a, SieveLimit> {
 /// Row of `specification_steps.csv`: one number of a step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StepRow {
-    /// Number of the step.
     pub(crate) step: u64,
-    /// Name of the step.
     pub(crate) does: String,
     /// Name of the number; empty if the step has no number.
     pub(crate) quantity: String,
-    /// The number.
     pub(crate) value: Option<f64>,
-    /// Unit of the number.
     pub(crate) unit: String,
-    /// Formula of the step.
     pub(crate) formula: String,
     /// Remarks for the reader.
     pub(crate) note: String,
-    /// Source of formula and numbers.
     pub(crate) source: String,
 }
 
@@ -333,40 +321,42 @@ pub(crate) fn step_rows(step: &SpecificationStep) -> Vec<StepRow> {
         note: step_notes(step, SizeUnit::Mm),
         source: step.source.clone(),
     };
-    match step.values.is_empty() {
-        true => vec![row(None)],
-        false => step.values.iter().map(|value| row(Some(value))).collect(),
+    if step.values.is_empty() {
+        vec![row(None)]
+    } else {
+        step.values.iter().map(|value| row(Some(value))).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use voidwalk_core::gradation::Gradation;
+    use crate::test_soils::{CORE, DESIGN_CLAY, DESIGN_SAND, TILL, soil};
     use voidwalk_practice::SpecificationOptions;
     use voidwalk_practice::design::specification::ENTERED_BY;
 
-    const CORE: [(f64, f64); 3] = [(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)];
-    const CLAY: [(f64, f64); 5] = [(0.001, 0.0), (0.02, 60.0), (0.05, 85.0), (0.075, 90.0), (0.3, 100.0)];
-    const SAND: [(f64, f64); 4] = [(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)];
+    /// A sand of one size, for which there is no band.
+    const UNIFORM: [(f64, f64); 2] = [(0.4, 0.0), (0.5, 100.0)];
 
     fn specified(points: &[(f64, f64)], dispersive: Option<bool>) -> Specification {
-        let base = [("base".into(), Gradation::from_lines(points).unwrap())];
-        Specification::of("base", &base, SpecificationOptions { dispersive, ..Default::default() })
+        let options = SpecificationOptions { dispersive, ..SpecificationOptions::default() };
+        Specification::of("base", &soil(points), options)
     }
 
     #[test]
     fn a_minimum_is_rounded_up_and_a_maximum_down() {
-        let rounded = |name: &str, value, unit: &str| {
-            step_value(&StepValue { name: name.into(), value, unit: unit.into() }, SizeUnit::Mm)
-        };
-        assert_eq!(rounded("minimum D15F", Some(0.11661), "mm").unwrap(), "0.117\u{202f}mm");
-        // The words agree with the sentence on D90F.
-        assert_eq!(rounded(ENTERED_BY, Some(0.19158), "mm").unwrap(), "0.191\u{202f}mm");
-        assert_eq!(rounded("maximum D10F", Some(0.58389), "mm").unwrap(), "0.583\u{202f}mm");
-        assert_eq!(rounded("maximum D15F / minimum D15F, as found", Some(6.999), "").unwrap(), "7.00");
-        assert_eq!(rounded("category", Some(2.0), "").unwrap(), "2");
-        assert_eq!(rounded("minimum D15F", None, "mm"), None);
+        for (name, value, unit, words) in [
+            ("minimum D15F", Some(0.11661), "mm", Some("0.117\u{202f}mm")),
+            // The words agree with the sentence on D90F.
+            (ENTERED_BY, Some(0.19158), "mm", Some("0.191\u{202f}mm")),
+            ("maximum D10F", Some(0.58389), "mm", Some("0.583\u{202f}mm")),
+            ("maximum D15F / minimum D15F, as found", Some(6.999), "", Some("7.00")),
+            ("category", Some(2.0), "", Some("2")),
+            ("minimum D15F", None, "mm", None),
+        ] {
+            let value = StepValue { name: name.into(), value, unit: unit.into() };
+            assert_eq!(step_value(&value, SizeUnit::Mm).as_deref(), words);
+        }
     }
 
     /// All lengths of all steps, for sizes with many digits.
@@ -375,26 +365,18 @@ mod tests {
         let mut checked = 0;
         for step in 0..40 {
             let by = libm::pow(1.01, f64::from(step));
-            for points in [&CORE[..], &CLAY, &SAND] {
+            for points in [&CORE[..], &DESIGN_CLAY, &DESIGN_SAND] {
                 let points: Vec<(f64, f64)> = points.iter().map(|(size, p)| (by * size, *p)).collect();
-                let specification = specified(&points, None);
-                for value in specification
-                    .steps
-                    .iter()
-                    .flat_map(|step| &step.values)
-                    .filter(|value| value.unit == "mm")
-                {
+                let steps = specified(&points, None).steps;
+                for value in steps.iter().flat_map(|step| &step.values).filter(|value| value.unit == "mm") {
                     let (Some(at_least), Some(number)) = (value.role(), value.value) else { continue };
                     let words = step_value(value, SizeUnit::MmAndInches).unwrap();
                     let (mm, inches) = words.split_once("\u{202f}mm (").unwrap();
-                    let (mm, inches) =
-                        (mm.parse::<f64>(), inches.trim_end_matches("\u{202f}in)").parse::<f64>());
-                    let (mm, back) = (mm.unwrap(), 25.4 * inches.unwrap());
-                    let order = if at_least { [back, mm, number] } else { [number, mm, back] };
-                    assert!(
-                        order.windows(2).all(|pair| pair[0] >= pair[1] * (1.0 - 1e-8)),
-                        "{value:?} {words}"
-                    );
+                    let inches = inches.trim_end_matches("\u{202f}in)").parse::<f64>().unwrap();
+                    let (mm, back) = (mm.parse::<f64>().unwrap(), 25.4 * inches);
+                    let [high, middle, low] = if at_least { [back, mm, number] } else { [number, mm, back] };
+                    let hair = 1.0 - 1e-8;
+                    assert!(high >= middle * hair && middle >= low * hair, "{value:?} {words}");
                     checked += 1;
                 }
             }
@@ -405,7 +387,9 @@ mod tests {
     /// The band in words is the band that is drawn, on every page.
     #[test]
     fn the_band_that_is_said_is_the_one_that_is_drawn() {
-        for specification in [specified(&CORE, None), specified(&SAND, None)] {
+        let core = band(&specified(&CORE, None), SizeUnit::Mm);
+        assert_eq!(core.as_deref(), Some("D15F from 0.140 to 0.700\u{202f}mm, Cu from 2 to 6"));
+        for specification in [specified(&CORE, None), specified(&DESIGN_SAND, None)] {
             let sides = &specification.steps[10];
             let words_of = |name: &str| {
                 let value = sides.values.iter().find(|value| value.name == name).unwrap();
@@ -416,40 +400,31 @@ mod tests {
             assert!(band(&specification, SizeUnit::Mm).unwrap().contains(&limits), "{limits}");
             assert!(beside_limits(&specification, SizeUnit::Mm).unwrap().contains(&limits), "{limits}");
         }
-        let none = specified(&[(0.4, 0.0), (0.5, 100.0)], None);
+        let none = specified(&UNIFORM, None);
         assert_eq!([band(&none, SizeUnit::Mm), beside_limits(&none, SizeUnit::Mm)], [None, None]);
     }
 
     /// A ratio of 7 is narrowed to 5 at either end; a ratio of 2 is not.
     #[test]
     fn a_band_that_was_narrowed_is_said_with_both_sizes() {
-        let base = [("core".into(), Gradation::from_lines(&CORE).unwrap())];
-        let of_end = |finer| {
-            let options = SpecificationOptions { finer, ..Default::default() };
-            raised(&Specification::of("core", &base, options), SizeUnit::Mm).unwrap()
-        };
-        for (finer, sizes) in
-            [(false, ["0.100\u{202f}mm", "0.140\u{202f}mm"]), (true, ["0.700\u{202f}mm", "0.500\u{202f}mm"])]
-        {
-            let sentence = of_end(finer);
-            assert!(sizes.iter().all(|size| sentence.contains(size)), "{sentence}");
+        for (finer, sizes) in [(false, ["0.100", "0.140"]), (true, ["0.700", "0.500"])] {
+            let options = SpecificationOptions { finer, ..SpecificationOptions::default() };
+            let core = Specification::of("core", &soil(&CORE), options);
+            let sentence = raised(&core, SizeUnit::Mm).unwrap();
+            assert!(sizes.iter().all(|size| sentence.contains(&format!("{size}\u{202f}mm"))), "{sentence}");
         }
-        assert_eq!(raised(&specified(&SAND, None), SizeUnit::Mm), None);
+        assert_eq!(raised(&specified(&DESIGN_SAND, None), SizeUnit::Mm), None);
     }
 
     /// The first sheet and its step state the same size, which enters the table of D90F.
     #[test]
     fn the_minimum_d10f_is_one_number() {
-        let till = [(0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (4.75, 92.0), (19.0, 100.0)];
-        for specification in [specified(&till, None), specified(&CORE, None)] {
+        for specification in [specified(&TILL, None), specified(&CORE, None)] {
             let d10 = step_value(&specification.steps[9].values[0], SizeUnit::Mm).unwrap();
-            assert!(
-                still_to_set(&specification, SizeUnit::Mm).unwrap().ends_with(&format!(" {d10}.")),
-                "{d10}"
-            );
+            let sentence = still_to_set(&specification, SizeUnit::Mm).unwrap();
+            assert!(sentence.ends_with(&format!(" {d10}.")), "{d10}");
         }
-        let none = specified(&[(0.4, 0.0), (0.5, 100.0)], None);
-        assert_eq!(still_to_set(&none, SizeUnit::Mm), None);
+        assert_eq!(still_to_set(&specified(&UNIFORM, None), SizeUnit::Mm), None);
     }
 
     /// A limit within the range of tests, one at its lower end, one below it, and limits of dispersive soils.
@@ -457,17 +432,21 @@ mod tests {
     fn a_limit_without_a_margin_is_said_to_have_none() {
         let sentence =
             |points: &[(f64, f64)], dispersive| without_margin(&specified(points, dispersive), SizeUnit::Mm);
-        let has = |text: Option<String>, words: &str| text.is_some_and(|text| text.contains(words));
-        assert!(has(sentence(&CORE, None), "it is the lower end of the range"));
-        // 6.4 to 13.5 D85B, and a limit of 9 D85B.
-        assert!(has(sentence(&CLAY, None), "it lies in the range in which tests put"));
-        assert!(has(sentence(&CLAY, None), "0.320 to 0.675\u{202f}mm"));
-        assert!(has(sentence(&CLAY, Some(true)), "give it for no erosion in tests"));
         // For a dispersive clay this fine, 6.4 D85B is less than 0.2 mm, the minimum of design.
         let fine = [(0.0005, 0.0), (0.02, 85.0), (0.04, 100.0)];
-        assert!(has(sentence(&fine, Some(true)), "it is the boundary of no erosion in tests"));
+        for (points, dispersive, words) in [
+            (&CORE[..], None, "it is the lower end of the range"),
+            // 6.4 to 13.5 D85B, and a limit of 9 D85B.
+            (&DESIGN_CLAY, None, "it lies in the range in which tests put"),
+            (&DESIGN_CLAY, None, "0.320 to 0.675\u{202f}mm"),
+            (&DESIGN_CLAY, Some(true), "give it for no erosion in tests"),
+            (&fine, Some(true), "it is the boundary of no erosion in tests"),
+        ] {
+            let sentence = sentence(points, dispersive).unwrap();
+            assert!(sentence.contains(words), "{words}: {sentence}");
+        }
         assert_eq!(sentence(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)], None), None);
-        assert_eq!(sentence(&SAND, Some(true)), None);
+        assert_eq!(sentence(&DESIGN_SAND, Some(true)), None);
     }
 
     /// The limit of a dispersive silt is 0.5 mm; with 25 % fines no source has a limit, and the limit of
@@ -478,18 +457,14 @@ mod tests {
         let sentence =
             |fines, dispersive| if_dispersive(&specified(&silt(fines), dispersive), "again", SizeUnit::Mm);
         let known = sentence(45.0, None).unwrap();
-        assert!(
-            known.contains("at most 0.500\u{202f}mm") && known.contains("this band is not valid"),
-            "{known}"
-        );
+        assert!(known.contains("this band is not valid: D15F is to be at most 0.500\u{202f}mm"), "{known}");
         let open = sentence(25.0, None).unwrap();
         assert!(open.contains("less than ") && !open.contains("at most"), "{open}");
         assert!(open.ends_with("have the base tested with the filter"), "{open}");
         // Few fines, and bases whose dispersion is stated.
-        assert_eq!(
-            [sentence(10.0, None), sentence(45.0, Some(true)), sentence(45.0, Some(false))],
-            [None, None, None]
-        );
+        for (fines, dispersive) in [(10.0, None), (45.0, Some(true)), (45.0, Some(false))] {
+            assert_eq!(sentence(fines, dispersive), None);
+        }
     }
 
     /// The maximum D15F, 6.4 D85B = 0.064 mm, is less than the minimum for any filter.
@@ -497,22 +472,8 @@ mod tests {
     fn a_base_that_is_too_fine_is_not_called_broad() {
         let why =
             |least_mm| no_band(&NoBand::NoneDrainsAndRetains { least_mm, most_mm: 0.0640001 }, SizeUnit::Mm);
-        assert!(
-            why(0.1)
-                .contains("at least 0.100\u{202f}mm to drain it and at most 0.0640\u{202f}mm to retain it")
-        );
+        let range = "at least 0.100\u{202f}mm to drain it and at most 0.0640\u{202f}mm to retain it";
+        assert!(why(0.1).contains(range));
         assert!(!why(0.1).contains("less broad") && why(0.2).contains("less broad"));
-    }
-
-    #[test]
-    fn a_band_states_both_sides_and_cu() -> Result<(), voidwalk_core::gradation::GradationError> {
-        use voidwalk_core::Gradation;
-        use voidwalk_practice::SpecificationOptions;
-        use voidwalk_practice::{design::Specification, quantity::SizeUnit};
-        let clay = Gradation::from_lines(&[(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)])?;
-        let core = Specification::of("core", &[("core".into(), clay)], SpecificationOptions::default());
-        let band = band(&core, SizeUnit::Mm);
-        assert_eq!(band.as_deref(), Some("D15F from 0.140 to 0.700\u{202f}mm, Cu from 2 to 6"));
-        Ok(())
     }
 }

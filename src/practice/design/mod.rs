@@ -6,10 +6,10 @@ pub mod specification;
 mod steps;
 
 use crate::rules::{GREATEST_SIZE_MM, MOST_CU, NamedCurve, WIDEST_BAND};
-use crate::{Note, SheetCover};
+use crate::{IfDispersive, Note, SheetCover};
 use size_band::{D15_OVER_D10, Side};
 use specification::{NoBand, SizeBand, margins};
-use steps::{Control, Findings, ReadCurve};
+use steps::{Control, Findings, ReadCurve, any_filter};
 
 pub use size_band::SieveSeries;
 pub use specification::{RowNote, Specification, SpecificationStep};
@@ -51,9 +51,11 @@ impl Specification {
         let at_most = coarsest.is_some_and(ReadCurve::least_at_most);
         let certain = read.iter().map(ReadCurve::certain_least).fold(0.0, f64::max);
         let no_band = no_band((d15f_min, at_most), d15f_max, unknown, band.is_some());
-        let if_dispersive = if options.dispersive.is_none() { steps::if_dispersive(bases) } else { None };
+        let if_dispersive =
+            options.dispersive.is_none().then(|| IfDispersive::of_bases(bases, &any_filter())).flatten();
+        let (sides, finer) = (band.as_ref(), options.finer);
         let facts =
-            Findings { read: &read, strictest, unknown, coarsest, d15f_max, control, finer: options.finer };
+            Findings { read: &read, strictest, unknown, coarsest, d15f_max, control, band: sides, finer };
         Self {
             version: env!("CARGO_PKG_VERSION").into(),
             commit: None,
@@ -63,15 +65,15 @@ impl Specification {
             cover: SheetCover::default(),
             inches: false,
             inputs: Vec::new(),
-            steps: facts.steps(band.as_ref()),
+            steps: facts.steps(),
             curves: read.iter().map(|curve| curve.record.clone()).collect(),
-            notes: steps::notes(&read).into_iter().chain(notes_of_sides(band.as_ref())).collect(),
+            notes: steps::notes(&read).into_iter().chain(notes_of_sides(sides)).collect(),
             d15f_min_mm: d15f_min,
             d15f_min_at_most: at_most,
             d15f_max_mm: d15f_max,
-            finer: options.finer,
+            finer,
             if_dispersive,
-            limits: band.as_ref().map(|band| band.limits(options.sieves)).unwrap_or_default(),
+            limits: sides.map(|band| band.limits(options.sieves)).unwrap_or_default(),
             products: margins((d15f_min, certain), d15f_max),
             no_band,
             band,
@@ -102,7 +104,6 @@ pub fn no_band_between((min, at_most): (f64, bool), max: f64) -> Option<NoBand> 
     no_band((Some(min), at_most), Some(max), None, band.is_some())
 }
 
-/// Reason why there is no band.
 fn no_band(
     (min, at_most): (Option<f64>, bool),
     max: Option<f64>,
@@ -138,24 +139,22 @@ fn notes_of_sides(band: Option<&SizeBand>) -> Vec<RowNote> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::test_soils::{REGRADED_TILL, TILL, curve};
+    use crate::rule_result::met_of;
+    use crate::test_soils::{CORE, DESIGN_CLAY, DESIGN_SAND, REGRADED_TILL, TILL, curve, soil};
     use crate::{DispersiveLack, PairOptions, PairRules, RuleNote, RuleRole};
     use specification::{StepName, StepNote};
     use voidwalk_core::gradation::{GAP_PERCENT, Gradation};
 
-    fn specified_with(points: &[(f64, f64)], options: SpecificationOptions) -> Specification {
-        Specification::of("base", &[("base".into(), curve(points))], options)
+    fn specified_if(points: &[(f64, f64)], dispersive: Option<bool>) -> Specification {
+        let options = SpecificationOptions { dispersive, ..SpecificationOptions::default() };
+        Specification::of("base", &soil(points), options)
     }
 
     fn specified(points: &[(f64, f64)]) -> Specification {
-        specified_with(points, SpecificationOptions::default())
+        specified_if(points, None)
     }
 
-    const DISPERSIVE: SpecificationOptions =
-        SpecificationOptions { dispersive: Some(true), sieves: SieveSeries::Us, finer: false };
-    const CORE: [(f64, f64); 3] = [(0.002, 0.0), (0.075, 60.0), (2.0, 100.0)];
-    const CLAY: [(f64, f64); 5] = [(0.001, 0.0), (0.02, 60.0), (0.05, 85.0), (0.075, 90.0), (0.3, 100.0)];
-    const SAND: [(f64, f64); 4] = [(0.1, 0.0), (0.2, 15.0), (0.5, 85.0), (1.0, 100.0)];
+    const GAP: [(f64, f64); 4] = [(0.08, 0.0), (0.3, 40.0), (2.4, 41.0), (4.0, 100.0)];
 
     fn near(value: Option<f64>, wanted: f64) -> bool {
         value.is_some_and(|value| (value / wanted - 1.0).abs() < 1e-9)
@@ -178,7 +177,7 @@ mod tests {
         assert!(near(value(&core, "minimum D10F"), 0.14 / 1.2));
         let sizes = &core.band.as_ref().unwrap().sizes;
         assert_eq!(sizes.iter().map(|size| size.percent).collect::<Vec<_>>(), [5.0, 15.0, 60.0]);
-        assert_eq!(core.steps.iter().map(|step| step.step).collect::<Vec<_>>(), (1..=12).collect::<Vec<_>>());
+        assert!(core.steps.iter().map(|step| step.step).eq(1..=12));
         assert!(core.no_band.is_none() && core.nearest_product().is_none());
         assert!(core.products[0].fits() == Some(true) && core.products[1].fits() == Some(false));
     }
@@ -186,12 +185,12 @@ mod tests {
     /// Categories 1, 3 and 4, and a dispersive clay.
     #[test]
     fn the_limits_of_the_other_categories_by_hand() {
-        assert!(near(specified(&CLAY).d15f_max_mm, 9.0 * 0.05));
-        let dispersive = specified_with(&CLAY, DISPERSIVE);
+        assert!(near(specified(&DESIGN_CLAY).d15f_max_mm, 9.0 * 0.05));
+        let dispersive = specified_if(&DESIGN_CLAY, Some(true));
         assert!(near(dispersive.d15f_max_mm, 6.4 * 0.05) && dispersive.dispersive);
         let silty = specified(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)]);
         assert!(near(silty.d15f_max_mm, (40.0 - 25.0) / 25.0 * (4.0 - 0.7) + 0.7));
-        let sand = specified(&SAND);
+        let sand = specified(&DESIGN_SAND);
         assert!(near(sand.d15f_max_mm, 2.0) && near(sand.d15f_min_mm, 1.0));
         // The ratio of 2 needs no narrowing.
         assert!(near(value(&sand, "minimum D15F of the band"), 1.0) && sand.steps[6].notes.is_empty());
@@ -215,7 +214,7 @@ mod tests {
     #[test]
     fn the_least_d10f_is_that_of_the_fine_side_where_that_is_finer() {
         // D15F of 1 to 2 mm: D5 of the fine side is a fifth of 2 x 5^(-10/45).
-        let sand = specified(&SAND);
+        let sand = specified(&DESIGN_SAND);
         let d10 = (2.0 * 5f64.powf(-10.0 / 45.0) / 5.0).sqrt();
         assert!(d10 < 1.0 / 1.2 && near(value(&sand, "minimum D10F"), d10), "{d10}");
         let sources = [7, 9, 10].map(|at| sand.steps[at].source.as_str());
@@ -228,16 +227,13 @@ mod tests {
             [StepNote::Gravel { curve: None, flattest: Some(flattest), .. }] => flattest,
             ref notes => panic!("{notes:?}"),
         };
-        let [from, within] = flattest(&[(0.08, 0.0), (0.3, 40.0), (2.4, 41.0), (4.0, 100.0)]);
+        let [from, within] = flattest(&GAP);
         assert!(near(Some(from), 0.3) && within < GAP_PERCENT, "{within}");
         // 12 % over a factor of 8.33.
         let [from, within] = flattest(&[(0.08, 10.0), (0.6, 59.0), (5.0, 71.0), (20.0, 100.0)]);
-        assert!(
-            near(Some(from), 0.6) && near(Some(within), 12.0 * 4f64.ln() / (5.0f64 / 0.6).ln()),
-            "{within}"
-        );
+        assert!(near(Some(from), 0.6) && near(Some(within), 12.0 * 4f64.ln() / (5.0f64 / 0.6).ln()));
         // 5 % is cited as a number of this program alone.
-        let source = specified(&[(0.1, 0.0), (0.5, 100.0)]).steps[1].source.clone();
+        let source = &specified(&DESIGN_SAND).steps[1].source;
         assert!(source.ends_with("The check for a gap is this program's own"), "{source}");
     }
 
@@ -255,13 +251,11 @@ mod tests {
             panic!("{broad:?}")
         };
         assert!(index < 1.0, "{index}");
-        let gap = notes(&specified(&[(0.08, 0.0), (0.3, 40.0), (2.4, 41.0), (4.0, 100.0)]));
+        let gap = notes(&specified(&GAP));
         assert!(gap.iter().any(|note| matches!(note, Note::GapOfBase { .. })), "{gap:?}");
         assert_eq!(notes(&specified(&[(0.1, 0.0), (0.5, 100.0)])), []);
         // With several curves each note names its curve.
-        let sand = curve(&[(0.1, 0.0), (0.5, 100.0)]);
-        let both = [("sand".to_owned(), sand), ("till".to_owned(), curve(&points))];
-        let both = Specification::of("site", &both, SpecificationOptions::default());
+        let both = both("sand", &[(0.1, 0.0), (0.5, 100.0)], "till", &points);
         let rows: Vec<_> = both.notes.iter().map(|row| row.row.as_deref()).collect();
         assert_eq!(rows, [Some("till"), Some("till"), Some("till"), None]);
         // The note of the band covers all curves: 0.636 to 0.700 mm, with a fine side that extends far
@@ -269,16 +263,18 @@ mod tests {
         assert!(matches!(notes(&both)[3], Note::UnstableSide { .. }), "{:?}", both.notes);
     }
 
+    fn both(one: &str, points: &[(f64, f64)], other: &str, others: &[(f64, f64)]) -> Specification {
+        let curves = [(one.to_owned(), curve(points)), (other.to_owned(), curve(others))];
+        Specification::of("site", &curves, SpecificationOptions::default())
+    }
+
     #[test]
     fn of_several_curves_the_strictest_limit_of_each_counts() {
-        let curves: Vec<NamedCurve> = vec![
-            ("fine".into(), curve(&[(0.1, 0.0), (0.15, 15.0), (0.4, 85.0), (1.0, 100.0)])),
-            ("coarse".into(), curve(&[(0.1, 0.0), (0.2, 15.0), (0.8, 85.0), (2.0, 100.0)])),
-        ];
-        let both = Specification::of("site", &curves, SpecificationOptions::default());
+        let fine = [(0.1, 0.0), (0.15, 15.0), (0.4, 85.0), (1.0, 100.0)];
+        let both = both("fine", &fine, "coarse", &[(0.1, 0.0), (0.2, 15.0), (0.8, 85.0), (2.0, 100.0)]);
         assert!(near(both.d15f_max_mm, 1.6) && near(both.d15f_min_mm, 1.0));
-        let limits: Vec<_> = both.curves.iter().map(|curve| curve.d15f_max_mm.unwrap()).collect();
-        assert!((limits[1] / limits[0] - 2.0).abs() < 1e-9, "{limits:?}");
+        let [fine, coarse] = [0, 1].map(|at: usize| both.curves[at].d15f_max_mm);
+        assert!(near(coarse, 2.0 * fine.unwrap()));
         let [StepNote::SetBy { rule: Some(rule), curve }] = &both.steps[4].notes[..] else {
             panic!("{:?}", both.steps[4])
         };
@@ -289,70 +285,55 @@ mod tests {
 
     #[test]
     fn without_a_known_limit_or_room_between_both_there_is_no_band_and_it_is_said_why() {
+        let without = |points: &[(f64, f64)], dispersive| {
+            let specified = specified_if(points, dispersive);
+            assert!(specified.band.is_none() && specified.limits.is_empty(), "{points:?}");
+            specified
+        };
         // 20 % finer than 0.2 mm: fines, and so the category, are not known.
-        let open = specified(&[(0.2, 20.0), (0.5, 85.0), (1.0, 100.0)]);
-        assert!(open.nearest_product().is_none());
-        assert!(open.band.is_none() && open.d15f_max_mm.is_none() && open.limits.is_empty());
+        let open = without(&[(0.2, 20.0), (0.5, 85.0), (1.0, 100.0)], None);
+        assert!(open.nearest_product().is_none() && open.d15f_max_mm.is_none());
         let needs = vec![RuleNote::NeedsFinesOfBase];
-        assert_eq!(open.no_band, Some(NoBand::LimitNotKnown { curve: "base".into(), needs }));
+        assert_eq!(open.no_band, Some(NoBand::LimitNotKnown { curve: "soil".into(), needs }));
         // A sand of one size: 5 D15B is more than 4 D85B.
-        let uniform = specified(&[(0.4, 0.0), (0.5, 100.0)]);
+        let uniform = without(&[(0.4, 0.0), (0.5, 100.0)], None);
         let Some(NoBand::NoneDrainsAndRetains { least_mm, most_mm }) = uniform.no_band else {
             panic!("{uniform:?}")
         };
-        assert!(uniform.band.is_none() && near(uniform.d15f_min_mm, least_mm) && least_mm > most_mm);
+        assert!(near(uniform.d15f_min_mm, least_mm) && least_mm > most_mm);
+        // A base so fine that its limit, 6.4 D85B = 0.064 mm, is less than the minimum for any filter.
+        let fine = without(&[(0.0005, 0.0), (0.01, 85.0), (0.02, 100.0)], Some(true)).no_band;
+        let Some(NoBand::NoneDrainsAndRetains { least_mm, most_mm }) = fine else { panic!("{fine:?}") };
+        assert!(near(Some(least_mm), 0.1) && near(Some(most_mm), 0.064), "{least_mm} {most_mm}");
         // A gravel whose filter would consist of cobbles.
-        let gravel = specified(&[(5.0, 0.0), (6.0, 15.0), (9.0, 85.0), (12.0, 100.0)]);
-        assert!(matches!(gravel.no_band, Some(NoBand::TooCoarse { most_d60f_mm }) if most_d60f_mm > 75.0));
-    }
-
-    /// A dispersive clay whose limit is 6.4 D85B, or 0.103 mm.
-    #[test]
-    fn a_coarse_side_with_too_many_fines_leaves_no_band() {
-        let narrow = specified_with(&[(0.0008, 0.0), (0.0161, 85.0), (0.03, 100.0)], DISPERSIVE);
-        assert!(narrow.band.is_none() && narrow.limits.is_empty());
-        assert_eq!(narrow.no_band, Some(NoBand::TooManyFines));
+        let gravel = without(&[(5.0, 0.0), (6.0, 15.0), (9.0, 85.0), (12.0, 100.0)], None).no_band;
+        assert!(matches!(gravel, Some(NoBand::TooCoarse { most_d60f_mm }) if most_d60f_mm > 75.0));
+        // A dispersive clay whose limit is 6.4 D85B, or 0.103 mm: its coarse side has too many fines.
+        let narrow = without(&[(0.0008, 0.0), (0.0161, 85.0), (0.03, 100.0)], Some(true)).no_band;
+        assert_eq!(narrow, Some(NoBand::TooManyFines));
     }
 
     /// A specification keeps every rule of the table for both sides of the band and every curve of the
     /// base.
     #[test]
     fn both_sides_of_a_band_keep_every_rule_of_retention_drainage_and_placing() {
-        let bases: [&[(f64, f64)]; 5] = [
-            &CLAY,
-            &CORE,
-            &[
-                (0.002, 6.0),
-                (0.02, 20.0),
-                (0.075, 35.0),
-                (0.425, 60.0),
-                (2.0, 82.0),
-                (4.75, 92.0),
-                (19.0, 100.0),
-            ],
-            &SAND,
-            &[(0.1, 0.0), (0.3, 15.0), (1.2, 85.0), (3.0, 100.0)],
-        ];
-        for points in bases {
-            let band = specified(points).band.unwrap();
-            let side = |rows: &[[f64; 2]]| Gradation::of_rows(rows).unwrap();
-            let [fine, coarse] = band.continued();
-            let sides = [("fine".to_owned(), side(&fine)), ("coarse".to_owned(), side(&coarse))];
-            // Slightly finer, so that no rounding breaks the limit itself.
-            let sides = sides.map(|(name, curve)| {
-                let hair = if name == "coarse" { 1.0 - 1e-9 } else { 1.0 + 1e-9 };
-                (name, curve.scaled(hair).unwrap())
+        let graded = [(0.002, 6.0), (0.02, 20.0), (0.075, 35.0), (0.425, 60.0), (2.0, 82.0), (19.0, 100.0)];
+        let sand = [(0.1, 0.0), (0.3, 15.0), (1.2, 85.0), (3.0, 100.0)];
+        for points in [&DESIGN_CLAY[..], &CORE, &graded, &DESIGN_SAND, &sand] {
+            let [fine, coarse] = specified(points).band.unwrap().continued();
+            // Slightly finer or coarser, so that no rounding breaks the limit itself.
+            let sides = [("fine", fine, 1.0 + 1e-9), ("coarse", coarse, 1.0 - 1e-9)];
+            let sides = sides.map(|(name, rows, hair)| {
+                (name.to_owned(), Gradation::of_rows(&rows).unwrap().scaled(hair).unwrap())
             });
-            let base = [("base".to_owned(), curve(points))];
-            let pair = PairRules::of_envelopes(&base, &sides, PairOptions::default());
-            let (rules, decision) = (&pair.rules, pair.decision());
+            let pair = PairRules::of_envelopes(&soil(points), &sides, PairOptions::default());
+            let decision = pair.decision();
             for role in [RuleRole::Retention, RuleRole::Continuation, RuleRole::Drainage, RuleRole::Placing] {
                 assert_eq!(decision.broken(role).next(), None, "{points:?}");
             }
-            let met = |id: &str| rules.iter().find(|rule| rule.id == id).unwrap().met;
             for id in ["sherard-dunnigan", "permeability", "filter-uniformity", "filter-band", "filter-fines"]
             {
-                assert_eq!(met(id), Some(true), "{id}: {points:?}");
+                assert_eq!(met_of(&pair.rules, id), Some(true), "{id}: {points:?}");
             }
         }
     }
@@ -360,41 +341,29 @@ mod tests {
     /// The limit of a silt is 0.7 mm, or 0.5 mm if it is dispersive; with 25 % fines no source has a limit.
     #[test]
     fn a_base_of_which_nobody_has_said_whether_it_is_dispersive_has_the_limit_of_one_that_is() {
-        let silt = [(0.01, 0.0), (0.075, 45.0), (0.3, 92.0), (0.6, 100.0)];
-        let limit = |points: &[(f64, f64)], dispersive| {
-            let options = SpecificationOptions { dispersive, ..SpecificationOptions::default() };
-            specified_with(points, options).if_dispersive
+        let limit = |fines: f64, dispersive| {
+            let silt = [(0.01, 0.0), (0.075, fines), (0.3, 92.0), (0.6, 100.0)];
+            specified_if(&silt, dispersive).if_dispersive
         };
-        let known = limit(&silt, None).unwrap();
+        let known = limit(45.0, None).unwrap();
         assert_eq!((known.d15f_max_mm, known.at_most, known.lacks), (0.5, false, None));
-        let open = limit(&[(0.01, 0.0), (0.075, 25.0), (0.3, 92.0), (0.6, 100.0)], None).unwrap();
+        let open = limit(25.0, None).unwrap();
         assert_eq!((open.at_most, open.lacks), (true, Some(DispersiveLack::AnyLimit)));
         // Few fines, and an explicit answer.
-        assert_eq!(limit(&[(0.01, 0.0), (0.075, 10.0), (0.3, 92.0), (0.6, 100.0)], None), None);
-        assert_eq!([Some(true), Some(false)].map(|dispersive| limit(&silt, dispersive)), [None, None]);
-    }
-
-    /// The maximum D15F, 6.4 D85B = 0.064 mm, is less than the minimum for any filter.
-    #[test]
-    fn a_base_that_is_too_fine_has_no_filter() {
-        let specified = specified_with(&[(0.0005, 0.0), (0.01, 85.0), (0.02, 100.0)], DISPERSIVE);
-        let Some(NoBand::NoneDrainsAndRetains { least_mm, most_mm }) = specified.no_band else {
-            panic!("{specified:?}")
-        };
-        assert!(near(Some(least_mm), 0.1) && near(Some(most_mm), 0.064), "{least_mm} {most_mm}");
+        assert_eq!([limit(10.0, None), limit(45.0, Some(true)), limit(45.0, Some(false))], [None; 3]);
     }
 
     /// The minimum D15F of 0.1 mm stays, and the maximum is lowered from 0.7 to 0.5 mm.
     #[test]
     fn a_finer_band_lowers_its_maximum_and_keeps_its_minimum() {
-        let specified =
-            |finer| specified_with(&CORE, SpecificationOptions { finer, ..SpecificationOptions::default() });
-        let [coarser, finer] = [false, true].map(specified);
-        let d15 = |specified: &Specification| specified.band.as_ref().unwrap().d15_mm();
-        let near = |values: [f64; 2], wanted: [f64; 2]| {
-            values.iter().zip(wanted).all(|(value, wanted)| (value / wanted - 1.0).abs() < 1e-9)
-        };
-        assert!(near(d15(&coarser), [0.14, 0.7]) && near(d15(&finer), [0.1, 0.5]));
+        let [coarser, finer] = [false, true].map(|finer| {
+            let options = SpecificationOptions { finer, ..SpecificationOptions::default() };
+            Specification::of("core", &soil(&CORE), options)
+        });
+        for (specified, [least, most]) in [(&coarser, [0.14, 0.7]), (&finer, [0.1, 0.5])] {
+            let d15 = specified.band.as_ref().unwrap().d15_mm().map(Some);
+            assert!(near(d15[0], least) && near(d15[1], most), "{d15:?}");
+        }
         assert_eq!((finer.d15f_min_mm, finer.d15f_max_mm), (coarser.d15f_min_mm, coarser.d15f_max_mm));
         assert_eq!(finer.steps[6].notes, [StepNote::Lowered]);
         assert_eq!(coarser.steps[6].notes, [StepNote::Raised]);
@@ -405,43 +374,37 @@ mod tests {
     /// Each rule for the fines of this base, with its numbers: 37.8 % fines and a D85B of 1.80 mm.
     #[test]
     fn the_step_of_retention_has_the_formula_of_the_category_with_its_numbers() {
-        let formula = |points: &[(f64, f64)]| specified(points).steps[4].formula.clone();
+        let formula =
+            |points: &[(f64, f64)], dispersive| specified_if(points, dispersive).steps.swap_remove(4).formula;
+        let begins = |formula: String, words: &str| {
+            let rest = formula.strip_prefix("Sherard and Dunnigan's limit of design");
+            assert!(rest.is_some_and(|rest| rest.starts_with(words)), "{formula}");
+        };
         assert_eq!(
-            formula(&REGRADED_TILL),
+            formula(&REGRADED_TILL, None),
             "Sherard and Dunnigan's limit of design, category 3, A 15 to 40 %: (40 - A)/25 (4 D85B - 0.7) + \
              0.7 mm = (40 - 37.84)/25 (4 x 1.80 - 0.7) + 0.7 mm"
         );
         assert!(specified(&REGRADED_TILL).steps[4].source.starts_with("Sherard & Dunnigan (1989)"));
-        assert!(
-            formula(&CLAY).starts_with(
-                "Sherard and Dunnigan's limit of design, category 1, A > 85 %: 9 D85B, not less than 0.2 mm \
-                 = 9 x 0.0500, not less than 0.2 mm"
-            ),
-            "{}",
-            formula(&CLAY)
+        begins(
+            formula(&DESIGN_CLAY, None),
+            ", category 1, A > 85 %: 9 D85B, not less than 0.2 mm = 9 x 0.0500, not less than 0.2 mm",
         );
-        let sand = formula(&SAND);
-        assert_eq!(
-            sand,
-            "Sherard and Dunnigan's limit of design, category 4, A < 15 %: 4 D85B = 4 x 0.500 mm"
-        );
-        let dispersive = |points: &[(f64, f64)]| specified_with(points, DISPERSIVE).steps[4].formula.clone();
-        assert!(
-            dispersive(&CLAY).contains("category 1, A > 85 %, dispersive: 6.4 D85B"),
-            "{}",
-            dispersive(&CLAY)
-        );
+        let clay = formula(&DESIGN_CLAY, Some(true));
+        assert!(clay.contains("category 1, A > 85 %, dispersive: 6.4 D85B"), "{clay}");
+        let sand = formula(&DESIGN_SAND, None);
+        assert!(sand.ends_with(" of design, category 4, A < 15 %: 4 D85B = 4 x 0.500 mm"), "{sand}");
         // No text gives a limit for a dispersive soil of category 3.
-        let silty = dispersive(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)]);
-        assert!(
-            silty.contains(
-                "A 15 to 40 %, dispersive: at most (40 - A)/25 (4 D85B - 0.7) + 0.7 mm = (40 - 25)/25"
-            ) && silty.contains(" mm (no text gives a limit for dispersive soils with such fines)"),
-            "{silty}"
+        let silty = formula(&[(0.01, 0.0), (0.075, 25.0), (1.0, 85.0), (4.0, 100.0)], Some(true));
+        let end = " mm (no text gives a limit for dispersive soils with such fines)";
+        assert!(silty.ends_with(end), "{silty}");
+        begins(
+            silty,
+            ", category 3, A 15 to 40 %, dispersive: at most (40 - A)/25 (4 D85B - 0.7) + 0.7 mm = \
+             (40 - 25)/25",
         );
         // If the fines are not known, the formula is given whole.
-        let open = formula(&[(0.2, 20.0), (0.5, 85.0), (1.0, 100.0)]);
-        assert!(open.contains("limit of design: A > 85 %: 9 D85B, "), "{open}");
+        begins(formula(&[(0.2, 20.0), (0.5, 85.0), (1.0, 100.0)], None), ": A > 85 %: 9 D85B, ");
     }
 
     /// Straight sides with a Cu of 6: D'15/d'85 is 6^(15/50), and 4 D is 38.7 % higher.

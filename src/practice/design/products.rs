@@ -41,74 +41,51 @@ pub const LEAST_CU: f64 = 2.0;
 
 /// Product with the limits of its standard.
 pub(super) struct Product {
-    /// Name of the product.
-    pub(crate) name: &'static str,
-    /// Sieve (mm), minimum and maximum percent finer; ascending.
-    pub(crate) limits: &'static [(f64, f64, f64)],
-    /// Source of the limits.
-    pub(crate) source: &'static str,
+    pub(super) name: &'static str,
+    /// Openings of its sieves (mm), ascending.
+    sieves_mm: &'static [f64],
+    /// Minimum percent finer at each sieve.
+    least: &'static [f64],
+    /// Maximum percent finer at each sieve.
+    most: &'static [f64],
+    pub(super) source: &'static str,
 }
 
-/// Products sold by name.
 pub(super) const PRODUCTS: [Product; 5] = [
     Product {
         name: "ASTM C33 fine aggregate",
-        limits: &[
-            (0.075, 0.0, 3.0),
-            (0.15, 0.0, 10.0),
-            (0.3, 5.0, 30.0),
-            (0.6, 25.0, 60.0),
-            (1.18, 50.0, 85.0),
-            (2.36, 80.0, 100.0),
-            (4.75, 95.0, 100.0),
-            (9.5, 100.0, 100.0),
-        ],
+        sieves_mm: &[0.075, 0.15, 0.3, 0.6, 1.18, 2.36, 4.75, 9.5],
+        least: &[0.0, 0.0, 5.0, 25.0, 50.0, 80.0, 95.0, 100.0],
+        most: &[3.0, 10.0, 30.0, 60.0, 85.0, 100.0, 100.0, 100.0],
         source: "ASTM C33, table 1: limits to be checked against the standard",
     },
     Product {
         name: "ASTM C33/D448 No. 8 stone",
-        limits: &[
-            (1.18, 0.0, 5.0),
-            (2.36, 0.0, 10.0),
-            (4.75, 10.0, 30.0),
-            (9.5, 85.0, 100.0),
-            (12.5, 100.0, 100.0),
-        ],
+        sieves_mm: &[1.18, 2.36, 4.75, 9.5, 12.5],
+        least: &[0.0, 0.0, 10.0, 85.0, 100.0],
+        most: &[5.0, 10.0, 30.0, 100.0, 100.0],
         source: "Colorado DOT, table 703-1, from AASHTO M 43",
     },
     Product {
         name: "ASTM C33/D448 No. 78 stone",
-        limits: &[
-            (1.18, 0.0, 5.0),
-            (2.36, 0.0, 10.0),
-            (4.75, 5.0, 25.0),
-            (9.5, 40.0, 75.0),
-            (12.5, 90.0, 100.0),
-            (19.0, 100.0, 100.0),
-        ],
+        sieves_mm: &[1.18, 2.36, 4.75, 9.5, 12.5, 19.0],
+        least: &[0.0, 0.0, 5.0, 40.0, 90.0, 100.0],
+        most: &[5.0, 10.0, 25.0, 75.0, 100.0, 100.0],
         source: "AASHTO M 43: limits to be checked against the standard",
     },
     Product {
         name: "ASTM C33/D448 No. 67 stone",
-        limits: &[
-            (2.36, 0.0, 5.0),
-            (4.75, 0.0, 10.0),
-            (9.5, 20.0, 55.0),
-            (19.0, 90.0, 100.0),
-            (25.0, 100.0, 100.0),
-        ],
+        sieves_mm: &[2.36, 4.75, 9.5, 19.0, 25.0],
+        least: &[0.0, 0.0, 20.0, 90.0, 100.0],
+        most: &[5.0, 10.0, 55.0, 100.0, 100.0],
         source: "Iowa DOT, Matls. IM 209, appendix D (April 2017), gradation No. 5 (67), which sets \
                  limits at these sieves and one of its own at 0.075 mm",
     },
     Product {
         name: "ASTM C33/D448 No. 57 stone",
-        limits: &[
-            (2.36, 0.0, 5.0),
-            (4.75, 0.0, 10.0),
-            (12.5, 25.0, 60.0),
-            (25.0, 95.0, 100.0),
-            (37.5, 100.0, 100.0),
-        ],
+        sieves_mm: &[2.36, 4.75, 12.5, 25.0, 37.5],
+        least: &[0.0, 0.0, 25.0, 95.0, 100.0],
+        most: &[5.0, 10.0, 60.0, 100.0, 100.0],
         source: "Iowa DOT, Matls. IM 209, appendix D (April 2017), gradation No. 3 (57), which sets \
                  limits at these sieves and one of its own at 0.075 mm",
     },
@@ -133,10 +110,9 @@ pub(super) fn size_at(side: &[[f64; 2]], percent: f64) -> f64 {
 impl Product {
     /// Fine and coarse side: size (mm) and percent finer.
     fn sides(&self) -> [Vec<[f64; 2]>; 2] {
-        let side = |percent: fn(&(f64, f64, f64)) -> f64| {
-            self.limits.iter().map(|row| [row.0, percent(row)]).collect()
-        };
-        [side(|row| row.2), side(|row| row.1)]
+        let side =
+            |finer: &[f64]| self.sieves_mm.iter().zip(finer).map(|(mm, finer)| [*mm, *finer]).collect();
+        [side(self.most), side(self.least)]
     }
 
     /// D15 (mm) of the fine and the coarse side.
@@ -160,12 +136,11 @@ impl Product {
         let wide =
             from_5_to_60.filter(|percent| (5.0..=60.0).contains(percent)).map(ratio).fold(0.0, f64::max);
         not_kept.extend((wide > WIDEST_BAND).then_some(NotKept::Width { ratio: wide }));
-        let at_no_200 = self.limits.iter().rev().find(|row| row.0 <= FINES_MM).or(self.limits.first());
-        if let Some((_, _, percent)) = at_no_200.copied().filter(|row| row.2 > MOST_FINES_PERCENT) {
-            not_kept.push(NotKept::Fines { percent });
-        }
-        let coarsest = self.limits.last().map(|row| row.0);
-        not_kept.extend(coarsest.filter(|mm| *mm > GREATEST_SIZE_MM).map(|_| NotKept::GreatestSize));
+        let at_no_200 = self.sieves_mm.iter().rposition(|mm| *mm <= FINES_MM).unwrap_or(0);
+        let percent = self.most[at_no_200];
+        not_kept.extend((percent > MOST_FINES_PERCENT).then_some(NotKept::Fines { percent }));
+        let is_too_coarse = self.sieves_mm.last().is_some_and(|mm| *mm > GREATEST_SIZE_MM);
+        not_kept.extend(is_too_coarse.then_some(NotKept::GreatestSize));
         not_kept
     }
 }
@@ -177,12 +152,11 @@ mod tests {
     #[test]
     fn limits_rise_and_end_at_all() {
         for product in &PRODUCTS {
-            let rising = |side: fn(&(f64, f64, f64)) -> f64| {
-                product.limits.windows(2).all(|w| w[0].0 < w[1].0 && side(&w[0]) <= side(&w[1]))
-            };
-            assert!(rising(|row| row.1) && rising(|row| row.2), "{}", product.name);
-            assert!(product.limits.iter().all(|row| row.1 <= row.2), "{}", product.name);
-            assert_eq!(product.limits.last().unwrap().1, 100.0);
+            let Product { name, sieves_mm, least, most, .. } = product;
+            assert_eq!([sieves_mm.len(); 2], [least.len(), most.len()], "{name}");
+            assert!(sieves_mm.is_sorted_by(|a, b| a < b) && least.is_sorted() && most.is_sorted(), "{name}");
+            assert!(least.iter().zip(*most).all(|(least, most)| least <= most), "{name}");
+            assert_eq!(least.last(), Some(&100.0), "{name}");
         }
     }
 
@@ -190,9 +164,8 @@ mod tests {
     #[test]
     fn a_source_names_a_body_and_a_document_or_asks_for_the_standard() {
         for product in &PRODUCTS {
-            let is_signed = ["Colorado DOT, table", "Iowa DOT, Matls. IM"]
-                .iter()
-                .any(|body| product.source.starts_with(body));
+            let bodies = ["Colorado DOT, table", "Iowa DOT, Matls. IM"];
+            let is_signed = bodies.iter().any(|body| product.source.starts_with(body));
             assert!(is_signed || is_to_be_checked(product.source), "{}", product.name);
         }
         let checked = PRODUCTS.iter().filter(|product| is_to_be_checked(product.source));

@@ -186,7 +186,6 @@ impl SieveSeries {
         }
     }
 
-    /// Name of the sieve with this opening (mm).
     pub(crate) fn name(self, opening_mm: f64) -> String {
         let in_mm = || format!("{opening_mm} mm");
         match self {
@@ -251,7 +250,6 @@ impl Side {
         kezdi.into_iter().chain(shape).collect()
     }
 
-    /// True if both indices are known.
     pub(crate) fn is_known(&self) -> bool {
         self.kezdi.is_some() && self.kenney_lau.is_some()
     }
@@ -265,9 +263,14 @@ mod tests {
         (value / wanted - 1.0).abs() < 1e-9
     }
 
-    /// D15 0.14 to 0.7 mm, as for a base of category 2: D60 to 5 x 0.7 = 3.5 mm, and a fifth of it.
+    /// Band of this D15 with a D60 of five times the maximum, and a fifth of it.
+    fn band_from(least: f64, most: f64) -> Option<SizeBand> {
+        SizeBand::of([least, most], [most, 5.0 * most])
+    }
+
+    /// Band of a base of category 2: D60 of 0.7 to 3.5 mm.
     fn band() -> SizeBand {
-        SizeBand::of([0.14, 0.7], [0.7, 3.5]).unwrap()
+        band_from(0.14, 0.7).unwrap()
     }
 
     #[test]
@@ -281,8 +284,7 @@ mod tests {
         // Both sides rise by a factor of 5 in 45 %.
         let d5 = size(5.0);
         assert!(near(d5.0, d5.1 / 5.0) && near(d5.1, 0.7 * 5f64.powf(-10.0 / 45.0)), "{d5:?}");
-        let fine = SizeBand::of([0.1, 0.3], [0.3, 1.5]).unwrap();
-        assert_eq!(fine.sizes[0].min_mm, 0.075);
+        assert_eq!(band_from(0.1, 0.3).unwrap().sizes[0].min_mm, 0.075);
         let [fine, coarse] = band.continued().map(|side| side[side.len() - 1]);
         assert!(near(fine[0], 0.7 * 5f64.powf(40.0 / 45.0)) && near(coarse[0], 3.5 * 5f64.powf(40.0 / 45.0)));
         assert_eq!([fine[1], coarse[1]], [100.0; 2]);
@@ -291,40 +293,21 @@ mod tests {
     #[test]
     fn limits_by_hand_are_whole_percents_within_the_band() {
         let limits = band().limits(SieveSeries::Us);
-        let limits_at = |name: &str| {
+        for (name, range) in [
+            // A side has no limit above its D60, 0.7 and 3.5 mm: ln(2.36/0.7)/ln 5 x 45 + 15 = 48.98.
+            ("No. 8", (49.0, None)),
+            // ln(0.6/0.14)/ln 5 x 45 + 15 = 55.7 and ln(0.6/0.7)/ln 5 x 45 + 15 = 10.7.
+            ("No. 30", (11.0, Some(55.0))),
+            ("No. 200", (0.0, Some(5.0))),
+        ] {
             let limit = limits.iter().find(|limit| limit.sieve == name).unwrap();
-            (limit.min_percent_finer, limit.max_percent_finer)
-        };
-        // ln(0.6/0.14)/ln 5 x 45 + 15 = 55.7 and ln(0.6/0.7)/ln 5 x 45 + 15 = 10.7.
-        assert_eq!(limits_at("No. 30"), (11.0, Some(55.0)));
-        assert_eq!(limits_at("No. 200"), (0.0, Some(5.0)));
-        // A side has no limit above its D60, 0.7 and 3.5 mm: ln(2.36/0.7)/ln 5 x 45 + 15 = 48.98.
-        assert_eq!(limits_at("No. 8"), (49.0, None));
+            assert_eq!((limit.min_percent_finer, limit.max_percent_finer), range);
+        }
         assert!(limits.iter().all(|limit| limit.min_percent_finer.is_sign_positive()));
         assert_eq!(limits[0].sieve, "No. 8");
         let iso = band().limits(SieveSeries::Iso);
         assert_eq!(iso.last().unwrap().max_percent_finer, Some(5.0));
         assert!(iso.iter().all(|limit| limit.opening_mm <= 3.5));
-    }
-
-    /// Both sides begin at 0 %, and no row allows more or less than they do.
-    #[test]
-    fn no_sieve_allows_more_than_the_sides_that_are_drawn() {
-        // D5 of the fine side lies above No. 200, and at it.
-        for band in [band(), SizeBand::of([0.1, 0.3], [0.3, 1.5]).unwrap()] {
-            let fine = band.drawn_fine_side();
-            assert_eq!([fine[0][1], band.coarse_side[0][1]], [0.0, 0.0]);
-            assert!(fine.windows(2).all(|pair| pair[0][0] <= pair[1][0] && pair[0][1] <= pair[1][1]));
-            for series in [SieveSeries::Us, SieveSeries::Iso] {
-                assert_eq!(series.openings().last(), Some(&FINES_MM));
-                for limit in band.limits(series) {
-                    let [least, most] =
-                        [&band.coarse_side, &fine].map(|side| percent_at(side, limit.opening_mm));
-                    assert!(limit.max_percent_finer.is_none_or(|percent| percent <= most + 1e-6));
-                    assert!(limit.min_percent_finer > least - 1e-6);
-                }
-            }
-        }
     }
 
     #[test]
@@ -348,28 +331,28 @@ mod tests {
         assert_eq!(whole([3.2, 9.9]), [4.0, 9.0]);
     }
 
-    /// No sieve has a minimum above its maximum, down to the maximum D15F at which the coarse side has
-    /// 5 % finer than 0.075 mm: 0.075 x 5^(10/45) = 0.1072 mm.
+    /// Both sides begin at 0 %, no row allows more or less than they do, and no sieve has a minimum above
+    /// its maximum, down to the maximum D15F at which the coarse side has 5 % finer than 0.075 mm:
+    /// 0.075 x 5^(10/45) = 0.1072 mm.
     #[test]
-    fn no_band_is_inside_out() {
-        let band_from = |least: f64, most: f64| SizeBand::of([least, most], [most, 5.0 * most]);
-        assert!(
-            band_from(0.1, 0.1).is_none()
-                && band_from(0.1, 0.107).is_none()
-                && band_from(0.1, 0.1073).is_some()
-        );
-        for (least, most) in [(0.1, 0.1073), (0.1, 0.12), (0.1, 0.5), (0.7, 0.7), (2.0, 10.0), (2.9, 14.9)] {
+    fn no_sieve_allows_more_than_the_sides_that_are_drawn_and_no_band_is_inside_out() {
+        assert_eq!([0.1, 0.107, 0.1073].map(|most| band_from(0.1, most).is_some()), [false, false, true]);
+        // D5 of the fine side lies above No. 200 in the first band, and at it in the second.
+        let narrow = [(0.14, 0.7), (0.1, 0.3), (0.1, 0.1073), (0.1, 0.12), (0.1, 0.5)];
+        for (least, most) in narrow.into_iter().chain([(0.7, 0.7), (2.0, 10.0), (2.9, 14.9)]) {
             let band = band_from(least, most).unwrap();
-            for series in [SieveSeries::Us, SieveSeries::Iso] {
-                for limit in band.limits(series) {
-                    let most_finer = limit.max_percent_finer.unwrap_or(100.0);
-                    assert!(limit.min_percent_finer <= most_finer, "{most}: {limit:?}");
-                    let [min, max] = band.percent_finer(limit.opening_mm);
-                    assert!(limit.min_percent_finer > min.unwrap() - 1e-6);
-                    assert!(max.is_none_or(|max| most_finer < max + 1e-6));
-                }
-            }
             assert!(band.sizes.iter().all(|size| size.min_mm <= size.max_mm), "{:?}", band.sizes);
+            let fine = band.drawn_fine_side();
+            assert_eq!([fine[0][1], band.coarse_side[0][1]], [0.0, 0.0]);
+            assert!(fine.windows(2).all(|pair| pair[0][0] <= pair[1][0] && pair[0][1] <= pair[1][1]));
+            for limit in [SieveSeries::Us, SieveSeries::Iso].iter().flat_map(|series| band.limits(*series)) {
+                let (fewest, many) = (limit.min_percent_finer, limit.max_percent_finer);
+                let [min, max] = band.percent_finer(limit.opening_mm);
+                assert!(fewest <= many.unwrap_or(100.0) && fewest > min.unwrap() - 1e-6, "{limit:?}");
+                assert!(max.is_none_or(|max| many.unwrap_or(100.0) < max + 1e-6), "{limit:?}");
+                let [low, high] = [&band.coarse_side, &fine].map(|side| percent_at(side, limit.opening_mm));
+                assert!(fewest > low - 1e-6 && many.is_none_or(|many| many <= high + 1e-6), "{limit:?}");
+            }
         }
     }
 
@@ -378,7 +361,7 @@ mod tests {
         for series in [SieveSeries::Us, SieveSeries::Iso] {
             let openings = series.openings();
             assert!(openings.windows(2).all(|pair| pair[0] > pair[1]), "{series}");
-            assert_eq!(*openings.last().unwrap(), voidwalk_core::gradation::FINES_MM);
+            assert_eq!(openings.last(), Some(&FINES_MM));
             assert_eq!(series.to_string().parse::<SieveSeries>(), Ok(series));
         }
         let names =

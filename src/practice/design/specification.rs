@@ -1,6 +1,4 @@
 //! Specification of a filter for a base: its steps, its band, and standard products beside it.
-//!
-//! `verdict` makes it from the rules of practice, with its words.
 
 use super::products::{NotKept, PRODUCTS, Product};
 use super::size_band::SieveSeries;
@@ -102,7 +100,7 @@ pub struct SpecifiedCurve {
 }
 
 /// Step of the procedure.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct SpecificationStep {
     /// Number of the step, from 1.
@@ -121,12 +119,11 @@ pub struct SpecificationStep {
 }
 
 /// Name of a step of the procedure.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum StepName {
     /// Plot the gradation of the base.
-    #[default]
     Plot,
     /// Find gravel and gaps in the base.
     FindGravel,
@@ -306,7 +303,6 @@ impl ProductMargin {
         }
     }
 
-    /// The smaller of the two margins.
     fn margin(&self) -> f64 {
         self.drains_by.unwrap_or(f64::INFINITY).min(self.holds_by.unwrap_or(f64::INFINITY))
     }

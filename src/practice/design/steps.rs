@@ -12,33 +12,33 @@ use crate::rules::{
     BaseSoil, DESIGN, GREATEST_SIZE_MM, MOST_CU, NamedCurve, OpenBase, PERMEABILITY, RULES, RuleInputs,
     TESTS_NO_EROSION, WIDEST_BAND, apply, broad_base, sieved_limit,
 };
-use crate::{AppliedRule, IfDispersive, Note, RuleNote};
+use crate::{AppliedRule, Note, RuleNote};
 use voidwalk_core::gradation::{FEW_FINES, FINES_MM, GAP_PERCENT, GRAVEL_MM, Gap, Gradation};
 
 /// Control points of a band: D15 and D60 (mm) of its fine and its coarse side.
 #[derive(Clone, Copy)]
 pub(super) struct Control {
-    pub(crate) d15: [f64; 2],
-    pub(crate) d60: [f64; 2],
+    pub(super) d15: [f64; 2],
+    pub(super) d60: [f64; 2],
 }
 
 /// Facts that the steps state.
 pub(super) struct Findings<'a> {
-    pub(crate) read: &'a [ReadCurve],
+    pub(super) read: &'a [ReadCurve],
     /// Curve that sets the maximum D15F.
-    pub(crate) strictest: Option<&'a ReadCurve>,
-    pub(crate) unknown: Option<&'a ReadCurve>,
+    pub(super) strictest: Option<&'a ReadCurve>,
+    pub(super) unknown: Option<&'a ReadCurve>,
     /// Curve that sets the minimum D15F.
-    pub(crate) coarsest: Option<&'a ReadCurve>,
-    pub(crate) d15f_max: Option<f64>,
-    pub(crate) control: Option<Control>,
+    pub(super) coarsest: Option<&'a ReadCurve>,
+    pub(super) d15f_max: Option<f64>,
+    pub(super) control: Option<Control>,
+    pub(super) band: Option<&'a SizeBand>,
     /// True if the band lies at the finer end of the allowed sizes.
-    pub(crate) finer: bool,
+    pub(super) finer: bool,
 }
 
 impl Findings<'_> {
-    /// Every step, in order.
-    pub(crate) fn steps(&self, band: Option<&SizeBand>) -> Vec<SpecificationStep> {
+    pub(super) fn steps(&self) -> Vec<SpecificationStep> {
         let steps = [
             self.gradation(),
             self.gravel(),
@@ -49,13 +49,11 @@ impl Findings<'_> {
             self.width(),
             self.uniformity(),
             self.ends(),
-            self.segregation(band),
-            self.sides(band),
-            self.stability(band),
+            self.segregation(),
+            self.sides(),
+            self.stability(),
         ];
-        let number =
-            |(index, step): (usize, SpecificationStep)| SpecificationStep { step: index as u64 + 1, ..step };
-        steps.into_iter().enumerate().map(number).collect()
+        (1..).zip(steps).map(|(number, step)| SpecificationStep { step: number, ..step }).collect()
     }
 
     /// One number for each curve, named after the curve if there are several.
@@ -65,12 +63,11 @@ impl Findings<'_> {
         unit: &str,
         value: impl Fn(&ReadCurve) -> Option<f64>,
     ) -> Vec<StepValue> {
-        let value_of = |curve: &ReadCurve| {
-            let whose =
-                if self.read.len() > 1 { format!(" of {}", curve.record.curve) } else { String::new() };
-            named(&format!("{name}{whose}"), value(curve), unit)
+        let named_after = |curve: &ReadCurve| match self.name(curve) {
+            Some(curve) => format!("{name} of {curve}"),
+            None => name.to_owned(),
         };
-        self.read.iter().map(value_of).collect()
+        self.read.iter().map(|curve| named(&named_after(curve), value(curve), unit)).collect()
     }
 
     /// Name of a curve, if there are several.
@@ -79,27 +76,22 @@ impl Findings<'_> {
     }
 
     fn gradation(&self) -> SpecificationStep {
-        SpecificationStep {
-            values: self.of_each_curve("D15B", "mm", |curve| curve.record.d15_mm),
-            notes: vec![StepNote::Curves { curves: self.read.len() as u64 }],
-            ..step(StepName::Plot)
-        }
+        let values = self.of_each_curve("D15B", "mm", |curve| curve.record.d15_mm);
+        step(StepName::Plot, "", values, vec![StepNote::Curves { curves: self.read.len() as u64 }], "")
     }
 
     fn gravel(&self) -> SpecificationStep {
+        let values = self.of_each_curve("finer than No. 4 (4.75 mm)", "%", |curve| {
+            Some(curve.base.percent_finer_by_mass(GRAVEL_MM))
+        });
         let gravel = |curve: &ReadCurve| StepNote::Gravel {
             curve: self.name(curve),
             why: curve.soil.why,
             flattest: curve.flattest.map(|gap| [gap.from_mm, gap.within]),
         };
-        SpecificationStep {
-            values: self.of_each_curve("finer than No. 4 (4.75 mm)", "%", |curve| {
-                Some(curve.base.percent_finer_by_mass(GRAVEL_MM))
-            }),
-            notes: self.read.iter().map(gravel).collect(),
-            source: format!("{REGRADING}. The check for a gap is this program's own"),
-            ..step(StepName::FindGravel)
-        }
+        let notes = self.read.iter().map(gravel).collect();
+        let source = format!("{REGRADING}. The check for a gap is this program's own");
+        step(StepName::FindGravel, "", values, notes, source)
     }
 
     fn regrading(&self) -> SpecificationStep {
@@ -107,25 +99,17 @@ impl Findings<'_> {
         let mut values = self.of_each_curve("regraded on", "mm", |curve| curve.record.regraded_at_mm);
         values.retain(|_| any);
         values.extend(self.of_each_curve("D85B", "mm", |curve| curve.record.d85_mm));
-        SpecificationStep {
-            formula: "percent finer / percent finer than the size on which it is regraded".into(),
-            values,
-            notes: if any { Vec::new() } else { vec![StepNote::NotRegraded] },
-            source: REGRADING.into(),
-            ..step(StepName::Regrade)
-        }
+        let notes = if any { Vec::new() } else { vec![StepNote::NotRegraded] };
+        let formula = "percent finer / percent finer than the size on which it is regraded";
+        step(StepName::Regrade, formula, values, notes, REGRADING)
     }
 
     fn category(&self) -> SpecificationStep {
         let mut values =
             self.of_each_curve("fines A, finer than 0.075 mm", "%", |curve| curve.record.fines_percent);
         values.extend(self.of_each_curve("category", "", |curve| curve.record.category.map(f64::from)));
-        SpecificationStep {
-            formula: "1: A > 85 %; 2: A 40 to 85 %; 3: A 15 to 40 %; 4: A < 15 %".into(),
-            values,
-            source: source_of(DESIGN),
-            ..step(StepName::Place)
-        }
+        let formula = "1: A > 85 %; 2: A 40 to 85 %; 3: A 15 to 40 %; 4: A < 15 %";
+        step(StepName::Place, formula, values, Vec::new(), source_of(DESIGN))
     }
 
     fn retention(&self) -> SpecificationStep {
@@ -146,17 +130,15 @@ impl Findings<'_> {
         let set_by = self.strictest.filter(|_| self.d15f_max.is_some()).map(set_by);
         let needs = self.unknown.and_then(|curve| curve.unknown.clone());
         let not_known = needs.map(|needs| StepNote::LimitNotKnown { needs });
-        let of_design =
-            |limit| named("maximum D15F by Sherard and Dunnigan's limit of design", Some(limit), "mm");
-        let by_practice = named("maximum D15F by practice", self.d15f_max, "mm");
-        let values = self.limit_of_design().map(of_design).into_iter().chain([by_practice]).collect();
-        SpecificationStep {
-            formula: joined(&|curve, rule| formula_of_base(rule, curve), "; "),
-            values,
-            notes: set_by.into_iter().chain(not_known).collect(),
-            source: joined(&|_, rule| rule.source.clone(), ". "),
-            ..step(StepName::Retain)
-        }
+        let of_design = |limit| mm("maximum D15F by Sherard and Dunnigan's limit of design", Some(limit));
+        let by_practice = mm("maximum D15F by practice", self.d15f_max);
+        step(
+            StepName::Retain,
+            joined(&|curve, rule| formula_of_base(rule, curve), "; "),
+            self.limit_of_design().map(of_design).into_iter().chain([by_practice]).collect(),
+            set_by.into_iter().chain(not_known).collect(),
+            joined(&|_, rule| rule.source.clone(), ". "),
+        )
     }
 
     /// Limit of design, if another rule is stricter.
@@ -169,116 +151,94 @@ impl Findings<'_> {
 
     fn drainage(&self) -> SpecificationStep {
         let rule = self.coarsest.and_then(|curve| curve.drainage.as_ref());
-        let set_by = self.coarsest.and_then(|curve| self.name(curve));
-        let set_by = set_by.map(|curve| StepNote::SetBy { rule: None, curve: Some(curve) });
-        let open = rule.filter(|rule| rule.limit_at_most && rule.notes.is_empty());
-        let open = open.map(|_| StepNote::DrainageAtMost);
-        let of_rule = rule.map(|rule| rule.notes.clone()).filter(|notes| !notes.is_empty());
-        let of_rule = of_rule.map(|notes| StepNote::OfRule { notes });
-        SpecificationStep {
-            formula: rule.map_or_else(String::new, |rule| rule.formula.clone()),
-            values: vec![named(
-                "minimum D15F",
-                self.coarsest.and_then(|curve| curve.record.d15f_min_mm),
-                "mm",
-            )],
-            notes: [set_by, open, of_rule].into_iter().flatten().collect(),
-            source: rule.map_or_else(String::new, |rule| rule.source.clone()),
-            ..step(StepName::Drain)
+        let mut notes = Vec::new();
+        if let Some(curve) = self.coarsest.and_then(|curve| self.name(curve)) {
+            notes.push(StepNote::SetBy { rule: None, curve: Some(curve) });
         }
+        match rule.map(|rule| &rule.notes) {
+            Some(of_rule) if !of_rule.is_empty() => notes.push(StepNote::OfRule { notes: of_rule.clone() }),
+            _ if rule.is_some_and(|rule| rule.limit_at_most) => notes.push(StepNote::DrainageAtMost),
+            _ => {}
+        }
+        let [formula, source] = rule.map_or([""; 2], |rule| [rule.formula.as_str(), rule.source.as_str()]);
+        step(StepName::Drain, formula, vec![mm("minimum D15F", self.d15f_min())], notes, source)
+    }
+
+    fn d15f_min(&self) -> Option<f64> {
+        self.coarsest.and_then(|curve| curve.record.d15f_min_mm)
     }
 
     fn width(&self) -> SpecificationStep {
-        let least = self.coarsest.and_then(|curve| curve.record.d15f_min_mm);
+        let least = self.d15f_min();
         let [narrow, wide] = [0, 1].map(|side| self.control.map(|control| control.d15[side]));
         let raised = narrow.zip(least).is_some_and(|(narrow, least)| narrow > least);
         let lowered = wide.zip(self.d15f_max).is_some_and(|(wide, most)| wide < most);
         let moved = if self.finer { "maximum is lowered" } else { "minimum is raised" };
         let ratio = self.d15f_max.zip(least).map(|(a, b)| a / b);
-        SpecificationStep {
-            formula: format!(
-                "maximum D15F / minimum D15F <= {WIDEST_BAND}; the {moved} where the ratio is larger"
-            ),
-            values: vec![
-                named("maximum D15F / minimum D15F, as found", ratio, ""),
-                named("minimum D15F of the band", narrow, "mm"),
-                named("maximum D15F of the band", wide, "mm"),
-            ],
-            notes: match (raised, lowered) {
-                (true, _) => vec![StepNote::Raised],
-                (_, true) => vec![StepNote::Lowered],
-                _ => Vec::new(),
-            },
-            source: source_of("filter-band"),
-            ..step(StepName::Narrow)
-        }
+        let values = vec![
+            named("maximum D15F / minimum D15F, as found", ratio, ""),
+            mm("minimum D15F of the band", narrow),
+            mm("maximum D15F of the band", wide),
+        ];
+        let notes = match (raised, lowered) {
+            (true, _) => vec![StepNote::Raised],
+            (_, true) => vec![StepNote::Lowered],
+            _ => Vec::new(),
+        };
+        let formula =
+            format!("maximum D15F / minimum D15F <= {WIDEST_BAND}; the {moved} where the ratio is larger");
+        step(StepName::Narrow, formula, values, notes, source_of("filter-band"))
     }
 
     fn uniformity(&self) -> SpecificationStep {
         let d60 = |side: usize| self.control.map(|control| control.d60[side]);
         let d10_max = self.control.map(|control| control.d15[1] / D15_OVER_D10);
-        SpecificationStep {
-            formula: format!(
-                "maximum D10F = maximum D15F / {D15_OVER_D10}; maximum D60F = {MOST_CU} x maximum D10F; \
-                 minimum D60F = maximum D60F / {WIDEST_BAND}"
-            ),
-            values: vec![
-                named("maximum D10F", d10_max, "mm"),
-                named("maximum D60F", d60(1), "mm"),
-                named("minimum D60F", d60(0), "mm"),
-            ],
-            source: with_own_factor(&source_of("filter-uniformity")),
-            ..step(StepName::KeepUniform)
-        }
+        let values =
+            vec![mm("maximum D10F", d10_max), mm("maximum D60F", d60(1)), mm("minimum D60F", d60(0))];
+        let formula = format!(
+            "maximum D10F = maximum D15F / {D15_OVER_D10}; maximum D60F = {MOST_CU} x maximum D10F; minimum \
+             D60F = maximum D60F / {WIDEST_BAND}"
+        );
+        let source = format!("{}. {}", source_of("filter-uniformity"), own_factor());
+        step(StepName::KeepUniform, formula, values, Vec::new(), source)
     }
 
     fn ends(&self) -> SpecificationStep {
-        SpecificationStep {
-            formula: format!(
-                "minimum D5F = maximum D5F / {WIDEST_BAND}, not less than {FINES_MM} mm; maximum D100F \
-                 {GREATEST_SIZE_MM} mm"
-            ),
-            values: vec![
-                named("minimum D5F allowed", Some(FINES_MM), "mm"),
-                named("maximum D100F allowed", Some(GREATEST_SIZE_MM), "mm"),
-            ],
-            source: source_of("filter-fines"),
-            ..step(StepName::LimitEnds)
-        }
+        let formula = format!(
+            "minimum D5F = maximum D5F / {WIDEST_BAND}, not less than {FINES_MM} mm; maximum D100F \
+             {GREATEST_SIZE_MM} mm"
+        );
+        let values = vec![
+            mm("minimum D5F allowed", Some(FINES_MM)),
+            mm("maximum D100F allowed", Some(GREATEST_SIZE_MM)),
+        ];
+        step(StepName::LimitEnds, formula, values, Vec::new(), source_of("filter-fines"))
     }
 
-    fn segregation(&self, band: Option<&SizeBand>) -> SpecificationStep {
-        let d10 = band.map(SizeBand::least_d10_mm);
-        SpecificationStep {
-            formula: format!(
-                "minimum D10F = the smaller of minimum D15F / {D15_OVER_D10} and D10F of the fine side"
-            ),
-            values: vec![named(ENTERED_BY, d10, "mm"), named("maximum D90F", None, "mm")],
-            source: with_own_factor(SEGREGATION),
-            ..step(StepName::KeepFromSegregating)
-        }
+    fn segregation(&self) -> SpecificationStep {
+        let formula =
+            format!("minimum D10F = the smaller of minimum D15F / {D15_OVER_D10} and D10F of the fine side");
+        let values = vec![mm(ENTERED_BY, self.band.map(SizeBand::least_d10_mm)), mm("maximum D90F", None)];
+        let source = format!("{SEGREGATION}. {}", own_factor());
+        step(StepName::KeepFromSegregating, formula, values, Vec::new(), source)
     }
 
-    fn sides(&self, band: Option<&SizeBand>) -> SpecificationStep {
-        let sizes = band.map(|band| &band.sizes[..]).unwrap_or_default();
+    fn sides(&self) -> SpecificationStep {
         let both = |size: &BandSize| {
-            let one = |which: &str, value| named(&format!("{which} D{}F", size.percent), Some(value), "mm");
+            let one = |which: &str, value| mm(&format!("{which} D{}F", size.percent), Some(value));
             [one("minimum", size.min_mm), one("maximum", size.max_mm)]
         };
-        SpecificationStep {
-            values: sizes.iter().flat_map(both).collect(),
-            source: "a drawing of this program".into(),
-            ..step(StepName::Draw)
-        }
+        let values = self.band.iter().flat_map(|band| &band.sizes).flat_map(both).collect();
+        step(StepName::Draw, "", values, Vec::new(), "a drawing of this program")
     }
 
-    fn stability(&self, band: Option<&SizeBand>) -> SpecificationStep {
-        let sides: Vec<Side> = band.map(Side::both).into_iter().flatten().collect();
+    fn stability(&self) -> SpecificationStep {
+        let sides: Vec<Side> = self.band.map(Side::both).into_iter().flatten().collect();
         let both = |side: &Side| {
             let value =
                 |quantity: &str, value| named(&format!("{quantity} of the {} side", side.name), value, "");
-            let (kezdi, shape) =
-                (side.kezdi.map(|index| index.value), side.kenney_lau.map(|index| index.value));
+            let kezdi = side.kezdi.map(|index| index.value);
+            let shape = side.kenney_lau.map(|index| index.value);
             [value("greatest D'15/d'85", kezdi), value("least H/F", shape)]
         };
         let stability = |side: &Side| StepNote::Stability {
@@ -286,15 +246,11 @@ impl Findings<'_> {
             is_known: side.is_known(),
             not_kept: side.authorities(),
         };
-        SpecificationStep {
-            formula: format!(
-                "D'15/d'85 <= {MOST_KEZDI} by Kézdi, H/F >= {LEAST_SHAPE} by Kenney and Lau, as of a filter"
-            ),
-            values: sides.iter().flat_map(both).collect(),
-            notes: sides.iter().map(stability).collect(),
-            source: source_of("kezdi"),
-            ..step(StepName::CheckStability)
-        }
+        let formula = format!(
+            "D'15/d'85 <= {MOST_KEZDI} by Kézdi, H/F >= {LEAST_SHAPE} by Kenney and Lau, as of a filter"
+        );
+        let (values, notes) = (sides.iter().flat_map(both).collect(), sides.iter().map(stability).collect());
+        step(StepName::CheckStability, formula, values, notes, source_of("kezdi"))
     }
 }
 
@@ -306,52 +262,65 @@ const SEGREGATION: &str = "FEMA (2011), cited by U.S. Army Corps of Engineers, F
 const REGRADING: &str = "U.S. Army Corps of Engineers, Filter Evaluation manual (RMC-CPD-2023-04), chapter \
                          Base Gradation, after Sherard and Dunnigan (1989)";
 
-fn step(does: StepName) -> SpecificationStep {
-    SpecificationStep { does, ..SpecificationStep::default() }
+fn step(
+    does: StepName,
+    formula: impl Into<String>,
+    values: Vec<StepValue>,
+    notes: Vec<StepNote>,
+    source: impl Into<String>,
+) -> SpecificationStep {
+    SpecificationStep { step: 0, does, formula: formula.into(), values, notes, source: source.into() }
 }
 
 fn named(name: &str, value: Option<f64>, unit: &str) -> StepValue {
     StepValue { name: name.into(), value, unit: unit.into() }
 }
 
-/// Source of a rule, with a remark that the factor between D15F and D10F is from elsewhere.
-fn with_own_factor(source: &str) -> String {
-    format!("{source}. The factor {D15_OVER_D10} is worked out by this program")
+fn mm(name: &str, value: Option<f64>) -> StepValue {
+    named(name, value, "mm")
+}
+
+/// Source of the factor between D15F and D10F.
+fn own_factor() -> String {
+    format!("The factor {D15_OVER_D10} is worked out by this program")
 }
 
 /// Source of the numbers of a rule.
-fn source_of(id: &str) -> String {
-    RULES.iter().find(|rule| rule.id == id).map_or_else(String::new, |rule| rule.source.into())
+fn source_of(id: &str) -> &'static str {
+    RULES.iter().find(|rule| rule.id == id).map_or("", |rule| rule.source)
 }
 
 /// Arbitrary D15F (mm) of the filter for which the rules are read: their limits do not depend on it.
 const ANY_D15F: f64 = 1.0;
+
+pub(super) fn any_filter() -> Gradation {
+    Gradation::linear_from_dx(15.0, ANY_D15F, 1.5).expect("sizes of a sand")
+}
 
 /// Percent by mass between D and 4 D below which a curve is noted as flat: twice the percent of a gap.
 const FLAT_PERCENT: f64 = 2.0 * GAP_PERCENT;
 
 /// Curve of the base with the results of the rules.
 pub(super) struct ReadCurve {
-    pub(crate) record: SpecifiedCurve,
+    pub(super) record: SpecifiedCurve,
     /// Curve as sampled.
     base: Gradation,
-    pub(crate) dispersive: bool,
-    pub(crate) soil: BaseSoil,
+    dispersive: bool,
+    soil: BaseSoil,
     /// Flattest part, which may be a gap.
-    pub(crate) flattest: Option<Gap>,
-    pub(crate) design: Option<AppliedRule>,
-    pub(crate) retention: Option<AppliedRule>,
-    pub(crate) drainage: Option<AppliedRule>,
+    flattest: Option<Gap>,
+    design: Option<AppliedRule>,
+    retention: Option<AppliedRule>,
+    drainage: Option<AppliedRule>,
     /// Lower bound of the minimum D15F (mm) by the sieves; 0 if no sieve bounds it.
     drains_from: f64,
     /// Reasons for an unknown maximum D15F.
-    pub(crate) unknown: Option<Vec<RuleNote>>,
+    pub(super) unknown: Option<Vec<RuleNote>>,
 }
 
 impl ReadCurve {
-    pub(crate) fn of((name, base): &NamedCurve, dispersive: bool) -> Self {
-        let any = Gradation::linear_from_dx(15.0, ANY_D15F, 1.5).expect("sizes of a sand");
-        let rules = apply(&RuleInputs { dispersive, ..RuleInputs::of_soils(base, &any) });
+    pub(super) fn of((name, base): &NamedCurve, dispersive: bool) -> Self {
+        let rules = apply(&RuleInputs { dispersive, ..RuleInputs::of_soils(base, &any_filter()) });
         let soil = BaseSoil::of(base, false);
         let open = OpenBase::of(base, false);
         let over_sieves = sieved_limit(DESIGN, base, &open, dispersive).and_then(|limit| limit.depends_on);
@@ -389,7 +358,6 @@ impl ReadCurve {
         }
     }
 
-    /// Notes on the base itself.
     fn notes(&self) -> Vec<Note> {
         let unstable = self.base.known_kenney_lau().filter(|index| index.value < 1.0);
         let unstable =
@@ -410,21 +378,20 @@ impl ReadCurve {
         })
     }
 
-    pub(crate) fn greatest(&self) -> f64 {
+    pub(super) fn greatest(&self) -> f64 {
         self.record.d15f_max_mm.unwrap_or(f64::INFINITY)
     }
 
     /// True if the minimum D15F is not known exactly and is at most the one given.
-    pub(crate) fn least_at_most(&self) -> bool {
+    pub(super) fn least_at_most(&self) -> bool {
         self.drainage.as_ref().is_some_and(|rule| rule.limit_at_most)
     }
 
-    /// Certain lower bound of the minimum D15F.
-    pub(crate) fn certain_least(&self) -> f64 {
+    pub(super) fn certain_least(&self) -> f64 {
         if self.least_at_most() { self.drains_from } else { self.least() }
     }
 
-    pub(crate) fn least(&self) -> f64 {
+    pub(super) fn least(&self) -> f64 {
         self.record.d15f_min_mm.unwrap_or(0.0)
     }
 }
@@ -436,12 +403,6 @@ pub(super) fn notes(read: &[ReadCurve]) -> Vec<RowNote> {
         curve.notes().into_iter().map(|note| RowNote { row: row(curve), note }).collect::<Vec<_>>()
     };
     read.iter().flat_map(row_notes).collect()
-}
-
-/// Strictest limit of practice among these curves if the base is dispersive; `None` if all have few fines.
-pub(super) fn if_dispersive(bases: &[NamedCurve]) -> Option<IfDispersive> {
-    let any = Gradation::linear_from_dx(15.0, ANY_D15F, 1.5).expect("sizes of a sand");
-    IfDispersive::of_bases(bases, &any)
 }
 
 /// Percent of fines above which a base is in category 1.
@@ -517,28 +478,24 @@ mod tests {
         let between = "(40 - A)/25 (4 D85B - 0.7) + 0.7 mm";
         let fell = "1.6 ((35 - A)/20 (4 D85B - 0.7) + 0.7 mm)";
         let [nine, least] = ["9 D85B, not less than 0.2 mm", "6.4 D85B, not less than 0.2 mm"];
-        for (id, fines, dispersive, condition, formula) in [
-            (DESIGN, 90.0, false, "A > 85 %", nine),
-            (DESIGN, 40.0, false, "A 40 to 85 %", "0.7 mm"),
-            (DESIGN, 39.0, false, "A 15 to 40 %", between),
-            (DESIGN, 14.0, false, "A < 15 %", "4 D85B"),
-            (DESIGN, 90.0, true, "A > 85 %", least),
-            (DESIGN, 40.0, true, "40 to 85 %", "0.5 mm"),
-            (DESIGN, 39.0, true, "A 15 to 40 %", between),
-            (DESIGN, 14.0, true, "A < 15 %", "4 D85B"),
-            (TESTS_NO_EROSION, 90.0, false, "A > 85 %", "9 D85B"),
-            (TESTS_NO_EROSION, 35.0, false, "A 35 to 85 %", "0.7 mm"),
-            (TESTS_NO_EROSION, 34.0, false, "A 15 to 35 %", fell),
-            (TESTS_NO_EROSION, 14.0, false, "A < 15 %", "7 D85B"),
-            (TESTS_NO_EROSION, 90.0, true, "A > 85 %", "6.4 D85B"),
-            (TESTS_NO_EROSION, 35.0, true, "35 to 85 %", "0.5 mm"),
-            (TESTS_NO_EROSION, 34.0, true, "A 15 to 35 %", fell),
-            (TESTS_NO_EROSION, 14.0, true, "A < 15 %", "7 D85B"),
+        let below_40 = ("A 15 to 40 %", between);
+        let below_35 = ("A 15 to 35 %", fell);
+        for (id, fines, usual, of_dispersive) in [
+            (DESIGN, 90.0, ("A > 85 %", nine), ("A > 85 %", least)),
+            (DESIGN, 40.0, ("A 40 to 85 %", "0.7 mm"), ("40 to 85 %", "0.5 mm")),
+            (DESIGN, 39.0, below_40, below_40),
+            (DESIGN, 14.0, ("A < 15 %", "4 D85B"), ("A < 15 %", "4 D85B")),
+            (TESTS_NO_EROSION, 90.0, ("A > 85 %", "9 D85B"), ("A > 85 %", "6.4 D85B")),
+            (TESTS_NO_EROSION, 35.0, ("A 35 to 85 %", "0.7 mm"), ("35 to 85 %", "0.5 mm")),
+            (TESTS_NO_EROSION, 34.0, below_35, below_35),
+            (TESTS_NO_EROSION, 14.0, ("A < 15 %", "7 D85B"), ("A < 15 %", "7 D85B")),
         ] {
             let rule = rules.iter().find(|rule| rule.id == id).unwrap();
-            let is_at_most = dispersive && (15.0..=39.0).contains(&fines) && fines != 35.0;
-            let wanted = Item { condition, formula, is_at_most };
-            assert_eq!(item(rule, fines, dispersive), Some(wanted), "{id} {fines} {dispersive}");
+            for (dispersive, (condition, formula)) in [(false, usual), (true, of_dispersive)] {
+                let is_at_most = dispersive && [39.0, 34.0].contains(&fines);
+                let wanted = Item { condition, formula, is_at_most };
+                assert_eq!(item(rule, fines, dispersive), Some(wanted), "{id} {fines} {dispersive}");
+            }
         }
     }
 }

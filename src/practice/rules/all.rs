@@ -1,45 +1,33 @@
 //! The table of rules.
 
-use super::rule::{FilterRule, Pairing};
+use super::rule::{FilterRule, Judged, Pairing};
 use super::{drainage, retention, stability};
 use crate::{RuleQuantity, RuleRole, RuleUnit};
 use voidwalk_core::gradation::Gradation;
 
-/// Rule by which new filters are specified.
+/// Id of the rule by which new filters are specified.
 pub const DESIGN: &str = "sherard-dunnigan";
-
-/// Boundary up to which tests saw no erosion.
+/// Id of the boundary up to which tests saw no erosion.
 pub const TESTS_NO_EROSION: &str = "foster-fell-no-erosion";
-
-/// Boundary from which tests saw continuing erosion.
+/// Id of the boundary from which tests saw continuing erosion.
 pub const TESTS_CONTINUING: &str = "foster-fell-continuing";
-
-/// Probability of continuing erosion into an open joint.
+/// Id of the probability of continuing erosion into an open joint.
 pub(crate) const CONSTRICTED_EXIT: &str = "constricted-exit";
-
-/// Rule of drainage of the base.
+/// Id of the rule of drainage of the base.
 pub const PERMEABILITY: &str = "permeability";
-
-/// Rule that limits the fines of a filter.
-pub const FILTER_FINES: &str = "filter-fines";
-
-/// Rule that excludes cobbles from a filter.
-pub const FILTER_GREATEST_SIZE: &str = "filter-greatest-size";
-
-/// Minimum D15F of an older manual.
+/// Id of the minimum D15F of an older manual.
 pub const PERMEABILITY_LEAST: &str = "permeability-em-1901";
-
+/// Id of the rule that limits the fines of a filter.
+pub const FILTER_FINES: &str = "filter-fines";
+/// Id of the rule that excludes cobbles from a filter.
+pub const FILTER_GREATEST_SIZE: &str = "filter-greatest-size";
 /// Id of Terzaghi's ratio.
 pub const TERZAGHI: &str = "terzaghi";
-
 /// Id of Kezdi's criterion of internal stability.
 pub(crate) const KEZDI: &str = "kezdi";
-
 /// Id of Kenney and Lau's criterion of internal stability.
 pub(crate) const KENNEY_LAU: &str = "kenney-lau";
-
-/// Id of Li and Fannin's criterion of internal stability, which takes the milder of Kenney and Lau's and
-/// Kezdi's at every size.
+/// Id of Li and Fannin's criterion, which takes the milder of Kenney and Lau's and Kezdi's at every size.
 pub(crate) const LI_FANNIN: &str = "li-fannin";
 
 /// Publication with Table 9.2.
@@ -54,6 +42,44 @@ const INTERNAL_STABILITY: &str = "U.S. Army Corps of Engineers, Internal Instabi
 const OURS: &str = "a check of this program, as specifications of filters commonly have it; no text that can \
                     be cited was read for its number";
 
+/// Rule with a maximum D15F for every pair of curves, of no author; the table replaces what differs.
+const PAIR: FilterRule = FilterRule {
+    id: "",
+    authority: "",
+    stated_by: &[],
+    says: "",
+    role: RuleRole::Retention,
+    applies_to: "",
+    quantity: &RuleQuantity::D15F,
+    formula: "",
+    at_least: false,
+    unit: RuleUnit::Mm,
+    source: "",
+    pairing: Pairing::EachPair,
+    judge: |_| Judged::left_out(),
+};
+
+/// Check of this program on every curve of the filter.
+const FILTER: FilterRule = FilterRule {
+    role: RuleRole::Placing,
+    unit: RuleUnit::One,
+    source: OURS,
+    pairing: Pairing::EachFilter,
+    ..PAIR
+};
+
+/// Rule of the filter's internal stability.
+const STABILITY: FilterRule = FilterRule {
+    stated_by: &["USACE"],
+    says: "internal stability of the filter",
+    role: RuleRole::Stability,
+    source: INTERNAL_STABILITY,
+    ..FILTER
+};
+
+/// Comparison of the walk with tests, or of a pair with the walks of the paper.
+const WALK: FilterRule = FilterRule { role: RuleRole::Walk, unit: RuleUnit::One, ..PAIR };
+
 /// All rules, in reading order.
 pub const RULES: &[FilterRule] = &[
     FilterRule {
@@ -61,37 +87,28 @@ pub const RULES: &[FilterRule] = &[
         authority: "Sherard and Dunnigan",
         stated_by: &["NRCS", "USBR", "USACE"],
         says: "the filter retains the base (design)",
-        role: RuleRole::Retention,
         applies_to: "design of filters; the limit follows from the fines A of the regraded base (NRCS, USBR, \
                      FEMA)",
-        quantity: RuleQuantity::D15F,
         formula: "A > 85 %: 9 D85B, not less than 0.2 mm; A 40 to 85 %: 0.7 mm; A 15 to 40 %: (40 - A)/25 \
                   (4 D85B - 0.7) + 0.7 mm; A < 15 %: 4 D85B; dispersive: A > 85 %: 6.4 D85B, not less than \
                   0.2 mm; 40 to 85 %: 0.5 mm",
-        at_least: false,
-        unit: RuleUnit::Mm,
         source: "Sherard & Dunnigan (1989), as given by Fell et al., Geotechnical Engineering of Dams, Table \
                  9.2, with its note (b) on dispersive soils; the 0.2 mm: Sherard et al. (1984), as given by \
                  Messerklinger, 18th International Conference on Soil Mechanics and Geotechnical Engineering \
                  (2013), p. 3315",
-        pairing: Pairing::EachPair,
         judge: retention::sherard_dunnigan,
+        ..PAIR
     },
     FilterRule {
         id: TESTS_NO_EROSION,
         authority: "Foster and Fell",
-        stated_by: &[],
         says: "no erosion rather than some",
-        role: RuleRole::Retention,
         applies_to: "filters of existing dams: a criterion proposed from tests, without a margin of safety",
-        quantity: RuleQuantity::D15F,
         formula: "A > 85 %: 9 D85B; A 35 to 85 %: 0.7 mm; A 15 to 35 %: 1.6 ((35 - A)/20 (4 D85B - 0.7) + \
                   0.7 mm); A < 15 %: 7 D85B; dispersive: A > 85 %: 6.4 D85B; 35 to 85 %: 0.5 mm",
-        at_least: false,
-        unit: RuleUnit::Mm,
         source: FELL,
-        pairing: Pairing::EachPair,
         judge: retention::no_erosion,
+        ..PAIR
     },
     FilterRule {
         id: TESTS_CONTINUING,
@@ -101,261 +118,190 @@ pub const RULES: &[FilterRule] = &[
         role: RuleRole::Continuation,
         applies_to: "existing dams with filters coarser than modern rules allow; D95B after regrading; not \
                      bases with 15 to 85 % fines and a D95B above 2 mm",
-        quantity: RuleQuantity::D15F,
         formula: "9 D95B",
-        at_least: false,
-        unit: RuleUnit::Mm,
         source: "Foster & Fell (2001), as given by Fell et al., Geotechnical Engineering of Dams, section \
                  9.3.2; regraded base: U.S. Army Corps of Engineers, Filter Evaluation manual \
                  (RMC-CPD-2023-04), chapter Foster and Fell",
-        pairing: Pairing::EachPair,
         judge: retention::continuing,
+        ..PAIR
     },
     FilterRule {
         id: TERZAGHI,
         authority: "Terzaghi",
-        stated_by: &[],
         says: "the filter retains the base",
-        role: RuleRole::Retention,
         applies_to: "bases with less than 15 % fines; D85B after regrading",
-        quantity: RuleQuantity::D15FOverD85B,
+        quantity: &RuleQuantity::D15FOverD85B,
         formula: "4",
-        at_least: false,
         unit: RuleUnit::One,
         source: "Terzaghi, as stated by Shire & O'Sullivan, section 2",
-        pairing: Pairing::EachPair,
         judge: retention::terzaghi,
+        ..PAIR
     },
     FilterRule {
         id: CONSTRICTED_EXIT,
-        authority: "",
         stated_by: &["USACE"],
         says: "Constricted exit: probability of continuing erosion into an open joint",
         role: RuleRole::Continuation,
         applies_to: "joints, defects and cracks beside the base that do not erode; steady flow",
-        quantity: RuleQuantity::named("probability"),
+        quantity: &RuleQuantity::named("probability"),
         formula: "from JOS/D95B after regrading: below 0.4: 0; 0.5: 0.01 %; 0.75: 0.1 %; 1: 10 %; 2: 50 %; \
                   3 and more: 90 %; between them straight on the scale of a normal variate",
-        at_least: false,
         unit: RuleUnit::Percent,
         source: "U.S. Army Corps of Engineers, Filter Evaluation manual (RMC-CPD-2023-04), chapter \
                  Constricted Exit, after Fell and Foster",
-        pairing: Pairing::EachPair,
         judge: retention::constricted,
+        ..PAIR
     },
     FilterRule {
         id: PERMEABILITY,
-        authority: "",
         stated_by: &["NRCS", "USBR", "USACE"],
         says: "Permeability: the filter drains the base",
         role: RuleRole::Drainage,
         applies_to: "design of filters; D15B before regrading",
-        quantity: RuleQuantity::D15F,
         formula: "5 D15B by USBR (2011) and NRCS (2017), and not less than 0.1 mm",
         at_least: true,
-        unit: RuleUnit::Mm,
         source: "U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Permeability, which cites \
                  USBR (2011) and NRCS (2017)",
-        pairing: Pairing::EachPair,
         judge: |inputs| drainage::permeability(inputs, 5.0),
+        ..PAIR
     },
     FilterRule {
         id: PERMEABILITY_LEAST,
-        authority: "",
         stated_by: &["USACE"],
         says: "Permeability, the least by EM 1110-2-1901: the filter drains the base",
         role: RuleRole::Drainage,
         applies_to: "filters of which this older manual is asked; D15B before regrading",
-        quantity: RuleQuantity::D15F,
         formula: "3 D15B, the least of the 3 to 5 D15B of EM 1110-2-1901, and not less than 0.1 mm",
         at_least: true,
-        unit: RuleUnit::Mm,
         source: "U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Permeability, which cites \
                  EM 1110-2-1901 (2005)",
-        pairing: Pairing::EachPair,
         judge: |inputs| drainage::permeability(inputs, 3.0),
+        ..PAIR
     },
     FilterRule {
         id: FILTER_FINES,
-        authority: "",
-        stated_by: &[],
         says: "The filter has few fines",
         role: RuleRole::Drainage,
         applies_to: "design of filters; that they are not plastic is not seen from a sieve curve",
-        quantity: RuleQuantity::named("finer than 0.075 mm"),
+        quantity: &RuleQuantity::named("finer than 0.075 mm"),
         formula: "5 %",
-        at_least: false,
         unit: RuleUnit::Percent,
-        source: OURS,
-        pairing: Pairing::EachFilter,
         judge: drainage::fines,
+        ..FILTER
     },
     FilterRule {
         id: FILTER_GREATEST_SIZE,
-        authority: "",
-        stated_by: &[],
         says: "The filter has no cobbles",
-        role: RuleRole::Placing,
         applies_to: "design of filters: coarse grains segregate",
-        quantity: RuleQuantity::named("D100F"),
+        quantity: &RuleQuantity::named("D100F"),
         formula: "75 mm",
-        at_least: false,
         unit: RuleUnit::Mm,
-        source: OURS,
-        pairing: Pairing::EachFilter,
         judge: drainage::greatest_size,
+        ..FILTER
     },
     FilterRule {
         id: "filter-uniformity",
-        authority: "",
-        stated_by: &[],
         says: "The filter is uniform enough for its band",
-        role: RuleRole::Placing,
         applies_to: "design of filters: both sides of the band; wider curves leave room for gap-graded ones",
-        quantity: RuleQuantity::named("Cu of the filter"),
+        quantity: &RuleQuantity::named("Cu of the filter"),
         formula: "6",
-        at_least: false,
-        unit: RuleUnit::One,
-        source: OURS,
-        pairing: Pairing::EachFilter,
         judge: drainage::uniformity,
+        ..FILTER
     },
     FilterRule {
         id: "filter-band",
-        authority: "",
-        stated_by: &[],
         says: "The band of the filter is narrow",
-        role: RuleRole::Placing,
         applies_to: "design of filters that are stated as a band of curves",
-        quantity: RuleQuantity::named("size of the coarse side / of the fine side"),
+        quantity: &RuleQuantity::named("size of the coarse side / of the fine side"),
         formula: "5, from 5 to 60 % finer",
-        at_least: false,
-        unit: RuleUnit::One,
-        source: OURS,
         pairing: Pairing::AllFilters,
         judge: drainage::band,
+        ..FILTER
     },
     FilterRule {
         id: KEZDI,
         authority: "Kézdi (1979)",
-        stated_by: &["USACE"],
-        says: "internal stability of the filter",
-        role: RuleRole::Stability,
         applies_to: "the filter alone: internal stability",
-        quantity: RuleQuantity::named("D'15/d'85, split at 17.6 to 64.7 %"),
+        quantity: &RuleQuantity::named("D'15/d'85, split at 17.6 to 64.7 %"),
         formula: "4",
-        at_least: false,
-        unit: RuleUnit::One,
-        source: INTERNAL_STABILITY,
-        pairing: Pairing::EachFilter,
         judge: stability::kezdi,
+        ..STABILITY
     },
     FilterRule {
         id: KENNEY_LAU,
         authority: "Kenney and Lau (1986)",
-        stated_by: &["USACE"],
-        says: "internal stability of the filter",
-        role: RuleRole::Stability,
         applies_to: "the filter alone: internal stability, F up to 20 % (Cu > 3) or 30 %",
-        quantity: RuleQuantity::named("least H/F of the filter"),
+        quantity: &RuleQuantity::named("least H/F of the filter"),
         formula: "1",
         at_least: true,
-        unit: RuleUnit::One,
-        source: INTERNAL_STABILITY,
-        pairing: Pairing::EachFilter,
         judge: |inputs| stability::shape(inputs, Gradation::kenney_lau),
+        ..STABILITY
     },
     FilterRule {
         id: LI_FANNIN,
         authority: "Li and Fannin (2008)",
-        stated_by: &["USACE"],
-        says: "internal stability of the filter",
-        role: RuleRole::Stability,
         applies_to: "the filter alone: internal stability; Kenney and Lau to F = 15 %, Kézdi from there",
-        quantity: RuleQuantity::named("least H/min(F, 15 %) of the filter"),
+        quantity: &RuleQuantity::named("least H/min(F, 15 %) of the filter"),
         formula: "1",
         at_least: true,
-        unit: RuleUnit::One,
-        source: INTERNAL_STABILITY,
-        pairing: Pairing::EachFilter,
         judge: |inputs| stability::shape(inputs, Gradation::li_fannin),
+        ..STABILITY
     },
     FilterRule {
         id: "burenkova",
         authority: "Burenkova (1993)",
-        stated_by: &["USACE"],
-        says: "internal stability of the filter",
-        role: RuleRole::Stability,
         applies_to: "the filter alone: broadly graded and gap-graded sands and gravels without cohesion, \
                      up to 100 mm, Cu up to 200",
-        quantity: RuleQuantity::named("h' = D90/D60 of the filter"),
+        quantity: &RuleQuantity::named("h' = D90/D60 of the filter"),
         formula: "0.76 lg h'' + 1, with h'' = D90/D15, and less than 1.86 lg h'' + 1",
         at_least: true,
-        unit: RuleUnit::One,
         source: "U.S. Army Corps of Engineers, Internal Instability Toolbox manual (RMC-CPD-2023-10), \
                  chapter Burenkova Method",
-        pairing: Pairing::EachFilter,
         judge: stability::burenkova,
+        ..STABILITY
     },
     FilterRule {
         id: "wan-fell",
         authority: "Wan and Fell (2004)",
-        stated_by: &["USACE"],
         says: "probability that the filter loses its fines",
-        role: RuleRole::Stability,
         applies_to: "the filter alone: broadly graded and gap-graded soils",
-        quantity: RuleQuantity::named("probability"),
+        quantity: &RuleQuantity::named("probability"),
         formula: "none stated: 1 / (1 + exp(-Z)), Z from h' and h'' of Burenkova",
-        at_least: false,
         unit: RuleUnit::Percent,
         source: "U.S. Army Corps of Engineers, Internal Instability Toolbox manual (RMC-CPD-2023-10), \
                  chapter Modified Burenkova Method",
-        pairing: Pairing::EachFilter,
         judge: stability::wan_fell,
+        ..STABILITY
     },
     FilterRule {
         id: "kenney-controlling",
         authority: "Kenney et al.",
-        stated_by: &[],
         says: "controlling constriction size Dc* ≤ D15F/5",
-        role: RuleRole::Walk,
         applies_to: "bases without cohesion; Dc* is the largest particle eroded in the first run",
-        quantity: RuleQuantity::named("largest eroded / D15F"),
+        quantity: &RuleQuantity::named("largest eroded / D15F"),
         formula: "1/5",
-        at_least: false,
-        unit: RuleUnit::One,
         source: "Kenney et al., as stated by Shire & O'Sullivan, section 2",
-        pairing: Pairing::EachPair,
         judge: retention::largest_passing,
+        ..WALK
     },
     FilterRule {
         id: "paper-no-erosion",
-        authority: "",
-        stated_by: &[],
         says: "Network model of the paper: no erosion rather than some",
-        role: RuleRole::Walk,
         applies_to: "loose filters of Cu 1.5 and 3",
-        quantity: RuleQuantity::D15FOverD85B,
+        quantity: &RuleQuantity::D15FOverD85B,
         formula: "5",
-        at_least: false,
-        unit: RuleUnit::One,
         source: "Shire & O'Sullivan, section 6, Fig. 14(a)",
-        pairing: Pairing::EachPair,
         judge: |inputs| retention::paper(inputs, 85.0, 5.0),
+        ..WALK
     },
     FilterRule {
         id: "paper-continuing",
-        authority: "",
-        stated_by: &[],
         says: "Network model of the paper: some erosion rather than continuing",
-        role: RuleRole::Walk,
         applies_to: "filters of Cu 1.5 and 3",
-        quantity: RuleQuantity::D15FOverD95B,
+        quantity: &RuleQuantity::D15FOverD95B,
         formula: "4.7",
-        at_least: false,
-        unit: RuleUnit::One,
         source: "Shire & O'Sullivan, section 6, Fig. 15",
-        pairing: Pairing::EachPair,
         judge: |inputs| retention::paper(inputs, 95.0, 4.7),
+        ..WALK
     },
 ];

@@ -60,7 +60,6 @@ pub(crate) fn permeability(inputs: &RuleInputs, times: f64) -> Judged {
     Judged { limit_at_most: d15b.is_none() && judged.limit == Some(limit), ..judged }
 }
 
-/// Checks that the filter has few fines.
 pub(crate) fn fines(inputs: &RuleInputs) -> Judged {
     const MOST: Option<f64> = Some(MOST_FINES_PERCENT);
     if inputs.scale_free || !inputs.filter_is_measured {
@@ -77,13 +76,12 @@ pub(crate) fn fines(inputs: &RuleInputs) -> Judged {
     }
 }
 
-/// Checks that the filter has no cobbles.
 pub(crate) fn greatest_size(inputs: &RuleInputs) -> Judged {
     const MOST: Option<f64> = Some(GREATEST_SIZE_MM);
-    match inputs.scale_free || !inputs.filter_is_measured {
-        true => Judged { limit: MOST, ..Judged::default() }.lacking(RuleNote::NeedsCurveOfFilterInMm),
-        false => Judged::of(Some(inputs.filter.largest_mm()), MOST),
+    if inputs.scale_free || !inputs.filter_is_measured {
+        return Judged { limit: MOST, ..Judged::default() }.lacking(RuleNote::NeedsCurveOfFilterInMm);
     }
+    Judged::of(Some(inputs.filter.largest_mm()), MOST)
 }
 
 /// Checks that the filter is uniform enough: a band of broader curves leaves room for gap-graded ones.
@@ -131,8 +129,5 @@ pub(crate) fn band(inputs: &RuleInputs) -> Judged {
     let judged = Judged::of(Some(ratio), Some(WIDEST_BAND)).noted(RuleNote::AtPercentFiner(percent));
     // Below the finest sieve the band may be wider.
     let pan = inputs.filter_curves.iter().map(|curve| 100.0 * curve.pan_fraction()).fold(0.0, f64::max);
-    match pan > BAND[0] {
-        true => judged.bound(ValueBound::AtLeast).noted(RuleNote::BandFrom(pan)),
-        false => judged,
-    }
+    if pan > BAND[0] { judged.bound(ValueBound::AtLeast).noted(RuleNote::BandFrom(pan)) } else { judged }
 }

@@ -157,7 +157,6 @@ impl Worst {
     }
 }
 
-/// Converts a rule and its result to a record.
 fn record(rule: &FilterRule, scale_free: bool, judged: Judged) -> AppliedRule {
     AppliedRule {
         id: rule.id.into(),

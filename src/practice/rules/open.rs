@@ -2,9 +2,8 @@
 //! at the finer or at the coarser one, in every combination.
 //!
 //! Up to [`WIDE_STEP`] the worst of these results counts. Beyond it, a rule whose answer depends on the
-//! step has no result. A rule of the filter's shape has no result on any such step, since the mass that
-//! the filter loses is not known. Internal stability reads a straight line where next to nothing passes,
-//! because sieves of ASTM D448 stones are that far apart there.
+//! step has no result; for a rule of the filter's shape this holds on any such step. Internal stability
+//! reads a straight line where next to nothing passes: sieves of ASTM D448 stones are far apart there.
 //!
 //! [`WIDE_STEP`]: voidwalk_core::gradation::WIDE_STEP
 
@@ -31,19 +30,19 @@ enum Choice {
 }
 
 impl Choice {
-    /// Ratio of the two sieves.
-    fn width(self) -> f64 {
+    fn step(self) -> Option<Step> {
         match self {
-            Self::OfFilter(step) | Self::OfBase(step) => step.ratio(),
-            Self::Gap => 1.0,
+            Self::OfFilter(step) | Self::OfBase(step) => Some(step),
+            Self::Gap => None,
         }
     }
 
+    fn width(self) -> f64 {
+        self.step().map_or(1.0, |step| step.ratio())
+    }
+
     fn is_wide(self) -> bool {
-        match self {
-            Self::OfFilter(step) | Self::OfBase(step) => step.is_wide(),
-            Self::Gap => false,
-        }
+        self.step().is_some_and(|step| step.is_wide())
     }
 }
 
@@ -67,10 +66,8 @@ impl OpenBase {
             let otherwise = curve.regraded_otherwise(curve).and_then(|other| other.at_mm);
             [curve.regraded().at_mm, otherwise]
         };
-        let cuts: Vec<[Option<f64>; 2]> = match steps.iter().all(|step| step.is_wide()) {
-            true => Vec::new(),
-            false => wide.iter().map(cut).collect(),
-        };
+        let has_narrow = steps.iter().any(|step| !step.is_wide());
+        let cuts: Vec<[Option<f64>; 2]> = wide.iter().filter(|_| has_narrow).map(cut).collect();
         // The part that passes a cut within a step that is not wide is read on the straight line.
         let is_cut = |place: usize, step: &Step| cuts[place].iter().flatten().any(|at| step.holds(*at));
         let curves = spread(base, &steps, |place, step| step.is_wide() || !is_cut(place, step));

@@ -13,15 +13,13 @@ pub struct FilterRule {
     pub(crate) authority: &'static str,
     /// Further authorities whose texts state the rule.
     pub(crate) stated_by: &'static [&'static str],
-    /// Statement of the rule.
     pub(crate) says: &'static str,
-    /// Role of the rule.
     pub(crate) role: RuleRole,
     /// Soils that the rule was made for.
     pub(crate) applies_to: &'static str,
     /// Quantity that the rule limits. A rule of retention also limits a design if [`RuleQuantity`] has a
     /// variant for its quantity.
-    pub(crate) quantity: RuleQuantity,
+    pub(crate) quantity: &'static RuleQuantity,
     /// Limit in words.
     pub(crate) formula: &'static str,
     /// True if the limit is a minimum, false if it is a maximum.
@@ -240,9 +238,8 @@ pub(super) fn judged(rule: &FilterRule, inputs: &RuleInputs) -> Option<Judged> {
     if judged.is_left_out {
         return None;
     }
-    let keeps = |(value, limit): (f64, f64)| match rule.at_least {
-        true => value >= limit * (1.0 - TIE),
-        false => value <= limit * (1.0 + TIE),
+    let keeps = |(value, limit): (f64, f64)| {
+        if rule.at_least { value >= limit * (1.0 - TIE) } else { value <= limit * (1.0 + TIE) }
     };
     let met = judged.met.or_else(|| judged.value.zip(judged.limit).map(keeps));
     // A broken upper bound of a maximum, or a kept upper bound of a minimum, settles the result.

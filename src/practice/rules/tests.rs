@@ -6,7 +6,11 @@ use crate::{RuleNote, ValueBound};
 use voidwalk_core::gradation::Gradation;
 
 pub(super) fn applied(id: &str, filter: &Gradation, base: &Gradation) -> AppliedRule {
-    let rules = apply(&RuleInputs::of_soils(base, filter));
+    applied_if(false, id, filter, base)
+}
+
+fn applied_if(dispersive: bool, id: &str, filter: &Gradation, base: &Gradation) -> AppliedRule {
+    let rules = apply(&RuleInputs { dispersive, ..RuleInputs::of_soils(base, filter) });
     rules.into_iter().find(|rule| rule.id == id).unwrap()
 }
 
@@ -34,63 +38,49 @@ pub(super) fn of_band(id: &str, filters: &[&[(f64, f64)]]) -> AppliedRule {
 }
 
 #[test]
-fn sherard_and_dunnigan_by_hand_in_each_category() {
+fn limits_of_design_and_of_no_erosion_by_hand_in_each_category() {
     // 9 x 0.05; 9 x 0.01 = 0.09 is less than 0.2; 0.7; the till of the first trial: (40 - 38)/25 (4 x 1.488 -
-    // 0.7) + 0.7 = 1.12016; at 15 % and below it is 4 D85B.
-    for (fines, d85, limit) in [
-        (90.0, 0.05, 0.45),
-        (90.0, 0.01, 0.2),
-        (60.0, 0.5, 0.7),
-        (40.0, 0.5, 0.7),
-        (38.0, 1.488, 1.12016),
-        (27.5, 0.6, 1.55),
-        (15.0, 0.6, 2.4),
-        (5.0, 0.6, 2.4),
+    // 0.7) + 0.7 = 1.12016; at 15 % and below it is 4 D85B; 1.6 ((35 - 25)/20 (4 x 0.6 - 0.7) + 0.7) = 2.48.
+    for (id, fines, d85, limit) in [
+        (DESIGN, 90.0, 0.05, 0.45),
+        (DESIGN, 90.0, 0.01, 0.2),
+        (DESIGN, 60.0, 0.5, 0.7),
+        (DESIGN, 40.0, 0.5, 0.7),
+        (DESIGN, 38.0, 1.488, 1.12016),
+        (DESIGN, 27.5, 0.6, 1.55),
+        (DESIGN, 15.0, 0.6, 2.4),
+        (DESIGN, 5.0, 0.6, 2.4),
+        (TESTS_NO_EROSION, 90.0, 0.05, 0.45),
+        (TESTS_NO_EROSION, 60.0, 0.5, 0.7),
+        (TESTS_NO_EROSION, 35.0, 0.5, 0.7),
+        (TESTS_NO_EROSION, 25.0, 0.6, 2.48),
+        (TESTS_NO_EROSION, 5.0, 0.6, 4.2),
     ] {
-        let rule = applied("sherard-dunnigan", &filter(6.3), &base(fines, d85));
+        let soil = base(fines, d85);
+        let rule = applied(id, &filter(6.3), &soil);
         assert!(close(rule.limit, limit) && close(rule.value, 6.3), "{fines} {d85}: {rule:?}");
         assert_eq!((rule.met, rule.applies, rule.unit), (Some(false), true, RuleUnit::Mm));
-        assert_eq!(applied("sherard-dunnigan", &filter(0.999 * limit), &base(fines, d85)).met, Some(true));
-    }
-}
-
-#[test]
-fn foster_and_fell_no_erosion_by_hand_in_each_group() {
-    // 1.6 ((35 - 25)/20 (4 x 0.6 - 0.7) + 0.7) = 1.6 x 1.55 = 2.48.
-    for (fines, d85, limit) in
-        [(90.0, 0.05, 0.45), (60.0, 0.5, 0.7), (35.0, 0.5, 0.7), (25.0, 0.6, 2.48), (5.0, 0.6, 4.2)]
-    {
-        let rule = applied("foster-fell-no-erosion", &filter(0.4), &base(fines, d85));
-        assert!(close(rule.limit, limit), "{fines} {d85}: {rule:?}");
-        assert_eq!(rule.met, Some(true));
-        assert_eq!(
-            applied("foster-fell-no-erosion", &filter(1.001 * limit), &base(fines, d85)).met,
-            Some(false)
-        );
+        let met = [0.999, 1.001].map(|part| applied(id, &filter(part * limit), &soil).met);
+        assert_eq!(met, [Some(true), Some(false)]);
     }
 }
 
 /// The notes and D85B give both limits: 1.09 and 1.69 mm for a sand with 22 % fines.
 #[test]
 fn limits_by_fines_say_how_they_are_worked_out() {
-    let by_fines = |id: &str, fines: f64| {
+    for (id, fines, times, until) in [(DESIGN, 22.0, 1.0, 40.0), (TESTS_NO_EROSION, 22.125, 1.6, 35.0)] {
         let rule = applied(id, &filter(0.4), &base(fines, 0.31));
-        let by_fines = rule.notes.iter().find_map(|note| match *note {
-            RuleNote::ByFines(times, until, fines) => Some((times, until, fines)),
-            _ => None,
-        });
-        let limit = by_fines.map(|(times, until, fines)| {
-            times * ((until - fines) / (until - 15.0) * (4.0 * 0.31 - 0.7) + 0.7)
-        });
-        assert!(limit.is_none() || close(rule.limit, limit.unwrap()), "{rule:?}");
-        by_fines.map(|(times, until, fines)| (times, until, (1e6 * fines).round() / 1e6))
-    };
-    assert_eq!(by_fines("sherard-dunnigan", 22.0), Some((1.0, 40.0, 22.0)));
-    assert_eq!(by_fines("foster-fell-no-erosion", 22.125), Some((1.6, 35.0, 22.125)));
-    for fines in [5.0, 40.0] {
-        assert_eq!(by_fines("sherard-dunnigan", fines), None, "{fines}");
+        let is_formula = |note: &RuleNote| {
+            matches!(*note, RuleNote::ByFines(by, to, percent)
+            if (by, to) == (times, until) && close(Some(percent), fines))
+        };
+        let limit = times * ((until - fines) / (until - 15.0) * (4.0 * 0.31 - 0.7) + 0.7);
+        assert!(rule.notes.iter().any(is_formula) && close(rule.limit, limit), "{rule:?}");
     }
-    assert_eq!(by_fines("foster-fell-no-erosion", 35.0), None);
+    for (id, fines) in [(DESIGN, 5.0), (DESIGN, 40.0), (TESTS_NO_EROSION, 35.0)] {
+        let rule = applied(id, &filter(0.4), &base(fines, 0.31));
+        assert!(!rule.notes.iter().any(|note| matches!(note, RuleNote::ByFines(..))), "{fines}");
+    }
 }
 
 #[test]
@@ -137,18 +127,11 @@ fn continuing_erosion_is_a_limit_only_where_tests_found_a_clear_one() {
         let soil = curve(&[(0.001, 0.0), (0.075, fines), (d85, 85.0), (4.7, 100.0)]);
         applied("foster-fell-continuing", &filter(1.0), &soil)
     };
-    for (fines, d85, is_limit) in [
-        (14.9, 1.0, true),
-        (15.0, 1.0, false),
-        (60.0, 1.0, false),
-        (60.0, 0.2, true),
-        (85.0, 0.3, true),
-        (85.0, 1.0, false),
-    ] {
+    for (fines, d85) in [(14.9, 1.0), (15.0, 1.0), (60.0, 1.0), (60.0, 0.2), (85.0, 0.3), (85.0, 1.0)] {
         let rule = of_base(fines, d85);
         let d95b = d85 * (4.7 / d85).powf(2.0 / 3.0);
-        assert_eq!((rule.applies, is_limit), (is_limit, d95b <= 2.0 || fines < 15.0), "{fines} {d85} {d95b}");
-        assert_eq!(rule.met, is_limit.then_some(true), "{rule:?}");
+        let is_limit = d95b <= 2.0 || fines < 15.0;
+        assert_eq!((rule.applies, rule.met), (is_limit, is_limit.then_some(true)), "{fines} {d85} {d95b}");
     }
     let finer = curve(&[(0.001, 0.0), (0.075, 86.0), (1.0, 88.0), (4.7, 100.0)]);
     let rule = applied("foster-fell-continuing", &filter(1.0), &finer);
@@ -166,20 +149,18 @@ fn continuing_erosion_is_a_limit_only_where_tests_found_a_clear_one() {
 #[test]
 fn the_floor_of_the_limit_of_design_is_said() {
     let clay = curve(&[(0.001, 30.0), (0.0174, 85.0), (0.075, 96.0), (2.0, 100.0)]);
-    let filter = filter(2.0);
-    let rule = applied("sherard-dunnigan", &filter, &clay);
-    assert!(close(rule.limit, 0.2), "{rule:?}");
-    let floor = |rule: &AppliedRule| {
+    let floor = |dispersive, base: &Gradation| {
+        let rule = applied_if(dispersive, DESIGN, &filter(2.0), base);
         rule.notes.iter().find_map(|note| match *note {
-            RuleNote::FloorGoverns(times, size) => Some((times, (1e6 * size).round() / 1e6)),
+            RuleNote::FloorGoverns(times, size) if close(rule.limit, 0.2) => Some((times, size)),
             _ => None,
         })
     };
-    assert_eq!(floor(&rule), Some((9.0, 0.1566)));
-    let rules = apply(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(&clay, &filter) });
-    let rule = rules.iter().find(|rule| rule.id == "sherard-dunnigan").unwrap();
-    assert_eq!(floor(rule), Some((6.4, 0.11136)));
-    assert_eq!(floor(&applied("sherard-dunnigan", &filter, &base(90.0, 0.05))), None);
+    for (dispersive, times, of_d85b) in [(false, 9.0, 0.1566), (true, 6.4, 0.11136)] {
+        let (of_times, size) = floor(dispersive, &clay).unwrap();
+        assert!(of_times == times && (size - of_d85b).abs() < 1e-6, "{of_times} {size}");
+    }
+    assert_eq!(floor(false, &base(90.0, 0.05)), None);
 }
 
 /// With 51 % finer than 0.002 mm, 5 D15B is below 0.010 mm: the minimum D15F is 0.1 mm, and known.
@@ -205,11 +186,9 @@ fn terzaghi_is_for_few_fines_and_takes_the_regraded_base() {
     assert!(close(rule.value, 4.2) && rule.met == Some(false) && rule.unit == RuleUnit::One);
     let rule = applied("terzaghi", &filter(2.1), &base(30.0, 0.5));
     assert!(!rule.applies && rule.met.is_none());
-    let percent = rule.notes.iter().find_map(|note| match *note {
-        RuleNote::LimitsByFines(percent) => Some(percent),
-        _ => None,
-    });
-    assert!(close(percent, 30.0), "{rule:?}");
+    let is_by_fines =
+        |note: &RuleNote| matches!(*note, RuleNote::LimitsByFines(percent) if close(Some(percent), 30.0));
+    assert!(rule.notes.iter().any(is_by_fines), "{rule:?}");
 }
 
 #[test]
@@ -280,9 +259,8 @@ fn sizes_without_a_unit_are_those_of_a_sand() {
 fn a_walk_far_finer_than_the_tests_of_the_largest_passing_says_so() {
     let filter = filter(4.0);
     let notes = |largest: f64, base: &Gradation| {
-        let inputs =
-            RuleInputs { largest_eroded_over_d15f: Some(largest), ..RuleInputs::of_soils(base, &filter) };
-        let rules = apply(&inputs);
+        let largest_eroded_over_d15f = Some(largest);
+        let rules = apply(&RuleInputs { largest_eroded_over_d15f, ..RuleInputs::of_soils(base, &filter) });
         rules.into_iter().find(|rule| rule.id == "kenney-controlling").unwrap().notes
     };
     let coarse = base(5.0, 0.5);
@@ -364,19 +342,16 @@ fn a_gap_above_unknown_fines_is_no_reason_to_judge_the_coarse_part() {
 /// the limit of other soils is an upper bound.
 #[test]
 fn dispersive_bases_have_limits_of_their_own() {
-    let dispersive_rule = |id: &str, d15: f64, fines: f64, d85: f64| {
-        let (filter, base) = (filter(d15), base(fines, d85));
-        let rules = apply(&RuleInputs { dispersive: true, ..RuleInputs::of_soils(&base, &filter) });
-        rules.into_iter().find(|rule| rule.id == id).unwrap()
-    };
+    let dispersive_rule =
+        |id: &str, d15: f64, fines: f64, d85: f64| applied_if(true, id, &filter(d15), &base(fines, d85));
     for (id, fines, d85, limit) in [
-        ("sherard-dunnigan", 90.0, 0.05, 0.32),
-        ("sherard-dunnigan", 90.0, 0.01, 0.2),
-        ("sherard-dunnigan", 60.0, 0.5, 0.5),
-        ("sherard-dunnigan", 5.0, 0.6, 2.4),
-        ("foster-fell-no-erosion", 90.0, 0.05, 0.32),
-        ("foster-fell-no-erosion", 35.0, 0.5, 0.5),
-        ("foster-fell-no-erosion", 5.0, 0.6, 4.2),
+        (DESIGN, 90.0, 0.05, 0.32),
+        (DESIGN, 90.0, 0.01, 0.2),
+        (DESIGN, 60.0, 0.5, 0.5),
+        (DESIGN, 5.0, 0.6, 2.4),
+        (TESTS_NO_EROSION, 90.0, 0.05, 0.32),
+        (TESTS_NO_EROSION, 35.0, 0.5, 0.5),
+        (TESTS_NO_EROSION, 5.0, 0.6, 4.2),
     ] {
         let rule = dispersive_rule(id, 0.4, fines, d85);
         assert!(close(rule.limit, limit) && rule.met == Some(0.4 <= limit), "{rule:?}");
@@ -457,24 +432,21 @@ fn every_rule_says_what_it_is_and_has_its_numbers() {
 
 /// No. 57 stone as delivered: no sieve is finer than 2.36 mm.
 #[test]
-fn fines_below_the_finest_sieve_are_at_most_what_passes_it() {
+fn what_lies_below_the_finest_sieve_is_judged_by_its_bound() {
     let stone = |passing| [(2.36, passing), (4.75, 8.0), (12.5, 42.0), (25.0, 97.0), (37.5, 100.0)];
     let bound = of_band(FILTER_FINES, &[&stone(2.0)]);
-    assert_eq!(
-        (bound.value, bound.value_bound, bound.met),
-        (Some(2.0), Some(ValueBound::AtMost), Some(true))
-    );
     assert_eq!(bound.notes, [RuleNote::FinestSieveOfFilter(2.36)]);
-    let open = of_band(FILTER_FINES, &[&stone(6.0)]);
-    assert_eq!((open.value, open.value_bound, open.met), (None, None, None));
-    let sieved = of_band(FILTER_FINES, &[&[(0.075, 2.0), (1.0, 30.0), (4.0, 100.0)]]);
-    assert_eq!((sieved.value, sieved.value_bound, sieved.met), (Some(2.0), None, Some(true)));
-}
-
-#[test]
-fn a_cu_and_a_d15f_that_sieves_bound_are_broken_by_the_bound() {
-    let wide = of_band("filter-uniformity", &[&[(0.5, 12.0), (4.0, 60.0), (8.0, 100.0)]]);
-    assert_eq!((wide.value, wide.value_bound, wide.met), (Some(8.0), Some(ValueBound::AtLeast), Some(false)));
-    let fine = of_band(PERMEABILITY, &[&[(0.5, 20.0), (4.0, 100.0)]]);
-    assert_eq!((fine.value, fine.value_bound, fine.met), (Some(0.5), Some(ValueBound::AtMost), Some(false)));
+    let sieved = [(0.075, 2.0), (1.0, 30.0), (4.0, 100.0)];
+    let wide = [(0.5, 12.0), (4.0, 60.0), (8.0, 100.0)];
+    for (id, points, value, bound, met) in [
+        (FILTER_FINES, &stone(2.0)[..], Some(2.0), Some(ValueBound::AtMost), Some(true)),
+        (FILTER_FINES, &stone(6.0), None, None, None),
+        (FILTER_FINES, &sieved, Some(2.0), None, Some(true)),
+        // A Cu and a D15F that sieves bound are broken by the bound.
+        ("filter-uniformity", &wide, Some(8.0), Some(ValueBound::AtLeast), Some(false)),
+        (PERMEABILITY, &[(0.5, 20.0), (4.0, 100.0)], Some(0.5), Some(ValueBound::AtMost), Some(false)),
+    ] {
+        let rule = of_band(id, &[points]);
+        assert_eq!((rule.value, rule.value_bound, rule.met), (value, bound, met), "{rule:?}");
+    }
 }
