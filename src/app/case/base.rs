@@ -18,10 +18,8 @@ pub struct CaseBase {
 }
 
 impl CaseBase {
-    /// Reads the base that a scene states, with this filter.
-    ///
-    /// # Errors
-    /// A file is refused, or regrading is requested for sizes that are multiples of D0F.
+    /// Reads the base that a scene states, with this filter. Errors: a file is refused, or regrading is
+    /// requested for sizes that are multiples of D0F.
     pub(super) fn read(scene: &Scene, filter: &CaseFilter, files: &mut Files) -> Result<Self, CaseError> {
         let given = given(scene, filter, files)?;
         if scene.base.regrade != Some(Regrade::Practice) {

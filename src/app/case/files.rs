@@ -110,8 +110,7 @@ impl Files {
     ) -> Result<(String, &[u8]), CaseError> {
         let file = path.display().to_string();
         if let Some(at) = self.known.iter().position(|input| input.setting == setting) {
-            let known = self.known.swap_remove(at);
-            self.inputs.push(known);
+            self.inputs.push(self.known.swap_remove(at));
             return Ok((file, &self.inputs[self.inputs.len() - 1].bytes));
         }
         // A soil of the built-in scene was named on the command line, usually without its setting.

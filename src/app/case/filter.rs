@@ -20,7 +20,6 @@ use voidwalk_core::packing::Packing;
 /// Filter with all its derived values.
 #[derive(Clone)]
 pub struct CaseFilter {
-    /// Gradation of the filter.
     pub(crate) gradation: Gradation,
     /// Reference length: the smallest grain (mm).
     pub(crate) unit_mm: f64,
@@ -227,7 +226,6 @@ fn gradation(
 /// Network that all replicates walk.
 #[derive(Clone)]
 pub(crate) struct FixedNetwork {
-    /// The network.
     pub(crate) network: Network,
     /// Finest constriction, in units of the reference length.
     pub(super) finest: f32,
@@ -238,11 +236,9 @@ pub(crate) struct FixedNetwork {
 /// Packing whose voids form a network, repeated along the flow.
 #[derive(Clone)]
 pub(crate) struct CopiedPacking {
-    /// Number of copies.
     pub(crate) copies: u32,
     /// Total thickness of the copies (mm).
     pub(crate) thickness_mm: f64,
-    /// Measurements on the packing.
     pub(super) graph: Arc<GraphPacking>,
 }
 
@@ -285,7 +281,7 @@ impl FixedNetwork {
 }
 
 /// Measurements on the grains of a graph's packing.
-pub(super) struct GraphPacking {
+pub(crate) struct GraphPacking {
     pub(crate) graph: VoidGraph,
     /// Constriction curve in mm.
     pub curve: Curve,

@@ -25,13 +25,10 @@ pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
 /// Size of a network.
 #[derive(Clone)]
 pub(crate) struct CaseNetwork {
-    /// Number of voids.
     pub(crate) voids: u64,
     /// Number of constrictions in the first replicate.
     pub(crate) constrictions: u64,
-    /// Number of start nodes.
     pub(crate) start_nodes: u64,
-    /// Number of layers.
     pub(crate) layers: u64,
     /// Connectivity and percent of the voids, if they differ.
     pub(crate) connectivity: Vec<[f64; 2]>,

@@ -16,7 +16,6 @@ const KINEMATIC_VISCOSITY: f64 = 1.307e-6;
 const GRAVITY: f64 = 9.81;
 
 impl Case {
-    /// Page of its run.
     pub(crate) fn about_page(&self) -> AboutPage {
         self.scene.about.page(self.is_scale_free())
     }

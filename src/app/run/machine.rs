@@ -22,7 +22,7 @@ impl Machine {
         let memory = platform::memory();
         let model = platform::processor().unwrap_or_else(|| "unknown processor".into());
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
-        let total = memory.total.map_or("unknown".into(), crate::case::in_words);
+        let total = memory.total.map_or("unknown".into(), crate::words::memory::bytes);
         Self {
             host: platform::host_name(),
             description: format!(

@@ -179,10 +179,7 @@ pub(super) fn left_out(case: &Case, of_run: &[Shortcut]) -> Vec<LeftOut> {
     case.left_out().into_iter().chain(of_run.iter().copied().map(LeftOut::Walk)).collect()
 }
 
-/// Content of the files of a run, except its voids.
-///
-/// # Errors
-/// The record of its packing cannot be read.
+/// Content of the files of a run, except its voids. Errors: the record of its packing cannot be read.
 pub(crate) fn files(
     case: &Case,
     (outcome, decision): (Outcome, Decision),
@@ -198,10 +195,8 @@ pub(crate) fn files(
     Ok(RunFiles { outcome, decision, manifest, scene, about, packing, recorded })
 }
 
-/// Writes the results of a run beside its scene: the CSV files, the outcome, the manifest.
-///
-/// # Errors
-/// Errors of the folder; no file is left half written.
+/// Writes the results of a run beside its scene: the CSV files, the outcome, the manifest. Errors: errors of
+/// the folder; no file is left half written.
 pub(crate) fn write(folder: &Folder, case: &Case, run: &RunFiles) -> Result<(), RunError> {
     // They go first, so that a folder whose files are being replaced is not taken for finished.
     for name in ["manifest.json", "outcome.json"] {
@@ -251,8 +246,7 @@ pub(crate) fn json(format: Format, record: &impl Serialize) -> Result<Vec<u8>, R
 mod tests {
     use super::*;
     use crate::outcome::record::Verdict;
-    use crate::run::{Callbacks, walk_case};
-    use crate::scene::Scene;
+    use crate::run::{Callbacks, case_of, walk_case};
     use crate::words;
     use voidwalk_practice::Headline;
     use voidwalk_practice::quantity::SizeUnit;
@@ -267,16 +261,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let sheet = folder.path().join("base.csv");
         std::fs::write(&sheet, format!("size_mm,percent_finer\n{rows}")).unwrap();
-        let soils = [
-            format!("base.sieve={}", sheet.display()),
-            "filter.curve=shire2016-cu1.5-loose".into(),
-            "filter.cu=1.5".into(),
-            format!("filter.d0_mm={}", d15f / 1.13),
-        ];
+        let (base, d0) = (format!("base.sieve={}", sheet.display()), format!("filter.d0_mm={}", d15f / 1.13));
+        let soils = [&*base, &*d0, "filter.curve=shire2016-cu1.5-loose", "filter.cu=1.5"];
         let small = ["network.nx=6", "network.ny=6", "network.nz=8", "replicates=2", "record.sensitivity=[]"];
-        let all: Vec<String> =
-            soils.into_iter().chain(small.iter().chain(set).map(|setting| (*setting).into())).collect();
-        walk_case(&Case::new(Scene::built_in(&all).unwrap()).unwrap(), &Callbacks::default()).unwrap()
+        walk_case(&case_of(&[&soils[..], &small, set].concat()), &Callbacks::default()).unwrap()
     }
 
     fn line(outcome: &Outcome) -> String {
