@@ -35,7 +35,7 @@ use crate::outcome::record::{ArchingRecord, Ratios};
 use crate::scene::{NetworkSource, Scene};
 use base::as_passive;
 use files::Files;
-use filter::{GraphPacking, StatedFilter};
+use filter::GraphPacking;
 use network::{placeholder_shape, set_layers_of_thickness};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -101,10 +101,8 @@ impl Case {
         known: Vec<Input>,
     ) -> Result<Self, CaseError> {
         let mut files = Files { known, ..Files::default() };
-        let stated = StatedFilter::read(&scene, packed, measured, &mut files)?;
-        let fixed = FixedNetwork::read(&scene, &stated, &mut files)?;
-        set_layers_of_thickness(&mut scene, &stated.gradation)?;
-        let filter = CaseFilter::new(&scene, stated, fixed.as_ref())?;
+        let (filter, fixed) = CaseFilter::read(&scene, packed, measured, &mut files)?;
+        set_layers_of_thickness(&mut scene, &filter.gradation)?;
         let base = CaseBase::read(&scene, &filter, &mut files)?;
         let scale_free = fixed.is_none() && filter.is_scale_free(&scene);
         let mistake = base.mistake(&scene, &filter.gradation, scale_free)?;

@@ -11,7 +11,7 @@ use rayon::slice::ParallelSliceMut;
 
 use super::RunError;
 use super::callbacks::{Callbacks, Event};
-use super::machine::Machine;
+use super::machine::available_bytes;
 use super::replicates::{ReplicateResult, map_side_by_side, said_by_walks, summarise};
 use crate::case::{CaseError, PAPER_MASS_RATIO, base_record, replicate_seed};
 use crate::outcome::left_out::LeftOut;
@@ -204,7 +204,7 @@ impl NetworkWalk {
             let sampler = SizeSampler::new(&self.base, network.unit_mm()).map_err(CaseError::from)?;
             samplers.push(sampler);
         }
-        let (needed, available) = (self.bytes(networks), Machine::here().available);
+        let (needed, available) = (self.bytes(networks), available_bytes());
         if needed > available {
             return Err(CaseError::Memory {
                 study: String::new(),

@@ -13,7 +13,7 @@ use serde::Serialize;
 use super::RunError;
 use super::callbacks::Callbacks;
 use super::folder::refused;
-use super::machine::{Machine, on_threads};
+use super::machine::{available_bytes, on_threads};
 use super::pack::{PACKINGS, provide, with_time};
 use super::replicates::{have_networks, left_out_of_first_run, runs_to_walk};
 use super::results::left_out;
@@ -44,7 +44,7 @@ impl Default for PrepareOptions {
 impl PrepareOptions {
     /// Limits of the walks, with their particles in memory or in `folder`.
     pub(crate) fn limits(&self, folder: &Path) -> ResourceLimits {
-        ResourceLimits::new(self.memory, Machine::here().available, folder)
+        ResourceLimits::new(self.memory, available_bytes(), folder)
     }
 }
 

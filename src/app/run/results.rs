@@ -2,7 +2,7 @@
 
 use super::RunError;
 use super::case_walks::{CaseWalks, Studies};
-use super::machine::Machine;
+use super::machine::description;
 use super::replicates::{ReplicateResult, said_by_walks};
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
 use crate::outcome::left_out::LeftOut;
@@ -15,7 +15,7 @@ use crate::verdict::RunFiles;
 use serde::Serialize;
 use std::time::SystemTime;
 use voidwalk_core::store::format::{Format, from_json};
-use voidwalk_core::store::{Folder, StoreError, Together, format};
+use voidwalk_core::store::{Folder, StoreError, Together, format, platform};
 use voidwalk_core::text::moment;
 use voidwalk_core::walk::Shortcut;
 use voidwalk_practice::rules::{BaseSoil, RuleInputs};
@@ -34,7 +34,7 @@ pub(crate) fn outcome(
     let inputs = rule_inputs(case, walked);
     let notes = notes_before_results(case, noted, walks);
     let inputs_record = case.record();
-    let outcome = Outcome {
+    let mut outcome = Outcome {
         headline: None,
         practice: None,
         model: Model {
@@ -74,11 +74,6 @@ pub(crate) fn outcome(
         digest: String::new(),
         seconds,
     };
-    concluded_from_results(outcome, case, inputs)
-}
-
-/// Completes the outcome from its results: the decision of practice, notes, digest.
-fn concluded_from_results(mut outcome: Outcome, case: &Case, inputs: RuleInputs) -> (Outcome, Decision) {
     let range_of_tests_mm = rules::tested_range(&inputs);
     if case.scene.base.dispersive.is_none() {
         outcome.if_dispersive = IfDispersive::of(&RuleInputs { dispersive: true, ..inputs });
@@ -141,15 +136,14 @@ pub(crate) fn write_scene(folder: &Folder, case: &Case) -> Result<(), StoreError
 
 /// Manifest of a run: everything besides its results.
 pub fn manifest(case: &Case, threads: u64, started: SystemTime, command: String) -> Manifest {
-    let machine = Machine::here();
     Manifest {
         version: env!("CARGO_PKG_VERSION").into(),
         commit: commit(),
         seed: case.scene.walk.seed,
         inputs: case.input_files(),
         threads,
-        host: machine.host,
-        machine: machine.description,
+        host: platform::host_name(),
+        machine: description(),
         started: moment(started),
         finished: moment(SystemTime::now()),
         command,

@@ -144,7 +144,14 @@ fn walk_here(
 ) -> Result<FinishedRun, RunError> {
     let files = files_of(&scene);
     let at = options.out.as_deref().unwrap_or(Path::new("."));
-    let claim = || claim_for(options, &files);
+    let claim = || {
+        let Some(path) = &options.out else { return claim_first_free("voidwalk-run") };
+        let folder = claim(path, FolderKind::Run, options.overwrite)?;
+        if options.overwrite {
+            outlive_clear(&folder, FolderKind::Run, &files)?;
+        }
+        Ok(folder)
+    };
     let (case, folder) = prepare_into(scene, &options.prepare, at, claim, callbacks)?;
     let unit = case.about_page().unit;
     let notes = ordered(case.notes());
@@ -179,16 +186,6 @@ fn walk_here(
     checkpoints.clear()?;
     Unfinished::end(&folder)?;
     Ok(FinishedRun { folder: folder.path().to_owned(), outcome, decision, unit })
-}
-
-/// Claims the folder of a run; `files` of its scene must not be removed with the old results.
-fn claim_for(options: &RunOptions, files: &[PathBuf]) -> Result<Folder, RunError> {
-    let Some(path) = &options.out else { return claim_first_free("voidwalk-run") };
-    let folder = claim(path, FolderKind::Run, options.overwrite)?;
-    if options.overwrite {
-        outlive_clear(&folder, FolderKind::Run, files)?;
-    }
-    Ok(folder)
 }
 
 /// Clears the folder of a run that starts again.
@@ -274,9 +271,8 @@ fn walk_all(
     for problem in context.checkpoints.iter().flat_map(|checkpoints| checkpoints.passed_over()) {
         (callbacks.warn)(&format!("{problem}; the checkpoint before it was used"));
     }
-    let answer = |studies: Studies| {
-        results::outcome(case, notes, &walks, studies, begun.elapsed().as_secs_f64())
-    };
+    let answer =
+        |studies: Studies| results::outcome(case, notes, &walks, studies, begun.elapsed().as_secs_f64());
     let mut first = answer(Studies::default());
     if Studies::are_none(case) {
         write(&first, &walks.replicates)?;

@@ -257,11 +257,12 @@ impl Scene {
         let of_file = network.file.is_some();
         let of_arrays = network.is_of_arrays();
         // Refuses the first of these settings that is given, if they do not apply.
-        let wrong = |applies: bool, names: &[&str], problem: &str| {
-            match names.iter().find(|name| applies && s.has(name)) {
-                Some(name) => Err(s.clash(format!("{name} {problem}"))),
-                None => Ok(()),
-            }
+        let wrong = |applies: bool, names: &[&str], problem: &str| match names
+            .iter()
+            .find(|name| applies && s.has(name))
+        {
+            Some(name) => Err(s.clash(format!("{name} {problem}"))),
+            None => Ok(()),
         };
         let of_lattice = ["network.nx", "network.ny", "network.nz", "network.connectivity", "network.file"];
         let problem = "does not go with network.kind = \"graph\": a packing has its voids where they are";
@@ -302,8 +303,10 @@ impl Scene {
         if !allowed.contains(&rule) {
             let words: Vec<String> = allowed.iter().map(|rule| format!("\"{}\"", rule.name())).collect();
             let why = match graph {
-                true => "the constrictions of a graph have no direction of their own, so that area alone leads \
-                         nowhere",
+                true => {
+                    "the constrictions of a graph have no direction of their own, so that area alone leads \
+                         nowhere"
+                }
                 false => "the rule needs to know which way is which",
             };
             return Err(s.refuse("walk.exit", format!("{} on this network: {why}", words.join(", "))));

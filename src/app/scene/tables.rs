@@ -252,9 +252,13 @@ mod tests {
 
     #[test]
     fn no_change_replaces_a_soil_that_is_named() {
-        for change in
-            ["base.sieve=\"other.csv\"", " base.sieve = other", "base.cu=2", "base.single_mm=0.2", "filter.cu=3"]
-        {
+        for change in [
+            "base.sieve=\"other.csv\"",
+            " base.sieve = other",
+            "base.cu=2",
+            "base.single_mm=0.2",
+            "filter.cu=3",
+        ] {
             let message = refused(&with(&[change]));
             assert!(message.contains("would put another soil in the place of the"), "{change}: {message}");
         }
