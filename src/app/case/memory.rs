@@ -197,13 +197,6 @@ impl Case {
         if all <= SIDE_BY_SIDE_BYTES.min(self.memory) { threads.max(1) } else { 1 }
     }
 
-    /// True if the particles of the scene itself fit in memory or on the disk.
-    fn has_room(&self, room: &ResourceLimits, threads: u64) -> bool {
-        let columns = self.column_bytes(self.supply.n_base);
-        let besides = self.other_bytes(self.supply.n_base, threads).saturating_add(self.kept_bytes());
-        besides <= room.memory && (columns <= room.memory - besides || columns <= room.disk)
-    }
-
     /// Sets the location of the particles' columns: in memory if they fit, or else in files in `folder` that
     /// are mapped into memory. Errors: [`CaseError::Memory`]: they fit in neither.
     pub(crate) fn place(
@@ -213,14 +206,15 @@ impl Case {
         folder: &Path,
     ) -> Result<(), CaseError> {
         self.memory = room.memory;
-        let has_room = self.has_room(room, threads);
+        let kept = self.kept_bytes();
+        let without_columns = |n_base| self.other_bytes(n_base, threads).saturating_add(kept);
+        let (besides, columns) = (without_columns(self.supply.n_base), self.column_bytes(self.supply.n_base));
+        let has_room = besides <= room.memory && (columns <= room.memory - besides || columns <= room.disk);
         // If the scene itself does not fit, the studies are not to blame.
         let thickest = if has_room { self.place_thickest(room, threads, folder)? } else { None };
         let n_base = if has_room { self.most_particles() } else { self.supply.n_base };
-        let kept = self.kept_bytes();
         let walks = self.bytes(n_base, threads).saturating_mul(self.side_by_side(n_base, threads));
-        let needed = walks.saturating_add(kept);
-        let without_columns = self.other_bytes(n_base, threads).saturating_add(kept);
+        let (needed, without_columns) = (walks.saturating_add(kept), without_columns(n_base));
         if needed <= room.memory {
             // If the thickest filter of the study needs files, the whole case uses them.
             self.placement = thickest.unwrap_or(Placement::Memory);

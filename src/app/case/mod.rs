@@ -20,7 +20,7 @@ mod varied;
 pub(crate) use base::{CaseBase, CaseSupply, PAPER_MASS_RATIO};
 pub use error::CaseError;
 pub(crate) use files::{INPUT_FILES, INPUT_NAMES};
-pub(crate) use filter::{CaseFilter, FixedNetwork};
+pub(crate) use filter::CaseFilter;
 pub(crate) use library_filter::{LibraryFilter, OtherCurve, end_of_guess};
 pub(crate) use memory::ResourceLimits;
 pub(crate) use network::CaseNetwork;
