@@ -121,10 +121,8 @@ impl Case {
 
     fn network_record(&self) -> record::NetworkRecord {
         let (kind, name) = self.network_name();
-        let [nx, ny, nz] = match self.scene.network.source().shape() {
-            Some(shape) => shape.map(|n| Some(u64::from(n))),
-            None => [None; 3],
-        };
+        let shape = self.scene.network.source().shape();
+        let [nx, ny, nz] = shape.map_or([None; 3], |shape| shape.map(|n| Some(u64::from(n))));
         let CaseNetwork { voids, constrictions, start_nodes, layers, .. } = self.network;
         record::NetworkRecord {
             kind,

@@ -160,16 +160,14 @@ impl Case {
         let (voids, constrictions) = (self.network.voids as f64, self.network.constrictions as f64);
         let besides = runs * solved + (voids + constrictions) * NETWORK_S;
         match pilot(self, n_base, runs * guessed, most_s) {
-            Some(work) => {
-                Foreseen {
-                    seconds: work.of_voids(voids, self.slower()) + besides,
-                    besides,
-                    took: work.took,
-                    // A pilot walks on a lattice by area, whatever the case's own network is.
-                    predicted: work.of_voids(work.voids, self.of_engine(true)),
-                    eroded: Some(work.eroded),
-                }
-            }
+            Some(work) => Foreseen {
+                seconds: work.of_voids(voids, self.slower()) + besides,
+                besides,
+                took: work.took,
+                // A pilot walks on a lattice by area, whatever the case's own network is.
+                predicted: work.of_voids(work.voids, self.of_engine(true)),
+                eroded: Some(work.eroded),
+            },
             None => Foreseen { seconds: runs * guessed + besides, besides, ..Foreseen::default() },
         }
     }

@@ -428,7 +428,7 @@ mod tests {
     use crate::run::{case_of, walk_case};
     use std::collections::BTreeSet;
     use std::fs;
-    use std::sync::atomic::AtomicBool;
+    use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
     use voidwalk_core::constrictions::find;
     use voidwalk_core::network::{ExitRule, NetworkColumns};
 
@@ -473,7 +473,13 @@ mod tests {
                 "base.n_base=30000",
                 "record.sensitivity=[]",
             ]);
-            let mut expected = walk_case(&case, &Callbacks::default()).unwrap();
+            let runs = AtomicU64::new(0);
+            let on_event = |event: Event| {
+                runs.fetch_add(u64::from(matches!(event, Event::RunDone)), Relaxed);
+            };
+            let callbacks = Callbacks { on_event: &on_event, ..Callbacks::default() };
+            let mut expected = walk_case(&case, &callbacks).unwrap();
+            assert_eq!(runs.into_inner(), 6);
             let plan = NetworkWalk {
                 seed: 9,
                 replicates: 3,

@@ -211,19 +211,15 @@ impl Scene {
 
     /// Refuses a scene that lacks a setting or has one that does not apply.
     fn check_what_is_missing(&self, s: &GivenSettings) -> Result<(), SceneError> {
-        let filter = &self.filter;
-        if filter.curve.is_none()
-            && filter.library.is_none()
-            && filter.estimate.is_none()
-            && self.packing.is_none()
-            && self.network.file.is_none()
-            && self.network.packing.is_none()
-        {
+        let (filter, network) = (&self.filter, &self.network);
+        let guessed_or_given =
+            filter.curve.is_some() || filter.library.is_some() || filter.estimate.is_some();
+        let of_network = network.file.is_some() || network.packing.is_some();
+        if !guessed_or_given && !of_network && self.packing.is_none() {
             return Err(s.clash(
                 "the filter's constrictions are missing: filter.density = \"loose\" (or \"intermediate\", \
                  \"dense\") packs its grains; filter.library = \"loose\" takes them from the library of \
-                 packings; filter.curve names a shipped curve, or a CSV file with \
-                 percent_smaller,diameter_mm",
+                 packings; filter.curve names a shipped curve, or a CSV file with percent_smaller,diameter_mm",
             ));
         }
         if filter.measured.is_some() && (self.packing.is_none() || filter.grains_per_void.is_none()) {
