@@ -91,9 +91,9 @@ impl Case {
         Self::new(Scene::built_in(&set)?)
     }
 
-    /// Case of a scene whose filter has been packed, with the voids of the packing if they have been measured,
-    /// and with these files read before. Errors: as for [`Case::new`]; also if the filter is to be packed and
-    /// has not been.
+    /// Case of a scene whose filter has been packed, with the voids of the packing if they have been
+    /// measured, and with these files read before. Errors: as for [`Case::new`]; also if the filter is to be
+    /// packed and has not been.
     pub(crate) fn with_filter(
         mut scene: Scene,
         packed: Option<PackedFilter>,

@@ -209,14 +209,14 @@ fn constrictions(scene: &Scene) -> String {
             density => density.name(),
         };
         return format!(
-            "The filter's constrictions are those of packings of filters like it: {density}. Where the library \
-             holds none like it, they are guessed."
+            "The filter's constrictions are those of packings of filters like it: {density}. Where the \
+             library holds none like it, they are guessed."
         );
     }
     match (&filter.estimate, &filter.curve) {
         (Some(estimate), _) => format!(
-            "The filter's constrictions are guessed from its gradation at {estimate}, and at both ends of the \
-             range from 0 (loose) to 1 (dense): how densely it lies was not given."
+            "The filter's constrictions are guessed from its gradation at {estimate}, and at both ends of \
+             the range from 0 (loose) to 1 (dense): how densely it lies was not given."
         ),
         (None, Some(_)) => "The filter's constrictions are those of filter.curve.".into(),
         (None, None) => "The constrictions are those of the network that was given.".into(),

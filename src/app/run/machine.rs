@@ -16,8 +16,8 @@ pub(super) fn description() -> String {
     format!("{}, {model}, {cores} {noun}, {total} of memory", platform::system())
 }
 
-/// Memory that a run may take (bytes): that of a cluster's job, if it has less than the machine. If the system
-/// reports no memory, nothing is refused.
+/// Memory that a run may take (bytes): that of a cluster's job, if it has less than the machine. Nothing is
+/// refused if the system reports no memory.
 pub(super) fn available_bytes() -> u64 {
     let of_job = Allocation::here().and_then(|job| job.memory);
     platform::memory().available.unwrap_or(u64::MAX).min(of_job.unwrap_or(u64::MAX))

@@ -1,9 +1,8 @@
 //! Walks of one case: the functions that every interface calls, including the command line.
 //!
 //! A scene is [prepared](prepare::prepare) into a case, its replicates are walked under checkpoints, and
-//! [`results`] are written. Pages are made elsewhere, from the files that are written here. [`Callbacks`] follow
-//! the work and stop it, [`RunError`] gives the reason for an early end, and [`folder::claim`] guards every
-//! folder.
+//! [`results`] are written, from which pages are made elsewhere. [`Callbacks`] follow the work and stop it,
+//! [`RunError`] gives the reason for an early end, and [`folder::claim`] guards every folder.
 
 pub(crate) mod callbacks;
 pub(crate) mod case_walks;

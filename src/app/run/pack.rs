@@ -380,8 +380,9 @@ impl ConstrictionsOptions {
             |summary: &Summary| summary.grains_per_void.is_finite() && summary.mean_connectivity.is_finite();
         let mut summary = constrictions.summary().ok().filter(whole).ok_or_else(|| {
             RunError::Refused(format!(
-                "{file}: {} grains are too few: no constriction lies between two voids inside the packing. At \
-                 least 5 grains that do not lie in one plane are needed for one, some thousands for a curve",
+                "{file}: {} grains are too few: no constriction lies between two voids inside the packing. \
+                 At least 5 grains that do not lie in one plane are needed for one, some thousands for a \
+                 curve",
                 packing.diameter.len()
             ))
         })?;

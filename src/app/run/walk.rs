@@ -257,7 +257,7 @@ fn without_page(folder: &Folder, case: &Case) -> Result<Option<Outcome>, RunErro
     Ok(outcome.filter(|o| Studies::are_whole(case, &o.sensitivity, &o.thickness)))
 }
 
-/// Walks everything that decides the verdict of a case, then its studies; `write` gets the results after both.
+/// Walks everything that decides the verdict of a case, then its studies; `write` gets the results of both.
 fn walk_all(
     case: &Case,
     notes: &[Note],

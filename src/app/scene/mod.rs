@@ -219,7 +219,8 @@ impl Scene {
             return Err(s.clash(
                 "the filter's constrictions are missing: filter.density = \"loose\" (or \"intermediate\", \
                  \"dense\") packs its grains; filter.library = \"loose\" takes them from the library of \
-                 packings; filter.curve names a shipped curve, or a CSV file with percent_smaller,diameter_mm",
+                 packings; filter.curve names a shipped curve, or a CSV file with \
+                 percent_smaller,diameter_mm",
             ));
         }
         if filter.measured.is_some() && (self.packing.is_none() || filter.grains_per_void.is_none()) {

@@ -21,7 +21,8 @@ pub(crate) fn memory(memory: &WalkMemory) -> String {
     };
     let files = on_disk.map_or(String::new(), |on_disk| {
         format!(
-            ", and {} in files in the run folder for the particles, mapped into memory: slower, the same bits",
+            ", and {} in files in the run folder for the particles, mapped into memory: slower, the same \
+             bits",
             bytes(on_disk)
         )
     });
