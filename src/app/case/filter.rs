@@ -239,7 +239,7 @@ impl FixedNetwork {
     }
 
     /// Constriction curve (mm): its open diameters by number, at most a thousand points.
-    pub(super) fn curve(&self) -> Result<Curve, CaseError> {
+    fn curve(&self) -> Result<Curve, CaseError> {
         let unit_mm = self.network.unit_mm();
         let open = self.network.diameters().iter().filter(|&&d| d > 0.0 && d != WIDE);
         let mut sizes: Vec<f64> = open.map(|&d| f64::from(d) * unit_mm).collect();
@@ -287,7 +287,7 @@ impl GraphPacking {
     }
 
     /// Number of copies of the packing for this extent.
-    pub(crate) fn copies(&self, extent: Extent, d50f_mm: f64) -> u32 {
+    fn copies(&self, extent: Extent, d50f_mm: f64) -> u32 {
         let cell = self.graph.cell_mm[2];
         let thickness = match extent {
             Extent::Copies(copies) => return copies,

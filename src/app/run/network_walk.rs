@@ -425,7 +425,7 @@ mod tests {
     use super::*;
     use crate::case::Case;
     use crate::outcome::record::ModelLimit;
-    use crate::run::{case_of, walk_case};
+    use crate::run::{Exit, case_of, walk_case};
     use std::collections::BTreeSet;
     use std::fs;
     use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
@@ -450,6 +450,20 @@ mod tests {
 
     fn one_size(mm: f64, replicates: u64) -> NetworkWalk {
         NetworkWalk { replicates, ..NetworkWalk::new(Gradation::single(mm).unwrap(), 1000) }
+    }
+
+    /// Walks of the soils of a case.
+    fn plan_of(case: &Case) -> NetworkWalk {
+        let filter = GivenFilter {
+            gradation: case.filter.gradation.clone(),
+            is_measured: case.filter_is_measured(),
+            grains_per_void: case.filter.grains_per_void,
+        };
+        NetworkWalk {
+            increments: case.increments(),
+            filter: Some(filter),
+            ..NetworkWalk::new(case.base.gradation.clone(), case.supply.n_base)
+        }
     }
 
     /// Covers engines that record and engines that count, both runs, and every figure but the time.
@@ -484,12 +498,7 @@ mod tests {
                 seed: 9,
                 replicates: 3,
                 engine: Engine::ALL.into_iter().find(|e| e.name() == engine).unwrap(),
-                filter: Some(GivenFilter {
-                    gradation: case.filter.gradation.clone(),
-                    is_measured: false,
-                    grains_per_void: None,
-                }),
-                ..NetworkWalk::new(case.base.gradation.clone(), 30_000)
+                ..plan_of(&case)
             };
             let mut outcome = walk(&network, &plan);
             assert_eq!((outcome.verdict, &outcome.summary), (expected.model.class, &expected.summary));
@@ -525,16 +534,11 @@ mod tests {
         let networks = [lattice([6, 6, 8])];
         let refused = |plan: NetworkWalk, message: &str| {
             let error = walk_networks(&networks, &plan, &Callbacks::default()).err().unwrap();
-            assert!(
-                error.exit() == crate::run::Exit::Refused && error.to_string().contains(message),
-                "{error}"
-            );
+            assert!(error.exit() == Exit::Refused && error.to_string().contains(message), "{error}");
         };
         let plan = NetworkWalk::new(Gradation::linear_from_d0(0.1, 1.5).unwrap(), 10_000);
-        refused(
-            NetworkWalk { runs: 3, ..plan.clone() },
-            "runs = 3 is not allowed; a whole number from 1 to 2",
-        );
+        let message = "runs = 3 is not allowed; a whole number from 1 to 2";
+        refused(NetworkWalk { runs: 3, ..plan.clone() }, message);
         refused(NetworkWalk { n_base: 0, ..plan.clone() }, "n_base = 0");
         let huge = NetworkWalk { n_base: 1 << 60, engine: Engine::Particles, ..plan.clone() };
         refused(huge, "of memory, but");
@@ -543,7 +547,7 @@ mod tests {
         let stop = AtomicBool::new(true);
         let callbacks = Callbacks { stop: &stop, ..Callbacks::default() };
         let error = walk_networks(&networks, &plan, &callbacks).err().unwrap();
-        assert_eq!(error.exit(), crate::run::Exit::Stopped);
+        assert_eq!(error.exit(), Exit::Stopped);
     }
 
     /// Two constrictions are passed both ways and one is closed from the start; each is counted once.
@@ -587,10 +591,8 @@ mod tests {
         let filter = || Gradation::linear_from_d0(1.0, 1.5).ok();
         let has = |notes: &[Note], id: &str| notes.iter().any(|note| note.id() == id);
         let (n, of_eq2) = number_and_notes(None, filter(), Some(0.6));
-        assert!(
-            n > 1000
-                && !["few_particles", "more_particles", "amount_unknown"].iter().any(|id| has(&of_eq2, id))
-        );
+        let doubts = ["few_particles", "more_particles", "amount_unknown"];
+        assert!(n > 1000 && !doubts.iter().any(|id| has(&of_eq2, id)));
         assert!(has(&number_and_notes(Some(1000), filter(), Some(0.6)).1, "few_particles"));
         assert!(has(&number_and_notes(Some(n + 1), filter(), Some(0.6)).1, "more_particles"));
         for filter in [None, filter()] {
@@ -615,16 +617,7 @@ mod tests {
 
     /// Notes on a scene, and on a walk of its soils on its network without it; the list above is left out.
     fn of_both(case: &Case, network: &Network) -> [BTreeSet<(String, String)>; 2] {
-        let filter = GivenFilter {
-            gradation: case.filter.gradation.clone(),
-            is_measured: case.filter_is_measured(),
-            grains_per_void: case.filter.grains_per_void,
-        };
-        let plan = NetworkWalk {
-            increments: case.increments(),
-            filter: Some(filter),
-            ..NetworkWalk::new(case.base.gradation.clone(), case.supply.n_base)
-        };
+        let plan = plan_of(case);
         let shared = |notes: Vec<Note>, allowed: &[&str]| {
             let shared = notes.into_iter().filter(|note| !allowed.contains(&&*note.id()));
             shared.map(|note| (note.id(), format!("{note:?}"))).collect()
@@ -642,8 +635,7 @@ mod tests {
             (["network.nx=10", "walk.exit=flux"], "all_on_its_way"),
         ] {
             let small = ["network.ny=10", "network.nz=10", "filter.d0_mm=2", "base.n_base=100"];
-            let rest = ["inject_share=0.1", "replicates=2", "record.sensitivity=[]"];
-            let case = case_of(&[&own[..], &small, &rest].concat());
+            let case = case_of(&[&own[..], &small, &["inject_share=0.1", "replicates=2"]].concat());
             let [of_scene, mut of_network] = of_both(&case, &case.network(1).unwrap());
             of_network.retain(|(id, _)| id != "given_network");
             assert_eq!(of_scene, of_network);
