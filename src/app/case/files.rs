@@ -17,10 +17,8 @@ use voidwalk_sheets::{Soil, file_and_soil};
 const LARGEST_TABLE: u64 = 16 << 20;
 /// Maximum size of a network file (bytes).
 const LARGEST_NETWORK: u64 = 1 << 36;
-
 /// Folder of the input files inside a run folder.
 const INPUTS: &str = "inputs";
-
 /// File with the user's names for the files in that folder, by their names there.
 pub(crate) const INPUT_NAMES: &str = "inputs/names.json";
 

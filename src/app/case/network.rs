@@ -13,7 +13,6 @@ use voidwalk_core::stream::{Key, Purpose};
 /// Number of voids above which a lattice is not built only to be counted: counts of a smaller one are
 /// scaled up.
 const MADE_FOR_COUNTS: u64 = 4_000_000;
-
 /// Maximum number of voids along each side of the smaller lattice.
 const SMALLER: u32 = 64;
 

@@ -19,11 +19,9 @@ use voidwalk_practice::InputFile;
 /// File of the packing's measurements; a folder with this file is complete.
 pub(crate) const RECORD: &str = "packing.json";
 pub(crate) const GRAINS: &str = "grains.csv";
-
 /// Filter grains per void if the constrictions are a guess and no number is given: the value of loose
 /// packings (`results/packing.md`).
 pub(super) const GUESSED_GRAINS_PER_VOID: f64 = 0.6;
-
 /// Grains per void of packings without friction: 0.49.
 const SLIDING_GRAINS_PER_VOID: f64 = 0.49;
 /// Filter grains per void at friction 0.3: 0.63 to 0.69 in linear gradations of Cu 1.5 to 6
@@ -251,7 +249,6 @@ fn refused(record: &Path, problem: impl ToString) -> PackedError {
 const SAME_SIZE: f64 = 1e-3;
 /// Maximum difference between their percentages.
 const SAME_PERCENT: f64 = 1e-2;
-
 /// Part of the definition of a packing: another number gives other grains from the same recipe.
 const PROTOCOL: u32 = 2;
 /// Protocol of gradations so broad that grains with many contacts are moved as heavier ones.

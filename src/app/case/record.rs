@@ -11,7 +11,6 @@ use voidwalk_practice::{AboutPage, InputFile};
 
 /// Kinematic viscosity of water at 10 C (m2/s).
 const KINEMATIC_VISCOSITY: f64 = 1.307e-6;
-
 /// Gravity (m/s2).
 const GRAVITY: f64 = 9.81;
 

@@ -114,7 +114,6 @@ impl Allocation {
 
 /// Factor on the estimated memory that a job script requests.
 pub(crate) const MEMORY_MARGIN: f64 = 1.5;
-
 /// A job is small if it takes at most this much memory for each of its threads (bytes).
 const LITTLE_BYTES: u64 = 1 << 30;
 

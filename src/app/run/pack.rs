@@ -32,13 +32,10 @@ use voidwalk_core::store::{Folder, StoreError};
 
 /// Checkpoint of an unfinished compression; its files are [`STATES`].
 const STATE: &str = "compression";
-
 /// Interval between saves of a compression that a scene needs.
 const SAVE_EVERY: Duration = Duration::from_secs(60);
-
 /// Usual folder of packings.
 pub(super) const PACKINGS: &str = "voidwalk-packings";
-
 /// Interval between checks for a packing that another process is making.
 const LOOK: Duration = Duration::from_millis(500);
 

@@ -160,7 +160,14 @@ fn walk_here(
     let fingerprint = case.fingerprint();
     let begun = begun(&folder, &fingerprint, options.overwrite, resumed)?;
     if begun.is_none() {
-        clear_for(&folder, &files, resumed)?;
+        if resumed {
+            // Nothing else exists of its scene and input files.
+            clear_but_scene(&folder)?;
+        } else {
+            outlive_clear(&folder, FolderKind::Run, &files)?;
+            clear(&folder, FolderKind::Run)?;
+        }
+        checkpoints::discard(folder.path())?;
     } else if let Some(outcome) = without_page(&folder, &case)? {
         callbacks.results(FolderKind::Run, folder.path(), None)?;
         checkpoints::discard(folder.path())?;
@@ -186,18 +193,6 @@ fn walk_here(
     checkpoints.clear()?;
     Unfinished::end(&folder)?;
     Ok(FinishedRun { folder: folder.path().to_owned(), outcome, decision, unit })
-}
-
-/// Clears the folder of a run that starts again.
-fn clear_for(folder: &Folder, files: &[PathBuf], resumed: bool) -> Result<(), RunError> {
-    if resumed {
-        // Nothing else exists of its scene and input files.
-        clear_but_scene(folder)?;
-    } else {
-        outlive_clear(folder, FolderKind::Run, files)?;
-        clear(folder, FolderKind::Run)?;
-    }
-    Ok(checkpoints::discard(folder.path())?)
 }
 
 /// Files of a scene, including the scene's own file if it has one.
