@@ -92,18 +92,6 @@ impl Case {
         factors
     }
 
-    /// Multiples that are requested but not walked, each with the reason.
-    fn sensitivity_not_walked(&self) -> Vec<LeftOut> {
-        let (walked, cap) = (self.sensitivity_factors(), self.cap());
-        let not_walked =
-            self.scene.record.sensitivity.iter().copied().filter(|factor| !walked.contains(factor));
-        let (above, same): (Vec<f64>, Vec<f64>) =
-            not_walked.partition(|factor| factor * self.supply.n_base as f64 > cap);
-        let is_above = (!above.is_empty()).then_some(LeftOut::AmountsAboveCap(above, cap));
-        let is_same = (!same.is_empty()).then_some(LeftOut::AmountsTheSame(same));
-        is_above.into_iter().chain(is_same).collect()
-    }
-
     /// Number of base particles times this factor, at least one.
     pub(crate) fn times_base(&self, factor: f64) -> u64 {
         times(self.supply.n_base, factor)
@@ -195,7 +183,17 @@ impl Case {
         if self.scene.walk.runs == 1 {
             left_out.push(LeftOut::SecondRun);
         }
-        left_out.extend(self.sensitivity_not_walked());
+        let (walked, cap) = (self.sensitivity_factors(), self.cap());
+        let not_walked =
+            self.scene.record.sensitivity.iter().copied().filter(|factor| !walked.contains(factor));
+        let (above, same): (Vec<f64>, Vec<f64>) =
+            not_walked.partition(|factor| *factor * self.supply.n_base as f64 > cap);
+        if !above.is_empty() {
+            left_out.push(LeftOut::AmountsAboveCap(above, cap));
+        }
+        if !same.is_empty() {
+            left_out.push(LeftOut::AmountsTheSame(same));
+        }
         for factor in self.thickness_factors() {
             if let Err(error) = self.of_thickness(factor) {
                 left_out.push(LeftOut::ThicknessRefused(factor, error.to_string()));

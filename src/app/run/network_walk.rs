@@ -130,9 +130,6 @@ pub fn walk_networks(
     Ok(NetworkOutcome { verdict, summary, replicates })
 }
 
-/// A replicate, and its blocked exits at the end of each run.
-type Walked = (ReplicateResult, Vec<BitVec>);
-
 /// Replicates are walked side by side if they take at most this much memory together (bytes).
 const SIDE_BY_SIDE_BYTES: u64 = 1 << 30;
 
@@ -248,13 +245,14 @@ impl NetworkWalk {
             .sampled(self.sampling)
     }
 
+    /// Walks a replicate; also returns its blocked exits at the end of each run.
     fn replicate(
         &self,
         network: &Arc<Network>,
         sampler: &SizeSampler,
         replicate: u64,
         callbacks: &Callbacks,
-    ) -> Result<Walked, RunError> {
+    ) -> Result<(ReplicateResult, Vec<BitVec>), RunError> {
         let seed = replicate_seed(self.seed, replicate);
         let mut blocked = BitVec::repeat(false, network.constrictions());
         let first = self.plan(network, sampler, &blocked);

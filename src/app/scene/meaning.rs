@@ -211,12 +211,8 @@ impl NetworkSource {
 impl Record {
     /// Data to record of a run.
     pub(crate) fn wanted(&self) -> Wanted {
-        Wanted {
-            series_every: self.series_every,
-            size_curves: self.size_curves.clone(),
-            size_classes: self.size_classes as usize,
-            voids: self.voids.clone(),
-        }
+        let Self { series_every, size_curves, size_classes, voids, .. } = self.clone();
+        Wanted { series_every, size_curves, size_classes: size_classes as usize, voids }
     }
 }
 
