@@ -18,10 +18,8 @@ pub struct CaseBase {
 }
 
 impl CaseBase {
-    /// Reads the base that a scene states, with this filter.
-    ///
-    /// # Errors
-    /// A file is refused, or regrading is requested for sizes that are multiples of D0F.
+    /// Reads the base that a scene states, with this filter. Errors: a file is refused, or regrading is
+    /// requested for sizes that are multiples of D0F.
     pub(super) fn read(scene: &Scene, filter: &CaseFilter, files: &mut Files) -> Result<Self, CaseError> {
         let given = given(scene, filter, files)?;
         if scene.base.regrade != Some(Regrade::Practice) {
@@ -141,40 +139,38 @@ impl CaseSupply {
                  counted: give base.d0_mm or a finer sieve",
             )),
         };
-        let (ratio, cap) = match scene.base.amount() {
-            Amount::MassRatio(ratio, cap) => (ratio, cap.map(times).transpose()?),
+        let (gradation, grains) = (&filter.gradation, filter.grains_per_void);
+        let by_eq2 = |ratio, grains, cap| base_particles(ratio, grains, voids, taken, gradation, cap);
+        let (n_base, n_base_eq2, capped, mass_ratio) = match scene.base.amount() {
             Amount::Number(n) => {
                 let n_base = times(n)?;
-                let sampler = SizeSampler::new(taken, filter.unit_mm)?;
-                let (mut n_base_eq2, mut mass_ratio) = (None, None);
-                if let Some(grains) = filter.grains_per_void {
-                    let filter = &filter.gradation;
-                    let per_grain = taken.particles_per_unit_volume() / filter.particles_per_unit_volume();
-                    let supply = base_particles(PAPER_MASS_RATIO, grains, voids, taken, filter, None)?;
-                    n_base_eq2 = Some(supply.n_base_eq2);
-                    mass_ratio = Some(n_base as f64 / (grains * voids as f64 * per_grain));
+                let eq2 = grains.map(|grains| by_eq2(PAPER_MASS_RATIO, grains, None)).transpose()?;
+                let per_grain = taken.particles_per_unit_volume() / gradation.particles_per_unit_volume();
+                let mass_ratio = grains.map(|grains| n_base as f64 / (grains * voids as f64 * per_grain));
+                (n_base, eq2.map(|supply| supply.n_base_eq2), false, mass_ratio)
+            }
+            Amount::MassRatio(ratio, cap) => {
+                let cap = cap.map(times).transpose()?;
+                let Some(grains) = grains else {
+                    let problem =
+                        "filter.grains_per_void is missing (Eq. 2): only the shipped curves know theirs";
+                    return Err(scene.clash(problem).into());
+                };
+                let BaseSupply { mut n_base, n_base_eq2, capped } = by_eq2(ratio, grains, cap)?;
+                if n_base == 0 && is_packed {
+                    // The guessed grains per void gave barely one.
+                    n_base = 1;
                 }
-                return Ok(Self { pan_is_walked, sampler, n_base, n_base_eq2, capped: false, mass_ratio });
+                if n_base == 0 {
+                    let problem = "Eq. (2) gives less than half a base particle: a larger network, mass \
+                                   ratio or grains per void is needed";
+                    return Err(scene.clash(problem).into());
+                }
+                let ratio = if capped { ratio * n_base as f64 / n_base_eq2 as f64 } else { ratio };
+                (n_base, Some(n_base_eq2), capped, Some(ratio))
             }
         };
-        let Some(grains) = filter.grains_per_void else {
-            let problem = "filter.grains_per_void is missing (Eq. 2): only the shipped curves know theirs";
-            return Err(scene.clash(problem).into());
-        };
-        let BaseSupply { mut n_base, n_base_eq2, capped } =
-            base_particles(ratio, grains, voids, taken, &filter.gradation, cap)?;
-        if n_base == 0 && is_packed {
-            // The guessed grains per void gave barely one.
-            n_base = 1;
-        }
-        if n_base == 0 {
-            let problem = "Eq. (2) gives less than half a base particle: a larger network, mass ratio or \
-                           grains per void is needed";
-            return Err(scene.clash(problem).into());
-        }
         let sampler = SizeSampler::new(taken, filter.unit_mm)?;
-        let mass_ratio = Some(if capped { ratio * n_base as f64 / n_base_eq2 as f64 } else { ratio });
-        let n_base_eq2 = Some(n_base_eq2);
         Ok(Self { pan_is_walked, sampler, n_base, n_base_eq2, capped, mass_ratio })
     }
 }

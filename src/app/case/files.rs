@@ -18,10 +18,8 @@ use voidwalk_sheets::{Soil, file_and_soil};
 const LARGEST_TABLE: u64 = 16 << 20;
 /// Maximum size of a network file (bytes).
 const LARGEST_NETWORK: u64 = 1 << 36;
-
 /// Folder of the input files inside a run folder.
 const INPUTS: &str = "inputs";
-
 /// File with the user's names for the files in that folder, by their names there.
 pub(crate) const INPUT_NAMES: &str = "inputs/names.json";
 
@@ -111,8 +109,7 @@ impl Files {
     ) -> Result<(String, &[u8]), CaseError> {
         let file = path.display().to_string();
         if let Some(at) = self.known.iter().position(|input| input.setting == setting) {
-            let known = self.known.swap_remove(at);
-            self.inputs.push(known);
+            self.inputs.push(self.known.swap_remove(at));
             return Ok((file, &self.inputs[self.inputs.len() - 1].bytes));
         }
         // A soil of the built-in scene was named on the command line, usually without its setting.

@@ -20,7 +20,6 @@ use voidwalk_core::packing::Packing;
 /// Filter with all its derived values.
 #[derive(Clone)]
 pub struct CaseFilter {
-    /// Gradation of the filter.
     pub(crate) gradation: Gradation,
     /// Reference length: the smallest grain (mm).
     pub(crate) unit_mm: f64,
@@ -44,16 +43,51 @@ pub struct CaseFilter {
 }
 
 impl CaseFilter {
-    /// Builds a filter as stated; `fixed` is its network if all replicates walk one network.
-    pub(super) fn new(
+    /// Reads the filter that a scene states, and the network of its replicates if they all walk one; `packed`
+    /// and `measured` are its packing and that packing's voids, if they already exist.
+    pub(super) fn read(
         scene: &Scene,
-        stated: StatedFilter,
-        fixed: Option<&FixedNetwork>,
-    ) -> Result<Self, CaseError> {
-        let grains_per_void = grains_per_void(scene, &stated, fixed);
-        let StatedFilter { gradation, curve, shipped, packed, library, guessed_density, .. } = stated;
+        packed: Option<PackedFilter>,
+        measured: Option<Arc<GraphPacking>>,
+        files: &mut Files,
+    ) -> Result<(Self, Option<FixedNetwork>), CaseError> {
+        let packed = match (&scene.filter.measured, scene.filter.grains_per_void) {
+            (Some(curve), Some(grains_per_void)) => Some(PackedFilter::kept(curve, grains_per_void)?),
+            _ => packed,
+        };
+        let graph = match (measured, scene.network.source()) {
+            (None, NetworkSource::Graph(file, _)) => {
+                GraphPacking::read(scene, file.as_ref(), packed.as_ref(), files)?.map(Arc::new)
+            }
+            (measured, _) => measured,
+        };
+        let (stated, shipped) = match (&scene.filter.curve, &packed) {
+            (_, Some(packed)) => (Some(files.packed(packed)?), None),
+            (Some(source), None) => {
+                let (curve, shipped) = files.curve(source, "filter.curve", &scene.name)?;
+                (Some(curve), shipped)
+            }
+            (None, None) if scene.packing.is_some() => {
+                return Err(CaseError::NotPacked { file: scene.name.clone() });
+            }
+            (None, None) => (graph.as_ref().map(|graph| graph.curve.clone()), None),
+        };
+        let gradation = gradation(scene, shipped, graph.as_deref(), files)?;
+        let library = match scene.filter.library {
+            Some(density) => LibraryFilter::find(&gradation, density)?,
+            None => None,
+        };
+        // The constrictions of a filter are guessed if no library filter is similar.
+        let of_library = scene.filter.library.filter(|_| library.is_none());
+        let guessed_density = scene.filter.estimate.or(of_library.map(LibraryDensity::relative));
+        let stated = match (&library, guessed_density) {
+            (Some(library), _) => Some(library.found.curve.clone()),
+            (None, Some(density)) => Some(inscribed(&gradation, density)?),
+            (None, None) => stated,
+        };
+        let fixed = FixedNetwork::read(scene, &gradation, graph.as_ref(), files)?;
         let unit_mm = gradation.smallest_mm();
-        let curve = match (fixed.filter(|fixed| fixed.packing.is_none()), curve) {
+        let curve = match (fixed.as_ref().filter(|fixed| fixed.packing.is_none()), stated) {
             (Some(fixed), _) => fixed.curve()?,
             (None, Some(curve)) => {
                 if curve.unit() == CurveUnit::D0f && gradation.pan_fraction() > 0.0 {
@@ -65,7 +99,7 @@ impl CaseFilter {
             }
             (None, None) => return Err(scene.clash("filter.curve is missing").into()),
         };
-        let mut curve_ends = match (fixed, &library) {
+        let mut curve_ends = match (&fixed, &library) {
             (Some(_), _) => Vec::new(),
             (None, Some(library)) => library.ends.clone(),
             (None, None) => {
@@ -78,7 +112,19 @@ impl CaseFilter {
             curve_ends.iter_mut().for_each(|end| end.times_grains = 1.0);
         }
         let finest_mm = curve_ends.iter().map(|end| end.curve.smallest()).fold(curve.smallest(), f64::min);
-        Ok(Self {
+        // By Eq. (2) the mass of base is a fraction of the mass of a graph's grains.
+        let of_graph = graph.map(|graph| {
+            let solid = std::f64::consts::FRAC_PI_6 * graph.graph.cubes_mm3;
+            solid * gradation.particles_per_unit_volume() / graph.graph.voids() as f64
+        });
+        // The grains per void of a shipped packing do not apply to a network from another source.
+        let of_shipped = shipped.filter(|_| fixed.is_none()).map(|shipped| shipped.grains_per_void);
+        let of_packing = packed.as_ref().map(|packed| packed.grains_per_void).or(of_shipped);
+        let of_library = library.as_ref().map(|library| library.found.grains_per_void);
+        let known = scene.filter.grains_per_void.or(of_graph).or(of_packing).or(of_library);
+        let is_guessed = needs_grains_per_void(scene, guessed_density);
+        let grains_per_void = known.or(is_guessed.then_some(GUESSED_GRAINS_PER_VOID));
+        let filter = Self {
             gradation,
             unit_mm,
             curve,
@@ -89,7 +135,8 @@ impl CaseFilter {
             packed,
             library,
             guessed_density,
-        })
+        };
+        Ok((filter, fixed))
     }
 
     /// True if lengths of a scene are in units of the smallest filter grain, unless a network has a size.
@@ -124,82 +171,6 @@ pub(super) fn needs_grains_per_void(scene: &Scene, guessed_density: Option<f64>)
         && matches!(scene.base.amount(), Amount::MassRatio(..))
 }
 
-/// Filter grains per void: given, measured on the packing of the voids or constrictions, or guessed.
-fn grains_per_void(scene: &Scene, stated: &StatedFilter, fixed: Option<&FixedNetwork>) -> Option<f64> {
-    // The grains per void of a shipped packing do not apply to a network from another source.
-    let of_shipped = stated.shipped.filter(|_| fixed.is_none()).map(|shipped| shipped.grains_per_void);
-    // By Eq. (2) the mass of base is a fraction of the mass of a graph's grains.
-    let of_graph = stated.graph.as_ref().map(|graph| {
-        let solid = std::f64::consts::FRAC_PI_6 * graph.graph.cubes_mm3;
-        solid * stated.gradation.particles_per_unit_volume() / graph.graph.voids() as f64
-    });
-    let of_packing = stated.packed.as_ref().map(|packed| packed.grains_per_void).or(of_shipped);
-    let of_library = stated.library.as_ref().map(|library| library.found.grains_per_void);
-    let known = scene.filter.grains_per_void.or(of_graph).or(of_packing).or(of_library);
-    let is_guessed = needs_grains_per_void(scene, stated.guessed_density);
-    known.or(is_guessed.then_some(GUESSED_GRAINS_PER_VOID))
-}
-
-/// Filter as stated, with the fields of [`CaseFilter`].
-pub(super) struct StatedFilter {
-    pub(crate) gradation: Gradation,
-    /// Constriction curve in the unit in which it is stated; `None` if the network defines it.
-    pub curve: Option<Curve>,
-    pub(crate) shipped: Option<&'static ShippedFilter>,
-    pub(crate) packed: Option<PackedFilter>,
-    pub(crate) library: Option<LibraryFilter>,
-    pub(crate) guessed_density: Option<f64>,
-    /// Measurements on the packing whose voids are the network.
-    pub(crate) graph: Option<Arc<GraphPacking>>,
-}
-
-impl StatedFilter {
-    /// Reads the files of a filter; `packed` and `measured` are its packing and that packing's voids, if
-    /// they already exist.
-    pub(crate) fn read(
-        scene: &Scene,
-        packed: Option<PackedFilter>,
-        measured: Option<Arc<GraphPacking>>,
-        files: &mut Files,
-    ) -> Result<Self, CaseError> {
-        let packed = match (&scene.filter.measured, scene.filter.grains_per_void) {
-            (Some(curve), Some(grains_per_void)) => Some(PackedFilter::kept(curve, grains_per_void)?),
-            _ => packed,
-        };
-        let graph = match (measured, scene.network.source()) {
-            (None, NetworkSource::Graph(file, _)) => {
-                GraphPacking::read(scene, file.as_ref(), packed.as_ref(), files)?.map(Arc::new)
-            }
-            (measured, _) => measured,
-        };
-        let (curve, shipped) = match (&scene.filter.curve, &packed) {
-            (_, Some(packed)) => (Some(files.packed(packed)?), None),
-            (Some(source), None) => {
-                let (curve, shipped) = files.curve(source, "filter.curve", &scene.name)?;
-                (Some(curve), shipped)
-            }
-            (None, None) if scene.packing.is_some() => {
-                return Err(CaseError::NotPacked { file: scene.name.clone() });
-            }
-            (None, None) => (graph.as_ref().map(|graph| graph.curve.clone()), None),
-        };
-        let gradation = gradation(scene, shipped, graph.as_deref(), files)?;
-        let library = match scene.filter.library {
-            Some(density) => LibraryFilter::find(&gradation, density)?,
-            None => None,
-        };
-        // The constrictions of a filter are guessed if no library filter is similar.
-        let of_library = scene.filter.library.filter(|_| library.is_none());
-        let guessed_density = scene.filter.estimate.or(of_library.map(LibraryDensity::relative));
-        let curve = match (&library, guessed_density) {
-            (Some(library), _) => Some(library.found.curve.clone()),
-            (None, Some(density)) => Some(inscribed(&gradation, density)?),
-            (None, None) => curve,
-        };
-        Ok(Self { gradation, curve, shipped, packed, library, guessed_density, graph })
-    }
-}
-
 /// Gradation of the packing or of the shipped filter, unless the scene states one.
 fn gradation(
     scene: &Scene,
@@ -227,7 +198,6 @@ fn gradation(
 /// Network that all replicates walk.
 #[derive(Clone)]
 pub(crate) struct FixedNetwork {
-    /// The network.
     pub(crate) network: Network,
     /// Finest constriction, in units of the reference length.
     pub(super) finest: f32,
@@ -238,27 +208,26 @@ pub(crate) struct FixedNetwork {
 /// Packing whose voids form a network, repeated along the flow.
 #[derive(Clone)]
 pub(crate) struct CopiedPacking {
-    /// Number of copies.
     pub(crate) copies: u32,
     /// Total thickness of the copies (mm).
     pub(crate) thickness_mm: f64,
-    /// Measurements on the packing.
     pub(super) graph: Arc<GraphPacking>,
 }
 
 impl FixedNetwork {
     /// Reads the network of a scene; `None` if each replicate builds its own, or if the packing does not
     /// exist yet.
-    pub(super) fn read(
+    fn read(
         scene: &Scene,
-        filter: &StatedFilter,
+        filter: &Gradation,
+        graph: Option<&Arc<GraphPacking>>,
         files: &mut Files,
     ) -> Result<Option<Self>, CaseError> {
-        let unit_mm = filter.gradation.smallest_mm();
-        let (network, packing) = match (&scene.network.source(), &filter.graph) {
+        let unit_mm = filter.smallest_mm();
+        let (network, packing) = match (&scene.network.source(), graph) {
             (NetworkSource::File(path), _) => (files.network(path, scene, unit_mm)?, None),
             (NetworkSource::Graph(_, extent), Some(graph)) => {
-                let copies = graph.copies(*extent, filter.gradation.d(50.0).unwrap_or(unit_mm));
+                let copies = graph.copies(*extent, filter.d(50.0).unwrap_or(unit_mm));
                 let thickness_mm = f64::from(copies) * graph.graph.cell_mm[2];
                 let (rule, rho) = (scene.exit_rule(), scene.exits.rho.unwrap_or(0.0));
                 let network = Network::of_graph(&graph.graph, GraphShape { copies, rule, rho, unit_mm })?;
@@ -270,7 +239,7 @@ impl FixedNetwork {
     }
 
     /// Constriction curve (mm): its open diameters by number, at most a thousand points.
-    pub(super) fn curve(&self) -> Result<Curve, CaseError> {
+    fn curve(&self) -> Result<Curve, CaseError> {
         let unit_mm = self.network.unit_mm();
         let open = self.network.diameters().iter().filter(|&&d| d > 0.0 && d != WIDE);
         let mut sizes: Vec<f64> = open.map(|&d| f64::from(d) * unit_mm).collect();
@@ -285,7 +254,7 @@ impl FixedNetwork {
 }
 
 /// Measurements on the grains of a graph's packing.
-pub(super) struct GraphPacking {
+pub(crate) struct GraphPacking {
     pub(crate) graph: VoidGraph,
     /// Constriction curve in mm.
     pub curve: Curve,
@@ -318,7 +287,7 @@ impl GraphPacking {
     }
 
     /// Number of copies of the packing for this extent.
-    pub(crate) fn copies(&self, extent: Extent, d50f_mm: f64) -> u32 {
+    fn copies(&self, extent: Extent, d50f_mm: f64) -> u32 {
         let cell = self.graph.cell_mm[2];
         let thickness = match extent {
             Extent::Copies(copies) => return copies,

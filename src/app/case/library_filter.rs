@@ -23,10 +23,8 @@ pub(crate) struct LibraryFilter {
 }
 
 impl LibraryFilter {
-    /// Looks up a filter; `None` if no filter of the library is similar.
-    ///
-    /// # Errors
-    /// Cannot fail for a gradation with a known size.
+    /// Looks up a filter; `None` if no filter of the library is similar. Errors: cannot fail for a gradation
+    /// with a known size.
     pub(crate) fn find(filter: &Gradation, density: LibraryDensity) -> Result<Option<Self>, CurveError> {
         // Looks up the finer part that would be packed, if the whole could not be.
         let width = |gradation: &Gradation| width_by_largest(gradation, GRAINS_OF_PART, 1.0);
@@ -78,7 +76,6 @@ impl LibraryFilter {
 /// Other possible curve of the filter.
 #[derive(Clone)]
 pub(crate) struct OtherCurve {
-    /// Description of the curve.
     pub(crate) name: String,
     /// Constriction curve (mm).
     pub(crate) curve: Curve,

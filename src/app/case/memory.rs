@@ -1,6 +1,7 @@
 //! Particles of a case that are walked one by one, memory that it requires, and location of their columns.
 
 use super::{Case, CaseError, CaseNetwork};
+use crate::words::memory::{WalkMemory, bytes};
 use std::path::Path;
 use voidwalk_core::network::ExitRule;
 use voidwalk_core::store::{Placement, platform};
@@ -9,37 +10,28 @@ use voidwalk_core::walk::{CHUNK, Engine};
 /// Maximum total memory of replicates that walk side by side, so that memory does not grow with the
 /// number of threads.
 const SIDE_BY_SIDE_BYTES: u64 = 1 << 30;
-
 /// Bytes for the events of a chunk's particles in an increment, and for their size classes (measured).
 const EVENT_BYTES: u64 = 16 << 10;
-
 /// Bytes that a worker keeps to move counts: for a void, its particles there; and for a batch of voids.
 const COUNTS_A_WORKER: (u64, u64) = (8, 32 << 10);
-
 /// Bytes for a constriction if water flows: two exits of 28 in the network and in its copy, 12 of the
 /// flow and 34 of tables each; 24 of the flow; and links, a factor, and leftovers from reading a file
 /// (measured: at most 523 in total, for a file with a million throats).
 const FLOW_BYTES: u64 = 2 * (2 * 28 + 12 + 34) + 24 + 300;
-
 /// Bytes for an exit if blocked constrictions leave openings: its width now, at the last solution of the
 /// flow and before the next run, and its conducting fraction.
 const OPENING_BYTES: u64 = 3 * 4 + 8;
-
 /// Bytes for a narrowing, and for its columns while they are saved.
 const NARROWING_BYTES: u64 = 2 * 24;
-
 /// Average number of narrowings of an exit in a run for which there is room: a new finest particle
 /// becomes rarer each time.
 const NARROWINGS: u64 = 8;
-
 /// Bytes that `record.voids` keeps while it is written. For a void with particles after an increment: its
 /// row in two copies, in growing room, and its line (measured: up to 184). For a void: its position, row
 /// and line. For a constriction: its row, its line, and the time at which it was blocked.
 const KEPT_BYTES: [u64; 3] = [200, 240, 420];
-
 /// Bytes of a network: for a void, and for a constriction (its target and diameter).
 const NETWORK_BYTES: [u64; 2] = [8, 8];
-
 /// Bytes of the exits with which its first runs begin: words and exits; shares, and the void that a
 /// constriction leaves.
 const EXIT_BYTES: [u64; 2] = [16, 16];
@@ -205,18 +197,8 @@ impl Case {
         if all <= SIDE_BY_SIDE_BYTES.min(self.memory) { threads.max(1) } else { 1 }
     }
 
-    /// True if the particles of the scene itself fit in memory or on the disk.
-    fn has_room(&self, room: &ResourceLimits, threads: u64) -> bool {
-        let columns = self.column_bytes(self.supply.n_base);
-        let besides = self.other_bytes(self.supply.n_base, threads).saturating_add(self.kept_bytes());
-        besides <= room.memory && (columns <= room.memory - besides || columns <= room.disk)
-    }
-
-    /// Sets the location of the particles' columns: in memory if they fit, or else in files in `folder`
-    /// that are mapped into memory.
-    ///
-    /// # Errors
-    /// [`CaseError::Memory`]: they fit in neither.
+    /// Sets the location of the particles' columns: in memory if they fit, or else in files in `folder` that
+    /// are mapped into memory. Errors: [`CaseError::Memory`]: they fit in neither.
     pub(crate) fn place(
         &mut self,
         room: &ResourceLimits,
@@ -224,14 +206,15 @@ impl Case {
         folder: &Path,
     ) -> Result<(), CaseError> {
         self.memory = room.memory;
-        let has_room = self.has_room(room, threads);
+        let kept = self.kept_bytes();
+        let without_columns = |n_base| self.other_bytes(n_base, threads).saturating_add(kept);
+        let (besides, columns) = (without_columns(self.supply.n_base), self.column_bytes(self.supply.n_base));
+        let has_room = besides <= room.memory && (columns <= room.memory - besides || columns <= room.disk);
         // If the scene itself does not fit, the studies are not to blame.
         let thickest = if has_room { self.place_thickest(room, threads, folder)? } else { None };
         let n_base = if has_room { self.most_particles() } else { self.supply.n_base };
-        let kept = self.kept_bytes();
         let walks = self.bytes(n_base, threads).saturating_mul(self.side_by_side(n_base, threads));
-        let needed = walks.saturating_add(kept);
-        let without_columns = self.other_bytes(n_base, threads).saturating_add(kept);
+        let (needed, without_columns) = (walks.saturating_add(kept), without_columns(n_base));
         if needed <= room.memory {
             // If the thickest filter of the study needs files, the whole case uses them.
             self.placement = thickest.unwrap_or(Placement::Memory);
@@ -266,12 +249,12 @@ impl Case {
     /// Error for `n_base` particles that need more memory than is available, with the study that needs them.
     fn no_room(&self, room: &ResourceLimits, n_base: u64, needed: u64, without_columns: u64) -> CaseError {
         let disk = match without_columns <= room.memory {
-            true => format!(" and the disk has {} for the particles", in_words(room.disk)),
+            true => format!(" and the disk has {} for the particles", bytes(room.disk)),
             false => String::new(),
         };
         let of_voids = match self.kept_bytes() {
             0 => String::new(),
-            kept => format!(" (record.voids keeps up to {}: name fewer increments)", in_words(kept)),
+            kept => format!(" (record.voids keeps up to {}: name fewer increments)", bytes(kept)),
         };
         let stated = self.supply.n_base;
         let study = match n_base == stated {
@@ -285,43 +268,23 @@ impl Case {
             n_base: self.one_by_one(n_base),
             study,
             voids: self.network.voids,
-            needed: in_words(needed),
-            available: in_words(room.memory),
+            needed: bytes(needed),
+            available: bytes(room.memory),
             disk: [disk, of_voids].concat(),
         }
     }
 
-    /// Location of the particles of a walk on this many threads, in words.
-    pub(crate) fn memory_in_words(&self, threads: u64) -> String {
-        let bytes = in_words(self.bytes(self.supply.n_base, threads));
-        let limit = in_words(self.memory);
-        let kept = match self.kept_bytes() {
-            0 => String::new(),
-            kept => format!(", and up to {} for what record.voids keeps", in_words(kept)),
+    /// Memory of its walks on this many threads.
+    pub(crate) fn walk_memory(&self, threads: u64) -> WalkMemory {
+        let n_base = self.supply.n_base;
+        let (walk, on_disk) = match &self.placement {
+            Placement::Memory => (self.bytes(n_base, threads), None),
+            Placement::Mapped(_) => {
+                (self.other_bytes(n_base, threads), Some(self.column_bytes(self.most_particles())))
+            }
         };
-        match &self.placement {
-            Placement::Memory => format!("{bytes} a walk{kept}, of {limit} that it may take"),
-            Placement::Mapped(_) => format!(
-                "{} a walk{kept}, of {limit} that it may take, and {} in files in the run folder for the \
-                 particles, mapped into memory: slower, the same bits",
-                in_words(self.other_bytes(self.supply.n_base, threads)),
-                in_words(self.column_bytes(self.most_particles()))
-            ),
-        }
+        WalkMemory { walk, kept: self.kept_bytes(), most: self.memory, on_disk }
     }
-}
-
-/// Bytes in words, such as `1.6 GB`.
-pub(crate) fn in_words(bytes: u64) -> String {
-    let (mut value, mut unit) = (bytes as f64, "bytes");
-    for larger in ["kB", "MB", "GB", "TB", "PB", "EB"] {
-        if value < 1000.0 {
-            break;
-        }
-        value /= 1000.0;
-        unit = larger;
-    }
-    if unit == "bytes" { format!("{bytes} bytes") } else { format!("{value:.2} {unit}") }
 }
 
 #[cfg(test)]

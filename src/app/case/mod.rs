@@ -1,8 +1,7 @@
 //! Case: a scene with its files read and every number determined, before any work is done.
 //!
-//! It is built in stages, each complete once it exists and made from the previous ones: the filter as
-//! stated, a network that all replicates walk, the filter, the base, the network, the particles of the
-//! base.
+//! It is built in stages, each complete once it exists and made from the previous ones: the filter as stated,
+//! a network that all replicates walk, the filter, the base, the network, the particles of the base.
 
 mod base;
 mod error;
@@ -21,9 +20,9 @@ mod varied;
 pub(crate) use base::{CaseBase, CaseSupply, PAPER_MASS_RATIO};
 pub use error::CaseError;
 pub(crate) use files::{INPUT_FILES, INPUT_NAMES};
-pub(crate) use filter::{CaseFilter, FixedNetwork};
+pub(crate) use filter::CaseFilter;
 pub(crate) use library_filter::{LibraryFilter, OtherCurve, end_of_guess};
-pub(crate) use memory::{ResourceLimits, in_words};
+pub(crate) use memory::ResourceLimits;
 pub(crate) use network::CaseNetwork;
 pub use network::replicate_seed;
 pub use packed_filter::PackingPlan;
@@ -36,7 +35,7 @@ use crate::outcome::record::{ArchingRecord, Ratios};
 use crate::scene::{NetworkSource, Scene};
 use base::as_passive;
 use files::Files;
-use filter::{GraphPacking, StatedFilter};
+use filter::GraphPacking;
 use network::{placeholder_shape, set_layers_of_thickness};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -58,7 +57,6 @@ use voidwalk_practice::Note;
 /// ```
 #[derive(Clone)]
 pub struct Case {
-    /// Scene of the case.
     pub(crate) scene: Scene,
     /// The filter.
     pub filter: CaseFilter,
@@ -66,7 +64,6 @@ pub struct Case {
     pub base: CaseBase,
     /// Note that base and filter look exchanged, or are in different units.
     pub(crate) mistake: Option<Note>,
-    /// Network of the filter.
     pub(crate) network: CaseNetwork,
     /// Particles of the base in the walk.
     pub supply: CaseSupply,
@@ -84,7 +81,7 @@ impl Case {
     /// # Errors
     /// A file is refused, or numbers clash.
     pub fn new(scene: Scene) -> Result<Self, CaseError> {
-        Self::with_graph(scene, None, None, Vec::new())
+        Self::with_filter(scene, None, None, Vec::new())
     }
 
     /// Case of the built-in scene with these settings.
@@ -94,42 +91,28 @@ impl Case {
         Self::new(Scene::built_in(&set)?)
     }
 
-    /// Case of a scene whose filter has been packed, with these files read before.
-    ///
-    /// # Errors
-    /// As for [`Case::new`]; also if the scene's filter is to be packed and has not been.
-    pub(crate) fn with_packed(
-        scene: Scene,
-        packed: Option<PackedFilter>,
-        known: Vec<Input>,
-    ) -> Result<Self, CaseError> {
-        Self::with_graph(scene, packed, None, known)
-    }
-
-    /// Builds the case with the voids of its packing, if they have been measured.
-    fn with_graph(
+    /// Case of a scene whose filter has been packed, with the voids of the packing if they have been
+    /// measured, and with these files read before. Errors: as for [`Case::new`]; also if the filter is to be
+    /// packed and has not been.
+    pub(crate) fn with_filter(
         mut scene: Scene,
         packed: Option<PackedFilter>,
         measured: Option<Arc<GraphPacking>>,
         known: Vec<Input>,
     ) -> Result<Self, CaseError> {
         let mut files = Files { known, ..Files::default() };
-        let stated = StatedFilter::read(&scene, packed, measured, &mut files)?;
-        let fixed = FixedNetwork::read(&scene, &stated, &mut files)?;
-        set_layers_of_thickness(&mut scene, &stated.gradation)?;
-        let filter = CaseFilter::new(&scene, stated, fixed.as_ref())?;
+        let (filter, fixed) = CaseFilter::read(&scene, packed, measured, &mut files)?;
+        set_layers_of_thickness(&mut scene, &filter.gradation)?;
         let base = CaseBase::read(&scene, &filter, &mut files)?;
         let scale_free = fixed.is_none() && filter.is_scale_free(&scene);
         let mistake = base.mistake(&scene, &filter.gradation, scale_free)?;
         let network = CaseNetwork::new(&scene, &filter, fixed)?;
         let is_packed = filter.packed.as_ref().is_some_and(|packed| packed.files.is_some());
-        let supply =
-            CaseSupply::new(&scene, &filter, network.voids, &base.gradation, is_packed).map_err(|error| {
-                match &mistake {
-                    Some(mistake) if scene.base.sieve.is_some() => scene.clash(mistake.to_string()).into(),
-                    _ => error,
-                }
-            })?;
+        let supply = CaseSupply::new(&scene, &filter, network.voids, &base.gradation, is_packed);
+        let supply = supply.map_err(|error| match &mistake {
+            Some(mistake) if scene.base.sieve.is_some() => scene.clash(mistake.to_string()).into(),
+            _ => error,
+        })?;
         for (name, soil, percent) in [("filter", &filter.gradation, 15.0), ("base", &base.gradation, 85.0)] {
             if soil.d(percent).is_none() {
                 let problem = format!(
@@ -139,15 +122,14 @@ impl Case {
                 return Err(scene.clash(problem).into());
             }
         }
-        let (inputs, memory, placement) = (files.inputs, u64::MAX, Placement::Memory);
-        let mistake = mistake.map(|mistake| mistake.note);
-        let case = Self { scene, filter, base, mistake, network, supply, inputs, memory, placement };
-        if case.scene.leaves_openings() && case.base.as_given().pan_fraction() > 0.0 {
+        if scene.leaves_openings() && base.as_given().pan_fraction() > 0.0 {
             let problem = "walk.blocked = \"open\" needs the sizes of the whole base, as openings may stop a \
                            particle of any size: add base.d0_mm, or finer sieves down to 0 %";
-            return Err(case.scene.clash(problem).into());
+            return Err(scene.clash(problem).into());
         }
-        Ok(case)
+        let (inputs, memory, placement) = (files.inputs, u64::MAX, Placement::Memory);
+        let mistake = mistake.map(|mistake| mistake.note);
+        Ok(Self { scene, filter, base, mistake, network, supply, inputs, memory, placement })
     }
 
     /// Mass fraction of the base that is passive and counted by mass only.
@@ -164,39 +146,31 @@ impl Case {
         }
     }
 
-    /// Network of the replicate with this seed.
-    ///
-    /// # Errors
-    /// No network with the scene's distribution of connectivity is found for this seed; [`Case::new`]
-    /// reports all other errors.
+    /// Network of the replicate with this seed. Errors: no network with the scene's distribution of
+    /// connectivity is found for this seed; [`Case::new`] reports all other errors.
     pub(crate) fn network(&self, seed: u64) -> Result<Network, NetworkError> {
-        let network = self.clean_network(seed)?;
-        Ok(match self.scene.exits.flow_tolerance {
+        let (filter, exits) = (&self.filter, &self.scene.exits);
+        let network = match (&self.network.fixed, &self.scene.network.source()) {
+            (Some(fixed), _) => fixed.network.clone(),
+            (None, NetworkSource::Connected(shape, wanted)) => {
+                Network::connected(*shape, &filter.curve, filter.unit_mm, seed, wanted)?
+            }
+            (None, source) => {
+                let placeholder = || placeholder_shape(&self.scene, &filter.gradation);
+                let shape = source.shape().unwrap_or_else(placeholder);
+                let lattice = Network::cubic(shape, &filter.curve, filter.unit_mm, seed)?;
+                let exponent = exits.conductance_exponent.unwrap_or(CONDUCTANCE_EXPONENT);
+                match self.scene.exit_rule() {
+                    ExitRule::Area => lattice,
+                    // Water sets the directions.
+                    rule => lattice.undirected_lattice(rule, exits.rho.unwrap_or(0.0), exponent)?,
+                }
+            }
+        };
+        Ok(match exits.flow_tolerance {
             Some(tolerance) => network.with_flow_tolerance(tolerance),
             None => network,
         })
-    }
-
-    fn clean_network(&self, seed: u64) -> Result<Network, NetworkError> {
-        if let Some(fixed) = &self.network.fixed {
-            return Ok(fixed.network.clone());
-        }
-        let (curve, unit_mm, source) = (&self.filter.curve, self.filter.unit_mm, self.scene.network.source());
-        let shape = source.shape().unwrap_or_else(|| placeholder_shape(&self.scene, &self.filter.gradation));
-        match source {
-            NetworkSource::Connected(_, wanted) => Network::connected(shape, curve, unit_mm, seed, &wanted),
-            _ => self.with_directions(Network::cubic(shape, curve, unit_mm, seed)?),
-        }
-    }
-
-    /// Adapts a lattice to the exit rule: without directions if water sets them.
-    fn with_directions(&self, lattice: Network) -> Result<Network, NetworkError> {
-        let (rule, exits) = (self.scene.exit_rule(), &self.scene.exits);
-        if rule == ExitRule::Area {
-            return Ok(lattice);
-        }
-        let exponent = exits.conductance_exponent.unwrap_or(CONDUCTANCE_EXPONENT);
-        lattice.undirected_lattice(rule, exits.rho.unwrap_or(0.0), exponent)
     }
 
     /// Number of increments in which the base is inserted, a whole number so that all are equal.
@@ -222,7 +196,6 @@ impl Case {
         self.scene.law().map(|law| Arc::new(Arching::new(law, concentration)))
     }
 
-    /// Record of its arches.
     pub(crate) fn arching_record(&self) -> Option<ArchingRecord> {
         let law = self.scene.law()?;
         Some(ArchingRecord {

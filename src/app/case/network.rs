@@ -13,7 +13,6 @@ use voidwalk_core::stream::{Key, Purpose};
 /// Number of voids above which a lattice is not built only to be counted: counts of a smaller one are
 /// scaled up.
 const MADE_FOR_COUNTS: u64 = 4_000_000;
-
 /// Maximum number of voids along each side of the smaller lattice.
 const SMALLER: u32 = 64;
 
@@ -25,13 +24,10 @@ pub fn replicate_seed(seed: u64, replicate: u64) -> u64 {
 /// Size of a network.
 #[derive(Clone)]
 pub(crate) struct CaseNetwork {
-    /// Number of voids.
     pub(crate) voids: u64,
     /// Number of constrictions in the first replicate.
     pub(crate) constrictions: u64,
-    /// Number of start nodes.
     pub(crate) start_nodes: u64,
-    /// Number of layers.
     pub(crate) layers: u64,
     /// Connectivity and percent of the voids, if they differ.
     pub(crate) connectivity: Vec<[f64; 2]>,

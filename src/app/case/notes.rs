@@ -14,13 +14,11 @@ use voidwalk_practice::Note;
 
 /// Number of moves of a particle that nothing stops above which a note is given.
 const MANY_MOVES: f64 = 1e5;
-
 /// Fraction of grains without load above which a note is given ...
 const MANY_LOOSE: f64 = 0.5;
 /// ... and above which coarse grains form a skeleton: with two widely different sizes 98 % were without
 /// load if the finer one was 30 % of the mass, and 19 % if it was 40 % (`results/packing.md`).
 const SKELETON: f64 = 0.9;
-
 /// Maximum number of constrictions that are examined for this, with repetitions.
 const LOOKED_AT: u64 = 50_000_000;
 

@@ -18,13 +18,10 @@ use voidwalk_practice::InputFile;
 
 /// File of the packing's measurements; a folder with this file is complete.
 pub(crate) const RECORD: &str = "packing.json";
-/// File of the grains.
 pub(crate) const GRAINS: &str = "grains.csv";
-
 /// Filter grains per void if the constrictions are a guess and no number is given: the value of loose
 /// packings (`results/packing.md`).
 pub(super) const GUESSED_GRAINS_PER_VOID: f64 = 0.6;
-
 /// Grains per void of packings without friction: 0.49.
 const SLIDING_GRAINS_PER_VOID: f64 = 0.49;
 /// Filter grains per void at friction 0.3: 0.63 to 0.69 in linear gradations of Cu 1.5 to 6
@@ -43,9 +40,7 @@ pub(crate) struct PackedFilter {
     pub(crate) files: Option<[PathBuf; 2]>,
     /// Constriction curve (mm).
     pub(crate) curve: Curve,
-    /// Constriction curve as CSV.
     pub(crate) curve_csv: String,
-    /// Filter grains per void.
     pub(crate) grains_per_void: f64,
     /// Bytes of `packing.json`.
     pub(crate) record: Vec<u8>,
@@ -87,10 +82,8 @@ pub enum PackedError {
 }
 
 impl PackedFilter {
-    /// Reads a filter from the folder of its packing; `None` if it has not been packed yet.
-    ///
-    /// # Errors
-    /// The folder is damaged or holds another filter.
+    /// Reads a filter from the folder of its packing; `None` if it has not been packed yet. Errors: the
+    /// folder is damaged or holds another filter.
     pub(crate) fn read(folder: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
         let Some((record, read)) = read_record(folder)? else { return Ok(None) };
         if read.fingerprint != order.fingerprint() {
@@ -103,11 +96,8 @@ impl PackedFilter {
         Self::measured(folder, order, read, 1.0, is_of_it.then_some(record)).map(Some)
     }
 
-    /// Finds a filter in a folder of packings: its own packing, or one of the same shape; `None` if there
-    /// is neither.
-    ///
-    /// # Errors
-    /// A packing of the filter is damaged.
+    /// Finds a filter in a folder of packings: its own packing, or one of the same shape; `None` if there is
+    /// neither. Errors: a packing of the filter is damaged.
     pub(crate) fn find(packings: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
         match Self::read(&packings.join(order.folder_name()), order)? {
             Some(filter) => Ok(Some(filter)),
@@ -115,11 +105,9 @@ impl PackedFilter {
         }
     }
 
-    /// Finds a packing of the same shape in a folder of packings, with all sizes scaled by one factor;
-    /// `None` if there is none. If there are several, the first by name is used.
-    ///
-    /// # Errors
-    /// A packing of the same shape is damaged.
+    /// Finds a packing of the same shape in a folder of packings, with all sizes scaled by one factor; `None`
+    /// if there is none. If there are several, the first by name is used. Errors: a packing of the same shape
+    /// is damaged.
     pub(crate) fn of_same_shape(packings: &Path, order: &PackingPlan) -> Result<Option<Self>, PackedError> {
         let Ok(entries) = std::fs::read_dir(packings) else { return Ok(None) };
         let usual_folder = packings.join(order.folder_name());
@@ -182,10 +170,8 @@ impl PackedFilter {
         })
     }
 
-    /// Reads a filter whose curve a run kept in its folder, with `packing.json` beside it.
-    ///
-    /// # Errors
-    /// A file is missing or damaged.
+    /// Reads a filter whose curve a run kept in its folder, with `packing.json` beside it. Errors: a file is
+    /// missing or damaged.
     pub(crate) fn kept(curve: &Path, grains_per_void: f64) -> Result<Self, PackedError> {
         let record = curve.with_file_name(RECORD);
         let (curve_bytes, record_bytes) = (read(curve)?, read(&record)?);
@@ -205,10 +191,7 @@ impl PackedFilter {
     }
 
     /// Rough estimate of a filter that has not been packed yet, to estimate work and to find faults of a
-    /// scene early.
-    ///
-    /// # Errors
-    /// Cannot fail for a gradation that can be packed.
+    /// scene early. Errors: cannot fail for a gradation that can be packed.
     pub(crate) fn placeholder(order: &PackingPlan) -> Result<Self, CurveError> {
         // Without friction, grains settle more densely.
         let loose = (order.compression.friction / 0.3).min(1.0);
@@ -266,7 +249,6 @@ fn refused(record: &Path, problem: impl ToString) -> PackedError {
 const SAME_SIZE: f64 = 1e-3;
 /// Maximum difference between their percentages.
 const SAME_PERCENT: f64 = 1e-2;
-
 /// Part of the definition of a packing: another number gives other grains from the same recipe.
 const PROTOCOL: u32 = 2;
 /// Protocol of gradations so broad that grains with many contacts are moved as heavier ones.
@@ -277,19 +259,15 @@ const WIDE_PROTOCOL: u32 = 3;
 pub struct PackingPlan {
     /// Gradation that is packed: the filter's, or that of its finer part.
     pub(crate) gradation: Gradation,
-    /// Description of the gradation.
     pub(crate) name: String,
-    /// True if the gradation is linear.
     pub(crate) linear: bool,
     /// Part of the filter that is packed, if it is not the whole.
     pub(crate) part: Option<PackedPart>,
     /// Height of the cell over its width.
     pub(crate) aspect: f64,
-    /// Settings of the compression.
     pub(crate) compression: Compression,
     /// Overlap of two inscribed spheres above which their tetrahedra form one void.
     pub(crate) merge_overlap: f64,
-    /// Files that were read.
     pub(crate) inputs: Vec<Input>,
 }
 
@@ -344,11 +322,9 @@ fn pairs(gradation: &Gradation) -> Vec<(f64, f64)> {
 /// File that was read, with its name in a run folder.
 #[derive(Clone, Debug)]
 pub struct Input {
-    /// Setting that names the file.
     pub(crate) setting: &'static str,
     /// Path as first given by the user: a run that continues from the files in its folder reads it there.
     pub(crate) name: String,
-    /// Name inside the run folder.
     pub(crate) kept_as: String,
     /// Bytes of the file, shared by copies of a case.
     pub bytes: Arc<Vec<u8>>,
@@ -359,7 +335,6 @@ pub struct Input {
 }
 
 impl Input {
-    /// Name and checksum of the file.
     pub(crate) fn file(&self) -> InputFile {
         InputFile::of(&self.name, &self.bytes)
     }

@@ -32,11 +32,8 @@ impl PackingPlan {
         spec.as_ref().map(Self::new).transpose()
     }
 
-    /// Reads the specification's files and determines its number of grains.
-    ///
-    /// # Errors
-    /// A file is refused, the gradation cannot be packed, or the cell is narrower than two of the largest
-    /// grain.
+    /// Reads the specification's files and determines its number of grains. Errors: a file is refused, the
+    /// gradation cannot be packed, or the cell is narrower than two of the largest grain.
     pub(crate) fn new(recipe: &PackingSpec) -> Result<Self, CaseError> {
         let mut files = Files::default();
         let (gradation, linear, name) = match &recipe.gradation {

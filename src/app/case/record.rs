@@ -11,12 +11,10 @@ use voidwalk_practice::{AboutPage, InputFile};
 
 /// Kinematic viscosity of water at 10 C (m2/s).
 const KINEMATIC_VISCOSITY: f64 = 1.307e-6;
-
 /// Gravity (m/s2).
 const GRAVITY: f64 = 9.81;
 
 impl Case {
-    /// Page of its run.
     pub(crate) fn about_page(&self) -> AboutPage {
         self.scene.about.page(self.is_scale_free())
     }
@@ -122,10 +120,8 @@ impl Case {
 
     fn network_record(&self) -> record::NetworkRecord {
         let (kind, name) = self.network_name();
-        let [nx, ny, nz] = match self.scene.network.source().shape() {
-            Some(shape) => shape.map(|n| Some(u64::from(n))),
-            None => [None; 3],
-        };
+        let shape = self.scene.network.source().shape();
+        let [nx, ny, nz] = shape.map_or([None; 3], |shape| shape.map(|n| Some(u64::from(n))));
         let CaseNetwork { voids, constrictions, start_nodes, layers, .. } = self.network;
         record::NetworkRecord {
             kind,

@@ -9,10 +9,8 @@ use voidwalk_core::walk::Engine;
 
 /// Part of the fingerprint of every case: raised if the program's results for the same scene change.
 const PROTOCOL: u32 = 1;
-
 /// Protocol of cases in which water flows.
 const WATER_PROTOCOL: u32 = 2;
-
 /// Number added if particles arch: raised if only the results of such cases change.
 const ARCHING_PROTOCOL: u32 = 20_000;
 

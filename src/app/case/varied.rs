@@ -19,11 +19,8 @@ const HALF_AND_TWICE: [f64; 2] = [0.5, 2.0];
 /// Base as a scene states it, with its sizes unchanged.
 #[derive(Clone, Debug)]
 pub(crate) struct StatedBase {
-    /// Scene that states it.
     pub(crate) scene: Scene,
-    /// The base.
     pub(crate) base: CaseBase,
-    /// Files that were read.
     pub(crate) inputs: Vec<Input>,
 }
 
@@ -37,10 +34,7 @@ impl Case {
         case
     }
 
-    /// Reads the base of another scene with this case's filter.
-    ///
-    /// # Errors
-    /// A file is refused.
+    /// Reads the base of another scene with this case's filter. Errors: a file is refused.
     pub(crate) fn base_of(&self, scene: &Scene) -> Result<StatedBase, CaseError> {
         let mut files = Files::default();
         let base = CaseBase::read(scene, &self.filter, &mut files)?;
@@ -50,12 +44,10 @@ impl Case {
         Ok(StatedBase { scene: scene.clone(), base, inputs: files.inputs })
     }
 
-    /// Replaces the base by one with this gradation, in this filter's unit. Filter and network are
-    /// unchanged, but a lattice gets the number of layers in `layers`.
-    ///
-    /// # Errors
-    /// The base cannot be walked: Eq. (2) gives too few or too many particles, sizes are out of range, or
-    /// there are more constrictions than 32 bits can number.
+    /// Replaces the base by one with this gradation, in this filter's unit. Filter and network are unchanged,
+    /// but a lattice gets the number of layers in `layers`. Errors: the base cannot be walked: Eq. (2) gives
+    /// too few or too many particles, sizes are out of range, or there are more constrictions than 32 bits
+    /// can number.
     pub(crate) fn with_base(&self, base: Gradation, layers: Option<u64>) -> Result<Self, CaseError> {
         let mut case = self.clone();
         if let (Some(layers), NetworkSource::Cubic([nx, ny, _])) = (layers, self.scene.network.source()) {
@@ -71,11 +63,8 @@ impl Case {
         Ok(case)
     }
 
-    /// Multiplies the filter of this case by `factor`, with a stated base at its own size; not for walks,
-    /// but for rules in millimetres.
-    ///
-    /// # Errors
-    /// Sizes are out of range.
+    /// Multiplies the filter of this case by `factor`, with a stated base at its own size; not for walks, but
+    /// for rules in millimetres. Errors: sizes are out of range.
     pub(crate) fn enlarged(&self, factor: f64, base: &StatedBase) -> Result<Self, CaseError> {
         let mut case = self.clone();
         (case.filter, case.base) = (case.filter.enlarged(factor)?, base.base.clone());
@@ -101,18 +90,6 @@ impl Case {
         let mut factors = with_new_numbers(self.scene.record.sensitivity.clone(), n_base);
         factors.retain(|factor| factor * n_base as f64 <= cap);
         factors
-    }
-
-    /// Multiples that are requested but not walked, each with the reason.
-    fn sensitivity_not_walked(&self) -> Vec<LeftOut> {
-        let (walked, cap) = (self.sensitivity_factors(), self.cap());
-        let not_walked =
-            self.scene.record.sensitivity.iter().copied().filter(|factor| !walked.contains(factor));
-        let (above, same): (Vec<f64>, Vec<f64>) =
-            not_walked.partition(|factor| factor * self.supply.n_base as f64 > cap);
-        let is_above = (!above.is_empty()).then_some(LeftOut::AmountsAboveCap(above, cap));
-        let is_same = (!same.is_empty()).then_some(LeftOut::AmountsTheSame(same));
-        is_above.into_iter().chain(is_same).collect()
     }
 
     /// Number of base particles times this factor, at least one.
@@ -171,11 +148,9 @@ impl Case {
         self.network.copies().map_or(self.network.layers, u64::from)
     }
 
-    /// Multiplies the thickness of the filter, to the nearest layer (of a lattice) or copy (of a
-    /// packing); Eq. (2) multiplies the base likewise, up to its cap, and a given number is unchanged.
-    ///
-    /// # Errors
-    /// There are more constrictions than 32 bits can number, or less than one base particle by Eq. (2).
+    /// Multiplies the thickness of the filter, to the nearest layer (of a lattice) or copy (of a packing);
+    /// Eq. (2) multiplies the base likewise, up to its cap, and a given number is unchanged. Errors: there
+    /// are more constrictions than 32 bits can number, or less than one base particle by Eq. (2).
     pub(crate) fn of_thickness(&self, factor: f64) -> Result<Self, CaseError> {
         let parts = times(self.thickness_parts(), factor);
         let mut scene = self.scene.clone();
@@ -187,7 +162,7 @@ impl Case {
         }
         let graph = self.network.packing().map(|packing| packing.graph.clone());
         let (packed, inputs) = (self.filter.packed.clone(), self.inputs.clone());
-        let other = Self::with_graph(scene, packed, graph, inputs.clone())?;
+        let other = Self::with_filter(scene, packed, graph, inputs.clone())?;
         Ok(Self { inputs, memory: self.memory, placement: self.placement.clone(), ..other })
     }
 
@@ -208,7 +183,17 @@ impl Case {
         if self.scene.walk.runs == 1 {
             left_out.push(LeftOut::SecondRun);
         }
-        left_out.extend(self.sensitivity_not_walked());
+        let (walked, cap) = (self.sensitivity_factors(), self.cap());
+        let not_walked =
+            self.scene.record.sensitivity.iter().copied().filter(|factor| !walked.contains(factor));
+        let (above, same): (Vec<f64>, Vec<f64>) =
+            not_walked.partition(|factor| *factor * self.supply.n_base as f64 > cap);
+        if !above.is_empty() {
+            left_out.push(LeftOut::AmountsAboveCap(above, cap));
+        }
+        if !same.is_empty() {
+            left_out.push(LeftOut::AmountsTheSame(same));
+        }
         for factor in self.thickness_factors() {
             if let Err(error) = self.of_thickness(factor) {
                 left_out.push(LeftOut::ThicknessRefused(factor, error.to_string()));

@@ -193,9 +193,9 @@ impl BatchPlan {
         self.campaign.cases.first().is_some_and(|case| case.scene.about.shows_inches())
     }
 
-    /// Source of the constrictions of the walks, in a sentence.
-    pub(crate) fn constrictions_in_words(&self) -> String {
-        self.campaign.cases.first().map_or(String::new(), |case| case.scene.constrictions_in_words())
+    /// Scene of the first walk; the others state the same constrictions.
+    pub(crate) fn first_scene(&self) -> Option<&Scene> {
+        self.campaign.cases.first().map(|case| &case.scene)
     }
 }
 

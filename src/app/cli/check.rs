@@ -5,12 +5,12 @@ use std::path::Path;
 
 use super::options::{SceneArgs, SettingArgs};
 use super::print::{answer, counted, plain, to_copy};
-use crate::case::in_words;
 use crate::cases::{self, CaseOptions, CasePlan, PlanCheck};
 use crate::run::cost::duration;
 use crate::run::{self, Check, PackingCheck, PrepareOptions, RunError};
 use crate::scene::Scene;
 use crate::words::left_out::left_out;
+use crate::words::memory::bytes;
 use crate::words::{grading, sentence};
 use voidwalk_core::constrictions::shipped;
 use voidwalk_core::store::format;
@@ -170,7 +170,7 @@ fn plan_words(check: &PlanCheck) -> String {
                 "{} base particles a run, {} runs, {}, about {}",
                 whole(case.n_base),
                 whole(case.runs_to_walk),
-                in_words(case.bytes),
+                bytes(case.bytes),
                 duration(case.core_seconds)
             ),
             false => format!("cannot be walked: {}", case.problem.replace('\n', " ")),
@@ -186,10 +186,10 @@ fn plan_words(check: &PlanCheck) -> String {
         "memory",
         format!(
             "{} for the largest case, {} for as many cases as are walked at once ({}), of {}",
-            in_words(check.bytes),
-            in_words(check.bytes_at_once),
+            bytes(check.bytes),
+            bytes(check.bytes_at_once),
             check.cases_at_once,
-            in_words(check.bytes_allowed)
+            bytes(check.bytes_allowed)
         ),
     );
     if check.packings > 0 {

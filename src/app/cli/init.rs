@@ -9,7 +9,7 @@ use crate::outcome::ledger::{Campaign, LedgerLine};
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::percolation::PercolationStudy;
 use crate::outcome::record::{Manifest, NetworkWalkRecord, Outcome};
-use crate::run::{Check, EXAMPLE_FILES, RunError, write_built_in, write_examples, write_new};
+use crate::run::{Check, EXAMPLE_FILES, RunError, write_examples, write_new};
 use crate::scene::{Scene, SceneReference};
 use crate::verdict::WalkedBatch;
 use schemars::generate::SchemaSettings;
@@ -47,7 +47,7 @@ pub(crate) fn init(
     if plan {
         write_new(path, CasePlan::INIT_TEXT.as_bytes())?;
     } else {
-        write_built_in(path)?;
+        write_new(path, Scene::init_text().as_bytes())?;
     }
     to_stdout(&format!("{}\n", shown(path)));
     Ok(())

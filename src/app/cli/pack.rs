@@ -19,7 +19,6 @@ pub(crate) fn pack(args: &PackArgs) -> Result<(), RunError> {
         overwrite: args.overwrite,
         threads: args.threads,
         checkpoint_interval: args.checkpoint_every,
-        ..PackOptions::default()
     };
     let packing = followed(args.quiet, |callbacks| run::pack(&spec, &options, callbacks))?;
     if args.json {

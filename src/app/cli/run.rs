@@ -14,7 +14,7 @@ use super::progress::{CaseProgress, followed};
 use super::rules::{aligned, in_notes, of_filter};
 use crate::cases::{self, BatchPlan, BatchWalks, CaseOptions, CasePart};
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
-use crate::scene::{Scene, TableOptions};
+use crate::scene::{LibraryDensity, Scene, TableOptions};
 use crate::verdict::{WalkedBatch, WalkedRow, counts_as};
 use crate::words::batch::{self, walked_columns, walks};
 use crate::words::first_lines;
@@ -178,7 +178,7 @@ fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
         }
     };
     answer((tables.set.json, quiet), format::BATCH, &batch, || {
-        batch_words(&batch, &plan.constrictions_in_words(), out)
+        batch_words(&batch, &plan.first_scene().map_or(String::new(), constrictions), out)
             + &of_earlier_cover(plan.with_other_cover(out))
     })?;
     let name = |row: &WalkedRow| format!("{} in {}", row.rules.sample, row.rules.filter);
@@ -192,6 +192,35 @@ fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
         (name.as_str(), answer.ok_or(row.not_walked.as_str()))
     });
     accept(results.accept.fail_on, pairs)
+}
+
+/// Source of the constrictions of a scene's filter.
+fn constrictions(scene: &Scene) -> String {
+    let filter = &scene.filter;
+    if let Some(friction) = filter.friction {
+        return format!("The filter's grains are packed, with friction {friction}.");
+    }
+    if let Some(density) = filter.density {
+        return format!("The filter's grains are packed: {}.", density.name());
+    }
+    if let Some(density) = filter.library {
+        let density = match density {
+            LibraryDensity::Unknown => "loose and dense are both walked",
+            density => density.name(),
+        };
+        return format!(
+            "The filter's constrictions are those of packings of filters like it: {density}. Where the \
+             library holds none like it, they are guessed."
+        );
+    }
+    match (&filter.estimate, &filter.curve) {
+        (Some(estimate), _) => format!(
+            "The filter's constrictions are guessed from its gradation at {estimate}, and at both ends of \
+             the range from 0 (loose) to 1 (dense): how densely it lies was not given."
+        ),
+        (None, Some(_)) => "The filter's constrictions are those of filter.curve.".into(),
+        (None, None) => "The constrictions are those of the network that was given.".into(),
+    }
 }
 
 fn campaign_options(out: &Path, set: &SettingArgs, walk: &WalkArgs) -> CaseOptions {

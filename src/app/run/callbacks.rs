@@ -95,23 +95,6 @@ pub enum Event<'a> {
 
 /// Callbacks by which a caller follows the work, from any thread, and stops it; by default they do nothing.
 /// [`resume`](super::resume) has an example.
-///
-/// ```
-/// use std::sync::atomic::{AtomicU64, Ordering};
-/// use voidwalk_app::run::Event;
-/// use voidwalk_app::{Callbacks, Case, Scene, walk_case};
-/// let small = ["network.nx=8", "network.ny=8", "network.nz=12", "replicates=2", "record.sensitivity=[]"];
-/// let case = Case::new(Scene::built_in(&small.map(String::from))?)?;
-/// let runs = AtomicU64::new(0);
-/// let on_event = |event: Event| {
-///     if let Event::RunDone = event {
-///         runs.fetch_add(1, Ordering::Relaxed);
-///     }
-/// };
-/// walk_case(&case, &Callbacks { on_event: &on_event, ..Callbacks::default() })?;
-/// assert_eq!(runs.into_inner(), 4);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Copy)]
 pub struct Callbacks<'a> {
     /// Receives every event.

@@ -217,7 +217,16 @@ impl Studies {
                 None => studies.thickness.push(of_thickness(judged, case, &other)),
             }
         }
-        studies.add_own(case, of_case, class);
+        // The case itself is a point of each of its studies.
+        let judged = || Classed { verdict: class, ..classed(of_case) };
+        if !studies.sensitivity.is_empty() {
+            studies.sensitivity.push(of_base(judged(), case, 1.0, case.supply.n_base));
+            studies.sensitivity.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+        }
+        if !studies.thickness.is_empty() {
+            studies.thickness.push(of_thickness(judged(), case, case));
+            studies.thickness.sort_by_key(|row| row.layers);
+        }
         Ok(studies)
     }
 
@@ -232,19 +241,6 @@ impl Studies {
     /// True if a case has no study.
     pub(super) fn are_none(case: &Case) -> bool {
         points(case).is_empty()
-    }
-
-    /// Adds the case itself, with its verdict, as a point of each of its studies.
-    fn add_own(&mut self, case: &Case, replicates: &[ReplicateResult], verdict: Verdict) {
-        let judged = || Classed { verdict, ..classed(replicates) };
-        if !self.sensitivity.is_empty() {
-            self.sensitivity.push(of_base(judged(), case, 1.0, case.supply.n_base));
-            self.sensitivity.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-        }
-        if !self.thickness.is_empty() {
-            self.thickness.push(of_thickness(judged(), case, case));
-            self.thickness.sort_by_key(|row| row.layers);
-        }
     }
 }
 
@@ -267,9 +263,8 @@ fn walk_all(
     });
     let walked: Result<Vec<_>, RunError> = small.into_par_iter().with_max_len(1).map(one).collect();
     let mut walked = walked?;
-    for job in large {
-        walked.push(one(job)?);
-    }
+    let large: Result<Vec<_>, RunError> = large.into_iter().map(one).collect();
+    walked.extend(large?);
     walked.sort_by_key(|&(point, replicate, _)| (point, replicate));
     Ok(walked)
 }

@@ -2,14 +2,13 @@
 //! was.
 //!
 //! A replicate under way is saved with its state and its records so far, a finished one with its figures and
-//! rows. Each has a checkpoint of its own in the folder `checkpoint` of the run
-//! ([`voidwalk_core::store::checkpoint`]), written as often as [`CheckpointInterval`] says, and on a stop.
+//! rows, each in a checkpoint of its own ([`voidwalk_core::store::checkpoint`]).
 
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use std::sync::Mutex;
+use std::sync::{Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
@@ -102,10 +101,15 @@ pub(crate) struct Checkpoints {
     folder: PathBuf,
     scene: String,
     every: CheckpointInterval,
-    /// Finished replicates that are not on disk yet, and the next generation of each name.
-    waiting: Mutex<BTreeMap<String, (Label, Vec<u8>)>>,
-    generations: Mutex<BTreeMap<String, u64>>,
-    passed_over: Mutex<Vec<String>>,
+    shared: Mutex<Shared>,
+}
+
+#[derive(Default)]
+struct Shared {
+    /// Finished replicates that are not on disk yet, by name.
+    waiting: BTreeMap<String, (Label, Vec<u8>)>,
+    generations: BTreeMap<String, u64>,
+    passed_over: Vec<String>,
 }
 
 impl Checkpoints {
@@ -113,14 +117,11 @@ impl Checkpoints {
     pub(crate) fn new(folder: &Folder, scene: &str, every: CheckpointInterval) -> Result<Self, StoreError> {
         let path = folder.path().join(FOLDER);
         make_folder(&path)?;
-        Ok(Self {
-            folder: path,
-            scene: scene.to_owned(),
-            every,
-            waiting: Mutex::default(),
-            generations: Mutex::default(),
-            passed_over: Mutex::default(),
-        })
+        Ok(Self { folder: path, scene: scene.to_owned(), every, shared: Mutex::default() })
+    }
+
+    fn shared(&self) -> MutexGuard<'_, Shared> {
+        self.shared.lock().expect("nothing panics under this lock")
     }
 
     /// Fingerprint of the scene of the checkpoints in a run's folder; `None` without an intact checkpoint.
@@ -156,18 +157,15 @@ impl Checkpoints {
     pub(crate) fn load(&self, walk: WalkId) -> Result<Option<(Done, Checkpoint)>, CheckpointError> {
         let name = walk.name();
         let (saved, refused) = newest(&self.folder, &name, &self.identity(walk))?;
-        if let Ok(mut all) = self.passed_over.lock() {
-            all.extend(refused.iter().map(ToString::to_string));
-        }
+        let mut shared = self.shared();
+        shared.passed_over.extend(refused.iter().map(ToString::to_string));
         let Some(saved) = saved else { return Ok(None) };
-        if let Ok(mut generations) = self.generations.lock() {
-            generations.insert(name, saved.label.generation);
-        }
+        shared.generations.insert(name, saved.label.generation);
         Ok(Some((saved.read_record("done")?, saved)))
     }
 
     pub(crate) fn passed_over(&self) -> Vec<String> {
-        self.passed_over.lock().map(|all| all.clone()).unwrap_or_default()
+        self.shared().passed_over.clone()
     }
 
     /// Saves a walk after a complete increment. If saving fails, the previous checkpoint stays.
@@ -196,14 +194,12 @@ impl Checkpoints {
     pub(crate) fn save_finished(&self, walk: WalkId, done: &Done) {
         let text = serde_json::to_vec(done).expect("figures are numbers and words");
         let label = self.next_label(walk);
-        if let Ok(mut waiting) = self.waiting.lock() {
-            waiting.insert(walk.name(), (label, text));
-        }
+        self.shared().waiting.insert(walk.name(), (label, text));
     }
 
     /// Writes the finished replicates that are not on disk yet.
     pub(crate) fn flush(&self) -> Result<(), StoreError> {
-        let waiting = self.waiting.lock().map(|mut w| std::mem::take(&mut *w)).unwrap_or_default();
+        let waiting = std::mem::take(&mut self.shared().waiting);
         for (name, (label, text)) in &waiting {
             save(&self.folder, name, label, &[Section::new("done", text)])?;
         }
@@ -222,12 +218,10 @@ impl Checkpoints {
 
     /// Label of the next checkpoint of a walk, before its first increment.
     fn next_label(&self, walk: WalkId) -> Label {
-        let generation = self.generations.lock().map_or(1, |mut generations| {
-            let generation = generations.entry(walk.name()).or_insert(0);
-            *generation += 1;
-            *generation
-        });
-        Label { identity: self.identity(walk), generation, ..Label::default() }
+        let mut shared = self.shared();
+        let generation = shared.generations.entry(walk.name()).or_insert(0);
+        *generation += 1;
+        Label { identity: self.identity(walk), generation: *generation, ..Label::default() }
     }
 }
 

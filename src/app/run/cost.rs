@@ -98,10 +98,8 @@ const COLLECTING_BYTES: (u64, u64) = (100_000_000, 100_000);
 const GRAIN_BYTES: u64 = 20_000;
 /// Memory of the program itself and of a page that is being written (bytes).
 const PROGRAM_BYTES: u64 = 100_000_000;
-
 /// Increments between two solutions of the flow, as long as constrictions close.
 const SOLVED_EVERY: f64 = 1.5;
-
 /// Time to solve the flow, per constriction (s): 0.185 s for 288,000 constrictions.
 const SOLVE_S: f64 = 6.5e-7;
 
@@ -160,16 +158,14 @@ impl Case {
         let (voids, constrictions) = (self.network.voids as f64, self.network.constrictions as f64);
         let besides = runs * solved + (voids + constrictions) * NETWORK_S;
         match pilot(self, n_base, runs * guessed, most_s) {
-            Some(work) => {
-                Foreseen {
-                    seconds: work.of_voids(voids, self.slower()) + besides,
-                    besides,
-                    took: work.took,
-                    // A pilot walks on a lattice by area, whatever the case's own network is.
-                    predicted: work.of_voids(work.voids, self.of_engine(true)),
-                    eroded: Some(work.eroded),
-                }
-            }
+            Some(work) => Foreseen {
+                seconds: work.of_voids(voids, self.slower()) + besides,
+                besides,
+                took: work.took,
+                // A pilot walks on a lattice by area, whatever the case's own network is.
+                predicted: work.of_voids(work.voids, self.of_engine(true)),
+                eroded: Some(work.eroded),
+            },
             None => Foreseen { seconds: runs * guessed + besides, besides, ..Foreseen::default() },
         }
     }
@@ -367,7 +363,6 @@ struct WorkByVoid {
 const WIDEST: u32 = 10;
 /// Minimum width: particles in narrower lattices meet themselves.
 const NARROWEST: u32 = 4;
-
 /// Size classes of its records, which are not used.
 const CLASSES: usize = 2;
 

@@ -24,7 +24,6 @@ pub enum Exit {
 }
 
 impl Exit {
-    /// Exit code of the program.
     pub(crate) const fn code(self) -> u8 {
         match self {
             Self::Refused => 2,
@@ -42,13 +41,7 @@ pub(crate) type AnyError = Box<dyn std::error::Error + Send + Sync>;
 /// commands.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
-    /// A scene or plan that is refused.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// A scene that cannot be walked.
-    #[error(transparent)]
-    Case(#[from] CaseError),
-    /// Input that is refused for another reason.
+    /// Input that is refused.
     #[error("{0}")]
     Refused(String),
     /// A folder that cannot be claimed.
@@ -120,7 +113,7 @@ impl RunError {
     pub fn exit(&self) -> Exit {
         let refused_if = |refused| if refused { Exit::Refused } else { Exit::Failed };
         match self {
-            Self::Scene(_) | Self::Case(_) | Self::Refused(_) => Exit::Refused,
+            Self::Refused(_) => Exit::Refused,
             Self::Claim(error) => refused_if(error.is_refusal()),
             Self::Checkpoint(error) => refused_if(!error.is_unreadable()),
             Self::Stopped(_) | Self::Walk(WalkError::Stopped { .. }) => Exit::Stopped,
@@ -195,25 +188,21 @@ impl From<PackedError> for RunError {
     }
 }
 
-impl From<ImportError> for RunError {
-    fn from(error: ImportError) -> Self {
-        Self::refused(error)
-    }
-}
-
-/// Errors that no accepted input causes.
-macro_rules! failures {
-    ($($error:ty),*) => {
+/// Errors that end a command in this way.
+macro_rules! errors {
+    ($ending:ident: $($error:ty),*) => {
         $(impl From<$error> for RunError {
             fn from(error: $error) -> Self {
-                Self::failed(error)
+                Self::$ending(error)
             }
         })*
     };
 }
 
-failures!(
-    ConstrictionsError,
+errors!(refused: SceneError, CaseError, ImportError);
+// No accepted input causes these.
+errors!(
+    failed: ConstrictionsError,
     CurveError,
     GradationError,
     NetworkError,
@@ -221,12 +210,7 @@ failures!(
     csv::Error,
     serde_json::Error
 );
-
-impl From<rayon::ThreadPoolBuildError> for RunError {
-    fn from(error: rayon::ThreadPoolBuildError) -> Self {
-        Self::no_thread(error)
-    }
-}
+errors!(no_thread: rayon::ThreadPoolBuildError);
 
 #[cfg(test)]
 mod tests {
@@ -259,16 +243,12 @@ mod tests {
         let advice = |error: RunError| error.advice().unwrap_or_default();
         assert!(advice(RunError::Store(io(StorageFull, "write"))).contains("make room"));
         assert!(advice(RunError::Save(io(FileTooLarge, "write"))).contains("ulimit"));
-        let of_page = super::AnyError::from(io(StorageFull, "write"));
-        assert!(advice(RunError::Results(of_page)).contains("make room"));
+        assert!(advice(RunError::Results(io(StorageFull, "write").into())).contains("make room"));
         assert!(advice(RunError::Claim(io(PermissionDenied, "make the folder"))).contains("--out"));
-        for other in [
-            RunError::Store(io(PermissionDenied, "read")),
-            RunError::Store(io(NotFound, "write")),
-            RunError::refused("no"),
-        ] {
-            assert_eq!(other.advice(), None);
+        for other in [io(PermissionDenied, "read"), io(NotFound, "write")] {
+            assert_eq!(RunError::Store(other).advice(), None);
         }
+        assert_eq!(RunError::refused("no").advice(), None);
     }
 
     fn held() -> StoreError {

@@ -15,13 +15,10 @@ use voidwalk_core::text::plain;
 
 /// Checkpoint files of an unfinished compression.
 pub(super) const STATES: [&str; 2] = ["compression.0", "compression.1"];
-
 /// Checkpoint files of an unfinished search of boundaries.
 pub(crate) const NETWORKS: [&str; 2] = ["networks.0", "networks.1"];
-
 /// Checkpoint files of an unfinished percolation study.
 pub(crate) const LATTICES: [&str; 2] = ["lattices.0", "lattices.1"];
-
 /// File that marks unfinished work.
 pub(super) const MARK: &str = ".voidwalk.unfinished";
 

@@ -4,40 +4,23 @@ use std::panic::resume_unwind;
 
 use super::RunError;
 use crate::case::Case;
+use crate::words::memory::bytes;
 use voidwalk_core::store::platform;
 
-/// Description of the machine.
-pub(crate) struct Machine {
-    /// Name of the machine.
-    pub(crate) host: String,
-    /// System, processor and memory.
-    pub(crate) description: String,
-    /// Memory that a run may take (bytes).
-    pub(crate) available: u64,
+/// System, processor and memory of this machine.
+pub(super) fn description() -> String {
+    let model = platform::processor().unwrap_or_else(|| "unknown processor".into());
+    let total = platform::memory().total.map_or("unknown".into(), bytes);
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let noun = if cores == 1 { "core" } else { "cores" };
+    format!("{}, {model}, {cores} {noun}, {total} of memory", platform::system())
 }
 
-impl Machine {
-    /// Asks the system.
-    pub(crate) fn here() -> Self {
-        let memory = platform::memory();
-        let model = platform::processor().unwrap_or_else(|| "unknown processor".into());
-        let cores = std::thread::available_parallelism().map_or(1, usize::from);
-        let total = memory.total.map_or("unknown".into(), crate::case::in_words);
-        Self {
-            host: platform::host_name(),
-            description: format!(
-                "{}, {model}, {cores} {}, {total} of memory",
-                platform::system(),
-                if cores == 1 { "core" } else { "cores" }
-            ),
-            // If the system reports no memory, nothing is refused. A cluster's job has a fraction of the
-            // machine.
-            available: memory
-                .available
-                .unwrap_or(u64::MAX)
-                .min(Allocation::here().and_then(|job| job.memory).unwrap_or(u64::MAX)),
-        }
-    }
+/// Memory that a run may take (bytes): that of a cluster's job, if it has less than the machine. Nothing is
+/// refused if the system reports no memory.
+pub(super) fn available_bytes() -> u64 {
+    let of_job = Allocation::here().and_then(|job| job.memory);
+    platform::memory().available.unwrap_or(u64::MAX).min(of_job.unwrap_or(u64::MAX))
 }
 
 /// Worker threads: the number asked for, else the number of a cluster's job, else one per core on which this
@@ -131,7 +114,6 @@ impl Allocation {
 
 /// Factor on the estimated memory that a job script requests.
 pub(crate) const MEMORY_MARGIN: f64 = 1.5;
-
 /// A job is small if it takes at most this much memory for each of its threads (bytes).
 const LITTLE_BYTES: u64 = 1 << 30;
 
@@ -157,7 +139,7 @@ impl CasesAtOnce {
     /// Counts these cases in this process.
     pub(crate) fn here(cases: &[&Case], threads: u64) -> Self {
         let in_job = Allocation::here().is_some_and(|job| job.memory.is_some());
-        Self::within(cases, threads, Machine::here().available, in_job)
+        Self::within(cases, threads, available_bytes(), in_job)
     }
 
     /// Counts these cases if this many bytes are available, either to a job alone or to everything on the
@@ -198,7 +180,7 @@ fn wanted(threads: u64, replicates: u64, spare: u64, cases: usize) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Allocation, bytes_from_words, *};
+    use super::*;
     use crate::run::case_of;
 
     #[test]

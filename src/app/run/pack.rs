@@ -19,7 +19,7 @@ use crate::case::{CaseError, GRAINS, PackedFilter, PackingPlan, RECORD};
 use crate::outcome::packing::PackingRecord;
 use crate::scene::PackingSpec;
 use voidwalk_core::constrictions::{
-    Constrictions, CurveError, DEFAULT_MERGE_OVERLAP, Facets, Summary, Triangulation, VoidGraph, inscribed,
+    Constrictions, CurveError, Facets, Summary, Triangulation, VoidGraph, inscribed,
 };
 use voidwalk_core::gradation::CurvePoint;
 use voidwalk_core::network::permeability_mm2;
@@ -32,20 +32,18 @@ use voidwalk_core::store::{Folder, StoreError};
 
 /// Checkpoint of an unfinished compression; its files are [`STATES`].
 const STATE: &str = "compression";
-
-/// Default interval between saves of a compression.
+/// Interval between saves of a compression that a scene needs.
 const SAVE_EVERY: Duration = Duration::from_secs(60);
-
+/// Usual folder of packings.
+pub(super) const PACKINGS: &str = "voidwalk-packings";
 /// Interval between checks for a packing that another process is making.
 const LOOK: Duration = Duration::from_millis(500);
 
 /// Options of packing a filter; only `overwrite` changes the resulting files.
 #[derive(Clone, Debug)]
 pub(crate) struct PackOptions {
-    /// Folder for the packing; by default a folder of its own in `packings`.
+    /// Folder for the packing; by default a folder of its own in `voidwalk-packings`.
     pub(crate) out: Option<PathBuf>,
-    /// Folder in which packings are kept.
-    pub(crate) packings: PathBuf,
     /// True if an existing packing is made again.
     pub(crate) overwrite: bool,
     /// Worker threads; by default the number that a cluster's job has, else one per core.
@@ -54,42 +52,26 @@ pub(crate) struct PackOptions {
     pub(crate) checkpoint_interval: Duration,
 }
 
-impl Default for PackOptions {
-    fn default() -> Self {
-        Self {
-            out: None,
-            packings: "voidwalk-packings".into(),
-            overwrite: false,
-            threads: None,
-            checkpoint_interval: SAVE_EVERY,
-        }
-    }
-}
-
 /// Finished packing.
 pub(crate) struct FinishedPacking {
-    /// Its folder.
     pub(crate) folder: PathBuf,
     /// Text of `packing.json`, unchanged.
     pub(crate) json: String,
-    /// Contents of `packing.json`.
     pub(crate) record: PackingRecord,
     /// Results needed for a walk.
     pub(crate) filter: PackedFilter,
 }
 
-/// Packs a filter into a folder, continuing a packing there that was stopped.
-///
-/// # Errors
-/// A filter that cannot be packed or a folder that cannot be claimed is refused before any work. After a stop
-/// the next call continues.
+/// Packs a filter into a folder, continuing a packing there that was stopped. Errors: a filter that cannot be
+/// packed or a folder that cannot be claimed is refused before any work. After a stop the next call
+/// continues.
 pub(crate) fn pack(
     spec: &PackingSpec,
     options: &PackOptions,
     callbacks: &Callbacks,
 ) -> Result<FinishedPacking, RunError> {
     let plan = PackingPlan::new(spec).map_err(with_time)?;
-    let out = options.out.clone().unwrap_or_else(|| options.packings.join(plan.folder_name()));
+    let out = options.out.clone().unwrap_or_else(|| Path::new(PACKINGS).join(plan.folder_name()));
     let folder = claim(&out, FolderKind::Packing, options.overwrite)?;
     let begun = Unfinished::read(&folder)?.is_some_and(|begun| begun.work == plan.fingerprint());
     let saved = STATES.iter().any(|state| folder.has(state));
@@ -367,72 +349,57 @@ pub(crate) struct ConstrictionsOptions {
     pub(crate) overwrite: bool,
 }
 
-impl Default for ConstrictionsOptions {
-    fn default() -> Self {
-        Self {
-            merge_overlap: DEFAULT_MERGE_OVERLAP,
-            facets: Facets::All,
-            read: ReadOptions::default(),
-            out: "voidwalk-constrictions".into(),
-            overwrite: false,
-        }
-    }
-}
-
 /// Measures the constrictions of the grains in a file and writes `grains.vtp`, `constrictions.csv`,
 /// `constrictions.vtp`, for grains in a periodic cell `graph.csv` and, last, `constrictions.json`; returns
-/// the contents of that file.
-///
-/// # Errors
-/// Grains that are refused or do not fit their cell; a folder that cannot be claimed or written.
+/// the contents of that file. Errors: grains that are refused or do not fit their cell; a folder that cannot
+/// be claimed or written.
 pub(crate) fn measure_constrictions(
     packing: &Path,
     options: &ConstrictionsOptions,
     callbacks: &Callbacks,
 ) -> Result<Summary, RunError> {
-    on_threads(None, || measure_here(packing, options, callbacks))
+    on_threads(None, || options.measure(packing, callbacks))
 }
 
-fn measure_here(
-    packing: &Path,
-    options: &ConstrictionsOptions,
-    callbacks: &Callbacks,
-) -> Result<Summary, RunError> {
-    let file = shown(packing);
-    let (packing, notes) = Packing::read_as(packing, &options.read)?;
-    let refused = |error: &dyn std::error::Error| RunError::Refused(format!("{file}: {error}"));
-    let t = Triangulation::new(&packing).map_err(|error| refused(&error))?;
-    let constrictions = Constrictions::from_triangulation(&t, options.merge_overlap, options.facets)
-        .map_err(|error| refused(&error))?;
-    constrictions.check().map_err(|error| refused(&error))?;
-    // Grains without a cell, or with voids that run through it, have no graph.
-    let graph = VoidGraph::of(&t, options.merge_overlap).ok();
-    // In grains without a cell, constrictions near the outside do not count for the curve.
-    let whole =
-        |summary: &Summary| summary.grains_per_void.is_finite() && summary.mean_connectivity.is_finite();
-    let mut summary = constrictions.summary().ok().filter(whole).ok_or_else(|| {
-        RunError::Refused(format!(
-            "{file}: {} grains are too few: no constriction lies between two voids inside the packing. At \
-             least 5 grains that do not lie in one plane are needed for one, some thousands for a curve",
-            packing.diameter.len()
-        ))
-    })?;
-    notes.iter().for_each(|note| (callbacks.warn)(&format!("{file}: {note}")));
-    if let Some(graph) = &graph {
-        let square = graph.d32_mm * graph.d32_mm;
-        let k = permeability_mm2(graph, 2).map_err(|error| refused(&error))?;
-        summary.k_over_d32_squared = Some(k / square);
-        summary.kozeny_carman_over_d32_squared = Some(graph.kozeny_carman_mm2() / square);
+impl ConstrictionsOptions {
+    fn measure(&self, packing: &Path, callbacks: &Callbacks) -> Result<Summary, RunError> {
+        let file = shown(packing);
+        let (packing, notes) = Packing::read_as(packing, &self.read)?;
+        let refused = |error: &dyn std::error::Error| RunError::Refused(format!("{file}: {error}"));
+        let t = Triangulation::new(&packing).map_err(|error| refused(&error))?;
+        let constrictions = Constrictions::from_triangulation(&t, self.merge_overlap, self.facets)
+            .map_err(|error| refused(&error))?;
+        constrictions.check().map_err(|error| refused(&error))?;
+        // Grains without a cell, or with voids that run through it, have no graph.
+        let graph = VoidGraph::of(&t, self.merge_overlap).ok();
+        // In grains without a cell, constrictions near the outside do not count for the curve.
+        let whole =
+            |summary: &Summary| summary.grains_per_void.is_finite() && summary.mean_connectivity.is_finite();
+        let mut summary = constrictions.summary().ok().filter(whole).ok_or_else(|| {
+            RunError::Refused(format!(
+                "{file}: {} grains are too few: no constriction lies between two voids inside the packing. \
+                 At least 5 grains that do not lie in one plane are needed for one, some thousands for a \
+                 curve",
+                packing.diameter.len()
+            ))
+        })?;
+        notes.iter().for_each(|note| (callbacks.warn)(&format!("{file}: {note}")));
+        if let Some(graph) = &graph {
+            let square = graph.d32_mm * graph.d32_mm;
+            let k = permeability_mm2(graph, 2).map_err(|error| refused(&error))?;
+            summary.k_over_d32_squared = Some(k / square);
+            summary.kozeny_carman_over_d32_squared = Some(graph.kozeny_carman_mm2() / square);
+        }
+        let folder = claim(&self.out, FolderKind::Constrictions, self.overwrite)?;
+        begin(&folder, FolderKind::Constrictions)?;
+        folder.write("grains.vtp", packing.to_vtp().as_bytes())?;
+        if let Some(graph) = &graph {
+            folder.write("graph.csv", graph.to_csv().as_bytes())?;
+        }
+        for (name, text) in constrictions.files(&summary)? {
+            folder.write(name, text.as_bytes())?;
+        }
+        Unfinished::end(&folder)?;
+        Ok(summary)
     }
-    let folder = claim(&options.out, FolderKind::Constrictions, options.overwrite)?;
-    begin(&folder, FolderKind::Constrictions)?;
-    folder.write("grains.vtp", packing.to_vtp().as_bytes())?;
-    if let Some(graph) = &graph {
-        folder.write("graph.csv", graph.to_csv().as_bytes())?;
-    }
-    for (name, text) in constrictions.files(&summary)? {
-        folder.write(name, text.as_bytes())?;
-    }
-    Unfinished::end(&folder)?;
-    Ok(summary)
 }

@@ -13,13 +13,14 @@ use serde::Serialize;
 use super::RunError;
 use super::callbacks::Callbacks;
 use super::folder::refused;
-use super::machine::{Machine, on_threads};
-use super::pack::{provide, with_time};
+use super::machine::{available_bytes, on_threads};
+use super::pack::{PACKINGS, provide, with_time};
 use super::replicates::{have_networks, left_out_of_first_run, runs_to_walk};
 use super::results::left_out;
 use crate::case::{Case, CaseError, PackedFilter, PackingPlan, ResourceLimits};
 use crate::outcome::record::{Inputs, LeftOut, Ratios};
 use crate::scene::Scene;
+use crate::words;
 use voidwalk_core::store::{Placement, StoreError, write_whole};
 use voidwalk_practice::{Note, ordered};
 
@@ -36,14 +37,14 @@ pub struct PrepareOptions {
 
 impl Default for PrepareOptions {
     fn default() -> Self {
-        Self { packings: "voidwalk-packings".into(), memory: None, threads: None }
+        Self { packings: PACKINGS.into(), memory: None, threads: None }
     }
 }
 
 impl PrepareOptions {
     /// Limits of the walks, with their particles in memory or in `folder`.
     pub(crate) fn limits(&self, folder: &Path) -> ResourceLimits {
-        ResourceLimits::new(self.memory, Machine::here().available, folder)
+        ResourceLimits::new(self.memory, available_bytes(), folder)
     }
 }
 
@@ -62,7 +63,7 @@ impl Draft {
         let packing = PackingPlan::of(&scene).map_err(with_time)?;
         let placeholder = packing.as_ref().map(PackedFilter::placeholder).transpose();
         let known = packing.as_ref().map_or(Vec::new(), |packing| packing.inputs.clone());
-        let case = Case::with_packed(scene.clone(), placeholder.map_err(CaseError::from)?, known)?;
+        let case = Case::with_filter(scene.clone(), placeholder.map_err(CaseError::from)?, None, known)?;
         Ok(Self { scene, case, packing })
     }
 
@@ -70,9 +71,55 @@ impl Draft {
     /// filter that turns out unsuitable.
     pub(crate) fn finished(self, filter: Option<PackedFilter>) -> Result<Case, RunError> {
         match filter {
-            Some(_) => Ok(Case::with_packed(self.scene, filter, self.case.inputs)?),
+            Some(_) => Ok(Case::with_filter(self.scene, filter, None, self.case.inputs)?),
             None => Ok(self.case),
         }
+    }
+
+    /// Forecasts the run, without making a packing that it needs.
+    fn check(self, options: &PrepareOptions) -> Result<Check, RunError> {
+        let (mut packing, mut filter) = (None, None);
+        if let Some(plan) = &self.packing {
+            let mut folder = options.packings.join(plan.folder_name());
+            filter = PackedFilter::find(&options.packings, plan)?;
+            if let Some(other) = filter.as_ref().and_then(|made| made.same_shape.as_ref()) {
+                folder = other.folder.clone().into();
+            }
+            let is_made = filter.is_some();
+            let core_seconds = if is_made { plan.core_seconds() } else { plan.core_seconds_here() };
+            let (grains, steps) = (plan.compression.grains as u64, plan.usual_steps());
+            packing = Some(PackingCheck { grains, folder, is_made, steps, core_seconds });
+        }
+        let mut case = self.finished(filter)?;
+        let here = Path::new(".");
+        let threads = rayon::current_num_threads() as u64;
+        let refusal = case.place(&options.limits(here), threads, here).err();
+        let mut of_run = Vec::new();
+        if refusal.is_none() {
+            have_networks(&case, &Callbacks::default())?;
+            of_run = left_out_of_first_run(&case).map_err(RunError::refused)?;
+        }
+        Ok(Check {
+            n_base: case.supply.n_base,
+            n_base_eq2: case.supply.n_base_eq2,
+            capped: case.supply.capped,
+            grains_per_void: case.filter.grains_per_void,
+            mass_ratio: case.supply.mass_ratio,
+            one_by_one: case.one_by_one(case.supply.n_base),
+            runs_to_walk: runs_to_walk(&case),
+            increments: case.increments(),
+            bytes: case.bytes(case.supply.n_base, threads).saturating_add(case.kept_bytes()),
+            bytes_allowed: case.memory,
+            memory: words::memory::memory(&case.walk_memory(threads)),
+            core_seconds: case.core_seconds_here(),
+            particles_on_disk: case.placement != Placement::Memory,
+            ratios: case.ratios(),
+            packing,
+            inputs: case.record(),
+            left_out: left_out(&case, &of_run),
+            notes: ordered(case.notes()),
+            refusal,
+        })
     }
 }
 
@@ -109,11 +156,6 @@ pub(crate) fn prepare_into<F: AsRef<Path>>(
         false => case.placement = case.placement.within(folder.as_ref()),
     }
     Ok((case, folder))
-}
-
-/// Writes the built-in scene, with comments, as a start for another; refuses to replace a file.
-pub(crate) fn write_built_in(path: &Path) -> Result<(), RunError> {
-    write_new(path, Scene::init_text().as_bytes())
 }
 
 /// Writes a file; refuses to replace one.
@@ -190,53 +232,7 @@ pub(crate) struct PackingCheck {
 /// # Errors
 /// All mistakes of the scene, memory apart: see `Check::refusal`.
 pub fn check(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> {
-    on_threads(options.threads, || check_here(scene, options))
-}
-
-fn check_here(scene: Scene, options: &PrepareOptions) -> Result<Check, RunError> {
-    let draft = Draft::new(scene)?;
-    let (mut packing, mut filter) = (None, None);
-    if let Some(plan) = &draft.packing {
-        let mut folder = options.packings.join(plan.folder_name());
-        filter = PackedFilter::find(&options.packings, plan)?;
-        if let Some(other) = filter.as_ref().and_then(|made| made.same_shape.as_ref()) {
-            folder = other.folder.clone().into();
-        }
-        let is_made = filter.is_some();
-        let core_seconds = if is_made { plan.core_seconds() } else { plan.core_seconds_here() };
-        let (grains, steps) = (plan.compression.grains as u64, plan.usual_steps());
-        packing = Some(PackingCheck { grains, folder, is_made, steps, core_seconds });
-    }
-    let mut case = draft.finished(filter)?;
-    let here = Path::new(".");
-    let threads = rayon::current_num_threads() as u64;
-    let refusal = case.place(&options.limits(here), threads, here).err();
-    let mut of_run = Vec::new();
-    if refusal.is_none() {
-        have_networks(&case, &Callbacks::default())?;
-        of_run = left_out_of_first_run(&case).map_err(RunError::refused)?;
-    }
-    Ok(Check {
-        n_base: case.supply.n_base,
-        n_base_eq2: case.supply.n_base_eq2,
-        capped: case.supply.capped,
-        grains_per_void: case.filter.grains_per_void,
-        mass_ratio: case.supply.mass_ratio,
-        one_by_one: case.one_by_one(case.supply.n_base),
-        runs_to_walk: runs_to_walk(&case),
-        increments: case.increments(),
-        bytes: case.bytes(case.supply.n_base, threads).saturating_add(case.kept_bytes()),
-        bytes_allowed: case.memory,
-        memory: case.memory_in_words(threads),
-        core_seconds: case.core_seconds_here(),
-        particles_on_disk: case.placement != Placement::Memory,
-        ratios: case.ratios(),
-        packing,
-        inputs: case.record(),
-        left_out: left_out(&case, &of_run),
-        notes: ordered(case.notes()),
-        refusal,
-    })
+    on_threads(options.threads, || Draft::new(scene)?.check(options))
 }
 
 /// An example: its file name, a description, and its text.
@@ -269,9 +265,7 @@ pub(crate) const EXAMPLE_FILES: [ExampleFile; 8] = [
     example!("notebook.ipynb", "the same from Python"),
 ];
 
-/// Writes every example into a folder, which is made if it is missing. Other files in it stay.
-///
-/// # Errors
+/// Writes every example into a folder, which is made if it is missing. Other files in it stay. Errors:
 /// [`RunError::Refused`] if a file exists already, or the folder is a file; nothing is written then.
 pub(crate) fn write_examples(folder: &Path) -> Result<(), RunError> {
     let places = EXAMPLE_FILES.map(|file| folder.join(file.name));

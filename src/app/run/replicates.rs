@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 use std::ops::RangeInclusive;
-use std::sync::Arc;
 use std::time::Instant;
 
 use bitvec::slice::BitSlice;
@@ -25,8 +24,7 @@ use voidwalk_core::gradation::Gradation;
 use voidwalk_core::network::{Network, NetworkError};
 use voidwalk_core::store::checkpoint::Checkpoint;
 use voidwalk_core::walk::{
-    Clogged, Engine, FlowRecord, PlainExits, RunPlan, Shortcut, SizeClasses, State, Supply, Walk,
-    WalkControl, WalkError, from_words,
+    Clogged, Engine, RunPlan, Shortcut, SizeClasses, State, Supply, Walk, WalkControl, WalkError, from_words,
 };
 use voidwalk_practice::Note;
 
@@ -64,6 +62,26 @@ pub struct ReplicateResult {
     pub(crate) left_out: Vec<Shortcut>,
     /// True, by run, if less than 7.5 % of the mass eroded.
     pub(super) below: Vec<bool>,
+}
+
+impl ReplicateResult {
+    /// Replicate with these runs; `first` is the plan of its first run.
+    pub(super) fn new(
+        seed: u64,
+        runs: Vec<Run>,
+        below: Vec<bool>,
+        recorded: Recorded,
+        first: &RunPlan,
+    ) -> Self {
+        let verdict = classify(below.first().copied(), below.get(1).copied());
+        Self {
+            replicate: Replicate { seed, verdict, runs },
+            recorded,
+            engine: first.engine(),
+            left_out: first.left_out().to_vec(),
+            below,
+        }
+    }
 }
 
 /// Walks every replicate of the case: the number in the scene, or until its rule stops. Errors: a walk that
@@ -149,34 +167,90 @@ pub(super) fn walk_replicate(
     let first = plan(case, network, &clogged.blocked, n_base);
     let (mut done, mut saved) = load(id, context)?;
     let mut exits = if done.complete { None } else { to_walk.exits(case).map(Cow::Borrowed) };
+    let mut wanted = case.scene.record.wanted();
+    // Voids are recorded for one replicate only.
+    wanted.voids = wanted.voids.filter(|_| replicate == 1);
     while !done.complete {
-        let run_id = RunId {
-            replicate,
-            run: done.runs.len() as u64 + 1,
-            d15f_mm: case.filter.gradation.d(15.0).unwrap_or(f64::NAN),
-            pan_fraction: case.pan_by_mass_only(),
-        };
-        let run = RunContext { case, network, id, run_id };
-        let begun = Instant::now();
-        let end = run.walk(clogged, exits.take(), &mut done, saved.take(), context)?;
-        run.record(&end, begun.elapsed().as_secs_f64(), &mut done, context);
+        let (begun, run) = (Instant::now(), done.runs.len() as u64 + 1);
+        let (supply, mut state) = begin(case, network, id, run, clogged, saved.take())?;
+        let mut walk = Walk::with_exits(network, &supply, &state, exits.take());
+        let (mut last, mut failed) = (Instant::now(), None);
+        let walked = walk.run(&mut state, &mut |state| {
+            if part == 0 {
+                done.recorder.observe(&wanted, state);
+            }
+            let (increment, moving) = (state.increment, state.tally.moving);
+            context.tell(Event::Increment { replicate, run, increment, moving });
+            let stop = context.callbacks.is_stopped();
+            let due = |checkpoints: &&Checkpoints| checkpoints.is_due(last, increment, stop);
+            if let Some(checkpoints) = context.checkpoints.filter(due) {
+                if let Err(error) = checkpoints.save_walk(id, network, state, &done) {
+                    failed = Some(error);
+                    return WalkControl::Stop;
+                }
+                last = Instant::now();
+            }
+            if stop { WalkControl::Stop } else { WalkControl::Continue }
+        });
+        if let Some(error) = failed {
+            return Err(RunError::Save(error));
+        }
+        walked?;
+        let (end, flow, left) = walk.end_with_exits(&state)?;
+        let d15f_mm = case.filter.gradation.d(15.0).unwrap_or(f64::NAN);
+        let run_id = RunId { replicate, run, d15f_mm, pan_fraction: case.pan_by_mass_only() };
+        let metrics = RunMetrics::new(&end, &state, flow.as_ref(), run_id, begun.elapsed().as_secs_f64());
+        let recorder = std::mem::take(&mut done.recorder);
+        if part == 0 {
+            done.recorded.append(Recorded::new(&end, &state, flow.as_ref(), &recorder, run_id));
+        }
+        context.tell(Event::RunDone);
+        tell_walked(id, &metrics.run, metrics.below_threshold, context);
+        done.below.push(metrics.below_threshold);
+        done.runs.push(metrics.run);
+        done.complete = run == case.scene.walk.runs;
+        if let (true, Some(checkpoints)) = (done.complete, context.checkpoints) {
+            checkpoints.save_finished(id, &done);
+        }
         // The next run begins with the open constrictions of this run.
-        (clogged, exits) = (end.state.into_clogged(), end.exits.map(Cow::Owned));
+        (clogged, exits) = (state.into_clogged(), left.map(Cow::Owned));
     }
-    let verdict = classify(done.below.first().copied(), done.below.get(1).copied());
-    Ok(ReplicateResult {
-        replicate: Replicate { seed, verdict, runs: done.runs },
-        recorded: done.recorded,
-        engine: first.engine(),
-        left_out: first.left_out().to_vec(),
-        below: done.below,
-    })
+    Ok(ReplicateResult::new(seed, done.runs, done.below, done.recorded, &first))
+}
+
+/// Supply of a run, and its state at the start or in the checkpoint.
+fn begin(
+    case: &Case,
+    network: &Network,
+    WalkId { seed, n_base, .. }: WalkId,
+    run: u64,
+    clogged: Clogged,
+    saved: Option<Checkpoint>,
+) -> Result<(Supply, State), RunError> {
+    let clogged = match &saved {
+        // The state holds the open constrictions from here on.
+        Some(saved) if run > 1 => blocked_at_start(network, saved)?.into(),
+        _ => clogged,
+    };
+    let (plan, sampler) = (plan(case, network, &clogged.blocked, n_base), &case.supply.sampler);
+    let supply = plan.supply(sampler.clone(), n_base, case.increments(), seed, run);
+    let classes = case.scene.record.size_classes as usize;
+    let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), classes);
+    let state = State::placed(&case.placement, network, &supply, classes, clogged, seed, run);
+    let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
+    if let Some(saved) = saved {
+        if saved.label.network != network.fingerprint() {
+            return Err(saved.of_another_network().into());
+        }
+        state.restore(network, &supply, &saved)?;
+    }
+    Ok((supply, state))
 }
 
 /// Finished runs of a replicate, and the checkpoint of the current run; reports a finished replicate.
 fn load(id: WalkId, context: &ReplicateContext) -> Result<(Done, Option<Checkpoint>), RunError> {
     let loaded = context.checkpoints.map(|checkpoints| checkpoints.load(id));
-    let Some(Some((done, saved))) = loaded.transpose().map_err(RunError::Checkpoint)? else {
+    let Some(Some((done, saved))) = loaded.transpose()? else {
         return Ok((Done::default(), None));
     };
     if done.complete {
@@ -228,110 +302,6 @@ pub(crate) fn have_networks(case: &Case, callbacks: &Callbacks) -> Result<(), Ru
     };
     let replicates = 1..=first_replicates(case).max(case.scene.record.sensitivity_replicates);
     map_side_by_side(replicates.collect(), fit_side_by_side(case, case.supply.n_base), one).map(drop)
-}
-
-struct RunEnd<'a> {
-    state: State,
-    network: Cow<'a, Network>,
-    flow: Option<FlowRecord>,
-    exits: Option<PlainExits>,
-}
-
-struct RunContext<'a> {
-    case: &'a Case,
-    network: &'a Arc<Network>,
-    id: WalkId,
-    run_id: RunId,
-}
-
-impl RunContext<'_> {
-    /// Walks from the start, with the network's exits if they are known, or from the checkpoint.
-    fn walk(
-        &self,
-        clogged: Clogged,
-        exits: Option<Cow<PlainExits>>,
-        done: &mut Done,
-        saved: Option<Checkpoint>,
-        context: &ReplicateContext,
-    ) -> Result<RunEnd<'_>, RunError> {
-        let Self { case, network, id, run_id } = *self;
-        let (supply, mut state) = self.begin(clogged, saved)?;
-        let mut walk = Walk::with_exits(network, &supply, &state, exits);
-        let (mut last, mut failed) = (Instant::now(), None);
-        let mut wanted = case.scene.record.wanted();
-        // Voids are recorded for one replicate only.
-        wanted.voids = wanted.voids.filter(|_| run_id.replicate == 1);
-        let walked = walk.run(&mut state, &mut |state| {
-            if id.part == 0 {
-                done.recorder.observe(&wanted, state);
-            }
-            let (increment, moving) = (state.increment, state.tally.moving);
-            let RunId { replicate, run, .. } = run_id;
-            context.tell(Event::Increment { replicate, run, increment, moving });
-            let stop = context.callbacks.is_stopped();
-            let due = |checkpoints: &&Checkpoints| checkpoints.is_due(last, increment, stop);
-            if let Some(checkpoints) = context.checkpoints.filter(due) {
-                if let Err(error) = checkpoints.save_walk(id, network, state, done) {
-                    failed = Some(error);
-                    return WalkControl::Stop;
-                }
-                last = Instant::now();
-            }
-            if stop { WalkControl::Stop } else { WalkControl::Continue }
-        });
-        if let Some(error) = failed {
-            return Err(RunError::Save(error));
-        }
-        walked?;
-        let (end, flow, exits) = walk.end_with_exits(&state)?;
-        // The network is kept after the supply of the run is dropped.
-        let network = match end {
-            Cow::Borrowed(_) => Cow::Borrowed(&**network),
-            Cow::Owned(directed) => Cow::Owned(directed),
-        };
-        Ok(RunEnd { state, network, flow, exits })
-    }
-
-    /// Supply of the run, and its state at the start or in the checkpoint.
-    fn begin(&self, clogged: Clogged, saved: Option<Checkpoint>) -> Result<(Supply, State), RunError> {
-        let Self { case, network, id: WalkId { seed, n_base, .. }, run_id } = *self;
-        let clogged = match &saved {
-            // The state holds the open constrictions from here on.
-            Some(saved) if run_id.run > 1 => blocked_at_start(network, saved)?.into(),
-            _ => clogged,
-        };
-        let (plan, sampler) = (plan(case, network, &clogged.blocked, n_base), &case.supply.sampler);
-        let supply = plan.supply(sampler.clone(), n_base, case.increments(), seed, run_id.run);
-        let classes = case.scene.record.wanted().size_classes;
-        let classes = SizeClasses::logarithmic(sampler.smallest(), sampler.largest(), classes);
-        let state = State::placed(&case.placement, network, &supply, classes, clogged, seed, run_id.run);
-        let mut state = state.map_err(|source| RunError::Room { particles: supply.total(), source })?;
-        if let Some(saved) = saved {
-            if saved.label.network != network.fingerprint() {
-                return Err(RunError::Checkpoint(saved.of_another_network()));
-            }
-            state.restore(network, &supply, &saved).map_err(RunError::Checkpoint)?;
-        }
-        Ok((supply, state))
-    }
-
-    /// Adds the run to the finished part of its replicate, reports it, and saves a finished replicate.
-    fn record(&self, end: &RunEnd, seconds: f64, done: &mut Done, context: &ReplicateContext) {
-        let RunEnd { state, network, flow, .. } = end;
-        let metrics = RunMetrics::new(network, state, flow.as_ref(), self.run_id, seconds);
-        let recorder = std::mem::take(&mut done.recorder);
-        if self.id.part == 0 {
-            done.recorded.append(Recorded::new(network, state, flow.as_ref(), &recorder, self.run_id));
-        }
-        context.tell(Event::RunDone);
-        tell_walked(self.id, &metrics.run, metrics.below_threshold, context);
-        done.below.push(metrics.below_threshold);
-        done.runs.push(metrics.run);
-        done.complete = done.runs.len() as u64 == self.case.scene.walk.runs;
-        if let (true, Some(checkpoints)) = (done.complete, context.checkpoints) {
-            checkpoints.save_finished(self.id, done);
-        }
-    }
 }
 
 /// Constrictions that were blocked when the saved run began: those blocked now without those that the run

@@ -2,7 +2,7 @@
 
 use super::RunError;
 use super::case_walks::{CaseWalks, Studies};
-use super::machine::Machine;
+use super::machine::description;
 use super::replicates::{ReplicateResult, said_by_walks};
 use crate::case::{Case, INPUT_NAMES, replicate_seed};
 use crate::outcome::left_out::LeftOut;
@@ -15,7 +15,7 @@ use crate::verdict::RunFiles;
 use serde::Serialize;
 use std::time::SystemTime;
 use voidwalk_core::store::format::{Format, from_json};
-use voidwalk_core::store::{Folder, StoreError, Together, format};
+use voidwalk_core::store::{Folder, StoreError, Together, format, platform};
 use voidwalk_core::text::moment;
 use voidwalk_core::walk::Shortcut;
 use voidwalk_practice::rules::{BaseSoil, RuleInputs};
@@ -34,7 +34,7 @@ pub(crate) fn outcome(
     let inputs = rule_inputs(case, walked);
     let notes = notes_before_results(case, noted, walks);
     let inputs_record = case.record();
-    let outcome = Outcome {
+    let mut outcome = Outcome {
         headline: None,
         practice: None,
         model: Model {
@@ -74,11 +74,6 @@ pub(crate) fn outcome(
         digest: String::new(),
         seconds,
     };
-    concluded_from_results(outcome, case, inputs)
-}
-
-/// Completes the outcome from its results: the decision of practice, notes, digest.
-fn concluded_from_results(mut outcome: Outcome, case: &Case, inputs: RuleInputs) -> (Outcome, Decision) {
     let range_of_tests_mm = rules::tested_range(&inputs);
     if case.scene.base.dispersive.is_none() {
         outcome.if_dispersive = IfDispersive::of(&RuleInputs { dispersive: true, ..inputs });
@@ -141,15 +136,14 @@ pub(crate) fn write_scene(folder: &Folder, case: &Case) -> Result<(), StoreError
 
 /// Manifest of a run: everything besides its results.
 pub fn manifest(case: &Case, threads: u64, started: SystemTime, command: String) -> Manifest {
-    let machine = Machine::here();
     Manifest {
         version: env!("CARGO_PKG_VERSION").into(),
         commit: commit(),
         seed: case.scene.walk.seed,
         inputs: case.input_files(),
         threads,
-        host: machine.host,
-        machine: machine.description,
+        host: platform::host_name(),
+        machine: description(),
         started: moment(started),
         finished: moment(SystemTime::now()),
         command,
@@ -179,10 +173,7 @@ pub(super) fn left_out(case: &Case, of_run: &[Shortcut]) -> Vec<LeftOut> {
     case.left_out().into_iter().chain(of_run.iter().copied().map(LeftOut::Walk)).collect()
 }
 
-/// Content of the files of a run, except its voids.
-///
-/// # Errors
-/// The record of its packing cannot be read.
+/// Content of the files of a run, except its voids. Errors: the record of its packing cannot be read.
 pub(crate) fn files(
     case: &Case,
     (outcome, decision): (Outcome, Decision),
@@ -198,10 +189,8 @@ pub(crate) fn files(
     Ok(RunFiles { outcome, decision, manifest, scene, about, packing, recorded })
 }
 
-/// Writes the results of a run beside its scene: the CSV files, the outcome, the manifest.
-///
-/// # Errors
-/// Errors of the folder; no file is left half written.
+/// Writes the results of a run beside its scene: the CSV files, the outcome, the manifest. Errors: errors of
+/// the folder; no file is left half written.
 pub(crate) fn write(folder: &Folder, case: &Case, run: &RunFiles) -> Result<(), RunError> {
     // They go first, so that a folder whose files are being replaced is not taken for finished.
     for name in ["manifest.json", "outcome.json"] {
@@ -251,8 +240,7 @@ pub(crate) fn json(format: Format, record: &impl Serialize) -> Result<Vec<u8>, R
 mod tests {
     use super::*;
     use crate::outcome::record::Verdict;
-    use crate::run::{Callbacks, walk_case};
-    use crate::scene::Scene;
+    use crate::run::{Callbacks, case_of, walk_case};
     use crate::words;
     use voidwalk_practice::Headline;
     use voidwalk_practice::quantity::SizeUnit;
@@ -267,16 +255,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let sheet = folder.path().join("base.csv");
         std::fs::write(&sheet, format!("size_mm,percent_finer\n{rows}")).unwrap();
-        let soils = [
-            format!("base.sieve={}", sheet.display()),
-            "filter.curve=shire2016-cu1.5-loose".into(),
-            "filter.cu=1.5".into(),
-            format!("filter.d0_mm={}", d15f / 1.13),
-        ];
+        let (base, d0) = (format!("base.sieve={}", sheet.display()), format!("filter.d0_mm={}", d15f / 1.13));
+        let soils = [&*base, &*d0, "filter.curve=shire2016-cu1.5-loose", "filter.cu=1.5"];
         let small = ["network.nx=6", "network.ny=6", "network.nz=8", "replicates=2", "record.sensitivity=[]"];
-        let all: Vec<String> =
-            soils.into_iter().chain(small.iter().chain(set).map(|setting| (*setting).into())).collect();
-        walk_case(&Case::new(Scene::built_in(&all).unwrap()).unwrap(), &Callbacks::default()).unwrap()
+        walk_case(&case_of(&[&soils[..], &small, set].concat()), &Callbacks::default()).unwrap()
     }
 
     fn line(outcome: &Outcome) -> String {

@@ -20,6 +20,7 @@ const PART: u64 = 16;
 type KeptExits = Arc<OnceLock<PlainExits>>;
 
 /// Network to walk, and its exits if they are kept.
+#[derive(Clone)]
 pub(crate) struct NetworkToWalk {
     pub(crate) network: Arc<Network>,
     exits: Option<KeptExits>,
@@ -45,8 +46,7 @@ impl NetworkToWalk {
 
 struct KeptNetwork {
     key: u128,
-    network: Arc<Network>,
-    exits: Option<KeptExits>,
+    to_walk: NetworkToWalk,
     /// Memory of the network and of its exits (bytes).
     bytes: [u64; 2],
 }
@@ -54,7 +54,7 @@ struct KeptNetwork {
 impl KeptNetwork {
     fn bytes(&self) -> u64 {
         let [network, exits] = self.bytes;
-        network.saturating_add(if self.exits.is_some() { exits } else { 0 })
+        network.saturating_add(if self.to_walk.exits.is_some() { exits } else { 0 })
     }
 }
 
@@ -85,11 +85,11 @@ impl SharedNetworks {
             return Ok(network);
         }
         // Others may look up networks meanwhile; two threads that build the same network build the same bits.
-        let network = Arc::new(case.network(seed)?);
         let bytes = case.shared_network_bytes();
         let exits = (bytes[1] > 0).then(KeptExits::default);
-        self.keep(KeptNetwork { key, network: network.clone(), exits, bytes });
-        Ok(self.find(key).unwrap_or(NetworkToWalk { network, exits: None }))
+        let to_walk = NetworkToWalk { network: Arc::new(case.network(seed)?), exits };
+        self.keep(KeptNetwork { key, to_walk: to_walk.clone(), bytes });
+        Ok(self.find(key).unwrap_or(NetworkToWalk { exits: None, ..to_walk }))
     }
 
     fn keep(&self, new: KeptNetwork) {
@@ -100,7 +100,7 @@ impl SharedNetworks {
         kept.push_back(new);
         let mut bytes = kept.iter().map(KeptNetwork::bytes).fold(0, u64::saturating_add);
         for entry in kept.iter_mut() {
-            if bytes > self.most_bytes && entry.exits.take().is_some() {
+            if bytes > self.most_bytes && entry.to_walk.exits.take().is_some() {
                 bytes -= entry.bytes[1];
             }
         }
@@ -113,8 +113,7 @@ impl SharedNetworks {
 
     fn find(&self, key: u128) -> Option<NetworkToWalk> {
         let kept = self.kept.lock().ok()?;
-        let KeptNetwork { network, exits, .. } = kept.iter().find(|other| other.key == key)?;
-        Some(NetworkToWalk { network: network.clone(), exits: exits.clone() })
+        Some(kept.iter().find(|other| other.key == key)?.to_walk.clone())
     }
 }
 
@@ -186,7 +185,7 @@ mod tests {
             let bytes: u64 = kept.iter().map(KeptNetwork::bytes).sum();
             assert!(bytes <= most);
             let shown: String =
-                kept.iter().map(|entry| if entry.exits.is_some() { '+' } else { '-' }).collect();
+                kept.iter().map(|entry| if entry.to_walk.exits.is_some() { '+' } else { '-' }).collect();
             (shown, kept.iter().map(|entry| entry.key).collect::<Vec<_>>())
         };
         assert_eq!(kept(3 * (network + exits), 3).0, "+++");

@@ -25,7 +25,7 @@ use voidwalk_practice::quantity::SizeUnit;
 use voidwalk_practice::{Decision, Note, ordered};
 use voidwalk_sheets::file_and_soil;
 
-/// Options of walking a scene; no option changes a result. [`walk_scene`] has an example.
+/// Options of walking a scene; no option changes a result. [`resume`] has an example.
 #[derive(Clone, Debug, Default)]
 pub struct RunOptions {
     /// Folder for the results; by default the first free of `voidwalk-run`, `voidwalk-run-2`, ...
@@ -57,21 +57,7 @@ pub struct FinishedRun {
 ///
 /// # Errors
 /// A wrong scene, too little memory, or a folder that cannot be claimed is refused before any work; then
-/// errors of the packing, the walk or the folder. After a stop, [`resume`] continues.
-///
-/// # Example
-/// ```
-/// use voidwalk_app::run::{Callbacks, RunOptions, walk_scene};
-/// use voidwalk_app::scene::Scene;
-///
-/// let settings = ["replicates=2", "runs=1", "base.n_base=20000", "record.sensitivity=[]"].map(String::from);
-/// let folder = tempfile::tempdir()?;
-/// let options = RunOptions { out: Some(folder.path().join("run")), ..RunOptions::default() };
-/// let run = walk_scene(Scene::built_in(&settings)?, &options, &Callbacks::default())?;
-/// println!("{}: {}", run.folder.display(), run.outcome.model.class.words());
-/// assert!(run.folder.join("outcome.json").is_file());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+/// errors of the packing, the walk or the folder. After a stop, [`resume`] continues; it has an example.
 pub fn walk_scene(
     scene: Scene,
     options: &RunOptions,
@@ -124,19 +110,7 @@ pub fn resume(folder: &Path, options: &RunOptions, callbacks: &Callbacks) -> Res
 }
 
 /// Walks a case in memory and writes nothing. Uses the thread pool that it is called in, else one thread per
-/// core.
-///
-/// ```
-/// use voidwalk_app::case::Case;
-/// use voidwalk_app::run::{Callbacks, walk_case};
-/// use voidwalk_app::scene::Scene;
-///
-/// let settings = ["replicates=2", "base.n_base=20000", "record.sensitivity=[]"].map(String::from);
-/// let case = Case::new(Scene::built_in(&settings)?)?;
-/// let outcome = walk_case(&case, &Callbacks::default())?;
-/// assert_eq!(outcome.replicates.len(), 2);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
+/// core. [`voidwalk_app`](crate) has an example.
 ///
 /// # Errors
 /// A walk that fails or was stopped.
@@ -150,20 +124,10 @@ pub fn walk_case(case: &Case, callbacks: &Callbacks) -> Result<Outcome, RunError
 /// See [`walk_case`].
 pub fn walk_case_recorded(case: &Case, callbacks: &Callbacks) -> Result<(Outcome, Recorded), RunError> {
     let walk = || {
-        let (begun, notes) = (Instant::now(), case.notes());
         let context = ReplicateContext { callbacks, checkpoints: None, networks: None };
-        (callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(case) });
-        let walks = CaseWalks::walk(case, &context)?;
-        let (first, decision) =
-            results::outcome(case, &notes, &walks, Studies::default(), begun.elapsed().as_secs_f64());
-        if !Studies::are_none(case) {
-            let unit = case.about_page().unit;
-            (callbacks.on_event)(Event::VerdictStands { outcome: &first, decision: &decision, unit });
-        }
-        let studies = Studies::walk(case, &walks, &context)?;
-        let (outcome, _) = results::outcome(case, &notes, &walks, studies, begun.elapsed().as_secs_f64());
+        let ((outcome, _), walked) = walk_all(case, &case.notes(), &context, |_, _| Ok(()))?;
         let mut recorded = Recorded::default();
-        walks.replicates.into_iter().for_each(|replicate| recorded.append(replicate.recorded));
+        walked.into_iter().for_each(|replicate| recorded.append(replicate.recorded));
         Ok((outcome, recorded))
     };
     match rayon::current_thread_index() {
@@ -180,19 +144,30 @@ fn walk_here(
 ) -> Result<FinishedRun, RunError> {
     let files = files_of(&scene);
     let at = options.out.as_deref().unwrap_or(Path::new("."));
-    let claim = || claim_for(options, &files);
+    let claim = || {
+        let Some(path) = &options.out else { return claim_first_free("voidwalk-run") };
+        let folder = claim(path, FolderKind::Run, options.overwrite)?;
+        if options.overwrite {
+            outlive_clear(&folder, FolderKind::Run, &files)?;
+        }
+        Ok(folder)
+    };
     let (case, folder) = prepare_into(scene, &options.prepare, at, claim, callbacks)?;
     let unit = case.about_page().unit;
     let notes = ordered(case.notes());
     (callbacks.on_event)(Event::Noted { notes: &notes, unit });
     let started = SystemTime::now();
     let fingerprint = case.fingerprint();
-    if resumed {
-        unchanged(&folder, &fingerprint)?;
-    }
-    let begun = begun(&folder, &fingerprint, options.overwrite)?;
+    let begun = begun(&folder, &fingerprint, options.overwrite, resumed)?;
     if begun.is_none() {
-        clear_for(&folder, &files, resumed)?;
+        if resumed {
+            // Nothing else exists of its scene and input files.
+            clear_but_scene(&folder)?;
+        } else {
+            outlive_clear(&folder, FolderKind::Run, &files)?;
+            clear(&folder, FolderKind::Run)?;
+        }
+        checkpoints::discard(folder.path())?;
     } else if let Some(outcome) = without_page(&folder, &case)? {
         callbacks.results(FolderKind::Run, folder.path(), None)?;
         checkpoints::discard(folder.path())?;
@@ -206,40 +181,18 @@ fn walk_here(
     Unfinished { checkpoint_every: Some(every.to_string()), ..mark }.begin(&folder)?;
     results::write_scene(&folder, &case)?;
     let checkpoints = Checkpoints::new(&folder, &fingerprint, every)?;
-    let run =
-        CaseRun { case: &case, notes: &notes, unit, folder: &folder, checkpoints: &checkpoints, callbacks };
-    let (outcome, decision) = run.walk(|answer, walked| {
+    let context = ReplicateContext { callbacks, checkpoints: Some(&checkpoints), networks: None };
+    let ((outcome, decision), _) = walk_all(&case, &notes, &context, |answer, walked| {
         let threads = rayon::current_num_threads() as u64;
         let manifest = results::manifest(&case, threads, started, options.command.clone());
         let files = results::files(&case, answer.clone(), walked, manifest)?;
         results::write(&folder, &case, &files)?;
         callbacks.results(FolderKind::Run, folder.path(), Some(files))
-    })?;
+    })
+    .map_err(|error| ended(error, &checkpoints, &folder))?;
     checkpoints.clear()?;
     Unfinished::end(&folder)?;
     Ok(FinishedRun { folder: folder.path().to_owned(), outcome, decision, unit })
-}
-
-/// Claims the folder of a run; `files` of its scene must not be removed with the old results.
-fn claim_for(options: &RunOptions, files: &[PathBuf]) -> Result<Folder, RunError> {
-    let Some(path) = &options.out else { return claim_first_free("voidwalk-run") };
-    let folder = claim(path, FolderKind::Run, options.overwrite)?;
-    if options.overwrite {
-        outlive_clear(&folder, FolderKind::Run, files)?;
-    }
-    Ok(folder)
-}
-
-/// Clears the folder of a run that starts again.
-fn clear_for(folder: &Folder, files: &[PathBuf], resumed: bool) -> Result<(), RunError> {
-    if resumed {
-        // Nothing else exists of its scene and input files.
-        clear_but_scene(folder)?;
-    } else {
-        outlive_clear(folder, FolderKind::Run, files)?;
-        clear(folder, FolderKind::Run)?;
-    }
-    Ok(checkpoints::discard(folder.path())?)
 }
 
 /// Files of a scene, including the scene's own file if it has one.
@@ -255,27 +208,27 @@ fn files_of(scene: &Scene) -> Vec<PathBuf> {
     std::iter::once(scene.name.clone().into()).chain(named.map(|path| file_and_soil(&path).0)).collect()
 }
 
-/// Refuses to continue a run that is no longer the one that was begun.
-fn unchanged(folder: &Folder, fingerprint: &str) -> Result<(), RunError> {
-    match Unfinished::read(folder)? {
-        // A corrupt mark gives no information.
-        Some(begun) if !begun.work.is_empty() && begun.work != fingerprint => {
-            let problem = "scene.toml or a file in inputs is not what this run was begun with, or another \
-                           version of voidwalk began it; put it back, or walk the scene anew into another \
-                           folder: voidwalk run SCENE --out DIR";
-            Err(refused(folder.path(), problem))
-        }
-        _ => Ok(()),
-    }
-}
-
 /// Mark of an earlier start of this very run in its folder; `None` without such a start, or if its results
-/// are to be replaced.
-fn begun(folder: &Folder, fingerprint: &str, overwrite: bool) -> Result<Option<Unfinished>, RunError> {
+/// are to be replaced. Refuses to resume a run that is no longer the one that was begun.
+fn begun(
+    folder: &Folder,
+    fingerprint: &str,
+    overwrite: bool,
+    resumed: bool,
+) -> Result<Option<Unfinished>, RunError> {
+    let mark = Unfinished::read(folder)?;
+    // A corrupt mark gives no information.
+    let is_other = |mark: &Unfinished| !mark.work.is_empty() && mark.work != fingerprint;
+    if resumed && mark.as_ref().is_some_and(is_other) {
+        let problem = "scene.toml or a file in inputs is not what this run was begun with, or another \
+                       version of voidwalk began it; put it back, or walk the scene anew into another \
+                       folder: voidwalk run SCENE --out DIR";
+        return Err(refused(folder.path(), problem));
+    }
     if overwrite {
         return Ok(None);
     }
-    let begun = Unfinished::read(folder)?.filter(|begun| begun.work == fingerprint);
+    let begun = mark.filter(|mark| mark.work == fingerprint);
     match Checkpoints::scene_in(folder.path()).map_err(RunError::Checkpoint)? {
         Some(scene) if scene == fingerprint => Ok(Some(begun.unwrap_or_default())),
         // Checkpoints without a scene are left over from a run that was to be replaced; they are not
@@ -299,64 +252,51 @@ fn without_page(folder: &Folder, case: &Case) -> Result<Option<Outcome>, RunErro
     Ok(outcome.filter(|o| Studies::are_whole(case, &o.sensitivity, &o.thickness)))
 }
 
-/// Case that is walked into a folder.
-struct CaseRun<'a> {
-    case: &'a Case,
-    notes: &'a [Note],
-    unit: SizeUnit,
-    folder: &'a Folder,
-    checkpoints: &'a Checkpoints,
-    callbacks: &'a Callbacks<'a>,
+/// Walks everything that decides the verdict of a case, then its studies; `write` gets the results of both.
+fn walk_all(
+    case: &Case,
+    notes: &[Note],
+    context: &ReplicateContext,
+    write: impl Fn(&(Outcome, Decision), &[ReplicateResult]) -> Result<(), RunError>,
+) -> Result<((Outcome, Decision), Vec<ReplicateResult>), RunError> {
+    let begun = Instant::now();
+    let callbacks = context.callbacks;
+    (callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(case) });
+    let walks = CaseWalks::walk(case, context)?;
+    for problem in context.checkpoints.iter().flat_map(|checkpoints| checkpoints.passed_over()) {
+        (callbacks.warn)(&format!("{problem}; the checkpoint before it was used"));
+    }
+    let answer =
+        |studies: Studies| results::outcome(case, notes, &walks, studies, begun.elapsed().as_secs_f64());
+    let mut first = answer(Studies::default());
+    if Studies::are_none(case) {
+        write(&first, &walks.replicates)?;
+        return Ok((first, walks.replicates));
+    }
+    if let Some(checkpoints) = context.checkpoints {
+        // Without checkpoints, a folder with results would count as finished before its studies.
+        checkpoints.flush()?;
+        first.0.studies_to_come = true;
+    }
+    write(&first, &walks.replicates)?;
+    let (outcome, decision) = &first;
+    (callbacks.on_event)(Event::VerdictStands { outcome, decision, unit: case.about_page().unit });
+    let whole = answer(Studies::walk(case, &walks, context)?);
+    write(&whole, &walks.replicates)?;
+    Ok((whole, walks.replicates))
 }
 
-impl CaseRun<'_> {
-    /// Walks everything that decides the verdict, writes these results, then adds the studies and writes
-    /// everything.
-    fn walk(
-        &self,
-        write: impl Fn(&(Outcome, Decision), &[ReplicateResult]) -> Result<(), RunError>,
-    ) -> Result<(Outcome, Decision), RunError> {
-        let begun = Instant::now();
-        let (callbacks, checkpoints) = (self.callbacks, Some(self.checkpoints));
-        let context = ReplicateContext { callbacks, checkpoints, networks: None };
-        (self.callbacks.on_event)(Event::WalkBegun { runs: runs_to_walk(self.case) });
-        let walks = CaseWalks::walk(self.case, &context).map_err(|error| self.ended(error))?;
-        let answer = |studies: Studies| {
-            results::outcome(self.case, self.notes, &walks, studies, begun.elapsed().as_secs_f64())
-        };
-        for problem in self.checkpoints.passed_over() {
-            (self.callbacks.warn)(&format!("{problem}; the checkpoint before it was used"));
+/// Saves finished work that is not on disk yet, however the walk ended, and explains how to continue.
+fn ended(error: RunError, checkpoints: &Checkpoints, folder: &Folder) -> RunError {
+    match (error.exit(), checkpoints.flush()) {
+        (Exit::Stopped, Ok(())) => RunError::Stopped(format!(
+            "progress saved; continue with `voidwalk resume {}`",
+            plain(&shell_word(&folder.path().display().to_string()))
+        )),
+        (Exit::Stopped, Err(error)) => error.into(),
+        (Exit::Refused, _) => {
+            RunError::Refused(format!("{error}; --overwrite begins anew, another --out leaves it alone"))
         }
-        let mut first = answer(Studies::default());
-        if Studies::are_none(self.case) {
-            write(&first, &walks.replicates)?;
-            return Ok(first);
-        }
-        // Without checkpoints, a folder with results would count as finished before its studies.
-        self.checkpoints.flush()?;
-        first.0.studies_to_come = true;
-        write(&first, &walks.replicates)?;
-        let (outcome, decision) = &first;
-        (self.callbacks.on_event)(Event::VerdictStands { outcome, decision, unit: self.unit });
-        let studies = Studies::walk(self.case, &walks, &context).map_err(|error| self.ended(error))?;
-        let whole = answer(studies);
-        write(&whole, &walks.replicates)?;
-        Ok(whole)
-    }
-
-    /// Saves finished work that is not on disk yet, however the walk ended, and explains how to continue.
-    fn ended(&self, error: RunError) -> RunError {
-        let flushed = self.checkpoints.flush();
-        match (error.exit(), flushed) {
-            (Exit::Stopped, Ok(())) => RunError::Stopped(format!(
-                "progress saved; continue with `voidwalk resume {}`",
-                plain(&shell_word(&self.folder.path().display().to_string()))
-            )),
-            (Exit::Stopped, Err(error)) => error.into(),
-            (Exit::Refused, _) => {
-                RunError::Refused(format!("{error}; --overwrite begins anew, another --out leaves it alone"))
-            }
-            _ => error,
-        }
+        _ => error,
     }
 }

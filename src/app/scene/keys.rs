@@ -332,16 +332,8 @@ impl About {
 
     /// Cover of the sheet, without a date if the scene states none.
     pub(crate) fn cover(&self) -> SheetCover {
-        SheetCover {
-            project: self.project.clone(),
-            number: self.number.clone(),
-            purpose: self.purpose.clone(),
-            client: self.client.clone(),
-            author: self.author.clone(),
-            checker: self.checker.clone(),
-            revision: self.revision.clone(),
-            date: self.date.clone(),
-        }
+        let Self { project, number, purpose, client, author, checker, revision, date, .. } = self.clone();
+        SheetCover { project, number, purpose, client, author, checker, revision, date }
     }
 }
 

@@ -13,12 +13,7 @@ use voidwalk_core::packing;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum FilterGradation {
     /// Linear on semi-log paper from `d0_mm`; without `cu`, the value of the shipped curve.
-    Linear {
-        /// Smallest grain (mm).
-        d0_mm: f64,
-        /// D60 / D10.
-        cu: Option<f64>,
-    },
+    Linear { d0_mm: f64, cu: Option<f64> },
     /// Sieve table, and the lower end of its open tail (mm).
     Sieve(PathBuf, Option<f64>),
 }
@@ -27,12 +22,7 @@ pub(crate) enum FilterGradation {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum BaseGradation {
     /// Linear on semi-log paper with a given D85B.
-    Linear {
-        /// D60 / D10.
-        cu: f64,
-        /// Setting that defines D85B.
-        d85: D85,
-    },
+    Linear { cu: f64, d85: D85 },
     /// Sieve table, and the lower end of its open tail (mm).
     Sieve(PathBuf, Option<f64>),
     /// One size (mm).
@@ -42,7 +32,6 @@ pub(crate) enum BaseGradation {
 /// Setting that defines D85B.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum D85 {
-    /// Size (mm).
     Mm(f64),
     /// Constriction size at this percent of the filter's curve, or of another one.
     AtDc(f64, Option<CurveSource>),
@@ -55,7 +44,6 @@ pub(crate) enum D85 {
 pub(crate) enum Amount {
     /// Mass of base over mass of filter, Eq. (2), and a cap.
     MassRatio(f64, Option<u64>),
-    /// Fixed number.
     Number(u64),
 }
 
@@ -77,9 +65,7 @@ pub enum NetworkSource {
 pub enum Extent {
     /// Usual number of layers of voids, as in the lattice of the paper.
     Usual,
-    /// Copies of a packing.
     Copies(u32),
-    /// Thickness (mm).
     Mm(f64),
     /// Thickness over D50F by mass.
     D50F(f64),
@@ -98,11 +84,8 @@ impl Extent {
 
 /// Default mass of base over mass of filter: the paper's value.
 const MASS_RATIO: f64 = 0.05;
-
 /// Default number of voids along x, y, z: the paper's values.
 const VOIDS: [u64; 3] = [40, 40, USUAL_LAYERS];
-
-/// Default number of layers of voids: the paper's value.
 pub(crate) const USUAL_LAYERS: u64 = 60;
 
 impl Filter {
@@ -112,7 +95,6 @@ impl Filter {
         }
     }
 
-    /// Gradation of the filter by mass.
     pub(crate) fn gradation(&self) -> FilterGradation {
         match &self.sieve {
             Some(path) => FilterGradation::Sieve(path.clone(), self.d0_mm),
@@ -128,17 +110,16 @@ impl Base {
         }
     }
 
-    /// Gradation of the base by mass.
     pub(crate) fn gradation(&self) -> BaseGradation {
         if let Some(path) = &self.sieve {
             return BaseGradation::Sieve(path.clone(), self.d0_mm);
         }
-        match (self.single_mm, self.d85()) {
-            (Some(size), _) => BaseGradation::Single(size),
-            (None, d85) => BaseGradation::Linear {
+        match self.single_mm {
+            Some(size) => BaseGradation::Single(size),
+            // A scene without any of the three settings of D85B was refused.
+            None => BaseGradation::Linear {
                 cu: self.cu.unwrap_or(1.0),
-                // A scene without any of the three was refused.
-                d85: d85.unwrap_or(D85::Ratio(1.0)),
+                d85: self.d85().unwrap_or(D85::Ratio(1.0)),
             },
         }
     }
@@ -149,7 +130,6 @@ impl Base {
         self.d85_mm.map(D85::Mm).or(at_dc).or(self.d15f_over_d85b.map(D85::Ratio))
     }
 
-    /// Amount of base.
     pub(crate) fn amount(&self) -> Amount {
         match self.n_base {
             Some(n) => Amount::Number(n),
@@ -177,14 +157,10 @@ impl NetworkKeys {
         }
     }
 
-    /// Thickness along the flow.
     pub(crate) fn extent(&self) -> Extent {
-        match (self.copies, self.thickness_mm, self.thickness_d50f) {
-            (Some(copies), ..) => Extent::Copies(copies as u32),
-            (None, Some(mm), _) => Extent::Mm(mm),
-            (None, None, Some(multiple)) => Extent::D50F(multiple),
-            (None, None, None) => Extent::Usual,
-        }
+        let copies = self.copies.map(|copies| Extent::Copies(copies as u32));
+        let thickness = self.thickness_mm.map(Extent::Mm).or(self.thickness_d50f.map(Extent::D50F));
+        copies.or(thickness).unwrap_or(Extent::Usual)
     }
 
     /// Sets the number of layers of a lattice of this thickness.
@@ -235,19 +211,15 @@ impl NetworkSource {
 impl Record {
     /// Data to record of a run.
     pub(crate) fn wanted(&self) -> Wanted {
-        Wanted {
-            series_every: self.series_every,
-            size_curves: self.size_curves.clone(),
-            size_classes: self.size_classes as usize,
-            voids: self.voids.clone(),
-        }
+        let Self { series_every, size_curves, size_classes, voids, .. } = self.clone();
+        Wanted { series_every, size_curves, size_classes: size_classes as usize, voids }
     }
 }
 
 /// Specification of the packing of a filter.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PackingSpec {
-    /// Gradation to pack; a linear one has a `cu`.
+    /// A linear one has a `cu`.
     pub(crate) gradation: FilterGradation,
     /// Number of grains, if given by the user.
     pub(crate) grains: Option<usize>,
@@ -255,19 +227,17 @@ pub(crate) struct PackingSpec {
     pub(crate) aspect: f64,
     /// Percent by mass to pack, from the finest grain up, if given by the user.
     pub(crate) coarsest: Option<f64>,
-    /// Compression of the grains; its number of grains counts only if given by the user.
+    /// Its number of grains counts only if given by the user.
     pub(crate) compression: packing::Settings,
-    /// Overlap of two inscribed spheres above which their tetrahedra form one void.
+    /// See [`PackingKeys`].
     pub(crate) merge_overlap: f64,
     /// Name of the file in errors.
     pub(crate) file: String,
 }
 
 impl PackingSpec {
-    /// Collects the settings of a filter and its packing; errors call them `file`.
-    ///
-    /// # Errors
-    /// The gradation is missing, or the settings of the compression cannot be used together.
+    /// Collects the settings of a filter and its packing; errors call them `file`. Errors: the gradation is
+    /// missing, or the settings of the compression cannot be used together.
     pub(crate) fn new(filter: &Filter, packing: &PackingKeys, file: &str) -> Result<Self, SceneError> {
         let clash = |problem: String| SceneError::Clash { file: file.to_owned(), problem };
         let gradation = filter.gradation();

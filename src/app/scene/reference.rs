@@ -5,7 +5,6 @@ use super::Scene;
 use super::keys::{About, Base, ExitKeys, Filter, FilterPacking, GROUPS, NetworkKeys, Record, WalkKeys};
 use crate::outcome::stopping::StopRule;
 use serde::Serialize;
-use std::fmt::Write;
 use voidwalk_core::packing;
 use voidwalk_core::schema::{Alternative, Group, KeyInfo};
 
@@ -87,21 +86,18 @@ impl Scene {
         let mut text = String::new();
         for (about, keys) in sections() {
             let section = keys.first().map_or("", |key| key.section);
-            let line = |text: &mut String, is_set: bool, what: String| {
-                // Writing to a string cannot fail.
-                let _ = writeln!(text, "{}{what}", if is_set { "" } else { "#" });
-            };
+            let off = |is_set: bool| if is_set { "" } else { "#" };
             if !section.is_empty() {
                 text.push('\n');
             }
             comment(&mut text, &for_users(about));
             match section {
                 "" => text.push('\n'),
-                name => line(&mut text, keys.iter().any(|key| key.is_set), format!("[{name}]")),
+                name => text += &format!("{}[{name}]\n", off(keys.iter().any(|key| key.is_set))),
             }
             for key in keys {
                 comment(&mut text, &key.doc);
-                line(&mut text, key.is_set, format!("{} = {}", key.name, key.shown));
+                text += &format!("{}{} = {}\n", off(key.is_set), key.name, key.shown);
             }
         }
         text
@@ -166,15 +162,12 @@ fn comment(text: &mut String, words: &str) {
     let mut line = String::from("#");
     for word in words.split_whitespace() {
         if line.len() + 1 + word.len() > WIDTH && line.len() > 1 {
-            text.push_str(&line);
-            text.push('\n');
+            *text += &(line + "\n");
             line = String::from("#");
         }
-        line.push(' ');
-        line.push_str(word);
+        line = line + " " + word;
     }
-    text.push_str(&line);
-    text.push('\n');
+    *text += &(line + "\n");
 }
 
 #[cfg(test)]

@@ -39,19 +39,11 @@ const CONSTRICTIONS: [&str; 7] = [
     "network.file",
     "network.packing",
 ];
-
-/// Settings that determine the number of replicates.
 const REPLICATES: [&str; 3] = ["replicates", "stop.target_error_pp", "stop.decide_percent"];
-
 /// Settings that describe the filter's own packing.
 const PACKED: [&str; 2] = ["filter.density", "filter.friction"];
-
-/// Settings that define the base.
 const BASE: [&str; 3] = ["base.sieve", "base.cu", "base.single_mm"];
-
-/// Settings that define the filter.
 const FILTER: [&str; 2] = ["filter.sieve", "filter.cu"];
-
 /// Settings that no sieve table gives and that rules of practice depend on.
 const OF_RULES: [&str; 2] = ["base.dispersive", "filter.joint_mm"];
 
@@ -59,51 +51,38 @@ impl TableOptions {
     /// Setting to walk a base as sampled.
     pub(crate) const AS_SAMPLED: &str = "base.regrade=\"no\"";
 
-    /// Settings that express these options.
-    ///
-    /// # Errors
-    /// [`SceneError::Clash`]: a change also sets the density or the regrading of the base.
+    /// Settings that express these options. Errors: [`SceneError::Clash`]: a change also sets the density or
+    /// the regrading of the base.
     fn settings(&self) -> Result<Vec<String>, SceneError> {
+        let twice = |names: String| Err(clash(format!("{names} say the same thing twice: give one")));
         if let (Some(density), true) = (self.density, self.is_set(&["filter.density", "filter.library"])) {
-            return Err(clash(format!(
-                "density {} and filter.density or filter.library say the same thing twice: give one",
-                density.name()
-            )));
+            return twice(format!("density {} and filter.density or filter.library", density.name()));
         }
-        let mut settings: Vec<String> = self.density_setting().into_iter().collect();
-        if self.quick && !self.is_set(&REPLICATES) {
-            settings.push(format!("replicates={QUICK}"));
-        }
-        match (self.as_sampled, self.is_set(&["base.regrade"])) {
-            (true, true) => {
-                return Err(clash("--as-sampled and base.regrade say the same thing twice: give one".into()));
-            }
-            (true, false) => settings.push(Self::AS_SAMPLED.into()),
-            (false, false) => settings.push("base.regrade=\"practice\"".into()),
-            (false, true) => {}
-        }
-        settings.extend(self.changes.iter().cloned());
-        Ok(settings)
+        let regrade = match (self.as_sampled, self.is_set(&["base.regrade"])) {
+            (true, true) => return twice("--as-sampled and base.regrade".into()),
+            (true, false) => Some(Self::AS_SAMPLED.into()),
+            (false, false) => Some("base.regrade=\"practice\"".into()),
+            (false, true) => None,
+        };
+        let replicates = self.quick && !self.is_set(&REPLICATES);
+        let replicates = replicates.then(|| format!("replicates={QUICK}"));
+        let settings = self.density_setting().into_iter().chain(replicates).chain(regrade);
+        Ok(settings.chain(self.changes.iter().cloned()).collect())
     }
 
     /// Setting of the density: of the filter's own packing, which is loose if nothing else is stated, or
     /// of the library, where it is unknown if no setting defines the constrictions.
     pub(crate) fn density_setting(&self) -> Option<String> {
-        let (name, density, stated): (_, _, &[&str]) = match self.pack {
-            true => ("density", self.density.unwrap_or(Density::Loose).name(), &PACKED),
-            false => {
-                let density = self.density.map_or(LibraryDensity::Unknown, LibraryDensity::from);
-                ("library", density.name(), &CONSTRICTIONS)
-            }
+        let (name, usual, stated): (_, _, &[&str]) = match self.pack {
+            true => ("density", Density::Loose.name(), &PACKED),
+            false => ("library", LibraryDensity::Unknown.name(), &CONSTRICTIONS),
         };
+        let density = self.density.map_or(usual, Density::name);
         let is_needed = self.density.is_some() || !self.is_set(stated);
         is_needed.then(|| format!("filter.{name}=\"{density}\""))
     }
 
-    /// Inputs of the rules of practice other than the two tables.
-    ///
-    /// # Errors
-    /// A value is not allowed.
+    /// Inputs of the rules of practice other than the two tables. Errors: a value is not allowed.
     pub(crate) fn of_rules(&self) -> Result<PairOptions, SceneError> {
         let is_one = |change: &&String| OF_RULES.contains(&setting_name(change));
         let stated: Vec<String> = self.changes.iter().filter(is_one).cloned().collect();
@@ -146,42 +125,10 @@ impl Scene {
         scene.is_guarded = !options.as_given;
         Ok(scene)
     }
-
-    /// Source of the filter's constrictions in a sentence.
-    pub(crate) fn constrictions_in_words(&self) -> String {
-        let filter = &self.filter;
-        if let Some(friction) = filter.friction {
-            return format!("The filter's grains are packed, with friction {friction}.");
-        }
-        if let Some(density) = filter.density {
-            return format!("The filter's grains are packed: {}.", density.name());
-        }
-        if let Some(density) = filter.library {
-            let density = match density {
-                LibraryDensity::Unknown => "loose and dense are both walked",
-                density => density.name(),
-            };
-            return format!(
-                "The filter's constrictions are those of packings of filters like it: {density}. Where the \
-                 library holds none like it, they are guessed."
-            );
-        }
-        match (&filter.estimate, &filter.curve) {
-            (Some(estimate), _) => format!(
-                "The filter's constrictions are guessed from its gradation at {estimate}, and at both ends \
-                 of the range from 0 (loose) to 1 (dense): how densely it lies was not given."
-            ),
-            (None, Some(_)) => "The filter's constrictions are those of filter.curve.".into(),
-            (None, None) => "The constrictions are those of the network that was given.".into(),
-        }
-    }
 }
 
 /// Refuses settings that would replace a soil that is also named: results would then belong to the wrong
-/// soil.
-///
-/// # Errors
-/// [`SceneError::Clash`] names the setting and the soil.
+/// soil. Errors: [`SceneError::Clash`] names the setting and the soil.
 pub(crate) fn keep_soils(
     changes: &[String],
     base: Option<&str>,

@@ -100,14 +100,11 @@ impl Density {
 words! {
     /// Density of a filter whose constrictions come from the library of packings.
     LibraryDensity {
-        /// Densest packing.
         Dense = "dense",
-        /// Between dense and loose. "medium" is accepted too.
         #[serde(alias = "medium")]
         Intermediate = "intermediate",
-        /// Loose packing.
         Loose = "loose",
-        /// Unknown density: anything from loose to dense.
+        /// Anything from loose to dense.
         Unknown = "unknown",
     }
 }
@@ -123,20 +120,9 @@ impl LibraryDensity {
     }
 }
 
-impl From<Density> for LibraryDensity {
-    fn from(density: Density) -> Self {
-        match density {
-            Density::Dense => Self::Dense,
-            Density::Intermediate => Self::Intermediate,
-            Density::Loose => Self::Loose,
-        }
-    }
-}
-
 words! {
     /// Structure of a network.
     NetworkMadeOf {
-        /// Cubic lattice of voids.
         Lattice = "lattice",
         /// Voids of a packing.
         Graph = "graph",
@@ -146,7 +132,6 @@ words! {
 words! {
     /// Units that a sheet shows.
     SheetUnits {
-        /// Millimetres alone.
         Metric = "metric",
         /// Millimetres and inches.
         Us = "us",
@@ -156,9 +141,7 @@ words! {
 words! {
     /// Regrading of a base before its walk.
     Regrade {
-        /// Regraded by filter practice.
         Practice = "practice",
-        /// Not regraded.
         No = "no",
     }
 }

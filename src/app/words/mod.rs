@@ -6,6 +6,7 @@ pub(crate) mod boundary;
 pub(crate) mod designed;
 pub(crate) mod ledger;
 pub(crate) mod left_out;
+pub(crate) mod memory;
 mod note;
 mod practice;
 pub(crate) mod products;
