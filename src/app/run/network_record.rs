@@ -107,7 +107,7 @@ impl NetworkWalk {
         let planned = PlannedWalk {
             base: &self.base,
             regraded_from: None,
-            finest_constriction_mm: f64::from(network.finest_open(|_| false)) * network.unit_mm(),
+            finest_constriction_mm: f64::from(network.finest()) * network.unit_mm(),
             filter: filter.map(|filter| &filter.gradation),
             filter_is_measured: filter.is_some_and(|filter| filter.is_measured),
             scale_free: false,
