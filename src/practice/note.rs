@@ -23,6 +23,37 @@ pub struct Entry {
 /// Several names in a note.
 type NameList = Vec<String>;
 
+/// A note as files have it. One form for all notes compiles in a tenth of the time that a form for each takes.
+#[derive(Serialize, Deserialize)]
+struct Record {
+    id: String,
+    numbers: serde_json::Map<String, serde_json::Value>,
+}
+
+impl Record {
+    /// Takes out the number of this name.
+    fn take<T: serde::de::DeserializeOwned>(&mut self, name: &str) -> Result<T, String> {
+        let value = self.numbers.remove(name).unwrap_or_default();
+        serde_json::from_value(value).map_err(|error| format!("{name} of note {}: {error}", self.id))
+    }
+}
+
+fn value(number: impl Serialize) -> serde_json::Value {
+    serde_json::to_value(number).expect("numbers and words")
+}
+
+/// Name in a file of a variant with this name.
+fn snake_case(variant: &str) -> String {
+    let mut name = String::new();
+    for letter in variant.chars() {
+        if letter.is_uppercase() && !name.is_empty() {
+            name.push('_');
+        }
+        name.extend(letter.to_lowercase());
+    }
+    name
+}
+
 macro_rules! notes {
     (@setting) => { "" };
     (@setting $setting:literal) => { $setting };
@@ -37,7 +68,7 @@ macro_rules! notes {
         /// A note with its numbers, in the order of every face.
         #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
         #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema), schemars(with = "schema::Note"))]
-        #[serde(tag = "id", content = "numbers", rename_all = "snake_case")]
+        #[serde(into = "Record", try_from = "Record")]
         pub enum Note {
             $(#[doc = $sentence] $name {
                 $(#[allow(missing_docs)] $number: $kind),*
@@ -76,14 +107,36 @@ macro_rules! notes {
 
             /// Name of the note in a file.
             pub fn id(&self) -> String {
-                let record = serde_json::to_value(self).unwrap_or_default();
-                record["id"].as_str().unwrap_or_default().to_owned()
+                match self {
+                    $(Self::$name { .. } => snake_case(stringify!($name)),)*
+                }
             }
 
             /// Every note with this number, count and text, for tests of a face.
             #[doc(hidden)]
             pub fn all_with(number: f64, count: u64, text: &str) -> Vec<Self> {
                 vec![$(Self::$name { $($number: notes!(@any $kind number count text)),* }),*]
+            }
+        }
+
+        impl From<Note> for Record {
+            fn from(note: Note) -> Self {
+                let id = note.id();
+                let numbers = match note {
+                    $(Note::$name { $($number),* } => vec![$((stringify!($number), value($number))),*],)*
+                };
+                Self { id, numbers: numbers.into_iter().map(|(name, value)| (name.to_owned(), value)).collect() }
+            }
+        }
+
+        impl TryFrom<Record> for Note {
+            type Error = String;
+
+            fn try_from(mut record: Record) -> Result<Self, String> {
+                $(if record.id == snake_case(stringify!($name)) {
+                    return Ok(Self::$name { $($number: record.take(stringify!($number))?),* });
+                })*
+                Err(format!("unknown note {:?}", record.id))
             }
         }
 

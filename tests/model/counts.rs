@@ -157,7 +157,7 @@ fn any_number_of_particles_is_accounted_for() {
     }
     // About one in 1e9 is coarse, and blocks.
     let base = sampler(0.001, 45.0);
-    let limit = base.word_limit(network.finest_open(|_| false)) as f64 / 2f64.powi(64);
+    let limit = base.word_limit(network.finest()) as f64 / 2f64.powi(64);
     assert!(limit < 1.0 && (1.0 - limit) * 1e12 < 1e6, "{limit}");
     let (state, _) = whole_run(&network, &base, 1_000_000_000_000, 100, 6, Engine::Counts);
     assert!(state.tally.inserted == 1_000_000_000_000 && state.tally.blocked > 0);
@@ -213,7 +213,7 @@ fn threads_change_no_bit() {
 fn threads_change_no_bit_where_the_expectation_moves_beside_particles() {
     let (network, base) = (lattice([32, 32, 20], scattered), sampler(0.5, 1.5));
     // Each of 50 increments inserts more than 16,384 that may block.
-    let passive = base.word_limit(network.finest_open(|_| false)) as f64 / 2f64.powi(64);
+    let passive = base.word_limit(network.finest()) as f64 / 2f64.powi(64);
     let many = (2.0 * 16_384.0 * 50.0 / (1.0 - passive)) as u64;
     assert!(network.voids() > 16_384 && passive > 0.05 && many < 50_000_000, "{passive} {many}");
     let [first, _] = threads_agree(Engine::Expected, &network, &base, many);

@@ -235,7 +235,7 @@ impl FixedNetwork {
             }
             _ => return Ok(None),
         };
-        Ok(Some(Self { finest: network.finest_open(|_| false), network, packing }))
+        Ok(Some(Self { finest: network.finest(), network, packing }))
     }
 
     /// Constriction curve (mm): its open diameters by number, at most a thousand points.

@@ -6,8 +6,8 @@ use super::record::{
 use super::recorder::{self, Recorder};
 use super::verdict::{below_by_count, below_by_mass};
 use std::collections::BTreeMap;
-use voidwalk_core::network::{NO_LAYER, Network};
-use voidwalk_core::walk::{FlowRecord, SizeClasses, SizeCounts, State, Tally};
+use voidwalk_core::network::Network;
+use voidwalk_core::walk::{FlowRecord, Retention, SizeClasses, SizeCounts, State, Tally};
 
 /// Run of a replicate, and the reference sizes of its numbers.
 #[derive(Clone, Copy, Debug)]
@@ -110,11 +110,7 @@ impl RunMetrics {
         let [deepest, most] = retained_layers(&layers);
         let (blocked, constrictions) =
             layers.iter().take(3).fold((0, 0), |(b, c), row| (b + row.blocked, c + row.constrictions));
-        let (fullness_max, overfull_fraction) = match state.passive.expected() {
-            // For an expectation only the number in each void is known.
-            Some(_) => (None, None),
-            None => fullness(network.volumes(), &state.retained_cubes),
-        };
+        let (fullness_max, overfull_fraction) = state.fullness(network);
         let run = Run {
             run: id.run,
             eroded_mass_fraction,
@@ -124,7 +120,7 @@ impl RunMetrics {
             blocked: tally.blocked,
             blocked_fraction: tally.blocked as f64 / network.passages().max(1) as f64,
             blocked_first_three_layers_fraction: blocked as f64 / constrictions.max(1) as f64,
-            backbone_fraction: network.backbone_fraction(|c| !state.is_closed(network, c)),
+            backbone_fraction: state.backbone_fraction(network),
             inserted: tally.inserted,
             eroded: tally.eroded,
             retained_in_constrictions: tally.retained_in_constrictions,
@@ -210,24 +206,6 @@ impl Recorded {
     }
 }
 
-/// Fraction of its volume above which a void is overfull: no packing of its particles is denser.
-const OVERFULL: f64 = 0.6;
-
-/// Retained volume over volume for the fullest void with a volume, and the fraction of overfull voids,
-/// from volumes and sums of the cubed diameters of resting particles. A void without a volume has no
-/// room: any particle makes it overfull by an unknown amount.
-fn fullness(volumes: &[f64], cubes: &[f64]) -> (Option<f64>, Option<f64>) {
-    let full = |(&volume, &cubes): (&f64, &f64)| match cubes > 0.0 {
-        true if volume > 0.0 => std::f64::consts::FRAC_PI_6 * cubes / volume,
-        true => f64::INFINITY,
-        false => 0.0,
-    };
-    let fullness: Vec<f64> = volumes.iter().zip(cubes).map(full).collect();
-    let overfull = fullness.iter().filter(|&&full| full > OVERFULL).count();
-    let most = fullness.iter().copied().filter(|full| full.is_finite()).reduce(f64::max);
-    (most, (!fullness.is_empty()).then(|| overfull as f64 / fullness.len() as f64))
-}
-
 /// Moves out of the reservoir through inlets without a constriction: entering is no move.
 fn free_entries(network: &Network, state: &State) -> u64 {
     match network.reservoir().filter(|_| network.entry_is_free()) {
@@ -250,25 +228,16 @@ fn retained_layers(layers: &[LayerRow]) -> [Option<u64>; 2] {
 }
 
 fn layers(network: &Network, state: &State, id: RunId) -> Vec<LayerRow> {
-    let row = |layer| LayerRow {
+    let row = |(layer, sums): (u64, Retention)| LayerRow {
         replicate: id.replicate,
         run: id.run,
         layer,
-        constrictions: 0,
-        blocked: 0,
-        retained_in_constrictions: 0,
-        retained_in_voids: 0,
+        constrictions: sums.constrictions,
+        blocked: sums.blocked,
+        retained_in_constrictions: sums.retained_in_constrictions,
+        retained_in_voids: sums.retained_in_voids,
     };
-    let mut rows: Vec<LayerRow> = (0..network.layers() as u64).map(row).collect();
-    for (void, &layer) in network.layer_of().iter().enumerate().filter(|&(_, &layer)| layer != NO_LAYER) {
-        let row = &mut rows[layer as usize];
-        let exits = network.exits(void as u32).filter(|&c| network.counts(c));
-        row.constrictions += exits.clone().count() as u64;
-        row.blocked += exits.filter(|&c| state.blocked[c]).count() as u64;
-        row.retained_in_constrictions += state.retained_in_constrictions[void];
-        row.retained_in_voids += state.retained_in_voids[void];
-    }
-    rows
+    (0..).zip(state.by_layer(network)).map(row).collect()
 }
 
 /// Size curve of `counts`: one row for each class bound; empty if nothing is counted.
@@ -301,62 +270,49 @@ fn size_curve(
     rows
 }
 
-/// Numbers of voids, exits, blocked exits, particles in exits and particles in voids.
-type Sums = [u64; 5];
-
-/// Sums of a run by ascending connectivity. Trapped particles never settle in a void and are not counted.
+/// Rows of a run. Trapped particles never settle in a void and are not counted.
 fn of_run(network: &Network, state: &State) -> Vec<ByConnectivity> {
     // Entrances and exits are the same for these networks, and all voids of the cubic lattice are alike.
-    if network.reservoir().is_some() || network.shape().is_some() {
-        return Vec::new();
+    match network.reservoir().is_some() || network.shape().is_some() {
+        true => Vec::new(),
+        false => by_connectivity(&state.by_connectivity(network)),
     }
-    let of_void = |(void, &k): (usize, _)| {
-        let exits = network.exits(void as u32);
-        let sums = [
-            1,
-            exits.len() as u64,
-            exits.filter(|&c| state.blocked[c]).count() as u64,
-            state.retained_in_constrictions[void],
-            state.retained_in_voids[void],
-        ];
-        (u64::from(k), sums)
-    };
-    by_connectivity(network.connectivity().iter().enumerate().map(of_void))
 }
 
 /// Particles retained and constrictions blocked in run `run` (counted from 1) of all replicates, by
 /// connectivity of the void (paper, Table 3).
 pub(crate) fn of_replicates(replicates: &[Replicate], run: u64) -> Vec<ByConnectivity> {
+    let mut sums = BTreeMap::<u64, Retention>::new();
     let runs = replicates.iter().flat_map(|r| &r.runs).filter(|r| r.run == run);
-    let of_row = |row: &ByConnectivity| {
-        let retained = [row.retained_in_constrictions, row.retained_in_voids];
-        (row.connectivity, [row.voids, row.constrictions, row.blocked, retained[0], retained[1]])
-    };
-    by_connectivity(runs.flat_map(|r| &r.by_connectivity).map(of_row))
+    for row in runs.flat_map(|r| &r.by_connectivity) {
+        sums.entry(row.connectivity).or_default().add(&Retention {
+            voids: row.voids,
+            constrictions: row.constrictions,
+            blocked: row.blocked,
+            retained_in_constrictions: row.retained_in_constrictions,
+            retained_in_voids: row.retained_in_voids,
+        });
+    }
+    by_connectivity(&sums)
 }
 
 /// Rows by ascending connectivity; empty if all voids have the same.
-fn by_connectivity(parts: impl IntoIterator<Item = (u64, Sums)>) -> Vec<ByConnectivity> {
-    let mut sums: BTreeMap<u64, Sums> = BTreeMap::new();
-    for (connectivity, more) in parts {
-        sums.entry(connectivity).or_default().iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
-    }
+fn by_connectivity(sums: &BTreeMap<u64, Retention>) -> Vec<ByConnectivity> {
     if sums.len() < 2 {
         return Vec::new();
     }
-    let retained = |s: &Sums| s[3] + s[4];
-    let all_voids: u64 = sums.values().map(|s| s[0]).sum();
-    let all_retained: u64 = sums.values().map(retained).sum();
-    let row = |(&connectivity, s): (&u64, &Sums)| ByConnectivity {
+    let all_voids: u64 = sums.values().map(|sums| sums.voids).sum();
+    let all_retained: u64 = sums.values().map(Retention::retained).sum();
+    let row = |(&connectivity, sums): (&u64, &Retention)| ByConnectivity {
         connectivity,
-        voids: s[0],
-        voids_fraction: s[0] as f64 / all_voids as f64,
-        constrictions: s[1],
-        blocked: s[2],
-        retained_in_constrictions: s[3],
-        retained_in_voids: s[4],
-        retained_per_void: retained(s) as f64 / s[0] as f64,
-        retained_fraction: retained(s) as f64 / all_retained.max(1) as f64,
+        voids: sums.voids,
+        voids_fraction: sums.voids as f64 / all_voids as f64,
+        constrictions: sums.constrictions,
+        blocked: sums.blocked,
+        retained_in_constrictions: sums.retained_in_constrictions,
+        retained_in_voids: sums.retained_in_voids,
+        retained_per_void: sums.retained() as f64 / sums.voids as f64,
+        retained_fraction: sums.retained() as f64 / all_retained.max(1) as f64,
     };
     sums.iter().map(row).collect()
 }
@@ -366,22 +322,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_void_without_volume_is_overfull_with_anything_and_leaves_the_fullest_finite() {
-        let sphere = std::f64::consts::FRAC_PI_6;
-        assert_eq!(fullness(&[1.0, 0.0, 0.0, 2.0], &[0.5, 3.0, 0.0, 2.0]), (Some(sphere), Some(0.25)));
-        assert_eq!(fullness(&[1.0, 1.0], &[2.0, 0.0]), (Some(2.0 * sphere), Some(0.5)));
-        // A volume close to zero is treated as zero.
-        assert_eq!(fullness(&[5e-324, 1.0], &[1e300, 0.0]), (Some(0.0), Some(0.5)));
-        assert_eq!(fullness(&[0.0], &[1.0]), (None, Some(1.0)));
-        assert_eq!(fullness(&[], &[]), (None, None));
-    }
-
-    #[test]
     fn rows_by_hand() {
-        let rows = by_connectivity([(6, [2, 6, 0, 4, 0]), (5, [1, 2, 1, 30, 0]), (6, [1, 3, 0, 0, 6])]);
+        let retention =
+            |[voids, constrictions, blocked, retained_in_constrictions, retained_in_voids]: [u64; 5]| {
+                Retention { voids, constrictions, blocked, retained_in_constrictions, retained_in_voids }
+            };
+        let mut sixes = retention([2, 6, 0, 4, 0]);
+        sixes.add(&retention([1, 3, 0, 0, 6]));
+        let rows = by_connectivity(&BTreeMap::from([(6, sixes), (5, retention([1, 2, 1, 30, 0]))]));
         assert_eq!((rows[0].voids_fraction, rows[1].voids_fraction), (0.25, 0.75));
         assert_eq!((rows[0].retained_per_void, rows[0].retained_fraction), (30.0, 0.75));
         assert!((rows[1].retained_per_void - 10.0 / 3.0).abs() < 1e-12);
-        assert!(by_connectivity([(6, [1, 3, 0, 0, 0])]).is_empty());
+        assert!(by_connectivity(&BTreeMap::from([(6, sixes)])).is_empty());
     }
 }

@@ -23,7 +23,7 @@ pub(crate) fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
 
 /// Reads JSON like `json()`, but from a text without the file's beginning; `path` names it in errors.
 pub fn json_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, ReportError> {
-    serde_json::from_str(text).map_err(|error| form(path, &error))
+    serde_json::from_slice(text.as_bytes()).map_err(|error| form(path, &error))
 }
 
 fn form(path: &Path, error: &serde_json::Error) -> ReportError {
@@ -43,7 +43,8 @@ pub(crate) fn lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ReportEr
 /// Reads JSON lines like [`lines()`], but from this text.
 pub(super) fn lines_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<Vec<T>, ReportError> {
     let one = |(index, line): (usize, &str)| {
-        serde_json::from_str(line).map_err(|error| malformed(path, index as u64 + 1, error.to_string()))
+        serde_json::from_slice(line.as_bytes())
+            .map_err(|error| malformed(path, index as u64 + 1, error.to_string()))
     };
     text.lines().enumerate().map(one).collect()
 }

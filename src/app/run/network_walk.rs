@@ -190,7 +190,7 @@ impl NetworkWalk {
         let mut samplers = Vec::with_capacity(networks.len());
         for network in networks {
             self.eq2(network, self.mass_ratio).map_err(CaseError::from)?;
-            let finest_mm = f64::from(network.finest_open(|_| false)) * network.unit_mm();
+            let finest_mm = f64::from(network.finest()) * network.unit_mm();
             if self.base.pan_fraction() > 0.0 && self.base.smallest_mm() > finest_mm {
                 return Err(RunError::Refused(format!(
                     "the base's finest sieve, {} mm, is coarser than the finest constriction, {finest_mm:.4} \
@@ -234,7 +234,7 @@ impl NetworkWalk {
     /// Approximate number of base particles coarser than the finest constriction, which are walked one by
     /// one.
     fn coarse_particles(&self, network: &Network) -> u64 {
-        let finest_mm = f64::from(network.finest_open(|_| false)) * network.unit_mm();
+        let finest_mm = f64::from(network.finest()) * network.unit_mm();
         let coarser = 1.0 - self.base.percent_finer_by_number(finest_mm) / 100.0;
         (self.n_base as f64 * coarser) as u64
     }
@@ -387,7 +387,7 @@ impl NetworkWalk {
         let planned = PlannedWalk {
             base: &self.base,
             regraded_from: None,
-            finest_constriction_mm: f64::from(network.finest_open(|_| false)) * network.unit_mm(),
+            finest_constriction_mm: f64::from(network.finest()) * network.unit_mm(),
             filter: filter.map(|filter| &filter.gradation),
             filter_is_measured: filter.is_some_and(|filter| filter.is_measured),
             scale_free: false,

@@ -170,9 +170,14 @@ impl Network {
         upstream
     }
 
+    /// Finest constriction (`f32::INFINITY` without one that is open).
+    pub fn finest(&self) -> f32 {
+        self.finest_open(|_| false)
+    }
+
     /// Finest open constriction (`f32::INFINITY` if all are closed). A base particle no coarser than it is
     /// *passive*: it cannot block anything.
-    pub fn finest_open(&self, closed: impl Fn(usize) -> bool) -> f32 {
+    pub(crate) fn finest_open(&self, closed: impl Fn(usize) -> bool) -> f32 {
         const TOGETHER: usize = 64;
         let mut finest = f32::INFINITY;
         for (part, diameters) in self.diameter.chunks(TOGETHER).enumerate() {

@@ -33,7 +33,7 @@ impl Network {
 
     /// Fraction of all constrictions that lie on a path from start to end through constrictions that
     /// `open` admits.
-    pub fn backbone_fraction(&self, open: impl Fn(usize) -> bool) -> f64 {
+    pub(crate) fn backbone_fraction(&self, open: impl Fn(usize) -> bool) -> f64 {
         if let Some(shape) = self.shape {
             return self.on_paths_of_lattice(shape, open) as f64 / self.passages().max(1) as f64;
         }

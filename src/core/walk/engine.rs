@@ -118,7 +118,7 @@ impl RunPlan {
         let finest = network.finest_open(|c| blocked[c]);
         let passive_words = sampler.word_limit(passive_limit(finest));
         // Decided on the clean network, so that all runs of a replicate use one engine.
-        let on_open = sampler.word_limit(passive_limit(network.finest_open(|_| false)));
+        let on_open = sampler.word_limit(passive_limit(network.finest()));
         let passive = Engine::passive_share(share, on_open);
         let engine = match wanted {
             wanted if wanted.takes_each(passive, network.entries() as u64) => Engine::Particles,
