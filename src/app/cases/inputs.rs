@@ -152,12 +152,9 @@ fn short_name(file: &Path) -> String {
 mod tests {
     use super::*;
 
-    fn named(files: &[&str]) -> Vec<String> {
-        names(&files.iter().map(PathBuf::from).collect::<Vec<_>>())
-    }
-
     #[test]
     fn names_are_short_where_they_are_alone() {
+        let named = |files: &[&str]| names(&files.iter().map(PathBuf::from).collect::<Vec<_>>());
         assert_eq!(named(&["a/f.csv", "g.csv", "s.xlsx#Filter A"]), ["f", "g", "s: Filter A"]);
         assert_eq!(named(&["a/f.csv", "b/f.csv"]), ["a/f.csv", "b/f.csv"]);
         assert_eq!(named(&["f.csv", "f.tsv", "f.csv.csv"]), ["f.csv", "f.tsv", "f.csv.csv"]);

@@ -159,7 +159,8 @@ impl Row {
         (bracket, hint): ([f64; 2], Hint),
         callbacks: &'a Callbacks<'a>,
     ) -> Result<Begun<OneNetwork<'a>>, RunError> {
-        Begun::new(self.network(number, callbacks), bracket, self.from(hint))
+        let start = Start { ratio: self.start(), hint, across: self.across() };
+        Begun::new(self.network(number, callbacks), bracket, start)
     }
 
     /// Result for the first network if it holds this ratio. Errors: a walk that fails or was stopped.
@@ -175,10 +176,6 @@ impl Row {
     fn network<'a>(&'a self, number: u64, callbacks: &'a Callbacks<'a>) -> OneNetwork<'a> {
         let seed = replicate_seed(self.case.scene.walk.seed, number);
         OneNetwork { row: self, seed, network: None, clogged: BTreeMap::new(), callbacks }
-    }
-
-    fn from(&self, hint: Hint) -> Start {
-        Start { ratio: self.start(), hint, across: self.across() }
     }
 }
 
