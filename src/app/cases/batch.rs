@@ -12,7 +12,7 @@ use super::inputs::{InputSoils, as_folders, names, refuse_twice};
 use super::kept::{self, hash_of, last_day};
 use super::plan::{CasePlan, PlannedCase};
 use super::prepared::{CASES, PreparedCase};
-use super::run::{CaseOptions, FinishedCases, ReadyCases, Walk, look, run_around, unsound};
+use super::run::{CaseOptions, FinishedCases, ReadyCampaign, unsound, without_packing};
 use super::walk::CaseCallbacks;
 use crate::outcome::leaves_out_of_all;
 use crate::outcome::ledger::LedgerLine;
@@ -34,7 +34,6 @@ use voidwalk_sheets::curves_in_file;
 /// Folder of the campaign, inside the batch's folder.
 const WALKS: &str = "pairs";
 
-/// Table with one row for each sample and filter.
 const TABLE: &str = "batch.csv";
 
 const KIND: FolderKind = FolderKind::Batch;
@@ -59,10 +58,8 @@ pub(crate) enum BatchWalks {
     OneBase,
 }
 
-/// Batch with its pairs worked out.
 #[derive(Clone, Debug)]
 pub(crate) struct BatchPlan {
-    /// Path of the samples, as it was given.
     samples: PathBuf,
     filters: Vec<BatchFilter>,
     /// Curve of the one base as sampled; empty if each soil is a sample.
@@ -70,7 +67,6 @@ pub(crate) struct BatchPlan {
     rows: Vec<WalkedRow>,
     /// Name of the case of each row, walked or not.
     cases: Vec<String>,
-    /// Cases that are walked in full.
     in_full: HashSet<String>,
     notes: Vec<String>,
     campaign: CasePlan,
@@ -163,7 +159,6 @@ impl BatchPlan {
         self
     }
 
-    /// Removes unsound cases from the walks.
     fn leave_out_unsound(&mut self, options: &CaseOptions) -> Result<(), RunError> {
         if !self.campaign.cases.is_empty() {
             for failed in unsound(&self.campaign, options)? {
@@ -183,19 +178,17 @@ impl BatchPlan {
         Ok(())
     }
 
-    /// Cover of the sheet, the same in all scenes of the walks.
-    fn cover(&self) -> SheetCover {
-        self.campaign.cases.first().map(|case| case.scene.about.cover()).unwrap_or_default()
+    /// Scene of a walk; cover, units and source of the constrictions are the same in all.
+    pub(crate) fn scene(&self) -> Option<&Scene> {
+        self.campaign.cases.first().map(|case| &case.scene)
     }
 
-    /// True if page and terminal show inches as well as mm.
     pub(crate) fn shows_inches(&self) -> bool {
-        self.campaign.cases.first().is_some_and(|case| case.scene.about.shows_inches())
+        self.scene().is_some_and(|scene| scene.about.shows_inches())
     }
 
-    /// Source of the constrictions of the walks, in a sentence.
-    pub(crate) fn constrictions_in_words(&self) -> String {
-        self.campaign.cases.first().map_or(String::new(), |case| case.scene.constrictions_in_words())
+    fn cover(&self) -> SheetCover {
+        self.scene().map(|scene| scene.about.cover()).unwrap_or_default()
     }
 }
 
@@ -223,7 +216,6 @@ pub(crate) fn pairs_of(
     Ok(BatchTable::new(&bases.soils, curves, bases.notes(filters)?, options))
 }
 
-/// Rows of a table, with those that govern marked.
 fn governed(table: &BatchTable) -> Vec<WalkedRow> {
     let of_filters: Vec<Vec<&BatchRow>> =
         table.filters.iter().map(|filter| governing(&table.rows, &filter.name, NAMED)).collect();
@@ -294,27 +286,27 @@ pub(crate) fn run(
     overwrite: bool,
     callbacks: &CaseCallbacks,
 ) -> Result<WalkedBatch, RunError> {
-    let stopped = |error: RunError| match error.exit() {
-        Exit::Stopped => RunError::Stopped(format!(
-            "progress saved; continue with the same command on {}",
-            shown(&options.out)
-        )),
-        _ => error,
-    };
     let folder = claim(&options.out, KIND, overwrite)?;
-    // Earlier files stay until every case is known to have its inputs.
-    let study = |cases: ReadyCases, walk: Walk| {
-        let work = plan.work(cases?)?;
+    let of_walks = CaseOptions { out: folder.path().join(WALKS), ..options.clone() };
+    let walked = || {
+        let campaign = ReadyCampaign::new(&plan.campaign, &of_walks, callbacks)?;
+        // Earlier files stay until every case is known to have its inputs.
+        let work = plan.work(campaign.cases()?)?;
         kept::study((&folder, KIND, overwrite), work.clone(), &callbacks.run, |_, _: Option<()>| {
-            let walked = walk()?;
+            let walked = campaign.walk()?;
             walked.problem().map_or(Ok(()), Err)?;
             let batch = plan.walked(&folder, &work, &walked)?;
             folder.write(TABLE, &walked_columns(SizeUnit::Mm).csv(&batch.rows))?;
             Ok(batch)
         })
     };
-    let of_walks = CaseOptions { out: folder.path().join(WALKS), ..options.clone() };
-    run_around(&plan.campaign, &of_walks, callbacks, study).map_err(stopped)
+    walked().map_err(|error: RunError| match error.exit() {
+        Exit::Stopped => RunError::Stopped(format!(
+            "progress saved; continue with the same command on {}",
+            shown(&options.out)
+        )),
+        _ => error,
+    })
 }
 
 /// Batch that the folder already holds, if it is this very one; `None` if [`run`] without `overwrite` begins
@@ -335,17 +327,16 @@ pub(crate) fn found(plan: &BatchPlan, options: &CaseOptions) -> Result<Option<Wa
     if KIND.is_finished(folder.path())? {
         let bytes = folder.read(KIND.record())?;
         let there = bytes.and_then(|bytes| from_json::<WalkedBatch>(&bytes).ok());
-        let is_walked = |cases: Option<&[PreparedCase]>| {
-            let cases = cases.filter(|all| all.iter().all(|case| case.line(&of_walks.out).is_some()));
-            there.filter(|there| cases.is_some_and(|cases| plan.has_work(cases, &there.work)))
-        };
-        let there = look(&plan.campaign, &of_walks, is_walked)?;
-        return there.map_or_else(other, |there| Ok(Some(there)));
+        let is_walked =
+            |cases: &Vec<PreparedCase>| cases.iter().all(|case| case.line(&of_walks.out).is_some());
+        let cases = without_packing(&plan.campaign, &of_walks)?.filter(is_walked);
+        let there = there.zip(cases).filter(|(there, cases)| plan.has_work(cases, &there.work));
+        return there.map_or_else(other, |(there, _)| Ok(Some(there)));
     }
     let Some(begun) = Unfinished::read(&folder)? else { return Ok(None) };
     // A packing that was removed is made again; other work is refused after that.
-    let is_this = |cases: Option<&[PreparedCase]>| cases.is_none_or(|all| plan.has_work(all, &begun.work));
-    if look(&plan.campaign, &of_walks, is_this)? { Ok(None) } else { other() }
+    let cases = without_packing(&plan.campaign, &of_walks)?;
+    if cases.is_none_or(|all| plan.has_work(&all, &begun.work)) { Ok(None) } else { other() }
 }
 
 impl BatchPlan {
@@ -369,7 +360,6 @@ impl BatchPlan {
         Some((at, WalkedRow { walk: Some(walk), ..self.rows[at].clone() }))
     }
 
-    /// Walk of a finished case, and its outcome.
     fn walk(&self, folder: &Path, place: String, case: &str) -> Result<(SampleWalk, Outcome), RunError> {
         let outcome: Outcome = kept::record(&folder.join(&place), FolderKind::Run)?;
         Ok((SampleWalk::of(&outcome, place, self.in_full.contains(case)), outcome))
@@ -414,7 +404,7 @@ impl BatchPlan {
         let batch = WalkedBatch::new(shown(&self.samples), self.filters.clone(), rows);
         let base = self.base.clone();
         let (work, notes) = (work.to_owned(), self.notes.clone());
-        let seed = self.campaign.cases.first().map_or(0, |case| case.scene.walk.seed);
+        let seed = self.scene().map_or(0, |scene| scene.walk.seed);
         let folders =
             batch.rows.iter().filter_map(|row| Some(folder.path().join(&row.walk.as_ref()?.folder)));
         let cover = self.cover().dated(last_day(folders));

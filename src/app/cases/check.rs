@@ -68,8 +68,8 @@ impl PlanCheck {
     /// Reason to refuse the plan, even if it can be forecast: its unsound cases.
     pub(crate) fn refusal(&self) -> Option<RunError> {
         let wrong = self.cases.iter().filter(|case| !case.problem.is_empty());
-        let wrong = wrong.map(|case| FailedCase { case: case.case.clone(), problem: case.problem.clone() });
-        let wrong: Vec<FailedCase> = wrong.collect();
+        let failed = |case: &CaseCheck| FailedCase { case: case.case.clone(), problem: case.problem.clone() };
+        let wrong: Vec<FailedCase> = wrong.map(failed).collect();
         (!wrong.is_empty()).then(|| RunError::Refused(named(&wrong)))
     }
 }

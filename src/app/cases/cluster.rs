@@ -13,49 +13,42 @@ use super::prepared::{self, CasePart, Drafts, PreparedCase, named, wanted};
 use super::run::CaseOptions;
 use crate::case::{Case, CaseError, PackedFilter};
 use crate::run::RunError;
-use crate::run::callbacks::Callbacks;
 use crate::run::cost::{self, duration};
 use crate::run::folder::{FolderKind, claim};
 use crate::run::machine::{CasesAtOnce, MEMORY_MARGIN};
 use voidwalk_core::store::{make_folder, platform, write_whole};
 use voidwalk_core::text::quoted;
 
-/// Default number of processors of a task.
 const PROCESSORS: u64 = 4;
 
 /// Target time of a task, if the user gives no number of tasks (s).
 const TASK_S: f64 = 600.0;
 
-/// Options of the job scripts.
 #[derive(Clone, Debug)]
 pub(crate) struct JobOptions {
-    /// The program.
     pub(crate) program: PathBuf,
     /// Words between the program and its command: `-m voidwalk` if the program is Python.
     pub(crate) words: Vec<String>,
-    /// The plan's file.
     pub(crate) plan: PathBuf,
     /// Tasks of the array; by default as many as take about ten minutes each.
     pub(crate) tasks: Option<usize>,
 }
 
-/// The scripts that were written.
 #[derive(Clone, Debug)]
 pub(crate) struct WrittenJobs {
     /// Number of cases already done; if all are, nothing is written.
     pub(crate) done: usize,
     /// Cases that the array walks.
     pub(crate) cases: usize,
-    /// Tasks of the array.
     pub(crate) tasks: usize,
     /// Packings that are made first, and the needs of the largest.
     pub(crate) packings: (usize, TaskNeeds),
-    /// Needs of the largest task.
     pub(crate) walk: TaskNeeds,
-    /// Processors of a task.
     pub(crate) processors: u64,
     /// The script that submits the jobs.
     pub(crate) submit: PathBuf,
+    /// Mount of the campaign's folder, if known.
+    pub(crate) mount: Option<Mount>,
 }
 
 /// Writes job scripts for the unfinished cases of a plan into the campaign's folder.
@@ -66,7 +59,6 @@ pub(crate) fn write_job_scripts(
     plan: &CasePlan,
     options: &CaseOptions,
     jobs: &JobOptions,
-    callbacks: &Callbacks,
 ) -> Result<WrittenJobs, RunError> {
     let drafts = Drafts::new(wanted(plan, &CasePart::All)?)?;
     let out = claim(&options.out, FolderKind::Campaign, false)?;
@@ -83,6 +75,7 @@ pub(crate) fn write_job_scripts(
         walk: TaskNeeds::default(),
         processors,
         submit: folder.join("submit.sh"),
+        mount: None,
     };
     if cases.is_empty() {
         return Ok(written);
@@ -113,9 +106,8 @@ pub(crate) fn write_job_scripts(
     for (name, text) in &files {
         write_whole(&folder.join(name), text.as_bytes())?;
     }
-    if let Some(warning) = warning(out.path()) {
-        (callbacks.warn)(&warning);
-    }
+    let real = out.path().canonicalize().ok();
+    written.mount = real.and_then(|folder| Mount::of(&folder, &platform::mounts()?));
     written.tasks = bundles.len();
     Ok(written)
 }
@@ -156,15 +148,14 @@ fn open_cases<'a>(
 
 /// Additional words of the command lines that walk and that collect.
 fn command_words(options: &CaseOptions) -> [Vec<String>; 2] {
-    let mut words = Vec::new();
-    if let Some(packings) = &options.packings {
-        let absolute = std::path::absolute(packings).unwrap_or_else(|_| packings.clone());
-        words.extend(["--packings".to_owned(), absolute.display().to_string()]);
-    }
-    let collecting = words.clone();
-    words.extend(["--checkpoint-every".to_owned(), options.checkpoint_interval.to_string()]);
-    words.extend(options.memory.iter().flat_map(|bytes| ["--memory".to_owned(), bytes.to_string()]));
-    [words, collecting]
+    let absolute = |path: &PathBuf| std::path::absolute(path).unwrap_or_else(|_| path.clone());
+    let packings = options.packings.iter();
+    let collecting: Vec<String> =
+        packings.flat_map(|path| ["--packings".to_owned(), absolute(path).display().to_string()]).collect();
+    let mut walking = collecting.clone();
+    walking.extend(["--checkpoint-every".to_owned(), options.checkpoint_interval.to_string()]);
+    walking.extend(options.memory.iter().flat_map(|bytes| ["--memory".to_owned(), bytes.to_string()]));
+    [walking, collecting]
 }
 
 /// Folder of the scripts and logs, inside the campaign's folder.
@@ -179,17 +170,14 @@ const LONGEST_MIN: u64 = 24 * 60;
 /// Time for delays that no estimate includes: a busy file system, the start of the program (minutes).
 const SLACK_MIN: u64 = 10;
 
-/// Needs of one task of a job.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct TaskNeeds {
     /// Seconds of the longest task, on its threads.
     pub(crate) seconds: f64,
-    /// Memory (bytes).
     pub(crate) bytes: u64,
 }
 
 impl TaskNeeds {
-    /// Larger time and larger memory of two needs.
     fn or_more(self, other: Self) -> Self {
         Self { seconds: self.seconds.max(other.seconds), bytes: self.bytes.max(other.bytes) }
     }
@@ -206,7 +194,8 @@ impl TaskNeeds {
         (megabytes.ceil() as u64).div_ceil(100) * 100
     }
 
-    fn in_words(&self) -> String {
+    /// Comment of a job script.
+    fn estimate(&self) -> String {
         format!(
             "{} of a task and {:.0} MB; {} times the time and {SLACK_MIN} minutes, and {} times the memory, \
              are asked for",
@@ -218,7 +207,6 @@ impl TaskNeeds {
     }
 }
 
-/// Jobs to be submitted.
 struct Jobs<'a> {
     job: &'a JobOptions,
     out: &'a Path,
@@ -255,7 +243,7 @@ impl Jobs<'_> {
                 ("PROCESSORS", self.processors.to_string()),
                 ("MEGABYTES", need.megabytes().to_string()),
                 ("MINUTES", need.minutes().to_string()),
-                ("ESTIMATE", need.in_words()),
+                ("ESTIMATE", need.estimate()),
             ];
             fill(template, &[&common[..], &of_job[..]].concat())
         };
@@ -276,21 +264,18 @@ impl Jobs<'_> {
             ("AFTER_PACK", after.to_owned()),
             ("OUT", path(self.out)?),
         ];
+        let [walking, collecting] = &self.words;
+        let array = include_str!("../data/slurm/array.sh");
+        let collect = include_str!("../data/slurm/collect.sh");
         let mut files = vec![
             ("attempt.sh".to_owned(), include_str!("../data/slurm/attempt.sh").to_owned()),
             (list_name, list),
-            (
-                "array.sh".to_owned(),
-                job(include_str!("../data/slurm/array.sh"), &self.words[0], self.tasks.len(), &self.walk),
-            ),
-            (
-                "collect.sh".to_owned(),
-                job(include_str!("../data/slurm/collect.sh"), &self.words[1], 1, &self.collect),
-            ),
+            ("array.sh".to_owned(), job(array, walking, self.tasks.len(), &self.walk)),
+            ("collect.sh".to_owned(), job(collect, collecting, 1, &self.collect)),
             ("submit.sh".to_owned(), fill(include_str!("../data/slurm/submit.sh"), &submit)),
         ];
         if *packings > 0 {
-            let text = job(include_str!("../data/slurm/pack.sh"), &self.words[0], *packings, pack);
+            let text = job(include_str!("../data/slurm/pack.sh"), walking, *packings, pack);
             files.push(("pack.sh".to_owned(), text));
         }
         Ok(files)
@@ -313,7 +298,6 @@ fn fill(template: &str, values: &[(&str, String)]) -> String {
     text + rest
 }
 
-/// Absolute path in quotes.
 fn path(path: &Path) -> Result<String, RunError> {
     let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     match absolute.to_str().filter(|text| !text.chars().any(char::is_control)) {
@@ -328,25 +312,20 @@ fn path(path: &Path) -> Result<String, RunError> {
 /// Mount of a file system. On most file systems that clusters share, a lock held by one node keeps the others
 /// out; on some, or with some mount options, each node sees only its own locks, without any sign of it.
 /// Several tasks may then walk one case, with the same results at a higher cost.
-struct Mount {
-    point: PathBuf,
-    kind: String,
+#[derive(Clone, Debug)]
+pub(crate) struct Mount {
+    pub(crate) point: PathBuf,
+    pub(crate) kind: String,
     options: Vec<String>,
 }
 
-/// Warning about the locks in this folder; `None` if they work across nodes.
-fn warning(folder: &Path) -> Option<String> {
-    let folder = folder.canonicalize().ok()?;
-    mount_of(&folder, &platform::mounts()?)?.doubt()
-}
-
-/// Mount that holds a path: the longest mount point above it, and the last of several equal ones.
-fn mount_of(path: &Path, mounts: &str) -> Option<Mount> {
-    let all = mounts.lines().filter_map(Mount::read);
-    all.filter(|mount| path.starts_with(&mount.point)).max_by_key(|mount| mount.point.components().count())
-}
-
 impl Mount {
+    /// Mount that holds a path: the longest mount point above it, and the last of several equal ones.
+    pub(crate) fn of(path: &Path, mounts: &str) -> Option<Self> {
+        let above = mounts.lines().filter_map(Self::read).filter(|mount| path.starts_with(&mount.point));
+        above.max_by_key(|mount| mount.point.components().count())
+    }
+
     /// A line of `/proc/self/mountinfo`.
     fn read(line: &str) -> Option<Self> {
         let (left, right) = line.split_once(" - ")?;
@@ -360,28 +339,8 @@ impl Mount {
         })
     }
 
-    fn has(&self, option: &str) -> bool {
+    pub(crate) fn has(&self, option: &str) -> bool {
         self.options.iter().any(|o| o == option)
-    }
-
-    fn doubt(&self) -> Option<String> {
-        let one_node = "locks hold on one node only";
-        let why = match self.kind.as_str() {
-            "nfs" | "nfs4" if self.has("nolock") => format!("it is mounted with `nolock`: {one_node}"),
-            "nfs" | "nfs4" if self.has("local_lock=all") || self.has("local_lock=flock") => {
-                format!("it is mounted with `local_lock`: {one_node}")
-            }
-            "lustre" if self.has("localflock") => format!("it is mounted with `localflock`: {one_node}"),
-            "lustre" if !self.has("flock") => "it is mounted without `flock`: there are no locks".to_owned(),
-            "beegfs" => format!(
-                "unless `tuneUseGlobalFileLocks = true` is set in its client's configuration, {one_node}"
-            ),
-            "cifs" | "smb3" if self.has("nobrl") => format!("it is mounted with `nobrl`: {one_node}"),
-            "fuse.sshfs" | "9p" => one_node.to_owned(),
-            "tmpfs" | "overlay" | "ramfs" => "it is this machine's own: other nodes do not see it".to_owned(),
-            _ => return None,
-        };
-        Some(format!("this folder lies on {} ({}): {why}", self.kind, self.point.display()))
     }
 }
 
@@ -418,38 +377,9 @@ mod tests {
         assert_eq!(fill("x@A@y@B@ TERM@120 @C@", &values), "x@B@yb TERM@120 @C@");
     }
 
-    const MOUNTS: &str = "22 1 8:1 / / rw,relatime shared:1 - ext4 /dev/sda1 rw\n\
-        40 22 0:40 / /home rw shared:2 - nfs4 server:/home rw,vers=4.2,local_lock=none,addr=10.0.0.1\n\
-        41 22 0:41 / /old rw - nfs server:/old rw,vers=3,nolock,local_lock=all\n\
-        42 22 0:42 / /scratch/a\\040b rw - lustre 10.0.0.2@tcp:/s rw,checksum,localflock\n\
-        43 22 0:43 / /scratch/c rw - lustre 10.0.0.2@tcp:/s rw,flock,lazystatfs\n\
-        44 22 0:44 / /scratch/d rw - lustre 10.0.0.2@tcp:/s rw\n\
-        45 22 0:45 / /bee rw - beegfs beegfs_nodev rw\n\
-        46 22 0:46 / /tmp rw - tmpfs tmpfs rw\n\
-        47 22 0:47 / /gpfs rw - gpfs gpfs0 rw\n";
-
-    #[test]
-    fn mounts_whose_locks_reach_one_node_are_named() {
-        let doubt = |path: &str| mount_of(Path::new(path), MOUNTS).unwrap().doubt();
-        for path in ["/home/x/campaign", "/srv/x", "/scratch/c/x", "/gpfs/x", "/homely"] {
-            assert_eq!(doubt(path), None, "{path}");
-        }
-        for (path, words) in [
-            ("/old/x", "`nolock`"),
-            ("/scratch/a b/x", "`localflock`"),
-            ("/scratch/d", "without `flock`"),
-            ("/bee/x", "tuneUseGlobalFileLocks"),
-            ("/tmp/x", "other nodes do not see it"),
-        ] {
-            let warning = doubt(path).unwrap();
-            assert!(warning.contains(words), "{path}: {warning}");
-        }
-    }
-
     #[test]
     #[cfg(target_os = "linux")]
     fn this_machine_says_how_its_folders_are_mounted() {
-        let mounts = platform::mounts().unwrap();
-        assert!(mount_of(Path::new("/proc/self"), &mounts).is_some());
+        assert!(Mount::of(Path::new("/proc/self"), &platform::mounts().unwrap()).is_some());
     }
 }

@@ -10,7 +10,6 @@ use voidwalk_core::gradation::{GradationError, bytes_of};
 use voidwalk_practice::InputFile;
 use voidwalk_sheets::{SoilSample, envelope_in, file_and_soil, notes_in_file, samples_in};
 
-/// Soils from files, each under a name of its own.
 pub(crate) struct InputSoils {
     pub(crate) soils: Vec<SoilSample>,
     /// Tables, in the order in which they were named; a folder is replaced by its tables.
@@ -80,7 +79,6 @@ pub(crate) fn input_files(soils: &[SoilSample]) -> Result<Vec<InputFile>, RunErr
     files_of(soils).into_iter().map(input).collect()
 }
 
-/// Refuses a table that is named twice.
 pub(crate) fn refuse_twice(files: &[PathBuf]) -> Result<(), RunError> {
     let mut seen = HashSet::new();
     match files.iter().find(|file| !seen.insert(real(file))) {

@@ -80,7 +80,6 @@ pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
     Ok(record)
 }
 
-/// The record of a finished folder.
 pub(crate) fn record<R: DeserializeOwned>(folder: &Path, kind: FolderKind) -> Result<R, RunError> {
     let path = folder.join(kind.record());
     let failed = |error: &dyn std::fmt::Display| RunError::failed(format!("{}: {error}", shown(&path)));
@@ -136,7 +135,6 @@ impl<'a> Kept<'a> {
         save(self.folder.path(), self.name, &label, &sections).map_err(RunError::Save)
     }
 
-    /// Reports that the study was stopped with this many of its parts done.
     pub(crate) fn stopped(&self, done: usize, all: usize) -> RunError {
         let (folder, parts) = (shown(self.folder.path()), self.name);
         RunError::Stopped(format!(
@@ -160,7 +158,6 @@ pub(super) fn last_day(cases: impl IntoIterator<Item = PathBuf>) -> Option<Strin
     cases.into_iter().filter_map(finished).max()
 }
 
-/// Date of a moment.
 fn day(moment: &str) -> Option<String> {
     moment.split('T').next().filter(|day| !day.is_empty()).map(str::to_owned)
 }

@@ -22,7 +22,7 @@ pub(crate) mod walk;
 pub(crate) use batch::pairs_of;
 pub(crate) use batch::{BatchPlan, BatchWalks};
 pub(crate) use check::{PlanCheck, check_plan};
-pub(crate) use cluster::{JobOptions, WrittenJobs, write_job_scripts};
+pub(crate) use cluster::{JobOptions, Mount, WrittenJobs, write_job_scripts};
 pub(crate) use inputs::numbered;
 pub use plan::CasePlan;
 pub use prepared::CasePart;

@@ -53,7 +53,6 @@ const SCENE: &str = "is a scene, not the plan of a campaign; walk it by `voidwal
 const NO_PLAN: &str = "is a table of numbers, not the plan of a campaign; two sieve tables are \
                       judged by `voidwalk judge BASE FILTER`";
 
-/// Plan as it is written.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Written {
@@ -102,7 +101,6 @@ struct Factor {
     levels: toml::Table,
 }
 
-/// Evenly spaced values of a setting, including both ends.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Range {
@@ -152,7 +150,6 @@ pub struct PlannedCase {
 /// Plan with its cases worked out.
 #[derive(Clone, Debug)]
 pub struct CasePlan {
-    /// Name in errors.
     pub(crate) file: String,
     /// Title of the plan, in a line.
     pub(crate) title: String,
@@ -162,7 +159,6 @@ pub struct CasePlan {
     pub cases: Vec<PlannedCase>,
 }
 
-/// Level of a factor: its name and settings.
 type Level = (String, Vec<String>);
 
 impl CasePlan {
@@ -309,7 +305,6 @@ impl CasePlan {
         name.map_or_else(|| self.file.clone(), |name| name.to_string_lossy().into_owned())
     }
 
-    /// Case with this name.
     pub(crate) fn case(&self, name: &str) -> Option<&PlannedCase> {
         self.cases.iter().find(|case| case.name == name)
     }
@@ -378,7 +373,6 @@ fn levels(factor: &Factor) -> Result<Vec<Level>, String> {
     Ok(levels)
 }
 
-/// A value as part of a name.
 fn word(value: &toml::Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }

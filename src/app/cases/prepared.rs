@@ -19,7 +19,6 @@ use crate::run::{Exit, RunError};
 use voidwalk_core::store::format::from_json;
 use voidwalk_core::store::{Folder, StoreError, read_regular, read_whole};
 
-/// File of a finished case.
 pub(super) const LINE: &str = "case.json";
 
 /// Folder of the cases, inside the campaign's folder.
@@ -28,7 +27,6 @@ pub(crate) const CASES: &str = "cases";
 /// File with the reason why a case could not be walked at the last attempt.
 pub(super) const PROBLEM: &str = "problem.txt";
 
-/// Maximum size of a list of tasks (bytes).
 const LARGEST_LIST: u64 = 1 << 26;
 
 /// Maximum number of cases named in a message.
@@ -56,13 +54,16 @@ impl CasePart {
     }
 }
 
-/// Unfinished case, and the reason.
 #[derive(Clone, Debug)]
 pub(crate) struct FailedCase {
-    /// The case.
     pub(crate) case: String,
-    /// Description of the problem.
     pub(crate) problem: String,
+}
+
+impl FailedCase {
+    pub(crate) fn new(case: &PlannedCase, problem: impl ToString) -> Self {
+        Self { case: case.name.clone(), problem: problem.to_string() }
+    }
 }
 
 /// Lists the unfinished cases, one per line.
@@ -152,7 +153,7 @@ impl<'a> Drafts<'a> {
             let case = filter.and_then(|filter| draft.finished(filter).map_err(|e| e.to_string()));
             match case.and_then(|mut case| place(&mut case).map(|()| case).map_err(|e| e.to_string())) {
                 Ok(case) => cases.push(PreparedCase { planned, fingerprint: case.fingerprint(), case }),
-                Err(problem) => failed.push(FailedCase { case: planned.name.clone(), problem }),
+                Err(problem) => failed.push(FailedCase::new(planned, problem)),
             }
         }
         Ok((cases, failed))
@@ -164,7 +165,6 @@ fn key(plan: &PackingPlan) -> String {
     format!("{} {}", plan.fingerprint(), plan.merge_overlap)
 }
 
-/// Case of a plan, worked out.
 pub(crate) struct PreparedCase<'a> {
     pub(crate) planned: &'a PlannedCase,
     pub(crate) case: Case,

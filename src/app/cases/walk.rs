@@ -83,7 +83,6 @@ impl Default for CaseCallbacks<'_> {
     }
 }
 
-/// Runner of the cases of a campaign.
 pub(super) struct CaseRunner<'a> {
     pub(crate) out: &'a Path,
     pub(crate) threads: usize,
@@ -91,7 +90,6 @@ pub(super) struct CaseRunner<'a> {
     pub(crate) checkpoint_interval: CheckpointInterval,
     /// Networks, if cases with one seed may share them.
     pub(crate) networks: Option<SharedNetworks>,
-    /// Job and task of a cluster.
     pub(crate) job: Option<String>,
     /// Command in a case's `manifest.json` that started it.
     pub(crate) command: String,
@@ -295,7 +293,6 @@ fn fault(panic: &(dyn std::any::Any + Send)) -> RunError {
     RunError::failed(format!("a fault of the program: {text}"))
 }
 
-/// Progress of this process so far.
 #[derive(Default)]
 struct Tally {
     finished: Mutex<BTreeSet<String>>,

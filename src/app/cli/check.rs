@@ -1,10 +1,9 @@
 //! `voidwalk check`: a forecast of a run, or of the cases of a campaign's plan.
 
-use std::fmt::Write;
 use std::path::Path;
 
 use super::options::{SceneArgs, SettingArgs};
-use super::print::{answer, counted, plain, to_copy};
+use super::print::{answer, counted, labelled, to_copy};
 use crate::case::in_words;
 use crate::cases::{self, CaseOptions, CasePlan, PlanCheck};
 use crate::run::cost::duration;
@@ -23,7 +22,6 @@ impl SettingArgs {
 }
 
 impl SceneArgs {
-    /// Scene that the arguments name, with their settings applied.
     pub(crate) fn scene(&self) -> Result<Scene, RunError> {
         let settings = &self.set.settings.assignments;
         Ok(match &self.scene {
@@ -47,10 +45,7 @@ fn words(check: &Check) -> String {
     let in_unit = SizeUnit::of(check.inputs.scale_free, false);
     let unit = in_unit.short();
     let mut text = String::new();
-    // Writing to a string cannot fail.
-    let mut line = |name: &str, value: String| {
-        let _ = writeln!(text, "{name:<22}{}", plain(&value));
-    };
+    let mut line = |name: &str, value: String| text += &labelled(name, &value);
     line("filter", format!("{}, curve {}", filter.name, filter.curve_name));
     let [d0, d15, d85] = [filter.d0_mm, filter.d15_mm, filter.d85_mm];
     line("  sizes", format!("D0 {d0:.4}, D15 {d15:.4}, D85 {d85:.4} {unit}"));
@@ -134,7 +129,6 @@ fn packing_time(packing: &PackingCheck) -> String {
 
 const LISTED: usize = 20;
 
-/// Prints a forecast of the cases of a plan, and the mistakes in each.
 fn check_plan(path: &Path, set: &SettingArgs) -> Result<(), RunError> {
     if !set.settings.assignments.is_empty() {
         return Err(RunError::refused(
@@ -153,16 +147,11 @@ fn check_plan(path: &Path, set: &SettingArgs) -> Result<(), RunError> {
 
 fn plan_words(check: &PlanCheck) -> String {
     let mut text = String::new();
-    // Writing to a string cannot fail.
-    let mut line = |name: &str, value: String| {
-        let _ = writeln!(text, "{name:<22}{}", plain(&value));
-    };
+    let mut line = |name: &str, value: String| text += &labelled(name, &value);
     let title = if check.title.is_empty() { String::new() } else { format!(": {}", check.title) };
     line("plan", format!("{}{title}", check.plan));
-    let factors = match check.factors.is_empty() {
-        true => String::new(),
-        false => format!(", factors {}", check.factors.join(", ")),
-    };
+    let factors = check.factors.join(", ");
+    let factors = if factors.is_empty() { factors } else { format!(", factors {factors}") };
     line("cases", format!("{}{factors}", check.cases.len()));
     for case in check.cases.iter().take(LISTED) {
         let forecast = match case.problem.is_empty() {

@@ -17,7 +17,6 @@ pub(crate) const EXIT_CODES: [(u8, &str); 5] = [
     (Exit::NotAccepted.code(), "done and written, but the verdict is one that `--fail-on` does not accept"),
 ];
 
-/// Table of exit codes in words, one line per code.
 pub(crate) fn in_words() -> String {
     let lines = EXIT_CODES.map(|(code, meaning)| format!("  {code}  {meaning}\n"));
     format!("Exit codes:\n{}", lines.concat())
@@ -32,7 +31,6 @@ pub(crate) enum FailOn {
     Continuing,
 }
 
-/// Answer of model and practice for a case.
 #[derive(Clone, Copy)]
 pub(crate) struct JudgedAnswer {
     pub(crate) model: Verdict,

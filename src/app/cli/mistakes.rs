@@ -104,7 +104,6 @@ fn as_setting(flag: &str, words: &[String]) -> Option<String> {
     Some(format!("a setting of the scene: {}", set.join(" or ")))
 }
 
-/// Hint for two tables that are given instead of a scene.
 fn two_tables(words: &[String]) -> Option<String> {
     let tables: Vec<&String> = words.iter().skip(2).filter(|word| is_table(word)).collect();
     match tables[..] {
@@ -153,7 +152,6 @@ fn named(word: &str) -> PathBuf {
     PathBuf::from(path.split('#').next().unwrap_or_default())
 }
 
-/// File with a name similar to a missing one, in the same folder.
 fn misspelt_file(words: &[String]) -> Option<String> {
     let written = |word: &String| ["--out", "--figure", "--packings"].contains(&word.as_str());
     let pairs = words.iter().zip(words.iter().skip(1)).filter(|(before, _)| !written(before));

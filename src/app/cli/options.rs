@@ -20,7 +20,6 @@ use voidwalk_core::schema::length::{LENGTHS, millimetres};
 use voidwalk_core::schema::{KeyInfo, Value, setting_name};
 use voidwalk_core::store::format::FORMATS;
 
-/// Settings of a command.
 pub(crate) trait CommandSettings {
     /// Full names of the settings that have an option of their own.
     const OPTIONS: &'static [&'static str];
@@ -107,7 +106,6 @@ impl<C: CommandSettings> FromArgMatches for SettingOptions<C> {
 
 pub(super) const SET: &str = "set";
 
-/// Name of the option of a setting, without its dashes.
 fn option_name(key: &str) -> String {
     key.rsplit('.').next().unwrap_or_default().replace('_', "-")
 }
@@ -217,7 +215,6 @@ pub(crate) struct SettingArgs {
     pub(crate) json: bool,
 }
 
-/// Parses a setting and its value.
 fn assignment(text: &str) -> Result<String, String> {
     match text.split_once('=') {
         Some((name, _)) if !name.trim().is_empty() => Ok(text.to_owned()),
@@ -234,7 +231,6 @@ pub(super) fn density(text: &str) -> Result<Density, String> {
     })
 }
 
-/// Words for the facets between voids that are counted.
 pub(super) const FACETS: [(&str, Facets); 2] = [("all", Facets::All), ("on-both-hulls", Facets::OnBothHulls)];
 
 pub(super) fn facets(text: &str) -> Result<Facets, String> {
@@ -256,7 +252,6 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
     text.trim().parse().map_err(|_| format!("write a whole number from 0 to {}", u64::MAX))
 }
 
-/// JSON Schema of a file, by the name of its format.
 pub(super) fn schema_of(text: &str) -> Result<String, String> {
     let names: Vec<&str> = FORMATS.iter().map(|form| form.name()).collect();
     schema(text).ok_or_else(|| format!("one of {}", names.join(", ")))

@@ -19,7 +19,6 @@ use voidwalk_core::packing::{CompressionProgress, Stage};
 use voidwalk_core::store::platform::process::{end_at_once, stop_on_request};
 use voidwalk_practice::quantity::whole;
 
-/// Minimum time between plain lines.
 const BETWEEN_LINES: Duration = Duration::from_secs(5);
 
 /// Runs work that is shown on stderr and stopped by signals, and writes the pages of its results.
@@ -69,12 +68,10 @@ pub fn page(kind: FolderKind, folder: &Path, run: Option<RunFiles>) -> Result<Pa
     written.map(|written| written.page)
 }
 
-/// Flag that the first signal to end sets.
 pub(crate) fn stop_on_signals() -> Result<Arc<AtomicBool>, RunError> {
     stop_on_request().map_err(RunError::failed)
 }
 
-/// Bar of this length on a terminal; no bar elsewhere.
 fn bar_on_terminal(length: u64, style: &str) -> Option<ProgressBar> {
     if !std::io::stderr().is_terminal() {
         return None;
@@ -87,7 +84,6 @@ fn bar_on_terminal(length: u64, style: &str) -> Option<ProgressBar> {
     Some(bar)
 }
 
-/// Minimum time between plain lines on the replicates so far.
 const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
 
 struct Display {
@@ -96,7 +92,6 @@ struct Display {
     shown: Mutex<Option<Shown>>,
 }
 
-/// Packing or walk in progress.
 struct Shown {
     bar: Option<ProgressBar>,
     begun: Instant,

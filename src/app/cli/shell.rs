@@ -20,7 +20,6 @@ use voidwalk_core::schema::KeyInfo;
 use voidwalk_core::store::format::FORMATS;
 use voidwalk_core::store::{StoreError, write_whole};
 
-/// Prints a script that completes commands, options and values of options.
 pub(crate) fn completions(shell: Shell) {
     to_stdout(&script(shell));
 }
@@ -143,7 +142,6 @@ fn assignments() -> Vec<String> {
     Scene::keys().into_iter().flat_map(of_key).collect()
 }
 
-/// Writes manual pages of the program and of each of its commands.
 pub(crate) fn man(folder: &Path) -> Result<(), RunError> {
     if let Some(file) = folder.ancestors().find(|part| part.exists() && !part.is_dir()) {
         let problem = "is a file; name a folder for the pages, a new one or one that is there";

@@ -28,7 +28,6 @@ pub(crate) struct AskedBatch {
     pub(crate) tables: AskedTables,
 }
 
-/// Options that accompany two sheets.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(crate) struct AskedTables {
@@ -59,7 +58,6 @@ pub(crate) fn filter_names(sheets: &Sheets, paths: &[PathBuf]) -> Vec<String> {
 }
 
 impl AskedBatch {
-    /// Pairs to walk; an unknown word is an error.
     pub(crate) fn walks(&self) -> Result<BatchWalks, String> {
         match self.walks.as_str() {
             "governing" => Ok(BatchWalks::GoverningInFull),
@@ -179,7 +177,6 @@ pub(crate) fn rules_of_pair(pair: &PairRules) -> Value {
 
 const MOST_SHOWN: usize = 1000;
 
-/// Rules on all samples in the sheet of a base, against filters.
 pub(crate) fn samples(
     sheets: &Sheets,
     base: &str,

@@ -79,7 +79,6 @@ const LOOK: Duration = Duration::from_millis(50);
 
 #[derive(Default)]
 pub(crate) struct Connections {
-    /// Connections in the order of their arrival.
     open: Mutex<Vec<Connection>>,
     /// Number of connections so far, which numbers each of them uniquely.
     came: AtomicU64,
@@ -93,7 +92,6 @@ struct Connection {
     since: Instant,
 }
 
-/// Place of a connection, until it is dropped.
 pub(crate) struct Place {
     connections: Arc<Connections>,
     id: u64,

@@ -28,7 +28,6 @@ const DEPARTURE: (Duration, Duration, u64) = (Duration::from_secs(20), Duration:
 /// Limits on the time and bytes of input discarded after a refusal, so that the refusal is read.
 const DRAIN: (Duration, u64) = (Duration::from_secs(1), 2 * BODY);
 
-/// A request whose body has not been read.
 #[derive(Debug)]
 pub(crate) struct Request {
     pub(crate) method: String,
@@ -86,12 +85,10 @@ fn decoded(text: &str) -> String {
 
 pub(crate) struct Answer {
     pub(crate) status: u16,
-    /// Type of the body.
     pub(crate) kind: &'static str,
     pub(crate) body: Body,
     /// Content security policy; without one, nothing at all is allowed.
     pub(crate) policy: Option<String>,
-    /// Name under which a browser saves it.
     pub(crate) download: Option<String>,
 }
 
@@ -122,7 +119,6 @@ impl Answer {
     }
 }
 
-/// Replaces hidden characters in every text of a value.
 fn show(value: &mut Value) {
     match value {
         Value::String(text) => *text = text.chars().map(visible).collect(),

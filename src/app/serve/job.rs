@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use super::batches::of_batch;
 use super::live::Live;
-use crate::cases::{BatchPlan, CaseCallbacks, CaseEvent, CaseOptions, CasePart, batch};
+use crate::cases::{BatchPlan, CaseCallbacks, CaseEvent, CaseOptions, batch};
 use crate::outcome::record::Outcome;
 use crate::report::colour_of;
 use crate::run::error::AnyError;
@@ -65,7 +65,6 @@ pub(crate) struct Job {
 }
 
 impl Job {
-    /// Creates a job with no work done.
     pub(crate) fn new(id: usize, title: String, folder: String, work: Work, state: JobState) -> Self {
         let (live, stop) = (Arc::default(), Arc::default());
         let (message, result, asked) = (String::new(), Value::Null, Value::Null);
@@ -119,7 +118,6 @@ impl Job {
     }
 }
 
-/// Result with every text passed through `named`.
 fn all_said(value: &Value, named: &impl Fn(&str) -> String) -> Value {
     match value {
         Value::String(text) => Value::String(named(text)),
@@ -142,7 +140,6 @@ pub(crate) fn how_to_continue(folder: &Path) -> String {
     format!("what is done is saved; Continue{resume} goes on from it")
 }
 
-/// Action on finished results.
 pub(crate) type OnResults = fn(FolderKind, &Path, Option<RunFiles>) -> Result<(), AnyError>;
 
 #[derive(Clone)]
@@ -158,7 +155,6 @@ pub(crate) enum Work {
 }
 
 impl Work {
-    /// Prefix of the name of its folder.
     pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::Batch(_) => "batch",
@@ -167,7 +163,6 @@ impl Work {
     }
 }
 
-/// Settings shared by all jobs of a server.
 pub(crate) struct WorkContext {
     pub(crate) root: PathBuf,
     pub(crate) prepare: PrepareOptions,
@@ -177,7 +172,6 @@ pub(crate) struct WorkContext {
 }
 
 impl WorkContext {
-    /// Does a job, and returns the JSON of its result for the page.
     pub(crate) fn work(
         &self,
         folder: &Path,
@@ -233,15 +227,8 @@ impl WorkContext {
 }
 
 pub(crate) fn of_cases(folder: &Path, prepare: &PrepareOptions, command: &str) -> CaseOptions {
-    CaseOptions {
-        out: folder.to_owned(),
-        part: CasePart::All,
-        packings: Some(prepare.packings.clone()),
-        memory: prepare.memory,
-        threads: prepare.threads,
-        checkpoint_interval: often(),
-        command: command.to_owned(),
-    }
+    let options = CaseOptions::of(folder.to_owned(), prepare.clone(), command.to_owned());
+    CaseOptions { checkpoint_interval: often(), ..options }
 }
 
 /// Interval between saves: the maximum loss if a server is killed.
@@ -346,7 +333,6 @@ const LARGEST: u64 = 4 << 20;
 /// Request of a job, and its end if it cannot continue.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct JobFile {
-    /// Kind of job, as the request names it.
     pub(crate) kind: String,
     pub(crate) title: String,
     pub(crate) asked: Value,

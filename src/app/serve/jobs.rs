@@ -48,7 +48,6 @@ impl JobQueue {
         self.all.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Refuses a further job if too many wait, or if the server is ending.
     fn has_room(&self, all: &[Job]) -> Result<(), String> {
         if self.ends.load(Ordering::Relaxed) {
             return Err("the server ends".into());
@@ -87,7 +86,6 @@ impl JobQueue {
         Ok(id)
     }
 
-    /// Stops a job, or removes it from the queue.
     pub(crate) fn stop(&self, id: usize) -> Result<(), String> {
         let mut all = self.locked();
         let job = all.iter_mut().find(|job| job.id == id).ok_or("there is no such job")?;
@@ -196,7 +194,6 @@ impl JobQueue {
         all.iter().rev().map(|job| job.snapshot(&all, &self.context.root, &named)).collect()
     }
 
-    /// Walks one job after another, until `over`.
     pub(crate) fn work_until(&self, over: &AtomicBool) {
         while !over.load(Ordering::Relaxed) {
             let Some(next) = self.next() else { continue };

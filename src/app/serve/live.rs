@@ -25,7 +25,6 @@ pub(crate) struct Live {
     /// Numbers of runs done and to be walked, as far as known.
     runs: [u64; 2],
     walked: SoFar,
-    /// Numbers of cases done and in all.
     pub(crate) cases: [usize; 2],
     done: Vec<Value>,
     /// Cases being walked, with their numbers of runs done and to be walked.
@@ -88,7 +87,6 @@ impl Live {
         }
     }
 
-    /// Removes the rows of a finished batch, whose result has the table.
     pub(crate) fn end_batch(&mut self) {
         if let Some((rows, _)) = &mut self.batch {
             *rows = Vec::new();

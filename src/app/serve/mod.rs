@@ -92,7 +92,6 @@ impl Server {
         self.routes.guard.address()
     }
 
-    /// Folder of sheets and results.
     pub(crate) fn folder(&self) -> &Path {
         self.folder.path()
     }
@@ -121,14 +120,12 @@ impl Server {
     }
 }
 
-/// Makes and takes a folder that does not exist yet.
 fn first_new(name: &str) -> Result<Folder, RunError> {
     let names = std::iter::once(name.to_owned()).chain((2..).map(|n| format!("{name}-{n}")));
     let mut names = names.filter(|name| Path::new(name).symlink_metadata().is_err());
     claim(Path::new(&names.next().expect("there is no last name")), FolderKind::Serve, false)
 }
 
-/// Answers every connection, a limited number at a time.
 fn accept(listener: &TcpListener, routes: &Arc<Routes>) {
     let connections = Arc::new(Connections::default());
     for stream in listener.incoming() {

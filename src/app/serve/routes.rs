@@ -63,7 +63,6 @@ struct Planned {
     work: Work,
 }
 
-/// Everything that a request may reach.
 pub(crate) struct Routes {
     pub(crate) guard: Guard,
     pub(crate) sheets: Sheets,
@@ -72,7 +71,6 @@ pub(crate) struct Routes {
     pub(crate) root: PathBuf,
 }
 
-/// Failed request: its status and message.
 type Problem = (u16, String);
 
 /// Constriction curves of a filter, loose and dense, by their names; empty if the library has no similar
@@ -99,7 +97,6 @@ fn on_page(message: &str) -> String {
 }
 
 impl Routes {
-    /// Answers a request.
     pub(crate) fn answer(&self, mut request: Request, stream: &mut TcpStream) -> io::Result<Answer> {
         let Some(path) = self.guard.path(&request).map(str::to_owned) else {
             let words = "not allowed: open the address that voidwalk serve has printed, with its secret";
@@ -350,12 +347,10 @@ fn pair_options(request: &Request) -> Result<PairOptions, Problem> {
     TableOptions { as_given, changes, ..TableOptions::default() }.of_rules().map_err(wrong)
 }
 
-/// True if a job's folder is a real folder, not a link to another.
 fn is_own(folder: &Path) -> bool {
     folder.symlink_metadata().is_ok_and(|meta| meta.is_dir())
 }
 
-/// Answer to a malformed request.
 fn malformed(error: serde_json::Error) -> Problem {
     (400, error.to_string())
 }

@@ -17,7 +17,6 @@ const MOST: (usize, u64) = (200, 256 << 20);
 /// Maximum number of soils of a sheet that are kept and can be chosen.
 const MOST_SOILS: usize = 1000;
 
-/// Upper bound on the numbers of sheets.
 const LAST: usize = 100_000;
 
 /// Maximum lengths of a file's name and ending (letters, bytes); file systems allow 255 bytes.
@@ -29,7 +28,6 @@ pub(crate) struct Sheet {
     pub(crate) name: String,
     /// Soils that can be chosen, the first ones of the file, as `voidwalk soil` reads them.
     pub(crate) soils: Vec<SoilSummary>,
-    /// Number of soils in the file.
     pub(crate) in_all: usize,
 }
 
@@ -97,7 +95,6 @@ impl Sheets {
         added
     }
 
-    /// Writes a sheet into its own folder, and reads it.
     fn read(&self, name: &str, bytes: &[u8]) -> Result<Arc<Sheet>, String> {
         make_folder(&self.folder).map_err(|error| error.to_string())?;
         let (id, folder) = self.new_folder()?;
@@ -199,7 +196,6 @@ fn harmless(name: &str) -> String {
     }
 }
 
-/// First letters of a text, up to these numbers of letters and bytes.
 fn cut(text: &str, (letters, bytes): (usize, usize)) -> &str {
     let ends = text.char_indices().map(|(at, letter)| at + letter.len_utf8()).take(letters);
     &text[..ends.take_while(|end| *end <= bytes).last().unwrap_or(0)]

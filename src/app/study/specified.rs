@@ -53,7 +53,6 @@ impl SpecifyOptions {
         SpecificationOptions { dispersive: self.dispersive.then_some(true), finer, sieves }
     }
 
-    /// Writes tables, record and page into the folder.
     fn write(
         &self,
         (kind, record): (FolderKind, &impl Serialize),

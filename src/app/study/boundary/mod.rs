@@ -58,7 +58,6 @@ pub fn run(options: &BoundaryOptions, callbacks: &Callbacks) -> Result<Boundarie
     on_threads(options.prepare.threads, || run_within(options, BRACKET, callbacks))
 }
 
-/// Runs a search between these D15F/D85B.
 fn run_within(
     options: &BoundaryOptions,
     bracket: [f64; 2],
@@ -81,7 +80,6 @@ fn run_within(
 /// D15F/D85B between which [`run`] searches.
 const BRACKET: [f64; 2] = [0.5, 100.0];
 
-/// Density and thickness found sound.
 struct DraftedRow {
     draft: Draft,
     /// Row with a guess for a filter that is still to be packed.
@@ -173,7 +171,6 @@ fn with_curve_ends(rows: Vec<Row>) -> Vec<Row> {
     all
 }
 
-/// Hash of everything that determines the results.
 fn work(rows: &[Row], bracket: [f64; 2]) -> String {
     let work_of_row = |row: &Row| {
         let base = row.stated.base.gradation.points();
@@ -225,12 +222,10 @@ fn searched(
     Ok(done)
 }
 
-/// Networks of all rows, including those already done.
 struct Searching<'a> {
     rows: &'a [Row],
     bracket: [f64; 2],
     done: Mutex<Vec<Done>>,
-    /// Locked by the thread that writes finished work.
     writing: Mutex<()>,
     kept: &'a Kept<'a>,
     callbacks: &'a Callbacks<'a>,

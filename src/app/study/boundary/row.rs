@@ -25,7 +25,6 @@ use voidwalk_practice::{Mistake, Note, ordered};
 /// Ratio assumed in a first guess of the layers of a thickness in mm.
 const USUAL_RATIO: f64 = 5.0;
 
-/// One density and thickness with its packed filter.
 #[derive(Clone)]
 pub(super) struct Row {
     pub(crate) density: String,
@@ -106,7 +105,6 @@ impl Row {
         Some(Note::LayerThicker { ratio, layer_mm, thickness: self.thickness.to_string() })
     }
 
-    /// The case at a ratio.
     pub(crate) fn at(&self, ratio: f64) -> Result<Case, CaseError> {
         let base = self.base.scaled(self.d15f() / ratio)?;
         let mut case = self.case.with_base(base, self.layers(ratio))?;

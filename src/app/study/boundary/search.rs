@@ -74,13 +74,10 @@ pub(super) type Beside = (Beyond, Ended);
 pub(super) struct Found {
     /// D15F/D85B from which the first run erodes 7.5 %.
     pub(crate) no_erosion: Option<f64>,
-    /// Reason why there is no such ratio.
     pub(crate) no_erosion_beyond: Option<Beside>,
     /// D15F/D85B from which the second run does too.
     pub(crate) continuing: Option<f64>,
-    /// Reason why there is no such ratio.
     pub(crate) continuing_beyond: Option<Beside>,
-    /// True if some larger ratio was seen to hold.
     pub(crate) is_not_monotone: bool,
     /// Every ratio that was walked, in rising order, with the eroded mass fraction of either run.
     pub(crate) walks: Vec<(f64, f64, Option<f64>)>,
@@ -123,7 +120,6 @@ impl Hint {
 pub(super) struct Start {
     /// Ratio at which a search without a hint begins.
     pub(crate) ratio: f64,
-    /// Boundaries of another network of the filter.
     pub(crate) hint: Hint,
     /// Start nodes of a lattice that is walked by area; for other networks, the number of the usual lattice.
     pub(crate) across: u64,

@@ -190,7 +190,6 @@ fn judged(row: &Row, record: &BoundaryRow, range: &[&FoundRow]) -> Result<Vec<No
     Ok(judged.notes(row, why.chain(of_boundary).collect()))
 }
 
-/// Text of `boundary.csv`.
 pub(super) fn csv(rows: &[Row], done: &[Done]) -> Vec<u8> {
     let of_network = |done: &Done| {
         let (walked, network) = (&rows[done.row], done.network);
@@ -248,7 +247,6 @@ fn base(row: &Row, name: &str) -> BaseStated {
     }
 }
 
-/// Row of the record.
 fn found_row(row: &Row, done: &[&Done]) -> FoundRow {
     type End = fn(&Found) -> (Option<f64>, &Option<Beside>);
     let [first, second]: [End; 2] = [

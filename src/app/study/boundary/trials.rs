@@ -7,7 +7,6 @@ use crate::outcome::verdict::THRESHOLD;
 use crate::outcome::{Eroded, Straight};
 use crate::run::RunError;
 
-/// Steps between stops.
 pub(super) const STOP: i64 = 16;
 
 /// First step away from a hint.
@@ -35,10 +34,8 @@ fn tried_below(across: u64) -> Vec<i64> {
     (1..=every).chain(seldom).collect()
 }
 
-/// Result at one ratio.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Trial {
-    /// Eroded mass.
     Eroded(Eroded),
     /// The base is too coarse (below) or too fine (above) to be walked at this ratio; with the reason.
     CannotBe(Beyond, String),
@@ -60,7 +57,6 @@ pub(super) trait Walker {
     fn walk(&mut self, run: u64, step: i64, ratio: f64) -> Result<Trial, RunError>;
 }
 
-/// The ends of the scale of ratios.
 const BRACKETS: [f64; 2] = [0.1, 1000.0];
 
 /// D15F/D85B at a step.
@@ -106,7 +102,6 @@ impl Fall {
     }
 }
 
-/// Search under way.
 pub(super) struct Search<W> {
     walker: W,
     /// The first stop and the last.
