@@ -181,12 +181,14 @@ impl CasePlan {
     /// A file that cannot be read or is not a plan, two cases of one name, a case with refused settings.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let file = path.display().to_string();
-        let io = |source| SceneError::File { file: file.clone(), source };
-        let syntax = |at: String, problem: String| SceneError::Syntax { file: file.clone(), at, problem };
-        let Some(bytes) = read_regular(path, LARGEST_FILE).map_err(io)? else {
-            return Err(syntax(String::new(), why_not_read(path, LARGEST_FILE)));
-        };
-        Self::parse(&bytes, path)
+        match read_regular(path, LARGEST_FILE) {
+            Ok(Some(bytes)) => Self::parse(&bytes, path),
+            Ok(None) => {
+                let problem = why_not_read(path, LARGEST_FILE);
+                Err(SceneError::Syntax { file, at: String::new(), problem })
+            }
+            Err(source) => Err(SceneError::File { file, source }),
+        }
     }
 
     /// Applies [`CasePlan::read`] to the content of a file; files named in its scenes are looked up beside
@@ -239,19 +241,17 @@ impl CasePlan {
         let levels: Vec<&[Level]> = factors.iter().map(|(_, levels)| &levels[..]).collect();
         let combinations = if factors.is_empty() { Vec::new() } else { crossed(&levels) };
         for chosen in combinations {
-            let names = plan.factors.iter().zip(&chosen);
-            let levels: Vec<(String, String)> =
-                names.map(|(factor, (level, _))| (factor.clone(), level.clone())).collect();
+            let mut settings = vec![common.clone()];
+            settings.extend(chosen.iter().map(|(_, settings)| settings.clone()));
+            let chosen = chosen.iter().map(|(level, _)| level.clone());
+            let levels: Vec<(String, String)> = plan.factors.iter().cloned().zip(chosen).collect();
             let is_level =
-                |(factor, level): (&String, &String)| levels.iter().any(|(f, l)| f == factor && l == level);
-            let is_left_out = |combination: &BTreeMap<String, String>| combination.iter().all(is_level);
-            if written.leave_out.iter().any(is_left_out) {
+                |(factor, level): (&String, &String)| levels.contains(&(factor.clone(), level.clone()));
+            if written.leave_out.iter().any(|combination| combination.iter().all(is_level)) {
                 continue;
             }
             let names: Vec<String> =
                 levels.iter().map(|(factor, level)| format!("{factor}={level}")).collect();
-            let chosen = chosen.into_iter().map(|(_, settings)| settings.clone());
-            let settings: Vec<Vec<String>> = std::iter::once(common.clone()).chain(chosen).collect();
             plan.add(&written, base.as_deref(), names.join(","), levels, &settings)?;
         }
         for single in &written.case {
@@ -273,19 +273,17 @@ impl CasePlan {
         levels: Vec<(String, String)>,
         settings: &[Vec<String>],
     ) -> Result<(), SceneError> {
-        if self.cases.iter().any(|case| case.name == name) {
-            let problem = format!("two cases are called `{name}`");
-            return Err(SceneError::Clash { file: self.file.clone(), problem });
+        let clash = |problem: String| Err(SceneError::Clash { file: self.file.clone(), problem });
+        if self.case(&name).is_some() {
+            return clash(format!("two cases are called `{name}`"));
         }
         let folder = folder_name(&name);
         // Some systems' disks do not distinguish upper from lower case.
-        let lower = folder.to_lowercase();
-        if let Some(other) = self.cases.iter().find(|case| case.folder_name().to_lowercase() == lower) {
-            let problem = format!(
-                "cases `{}` and `{name}` would share the folder {folder} on some systems: rename one",
-                other.name
-            );
-            return Err(SceneError::Clash { file: self.file.clone(), problem });
+        let is_alike = |case: &&PlannedCase| case.folder_name().to_lowercase() == folder.to_lowercase();
+        if let Some(PlannedCase { name: other, .. }) = self.cases.iter().find(is_alike) {
+            return clash(format!(
+                "cases `{other}` and `{name}` would share the folder {folder} on some systems: rename one"
+            ));
         }
         let origin = Origin::Plan(self.file.clone(), name.clone());
         let mut scene = Scene::planned(base, settings, &origin)?;

@@ -139,7 +139,6 @@ fn parser(key: KeyInfo) -> ValueParser {
     NonEmptyStringValueParser::new().try_map(checked).into()
 }
 
-/// Options of a walk.
 #[derive(Args)]
 pub(crate) struct WalkArgs {
     /// Worker threads; the result is the same for any number [default: one per core]
@@ -154,7 +153,6 @@ pub(crate) struct WalkArgs {
     pub(crate) quiet: bool,
 }
 
-/// Verdicts that the caller does not accept.
 #[derive(Args)]
 pub(crate) struct AcceptArgs {
     /// Exit with code 4 if the worse of practice and model is at least this bad: some or continuing erosion.
@@ -164,7 +162,6 @@ pub(crate) struct AcceptArgs {
     pub(crate) fail_on: Option<FailOn>,
 }
 
-/// Folder of a run's results, and options of the walk.
 #[derive(Args)]
 pub(crate) struct ResultArgs {
     /// Folder for the results: new, empty, or made by voidwalk [default: the first free of voidwalk-run,
@@ -178,29 +175,23 @@ pub(crate) struct ResultArgs {
     #[cfg(feature = "xlsx")]
     #[arg(long)]
     pub(crate) xlsx: bool,
-    /// Verdicts that are not accepted.
     #[command(flatten)]
     pub(crate) accept: AcceptArgs,
-    /// Options of the walk.
     #[command(flatten)]
     pub(crate) walk: WalkArgs,
 }
 
-/// Scene to use.
 #[derive(Args)]
 pub(crate) struct SceneArgs {
     /// Scene (TOML), for check also the plan of a campaign [default: the built-in scene, a loose filter of Cu
     /// 1.5 and a base of Cu 1.5 at Dc5]
     pub(crate) scene: Option<PathBuf>,
-    /// Settings of the scene, and options of preparing it.
     #[command(flatten)]
     pub(crate) set: SettingArgs,
 }
 
-/// Settings of a scene, and options of preparing it.
 #[derive(Args)]
 pub(crate) struct SettingArgs {
-    /// Settings of the scene.
     #[command(flatten)]
     pub(crate) settings: SettingOptions<OfScene>,
     /// Folder that keeps packings, so that each is made once

@@ -12,8 +12,7 @@ use crate::words::{first_lines, sentence, so_far};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 use voidwalk_core::packing::{CompressionProgress, Stage};
 use voidwalk_core::store::platform::process::{end_at_once, stop_on_request};
@@ -26,7 +25,7 @@ pub(crate) fn followed<T>(
     quiet: bool,
     work: impl FnOnce(&Callbacks) -> Result<T, RunError>,
 ) -> Result<T, RunError> {
-    let stop = stop_on_signals()?;
+    let stop = stop_on_request().map_err(RunError::failed)?;
     end_at_once();
     let display = Display { quiet, begun: Instant::now(), shown: Mutex::new(None) };
     let done = work(&Callbacks {
@@ -66,10 +65,6 @@ pub fn page(kind: FolderKind, folder: &Path, run: Option<RunFiles>) -> Result<Pa
         FolderKind::Constrictions | FolderKind::Serve => return Ok(folder.to_owned()),
     };
     written.map(|written| written.page)
-}
-
-pub(crate) fn stop_on_signals() -> Result<Arc<AtomicBool>, RunError> {
-    stop_on_request().map_err(RunError::failed)
 }
 
 fn bar_on_terminal(length: u64, style: &str) -> Option<ProgressBar> {
@@ -132,12 +127,10 @@ impl Walk {
         let [replicates, runs] = self.needs;
         let look = self.so_far.look(runs)?;
         let is_new = look.replicates > self.looked_at && (look.replicates as u64) < replicates;
-        let mut words = so_far(&look, replicates).filter(|_| is_new)?;
+        let words = so_far(&look, replicates).filter(|_| is_new)?;
         self.looked_at = look.replicates;
-        if self.readings {
-            words += "; by one of several readings of the inputs";
-        }
-        Some(words)
+        let one = if self.readings { "; by one of several readings of the inputs" } else { "" };
+        Some(words + one)
     }
 }
 
@@ -176,12 +169,7 @@ impl Display {
                     self.line(&format!("{}: {}\n", line.name(), plain(&words)));
                 }
             }
-            Event::Packing(_)
-            | Event::Increment { .. }
-            | Event::RunDone
-            | Event::RunWalked { .. }
-            | Event::VerdictNeeds { .. }
-            | Event::MoreRuns { .. } => {
+            _ => {
                 if let Some(shown) = self.shown.lock().ok().as_mut().and_then(|shown| shown.as_mut()) {
                     shown.tell(event);
                 }
@@ -394,7 +382,6 @@ impl CaseProgress {
                     to_stderr(&format!("{case}: {done} of {runs} runs\n"));
                 }
             }
-            (None, CaseEvent::Begun { .. } | CaseEvent::Waiting | CaseEvent::Walked { .. }) => {}
             (None, CaseEvent::Done(line)) => {
                 let Ok(mut lines) = lines.lock() else { return };
                 lines.done += 1;
@@ -412,6 +399,7 @@ impl CaseProgress {
                     line.verdict.words()
                 ));
             }
+            _ => {}
         }
     }
 

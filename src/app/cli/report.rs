@@ -9,9 +9,11 @@ use crate::run::folder::claim;
 use crate::run::{FolderKind, RunError};
 
 #[cfg(feature = "serve")]
-use super::{args::ServeArgs, print::whole_stdout, progress::stop_on_signals, run::command_line};
+use super::{args::ServeArgs, print::whole_stdout, run::command_line};
 #[cfg(feature = "serve")]
 use crate::run::PrepareOptions;
+#[cfg(feature = "serve")]
+use voidwalk_core::store::platform::process::stop_on_request;
 
 pub(crate) fn report(folder: &Path) -> Result<(), RunError> {
     let Some(kind) = FolderKind::of(folder).filter(|kind| kind.has_page()) else {
@@ -56,7 +58,7 @@ pub(crate) fn export(folder: &Path) -> Result<(), RunError> {
 
 #[cfg(feature = "serve")]
 pub(crate) fn serve(args: &ServeArgs) -> Result<(), RunError> {
-    let stop = stop_on_signals()?;
+    let stop = stop_on_request().map_err(RunError::failed)?;
     let server = crate::serve::Server::open(crate::serve::ServeOptions {
         port: args.port,
         folder: args.out.clone(),

@@ -137,7 +137,7 @@ pub(crate) fn of_batch(batch: &WalkedBatch) -> Value {
         of_filter(filter, &rules, unit).into_iter().chain(walks).chain(answers).collect()
     };
     let mut value = so_far(&batch.rows, batch.inches);
-    value["filters"] = json!(batch.filters.iter().map(lines).collect::<Vec<_>>());
+    value["filters"] = batch.filters.iter().map(lines).collect();
     value["notes"] = json!(batch.notes);
     value["leaves_out"] = json!(left_out_in_brief(&batch.model_leaves_out));
     value
@@ -205,9 +205,8 @@ pub(crate) fn of_samples(samples: &BatchTable) -> Value {
         .then(|| format!("the first {MOST_SHOWN} of {} rows; the file has all", all.len()));
     let notes = samples.notes.iter().cloned().chain(cut);
     let mut value = table(batch::columns(SizeUnit::Mm), rows, |row| class_of(row, row.may_lose_fines));
-    let of_filters = samples.filters.iter().map(|filter| of_filter(filter, all, SizeUnit::Mm));
-    value["filters"] = json!(of_filters.collect::<Vec<_>>());
-    value["notes"] = json!(notes.collect::<Vec<_>>());
+    value["filters"] = samples.filters.iter().map(|filter| of_filter(filter, all, SizeUnit::Mm)).collect();
+    value["notes"] = notes.collect();
     value
 }
 

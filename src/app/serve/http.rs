@@ -65,20 +65,13 @@ fn decoded(text: &str) -> String {
     let mut rest = text.as_bytes();
     while let [first, more @ ..] = rest {
         let digit = |at: usize| more.get(at).and_then(|b| char::from(*b).to_digit(16));
-        match (first, digit(0), digit(1)) {
-            (b'%', Some(high), Some(low)) => {
-                bytes.push((16 * high + low) as u8);
-                rest = &more[2..];
-            }
-            (b'+', ..) => {
-                bytes.push(b' ');
-                rest = more;
-            }
-            _ => {
-                bytes.push(*first);
-                rest = more;
-            }
-        }
+        let (byte, after) = match (first, digit(0), digit(1)) {
+            (b'%', Some(high), Some(low)) => ((16 * high + low) as u8, &more[2..]),
+            (b'+', ..) => (b' ', more),
+            _ => (*first, more),
+        };
+        bytes.push(byte);
+        rest = after;
     }
     String::from_utf8_lossy(&bytes).into_owned()
 }
@@ -169,6 +162,7 @@ impl Write for Until<'_> {
 /// Reads the head of a request; a bad head gives its answer.
 pub(crate) fn read_head(stream: &mut TcpStream) -> io::Result<Result<Request, Answer>> {
     let mut stream = Until::new(stream, ARRIVAL.0, ARRIVAL.0);
+    let refused = |status, words| Ok(Err(Answer::problem(status, words)));
     let mut bytes = Vec::new();
     loop {
         let mut piece = [0; 4096];
@@ -184,11 +178,9 @@ pub(crate) fn read_head(stream: &mut TcpStream) -> io::Result<Result<Request, An
                 return Ok(request(&parsed, bytes[length..].to_vec()));
             }
             Ok(httparse::Status::Partial) if bytes.len() < HEAD => {}
-            Ok(httparse::Status::Partial) => return Ok(Err(Answer::problem(431, "the head is too large"))),
-            Err(httparse::Error::TooManyHeaders) => {
-                return Ok(Err(Answer::problem(431, "there are too many header fields")));
-            }
-            Err(_) => return Ok(Err(Answer::problem(400, "this is not an HTTP request"))),
+            Ok(httparse::Status::Partial) => return refused(431, "the head is too large"),
+            Err(httparse::Error::TooManyHeaders) => return refused(431, "there are too many header fields"),
+            Err(_) => return refused(400, "this is not an HTTP request"),
         }
     }
 }

@@ -133,10 +133,8 @@ pub(crate) fn has_scene(folder: &Path) -> bool {
 }
 
 pub(crate) fn how_to_continue(folder: &Path) -> String {
-    let resume = match has_scene(folder) {
-        true => format!(", or `voidwalk resume {}`,", shell_word(&folder.display().to_string())),
-        false => String::new(),
-    };
+    let command = || format!(", or `voidwalk resume {}`,", shell_word(&folder.display().to_string()));
+    let resume = if has_scene(folder) { command() } else { String::new() };
     format!("what is done is saved; Continue{resume} goes on from it")
 }
 
@@ -274,10 +272,8 @@ pub(crate) fn earlier(root: &Path, most: usize) -> Vec<Job> {
 
 /// True if a folder holds only marks of the program, because its job was never accepted.
 fn holds_nothing(folder: &Path) -> bool {
-    let entries = std::fs::read_dir(folder);
-    entries.is_ok_and(|mut entries| {
-        entries.all(|entry| entry.is_ok_and(|entry| entry.file_name().as_encoded_bytes().starts_with(b".")))
-    })
+    let is_mark = |entry: &std::fs::DirEntry| entry.file_name().as_encoded_bytes().starts_with(b".");
+    std::fs::read_dir(folder).is_ok_and(|mut all| all.all(|entry| entry.as_ref().is_ok_and(is_mark)))
 }
 
 /// Job that an earlier server left; `None` if the folder of this name holds no job.
@@ -288,18 +284,20 @@ fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
     if file.is_none() && (!is_ours || holds_nothing(&path)) {
         return None;
     }
-    let record = |kind: FolderKind| read_whole(&path.join(kind.record())).ok();
-    let done = match FolderKind::of(&path).filter(|kind| kind.is_finished(&path).unwrap_or(false)) {
-        Some(FolderKind::Run) => record(FolderKind::Run)
-            .and_then(|bytes| from_json::<Outcome>(&bytes).ok())
-            .map(|outcome| of_run(&outcome, &outcome.decision())),
-        // Without its page it is unfinished, and the same call writes the page.
-        Some(FolderKind::Batch) if path.join("batch.html").is_file() => record(FolderKind::Batch)
-            .and_then(|bytes| from_json::<WalkedBatch>(&bytes).ok())
-            .map(|batch| of_batch(&batch)),
-        Some(FolderKind::Batch) | None => None,
-        Some(kind) => record(kind).and_then(|bytes| from_json(&bytes).ok()),
-    };
+    let kind = FolderKind::of(&path).filter(|kind| kind.is_finished(&path).unwrap_or(false));
+    let done = kind.and_then(|kind| {
+        let bytes = read_whole(&path.join(kind.record())).ok()?;
+        match kind {
+            FolderKind::Run => {
+                let outcome: Outcome = from_json(&bytes).ok()?;
+                Some(of_run(&outcome, &outcome.decision()))
+            }
+            // Without its page it is unfinished, and the same call writes the page.
+            FolderKind::Batch if !path.join("batch.html").is_file() => None,
+            FolderKind::Batch => from_json::<WalkedBatch>(&bytes).ok().map(|batch| of_batch(&batch)),
+            _ => from_json(&bytes).ok(),
+        }
+    });
     let ended = file.as_ref().and_then(|file| file.ended.clone());
     let title =
         file.as_ref().map_or_else(|| format!("{name}, from an earlier start"), |file| file.title.clone());
@@ -310,18 +308,17 @@ fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
     };
     let mut job = Job::new(id, title, name, work, JobState::Stopped);
     job.asked = file.map_or(Value::Null, |file| file.asked);
-    (job.state, job.message, job.result) = match (done, ended) {
-        (Some(result), _) => (JobState::Done, String::new(), result),
-        (None, Some((state, message))) if state == JobState::Refused.words() => {
-            (JobState::Refused, message, Value::Null)
-        }
-        (None, Some((_, message))) => (JobState::Failed, message, Value::Null),
-        (None, None) if matches!(job.work, Work::Nothing) => {
+    (job.state, job.message) = match ended {
+        _ if done.is_some() => (JobState::Done, String::new()),
+        Some((state, message)) if state == JobState::Refused.words() => (JobState::Refused, message),
+        Some((_, message)) => (JobState::Failed, message),
+        None if matches!(job.work, Work::Nothing) => {
             let message = "the server ended before this was done, and its request is not known";
-            (JobState::Stopped, message.into(), Value::Null)
+            (JobState::Stopped, message.into())
         }
-        (None, None) => (JobState::Stopped, how_to_continue(&path), Value::Null),
+        None => (JobState::Stopped, how_to_continue(&path)),
     };
+    job.result = done.unwrap_or_default();
     Some(job)
 }
 

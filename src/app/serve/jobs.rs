@@ -122,8 +122,7 @@ impl JobQueue {
 
     /// True if a job's folder holds the scene of a run that has begun, which can be resumed.
     pub(crate) fn has_scene(&self, id: usize) -> bool {
-        let all = self.locked();
-        all.iter().any(|job| job.id == id && has_scene(&self.context.root.join(&job.folder)))
+        self.locked().iter().any(|job| job.id == id && has_scene(&self.context.root.join(&job.folder)))
     }
 
     /// Continues a job that was stopped or has failed, with its work planned again.
@@ -202,14 +201,15 @@ impl JobQueue {
             let walked = walked.unwrap_or_else(|_| Err(RunError::failed("a fault of the program")));
             let (state, message, result) = match walked {
                 Ok(result) => (JobState::Done, String::new(), result),
-                Err(error) => match error.exit() {
-                    Exit::Stopped => (JobState::Stopped, how_to_continue(&folder), Value::Null),
-                    exit => {
-                        let state = if exit == Exit::Refused { JobState::Refused } else { JobState::Failed };
-                        let advice = error.advice().map_or(String::new(), |advice| format!("\n{advice}"));
-                        (state, format!("{error}{advice}"), Value::Null)
-                    }
-                },
+                Err(error) if error.exit() == Exit::Stopped => {
+                    (JobState::Stopped, how_to_continue(&folder), Value::Null)
+                }
+                Err(error) => {
+                    let is_refused = error.exit() == Exit::Refused;
+                    let state = if is_refused { JobState::Refused } else { JobState::Failed };
+                    let advice = error.advice().map_or(String::new(), |advice| format!("\n{advice}"));
+                    (state, format!("{error}{advice}"), Value::Null)
+                }
             };
             let ended = matches!(state, JobState::Refused | JobState::Failed);
             let file = JobFile::read(&folder);
@@ -276,6 +276,12 @@ mod tests {
         (job.state, job.message) = (state, format!("it is {}", state.words()));
     }
 
+    /// Writes how the job ended into its folder.
+    fn write_end(folder: &Path, state: JobState) {
+        let ended = Some((state.words().to_owned(), "why".to_owned()));
+        JobFile { ended, ..file() }.write(folder).unwrap();
+    }
+
     #[test]
     fn how_a_server_ends_is_how_what_was_under_way_ended() {
         let root = tempfile::tempdir().unwrap();
@@ -293,15 +299,11 @@ mod tests {
         assert!(error.to_string().contains("run-3") && !error.to_string().contains("run-1"), "{error}");
         set(&queue, ids[0], JobState::Failed);
         let error = queue.ended(&open).unwrap_err();
-        assert!(
-            error.exit() == Exit::Failed && error.to_string().ends_with("run-1: it is failed"),
-            "{error}"
-        );
-        for (state, ends_well) in
-            [(JobState::Done, true), (JobState::Refused, true), (JobState::Stopped, false)]
-        {
+        assert_eq!(error.exit(), Exit::Failed);
+        assert!(error.to_string().ends_with("run-1: it is failed"), "{error}");
+        for state in [JobState::Done, JobState::Refused, JobState::Stopped] {
             set(&queue, ids[0], state);
-            assert_eq!(queue.ended(&ids[..1]).is_ok(), ends_well, "{state:?}");
+            assert_eq!(queue.ended(&ids[..1]).is_ok(), state != JobState::Stopped, "{state:?}");
         }
     }
 
@@ -340,8 +342,7 @@ mod tests {
         let before = queue(root.path());
         let ids = [(); 3].map(|()| before.add(file(), Work::Kept).unwrap());
         for (id, state) in [(ids[1], JobState::Refused), (ids[2], JobState::Failed)] {
-            let ended = Some((state.words().to_owned(), "why".to_owned()));
-            JobFile { ended, ..file() }.write(&root.path().join(format!("run-{id}"))).unwrap();
+            write_end(&root.path().join(format!("run-{id}")), state);
         }
         let wrong = ["run-18446744073709551615", "run-99999999", "run-+9", "run-09", "run-x", "a-2"];
         for folder in wrong.into_iter().chain(["sheets-1000", "batch-7"]) {
@@ -355,8 +356,8 @@ mod tests {
         std::os::unix::fs::symlink("/tmp", root.path().join("run-8")).unwrap();
         let queue = queue(root.path());
         let told = queue.snapshot(str::to_owned);
-        let told: Vec<_> = told.as_array().unwrap().iter().collect();
-        let states = |key: &str| told.iter().map(|job| job[key].clone()).collect::<Vec<_>>();
+        let states =
+            |key: &str| told.as_array().unwrap().iter().map(|job| job[key].clone()).collect::<Vec<_>>();
         assert_eq!(states("id"), [7, 3, 2, 1]);
         assert_eq!(states("state"), ["stopped", "failed", "refused", "stopped"]);
         assert_eq!(states("can_continue"), [false, true, false, true]);
@@ -388,8 +389,7 @@ mod tests {
         let folder = |id: usize| root.path().join(format!("run-{id}"));
         for (id, state) in ids.into_iter().zip([JobState::Failed, JobState::Refused, JobState::Refused]) {
             set(&before, id, state);
-            let ended = Some((state.words().to_owned(), "the disk is full".to_owned()));
-            JobFile { ended, ..file() }.write(&folder(id)).unwrap();
+            write_end(&folder(id), state);
         }
         std::fs::write(folder(ids[1]).join("scene.toml"), "").unwrap();
         let after = queue(root.path());

@@ -23,7 +23,7 @@ use voidwalk_practice::{DesignedSample, DesignedSamples, SheetCover, Specificati
 use voidwalk_sheets::{SoilSample, file_and_soil};
 
 /// D85 (mm) above which a base is refused, because its sizes are probably in another unit.
-pub(super) const NO_BASE_MM: f64 = 100.0;
+const NO_BASE_MM: f64 = 100.0;
 
 /// Options of a specification, and the folder of its results.
 #[derive(Clone, Debug)]
@@ -143,18 +143,19 @@ fn no_filter_within(base: &InputSoils) -> Result<(), RunError> {
     }
 }
 
-/// Refuses stones: most likely a size in micrometres under a header in mm.
 fn is_a_base(soil: &SoilSample) -> Result<(), RunError> {
-    match soil.curve.d(85.0).filter(|d85| *d85 > NO_BASE_MM) {
-        Some(d85) => Err(refused(&soil.path, format!("{}: {}", soil.name, no_base(d85)))),
-        None => Ok(()),
-    }
+    let checked = soil.curve.d(85.0).map_or(Ok(()), check_d85);
+    checked.map_err(|stones| refused(&soil.path, format!("{}: {stones}", soil.name)))
 }
 
-/// Message for a base that is too coarse.
-pub(super) fn no_base(d85: f64) -> String {
-    format!(
-        "the base's D85 is {d85:.0} mm, and no filter holds such stones: are its sizes micrometres under a \
-         header in mm?"
-    )
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "the base's D85 is {0:.0} mm, and no filter holds such stones: are its sizes micrometres under a header \
+     in mm?"
+)]
+pub(super) struct Stones(f64);
+
+/// Refuses stones: most likely a size in micrometres under a header in mm.
+pub(super) fn check_d85(d85_mm: f64) -> Result<(), Stones> {
+    if d85_mm > NO_BASE_MM { Err(Stones(d85_mm)) } else { Ok(()) }
 }
