@@ -17,7 +17,7 @@ use super::walk::CaseCallbacks;
 use crate::outcome::leaves_out_of_all;
 use crate::outcome::ledger::LedgerLine;
 use crate::outcome::record::Outcome;
-use crate::run::folder::{FolderKind, Unfinished, claim, shown};
+use crate::run::folder::{FolderKind, Unfinished, claim, refused, shown};
 use crate::run::{Exit, RunError};
 use crate::scene::{Scene, TableOptions};
 use crate::verdict::{SampleWalk, WalkedBatch, WalkedRow};
@@ -205,10 +205,9 @@ pub(crate) fn pairs_of(
     let bases = InputSoils::samples(&[samples.to_owned()])?;
     let soils = bases.soils.len();
     if soils > 1 && !each {
-        return Err(RunError::Refused(format!(
-            "{} holds {soils} soils; name one of them as FILE#NAME, or add --each for all of them",
-            samples.display()
-        )));
+        let (file, instead) =
+            (samples.display(), "name one of them as FILE#NAME, or add --each for all of them");
+        return Err(RunError::Refused(format!("{file} holds {soils} soils; {instead}")));
     }
     let curves = |filter: &PathBuf| Ok((filter.display().to_string(), curves_in_file(filter, None)?));
     let curves: Result<Vec<_>, GradationError> = filters.iter().map(curves).collect();
@@ -322,7 +321,7 @@ pub(crate) fn found(plan: &BatchPlan, options: &CaseOptions) -> Result<Option<Wa
     let folder = claim(&options.out, KIND, true)?;
     let other = || {
         let problem = format!("holds another {}; name another folder, or add --overwrite", KIND.name());
-        Err(RunError::Refused(format!("{}: {problem}", shown(&options.out))))
+        Err(refused(&options.out, problem))
     };
     if KIND.is_finished(folder.path())? {
         let bytes = folder.read(KIND.record())?;

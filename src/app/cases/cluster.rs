@@ -90,25 +90,18 @@ pub(crate) fn write_job_scripts(
             bytes: CasesAtOnce::of_job(&of_bundle, processors).bytes.max(packings.1.bytes),
         });
     }
+    let name = |case: &usize| cases[*case].planned.name.as_str();
+    let tasks: Vec<Vec<&str>> = bundles.iter().map(|bundle| bundle.iter().map(name).collect()).collect();
+    written.tasks = tasks.len();
     let (seconds, bytes) = cost::collecting(plan.cases.len(), measuring_s);
-    let scripts = Jobs {
-        job: jobs,
-        out: out.path(),
-        words: command_words(options),
-        processors,
-        packings,
-        tasks: bundles.iter().map(|b| b.iter().map(|i| cases[*i].planned.name.as_str()).collect()).collect(),
-        walk: written.walk,
-        collect: TaskNeeds { seconds, bytes: packings.1.bytes.max(bytes) },
-    };
-    let files = scripts.files()?;
+    let collect = TaskNeeds { seconds, bytes: packings.1.bytes.max(bytes) };
+    let files = files((jobs, out.path()), &written, &command_words(options), &tasks, &collect)?;
     make_folder(&folder)?;
     for (name, text) in &files {
         write_whole(&folder.join(name), text.as_bytes())?;
     }
     let real = out.path().canonicalize().ok();
     written.mount = real.and_then(|folder| Mount::of(&folder, &platform::mounts()?));
-    written.tasks = bundles.len();
     Ok(written)
 }
 
@@ -207,79 +200,68 @@ impl TaskNeeds {
     }
 }
 
-struct Jobs<'a> {
-    job: &'a JobOptions,
-    out: &'a Path,
-    /// Additional words of the command lines that walk or pack, and of the one that collects.
-    words: [Vec<String>; 2],
-    processors: u64,
-    /// Filters to pack, and the needs of the largest.
-    packings: (usize, TaskNeeds),
-    /// Names of the cases of each task.
-    tasks: Vec<Vec<&'a str>>,
-    walk: TaskNeeds,
-    collect: TaskNeeds,
-}
-
-impl Jobs<'_> {
-    /// Files of the scripts, by their names inside [`FOLDER`].
-    fn files(&self) -> Result<Vec<(String, String)>, RunError> {
-        let list = prepared::task_list(&self.tasks);
-        // Scripts that wait in a queue name the list with which they were written.
-        let list_name = format!("tasks-{:08x}.tsv", xxhash_rust::xxh3::xxh3_64(list.as_bytes()) as u32);
-        let cases: usize = self.tasks.iter().map(Vec::len).sum();
-        let words = |all: &[String]| all.iter().map(|word| format!(" {}", quoted(word))).collect::<String>();
-        let common = [
-            ("OUT", path(self.out)?),
-            ("PLAN", path(&self.job.plan)?),
-            ("PROGRAM", path(&self.job.program)? + &words(&self.job.words)),
-            ("FILE", list_name.clone()),
-            ("CASES", cases.to_string()),
+/// Files of the scripts, by their names inside [`FOLDER`]; `tasks` are the names of the cases of each task.
+fn files(
+    (jobs, out): (&JobOptions, &Path),
+    written: &WrittenJobs,
+    [walking, collecting]: &[Vec<String>; 2],
+    tasks: &[Vec<&str>],
+    collect: &TaskNeeds,
+) -> Result<Vec<(String, String)>, RunError> {
+    let list = prepared::task_list(tasks);
+    // Scripts that wait in a queue name the list with which they were written.
+    let list_name = format!("tasks-{:08x}.tsv", xxhash_rust::xxh3::xxh3_64(list.as_bytes()) as u32);
+    let (cases, all) = (written.cases, tasks.len());
+    let words = |all: &[String]| all.iter().map(|word| format!(" {}", quoted(word))).collect::<String>();
+    let common = [
+        ("OUT", path(out)?),
+        ("PLAN", path(&jobs.plan)?),
+        ("PROGRAM", path(&jobs.program)? + &words(&jobs.words)),
+        ("FILE", list_name.clone()),
+        ("CASES", cases.to_string()),
+    ];
+    let job = |template: &str, options: &[String], tasks: usize, need: &TaskNeeds| {
+        let of_job = [
+            ("OPTIONS", words(options)),
+            ("TASKS", tasks.to_string()),
+            ("PROCESSORS", written.processors.to_string()),
+            ("MEGABYTES", need.megabytes().to_string()),
+            ("MINUTES", need.minutes().to_string()),
+            ("ESTIMATE", need.estimate()),
         ];
-        let job = |template: &str, options: &[String], tasks: usize, need: &TaskNeeds| {
-            let of_job = [
-                ("OPTIONS", words(options)),
-                ("TASKS", tasks.to_string()),
-                ("PROCESSORS", self.processors.to_string()),
-                ("MEGABYTES", need.megabytes().to_string()),
-                ("MINUTES", need.minutes().to_string()),
-                ("ESTIMATE", need.estimate()),
-            ];
-            fill(template, &[&common[..], &of_job[..]].concat())
-        };
-        let walks = format!("{cases} cases in {} tasks, then the ledger and the page", self.tasks.len());
-        let (packings, pack) = &self.packings;
-        let (jobs, first, after) = match packings {
-            0 => (walks, "", ""),
-            _ => (
-                format!("{packings} packings, then {walks}"),
-                "submit \"$@\" slurm/pack.sh\n",
-                // However the packing job ends, cases whose packings exist are walked.
-                "--dependency=\"afterany:$number\" ",
-            ),
-        };
-        let submit = [
-            ("JOBS", jobs),
-            ("PACK", first.to_owned()),
-            ("AFTER_PACK", after.to_owned()),
-            ("OUT", path(self.out)?),
-        ];
-        let [walking, collecting] = &self.words;
-        let array = include_str!("../data/slurm/array.sh");
-        let collect = include_str!("../data/slurm/collect.sh");
-        let mut files = vec![
-            ("attempt.sh".to_owned(), include_str!("../data/slurm/attempt.sh").to_owned()),
-            (list_name, list),
-            ("array.sh".to_owned(), job(array, walking, self.tasks.len(), &self.walk)),
-            ("collect.sh".to_owned(), job(collect, collecting, 1, &self.collect)),
-            ("submit.sh".to_owned(), fill(include_str!("../data/slurm/submit.sh"), &submit)),
-        ];
-        if *packings > 0 {
-            let text = job(include_str!("../data/slurm/pack.sh"), walking, *packings, pack);
-            files.push(("pack.sh".to_owned(), text));
-        }
-        Ok(files)
+        fill(template, &[&common[..], &of_job[..]].concat())
+    };
+    let walks = format!("{cases} cases in {all} tasks, then the ledger and the page");
+    let (packings, pack) = &written.packings;
+    let (submitted, first, after) = match packings {
+        0 => (walks, "", ""),
+        _ => (
+            format!("{packings} packings, then {walks}"),
+            "submit \"$@\" slurm/pack.sh\n",
+            // However the packing job ends, cases whose packings exist are walked.
+            "--dependency=\"afterany:$number\" ",
+        ),
+    };
+    let submit = [
+        ("JOBS", submitted),
+        ("PACK", first.to_owned()),
+        ("AFTER_PACK", after.to_owned()),
+        ("OUT", path(out)?),
+    ];
+    let array = include_str!("../data/slurm/array.sh");
+    let collection = include_str!("../data/slurm/collect.sh");
+    let mut files = vec![
+        ("attempt.sh".to_owned(), include_str!("../data/slurm/attempt.sh").to_owned()),
+        (list_name, list),
+        ("array.sh".to_owned(), job(array, walking, all, &written.walk)),
+        ("collect.sh".to_owned(), job(collection, collecting, 1, collect)),
+        ("submit.sh".to_owned(), fill(include_str!("../data/slurm/submit.sh"), &submit)),
+    ];
+    if *packings > 0 {
+        let text = job(include_str!("../data/slurm/pack.sh"), walking, *packings, pack);
+        files.push(("pack.sh".to_owned(), text));
     }
+    Ok(files)
 }
 
 /// Replaces `@NAME@`, once: inserted text is not searched again.

@@ -17,7 +17,7 @@ use xxhash_rust::xxh3::xxh3_128;
 use crate::outcome::record::Manifest;
 use crate::run::RunError;
 use crate::run::callbacks::Callbacks;
-use crate::run::folder::{FolderKind, LATTICES, NETWORKS, Unfinished, clear, shown};
+use crate::run::folder::{FolderKind, LATTICES, NETWORKS, Unfinished, clear, refused, shown};
 use crate::run::results::json;
 use voidwalk_core::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
 use voidwalk_core::store::format::from_json;
@@ -56,12 +56,12 @@ pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
             let has_cases = kind.has_cases();
             // A corrupt mark gives no information.
             if has_cases && !overwrite && !is_begun && begun.is_some_and(|begun| !begun.work.is_empty()) {
-                return Err(RunError::Refused(format!(
-                    "{}: holds another {} that is unfinished, or was begun by another version of voidwalk; \
+                let problem = format!(
+                    "holds another {} that is unfinished, or was begun by another version of voidwalk; \
                      continue that one with its own command, name another folder or add --overwrite",
-                    shown(folder.path()),
                     kind.name()
-                )));
+                );
+                return Err(refused(folder.path(), problem));
             }
             // A study that is continued always has its mark.
             if earlier.is_none() && !(has_cases && is_begun) {
@@ -111,20 +111,19 @@ impl<'a> Kept<'a> {
     /// Results of an earlier start of this very study. Errors: a file of another study, or one that cannot be
     /// read.
     fn newest<T: DeserializeOwned>(&self, callbacks: &Callbacks) -> Result<Option<T>, RunError> {
-        let refused = |error: CheckpointError| match error.is_unreadable() {
-            true => RunError::Checkpoint(error),
-            false => RunError::Refused(format!(
-                "{}: the unfinished {} there cannot be continued: {error}; name another folder or add \
-                 --overwrite",
-                shown(self.folder.path()),
-                self.kind.name()
-            )),
+        let unusable = |error: CheckpointError| {
+            if error.is_unreadable() {
+                return RunError::Checkpoint(error);
+            }
+            let (kind, instead) = (self.kind.name(), "name another folder or add --overwrite");
+            let problem = format!("the unfinished {kind} there cannot be continued: {error}; {instead}");
+            refused(self.folder.path(), problem)
         };
-        let (saved, passed_over) = newest(self.folder.path(), self.name, &self.identity).map_err(refused)?;
+        let (saved, passed_over) = newest(self.folder.path(), self.name, &self.identity).map_err(unusable)?;
         for error in passed_over {
             (callbacks.warn)(&format!("{error}; the checkpoint before it was used"));
         }
-        saved.map(|saved| saved.read_record("found").map_err(refused)).transpose()
+        saved.map(|saved| saved.read_record("found").map_err(unusable)).transpose()
     }
 
     /// Keeps the results of this many parts; the previous checkpoint stays until this one is complete.
@@ -170,22 +169,23 @@ mod tests {
     #[test]
     fn the_last_day_of_several_cases_counts_and_a_folder_without_one_says_nothing() {
         let at = tempfile::tempdir().unwrap();
+        let manifest = |finished: &str| Manifest {
+            version: "1".into(),
+            commit: None,
+            seed: 1,
+            inputs: Vec::new(),
+            threads: 1,
+            host: String::new(),
+            machine: String::new(),
+            started: String::new(),
+            finished: finished.into(),
+            command: String::new(),
+        };
         let case = |name: &str, finished: &str| {
             let folder = at.path().join(name);
             std::fs::create_dir(&folder).unwrap();
-            let manifest = Manifest {
-                version: "1".into(),
-                commit: None,
-                seed: 1,
-                inputs: Vec::new(),
-                threads: 1,
-                host: String::new(),
-                machine: String::new(),
-                started: String::new(),
-                finished: finished.into(),
-                command: String::new(),
-            };
-            std::fs::write(folder.join("manifest.json"), MANIFEST.json(&manifest).unwrap()).unwrap();
+            std::fs::write(folder.join("manifest.json"), MANIFEST.json(&manifest(finished)).unwrap())
+                .unwrap();
             folder
         };
         let cases =

@@ -13,7 +13,7 @@ use super::plan::{CasePlan, PlannedCase};
 use crate::case::{Case, PackedFilter, PackingPlan};
 use crate::outcome::ledger::LedgerLine;
 use crate::run::checkpoints::Checkpoints;
-use crate::run::folder::shown;
+use crate::run::folder::{refused, shown};
 use crate::run::prepare::Draft;
 use crate::run::{Exit, RunError};
 use voidwalk_core::store::format::from_json;
@@ -90,19 +90,13 @@ pub(crate) fn wanted<'a>(plan: &'a CasePlan, part: &CasePart) -> Result<Vec<&'a 
             }
         },
         CasePart::Task(file, number) => {
-            let shown = shown(file);
-            let refused = |problem: &dyn std::fmt::Display| RunError::Refused(format!("{shown}: {problem}"));
-            let bytes = read_regular(file, LARGEST_LIST).map_err(|error| refused(&error))?;
-            let bytes = bytes.ok_or_else(|| refused(&"is no list of tasks that --slurm wrote"))?;
+            let bytes = read_regular(file, LARGEST_LIST).map_err(|error| refused(file, error))?;
+            let bytes = bytes.ok_or_else(|| refused(file, "is no list of tasks that --slurm wrote"))?;
             let text = String::from_utf8_lossy(&bytes);
-            let names = names_of_task(&shown, &text, *number).map_err(RunError::refused)?;
-            let find = |name: &&str| {
-                plan.case(name).ok_or_else(|| {
-                    let problem = "the plan was changed; write the scripts again";
-                    RunError::Refused(format!("{shown}: {} has no case `{name}`: {problem}", plan.file))
-                })
-            };
-            names.iter().map(find).collect()
+            let names = names_of_task(&shown(file), &text, *number).map_err(RunError::refused)?;
+            let problem = "the plan was changed; write the scripts again";
+            let gone = |name: &str| refused(file, format!("{} has no case `{name}`: {problem}", plan.file));
+            names.iter().map(|name| plan.case(name).ok_or_else(|| gone(name))).collect()
         }
     }
 }

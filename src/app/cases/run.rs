@@ -369,14 +369,10 @@ pub(crate) fn collect(
         missing.push(FailedCase::new(case.planned, state(case, folder.path())));
     }
     if !missing.is_empty() {
-        return Err(RunError::Refused(format!(
-            "{}: {} of {} cases are missing, nothing is written; submit the campaign again to continue\n\
-             {}",
-            shown(&options.out),
-            missing.len(),
-            plan.cases.len(),
-            named(&missing)
-        )));
+        let (of_plan, instead) = (plan.cases.len(), "submit the campaign again to continue");
+        let counted =
+            format!("{} of {of_plan} cases are missing, nothing is written; {instead}", missing.len());
+        return Err(refused(&options.out, format!("{counted}\n{}", named(&missing))));
     }
     write_ledger(plan, &cases, folder.path(), callbacks)
 }

@@ -9,6 +9,7 @@ use serde::Serialize;
 use crate::run::RunError;
 use voidwalk_core::store::format::Format;
 
+pub(crate) use crate::run::folder::shown;
 pub(crate) use voidwalk_core::text::plain;
 use voidwalk_core::text::shell_word;
 use voidwalk_practice::quantity::THIN;
@@ -52,10 +53,6 @@ pub(crate) fn to_stderr(text: &str) {
 
 pub(crate) fn to_copy(word: impl AsRef<Path>) -> String {
     plain(&shell_word(&word.as_ref().display().to_string()))
-}
-
-pub(crate) fn shown(path: &Path) -> String {
-    plain(&path.display().to_string())
 }
 
 /// Lines safe for a terminal.

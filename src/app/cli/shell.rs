@@ -13,6 +13,7 @@ use super::help::command;
 use super::options::{FACETS, SET};
 use super::print::{shown, to_stdout};
 use crate::run::RunError;
+use crate::run::folder::refused;
 use crate::scene::{Density, LibraryDensity, Scene};
 use voidwalk_core::constrictions::shipped;
 use voidwalk_core::packing::LengthUnit;
@@ -108,12 +109,12 @@ fn with_values(shell: Shell) -> Command {
 }
 
 fn of_argument(arg: Arg, command: &str, shell: Shell) -> Arg {
-    let named = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
+    let named = |words: &[&str]| words.iter().map(ToString::to_string).collect::<Vec<_>>();
     let values = match arg.get_id().as_str() {
         "density" => named(&Density::ALL.map(Density::name)),
         "densities" => {
-            [named(&LibraryDensity::ALL.map(LibraryDensity::name)), named(&["friction=", "estimate="])]
-                .concat()
+            let packed = ["friction=", "estimate="];
+            named(&[&LibraryDensity::ALL.map(LibraryDensity::name)[..], &packed].concat())
         }
         SET => assignments(),
         "schema" => FORMATS.iter().map(|form| form.name().to_owned()).collect(),
@@ -145,7 +146,7 @@ fn assignments() -> Vec<String> {
 pub(crate) fn man(folder: &Path) -> Result<(), RunError> {
     if let Some(file) = folder.ancestors().find(|part| part.exists() && !part.is_dir()) {
         let problem = "is a file; name a folder for the pages, a new one or one that is there";
-        return Err(RunError::Refused(format!("{}: {problem}", shown(file))));
+        return Err(refused(file, problem));
     }
     let mut whole = command();
     whole.build();

@@ -121,9 +121,9 @@ impl Server {
 }
 
 fn first_new(name: &str) -> Result<Folder, RunError> {
-    let names = std::iter::once(name.to_owned()).chain((2..).map(|n| format!("{name}-{n}")));
-    let mut names = names.filter(|name| Path::new(name).symlink_metadata().is_err());
-    claim(Path::new(&names.next().expect("there is no last name")), FolderKind::Serve, false)
+    let mut names = std::iter::once(name.to_owned()).chain((2..).map(|n| format!("{name}-{n}")));
+    let free = names.find(|name| Path::new(name).symlink_metadata().is_err());
+    claim(Path::new(&free.expect("there is no last name")), FolderKind::Serve, false)
 }
 
 fn accept(listener: &TcpListener, routes: &Arc<Routes>) {
@@ -144,7 +144,7 @@ fn accept(listener: &TcpListener, routes: &Arc<Routes>) {
 
 /// Answers one connection; a browser that has left is not an error of the server.
 fn answer(mut stream: TcpStream, place: &Place, routes: &Routes) {
-    let answered = http::read_head(&mut stream).and_then(|head| {
+    let _ = http::read_head(&mut stream).and_then(|head| {
         let answer = match head {
             Ok(request) => {
                 if routes.guard.path(&request).is_some() {
@@ -156,5 +156,4 @@ fn answer(mut stream: TcpStream, place: &Place, routes: &Routes) {
         };
         http::send(&mut stream, answer)
     });
-    drop(answered);
 }

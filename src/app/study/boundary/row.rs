@@ -116,10 +116,10 @@ impl Row {
     pub(crate) fn check_room(&self, bracket: [f64; 2]) -> Result<(), RunError> {
         let ratio = self.start().clamp(bracket[0], bracket[1]);
         match self.at(ratio) {
-            Err(error) if !is_of_base(&error) => Err(RunError::Refused(format!(
-                "{}, {}, at D15F/D85B {ratio:.2}: {error}",
-                self.density, self.thickness
-            ))),
+            Err(error) if !is_of_base(&error) => {
+                let row = format!("{}, {}, at D15F/D85B {ratio:.2}", self.density, self.thickness);
+                Err(RunError::Refused(format!("{row}: {error}")))
+            }
             _ => Ok(()),
         }
     }
