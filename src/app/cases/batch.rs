@@ -31,7 +31,6 @@ use voidwalk_practice::quantity::SizeUnit;
 use voidwalk_practice::{BatchFilter, BatchRow, BatchTable, PairOptions, SheetCover};
 use voidwalk_sheets::curves_in_file;
 
-/// Folder of the campaign, inside the batch's folder.
 const WALKS: &str = "pairs";
 
 const TABLE: &str = "batch.csv";
@@ -65,7 +64,6 @@ pub(crate) struct BatchPlan {
     /// Curve of the one base as sampled; empty if each soil is a sample.
     base: Vec<[f64; 2]>,
     rows: Vec<WalkedRow>,
-    /// Name of the case of each row, walked or not.
     cases: Vec<String>,
     in_full: HashSet<String>,
     notes: Vec<String>,
@@ -74,11 +72,9 @@ pub(crate) struct BatchPlan {
 
 impl BatchPlan {
     /// Pairs the samples of a file or folder with filters. `tables` holds the further options of each scene.
-    /// A pair that cannot be walked stays in the table, with the reason.
-    ///
-    /// # Errors
-    /// A file that cannot be read; a filter that is named twice; several soils in place of one base; cases
-    /// that do not fit into memory; no pair that can be walked.
+    /// A pair that cannot be walked stays in the table, with the reason. Errors: a file that cannot be read;
+    /// a filter that is named twice; several soils in place of one base; cases that do not fit into memory;
+    /// no pair that can be walked.
     pub(crate) fn new(
         samples: &Path,
         filters: &[PathBuf],
@@ -244,7 +240,6 @@ fn case_names(table: &BatchTable, filters: &[PathBuf]) -> Vec<String> {
     of_filters.iter().flat_map(pair).collect()
 }
 
-/// Scene of a pair, or the reason why it has none.
 fn scene(row: &WalkedRow, filters: &[BatchFilter], tables: &TableOptions) -> Result<Scene, String> {
     let filter = filters.iter().find(|filter| filter.name == row.rules.filter);
     if filter.is_some_and(|filter| filter.curves.len() > 1) {
@@ -274,11 +269,9 @@ fn first_look(tables: &TableOptions) -> TableOptions {
 
 /// Walks every unfinished pair, in a campaign inside the folder that the options name, and writes `batch.csv`
 /// and, last, `batch.json`. With `overwrite` an earlier batch there is replaced, except those of its walks
-/// that are needed again.
-///
-/// # Errors
-/// A folder that cannot be claimed is refused before any work; then see [`super::run()`]. If a pair cannot be
-/// walked to its end, no table is written. After a stop, the same call continues.
+/// that are needed again. Errors: a folder that cannot be claimed is refused before any work; then see
+/// [`super::run()`]. If a pair cannot be walked to its end, no table is written. After a stop, the same call
+/// continues.
 pub(crate) fn run(
     plan: &BatchPlan,
     options: &CaseOptions,
@@ -309,10 +302,7 @@ pub(crate) fn run(
 }
 
 /// Batch that the folder already holds, if it is this very one; `None` if [`run`] without `overwrite` begins
-/// or continues there. Writes no result.
-///
-/// # Errors
-/// The folder holds anything else, including another batch.
+/// or continues there. Writes no result. Errors: the folder holds anything else, including another batch.
 pub(crate) fn found(plan: &BatchPlan, options: &CaseOptions) -> Result<Option<WalkedBatch>, RunError> {
     if options.out.symlink_metadata().is_err() {
         return Ok(None);

@@ -75,10 +75,7 @@ impl PlanCheck {
 }
 
 /// Forecasts the cases of a plan, here and with these options, and reports the mistakes in each. Packs,
-/// claims and writes nothing.
-///
-/// # Errors
-/// The plan has no such part, or there is no such folder of packings.
+/// claims and writes nothing. Errors: the plan has no such part, or there is no such folder of packings.
 pub(crate) fn check_plan(plan: &CasePlan, options: &CaseOptions) -> Result<PlanCheck, RunError> {
     let wanted = wanted(plan, &options.part)?;
     let (limits, _) = options.rooms(&options.out, &wanted);

@@ -38,23 +38,19 @@ pub(crate) struct JobOptions {
 pub(crate) struct WrittenJobs {
     /// Number of cases already done; if all are, nothing is written.
     pub(crate) done: usize,
-    /// Cases that the array walks.
     pub(crate) cases: usize,
     pub(crate) tasks: usize,
     /// Packings that are made first, and the needs of the largest.
     pub(crate) packings: (usize, TaskNeeds),
     pub(crate) walk: TaskNeeds,
     pub(crate) processors: u64,
-    /// The script that submits the jobs.
     pub(crate) submit: PathBuf,
     /// Mount of the campaign's folder, if known.
     pub(crate) mount: Option<Mount>,
 }
 
-/// Writes job scripts for the unfinished cases of a plan into the campaign's folder.
-///
-/// # Errors
-/// A wrong plan or case, a folder that cannot be claimed or written, a path that no script can hold.
+/// Writes job scripts for the unfinished cases of a plan into the campaign's folder. Errors: a wrong plan or
+/// case, a folder that cannot be claimed or written, a path that no script can hold.
 pub(crate) fn write_job_scripts(
     plan: &CasePlan,
     options: &CaseOptions,
@@ -151,10 +147,8 @@ fn command_words(options: &CaseOptions) -> [Vec<String>; 2] {
     [walking, collecting]
 }
 
-/// Folder of the scripts and logs, inside the campaign's folder.
 const FOLDER: &str = "slurm";
 
-/// Factor on the estimated time in the request of a job script.
 const TIME_MARGIN: f64 = 4.0;
 
 /// Maximum time to request (minutes): a task that takes longer is stopped, and continues in another attempt.
@@ -165,7 +159,6 @@ const SLACK_MIN: u64 = 10;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct TaskNeeds {
-    /// Seconds of the longest task, on its threads.
     pub(crate) seconds: f64,
     pub(crate) bytes: u64,
 }

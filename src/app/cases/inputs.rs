@@ -63,7 +63,6 @@ impl InputSoils {
     }
 }
 
-/// Files of these soils, each once.
 fn files_of(soils: &[SoilSample]) -> Vec<PathBuf> {
     let mut read = HashSet::new();
     let files = soils.iter().map(|soil| file_and_soil(&soil.path).0);

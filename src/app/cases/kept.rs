@@ -87,7 +87,6 @@ pub(crate) fn record<R: DeserializeOwned>(folder: &Path, kind: FolderKind) -> Re
     from_json(&bytes).map_err(|error| failed(&error))
 }
 
-/// Store of a study's results in a folder.
 pub(crate) struct Kept<'a> {
     kind: FolderKind,
     folder: &'a Folder,
@@ -98,7 +97,6 @@ pub(crate) struct Kept<'a> {
 }
 
 impl<'a> Kept<'a> {
-    /// Store in a claimed folder, for the study described by `work`.
     fn new(kind: FolderKind, folder: &'a Folder, work: &str) -> Self {
         let scene = hash_of(work);
         let (name, files) = match kind {

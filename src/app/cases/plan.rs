@@ -40,7 +40,6 @@ use voidwalk_core::text::is_hidden;
 /// Maximum number of cases; more are taken for a mistake.
 const MOST_CASES: usize = 100_000;
 
-/// Maximum size of a plan (bytes).
 const LARGEST_FILE: u64 = 1 << 20;
 
 /// Top-level keys of a scene, which a plan accepts only inside `set`.
@@ -77,11 +76,9 @@ fn one() -> u64 {
     1
 }
 
-/// Choice of the seeds of the cases.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Seeds {
-    /// A seed of its own for each case.
     #[default]
     Own,
     /// The plan's seed for all cases. Cases that differ in one factor then share their random numbers, and so
@@ -139,11 +136,9 @@ struct Single {
 /// A case of a plan.
 #[derive(Clone, Debug)]
 pub struct PlannedCase {
-    /// Its name in messages.
     pub(crate) name: String,
     /// Level by factor, in the order of the plan; empty for a case outside the cross.
     pub(crate) levels: Vec<(String, String)>,
-    /// The scene.
     pub(crate) scene: Scene,
 }
 
@@ -151,9 +146,7 @@ pub struct PlannedCase {
 #[derive(Clone, Debug)]
 pub struct CasePlan {
     pub(crate) file: String,
-    /// Title of the plan, in a line.
     pub(crate) title: String,
-    /// Factors in the order of the plan.
     pub(crate) factors: Vec<String>,
     /// Cases: the cross, with the last factor varying fastest, then the single ones.
     pub cases: Vec<PlannedCase>,

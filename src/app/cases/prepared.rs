@@ -21,7 +21,6 @@ use voidwalk_core::store::{Folder, StoreError, read_regular, read_whole};
 
 pub(super) const LINE: &str = "case.json";
 
-/// Folder of the cases, inside the campaign's folder.
 pub(crate) const CASES: &str = "cases";
 
 /// File with the reason why a case could not be walked at the last attempt.
@@ -29,7 +28,6 @@ pub(super) const PROBLEM: &str = "problem.txt";
 
 const LARGEST_LIST: u64 = 1 << 26;
 
-/// Maximum number of cases named in a message.
 const NAMED: usize = 30;
 
 /// Cases of a plan that a process handles.
@@ -66,7 +64,6 @@ impl FailedCase {
     }
 }
 
-/// Lists the unfinished cases, one per line.
 pub(super) fn named(failed: &[FailedCase]) -> String {
     let one = |failed: &FailedCase| format!("case {}: {}", failed.case, failed.problem.replace('\n', " "));
     let mut lines: Vec<String> = failed.iter().take(NAMED).map(one).collect();
@@ -167,7 +164,6 @@ pub(crate) struct PreparedCase<'a> {
 }
 
 impl PreparedCase<'_> {
-    /// Folder of the results, inside the campaign's folder.
     pub(crate) fn folder(&self) -> PathBuf {
         // Ledger and table use this form on every system.
         PathBuf::from(format!("{CASES}/{}", self.planned.folder_name()))

@@ -58,7 +58,6 @@ impl Default for CaseOptions {
 }
 
 impl CaseOptions {
-    /// Options with the packings, memory and threads of other work.
     pub(crate) fn of(out: PathBuf, prepare: PrepareOptions, command: String) -> Self {
         let PrepareOptions { packings, memory, threads } = prepare;
         Self { out, packings: Some(packings), memory, threads, command, ..Self::default() }
@@ -100,7 +99,6 @@ pub struct FinishedCases {
     /// Finished cases in the order of the plan; `None` if this process handled only part of the plan.
     pub(crate) lines: Option<Vec<LedgerLine>>,
     pub(crate) failed: Vec<FailedCase>,
-    /// Number of cases that were handled.
     pub(crate) cases: usize,
 }
 
@@ -118,10 +116,8 @@ impl FinishedCases {
     }
 }
 
-/// Names of the cases that a process would walk, each found sound.
-///
-/// # Errors
-/// The plan has no such part; a case is wrong.
+/// Names of the cases that a process would walk, each found sound. Errors: the plan has no such part; a case
+/// is wrong.
 pub(crate) fn names(plan: &CasePlan, part: &CasePart) -> Result<Vec<String>, RunError> {
     let wanted = wanted(plan, part)?;
     Drafts::new(wanted.clone()).map(|_| wanted.iter().map(|case| case.name.clone()).collect())
@@ -142,10 +138,8 @@ pub fn run(
     ReadyCampaign::new(plan, options, callbacks)?.walk()
 }
 
-/// Cases that are wrong in themselves, in the order of the plan; claims and writes nothing.
-///
-/// # Errors
-/// Sound cases that do not fit into memory.
+/// Cases that are wrong in themselves, in the order of the plan; claims and writes nothing. Errors: sound
+/// cases that do not fit into memory.
 pub(crate) fn unsound(plan: &CasePlan, options: &CaseOptions) -> Result<Vec<FailedCase>, RunError> {
     let wanted = wanted(plan, &options.part)?;
     let (limits, _) = options.rooms(&options.out, &wanted);
@@ -193,7 +187,6 @@ pub(crate) struct ReadyCampaign<'a> {
     /// Room for networks (bytes), if cases with one seed may share them.
     shared: Option<u64>,
     cases: Vec<PreparedCase<'a>>,
-    /// Cases that cannot be walked.
     failed: Vec<FailedCase>,
     /// True if no case failed for want of memory.
     has_room: bool,
@@ -347,10 +340,8 @@ fn write_ledger(
     Ok(lines)
 }
 
-/// Collects a campaign whose cases are all done.
-///
-/// # Errors
-/// A folder without cases; missing cases, each with its state. Nothing is written then.
+/// Collects a campaign whose cases are all done. Errors: a folder without cases; missing cases, each with its
+/// state. Nothing is written then.
 pub(crate) fn collect(
     plan: &CasePlan,
     options: &CaseOptions,
@@ -377,10 +368,8 @@ pub(crate) fn collect(
     write_ledger(plan, &cases, folder.path(), callbacks)
 }
 
-/// Makes one of the packings that a plan needs; they are counted from 1 in the order of its cases.
-///
-/// # Errors
-/// There is no such packing; then as in `provide`.
+/// Makes one of the packings that a plan needs; they are counted from 1 in the order of its cases. Errors:
+/// there is no such packing; then as in `provide`.
 pub(crate) fn make_packing(
     plan: &CasePlan,
     number: u64,

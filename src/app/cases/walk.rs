@@ -30,7 +30,6 @@ use crate::run::shared_networks::SharedNetworks;
 use crate::run::{Exit, RunError, results};
 use voidwalk_core::store::{Folder, StoreError, format, make_folder};
 
-/// Problem of a case whose results are gone.
 pub(super) const LOST: &str = "its results were overwritten by another process; is another plan, or this \
     one changed, at work on the folder?";
 
@@ -88,7 +87,6 @@ pub(super) struct CaseRunner<'a> {
     pub(crate) threads: usize,
     pub(crate) callbacks: &'a CaseCallbacks<'a>,
     pub(crate) checkpoint_interval: CheckpointInterval,
-    /// Networks, if cases with one seed may share them.
     pub(crate) networks: Option<SharedNetworks>,
     pub(crate) job: Option<String>,
     /// Command in a case's `manifest.json` that started it.

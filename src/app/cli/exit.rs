@@ -39,7 +39,6 @@ pub(crate) struct JudgedAnswer {
 }
 
 impl FailOn {
-    /// Reason why an answer is not accepted, by the worse of practice and model; `None` if it is.
     fn refused(self, answer: JudgedAnswer) -> Option<String> {
         match answer.practice.filter(|class| self.refuses(*class)) {
             Some(Verdict::Undecided) => Some("practice is not known".into()),

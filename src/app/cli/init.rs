@@ -75,7 +75,6 @@ pub(crate) fn examples(folder: &Path) -> Result<(), RunError> {
 
 type Made = fn() -> Schema;
 
-/// Contents of each format after its beginning.
 const CONTENTS: &[(Format, Made)] = &[
     (format::OUTCOME, schema_of::<Outcome>),
     (format::MANIFEST, schema_of::<Manifest>),

@@ -15,7 +15,6 @@ use voidwalk_core::schema::KeyInfo;
 /// Maximum number of files in a folder that are searched for a name similar to a missing one.
 const FILES: usize = 1000;
 
-/// Adds a command to type instead to an error of the command line.
 pub(crate) fn explained(mut error: clap::Error, command: &Command, words: &[OsString]) -> clap::Error {
     let words: Vec<String> = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let text = |kind| match error.get(kind) {

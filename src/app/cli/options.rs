@@ -63,7 +63,6 @@ pub(crate) const SETTINGS: [CommandSettings; 5] = [
     CommandSettings { options: &["base.dispersive", "filter.joint_mm"], set: None },
 ];
 
-/// Settings given on a command line, by `--set` and by options of their own.
 pub(crate) struct SettingOptions<const COMMAND: usize> {
     /// Assignments, each as `KEY=VALUE`.
     pub(crate) assignments: Vec<String>,

@@ -55,12 +55,10 @@ pub(crate) fn to_copy(word: impl AsRef<Path>) -> String {
     plain(&shell_word(&word.as_ref().display().to_string()))
 }
 
-/// Lines safe for a terminal.
 pub(crate) fn lines(lines: impl IntoIterator<Item = impl AsRef<str>>) -> String {
     lines.into_iter().map(|line| plain(line.as_ref()) + "\n").collect()
 }
 
-/// Line of a table with a name and a value.
 pub(crate) fn labelled(name: &str, value: &str) -> String {
     format!("{name:<22}{}\n", plain(value))
 }

@@ -106,7 +106,6 @@ enum Work {
     Walk(Walk),
 }
 
-/// Numbers of finished runs and of runs in all, and results of the replicates so far.
 #[derive(Default)]
 struct Walk {
     done: u64,
@@ -177,7 +176,6 @@ impl Display {
         }
     }
 
-    /// Prints a line, above the bar if there is one.
     fn line(&self, text: &str) {
         let shown = self.shown.lock().ok();
         match shown.as_ref().and_then(|shown| shown.as_ref()?.bar.as_ref()) {
@@ -303,7 +301,6 @@ pub(crate) struct CaseProgress {
     quiet: bool,
     /// True if every event of a case gets a line, as in the log of a job.
     every_event: bool,
-    /// Known once the cases are counted.
     shown: OnceLock<(Option<ProgressBar>, Mutex<Lines>)>,
 }
 

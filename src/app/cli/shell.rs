@@ -73,7 +73,6 @@ complete -F _voidwalk_and_values -o nosort -o bashdefault -o default voidwalk 2>
     complete -F _voidwalk_and_values -o bashdefault -o default voidwalk
 "##;
 
-/// Completion in zsh of the soils of a file after `FILE#`.
 const ZSH_MORE: &str = r#"
 _voidwalk_and_soils() {
     local word=${(Q)words[CURRENT]}

@@ -63,7 +63,6 @@ pub(crate) fn design(args: &DesignArgs) -> Result<(), RunError> {
     })
 }
 
-/// Words for the band and its limit, points to watch, and suitable products; the page has steps and limits.
 fn specification_words(specification: &Specification) -> String {
     let unit = SizeUnit::of(false, specification.inches);
     let band = band(specification, unit).unwrap_or_else(|| match &specification.no_band {

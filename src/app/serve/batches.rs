@@ -33,7 +33,6 @@ pub(crate) struct AskedBatch {
 pub(crate) struct AskedTables {
     /// Density in one word, or empty.
     pub(crate) density: String,
-    /// True if this very filter is packed.
     pub(crate) pack: bool,
     pub(crate) quick: bool,
     /// True if the base is walked as sampled, not as practice regrades it.

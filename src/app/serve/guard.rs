@@ -33,7 +33,6 @@ impl Guard {
         format!("http://127.0.0.1:{}/{}/", self.port, self.token)
     }
 
-    /// Path below the secret; `None` if the request is not allowed.
     pub(crate) fn path<'a>(&self, request: &'a Request) -> Option<&'a str> {
         if !request.field("host").is_some_and(|name| self.is_host(name)) {
             return None;
@@ -73,7 +72,6 @@ const MOST: usize = 64;
 /// Time for which a connection that has not shown the secret is spared, however many wait.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// Interval between checks for connections older than that.
 const LOOK: Duration = Duration::from_millis(50);
 
 #[derive(Default)]

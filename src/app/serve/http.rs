@@ -34,7 +34,6 @@ pub(crate) struct Request {
     pub(crate) path: String,
     pub(crate) query: String,
     fields: Vec<(String, String)>,
-    /// Beginning of the body, which came with the head.
     begun: Vec<u8>,
     length: u64,
 }
@@ -159,7 +158,6 @@ impl Write for Until<'_> {
     }
 }
 
-/// Reads the head of a request; a bad head gives its answer.
 pub(crate) fn read_head(stream: &mut TcpStream) -> io::Result<Result<Request, Answer>> {
     let mut stream = Until::new(stream, ARRIVAL.0, ARRIVAL.0);
     let refused = |status, words| Ok(Err(Answer::problem(status, words)));

@@ -324,7 +324,6 @@ fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
 
 const FILE: &str = "job.json";
 
-/// Maximum size of the file, for writing and reading (bytes).
 const LARGEST: u64 = 4 << 20;
 
 /// Request of a job, and its end if it cannot continue.

@@ -187,7 +187,6 @@ impl JobQueue {
         self.locked().iter().any(|job| job.folder == name).then(|| self.context.root.join(name))
     }
 
-    /// All jobs, newest first; messages pass through `named`.
     pub(crate) fn snapshot(&self, named: impl Fn(&str) -> String) -> Value {
         let all = self.locked();
         all.iter().rev().map(|job| job.snapshot(&all, &self.context.root, &named)).collect()
@@ -246,7 +245,6 @@ impl JobQueue {
     }
 }
 
-/// Removes the earliest finished jobs if there are too many.
 fn shorten(all: &mut Vec<Job>) {
     let mut more = all.len().saturating_sub(LISTED);
     all.retain(|job| {
@@ -276,7 +274,6 @@ mod tests {
         (job.state, job.message) = (state, format!("it is {}", state.words()));
     }
 
-    /// Writes how the job ended into its folder.
     fn write_end(folder: &Path, state: JobState) {
         let ended = Some((state.words().to_owned(), "why".to_owned()));
         JobFile { ended, ..file() }.write(folder).unwrap();

@@ -200,7 +200,6 @@ impl Routes {
         }
     }
 
-    /// Work for a request of this kind, now or when it is continued.
     fn planned(&self, kind: &str, request: &Value) -> Result<Planned, Problem> {
         match kind {
             "judge" => {

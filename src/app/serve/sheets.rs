@@ -55,7 +55,6 @@ struct Kept {
 }
 
 impl Sheets {
-    /// Sheets of an earlier server below `root`, and no others yet.
     pub(crate) fn new(root: &Path) -> Self {
         let folder = root.join(FOLDER);
         let mut kept = Kept::default();
@@ -73,7 +72,6 @@ impl Sheets {
         Self { folder, kept: Mutex::new(kept) }
     }
 
-    /// Adds a sheet, if soils can be read from it and there is room.
     pub(crate) fn add(&self, name: &str, bytes: &[u8]) -> Result<Arc<Sheet>, String> {
         let size = bytes.len() as u64;
         {

@@ -93,11 +93,8 @@ pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specif
 }
 
 /// Specifies a filter for every sample (the bases of the options) by practice alone, and writes
-/// `designs.csv`, one row per sample, and, last, `designs.json`.
-///
-/// # Errors
-/// Samples that cannot be read, a sample that is not a base, or a folder that cannot be claimed are refused
-/// before anything is written.
+/// `designs.csv`, one row per sample, and, last, `designs.json`. Errors: samples that cannot be read, a
+/// sample that is not a base, or a folder that cannot be claimed are refused before anything is written.
 pub(crate) fn specify_each(
     options: &SpecifyOptions,
     callbacks: &Callbacks,

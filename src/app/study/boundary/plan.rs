@@ -21,7 +21,6 @@ const ACROSS: u64 = 20;
 /// Default number of networks: the minimum for percentiles.
 const NETWORKS: u64 = 5;
 
-/// Settings that state the thickness of a filter.
 const THICKNESSES: [&str; 4] =
     ["network.nz", "network.copies", "network.thickness_mm", "network.thickness_d50f"];
 
@@ -164,7 +163,6 @@ impl std::fmt::Display for Thickness {
     }
 }
 
-/// Every density with every thickness.
 pub(super) fn plan(options: &BoundaryOptions) -> Result<CasePlan, RunError> {
     let common = common(options)?;
     let (densities, thicknesses) = (densities(options)?, thicknesses(options)?);
@@ -332,7 +330,6 @@ pub(super) fn with_any_base(scene: &Scene) -> Scene {
     drafted
 }
 
-/// Refuses settings of a scene that a search for boundaries cannot use.
 fn refuse(scene: &Scene) -> Result<(), RunError> {
     Err(RunError::refused(if scene.stop != StopRule::default() {
         "stop.target_error_pp and stop.decide_percent do not go with `boundary`: replicates says how many \
@@ -346,7 +343,6 @@ fn refuse(scene: &Scene) -> Result<(), RunError> {
     }))
 }
 
-/// Name of the density of the packing of a scene's filter.
 fn density_name(scene: &Scene) -> String {
     let filter = &scene.filter;
     if let Some(density) = filter.library {

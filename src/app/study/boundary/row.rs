@@ -99,7 +99,6 @@ impl Row {
         ((mm / layer).round() < 1.0).then_some(layer)
     }
 
-    /// Note on a layer that is thicker than the thickness asked for.
     pub(crate) fn thicker(&self, ratio: f64) -> Option<Note> {
         let layer_mm = self.thicker_than_asked(ratio)?;
         Some(Note::LayerThicker { ratio, layer_mm, thickness: self.thickness.to_string() })
@@ -183,7 +182,6 @@ fn is_of_base(error: &CaseError) -> bool {
     matches!(error, CaseError::Scene(_) | CaseError::Gradation(_) | CaseError::Number(_))
 }
 
-/// One network, walked at one ratio after another.
 pub(super) struct OneNetwork<'a> {
     row: &'a Row,
     seed: u64,
@@ -258,7 +256,6 @@ fn eroded(
     Ok((Eroded::of(&state, case.pan_by_mass_only()), state.into_clogged()))
 }
 
-/// Minimum number of networks that gives percentiles.
 const FEW_NETWORKS: u64 = 5;
 
 /// D85 (mm) above which a base gets a note.
@@ -272,7 +269,6 @@ fn of_amount(row: &Row) -> Option<Note> {
     }
 }
 
-/// Row at one ratio, with the sizes that it has there.
 pub(super) struct Judged {
     /// Case with the sizes of filter and base at the ratio; without a unit, sizes are in units of D85B.
     pub(crate) case: Case,

@@ -40,7 +40,6 @@ pub(super) const METHOD: &str = "design search 9";
 /// Steps between stops in the search of the second run, which is far from the first if bases are broad.
 const SECOND_STOP: i64 = 32;
 
-/// Reason why a search found no boundary.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum Ended {
     /// The smallest ratio of the search erodes.
@@ -49,12 +48,10 @@ pub(super) enum Ended {
     ErodesTo(f64, String),
     /// The largest ratio of the search holds, in this run.
     Holds(u64, f64),
-    /// Reason why further ratios are not walked.
     NotWalked(String),
 }
 
 impl Ended {
-    /// Note for this many networks.
     pub(crate) fn note(&self, networks: u64) -> Note {
         match self {
             Self::Erodes(ratio) => Note::ErodesToEnd { ratio: *ratio, networks },
@@ -102,7 +99,6 @@ fn erodes_down_to(step: i64) -> Beside {
 /// Boundaries of another network of the same filter, as a start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Hint {
-    /// Both boundaries, if it has them.
     pub(crate) boundaries: [Option<f64>; 2],
     pub(crate) erodes_to_end: bool,
 }
@@ -312,7 +308,6 @@ mod tests {
 
     type Erosion<'a> = Box<dyn Fn(f64) -> f64 + 'a>;
 
-    /// Erosion by a formula for either run.
     struct Formula<'a> {
         runs: [Erosion<'a>; 2],
         walks: u64,
@@ -341,14 +336,12 @@ mod tests {
         move |ratio| 0.075 + rise * (ratio - at)
     }
 
-    /// Searches both boundaries of a network.
     fn search(mut formula: Formula, bracket: [f64; 2], start: Start) -> (Found, u64) {
         let begun = Begun::new(&mut formula, bracket, start).unwrap();
         let found = begun.ended(start.hint.boundaries[1]).unwrap();
         (found, formula.walks)
     }
 
-    /// Boundaries between the usual ratios, from this start.
     fn searched(formula: Formula, start: f64) -> Found {
         search(formula, WIDE, from(start)).0
     }

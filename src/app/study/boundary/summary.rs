@@ -102,14 +102,12 @@ pub(super) fn boundaries(
 #[derive(Clone)]
 struct FoundRow {
     record: BoundaryRow,
-    /// Networks that erode at every ratio of the search.
     eroding: u64,
     /// For an end that cannot decide the answer: the ratio that its first network holds, its only result.
     spared_at: Option<f64>,
 }
 
 impl FoundRow {
-    /// Reason why no ratio is known to hold.
     fn unheld(&self) -> Option<Note> {
         let networks = self.record.networks.len() as u64;
         self.record.held().is_none().then_some(match self.eroding {
@@ -328,7 +326,6 @@ fn holds_to(done: &[&Done]) -> Option<f64> {
     low.ok()
 }
 
-/// Note on a base whose pan fraction alone exceeds the erosion threshold.
 fn of_pan(row: &Row) -> Option<Note> {
     let pan = row.stated.base.gradation.pan_fraction();
     (pan >= THRESHOLD).then_some(Note::PanErodes { finest_percent: 100.0 * pan })

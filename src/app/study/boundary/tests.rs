@@ -34,7 +34,6 @@ pub(super) fn options(out: &Path, more: &[&str]) -> BoundaryOptions {
     with_settings(out, &[&SMALL, more].concat())
 }
 
-/// Options with an even smaller lattice.
 pub(super) fn tiny(out: &Path, more: &[&str]) -> BoundaryOptions {
     let lattice = ["network.nx=6", "network.ny=6", "replicates=5", "base.cu=1.5"];
     with_settings(out, &[&lattice, more].concat())
@@ -44,7 +43,6 @@ pub(super) fn searched(options: &BoundaryOptions) -> Boundaries {
     found_within(options, SHORT)
 }
 
-/// Boundaries between the given D15F/D85B.
 pub(super) fn found_within(options: &BoundaryOptions, bracket: [f64; 2]) -> Boundaries {
     run_within(options, bracket, &Callbacks::default()).unwrap()
 }

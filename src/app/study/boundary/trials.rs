@@ -9,7 +9,6 @@ use crate::run::RunError;
 
 pub(super) const STOP: i64 = 16;
 
-/// First step away from a hint.
 const NEAR: i64 = 4;
 
 /// Start nodes of the usual lattice, 40 x 40.
@@ -104,7 +103,6 @@ impl Fall {
 
 pub(super) struct Search<W> {
     walker: W,
-    /// The first stop and the last.
     pub(crate) stops: [i64; 2],
     /// Steps below the smallest ratio that erodes, at which further runs are tried.
     below: Vec<i64>,
@@ -157,7 +155,6 @@ impl<W: Walker> Search<W> {
         Ok(self.of_run(run)[&step].clone())
     }
 
-    /// True if the first run erodes at a step.
     pub(crate) fn erodes(&mut self, step: i64) -> Result<bool, RunError> {
         Ok(self.trial(1, step)?.erodes() == Some(true))
     }
@@ -186,7 +183,6 @@ impl<W: Walker> Search<W> {
         }
     }
 
-    /// Halves the steps between one that holds and one that erodes.
     pub(crate) fn halved(&mut self, (mut low, mut high): Pair, run: u64) -> Result<Pair, RunError> {
         while high - low > 1 {
             let middle = low + (high - low) / 2;
