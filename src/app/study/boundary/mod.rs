@@ -97,7 +97,7 @@ fn drafted(
     let mut draft = Draft::new(with_any_base(&scene))?;
     let case = &mut draft.case;
     let stated = case.base_of(&scene)?;
-    let refuse = |problem: &str| Err(RunError::from(CaseError::from(scene.clash(problem.into()))));
+    let refuse = |problem: &str| Err(RunError::from(CaseError::from(scene.clash(problem.to_owned()))));
     let Some(d85) = stated.base.gradation.d(85.0) else {
         return refuse(
             "the base's D85 lies in the pan fraction (finer than the finest sieve): add finer sieves, or \

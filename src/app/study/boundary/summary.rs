@@ -335,7 +335,7 @@ fn of_pan(row: &Row) -> Option<Note> {
 /// eroding one holds.
 fn unsteady(done: &[&Done]) -> Option<Note> {
     let eroding: Vec<&&Done> = done.iter().filter(|network| network.found.no_erosion.is_some()).collect();
-    let is_unsteady = |network: &&&Done| {
+    let is_unsteady = |network: &&&&Done| {
         // Walks are in the order of their ratios.
         let mut first_runs = network.found.walks.iter().map(|walk| walk.1);
         first_runs.any(|eroded| eroded >= THRESHOLD) && first_runs.any(|eroded| eroded < THRESHOLD)
