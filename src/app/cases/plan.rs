@@ -412,6 +412,10 @@ mod tests {
         CasePlan::read(&path)
     }
 
+    fn names(text: &str) -> Result<Vec<String>, SceneError> {
+        plan(text).map(|plan| plan.cases.into_iter().map(|case| case.name).collect())
+    }
+
     const TWO_BY_TWO: &str = "[[factor]]\nname = \"cu_b\"\nsetting = \"base.cu\"\nvalues = [1.5, 3]\n\
         [[factor]]\nname = \"filter\"\n[factor.levels]\n\
         a = { \"filter.curve\" = \"shire2016-cu1.5-loose\" }\n\
@@ -420,8 +424,10 @@ mod tests {
     #[test]
     fn factors_are_crossed_with_the_last_running_fastest() {
         let plan = plan(TWO_BY_TWO).unwrap();
-        let names: Vec<&str> = plan.cases.iter().map(|c| c.name.as_str()).collect();
-        assert_eq!(names, ["cu_b=1.5,filter=a", "cu_b=1.5,filter=b", "cu_b=3,filter=a", "cu_b=3,filter=b"]);
+        assert_eq!(
+            names(TWO_BY_TWO).unwrap(),
+            ["cu_b=1.5,filter=a", "cu_b=1.5,filter=b", "cu_b=3,filter=a", "cu_b=3,filter=b"]
+        );
         let seeds: std::collections::BTreeSet<u64> = plan.cases.iter().map(|c| c.scene.walk.seed).collect();
         assert_eq!(seeds.len(), 4);
     }
@@ -452,21 +458,19 @@ mod tests {
     #[test]
     fn a_level_may_be_a_length_with_its_unit() {
         let factor = "[[factor]]\nname = \"thickness\"\nsetting = \"network.thickness_mm\"\n";
-        let plan = plan(&format!("{factor}values = [\"2ft\", \"0.5m\", 500]\n")).unwrap();
-        let names: Vec<&str> = plan.cases.iter().map(|case| case.name.as_str()).collect();
-        assert_eq!(names, ["thickness=2ft", "thickness=0.5m", "thickness=500"]);
-        let mm = plan.cases.iter().map(|case| case.scene.network.thickness_mm);
+        let text = format!("{factor}values = [\"2ft\", \"0.5m\", 500]\n");
+        assert_eq!(names(&text).unwrap(), ["thickness=2ft", "thickness=0.5m", "thickness=500"]);
+        let cases = plan(&text).unwrap().cases;
+        let mm = cases.iter().map(|case| case.scene.network.thickness_mm);
         assert_eq!(mm.collect::<Vec<_>>(), [Some(609.6), Some(500.0), Some(500.0)]);
     }
 
     #[test]
     fn a_range_is_even_and_has_both_ends() {
-        let levels = |range: &str| {
-            let text = format!("[[factor]]\nname = \"cu\"\nsetting = \"base.cu\"\nrange = {range}\n");
-            plan(&text).map(|plan| plan.cases.into_iter().map(|case| case.name).collect::<Vec<_>>())
-        };
-        let names = levels("{ from = 2.1, to = 3, count = 4 }").unwrap();
-        assert_eq!(names, ["cu=2.1", "cu=2.4", "cu=2.7", "cu=3"]);
+        let factor = "[[factor]]\nname = \"cu\"\nsetting = \"base.cu\"\n";
+        let levels = |range: &str| names(&format!("{factor}range = {range}\n"));
+        let rising = levels("{ from = 2.1, to = 3, count = 4 }").unwrap();
+        assert_eq!(rising, ["cu=2.1", "cu=2.4", "cu=2.7", "cu=3"]);
         assert_eq!(levels("{ from = 6, to = 2, count = 3 }").unwrap(), ["cu=6", "cu=4", "cu=2"]);
         for (range, message) in [
             ("{ from = 2, to = 3, count = 1 }", "a `count` from 2 to 1000"),

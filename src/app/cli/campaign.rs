@@ -2,10 +2,10 @@
 
 use super::args::CampaignArgs;
 use super::print::{self, grains_per_void, percent, plain, shown, to_copy, to_stdout};
-use super::progress::{CaseProgress, followed, unfollowed};
+use super::progress::{followed, followed_cases, unfollowed};
 use super::run::{START, command_line};
 use crate::cases;
-use crate::cases::{CaseOptions, CasePart, CasePlan, JobOptions, Mount, WrittenJobs};
+use crate::cases::{CaseCallbacks, CaseOptions, CasePart, CasePlan, JobOptions, Mount, WrittenJobs};
 use crate::outcome::ledger;
 use crate::outcome::ledger::LedgerLine;
 use crate::outcome::record::Verdict;
@@ -51,8 +51,8 @@ pub(crate) fn campaign(args: &CampaignArgs) -> Result<(), RunError> {
     let (lines, problem) = if args.collect {
         (Some(cases::collect(&plan, &options, &unfollowed())?), None)
     } else {
-        let progress = CaseProgress::new(quiet, Allocation::here().is_some());
-        let finished = progress.followed(|callbacks| cases::run(&plan, &options, callbacks))?;
+        let walk = |callbacks: &CaseCallbacks| cases::run(&plan, &options, callbacks);
+        let finished = followed_cases(quiet, Allocation::here().is_some(), walk)?;
         let problem = finished.problem();
         (finished.lines, problem)
     };

@@ -297,11 +297,36 @@ const BETWEEN_CASES: Duration = Duration::from_secs(2);
 /// Time without a message after which the progress of a case is reported.
 const BETWEEN_RUNS: Duration = Duration::from_secs(5);
 
-pub(crate) struct CaseProgress {
+/// Runs cases that are shown on stderr; with `every_event`, each of their events gets a line, as in the log of
+/// a job.
+pub(crate) fn followed_cases<T>(
     quiet: bool,
-    /// True if every event of a case gets a line, as in the log of a job.
     every_event: bool,
-    shown: OnceLock<(Option<ProgressBar>, Mutex<Lines>)>,
+    work: impl FnOnce(&CaseCallbacks) -> Result<T, RunError>,
+) -> Result<T, RunError> {
+    // It is known once the cases are counted.
+    let shown: OnceLock<CaseDisplay> = OnceLock::new();
+    followed(quiet, |run| {
+        let done = work(&CaseCallbacks {
+            run: *run,
+            on_cases: &|total, done| {
+                if !quiet {
+                    let _ = shown.set(CaseDisplay::new(total, done, every_event));
+                }
+            },
+            on_case: &|case, event| shown.get().iter().for_each(|shown| shown.tell(case, event)),
+        });
+        if let Some(bar) = shown.get().and_then(|shown| shown.bar.as_ref()) {
+            bar.finish_and_clear();
+        }
+        done
+    })
+}
+
+struct CaseDisplay {
+    bar: Option<ProgressBar>,
+    every_event: bool,
+    lines: Mutex<Lines>,
 }
 
 /// Number of cases done when this process began, number done now, and number in all.
@@ -313,31 +338,8 @@ struct Lines {
     last: Instant,
 }
 
-impl CaseProgress {
-    pub(crate) fn new(quiet: bool, every_event: bool) -> Self {
-        Self { quiet, every_event, shown: OnceLock::new() }
-    }
-
-    pub(crate) fn followed<T>(
-        &self,
-        work: impl FnOnce(&CaseCallbacks) -> Result<T, RunError>,
-    ) -> Result<T, RunError> {
-        followed(self.quiet, |run| {
-            let callbacks = CaseCallbacks {
-                run: *run,
-                on_cases: &|total, done| self.begin(total, done),
-                on_case: &|case, event| self.tell(case, event),
-            };
-            let done = work(&callbacks);
-            self.end();
-            done
-        })
-    }
-
-    fn begin(&self, total: usize, done: usize) {
-        if self.quiet {
-            return;
-        }
+impl CaseDisplay {
+    fn new(total: usize, done: usize, every_event: bool) -> Self {
         if done > 0 {
             to_stderr(&format!("{done} of {total} cases are done already\n"));
         }
@@ -349,13 +351,12 @@ impl CaseProgress {
         }
         let now = Instant::now();
         let lines = Lines { first: done, done, total, begun: now, last: now };
-        let _ = self.shown.set((bar, Mutex::new(lines)));
+        Self { bar, every_event, lines: Mutex::new(lines) }
     }
 
     fn tell(&self, case: &str, event: CaseEvent) {
-        let Some((bar, lines)) = self.shown.get() else { return };
         let case = plain(case);
-        match (bar, event) {
+        match (&self.bar, event) {
             (Some(bar), CaseEvent::Begun { .. }) => bar.set_message(case),
             (Some(bar), CaseEvent::Waiting) => bar.set_message(format!("waiting for {case}")),
             (Some(bar), CaseEvent::Walked { done, runs }) => {
@@ -373,14 +374,14 @@ impl CaseProgress {
                 to_stderr(&format!("waits: {case}: another process works on it\n"));
             }
             (None, CaseEvent::Walked { done, runs }) if !self.every_event => {
-                let Ok(mut lines) = lines.lock() else { return };
+                let Ok(mut lines) = self.lines.lock() else { return };
                 if lines.last.elapsed() >= BETWEEN_RUNS {
                     lines.last = Instant::now();
                     to_stderr(&format!("{case}: {done} of {runs} runs\n"));
                 }
             }
             (None, CaseEvent::Done(line)) => {
-                let Ok(mut lines) = lines.lock() else { return };
+                let Ok(mut lines) = self.lines.lock() else { return };
                 lines.done += 1;
                 if !self.every_event && lines.done < lines.total && lines.last.elapsed() < BETWEEN_CASES {
                     return;
@@ -397,12 +398,6 @@ impl CaseProgress {
                 ));
             }
             _ => {}
-        }
-    }
-
-    fn end(&self) {
-        if let Some((Some(bar), _)) = self.shown.get() {
-            bar.finish_and_clear();
         }
     }
 }

@@ -10,7 +10,7 @@ use super::args::{JudgeArgs, ResumeArgs, RunArgs, TableArgs};
 use super::exit::{JudgedAnswer, accept};
 use super::options::{AcceptArgs, ResultArgs, SettingArgs};
 use super::print::{answer, counted, plain, shown, to_stdout};
-use super::progress::{CaseProgress, followed};
+use super::progress::{followed, followed_cases};
 use super::rules::{aligned, in_notes, of_filter};
 use crate::cases::{self, BatchPlan, BatchWalks, CaseOptions};
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
@@ -167,10 +167,9 @@ fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
     let earlier = if results.overwrite { None } else { cases::batch::found(&plan, &options)? };
     let batch = match earlier {
         Some(earlier) => earlier,
-        None => {
-            let progress = CaseProgress::new(quiet, false);
-            progress.followed(|callbacks| cases::batch::run(&plan, &options, results.overwrite, callbacks))?
-        }
+        None => followed_cases(quiet, false, |callbacks| {
+            cases::batch::run(&plan, &options, results.overwrite, callbacks)
+        })?,
     };
     answer((tables.set.json, quiet), format::BATCH, &batch, || {
         let constrictions = plan.scene().map_or(String::new(), |scene| scene.constrictions_in_words());

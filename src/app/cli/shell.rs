@@ -190,19 +190,19 @@ mod tests {
         }
         assert!(bash.contains("shire2016-cu1.5-loose") && bash.trim_end().ends_with("default voidwalk"));
         assert!(!bash.contains("compgen -f") && !bash.contains("compgen -d"));
-        let every = [Shell::Zsh, Shell::Fish].map(script);
-        assert!(
-            every.iter().all(|script| script.contains("loose") && script.contains("filter.density=dense"))
-        );
+        let [zsh, fish] = [Shell::Zsh, Shell::Fish].map(script);
+        for script in [&zsh, &fish] {
+            assert!(script.contains("loose") && script.contains("filter.density=dense"));
+        }
+        let option = |command: &str, option: &str| {
+            let (command, option) = (format!("using_subcommand {command}"), format!(" -l {option} "));
+            fish.lines().filter(|line| line.contains(&command) && line.contains(&option)).collect::<Vec<_>>()
+        };
         // Arguments that may be a file have no list of words in this shell.
-        let of_filter =
-            |line: &&str| line.contains("using_subcommand boundary") && line.contains(" -l filter ");
-        let lines: Vec<&str> = every[1].lines().filter(of_filter).collect();
+        let lines = option("boundary", "filter");
         assert_eq!(lines.len(), 1, "{lines:?}");
         assert!(lines[0].ends_with(" -r") && !lines[0].contains("shire2016"), "{lines:?}");
-        let with_words =
-            |line: &&str| line.contains("using_subcommand design") && line.contains(" -l units ");
-        assert!(every[1].lines().find(with_words).unwrap().contains(" -r -f -a "));
+        assert!(option("design", "units")[0].contains(" -r -f -a "));
     }
 
     #[test]

@@ -32,7 +32,7 @@ const DRAIN: (Duration, u64) = (Duration::from_secs(1), 2 * BODY);
 pub(crate) struct Request {
     pub(crate) method: String,
     pub(crate) path: String,
-    pub(crate) query: String,
+    query: String,
     fields: Vec<(String, String)>,
     begun: Vec<u8>,
     length: u64,

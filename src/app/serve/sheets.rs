@@ -28,7 +28,7 @@ pub(crate) struct Sheet {
     pub(crate) name: String,
     /// Soils that can be chosen, the first ones of the file, as `voidwalk soil` reads them.
     pub(crate) soils: Vec<SoilSummary>,
-    pub(crate) in_all: usize,
+    in_all: usize,
 }
 
 impl Sheet {
@@ -273,9 +273,9 @@ mod tests {
             sheets.add(name, b"size_mm,percent\n1,0\n2,100\n").unwrap();
         }
         let listed =
-            |root: &Path| Sheets::new(root).all().iter().map(|s| (s.id, s.name.clone())).collect::<Vec<_>>();
-        let before: Vec<_> = sheets.all().iter().map(|s| (s.id, s.name.clone())).collect();
-        assert_eq!((listed(root.path()), before.len()), (before.clone(), 3));
+            |sheets: &Sheets| sheets.all().iter().map(|s| (s.id, s.name.clone())).collect::<Vec<_>>();
+        let before = listed(&sheets);
+        assert_eq!((listed(&Sheets::new(root.path())), before.len()), (before.clone(), 3));
         let folder = root.path().join(FOLDER);
         let outside = root.path().join("outside.csv");
         std::fs::rename(folder.join("1/a.csv"), &outside).unwrap();
@@ -283,7 +283,7 @@ mod tests {
         std::os::unix::fs::symlink(&outside, folder.join("1/a.csv")).unwrap();
         std::fs::write(folder.join("2/b.csv"), "no soil").unwrap();
         std::fs::create_dir(folder.join("18446744073709551615")).unwrap();
-        assert_eq!(listed(root.path()), before[2..]);
+        assert_eq!(listed(&Sheets::new(root.path())), before[2..]);
         // Files that are not listed are not overwritten.
         let next = Sheets::new(root.path()).add("c.csv", b"size_mm,percent\n1,0\n2,100\n").unwrap();
         assert_eq!(next.id, 4);

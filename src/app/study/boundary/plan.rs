@@ -218,12 +218,12 @@ fn densities(options: &BoundaryOptions) -> Result<Vec<Option<String>>, RunError>
 }
 
 fn thicknesses(options: &BoundaryOptions) -> Result<Vec<Option<String>>, RunError> {
+    if options.thicknesses.is_empty() {
+        return Ok(vec![None]);
+    }
     let setting =
         |thickness: &Thickness| stated(&options.settings, "--thickness", thickness.setting()).map(Some);
-    match options.thicknesses.is_empty() {
-        true => Ok(vec![None]),
-        false => options.thicknesses.iter().map(setting).collect(),
-    }
+    options.thicknesses.iter().map(setting).collect()
 }
 
 /// Setting that an option states, unless `settings` state it again.

@@ -100,7 +100,7 @@ fn erodes_down_to(step: i64) -> Beside {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Hint {
     pub(crate) boundaries: [Option<f64>; 2],
-    pub(crate) erodes_to_end: bool,
+    erodes_to_end: bool,
 }
 
 impl Hint {
