@@ -99,10 +99,7 @@ const BETWEEN_INCREMENTS: Duration = Duration::from_secs(30);
 
 enum Work {
     /// Usual number of steps, and number of steps done before this start of the program.
-    Packing {
-        usual: u64,
-        first: Option<u64>,
-    },
+    Packing(u64, Option<u64>),
     Walk(Walk),
 }
 
@@ -150,7 +147,7 @@ impl Display {
                     plan.compression.friction,
                     whole(plan.usual_steps())
                 ));
-                self.begin(0, "{spinner} {msg}", Work::Packing { usual: plan.usual_steps(), first: None });
+                self.begin(0, "{spinner} {msg}", Work::Packing(plan.usual_steps(), None));
             }
             Event::PackingEnded => self.end(),
             Event::WalkBegun { runs } => {
@@ -203,7 +200,7 @@ impl Shown {
     fn tell(&mut self, event: Event) {
         let seconds = self.begun.elapsed().as_secs_f64();
         match (&mut self.work, event) {
-            (Work::Packing { usual, first }, Event::Packing(progress)) => {
+            (Work::Packing(usual, first), Event::Packing(progress)) => {
                 let here = progress.steps - *first.get_or_insert(progress.steps);
                 let (bar, last) = (self.bar.as_ref(), &mut self.last);
                 show(bar, last, BETWEEN_LINES, || packing_line(progress, *usual, here, seconds));
@@ -273,10 +270,9 @@ fn packing_line(progress: &CompressionProgress, usual: u64, here: u64, seconds: 
         Stage::Settle => "settle with the final friction",
         Stage::Done => "done",
     };
+    let to_go = |steps: u64| steps as f64 * seconds / here as f64;
     let left = match usual.checked_sub(progress.steps) {
-        Some(steps) if here > 0 => {
-            format!("about {:.0} s to go if it is typical", steps as f64 * seconds / here as f64)
-        }
+        Some(steps) if here > 0 => format!("about {:.0} s to go if it is typical", to_go(steps)),
         Some(_) => "time to go not known yet".to_string(),
         None => "longer than most".to_string(),
     };
