@@ -1,9 +1,7 @@
 //! Many samples against one or several filters: the decision of practice on each pair, a walk of each pair,
-//! and one table of both.
-//!
-//! The walks are the cases of a campaign inside the batch's folder, all with one seed: each has a run folder
-//! of its own, finished ones are kept, and stopped or killed ones continue. The table follows from samples,
-//! filters and settings alone.
+//! and one table of both. The walks are the cases of a campaign inside the batch's folder, all with one seed:
+//! each has a run folder of its own, finished ones are kept, and stopped or killed ones continue. The table
+//! follows from samples, filters and settings alone.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};

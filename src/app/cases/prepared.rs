@@ -1,8 +1,7 @@
 //! Cases of a plan, worked out: the wanted ones, the packings that they need, and their states; and the cases
-//! of each task of a job array.
-//!
-//! The list of tasks has one line per case: the task's number, a tab, the case's name. Names hold neither
-//! tabs nor line ends (the plan refuses them), and only the program reads them, never a shell.
+//! of each task of a job array. The list of tasks has one line per case: the task's number, a tab, the case's
+//! name. Names hold neither tabs nor line ends (the plan refuses them), and only the program reads them,
+//! never a shell.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;

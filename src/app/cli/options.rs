@@ -1,6 +1,5 @@
 //! Options shared by several commands. Settings of a scene (`--joint-mm` is `filter.joint_mm`) have their
-//! help, allowed values and errors from the table of settings. Other options are the scene, its walk and the
-//! folder of its results. Values are parsed as a user writes them; errors state the expected form.
+//! help, allowed values and errors from the table of settings.
 
 use std::path::PathBuf;
 use std::time::Duration;

@@ -2,8 +2,7 @@
 //!
 //! A job is a call of the library into its own folder, the same folder of a run or batch as from the command
 //! line. The request is stored there before any work ([`JobFile`]), so that a later server on the same folder
-//! can do it. A new kind of job needs a variant of [`Work`], its work in `WorkContext::work`, and a reader of
-//! its request (`Routes::planned`).
+//! can do it.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};

@@ -5,9 +5,7 @@
 //! Requests are bounded (`http.rs`); the page fetches nothing from outside and runs only its own script.
 //!
 //! Every answer is a call of the library (`routes.rs`). Each walk is a folder of a run or batch in the
-//! server's folder (`jobs.rs`), as made by the command line. Requests are stored there too, so that a later
-//! server on the folder lists every job and can continue it; `voidwalk resume` continues a run that has
-//! begun.
+//! server's folder (`jobs.rs`), as made by the command line, so `voidwalk resume` continues a run, too.
 
 mod batches;
 mod guard;
