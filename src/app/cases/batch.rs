@@ -27,7 +27,7 @@ use voidwalk_core::store::format::from_json;
 use voidwalk_practice::batch::{NAMED, governing};
 use voidwalk_practice::quantity::SizeUnit;
 use voidwalk_practice::{BatchFilter, BatchRow, BatchTable, PairOptions, SheetCover};
-use voidwalk_sheets::curves_in_file;
+use voidwalk_sheets::{curves_in_file, samples_in};
 
 const WALKS: &str = "pairs";
 
@@ -196,7 +196,7 @@ pub(crate) fn pairs_of(
     each: bool,
 ) -> Result<BatchTable, RunError> {
     refuse_twice(filters)?;
-    let bases = InputSoils::samples(&[samples.to_owned()])?;
+    let bases = InputSoils::read(&[samples.to_owned()], samples_in)?;
     let soils = bases.soils.len();
     if soils > 1 && !each {
         let (file, instead) =
@@ -330,8 +330,7 @@ impl BatchPlan {
     /// Rows, with the walk of each pair that has ended in this folder of the batch, successfully or not.
     pub(crate) fn so_far(&self, folder: &Path) -> Vec<WalkedRow> {
         let walked = |case: &String| {
-            let planned = self.campaign.cases.iter().find(|planned| planned.name == *case)?;
-            let place = format!("{WALKS}/{CASES}/{}", planned.folder_name());
+            let place = format!("{WALKS}/{CASES}/{}", self.campaign.case(case)?.folder_name());
             let at = folder.join(&place);
             let is_done = at.is_dir() && FolderKind::Run.is_finished(&at).unwrap_or(false);
             is_done.then(|| self.walk(folder, place, case).ok()).flatten().map(|(walk, _)| walk)

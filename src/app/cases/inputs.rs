@@ -8,7 +8,7 @@ use crate::run::RunError;
 use crate::run::folder::shown;
 use voidwalk_core::gradation::{GradationError, bytes_of};
 use voidwalk_practice::InputFile;
-use voidwalk_sheets::{SoilSample, envelope_in, file_and_soil, notes_in_file, samples_in};
+use voidwalk_sheets::{SoilSample, file_and_soil, notes_in_file};
 
 pub(crate) struct InputSoils {
     pub(crate) soils: Vec<SoilSample>,
@@ -18,18 +18,10 @@ pub(crate) struct InputSoils {
 }
 
 impl InputSoils {
-    /// Reads every sample in files and folders, as [`samples_in`] does. Errors: a file that cannot be read as
-    /// a table; a soil that is named twice.
-    pub(crate) fn samples(paths: &[PathBuf]) -> Result<Self, RunError> {
-        Self::read(paths, samples_in)
-    }
-
-    /// Reads every curve in files, as [`envelope_in`] does. Errors: as above; a path that is a folder.
-    pub(crate) fn envelope(paths: &[PathBuf]) -> Result<Self, RunError> {
-        Self::read(paths, envelope_in)
-    }
-
-    fn read(
+    /// Reads soils by [`samples_in`](voidwalk_sheets::samples_in), every sample in files and folders, or by
+    /// [`envelope_in`](voidwalk_sheets::envelope_in), every curve in files. Errors: a file that cannot be read
+    /// as a table; a soil that is named twice; for an envelope a folder.
+    pub(crate) fn read(
         paths: &[PathBuf],
         soils_in: fn(&Path) -> Result<Vec<SoilSample>, GradationError>,
     ) -> Result<Self, RunError> {

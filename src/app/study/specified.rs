@@ -20,7 +20,7 @@ use voidwalk_core::text::plain;
 use voidwalk_practice::design::{SieveSeries, Specification};
 use voidwalk_practice::quantity::SizeUnit;
 use voidwalk_practice::{DesignedSample, DesignedSamples, SheetCover, SpecificationOptions};
-use voidwalk_sheets::{SoilSample, file_and_soil};
+use voidwalk_sheets::{SoilSample, envelope_in, file_and_soil, samples_in};
 
 /// D85 (mm) above which a base is refused, because its sizes are probably in another unit.
 const NO_BASE_MM: f64 = 100.0;
@@ -74,7 +74,7 @@ impl SpecifyOptions {
 /// A base that cannot be read or is not a base, or a folder that cannot be claimed, is refused before
 /// anything is written.
 pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specification, RunError> {
-    let base = InputSoils::envelope(&options.bases)?;
+    let base = InputSoils::read(&options.bases, envelope_in)?;
     no_filter_within(&base)?;
     base.soils.iter().try_for_each(is_a_base)?;
     let curves: Vec<_> = base.soils.iter().map(|soil| (soil.name.clone(), soil.curve.clone())).collect();
@@ -99,7 +99,7 @@ pub(crate) fn specify_each(
     options: &SpecifyOptions,
     callbacks: &Callbacks,
 ) -> Result<DesignedSamples, RunError> {
-    let input = InputSoils::samples(&options.bases)?;
+    let input = InputSoils::read(&options.bases, samples_in)?;
     input.soils.iter().try_for_each(is_a_base)?;
     let row = |sample: &SoilSample| {
         let curve = (sample.name.clone(), sample.curve.clone());
