@@ -26,7 +26,8 @@ use voidwalk_core::text::shell_word;
 use voidwalk_practice::Decision;
 use voidwalk_practice::quantity::SizeUnit;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub(crate) enum JobState {
     Waiting,
     Running,
@@ -34,19 +35,6 @@ pub(crate) enum JobState {
     Done,
     Refused,
     Failed,
-}
-
-impl JobState {
-    pub(crate) fn words(self) -> &'static str {
-        match self {
-            Self::Waiting => "waiting",
-            Self::Running => "running",
-            Self::Stopped => "stopped",
-            Self::Done => "done",
-            Self::Refused => "refused",
-            Self::Failed => "failed",
-        }
-    }
 }
 
 pub(crate) struct Job {
@@ -105,7 +93,7 @@ impl Job {
             "asked": self.asked,
             "folder": self.folder,
             "path": root.join(&self.folder).display().to_string(),
-            "state": self.state.words(),
+            "state": self.state,
             "stopping": self.state == JobState::Running && self.stop.load(Ordering::Relaxed),
             "can_continue": self.can_continue(root),
             "before": all.iter().filter(waits).count(),
@@ -310,7 +298,7 @@ fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
     job.asked = file.map_or(Value::Null, |file| file.asked);
     (job.state, job.message) = match ended {
         _ if done.is_some() => (JobState::Done, String::new()),
-        Some((state, message)) if state == JobState::Refused.words() => (JobState::Refused, message),
+        Some((JobState::Refused, message)) => (JobState::Refused, message),
         Some((_, message)) => (JobState::Failed, message),
         None if matches!(job.work, Work::Nothing) => {
             let message = "the server ended before this was done, and its request is not known";
@@ -333,9 +321,9 @@ pub(crate) struct JobFile {
     pub(crate) title: String,
     pub(crate) asked: Value,
     pub(crate) request: Value,
-    /// Word `refused` or `failed`, with the message.
+    /// Refused or failed, with the message.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) ended: Option<(String, String)>,
+    pub(crate) ended: Option<(JobState, String)>,
 }
 
 impl JobFile {
@@ -376,7 +364,7 @@ mod tests {
         file.write(&folder).unwrap();
         assert_eq!(JobFile::read(&folder).as_ref(), Some(&file));
         assert!(crate::run::folder::claim(&folder, FolderKind::Run, false).is_ok());
-        file.ended = Some(("failed".into(), "the disk is full".into()));
+        file.ended = Some((JobState::Failed, "the disk is full".into()));
         file.write(&folder).unwrap();
         assert_eq!(JobFile::read(&folder).as_ref(), Some(&file));
         file.request = "x".repeat(5 << 20).into();

@@ -213,7 +213,7 @@ impl JobQueue {
             let file = JobFile::read(&folder);
             if let Some(file) = file.clone().filter(|_| ended) {
                 // If this cannot be written, the next server offers to continue the job, which does no harm.
-                let ended = Some((state.words().to_owned(), message.clone()));
+                let ended = Some((state, message.clone()));
                 let _ = JobFile { ended, ..file }.write(&folder);
             }
             let mut all = self.locked();
@@ -270,11 +270,11 @@ mod tests {
     fn set(queue: &JobQueue, id: usize, state: JobState) {
         let mut all = queue.locked();
         let job = all.iter_mut().find(|job| job.id == id).unwrap();
-        (job.state, job.message) = (state, format!("it is {}", state.words()));
+        (job.state, job.message) = (state, format!("it is {state:?}"));
     }
 
     fn write_end(folder: &Path, state: JobState) {
-        let ended = Some((state.words().to_owned(), "why".to_owned()));
+        let ended = Some((state, "why".to_owned()));
         JobFile { ended, ..file() }.write(folder).unwrap();
     }
 
@@ -296,7 +296,7 @@ mod tests {
         set(&queue, ids[0], JobState::Failed);
         let error = queue.ended(&open).unwrap_err();
         assert_eq!(error.exit(), Exit::Failed);
-        assert!(error.to_string().ends_with("run-1: it is failed"), "{error}");
+        assert!(error.to_string().ends_with("run-1: it is Failed"), "{error}");
         for state in [JobState::Done, JobState::Refused, JobState::Stopped] {
             set(&queue, ids[0], state);
             assert_eq!(queue.ended(&ids[..1]).is_ok(), state != JobState::Stopped, "{state:?}");
