@@ -115,7 +115,6 @@ fn a_batch_that_is_stopped_goes_on_and_keeps_what_is_walked() {
     let begun = served.until(id, |job| looks(job) > 0);
     let table = &begun["live"]["table"];
     assert_eq!((cells(table, "Sample").len(), table["classes"].as_array().unwrap().len()), (6, 6));
-    assert!(begun["live"]["done"].as_array().unwrap().is_empty(), "the table says it");
     let stopped = stop();
     assert!(stopped["can_continue"] == true && looks(&stopped) < 6, "{stopped}");
     let kept = looks(&stopped);

@@ -1,9 +1,7 @@
 //! Many samples against one or several filters: the decision of practice on each pair, a walk of each pair,
-//! and one table of both.
-//!
-//! The walks are the cases of a campaign inside the batch's folder, all with one seed: each has a run folder
-//! of its own, finished ones are kept, and stopped or killed ones continue. The table follows from samples,
-//! filters and settings alone.
+//! and one table of both. The walks are the cases of a campaign inside the batch's folder, all with one seed:
+//! each has a run folder of its own, finished ones are kept, and stopped or killed ones continue. The table
+//! follows from samples, filters and settings alone.
 
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
@@ -12,12 +10,12 @@ use super::inputs::{InputSoils, as_folders, names, refuse_twice};
 use super::kept::{self, hash_of, last_day};
 use super::plan::{CasePlan, PlannedCase};
 use super::prepared::{CASES, PreparedCase};
-use super::run::{CaseOptions, FinishedCases, ReadyCases, Walk, look, run_around, unsound};
+use super::run::{CaseOptions, FinishedCases, ReadyCampaign, unsound, without_packing};
 use super::walk::CaseCallbacks;
 use crate::outcome::leaves_out_of_all;
 use crate::outcome::ledger::LedgerLine;
 use crate::outcome::record::Outcome;
-use crate::run::folder::{FolderKind, Unfinished, claim, shown};
+use crate::run::folder::{FolderKind, Unfinished, claim, refused, shown};
 use crate::run::{Exit, RunError};
 use crate::scene::{Scene, TableOptions};
 use crate::verdict::{SampleWalk, WalkedBatch, WalkedRow};
@@ -29,12 +27,10 @@ use voidwalk_core::store::format::from_json;
 use voidwalk_practice::batch::{NAMED, governing};
 use voidwalk_practice::quantity::SizeUnit;
 use voidwalk_practice::{BatchFilter, BatchRow, BatchTable, PairOptions, SheetCover};
-use voidwalk_sheets::curves_in_file;
+use voidwalk_sheets::{curves_in_file, samples_in};
 
-/// Folder of the campaign, inside the batch's folder.
 const WALKS: &str = "pairs";
 
-/// Table with one row for each sample and filter.
 const TABLE: &str = "batch.csv";
 
 const KIND: FolderKind = FolderKind::Batch;
@@ -59,18 +55,14 @@ pub(crate) enum BatchWalks {
     OneBase,
 }
 
-/// Batch with its pairs worked out.
 #[derive(Clone, Debug)]
 pub(crate) struct BatchPlan {
-    /// Path of the samples, as it was given.
     samples: PathBuf,
     filters: Vec<BatchFilter>,
     /// Curve of the one base as sampled; empty if each soil is a sample.
     base: Vec<[f64; 2]>,
     rows: Vec<WalkedRow>,
-    /// Name of the case of each row, walked or not.
     cases: Vec<String>,
-    /// Cases that are walked in full.
     in_full: HashSet<String>,
     notes: Vec<String>,
     campaign: CasePlan,
@@ -78,11 +70,9 @@ pub(crate) struct BatchPlan {
 
 impl BatchPlan {
     /// Pairs the samples of a file or folder with filters. `tables` holds the further options of each scene.
-    /// A pair that cannot be walked stays in the table, with the reason.
-    ///
-    /// # Errors
-    /// A file that cannot be read; a filter that is named twice; several soils in place of one base; cases
-    /// that do not fit into memory; no pair that can be walked.
+    /// A pair that cannot be walked stays in the table, with the reason. Errors: a file that cannot be read;
+    /// a filter that is named twice; several soils in place of one base; cases that do not fit into memory;
+    /// no pair that can be walked.
     pub(crate) fn new(
         samples: &Path,
         filters: &[PathBuf],
@@ -163,7 +153,6 @@ impl BatchPlan {
         self
     }
 
-    /// Removes unsound cases from the walks.
     fn leave_out_unsound(&mut self, options: &CaseOptions) -> Result<(), RunError> {
         if !self.campaign.cases.is_empty() {
             for failed in unsound(&self.campaign, options)? {
@@ -183,19 +172,17 @@ impl BatchPlan {
         Ok(())
     }
 
-    /// Cover of the sheet, the same in all scenes of the walks.
-    fn cover(&self) -> SheetCover {
-        self.campaign.cases.first().map(|case| case.scene.about.cover()).unwrap_or_default()
-    }
-
-    /// True if page and terminal show inches as well as mm.
-    pub(crate) fn shows_inches(&self) -> bool {
-        self.campaign.cases.first().is_some_and(|case| case.scene.about.shows_inches())
-    }
-
-    /// Scene of the first walk; the others state the same constrictions.
-    pub(crate) fn first_scene(&self) -> Option<&Scene> {
+    /// Scene of a walk; cover, units and source of the constrictions are the same in all.
+    pub(crate) fn scene(&self) -> Option<&Scene> {
         self.campaign.cases.first().map(|case| &case.scene)
+    }
+
+    pub(crate) fn shows_inches(&self) -> bool {
+        self.scene().is_some_and(|scene| scene.about.shows_inches())
+    }
+
+    fn cover(&self) -> SheetCover {
+        self.scene().map(|scene| scene.about.cover()).unwrap_or_default()
     }
 }
 
@@ -209,13 +196,12 @@ pub(crate) fn pairs_of(
     each: bool,
 ) -> Result<BatchTable, RunError> {
     refuse_twice(filters)?;
-    let bases = InputSoils::samples(&[samples.to_owned()])?;
+    let bases = InputSoils::read(&[samples.to_owned()], samples_in)?;
     let soils = bases.soils.len();
     if soils > 1 && !each {
-        return Err(RunError::Refused(format!(
-            "{} holds {soils} soils; name one of them as FILE#NAME, or add --each for all of them",
-            samples.display()
-        )));
+        let (file, instead) =
+            (samples.display(), "name one of them as FILE#NAME, or add --each for all of them");
+        return Err(RunError::Refused(format!("{file} holds {soils} soils; {instead}")));
     }
     let curves = |filter: &PathBuf| Ok((filter.display().to_string(), curves_in_file(filter, None)?));
     let curves: Result<Vec<_>, GradationError> = filters.iter().map(curves).collect();
@@ -223,7 +209,6 @@ pub(crate) fn pairs_of(
     Ok(BatchTable::new(&bases.soils, curves, bases.notes(filters)?, options))
 }
 
-/// Rows of a table, with those that govern marked.
 fn governed(table: &BatchTable) -> Vec<WalkedRow> {
     let of_filters: Vec<Vec<&BatchRow>> =
         table.filters.iter().map(|filter| governing(&table.rows, &filter.name, NAMED)).collect();
@@ -253,7 +238,6 @@ fn case_names(table: &BatchTable, filters: &[PathBuf]) -> Vec<String> {
     of_filters.iter().flat_map(pair).collect()
 }
 
-/// Scene of a pair, or the reason why it has none.
 fn scene(row: &WalkedRow, filters: &[BatchFilter], tables: &TableOptions) -> Result<Scene, String> {
     let filter = filters.iter().find(|filter| filter.name == row.rules.filter);
     if filter.is_some_and(|filter| filter.curves.len() > 1) {
@@ -283,45 +267,40 @@ fn first_look(tables: &TableOptions) -> TableOptions {
 
 /// Walks every unfinished pair, in a campaign inside the folder that the options name, and writes `batch.csv`
 /// and, last, `batch.json`. With `overwrite` an earlier batch there is replaced, except those of its walks
-/// that are needed again.
-///
-/// # Errors
-/// A folder that cannot be claimed is refused before any work; then see [`super::run()`]. If a pair cannot be
-/// walked to its end, no table is written. After a stop, the same call continues.
+/// that are needed again. Errors: a folder that cannot be claimed is refused before any work; then see
+/// [`super::run()`]. If a pair cannot be walked to its end, no table is written. After a stop, the same call
+/// continues.
 pub(crate) fn run(
     plan: &BatchPlan,
     options: &CaseOptions,
     overwrite: bool,
     callbacks: &CaseCallbacks,
 ) -> Result<WalkedBatch, RunError> {
-    let stopped = |error: RunError| match error.exit() {
-        Exit::Stopped => RunError::Stopped(format!(
-            "progress saved; continue with the same command on {}",
-            shown(&options.out)
-        )),
-        _ => error,
-    };
     let folder = claim(&options.out, KIND, overwrite)?;
-    // Earlier files stay until every case is known to have its inputs.
-    let study = |cases: ReadyCases, walk: Walk| {
-        let work = plan.work(cases?)?;
+    let of_walks = CaseOptions { out: folder.path().join(WALKS), ..options.clone() };
+    let walked = || {
+        let campaign = ReadyCampaign::new(&plan.campaign, &of_walks, callbacks)?;
+        // Earlier files stay until every case is known to have its inputs.
+        let work = plan.work(campaign.cases()?)?;
         kept::study((&folder, KIND, overwrite), work.clone(), &callbacks.run, |_, _: Option<()>| {
-            let walked = walk()?;
+            let walked = campaign.walk()?;
             walked.problem().map_or(Ok(()), Err)?;
             let batch = plan.walked(&folder, &work, &walked)?;
             folder.write(TABLE, &walked_columns(SizeUnit::Mm).csv(&batch.rows))?;
             Ok(batch)
         })
     };
-    let of_walks = CaseOptions { out: folder.path().join(WALKS), ..options.clone() };
-    run_around(&plan.campaign, &of_walks, callbacks, study).map_err(stopped)
+    walked().map_err(|error: RunError| match error.exit() {
+        Exit::Stopped => RunError::Stopped(format!(
+            "progress saved; continue with the same command on {}",
+            shown(&options.out)
+        )),
+        _ => error,
+    })
 }
 
 /// Batch that the folder already holds, if it is this very one; `None` if [`run`] without `overwrite` begins
-/// or continues there. Writes no result.
-///
-/// # Errors
-/// The folder holds anything else, including another batch.
+/// or continues there. Writes no result. Errors: the folder holds anything else, including another batch.
 pub(crate) fn found(plan: &BatchPlan, options: &CaseOptions) -> Result<Option<WalkedBatch>, RunError> {
     if options.out.symlink_metadata().is_err() {
         return Ok(None);
@@ -330,30 +309,28 @@ pub(crate) fn found(plan: &BatchPlan, options: &CaseOptions) -> Result<Option<Wa
     let folder = claim(&options.out, KIND, true)?;
     let other = || {
         let problem = format!("holds another {}; name another folder, or add --overwrite", KIND.name());
-        Err(RunError::Refused(format!("{}: {problem}", shown(&options.out))))
+        Err(refused(&options.out, problem))
     };
     if KIND.is_finished(folder.path())? {
         let bytes = folder.read(KIND.record())?;
         let there = bytes.and_then(|bytes| from_json::<WalkedBatch>(&bytes).ok());
-        let is_walked = |cases: Option<&[PreparedCase]>| {
-            let cases = cases.filter(|all| all.iter().all(|case| case.line(&of_walks.out).is_some()));
-            there.filter(|there| cases.is_some_and(|cases| plan.has_work(cases, &there.work)))
-        };
-        let there = look(&plan.campaign, &of_walks, is_walked)?;
-        return there.map_or_else(other, |there| Ok(Some(there)));
+        let is_walked =
+            |cases: &Vec<PreparedCase>| cases.iter().all(|case| case.line(&of_walks.out).is_some());
+        let cases = without_packing(&plan.campaign, &of_walks)?.filter(is_walked);
+        let there = there.zip(cases).filter(|(there, cases)| plan.has_work(cases, &there.work));
+        return there.map_or_else(other, |(there, _)| Ok(Some(there)));
     }
     let Some(begun) = Unfinished::read(&folder)? else { return Ok(None) };
     // A packing that was removed is made again; other work is refused after that.
-    let is_this = |cases: Option<&[PreparedCase]>| cases.is_none_or(|all| plan.has_work(all, &begun.work));
-    if look(&plan.campaign, &of_walks, is_this)? { Ok(None) } else { other() }
+    let cases = without_packing(&plan.campaign, &of_walks)?;
+    if cases.is_none_or(|all| plan.has_work(&all, &begun.work)) { Ok(None) } else { other() }
 }
 
 impl BatchPlan {
     /// Rows, with the walk of each pair that has ended in this folder of the batch, successfully or not.
     pub(crate) fn so_far(&self, folder: &Path) -> Vec<WalkedRow> {
         let walked = |case: &String| {
-            let planned = self.campaign.cases.iter().find(|planned| planned.name == *case)?;
-            let place = format!("{WALKS}/{CASES}/{}", planned.folder_name());
+            let place = format!("{WALKS}/{CASES}/{}", self.campaign.case(case)?.folder_name());
             let at = folder.join(&place);
             let is_done = at.is_dir() && FolderKind::Run.is_finished(&at).unwrap_or(false);
             is_done.then(|| self.walk(folder, place, case).ok()).flatten().map(|(walk, _)| walk)
@@ -369,7 +346,6 @@ impl BatchPlan {
         Some((at, WalkedRow { walk: Some(walk), ..self.rows[at].clone() }))
     }
 
-    /// Walk of a finished case, and its outcome.
     fn walk(&self, folder: &Path, place: String, case: &str) -> Result<(SampleWalk, Outcome), RunError> {
         let outcome: Outcome = kept::record(&folder.join(&place), FolderKind::Run)?;
         Ok((SampleWalk::of(&outcome, place, self.in_full.contains(case)), outcome))
@@ -414,7 +390,7 @@ impl BatchPlan {
         let batch = WalkedBatch::new(shown(&self.samples), self.filters.clone(), rows);
         let base = self.base.clone();
         let (work, notes) = (work.to_owned(), self.notes.clone());
-        let seed = self.campaign.cases.first().map_or(0, |case| case.scene.walk.seed);
+        let seed = self.scene().map_or(0, |scene| scene.walk.seed);
         let folders =
             batch.rows.iter().filter_map(|row| Some(folder.path().join(&row.walk.as_ref()?.folder)));
         let cover = self.cover().dated(last_day(folders));

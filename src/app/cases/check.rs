@@ -68,17 +68,14 @@ impl PlanCheck {
     /// Reason to refuse the plan, even if it can be forecast: its unsound cases.
     pub(crate) fn refusal(&self) -> Option<RunError> {
         let wrong = self.cases.iter().filter(|case| !case.problem.is_empty());
-        let wrong = wrong.map(|case| FailedCase { case: case.case.clone(), problem: case.problem.clone() });
-        let wrong: Vec<FailedCase> = wrong.collect();
+        let failed = |case: &CaseCheck| FailedCase { case: case.case.clone(), problem: case.problem.clone() };
+        let wrong: Vec<FailedCase> = wrong.map(failed).collect();
         (!wrong.is_empty()).then(|| RunError::Refused(named(&wrong)))
     }
 }
 
 /// Forecasts the cases of a plan, here and with these options, and reports the mistakes in each. Packs,
-/// claims and writes nothing.
-///
-/// # Errors
-/// The plan has no such part, or there is no such folder of packings.
+/// claims and writes nothing. Errors: the plan has no such part, or there is no such folder of packings.
 pub(crate) fn check_plan(plan: &CasePlan, options: &CaseOptions) -> Result<PlanCheck, RunError> {
     let wanted = wanted(plan, &options.part)?;
     let (limits, _) = options.rooms(&options.out, &wanted);

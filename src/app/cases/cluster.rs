@@ -13,60 +13,48 @@ use super::prepared::{self, CasePart, Drafts, PreparedCase, named, wanted};
 use super::run::CaseOptions;
 use crate::case::{Case, CaseError, PackedFilter};
 use crate::run::RunError;
-use crate::run::callbacks::Callbacks;
 use crate::run::cost::{self, duration};
 use crate::run::folder::{FolderKind, claim};
 use crate::run::machine::{CasesAtOnce, MEMORY_MARGIN};
 use voidwalk_core::store::{make_folder, platform, write_whole};
 use voidwalk_core::text::quoted;
 
-/// Default number of processors of a task.
 const PROCESSORS: u64 = 4;
 
 /// Target time of a task, if the user gives no number of tasks (s).
 const TASK_S: f64 = 600.0;
 
-/// Options of the job scripts.
 #[derive(Clone, Debug)]
 pub(crate) struct JobOptions {
-    /// The program.
     pub(crate) program: PathBuf,
     /// Words between the program and its command: `-m voidwalk` if the program is Python.
     pub(crate) words: Vec<String>,
-    /// The plan's file.
     pub(crate) plan: PathBuf,
     /// Tasks of the array; by default as many as take about ten minutes each.
     pub(crate) tasks: Option<usize>,
 }
 
-/// The scripts that were written.
 #[derive(Clone, Debug)]
 pub(crate) struct WrittenJobs {
     /// Number of cases already done; if all are, nothing is written.
     pub(crate) done: usize,
-    /// Cases that the array walks.
     pub(crate) cases: usize,
-    /// Tasks of the array.
     pub(crate) tasks: usize,
     /// Packings that are made first, and the needs of the largest.
     pub(crate) packings: (usize, TaskNeeds),
-    /// Needs of the largest task.
     pub(crate) walk: TaskNeeds,
-    /// Processors of a task.
     pub(crate) processors: u64,
-    /// The script that submits the jobs.
     pub(crate) submit: PathBuf,
+    /// Mount of the campaign's folder, if known.
+    pub(crate) mount: Option<Mount>,
 }
 
-/// Writes job scripts for the unfinished cases of a plan into the campaign's folder.
-///
-/// # Errors
-/// A wrong plan or case, a folder that cannot be claimed or written, a path that no script can hold.
+/// Writes job scripts for the unfinished cases of a plan into the campaign's folder. Errors: a wrong plan or
+/// case, a folder that cannot be claimed or written, a path that no script can hold.
 pub(crate) fn write_job_scripts(
     plan: &CasePlan,
     options: &CaseOptions,
     jobs: &JobOptions,
-    callbacks: &Callbacks,
 ) -> Result<WrittenJobs, RunError> {
     let drafts = Drafts::new(wanted(plan, &CasePart::All)?)?;
     let out = claim(&options.out, FolderKind::Campaign, false)?;
@@ -83,6 +71,7 @@ pub(crate) fn write_job_scripts(
         walk: TaskNeeds::default(),
         processors,
         submit: folder.join("submit.sh"),
+        mount: None,
     };
     if cases.is_empty() {
         return Ok(written);
@@ -97,26 +86,18 @@ pub(crate) fn write_job_scripts(
             bytes: CasesAtOnce::of_job(&of_bundle, processors).bytes.max(packings.1.bytes),
         });
     }
+    let name = |case: &usize| cases[*case].planned.name.as_str();
+    let tasks: Vec<Vec<&str>> = bundles.iter().map(|bundle| bundle.iter().map(name).collect()).collect();
+    written.tasks = tasks.len();
     let (seconds, bytes) = cost::collecting(plan.cases.len(), measuring_s);
-    let scripts = Jobs {
-        job: jobs,
-        out: out.path(),
-        words: command_words(options),
-        processors,
-        packings,
-        tasks: bundles.iter().map(|b| b.iter().map(|i| cases[*i].planned.name.as_str()).collect()).collect(),
-        walk: written.walk,
-        collect: TaskNeeds { seconds, bytes: packings.1.bytes.max(bytes) },
-    };
-    let files = scripts.files()?;
+    let collect = TaskNeeds { seconds, bytes: packings.1.bytes.max(bytes) };
+    let files = files((jobs, out.path()), &written, &command_words(options), &tasks, &collect)?;
     make_folder(&folder)?;
     for (name, text) in &files {
         write_whole(&folder.join(name), text.as_bytes())?;
     }
-    if let Some(warning) = warning(out.path()) {
-        (callbacks.warn)(&warning);
-    }
-    written.tasks = bundles.len();
+    let real = out.path().canonicalize().ok();
+    written.mount = real.and_then(|folder| Mount::of(&folder, &platform::mounts()?));
     Ok(written)
 }
 
@@ -156,21 +137,18 @@ fn open_cases<'a>(
 
 /// Additional words of the command lines that walk and that collect.
 fn command_words(options: &CaseOptions) -> [Vec<String>; 2] {
-    let mut words = Vec::new();
-    if let Some(packings) = &options.packings {
-        let absolute = std::path::absolute(packings).unwrap_or_else(|_| packings.clone());
-        words.extend(["--packings".to_owned(), absolute.display().to_string()]);
-    }
-    let collecting = words.clone();
-    words.extend(["--checkpoint-every".to_owned(), options.checkpoint_interval.to_string()]);
-    words.extend(options.memory.iter().flat_map(|bytes| ["--memory".to_owned(), bytes.to_string()]));
-    [words, collecting]
+    let absolute = |path: &PathBuf| std::path::absolute(path).unwrap_or_else(|_| path.clone());
+    let packings = options.packings.iter();
+    let collecting: Vec<String> =
+        packings.flat_map(|path| ["--packings".to_owned(), absolute(path).display().to_string()]).collect();
+    let mut walking = collecting.clone();
+    walking.extend(["--checkpoint-every".to_owned(), options.checkpoint_interval.to_string()]);
+    walking.extend(options.memory.iter().flat_map(|bytes| ["--memory".to_owned(), bytes.to_string()]));
+    [walking, collecting]
 }
 
-/// Folder of the scripts and logs, inside the campaign's folder.
 const FOLDER: &str = "slurm";
 
-/// Factor on the estimated time in the request of a job script.
 const TIME_MARGIN: f64 = 4.0;
 
 /// Maximum time to request (minutes): a task that takes longer is stopped, and continues in another attempt.
@@ -179,17 +157,13 @@ const LONGEST_MIN: u64 = 24 * 60;
 /// Time for delays that no estimate includes: a busy file system, the start of the program (minutes).
 const SLACK_MIN: u64 = 10;
 
-/// Needs of one task of a job.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct TaskNeeds {
-    /// Seconds of the longest task, on its threads.
     pub(crate) seconds: f64,
-    /// Memory (bytes).
     pub(crate) bytes: u64,
 }
 
 impl TaskNeeds {
-    /// Larger time and larger memory of two needs.
     fn or_more(self, other: Self) -> Self {
         Self { seconds: self.seconds.max(other.seconds), bytes: self.bytes.max(other.bytes) }
     }
@@ -206,7 +180,8 @@ impl TaskNeeds {
         (megabytes.ceil() as u64).div_ceil(100) * 100
     }
 
-    fn in_words(&self) -> String {
+    /// Comment of a job script.
+    fn estimate(&self) -> String {
         format!(
             "{} of a task and {:.0} MB; {} times the time and {SLACK_MIN} minutes, and {} times the memory, \
              are asked for",
@@ -218,83 +193,68 @@ impl TaskNeeds {
     }
 }
 
-/// Jobs to be submitted.
-struct Jobs<'a> {
-    job: &'a JobOptions,
-    out: &'a Path,
-    /// Additional words of the command lines that walk or pack, and of the one that collects.
-    words: [Vec<String>; 2],
-    processors: u64,
-    /// Filters to pack, and the needs of the largest.
-    packings: (usize, TaskNeeds),
-    /// Names of the cases of each task.
-    tasks: Vec<Vec<&'a str>>,
-    walk: TaskNeeds,
-    collect: TaskNeeds,
-}
-
-impl Jobs<'_> {
-    /// Files of the scripts, by their names inside [`FOLDER`].
-    fn files(&self) -> Result<Vec<(String, String)>, RunError> {
-        let list = prepared::task_list(&self.tasks);
-        // Scripts that wait in a queue name the list with which they were written.
-        let list_name = format!("tasks-{:08x}.tsv", xxhash_rust::xxh3::xxh3_64(list.as_bytes()) as u32);
-        let cases: usize = self.tasks.iter().map(Vec::len).sum();
-        let words = |all: &[String]| all.iter().map(|word| format!(" {}", quoted(word))).collect::<String>();
-        let common = [
-            ("OUT", path(self.out)?),
-            ("PLAN", path(&self.job.plan)?),
-            ("PROGRAM", path(&self.job.program)? + &words(&self.job.words)),
-            ("FILE", list_name.clone()),
-            ("CASES", cases.to_string()),
+/// Files of the scripts, by their names inside [`FOLDER`]; `tasks` are the names of the cases of each task.
+fn files(
+    (jobs, out): (&JobOptions, &Path),
+    written: &WrittenJobs,
+    [walking, collecting]: &[Vec<String>; 2],
+    tasks: &[Vec<&str>],
+    collect: &TaskNeeds,
+) -> Result<Vec<(String, String)>, RunError> {
+    let list = prepared::task_list(tasks);
+    // Scripts that wait in a queue name the list with which they were written.
+    let list_name = format!("tasks-{:08x}.tsv", xxhash_rust::xxh3::xxh3_64(list.as_bytes()) as u32);
+    let (cases, all) = (written.cases, tasks.len());
+    let words = |all: &[String]| all.iter().map(|word| format!(" {}", quoted(word))).collect::<String>();
+    let common = [
+        ("OUT", path(out)?),
+        ("PLAN", path(&jobs.plan)?),
+        ("PROGRAM", path(&jobs.program)? + &words(&jobs.words)),
+        ("FILE", list_name.clone()),
+        ("CASES", cases.to_string()),
+    ];
+    let job = |template: &str, options: &[String], tasks: usize, need: &TaskNeeds| {
+        let of_job = [
+            ("OPTIONS", words(options)),
+            ("TASKS", tasks.to_string()),
+            ("PROCESSORS", written.processors.to_string()),
+            ("MEGABYTES", need.megabytes().to_string()),
+            ("MINUTES", need.minutes().to_string()),
+            ("ESTIMATE", need.estimate()),
         ];
-        let job = |template: &str, options: &[String], tasks: usize, need: &TaskNeeds| {
-            let of_job = [
-                ("OPTIONS", words(options)),
-                ("TASKS", tasks.to_string()),
-                ("PROCESSORS", self.processors.to_string()),
-                ("MEGABYTES", need.megabytes().to_string()),
-                ("MINUTES", need.minutes().to_string()),
-                ("ESTIMATE", need.in_words()),
-            ];
-            fill(template, &[&common[..], &of_job[..]].concat())
-        };
-        let walks = format!("{cases} cases in {} tasks, then the ledger and the page", self.tasks.len());
-        let (packings, pack) = &self.packings;
-        let (jobs, first, after) = match packings {
-            0 => (walks, "", ""),
-            _ => (
-                format!("{packings} packings, then {walks}"),
-                "submit \"$@\" slurm/pack.sh\n",
-                // However the packing job ends, cases whose packings exist are walked.
-                "--dependency=\"afterany:$number\" ",
-            ),
-        };
-        let submit = [
-            ("JOBS", jobs),
-            ("PACK", first.to_owned()),
-            ("AFTER_PACK", after.to_owned()),
-            ("OUT", path(self.out)?),
-        ];
-        let mut files = vec![
-            ("attempt.sh".to_owned(), include_str!("../data/slurm/attempt.sh").to_owned()),
-            (list_name, list),
-            (
-                "array.sh".to_owned(),
-                job(include_str!("../data/slurm/array.sh"), &self.words[0], self.tasks.len(), &self.walk),
-            ),
-            (
-                "collect.sh".to_owned(),
-                job(include_str!("../data/slurm/collect.sh"), &self.words[1], 1, &self.collect),
-            ),
-            ("submit.sh".to_owned(), fill(include_str!("../data/slurm/submit.sh"), &submit)),
-        ];
-        if *packings > 0 {
-            let text = job(include_str!("../data/slurm/pack.sh"), &self.words[0], *packings, pack);
-            files.push(("pack.sh".to_owned(), text));
-        }
-        Ok(files)
+        fill(template, &[&common[..], &of_job[..]].concat())
+    };
+    let walks = format!("{cases} cases in {all} tasks, then the ledger and the page");
+    let (packings, pack) = &written.packings;
+    let (submitted, first, after) = match packings {
+        0 => (walks, "", ""),
+        _ => (
+            format!("{packings} packings, then {walks}"),
+            "submit \"$@\" slurm/pack.sh\n",
+            // However the packing job ends, cases whose packings exist are walked.
+            "--dependency=\"afterany:$number\" ",
+        ),
+    };
+    let submit = [
+        ("JOBS", submitted),
+        ("PACK", first.to_owned()),
+        ("AFTER_PACK", after.to_owned()),
+        ("OUT", path(out)?),
+    ];
+    let array = include_str!("../data/slurm/array.sh");
+    let collection = include_str!("../data/slurm/collect.sh");
+    let mut files = vec![
+        ("attempt.sh".to_owned(), include_str!("../data/slurm/attempt.sh").to_owned()),
+        (list_name, list),
+        ("array.sh".to_owned(), job(array, walking, all, &written.walk)),
+        ("collect.sh".to_owned(), job(collection, collecting, 1, collect)),
+        ("submit.sh".to_owned(), fill(include_str!("../data/slurm/submit.sh"), &submit)),
+    ];
+    if *packings > 0 {
+        let text = job(include_str!("../data/slurm/pack.sh"), walking, *packings, pack);
+        files.push(("pack.sh".to_owned(), text));
     }
+    Ok(files)
 }
 
 /// Replaces `@NAME@`, once: inserted text is not searched again.
@@ -313,7 +273,6 @@ fn fill(template: &str, values: &[(&str, String)]) -> String {
     text + rest
 }
 
-/// Absolute path in quotes.
 fn path(path: &Path) -> Result<String, RunError> {
     let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     match absolute.to_str().filter(|text| !text.chars().any(char::is_control)) {
@@ -328,25 +287,20 @@ fn path(path: &Path) -> Result<String, RunError> {
 /// Mount of a file system. On most file systems that clusters share, a lock held by one node keeps the others
 /// out; on some, or with some mount options, each node sees only its own locks, without any sign of it.
 /// Several tasks may then walk one case, with the same results at a higher cost.
-struct Mount {
-    point: PathBuf,
-    kind: String,
+#[derive(Clone, Debug)]
+pub(crate) struct Mount {
+    pub(crate) point: PathBuf,
+    pub(crate) kind: String,
     options: Vec<String>,
 }
 
-/// Warning about the locks in this folder; `None` if they work across nodes.
-fn warning(folder: &Path) -> Option<String> {
-    let folder = folder.canonicalize().ok()?;
-    mount_of(&folder, &platform::mounts()?)?.doubt()
-}
-
-/// Mount that holds a path: the longest mount point above it, and the last of several equal ones.
-fn mount_of(path: &Path, mounts: &str) -> Option<Mount> {
-    let all = mounts.lines().filter_map(Mount::read);
-    all.filter(|mount| path.starts_with(&mount.point)).max_by_key(|mount| mount.point.components().count())
-}
-
 impl Mount {
+    /// Mount that holds a path: the longest mount point above it, and the last of several equal ones.
+    pub(crate) fn of(path: &Path, mounts: &str) -> Option<Self> {
+        let above = mounts.lines().filter_map(Self::read).filter(|mount| path.starts_with(&mount.point));
+        above.max_by_key(|mount| mount.point.components().count())
+    }
+
     /// A line of `/proc/self/mountinfo`.
     fn read(line: &str) -> Option<Self> {
         let (left, right) = line.split_once(" - ")?;
@@ -360,28 +314,8 @@ impl Mount {
         })
     }
 
-    fn has(&self, option: &str) -> bool {
+    pub(crate) fn has(&self, option: &str) -> bool {
         self.options.iter().any(|o| o == option)
-    }
-
-    fn doubt(&self) -> Option<String> {
-        let one_node = "locks hold on one node only";
-        let why = match self.kind.as_str() {
-            "nfs" | "nfs4" if self.has("nolock") => format!("it is mounted with `nolock`: {one_node}"),
-            "nfs" | "nfs4" if self.has("local_lock=all") || self.has("local_lock=flock") => {
-                format!("it is mounted with `local_lock`: {one_node}")
-            }
-            "lustre" if self.has("localflock") => format!("it is mounted with `localflock`: {one_node}"),
-            "lustre" if !self.has("flock") => "it is mounted without `flock`: there are no locks".to_owned(),
-            "beegfs" => format!(
-                "unless `tuneUseGlobalFileLocks = true` is set in its client's configuration, {one_node}"
-            ),
-            "cifs" | "smb3" if self.has("nobrl") => format!("it is mounted with `nobrl`: {one_node}"),
-            "fuse.sshfs" | "9p" => one_node.to_owned(),
-            "tmpfs" | "overlay" | "ramfs" => "it is this machine's own: other nodes do not see it".to_owned(),
-            _ => return None,
-        };
-        Some(format!("this folder lies on {} ({}): {why}", self.kind, self.point.display()))
     }
 }
 
@@ -418,38 +352,9 @@ mod tests {
         assert_eq!(fill("x@A@y@B@ TERM@120 @C@", &values), "x@B@yb TERM@120 @C@");
     }
 
-    const MOUNTS: &str = "22 1 8:1 / / rw,relatime shared:1 - ext4 /dev/sda1 rw\n\
-        40 22 0:40 / /home rw shared:2 - nfs4 server:/home rw,vers=4.2,local_lock=none,addr=10.0.0.1\n\
-        41 22 0:41 / /old rw - nfs server:/old rw,vers=3,nolock,local_lock=all\n\
-        42 22 0:42 / /scratch/a\\040b rw - lustre 10.0.0.2@tcp:/s rw,checksum,localflock\n\
-        43 22 0:43 / /scratch/c rw - lustre 10.0.0.2@tcp:/s rw,flock,lazystatfs\n\
-        44 22 0:44 / /scratch/d rw - lustre 10.0.0.2@tcp:/s rw\n\
-        45 22 0:45 / /bee rw - beegfs beegfs_nodev rw\n\
-        46 22 0:46 / /tmp rw - tmpfs tmpfs rw\n\
-        47 22 0:47 / /gpfs rw - gpfs gpfs0 rw\n";
-
-    #[test]
-    fn mounts_whose_locks_reach_one_node_are_named() {
-        let doubt = |path: &str| mount_of(Path::new(path), MOUNTS).unwrap().doubt();
-        for path in ["/home/x/campaign", "/srv/x", "/scratch/c/x", "/gpfs/x", "/homely"] {
-            assert_eq!(doubt(path), None, "{path}");
-        }
-        for (path, words) in [
-            ("/old/x", "`nolock`"),
-            ("/scratch/a b/x", "`localflock`"),
-            ("/scratch/d", "without `flock`"),
-            ("/bee/x", "tuneUseGlobalFileLocks"),
-            ("/tmp/x", "other nodes do not see it"),
-        ] {
-            let warning = doubt(path).unwrap();
-            assert!(warning.contains(words), "{path}: {warning}");
-        }
-    }
-
     #[test]
     #[cfg(target_os = "linux")]
     fn this_machine_says_how_its_folders_are_mounted() {
-        let mounts = platform::mounts().unwrap();
-        assert!(mount_of(Path::new("/proc/self"), &mounts).is_some());
+        assert!(Mount::of(Path::new("/proc/self"), &platform::mounts().unwrap()).is_some());
     }
 }

@@ -8,9 +8,8 @@ use crate::run::RunError;
 use crate::run::folder::shown;
 use voidwalk_core::gradation::{GradationError, bytes_of};
 use voidwalk_practice::InputFile;
-use voidwalk_sheets::{SoilSample, envelope_in, file_and_soil, notes_in_file, samples_in};
+use voidwalk_sheets::{SoilSample, file_and_soil, notes_in_file};
 
-/// Soils from files, each under a name of its own.
 pub(crate) struct InputSoils {
     pub(crate) soils: Vec<SoilSample>,
     /// Tables, in the order in which they were named; a folder is replaced by its tables.
@@ -19,18 +18,10 @@ pub(crate) struct InputSoils {
 }
 
 impl InputSoils {
-    /// Reads every sample in files and folders, as [`samples_in`] does. Errors: a file that cannot be read as
-    /// a table; a soil that is named twice.
-    pub(crate) fn samples(paths: &[PathBuf]) -> Result<Self, RunError> {
-        Self::read(paths, samples_in)
-    }
-
-    /// Reads every curve in files, as [`envelope_in`] does. Errors: as above; a path that is a folder.
-    pub(crate) fn envelope(paths: &[PathBuf]) -> Result<Self, RunError> {
-        Self::read(paths, envelope_in)
-    }
-
-    fn read(
+    /// Reads soils by [`samples_in`](voidwalk_sheets::samples_in), every sample in files and folders, or by
+    /// [`envelope_in`](voidwalk_sheets::envelope_in), every curve in files. Errors: a file that cannot be read
+    /// as a table; a soil that is named twice; for an envelope a folder.
+    pub(crate) fn read(
         paths: &[PathBuf],
         soils_in: fn(&Path) -> Result<Vec<SoilSample>, GradationError>,
     ) -> Result<Self, RunError> {
@@ -64,7 +55,6 @@ impl InputSoils {
     }
 }
 
-/// Files of these soils, each once.
 fn files_of(soils: &[SoilSample]) -> Vec<PathBuf> {
     let mut read = HashSet::new();
     let files = soils.iter().map(|soil| file_and_soil(&soil.path).0);
@@ -80,7 +70,6 @@ pub(crate) fn input_files(soils: &[SoilSample]) -> Result<Vec<InputFile>, RunErr
     files_of(soils).into_iter().map(input).collect()
 }
 
-/// Refuses a table that is named twice.
 pub(crate) fn refuse_twice(files: &[PathBuf]) -> Result<(), RunError> {
     let mut seen = HashSet::new();
     match files.iter().find(|file| !seen.insert(real(file))) {
@@ -152,12 +141,9 @@ fn short_name(file: &Path) -> String {
 mod tests {
     use super::*;
 
-    fn named(files: &[&str]) -> Vec<String> {
-        names(&files.iter().map(PathBuf::from).collect::<Vec<_>>())
-    }
-
     #[test]
     fn names_are_short_where_they_are_alone() {
+        let named = |files: &[&str]| names(&files.iter().map(PathBuf::from).collect::<Vec<_>>());
         assert_eq!(named(&["a/f.csv", "g.csv", "s.xlsx#Filter A"]), ["f", "g", "s: Filter A"]);
         assert_eq!(named(&["a/f.csv", "b/f.csv"]), ["a/f.csv", "b/f.csv"]);
         assert_eq!(named(&["f.csv", "f.tsv", "f.csv.csv"]), ["f.csv", "f.tsv", "f.csv.csv"]);

@@ -17,7 +17,7 @@ use xxhash_rust::xxh3::xxh3_128;
 use crate::outcome::record::Manifest;
 use crate::run::RunError;
 use crate::run::callbacks::Callbacks;
-use crate::run::folder::{FolderKind, LATTICES, NETWORKS, Unfinished, clear, shown};
+use crate::run::folder::{FolderKind, LATTICES, NETWORKS, Unfinished, clear, refused, shown};
 use crate::run::results::json;
 use voidwalk_core::store::checkpoint::{CheckpointError, Identity, Label, Section, newest, save};
 use voidwalk_core::store::format::from_json;
@@ -56,12 +56,12 @@ pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
             let has_cases = kind.has_cases();
             // A corrupt mark gives no information.
             if has_cases && !overwrite && !is_begun && begun.is_some_and(|begun| !begun.work.is_empty()) {
-                return Err(RunError::Refused(format!(
-                    "{}: holds another {} that is unfinished, or was begun by another version of voidwalk; \
+                let problem = format!(
+                    "holds another {} that is unfinished, or was begun by another version of voidwalk; \
                      continue that one with its own command, name another folder or add --overwrite",
-                    shown(folder.path()),
                     kind.name()
-                )));
+                );
+                return Err(refused(folder.path(), problem));
             }
             // A study that is continued always has its mark.
             if earlier.is_none() && !(has_cases && is_begun) {
@@ -80,7 +80,6 @@ pub(crate) fn study<F: DeserializeOwned, R: Serialize + DeserializeOwned>(
     Ok(record)
 }
 
-/// The record of a finished folder.
 pub(crate) fn record<R: DeserializeOwned>(folder: &Path, kind: FolderKind) -> Result<R, RunError> {
     let path = folder.join(kind.record());
     let failed = |error: &dyn std::fmt::Display| RunError::failed(format!("{}: {error}", shown(&path)));
@@ -88,7 +87,6 @@ pub(crate) fn record<R: DeserializeOwned>(folder: &Path, kind: FolderKind) -> Re
     from_json(&bytes).map_err(|error| failed(&error))
 }
 
-/// Store of a study's results in a folder.
 pub(crate) struct Kept<'a> {
     kind: FolderKind,
     folder: &'a Folder,
@@ -99,7 +97,6 @@ pub(crate) struct Kept<'a> {
 }
 
 impl<'a> Kept<'a> {
-    /// Store in a claimed folder, for the study described by `work`.
     fn new(kind: FolderKind, folder: &'a Folder, work: &str) -> Self {
         let scene = hash_of(work);
         let (name, files) = match kind {
@@ -112,20 +109,19 @@ impl<'a> Kept<'a> {
     /// Results of an earlier start of this very study. Errors: a file of another study, or one that cannot be
     /// read.
     fn newest<T: DeserializeOwned>(&self, callbacks: &Callbacks) -> Result<Option<T>, RunError> {
-        let refused = |error: CheckpointError| match error.is_unreadable() {
-            true => RunError::Checkpoint(error),
-            false => RunError::Refused(format!(
-                "{}: the unfinished {} there cannot be continued: {error}; name another folder or add \
-                 --overwrite",
-                shown(self.folder.path()),
-                self.kind.name()
-            )),
+        let unusable = |error: CheckpointError| {
+            if error.is_unreadable() {
+                return RunError::Checkpoint(error);
+            }
+            let (kind, instead) = (self.kind.name(), "name another folder or add --overwrite");
+            let problem = format!("the unfinished {kind} there cannot be continued: {error}; {instead}");
+            refused(self.folder.path(), problem)
         };
-        let (saved, passed_over) = newest(self.folder.path(), self.name, &self.identity).map_err(refused)?;
+        let (saved, passed_over) = newest(self.folder.path(), self.name, &self.identity).map_err(unusable)?;
         for error in passed_over {
             (callbacks.warn)(&format!("{error}; the checkpoint before it was used"));
         }
-        saved.map(|saved| saved.read_record("found").map_err(refused)).transpose()
+        saved.map(|saved| saved.read_record("found").map_err(unusable)).transpose()
     }
 
     /// Keeps the results of this many parts; the previous checkpoint stays until this one is complete.
@@ -136,7 +132,6 @@ impl<'a> Kept<'a> {
         save(self.folder.path(), self.name, &label, &sections).map_err(RunError::Save)
     }
 
-    /// Reports that the study was stopped with this many of its parts done.
     pub(crate) fn stopped(&self, done: usize, all: usize) -> RunError {
         let (folder, parts) = (shown(self.folder.path()), self.name);
         RunError::Stopped(format!(
@@ -160,7 +155,6 @@ pub(super) fn last_day(cases: impl IntoIterator<Item = PathBuf>) -> Option<Strin
     cases.into_iter().filter_map(finished).max()
 }
 
-/// Date of a moment.
 fn day(moment: &str) -> Option<String> {
     moment.split('T').next().filter(|day| !day.is_empty()).map(str::to_owned)
 }
@@ -173,22 +167,23 @@ mod tests {
     #[test]
     fn the_last_day_of_several_cases_counts_and_a_folder_without_one_says_nothing() {
         let at = tempfile::tempdir().unwrap();
+        let manifest = |finished: &str| Manifest {
+            version: "1".into(),
+            commit: None,
+            seed: 1,
+            inputs: Vec::new(),
+            threads: 1,
+            host: String::new(),
+            machine: String::new(),
+            started: String::new(),
+            finished: finished.into(),
+            command: String::new(),
+        };
         let case = |name: &str, finished: &str| {
             let folder = at.path().join(name);
             std::fs::create_dir(&folder).unwrap();
-            let manifest = Manifest {
-                version: "1".into(),
-                commit: None,
-                seed: 1,
-                inputs: Vec::new(),
-                threads: 1,
-                host: String::new(),
-                machine: String::new(),
-                started: String::new(),
-                finished: finished.into(),
-                command: String::new(),
-            };
-            std::fs::write(folder.join("manifest.json"), MANIFEST.json(&manifest).unwrap()).unwrap();
+            std::fs::write(folder.join("manifest.json"), MANIFEST.json(&manifest(finished)).unwrap())
+                .unwrap();
             folder
         };
         let cases =

@@ -40,7 +40,6 @@ use voidwalk_core::text::is_hidden;
 /// Maximum number of cases; more are taken for a mistake.
 const MOST_CASES: usize = 100_000;
 
-/// Maximum size of a plan (bytes).
 const LARGEST_FILE: u64 = 1 << 20;
 
 /// Top-level keys of a scene, which a plan accepts only inside `set`.
@@ -53,7 +52,6 @@ const SCENE: &str = "is a scene, not the plan of a campaign; walk it by `voidwal
 const NO_PLAN: &str = "is a table of numbers, not the plan of a campaign; two sieve tables are \
                       judged by `voidwalk judge BASE FILTER`";
 
-/// Plan as it is written.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Written {
@@ -78,11 +76,9 @@ fn one() -> u64 {
     1
 }
 
-/// Choice of the seeds of the cases.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Seeds {
-    /// A seed of its own for each case.
     #[default]
     Own,
     /// The plan's seed for all cases. Cases that differ in one factor then share their random numbers, and so
@@ -102,7 +98,6 @@ struct Factor {
     levels: toml::Table,
 }
 
-/// Evenly spaced values of a setting, including both ends.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Range {
@@ -141,28 +136,22 @@ struct Single {
 /// A case of a plan.
 #[derive(Clone, Debug)]
 pub struct PlannedCase {
-    /// Its name in messages.
     pub(crate) name: String,
     /// Level by factor, in the order of the plan; empty for a case outside the cross.
     pub(crate) levels: Vec<(String, String)>,
-    /// The scene.
     pub(crate) scene: Scene,
 }
 
 /// Plan with its cases worked out.
 #[derive(Clone, Debug)]
 pub struct CasePlan {
-    /// Name in errors.
     pub(crate) file: String,
-    /// Title of the plan, in a line.
     pub(crate) title: String,
-    /// Factors in the order of the plan.
     pub(crate) factors: Vec<String>,
     /// Cases: the cross, with the last factor varying fastest, then the single ones.
     pub cases: Vec<PlannedCase>,
 }
 
-/// Level of a factor: its name and settings.
 type Level = (String, Vec<String>);
 
 impl CasePlan {
@@ -237,19 +226,17 @@ impl CasePlan {
         let levels: Vec<&[Level]> = factors.iter().map(|(_, levels)| &levels[..]).collect();
         let combinations = if factors.is_empty() { Vec::new() } else { crossed(&levels) };
         for chosen in combinations {
-            let names = plan.factors.iter().zip(&chosen);
-            let levels: Vec<(String, String)> =
-                names.map(|(factor, (level, _))| (factor.clone(), level.clone())).collect();
+            let mut settings = vec![common.clone()];
+            settings.extend(chosen.iter().map(|(_, settings)| settings.clone()));
+            let chosen = chosen.iter().map(|(level, _)| level.clone());
+            let levels: Vec<(String, String)> = plan.factors.iter().cloned().zip(chosen).collect();
             let is_level =
-                |(factor, level): (&String, &String)| levels.iter().any(|(f, l)| f == factor && l == level);
-            let is_left_out = |combination: &BTreeMap<String, String>| combination.iter().all(is_level);
-            if written.leave_out.iter().any(is_left_out) {
+                |(factor, level): (&String, &String)| levels.contains(&(factor.clone(), level.clone()));
+            if written.leave_out.iter().any(|combination| combination.iter().all(is_level)) {
                 continue;
             }
             let names: Vec<String> =
                 levels.iter().map(|(factor, level)| format!("{factor}={level}")).collect();
-            let chosen = chosen.into_iter().map(|(_, settings)| settings.clone());
-            let settings: Vec<Vec<String>> = std::iter::once(common.clone()).chain(chosen).collect();
             plan.add(&written, base.as_deref(), names.join(","), levels, &settings)?;
         }
         for single in &written.case {
@@ -271,19 +258,17 @@ impl CasePlan {
         levels: Vec<(String, String)>,
         settings: &[Vec<String>],
     ) -> Result<(), SceneError> {
-        if self.cases.iter().any(|case| case.name == name) {
-            let problem = format!("two cases are called `{name}`");
-            return Err(SceneError::Clash { file: self.file.clone(), problem });
+        let clash = |problem: String| Err(SceneError::Clash { file: self.file.clone(), problem });
+        if self.case(&name).is_some() {
+            return clash(format!("two cases are called `{name}`"));
         }
         let folder = folder_name(&name);
         // Some systems' disks do not distinguish upper from lower case.
-        let lower = folder.to_lowercase();
-        if let Some(other) = self.cases.iter().find(|case| case.folder_name().to_lowercase() == lower) {
-            let problem = format!(
-                "cases `{}` and `{name}` would share the folder {folder} on some systems: rename one",
-                other.name
-            );
-            return Err(SceneError::Clash { file: self.file.clone(), problem });
+        let is_alike = |case: &&PlannedCase| case.folder_name().to_lowercase() == folder.to_lowercase();
+        if let Some(PlannedCase { name: other, .. }) = self.cases.iter().find(is_alike) {
+            return clash(format!(
+                "cases `{other}` and `{name}` would share the folder {folder} on some systems: rename one"
+            ));
         }
         let origin = Origin::Plan(self.file.clone(), name.clone());
         let mut scene = Scene::planned(base, settings, &origin)?;
@@ -303,7 +288,6 @@ impl CasePlan {
         name.map_or_else(|| self.file.clone(), |name| name.to_string_lossy().into_owned())
     }
 
-    /// Case with this name.
     pub(crate) fn case(&self, name: &str) -> Option<&PlannedCase> {
         self.cases.iter().find(|case| case.name == name)
     }
@@ -372,7 +356,6 @@ fn levels(factor: &Factor) -> Result<Vec<Level>, String> {
     Ok(levels)
 }
 
-/// A value as part of a name.
 fn word(value: &toml::Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
@@ -421,6 +404,10 @@ mod tests {
         CasePlan::read(&path)
     }
 
+    fn names(text: &str) -> Result<Vec<String>, SceneError> {
+        plan(text).map(|plan| plan.cases.into_iter().map(|case| case.name).collect())
+    }
+
     const TWO_BY_TWO: &str = "[[factor]]\nname = \"cu_b\"\nsetting = \"base.cu\"\nvalues = [1.5, 3]\n\
         [[factor]]\nname = \"filter\"\n[factor.levels]\n\
         a = { \"filter.curve\" = \"shire2016-cu1.5-loose\" }\n\
@@ -429,8 +416,10 @@ mod tests {
     #[test]
     fn factors_are_crossed_with_the_last_running_fastest() {
         let plan = plan(TWO_BY_TWO).unwrap();
-        let names: Vec<&str> = plan.cases.iter().map(|c| c.name.as_str()).collect();
-        assert_eq!(names, ["cu_b=1.5,filter=a", "cu_b=1.5,filter=b", "cu_b=3,filter=a", "cu_b=3,filter=b"]);
+        assert_eq!(
+            names(TWO_BY_TWO).unwrap(),
+            ["cu_b=1.5,filter=a", "cu_b=1.5,filter=b", "cu_b=3,filter=a", "cu_b=3,filter=b"]
+        );
         let seeds: std::collections::BTreeSet<u64> = plan.cases.iter().map(|c| c.scene.walk.seed).collect();
         assert_eq!(seeds.len(), 4);
     }
@@ -461,21 +450,19 @@ mod tests {
     #[test]
     fn a_level_may_be_a_length_with_its_unit() {
         let factor = "[[factor]]\nname = \"thickness\"\nsetting = \"network.thickness_mm\"\n";
-        let plan = plan(&format!("{factor}values = [\"2ft\", \"0.5m\", 500]\n")).unwrap();
-        let names: Vec<&str> = plan.cases.iter().map(|case| case.name.as_str()).collect();
-        assert_eq!(names, ["thickness=2ft", "thickness=0.5m", "thickness=500"]);
-        let mm = plan.cases.iter().map(|case| case.scene.network.thickness_mm);
+        let text = format!("{factor}values = [\"2ft\", \"0.5m\", 500]\n");
+        assert_eq!(names(&text).unwrap(), ["thickness=2ft", "thickness=0.5m", "thickness=500"]);
+        let cases = plan(&text).unwrap().cases;
+        let mm = cases.iter().map(|case| case.scene.network.thickness_mm);
         assert_eq!(mm.collect::<Vec<_>>(), [Some(609.6), Some(500.0), Some(500.0)]);
     }
 
     #[test]
     fn a_range_is_even_and_has_both_ends() {
-        let levels = |range: &str| {
-            let text = format!("[[factor]]\nname = \"cu\"\nsetting = \"base.cu\"\nrange = {range}\n");
-            plan(&text).map(|plan| plan.cases.into_iter().map(|case| case.name).collect::<Vec<_>>())
-        };
-        let names = levels("{ from = 2.1, to = 3, count = 4 }").unwrap();
-        assert_eq!(names, ["cu=2.1", "cu=2.4", "cu=2.7", "cu=3"]);
+        let factor = "[[factor]]\nname = \"cu\"\nsetting = \"base.cu\"\n";
+        let levels = |range: &str| names(&format!("{factor}range = {range}\n"));
+        let rising = levels("{ from = 2.1, to = 3, count = 4 }").unwrap();
+        assert_eq!(rising, ["cu=2.1", "cu=2.4", "cu=2.7", "cu=3"]);
         assert_eq!(levels("{ from = 6, to = 2, count = 3 }").unwrap(), ["cu=6", "cu=4", "cu=2"]);
         for (range, message) in [
             ("{ from = 2, to = 3, count = 1 }", "a `count` from 2 to 1000"),

@@ -1,8 +1,7 @@
 //! Cases of a plan, worked out: the wanted ones, the packings that they need, and their states; and the cases
-//! of each task of a job array.
-//!
-//! The list of tasks has one line per case: the task's number, a tab, the case's name. Names hold neither
-//! tabs nor line ends (the plan refuses them), and only the program reads them, never a shell.
+//! of each task of a job array. The list of tasks has one line per case: the task's number, a tab, the case's
+//! name. Names hold neither tabs nor line ends (the plan refuses them), and only the program reads them,
+//! never a shell.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -13,25 +12,21 @@ use super::plan::{CasePlan, PlannedCase};
 use crate::case::{Case, PackedFilter, PackingPlan};
 use crate::outcome::ledger::LedgerLine;
 use crate::run::checkpoints::Checkpoints;
-use crate::run::folder::shown;
+use crate::run::folder::{refused, shown};
 use crate::run::prepare::Draft;
 use crate::run::{Exit, RunError};
 use voidwalk_core::store::format::from_json;
 use voidwalk_core::store::{Folder, StoreError, read_regular, read_whole};
 
-/// File of a finished case.
 pub(super) const LINE: &str = "case.json";
 
-/// Folder of the cases, inside the campaign's folder.
 pub(crate) const CASES: &str = "cases";
 
 /// File with the reason why a case could not be walked at the last attempt.
 pub(super) const PROBLEM: &str = "problem.txt";
 
-/// Maximum size of a list of tasks (bytes).
 const LARGEST_LIST: u64 = 1 << 26;
 
-/// Maximum number of cases named in a message.
 const NAMED: usize = 30;
 
 /// Cases of a plan that a process handles.
@@ -56,16 +51,18 @@ impl CasePart {
     }
 }
 
-/// Unfinished case, and the reason.
 #[derive(Clone, Debug)]
 pub(crate) struct FailedCase {
-    /// The case.
     pub(crate) case: String,
-    /// Description of the problem.
     pub(crate) problem: String,
 }
 
-/// Lists the unfinished cases, one per line.
+impl FailedCase {
+    pub(crate) fn new(case: &PlannedCase, problem: impl ToString) -> Self {
+        Self { case: case.name.clone(), problem: problem.to_string() }
+    }
+}
+
 pub(super) fn named(failed: &[FailedCase]) -> String {
     let one = |failed: &FailedCase| format!("case {}: {}", failed.case, failed.problem.replace('\n', " "));
     let mut lines: Vec<String> = failed.iter().take(NAMED).map(one).collect();
@@ -89,19 +86,13 @@ pub(crate) fn wanted<'a>(plan: &'a CasePlan, part: &CasePart) -> Result<Vec<&'a 
             }
         },
         CasePart::Task(file, number) => {
-            let shown = shown(file);
-            let refused = |problem: &dyn std::fmt::Display| RunError::Refused(format!("{shown}: {problem}"));
-            let bytes = read_regular(file, LARGEST_LIST).map_err(|error| refused(&error))?;
-            let bytes = bytes.ok_or_else(|| refused(&"is no list of tasks that --slurm wrote"))?;
+            let bytes = read_regular(file, LARGEST_LIST).map_err(|error| refused(file, error))?;
+            let bytes = bytes.ok_or_else(|| refused(file, "is no list of tasks that --slurm wrote"))?;
             let text = String::from_utf8_lossy(&bytes);
-            let names = names_of_task(&shown, &text, *number).map_err(RunError::refused)?;
-            let find = |name: &&str| {
-                plan.case(name).ok_or_else(|| {
-                    let problem = "the plan was changed; write the scripts again";
-                    RunError::Refused(format!("{shown}: {} has no case `{name}`: {problem}", plan.file))
-                })
-            };
-            names.iter().map(find).collect()
+            let names = names_of_task(&shown(file), &text, *number).map_err(RunError::refused)?;
+            let problem = "the plan was changed; write the scripts again";
+            let gone = |name: &str| refused(file, format!("{} has no case `{name}`: {problem}", plan.file));
+            names.iter().map(|name| plan.case(name).ok_or_else(|| gone(name))).collect()
         }
     }
 }
@@ -152,7 +143,7 @@ impl<'a> Drafts<'a> {
             let case = filter.and_then(|filter| draft.finished(filter).map_err(|e| e.to_string()));
             match case.and_then(|mut case| place(&mut case).map(|()| case).map_err(|e| e.to_string())) {
                 Ok(case) => cases.push(PreparedCase { planned, fingerprint: case.fingerprint(), case }),
-                Err(problem) => failed.push(FailedCase { case: planned.name.clone(), problem }),
+                Err(problem) => failed.push(FailedCase::new(planned, problem)),
             }
         }
         Ok((cases, failed))
@@ -164,7 +155,6 @@ fn key(plan: &PackingPlan) -> String {
     format!("{} {}", plan.fingerprint(), plan.merge_overlap)
 }
 
-/// Case of a plan, worked out.
 pub(crate) struct PreparedCase<'a> {
     pub(crate) planned: &'a PlannedCase,
     pub(crate) case: Case,
@@ -173,7 +163,6 @@ pub(crate) struct PreparedCase<'a> {
 }
 
 impl PreparedCase<'_> {
-    /// Folder of the results, inside the campaign's folder.
     pub(crate) fn folder(&self) -> PathBuf {
         // Ledger and table use this form on every system.
         PathBuf::from(format!("{CASES}/{}", self.planned.folder_name()))

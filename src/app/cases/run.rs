@@ -22,7 +22,7 @@ use crate::run::results::json;
 use crate::run::shared_networks::SharedNetworks;
 use crate::words::ledger::columns;
 use voidwalk_core::store::format::{self, from_json, visible_json};
-use voidwalk_core::store::{files_in, read_whole, write_whole};
+use voidwalk_core::store::{Folder, files_in, read_whole, write_whole};
 
 /// Options of walking a campaign; no option changes a result.
 #[derive(Clone, Debug)]
@@ -58,6 +58,11 @@ impl Default for CaseOptions {
 }
 
 impl CaseOptions {
+    pub(crate) fn of(out: PathBuf, prepare: PrepareOptions, command: String) -> Self {
+        let PrepareOptions { packings, memory, threads } = prepare;
+        Self { out, packings: Some(packings), memory, threads, command, ..Self::default() }
+    }
+
     /// Folder of the packings. The campaign's own must not be a link to another place, which would then be
     /// written to.
     pub(super) fn packings(&self) -> Result<PathBuf, RunError> {
@@ -74,7 +79,6 @@ impl CaseOptions {
         }
     }
 
-    /// Packed filter, if its packing exists.
     pub(super) fn packed(&self, plan: &PackingPlan) -> Result<Option<PackedFilter>, RunError> {
         Ok(PackedFilter::find(&self.packings()?, plan)?)
     }
@@ -94,9 +98,7 @@ impl CaseOptions {
 pub struct FinishedCases {
     /// Finished cases in the order of the plan; `None` if this process handled only part of the plan.
     pub(crate) lines: Option<Vec<LedgerLine>>,
-    /// Cases that could not be walked.
     pub(crate) failed: Vec<FailedCase>,
-    /// Number of cases that were handled.
     pub(crate) cases: usize,
 }
 
@@ -114,10 +116,8 @@ impl FinishedCases {
     }
 }
 
-/// Names of the cases that a process would walk, each found sound.
-///
-/// # Errors
-/// The plan has no such part; a case is wrong.
+/// Names of the cases that a process would walk, each found sound. Errors: the plan has no such part; a case
+/// is wrong.
 pub(crate) fn names(plan: &CasePlan, part: &CasePart) -> Result<Vec<String>, RunError> {
     let wanted = wanted(plan, part)?;
     Drafts::new(wanted.clone()).map(|_| wanted.iter().map(|case| case.name.clone()).collect())
@@ -135,13 +135,11 @@ pub fn run(
     options: &CaseOptions,
     callbacks: &CaseCallbacks,
 ) -> Result<FinishedCases, RunError> {
-    run_around(plan, options, callbacks, |_, walk| walk())
+    ReadyCampaign::new(plan, options, callbacks)?.walk()
 }
 
-/// Cases that are wrong in themselves, in the order of the plan; claims and writes nothing.
-///
-/// # Errors
-/// Sound cases that do not fit into memory.
+/// Cases that are wrong in themselves, in the order of the plan; claims and writes nothing. Errors: sound
+/// cases that do not fit into memory.
 pub(crate) fn unsound(plan: &CasePlan, options: &CaseOptions) -> Result<Vec<FailedCase>, RunError> {
     let wanted = wanted(plan, &options.part)?;
     let (limits, _) = options.rooms(&options.out, &wanted);
@@ -149,17 +147,16 @@ pub(crate) fn unsound(plan: &CasePlan, options: &CaseOptions) -> Result<Vec<Fail
     let workers = pool.current_num_threads() as u64;
     // Problem of a case; true if it is too little memory.
     let wrong = |planned: &PlannedCase| -> Option<(bool, FailedCase)> {
-        let failed = |has_no_room: bool, problem: RunError| {
-            (has_no_room, FailedCase { case: planned.name.clone(), problem: problem.to_string() })
+        let placed = Draft::new(planned.scene.clone()).map(|draft| draft.case).map(|mut case| {
+            let placed = case.place(&limits, workers, &options.out);
+            (case, placed)
+        });
+        let (has_no_room, problem) = match placed {
+            Err(problem) => (false, problem),
+            Ok((_, Err(problem))) => (true, problem.into()),
+            Ok((case, Ok(_))) => (false, have_networks(&case, &Callbacks::default()).err()?),
         };
-        let mut case = match Draft::new(planned.scene.clone()) {
-            Ok(draft) => draft.case,
-            Err(problem) => return Some(failed(false, problem)),
-        };
-        match case.place(&limits, workers, &options.out) {
-            Err(problem) => Some(failed(true, problem.into())),
-            Ok(_) => Some(failed(false, have_networks(&case, &Callbacks::default()).err()?)),
-        }
+        Some((has_no_room, FailedCase::new(planned, problem)))
     };
     let all: Vec<(bool, FailedCase)> = pool.install(|| wanted.into_par_iter().filter_map(wrong).collect());
     let (no_room, wrong): (Vec<_>, Vec<_>) = all.into_iter().partition(|(has_no_room, _)| *has_no_room);
@@ -167,103 +164,133 @@ pub(crate) fn unsound(plan: &CasePlan, options: &CaseOptions) -> Result<Vec<Fail
     if no_room.is_empty() { Ok(cases(wrong)) } else { Err(RunError::Refused(named(&cases(no_room)))) }
 }
 
-/// Passes the cases of a plan to `at` if they can be worked out without packing a filter, else `None`. Claims
-/// and writes nothing. Errors: a case that is wrong.
-pub(crate) fn look<R>(
-    plan: &CasePlan,
+/// Cases of a plan, if they can be worked out without packing a filter. Claims and writes nothing. Errors: a
+/// case that is wrong.
+pub(crate) fn without_packing<'a>(
+    plan: &'a CasePlan,
     options: &CaseOptions,
-    at: impl FnOnce(Option<&[PreparedCase]>) -> R,
-) -> Result<R, RunError> {
+) -> Result<Option<Vec<PreparedCase<'a>>>, RunError> {
     let drafts = Drafts::new(wanted(plan, &options.part)?)?;
     let there =
         |packing: &PackingPlan| options.packed(packing)?.ok_or_else(|| RunError::failed("not packed"));
     let (cases, failed) = drafts.finish(there, |_| Ok(()))?;
-    Ok(at(failed.is_empty().then_some(&cases[..])))
+    Ok(failed.is_empty().then_some(cases))
 }
 
-/// Cases of a campaign after their filters are packed and before the first walk, or the reason for refusal.
-pub(crate) type ReadyCases<'a, 'b> = Result<&'b [PreparedCase<'a>], RunError>;
+/// Campaign in its claimed folder, after its filters are packed and before the first walk.
+pub(crate) struct ReadyCampaign<'a> {
+    plan: &'a CasePlan,
+    options: &'a CaseOptions,
+    callbacks: &'a CaseCallbacks<'a>,
+    folder: Folder,
+    threads: usize,
+    /// Room for networks (bytes), if cases with one seed may share them.
+    shared: Option<u64>,
+    cases: Vec<PreparedCase<'a>>,
+    failed: Vec<FailedCase>,
+    /// True if no case failed for want of memory.
+    has_room: bool,
+    needs_packings: bool,
+}
 
-/// Walks the cases that are ready.
-pub(crate) type Walk<'a> = Box<dyn FnOnce() -> Result<FinishedCases, RunError> + 'a>;
+impl<'a> ReadyCampaign<'a> {
+    /// Claims the folder and packs the filters. Errors: as in [`run()`].
+    pub(crate) fn new(
+        plan: &'a CasePlan,
+        options: &'a CaseOptions,
+        callbacks: &'a CaseCallbacks<'a>,
+    ) -> Result<Self, RunError> {
+        let wanted = wanted(plan, &options.part)?;
+        let drafts = Drafts::new(wanted.clone())?;
+        let pool = threads(options.threads)?;
+        let threads = pool.current_num_threads();
+        let folder = claim(&options.out, FolderKind::Campaign, false)?;
+        let (packings, needs_packings) = (options.packings()?, !drafts.packings().is_empty());
+        let (limits, shared) = options.rooms(folder.path(), &wanted);
+        let mut has_room = true;
+        let (cases, failed) = drafts.finish(
+            |packing| pool.install(|| provide(packing, &packings, &callbacks.run)),
+            |case| {
+                let placed = case.place(&limits, threads as u64, folder.path());
+                has_room &= placed.is_ok();
+                Ok(placed?)
+            },
+        )?;
+        Ok(Self {
+            plan,
+            options,
+            callbacks,
+            folder,
+            threads,
+            shared,
+            cases,
+            failed,
+            has_room,
+            needs_packings,
+        })
+    }
 
-/// Walks a campaign like [`run()`], but lets the caller work around the walk once all cases are ready.
-pub(crate) fn run_around<R>(
-    plan: &CasePlan,
-    options: &CaseOptions,
-    callbacks: &CaseCallbacks,
-    around: impl FnOnce(ReadyCases, Walk) -> Result<R, RunError>,
-) -> Result<R, RunError> {
-    let wanted = wanted(plan, &options.part)?;
-    let drafts = Drafts::new(wanted.clone())?;
-    let pool = threads(options.threads)?;
-    let threads = pool.current_num_threads();
-    let folder = claim(&options.out, FolderKind::Campaign, false)?;
-    let (out, packings, needs_none) = (folder.path(), options.packings()?, drafts.packings().is_empty());
-    let (limits, shared) = options.rooms(out, &wanted);
-    let mut has_room = true;
-    let (cases, failed) = drafts.finish(
-        |packing| pool.install(|| provide(packing, &packings, &callbacks.run)),
-        |case| {
-            let placed = case.place(&limits, threads as u64, out);
-            has_room &= placed.is_ok();
-            Ok(placed?)
-        },
-    )?;
-    let ready = match (failed.is_empty(), has_room) {
-        (true, _) => Ok(&cases[..]),
-        (false, true) => Err(RunError::failed(named(&failed))),
-        (false, false) => Err(RunError::Refused(named(&failed))),
-    };
-    let walk = Box::new(|| {
-        if cases.is_empty() && needs_none {
-            return Err(RunError::Refused(named(&failed)));
+    /// All of its cases. Errors: some cannot be walked.
+    pub(crate) fn cases(&self) -> Result<&[PreparedCase<'a>], RunError> {
+        match (self.failed.is_empty(), self.has_room) {
+            (true, _) => Ok(&self.cases),
+            (false, true) => Err(RunError::failed(named(&self.failed))),
+            (false, false) => Err(RunError::Refused(named(&self.failed))),
         }
-        let mut failed = failed;
-        if options.part == CasePart::All {
-            changed(plan, &cases, out).iter().for_each(|sentence| (callbacks.run.warn)(sentence));
+    }
+
+    /// Walks its unfinished cases and collects the plan. Errors: as in [`run()`].
+    pub(crate) fn walk(&self) -> Result<FinishedCases, RunError> {
+        let Self { plan, options, callbacks, cases, .. } = self;
+        let out = self.folder.path();
+        if cases.is_empty() && !self.needs_packings {
+            return Err(RunError::Refused(named(&self.failed)));
+        }
+        let is_whole = options.part == CasePart::All;
+        if is_whole {
+            warn_of_changes(plan, cases, out, callbacks.run.warn);
         }
         (callbacks.on_cases)(cases.len(), cases.iter().filter(|case| case.line(out).is_some()).count());
         let runner = CaseRunner {
             out,
-            threads,
+            threads: self.threads,
             callbacks,
             checkpoint_interval: options.checkpoint_interval,
-            networks: shared.map(SharedNetworks::new),
+            networks: self.shared.map(SharedNetworks::new),
             job: Allocation::here().map(|allocation| allocation.job),
             command: options.command.clone(),
         };
-        let result = runner.run(&cases);
-        if options.part != CasePart::All {
+        let result = runner.run(cases);
+        let (mut failed, handled) = (self.failed.clone(), cases.len() + self.failed.len());
+        if !is_whole {
             failed.extend(result?);
-            return Ok(FinishedCases { lines: None, failed, cases: wanted.len() });
+            return Ok(FinishedCases { lines: None, failed, cases: handled });
         }
         // The whole plan is collected, whichever cases this process walked, and however it ended.
-        let mut lines = write_ledger(plan, &cases, out, &callbacks.run)?;
+        let mut lines = write_ledger(plan, cases, out, &callbacks.run)?;
         failed.extend(result?);
         // Cases that were finished, by this process or earlier, and have disappeared.
-        let absent = |lines: &[LedgerLine], failed: &[FailedCase]| -> Vec<&PreparedCase> {
+        let absent = |lines: &[LedgerLine]| -> Vec<&PreparedCase> {
             let is_absent = |case: &&PreparedCase| {
                 let name = &case.planned.name;
                 lines.iter().all(|line| line.case != *name) && failed.iter().all(|f| f.case != *name)
             };
             cases.iter().filter(is_absent).collect()
         };
-        let mut gone = absent(&lines, &failed);
+        let mut gone = absent(&lines);
         if !gone.is_empty() {
             // Another process may just be replacing their files with identical ones.
             for case in gone {
                 runner.is_lost(case);
             }
-            lines = write_ledger(plan, &cases, out, &callbacks.run)?;
-            gone = absent(&lines, &failed);
+            lines = write_ledger(plan, cases, out, &callbacks.run)?;
+            gone = absent(&lines);
         }
-        let lost = |case: &PreparedCase| FailedCase { case: case.planned.name.clone(), problem: LOST.into() };
-        let lost: Vec<FailedCase> = gone.into_iter().map(lost).collect();
+        let lost: Vec<FailedCase> =
+            gone.into_iter().map(|case| FailedCase::new(case.planned, LOST)).collect();
         failed.extend(lost);
-        Ok(FinishedCases { lines: Some(lines), failed, cases: wanted.len() })
-    });
-    around(ready, walk)
+        Ok(FinishedCases { lines: Some(lines), failed, cases: handled })
+    }
 }
 
 /// Collects the finished cases of a plan, in its order, into `ledger.jsonl` (one JSON line for each case),
@@ -313,10 +340,8 @@ fn write_ledger(
     Ok(lines)
 }
 
-/// Collects a campaign whose cases are all done.
-///
-/// # Errors
-/// A folder without cases; missing cases, each with its state. Nothing is written then.
+/// Collects a campaign whose cases are all done. Errors: a folder without cases; missing cases, each with its
+/// state. Nothing is written then.
 pub(crate) fn collect(
     plan: &CasePlan,
     options: &CaseOptions,
@@ -332,25 +357,19 @@ pub(crate) fn collect(
     let (cases, mut missing) =
         drafts.finish(|packing| options.packed(packing)?.ok_or_else(not_packed), |_| Ok(()))?;
     for case in cases.iter().filter(|case| case.line(folder.path()).is_none()) {
-        missing.push(FailedCase { case: case.planned.name.clone(), problem: state(case, folder.path()) });
+        missing.push(FailedCase::new(case.planned, state(case, folder.path())));
     }
     if !missing.is_empty() {
-        return Err(RunError::Refused(format!(
-            "{}: {} of {} cases are missing, nothing is written; submit the campaign again to continue\n\
-             {}",
-            shown(&options.out),
-            missing.len(),
-            plan.cases.len(),
-            named(&missing)
-        )));
+        let (of_plan, instead) = (plan.cases.len(), "submit the campaign again to continue");
+        let counted =
+            format!("{} of {of_plan} cases are missing, nothing is written; {instead}", missing.len());
+        return Err(refused(&options.out, format!("{counted}\n{}", named(&missing))));
     }
     write_ledger(plan, &cases, folder.path(), callbacks)
 }
 
-/// Makes one of the packings that a plan needs; they are counted from 1 in the order of its cases.
-///
-/// # Errors
-/// There is no such packing; then as in `provide`.
+/// Makes one of the packings that a plan needs; they are counted from 1 in the order of its cases. Errors:
+/// there is no such packing; then as in `provide`.
 pub(crate) fn make_packing(
     plan: &CasePlan,
     number: u64,
@@ -368,9 +387,9 @@ pub(crate) fn make_packing(
     on_threads(options.threads, || provide(packing, &packings, callbacks)).map(drop)
 }
 
-/// Warnings about finished cases that do not belong to the present plan, in sentences. Unreadable cases are
-/// skipped: they are reported later.
-fn changed(plan: &CasePlan, cases: &[PreparedCase], out: &Path) -> Vec<String> {
+/// Warns of finished cases that do not belong to the present plan. Unreadable cases are skipped: they are
+/// reported later.
+fn warn_of_changes(plan: &CasePlan, cases: &[PreparedCase], out: &Path, warn: &dyn Fn(&str)) {
     let finished = |folder: &Path| folder.join(LINE).symlink_metadata().is_ok();
     let again: Vec<&str> = cases
         .iter()
@@ -385,27 +404,24 @@ fn changed(plan: &CasePlan, cases: &[PreparedCase], out: &Path) -> Vec<String> {
         .filter_map(|folder| from_json(&read_whole(&folder.join(LINE)).ok()?).ok())
         .collect();
     let dropped: Vec<&str> = dropped.iter().map(|line| line.case.as_str()).collect();
-    let mut sentences = Vec::new();
+    // `2 finished cases (a; b)`, with at most three names.
+    let counted = |names: &[&str]| {
+        let all = names.len();
+        let more = if all > 3 { format!("; and {} more", all - 3) } else { String::new() };
+        let first = names[..all.min(3)].join("; ");
+        format!("{all} finished {} ({first}{more})", if all == 1 { "case" } else { "cases" })
+    };
     if !again.is_empty() {
-        sentences.push(format!(
+        warn(&format!(
             "{}: settings or files have changed since; walked again, and their results replaced",
             counted(&again)
         ));
     }
     if !dropped.is_empty() {
-        sentences.push(format!(
+        warn(&format!(
             "{}: not in the plan any more; left out of ledger, table and page, and kept in {}",
             counted(&dropped),
             shown(&out.join(CASES))
         ));
     }
-    sentences
-}
-
-/// Counts and names cases: `2 finished cases (a; b)`, with at most three names.
-fn counted(names: &[&str]) -> String {
-    let all = names.len();
-    let more = if all > 3 { format!("; and {} more", all - 3) } else { String::new() };
-    let first = names[..all.min(3)].join("; ");
-    format!("{all} finished {} ({first}{more})", if all == 1 { "case" } else { "cases" })
 }

@@ -13,8 +13,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
 
 use super::prepared::{CASES, FailedCase, LINE, PROBLEM, PreparedCase};
@@ -30,7 +30,6 @@ use crate::run::shared_networks::SharedNetworks;
 use crate::run::{Exit, RunError, results};
 use voidwalk_core::store::{Folder, StoreError, format, make_folder};
 
-/// Problem of a case whose results are gone.
 pub(super) const LOST: &str = "its results were overwritten by another process; is another plan, or this \
     one changed, at work on the folder?";
 
@@ -83,15 +82,12 @@ impl Default for CaseCallbacks<'_> {
     }
 }
 
-/// Runner of the cases of a campaign.
 pub(super) struct CaseRunner<'a> {
     pub(crate) out: &'a Path,
     pub(crate) threads: usize,
     pub(crate) callbacks: &'a CaseCallbacks<'a>,
     pub(crate) checkpoint_interval: CheckpointInterval,
-    /// Networks, if cases with one seed may share them.
     pub(crate) networks: Option<SharedNetworks>,
-    /// Job and task of a cluster.
     pub(crate) job: Option<String>,
     /// Command in a case's `manifest.json` that started it.
     pub(crate) command: String,
@@ -111,22 +107,26 @@ impl CaseRunner<'_> {
         let tally = Tally::default();
         let mut look = LOOK.0;
         while !open.is_empty() {
-            let (before, told) = (open.len(), tally.waited());
+            let (before, told) = (open.len(), tally.locked().waits);
             self.pass(&open, &tally)?;
             // A case that this process finished and that has disappeared was overwritten, by another plan or
             // by a plan that was changed meanwhile.
             open.retain(|case| !self.is_done(case));
-            let lost =
-                open.iter().filter(|case| tally.has_finished(&case.planned.name) && self.is_lost(case));
-            lost.for_each(|case| tally.fail(self.callbacks, &case.planned.name, LOST.into()));
-            open.retain(|case| !tally.has_failed(&case.planned.name) && !self.is_done(case));
+            for case in &open {
+                let name = &case.planned.name;
+                if tally.locked().finished.contains(name) && self.is_lost(case) {
+                    tally.fail(self.callbacks, name, LOST.into());
+                }
+            }
+            let has_failed = |name: &str| tally.locked().failed.iter().any(|failed| failed.case == name);
+            open.retain(|case| !has_failed(&case.planned.name) && !self.is_done(case));
             if self.is_stopped() && !open.is_empty() {
                 return Err(RunError::Stopped(format!(
                     "progress saved; continue with the same command on {}",
                     shown(self.out)
                 )));
             }
-            if tally.waited() > told && open.len() == before {
+            if tally.locked().waits > told && open.len() == before {
                 let until = Instant::now() + look;
                 while Instant::now() < until && !self.is_stopped() {
                     std::thread::sleep(LOOK.0);
@@ -136,7 +136,7 @@ impl CaseRunner<'_> {
                 look = LOOK.0;
             }
         }
-        Ok(tally.failed.into_inner().unwrap_or_default())
+        Ok(std::mem::take(&mut tally.locked().failed))
     }
 
     /// True if a finished case stays missing: without locks across machines, another process may just be
@@ -180,7 +180,7 @@ impl CaseRunner<'_> {
                     Err(RunError::Store(StoreError::Held { .. })) => tally.wait(self.callbacks, name),
                     Err(problem) if problem.is_of_files() && tally.may_try_again(name) => {}
                     Err(problem) => tally.fail(self.callbacks, name, problem.to_string()),
-                    Ok(true) => drop(tally.finished.lock().map(|mut names| names.insert(name.clone()))),
+                    Ok(true) => drop(tally.locked().finished.insert(name.clone())),
                     Ok(false) => {}
                 }
             }
@@ -295,50 +295,45 @@ fn fault(panic: &(dyn std::any::Any + Send)) -> RunError {
     RunError::failed(format!("a fault of the program: {text}"))
 }
 
-/// Progress of this process so far.
 #[derive(Default)]
-struct Tally {
-    finished: Mutex<BTreeSet<String>>,
-    failed: Mutex<Vec<FailedCase>>,
-    waiting: Mutex<BTreeSet<String>>,
-    waits: AtomicUsize,
-    tries: Mutex<BTreeMap<String, u32>>,
+struct Tally(Mutex<Counts>);
+
+#[derive(Default)]
+struct Counts {
+    finished: BTreeSet<String>,
+    failed: Vec<FailedCase>,
+    waiting: BTreeSet<String>,
+    waits: usize,
+    tries: BTreeMap<String, u32>,
 }
 
 impl Tally {
-    fn has_finished(&self, name: &str) -> bool {
-        self.finished.lock().is_ok_and(|names| names.contains(name))
-    }
-
-    fn has_failed(&self, name: &str) -> bool {
-        self.failed.lock().is_ok_and(|all| all.iter().any(|failed| failed.case == name))
-    }
-
-    fn waited(&self) -> usize {
-        self.waits.load(Ordering::Relaxed)
+    fn locked(&self) -> MutexGuard<'_, Counts> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn fail(&self, callbacks: &CaseCallbacks, name: &str, problem: String) {
         (callbacks.on_case)(name, CaseEvent::Failed(&problem));
-        if let Ok(mut failed) = self.failed.lock() {
-            failed.push(FailedCase { case: name.to_owned(), problem });
-        }
+        self.locked().failed.push(FailedCase { case: name.to_owned(), problem });
     }
 
     /// True if results may be written again: without locks across machines, another process may have been
     /// replacing the same files. Finished walks are not repeated.
     fn may_try_again(&self, name: &str) -> bool {
-        self.waits.fetch_add(1, Ordering::Relaxed);
-        let Ok(mut tries) = self.tries.lock() else { return false };
-        let tries = tries.entry(name.to_owned()).or_default();
+        let mut counts = self.locked();
+        counts.waits += 1;
+        let tries = counts.tries.entry(name.to_owned()).or_default();
         *tries += 1;
         *tries <= TRIES
     }
 
     /// Reports once that another process works on the case.
     fn wait(&self, callbacks: &CaseCallbacks, name: &str) {
-        self.waits.fetch_add(1, Ordering::Relaxed);
-        if self.waiting.lock().is_ok_and(|mut names| names.insert(name.to_owned())) {
+        let mut counts = self.locked();
+        counts.waits += 1;
+        let is_first = counts.waiting.insert(name.to_owned());
+        drop(counts);
+        if is_first {
             (callbacks.on_case)(name, CaseEvent::Waiting);
         }
     }

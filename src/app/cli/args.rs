@@ -6,8 +6,8 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand};
 
 use super::options::{
-    AcceptArgs, OfBoundary, OfPacking, OfRules, OfSpecification, ResultArgs, SceneArgs, SettingArgs,
-    SettingOptions, WalkArgs, density, facets, lattice_size, length, schema_of, seed, threads, time,
+    AcceptArgs, BOUNDARY, DESIGN, PACK, RULES, ResultArgs, SceneArgs, SettingArgs, SettingOptions, WalkArgs,
+    density, facets, lattice_size, length, schema_of, seed, threads, time,
 };
 use crate::cases::CasePart;
 use crate::run::machine::bytes_from_words;
@@ -97,7 +97,6 @@ pub(crate) enum Command {
     },
 }
 
-/// Two soils, or many samples and filters.
 #[derive(Args)]
 pub(crate) struct RulesArgs {
     /// The base: a sieve table, as base.sieve in a scene; several soils are the curves of an envelope. With
@@ -114,9 +113,8 @@ pub(crate) struct RulesArgs {
     /// With --each or several filters: write the table into this new file
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) csv: Option<PathBuf>,
-    /// Settings that the sheets do not state.
     #[command(flatten)]
-    pub(crate) settings: SettingOptions<OfRules>,
+    pub(crate) settings: SettingOptions<RULES>,
     /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub(crate) as_given: bool,
@@ -125,7 +123,6 @@ pub(crate) struct RulesArgs {
     pub(crate) json: bool,
 }
 
-/// Soils to read.
 #[derive(Args)]
 pub(crate) struct SoilArgs {
     /// Sieve tables: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils
@@ -154,18 +151,14 @@ pub(crate) struct SoilArgs {
     pub(crate) json: bool,
 }
 
-/// Scene to walk, and options of the run.
 #[derive(Args)]
 pub(crate) struct RunArgs {
-    /// Scene to walk.
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
-    /// Folder of the results, and options of the walk.
     #[command(flatten)]
     pub(crate) results: ResultArgs,
 }
 
-/// Options that turn two sieve tables into a scene.
 #[derive(Args)]
 pub(crate) struct TableArgs {
     /// Density of the filter: loose, medium (or intermediate) or dense. The constrictions come from the
@@ -184,12 +177,10 @@ pub(crate) struct TableArgs {
     /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub(crate) as_given: bool,
-    /// Settings of the scene, and options of preparing it.
     #[command(flatten)]
     pub(crate) set: SettingArgs,
 }
 
-/// Soils to judge, and where the answer goes.
 #[derive(Args)]
 pub(crate) struct JudgeArgs {
     /// The base soil: CSV, .xlsx, .ods or AGS4; FILE#NAME for one of several soils. With --each also a
@@ -209,15 +200,12 @@ pub(crate) struct JudgeArgs {
     /// With --each: walk the three samples that govern each filter, and no other
     #[arg(long, requires = "each", conflicts_with = "quick")]
     pub(crate) governing: bool,
-    /// Options that turn the soils into a scene.
     #[command(flatten)]
     pub(crate) tables: TableArgs,
-    /// Folder of the results, and options of the walk.
     #[command(flatten)]
     pub(crate) results: ResultArgs,
 }
 
-/// Port and folder of the page, and options of its jobs.
 #[cfg(feature = "serve")]
 #[derive(Args)]
 pub(crate) struct ServeArgs {
@@ -240,7 +228,6 @@ pub(crate) struct ServeArgs {
     pub(crate) threads: Option<usize>,
 }
 
-/// Run to continue, and options of the rest of it.
 #[derive(Args)]
 pub(crate) struct ResumeArgs {
     /// The run's folder
@@ -249,10 +236,8 @@ pub(crate) struct ResumeArgs {
     /// result is the same [default: 80 % of what is available]
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub(crate) memory: Option<u64>,
-    /// Verdicts that are not accepted.
     #[command(flatten)]
     pub(crate) accept: AcceptArgs,
-    /// Options of the walk.
     #[command(flatten)]
     pub(crate) walk: WalkArgs,
     /// Print JSON
@@ -260,7 +245,6 @@ pub(crate) struct ResumeArgs {
     pub(crate) json: bool,
 }
 
-/// Base to specify a filter for, and where the specification goes.
 #[derive(Args)]
 pub(crate) struct DesignArgs {
     /// The base: sieve tables (FILE#NAME for one of several soils); several soils are the curves of an
@@ -278,9 +262,8 @@ pub(crate) struct DesignArgs {
     /// Sieves at which the limits are stated: us (ASTM E11) or iso (mm)
     #[arg(long, value_name = "SERIES", default_value = "us")]
     pub(crate) sieves: SieveSeries,
-    /// Settings of the base and of the page.
     #[command(flatten)]
-    pub(crate) settings: SettingOptions<OfSpecification>,
+    pub(crate) settings: SettingOptions<DESIGN>,
     /// Folder for the results [default: voidwalk-specification; with --each voidwalk-designs]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -295,7 +278,6 @@ pub(crate) struct DesignArgs {
     pub(crate) quiet: bool,
 }
 
-/// Base, and shape of the filter.
 #[derive(Args)]
 pub(crate) struct BoundaryArgs {
     /// The base: a sieve table, as base.sieve in a scene (FILE#NAME for one of several soils) [default: from
@@ -324,9 +306,8 @@ pub(crate) struct BoundaryArgs {
     /// Accept base and filter as named, even if they look exchanged
     #[arg(long)]
     pub(crate) as_given: bool,
-    /// Settings of the walks.
     #[command(flatten)]
-    pub(crate) settings: SettingOptions<OfBoundary>,
+    pub(crate) settings: SettingOptions<BOUNDARY>,
     /// Folder for the results
     #[arg(long, value_name = "DIR", default_value = "voidwalk-boundary")]
     pub(crate) out: PathBuf,
@@ -350,7 +331,6 @@ pub(crate) struct BoundaryArgs {
     pub(crate) quiet: bool,
 }
 
-/// Plan, and where its results go.
 #[derive(Args)]
 pub(crate) struct CampaignArgs {
     /// Plan (TOML): crossed factors, and single cases
@@ -389,20 +369,17 @@ pub(crate) struct CampaignArgs {
     /// result is the same [default: 80 % of what is available]
     #[arg(long, value_name = "SIZE", value_parser = bytes_from_words, allow_hyphen_values = true)]
     pub(crate) memory: Option<u64>,
-    /// Options of the walk.
     #[command(flatten)]
     pub(crate) walk: WalkArgs,
 }
 
-/// Filter, and where its packing goes.
 #[derive(Args)]
 pub(crate) struct PackArgs {
     /// The filter (TOML): [filter] with cu or sieve, d0_mm, and density or friction; optionally [packing]. A
     /// scene works too
     pub(crate) filter: PathBuf,
-    /// Its settings.
     #[command(flatten)]
-    pub(crate) settings: SettingOptions<OfPacking>,
+    pub(crate) settings: SettingOptions<PACK>,
     /// Folder for the packing: new, empty, or with a stopped packing, which continues [default: one of its
     /// own in voidwalk-packings]
     #[arg(long, value_name = "DIR")]
@@ -424,7 +401,6 @@ pub(crate) struct PackArgs {
     pub(crate) quiet: bool,
 }
 
-/// Packing, and how its voids are separated.
 #[derive(Args)]
 pub(crate) struct ConstrictionsArgs {
     /// Grains: CSV (x_mm,y_mm,z_mm,diameter_mm after `# cell_mm = Lx, Ly, Lz` or `# cell = none`; or points
@@ -455,7 +431,6 @@ pub(crate) struct ConstrictionsArgs {
     pub(crate) json: bool,
 }
 
-/// Sizes and number of the lattices.
 #[derive(Args)]
 pub(crate) struct PercolationArgs {
     /// Lattice sizes: voids along each side, or along x, y and z, such as 40x40x60

@@ -1,10 +1,9 @@
 //! `voidwalk check`: a forecast of a run, or of the cases of a campaign's plan.
 
-use std::fmt::Write;
 use std::path::Path;
 
 use super::options::{SceneArgs, SettingArgs};
-use super::print::{answer, counted, plain, to_copy};
+use super::print::{answer, counted, labelled, to_copy};
 use crate::cases::{self, CaseOptions, CasePlan, PlanCheck};
 use crate::run::cost::duration;
 use crate::run::{self, Check, PackingCheck, PrepareOptions, RunError};
@@ -23,7 +22,6 @@ impl SettingArgs {
 }
 
 impl SceneArgs {
-    /// Scene that the arguments name, with their settings applied.
     pub(crate) fn scene(&self) -> Result<Scene, RunError> {
         let settings = &self.set.settings.assignments;
         Ok(match &self.scene {
@@ -47,19 +45,15 @@ fn words(check: &Check) -> String {
     let in_unit = SizeUnit::of(check.inputs.scale_free, false);
     let unit = in_unit.short();
     let mut text = String::new();
-    // Writing to a string cannot fail.
-    let mut line = |name: &str, value: String| {
-        let _ = writeln!(text, "{name:<22}{}", plain(&value));
-    };
+    let mut line = |name: &str, value: String| text += &labelled(name, &value);
     line("filter", format!("{}, curve {}", filter.name, filter.curve_name));
     let [d0, d15, d85] = [filter.d0_mm, filter.d15_mm, filter.d85_mm];
     line("  sizes", format!("D0 {d0:.4}, D15 {d15:.4}, D85 {d85:.4} {unit}"));
     let at = |point: Option<&[f64; 2]>| point.map_or(f64::NAN, |[size, _]| *size);
     let (dc0, dc100) = (at(filter.constrictions.first()), at(filter.constrictions.last()));
     line("  constrictions", format!("Dc0 {dc0:.4}, Cu_CSD {:.3}, to {dc100:.4} {unit}", filter.cu_csd));
-    if let Some(packing) = &check.packing {
-        line("  packing", packing_words(packing));
-    }
+    let packing = check.packing.as_ref().map(packing_words);
+    packing.iter().for_each(|[packing, _]| line("  packing", packing.clone()));
     line("base", base.name.clone());
     let [d0, d85, d95, d100] = [base.d0_mm, base.d85_mm, base.d95_mm, base.d100_mm];
     let grading = check.inputs.base_size().map_or(String::new(), |base| format!(", {}", grading(&base)));
@@ -98,43 +92,32 @@ fn words(check: &Check) -> String {
     let (runs, increments) = (check.runs_to_walk, check.increments);
     line("to walk", format!("{runs} runs, at most {increments} increments of insertion each"));
     line("memory", check.memory.clone());
-    if let Some(packing) = &check.packing {
-        line("time to pack", packing_time(packing));
-    }
+    packing.iter().for_each(|[_, time]| line("time to pack", time.clone()));
     line("time to walk", format!("about {} of one core, a rough guess", duration(check.core_seconds)));
-    for part in &check.left_out {
-        line("left out", left_out(part, unit));
-    }
-    for note in &check.notes {
-        line("note", sentence(note, in_unit));
-    }
+    check.left_out.iter().for_each(|part| line("left out", left_out(part, unit)));
+    check.notes.iter().for_each(|note| line("note", sentence(note, in_unit)));
     let names: Vec<&str> = shipped().iter().map(|s| s.name.as_str()).collect();
     line("shipped curves", names.join(", "));
     text
 }
 
-fn packing_words(packing: &PackingCheck) -> String {
+/// Words for a packing and for the time that it takes.
+fn packing_words(packing: &PackingCheck) -> [String; 2] {
     let (grains, folder) = (whole(packing.grains), packing.folder.display());
-    match packing.is_made {
-        true => format!("{grains} grains, made already: {folder}"),
-        false => format!(
-            "{grains} grains, still to be made, in {folder}; until then constrictions and grains per void \
-             are guesses"
-        ),
+    if packing.is_made {
+        let made = format!("{grains} grains, made already: {folder}");
+        return [made, "none: the packing is made already".into()];
     }
-}
-
-fn packing_time(packing: &PackingCheck) -> String {
     let (time, steps) = (duration(packing.core_seconds), whole(packing.steps));
-    match packing.is_made {
-        true => "none: the packing is made already".into(),
-        false => format!("about {time} of one core, a rough guess: some {steps} steps, once"),
-    }
+    let guesses = "until then constrictions and grains per void are guesses";
+    [
+        format!("{grains} grains, still to be made, in {folder}; {guesses}"),
+        format!("about {time} of one core, a rough guess: some {steps} steps, once"),
+    ]
 }
 
 const LISTED: usize = 20;
 
-/// Prints a forecast of the cases of a plan, and the mistakes in each.
 fn check_plan(path: &Path, set: &SettingArgs) -> Result<(), RunError> {
     if !set.settings.assignments.is_empty() {
         return Err(RunError::refused(
@@ -153,16 +136,11 @@ fn check_plan(path: &Path, set: &SettingArgs) -> Result<(), RunError> {
 
 fn plan_words(check: &PlanCheck) -> String {
     let mut text = String::new();
-    // Writing to a string cannot fail.
-    let mut line = |name: &str, value: String| {
-        let _ = writeln!(text, "{name:<22}{}", plain(&value));
-    };
+    let mut line = |name: &str, value: String| text += &labelled(name, &value);
     let title = if check.title.is_empty() { String::new() } else { format!(": {}", check.title) };
     line("plan", format!("{}{title}", check.plan));
-    let factors = match check.factors.is_empty() {
-        true => String::new(),
-        false => format!(", factors {}", check.factors.join(", ")),
-    };
+    let factors = check.factors.join(", ");
+    let factors = if factors.is_empty() { factors } else { format!(", factors {factors}") };
     line("cases", format!("{}{factors}", check.cases.len()));
     for case in check.cases.iter().take(LISTED) {
         let forecast = match case.problem.is_empty() {
@@ -205,8 +183,7 @@ fn plan_words(check: &PlanCheck) -> String {
         "time to walk",
         format!("about {} of one core for all, a rough guess", duration(check.core_seconds)),
     );
-    let wrong = check.cases.iter().filter(|case| !case.problem.is_empty()).count();
-    if wrong == 0 {
+    if check.cases.iter().all(|case| case.problem.is_empty()) {
         line("next", format!("voidwalk campaign {}", to_copy(&check.plan)));
     }
     text

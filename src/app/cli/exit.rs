@@ -17,7 +17,6 @@ pub(crate) const EXIT_CODES: [(u8, &str); 5] = [
     (Exit::NotAccepted.code(), "done and written, but the verdict is one that `--fail-on` does not accept"),
 ];
 
-/// Table of exit codes in words, one line per code.
 pub(crate) fn in_words() -> String {
     let lines = EXIT_CODES.map(|(code, meaning)| format!("  {code}  {meaning}\n"));
     format!("Exit codes:\n{}", lines.concat())
@@ -32,7 +31,6 @@ pub(crate) enum FailOn {
     Continuing,
 }
 
-/// Answer of model and practice for a case.
 #[derive(Clone, Copy)]
 pub(crate) struct JudgedAnswer {
     pub(crate) model: Verdict,
@@ -41,7 +39,6 @@ pub(crate) struct JudgedAnswer {
 }
 
 impl FailOn {
-    /// Reason why an answer is not accepted, by the worse of practice and model; `None` if it is.
     fn refused(self, answer: JudgedAnswer) -> Option<String> {
         match answer.practice.filter(|class| self.refuses(*class)) {
             Some(Verdict::Undecided) => Some("practice is not known".into()),

@@ -1,7 +1,6 @@
 //! Commands to type: two examples in the help of every command, a short `-h`, the full `--help`, and the
 //! first words for a user who types only `voidwalk`.
 
-use std::fmt::Write;
 use std::sync::LazyLock;
 
 use clap::{Arg, Command, CommandFactory};
@@ -9,11 +8,8 @@ use clap::{Arg, Command, CommandFactory};
 use super::args::Arguments;
 use super::exit;
 
-/// Command line, and its effect.
-type Example = [&'static str; 2];
-
 /// Two examples for every command; the command is the second word of a line.
-const EXAMPLES: [Example; 38] = [
+const EXAMPLES: [[&str; 2]; 38] = [
     ["voidwalk run", "the built-in scene"],
     ["voidwalk run dam.toml --set replicates=30 --out dam", "your own scene, with one setting changed"],
     ["voidwalk judge base.csv filter.csv --quick", "a first look: five replicates, loose and dense"],
@@ -54,7 +50,6 @@ const EXAMPLES: [Example; 38] = [
     ["voidwalk man ~/.local/share/man/man1", "where `man voidwalk-run` finds them"],
 ];
 
-/// Text for a user who types only `voidwalk`.
 pub(crate) const FIRST_WORDS: &str = "\
 Will this filter hold this soil? Type first, with two sieve tables (CSV, .xlsx, .ods, AGS4), the base before
 the filter:
@@ -71,13 +66,11 @@ Without tables at hand:
 All commands: voidwalk help. One of them, with examples: voidwalk judge --help
 ";
 
-/// Version, with the commit from which the program was built.
 static VERSION: LazyLock<String> = LazyLock::new(|| {
     let number = env!("CARGO_PKG_VERSION");
     option_env!("VOIDWALK_COMMIT").map_or_else(|| number.into(), |commit| format!("{number} ({commit})"))
 });
 
-/// Arguments of the program, with examples and the version.
 pub(crate) fn command() -> Command {
     let command = Arguments::command().version(VERSION.as_str()).after_help(exit::in_words());
     let template = format!(
@@ -90,7 +83,7 @@ pub(crate) fn command() -> Command {
     })
 }
 
-fn examples_of(command: &str) -> impl Iterator<Item = &'static Example> {
+fn examples_of(command: &str) -> impl Iterator<Item = &'static [&'static str; 2]> {
     EXAMPLES.iter().filter(move |[line, _]| line.split(' ').nth(1) == Some(command))
 }
 
@@ -115,7 +108,6 @@ fn short_and_long(arg: Arg) -> Arg {
     }
 }
 
-/// Listed commands, grouped by the user's data.
 const GROUPS: [(&str, &[&str]); 4] = [
     ("To begin", &["examples", "serve", "soil"]),
     ("Two sieve tables", &["rules", "judge", "design"]),
@@ -123,29 +115,26 @@ const GROUPS: [(&str, &[&str]); 4] = [
     ("Many cases, and results", &["campaign", "boundary", "report", "export"]),
 ];
 
-/// Commands shown by name only.
 const MORE: [&str; 5] = ["pack", "constrictions", "percolation", "completions", "man"];
 
 fn groups_in_words(command: &Command) -> String {
     let is_there = |name: &&&str| command.find_subcommand(name).is_some();
     let width = GROUPS.iter().flat_map(|(_, names)| names.iter()).map(|name| name.len()).max().unwrap_or(0);
     let mut text = String::new();
-    // Writing to a string cannot fail.
     for (heading, names) in GROUPS {
-        let _ = writeln!(text, "{heading}:");
+        text += &format!("{heading}:\n");
         for name in names.iter().filter(is_there) {
             let about = command.find_subcommand(name).and_then(Command::get_about);
             let about = about.map(ToString::to_string).unwrap_or_default();
             // First part of the description; the rest is in the command's own help.
             let first = about.split(": ").next().unwrap_or_default();
-            let _ = writeln!(text, "  {name:<width$}  {first}");
+            text += &format!("  {name:<width$}  {first}\n");
         }
         text.push('\n');
     }
     let more: Vec<&str> = MORE.iter().filter(is_there).copied().collect();
-    let _ = writeln!(text, "More commands: {}", more.join(", "));
-    let _ = writeln!(text, "voidwalk COMMAND --help explains one of them, with examples.");
-    text
+    text += &format!("More commands: {}\n", more.join(", "));
+    text + "voidwalk COMMAND --help explains one of them, with examples.\n"
 }
 
 #[cfg(test)]
@@ -208,10 +197,8 @@ mod tests {
         let help = command().render_help().to_string();
         for (heading, names) in GROUPS {
             let rows = help.split_once(&format!("\n{heading}:\n")).unwrap().1.split("\n\n").next().unwrap();
-            assert_eq!(
-                rows.lines().count(),
-                names.iter().filter(|n| help.contains(&format!("\n  {n} "))).count()
-            );
+            let is_there = |name: &&&str| help.contains(&format!("\n  {name} "));
+            assert_eq!(rows.lines().count(), names.iter().filter(is_there).count());
         }
         assert!(help.contains("\nMore commands: pack") && help.contains("\nOptions:\n  -h, --help"));
         assert!(help.lines().all(|line| line.chars().count() <= 100), "{help}");

@@ -1,7 +1,7 @@
 //! Commands `voidwalk init` and `examples`: the built-in scene, the plan of a campaign and example files to
 //! start from; and the JSON Schemas of the files that are written, made from the types that write them.
 
-use super::print::{as_it_is, json, shown, to_copy, to_stdout};
+use super::print::{as_it_is, shown, to_copy, to_stdout};
 use crate::cases::{CasePlan, PlanCheck};
 use crate::outcome::Recorded;
 use crate::outcome::boundary::{Boundaries, WalkRow};
@@ -16,7 +16,6 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema};
 use serde::Serialize;
 use serde_json::{Value, json};
-use std::fmt::Write;
 use std::path::Path;
 use voidwalk_core::constrictions::Summary;
 use voidwalk_core::store::format;
@@ -25,7 +24,6 @@ use voidwalk_practice::design::Specification;
 use voidwalk_practice::{DesignedSamples, PairRules};
 use voidwalk_sheets::SoilSummary;
 
-/// Writes the built-in scene or a plan, or prints the settings or a JSON Schema.
 pub(crate) fn init(
     path: Option<&Path>,
     plan: bool,
@@ -37,7 +35,7 @@ pub(crate) fn init(
         return Ok(());
     }
     if as_json {
-        as_it_is(&json(format::SETTINGS, &Scene::reference())?);
+        as_it_is(&format::SETTINGS.json(&Scene::reference())?);
         return Ok(());
     }
     let Some(path) = path else {
@@ -66,26 +64,17 @@ const TO_TRY: [[&str; 2]; 9] = [
     ["jupyter notebook notebook.ipynb", "with the Python packages voidwalk and matplotlib"],
 ];
 
-/// Writes the examples and prints commands to try.
 pub(crate) fn examples(folder: &Path) -> Result<(), RunError> {
     write_examples(folder)?;
-    let mut text = String::new();
-    for file in EXAMPLE_FILES {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{:<18}{}", file.name, file.what);
-    }
-    let _ = writeln!(text, "\nTo try:\n\n  cd {}", to_copy(folder));
-    for [line, what] in TO_TRY {
-        let _ = writeln!(text, "  {line:<68}  {what}");
-    }
-    to_stdout(&text);
+    let files = EXAMPLE_FILES.iter().map(|file| format!("{:<18}{}\n", file.name, file.what));
+    let lines = TO_TRY.map(|[line, what]| format!("  {line:<68}  {what}\n"));
+    let folder = to_copy(folder);
+    to_stdout(&format!("{}\nTo try:\n\n  cd {folder}\n{}", files.collect::<String>(), lines.concat()));
     Ok(())
 }
 
-/// Function that makes the schema of a type.
 type Made = fn() -> Schema;
 
-/// Contents of each format after its beginning.
 const CONTENTS: &[(Format, Made)] = &[
     (format::OUTCOME, schema_of::<Outcome>),
     (format::MANIFEST, schema_of::<Manifest>),
@@ -136,7 +125,6 @@ struct Tables {
 #[derive(Serialize, JsonSchema)]
 struct Nothing {}
 
-/// Schema of a type as it is written.
 fn schema_of<T: JsonSchema>() -> Schema {
     let schema = SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<T>();
     let mut schema = schema.to_value();
@@ -158,7 +146,6 @@ fn without_examples(schema: &mut Value) {
     }
 }
 
-/// Schema of a file, including its beginning.
 fn headed(form: Format, content: Schema) -> Value {
     let mut schema = content.to_value();
     let about = schema.as_object_mut().expect("a schema is a map");

@@ -15,7 +15,6 @@ use voidwalk_core::schema::KeyInfo;
 /// Maximum number of files in a folder that are searched for a name similar to a missing one.
 const FILES: usize = 1000;
 
-/// Adds a command to type instead to an error of the command line.
 pub(crate) fn explained(mut error: clap::Error, command: &Command, words: &[OsString]) -> clap::Error {
     let words: Vec<String> = words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let text = |kind| match error.get(kind) {
@@ -50,10 +49,8 @@ fn instead_of_command(name: &str, command: &Command) -> Option<String> {
     let known = command.get_subcommands().map(Command::get_name);
     let (distance, nearest) = known.map(|known| (damerau_levenshtein(known, name), known)).min()?;
     let like = distance <= 1.max(name.chars().count() / 3);
-    Some(match like {
-        true => format!("did you mean `voidwalk {nearest}`?"),
-        false => "all commands: voidwalk help; to begin with, type `voidwalk` alone".into(),
-    })
+    let all = "all commands: voidwalk help; to begin with, type `voidwalk` alone";
+    Some(if like { format!("did you mean `voidwalk {nearest}`?") } else { all.into() })
 }
 
 const JUDGE: &str = "two sieve tables are judged by: voidwalk judge BASE FILTER (the base first)";
@@ -70,21 +67,15 @@ fn instead_of_argument(name: &str, command: &Command, words: &[String]) -> Optio
         let takes_settings = is_walked && used.get_arguments().any(|arg| arg.get_long() == Some("set"));
         return takes_settings.then(|| as_setting(name, words)).flatten();
     }
-    if let Some(quoted) = unquoted(words) {
-        return Some(quoted);
-    }
-    if walks {
-        return two_tables(words);
-    }
-    None
+    unquoted(words).or_else(|| if walks { two_tables(words) } else { None })
 }
 
 fn as_setting(flag: &str, words: &[String]) -> Option<String> {
     let name = flag.trim_start_matches('-').replace('-', "_");
     let known: Vec<String> = Scene::keys().iter().map(KeyInfo::full_name).collect();
     let last = |known: &String| known.rsplit('.').next().unwrap_or_default().to_owned();
-    let mut meant: Vec<&String> =
-        known.iter().filter(|known| **known == name || last(known) == name).collect();
+    let is_meant = |known: &&String| **known == name || last(known) == name;
+    let mut meant: Vec<&String> = known.iter().filter(is_meant).collect();
     if meant.is_empty() {
         let distance = |known: &&String| damerau_levenshtein(&last(known), &name);
         let nearest = known.iter().min_by_key(distance)?;
@@ -104,7 +95,6 @@ fn as_setting(flag: &str, words: &[String]) -> Option<String> {
     Some(format!("a setting of the scene: {}", set.join(" or ")))
 }
 
-/// Hint for two tables that are given instead of a scene.
 fn two_tables(words: &[String]) -> Option<String> {
     let tables: Vec<&String> = words.iter().skip(2).filter(|word| is_table(word)).collect();
     match tables[..] {
@@ -153,7 +143,6 @@ fn named(word: &str) -> PathBuf {
     PathBuf::from(path.split('#').next().unwrap_or_default())
 }
 
-/// File with a name similar to a missing one, in the same folder.
 fn misspelt_file(words: &[String]) -> Option<String> {
     let written = |word: &String| ["--out", "--figure", "--packings"].contains(&word.as_str());
     let pairs = words.iter().zip(words.iter().skip(1)).filter(|(before, _)| !written(before));
@@ -207,13 +196,10 @@ mod tests {
         assert_eq!(hint("rnu"), "did you mean `voidwalk run`?");
         assert_eq!(hint("jugde"), "did you mean `voidwalk judge`?");
         assert_eq!(hint("dam.toml"), "to walk a scene: voidwalk run dam.toml");
-        assert!(
-            hint("sand.csv").contains("voidwalk judge BASE FILTER")
-                && hint("frobnicate").contains("voidwalk help")
-        );
-        assert!(
-            two_tables(&words("voidwalk run a.csv b.xlsx#One")).unwrap().contains("judge a.csv 'b.xlsx#One'")
-        );
-        assert_eq!(two_tables(&words("voidwalk run a.csv")), None);
+        assert!(hint("sand.csv").contains("voidwalk judge BASE FILTER"));
+        assert!(hint("frobnicate").contains("voidwalk help"));
+        let tables = |line: &str| two_tables(&words(line));
+        assert!(tables("voidwalk run a.csv b.xlsx#One").unwrap().contains("judge a.csv 'b.xlsx#One'"));
+        assert_eq!(tables("voidwalk run a.csv"), None);
     }
 }

@@ -102,7 +102,6 @@ fn command(arguments: Arguments) -> Result<(), RunError> {
     }
 }
 
-/// Reports on stderr why a command ended early, and returns its exit code.
 fn told(done: Result<(), RunError>, words: &[OsString]) -> u8 {
     let Err(error) = done else { return 0 };
     let exit = error.exit();

@@ -1,8 +1,6 @@
 //! Options shared by several commands. Settings of a scene (`--joint-mm` is `filter.joint_mm`) have their
-//! help, allowed values and errors from the table of settings. Other options are the scene, its walk and the
-//! folder of its results. Values are parsed as a user writes them; errors state the expected form.
+//! help, allowed values and errors from the table of settings.
 
-use std::marker::PhantomData;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -20,60 +18,65 @@ use voidwalk_core::schema::length::{LENGTHS, millimetres};
 use voidwalk_core::schema::{KeyInfo, Value, setting_name};
 use voidwalk_core::store::format::FORMATS;
 
-/// Settings of a command.
-pub(crate) trait CommandSettings {
-    /// Full names of the settings that have an option of their own.
-    const OPTIONS: &'static [&'static str];
-
-    /// Help of `--set`; `None` for a command without it.
-    const SET: Option<&'static str>;
+/// Settings of a command: full names of those with an option of their own, and the help of `--set`, if the
+/// command has it.
+pub(crate) struct CommandSettings {
+    pub(crate) options: &'static [&'static str],
+    set: Option<&'static str>,
 }
 
-macro_rules! settings {
-    ($($(#[$doc:meta])* $command:ident: $options:expr, $set:expr;)+) => { $(
-        $(#[$doc])*
-        pub enum $command {}
+/// Positions of commands in [`SETTINGS`]; `run` stands for `check` and `judge`, too.
+pub(crate) const RUN: usize = 0;
+pub(crate) const BOUNDARY: usize = 1;
+pub(crate) const PACK: usize = 2;
+pub(crate) const DESIGN: usize = 3;
+pub(crate) const RULES: usize = 4;
 
-        impl CommandSettings for $command {
-            const OPTIONS: &'static [&'static str] = &$options;
-            const SET: Option<&'static str> = $set;
-        }
-    )+ };
-}
+pub(crate) const SETTINGS: [CommandSettings; 5] = [
+    CommandSettings {
+        options: &[
+            "seed",
+            "stop.target_error_pp",
+            "stop.decide_percent",
+            "base.dispersive",
+            "filter.joint_mm",
+            "about.units",
+        ],
+        set: Some("Replace a setting, for example --set base.cu=3; can be repeated"),
+    },
+    CommandSettings {
+        options: &["seed", "about.units"],
+        set: Some(
+            "Replace a setting, for example --set filter.grains_per_void=0.43 or --set replicates=20; can be \
+             repeated",
+        ),
+    },
+    CommandSettings {
+        options: &["packing.seed"],
+        set: Some("Replace a setting, for example --set packing.grains=20000; can be repeated"),
+    },
+    CommandSettings {
+        options: &["about.units", "base.dispersive"],
+        set: Some("State a fact on the page, for example --set about.project=\"Main dam\"; can be repeated"),
+    },
+    CommandSettings { options: &["base.dispersive", "filter.joint_mm"], set: None },
+];
 
-settings! {
-    /// Settings of `run`, `check` and `judge`.
-    OfScene: ["seed", "stop.target_error_pp", "stop.decide_percent", "base.dispersive", "filter.joint_mm",
-        "about.units"],
-        Some("Replace a setting, for example --set base.cu=3; can be repeated");
-    /// Settings of `boundary`.
-    OfBoundary: ["seed", "about.units"],
-        Some("Replace a setting, for example --set filter.grains_per_void=0.43 or --set replicates=20; can \
-              be repeated");
-    /// Settings of `pack`.
-    OfPacking: ["packing.seed"],
-        Some("Replace a setting, for example --set packing.grains=20000; can be repeated");
-    /// Settings of `design`.
-    OfSpecification: ["about.units", "base.dispersive"],
-        Some("State a fact on the page, for example --set about.project=\"Main dam\"; can be repeated");
-    /// Settings of `rules`.
-    OfRules: ["base.dispersive", "filter.joint_mm"], None;
-}
-
-/// Settings given on a command line, by `--set` and by options of their own.
-pub(crate) struct SettingOptions<C> {
+pub(crate) struct SettingOptions<const COMMAND: usize> {
     /// Assignments, each as `KEY=VALUE`.
     pub(crate) assignments: Vec<String>,
-    command: PhantomData<C>,
 }
 
-impl<C: CommandSettings> Args for SettingOptions<C> {
+impl<const COMMAND: usize> Args for SettingOptions<COMMAND> {
     fn augment_args(command: Command) -> Command {
-        let set = C::SET.map(|help| {
+        let CommandSettings { options, set } = &SETTINGS[COMMAND];
+        let set = set.map(|help| {
             let set = Arg::new(SET).long(SET).value_name("KEY=VALUE").action(ArgAction::Append);
             set.value_parser(assignment).help(help)
         });
-        command.args(set).args(keys::<C>().map(option))
+        let all = Scene::keys();
+        let key = |name: &&str| all.iter().find(|key| key.full_name() == *name).cloned();
+        command.args(set).args(options.iter().filter_map(key).map(option))
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -81,12 +84,13 @@ impl<C: CommandSettings> Args for SettingOptions<C> {
     }
 }
 
-impl<C: CommandSettings> FromArgMatches for SettingOptions<C> {
+impl<const COMMAND: usize> FromArgMatches for SettingOptions<COMMAND> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let set = C::SET.and_then(|_| matches.get_many::<String>(SET));
+        let CommandSettings { options, set } = &SETTINGS[COMMAND];
+        let set = set.and_then(|_| matches.get_many::<String>(SET));
         let set: Vec<String> = set.into_iter().flatten().cloned().collect();
         let mut assignments = set.clone();
-        for key in C::OPTIONS {
+        for key in *options {
             let Some(value) = matches.get_one::<String>(key) else { continue };
             let is_this = |set: &&String| setting_name(set) == *key;
             if let Some(twice) = set.iter().find(is_this) {
@@ -96,7 +100,7 @@ impl<C: CommandSettings> FromArgMatches for SettingOptions<C> {
             }
             assignments.push(format!("{key}={value}"));
         }
-        Ok(Self { assignments, command: PhantomData })
+        Ok(Self { assignments })
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
@@ -107,14 +111,8 @@ impl<C: CommandSettings> FromArgMatches for SettingOptions<C> {
 
 pub(super) const SET: &str = "set";
 
-/// Name of the option of a setting, without its dashes.
 fn option_name(key: &str) -> String {
     key.rsplit('.').next().unwrap_or_default().replace('_', "-")
-}
-
-fn keys<C: CommandSettings>() -> impl Iterator<Item = KeyInfo> {
-    let all = Scene::keys();
-    C::OPTIONS.iter().filter_map(move |name| all.iter().find(|key| key.full_name() == *name).cloned())
 }
 
 fn option(key: KeyInfo) -> Arg {
@@ -141,7 +139,6 @@ fn parser(key: KeyInfo) -> ValueParser {
     NonEmptyStringValueParser::new().try_map(checked).into()
 }
 
-/// Options of a walk.
 #[derive(Args)]
 pub(crate) struct WalkArgs {
     /// Worker threads; the result is the same for any number [default: one per core]
@@ -156,7 +153,6 @@ pub(crate) struct WalkArgs {
     pub(crate) quiet: bool,
 }
 
-/// Verdicts that the caller does not accept.
 #[derive(Args)]
 pub(crate) struct AcceptArgs {
     /// Exit with code 4 if the worse of practice and model is at least this bad: some or continuing erosion.
@@ -166,7 +162,6 @@ pub(crate) struct AcceptArgs {
     pub(crate) fail_on: Option<FailOn>,
 }
 
-/// Folder of a run's results, and options of the walk.
 #[derive(Args)]
 pub(crate) struct ResultArgs {
     /// Folder for the results: new, empty, or made by voidwalk [default: the first free of voidwalk-run,
@@ -180,31 +175,25 @@ pub(crate) struct ResultArgs {
     #[cfg(feature = "xlsx")]
     #[arg(long)]
     pub(crate) xlsx: bool,
-    /// Verdicts that are not accepted.
     #[command(flatten)]
     pub(crate) accept: AcceptArgs,
-    /// Options of the walk.
     #[command(flatten)]
     pub(crate) walk: WalkArgs,
 }
 
-/// Scene to use.
 #[derive(Args)]
 pub(crate) struct SceneArgs {
     /// Scene (TOML), for check also the plan of a campaign [default: the built-in scene, a loose filter of Cu
     /// 1.5 and a base of Cu 1.5 at Dc5]
     pub(crate) scene: Option<PathBuf>,
-    /// Settings of the scene, and options of preparing it.
     #[command(flatten)]
     pub(crate) set: SettingArgs,
 }
 
-/// Settings of a scene, and options of preparing it.
 #[derive(Args)]
 pub(crate) struct SettingArgs {
-    /// Settings of the scene.
     #[command(flatten)]
-    pub(crate) settings: SettingOptions<OfScene>,
+    pub(crate) settings: SettingOptions<RUN>,
     /// Folder that keeps packings, so that each is made once
     #[arg(long, value_name = "DIR", default_value = "voidwalk-packings")]
     pub(crate) packings: PathBuf,
@@ -217,7 +206,6 @@ pub(crate) struct SettingArgs {
     pub(crate) json: bool,
 }
 
-/// Parses a setting and its value.
 fn assignment(text: &str) -> Result<String, String> {
     match text.split_once('=') {
         Some((name, _)) if !name.trim().is_empty() => Ok(text.to_owned()),
@@ -234,7 +222,6 @@ pub(super) fn density(text: &str) -> Result<Density, String> {
     })
 }
 
-/// Words for the facets between voids that are counted.
 pub(super) const FACETS: [(&str, Facets); 2] = [("all", Facets::All), ("on-both-hulls", Facets::OnBothHulls)];
 
 pub(super) fn facets(text: &str) -> Result<Facets, String> {
@@ -256,7 +243,6 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
     text.trim().parse().map_err(|_| format!("write a whole number from 0 to {}", u64::MAX))
 }
 
-/// JSON Schema of a file, by the name of its format.
 pub(super) fn schema_of(text: &str) -> Result<String, String> {
     let names: Vec<&str> = FORMATS.iter().map(|form| form.name()).collect();
     schema(text).ok_or_else(|| format!("one of {}", names.join(", ")))
@@ -280,34 +266,26 @@ pub(super) fn length(text: &str) -> Result<f64, String> {
 mod tests {
     use super::*;
 
-    fn read<C: CommandSettings>(words: &[&str]) -> Result<Vec<String>, clap::Error> {
-        let command = SettingOptions::<C>::augment_args(Command::new("x").no_binary_name(true));
+    fn read<const COMMAND: usize>(words: &[&str]) -> Result<Vec<String>, clap::Error> {
+        let command = SettingOptions::<COMMAND>::augment_args(Command::new("x").no_binary_name(true));
         let matches = command.try_get_matches_from(words)?;
-        SettingOptions::<C>::from_arg_matches(&matches).map(|options| options.assignments)
+        SettingOptions::<COMMAND>::from_arg_matches(&matches).map(|options| options.assignments)
     }
 
     #[test]
     fn every_option_is_a_setting() {
         let all: Vec<String> = Scene::keys().iter().map(KeyInfo::full_name).collect();
-        let named = [
-            OfScene::OPTIONS,
-            OfBoundary::OPTIONS,
-            OfPacking::OPTIONS,
-            OfSpecification::OPTIONS,
-            OfRules::OPTIONS,
-        ];
-        assert!(named.concat().iter().all(|name| all.iter().any(|key| key == name)));
+        let mut named = SETTINGS.iter().flat_map(|command| command.options);
+        assert!(named.all(|name| all.iter().any(|key| key == name)));
     }
 
     #[test]
     fn options_become_settings() {
         let words = ["--set", "base.cu=2", "--seed", "3", "--dispersive", "--joint-mm", "1/8in"];
-        assert_eq!(
-            read::<OfScene>(&words).unwrap(),
-            ["base.cu=2", "seed=3", "base.dispersive=true", "filter.joint_mm=1/8in"]
-        );
-        assert_eq!(read::<OfRules>(&["--dispersive=false"]).unwrap(), ["base.dispersive=false"]);
-        assert!(read::<OfRules>(&["--set", "base.cu=2"]).is_err());
+        let settings = ["base.cu=2", "seed=3", "base.dispersive=true", "filter.joint_mm=1/8in"];
+        assert_eq!(read::<RUN>(&words).unwrap(), settings);
+        assert_eq!(read::<RULES>(&["--dispersive=false"]).unwrap(), ["base.dispersive=false"]);
+        assert!(read::<RULES>(&["--set", "base.cu=2"]).is_err());
     }
 
     #[test]
@@ -319,14 +297,14 @@ mod tests {
             (["--joint-mm", "2 furlongs"], "3/8in"),
             (["--units", "yards"], "\"us\""),
         ] {
-            let problem = read::<OfScene>(&words).unwrap_err().to_string();
+            let problem = read::<RUN>(&words).unwrap_err().to_string();
             assert!(problem.contains(words[0]) && problem.contains(allowed), "{problem}");
         }
     }
 
     #[test]
     fn a_setting_that_is_given_twice_is_refused() {
-        let problem = read::<OfScene>(&["--seed", "3", "--set", " seed = 4"]).unwrap_err().to_string();
+        let problem = read::<RUN>(&["--seed", "3", "--set", " seed = 4"]).unwrap_err().to_string();
         let wanted = "--seed and --set  seed = 4 say the same thing twice: give one";
         assert!(problem.contains(wanted), "{problem}");
     }

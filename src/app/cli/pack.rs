@@ -1,7 +1,7 @@
 //! Commands `voidwalk pack` and `constrictions`: grains from a gradation, and the constrictions of a packing.
 
 use super::args::{ConstrictionsArgs, PackArgs};
-use super::print::{as_it_is, json, plain, to_stdout};
+use super::print::{self, as_it_is, to_stdout};
 use super::progress::{followed, unfollowed};
 use crate::run;
 use crate::run::{ConstrictionsOptions, FinishedPacking, PackOptions, RunError, measure_constrictions};
@@ -31,20 +31,19 @@ pub(crate) fn pack(args: &PackArgs) -> Result<(), RunError> {
 
 fn summary(packing: &FinishedPacking) -> String {
     let (record, filter, out) = (&packing.record, &packing.filter, &packing.folder);
+    let (before, after) = (&record.before, &record.after);
     let change = match record.friction == record.final_friction {
         true => String::new(),
-        false => {
-            format!(" ({:.4} before friction {} was set)", record.before.void_ratio, record.final_friction)
-        }
+        false => format!(" ({:.4} before friction {} was set)", before.void_ratio, record.final_friction),
     };
     let lines = [
-        format!("Void ratio {:.4}{change} at {:.2} kPa", record.after.void_ratio, record.after.pressure_kpa),
+        format!("Void ratio {:.4}{change} at {:.2} kPa", after.void_ratio, after.pressure_kpa),
         format!(
             "  {} grains, mean coordination number {:.2} ({:.2} without the {:.1} % rattlers), {} steps",
             whole(record.grains),
-            record.after.coordination,
-            record.after.coordination_held,
-            100.0 * record.after.rattlers,
+            after.coordination,
+            after.coordination_held,
+            100.0 * after.rattlers,
             whole(record.steps)
         ),
         format!(
@@ -58,7 +57,7 @@ fn summary(packing: &FinishedPacking) -> String {
         format!("for a scene: filter.curve = \"{}\"", out.join("constrictions.csv").display()),
     ];
     let part = filter.part.iter().map(|part| format!("  {}", sentence(&packed_part(part), SizeUnit::Mm)));
-    lines.into_iter().chain(part).map(|line| plain(&line) + "\n").collect()
+    print::lines(lines.into_iter().chain(part))
 }
 
 pub(crate) fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
@@ -71,7 +70,7 @@ pub(crate) fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
     };
     let summary = measure_constrictions(&args.packing, &options, &unfollowed())?;
     if args.json {
-        as_it_is(&json(format::CONSTRICTIONS, &summary)?);
+        as_it_is(&format::CONSTRICTIONS.json(&summary)?);
         return Ok(());
     }
     let mut lines = vec![
@@ -101,6 +100,6 @@ pub(crate) fn constrictions(args: &ConstrictionsArgs) -> Result<(), RunError> {
         format!("for a scene: filter.curve = \"{}\"", args.out.join("constrictions.csv").display()),
     ];
     lines.splice(1..1, summary.warnings.iter().map(|warning| format!("warning: {warning}")));
-    to_stdout(&lines.iter().map(|line| plain(line) + "\n").collect::<String>());
+    to_stdout(&print::lines(lines));
     Ok(())
 }

@@ -9,12 +9,12 @@ use serde::Serialize;
 use crate::run::RunError;
 use voidwalk_core::store::format::Format;
 
+pub(crate) use crate::run::folder::shown;
 pub(crate) use voidwalk_core::text::plain;
 use voidwalk_core::text::shell_word;
 use voidwalk_practice::quantity::THIN;
 pub(crate) use voidwalk_practice::quantity::{percent, whole};
 
-/// The first failure to write to stdout.
 static LOST: OnceLock<String> = OnceLock::new();
 
 /// Prints words to stdout; [`whole_stdout`] reports a failure.
@@ -51,18 +51,16 @@ pub(crate) fn to_stderr(text: &str) {
     let _ = std::io::stderr().lock().write_all(on_a_terminal(text).as_bytes());
 }
 
-/// Word of a command, quoted for copying.
 pub(crate) fn to_copy(word: impl AsRef<Path>) -> String {
     plain(&shell_word(&word.as_ref().display().to_string()))
 }
 
-/// Path made safe for a terminal.
-pub(crate) fn shown(path: &Path) -> String {
-    plain(&path.display().to_string())
+pub(crate) fn lines(lines: impl IntoIterator<Item = impl AsRef<str>>) -> String {
+    lines.into_iter().map(|line| plain(line.as_ref()) + "\n").collect()
 }
 
-pub(crate) fn json(format: Format, record: &impl Serialize) -> Result<String, RunError> {
-    Ok(format.json(record)?)
+pub(crate) fn labelled(name: &str, value: &str) -> String {
+    format!("{name:<22}{}\n", plain(value))
 }
 
 /// Prints a result: its record as in its file, or its words unless it must be quiet.
@@ -73,7 +71,7 @@ pub(crate) fn answer(
     words: impl FnOnce() -> String,
 ) -> Result<(), RunError> {
     if as_json {
-        as_it_is(&json(format, record)?);
+        as_it_is(&format.json(record)?);
     } else if !quiet {
         to_stdout(&words());
     }
@@ -85,12 +83,9 @@ pub(crate) fn counted(n: u64, one: &str, many: &str) -> String {
     format!("{} {}", whole(n), if n == 1 { one } else { many })
 }
 
-/// Grains per void, or words for an unknown number.
 pub(crate) fn grains_per_void(grains: Option<f64>) -> String {
-    match grains {
-        Some(grains) => format!("{} grains per void", (grains * 1e4).round() / 1e4),
-        None => "grains per void not given".into(),
-    }
+    let words = |grains: f64| format!("{} grains per void", (grains * 1e4).round() / 1e4);
+    grains.map_or_else(|| "grains per void not given".into(), words)
 }
 
 const WIDTH: usize = 100;

@@ -12,14 +12,12 @@ use crate::words::{first_lines, sentence, so_far};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
-use std::sync::{Arc, Mutex, OnceLock};
+use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 use voidwalk_core::packing::{CompressionProgress, Stage};
 use voidwalk_core::store::platform::process::{end_at_once, stop_on_request};
 use voidwalk_practice::quantity::whole;
 
-/// Minimum time between plain lines.
 const BETWEEN_LINES: Duration = Duration::from_secs(5);
 
 /// Runs work that is shown on stderr and stopped by signals, and writes the pages of its results.
@@ -27,7 +25,7 @@ pub(crate) fn followed<T>(
     quiet: bool,
     work: impl FnOnce(&Callbacks) -> Result<T, RunError>,
 ) -> Result<T, RunError> {
-    let stop = stop_on_signals()?;
+    let stop = stop_on_request().map_err(RunError::failed)?;
     end_at_once();
     let display = Display { quiet, begun: Instant::now(), shown: Mutex::new(None) };
     let done = work(&Callbacks {
@@ -69,12 +67,6 @@ pub fn page(kind: FolderKind, folder: &Path, run: Option<RunFiles>) -> Result<Pa
     written.map(|written| written.page)
 }
 
-/// Flag that the first signal to end sets.
-pub(crate) fn stop_on_signals() -> Result<Arc<AtomicBool>, RunError> {
-    stop_on_request().map_err(RunError::failed)
-}
-
-/// Bar of this length on a terminal; no bar elsewhere.
 fn bar_on_terminal(length: u64, style: &str) -> Option<ProgressBar> {
     if !std::io::stderr().is_terminal() {
         return None;
@@ -87,7 +79,6 @@ fn bar_on_terminal(length: u64, style: &str) -> Option<ProgressBar> {
     Some(bar)
 }
 
-/// Minimum time between plain lines on the replicates so far.
 const BETWEEN_LOOKS: Duration = Duration::from_secs(1);
 
 struct Display {
@@ -96,7 +87,6 @@ struct Display {
     shown: Mutex<Option<Shown>>,
 }
 
-/// Packing or walk in progress.
 struct Shown {
     bar: Option<ProgressBar>,
     begun: Instant,
@@ -109,14 +99,10 @@ const BETWEEN_INCREMENTS: Duration = Duration::from_secs(30);
 
 enum Work {
     /// Usual number of steps, and number of steps done before this start of the program.
-    Packing {
-        usual: u64,
-        first: Option<u64>,
-    },
+    Packing(u64, Option<u64>),
     Walk(Walk),
 }
 
-/// Numbers of finished runs and of runs in all, and results of the replicates so far.
 #[derive(Default)]
 struct Walk {
     done: u64,
@@ -137,12 +123,10 @@ impl Walk {
         let [replicates, runs] = self.needs;
         let look = self.so_far.look(runs)?;
         let is_new = look.replicates > self.looked_at && (look.replicates as u64) < replicates;
-        let mut words = so_far(&look, replicates).filter(|_| is_new)?;
+        let words = so_far(&look, replicates).filter(|_| is_new)?;
         self.looked_at = look.replicates;
-        if self.readings {
-            words += "; by one of several readings of the inputs";
-        }
-        Some(words)
+        let one = if self.readings { "; by one of several readings of the inputs" } else { "" };
+        Some(words + one)
     }
 }
 
@@ -163,7 +147,7 @@ impl Display {
                     plan.compression.friction,
                     whole(plan.usual_steps())
                 ));
-                self.begin(0, "{spinner} {msg}", Work::Packing { usual: plan.usual_steps(), first: None });
+                self.begin(0, "{spinner} {msg}", Work::Packing(plan.usual_steps(), None));
             }
             Event::PackingEnded => self.end(),
             Event::WalkBegun { runs } => {
@@ -181,12 +165,7 @@ impl Display {
                     self.line(&format!("{}: {}\n", line.name(), plain(&words)));
                 }
             }
-            Event::Packing(_)
-            | Event::Increment { .. }
-            | Event::RunDone
-            | Event::RunWalked { .. }
-            | Event::VerdictNeeds { .. }
-            | Event::MoreRuns { .. } => {
+            _ => {
                 if let Some(shown) = self.shown.lock().ok().as_mut().and_then(|shown| shown.as_mut()) {
                     shown.tell(event);
                 }
@@ -194,7 +173,6 @@ impl Display {
         }
     }
 
-    /// Prints a line, above the bar if there is one.
     fn line(&self, text: &str) {
         let shown = self.shown.lock().ok();
         match shown.as_ref().and_then(|shown| shown.as_ref()?.bar.as_ref()) {
@@ -222,7 +200,7 @@ impl Shown {
     fn tell(&mut self, event: Event) {
         let seconds = self.begun.elapsed().as_secs_f64();
         match (&mut self.work, event) {
-            (Work::Packing { usual, first }, Event::Packing(progress)) => {
+            (Work::Packing(usual, first), Event::Packing(progress)) => {
                 let here = progress.steps - *first.get_or_insert(progress.steps);
                 let (bar, last) = (self.bar.as_ref(), &mut self.last);
                 show(bar, last, BETWEEN_LINES, || packing_line(progress, *usual, here, seconds));
@@ -292,10 +270,9 @@ fn packing_line(progress: &CompressionProgress, usual: u64, here: u64, seconds: 
         Stage::Settle => "settle with the final friction",
         Stage::Done => "done",
     };
+    let to_go = |steps: u64| steps as f64 * seconds / here as f64;
     let left = match usual.checked_sub(progress.steps) {
-        Some(steps) if here > 0 => {
-            format!("about {:.0} s to go if it is typical", steps as f64 * seconds / here as f64)
-        }
+        Some(steps) if here > 0 => format!("about {:.0} s to go if it is typical", to_go(steps)),
         Some(_) => "time to go not known yet".to_string(),
         None => "longer than most".to_string(),
     };
@@ -316,12 +293,36 @@ const BETWEEN_CASES: Duration = Duration::from_secs(2);
 /// Time without a message after which the progress of a case is reported.
 const BETWEEN_RUNS: Duration = Duration::from_secs(5);
 
-pub(crate) struct CaseProgress {
+/// Runs cases that are shown on stderr; with `every_event`, each of their events gets a line, as in the log of
+/// a job.
+pub(crate) fn followed_cases<T>(
     quiet: bool,
-    /// True if every event of a case gets a line, as in the log of a job.
     every_event: bool,
-    /// Known once the cases are counted.
-    shown: OnceLock<(Option<ProgressBar>, Mutex<Lines>)>,
+    work: impl FnOnce(&CaseCallbacks) -> Result<T, RunError>,
+) -> Result<T, RunError> {
+    // It is known once the cases are counted.
+    let shown: OnceLock<CaseDisplay> = OnceLock::new();
+    followed(quiet, |run| {
+        let done = work(&CaseCallbacks {
+            run: *run,
+            on_cases: &|total, done| {
+                if !quiet {
+                    let _ = shown.set(CaseDisplay::new(total, done, every_event));
+                }
+            },
+            on_case: &|case, event| shown.get().iter().for_each(|shown| shown.tell(case, event)),
+        });
+        if let Some(bar) = shown.get().and_then(|shown| shown.bar.as_ref()) {
+            bar.finish_and_clear();
+        }
+        done
+    })
+}
+
+struct CaseDisplay {
+    bar: Option<ProgressBar>,
+    every_event: bool,
+    lines: Mutex<Lines>,
 }
 
 /// Number of cases done when this process began, number done now, and number in all.
@@ -333,31 +334,8 @@ struct Lines {
     last: Instant,
 }
 
-impl CaseProgress {
-    pub(crate) fn new(quiet: bool, every_event: bool) -> Self {
-        Self { quiet, every_event, shown: OnceLock::new() }
-    }
-
-    pub(crate) fn followed<T>(
-        &self,
-        work: impl FnOnce(&CaseCallbacks) -> Result<T, RunError>,
-    ) -> Result<T, RunError> {
-        followed(self.quiet, |run| {
-            let callbacks = CaseCallbacks {
-                run: *run,
-                on_cases: &|total, done| self.begin(total, done),
-                on_case: &|case, event| self.tell(case, event),
-            };
-            let done = work(&callbacks);
-            self.end();
-            done
-        })
-    }
-
-    fn begin(&self, total: usize, done: usize) {
-        if self.quiet {
-            return;
-        }
+impl CaseDisplay {
+    fn new(total: usize, done: usize, every_event: bool) -> Self {
         if done > 0 {
             to_stderr(&format!("{done} of {total} cases are done already\n"));
         }
@@ -369,13 +347,12 @@ impl CaseProgress {
         }
         let now = Instant::now();
         let lines = Lines { first: done, done, total, begun: now, last: now };
-        let _ = self.shown.set((bar, Mutex::new(lines)));
+        Self { bar, every_event, lines: Mutex::new(lines) }
     }
 
     fn tell(&self, case: &str, event: CaseEvent) {
-        let Some((bar, lines)) = self.shown.get() else { return };
         let case = plain(case);
-        match (bar, event) {
+        match (&self.bar, event) {
             (Some(bar), CaseEvent::Begun { .. }) => bar.set_message(case),
             (Some(bar), CaseEvent::Waiting) => bar.set_message(format!("waiting for {case}")),
             (Some(bar), CaseEvent::Walked { done, runs }) => {
@@ -393,15 +370,14 @@ impl CaseProgress {
                 to_stderr(&format!("waits: {case}: another process works on it\n"));
             }
             (None, CaseEvent::Walked { done, runs }) if !self.every_event => {
-                let Ok(mut lines) = lines.lock() else { return };
+                let Ok(mut lines) = self.lines.lock() else { return };
                 if lines.last.elapsed() >= BETWEEN_RUNS {
                     lines.last = Instant::now();
                     to_stderr(&format!("{case}: {done} of {runs} runs\n"));
                 }
             }
-            (None, CaseEvent::Begun { .. } | CaseEvent::Waiting | CaseEvent::Walked { .. }) => {}
             (None, CaseEvent::Done(line)) => {
-                let Ok(mut lines) = lines.lock() else { return };
+                let Ok(mut lines) = self.lines.lock() else { return };
                 lines.done += 1;
                 if !self.every_event && lines.done < lines.total && lines.last.elapsed() < BETWEEN_CASES {
                     return;
@@ -417,12 +393,7 @@ impl CaseProgress {
                     line.verdict.words()
                 ));
             }
-        }
-    }
-
-    fn end(&self) {
-        if let Some((Some(bar), _)) = self.shown.get() {
-            bar.finish_and_clear();
+            _ => {}
         }
     }
 }

@@ -5,20 +5,22 @@ use std::path::Path;
 use super::print::{plain, shown, to_stdout};
 use super::progress::page;
 use crate::report::{self, ReportError};
-use crate::run::folder::claim;
+use crate::run::folder::{claim, refused};
 use crate::run::{FolderKind, RunError};
 
 #[cfg(feature = "serve")]
-use super::{args::ServeArgs, print::whole_stdout, progress::stop_on_signals, run::command_line};
+use super::{args::ServeArgs, print::whole_stdout, run::command_line};
 #[cfg(feature = "serve")]
 use crate::run::PrepareOptions;
+#[cfg(feature = "serve")]
+use voidwalk_core::store::platform::process::stop_on_request;
 
 pub(crate) fn report(folder: &Path) -> Result<(), RunError> {
     let Some(kind) = FolderKind::of(folder).filter(|kind| kind.has_page()) else {
         let problem = "holds no outcome.json, packing.json, campaign.json, batch.json, percolation.json, \
             boundary.json, designs.json or specification.json; name the folder of a finished run, packing, \
             campaign, batch, study or specification";
-        return Err(RunError::Refused(format!("{}: {problem}", shown(folder))));
+        return Err(refused(folder, problem));
     };
     let claimed = claim(folder, kind, true)?;
     let page = page(kind, claimed.path(), None).map_err(|error| match error {
@@ -33,17 +35,14 @@ pub(crate) fn export(folder: &Path) -> Result<(), RunError> {
     let Some(kind) = FolderKind::of(folder).filter(|kind| *kind != FolderKind::Serve) else {
         let problem = "holds no finished work; name the folder of a run, a packing, constrictions, a \
                        campaign, a batch, a study or a specification";
-        return Err(RunError::Refused(format!("{}: {problem}", shown(folder))));
+        return Err(refused(folder, problem));
     };
     let claimed = claim(folder, kind, true)?;
     let into = claimed.path().join("export");
     if into.symlink_metadata().is_ok_and(|meta| !meta.is_dir()) {
         let what = if into.is_symlink() { "a symbolic link" } else { "a file" };
-        return Err(RunError::Refused(format!(
-            "{}: is {what}, and the tables go into a folder of that name; move it away or give it another \
-             name",
-            shown(&into)
-        )));
+        let problem = "and the tables go into a folder of that name; move it away or give it another name";
+        return Err(refused(&into, format!("is {what}, {problem}")));
     }
     let tables = report::export(claimed.path()).map_err(RunError::failed)?;
     let mut text: String = tables.files.iter().map(|path| shown(path) + "\n").collect();
@@ -56,7 +55,7 @@ pub(crate) fn export(folder: &Path) -> Result<(), RunError> {
 
 #[cfg(feature = "serve")]
 pub(crate) fn serve(args: &ServeArgs) -> Result<(), RunError> {
-    let stop = stop_on_signals()?;
+    let stop = stop_on_request().map_err(RunError::failed)?;
     let server = crate::serve::Server::open(crate::serve::ServeOptions {
         port: args.port,
         folder: args.out.clone(),

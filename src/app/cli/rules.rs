@@ -2,7 +2,7 @@
 //! one table, without a walk.
 
 use super::args::RulesArgs;
-use super::print::{answer, plain, shown, to_copy, to_stdout, wrapped};
+use super::print::{answer, lines, plain, shown, to_copy, to_stdout, wrapped};
 use crate::cases::pairs_of;
 use crate::outcome::table::{ColumnKind, Columns};
 use crate::run::{RunError, write_new};
@@ -11,7 +11,6 @@ use crate::words::batch::{columns, of_filter as filter_lines};
 use crate::words::left_out::NOT_COVERED;
 use crate::words::rule::{LIMITS_ROUNDED, PARTS, limit, regrade_reason, result, rule_notes, value};
 use crate::words::{practice_line, sentence};
-use std::fmt::Write;
 use std::path::Path;
 use voidwalk_core::store::format;
 use voidwalk_practice::batch::{NAMED, governing};
@@ -22,7 +21,6 @@ use voidwalk_sheets::{curves_in_file, notes_in_file};
 
 const INDENT: usize = 14;
 
-/// Applies every rule to two sieve tables, or to the curves of two envelopes.
 pub(crate) fn rules(args: &RulesArgs) -> Result<(), RunError> {
     let changes = args.settings.assignments.clone();
     let options = TableOptions { as_given: args.as_given, changes, ..TableOptions::default() }.of_rules()?;
@@ -51,13 +49,9 @@ fn words(
 ) -> String {
     let (filter, base) = (&pair.filter, &pair.base);
     let mut text = String::new();
-    // Writing to a string cannot fail.
-    let mut line = |s: String| {
-        let _ = writeln!(text, "{}", plain(&s));
-    };
-    let of_curve = |curves: &[String], curve: &str| match curves.is_empty() {
-        true => String::new(),
-        false => format!(", curve {curve}"),
+    let mut line = |s: String| text += &(plain(&s) + "\n");
+    let of_curve = |curves: &[String], curve: &str| {
+        if curves.is_empty() { String::new() } else { format!(", curve {curve}") }
     };
     let how = match base.regraded_at_mm {
         Some(at) => format!(
@@ -129,7 +123,6 @@ fn words(
     text
 }
 
-/// Result, name, value and limit of a rule.
 fn row(rule: &AppliedRule) -> String {
     // Short words fit the column; the note below explains rules that are not judged.
     let word = match result_of(rule) {
@@ -155,7 +148,6 @@ fn sizes(sizes: &[(&str, Option<f64>)]) -> String {
     format!("{}{}", words.join(", "), if all_known { " mm" } else { "" })
 }
 
-/// Number with three significant digits.
 fn number(value: Option<f64>) -> String {
     value.map_or_else(|| "not known".into(), |value| significant(value).to_string())
 }
@@ -187,33 +179,30 @@ fn rules_of_each(args: &RulesArgs, options: PairOptions) -> Result<(), RunError>
     Ok(())
 }
 
-/// Assumptions about the files, one per line.
 pub(super) fn in_notes(notes: &[String]) -> String {
-    let lines = notes.iter().map(|note| format!("note  {}\n", plain(note))).collect::<String>();
+    let lines = lines(notes.iter().map(|note| format!("note  {note}")));
     if lines.is_empty() { lines } else { format!("\n{lines}") }
 }
 
 pub(super) fn aligned<T>(columns: Columns<T>, rows: &[T]) -> String {
     let columns: Vec<_> = columns.of_page().collect();
-    let mut lines = vec![columns.iter().map(|column| column.heading.text.clone()).collect::<Vec<_>>()];
+    let mut table = vec![columns.iter().map(|column| column.heading.text.clone()).collect::<Vec<_>>()];
     let cells = |row: &T| columns.iter().map(|column| plain(&(column.cell)(row).line())).collect();
-    lines.extend(rows.iter().map(cells));
-    let width = |at: usize| lines.iter().map(|line| line[at].chars().count()).max().unwrap_or(0);
+    table.extend(rows.iter().map(cells));
+    let width = |at: usize| table.iter().map(|line| line[at].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns.len()).map(width).collect();
     let mut text = String::new();
-    for line in &lines {
+    for line in &table {
         let cell = |(at, cell): (usize, &String)| match columns[at].kind {
             ColumnKind::Number => format!("{cell:>0$}", widths[at]),
             _ => format!("{cell:<0$}", widths[at]),
         };
         let line: Vec<String> = line.iter().enumerate().map(cell).collect();
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{}", line.join("  ").trim_end());
+        text.extend([line.join("  ").trim_end(), "\n"]);
     }
     text
 }
 
-/// Number of samples that a filter retains, and the samples that govern.
 pub(super) fn of_filter(rows: &[BatchRow], filter: &BatchFilter, inches: bool) -> String {
     let lines = filter_lines(filter, rows, SizeUnit::of(false, inches));
     lines.iter().map(|line| plain(line)).collect::<Vec<_>>().join("\n  ") + "\n"
@@ -242,11 +231,8 @@ mod tests {
 
     #[test]
     fn numbers_have_three_digits() {
-        assert_eq!(
-            [1.1202, 0.012_34, 62.51, 340.0].map(|v| number(Some(v))),
-            ["1.12", "0.0123", "62.5", "340"]
-        );
-        assert_eq!(number(None), "not known");
+        let numbers = [Some(1.1202), Some(0.012_34), Some(62.51), Some(340.0), None].map(number);
+        assert_eq!(numbers, ["1.12", "0.0123", "62.5", "340", "not known"]);
         assert_eq!(sizes(&[("D85", Some(0.3)), ("D95", Some(1.5))]), "D85 0.300, D95 1.50 mm");
         assert_eq!(sizes(&[("D85", Some(0.3)), ("D95", None)]), "D85 0.300 mm, D95 not known");
         assert_eq!(sizes(&[("D15", None)]), "D15 not known");

@@ -1,18 +1,18 @@
 //! Commands `voidwalk run`, `resume` and `judge`: walks of a scene, of two sieve tables, or of many samples
 //! and filters.
 
+use std::collections::HashSet;
 use std::ffi::OsString;
-use std::fmt::Write;
 use std::path::Path;
 use std::sync::OnceLock;
 
 use super::args::{JudgeArgs, ResumeArgs, RunArgs, TableArgs};
 use super::exit::{JudgedAnswer, accept};
-use super::options::{AcceptArgs, ResultArgs, SettingArgs, WalkArgs};
+use super::options::{AcceptArgs, ResultArgs, SettingArgs};
 use super::print::{answer, counted, plain, shown, to_stdout};
-use super::progress::{CaseProgress, followed};
+use super::progress::{followed, followed_cases};
 use super::rules::{aligned, in_notes, of_filter};
-use crate::cases::{self, BatchPlan, BatchWalks, CaseOptions, CasePart};
+use crate::cases::{self, BatchPlan, BatchWalks, CaseOptions};
 use crate::run::{self, FinishedRun, PrepareOptions, RunError, RunOptions};
 use crate::scene::{LibraryDensity, Scene, TableOptions};
 use crate::verdict::{WalkedBatch, WalkedRow, counts_as};
@@ -39,7 +39,6 @@ pub(crate) fn run(args: &RunArgs) -> Result<(), RunError> {
 }
 
 impl AcceptArgs {
-    /// Ends a command by the verdict of its run.
     fn judged(&self, run: &FinishedRun) -> Result<(), RunError> {
         let (model, practice) = (run.outcome.model.class, counts_as(&run.decision));
         accept(self.fail_on, [("", Ok(JudgedAnswer { model, practice }))])
@@ -57,7 +56,6 @@ impl ResultArgs {
         }
     }
 
-    /// Prints the results of a run, writes its workbook if requested, and ends by its verdict.
     pub(crate) fn finish(&self, run: &FinishedRun, as_json: bool) -> Result<(), RunError> {
         answer((as_json, self.walk.quiet), format::OUTCOME, &run.outcome, || summary(run))?;
         #[cfg(feature = "xlsx")]
@@ -91,14 +89,10 @@ pub(crate) fn command_line() -> String {
 /// Maximum number of important notes whose subjects the last line names.
 const LABELS: usize = 4;
 
-/// Lines that a user wants to read first.
 fn summary(run: &FinishedRun) -> String {
     let FinishedRun { outcome, decision, .. } = run;
     let mut text = String::new();
-    // Writing to a string cannot fail.
-    let mut line = |s: String| {
-        let _ = writeln!(text, "{s}");
-    };
+    let mut line = |s: String| text.extend([&s, "\n"]);
     for (first, text) in first_lines(outcome, decision, run.unit) {
         line(format!("{}: {}", first.name(), plain(&text)));
     }
@@ -107,19 +101,16 @@ fn summary(run: &FinishedRun) -> String {
         line(NOT_COVERED.into());
     }
     let page = shown(&run.folder.join("report.html"));
-    let mut labels: Vec<&str> = Vec::new();
-    for note in &outcome.notes {
-        if !labels.contains(&note.entry().label) {
-            labels.push(note.entry().label);
-        }
-    }
+    let mut seen = HashSet::new();
+    let labels = outcome.notes.iter().map(|note| note.entry().label);
+    let labels: Vec<&str> = labels.filter(|label| seen.insert(*label)).collect();
     let notes = counted(outcome.notes.len() as u64, "note", "notes");
     let (first, others) = labels.split_at(labels.len().min(LABELS));
-    match (first, others.len()) {
-        ([], _) => line(format!("report: {page}")),
-        (_, 0) => line(format!("report: {page}; {notes}: {}", first.join(", "))),
-        (_, others) => line(format!("report: {page}; {notes}: {} and {others} more", first.join(", "))),
-    }
+    line(match (first, others.len()) {
+        ([], _) => format!("report: {page}"),
+        (_, 0) => format!("report: {page}; {notes}: {}", first.join(", ")),
+        (_, others) => format!("report: {page}; {notes}: {} and {others} more", first.join(", ")),
+    });
     text
 }
 
@@ -161,7 +152,11 @@ fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
     }
     let quiet = results.walk.quiet;
     let out = results.out.as_deref().unwrap_or(Path::new(OUT));
-    let options = campaign_options(out, &tables.set, &results.walk);
+    let prepare = tables.set.prepare(results.walk.threads);
+    let options = CaseOptions {
+        checkpoint_interval: results.walk.checkpoint_every.unwrap_or_default(),
+        ..CaseOptions::of(out.to_owned(), prepare, command_line())
+    };
     let walks = match (args.each, args.governing, tables.quick) {
         (false, ..) => BatchWalks::OneBase,
         (true, true, _) => BatchWalks::GoverningAlone,
@@ -172,14 +167,13 @@ fn judge_each(args: &JudgeArgs) -> Result<(), RunError> {
     let earlier = if results.overwrite { None } else { cases::batch::found(&plan, &options)? };
     let batch = match earlier {
         Some(earlier) => earlier,
-        None => {
-            let progress = CaseProgress::new(quiet, false);
-            progress.followed(|callbacks| cases::batch::run(&plan, &options, results.overwrite, callbacks))?
-        }
+        None => followed_cases(quiet, false, |callbacks| {
+            cases::batch::run(&plan, &options, results.overwrite, callbacks)
+        })?,
     };
     answer((tables.set.json, quiet), format::BATCH, &batch, || {
-        batch_words(&batch, &plan.first_scene().map_or(String::new(), constrictions), out)
-            + &of_earlier_cover(plan.with_other_cover(out))
+        let constrictions = plan.scene().map_or(String::new(), constrictions);
+        batch_words(&batch, &constrictions, out) + &of_earlier_cover(plan.with_other_cover(out))
     })?;
     let name = |row: &WalkedRow| format!("{} in {}", row.rules.sample, row.rules.filter);
     let names: Vec<String> = batch.rows.iter().map(name).collect();
@@ -223,57 +217,42 @@ fn constrictions(scene: &Scene) -> String {
     }
 }
 
-fn campaign_options(out: &Path, set: &SettingArgs, walk: &WalkArgs) -> CaseOptions {
-    CaseOptions {
-        out: out.to_owned(),
-        part: CasePart::All,
-        packings: Some(set.packings.clone()),
-        memory: set.memory,
-        threads: walk.threads,
-        checkpoint_interval: walk.checkpoint_every.unwrap_or_default(),
-        command: command_line(),
-    }
-}
-
 /// Line with the number of walks kept with the cover of an earlier call; empty for 0.
 fn of_earlier_cover(walks: usize) -> String {
-    match walks {
-        0 => String::new(),
-        1 => "1 walk was kept from an earlier call; its own page has the cover of that call\n".into(),
-        _ => format!(
-            "{walks} walks were kept from an earlier call; their own pages have the cover of that call\n"
-        ),
-    }
+    let (kept, own) = match walks {
+        0 => return String::new(),
+        1 => ("walk was", "its own page has"),
+        _ => ("walks were", "their own pages have"),
+    };
+    format!("{walks} {kept} kept from an earlier call; {own} the cover of that call\n")
 }
 
 fn batch_words(batch: &WalkedBatch, constrictions: &str, out: &Path) -> String {
     let unit = SizeUnit::of(false, batch.inches);
     let mut text = aligned(walked_columns(unit), &batch.rows) + &in_notes(&batch.notes);
+    let mut line = |s: &str| text += &(plain(s) + "\n");
     if batch.has_one_base() {
-        text.push('\n');
-        for row in &batch.rows {
-            let _ = writeln!(text, "{}", plain(&format!("{}: {}", row.rules.filter, batch::answer(row))));
-        }
+        line("");
+        batch.rows.iter().for_each(|row| line(&format!("{}: {}", row.rules.filter, batch::answer(row))));
     }
     let rules: Vec<BatchRow> = batch.rows.iter().map(|row| row.rules.clone()).collect();
     for filter in &batch.filters {
-        // Writing to a string cannot fail.
-        let _ = write!(text, "\n{}", of_filter(&rules, filter, batch.inches));
-        for line in walks(batch, &filter.name, unit) {
-            let _ = writeln!(text, "  {}", plain(&line));
-        }
+        line("");
+        of_filter(&rules, filter, batch.inches).lines().for_each(&mut line);
+        walks(batch, &filter.name, unit).iter().for_each(|walk| line(&format!("  {walk}")));
         for row in batch.governing(&filter.name).iter().filter(|_| !batch.has_one_base()) {
-            let line = format!("{}: {}", row.rules.sample, batch::answer(row));
-            let _ = writeln!(text, "  {}", plain(&line));
+            line(&format!("  {}: {}", row.rules.sample, batch::answer(row)));
         }
     }
     if batch.rows.iter().any(|row| row.rules.is_refused) {
-        let _ = writeln!(text, "\n--as-given walks pairs that look exchanged");
+        line("");
+        line("--as-given walks pairs that look exchanged");
     }
-    let _ = writeln!(text, "\n{}", plain(constrictions));
-    let _ = writeln!(text, "{}", left_out_line(&batch.model_leaves_out));
-    let _ = writeln!(text, "table: {}", shown(&out.join("batch.csv")));
-    let _ = writeln!(text, "report: {}", shown(&out.join("batch.html")));
+    line("");
+    line(constrictions);
+    line(&left_out_line(&batch.model_leaves_out));
+    line(&format!("table: {}", shown(&out.join("batch.csv"))));
+    line(&format!("report: {}", shown(&out.join("batch.html"))));
     text
 }
 
@@ -287,5 +266,4 @@ pub struct Start {
     pub again: Option<Vec<String>>,
 }
 
-/// Start of this process, once it is known.
 pub(crate) static START: OnceLock<Start> = OnceLock::new();

@@ -13,6 +13,7 @@ use super::help::command;
 use super::options::{FACETS, SET};
 use super::print::{shown, to_stdout};
 use crate::run::RunError;
+use crate::run::folder::refused;
 use crate::scene::{Density, LibraryDensity, Scene};
 use voidwalk_core::constrictions::shipped;
 use voidwalk_core::packing::LengthUnit;
@@ -20,7 +21,6 @@ use voidwalk_core::schema::KeyInfo;
 use voidwalk_core::store::format::FORMATS;
 use voidwalk_core::store::{StoreError, write_whole};
 
-/// Prints a script that completes commands, options and values of options.
 pub(crate) fn completions(shell: Shell) {
     to_stdout(&script(shell));
 }
@@ -73,7 +73,6 @@ complete -F _voidwalk_and_values -o nosort -o bashdefault -o default voidwalk 2>
     complete -F _voidwalk_and_values -o bashdefault -o default voidwalk
 "##;
 
-/// Completion in zsh of the soils of a file after `FILE#`.
 const ZSH_MORE: &str = r#"
 _voidwalk_and_soils() {
     local word=${(Q)words[CURRENT]}
@@ -109,12 +108,12 @@ fn with_values(shell: Shell) -> Command {
 }
 
 fn of_argument(arg: Arg, command: &str, shell: Shell) -> Arg {
-    let named = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect::<Vec<_>>();
+    let named = |words: &[&str]| words.iter().map(ToString::to_string).collect::<Vec<_>>();
     let values = match arg.get_id().as_str() {
         "density" => named(&Density::ALL.map(Density::name)),
         "densities" => {
-            [named(&LibraryDensity::ALL.map(LibraryDensity::name)), named(&["friction=", "estimate="])]
-                .concat()
+            let packed = ["friction=", "estimate="];
+            named(&[&LibraryDensity::ALL.map(LibraryDensity::name)[..], &packed].concat())
         }
         SET => assignments(),
         "schema" => FORMATS.iter().map(|form| form.name().to_owned()).collect(),
@@ -143,11 +142,10 @@ fn assignments() -> Vec<String> {
     Scene::keys().into_iter().flat_map(of_key).collect()
 }
 
-/// Writes manual pages of the program and of each of its commands.
 pub(crate) fn man(folder: &Path) -> Result<(), RunError> {
     if let Some(file) = folder.ancestors().find(|part| part.exists() && !part.is_dir()) {
         let problem = "is a file; name a folder for the pages, a new one or one that is there";
-        return Err(RunError::Refused(format!("{}: {problem}", shown(file))));
+        return Err(refused(file, problem));
     }
     let mut whole = command();
     whole.build();
@@ -192,19 +190,19 @@ mod tests {
         }
         assert!(bash.contains("shire2016-cu1.5-loose") && bash.trim_end().ends_with("default voidwalk"));
         assert!(!bash.contains("compgen -f") && !bash.contains("compgen -d"));
-        let every = [Shell::Zsh, Shell::Fish].map(script);
-        assert!(
-            every.iter().all(|script| script.contains("loose") && script.contains("filter.density=dense"))
-        );
+        let [zsh, fish] = [Shell::Zsh, Shell::Fish].map(script);
+        for script in [&zsh, &fish] {
+            assert!(script.contains("loose") && script.contains("filter.density=dense"));
+        }
+        let option = |command: &str, option: &str| {
+            let (command, option) = (format!("using_subcommand {command}"), format!(" -l {option} "));
+            fish.lines().filter(|line| line.contains(&command) && line.contains(&option)).collect::<Vec<_>>()
+        };
         // Arguments that may be a file have no list of words in this shell.
-        let of_filter =
-            |line: &&str| line.contains("using_subcommand boundary") && line.contains(" -l filter ");
-        let lines: Vec<&str> = every[1].lines().filter(of_filter).collect();
+        let lines = option("boundary", "filter");
         assert_eq!(lines.len(), 1, "{lines:?}");
         assert!(lines[0].ends_with(" -r") && !lines[0].contains("shire2016"), "{lines:?}");
-        let with_words =
-            |line: &&str| line.contains("using_subcommand design") && line.contains(" -l units ");
-        assert!(every[1].lines().find(with_words).unwrap().contains(" -r -f -a "));
+        assert!(option("design", "units")[0].contains(" -r -f -a "));
     }
 
     #[test]

@@ -1,10 +1,8 @@
 //! Command `voidwalk soil`: the contents of a file of soils, as the program reads them.
 
-use std::fmt::Write;
-
 use super::args::SoilArgs;
 use super::init::Soils;
-use super::print::{answer, plain, shown, to_stdout};
+use super::print::{answer, labelled, shown, to_stdout};
 use crate::case::CaseError;
 use crate::report::soils_figure;
 use crate::run::{RunError, write_new};
@@ -56,10 +54,7 @@ fn words(soils: &[SoilSummary]) -> String {
         if index > 0 {
             text.push('\n');
         }
-        // Writing to a string cannot fail.
-        let mut line = |name: &str, value: String| {
-            let _ = writeln!(text, "{name:<22}{}", plain(&value));
-        };
+        let mut line = |name: &str, value: String| text += &labelled(name, &value);
         line("soil", soil.name.clone());
         line("opening, mm", "percent finer by mass".into());
         for point in soil.points.iter().rev() {
@@ -84,21 +79,15 @@ fn words(soils: &[SoilSummary]) -> String {
             line("  not known", format!("{}: finer than the finest opening", unknown.join(", ")));
         }
         for [finer, coarser] in far_apart(soil) {
-            line(
-                "  straight line",
-                format!("between {finer} and {coarser} mm, where no sieve tells the sizes"),
-            );
+            let between = format!("between {finer} and {coarser} mm, where no sieve tells the sizes");
+            line("  straight line", between);
         }
         let number = |value: Option<f64>| value.map_or("not known".to_owned(), digits);
         line("Cu, Cc", format!("{}, {}", number(soil.cu), number(soil.cc)));
         line("fines", percent(soil.fines_percent, "finer than 0.075 mm"));
         line("gravel", percent(soil.gravel_percent, "coarser than 4.75 mm"));
-        if let Some(class) = &soil.class {
-            line("class (ASTM D2487)", class.clone());
-        }
-        for note in &soil.notes {
-            line("note", note.clone());
-        }
+        soil.class.iter().for_each(|class| line("class (ASTM D2487)", class.clone()));
+        soil.notes.iter().for_each(|note| line("note", note.clone()));
     }
     text
 }
@@ -110,12 +99,10 @@ fn far_apart(soil: &SoilSummary) -> Vec<[String; 2]> {
     steps.iter().map(|step| [step.from_mm, step.to_mm].map(digits)).collect()
 }
 
-/// Percentage and its reference.
 fn percent(value: Option<f64>, part: &str) -> String {
     value.map_or("not known".to_owned(), |value| format!("{value:.1} % {part}"))
 }
 
-/// Number with four significant digits.
 fn digits(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
@@ -131,8 +118,8 @@ mod tests {
 
     #[test]
     fn nothing_follows_a_percentage_that_is_not_known() {
-        assert_eq!(percent(Some(1.5), "finer than 0.075 mm"), "1.5 % finer than 0.075 mm");
-        assert_eq!(percent(None, "finer than 0.075 mm"), "not known");
+        let words = [Some(1.5), None].map(|value| percent(value, "finer than 0.075 mm"));
+        assert_eq!(words, ["1.5 % finer than 0.075 mm", "not known"]);
     }
 
     #[test]

@@ -1,12 +1,11 @@
 //! Commands `voidwalk design`, `boundary` and `percolation`: specifications by practice, for one base or for
 //! many samples; the boundaries of the model; and the percolation threshold against the size of the lattice.
 
-use std::fmt::Write;
 use std::path::Path;
 
 use super::args::{BoundaryArgs, DesignArgs, PercolationArgs};
-use super::options::{CommandSettings, OfSpecification};
-use super::print::{answer, counted, plain, shown};
+use super::options::{DESIGN, SETTINGS};
+use super::print::{self, answer, counted, shown};
 use super::progress::{followed, unfollowed};
 use super::rules::{aligned, in_notes};
 use crate::outcome::boundary::{Boundaries, Boundary, BoundaryRow, Range};
@@ -31,13 +30,8 @@ use voidwalk_practice::design::Specification;
 use voidwalk_practice::quantity::{NumberRole, SizeUnit, significant};
 use voidwalk_practice::{DesignedSamples, Note};
 
-const FOLDER: &str = "voidwalk-specification";
-
-const EACH_FOLDER: &str = "voidwalk-designs";
-
-/// Makes the specification for a base, or for each of many samples, and writes it into a folder.
 pub(crate) fn design(args: &DesignArgs) -> Result<(), RunError> {
-    let takes = [About::texts(), OfSpecification::OPTIONS.iter().map(ToString::to_string).collect()].concat();
+    let takes = [About::texts(), SETTINGS[DESIGN].options.iter().map(ToString::to_string).collect()].concat();
     let settings = &args.settings.assignments;
     let is_taken = |set: &str| takes.iter().any(|name| setting_name(set) == name);
     if let Some(other) = settings.iter().find(|set| !is_taken(set)) {
@@ -47,7 +41,7 @@ pub(crate) fn design(args: &DesignArgs) -> Result<(), RunError> {
     }
     let scene = Scene::built_in(settings)?;
     let about = &scene.about;
-    let folder = if args.each { EACH_FOLDER } else { FOLDER };
+    let folder = if args.each { "voidwalk-designs" } else { "voidwalk-specification" };
     let options = SpecifyOptions {
         bases: args.bases.clone(),
         dispersive: scene.base.dispersive == Some(true),
@@ -59,7 +53,8 @@ pub(crate) fn design(args: &DesignArgs) -> Result<(), RunError> {
         overwrite: args.overwrite,
     };
     if args.each {
-        return design_each(args, &options);
+        let all = followed(args.quiet, |callbacks| specify_each(&options, callbacks))?;
+        return answer((args.json, args.quiet), format::DESIGNS, &all, || designs_words(&all, &options.out));
     }
     let specification = followed(args.quiet, |callbacks| specify(&options, callbacks))?;
     answer((args.json, args.quiet), format::SPECIFICATION, &specification, || {
@@ -68,7 +63,6 @@ pub(crate) fn design(args: &DesignArgs) -> Result<(), RunError> {
     })
 }
 
-/// Words for the band and its limit, points to watch, and suitable products; the page has steps and limits.
 fn specification_words(specification: &Specification) -> String {
     let unit = SizeUnit::of(false, specification.inches);
     let band = band(specification, unit).unwrap_or_else(|| match &specification.no_band {
@@ -86,29 +80,19 @@ fn specification_words(specification: &Specification) -> String {
     lines.extend(still_to_set(specification, unit));
     lines.push(products(specification));
     lines.extend(to_be_checked(&specification.products));
-    lines.iter().map(|line| plain(line) + "\n").collect()
+    print::lines(lines)
 }
 
-fn design_each(args: &DesignArgs, options: &SpecifyOptions) -> Result<(), RunError> {
-    let all = followed(args.quiet, |callbacks| specify_each(options, callbacks))?;
-    answer((args.json, args.quiet), format::DESIGNS, &all, || designs_words(&all, &options.out))
-}
-
-/// Advice on a base that is found to be dispersive, with the option to add.
 fn by_option(again: &str) -> String {
     format!("{again} (--dispersive)")
 }
 
 fn designs_words(all: &DesignedSamples, out: &Path) -> String {
     let unit = SizeUnit::of(false, all.inches);
-    let mut text = aligned(columns(unit), &all.rows) + &in_notes(&all.notes) + "\n";
-    for line in lines(all, &by_option(DESIGN_EACH_AGAIN), unit) {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{}", plain(&line));
-    }
-    let _ = writeln!(text, "table: {}", shown(&out.join("designs.csv")));
-    let _ = writeln!(text, "report: {}", shown(&out.join("designs.html")));
-    text
+    let table = aligned(columns(unit), &all.rows) + &in_notes(&all.notes) + "\n";
+    let files = ["designs.csv", "designs.html"].map(|file| shown(&out.join(file)));
+    let files = ["table", "report"].iter().zip(files).map(|(name, file)| format!("{name}: {file}"));
+    table + &print::lines(lines(all, &by_option(DESIGN_EACH_AGAIN), unit).into_iter().chain(files))
 }
 
 pub(crate) fn boundary(args: &BoundaryArgs) -> Result<(), RunError> {
@@ -150,7 +134,7 @@ fn boundary_words(all: &Boundaries) -> String {
     }
     lines.push(left_out_line(&all.model_leaves_out));
     lines.push(format!("{:.1} s, {} networks each, seed {}", all.seconds, all.replicates, all.seed));
-    lines.iter().map(|line| plain(line) + "\n").collect()
+    print::lines(lines)
 }
 
 fn of_row(row: &BoundaryRow, unit: SizeUnit) -> Vec<String> {
@@ -209,27 +193,24 @@ fn percolation_words(study: &PercolationStudy) -> String {
     let mut text = String::from("      size   mean      95 % interval        sd\n");
     let digits = |value: Option<f64>| value.map_or("-".to_string(), |v| format!("{v:.5}"));
     for (size, threshold, _) in study.lattices() {
-        text += &format!(
-            "{size:>10}   {}   {} to {}   {}\n",
-            digits(Some(threshold.mean)),
-            digits(threshold.low),
-            digits(threshold.high),
-            digits(threshold.sd)
-        );
+        let [low, high, sd] = [threshold.low, threshold.high, threshold.sd].map(digits);
+        text += &format!("{size:>10}   {:.5}   {low} to {high}   {sd}\n", threshold.mean);
     }
-    let line = |law: &str, threshold: f64, error: String, chi_squared: f64, degrees: u64| {
-        format!(
+    let fits = [
+        study.one_length.as_ref().map(|fit| {
+            let error = format!("+- {:.5}", fit.threshold_error);
+            ("one length ", fit.threshold, error, fit.chi_squared, fit.degrees)
+        }),
+        study.many_starts.as_ref().map(|fit| {
+            let error = format!("({:.5} to {:.5}, 68 %)", fit.threshold_low, fit.threshold_high);
+            ("many starts", fit.threshold, error, fit.chi_squared, fit.degrees)
+        }),
+    ];
+    for (law, threshold, error, chi_squared, degrees) in fits.into_iter().flatten() {
+        text += &format!(
             "{law}: infinite lattice {threshold:.5} {error}, chi squared {chi_squared:.1} on {degrees} \
              degrees of freedom\n"
-        )
-    };
-    if let Some(fit) = &study.one_length {
-        let error = format!("+- {:.5}", fit.threshold_error);
-        text += &line("one length ", fit.threshold, error, fit.chi_squared, fit.degrees);
-    }
-    if let Some(fit) = &study.many_starts {
-        let error = format!("({:.5} to {:.5}, 68 %)", fit.threshold_low, fit.threshold_high);
-        text += &line("many starts", fit.threshold, error, fit.chi_squared, fit.degrees);
+        );
     }
     text += &format!("known: {} for the infinite lattice; {:.1} s\n", study.infinite_lattice, study.seconds);
     text

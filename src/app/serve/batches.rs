@@ -28,13 +28,11 @@ pub(crate) struct AskedBatch {
     pub(crate) tables: AskedTables,
 }
 
-/// Options that accompany two sheets.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(crate) struct AskedTables {
     /// Density in one word, or empty.
     pub(crate) density: String,
-    /// True if this very filter is packed.
     pub(crate) pack: bool,
     pub(crate) quick: bool,
     /// True if the base is walked as sampled, not as practice regrades it.
@@ -59,7 +57,6 @@ pub(crate) fn filter_names(sheets: &Sheets, paths: &[PathBuf]) -> Vec<String> {
 }
 
 impl AskedBatch {
-    /// Pairs to walk; an unknown word is an error.
     pub(crate) fn walks(&self) -> Result<BatchWalks, String> {
         match self.walks.as_str() {
             "governing" => Ok(BatchWalks::GoverningInFull),
@@ -139,7 +136,7 @@ pub(crate) fn of_batch(batch: &WalkedBatch) -> Value {
         of_filter(filter, &rules, unit).into_iter().chain(walks).chain(answers).collect()
     };
     let mut value = so_far(&batch.rows, batch.inches);
-    value["filters"] = json!(batch.filters.iter().map(lines).collect::<Vec<_>>());
+    value["filters"] = batch.filters.iter().map(lines).collect();
     value["notes"] = json!(batch.notes);
     value["leaves_out"] = json!(left_out_in_brief(&batch.model_leaves_out));
     value
@@ -179,7 +176,6 @@ pub(crate) fn rules_of_pair(pair: &PairRules) -> Value {
 
 const MOST_SHOWN: usize = 1000;
 
-/// Rules on all samples in the sheet of a base, against filters.
 pub(crate) fn samples(
     sheets: &Sheets,
     base: &str,
@@ -208,9 +204,8 @@ pub(crate) fn of_samples(samples: &BatchTable) -> Value {
         .then(|| format!("the first {MOST_SHOWN} of {} rows; the file has all", all.len()));
     let notes = samples.notes.iter().cloned().chain(cut);
     let mut value = table(batch::columns(SizeUnit::Mm), rows, |row| class_of(row, row.may_lose_fines));
-    let of_filters = samples.filters.iter().map(|filter| of_filter(filter, all, SizeUnit::Mm));
-    value["filters"] = json!(of_filters.collect::<Vec<_>>());
-    value["notes"] = json!(notes.collect::<Vec<_>>());
+    value["filters"] = samples.filters.iter().map(|filter| of_filter(filter, all, SizeUnit::Mm)).collect();
+    value["notes"] = notes.collect();
     value
 }
 

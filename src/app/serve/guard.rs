@@ -33,7 +33,6 @@ impl Guard {
         format!("http://127.0.0.1:{}/{}/", self.port, self.token)
     }
 
-    /// Path below the secret; `None` if the request is not allowed.
     pub(crate) fn path<'a>(&self, request: &'a Request) -> Option<&'a str> {
         if !request.field("host").is_some_and(|name| self.is_host(name)) {
             return None;
@@ -62,8 +61,7 @@ impl Guard {
 
     /// Compares in constant time.
     fn is_token(&self, text: &str) -> bool {
-        let differ = |(a, b): (u8, u8)| a ^ b;
-        let differences = text.bytes().zip(self.token.bytes()).map(differ).fold(0, |all, one| all | one);
+        let differences = text.bytes().zip(self.token.bytes()).fold(0, |all, (a, b)| all | (a ^ b));
         text.len() == self.token.len() && differences == 0
     }
 }
@@ -74,12 +72,10 @@ const MOST: usize = 64;
 /// Time for which a connection that has not shown the secret is spared, however many wait.
 const GRACE: Duration = Duration::from_secs(1);
 
-/// Interval between checks for connections older than that.
 const LOOK: Duration = Duration::from_millis(50);
 
 #[derive(Default)]
 pub(crate) struct Connections {
-    /// Connections in the order of their arrival.
     open: Mutex<Vec<Connection>>,
     /// Number of connections so far, which numbers each of them uniquely.
     came: AtomicU64,
@@ -93,7 +89,6 @@ struct Connection {
     since: Instant,
 }
 
-/// Place of a connection, until it is dropped.
 pub(crate) struct Place {
     connections: Arc<Connections>,
     id: u64,

@@ -28,14 +28,12 @@ const DEPARTURE: (Duration, Duration, u64) = (Duration::from_secs(20), Duration:
 /// Limits on the time and bytes of input discarded after a refusal, so that the refusal is read.
 const DRAIN: (Duration, u64) = (Duration::from_secs(1), 2 * BODY);
 
-/// A request whose body has not been read.
 #[derive(Debug)]
 pub(crate) struct Request {
     pub(crate) method: String,
     pub(crate) path: String,
-    pub(crate) query: String,
+    query: String,
     fields: Vec<(String, String)>,
-    /// Beginning of the body, which came with the head.
     begun: Vec<u8>,
     length: u64,
 }
@@ -66,32 +64,23 @@ fn decoded(text: &str) -> String {
     let mut rest = text.as_bytes();
     while let [first, more @ ..] = rest {
         let digit = |at: usize| more.get(at).and_then(|b| char::from(*b).to_digit(16));
-        match (first, digit(0), digit(1)) {
-            (b'%', Some(high), Some(low)) => {
-                bytes.push((16 * high + low) as u8);
-                rest = &more[2..];
-            }
-            (b'+', ..) => {
-                bytes.push(b' ');
-                rest = more;
-            }
-            _ => {
-                bytes.push(*first);
-                rest = more;
-            }
-        }
+        let (byte, after) = match (first, digit(0), digit(1)) {
+            (b'%', Some(high), Some(low)) => ((16 * high + low) as u8, &more[2..]),
+            (b'+', ..) => (b' ', more),
+            _ => (*first, more),
+        };
+        bytes.push(byte);
+        rest = after;
     }
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
 pub(crate) struct Answer {
     pub(crate) status: u16,
-    /// Type of the body.
     pub(crate) kind: &'static str,
     pub(crate) body: Body,
     /// Content security policy; without one, nothing at all is allowed.
     pub(crate) policy: Option<String>,
-    /// Name under which a browser saves it.
     pub(crate) download: Option<String>,
 }
 
@@ -122,7 +111,6 @@ impl Answer {
     }
 }
 
-/// Replaces hidden characters in every text of a value.
 fn show(value: &mut Value) {
     match value {
         Value::String(text) => *text = text.chars().map(visible).collect(),
@@ -170,9 +158,9 @@ impl Write for Until<'_> {
     }
 }
 
-/// Reads the head of a request; a bad head gives its answer.
 pub(crate) fn read_head(stream: &mut TcpStream) -> io::Result<Result<Request, Answer>> {
     let mut stream = Until::new(stream, ARRIVAL.0, ARRIVAL.0);
+    let refused = |status, words| Ok(Err(Answer::problem(status, words)));
     let mut bytes = Vec::new();
     loop {
         let mut piece = [0; 4096];
@@ -188,11 +176,9 @@ pub(crate) fn read_head(stream: &mut TcpStream) -> io::Result<Result<Request, An
                 return Ok(request(&parsed, bytes[length..].to_vec()));
             }
             Ok(httparse::Status::Partial) if bytes.len() < HEAD => {}
-            Ok(httparse::Status::Partial) => return Ok(Err(Answer::problem(431, "the head is too large"))),
-            Err(httparse::Error::TooManyHeaders) => {
-                return Ok(Err(Answer::problem(431, "there are too many header fields")));
-            }
-            Err(_) => return Ok(Err(Answer::problem(400, "this is not an HTTP request"))),
+            Ok(httparse::Status::Partial) => return refused(431, "the head is too large"),
+            Err(httparse::Error::TooManyHeaders) => return refused(431, "there are too many header fields"),
+            Err(_) => return refused(400, "this is not an HTTP request"),
         }
     }
 }

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use super::batches::of_batch;
 use super::live::Live;
-use crate::cases::{BatchPlan, CaseCallbacks, CaseEvent, CaseOptions, CasePart, batch};
+use crate::cases::{BatchPlan, CaseCallbacks, CaseEvent, CaseOptions, batch};
 use crate::outcome::record::Outcome;
 use crate::report::colour_of;
 use crate::run::error::AnyError;
@@ -26,7 +26,8 @@ use voidwalk_core::text::shell_word;
 use voidwalk_practice::Decision;
 use voidwalk_practice::quantity::SizeUnit;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub(crate) enum JobState {
     Waiting,
     Running,
@@ -34,19 +35,6 @@ pub(crate) enum JobState {
     Done,
     Refused,
     Failed,
-}
-
-impl JobState {
-    pub(crate) fn words(self) -> &'static str {
-        match self {
-            Self::Waiting => "waiting",
-            Self::Running => "running",
-            Self::Stopped => "stopped",
-            Self::Done => "done",
-            Self::Refused => "refused",
-            Self::Failed => "failed",
-        }
-    }
 }
 
 pub(crate) struct Job {
@@ -65,7 +53,6 @@ pub(crate) struct Job {
 }
 
 impl Job {
-    /// Creates a job with no work done.
     pub(crate) fn new(id: usize, title: String, folder: String, work: Work, state: JobState) -> Self {
         let (live, stop) = (Arc::default(), Arc::default());
         let (message, result, asked) = (String::new(), Value::Null, Value::Null);
@@ -106,7 +93,7 @@ impl Job {
             "asked": self.asked,
             "folder": self.folder,
             "path": root.join(&self.folder).display().to_string(),
-            "state": self.state.words(),
+            "state": self.state,
             "stopping": self.state == JobState::Running && self.stop.load(Ordering::Relaxed),
             "can_continue": self.can_continue(root),
             "before": all.iter().filter(waits).count(),
@@ -119,7 +106,6 @@ impl Job {
     }
 }
 
-/// Result with every text passed through `named`.
 fn all_said(value: &Value, named: &impl Fn(&str) -> String) -> Value {
     match value {
         Value::String(text) => Value::String(named(text)),
@@ -135,14 +121,11 @@ pub(crate) fn has_scene(folder: &Path) -> bool {
 }
 
 pub(crate) fn how_to_continue(folder: &Path) -> String {
-    let resume = match has_scene(folder) {
-        true => format!(", or `voidwalk resume {}`,", shell_word(&folder.display().to_string())),
-        false => String::new(),
-    };
+    let command = || format!(", or `voidwalk resume {}`,", shell_word(&folder.display().to_string()));
+    let resume = if has_scene(folder) { command() } else { String::new() };
     format!("what is done is saved; Continue{resume} goes on from it")
 }
 
-/// Action on finished results.
 pub(crate) type OnResults = fn(FolderKind, &Path, Option<RunFiles>) -> Result<(), AnyError>;
 
 #[derive(Clone)]
@@ -158,7 +141,6 @@ pub(crate) enum Work {
 }
 
 impl Work {
-    /// Prefix of the name of its folder.
     pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::Batch(_) => "batch",
@@ -167,7 +149,6 @@ impl Work {
     }
 }
 
-/// Settings shared by all jobs of a server.
 pub(crate) struct WorkContext {
     pub(crate) root: PathBuf,
     pub(crate) prepare: PrepareOptions,
@@ -177,7 +158,6 @@ pub(crate) struct WorkContext {
 }
 
 impl WorkContext {
-    /// Does a job, and returns the JSON of its result for the page.
     pub(crate) fn work(
         &self,
         folder: &Path,
@@ -233,15 +213,8 @@ impl WorkContext {
 }
 
 pub(crate) fn of_cases(folder: &Path, prepare: &PrepareOptions, command: &str) -> CaseOptions {
-    CaseOptions {
-        out: folder.to_owned(),
-        part: CasePart::All,
-        packings: Some(prepare.packings.clone()),
-        memory: prepare.memory,
-        threads: prepare.threads,
-        checkpoint_interval: often(),
-        command: command.to_owned(),
-    }
+    let options = CaseOptions::of(folder.to_owned(), prepare.clone(), command.to_owned());
+    CaseOptions { checkpoint_interval: often(), ..options }
 }
 
 /// Interval between saves: the maximum loss if a server is killed.
@@ -287,10 +260,8 @@ pub(crate) fn earlier(root: &Path, most: usize) -> Vec<Job> {
 
 /// True if a folder holds only marks of the program, because its job was never accepted.
 fn holds_nothing(folder: &Path) -> bool {
-    let entries = std::fs::read_dir(folder);
-    entries.is_ok_and(|mut entries| {
-        entries.all(|entry| entry.is_ok_and(|entry| entry.file_name().as_encoded_bytes().starts_with(b".")))
-    })
+    let is_mark = |entry: &std::fs::DirEntry| entry.file_name().as_encoded_bytes().starts_with(b".");
+    std::fs::read_dir(folder).is_ok_and(|mut all| all.all(|entry| entry.as_ref().is_ok_and(is_mark)))
 }
 
 /// Job that an earlier server left; `None` if the folder of this name holds no job.
@@ -301,18 +272,20 @@ fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
     if file.is_none() && (!is_ours || holds_nothing(&path)) {
         return None;
     }
-    let record = |kind: FolderKind| read_whole(&path.join(kind.record())).ok();
-    let done = match FolderKind::of(&path).filter(|kind| kind.is_finished(&path).unwrap_or(false)) {
-        Some(FolderKind::Run) => record(FolderKind::Run)
-            .and_then(|bytes| from_json::<Outcome>(&bytes).ok())
-            .map(|outcome| of_run(&outcome, &outcome.decision())),
-        // Without its page it is unfinished, and the same call writes the page.
-        Some(FolderKind::Batch) if path.join("batch.html").is_file() => record(FolderKind::Batch)
-            .and_then(|bytes| from_json::<WalkedBatch>(&bytes).ok())
-            .map(|batch| of_batch(&batch)),
-        Some(FolderKind::Batch) | None => None,
-        Some(kind) => record(kind).and_then(|bytes| from_json(&bytes).ok()),
-    };
+    let kind = FolderKind::of(&path).filter(|kind| kind.is_finished(&path).unwrap_or(false));
+    let done = kind.and_then(|kind| {
+        let bytes = read_whole(&path.join(kind.record())).ok()?;
+        match kind {
+            FolderKind::Run => {
+                let outcome: Outcome = from_json(&bytes).ok()?;
+                Some(of_run(&outcome, &outcome.decision()))
+            }
+            // Without its page it is unfinished, and the same call writes the page.
+            FolderKind::Batch if !path.join("batch.html").is_file() => None,
+            FolderKind::Batch => from_json::<WalkedBatch>(&bytes).ok().map(|batch| of_batch(&batch)),
+            _ => from_json(&bytes).ok(),
+        }
+    });
     let ended = file.as_ref().and_then(|file| file.ended.clone());
     let title =
         file.as_ref().map_or_else(|| format!("{name}, from an earlier start"), |file| file.title.clone());
@@ -323,37 +296,34 @@ fn earlier_job(id: usize, name: String, root: &Path) -> Option<Job> {
     };
     let mut job = Job::new(id, title, name, work, JobState::Stopped);
     job.asked = file.map_or(Value::Null, |file| file.asked);
-    (job.state, job.message, job.result) = match (done, ended) {
-        (Some(result), _) => (JobState::Done, String::new(), result),
-        (None, Some((state, message))) if state == JobState::Refused.words() => {
-            (JobState::Refused, message, Value::Null)
-        }
-        (None, Some((_, message))) => (JobState::Failed, message, Value::Null),
-        (None, None) if matches!(job.work, Work::Nothing) => {
+    (job.state, job.message) = match ended {
+        _ if done.is_some() => (JobState::Done, String::new()),
+        Some((JobState::Refused, message)) => (JobState::Refused, message),
+        Some((_, message)) => (JobState::Failed, message),
+        None if matches!(job.work, Work::Nothing) => {
             let message = "the server ended before this was done, and its request is not known";
-            (JobState::Stopped, message.into(), Value::Null)
+            (JobState::Stopped, message.into())
         }
-        (None, None) => (JobState::Stopped, how_to_continue(&path), Value::Null),
+        None => (JobState::Stopped, how_to_continue(&path)),
     };
+    job.result = done.unwrap_or_default();
     Some(job)
 }
 
 const FILE: &str = "job.json";
 
-/// Maximum size of the file, for writing and reading (bytes).
 const LARGEST: u64 = 4 << 20;
 
 /// Request of a job, and its end if it cannot continue.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct JobFile {
-    /// Kind of job, as the request names it.
     pub(crate) kind: String,
     pub(crate) title: String,
     pub(crate) asked: Value,
     pub(crate) request: Value,
-    /// Word `refused` or `failed`, with the message.
+    /// Refused or failed, with the message.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) ended: Option<(String, String)>,
+    pub(crate) ended: Option<(JobState, String)>,
 }
 
 impl JobFile {
@@ -394,7 +364,7 @@ mod tests {
         file.write(&folder).unwrap();
         assert_eq!(JobFile::read(&folder).as_ref(), Some(&file));
         assert!(crate::run::folder::claim(&folder, FolderKind::Run, false).is_ok());
-        file.ended = Some(("failed".into(), "the disk is full".into()));
+        file.ended = Some((JobState::Failed, "the disk is full".into()));
         file.write(&folder).unwrap();
         assert_eq!(JobFile::read(&folder).as_ref(), Some(&file));
         file.request = "x".repeat(5 << 20).into();

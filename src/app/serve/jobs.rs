@@ -2,8 +2,7 @@
 //!
 //! A job is a call of the library into its own folder, the same folder of a run or batch as from the command
 //! line. The request is stored there before any work ([`JobFile`]), so that a later server on the same folder
-//! can do it. A new kind of job needs a variant of [`Work`], its work in `WorkContext::work`, and a reader of
-//! its request (`Routes::planned`).
+//! can do it.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -48,7 +47,6 @@ impl JobQueue {
         self.all.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Refuses a further job if too many wait, or if the server is ending.
     fn has_room(&self, all: &[Job]) -> Result<(), String> {
         if self.ends.load(Ordering::Relaxed) {
             return Err("the server ends".into());
@@ -87,7 +85,6 @@ impl JobQueue {
         Ok(id)
     }
 
-    /// Stops a job, or removes it from the queue.
     pub(crate) fn stop(&self, id: usize) -> Result<(), String> {
         let mut all = self.locked();
         let job = all.iter_mut().find(|job| job.id == id).ok_or("there is no such job")?;
@@ -124,8 +121,7 @@ impl JobQueue {
 
     /// True if a job's folder holds the scene of a run that has begun, which can be resumed.
     pub(crate) fn has_scene(&self, id: usize) -> bool {
-        let all = self.locked();
-        all.iter().any(|job| job.id == id && has_scene(&self.context.root.join(&job.folder)))
+        self.locked().iter().any(|job| job.id == id && has_scene(&self.context.root.join(&job.folder)))
     }
 
     /// Continues a job that was stopped or has failed, with its work planned again.
@@ -190,13 +186,11 @@ impl JobQueue {
         self.locked().iter().any(|job| job.folder == name).then(|| self.context.root.join(name))
     }
 
-    /// All jobs, newest first; messages pass through `named`.
     pub(crate) fn snapshot(&self, named: impl Fn(&str) -> String) -> Value {
         let all = self.locked();
         all.iter().rev().map(|job| job.snapshot(&all, &self.context.root, &named)).collect()
     }
 
-    /// Walks one job after another, until `over`.
     pub(crate) fn work_until(&self, over: &AtomicBool) {
         while !over.load(Ordering::Relaxed) {
             let Some(next) = self.next() else { continue };
@@ -205,20 +199,21 @@ impl JobQueue {
             let walked = walked.unwrap_or_else(|_| Err(RunError::failed("a fault of the program")));
             let (state, message, result) = match walked {
                 Ok(result) => (JobState::Done, String::new(), result),
-                Err(error) => match error.exit() {
-                    Exit::Stopped => (JobState::Stopped, how_to_continue(&folder), Value::Null),
-                    exit => {
-                        let state = if exit == Exit::Refused { JobState::Refused } else { JobState::Failed };
-                        let advice = error.advice().map_or(String::new(), |advice| format!("\n{advice}"));
-                        (state, format!("{error}{advice}"), Value::Null)
-                    }
-                },
+                Err(error) if error.exit() == Exit::Stopped => {
+                    (JobState::Stopped, how_to_continue(&folder), Value::Null)
+                }
+                Err(error) => {
+                    let is_refused = error.exit() == Exit::Refused;
+                    let state = if is_refused { JobState::Refused } else { JobState::Failed };
+                    let advice = error.advice().map_or(String::new(), |advice| format!("\n{advice}"));
+                    (state, format!("{error}{advice}"), Value::Null)
+                }
             };
             let ended = matches!(state, JobState::Refused | JobState::Failed);
             let file = JobFile::read(&folder);
             if let Some(file) = file.clone().filter(|_| ended) {
                 // If this cannot be written, the next server offers to continue the job, which does no harm.
-                let ended = Some((state.words().to_owned(), message.clone()));
+                let ended = Some((state, message.clone()));
                 let _ = JobFile { ended, ..file }.write(&folder);
             }
             let mut all = self.locked();
@@ -249,7 +244,6 @@ impl JobQueue {
     }
 }
 
-/// Removes the earliest finished jobs if there are too many.
 fn shorten(all: &mut Vec<Job>) {
     let mut more = all.len().saturating_sub(LISTED);
     all.retain(|job| {
@@ -276,7 +270,12 @@ mod tests {
     fn set(queue: &JobQueue, id: usize, state: JobState) {
         let mut all = queue.locked();
         let job = all.iter_mut().find(|job| job.id == id).unwrap();
-        (job.state, job.message) = (state, format!("it is {}", state.words()));
+        (job.state, job.message) = (state, format!("it is {state:?}"));
+    }
+
+    fn write_end(folder: &Path, state: JobState) {
+        let ended = Some((state, "why".to_owned()));
+        JobFile { ended, ..file() }.write(folder).unwrap();
     }
 
     #[test]
@@ -296,15 +295,11 @@ mod tests {
         assert!(error.to_string().contains("run-3") && !error.to_string().contains("run-1"), "{error}");
         set(&queue, ids[0], JobState::Failed);
         let error = queue.ended(&open).unwrap_err();
-        assert!(
-            error.exit() == Exit::Failed && error.to_string().ends_with("run-1: it is failed"),
-            "{error}"
-        );
-        for (state, ends_well) in
-            [(JobState::Done, true), (JobState::Refused, true), (JobState::Stopped, false)]
-        {
+        assert_eq!(error.exit(), Exit::Failed);
+        assert!(error.to_string().ends_with("run-1: it is Failed"), "{error}");
+        for state in [JobState::Done, JobState::Refused, JobState::Stopped] {
             set(&queue, ids[0], state);
-            assert_eq!(queue.ended(&ids[..1]).is_ok(), ends_well, "{state:?}");
+            assert_eq!(queue.ended(&ids[..1]).is_ok(), state != JobState::Stopped, "{state:?}");
         }
     }
 
@@ -343,8 +338,7 @@ mod tests {
         let before = queue(root.path());
         let ids = [(); 3].map(|()| before.add(file(), Work::Kept).unwrap());
         for (id, state) in [(ids[1], JobState::Refused), (ids[2], JobState::Failed)] {
-            let ended = Some((state.words().to_owned(), "why".to_owned()));
-            JobFile { ended, ..file() }.write(&root.path().join(format!("run-{id}"))).unwrap();
+            write_end(&root.path().join(format!("run-{id}")), state);
         }
         let wrong = ["run-18446744073709551615", "run-99999999", "run-+9", "run-09", "run-x", "a-2"];
         for folder in wrong.into_iter().chain(["sheets-1000", "batch-7"]) {
@@ -358,8 +352,8 @@ mod tests {
         std::os::unix::fs::symlink("/tmp", root.path().join("run-8")).unwrap();
         let queue = queue(root.path());
         let told = queue.snapshot(str::to_owned);
-        let told: Vec<_> = told.as_array().unwrap().iter().collect();
-        let states = |key: &str| told.iter().map(|job| job[key].clone()).collect::<Vec<_>>();
+        let states =
+            |key: &str| told.as_array().unwrap().iter().map(|job| job[key].clone()).collect::<Vec<_>>();
         assert_eq!(states("id"), [7, 3, 2, 1]);
         assert_eq!(states("state"), ["stopped", "failed", "refused", "stopped"]);
         assert_eq!(states("can_continue"), [false, true, false, true]);
@@ -391,8 +385,7 @@ mod tests {
         let folder = |id: usize| root.path().join(format!("run-{id}"));
         for (id, state) in ids.into_iter().zip([JobState::Failed, JobState::Refused, JobState::Refused]) {
             set(&before, id, state);
-            let ended = Some((state.words().to_owned(), "the disk is full".to_owned()));
-            JobFile { ended, ..file() }.write(&folder(id)).unwrap();
+            write_end(&folder(id), state);
         }
         std::fs::write(folder(ids[1]).join("scene.toml"), "").unwrap();
         let after = queue(root.path());

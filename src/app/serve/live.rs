@@ -14,9 +14,6 @@ const FEW: usize = 4;
 
 const WARNINGS: usize = 50;
 
-/// Maximum number of lines of a study that are kept: the newest.
-const LINES: usize = 12;
-
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Live {
     /// Grains of the packing, steps done, and usual number of steps.
@@ -25,15 +22,12 @@ pub(crate) struct Live {
     /// Numbers of runs done and to be walked, as far as known.
     runs: [u64; 2],
     walked: SoFar,
-    /// Numbers of cases done and in all.
     pub(crate) cases: [usize; 2],
-    done: Vec<Value>,
     /// Cases being walked, with their numbers of runs done and to be walked.
     walking: BTreeMap<String, [u64; 2]>,
     case: String,
     /// Rows of a batch, with the walks so far; true if they show inches.
     pub(crate) batch: Option<(Vec<WalkedRow>, bool)>,
-    lines: Vec<String>,
     pub(crate) warnings: Vec<String>,
 }
 
@@ -60,12 +54,8 @@ impl Live {
             Event::RunWalked { replicate, run, eroded_mass_fraction, below_threshold } => {
                 self.walked.add(replicate, run, eroded_mass_fraction, below_threshold);
             }
-            Event::Studying(line) => {
-                self.lines.push(line.to_owned());
-                self.lines.drain(..self.lines.len().saturating_sub(LINES));
-            }
             Event::Noted { notes, unit } => notes.iter().for_each(|note| self.warn(&sentence(note, unit))),
-            Event::VerdictNeeds { .. } | Event::VerdictStands { .. } | Event::Increment { .. } => {}
+            _ => {}
         }
     }
 
@@ -75,11 +65,9 @@ impl Live {
             CaseEvent::Walked { done, runs } => {
                 self.walking.insert(case.to_owned(), [done, runs]);
             }
-            CaseEvent::Done(line) => {
+            CaseEvent::Done(_) => {
                 self.walking.remove(case);
                 self.cases[0] += 1;
-                let words = line.verdict.words();
-                self.done.push(json!({ "case": case, "verdict": words }));
             }
             CaseEvent::Failed(problem) => {
                 self.walking.remove(case);
@@ -88,7 +76,6 @@ impl Live {
         }
     }
 
-    /// Removes the rows of a finished batch, whose result has the table.
     pub(crate) fn end_batch(&mut self) {
         if let Some((rows, _)) = &mut self.batch {
             *rows = Vec::new();
@@ -123,10 +110,7 @@ impl Live {
             "walking": self.walking.iter().map(|(case, [done, runs])| json!({
                 "case": case, "done": done, "runs": runs
             })).collect::<Vec<_>>(),
-            // The table of a batch shows them.
-            "done": if self.batch.is_some() { json!([]) } else { json!(self.done) },
             "table": table.map(|(rows, inches)| so_far(rows, *inches)),
-            "lines": self.lines,
             "warnings": self.warnings,
             "so_far": self.so_far(runs),
         })

@@ -5,9 +5,7 @@
 //! Requests are bounded (`http.rs`); the page fetches nothing from outside and runs only its own script.
 //!
 //! Every answer is a call of the library (`routes.rs`). Each walk is a folder of a run or batch in the
-//! server's folder (`jobs.rs`), as made by the command line. Requests are stored there too, so that a later
-//! server on the folder lists every job and can continue it; `voidwalk resume` continues a run that has
-//! begun.
+//! server's folder (`jobs.rs`), as made by the command line, so `voidwalk resume` continues a run, too.
 
 mod batches;
 mod guard;
@@ -92,7 +90,6 @@ impl Server {
         self.routes.guard.address()
     }
 
-    /// Folder of sheets and results.
     pub(crate) fn folder(&self) -> &Path {
         self.folder.path()
     }
@@ -121,14 +118,12 @@ impl Server {
     }
 }
 
-/// Makes and takes a folder that does not exist yet.
 fn first_new(name: &str) -> Result<Folder, RunError> {
-    let names = std::iter::once(name.to_owned()).chain((2..).map(|n| format!("{name}-{n}")));
-    let mut names = names.filter(|name| Path::new(name).symlink_metadata().is_err());
-    claim(Path::new(&names.next().expect("there is no last name")), FolderKind::Serve, false)
+    let mut names = std::iter::once(name.to_owned()).chain((2..).map(|n| format!("{name}-{n}")));
+    let free = names.find(|name| Path::new(name).symlink_metadata().is_err());
+    claim(Path::new(&free.expect("there is no last name")), FolderKind::Serve, false)
 }
 
-/// Answers every connection, a limited number at a time.
 fn accept(listener: &TcpListener, routes: &Arc<Routes>) {
     let connections = Arc::new(Connections::default());
     for stream in listener.incoming() {
@@ -147,7 +142,7 @@ fn accept(listener: &TcpListener, routes: &Arc<Routes>) {
 
 /// Answers one connection; a browser that has left is not an error of the server.
 fn answer(mut stream: TcpStream, place: &Place, routes: &Routes) {
-    let answered = http::read_head(&mut stream).and_then(|head| {
+    let _ = http::read_head(&mut stream).and_then(|head| {
         let answer = match head {
             Ok(request) => {
                 if routes.guard.path(&request).is_some() {
@@ -159,5 +154,4 @@ fn answer(mut stream: TcpStream, place: &Place, routes: &Routes) {
         };
         http::send(&mut stream, answer)
     });
-    drop(answered);
 }

@@ -489,15 +489,13 @@ function soFar(job) {
   } else if (live.cases) {
     parts.push(el("p", {}, `${live.cases_done} of ${live.cases} cases are done` + (live.case && !live.walking.length && live.cases_done < live.cases ? `; at ${live.case}` : "")),
       el("progress", { max: live.cases, value: live.cases_done + live.walking.reduce((sum, one) => sum + one.done / Math.max(1, one.runs), 0) }),
-      list(live.walking.map((one) => `${one.case}: ${whole(one.done)} of ${whole(one.runs)} runs are walked`)),
-      list(live.done.map((one) => `${one.case}: ${one.verdict}`)));
+      list(live.walking.map((one) => `${one.case}: ${whole(one.done)} of ${whole(one.runs)} runs are walked`)));
   } else if (live.runs) {
     parts.push(el("p", {}, `${whole(live.runs_done)} of ${whole(live.runs)} runs are walked`), el("progress", { max: live.runs, value: live.runs_done }));
-  } else if (!live.lines.length) {
+  } else {
     parts.push(el("p", {}, "Begins."));
   }
   if (live.table) parts.push(samplesTable(job, live.table));
-  if (live.lines.length) parts.push(list(live.lines));
   if (live.so_far) {
     const { replicates, runs, few } = live.so_far;
     const of = job.replicates ? ` of ${job.replicates}` : "";

@@ -63,7 +63,6 @@ struct Planned {
     work: Work,
 }
 
-/// Everything that a request may reach.
 pub(crate) struct Routes {
     pub(crate) guard: Guard,
     pub(crate) sheets: Sheets,
@@ -72,7 +71,6 @@ pub(crate) struct Routes {
     pub(crate) root: PathBuf,
 }
 
-/// Failed request: its status and message.
 type Problem = (u16, String);
 
 /// Constriction curves of a filter, loose and dense, by their names; empty if the library has no similar
@@ -91,15 +89,22 @@ fn wrong(error: impl std::fmt::Display) -> Problem {
 
 /// Message of the command line in the words of the page, which has boxes and fields instead of options.
 fn on_page(message: &str) -> String {
-    let message =
-        message.strip_prefix("--set: ").or_else(|| message.strip_prefix("--set, ")).unwrap_or(message);
+    let shorter = ["--set: ", "--set, "].iter().find_map(|start| message.strip_prefix(start));
+    let message = shorter.unwrap_or(message);
     message
         .replace("(--as-given)", "(the tick \"base and filter are as given\")")
         .replace("--as-sampled", "the tick \"walk the base as it was sampled\"")
 }
 
+fn missing(what: &str) -> Problem {
+    (404, format!("there is no such {what}"))
+}
+
+fn failed(error: io::Error) -> Problem {
+    (500, error.to_string())
+}
+
 impl Routes {
-    /// Answers a request.
     pub(crate) fn answer(&self, mut request: Request, stream: &mut TcpStream) -> io::Result<Answer> {
         let Some(path) = self.guard.path(&request).map(str::to_owned) else {
             let words = "not allowed: open the address that voidwalk serve has printed, with its secret";
@@ -139,7 +144,7 @@ impl Routes {
                 Some(("files", file)) => self.file(file),
                 Some(("examples", name)) => example(name),
                 Some(("zip", folder)) => self.zip(folder),
-                _ => Err((404, "there is no such page".into())),
+                _ => Err(missing("page")),
             },
         }
     }
@@ -150,6 +155,7 @@ impl Routes {
             id.ok_or((400, "which job?".to_owned()))
         };
         let accepted = |id: usize| Answer::json(200, json!({ "id": id }));
+        let conflict = |words: String| (409, words);
         match path {
             "api/sheet" => {
                 let name = request.parameter("name").unwrap_or_default();
@@ -161,11 +167,9 @@ impl Routes {
                 let kind = path.trim_start_matches("api/").to_owned();
                 let Planned { title, asked, work } = self.planned(&kind, &request)?;
                 let file = JobFile { kind, title, asked, request, ended: None };
-                let status = |error: RunError| match error.exit() {
-                    Exit::Refused => (429, error.to_string()),
-                    _ => (500, error.to_string()),
-                };
-                self.jobs.add(file, work).map(accepted).map_err(status)
+                let status = |error: &RunError| if error.exit() == Exit::Refused { 429 } else { 500 };
+                let added = self.jobs.add(file, work).map_err(|error| (status(&error), error.to_string()));
+                added.map(accepted)
             }
             "api/check" => {
                 let asked = serde_json::from_slice(body).map_err(malformed)?;
@@ -173,9 +177,8 @@ impl Routes {
                 let refusal =
                     check.refusal.as_ref().map(|refusal| self.sheets.as_named(&refusal.to_string()));
                 let unit = SizeUnit::of(check.inputs.scale_free, false);
-                let notes: Vec<String> = check.notes.iter().map(|note| sentence(note, unit)).collect();
                 let mut value = serde_json::to_value(&check).map_err(wrong)?;
-                value["notes"] = json!(notes);
+                value["notes"] = check.notes.iter().map(|note| sentence(note, unit)).collect();
                 value["refusal"] = json!(refusal);
                 Ok(Answer::json(200, value))
             }
@@ -193,11 +196,10 @@ impl Routes {
                 };
                 self.jobs.resume(id, work).map(|()| accepted(id)).map_err(conflict)
             }
-            _ => Err((404, "there is no such page".into())),
+            _ => Err(missing("page")),
         }
     }
 
-    /// Work for a request of this kind, now or when it is continued.
     fn planned(&self, kind: &str, request: &Value) -> Result<Planned, Problem> {
         match kind {
             "judge" => {
@@ -214,12 +216,14 @@ impl Routes {
                 let (samples, filters) = asked.sheets(&self.sheets).map_err(wrong)?;
                 let names = batches::filter_names(&self.sheets, &filters);
                 let of_samples = self.sheets.as_named(&samples.display().to_string());
-                let plan = self.batch(&asked, &samples, &filters)?;
+                let (tables, walks) = (table_options(&asked.tables)?, asked.walks().map_err(wrong)?);
+                let options = of_cases(&self.root, &self.prepare, "");
+                let plan = BatchPlan::new(&samples, &filters, &tables, walks, &options).map_err(wrong)?;
                 let plan = plan.named(&of_samples, &names, |message| self.sheets.as_named(message));
                 let title = asked.title(&of_samples, &names);
                 Ok(Planned { title, asked: sheets, work: Work::Batch(Box::new(plan)) })
             }
-            _ => Err((404, "there is no such work".into())),
+            _ => Err(missing("work")),
         }
     }
 
@@ -250,13 +254,6 @@ impl Routes {
     fn scene(&self, asked: &Asked) -> Result<Scene, Problem> {
         let (base, filter) = (self.path(&asked.base)?, self.path(&asked.filter)?);
         Scene::of_tables(&base, &filter, &table_options(&asked.tables)?).map_err(wrong)
-    }
-
-    fn batch(&self, asked: &AskedBatch, samples: &Path, filters: &[PathBuf]) -> Result<BatchPlan, Problem> {
-        let tables = table_options(&asked.tables)?;
-        let walks = asked.walks().map_err(wrong)?;
-        let options = of_cases(&self.root, &self.prepare, "");
-        BatchPlan::new(samples, filters, &tables, walks, &options).map_err(wrong)
     }
 
     fn rules(&self, request: &Request) -> Result<Answer, Problem> {
@@ -293,13 +290,12 @@ impl Routes {
         soils.extend(passages);
         let drawn =
             report::soils_figure(soils.iter().map(|(name, points)| (name.as_str(), &points[..])), false);
-        let answer = Answer::new(200, "image/svg+xml", drawn);
-        Ok(Answer { policy: Some(POLICY_OF_DRAWING.into()), ..answer })
+        Ok(Answer { policy: Some(POLICY_OF_DRAWING.into()), ..Answer::new(200, "image/svg+xml", drawn) })
     }
 
     /// File in a job's folder; other folders and links are refused.
     fn file(&self, named: &str) -> Result<Answer, Problem> {
-        let missing = || (404, "there is no such file".to_owned());
+        let missing = || missing("file");
         let (folder, rest) = named.split_once('/').ok_or_else(missing)?;
         if !rest.split('/').all(is_plain_part) {
             return Err(missing());
@@ -320,8 +316,7 @@ impl Routes {
             "csv" | "toml" | "txt" | "jsonl" => "text/plain; charset=utf-8",
             _ => "application/octet-stream",
         };
-        let answer =
-            Answer::file(kind, file.ok_or_else(missing)?).map_err(|error| (500, error.to_string()))?;
+        let answer = Answer::file(kind, file.ok_or_else(missing)?).map_err(failed)?;
         let policy = match ending {
             // A page of results runs no script; its links lead to other files here.
             "html" => Some(format!("{}; frame-ancestors 'none'", report::shell::content_policy())),
@@ -334,10 +329,9 @@ impl Routes {
     fn zip(&self, named: &str) -> Result<Answer, Problem> {
         let name = named.strip_suffix(".zip").unwrap_or(named);
         let folder = self.jobs.folder(name).filter(|folder| is_own(folder));
-        let folder = folder.ok_or_else(|| (404, "there is no such folder yet".to_owned()))?;
-        let packed =
-            archive(&folder, name, &self.root).and_then(|file| Answer::file("application/zip", file));
-        let answer = packed.map_err(|error| (500, error.to_string()))?;
+        let folder = folder.ok_or_else(|| missing("folder yet"))?;
+        let packed = archive(&folder, name, &self.root).map_err(failed)?;
+        let answer = Answer::file("application/zip", packed).map_err(failed)?;
         Ok(Answer { download: Some(format!("voidwalk-{name}.zip")), ..answer })
     }
 }
@@ -350,18 +344,12 @@ fn pair_options(request: &Request) -> Result<PairOptions, Problem> {
     TableOptions { as_given, changes, ..TableOptions::default() }.of_rules().map_err(wrong)
 }
 
-/// True if a job's folder is a real folder, not a link to another.
 fn is_own(folder: &Path) -> bool {
     folder.symlink_metadata().is_ok_and(|meta| meta.is_dir())
 }
 
-/// Answer to a malformed request.
 fn malformed(error: serde_json::Error) -> Problem {
     (400, error.to_string())
-}
-
-fn conflict(words: String) -> Problem {
-    (409, words)
 }
 
 fn table_options(asked: &AskedTables) -> Result<TableOptions, Problem> {
@@ -394,8 +382,7 @@ fn form() -> Value {
 }
 
 fn example(name: &str) -> Result<Answer, Problem> {
-    let example = EXAMPLE_FILES.iter().find(|file| file.name == name);
-    let file = example.ok_or_else(|| (404, "there is no such example".to_owned()))?;
+    let file = EXAMPLE_FILES.iter().find(|file| file.name == name).ok_or_else(|| missing("example"))?;
     Ok(Answer::new(200, "text/plain; charset=utf-8", file.text))
 }
 

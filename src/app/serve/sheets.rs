@@ -17,7 +17,6 @@ const MOST: (usize, u64) = (200, 256 << 20);
 /// Maximum number of soils of a sheet that are kept and can be chosen.
 const MOST_SOILS: usize = 1000;
 
-/// Upper bound on the numbers of sheets.
 const LAST: usize = 100_000;
 
 /// Maximum lengths of a file's name and ending (letters, bytes); file systems allow 255 bytes.
@@ -29,8 +28,7 @@ pub(crate) struct Sheet {
     pub(crate) name: String,
     /// Soils that can be chosen, the first ones of the file, as `voidwalk soil` reads them.
     pub(crate) soils: Vec<SoilSummary>,
-    /// Number of soils in the file.
-    pub(crate) in_all: usize,
+    in_all: usize,
 }
 
 impl Sheet {
@@ -57,7 +55,6 @@ struct Kept {
 }
 
 impl Sheets {
-    /// Sheets of an earlier server below `root`, and no others yet.
     pub(crate) fn new(root: &Path) -> Self {
         let folder = root.join(FOLDER);
         let mut kept = Kept::default();
@@ -75,7 +72,6 @@ impl Sheets {
         Self { folder, kept: Mutex::new(kept) }
     }
 
-    /// Adds a sheet, if soils can be read from it and there is room.
     pub(crate) fn add(&self, name: &str, bytes: &[u8]) -> Result<Arc<Sheet>, String> {
         let size = bytes.len() as u64;
         {
@@ -97,7 +93,6 @@ impl Sheets {
         added
     }
 
-    /// Writes a sheet into its own folder, and reads it.
     fn read(&self, name: &str, bytes: &[u8]) -> Result<Arc<Sheet>, String> {
         make_folder(&self.folder).map_err(|error| error.to_string())?;
         let (id, folder) = self.new_folder()?;
@@ -199,7 +194,6 @@ fn harmless(name: &str) -> String {
     }
 }
 
-/// First letters of a text, up to these numbers of letters and bytes.
 fn cut(text: &str, (letters, bytes): (usize, usize)) -> &str {
     let ends = text.char_indices().map(|(at, letter)| at + letter.len_utf8()).take(letters);
     &text[..ends.take_while(|end| *end <= bytes).last().unwrap_or(0)]
@@ -279,9 +273,9 @@ mod tests {
             sheets.add(name, b"size_mm,percent\n1,0\n2,100\n").unwrap();
         }
         let listed =
-            |root: &Path| Sheets::new(root).all().iter().map(|s| (s.id, s.name.clone())).collect::<Vec<_>>();
-        let before: Vec<_> = sheets.all().iter().map(|s| (s.id, s.name.clone())).collect();
-        assert_eq!((listed(root.path()), before.len()), (before.clone(), 3));
+            |sheets: &Sheets| sheets.all().iter().map(|s| (s.id, s.name.clone())).collect::<Vec<_>>();
+        let before = listed(&sheets);
+        assert_eq!((listed(&Sheets::new(root.path())), before.len()), (before.clone(), 3));
         let folder = root.path().join(FOLDER);
         let outside = root.path().join("outside.csv");
         std::fs::rename(folder.join("1/a.csv"), &outside).unwrap();
@@ -289,7 +283,7 @@ mod tests {
         std::os::unix::fs::symlink(&outside, folder.join("1/a.csv")).unwrap();
         std::fs::write(folder.join("2/b.csv"), "no soil").unwrap();
         std::fs::create_dir(folder.join("18446744073709551615")).unwrap();
-        assert_eq!(listed(root.path()), before[2..]);
+        assert_eq!(listed(&Sheets::new(root.path())), before[2..]);
         // Files that are not listed are not overwritten.
         let next = Sheets::new(root.path()).add("c.csv", b"size_mm,percent\n1,0\n2,100\n").unwrap();
         assert_eq!(next.id, 4);

@@ -56,7 +56,6 @@ impl Default for PercolationPlan {
 struct Found {
     /// Lengths of a lattice, and the thresholds of its realisations in order.
     thresholds: Vec<([u32; 3], Vec<f64>)>,
-    /// Wall time (s).
     seconds: f64,
 }
 
@@ -78,10 +77,8 @@ pub fn run(options: &PercolationOptions, callbacks: &Callbacks) -> Result<Percol
 }
 
 impl PercolationPlan {
-    /// Sorts cubes first, by size, and keeps each lattice once.
-    ///
-    /// # Errors
-    /// A length of 0, or too many constrictions for 32 bits.
+    /// Sorts cubes first, by size, and keeps each lattice once. Errors: a length of 0, or too many
+    /// constrictions for 32 bits.
     pub(crate) fn checked(mut self) -> Result<Self, NetworkError> {
         self.shapes.sort_unstable_by_key(|&shape| (!is_cube(shape), shape));
         self.shapes.dedup();

@@ -20,10 +20,10 @@ use voidwalk_core::text::plain;
 use voidwalk_practice::design::{SieveSeries, Specification};
 use voidwalk_practice::quantity::SizeUnit;
 use voidwalk_practice::{DesignedSample, DesignedSamples, SheetCover, SpecificationOptions};
-use voidwalk_sheets::{SoilSample, file_and_soil};
+use voidwalk_sheets::{SoilSample, envelope_in, file_and_soil, samples_in};
 
 /// D85 (mm) above which a base is refused, because its sizes are probably in another unit.
-pub(super) const NO_BASE_MM: f64 = 100.0;
+const NO_BASE_MM: f64 = 100.0;
 
 /// Options of a specification, and the folder of its results.
 #[derive(Clone, Debug)]
@@ -53,7 +53,6 @@ impl SpecifyOptions {
         SpecificationOptions { dispersive: self.dispersive.then_some(true), finer, sieves }
     }
 
-    /// Writes tables, record and page into the folder.
     fn write(
         &self,
         (kind, record): (FolderKind, &impl Serialize),
@@ -75,7 +74,7 @@ impl SpecifyOptions {
 /// A base that cannot be read or is not a base, or a folder that cannot be claimed, is refused before
 /// anything is written.
 pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specification, RunError> {
-    let base = InputSoils::envelope(&options.bases)?;
+    let base = InputSoils::read(&options.bases, envelope_in)?;
     no_filter_within(&base)?;
     base.soils.iter().try_for_each(is_a_base)?;
     let curves: Vec<_> = base.soils.iter().map(|soil| (soil.name.clone(), soil.curve.clone())).collect();
@@ -94,16 +93,13 @@ pub fn specify(options: &SpecifyOptions, callbacks: &Callbacks) -> Result<Specif
 }
 
 /// Specifies a filter for every sample (the bases of the options) by practice alone, and writes
-/// `designs.csv`, one row per sample, and, last, `designs.json`.
-///
-/// # Errors
-/// Samples that cannot be read, a sample that is not a base, or a folder that cannot be claimed are refused
-/// before anything is written.
+/// `designs.csv`, one row per sample, and, last, `designs.json`. Errors: samples that cannot be read, a
+/// sample that is not a base, or a folder that cannot be claimed are refused before anything is written.
 pub(crate) fn specify_each(
     options: &SpecifyOptions,
     callbacks: &Callbacks,
 ) -> Result<DesignedSamples, RunError> {
-    let input = InputSoils::samples(&options.bases)?;
+    let input = InputSoils::read(&options.bases, samples_in)?;
     input.soils.iter().try_for_each(is_a_base)?;
     let row = |sample: &SoilSample| {
         let curve = (sample.name.clone(), sample.curve.clone());
@@ -144,18 +140,19 @@ fn no_filter_within(base: &InputSoils) -> Result<(), RunError> {
     }
 }
 
-/// Refuses stones: most likely a size in micrometres under a header in mm.
 fn is_a_base(soil: &SoilSample) -> Result<(), RunError> {
-    match soil.curve.d(85.0).filter(|d85| *d85 > NO_BASE_MM) {
-        Some(d85) => Err(refused(&soil.path, format!("{}: {}", soil.name, no_base(d85)))),
-        None => Ok(()),
-    }
+    let checked = soil.curve.d(85.0).map_or(Ok(()), check_d85);
+    checked.map_err(|stones| refused(&soil.path, format!("{}: {stones}", soil.name)))
 }
 
-/// Message for a base that is too coarse.
-pub(super) fn no_base(d85: f64) -> String {
-    format!(
-        "the base's D85 is {d85:.0} mm, and no filter holds such stones: are its sizes micrometres under a \
-         header in mm?"
-    )
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "the base's D85 is {0:.0} mm, and no filter holds such stones: are its sizes micrometres under a header \
+     in mm?"
+)]
+pub(super) struct Stones(f64);
+
+/// Refuses stones: most likely a size in micrometres under a header in mm.
+pub(super) fn check_d85(d85_mm: f64) -> Result<(), Stones> {
+    if d85_mm > NO_BASE_MM { Err(Stones(d85_mm)) } else { Ok(()) }
 }

@@ -28,7 +28,7 @@ use std::time::Instant;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use super::specified::{NO_BASE_MM, no_base};
+use super::specified::check_d85;
 use crate::case::CaseError;
 use crate::cases::kept::{self, Kept};
 use crate::cases::plan::PlannedCase;
@@ -58,18 +58,23 @@ pub fn run(options: &BoundaryOptions, callbacks: &Callbacks) -> Result<Boundarie
     on_threads(options.prepare.threads, || run_within(options, BRACKET, callbacks))
 }
 
-/// Runs a search between these D15F/D85B.
 fn run_within(
     options: &BoundaryOptions,
     bracket: [f64; 2],
     callbacks: &Callbacks,
 ) -> Result<Boundaries, RunError> {
     let begun = Instant::now();
-    let drafts = drafts(options, bracket)?;
+    // Any mistake is found before any work.
+    let drafts = plan(options)?.cases.into_iter().map(|planned| drafted(planned, options, bracket));
+    let drafts: Vec<(Draft, Row)> = drafts.collect::<Result<_, _>>()?;
     let kind = FolderKind::Boundary;
     let folder = claim(&options.out, kind, options.overwrite)?;
-    let rows = drafts.into_iter().map(|draft| draft.packed(options, callbacks));
-    let rows = with_curve_ends(rows.collect::<Result<_, _>>()?);
+    let packed = |(draft, row): (Draft, Row)| -> Result<Row, RunError> {
+        let provided = |plan| provide(plan, &options.prepare.packings, callbacks);
+        let packed = draft.packing.as_ref().map(provided).transpose()?;
+        Ok(Row { case: draft.finished(packed)?, ..row })
+    };
+    let rows = with_curve_ends(drafts.into_iter().map(packed).collect::<Result<_, _>>()?);
     let work = work(&rows, bracket);
     kept::study((&folder, kind, options.overwrite), work, callbacks, |kept, done| {
         let done = searched(&rows, bracket, done.unwrap_or_default(), kept, callbacks)?;
@@ -81,79 +86,62 @@ fn run_within(
 /// D15F/D85B between which [`run`] searches.
 const BRACKET: [f64; 2] = [0.5, 100.0];
 
-/// Density and thickness found sound.
-struct DraftedRow {
-    draft: Draft,
-    /// Row with a guess for a filter that is still to be packed.
-    row: Row,
-}
-
-/// Rows found sound. Errors: any mistake, before any work.
-fn drafts(options: &BoundaryOptions, bracket: [f64; 2]) -> Result<Vec<DraftedRow>, RunError> {
-    plan(options)?.cases.into_iter().map(|planned| DraftedRow::new(planned, options, bracket)).collect()
-}
-
-impl DraftedRow {
-    fn new(planned: PlannedCase, options: &BoundaryOptions, bracket: [f64; 2]) -> Result<Self, RunError> {
-        let PlannedCase { scene, mut levels, .. } = planned;
-        let (density, thickness) = (levels.remove(0).1, Thickness::of(&scene.network));
-        let mut draft = Draft::new(with_any_base(&scene))?;
-        let case = &mut draft.case;
-        let stated = case.base_of(&scene)?;
-        let refuse = |problem: String| Err(RunError::from(CaseError::from(scene.clash(problem))));
-        let Some(d85) = stated.base.gradation.d(85.0) else {
-            return refuse(
-                "the base's D85 lies in the pan fraction (finer than the finest sieve): add finer sieves, or \
-                 base.d0_mm"
-                    .into(),
-            );
-        };
-        // D0 counts as one millimetre if it is stated, else as the unit.
-        let states_d0 = options.settings.iter().any(|setting| setting_name(setting) == "filter.d0_mm");
-        let filter_has_size = states_d0 || !case.is_scale_free();
-        let has_size = match scene.base.gradation() {
-            BaseGradation::Sieve(..) | BaseGradation::Single(_) => true,
-            BaseGradation::Linear { d85, .. } => matches!(d85, D85::Mm(_)),
-        };
-        if has_size && d85 > NO_BASE_MM {
-            return refuse(no_base(d85));
-        }
-        if matches!(thickness, Thickness::Mm(_)) && !has_size {
-            return refuse(
-                "a thickness in mm needs a base in mm: give BASE, base.d85_mm, or a thickness in layers or \
-                 multiples of D50F"
-                    .into(),
-            );
-        }
-        let base = stated.base.gradation.scaled(1.0 / d85).map_err(CaseError::from)?;
-        let limits = options.prepare.limits(&options.out);
-        case.place(&limits, rayon::current_num_threads() as u64, &options.out)?;
-        have_networks(case, &Callbacks::default())?;
-        let row = Row {
-            density,
-            thickness,
-            case: case.clone(),
-            stated,
-            base,
-            d85_mm: has_size.then_some(d85),
-            filter_has_size,
-            limits,
-            end_of: None,
-            ends: Vec::new(),
-        };
-        row.check_room(bracket)?;
-        // The curve of a filter that is still to be packed is not known yet.
-        if row.case.filter.packed.is_none() {
-            row.at_curve_ends().iter().try_for_each(|end| end.check_room(bracket))?;
-        }
-        Ok(Self { draft, row })
+/// Density and thickness found sound, with a guess for a filter that is still to be packed.
+fn drafted(
+    planned: PlannedCase,
+    options: &BoundaryOptions,
+    bracket: [f64; 2],
+) -> Result<(Draft, Row), RunError> {
+    let PlannedCase { scene, mut levels, .. } = planned;
+    let (density, thickness) = (levels.remove(0).1, Thickness::of(&scene.network));
+    let mut draft = Draft::new(with_any_base(&scene))?;
+    let case = &mut draft.case;
+    let stated = case.base_of(&scene)?;
+    let refuse = |problem: &str| Err(RunError::from(CaseError::from(scene.clash(problem.to_owned()))));
+    let Some(d85) = stated.base.gradation.d(85.0) else {
+        return refuse(
+            "the base's D85 lies in the pan fraction (finer than the finest sieve): add finer sieves, or \
+             base.d0_mm",
+        );
+    };
+    // D0 counts as one millimetre if it is stated, else as the unit.
+    let states_d0 = options.settings.iter().any(|setting| setting_name(setting) == "filter.d0_mm");
+    let filter_has_size = states_d0 || !case.is_scale_free();
+    let has_size = match scene.base.gradation() {
+        BaseGradation::Sieve(..) | BaseGradation::Single(_) => true,
+        BaseGradation::Linear { d85, .. } => matches!(d85, D85::Mm(_)),
+    };
+    if has_size && let Err(stones) = check_d85(d85) {
+        return refuse(&stones.to_string());
     }
-
-    fn packed(self, options: &BoundaryOptions, callbacks: &Callbacks) -> Result<Row, RunError> {
-        let provided = |plan| provide(plan, &options.prepare.packings, callbacks);
-        let packed = self.draft.packing.as_ref().map(provided).transpose()?;
-        Ok(Row { case: self.draft.finished(packed)?, ..self.row })
+    if matches!(thickness, Thickness::Mm(_)) && !has_size {
+        return refuse(
+            "a thickness in mm needs a base in mm: give BASE, base.d85_mm, or a thickness in layers or \
+             multiples of D50F",
+        );
     }
+    let base = stated.base.gradation.scaled(1.0 / d85).map_err(CaseError::from)?;
+    let limits = options.prepare.limits(&options.out);
+    case.place(&limits, rayon::current_num_threads() as u64, &options.out)?;
+    have_networks(case, &Callbacks::default())?;
+    let row = Row {
+        density,
+        thickness,
+        case: case.clone(),
+        stated,
+        base,
+        d85_mm: has_size.then_some(d85),
+        filter_has_size,
+        limits,
+        end_of: None,
+        ends: Vec::new(),
+    };
+    row.check_room(bracket)?;
+    // The curve of a filter that is still to be packed is not known yet.
+    if row.case.filter.packed.is_none() {
+        row.at_curve_ends().iter().try_for_each(|end| end.check_room(bracket))?;
+    }
+    Ok((draft, row))
 }
 
 /// Every row, each followed by the ends of the range of its constriction curve, as a run walks them: the
@@ -173,15 +161,14 @@ fn with_curve_ends(rows: Vec<Row>) -> Vec<Row> {
     all
 }
 
-/// Hash of everything that determines the results.
 fn work(rows: &[Row], bracket: [f64; 2]) -> String {
-    let work_of_row = |row: &Row| {
+    let rows = rows.iter().map(|row| {
         let base = row.stated.base.gradation.points();
         let base: Vec<[f64; 2]> = base.iter().map(|point| [point.size, point.percent]).collect();
         let thickness = row.thickness.to_string();
         json!([row.case.fingerprint(), thickness, base, row.d85_mm, row.filter_has_size])
-    };
-    let rows: Vec<Value> = rows.iter().map(work_of_row).collect();
+    });
+    let rows: Vec<Value> = rows.collect();
     kept::hash_of(&json!([METHOD, bracket, rows]).to_string())
 }
 
@@ -194,12 +181,11 @@ fn searched(
     callbacks: &Callbacks,
 ) -> Result<Vec<Done>, RunError> {
     let total: u64 = rows.iter().map(Row::networks).sum();
+    let tell = |text: String| (callbacks.on_event)(Event::Studying(&text));
     if !done.is_empty() {
-        let text = format!("{} of {total} networks are done already", done.len());
-        (callbacks.on_event)(Event::Studying(&text));
+        tell(format!("{} of {total} networks are done already", done.len()));
     }
-    let text = format!("searching up to {} networks", total - done.len() as u64);
-    (callbacks.on_event)(Event::Studying(&text));
+    tell(format!("searching up to {} networks", total - done.len() as u64));
     let less: Vec<Vec<usize>> = (0..rows.len()).map(|row| holding_less(rows, row)).collect();
     let (ends, others): (Vec<usize>, Vec<usize>) = (0..rows.len()).partition(|&row| !less[row].is_empty());
     let searched = others.iter().filter(|&&row| rows[row].networks() > 0).count().max(1);
@@ -225,12 +211,10 @@ fn searched(
     Ok(done)
 }
 
-/// Networks of all rows, including those already done.
 struct Searching<'a> {
     rows: &'a [Row],
     bracket: [f64; 2],
     done: Mutex<Vec<Done>>,
-    /// Locked by the thread that writes finished work.
     writing: Mutex<()>,
     kept: &'a Kept<'a>,
     callbacks: &'a Callbacks<'a>,

@@ -1,9 +1,7 @@
 //! Filters whose constriction curve is known only within a range: the ends that are searched and shown. Notes
 //! on boundaries of thin filters, and of searches that end too soon.
 
-use std::sync::atomic::{AtomicBool, Ordering};
-
-use super::tests::{SHORT, found_within, of_base, options, searched, timeless, tiny};
+use super::tests::{found_within, of_base, options, searched, stopped, timeless, tiny};
 use super::*;
 use crate::outcome::boundary::BoundaryRow;
 use crate::run::prepare::PrepareOptions;
@@ -107,17 +105,7 @@ fn a_search_goes_on_from_an_end_that_was_not_searched() {
     let whole = searched(&plan("whole", 2));
     let spared = |row: &BoundaryRow| row.no_erosion_notes.iter().any(|note| note.id() == "spared_end");
     assert_eq!(whole.boundaries.iter().filter(|row| spared(row)).count(), 2, "{:?}", whole.boundaries);
-    let stop = AtomicBool::new(false);
-    let callbacks = Callbacks {
-        on_event: &|event| {
-            if matches!(event, Event::Studying(text) if text.contains(" holds (")) {
-                stop.store(true, Ordering::Relaxed);
-            }
-        },
-        stop: &stop,
-        ..Callbacks::default()
-    };
-    let error = run_within(&plan("stopped", 1), SHORT, &callbacks).unwrap_err();
+    let error = stopped(&plan("stopped", 1), " holds (");
     // Two networks of either thickness, and one end.
     assert!(error.to_string().starts_with("after 5 of 8 networks"), "{error}");
     assert_eq!(timeless(&searched(&plan("stopped", 3))), timeless(&whole));
@@ -165,7 +153,7 @@ fn a_thickness_of_less_than_a_layer_is_not_passed_off_as_one() {
     let folder = tempfile::tempdir().unwrap();
     let base = of_base(folder.path(), "base.csv", &[(0.1, 0.0), (0.2, 100.0)]);
     let thicknesses = vec![Thickness::Mm(0.05), Thickness::Mm(0.9)];
-    let options = options(&folder.path().join("out"), &["no layers"]);
+    let options = options(&folder.path().join("out"), &[]);
     let all = searched(&BoundaryOptions { base: Some(base), thicknesses, ..options });
     let (thin, row) = (&all.boundaries[0], &all.boundaries[1]);
     assert!(thin.layers == 1 && thin.thickness_mm.unwrap() > 0.1, "{thin:?}");
@@ -218,7 +206,7 @@ fn a_real_thickness_is_compared_in_mm_alone() {
     let base = Some(of_base(folder.path(), "base.csv", &[(0.1, 0.0), (0.2, 100.0)]));
     for mm in [10.0, 10.3, 10.6, 10.9] {
         let name = format!("of-{mm}");
-        let plain = options(&folder.path().join(&name), &["no layers", &format!("filter.thickness_mm={mm}")]);
+        let plain = options(&folder.path().join(&name), &[&format!("filter.thickness_mm={mm}")]);
         let all =
             searched(&BoundaryOptions { base: base.clone(), thicknesses: vec![Thickness::Mm(mm)], ..plain });
         let is_thicker = |row: &RowNote| row.note.id() == "layers_thicker";

@@ -25,7 +25,6 @@ use voidwalk_practice::{Mistake, Note, ordered};
 /// Ratio assumed in a first guess of the layers of a thickness in mm.
 const USUAL_RATIO: f64 = 5.0;
 
-/// One density and thickness with its packed filter.
 #[derive(Clone)]
 pub(super) struct Row {
     pub(crate) density: String,
@@ -100,13 +99,11 @@ impl Row {
         ((mm / layer).round() < 1.0).then_some(layer)
     }
 
-    /// Note on a layer that is thicker than the thickness asked for.
     pub(crate) fn thicker(&self, ratio: f64) -> Option<Note> {
         let layer_mm = self.thicker_than_asked(ratio)?;
         Some(Note::LayerThicker { ratio, layer_mm, thickness: self.thickness.to_string() })
     }
 
-    /// The case at a ratio.
     pub(crate) fn at(&self, ratio: f64) -> Result<Case, CaseError> {
         let base = self.base.scaled(self.d15f() / ratio)?;
         let mut case = self.case.with_base(base, self.layers(ratio))?;
@@ -118,10 +115,10 @@ impl Row {
     pub(crate) fn check_room(&self, bracket: [f64; 2]) -> Result<(), RunError> {
         let ratio = self.start().clamp(bracket[0], bracket[1]);
         match self.at(ratio) {
-            Err(error) if !is_of_base(&error) => Err(RunError::Refused(format!(
-                "{}, {}, at D15F/D85B {ratio:.2}: {error}",
-                self.density, self.thickness
-            ))),
+            Err(error) if !is_of_base(&error) => {
+                let row = format!("{}, {}, at D15F/D85B {ratio:.2}", self.density, self.thickness);
+                Err(RunError::Refused(format!("{row}: {error}")))
+            }
             _ => Ok(()),
         }
     }
@@ -159,7 +156,8 @@ impl Row {
         (bracket, hint): ([f64; 2], Hint),
         callbacks: &'a Callbacks<'a>,
     ) -> Result<Begun<OneNetwork<'a>>, RunError> {
-        Begun::new(self.network(number, callbacks), bracket, self.from(hint))
+        let start = Start { ratio: self.start(), hint, across: self.across() };
+        Begun::new(self.network(number, callbacks), bracket, start)
     }
 
     /// Result for the first network if it holds this ratio. Errors: a walk that fails or was stopped.
@@ -176,10 +174,6 @@ impl Row {
         let seed = replicate_seed(self.case.scene.walk.seed, number);
         OneNetwork { row: self, seed, network: None, clogged: BTreeMap::new(), callbacks }
     }
-
-    fn from(&self, hint: Hint) -> Start {
-        Start { ratio: self.start(), hint, across: self.across() }
-    }
 }
 
 /// True if the base itself cannot be walked: Eq. (2) gives too few or too many particles, or sizes are out of
@@ -188,7 +182,6 @@ fn is_of_base(error: &CaseError) -> bool {
     matches!(error, CaseError::Scene(_) | CaseError::Gradation(_) | CaseError::Number(_))
 }
 
-/// One network, walked at one ratio after another.
 pub(super) struct OneNetwork<'a> {
     row: &'a Row,
     seed: u64,
@@ -263,7 +256,6 @@ fn eroded(
     Ok((Eroded::of(&state, case.pan_by_mass_only()), state.into_clogged()))
 }
 
-/// Minimum number of networks that gives percentiles.
 const FEW_NETWORKS: u64 = 5;
 
 /// D85 (mm) above which a base gets a note.
@@ -277,7 +269,6 @@ fn of_amount(row: &Row) -> Option<Note> {
     }
 }
 
-/// Row at one ratio, with the sizes that it has there.
 pub(super) struct Judged {
     /// Case with the sizes of filter and base at the ratio; without a unit, sizes are in units of D85B.
     pub(crate) case: Case,

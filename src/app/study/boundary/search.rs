@@ -40,7 +40,6 @@ pub(super) const METHOD: &str = "design search 9";
 /// Steps between stops in the search of the second run, which is far from the first if bases are broad.
 const SECOND_STOP: i64 = 32;
 
-/// Reason why a search found no boundary.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) enum Ended {
     /// The smallest ratio of the search erodes.
@@ -49,12 +48,10 @@ pub(super) enum Ended {
     ErodesTo(f64, String),
     /// The largest ratio of the search holds, in this run.
     Holds(u64, f64),
-    /// Reason why further ratios are not walked.
     NotWalked(String),
 }
 
 impl Ended {
-    /// Note for this many networks.
     pub(crate) fn note(&self, networks: u64) -> Note {
         match self {
             Self::Erodes(ratio) => Note::ErodesToEnd { ratio: *ratio, networks },
@@ -74,13 +71,10 @@ pub(super) type Beside = (Beyond, Ended);
 pub(super) struct Found {
     /// D15F/D85B from which the first run erodes 7.5 %.
     pub(crate) no_erosion: Option<f64>,
-    /// Reason why there is no such ratio.
     pub(crate) no_erosion_beyond: Option<Beside>,
     /// D15F/D85B from which the second run does too.
     pub(crate) continuing: Option<f64>,
-    /// Reason why there is no such ratio.
     pub(crate) continuing_beyond: Option<Beside>,
-    /// True if some larger ratio was seen to hold.
     pub(crate) is_not_monotone: bool,
     /// Every ratio that was walked, in rising order, with the eroded mass fraction of either run.
     pub(crate) walks: Vec<(f64, f64, Option<f64>)>,
@@ -105,9 +99,8 @@ fn erodes_down_to(step: i64) -> Beside {
 /// Boundaries of another network of the same filter, as a start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Hint {
-    /// Both boundaries, if it has them.
     pub(crate) boundaries: [Option<f64>; 2],
-    pub(crate) erodes_to_end: bool,
+    erodes_to_end: bool,
 }
 
 impl Hint {
@@ -123,7 +116,6 @@ impl Hint {
 pub(super) struct Start {
     /// Ratio at which a search without a hint begins.
     pub(crate) ratio: f64,
-    /// Boundaries of another network of the filter.
     pub(crate) hint: Hint,
     /// Start nodes of a lattice that is walked by area; for other networks, the number of the usual lattice.
     pub(crate) across: u64,
@@ -314,147 +306,148 @@ mod tests {
     use voidwalk_core::constrictions::find;
     use voidwalk_core::network::Passage;
 
-    /// Erosion by two formulas.
-    struct Formula<F, G> {
-        first: F,
-        second: G,
+    type Erosion<'a> = Box<dyn Fn(f64) -> f64 + 'a>;
+
+    struct Formula<'a> {
+        runs: [Erosion<'a>; 2],
         walks: u64,
         possible: [f64; 2],
     }
 
-    impl<F: Fn(f64) -> f64, G: Fn(f64) -> f64> Walker for Formula<F, G> {
+    impl Walker for &mut Formula<'_> {
         fn walk(&mut self, run: u64, _: i64, ratio: f64) -> Result<Trial, RunError> {
             self.walks += u64::from(run == 1);
-            for (beyond, outside) in
-                [(Beyond::Below, ratio < self.possible[0]), (Beyond::Above, ratio > self.possible[1])]
-            {
-                if outside {
-                    return Ok(Trial::CannotBe(beyond, "Eq. (2) says no".into()));
-                }
+            let [least, greatest] = self.possible;
+            if !(least..=greatest).contains(&ratio) {
+                let beyond = if ratio < least { Beyond::Below } else { Beyond::Above };
+                return Ok(Trial::CannotBe(beyond, "Eq. (2) says no".into()));
             }
-            let mass_fraction = if run == 1 { (self.first)(ratio) } else { (self.second)(ratio) };
-            let mass_fraction = mass_fraction.clamp(0.0, 1.0);
+            let mass_fraction = self.runs[run as usize - 1](ratio).clamp(0.0, 1.0);
             Ok(Trial::Eroded(Eroded { mass_fraction, below_threshold: below_by_mass(mass_fraction, 1.0) }))
         }
     }
 
-    impl<W: Walker + ?Sized> Walker for &mut W {
-        fn walk(&mut self, run: u64, step: i64, ratio: f64) -> Result<Trial, RunError> {
-            (**self).walk(run, step, ratio)
-        }
+    fn formula<'a>(first: impl Fn(f64) -> f64 + 'a, second: impl Fn(f64) -> f64 + 'a) -> Formula<'a> {
+        Formula { runs: [Box::new(first), Box::new(second)], walks: 0, possible: [0.0, f64::MAX] }
     }
 
-    /// Searches both boundaries of a network.
-    fn search(walker: impl Walker, bracket: [f64; 2], start: Start) -> Result<Found, RunError> {
-        Begun::new(walker, bracket, start)?.ended(start.hint.boundaries[1])
+    /// Erosion that rises straight with the ratio, through the threshold at `at`.
+    fn line(at: f64, rise: f64) -> impl Fn(f64) -> f64 {
+        move |ratio| 0.075 + rise * (ratio - at)
     }
 
-    fn formula<F: Fn(f64) -> f64, G: Fn(f64) -> f64>(first: F, second: G) -> Formula<F, G> {
-        Formula { first, second, walks: 0, possible: [0.0, f64::MAX] }
+    fn search(mut formula: Formula, bracket: [f64; 2], start: Start) -> (Found, u64) {
+        let begun = Begun::new(&mut formula, bracket, start).unwrap();
+        let found = begun.ended(start.hint.boundaries[1]).unwrap();
+        (found, formula.walks)
     }
 
-    fn near(boundaries: [Option<f64>; 2]) -> Hint {
-        Hint { boundaries, ..Hint::default() }
+    fn searched(formula: Formula, start: f64) -> Found {
+        search(formula, WIDE, from(start)).0
     }
+
+    const WIDE: [f64; 2] = [0.5, 100.0];
 
     fn from(ratio: f64) -> Start {
         Start { ratio, hint: Hint::default(), across: USUAL_ACROSS }
     }
 
+    fn is_near(ratio: Option<f64>, wanted: f64, within: f64) -> bool {
+        (ratio.unwrap() / wanted - 1.0).abs() < within
+    }
+
     #[test]
     fn a_hint_changes_no_boundary_and_saves_walks() {
-        let line = || formula(|s| 0.075 + 0.1 * (s - 4.4), |s| 0.075 + 0.05 * (s - 7.3));
-        let mut plain = line();
-        let wanted = search(&mut plain, [0.5, 100.0], from(5.67)).unwrap();
+        let hinted = |boundaries: [f64; 2]| {
+            let hint = Hint { boundaries: boundaries.map(Some), ..Hint::default() };
+            search(formula(line(4.4, 0.1), line(7.3, 0.05)), WIDE, Start { hint, ..from(5.67) })
+        };
+        let (wanted, plain) = search(formula(line(4.4, 0.1), line(7.3, 0.05)), WIDE, from(5.67));
         for hint in [[4.4, 7.3], [4.3, 7.5], [4.5, 7.1], [3.0, 12.0], [9.0, 5.0], [0.2, 300.0]] {
-            let mut hinted = line();
-            let start = Start { hint: near(hint.map(Some)), ..from(5.67) };
-            let result = search(&mut hinted, [0.5, 100.0], start).unwrap();
+            let (result, walks) = hinted(hint);
             let boundaries = |found: &Found| (found.no_erosion, found.continuing);
             assert_eq!(boundaries(&result), boundaries(&wanted), "{hint:?}");
             let near = (hint[0] / 4.4 - 1.0).abs() < 0.03;
-            assert!(!near || hinted.walks < plain.walks, "{} {}", hinted.walks, plain.walks);
+            assert!(!near || walks < plain, "{walks} {plain}");
         }
-        // A hint at the upper of two crossings still finds the lower one.
+    }
+
+    /// Of several crossings the smallest counts, also if a hint names the largest.
+    #[test]
+    fn of_several_crossings_the_smallest_counts_and_that_is_said() {
+        // Above 0.075 from 3 to 4, below it to 4.4, above it from there.
         let dip = |s: f64| 0.075 + 0.02 * (s - 3.0) * (s - 4.0) * (s - 4.4);
-        let start = Start { hint: near([Some(4.4), None]), ..from(7.0) };
-        let result = search(&mut formula(dip, |_| 1.0), [0.5, 100.0], start).unwrap();
-        assert!(
-            result.is_not_monotone && (result.no_erosion.unwrap() / 3.0 - 1.0).abs() < 0.005,
-            "{result:?}"
-        );
+        for hint in [None, Some(4.4)] {
+            let hint = Hint { boundaries: [hint, None], ..Hint::default() };
+            let (result, _) = search(formula(dip, |_| 1.0), WIDE, Start { hint, ..from(7.0) });
+            assert!(result.is_not_monotone && is_near(result.no_erosion, 3.0, 0.005), "{result:?}");
+        }
     }
 
     #[test]
     fn two_straight_lines_are_found_to_half_a_percent_from_any_start_and_bracket() {
         let mut all = Vec::new();
-        for bracket in [[0.5, 100.0], [1.0, 20.0], [3.05, 11.3]] {
+        for bracket in [WIDE, [1.0, 20.0], [3.05, 11.3]] {
             for start in [0.1, 2.0, 4.4, 6.0, 9.0, 15.0] {
-                let mut line = formula(|s| 0.075 + 0.1 * (s - 4.4), |s| 0.075 + 0.05 * (s - 7.3));
-                let result = search(&mut line, bracket, from(start)).unwrap();
-                let (first, second) = (result.no_erosion.unwrap(), result.continuing.unwrap());
-                assert!((first / 4.4 - 1.0).abs() < 1e-4 && (second / 7.3 - 1.0).abs() < 1e-4, "{result:?}");
-                assert!(!result.is_not_monotone && line.walks < 75);
-                all.push((first.to_bits(), second.to_bits()));
+                let lines = formula(line(4.4, 0.1), line(7.3, 0.05));
+                let (result, walks) = search(lines, bracket, from(start));
+                let both = is_near(result.no_erosion, 4.4, 1e-4) && is_near(result.continuing, 7.3, 1e-4);
+                assert!(both && !result.is_not_monotone && walks < 75, "{result:?}");
+                all.push([result.no_erosion, result.continuing].map(|ratio| ratio.unwrap().to_bits()));
             }
         }
         all.dedup();
         assert_eq!(all.len(), 1, "{all:?}");
+        // A boundary just within the bracket, whose ends are not at stops of the search.
+        for at in [3.95, 4.05] {
+            for bracket in [[3.0, 1.04 * at], [0.96 * at, 20.0]] {
+                let (result, _) = search(formula(line(at, 0.1), line(at + 0.05, 0.1)), bracket, from(3.0));
+                assert!(is_near(result.no_erosion, at, 1e-3), "{at} {result:?}");
+                assert!(is_near(result.continuing, at + 0.05, 1e-3), "{at} {result:?}");
+            }
+        }
     }
 
     #[test]
     fn a_second_run_that_erodes_wherever_the_first_does_has_the_same_boundary() {
-        let result = search(&mut formula(|s| s - 4.4, |_| 1.0), [0.5, 100.0], from(5.0)).unwrap();
-        let (first, second) = (result.no_erosion.unwrap(), result.continuing.unwrap());
-        assert!((second / first - 1.0).abs() < 0.005, "{first} {second}");
+        let result = searched(formula(|s| s - 4.4, |_| 1.0), 5.0);
+        assert!(is_near(result.continuing, result.no_erosion.unwrap(), 0.005), "{result:?}");
         assert!(result.walks.iter().all(|(_, first, second)| second.is_none() || *first >= 0.075));
     }
 
     #[test]
     fn what_lies_beyond_has_words_and_no_number() {
-        let result =
-            |formula: &mut dyn Walker, bracket: [f64; 2]| search(formula, bracket, from(5.0)).unwrap();
-        let none = result(&mut formula(|_| 0.01, |_| 0.0), [0.5, 20.0]);
+        let result = |formula: Formula, bracket: [f64; 2]| search(formula, bracket, from(5.0)).0;
+        let none = result(formula(|_| 0.01, |_| 0.0), [0.5, 20.0]);
         assert_eq!((none.no_erosion, none.continuing), (None, None));
         let (beyond, why) = none.no_erosion_beyond.unwrap();
         assert!(beyond == Beyond::Above && matches!(why, Ended::Holds(1, _)), "{why:?}");
-        let all = result(&mut formula(|_| 0.5, |_| 0.5), [0.5, 20.0]).no_erosion_beyond.unwrap();
+        let all = result(formula(|_| 0.5, |_| 0.5), [0.5, 20.0]).no_erosion_beyond.unwrap();
         let Ended::Erodes(ratio) = all.1 else { panic!("{all:?}") };
         assert!(all.0 == Beyond::Below && (ratio - 0.487).abs() < 1e-3, "{ratio}");
         // The boundary is outside the bracket, whose edge gives no number.
-        let beside = |bracket| result(&mut formula(|s| 0.075 + s - 4.4, |_| 1.0), bracket).no_erosion_beyond;
-        assert_eq!(beside([5.0, 20.0]).unwrap().0, Beyond::Below);
-        assert_eq!(beside([0.5, 4.0]).unwrap().0, Beyond::Above);
+        for (bracket, beyond) in [([5.0, 20.0], Beyond::Below), ([0.5, 4.0], Beyond::Above)] {
+            let beside = result(formula(line(4.4, 1.0), |_| 1.0), bracket).no_erosion_beyond;
+            assert_eq!(beside.unwrap().0, beyond);
+        }
         // Only the search of the second run ends.
-        let some = result(&mut formula(|s| 0.075 + s - 4.4, |_| 0.01), [0.5, 20.0]);
+        let some = result(formula(line(4.4, 1.0), |_| 0.01), [0.5, 20.0]);
         assert!(some.no_erosion.is_some() && some.continuing.is_none());
         assert!(matches!(some.continuing_beyond.unwrap().1, Ended::Holds(2, _)));
     }
 
     #[test]
     fn ratios_that_cannot_be_walked_give_no_number() {
-        let result = |possible, start| {
-            let mut formula = Formula { possible, ..formula(|s| 0.075 + 0.1 * (s - 4.4), |_| 1.0) };
-            search(&mut formula, [0.5, 100.0], from(start)).unwrap()
-        };
-        let between = |possible| result(possible, 3.0);
+        let result =
+            |possible, start| searched(Formula { possible, ..formula(line(4.4, 0.1), |_| 1.0) }, start);
         for start in [0.7, 3.0, 20.0] {
             assert!(result([2.0, 7.0], start).no_erosion.is_some(), "{start}");
         }
-        assert_eq!(result([0.5, 4.0], 20.0).no_erosion_beyond.unwrap().0, Beyond::Above);
-        let too_many = between([0.5, 4.0]).no_erosion_beyond.unwrap();
-        assert!(too_many.0 == Beyond::Above && too_many.1 == Ended::NotWalked("Eq. (2) says no".into()));
-        let too_few = between([5.0, 100.0]).no_erosion_beyond.unwrap();
+        let beyond = |possible, start| result(possible, start).no_erosion_beyond.unwrap();
+        assert_eq!(beyond([0.5, 4.0], 20.0).0, Beyond::Above);
+        assert_eq!(beyond([0.5, 4.0], 3.0), (Beyond::Above, Ended::NotWalked("Eq. (2) says no".into())));
+        let too_few = beyond([5.0, 100.0], 3.0);
         assert_eq!(too_few.0, Beyond::Below, "{:?}", too_few.1);
-    }
-
-    #[test]
-    fn of_several_crossings_the_smallest_counts_and_that_is_said() {
-        // Above 0.075 from 3 to 4, below it to 4.4, above it from there.
-        let dip = |s: f64| 0.075 + 0.02 * (s - 3.0) * (s - 4.0) * (s - 4.4);
-        let result = search(&mut formula(dip, |_| 1.0), [0.5, 100.0], from(7.0)).unwrap();
-        assert!(result.is_not_monotone, "{result:?}");
-        assert!((result.no_erosion.unwrap() / 3.0 - 1.0).abs() < 0.005, "{result:?}");
     }
 
     /// Between the stops, single ratios below the boundary of either run erode, because walks scatter.
@@ -465,12 +458,10 @@ mod tests {
             let spike = ratio_at((libm::log(at * (1.0 - spike)) / BETWEEN_STEPS).round() as i64);
             let spiky =
                 move |s: f64| if (s / spike - 1.0).abs() < 1e-3 { 0.09 } else { 0.075 + 0.05 * (s - at) };
-            let early = |s: f64| 0.075 + 0.05 * (s - 2.0);
             let result = match run {
-                1 => search(&mut formula(spiky, |_| 1.0), [0.5, 100.0], from(5.0)),
-                _ => search(&mut formula(early, spiky), [0.5, 100.0], from(5.0)),
+                1 => searched(formula(spiky, |_| 1.0), 5.0),
+                _ => searched(formula(line(2.0, 0.05), spiky), 5.0),
             };
-            let result = result.unwrap();
             let ratio = if run == 1 { result.no_erosion } else { result.continuing };
             (ratio.unwrap(), result.is_not_monotone)
         };
@@ -491,23 +482,6 @@ mod tests {
         }
     }
 
-    #[test]
-    fn the_ends_of_a_bracket_are_walked() {
-        // A boundary just within the bracket, whose ends are not at stops of the search.
-        for at in [3.95, 4.05] {
-            let result = |bracket| {
-                let mut line =
-                    formula(|s: f64| 0.075 + 0.1 * (s - at), |s: f64| 0.075 + 0.1 * (s - at - 0.05));
-                search(&mut line, bracket, from(3.0)).unwrap()
-            };
-            let (below, above) = (result([3.0, 1.04 * at]), result([0.96 * at, 20.0]));
-            for result in [&below, &above] {
-                assert!((result.no_erosion.unwrap() / at - 1.0).abs() < 1e-3, "{at} {result:?}");
-                assert!((result.continuing.unwrap() / (at + 0.05) - 1.0).abs() < 1e-3, "{at} {result:?}");
-            }
-        }
-    }
-
     /// Single size at which 7.5 % of lone particles pass 60 layers of the published loose Cu 1.5 curve:
     /// .19928 D0F = .17646 D15F, a closed form derived by others. It does not include blocking.
     #[test]
@@ -515,8 +489,8 @@ mod tests {
         let curve = find("shire2016-cu1.5-loose").unwrap().curve().unwrap();
         let passage = Passage::new(&curve);
         let d15f = libm::pow(1.5, 15.0 / 50.0);
-        let mut lone = formula(|s| passage.through(d15f / s, 60), |_| 1.0);
-        let ratio = search(&mut lone, [0.5, 100.0], from(5.0)).unwrap().no_erosion.unwrap();
+        let lone = formula(|s| passage.through(d15f / s, 60), |_| 1.0);
+        let ratio = searched(lone, 5.0).no_erosion.unwrap();
         assert!((d15f / ratio / 0.19928 - 1.0).abs() < 0.005, "{}", d15f / ratio);
         assert!((1.0 / ratio / 0.17646 - 1.0).abs() < 0.005, "{}", 1.0 / ratio);
     }
@@ -527,11 +501,10 @@ mod tests {
         let dip = (4.4f64.ln() / 0.005).round() as i64 - 45;
         let step = |s: f64| (s.ln() / 0.005).round() as i64;
         let lowest = |across, scatter: f64| {
-            let line =
+            let scattered =
                 move |s: f64| 0.075 + 0.02 * (s - 4.4) + if step(s) % 2 == 0 { scatter } else { -scatter };
-            let first = |s: f64| if step(s) == dip { 0.09 } else { line(s) };
-            let start = Start { across, ..from(4.4) };
-            search(&mut formula(first, |_| 1.0), [0.5, 100.0], start).unwrap().no_erosion.unwrap()
+            let first = move |s: f64| if step(s) == dip { 0.09 } else { scattered(s) };
+            search(formula(first, |_| 1.0), WIDE, Start { across, ..from(4.4) }).0.no_erosion.unwrap()
         };
         assert!(lowest(100, 0.003) < 3.6, "{}", lowest(100, 0.003));
         assert!(lowest(USUAL_ACROSS, 0.003) > 4.1, "{}", lowest(USUAL_ACROSS, 0.003));
@@ -541,25 +514,21 @@ mod tests {
 
     #[test]
     fn a_ratio_that_holds_is_known_by_few_walks() {
-        let line = || formula(|s| 0.075 + 0.1 * (s - 4.4), |_| panic!("the first run is enough"));
-        let holds = |formula: &mut dyn Walker, ratio: f64| {
-            holding(formula, [0.5, 100.0], (ratio, USUAL_ACROSS))
-                .unwrap()
-                .map(|result| result.spared_at.unwrap())
+        let holds = |mut formula: Formula, ratio: f64| {
+            let found = holding(&mut formula, WIDE, (ratio, USUAL_ACROSS)).unwrap();
+            found.map(|result| (result.spared_at.unwrap(), formula.walks))
         };
-        let mut steady = line();
-        let at = holds(&mut steady, 4.0).unwrap();
+        let steady = || formula(line(4.4, 0.1), |_| panic!("the first run is enough"));
+        let (at, walks) = holds(steady(), 4.0).unwrap();
         assert!((4.0..4.0 * 1.0051).contains(&at), "{at}");
         // It falls steadily, as five walks below it show.
-        assert!((2..=7).contains(&steady.walks), "{}", steady.walks);
-        assert_eq!(holds(&mut line(), 4.5), None);
-        // Beyond the search, or with a base that cannot be walked.
-        assert_eq!(holds(&mut line(), 101.0), None);
-        assert_eq!(holds(&mut line(), 0.3), None);
-        assert_eq!(holds(&mut Formula { possible: [5.0, 10.0], ..line() }, 4.0), None);
+        assert!((2..=7).contains(&walks), "{walks}");
+        // Above the boundary, or beyond the search.
+        assert!([4.5, 101.0, 0.3].iter().all(|ratio| holds(steady(), *ratio).is_none()));
+        assert_eq!(holds(Formula { possible: [5.0, 10.0], ..steady() }, 4.0), None);
         // A dip a few percent below is detected.
         let dips = |s: f64| if (3.8..3.85).contains(&s) { 0.08 } else { 0.074 };
-        assert_eq!(holds(&mut formula(dips, |_| 1.0), 4.0), None);
-        assert!(holds(&mut formula(|_| 0.074, |_| 1.0), 4.0).is_some());
+        assert_eq!(holds(formula(dips, |_| 1.0), 4.0), None);
+        assert!(holds(formula(|_| 0.074, |_| 1.0), 4.0).is_some());
     }
 }

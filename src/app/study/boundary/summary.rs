@@ -49,9 +49,14 @@ pub(super) fn boundaries(
     // An end of a range is not a filter on offer: it is judged with its row.
     let mut judgements = Vec::new();
     for (at, row) in rows.iter().enumerate().filter(|(_, row)| row.end_of.is_none()) {
+        let in_range = rows.iter().zip(&results).filter(|(other, _)| is_in_range(row, other));
+        let (searched, spared): (Vec<&FoundRow>, Vec<&FoundRow>) =
+            in_range.map(|(_, result)| result).partition(|result| result.spared_at.is_none());
         let name = format!("{}, {}", row.density, row.thickness);
-        judgements.push((name, judged(row, (&results[at].record, rows, &results))?));
-        let spared = spared_ends(row, rows, &results);
+        judgements.push((name, judged(row, &results[at].record, &searched)?));
+        let density = |end: &FoundRow| end.record.density.clone();
+        let spared = spared.into_iter().filter_map(|end| Some((density(end), end.spared_at?)));
+        let spared: Vec<Note> = spared.map(|(density, ratio)| Note::SparedEnd { density, ratio }).collect();
         results[at].record.no_erosion_notes.extend(spared);
     }
     // The worst end of a row without networks replaces that row, unless another row shares it as an end.
@@ -97,14 +102,12 @@ pub(super) fn boundaries(
 #[derive(Clone)]
 struct FoundRow {
     record: BoundaryRow,
-    /// Networks that erode at every ratio of the search.
     eroding: u64,
     /// For an end that cannot decide the answer: the ratio that its first network holds, its only result.
     spared_at: Option<f64>,
 }
 
 impl FoundRow {
-    /// Reason why no ratio is known to hold.
     fn unheld(&self) -> Option<Note> {
         let networks = self.record.networks.len() as u64;
         self.record.held().is_none().then_some(match self.eroding {
@@ -128,35 +131,13 @@ fn is_in_range(row: &Row, other: &Row) -> bool {
         && (*density == row.density || row.ends.contains(density))
 }
 
-/// Results of the row itself, if it was searched, and of the ends of its range that were.
-fn range<'a>(row: &'a Row, rows: &'a [Row], results: &'a [FoundRow]) -> impl Iterator<Item = &'a FoundRow> {
-    let in_range = rows.iter().zip(results).filter(move |(other, _)| is_in_range(row, other));
-    in_range.map(|(_, result)| result).filter(|result| result.spared_at.is_none())
-}
-
-/// Notes on ends of a row's range that were not searched.
-fn spared_ends(row: &Row, rows: &[Row], results: &[FoundRow]) -> Vec<Note> {
-    let in_range = rows.iter().zip(results).filter(|(other, _)| is_in_range(row, other));
-    let spared = |(_, end): (&Row, &FoundRow)| {
-        Some(Note::SparedEnd { density: end.record.density.clone(), ratio: end.spared_at? })
-    };
-    in_range.filter_map(spared).collect()
-}
-
-/// Ratio that nearly all networks hold with every curve of the range; `None` if unknown for one of them. A
-/// curve whose networks hold all ratios of the search counts as holding up to its end.
-fn held_over_range(row: &Row, rows: &[Row], results: &[FoundRow]) -> Option<f64> {
-    let held = range(row, rows, results).map(|result| result.record.held());
-    held.reduce(|a, b| Some(a?.min(b?))).flatten()
-}
-
 /// Reason why the model has no boundary: with some curve of the range networks erode at every ratio of the
 /// search, or they hold every one, and the end of the search is not a boundary.
-fn unbounded(row: &Row, rows: &[Row], results: &[FoundRow]) -> Option<Note> {
-    if let Some(unheld) = range(row, rows, results).find_map(FoundRow::unheld) {
+fn unbounded(range: &[&FoundRow]) -> Option<Note> {
+    if let Some(unheld) = range.iter().find_map(|result| result.unheld()) {
         return Some(unheld);
     }
-    let least = range(row, rows, results).filter_map(|result| Some((result, result.record.held()?)));
+    let least = range.iter().filter_map(|result| Some((result, result.record.held()?)));
     let (least, ratio) = least.min_by(|a, b| a.1.total_cmp(&b.1))?;
     least.record.no_erosion.is_none().then(|| match least.record.eroding_networks() as u64 {
         0 => Note::HoldsEverywhere { ratio },
@@ -186,17 +167,18 @@ fn all_notes(rows: Vec<(String, Vec<Note>)>, boundaries: &[BoundaryRow]) -> Vec<
 }
 
 /// Notes on "no erosion" for a row, at the ratio that nearly all networks hold over the range of its curve.
-fn judged(
-    row: &Row,
-    (record, rows, results): (&BoundaryRow, &[Row], &[FoundRow]),
-) -> Result<Vec<Note>, RunError> {
-    let unbounded = unbounded(row, rows, results);
-    let Some(held) = held_over_range(row, rows, results) else {
+/// `range` holds the results of the row itself and of the ends of its range, as far as they were searched. A
+/// curve whose networks hold all ratios of the search counts as holding up to its end.
+fn judged(row: &Row, record: &BoundaryRow, range: &[&FoundRow]) -> Result<Vec<Note>, RunError> {
+    let unbounded = unbounded(range);
+    // Unknown if it is unknown for one of them.
+    let held = range.iter().map(|result| result.record.held());
+    let Some(held) = held.reduce(|a, b| Some(a?.min(b?))).flatten() else {
         let why = unbounded.into_iter().chain(record.no_erosion_notes.iter().cloned());
         return Ok(Judged::new(row, USUAL_RATIO)?.notes(row, why.collect()));
     };
     let judged = Judged::new(row, held)?;
-    let least = range(row, rows, results).min_by(|a, b| holds_less(a, b));
+    let least = range.iter().min_by(|a, b| holds_less(a, b));
     let unsteady = least.and_then(|end| end.record.unsteady.clone());
     let of_boundary = match &record.no_erosion {
         Some(boundary) => Vec::from_iter(row.thicker(boundary.high.unwrap_or(boundary.median).max(held))),
@@ -206,7 +188,6 @@ fn judged(
     Ok(judged.notes(row, why.chain(of_boundary).collect()))
 }
 
-/// Text of `boundary.csv`.
 pub(super) fn csv(rows: &[Row], done: &[Done]) -> Vec<u8> {
     let of_network = |done: &Done| {
         let (walked, network) = (&rows[done.row], done.network);
@@ -264,7 +245,6 @@ fn base(row: &Row, name: &str) -> BaseStated {
     }
 }
 
-/// Row of the record.
 fn found_row(row: &Row, done: &[&Done]) -> FoundRow {
     type End = fn(&Found) -> (Option<f64>, &Option<Beside>);
     let [first, second]: [End; 2] = [
@@ -302,7 +282,7 @@ fn found_row(row: &Row, done: &[&Done]) -> FoundRow {
     let of_pan = ended_first.as_ref().and_then(|_| of_pan(row));
     let no_erosion_notes = [ended_first, of_pan, thicker(&no_erosion)].into_iter().flatten().collect();
     let continuing_notes = [ended(second), thicker(&continuing)].into_iter().flatten().collect();
-    let unsteady = no_erosion.as_ref().and_then(|_| doubt(done));
+    let unsteady = no_erosion.as_ref().and_then(|_| unsteady(done));
     let record = BoundaryRow {
         density: row.density.clone(),
         thickness: row.thickness.to_string(),
@@ -317,8 +297,7 @@ fn found_row(row: &Row, done: &[&Done]) -> FoundRow {
         holds_to,
         continuing,
         continuing_notes,
-        unsteady: unsteady
-            .map(|[networks_held, networks_eroding]| Note::Unsteady { networks_held, networks_eroding }),
+        unsteady,
         not_monotone: done.iter().filter(|done| done.found.is_not_monotone).count() as u64,
         networks: done
             .iter()
@@ -347,24 +326,24 @@ fn holds_to(done: &[&Done]) -> Option<f64> {
     low.ok()
 }
 
-/// Note on a base whose pan fraction alone exceeds the erosion threshold.
 fn of_pan(row: &Row) -> Option<Note> {
     let pan = row.stated.base.gradation.pan_fraction();
     (pan >= THRESHOLD).then_some(Note::PanErodes { finest_percent: 100.0 * pan })
 }
 
-/// Numbers of networks with a doubtful no-erosion boundary, which hold a ratio above an eroding one, and of
-/// networks that erode; `None` if the first is less than half of the second.
-fn doubt(done: &[&Done]) -> Option<[u64; 2]> {
+/// Note on a doubtful no-erosion boundary: on half or more of the networks that erode, some ratio above an
+/// eroding one holds.
+fn unsteady(done: &[&Done]) -> Option<Note> {
     let eroding: Vec<&&Done> = done.iter().filter(|network| network.found.no_erosion.is_some()).collect();
-    let unsteady = eroding.iter().filter(|network| comes_and_goes(&network.found.walks)).count();
-    (unsteady > 0 && 2 * unsteady >= eroding.len()).then_some([unsteady as u64, eroding.len() as u64])
-}
-
-/// True if some ratio above an eroding one holds in the first run; walks are in the order of their ratios.
-fn comes_and_goes(walks: &[(f64, f64, Option<f64>)]) -> bool {
-    let mut of_first = walks.iter().map(|walk| walk.1);
-    of_first.any(|eroded| eroded >= THRESHOLD) && of_first.any(|eroded| eroded < THRESHOLD)
+    let is_unsteady = |network: &&&&Done| {
+        // Walks are in the order of their ratios.
+        let mut first_runs = network.found.walks.iter().map(|walk| walk.1);
+        first_runs.any(|eroded| eroded >= THRESHOLD) && first_runs.any(|eroded| eroded < THRESHOLD)
+    };
+    let unsteady = eroding.iter().filter(is_unsteady).count();
+    let (networks_held, networks_eroding) = (unsteady as u64, eroding.len() as u64);
+    let is_doubtful = unsteady > 0 && 2 * unsteady >= eroding.len();
+    is_doubtful.then_some(Note::Unsteady { networks_held, networks_eroding })
 }
 
 #[cfg(test)]
@@ -372,41 +351,33 @@ mod tests {
     use super::*;
     use crate::study::boundary::search::Ended;
 
-    /// Network whose first run erodes these percentages at ratios 1, 2 and so on, and whose second run erodes
-    /// at 4.
+    /// Network whose first run erodes these percentages at ratios 1, 2 and so on, and whose second run goes up
+    /// and down.
     fn network(first: &[f64]) -> Done {
-        let walks: Vec<_> = (1u32..).zip(first).map(|(s, e)| (f64::from(s), e / 100.0, Some(0.0))).collect();
+        let second = [0.0, 0.08, 0.01, 0.02].map(Some);
+        let walks = (1u32..).zip(first).zip(second);
+        let walks: Vec<_> = walks.map(|((s, first), second)| (f64::from(s), first / 100.0, second)).collect();
         let no_erosion = walks.iter().find(|walk| walk.1 >= THRESHOLD).map(|walk| walk.0);
-        let beyond = no_erosion.is_none().then_some((Beyond::Above, Ended::Holds(1, 4.0)));
-        let result = Found { no_erosion, no_erosion_beyond: beyond, walks, ..Found::default() };
-        Done { row: 0, network: 1, found: result }
-    }
-
-    fn doubt_of(networks: &[&[f64]]) -> Option<[u64; 2]> {
-        let done: Vec<Done> = networks.iter().map(|first| network(first)).collect();
-        doubt(&done.iter().collect::<Vec<_>>())
-    }
-
-    const STEADY: &[f64] = &[1.0, 5.0, 8.0, 20.0];
-    const UNSTEADY: &[f64] = &[1.0, 7.5, 7.4, 20.0];
-    const HOLDING: &[f64] = &[1.0, 2.0, 3.0, 4.0];
-
-    #[test]
-    fn half_of_the_networks_that_erode_are_enough() {
-        assert_eq!(doubt_of(&[STEADY, STEADY, UNSTEADY]), None);
-        assert_eq!(doubt_of(&[STEADY, UNSTEADY]), Some([1, 2]));
-        assert_eq!(doubt_of(&[STEADY, UNSTEADY, HOLDING]), Some([1, 2]));
-        assert_eq!(doubt_of(&[UNSTEADY]), Some([1, 1]));
-        assert_eq!(doubt_of(&[STEADY]), None);
+        let no_erosion_beyond = no_erosion.is_none().then_some((Beyond::Above, Ended::Holds(1, 4.0)));
+        let found = Found { no_erosion, no_erosion_beyond, is_not_monotone: true, walks, ..Found::default() };
+        Done { row: 0, network: 1, found }
     }
 
     #[test]
-    fn the_second_run_says_nothing_of_the_boundary_of_no_erosion() {
-        let mut second = network(STEADY);
-        for (walk, eroded) in second.found.walks.iter_mut().zip([0.0, 0.08, 0.01, 0.02]) {
-            walk.2 = Some(eroded);
-        }
-        second.found.is_not_monotone = true;
-        assert_eq!(doubt(&[&second]), None);
+    fn half_of_the_networks_that_erode_in_the_first_run_are_enough() {
+        let note = |networks: &[&[f64]]| {
+            let done: Vec<Done> = networks.iter().map(|first| network(first)).collect();
+            unsteady(&done.iter().collect::<Vec<_>>())
+        };
+        let doubt =
+            |networks_held, networks_eroding| Some(Note::Unsteady { networks_held, networks_eroding });
+        let steady: &[f64] = &[1.0, 5.0, 8.0, 20.0];
+        let unsteady: &[f64] = &[1.0, 7.5, 7.4, 20.0];
+        let holding: &[f64] = &[1.0, 2.0, 3.0, 4.0];
+        assert_eq!(note(&[steady, steady, unsteady]), None);
+        assert_eq!(note(&[steady, unsteady]), doubt(1, 2));
+        assert_eq!(note(&[steady, unsteady, holding]), doubt(1, 2));
+        assert_eq!(note(&[unsteady]), doubt(1, 1));
+        assert_eq!(note(&[steady]), None);
     }
 }

@@ -5,47 +5,58 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::search::Ended;
 use super::*;
-use crate::outcome::boundary::BoundaryRow;
+use crate::outcome::boundary::{BoundaryRow, Range};
 use crate::run::prepare::PrepareOptions;
 use crate::run::{case_of, walk_case};
 use voidwalk_core::gradation::Gradation;
 use voidwalk_practice::design::RowNote;
 
 /// Lattice that takes moments, and few networks.
-const SMALL: [&str; 4] = ["network.nx=9", "network.ny=9", "network.nz=10", "replicates=3"];
+const SMALL: [&str; 3] = ["network.nx=9", "network.ny=9", "replicates=3"];
+
+/// Layers of the small lattice, where no thickness is asked for.
+const LAYERS: &str = "network.nz=10";
 
 /// D15F/D85B between which these tests search.
 pub(super) const SHORT: [f64; 2] = [0.8, 30.0];
 
-fn settings(more: &[&str]) -> Vec<String> {
-    let is_thick = |setting: &&&str| !setting.starts_with("network.nz") || !more.contains(&"no layers");
-    let all = SMALL.iter().filter(is_thick).chain(more.iter().filter(|setting| **setting != "no layers"));
-    all.map(ToString::to_string).collect()
+/// Options with all of these settings; the later of two counts.
+fn with_settings(out: &Path, all: &[&str]) -> BoundaryOptions {
+    let mut settings: Vec<String> = Vec::new();
+    for setting in all {
+        settings.retain(|before| setting_name(before) != setting_name(setting));
+        settings.push((*setting).to_owned());
+    }
+    BoundaryOptions { out: out.to_owned(), settings, ..BoundaryOptions::default() }
 }
 
 pub(super) fn options(out: &Path, more: &[&str]) -> BoundaryOptions {
-    let (out, settings) = (out.to_owned(), settings(more));
-    BoundaryOptions { out, settings, ..BoundaryOptions::default() }
+    with_settings(out, &[&SMALL, more].concat())
 }
 
-/// Options with an even smaller lattice; the later of two settings counts.
 pub(super) fn tiny(out: &Path, more: &[&str]) -> BoundaryOptions {
-    let mut all: Vec<&str> = Vec::new();
-    let key = |setting: &str| setting.split('=').next().unwrap_or_default().to_owned();
-    for setting in ["network.nx=6", "network.ny=6", "replicates=5", "base.cu=1.5"].iter().chain(more) {
-        all.retain(|before| key(before) != key(setting));
-        all.push(setting);
-    }
-    BoundaryOptions { settings: all.iter().map(ToString::to_string).collect(), ..options(out, &[]) }
+    let lattice = ["network.nx=6", "network.ny=6", "replicates=5", "base.cu=1.5"];
+    with_settings(out, &[&lattice, more].concat())
 }
 
 pub(super) fn searched(options: &BoundaryOptions) -> Boundaries {
     found_within(options, SHORT)
 }
 
-/// Boundaries between the given D15F/D85B.
 pub(super) fn found_within(options: &BoundaryOptions, bracket: [f64; 2]) -> Boundaries {
     run_within(options, bracket, &Callbacks::default()).unwrap()
+}
+
+/// Error of a search that is stopped once it reports these words.
+pub(super) fn stopped(options: &BoundaryOptions, words: &str) -> RunError {
+    let stop = AtomicBool::new(false);
+    let on_event = |event: Event| {
+        if matches!(event, Event::Studying(text) if text.contains(words)) {
+            stop.store(true, Ordering::Relaxed);
+        }
+    };
+    let callbacks = Callbacks { on_event: &on_event, stop: &stop, ..Callbacks::default() };
+    run_within(options, SHORT, &callbacks).unwrap_err()
 }
 
 pub(super) fn of_base(folder: &Path, name: &str, points: &[(f64, f64)]) -> PathBuf {
@@ -66,17 +77,16 @@ fn a_base_twice_as_large_takes_a_filter_twice_as_large_to_the_bit() {
     let points = [(0.063, 0.0), (0.125, 30.0), (0.25, 80.0), (0.5, 100.0)];
     let row = |name: &str, factor: f64| {
         let base = of_base(folder.path(), name, &points.map(|(d, percent)| (factor * d, percent)));
-        let options = options(&folder.path().join(name.replace('.', "-")), &[]);
+        let options = options(&folder.path().join(name.replace('.', "-")), &[LAYERS]);
         searched(&BoundaryOptions { base: Some(base), ..options }).boundaries.remove(0)
     };
     let (one, two) = (row("one.csv", 1.0), row("two.csv", 2.0));
     assert_eq!(one.networks, two.networks);
     for (a, b) in [(&one.no_erosion, &two.no_erosion), (&one.continuing, &two.continuing)] {
         let (a, b) = (a.as_ref().unwrap(), b.as_ref().unwrap());
-        let (mm, twice) = (a.d15f_mm.unwrap(), b.d15f_mm.unwrap());
-        assert_eq!((2.0 * mm.median).to_bits(), twice.median.to_bits());
-        assert_eq!((2.0 * mm.low.unwrap()).to_bits(), twice.low.unwrap().to_bits());
-        assert_eq!((2.0 * mm.high.unwrap()).to_bits(), twice.high.unwrap().to_bits());
+        let [mm, twice] = [a, b].map(|boundary| boundary.d15f_mm.unwrap());
+        let sizes = |range: Range| [range.median, range.low.unwrap(), range.high.unwrap()];
+        assert_eq!(sizes(mm).map(|mm| (2.0 * mm).to_bits()), sizes(twice).map(f64::to_bits));
         assert_eq!(a.median.to_bits(), b.median.to_bits());
     }
     assert_eq!((2.0 * one.thickness_mm.unwrap()).to_bits(), two.thickness_mm.unwrap().to_bits());
@@ -85,12 +95,9 @@ fn a_base_twice_as_large_takes_a_filter_twice_as_large_to_the_bit() {
 #[test]
 fn a_boundary_on_which_few_particles_decide_is_a_doubt() {
     let folder = tempfile::tempdir().unwrap();
-    let result = |cu: &str, across: u64| {
-        let [nx, ny] = ["nx", "ny"].map(|axis| format!("network.{axis}={across}"));
-        searched(&tiny(&folder.path().join(cu), &[cu, &nx, &ny, "replicates=5", "network.nz=12"]))
-    };
     for (cu, across, in_doubt) in [("base.cu=3", 10, true), ("base.cu=1.5", 40, false)] {
-        let all = result(cu, across);
+        let [nx, ny] = ["nx", "ny"].map(|axis| format!("network.{axis}={across}"));
+        let all = searched(&tiny(&folder.path().join(cu), &[cu, &nx, &ny, "network.nz=12"]));
         let is_doubt = all.notes.iter().any(|row| row.note.id() == "unsteady");
         assert_eq!(is_doubt, in_doubt, "{:?}", all.notes);
     }
@@ -100,7 +107,7 @@ fn a_boundary_on_which_few_particles_decide_is_a_doubt() {
 fn boundaries_hang_neither_on_a_wide_bracket_nor_on_threads() {
     let folder = tempfile::tempdir().unwrap();
     let result = |name: &str, bracket: [f64; 2], threads: usize| {
-        let options = options(&folder.path().join(name), &["base.cu=2"]);
+        let options = options(&folder.path().join(name), &[LAYERS, "base.cu=2"]);
         let prepare = PrepareOptions { threads: Some(threads), ..PrepareOptions::default() };
         let all = found_within(&BoundaryOptions { prepare, ..options }, bracket);
         let csv = std::fs::read_to_string(folder.path().join(name).join("boundary.csv")).unwrap();
@@ -183,7 +190,7 @@ fn a_thickness_in_mm_takes_as_many_layers_as_the_filter_has_there() {
     let folder = tempfile::tempdir().unwrap();
     let base = of_base(folder.path(), "base.csv", &[(0.1, 0.0), (0.2, 100.0)]);
     let thicknesses = ["10mm", "20mm", "9layers"].map(|text| text.parse().unwrap()).to_vec();
-    let options = options(&folder.path().join("out"), &["no layers"]);
+    let options = options(&folder.path().join("out"), &[]);
     let all = searched(&BoundaryOptions { base: Some(base), thicknesses, ..options });
     let [thin, thick, layers] = &all.boundaries[..] else { panic!() };
     for (row, mm) in [(thin, 10.0), (thick, 20.0)] {
@@ -206,22 +213,12 @@ fn a_thickness_in_mm_takes_as_many_layers_as_the_filter_has_there() {
 #[test]
 fn a_search_that_is_stopped_keeps_its_networks_and_goes_on_with_the_same_bits() {
     let folder = tempfile::tempdir().unwrap();
-    let whole = searched(&options(&folder.path().join("whole"), &[]));
-    let (stop, path) = (AtomicBool::new(false), folder.path().join("stopped"));
+    let whole = searched(&options(&folder.path().join("whole"), &[LAYERS]));
+    let path = folder.path().join("stopped");
     let prepare = PrepareOptions { threads: Some(1), ..PrepareOptions::default() };
     // It replaces another's work, but not its own.
-    let options = BoundaryOptions { prepare, overwrite: true, ..options(&path, &[]) };
-    let callbacks = Callbacks {
-        on_event: &|event| {
-            // After the first network.
-            if matches!(event, Event::Studying(text) if text.contains("network 1 of 3")) {
-                stop.store(true, Ordering::Relaxed);
-            }
-        },
-        stop: &stop,
-        ..Callbacks::default()
-    };
-    let error = run_within(&options, SHORT, &callbacks).unwrap_err();
+    let options = BoundaryOptions { prepare, overwrite: true, ..options(&path, &[LAYERS]) };
+    let error = stopped(&options, "network 1 of 3");
     assert_eq!(error.exit().code(), 3, "{error}");
     assert!(error.to_string().starts_with("after 1 of 3 networks"), "{error}");
     assert!(!path.join("boundary.json").exists() && !path.join("boundary.csv").exists());
@@ -239,92 +236,70 @@ fn a_search_that_is_stopped_keeps_its_networks_and_goes_on_with_the_same_bits() 
     assert_eq!(timeless(&resumed), timeless(&whole));
     let names: Vec<_> = std::fs::read_dir(&path).unwrap().map(|e| e.unwrap().file_name()).collect();
     assert!(!names.iter().any(|name| name.to_string_lossy().starts_with("networks.")), "{names:?}");
-    let again = BoundaryOptions { overwrite: false, ..options };
-    let again = run(&again, &Callbacks::default()).unwrap_err();
-    assert!(
-        again.to_string().contains("holds a study of boundaries already") && again.exit().code() == 2,
-        "{again}"
-    );
+    let again = run(&BoundaryOptions { overwrite: false, ..options }, &Callbacks::default()).unwrap_err();
+    assert!(again.to_string().contains("holds a study of boundaries already"), "{again}");
+    assert_eq!(again.exit().code(), 2);
 }
 
 #[test]
 fn what_cannot_be_is_refused_before_any_work() {
     let folder = tempfile::tempdir().unwrap();
-    let base = |name: &str, points: &[(f64, f64)]| Some(of_base(folder.path(), name, points));
-    let sand = [(0.1, 0.0), (0.4, 100.0)];
     let out = folder.path().join("out");
-    let plain = || options(&out, &[]);
-    let thick = || options(&out, &["no layers"]);
-    let curve_file = folder.path().join("own.csv");
-    std::fs::write(&curve_file, "percent_smaller,diameter_over_d0f\n0,0.15\n50,0.3\n100,0.6\n").unwrap();
-    let mm = |mm: f64| vec![Thickness::Mm(mm)];
-    let cases: [(BoundaryOptions, &str); 17] = [
-        (BoundaryOptions { base: Some(folder.path().join("none.csv")), ..plain() }, "none.csv"),
-        (
-            BoundaryOptions { base: base("micro.csv", &[(100.0, 0.0), (400.0, 100.0)]), ..plain() },
-            "sizes micrometres",
-        ),
-        (
-            BoundaryOptions { base: base("pan.csv", &[(0.1, 90.0), (0.4, 100.0)]), ..plain() },
-            "D85 lies in the pan",
-        ),
-        (BoundaryOptions { base: base("sand.csv", &sand), ..options(&out, &["base.cu=3"]) }, "base.cu"),
-        (BoundaryOptions { thicknesses: vec![Thickness::Mm(500.0)], ..thick() }, "needs a base in mm"),
-        (
-            BoundaryOptions { densities: vec!["2".into()], ..plain() },
-            "dense, medium (or intermediate) or loose",
-        ),
-        (
-            BoundaryOptions { densities: vec!["loose".into()], ..plain() },
-            "filter.cu or filter.sieve is missing",
-        ),
-        (BoundaryOptions { filter: Some("cu1.5-lose".into()), ..plain() }, "cu1.5-loose"),
-        (options(&out, &["stop.decide_percent=99"]), "do not go with `boundary`"),
-        (options(&out, &["runs=1"]), "runs = 1 does not go with `boundary`"),
-        (
-            BoundaryOptions { base: base("b.csv", &sand), ..options(&out, &["base.sieve=c.csv"]) },
-            "would put another soil in the place of the base",
-        ),
-        (BoundaryOptions { thicknesses: mm(9.0), ..plain() }, "--thickness and --set network.nz=10"),
-        (
-            BoundaryOptions {
-                thicknesses: mm(9.0),
-                ..options(&out, &["no layers", "network.thickness_d50f=9"])
-            },
-            "--thickness and --set network.thickness_d50f=9",
-        ),
-        (
-            BoundaryOptions {
-                filter: Some("cu3-loose".into()),
-                ..options(&out, &["filter.curve=cu1.5-loose"])
-            },
-            "--filter and --set filter.curve=cu1.5-loose",
-        ),
-        (
-            BoundaryOptions { filter: Some(curve_file.display().to_string()), ..plain() },
-            "--set filter.curve=FILE",
-        ),
-        // A size beyond this machine or 32 bits does not mean a boundary beyond the search.
-        (
-            BoundaryOptions { thicknesses: mm(1e9), base: base("a.csv", &sand), ..thick() },
-            "every length must be",
-        ),
-        (
-            BoundaryOptions {
-                prepare: PrepareOptions { memory: Some(2_000_000), ..PrepareOptions::default() },
-                thicknesses: mm(5000.0),
-                base: base("a.csv", &sand),
-                ..thick()
-            },
-            "of memory, but",
-        ),
-    ];
-    for (options, words) in cases {
-        let error = run(&options, &Callbacks::default()).err().map(|e| (e.exit().code(), e.to_string()));
-        let (code, text) = error.unwrap_or_else(|| panic!("not refused: {words}"));
-        assert!(code == 2 && text.contains(words), "{words}: {text}");
+    let refused = |settings: &[&str], change: &dyn Fn(&mut BoundaryOptions), words: &str| {
+        let mut options = options(&out, settings);
+        change(&mut options);
+        let error = run(&options, &Callbacks::default()).expect_err(words);
+        assert!(error.exit().code() == 2 && error.to_string().contains(words), "{words}: {error}");
         assert!(!out.exists(), "{words}: something was written");
+    };
+    let base = |name: &str, points: &[(f64, f64)]| Some(of_base(folder.path(), name, points));
+    let sand = base("sand.csv", &[(0.1, 0.0), (0.4, 100.0)]);
+    let micrometres = base("micro.csv", &[(100.0, 0.0), (400.0, 100.0)]);
+    let pan = base("pan.csv", &[(0.1, 90.0), (0.4, 100.0)]);
+    let curve = folder.path().join("own.csv");
+    std::fs::write(&curve, "percent_smaller,diameter_over_d0f\n0,0.15\n50,0.3\n100,0.6\n").unwrap();
+    let mm = |mm: f64| vec![Thickness::Mm(mm)];
+    refused(&[], &|all| all.base = Some(folder.path().join("none.csv")), "none.csv");
+    refused(&[], &|all| all.base.clone_from(&micrometres), "sizes micrometres");
+    refused(&[], &|all| all.base.clone_from(&pan), "D85 lies in the pan");
+    refused(&["base.cu=3"], &|all| all.base.clone_from(&sand), "base.cu");
+    refused(&[], &|all| all.thicknesses = mm(500.0), "needs a base in mm");
+    refused(&[], &|all| all.densities = vec!["2".into()], "dense, medium (or intermediate) or loose");
+    refused(&[], &|all| all.densities = vec!["loose".into()], "filter.cu or filter.sieve is missing");
+    refused(&[], &|all| all.filter = Some("cu1.5-lose".into()), "cu1.5-loose");
+    refused(&["stop.decide_percent=99"], &|_| {}, "do not go with `boundary`");
+    refused(&["runs=1"], &|_| {}, "runs = 1 does not go with `boundary`");
+    refused(&["record.voids=[1]"], &|_| {}, "record.voids does not go");
+    let estimate = |all: &mut BoundaryOptions| {
+        (all.filter, all.densities) = (Some("3".into()), vec!["estimate=1.5".into()]);
+    };
+    refused(&[], &estimate, "relative density from 0 (loose) to 1");
+    let another = "would put another soil in the place of the base";
+    refused(&["base.sieve=c.csv"], &|all| all.base.clone_from(&sand), another);
+    for (filter, setting) in [("3", "filter.cu=1.5"), ("f.csv", "filter.sieve=g.csv")] {
+        let words = format!("in the place of the filter, {filter}");
+        refused(&[setting], &|all| all.filter = Some(filter.into()), &words);
     }
+    for thickness in [LAYERS, "network.thickness_d50f=9"] {
+        refused(
+            &[thickness],
+            &|all| all.thicknesses = mm(9.0),
+            &format!("--thickness and --set {thickness}"),
+        );
+    }
+    let shape = "filter.curve=cu1.5-loose";
+    refused(&[shape], &|all| all.filter = Some("cu3-loose".into()), &format!("--filter and --set {shape}"));
+    refused(&[], &|all| all.filter = Some(curve.display().to_string()), "--set filter.curve=FILE");
+    // A size beyond this machine or 32 bits does not mean a boundary beyond the search.
+    let thick = |all: &mut BoundaryOptions, thickness: f64| {
+        (all.base, all.thicknesses) = (sand.clone(), mm(thickness));
+    };
+    refused(&[], &|all| thick(all, 1e9), "every length must be");
+    let little_memory = |all: &mut BoundaryOptions| {
+        thick(all, 5000.0);
+        all.prepare.memory = Some(2_000_000);
+    };
+    refused(&[], &little_memory, "of memory, but");
 }
 
 #[test]
@@ -353,13 +328,13 @@ fn what_is_found_of_one_row_alone_is_said_with_its_name() {
 fn the_base_is_named_as_it_is_stated() {
     let folder = tempfile::tempdir().unwrap();
     let out = |name: &str| folder.path().join(name);
-    assert_eq!(searched(&options(&out("linear"), &["base.cu=3"])).base.name, "linear, Cu 3");
+    assert_eq!(searched(&options(&out("linear"), &[LAYERS, "base.cu=3"])).base.name, "linear, Cu 3");
     // A stated millimetre is a size.
     let base = of_base(folder.path(), "sand.csv", &[(0.1, 0.0), (0.2, 100.0)]);
     let sized = BoundaryOptions {
         base: Some(base),
         thicknesses: vec![Thickness::Mm(12.0)],
-        ..options(&out("sized"), &["no layers", "filter.d0_mm=1"])
+        ..options(&out("sized"), &["filter.d0_mm=1"])
     };
     let sized = searched(&sized);
     assert!(sized.base.name.ends_with("sand.csv"), "{}", sized.base.name);
@@ -391,23 +366,15 @@ fn a_boundary_below_the_bracket_leaves_no_ratio_that_holds() {
     assert!(beside.notes.iter().any(|row| row.note.id() == "erodes_everywhere"), "{:?}", beside.notes);
 }
 
-fn done(row: usize, network: u64, found: Found) -> Done {
-    Done { row, network, found }
-}
-
 fn at(ratio: f64) -> Found {
     Found { no_erosion: Some(ratio), ..Found::default() }
 }
 
-fn beyond(side: Beyond, why: Ended) -> Found {
-    Found { no_erosion_beyond: Some((side, why)), ..Found::default() }
-}
-
 #[test]
 fn an_end_has_to_hold_clearly_more() {
+    let done = |row: usize, network: u64, found: &Found| Done { row, network, found: found.clone() };
     let wanted = |less: &[Found]| {
-        let done: Vec<Done> =
-            (1..).zip(less).map(|(network, result)| done(1, network, result.clone())).collect();
+        let done: Vec<Done> = (1..).zip(less).map(|(network, result)| done(1, network, result)).collect();
         clear_of(&done, &[(1, less.len() as u64)])
     };
     let near = |ratio: Option<f64>, wanted: f64| ratio.is_some_and(|ratio| (ratio - wanted).abs() < 1e-12);
@@ -415,6 +382,7 @@ fn an_end_has_to_hold_clearly_more() {
     // Networks 4 % apart, and 25 % apart.
     assert!(near(wanted(&[at(4.0), at(4.16)]), 4.16 * 1.1));
     assert!(near(wanted(&[at(5.0), at(4.0)]), 5.0 * 1.5625));
+    let beyond = |side, why| Found { no_erosion_beyond: Some((side, why)), ..Found::default() };
     let erodes = beyond(Beyond::Below, Ended::Erodes(0.5));
     let holds = beyond(Beyond::Above, Ended::Holds(1, 100.0));
     let unknown = beyond(Beyond::Above, Ended::NotWalked("too fine".into()));
@@ -422,11 +390,8 @@ fn an_end_has_to_hold_clearly_more() {
         assert_eq!(wanted(&[at(4.0), less.clone()]), None, "{less:?}");
         assert_eq!(wanted(std::slice::from_ref(&less)), None, "{less:?}");
     }
-}
-
-#[test]
-fn all_networks_of_the_worse_end_and_every_range_count() {
-    let all = [done(1, 2, at(4.1)), done(1, 1, at(4.0)), done(3, 1, at(5.0))];
+    // All networks of the worse end count, and every range.
+    let all = [done(1, 2, &at(4.1)), done(1, 1, &at(4.0)), done(3, 1, &at(5.0))];
     assert_eq!(clear_of(&all, &[(1, 2)]), Some(4.1 * CLEAR));
     assert_eq!(clear_of(&all, &[(1, 2), (3, 1)]), Some(5.0 * CLEAR));
     assert_eq!(clear_of(&all, &[(1, 3)]), None);

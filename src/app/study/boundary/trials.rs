@@ -7,10 +7,8 @@ use crate::outcome::verdict::THRESHOLD;
 use crate::outcome::{Eroded, Straight};
 use crate::run::RunError;
 
-/// Steps between stops.
 pub(super) const STOP: i64 = 16;
 
-/// First step away from a hint.
 const NEAR: i64 = 4;
 
 /// Start nodes of the usual lattice, 40 x 40.
@@ -35,10 +33,8 @@ fn tried_below(across: u64) -> Vec<i64> {
     (1..=every).chain(seldom).collect()
 }
 
-/// Result at one ratio.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Trial {
-    /// Eroded mass.
     Eroded(Eroded),
     /// The base is too coarse (below) or too fine (above) to be walked at this ratio; with the reason.
     CannotBe(Beyond, String),
@@ -60,7 +56,6 @@ pub(super) trait Walker {
     fn walk(&mut self, run: u64, step: i64, ratio: f64) -> Result<Trial, RunError>;
 }
 
-/// The ends of the scale of ratios.
 const BRACKETS: [f64; 2] = [0.1, 1000.0];
 
 /// D15F/D85B at a step.
@@ -106,10 +101,8 @@ impl Fall {
     }
 }
 
-/// Search under way.
 pub(super) struct Search<W> {
     walker: W,
-    /// The first stop and the last.
     pub(crate) stops: [i64; 2],
     /// Steps below the smallest ratio that erodes, at which further runs are tried.
     below: Vec<i64>,
@@ -162,7 +155,6 @@ impl<W: Walker> Search<W> {
         Ok(self.of_run(run)[&step].clone())
     }
 
-    /// True if the first run erodes at a step.
     pub(crate) fn erodes(&mut self, step: i64) -> Result<bool, RunError> {
         Ok(self.trial(1, step)?.erodes() == Some(true))
     }
@@ -191,7 +183,6 @@ impl<W: Walker> Search<W> {
         }
     }
 
-    /// Halves the steps between one that holds and one that erodes.
     pub(crate) fn halved(&mut self, (mut low, mut high): Pair, run: u64) -> Result<Pair, RunError> {
         while high - low > 1 {
             let middle = low + (high - low) / 2;
