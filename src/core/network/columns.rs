@@ -61,13 +61,9 @@ impl Network {
         match columns.rule {
             ExitRule::Area => columns.directed(diameter),
             ExitRule::Flux | ExitRule::AreaAlongFlow => columns.undirected(&diameter),
-            ExitRule::Height => Err(wrong("by height: conns do not say which void is higher")),
+            ExitRule::Height => Err(NetworkError::unlinked("by height: conns do not say which void is higher")),
         }
     }
-}
-
-fn wrong(problem: impl Into<String>) -> NetworkError {
-    NetworkError::Unlinked { problem: problem.into() }
 }
 
 impl NetworkColumns<'_> {
@@ -76,31 +72,31 @@ impl NetworkColumns<'_> {
         let count = self.conns.len();
         let same_length = |name, len| match len == count {
             true => Ok(()),
-            false => Err(wrong(format!("conns has {count} rows, but {name} has {len}"))),
+            false => Err(NetworkError::unlinked(format!("conns has {count} rows, but {name} has {len}"))),
         };
         same_length("diameter", self.diameter_mm.len())?;
         self.conductance.map_or(Ok(()), |column| same_length("conductance", column.len()))?;
         if !(self.unit_mm.is_finite() && self.unit_mm > 0.0) {
-            return Err(wrong(format!("the unit of length is {} mm; above 0 is allowed", self.unit_mm)));
+            return Err(NetworkError::unlinked(format!("the unit of length is {} mm; above 0 is allowed", self.unit_mm)));
         }
         if !(0.0..1.0).contains(&self.rho) {
-            return Err(wrong(format!("rho = {}; a number from 0 to below 1 is allowed", self.rho)));
+            return Err(NetworkError::unlinked(format!("rho = {}; a number from 0 to below 1 is allowed", self.rho)));
         }
         if count == 0 {
-            return Err(wrong("it has no constriction"));
+            return Err(NetworkError::unlinked("it has no constriction"));
         }
         if self.voids >= END as usize || 2 * count + self.outlets.len() >= END as usize {
-            return Err(wrong(format!("{} voids and {count} constrictions are too many", self.voids)));
+            return Err(NetworkError::unlinked(format!("{} voids and {count} constrictions are too many", self.voids)));
         }
         for (c, ends) in self.conns.iter().enumerate() {
             if let Some(end) = ends.iter().find(|&&end| end >= self.voids as i64) {
-                return Err(wrong(format!(
+                return Err(NetworkError::unlinked(format!(
                     "constriction {c} leads to void {end}, but there are {} voids",
                     self.voids
                 )));
             }
             if ends.iter().all(|&end| end < 0) {
-                return Err(wrong(format!("constriction {c} joins no void: both its ends lie outside")));
+                return Err(NetworkError::unlinked(format!("constriction {c} joins no void: both its ends lie outside")));
             }
         }
         let marked = |name: &str, voids: &[u32]| {
@@ -108,10 +104,10 @@ impl NetworkColumns<'_> {
             for &void in voids {
                 let Some(is_marked) = marked.get_mut(void as usize) else {
                     let count = self.voids;
-                    return Err(wrong(format!("void {void} is made an {name}, but there are {count} voids")));
+                    return Err(NetworkError::unlinked(format!("void {void} is made an {name}, but there are {count} voids")));
                 };
                 if std::mem::replace(is_marked, true) {
-                    return Err(wrong(format!("void {void} is made an {name} twice")));
+                    return Err(NetworkError::unlinked(format!("void {void} is made an {name} twice")));
                 }
             }
             Ok(marked)
@@ -123,7 +119,7 @@ impl NetworkColumns<'_> {
         let is_joined = self.conns.iter().flatten().any(|&end| end == 0);
         for (name, marked) in [("inlet", &is_inlet), ("outlet", &is_outlet)] {
             if !is_joined && marked.first() == Some(&true) {
-                return Err(wrong(format!(
+                return Err(NetworkError::unlinked(format!(
                     "void 0 is made an {name}, but no constriction joins it; leave it out, and number the \
                      voids \
                      of conns, inlets and outlets from 0"
@@ -131,14 +127,14 @@ impl NetworkColumns<'_> {
             }
         }
         if let Some(void) = self.outlets.iter().find(|&&void| is_inlet[void as usize]) {
-            return Err(wrong(format!(
+            return Err(NetworkError::unlinked(format!(
                 "void {void} is made an inlet and an outlet: particles would leave it without a constriction"
             )));
         }
         let (d, g) = (self.diameter_mm, self.conductance);
         let rows = (0..count).map(|c| (self.conns[c], [d[c], g.map_or(0.0, |g| g[c])]));
         if let Some([row, again]) = listed_twice(rows, false) {
-            return Err(wrong(format!(
+            return Err(NetworkError::unlinked(format!(
                 "constrictions {row} and {again} (counted from 0) are one constriction listed twice (there \
                  and back, or repeated), and others are, too; keep one row of each"
             )));
@@ -154,13 +150,13 @@ impl NetworkColumns<'_> {
     /// Builds a network in which every constriction leads from its first void to its second.
     fn directed(&self, mut diameter: Vec<f32>) -> Result<(Network, Vec<u32>), NetworkError> {
         if self.conductance.is_some() {
-            return Err(wrong("by area: conductance says nothing where no water flows"));
+            return Err(NetworkError::unlinked("by area: conductance says nothing where no water flows"));
         }
         if self.inlets.is_empty() {
-            return Err(wrong("it has no inlet"));
+            return Err(NetworkError::unlinked("it has no inlet"));
         }
         if let Some(c) = self.conns.iter().position(|&[from, _]| from < 0) {
-            return Err(wrong(format!(
+            return Err(NetworkError::unlinked(format!(
                 "by area: constriction {c} leads from the outside; name the voids that particles come into \
                  as inlets"
             )));
@@ -172,12 +168,12 @@ impl NetworkColumns<'_> {
         to.resize(from.len(), END);
         diameter.resize(from.len(), WIDE);
         if !to.contains(&END) {
-            return Err(wrong("it has no outlet: nothing leads out of the filter"));
+            return Err(NetworkError::unlinked("it has no outlet: nothing leads out of the filter"));
         }
         let start = self.inlets.to_vec();
         let (network, slot) = Network::of_rows(self.voids, &from, &to, &diameter, start, self.unit_mm);
         if !network.leads_out() {
-            return Err(wrong(
+            return Err(NetworkError::unlinked(
                 "no open way leads from an inlet to an outlet. By area each constriction is passed in one \
                  direction, from the first of its two voids to the second; by flux both ways",
             ));

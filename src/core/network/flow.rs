@@ -2,12 +2,11 @@
 //!
 //! At every void inflow equals outflow, `sum over its constrictions of g (p - p_other) = 0`, with pressure
 //! 1 in the reservoir and 0 downstream of the filter. A blocked constriction keeps a fraction `rho` of its
-//! conductance. The system is symmetric and positive definite. It is solved by conjugate gradients
-//! starting from the last solution, preconditioned by an approximate factor (module `elimination`) of the
-//! open constrictions, which is kept while few more close. So a solution depends, within the required
-//! accuracy, on earlier ones. If conductances differ so much that fluxes cannot be distinguished from
-//! residuals, voids are eliminated without subtraction (module `exact`), provided the network is small
-//! enough. Module `system` defines when a flow counts as solved.
+//! conductance. The system is solved by conjugate gradients starting from the last solution, preconditioned
+//! by an approximate factor (module `elimination`) that is kept while few more constrictions close. So a
+//! solution depends, within the required accuracy, on earlier ones. If conductances differ so much that
+//! fluxes cannot be distinguished from residuals, voids are eliminated without subtraction (module `exact`).
+//! Module `system` defines when a flow counts as solved.
 
 mod elimination;
 mod exact;

@@ -29,15 +29,12 @@ impl Network {
     pub fn of_graph(graph: &VoidGraph, shape: GraphShape) -> Result<Self, NetworkError> {
         let (voids, unit) = (graph.voids() as u32, shape.unit_mm);
         let copies = shape.copies;
-        let too_many = || NetworkError::Unlinked {
-            problem: format!(
-                "{copies} copies of {voids} voids and {} constrictions are too many",
-                graph.from.len()
-            ),
-        };
         let links_in_all = (graph.from.len() as u64 + 1).checked_mul(u64::from(copies) + 1);
         if copies == 0 || links_in_all.is_none_or(|n| n >= u64::from(u32::MAX) / 2) {
-            return Err(too_many());
+            return Err(NetworkError::unlinked(format!(
+                "{copies} copies of {voids} voids and {} constrictions are too many",
+                graph.from.len()
+            )));
         }
         let place = |copy: i64, void: u32| match (0..i64::from(copies)).contains(&copy) {
             true => LinkEnd::Void(copy as u32 * voids + void),

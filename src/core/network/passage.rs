@@ -10,8 +10,8 @@
 //! ```
 //!
 //! s follows from q: a third of the successful moves lead downstream. Eq. (1) of the paper refers to
-//! Schuler's network, whose voids have five exits; this P(F) holds for the directed lattice of this program.
-//! It assumes that a void is never visited twice, as on lattices too wide for a particle to go round.
+//! Schuler's network, whose voids have five exits. It assumes that a void is never visited twice, as on
+//! lattices too wide for a particle to go round.
 //!
 //! On a given network ([`FirstPassage`]), with `t(e)` the void that exit `e` leads to and `p_e` the
 //! fraction of its weight,
@@ -21,10 +21,8 @@
 //! moves(v)  = sum over exits e that it fits of p_e (1 + (0 if e leads out, else moves(t(e))))
 //! ```
 //!
-//! The smallest solution of the first is the probability of leaving; the second is the mean number of
-//! completed moves, infinite if the particle may be trapped in closed loops. Both are solved by
-//! Gauss-Seidel sweeps, downstream voids first. On a lattice with periodic sides only the rows of a layer
-//! depend on each other, so tens of sweeps are enough.
+//! The smallest solution of the first is the probability of leaving; the second is infinite if the particle
+//! may be trapped in closed loops. Both are solved by Gauss-Seidel sweeps, downstream voids first.
 
 use super::{END, Network, NetworkError};
 use crate::constrictions::Curve;

@@ -1,21 +1,20 @@
 //! Search for a lattice with a given distribution of connectivity.
 //!
 //! - Every void has six possible exits: the lattice's +x, +y, +z and the three face diagonals +x+y, +x+z,
-//!   +y+z. All lead in positive directions, so no move leads upstream, and the only cycles are the
-//!   lattice's own, around a periodic side within one layer. No diagonal leaves the last layer.
+//!   +y+z. No move leads upstream, and the only cycles are the lattice's own, around a periodic side within
+//!   one layer. No diagonal leaves the last layer.
 //! - One possible exit of one void is drawn at a time, uniformly: deleted if present, otherwise created.
 //!   The proposal is accepted if it reduces the *distance* from the target distribution: the sum over k of
-//!   | voids with connectivity up to k, minus the target |. If as many proposals in a row as there are
-//!   possible exits bring no progress, proposals that leave the distance unchanged are accepted too, until
-//!   one reduces it. A search that is still stuck restarts from another state, so that every replicate
-//!   gets a network; after [`MOST_PROPOSALS`] proposals it is completed along chains.
+//!   | voids with connectivity up to k, minus the target |. After as many proposals in a row without progress
+//!   as there are possible exits, proposals that leave the distance unchanged are accepted too, until one
+//!   reduces it. A search that is still stuck restarts from another state; after [`MOST_PROPOSALS`]
+//!   proposals it is completed along chains.
 //! - A void never loses its last entrance (the inlet of a start node counts) and keeps two exits, or one
 //!   if connectivities below 4 are wanted. Table 3 suggests two: a void that one particle can close
 //!   retains so much that voids of connectivity 4 would hold three times as much each as voids of
 //!   connectivity 5, but in the paper they hold about the same (397 and 444; see `results/paper.md`).
-//! - A remaining distance (parity, or a distribution that no such network has) is accepted if every count
-//!   is within [`TOLERANCE_PERCENT`] of all voids, or one void, of its target; otherwise the distribution
-//!   is refused.
+//! - A remaining distance is accepted if every count is within [`TOLERANCE_PERCENT`] of all voids, or one
+//!   void, of its target; otherwise the distribution is refused.
 
 use rand::Rng;
 

@@ -4,6 +4,7 @@
 use super::tally::cube;
 use super::{CHUNK, Particles, SizeClasses, SizeCounts, State};
 use crate::network::{END, Network};
+use rayon::prelude::*;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::iter;
@@ -40,71 +41,30 @@ pub(super) fn for_each(
 ) {
     let one_size = single_size.filter(|_| particles.has_one_size());
     let Particles { void, diameter, live } = particles;
-    let all = Neighbours { first: 0, void, diameter, live, events, one_size };
+    let sizes = diameter.chunks_mut(CHUNK).chain(iter::repeat_with(|| &mut [][..]));
+    let columns = (0..).zip(void.chunks_mut(CHUNK)).zip(sizes).zip(live).zip(events);
+    let columns = columns.map(|((((chunk, void), diameter), live), events)| ChunkColumns {
+        chunk,
+        void,
+        diameter,
+        live,
+        events,
+    });
+    let work = |columns: ChunkColumns| match one_size {
+        None => work(columns),
+        Some(size) => SIZES.with_borrow_mut(|diameter| {
+            diameter.clear();
+            diameter.resize(CHUNK, size);
+            work(ChunkColumns { diameter, ..columns });
+        }),
+    };
     if rayon::current_num_threads() > 1 && effort > WORTH_THREADS {
-        let (before, receiving) = all.split_at(receiving);
-        rayon::join(|| receiving.spread(&work), || before.spread(&work));
+        let mut before: Vec<ChunkColumns> = columns.collect();
+        let receiving = before.split_off(receiving.min(before.len()));
+        let spread = |part: Vec<ChunkColumns>| part.into_par_iter().with_max_len(1).for_each(work);
+        rayon::join(|| spread(receiving), || spread(before));
     } else {
-        all.in_order(&work);
-    }
-}
-
-/// Columns of adjacent chunks.
-struct Neighbours<'a> {
-    first: usize,
-    void: &'a mut [u32],
-    /// Unused if all base particles have one size.
-    diameter: &'a mut [f32],
-    live: &'a mut [u32],
-    events: &'a mut [Events],
-    one_size: Option<f32>,
-}
-
-impl Neighbours<'_> {
-    /// Splits the columns into chunks before `chunk` and the others.
-    fn split_at(self, chunk: usize) -> (Self, Self) {
-        let Self { first, void, diameter, live, events, one_size } = self;
-        let (chunk, entry) = (chunk.min(live.len()), chunk * CHUNK);
-        let (void, void_after) = void.split_at_mut(entry.min(void.len()));
-        let (diameter, diameter_after) = diameter.split_at_mut(entry.min(diameter.len()));
-        let (live, live_after) = live.split_at_mut(chunk);
-        let (events, events_after) = events.split_at_mut(chunk);
-        let before = Self { first, void, diameter, live, events, one_size };
-        let after = Self {
-            first: first + chunk,
-            void: void_after,
-            diameter: diameter_after,
-            live: live_after,
-            events: events_after,
-            one_size,
-        };
-        (before, after)
-    }
-
-    /// Spreads the work over threads, halving it down to single chunks.
-    fn spread(self, work: &(impl Fn(ChunkColumns) + Sync)) {
-        let chunks = self.live.len();
-        if chunks <= 1 {
-            return self.in_order(work);
-        }
-        let (front, back) = self.split_at(chunks / 2);
-        rayon::join(|| front.spread(work), || back.spread(work));
-    }
-
-    fn in_order(self, work: &impl Fn(ChunkColumns)) {
-        let Self { first, void, diameter, live, events, one_size } = self;
-        let sizes = diameter.chunks_mut(CHUNK).chain(iter::repeat_with(|| &mut [][..]));
-        let columns = void.chunks_mut(CHUNK).zip(sizes).zip(live).zip(events);
-        for (chunk, (((void, diameter), live), events)) in (first as u64..).zip(columns) {
-            match one_size {
-                None => work(ChunkColumns { chunk, void, diameter, live, events }),
-                Some(size) => SIZES.with_borrow_mut(|diameter| {
-                    diameter.clear();
-                    diameter.resize(CHUNK, size);
-                    work(ChunkColumns { chunk, void, diameter, live, events });
-                }),
-            }
-        }
+        columns.for_each(work);
     }
 }
 
@@ -166,31 +126,18 @@ impl Events {
         self.eroded_mass = self.eroded.iter().map(|&d| cube(d)).sum();
         self.largest = self.eroded.iter().fold(0.0, |largest, &d| if d > largest { d } else { largest });
         if !self.is_quiet() {
-            self.sum_sizes(classes);
+            let new = || [SizeCounts::new(classes), SizeCounts::new(classes)];
+            let [eroded, retained] = self.sizes.get_or_insert_with(new);
+            eroded.clear();
+            self.eroded.iter().for_each(|&d| eroded.add(classes, d));
+            retained.clear();
+            self.stopped.iter().chain(&self.stranded).for_each(|&(_, d)| retained.add(classes, d));
         }
         ERODED.set(std::mem::take(&mut self.eroded));
     }
 
-    fn sum_sizes(&mut self, classes: &SizeClasses) {
-        let new = || [SizeCounts::new(classes), SizeCounts::new(classes)];
-        let any_retained = self.retained_count() > 0;
-        let [eroded, retained] = self.sizes.get_or_insert_with(new);
-        if self.eroded_count > 0 {
-            eroded.clear();
-            self.eroded.iter().for_each(|&d| eroded.add(classes, d));
-        }
-        if any_retained {
-            retained.clear();
-            self.stopped.iter().chain(&self.stranded).for_each(|&(_, d)| retained.add(classes, d));
-        }
-    }
-
     fn is_quiet(&self) -> bool {
-        self.eroded_count == 0 && self.retained_count() == 0
-    }
-
-    fn retained_count(&self) -> usize {
-        self.stopped.len() + self.stranded.len()
+        self.eroded_count == 0 && self.stopped.is_empty() && self.stranded.is_empty()
     }
 }
 
@@ -223,12 +170,8 @@ pub(super) fn merge(
             tally.eroded_mass += events.eroded_mass;
             tally.largest_eroded = tally.largest_eroded.max(events.largest);
             if let Some([eroded, retained]) = &events.sizes {
-                if events.eroded_count > 0 {
-                    state.eroded_sizes.merge(eroded);
-                }
-                if events.retained_count() > 0 {
-                    state.retained_sizes.merge(retained);
-                }
+                state.eroded_sizes.merge(eroded);
+                state.retained_sizes.merge(retained);
             }
             for &(constriction, diameter) in &events.stopped {
                 state.stop(network, upstream, constriction as usize, diameter);

@@ -126,13 +126,13 @@ impl RunPlan {
             Engine::Auto => Engine::Counts,
             chosen => chosen,
         };
-        let size_mm = f64::from(finest) * network.unit_mm();
+        let finest = Finest { size_mm: f64::from(finest) * network.unit_mm(), arches: arching.is_some() };
         let mut left_out = match leaves_openings {
             true => vec![Shortcut::Openings],
-            false => left_out(engine, Finest { size_mm, arches: arching.is_some() }, passive_words),
+            false => left_out(engine, finest, passive_words),
         };
-        if sampler.smallest() == sampler.largest() && (engine == Engine::Particles || passive_words < 1 << 64)
-        {
+        let keeps_sizes = engine == Engine::Particles || passive_words < 1 << 64;
+        if sampler.smallest() == sampler.largest() && keeps_sizes {
             left_out.push(Shortcut::OneSize);
         }
         if wanted == Engine::Auto && engine == Engine::Particles && on_open > 0 {
@@ -152,73 +152,19 @@ impl RunPlan {
     }
 
     /// Omitted work.
-    pub fn left_out(&self) -> &[Shortcut] {
-        &self.left_out
-    }
-
-    /// Supply of `n` base particles in `increments` equal parts, for run `run` of `seed`.
-    pub fn supply(&self, sampler: SizeSampler, n: u64, increments: u64, seed: u64, run: u64) -> Supply {
-        let all = Supply::new(sampler, n, increments)
-            .arching_by(self.arching.clone())
-            .leaving_openings(self.leaves_openings);
-        let all = match self.sampling {
-            Sampling::Independent => all,
-            Sampling::Stratified => all.stratified(seed, run),
-        };
-        match self.engine {
-            Engine::Particles => all,
-            engine => all.with_passive_part(self.passive_words, engine == Engine::Expected, seed, run),
-        }
-    }
-}
-
-/// Finest open constriction at the start of a run.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Finest {
-    /// Size (mm).
-    pub size_mm: f64,
-    /// True if particles may arch in it, so that only particles too fine to arch are passive.
-    pub arches: bool,
-}
-
-/// Work that a run can omit.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Shortcut {
-    /// Nothing moves, as no constriction is open.
-    NothingOpen,
-    /// No base particle is counted: all are coarser than this.
-    NonePassive(Finest),
-    /// No base particle is counted: openings beside particles may stop any of them.
-    Openings,
-    /// All base particles are counted by this engine: none is coarser than this.
-    AllPassive(Finest, Engine),
-    /// This percentage of the base particles is walked one by one; this engine counts the others.
-    MostPassive(f64, Finest, Engine),
-    /// No column of diameters is stored: the base has one size.
-    OneSize,
-    /// Too few passive base particles per increment (first number) on the start nodes (second number) for
-    /// counts.
-    FewPassive(u64, u64),
-}
-
-fn left_out(engine: Engine, finest: Finest, passive_words: u128) -> Vec<Shortcut> {
+    pub fn left_out(engine: Engine, finest: Finest, passive_words: u128) -> Vec<Shortcut> {
     let coarse_percent = 100.0 * (((1u128 << 64) - passive_words) as f64 / 18_446_744_073_709_551_616.0);
-    let mut left_out = Vec::new();
-    if finest.size_mm == f64::INFINITY {
-        left_out.push(Shortcut::NothingOpen);
-    } else if passive_words == 0 {
-        left_out.push(Shortcut::NonePassive(finest));
-    }
-    if engine == Engine::Particles {
-        return left_out;
-    }
-    if passive_words < 1 << 64 {
-        left_out.push(Shortcut::MostPassive(coarse_percent, finest, engine));
-    } else if finest.size_mm != f64::INFINITY {
-        left_out.push(Shortcut::AllPassive(finest, engine));
-    }
-    left_out
+    let is_open = finest.size_mm != f64::INFINITY;
+    let of_open = match is_open {
+        false => Some(Shortcut::NothingOpen),
+        true => (passive_words == 0).then_some(Shortcut::NonePassive(finest)),
+    };
+    let of_counts = match engine {
+        Engine::Particles => None,
+        _ if passive_words < 1 << 64 => Some(Shortcut::MostPassive(coarse_percent, finest, engine)),
+        _ => is_open.then_some(Shortcut::AllPassive(finest, engine)),
+    };
+    of_open.into_iter().chain(of_counts).collect()
 }
 
 /// Creates a pool of `count` threads for walks (0: one for each processor available to the program).
@@ -272,10 +218,11 @@ impl Isa {
 
     /// Tells if this machine supports it.
     pub fn is_available(self) -> bool {
-        #[cfg(target_arch = "x86_64")]
         match self {
             Self::Portable => true,
+            #[cfg(target_arch = "x86_64")]
             Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt"),
+            #[cfg(target_arch = "x86_64")]
             Self::Avx512 => {
                 is_x86_feature_detected!("avx512f")
                     && is_x86_feature_detected!("avx512bw")
@@ -283,10 +230,8 @@ impl Isa {
                     && is_x86_feature_detected!("avx512vl")
                     && is_x86_feature_detected!("popcnt")
             }
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        {
-            self == Self::Portable
+            #[cfg(not(target_arch = "x86_64"))]
+            Self::Avx2 | Self::Avx512 => false,
         }
     }
 

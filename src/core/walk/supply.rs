@@ -91,35 +91,30 @@ impl Supply {
     /// number in each increment is drawn for run `run` of `seed`.
     pub fn with_passive_part(self, passive_words: u128, expected: bool, seed: u64, run: u64) -> Self {
         let increments = 1..=self.increments();
-        let share = |t| self.inserted(t) - self.inserted(t - 1);
         let coarse: Vec<u64> = match &self.strata {
-            None => increments.map(|t| coarse_share(share(t), passive_words, seed, run, t)).collect(),
+            None => increments
+                .scan(0, |sum, t| {
+                    let share = self.inserted(t) - self.inserted(t - 1);
+                    *sum += coarse_share(share, passive_words, seed, run, t);
+                    Some(*sum)
+                })
+                .collect(),
             Some(_) => {
                 let key = Key { seed, purpose: Purpose::CoarseShare, run, increment: 0, chunk: 0 };
-                let word = key.words().at(0);
-                let until = |t| coarse_until(self.inserted(t), (1 << 64) - passive_words, word);
-                increments.map(|t| until(t) - until(t - 1)).collect()
+                let (coarse_words, word) = ((1 << 64) - passive_words, key.words().at(0));
+                increments.map(|t| coarse_until(self.inserted(t), coarse_words, word)).collect()
             }
         };
-        let parts = Self::coarse_part(self.sampler.clone(), passive_words as u64, &coarse);
-        let inserted = self.inserted.iter().zip(&parts.inserted).map(|(all, coarse)| all - coarse).collect();
-        let passive = PassiveSupply { inserted, words: passive_words, expected };
-        let parts = Self { passive, arching: self.arching, leaves_openings: self.leaves_openings, ..parts };
-        match self.strata {
-            None => parts,
-            Some(_) => parts.stratified(seed, run),
-        }
-    }
-
-    /// Creates a supply of the sizes drawn by words from `first_word` on, with `shares[t - 1]` particles
-    /// in increment `t`.
-    pub(crate) fn coarse_part(sampler: SizeSampler, first_word: u64, shares: &[u64]) -> Self {
-        let running = shares.iter().scan(0, |sum, &share| {
-            *sum += share;
-            Some(*sum)
-        });
-        let (inserted, guide) = (running.collect(), sampler.guide_from(first_word));
-        Self { guide, first_word, inserted, ..Self::new(sampler, 0, 1) }
+        let inserted = self.inserted.iter().zip(&coarse).map(|(all, coarse)| all - coarse).collect();
+        let (is_stratified, first_word) = (self.is_stratified(), passive_words as u64);
+        let parts = Self {
+            guide: self.sampler.guide_from(first_word),
+            first_word,
+            inserted: coarse,
+            passive: PassiveSupply { inserted, words: passive_words, expected },
+            ..self
+        };
+        if is_stratified { parts.stratified(seed, run) } else { parts }
     }
 
     /// Number of increments in which particles are inserted.
@@ -214,16 +209,13 @@ impl Supply {
 pub(super) fn passive_limit(arching: Option<&Arching>, leaves_openings: bool, finest: f32) -> f32 {
     match arching {
         _ if leaves_openings => 0.0,
-        Some(arching) => arching.law.passive_limit(finest),
-        None => finest,
+        arching => arching.map_or(finest, |arching| arching.law.passive_limit(finest)),
     }
 }
 
 fn running(sums: &[u64], increment: u64) -> u64 {
-    match (increment, sums.len()) {
-        (0, _) | (_, 0) => 0,
-        (t, increments) => sums[(t as usize).min(increments) - 1],
-    }
+    let entries = (increment as usize).min(sums.len());
+    entries.checked_sub(1).map_or(0, |last| sums[last])
 }
 
 /// Sampling of start nodes and sizes of the base particles.
@@ -258,9 +250,8 @@ impl Sampling {
 ///
 /// A run of `T` increments that inserts at most `K` particles in each has `T K` strata of equal probability:
 /// `K` groups of `T`, finest first. Particle `m` of increment `t` takes group `P_t(m)`, and in it stratum
-/// `Q_k(t - 1)`; `P` and `Q` are keyed permutations. So the sizes of each increment and of the whole run are
-/// stratified. The `n` particles of an increment divide the start nodes into `n` equal parts, and each takes
-/// a place in its part. No permutation is needed, as the order of particles does not affect the walk.
+/// `Q_k(t - 1)`; `P` and `Q` are keyed permutations. The `n` particles of an increment divide the start nodes
+/// into `n` equal parts, and each takes a place in its part.
 #[derive(Clone, Debug)]
 struct Strata {
     seed: u64,
@@ -289,15 +280,9 @@ impl Strata {
 
     /// Strata of one increment that inserts `count` particles.
     pub(crate) fn increment(&self, increment: u64, count: u64) -> IncrementStrata<'_> {
-        let key =
-            |increment| Key { seed: self.seed, purpose: Purpose::Strata, run: self.run, increment, chunk: 0 };
-        IncrementStrata {
-            strata: self,
-            increment,
-            count,
-            groups: key(increment).words(),
-            order: key(0).words(),
-        }
+        let Self { seed, run, .. } = *self;
+        let words = |increment| Key { seed, purpose: Purpose::Strata, run, increment, chunk: 0 }.words();
+        IncrementStrata { strata: self, increment, count, groups: words(increment), order: words(0) }
     }
 }
 

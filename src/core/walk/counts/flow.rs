@@ -2,10 +2,8 @@
 //!
 //! The voids are divided into blocks of fixed size, each with its own stream. Workers take the next free
 //! block and add the moving particles to their own column; the columns are then added. Integer sums do not
-//! depend on order, so the result does not depend on the number of workers.
-//!
-//! A few particles in a void with three exits choose individually, with one random word for both
-//! thresholds. Larger counts are split exit by exit, with draws for many voids at once.
+//! depend on order. A few particles in a void with three exits choose individually, with one random word for
+//! both thresholds. Larger counts are split exit by exit, with draws for many voids at once.
 
 use super::binomial::{CERTAIN, Draws, FEW, FewTrials, Portable, fill, one};
 use super::passive::fraction;
@@ -269,7 +267,7 @@ impl Worker {
             |constriction: usize, n: u64| next[(targets[constriction] as usize).min(outside)] += n;
         let mut draws = Draws::new(key);
         // SAFETY: as the caller promises.
-        let mut few = unsafe { F::begin(&draws) };
+        let mut few = unsafe { F::load(&draws) };
         let (first, mut many, mut waiting) = (voids.start, [0; BLOCK / 64], Vec::new());
         for (word, counts) in counts[voids].chunks(64).enumerate() {
             let [occupied, crowded] = occupied_and_crowded(counts);
@@ -299,7 +297,7 @@ impl Worker {
             }
             many[word] = occupied & !shut & (crowded | !of_three);
         }
-        few.end(&mut draws);
+        few.store(&mut draws);
         batch.rows = 0;
         for (word, many) in many.into_iter().enumerate() {
             for void in bits(many).map(|bit| first + 64 * word + bit) {

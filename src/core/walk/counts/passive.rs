@@ -3,7 +3,7 @@
 //! The fate of a passive particle does not depend on its size, so the sizes of those eroded or retained
 //! are independent draws from the passive part of the base: the numbers by class are multinomial and drawn
 //! exactly, and the largest particle is drawn from the coarsest class that is not empty. Masses are counts
-//! times a mean mass: the mean of the passive part for the sums of a run, of the class for size curves.
+//! times a mean mass: of the passive part for the sums of a run, of the class for size curves.
 
 use super::binomial::{CERTAIN, Draws, one};
 use crate::gradation::SizeSampler;

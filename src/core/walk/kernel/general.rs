@@ -2,7 +2,7 @@
 
 use super::lattice::fetch;
 use crate::network::{END, Network};
-use crate::stream::{DRAWS_PER_BLOCK, Extension, Key, LANES, Lanes, draw16};
+use crate::stream::{DRAWS_PER_BLOCK, Key, LANES, Lanes, Words, draw16};
 use crate::walk::Arching;
 use crate::walk::chunks::{Events, Jam};
 use crate::walk::exits::{General, NONE, WAIT};
@@ -30,7 +30,7 @@ pub(super) fn step(
 pub(super) struct Jams<'a> {
     arching: &'a Arching,
     lanes: Lanes,
-    extension: Extension,
+    extension: Words,
     block: [u64; LANES],
 }
 
@@ -151,7 +151,7 @@ fn any(
     from: u32,
     draw: u16,
     index: usize,
-    extension: Extension,
+    extension: Words,
 ) -> Chosen {
     let last_open = table.last_open[from as usize];
     match last_open {
@@ -166,7 +166,7 @@ fn any(
 
 /// First exit whose threshold exceeds the draw; sixteen bits decide unless they are equal.
 #[inline]
-fn choose(thresholds: &[u64], draw: u16, index: usize, extension: Extension) -> Option<usize> {
+fn choose(thresholds: &[u64], draw: u16, index: usize, extension: Words) -> Option<usize> {
     let is_above = |threshold: u64| {
         let top = (threshold >> 48) as u16;
         draw < top || (draw == top && extension.complete(draw, index as u64) < threshold)

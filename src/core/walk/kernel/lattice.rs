@@ -3,17 +3,15 @@
 //!
 //! It and the AVX2 kernel process a block of particles at a time. They predict the moves without branches
 //! and mark those that may be wrong: the draw equals a threshold in the bits of the table word, no exit is
-//! open, the particle may be coarser than the void's finest open exit, or it leaves. Those few then take
-//! the slow path ([`LatticeChunk::settle`]), one by one and in order.
+//! open, the particle may be coarser than its exit, or it leaves. Those few then take the slow path
+//! ([`LatticeChunk::settle`]), one by one and in order.
 //!
 //! The halves of a table word hold the two thresholds above other bits ([`Lattice::below`]). Compared with
 //! a draw that has ones in place of those bits, a half is no greater if and only if the draw is at least
-//! the threshold, unless the two are equal in the bits of the word. Every kernel reads the words with or
-//! without classes, whichever suit the chunk ([`reads_classes`]): both give the same bits.
+//! the threshold, unless the two are equal in the bits of the word.
 //!
-//! If particles arch or blocked constrictions leave openings, a particle is compared with the width of its
-//! chosen exit. If it may jam, its size is first multiplied by the reach of its draw ([`Arching::reach`]):
-//! a particle then no finer than the width takes the slow path, where the law decides.
+//! If a particle may jam, its size is first multiplied by the reach of its draw ([`Arching::reach`]): a
+//! particle then no finer than the width of its exit takes the slow path, where the law decides.
 
 use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
 use crate::walk::arching::{Arching, Reach};

@@ -13,7 +13,7 @@ mod lattice;
 use super::chunks::{ChunkColumns, Events};
 use super::exits::{Classed, Form, Jamming, OpenExits, Plain, Reads, Widths};
 use super::insert::Insertion;
-use super::openings::{Ways, Weighed};
+use super::openings::Ways;
 use super::{ExitTable, Isa, State, Supply, chunks};
 use crate::network::Network;
 use crate::stream::{Key, Lanes, Purpose};
@@ -41,7 +41,7 @@ pub(super) fn step(
         ways: match &state.openings {
             None => Ways::Unblocked(&state.blocked),
             // Only lattice tables use these weights, and there is none if water sets the weights.
-            Some(openings) => Ways::Openings(&openings.widths, Weighed::Whole),
+            Some(openings) => Ways::Openings(&openings.widths, None),
         },
         widths: state.openings.as_ref().map_or(network.diameters(), |openings| &openings.widths),
         passive_limit: state.passive_limit,
@@ -122,10 +122,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::gradation::{Gradation, SizeSampler};
     use crate::stream::{DRAWS_PER_BLOCK, LANES, draw16};
     use crate::walk::chunks::Jam;
-    use crate::walk::{Arching, Isa, LAWS, SizeClasses, exits};
+    use crate::walk::{Arching, Isa, LAWS, exits};
 
     #[derive(Clone, Debug)]
     struct Scene {
@@ -163,22 +162,20 @@ mod tests {
 
     fn after(scene: &Scene, key: Key, (isa, reading): Kernel, void: &[u32], diameter: &[f32]) -> After {
         let (network, blocked) = scene.made();
-        let supply = Supply::new(SizeSampler::new(&Gradation::single(1.0).unwrap(), 1.0).unwrap(), 1, 1);
-        let classes = SizeClasses::logarithmic(1.0, 1.0, 1);
-        let state = State::new(&network, &supply, classes, blocked, 1, 1);
-        let ways = Ways::Unblocked(&state.blocked);
+        let ways = Ways::Unblocked(&blocked);
         let mut table = match reading {
-            Reading::Plain | Reading::Classed => ExitTable::new(&network, &state.blocked),
+            Reading::Plain | Reading::Classed => ExitTable::new(&network, &blocked),
             Reading::Widths | Reading::Jamming(_) => ExitTable::by_widths(&network, ways),
         };
         table.isa = isa;
         let arching = arching(reading);
+        let finest = network.finest_open(|c| blocked[c]);
         let exits = OpenExits {
             network: &network,
             table: &table,
             ways,
             widths: network.diameters(),
-            passive_limit: arching.as_ref().map_or(state.passive_limit, |_| 0.0),
+            passive_limit: if arching.is_some() { 0.0 } else { finest },
             arching: arching.as_ref(),
         };
         let (mut void, mut diameter) = (void.to_vec(), diameter.to_vec());
@@ -369,10 +366,9 @@ mod tests {
     fn words_with_classes_are_for_chunks_with_coarse_particles() {
         let chunk = |fine: usize, coarse: usize| [vec![1.0; fine], vec![1.5; coarse]].concat();
         let reads_classes = |diameter: &[f32]| lattice::reads_classes(diameter, 1.0);
-        assert!(!reads_classes(&[]) && !reads_classes(&chunk(300, 0)) && !reads_classes(&chunk(10, 1)));
-        assert!(
-            reads_classes(&chunk(0, 2)) && reads_classes(&chunk(254, 2)) && !reads_classes(&chunk(256, 900))
-        );
+        let coarse = [(0, 0), (300, 0), (10, 1), (256, 900), (0, 2), (254, 2)];
+        let expected = [false, false, false, false, true, true];
+        assert_eq!(coarse.map(|(fine, coarse)| reads_classes(&chunk(fine, coarse))), expected);
     }
 
     /// A column from a damaged file gives an error, never a read beyond the table.
