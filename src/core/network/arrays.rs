@@ -124,7 +124,6 @@ fn number_of_voids(
     Ok(if longest.is_some() { allowed } else { last as usize + 1 })
 }
 
-/// Error of one array.
 fn refused<T>(file: &str, name: &str, problem: impl std::fmt::Display) -> Result<T, NetworkError> {
     Err(NetworkError::whole(file, format!("{name}: {problem}")))
 }
@@ -230,10 +229,8 @@ mod tests {
         assert_eq!(read(&all, ExitRule::Area).unwrap().voids(), 65_536);
         all[0].1 = ring(65_536);
         let error = read(&all, ExitRule::Area).unwrap_err().to_string();
-        assert!(
-            error.contains("row 2 (counted from 0) names void 65536, and there are 4 constrictions"),
-            "{error}"
-        );
+        let problem = "row 2 (counted from 0) names void 65536, and there are 4 constrictions";
+        assert!(error.contains(problem), "{error}");
         let coords = Array { rows: 70_000, columns: Some(3), numbers: Numbers::Float(vec![0.0; 210_000]) };
         all.push(("pore.coords", coords));
         assert_eq!(read(&all, ExitRule::Area).unwrap().voids(), 70_000);
@@ -252,10 +249,8 @@ mod tests {
             all.extend(coords.map(|array| ("pore.coords", array)));
             read(&all, ExitRule::Flux).map(|network| network.filter_voids()).map_err(|e| e.to_string())
         };
-        assert_eq!(
-            [with(0, None), with(0, Some(coords(4))), with(1, Some(coords(9)))],
-            [Ok(4), Ok(4), Ok(9)]
-        );
+        let read = [with(0, None), with(0, Some(coords(4))), with(1, Some(coords(9)))];
+        assert_eq!(read, [Ok(4), Ok(4), Ok(9)]);
         for (add, coords, words) in [
             (0, Some(coords(3)), "names void 3, and pore.coords has 3 entries"),
             (3, Some(coords(4)), "names void 6, and pore.coords has 4 entries"),

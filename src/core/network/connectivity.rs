@@ -204,9 +204,8 @@ mod tests {
         for void in 0..network.voids() as u32 {
             let start = void < nx * ny;
             assert_eq!(network.layer_of()[void as usize], place(void)[2]);
-            assert!(
-                !network.exits(void).is_empty() && (start || begin[void as usize + 1] > begin[void as usize])
-            );
+            let has_entrance = start || begin[void as usize + 1] > begin[void as usize];
+            assert!(!network.exits(void).is_empty() && has_entrance);
         }
         assert_eq!(network.layers(), nz as usize);
     }
@@ -237,10 +236,8 @@ mod tests {
         // voids lose entrances or exits numbering 29.8 % of all voids, and gain 29.6 %. At least 1,788 of
         // 36,000 constrictions must be deleted and 1,776 diagonals created; the search needs few more.
         let deleted = cubic.constrictions() - kept;
-        assert!(
-            (1788..1900).contains(&deleted) && (1776.0..1900.0).contains(&diagonals),
-            "{deleted} {diagonals}"
-        );
+        assert!((1788..1900).contains(&deleted), "{deleted}");
+        assert!((1776.0..1900.0).contains(&diagonals), "{diagonals}");
         // Mean of a uniform curve: 0.25, with a standard error of at most 0.0577 / sqrt(1500).
         assert!((sum / diagonals - 0.25).abs() < 5.0 * 0.0577 / f64::sqrt(diagonals));
     }

@@ -80,7 +80,7 @@ impl Network {
             return Err(NetworkError::WrongLength { shape, expected: count, found: diameter.len() });
         }
         if let Some(at) = diameter.iter().position(|d| !(d.is_finite() && *d >= 0.0)) {
-            return Err(NetworkError::Diameter { constriction: at, value: diameter[at] });
+            return Err(NetworkError::diameter(at, diameter[at]));
         }
         let [nx, ny, nz] = shape;
         let voids = (count / 3) as u32;

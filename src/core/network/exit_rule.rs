@@ -54,17 +54,14 @@ impl ExitRule {
     }
 }
 
-/// Marks an exit without a twin.
 pub(super) const NO_TWIN: u32 = u32::MAX;
 
-/// Exit columns of an undirected network.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Undirected {
     /// Exit of the neighbouring void through the same constriction, or [`NO_TWIN`].
     pub(super) twin: Vec<u32>,
     /// Conductance times viscosity by exit, in any consistent unit.
     pub(super) conductance: Vec<f64>,
-    /// Current weight by exit.
     pub(super) weight: Vec<f64>,
     pub(super) rule: ExitRule,
     pub(super) rho: f64,

@@ -35,21 +35,15 @@ pub enum NetworkError {
         /// Number of diameters given.
         found: usize,
     },
-    /// Invalid diameter.
-    #[error("constriction {constriction} has diameter {value}: it must be finite and not negative")]
-    Diameter {
+    /// Invalid diameter or conductance.
+    #[error("constriction {constriction} has {quantity} {value}: it must be finite and not negative")]
+    Number {
+        /// Quantity of the constriction.
+        quantity: &'static str,
         /// Number of the constriction, counted from 0.
         constriction: usize,
         /// Value found.
-        value: f32,
-    },
-    /// Invalid conductance.
-    #[error("constriction {constriction} has conductance {value}: it must be finite and not negative")]
-    Conductance {
-        /// Number of the constriction, counted from 0.
-        constriction: usize,
-        /// Value found.
-        value: f64,
+        value: String,
     },
     /// Voids and constrictions that do not form a passable network.
     #[error("the network cannot be walked: {problem}")]
@@ -99,15 +93,19 @@ pub enum NetworkError {
 }
 
 impl NetworkError {
-    /// Error of voids and constrictions that do not form a network.
-    pub(super) fn unlinked(problem: impl Into<String>) -> Self {
-        Self::Unlinked { problem: problem.into() }
+    /// Error of an invalid diameter, in units of the network.
+    pub(super) fn diameter(constriction: usize, value: f32) -> Self {
+        Self::Number { quantity: "diameter", constriction, value: value.to_string() }
     }
 
-    /// Error of a file as a whole.
     pub(super) fn whole(file: &str, problem: impl Into<String>) -> Self {
         Self::Whole { file: file.into(), problem: problem.into() }
     }
+}
+
+/// Refusal of voids and constrictions that do not form a network.
+pub(super) fn unlinked<T>(problem: impl Into<String>) -> Result<T, NetworkError> {
+    Err(NetworkError::Unlinked { problem: problem.into() })
 }
 
 impl Network {
@@ -430,10 +428,8 @@ mod tests {
         assert_eq!(with("").unwrap(), 13);
         for twice in [rows(true), rows(false)] {
             let error = with(&twice).unwrap_err().to_string();
-            assert!(
-                error.starts_with("net.csv: the rows from 0 to 1") && error.contains("listed twice"),
-                "{error}"
-            );
+            assert!(error.starts_with("net.csv: the rows from 0 to 1"), "{error}");
+            assert!(error.contains("listed twice"), "{error}");
         }
     }
 

@@ -309,7 +309,6 @@ impl Flow {
         self.passages.iter().filter(is_in).map(with_open).filter(|&(_, open)| open > 0.0)
     }
 
-    /// Finds pressures and fluxes, to this fraction of the inflow.
     fn find_pressures(&mut self, network: &Network, meets: &[Meets], within: f64) -> Result<(), FlowError> {
         let Some(reservoir) = self.reservoir else { return Ok(()) };
         let outside = meets.len() as u32;
@@ -442,7 +441,6 @@ impl Flow {
     }
 }
 
-/// Conductance of an exit when open.
 fn whole(network: &Network, exit: usize) -> f64 {
     if network.diameter[exit] == 0.0 { 0.0 } else { network.conductance(exit) }
 }

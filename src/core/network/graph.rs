@@ -1,5 +1,6 @@
 //! Networks of the voids of a packing.
 
+use super::file::unlinked;
 use super::flow::system::{CONVERGED, FlowError, System, Together};
 use super::undirected::{Link, LinkEnd, LinkedVoids};
 use super::{ExitRule, Network, NetworkError};
@@ -31,10 +32,10 @@ impl Network {
         let copies = shape.copies;
         let links_in_all = (graph.from.len() as u64 + 1).checked_mul(u64::from(copies) + 1);
         if copies == 0 || links_in_all.is_none_or(|n| n >= u64::from(u32::MAX) / 2) {
-            return Err(NetworkError::unlinked(format!(
+            return unlinked(format!(
                 "{copies} copies of {voids} voids and {} constrictions are too many",
                 graph.from.len()
-            )));
+            ));
         }
         let place = |copy: i64, void: u32| match (0..i64::from(copies)).contains(&copy) {
             true => LinkEnd::Void(copy as u32 * voids + void),
@@ -208,10 +209,8 @@ mod tests {
             let out: Vec<usize> = network.exits(void).filter(|&c| network.exit_weight(c) > 0.0).collect();
             let [only] = out[..] else { panic!("{out:?}") };
             let to = network.targets()[only];
-            assert!(
-                to == super::super::END
-                    || network.layer_of()[to as usize] == network.layer_of()[void as usize] + 1
-            );
+            let layer = network.layer_of();
+            assert!(to == super::super::END || layer[to as usize] == layer[void as usize] + 1);
         }
     }
 }

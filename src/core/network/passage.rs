@@ -353,10 +353,8 @@ mod tests {
     fn a_particle_that_circles_never_leaves() {
         let network = Network::cubic_from_diameters([2, 2, 2], vec![1.0; 24], 1.0).unwrap();
         let passage = network.first_passage(0.5, |c| c % 3 == 2 && c >= 12).unwrap();
-        assert_eq!(
-            (passage.leaves[0], passage.moves[0], passage.moves[4]),
-            (0.0, f64::INFINITY, f64::INFINITY)
-        );
+        let both = [passage.leaves[0], passage.moves[0], passage.moves[4]];
+        assert_eq!(both, [0.0, f64::INFINITY, f64::INFINITY]);
         // Once everything is closed it no longer moves.
         let stuck = network.first_passage(0.5, |_| true).unwrap();
         assert_eq!((stuck.leaves[0], stuck.moves[0]), (0.0, 0.0));

@@ -67,7 +67,6 @@ pub(super) struct PossibleExits {
     kept_exits: u32,
     /// Number of voids with connectivity up to k minus the target, for each k.
     surplus: [i64; MOST + 1],
-    /// Number of proposals left.
     proposals_left: u64,
 }
 
@@ -154,7 +153,6 @@ impl PossibleExits {
         self.check(counts)
     }
 
-    /// Distance from the target distribution.
     fn distance(&self) -> i64 {
         self.surplus.iter().map(|s| s.abs()).sum()
     }

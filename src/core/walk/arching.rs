@@ -119,15 +119,6 @@ impl Law {
 
     /// Probability that a particle jams in a constriction `ratio` (at least 1) times its size, at this
     /// concentration (volume of particles divided by volume of suspension); 0 from `widest` on.
-    ///
-    /// ```
-    /// use voidwalk_core::walk::Law;
-    ///
-    /// let law = Law::named("zuriguel-2005").unwrap();
-    /// // 9900 / 2.94^6.9 = 5.80 grains pass on average.
-    /// assert!((law.probability(2.0, 0.6) - 1.0 / 6.80).abs() < 1e-3);
-    /// assert_eq!(law.probability(4.94, 0.6), 0.0);
-    /// ```
     pub fn probability(&self, ratio: f64, concentration: f64) -> f64 {
         if ratio >= self.widest { 0.0 } else { (self.probability)(ratio, concentration) }
     }
@@ -254,7 +245,6 @@ impl Arching {
         (draw < self.by_table(ratio)).then(|| in_arch(ratio))
     }
 
-    /// Probability from the table, by linear interpolation.
     pub(super) fn by_table(&self, ratio: f64) -> f64 {
         let place = ((ratio - 1.0) / (self.law.widest - 1.0)).clamp(0.0, 1.0) * STEPS as f64;
         let step = (place as usize).min(STEPS - 1);

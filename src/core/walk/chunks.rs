@@ -73,10 +73,8 @@ thread_local! {
     static ERODED: RefCell<Vec<f32>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Events of one chunk in one increment.
 #[derive(Default)]
 pub(super) struct Events {
-    /// Number of particles inserted into the chunk.
     pub(crate) inserted: u32,
     pub(crate) inserted_mass: f64,
     pub(crate) moves: u64,
@@ -91,7 +89,6 @@ pub(super) struct Events {
     pub(crate) stranded: Vec<(u32, f32)>,
     /// Number of particles that wait until the flow is solved again.
     pub(crate) waiting: u64,
-    /// Number of passive particles inserted.
     pub(crate) passive_inserted: u32,
     passive_eroded: u64,
     sizes: Option<[SizeCounts; 2]>,
@@ -193,7 +190,6 @@ pub(super) fn merge(
     }
 }
 
-/// Jammed particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Jam {
     /// Number of moving particles before it in its chunk.

@@ -42,7 +42,6 @@ pub struct FlowSolution {
 pub(super) struct Directions {
     flow: Flow,
     record: FlowRecord,
-    /// Flow through the clean filter.
     clean: f64,
     /// Last increment before the last solution.
     solved_at: u64,
@@ -53,7 +52,6 @@ pub(super) struct Directions {
     rule: ExitRule,
 }
 
-/// Blocked constrictions, and the openings if any are left.
 type Passable<'a> = (&'a BitSlice, Option<&'a Openings>);
 
 /// Constrictions at an earlier time of a run.
@@ -64,14 +62,12 @@ struct Past<'a> {
 }
 
 impl<'a> Past<'a> {
-    /// Creates the constrictions at the start of the run.
     fn begin(network: &Network, state: &'a State) -> Self {
         let mut past = Self { state, blocked: state.blocked.clone(), openings: state.openings.clone() };
         (0..state.changes()).rev().for_each(|at| past.set(network, at, false));
         past
     }
 
-    /// Makes or reverts a change of the run.
     fn set(&mut self, network: &Network, at: usize, is_done: bool) {
         match &mut self.openings {
             Some(openings) => {

@@ -62,25 +62,6 @@ impl Engine {
 const WORTH_TWICE: u128 = 13;
 
 /// Plan of one run: an engine, and the passive part of the base.
-///
-/// ```
-/// use bitvec::vec::BitVec;
-/// use voidwalk_core::gradation::{Gradation, SizeSampler};
-/// use voidwalk_core::network::Network;
-/// use voidwalk_core::walk::{Engine, RunPlan, SizeClasses, State, Walk, WalkControl};
-///
-/// let network = Network::cubic_from_diameters([4, 4, 6], vec![1.0; 288], 1.0)?;
-/// let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.2, 1.5)?, 1.0)?;
-/// let open: BitVec = BitVec::repeat(false, network.constrictions());
-/// let plan = RunPlan::new(Engine::Auto, &network, &sampler, &open, 10_000_000_000);
-/// assert_eq!(plan.engine(), Engine::Counts);
-/// let supply = plan.supply(sampler, 1_000_000_000_000, 100, 7, 1);
-/// let classes = SizeClasses::logarithmic(0.2, 0.45, 32);
-/// let mut state = State::new(&network, &supply, classes, open, 7, 1);
-/// Walk::new(&network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue)?;
-/// assert_eq!(state.tally.eroded, 1_000_000_000_000);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct RunPlan {
     engine: Engine,
@@ -152,7 +133,57 @@ impl RunPlan {
     }
 
     /// Omitted work.
-    pub fn left_out(engine: Engine, finest: Finest, passive_words: u128) -> Vec<Shortcut> {
+    pub fn left_out(&self) -> &[Shortcut] {
+        &self.left_out
+    }
+
+    /// Supply of `n` base particles in `increments` equal parts, for run `run` of `seed`.
+    pub fn supply(&self, sampler: SizeSampler, n: u64, increments: u64, seed: u64, run: u64) -> Supply {
+        let all = Supply::new(sampler, n, increments)
+            .arching_by(self.arching.clone())
+            .leaving_openings(self.leaves_openings);
+        let all = match self.sampling {
+            Sampling::Independent => all,
+            Sampling::Stratified => all.stratified(seed, run),
+        };
+        match self.engine {
+            Engine::Particles => all,
+            engine => all.with_passive_part(self.passive_words, engine == Engine::Expected, seed, run),
+        }
+    }
+}
+
+/// Finest open constriction at the start of a run.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Finest {
+    /// Size (mm).
+    pub size_mm: f64,
+    /// True if particles may arch in it, so that only particles too fine to arch are passive.
+    pub arches: bool,
+}
+
+/// Work that a run can omit.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shortcut {
+    /// Nothing moves, as no constriction is open.
+    NothingOpen,
+    /// No base particle is counted: all are coarser than this.
+    NonePassive(Finest),
+    /// No base particle is counted: openings beside particles may stop any of them.
+    Openings,
+    /// All base particles are counted by this engine: none is coarser than this.
+    AllPassive(Finest, Engine),
+    /// This percentage of the base particles is walked one by one; this engine counts the others.
+    MostPassive(f64, Finest, Engine),
+    /// No column of diameters is stored: the base has one size.
+    OneSize,
+    /// Too few passive base particles per increment (first number) on the start nodes (second number) for
+    /// counts.
+    FewPassive(u64, u64),
+}
+
+fn left_out(engine: Engine, finest: Finest, passive_words: u128) -> Vec<Shortcut> {
     let coarse_percent = 100.0 * (((1u128 << 64) - passive_words) as f64 / 18_446_744_073_709_551_616.0);
     let is_open = finest.size_mm != f64::INFINITY;
     let of_open = match is_open {

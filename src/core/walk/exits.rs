@@ -76,9 +76,7 @@ const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
 #[derive(Clone)]
 pub(crate) struct ExitTable {
     pub(super) form: Form,
-    /// Instruction set that reads it.
     pub(super) isa: Isa,
-    /// Upstream void of each constriction.
     pub(super) upstream: Vec<u32>,
 }
 
@@ -90,7 +88,6 @@ pub(super) enum Form {
     General(General),
 }
 
-/// Thresholds of a general network.
 #[derive(Clone)]
 pub(super) struct General {
     /// Threshold of each constriction, and its upper sixteen bits.
@@ -119,7 +116,6 @@ pub(super) struct OpenExits<'a> {
     pub(crate) network: &'a Network,
     pub(crate) table: &'a ExitTable,
     pub(crate) ways: Ways<'a>,
-    /// Current width of each constriction.
     pub(crate) widths: &'a [f32],
     pub(crate) passive_limit: f32,
     /// Law of arching; only with a table of the general form, or one that reads widths.
@@ -188,7 +184,6 @@ impl ExitTable {
         }
     }
 
-    /// Renews all voids, on all threads.
     pub(super) fn renew(&mut self, network: &Network, ways: Ways) {
         let Form::General(general) = &mut self.form else {
             let voids = 0..network.voids() as u32;
@@ -218,7 +213,6 @@ impl General {
         GeneralPart { first_void: 0, first_exit: 0, threshold, top, last_open, few, beyond }
     }
 
-    /// Splits the table into parts that threads renew in parallel.
     fn parts(&mut self, network: &Network) -> Vec<GeneralPart<'_>> {
         let mut parts = Vec::new();
         let mut left = self.all();

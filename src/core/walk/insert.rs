@@ -7,7 +7,6 @@ use crate::network::Network;
 use crate::stream::{Key, LANES, Lanes, Purpose, below, below_32};
 use std::ops::Range;
 
-/// Base particles that an increment inserts.
 pub(super) struct Insertion<'a> {
     network: &'a Network,
     supply: &'a Supply,
@@ -19,14 +18,12 @@ pub(super) struct Insertion<'a> {
 }
 
 impl<'a> Insertion<'a> {
-    /// Prepares the insertion for the current increment of `state`.
     pub(crate) fn new(network: &'a Network, supply: &'a Supply, isa: Isa, state: &State) -> Self {
         let inserted = supply.inserted(state.increment - 1)..supply.inserted(state.increment);
         let (passive_limit, key) = (state.passive_limit, state.key(Purpose::Insertion));
         Self { network, supply, isa, passive_limit, key, inserted }
     }
 
-    /// Number of base particles inserted in this increment.
     pub(crate) fn share(&self) -> u64 {
         self.inserted.end - self.inserted.start
     }
@@ -47,20 +44,14 @@ impl<'a> Insertion<'a> {
         events.inserted = (end - first) as u32;
         let (old, new) = (**live as usize, (**live + events.inserted) as usize);
         **live = new as u32;
-        let drawing = Drawing {
-            network: self.network,
-            supply: self.supply,
-            key: Key { chunk: *chunk, ..self.key },
-            before: begin.saturating_sub(self.inserted.start),
-            passive_limit: self.passive_limit,
-            void: &mut void[old..new],
-            diameter: &mut diameter[old..new],
-        };
+        let (void, diameter) = (&mut void[old..new], &mut diameter[old..new]);
+        let before = begin.saturating_sub(self.inserted.start);
+        let key = Key { chunk: *chunk, ..self.key };
+        let drawing = Drawing { insertion: self, key, before, void, diameter };
         (events.inserted_mass, events.passive_inserted) = drawing.draw(self.isa);
     }
 }
 
-/// Number of particles drawn at a time.
 const BATCH: usize = 8 * LANES;
 
 type Words = [[u64; LANES]; 2 * BATCH / LANES];
@@ -70,12 +61,10 @@ type Words = [[u64; LANES]; 2 * BATCH / LANES];
 /// Each step of a draw is a loop over a whole batch, so that it is vectorised. Only masses are added one
 /// after another, as the result depends on their order.
 struct Drawing<'a> {
-    network: &'a Network,
-    supply: &'a Supply,
+    insertion: &'a Insertion<'a>,
     key: Key,
     /// Number of particles that the increment inserts before these.
     before: u64,
-    passive_limit: f32,
     void: &'a mut [u32],
     diameter: &'a mut [f32],
 }
@@ -102,7 +91,8 @@ impl Drawing<'_> {
     /// Draws them; `next` reads the next words of the stream.
     #[inline(always)]
     fn draw_by(self, next: impl Fn(&mut Lanes, &mut Words)) -> (f64, u32) {
-        let Self { network, supply, key, before, passive_limit, void, diameter } = self;
+        let Self { insertion, key, before, void, diameter } = self;
+        let Insertion { network, supply, passive_limit, .. } = *insertion;
         let (mut lanes, strata) = (key.lanes(), supply.strata(key.increment));
         let (mut mass, mut passive) = (0.0, 0);
         let (mut words, mut place) = (Words::default(), before);

@@ -131,7 +131,6 @@ pub struct PlainExits {
     shares: Option<counts::Shares>,
 }
 
-/// Result of a walk: its network, the decline of permeability, and its exits.
 type WalkEnd<'a> = (Cow<'a, Network>, Option<FlowRecord>, Option<PlainExits>);
 
 impl PlainExits {
@@ -160,7 +159,6 @@ impl PlainExits {
         (table, shares)
     }
 
-    /// Exits and shares for a run that begins with them.
     fn again(self) -> (ExitTable, Option<counts::Shares>) {
         let Self { network, blocked, mut table, shares } = self;
         if blocked.any() {

@@ -276,8 +276,7 @@ impl<'a> Reference<'a> {
                 (((u128::from(words[0]) * nodes.len() as u128) >> 64) as usize, words[1]);
             if let Some(strata) = self.supply.strata(self.increment) {
                 let m = rank - self.supply.inserted(self.increment - 1);
-                (node, size) =
-                    (strata.node(m, words[0], nodes.len() as u64), strata.size_word(m, words[1]));
+                (node, size) = (strata.node(m, words[0], nodes.len() as u64), strata.size_word(m, words[1]));
             }
             let diameter = self.supply.diameter(size);
             *place += 1;

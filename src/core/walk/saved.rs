@@ -344,12 +344,8 @@ fn openings(saved: &Checkpoint, exits: usize) -> Result<Openings, CheckpointErro
     let before: Vec<f32> = saved.read_exact("narrowed_before", increments.len())?;
     let after: Vec<f32> = saved.read_exact("narrowed_after", increments.len())?;
     let rows = increments.into_iter().zip(constrictions).zip(before.into_iter().zip(after));
-    let narrowing = |((increment, constriction), (before, after))| Narrowing {
-        increment,
-        constriction,
-        before,
-        after,
-    };
+    let narrowing =
+        |((increment, constriction), (before, after))| Narrowing { increment, constriction, before, after };
     Ok(Openings { history: rows.map(narrowing).collect(), widths: saved.read_exact("widths", exits)? })
 }
 
@@ -395,7 +391,6 @@ pub fn from_words(words: &[u64], len: usize) -> BitVec {
 /// Relative error allowed in the sum of an expectation, for rounding over very many increments.
 const ROUNDING: f64 = 1e-6;
 
-/// Number of increments that no walk reaches.
 const MOST_INCREMENTS: u64 = 1 << 62;
 
 fn sum(column: &[u64]) -> u128 {

@@ -20,7 +20,6 @@ pub struct Supply {
     guide: SizeGuide,
     /// Cumulative number of particles inserted one by one; entry `t - 1` is increment `t`.
     inserted: Vec<u64>,
-    /// Particles kept as counts.
     passive: PassiveSupply,
     /// Strata of start nodes and sizes, if these are not independent.
     strata: Option<Strata>,
@@ -68,7 +67,6 @@ impl Supply {
         Self { leaves_openings, ..self }
     }
 
-    /// Tells if blocked constrictions leave openings.
     pub(crate) fn leaves_openings(&self) -> bool {
         self.leaves_openings
     }
@@ -117,7 +115,6 @@ impl Supply {
         if is_stratified { parts.stratified(seed, run) } else { parts }
     }
 
-    /// Number of increments in which particles are inserted.
     pub(crate) fn increments(&self) -> u64 {
         self.inserted.len() as u64
     }
@@ -132,7 +129,6 @@ impl Supply {
         running(&self.passive.inserted, increment)
     }
 
-    /// Words below this value draw particles kept as counts.
     pub(crate) fn passive_words(&self) -> u128 {
         self.passive.words
     }
@@ -152,7 +148,6 @@ impl Supply {
         self.strata.as_ref().map(|strata| strata.increment(increment, count))
     }
 
-    /// Tells if start nodes are spread evenly.
     pub(crate) fn is_stratified(&self) -> bool {
         self.strata.is_some()
     }
@@ -173,7 +168,6 @@ impl Supply {
         self.inserted(self.increments())
     }
 
-    /// Diameter of the base particle drawn by `word`.
     #[inline]
     pub(crate) fn diameter(&self, word: u64) -> f32 {
         self.sampler.diameter(self.word(word))
@@ -191,7 +185,6 @@ impl Supply {
         self.sampler.fill_guided(&self.guide, words, out);
     }
 
-    /// Word of the sampler for a random word.
     #[inline]
     fn word(&self, word: u64) -> u64 {
         match self.first_word {
@@ -278,7 +271,6 @@ impl Strata {
         }
     }
 
-    /// Strata of one increment that inserts `count` particles.
     pub(crate) fn increment(&self, increment: u64, count: u64) -> IncrementStrata<'_> {
         let Self { seed, run, .. } = *self;
         let words = |increment| Key { seed, purpose: Purpose::Strata, run, increment, chunk: 0 }.words();
@@ -366,7 +358,6 @@ impl Permutation {
         }
     }
 
-    /// Entry `element` of a shuffled list.
     fn shuffled(&self, element: u64, words: Words, base: u64) -> u64 {
         let mut list: [u64; SHUFFLED] = std::array::from_fn(|k| k as u64);
         for k in 0..=element {

@@ -21,7 +21,6 @@ pub(super) struct Factor {
     parts: Vec<Parts>,
     /// Reciprocal of the sum of conductances at elimination, by place.
     pivot: Vec<f64>,
-    /// Number of choices of neighbours made.
     choices: u64,
 }
 
@@ -221,7 +220,6 @@ struct Head {
     before: u32,
 }
 
-/// Earlier links of one place.
 #[derive(Clone, Copy)]
 struct Handful {
     conductance: [f32; HANDFUL],
@@ -234,7 +232,6 @@ struct Handful {
 struct Rest {
     head: Vec<Head>,
     handfuls: Vec<Handful>,
-    /// First free handful.
     free: u32,
 }
 
@@ -431,10 +428,8 @@ mod tests {
             let right = up.clone();
             factor.solve(&right, &mut vec![0.0; many as usize + 1], &mut up);
             for link in &links {
-                assert!(
-                    (up[link.other as usize] - link.conductance).abs() < 1e-5 * link.conductance,
-                    "{up:?}"
-                );
+                let off = up[link.other as usize] - link.conductance;
+                assert!(off.abs() < 1e-5 * link.conductance, "{up:?}");
             }
         }
     }

@@ -122,7 +122,6 @@ impl Eliminated {
         self.rows[node] = row.iter().zip(falls).map(|(other, fall)| Neighbour { fall, ..*other }).collect();
     }
 
-    /// Pressure difference between a node and a neighbour.
     pub(super) fn fall(&self, one: u32, other: u32) -> f64 {
         let [first, second] = [one, other].map(|node| self.turn[node as usize]);
         match (first == LAST, second == LAST) {

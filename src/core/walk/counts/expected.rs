@@ -14,7 +14,6 @@ pub(super) struct ExpectedFlow {
     by_network: ByNetwork,
     /// Voids that retain particles, in ascending order.
     pub(crate) holding: Vec<u32>,
-    /// Total retained.
     pub(crate) rests: f64,
 }
 
@@ -145,7 +144,6 @@ struct LatticeFlow {
     across: [usize; 2],
     /// Fraction of each void that takes the first exit, and fraction of the rest that takes the second.
     shares: [Vec<f64>; 2],
-    /// Voids without an open exit, in ascending order.
     dead_ends: Vec<u32>,
     /// Outflow of the previous row along y, by void of a row.
     along_y: Vec<f64>,

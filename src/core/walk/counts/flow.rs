@@ -31,7 +31,6 @@ const INSERTION: u64 = u64::MAX;
 /// Number of occupied blocks below which waking other threads does not pay.
 const ALONE: usize = 4;
 
-/// Result of one increment for the passive particles.
 #[derive(Debug, Default)]
 pub(super) struct Moved {
     pub(crate) moves: u64,
@@ -43,7 +42,6 @@ pub(super) struct Moved {
 
 /// Data for moving counts; rebuilt from network and counts, never stored.
 pub(super) struct Flow {
-    /// Downstream blocks of each block.
     downstream: Vec<Vec<u32>>,
     occupied: Vec<bool>,
     workers: Vec<Worker>,
@@ -151,7 +149,6 @@ impl Flow {
         self.gather(&occupied, moving)
     }
 
-    /// Adds the columns and counts of all workers.
     fn gather(&mut self, occupied: &[usize], moving: &mut [u64]) -> Moved {
         for &block in occupied {
             let end = moving.len().min((block + 1) * BLOCK);
@@ -321,7 +318,6 @@ fn occupied_and_crowded(counts: &[u64]) -> [u64; 2] {
     counts.iter().enumerate().map(bit).fold([0; 2], |all, one| [all[0] | one[0], all[1] | one[1]])
 }
 
-/// Positions of the ones in a word, from the lowest on.
 #[inline(always)]
 fn bits(mut word: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {

@@ -62,8 +62,6 @@ struct Trap {
     /// Number of blocked constrictions for which this is valid.
     blocked: u64,
     leads_out: Vec<bool>,
-    /// True if all voids lead out.
-    none: bool,
 }
 
 impl<'a> PassiveWalk<'a> {
@@ -146,7 +144,7 @@ impl<'a> PassiveWalk<'a> {
             Mover::Expected(flow) => {
                 let mut apart = std::mem::replace(&mut state.passive, Passive::OneByOne);
                 let Passive::Expected(expected) = &mut apart else { unreachable!("{OTHER}") };
-                let step = || flow.step(network, shares, expected);
+                let mut step = || flow.step(network, shares, expected);
                 if is_long && rayon::current_num_threads() > 1 {
                     rayon::join(|| one_by_one(state), step);
                 } else {
@@ -209,7 +207,6 @@ impl<'a> PassiveWalk<'a> {
         }
     }
 
-    /// Discards the trap after exits have changed direction.
     pub(crate) fn forget_trap(&mut self) {
         self.trap = None;
     }
@@ -225,7 +222,8 @@ impl<'a> PassiveWalk<'a> {
                     return true;
                 }
                 let trap = Trap::renew(&mut self.trap, network, state);
-                return !trap.none && moving.iter().zip(&trap.leads_out).all(|(&n, &out)| n == 0 || !out);
+                // Starts with the last voids, where the last particles are.
+                return moving.iter().zip(&trap.leads_out).rev().all(|(&n, &out)| n == 0 || !out);
             }
             Passive::Expected(expected) => {
                 let trap = Trap::renew(&mut self.trap, network, state);
@@ -252,10 +250,9 @@ impl Trap {
     fn renew<'t>(known: &'t mut Option<Self>, network: &Network, state: &State) -> &'t Self {
         let blocked = state.tally.blocked;
         known.take_if(|trap| trap.blocked != blocked);
-        known.get_or_insert_with(|| {
-            let leads_out = leads_out(network, |c| !state.is_closed(network, c));
-            let none = leads_out.iter().all(|&out| out);
-            Self { blocked, leads_out, none }
+        known.get_or_insert_with(|| Self {
+            blocked,
+            leads_out: leads_out(network, |c| !state.is_closed(network, c)),
         })
     }
 }

@@ -172,7 +172,6 @@ pub(super) struct PassiveSizes<'a> {
 }
 
 impl<'a> PassiveSizes<'a> {
-    /// Creates the part of the base drawn by words below `passive_words`.
     pub(crate) fn new(sampler: &'a SizeSampler, passive_words: u128, classes: &SizeClasses) -> Self {
         let bounds = classes.upper();
         let mut words: Vec<u128> =
@@ -191,7 +190,6 @@ impl<'a> PassiveSizes<'a> {
         Self { sampler, words, share, probability, mean_cube, mean_cube_of_all }
     }
 
-    /// Expected mass of `count` passive particles.
     pub(crate) fn mass(&self, count: u64) -> f64 {
         count as f64 * self.mean_cube_of_all
     }
@@ -233,7 +231,6 @@ impl<'a> PassiveSizes<'a> {
         }
     }
 
-    /// Median of the largest of `count` passive particles.
     pub(crate) fn median_largest(&self, count: u64) -> Option<f32> {
         let all = *self.words.last().expect("at least one class");
         self.sampler.part(0..all).largest_of(count, 1 << 63)
@@ -254,7 +251,6 @@ pub(in crate::walk) fn coarse_share(
     one(&mut Draws::new(key), share, fraction(all - passive_words, all))
 }
 
-/// Ratio `width / rest` as a 64-bit fraction.
 pub(super) fn fraction(width: u128, rest: u128) -> u64 {
     match width {
         0 => 0,

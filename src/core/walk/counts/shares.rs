@@ -22,7 +22,6 @@ pub(in crate::walk) enum Way {
     Other,
 }
 
-/// Shares of the passive particles of every void by exit.
 #[derive(Clone)]
 pub(in crate::walk) struct Shares {
     /// Probability, by constriction, that a particle which has not taken an earlier exit of its void takes
@@ -31,9 +30,7 @@ pub(in crate::walk) struct Shares {
     /// Number of exits to the next open one of the void, by constriction; no open exit is skipped.
     on: Vec<u8>,
     route: Vec<Way>,
-    /// Bit set for each void without an open exit.
     shut: Vec<u64>,
-    /// Bit set for each void with three exits.
     of_three: Vec<u64>,
     /// Upper sixteen bits of the thresholds of each void; 0 if it does not have three exits.
     tops: Vec<[u16; 2]>,

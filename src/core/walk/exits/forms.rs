@@ -87,7 +87,6 @@ impl Lattice {
         self.plain[void as usize] = (second as u32) << 16 | (first as u32) << 2 | wraps;
     }
 
-    /// Words with or without classes.
     pub(crate) fn words<R: Reads>(&self) -> &[u32] {
         if R::CLASSED { &self.classed } else { &self.plain }
     }
@@ -247,7 +246,8 @@ mod tests {
     /// left to the slow path.
     #[test]
     fn exits_are_chosen_as_by_the_definition() {
-        let mut draws = Key { seed: 1, purpose: Purpose::Network, run: 0, increment: 0, chunk: 0 }.generator();
+        let mut draws =
+            Key { seed: 1, purpose: Purpose::Network, run: 0, increment: 0, chunk: 0 }.generator();
         let mut next = || draws.next_u64() >> 33;
         let few_exits = (0..300).map(|_| 0).chain([9, 40, 64, 65, 300, 3000, 65_535, 65_536]);
         for exits in few_exits {

@@ -185,7 +185,6 @@ fn load_reach(reach: &Reach) -> [__m512; 2] {
     [0, 1].map(|part| unsafe { _mm512_loadu_ps(parts[part].as_ptr()) })
 }
 
-/// Sixteen draws of a block, its first or second half.
 #[inline]
 #[target_feature(enable = "avx512f")]
 fn half_of(draws: __m512i, half: usize) -> __m256i {

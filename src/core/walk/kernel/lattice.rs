@@ -36,7 +36,6 @@ pub(super) const PAST_SECOND: u32 = 8;
 /// Number of particles by which columns are prefetched ahead.
 const AHEAD: usize = 256;
 
-/// Number of column entries in a cache line.
 const LINE: usize = 16;
 
 /// Prefetches the first particles of a chunk before any is read.
@@ -328,13 +327,11 @@ impl<'a> LatticeChunk<'a> {
         jam.is_some()
     }
 
-    /// Stream for jamming; without jamming, the stream of the step, unused.
     pub(crate) fn jam_lanes<R: Reads>(&self) -> Lanes {
         let jams = self.jams.as_ref().filter(|_| R::JAMS);
         jams.map_or_else(|| self.lanes.clone(), |(_, lanes)| lanes.clone())
     }
 
-    /// Reach of draws, if particles jam.
     pub(crate) fn reach(&self) -> &'a Reach {
         self.jams.as_ref().expect("particles jam").0.reach()
     }

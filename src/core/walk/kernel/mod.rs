@@ -95,8 +95,12 @@ fn step_chunk(
             }
         }
         Form::General(table) => {
-            let jams = exits.arching.map(|arching| Jams::new(arching, jam_lanes(key)));
-            general::step(exits.network, table, jams, key, void, diameter, events)
+            // Two loops, one of them without arching.
+            let (network, jams) = (exits.network, exits.arching.map(|law| Jams::new(law, jam_lanes(key))));
+            match jams {
+                None => general::step(network, table, None, key, void, diameter, events),
+                jams => general::step(network, table, jams, key, void, diameter, events),
+            }
         }
     }
 }

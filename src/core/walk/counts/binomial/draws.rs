@@ -172,7 +172,6 @@ mod x86 {
     use super::{Counted, Draws, FewTrials};
     use crate::stream::{DRAWS_PER_BLOCK, next_of_eight, next_of_four};
 
-    /// State words of the generators, for AVX-512.
     pub(in crate::walk::counts) struct Avx512([__m512i; 4]);
 
     /// State words of the lower and the upper four generators, for AVX2.
@@ -228,7 +227,10 @@ mod x86 {
         unsafe fn load(draws: &Draws) -> Self {
             let half = |half: usize| {
                 // SAFETY: four lanes from `4 half` on are within the eight; the machine has AVX2.
-                draws.lanes.state.map(|row| unsafe { _mm256_loadu_si256(row[4 * half..][..4].as_ptr().cast()) })
+                draws
+                    .lanes
+                    .state
+                    .map(|row| unsafe { _mm256_loadu_si256(row[4 * half..][..4].as_ptr().cast()) })
             };
             Self([half(0), half(1)])
         }

@@ -35,7 +35,6 @@ pub(super) const FEW: u64 = 64;
 /// Number of trials up to which bits are compared if the variance is small.
 const FEW_RARE: u64 = 2048;
 
-/// Draws the number of successes in `n` trials with probability `p`.
 pub(super) fn one(draws: &mut Draws, n: u64, p: u64) -> u64 {
     if p == CERTAIN {
         n
@@ -87,7 +86,6 @@ fn eight(draws: &mut Draws, used: usize, n: [u64; LANES], p: [u64; LANES]) -> [u
     k
 }
 
-/// Draws by methods other than trials and quantiles.
 #[cold]
 fn by_other(draws: &mut Draws, n: u64, p: u64) -> u64 {
     if n <= FEW_RARE {
