@@ -22,7 +22,7 @@ use super::{END, NetworkError};
 use crate::stream::{Key, Purpose, below};
 
 /// Allowed error of the percentage of each connectivity (percent of all voids).
-pub(crate) const TOLERANCE_PERCENT: f64 = 0.05;
+const TOLERANCE_PERCENT: f64 = 0.05;
 
 pub(super) const SLOTS: usize = 6;
 
@@ -157,9 +157,9 @@ impl PossibleExits {
         self.surplus.iter().map(|s| s.abs()).sum()
     }
 
-    /// Draws a proposal and carries it out; returns the change of distance and the reverse step, or `None`
-    /// if the proposal is not possible.
-    fn propose(&mut self, draws: &mut impl Rng) -> Option<(i64, (u32, usize, u32, bool))> {
+    /// Draws a proposal and carries it out if it is possible and `accepts` its change of distance, which is
+    /// returned then.
+    fn propose<R: Rng>(&mut self, draws: &mut R, accepts: impl Fn(i64, &mut R) -> bool) -> Option<i64> {
         let possible = SLOTS as u64 * self.present.len() as u64;
         let drawn = below(draws.next_u64(), possible);
         let (void, slot) = ((drawn / SLOTS as u64) as u32, (drawn % SLOTS as u64) as usize);
@@ -168,7 +168,12 @@ impl PossibleExits {
         if !more && !self.spare(void, target) {
             return None;
         }
-        Some((self.toggle(void, slot, target, more), (void, slot, target, !more)))
+        let change = self.toggle(void, slot, target, more);
+        if !accepts(change, draws) {
+            self.toggle(void, slot, target, !more);
+            return None;
+        }
+        Some(change)
     }
 
     /// Accepts proposals that reduce the distance, and after many without progress also those that leave
@@ -181,12 +186,10 @@ impl PossibleExits {
         while distance > 0 && without_progress < most && self.proposals_left > 0 {
             self.proposals_left -= 1;
             without_progress += 1;
-            let Some((change, (void, slot, target, back))) = self.propose(draws) else { continue };
-            if change < 0 {
+            let worst = i64::from(without_progress > possible);
+            if let Some(change @ ..0) = self.propose(draws, |change, _| change < worst) {
                 distance += change;
                 without_progress = 0;
-            } else if change > 0 || without_progress <= possible {
-                self.toggle(void, slot, target, back);
             }
         }
     }
@@ -195,10 +198,7 @@ impl PossibleExits {
     /// free a stuck search.
     fn shake(&mut self, draws: &mut impl Rng) {
         for _ in 0..SLOTS * self.present.len() {
-            let Some((change, (void, slot, target, back))) = self.propose(draws) else { continue };
-            if change > 0 && below(draws.next_u64(), WORSE_IN) > 0 {
-                self.toggle(void, slot, target, back);
-            }
+            self.propose(draws, |change, draws| change <= 0 || below(draws.next_u64(), WORSE_IN) == 0);
         }
     }
 

@@ -151,7 +151,7 @@ fn at_the_neck(ratio: f64, concentration: f64) -> f64 {
 }
 
 /// Number of particles in an arch over a constriction `ratio` times their size: R^2 + 1, at least 2.
-pub(crate) fn in_arch(ratio: f64) -> u32 {
+fn in_arch(ratio: f64) -> u32 {
     (ratio * ratio + 1.0).round().max(2.0) as u32
 }
 

@@ -214,28 +214,25 @@ impl General {
     }
 
     fn parts(&mut self, network: &Network) -> Vec<GeneralPart<'_>> {
-        let mut parts = Vec::new();
-        let mut left = self.all();
-        while left.few.len() > PART {
-            let exits = network.exits(left.first_void + PART as u32).start - left.first_exit;
-            let GeneralPart { first_void, first_exit, threshold, top, last_open, few, beyond } = left;
-            let (threshold, threshold_after) = threshold.split_at_mut(exits);
-            let (top, top_after) = top.split_at_mut(exits);
-            let (last_open, last_open_after) = last_open.split_at_mut(PART);
-            let (few, few_after) = few.split_at_mut(PART);
-            let (beyond, beyond_after) = beyond.split_at_mut(exits);
-            parts.push(GeneralPart { first_void, first_exit, threshold, top, last_open, few, beyond });
-            left = GeneralPart {
-                first_void: first_void + PART as u32,
-                first_exit: first_exit + exits,
-                threshold: threshold_after,
-                top: top_after,
-                last_open: last_open_after,
-                few: few_after,
-                beyond: beyond_after,
-            };
+        fn front<'a, T>(column: &mut &'a mut [T], length: usize) -> &'a mut [T] {
+            column.split_off_mut(..length).expect("columns of one table")
         }
-        parts.push(left);
+        let (mut left, mut parts) = (self.all(), Vec::new());
+        while !left.few.is_empty() {
+            let voids = left.few.len().min(PART);
+            let exits = network.exits(left.first_void + voids as u32 - 1).end - left.first_exit;
+            parts.push(GeneralPart {
+                first_void: left.first_void,
+                first_exit: left.first_exit,
+                threshold: front(&mut left.threshold, exits),
+                top: front(&mut left.top, exits),
+                last_open: front(&mut left.last_open, voids),
+                few: front(&mut left.few, voids),
+                beyond: front(&mut left.beyond, exits),
+            });
+            left.first_void += voids as u32;
+            left.first_exit += exits;
+        }
         parts
     }
 }

@@ -100,7 +100,7 @@ pub enum WalkControl {
 }
 
 /// Callback after each increment, for recording, progress and requests to stop.
-pub(crate) type Observer<'a> = dyn FnMut(&State) -> WalkControl + Send + 'a;
+type Observer<'a> = dyn FnMut(&State) -> WalkControl + Send + 'a;
 
 /// Run in progress: data rebuilt from network and state, never stored.
 pub struct Walk<'a> {

@@ -89,17 +89,17 @@ impl Supply {
     /// number in each increment is drawn for run `run` of `seed`.
     pub fn with_passive_part(self, passive_words: u128, expected: bool, seed: u64, run: u64) -> Self {
         let increments = 1..=self.increments();
+        let key = |increment| Key { seed, purpose: Purpose::CoarseShare, run, increment, chunk: 0 };
         let coarse: Vec<u64> = match &self.strata {
             None => increments
                 .scan(0, |sum, t| {
                     let share = self.inserted(t) - self.inserted(t - 1);
-                    *sum += coarse_share(share, passive_words, seed, run, t);
+                    *sum += coarse_share(share, passive_words, key(t));
                     Some(*sum)
                 })
                 .collect(),
             Some(_) => {
-                let key = Key { seed, purpose: Purpose::CoarseShare, run, increment: 0, chunk: 0 };
-                let (coarse_words, word) = ((1 << 64) - passive_words, key.words().at(0));
+                let (coarse_words, word) = ((1 << 64) - passive_words, key(0).words().at(0));
                 increments.map(|t| coarse_until(self.inserted(t), coarse_words, word)).collect()
             }
         };

@@ -8,7 +8,7 @@
 use super::binomial::{CERTAIN, Draws, one};
 use crate::gradation::SizeSampler;
 use crate::network::Network;
-use crate::stream::{Key, Purpose};
+use crate::stream::Key;
 use crate::walk::tally::{SizeClasses, SizeCounts};
 
 /// Moving passive particles of a run.
@@ -237,20 +237,14 @@ impl<'a> PassiveSizes<'a> {
     }
 }
 
-/// Number of coarse particles among the `share` base particles of an increment, if `passive_words` of the
-/// sampler's words draw passive ones.
-pub(in crate::walk) fn coarse_share(
-    share: u64,
-    passive_words: u128,
-    seed: u64,
-    run: u64,
-    increment: u64,
-) -> u64 {
+/// Number of coarse particles among `share` base particles, if `passive_words` of the sampler's words draw
+/// passive ones.
+pub(in crate::walk) fn coarse_share(share: u64, passive_words: u128, key: Key) -> u64 {
     let all = 1u128 << 64;
-    let key = Key { seed, purpose: Purpose::CoarseShare, run, increment, chunk: 0 };
     one(&mut Draws::new(key), share, fraction(all - passive_words, all))
 }
 
+/// Ratio `width / rest` as a 64-bit fraction.
 pub(super) fn fraction(width: u128, rest: u128) -> u64 {
     match width {
         0 => 0,
@@ -292,6 +286,7 @@ fn scaled(count: u64, words: u128, all: u128, share: f64) -> u64 {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
+    use crate::stream::Purpose;
 
     fn draws(increment: u64) -> Draws {
         Draws::new(Key { seed: 5, purpose: Purpose::PassiveSize, run: 1, increment, chunk: 0 })

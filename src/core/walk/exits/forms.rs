@@ -169,7 +169,7 @@ pub(crate) struct FewExits {
     pub(crate) is_few: bool,
 }
 
-pub(crate) const FEW_EXITS: usize = 8;
+const FEW_EXITS: usize = 8;
 
 /// Maximum number of exits counted without branches.
 const COUNTED: usize = 64;

@@ -179,7 +179,7 @@ impl Hat {
     }
 
     /// Logarithm of the probability of `k` divided by that of the mode.
-    pub(crate) fn ln_ratio(&self, k: f64) -> f64 {
+    fn ln_ratio(&self, k: f64) -> f64 {
         // Most likely outcome, or an equally likely one.
         let mode = whole((self.n + 1.0) * self.p - 0.5);
         ln_probability(self.n, self.p, self.q, k) - ln_probability(self.n, self.p, self.q, mode)
