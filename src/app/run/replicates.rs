@@ -283,7 +283,7 @@ impl RunContext<'_> {
             return Err(RunError::Save(error));
         }
         walked?;
-        let (end, flow, exits) = walk.end_with_exits(&state)?;
+        let (end, flow, exits) = walk.end(&state)?;
         // The network is kept after the supply of the run is dropped.
         let network = match end {
             Cow::Borrowed(_) => Cow::Borrowed(&**network),

@@ -28,12 +28,7 @@ impl ExitRule {
 
     /// Name of the rule in a scene.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Area => "area",
-            Self::Flux => "flux",
-            Self::AreaAlongFlow => "area-along-flow",
-            Self::Height => "height",
-        }
+        ["area", "flux", "area-along-flow", "height"][self as usize]
     }
 
     /// Tells if the rule needs the flow of water.

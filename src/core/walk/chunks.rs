@@ -2,7 +2,7 @@
 //! events.
 
 use super::tally::cube;
-use super::{CHUNK, Particles, SizeClasses, SizeCounts, State};
+use super::{CHUNK, Particles, SizeClasses, SizeCounts, State, Tally};
 use crate::network::{END, Network};
 use rayon::prelude::*;
 use std::cell::RefCell;
@@ -75,12 +75,10 @@ thread_local! {
 
 #[derive(Default)]
 pub(super) struct Events {
-    pub(crate) inserted: u32,
-    pub(crate) inserted_mass: f64,
-    pub(crate) moves: u64,
+    /// Sums over the increment; those of the particles that moved once the chunk is done.
+    pub(crate) tally: Tally,
     /// Diameters of the particles that left, in particle order; summed and dropped once the chunk is done.
     pub(crate) eroded: Vec<f32>,
-    eroded_count: u64,
     /// Constriction and diameter of the particles that were stopped, in particle order.
     pub(crate) stopped: Vec<(u32, f32)>,
     /// Particles that jammed, in particle order; not included in the stopped or moving ones.
@@ -89,22 +87,13 @@ pub(super) struct Events {
     pub(crate) stranded: Vec<(u32, f32)>,
     /// Number of particles that wait until the flow is solved again.
     pub(crate) waiting: u64,
-    pub(crate) passive_inserted: u32,
-    passive_eroded: u64,
     sizes: Option<[SizeCounts; 2]>,
-    eroded_mass: f64,
-    largest: f32,
 }
 
 impl Events {
     /// Clears the last increment but keeps the memory.
     pub(crate) fn clear(&mut self) {
-        self.inserted = 0;
-        self.inserted_mass = 0.0;
-        self.passive_inserted = 0;
-        self.moves = 0;
-        self.waiting = 0;
-        self.eroded_count = 0;
+        (self.tally, self.waiting) = (Tally::default(), 0);
         self.stopped.clear();
         self.stranded.clear();
     }
@@ -118,10 +107,13 @@ impl Events {
 
     /// Sums over the chunk and returns the buffer; called on the thread that processed the chunk.
     pub(crate) fn sum(&mut self, classes: &SizeClasses, passive_limit: f32) {
-        self.eroded_count = self.eroded.len() as u64;
-        self.passive_eroded = self.eroded.iter().map(|&d| u64::from(d <= passive_limit)).sum();
-        self.eroded_mass = self.eroded.iter().map(|&d| cube(d)).sum();
-        self.largest = self.eroded.iter().fold(0.0, |largest, &d| if d > largest { d } else { largest });
+        let tally = &mut self.tally;
+        tally.eroded = self.eroded.len() as u64;
+        tally.retained_in_constrictions = self.stopped.len() as u64;
+        tally.retained_in_voids = self.stranded.len() as u64;
+        tally.passive_eroded = self.eroded.iter().map(|&d| u64::from(d <= passive_limit)).sum();
+        tally.eroded_mass = self.eroded.iter().map(|&d| cube(d)).sum();
+        tally.largest_eroded = self.eroded.iter().fold(0.0, |most, &d| if d > most { d } else { most });
         if !self.is_quiet() {
             let new = || [SizeCounts::new(classes), SizeCounts::new(classes)];
             let [eroded, retained] = self.sizes.get_or_insert_with(new);
@@ -134,7 +126,7 @@ impl Events {
     }
 
     fn is_quiet(&self) -> bool {
-        self.eroded_count == 0 && self.stopped.is_empty() && self.stranded.is_empty()
+        self.tally.eroded == 0 && self.stopped.is_empty() && self.stranded.is_empty()
     }
 }
 
@@ -151,21 +143,8 @@ pub(super) fn merge(
 ) -> Vec<u32> {
     let (narrowed_before, blocked_before) = (state.changes(), state.history.len());
     for events in events.iter_mut() {
-        let tally = &mut state.tally;
-        tally.inserted += u64::from(events.inserted);
-        tally.moving += u64::from(events.inserted);
-        tally.inserted_mass += events.inserted_mass;
-        tally.passive_inserted += u64::from(events.passive_inserted);
-        tally.particle_moves = tally.particle_moves.saturating_add(events.moves);
+        state.tally.add(&events.tally);
         if !events.is_quiet() {
-            let gone = [events.eroded_count, events.stopped.len() as u64, events.stranded.len() as u64];
-            tally.eroded += gone[0];
-            tally.retained_in_constrictions += gone[1];
-            tally.retained_in_voids += gone[2];
-            tally.moving -= gone.iter().sum::<u64>();
-            tally.passive_eroded += events.passive_eroded;
-            tally.eroded_mass += events.eroded_mass;
-            tally.largest_eroded = tally.largest_eroded.max(events.largest);
             if let Some([eroded, retained]) = &events.sizes {
                 state.eroded_sizes.merge(eroded);
                 state.retained_sizes.merge(retained);

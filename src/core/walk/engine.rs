@@ -48,12 +48,7 @@ impl Engine {
 
     /// Name of the engine in a scene.
     pub fn name(self) -> &'static str {
-        match self {
-            Engine::Auto => "auto",
-            Engine::Particles => "particles",
-            Engine::Counts => "counts",
-            Engine::Expected => "expected",
-        }
+        ["auto", "particles", "counts", "expected"][self as usize]
     }
 }
 
@@ -240,11 +235,7 @@ impl Isa {
 
     /// Name used in `VOIDWALK_ISA` and in results.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Portable => "portable",
-            Self::Avx2 => "avx2",
-            Self::Avx512 => "avx512",
-        }
+        ["portable", "avx2", "avx512"][self as usize]
     }
 
     /// Tells if this machine supports it.

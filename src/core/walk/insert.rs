@@ -41,14 +41,15 @@ impl<'a> Insertion<'a> {
         if first >= end {
             return;
         }
-        events.inserted = (end - first) as u32;
-        let (old, new) = (**live as usize, (**live + events.inserted) as usize);
+        let (old, new) = (**live as usize, **live as usize + (end - first) as usize);
         **live = new as u32;
         let (void, diameter) = (&mut void[old..new], &mut diameter[old..new]);
         let before = begin.saturating_sub(self.inserted.start);
         let key = Key { chunk: *chunk, ..self.key };
         let drawing = Drawing { insertion: self, key, before, void, diameter };
-        (events.inserted_mass, events.passive_inserted) = drawing.draw(self.isa);
+        let (mass, passive) = drawing.draw(self.isa);
+        let tally = &mut events.tally;
+        (tally.inserted, tally.inserted_mass, tally.passive_inserted) = (end - first, mass, passive.into());
     }
 }
 

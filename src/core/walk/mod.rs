@@ -227,22 +227,12 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Ends the walk; returns the network with its final directions and, if water sets them, the decline
-    /// of permeability.
+    /// Ends the walk; returns the network with its final directions, the decline of permeability if water
+    /// sets them, and for a walk by [`Walk::with_exits`] the exits with which the next run may begin.
     ///
     /// # Errors
     /// [`WalkError::Flow`].
-    pub fn end(self, state: &State) -> Result<(Cow<'a, Network>, Option<FlowRecord>), WalkError> {
-        let (network, record, _) = self.end_with_exits(state)?;
-        Ok((network, record))
-    }
-
-    /// Ends a walk prepared by [`Walk::with_exits`]; also returns the exits with which the next run on
-    /// this network may begin.
-    ///
-    /// # Errors
-    /// [`WalkError::Flow`].
-    pub fn end_with_exits(self, state: &State) -> Result<WalkEnd<'a>, WalkError> {
+    pub fn end(self, state: &State) -> Result<WalkEnd<'a>, WalkError> {
         let Self { mut network, kept, directions, no_flow, supply, table, passive, .. } = self;
         let error = |source| WalkError::Flow { increment: state.increment, source };
         if let Some(source) = no_flow {

@@ -71,10 +71,7 @@ impl BlockedAs {
 
     /// Name of the choice in a scene.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Closed => "closed",
-            Self::Open => "open",
-        }
+        ["closed", "open"][self as usize]
     }
 }
 

@@ -231,10 +231,7 @@ impl Sampling {
 
     /// Name of the sampling in a scene.
     pub fn name(self) -> &'static str {
-        match self {
-            Sampling::Independent => "independent",
-            Sampling::Stratified => "stratified",
-        }
+        ["independent", "stratified"][self as usize]
     }
 }
 

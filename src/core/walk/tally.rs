@@ -48,6 +48,22 @@ fn is_zero<T: Default + PartialEq>(number: &T) -> bool {
 }
 
 impl Tally {
+    /// Adds the events of a chunk in an increment.
+    pub(super) fn add(&mut self, chunk: &Self) {
+        self.inserted += chunk.inserted;
+        self.inserted_mass += chunk.inserted_mass;
+        self.passive_inserted += chunk.passive_inserted;
+        self.particle_moves = self.particle_moves.saturating_add(chunk.particle_moves);
+        self.eroded += chunk.eroded;
+        self.eroded_mass += chunk.eroded_mass;
+        self.passive_eroded += chunk.passive_eroded;
+        self.largest_eroded = self.largest_eroded.max(chunk.largest_eroded);
+        self.retained_in_constrictions += chunk.retained_in_constrictions;
+        self.retained_in_voids += chunk.retained_in_voids;
+        let gone = chunk.eroded + chunk.retained_in_constrictions + chunk.retained_in_voids;
+        self.moving = self.moving + chunk.inserted - gone;
+    }
+
     pub(super) fn trap_all_moving(&mut self) {
         self.trapped += std::mem::take(&mut self.moving);
     }

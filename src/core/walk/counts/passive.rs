@@ -163,8 +163,6 @@ pub(super) struct PassiveSizes<'a> {
     sampler: &'a SizeSampler,
     /// Number of words up to the upper bound of each class; the last is the number of passive words.
     words: Vec<u128>,
-    /// Fraction of the passive words up to the upper bound of each class.
-    share: Vec<f64>,
     /// Probability that a passive particle not finer than the class is in it.
     probability: Vec<u64>,
     mean_cube: Vec<f64>,
@@ -186,8 +184,7 @@ impl<'a> PassiveSizes<'a> {
             before = upto;
         }
         let mean_cube_of_all = sampler.part(0..passive_words).mean_cube().unwrap_or(0.0);
-        let share = words.iter().map(|&upto| upto as f64 / passive_words as f64).collect();
-        Self { sampler, words, share, probability, mean_cube, mean_cube_of_all }
+        Self { sampler, words, probability, mean_cube, mean_cube_of_all }
     }
 
     pub(crate) fn mass(&self, count: u64) -> f64 {
@@ -222,7 +219,8 @@ impl<'a> PassiveSizes<'a> {
         }
         let all = *self.words.last().expect("at least one class");
         let (mut last_before, mut last_after) = (0, 0);
-        for (class, (&words, &share)) in self.words.iter().zip(&self.share).enumerate() {
+        for (class, &words) in self.words.iter().enumerate() {
+            let share = words as f64 / all as f64;
             let [now_before, now_after] = [before, after].map(|count| scaled(count, words, all, share));
             let (old, new) = (now_before - last_before, now_after - last_after);
             into.number[class] = into.number[class] + new - old;

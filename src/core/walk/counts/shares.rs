@@ -161,7 +161,6 @@ impl Shares {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::{ExitRule, Link, LinkEnd, LinkedVoids};
     use bitvec::vec::BitVec;
 
     fn shares_of(diameters: [f32; 3], closed: [bool; 3]) -> (Vec<u64>, bool) {
@@ -213,18 +212,9 @@ mod tests {
     fn the_next_open_exit_is_found_beyond_any_number_of_closed_ones() {
         let open = [0, 1, 256, 257, 600, 1111];
         for open in [&open[..], &open[2..], &open[4..5]] {
-            let link = |from, to| Link { from, to, diameter: 1.0, conductance: 1.0, rise: 1.0 };
-            let mut links = vec![link(LinkEnd::Void(0), LinkEnd::Outside); 1200];
-            links.push(link(LinkEnd::Outside, LinkEnd::Void(0)));
-            let voids = LinkedVoids {
-                layer: vec![0],
-                unit_mm: 1.0,
-                rule: ExitRule::Height,
-                ..LinkedVoids::default()
-            };
-            let network = Network::linked(voids, &links).unwrap();
-            let is_open = |c: usize| open.contains(&c) || c >= 1200;
-            let blocked: BitVec = (0..network.constrictions()).map(|c| !is_open(c)).collect();
+            let text = format!("from,to,diameter_mm\nstart,0,\n{}", "0,end,1\n".repeat(1200));
+            let network = Network::from_csv(text.as_bytes(), "n.csv", 1.0).unwrap();
+            let blocked: BitVec = (0..1200).map(|c| !open.contains(&c)).collect();
             let shares = Shares::new(&network, Ways::Unblocked(&blocked));
             let mut exit = shares.open_from(0);
             for (i, &is) in open.iter().enumerate() {

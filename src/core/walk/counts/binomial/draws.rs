@@ -184,10 +184,25 @@ mod x86 {
             Self(draws.lanes.state.each_ref().map(|row| unsafe { _mm512_loadu_si512(row.as_ptr().cast()) }))
         }
 
-        #[inline(always)]
+        #[inline]
+        #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
         unsafe fn block(&mut self, _: &mut Draws, counted: u64, tops: [u16; 2]) -> Counted {
-            // SAFETY: as the caller promises.
-            unsafe { block_avx512(&mut self.0, counted, tops) }
+            let block = next_of_eight(&mut self.0);
+            let mask = ((1u64 << counted) - 1) as u32;
+            let [first, second] = tops.map(|top| _mm512_set1_epi16(top as i16));
+            let less = [
+                _mm512_mask_cmplt_epu16_mask(mask, block, first).count_ones(),
+                _mm512_mask_cmplt_epu16_mask(mask, block, second).count_ones(),
+            ];
+            let same = _mm512_mask_cmpeq_epu16_mask(mask, block, first)
+                | _mm512_mask_cmpeq_epu16_mask(mask, block, second);
+            let block = (same != 0).then(|| {
+                let mut sixteens = [0; DRAWS_PER_BLOCK];
+                // SAFETY: the array is as large as the vector.
+                unsafe { _mm512_storeu_si512(sixteens.as_mut_ptr().cast(), block) };
+                sixteens
+            });
+            (less, block)
         }
 
         #[inline(always)]
@@ -197,29 +212,6 @@ mod x86 {
                 unsafe { _mm512_storeu_si512(row.as_mut_ptr().cast(), state) };
             }
         }
-    }
-
-    /// Counts the first `counted` draws of the next block that are below each threshold; also returns the
-    /// block if one of them equals the top of a threshold.
-    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
-    #[inline]
-    fn block_avx512(state: &mut [__m512i; 4], counted: u64, tops: [u16; 2]) -> Counted {
-        let block = next_of_eight(state);
-        let mask = ((1u64 << counted) - 1) as u32;
-        let [first, second] = tops.map(|top| _mm512_set1_epi16(top as i16));
-        let less = [
-            _mm512_mask_cmplt_epu16_mask(mask, block, first).count_ones(),
-            _mm512_mask_cmplt_epu16_mask(mask, block, second).count_ones(),
-        ];
-        let same = _mm512_mask_cmpeq_epu16_mask(mask, block, first)
-            | _mm512_mask_cmpeq_epu16_mask(mask, block, second);
-        let block = (same != 0).then(|| {
-            let mut sixteens = [0; DRAWS_PER_BLOCK];
-            // SAFETY: the array is as large as the vector.
-            unsafe { _mm512_storeu_si512(sixteens.as_mut_ptr().cast(), block) };
-            sixteens
-        });
-        (less, block)
     }
 
     impl FewTrials for Avx2 {
@@ -235,10 +227,30 @@ mod x86 {
             Self([half(0), half(1)])
         }
 
-        #[inline(always)]
+        #[inline]
+        #[target_feature(enable = "avx2,popcnt")]
         unsafe fn block(&mut self, _: &mut Draws, counted: u64, tops: [u16; 2]) -> Counted {
-            // SAFETY: as the caller promises.
-            unsafe { block_avx2(&mut self.0, counted, tops) }
+            // Unsigned numbers are compared as signed numbers after subtracting 2^15.
+            let sign = _mm256_set1_epi16(i16::MIN);
+            let counts = MASKS[counted as usize];
+            let blocks = [next_of_four(&mut self.0[0]), next_of_four(&mut self.0[1])];
+            let [low, high] = [_mm256_xor_si256(blocks[0], sign), _mm256_xor_si256(blocks[1], sign)];
+            let (mut less, mut same) = ([0; 2], 0);
+            for (less, top) in less.iter_mut().zip(tops) {
+                let top = _mm256_set1_epi16((top ^ 0x8000) as i16);
+                let below = packed(_mm256_cmpgt_epi16(top, low), _mm256_cmpgt_epi16(top, high));
+                *less = (below & counts).count_ones();
+                same |= packed(_mm256_cmpeq_epi16(top, low), _mm256_cmpeq_epi16(top, high)) & counts;
+            }
+            let block = (same != 0).then(|| {
+                let mut sixteens = [0; DRAWS_PER_BLOCK];
+                for (sixteens, block) in sixteens.chunks_exact_mut(DRAWS_PER_BLOCK / 2).zip(blocks) {
+                    // SAFETY: the array is as large as the vector.
+                    unsafe { _mm256_storeu_si256(sixteens.as_mut_ptr().cast(), block) };
+                }
+                sixteens
+            });
+            (less, block)
         }
 
         #[inline(always)]
@@ -263,33 +275,6 @@ mod x86 {
         }
         masks
     };
-
-    /// Works like [`block_avx512`], in two halves.
-    #[target_feature(enable = "avx2,popcnt")]
-    #[inline]
-    fn block_avx2(state: &mut [[__m256i; 4]; 2], counted: u64, tops: [u16; 2]) -> Counted {
-        // Unsigned numbers are compared as signed numbers after subtracting 2^15.
-        let sign = _mm256_set1_epi16(i16::MIN);
-        let counts = MASKS[counted as usize];
-        let blocks = [next_of_four(&mut state[0]), next_of_four(&mut state[1])];
-        let [low, high] = [_mm256_xor_si256(blocks[0], sign), _mm256_xor_si256(blocks[1], sign)];
-        let (mut less, mut same) = ([0; 2], 0);
-        for (less, top) in less.iter_mut().zip(tops) {
-            let top = _mm256_set1_epi16((top ^ 0x8000) as i16);
-            let below = packed(_mm256_cmpgt_epi16(top, low), _mm256_cmpgt_epi16(top, high));
-            *less = (below & counts).count_ones();
-            same |= packed(_mm256_cmpeq_epi16(top, low), _mm256_cmpeq_epi16(top, high)) & counts;
-        }
-        let block = (same != 0).then(|| {
-            let mut sixteens = [0; DRAWS_PER_BLOCK];
-            for (sixteens, block) in sixteens.chunks_exact_mut(DRAWS_PER_BLOCK / 2).zip(blocks) {
-                // SAFETY: the array is as large as the vector.
-                unsafe { _mm256_storeu_si256(sixteens.as_mut_ptr().cast(), block) };
-            }
-            sixteens
-        });
-        (less, block)
-    }
 
     /// Sets a bit for each negative 16-bit lane of two halves, in turns of eight from either half.
     #[target_feature(enable = "avx2,popcnt")]
