@@ -14,7 +14,7 @@ pub(super) struct Insertion<'a> {
     passive_limit: f32,
     key: Key,
     /// Number of base particles inserted before and after this increment.
-    inserted: Range<u64>,
+    pub(super) inserted: Range<u64>,
 }
 
 impl<'a> Insertion<'a> {
@@ -22,15 +22,6 @@ impl<'a> Insertion<'a> {
         let inserted = supply.inserted(state.increment - 1)..supply.inserted(state.increment);
         let (passive_limit, key) = (state.passive_limit, state.key(Purpose::Insertion));
         Self { network, supply, isa, passive_limit, key, inserted }
-    }
-
-    pub(crate) fn share(&self) -> u64 {
-        self.inserted.end - self.inserted.start
-    }
-
-    /// First chunk that receives particles, if there are any.
-    pub(crate) fn first_chunk(&self) -> usize {
-        self.inserted.start as usize / CHUNK
     }
 
     /// Appends the particles of a chunk to its columns; records their number and mass in its events.

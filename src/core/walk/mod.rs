@@ -326,7 +326,7 @@ impl<'a> Walk<'a> {
     fn tally(&mut self, state: &mut State) -> Result<(), WalkError> {
         let inserting = state.increment < self.supply.increments();
         if !inserting && state.tally.moving > 0 && self.all_trapped(state) {
-            state.tally.trap_all_moving();
+            state.tally.trapped += std::mem::take(&mut state.tally.moving);
         }
         state.finished = !inserting && state.tally.moving == 0;
         state.tally.check(state.increment)
@@ -449,16 +449,12 @@ impl Search {
                 }
             }
             if closed || leads_out {
-                self.remember(start, void);
+                // The path from the start is a way out.
+                let back = |&void: &u32| (void != start).then(|| self.came_from[void as usize]);
+                std::iter::successors(Some(void), back).for_each(|void| self.way_out[void as usize] = true);
                 return false;
             }
         }
         true
-    }
-
-    /// Marks the path from `start` to `last` as a way out.
-    fn remember(&mut self, start: u32, last: u32) {
-        let back = |&void: &u32| (void != start).then(|| self.came_from[void as usize]);
-        std::iter::successors(Some(last), back).for_each(|void| self.way_out[void as usize] = true);
     }
 }

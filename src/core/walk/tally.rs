@@ -64,10 +64,6 @@ impl Tally {
         self.moving = self.moving + chunk.inserted - gone;
     }
 
-    pub(super) fn trap_all_moving(&mut self) {
-        self.trapped += std::mem::take(&mut self.moving);
-    }
-
     pub(super) fn check(&self, increment: u64) -> Result<(), WalkError> {
         let all =
             [self.moving, self.eroded, self.retained_in_constrictions, self.retained_in_voids, self.trapped];

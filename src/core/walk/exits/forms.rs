@@ -96,12 +96,6 @@ impl Lattice {
         if R::CLASSED { CLASS | 3 } else { 3 }
     }
 
-    /// Tells from a plain word if no exit is open: thresholds of open exits rise.
-    #[inline(always)]
-    pub(crate) fn has_no_exit(plain: u32) -> bool {
-        plain & 0xfffc > plain >> 16
-    }
-
     /// Exit picked by a draw; `None` if no exit is open, or if the bits of the word do not decide.
     #[inline(always)]
     pub(crate) fn pick<R: Reads>(word: u32, draw: u16) -> Option<u32> {

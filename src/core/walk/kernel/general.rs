@@ -50,7 +50,7 @@ pub(super) fn step(
     let mut lanes = key.lanes();
     let extension = lanes.extension();
     let mut kept = 0;
-    let mut chosen = [Chosen::None; DRAWS_PER_BLOCK];
+    let mut chosen = [NONE; DRAWS_PER_BLOCK];
     for begin in (0..void.len()).step_by(DRAWS_PER_BLOCK) {
         let block = lanes.next_block();
         if let Some(jams) = &mut jams {
@@ -73,7 +73,7 @@ pub(super) fn step(
             *chosen = match quick {
                 Some(exit) => {
                     fetch(&table.beyond, exit);
-                    Chosen::Exit(exit as u32)
+                    exit as u32
                 }
                 None => any(network, table, from, draw, j, extension),
             };
@@ -81,17 +81,17 @@ pub(super) fn step(
         for (chosen, j) in chosen.iter().zip(particles) {
             let (from, d) = (void[j], diameter[j]);
             let exit = match *chosen {
-                Chosen::Exit(exit) => exit,
-                Chosen::None => {
+                NONE => {
                     events.stranded.push((from, d));
                     continue;
                 }
-                Chosen::Wait => {
+                WAIT => {
                     events.waiting += 1;
                     (void[kept], diameter[kept]) = (from, d);
                     kept += 1;
                     continue;
                 }
+                exit => exit,
             };
             let (target, width) = table.beyond[exit as usize];
             if d > width {
@@ -116,24 +116,15 @@ pub(super) fn step(
     kept
 }
 
-#[derive(Clone, Copy)]
-enum Chosen {
-    Exit(u32),
-    None,
-    Wait,
-}
-
-/// Exit by definition, for any number of exits, with all bits of the draw if needed.
+/// Exit by definition, for any number of exits, with all bits of the draw, or [`NONE`] or [`WAIT`].
 #[cold]
 #[inline(never)]
-fn any(network: &Network, table: &General, from: u32, draw: u16, index: usize, extension: Words) -> Chosen {
+fn any(network: &Network, table: &General, from: u32, draw: u16, index: usize, extension: Words) -> u32 {
     let last_open = table.last_open[from as usize];
-    match last_open {
-        NONE => return Chosen::None,
-        WAIT => return Chosen::Wait,
-        _ => {}
+    if [NONE, WAIT].contains(&last_open) {
+        return last_open;
     }
     let (exits, draw) = (network.exits(from), extension.complete(draw, index as u64));
     let passed = table.threshold[exits.clone()].partition_point(|&threshold| threshold <= draw);
-    Chosen::Exit(if passed < exits.len() { (exits.start + passed) as u32 } else { last_open })
+    if passed < exits.len() { (exits.start + passed) as u32 } else { last_open }
 }

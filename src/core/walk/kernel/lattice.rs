@@ -34,19 +34,14 @@ pub(super) const PAST_FIRST: u32 = 4;
 pub(super) const PAST_SECOND: u32 = 8;
 
 /// Number of particles by which columns are prefetched ahead.
-const AHEAD: usize = 256;
+pub(super) const AHEAD: usize = 256;
 
 const LINE: usize = 16;
-
-/// Prefetches the first particles of a chunk before any is read.
-pub(super) fn fetch_first(void: &[u32], diameter: &[f32]) {
-    fetch_range(void, diameter, 0..AHEAD);
-}
 
 /// Prefetches a range of particles, of this chunk or the next ones: with random reads of table words in
 /// between, the processor does not prefetch them in time.
 #[inline(always)]
-fn fetch_range(void: &[u32], diameter: &[f32], range: Range<usize>) {
+pub(super) fn fetch_range(void: &[u32], diameter: &[f32], range: Range<usize>) {
     for at in range.step_by(LINE) {
         fetch(void, at);
         fetch(diameter, at);
@@ -340,7 +335,8 @@ impl<'a> LatticeChunk<'a> {
     #[cold]
     pub(crate) fn undecided(&self, void: u32, index: usize, draw: u16) -> Option<u32> {
         let word = self.table.plain[void as usize];
-        if Lattice::has_no_exit(word) {
+        // Thresholds of open exits rise.
+        if word & 0xfffc > word >> 16 {
             return None;
         }
         if let Some(exit) = Lattice::pick::<Plain>(word, draw) {

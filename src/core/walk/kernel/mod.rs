@@ -14,7 +14,7 @@ use super::chunks::{ChunkColumns, Events};
 use super::exits::{Classed, Form, Jamming, OpenExits, Plain, Reads, Widths};
 use super::insert::Insertion;
 use super::openings::Ways;
-use super::{ExitTable, Isa, State, Supply, chunks};
+use super::{CHUNK, ExitTable, Isa, State, Supply, chunks};
 use crate::network::Network;
 use crate::stream::{Key, Lanes, Purpose};
 use general::Jams;
@@ -33,8 +33,10 @@ pub(super) fn step(
     let key = state.key(Purpose::Step);
     let insertion = Insertion::new(network, supply, table.isa, state);
     let moving: u64 = state.particles.live.iter().map(|&live| u64::from(live)).sum();
-    let effort = moving + INSERTED * insertion.share() + EMPTY_CHUNK * events.len() as u64;
-    let (size, receiving) = (supply.single_size(), insertion.first_chunk());
+    let effort = moving
+        + INSERTED * (insertion.inserted.end - insertion.inserted.start)
+        + EMPTY_CHUNK * events.len() as u64;
+    let (size, receiving) = (supply.single_size(), insertion.inserted.start as usize / CHUNK);
     let exits = OpenExits {
         network,
         table,
@@ -81,7 +83,7 @@ fn step_chunk(
 ) -> usize {
     match &exits.table.form {
         Form::Lattice(table) => {
-            lattice::fetch_first(void, diameter);
+            lattice::fetch_range(void, diameter, 0..lattice::AHEAD);
             let isa = exits.table.isa;
             let reads = (table.by_widths, lattice::reads_classes(diameter, exits.passive_limit));
             let jams = exits.arching.map(|arching| (arching, jam_lanes(key)));
