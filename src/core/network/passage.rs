@@ -252,8 +252,8 @@ impl Network {
         }
     }
 
-    /// Sum over the exits of a void of `share_e (gain + x(t(e)))`, with one gain of exits that lead out, where
-    /// `x` is 0, and another of the others.
+    /// Sum over the exits of a void of `share_e (gain + x(t(e)))`, with one gain for exits that lead out,
+    /// where `x` is 0, and another for the others.
     fn mean_over_exits(&self, void: u32, share: &[f64], [out, on]: [f64; 2], x: &[f64]) -> f64 {
         let one = |c: usize| match self.target[c] {
             _ if share[c] == 0.0 => 0.0,

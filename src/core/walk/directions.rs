@@ -3,10 +3,10 @@
 //! The flow is solved before the first increment, at the beginning of an increment once the constrictions
 //! closed since the last solution carried more of it than a tolerance ([`Network::with_flow_tolerance`]), or
 //! ten increments after the last solution if any has closed, which limits the waiting of particles, and at
-//! the end. If blocked constrictions leave openings, a constriction counts by the fraction of its conductance
-//! that it has lost. Directions do not change between solutions, and a particle waits in its void if all exits
-//! have been blocked since the last one. The times of solution follow only from the history of changes, so a
-//! walk that continues from a checkpoint repeats the earlier solutions in the same order, to the same bits.
+//! the end. If blocked constrictions leave openings, a constriction counts by the fraction of its
+//! conductance that it has lost. Directions do not change between solutions, and a particle waits in its
+//! void if all exits have been blocked since the last one. The times of solution follow only from the
+//! history of changes, so a walk that continues from a checkpoint repeats them, to the same bits.
 
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;

@@ -130,8 +130,8 @@ impl ExitTable {
         Self::empty(network, Some(finest)).filled(network, Ways::Unblocked(blocked))
     }
 
-    /// Creates a table without values. On a lattice, particles are compared with the finest open exit of the
-    /// void, in classes from the `finest` of all on, or with the width of their chosen exit if that is `None`.
+    /// Creates a table without values. On a lattice, particles are compared with the finest open exit of
+    /// the void, in classes from the `finest` of all on; without it, with the width of their chosen exit.
     pub(super) fn empty(network: &Network, finest: Option<f32>) -> Self {
         let (voids, constrictions) = (network.voids(), network.constrictions());
         let form = match network.shape() {
