@@ -1,8 +1,7 @@
 //! Random streams: the only place in the program that makes a generator.
 //!
-//! Every stream is named by a [`Key`]: the user's seed, its purpose, and the place in the simulation
-//! where it is used (run, increment, chunk). The same key gives the same numbers on every machine, for
-//! any number of threads and after any resume; no generator state is ever stored.
+//! Every stream is named by a [`Key`]. The same key gives the same numbers on every machine, for any number
+//! of threads and after any resume; no generator state is ever stored.
 //!
 //! # Kinds of stream
 //! - [`Key::generator`] is one xoshiro256++ generator, for work that draws numbers one after another
@@ -95,59 +94,36 @@ const fn mix(mut z: u64) -> u64 {
 }
 
 impl Key {
-    #[inline]
-    fn digest(&self) -> (u64, u64) {
-        let words = [self.seed, self.purpose as u64, self.run, self.increment, self.chunk];
-        let mut bytes = [0u8; 40];
-        for (slot, word) in bytes.chunks_exact_mut(8).zip(words) {
-            slot.copy_from_slice(&word.to_le_bytes());
-        }
-        let hash = xxhash_rust::xxh3::xxh3_128(&bytes);
-        (hash as u64, (hash >> 64) as u64)
-    }
-
     /// Makes one xoshiro256++ generator.
     pub fn generator(&self) -> Xoshiro256PlusPlus {
-        let (a, b) = self.digest();
-        let mut state = [0u8; 32];
-        for (i, slot) in state.chunks_exact_mut(8).enumerate() {
-            slot.copy_from_slice(&state_word(a, b, i as u64).to_le_bytes());
-        }
-        Xoshiro256PlusPlus::from_seed(state)
+        let words = self.words();
+        let state: [u64; 4] = std::array::from_fn(|i| words.of_state(i).to_le());
+        Xoshiro256PlusPlus::from_seed(bytemuck::cast(state))
     }
 
     /// Makes words that can be read in any order.
     #[inline]
     pub(crate) fn words(&self) -> Words {
-        let (a, b) = self.digest();
-        Words { a, b }
+        let words = [self.seed, self.purpose as u64, self.run, self.increment, self.chunk];
+        let hash = xxhash_rust::xxh3::xxh3_128(bytemuck::bytes_of(&words.map(u64::to_le)));
+        Words { a: hash as u64, b: (hash >> 64) as u64 }
     }
 
     /// Makes eight xoshiro256++ generators side by side.
     #[inline]
     pub fn lanes(&self) -> Lanes {
-        let (a, b) = self.digest();
-        let mut state = [[0u64; LANES]; 4];
-        for (word, row) in state.iter_mut().enumerate() {
-            for (lane, slot) in row.iter_mut().enumerate() {
-                *slot = state_word(a, b, (4 * lane + word) as u64);
-            }
-        }
-        Lanes { state, extension: Extension { words: Words { a, b } } }
+        let words = self.words();
+        let row = |word| std::array::from_fn(|lane| words.of_state(4 * lane + word));
+        Lanes { state: std::array::from_fn(row), words }
     }
-}
-
-#[inline(always)]
-const fn state_word(a: u64, b: u64, i: u64) -> u64 {
-    mix(a.wrapping_add(i.wrapping_mul(GOLDEN))) ^ mix(b.wrapping_add(i.wrapping_mul(SILVER))).rotate_left(32)
 }
 
 /// Eight xoshiro256++ generators side by side: the stream of one chunk in one increment.
 #[derive(Clone, Debug)]
 pub struct Lanes {
     /// State word, lane.
-    state: [[u64; LANES]; 4],
-    extension: Extension,
+    pub(crate) state: [[u64; LANES]; 4],
+    words: Words,
 }
 
 /// Words by index: a hash of the key and the index, so that each costs the same.
@@ -163,23 +139,19 @@ impl Words {
     pub(crate) fn at(&self, index: u64) -> u64 {
         mix(self.a ^ mix(self.b.wrapping_add(index.wrapping_mul(EXTENSION))))
     }
-}
 
-/// Low 48 bits that complete a sixteen-bit draw if sixteen bits do not decide.
-///
-/// A function of the key and the index of the draw: it costs nothing until it is called, and leaves the
-/// stream unchanged.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Extension {
-    words: Words,
-}
-
-impl Extension {
-    /// Completes draw `index` of the stream to 64 bits; `draw` is the top sixteen.
+    /// Completes draw `index` of the stream, of which `draw` is the top sixteen bits, to 64 bits. It costs
+    /// nothing until it is called, and leaves the stream unchanged.
     #[inline]
     pub(crate) fn complete(&self, draw: u16, index: u64) -> u64 {
-        let low = self.words.at(index) >> 16;
-        (u64::from(draw) << 48) | low
+        u64::from(draw) << 48 | self.at(index) >> 16
+    }
+
+    /// State word `i` of the generators.
+    #[inline(always)]
+    fn of_state(&self, i: usize) -> u64 {
+        let hash = |word: u64, step: u64| mix(word.wrapping_add(step.wrapping_mul(i as u64)));
+        hash(self.a, GOLDEN) ^ hash(self.b, SILVER).rotate_left(32)
     }
 }
 
@@ -214,7 +186,8 @@ impl Lanes {
         for pair in 0..LANES / 2 {
             let mut state = [s0[pair], s1[pair], s2[pair], s3[pair]];
             for block in &mut out {
-                block.as_chunks_mut::<2>().0[pair] = next_of_pair(&mut state);
+                // SAFETY: every x86-64 has SSE2.
+                block.as_chunks_mut::<2>().0[pair] = unsafe { next_of_pair(&mut state) };
             }
             [s0[pair], s1[pair], s2[pair], s3[pair]] = state;
         }
@@ -250,37 +223,18 @@ impl Lanes {
         std::array::from_fn(|_| self.next_block())
     }
 
-    /// Extension that completes the draws of this stream to 64 bits.
-    pub(crate) fn extension(&self) -> Extension {
-        self.extension
-    }
-
-    /// State word by lane, for a kernel that keeps it in vector registers.
-    #[cfg(target_arch = "x86_64")]
-    pub(crate) fn state(&self) -> &[[u64; LANES]; 4] {
-        &self.state
-    }
-
-    /// State word by lane, for a kernel that draws from it and writes it back.
-    #[cfg(target_arch = "x86_64")]
-    pub(crate) fn state_mut(&mut self) -> &mut [[u64; LANES]; 4] {
-        &mut self.state
+    /// Words that complete the draws of this stream to 64 bits.
+    pub(crate) fn extension(&self) -> Words {
+        self.words
     }
 }
 
 /// Returns the next word of two generators, given their state by word and generator. Uses vector
 /// registers; the compiler alone would put each word in a register of its own.
 #[cfg(target_arch = "x86_64")]
-#[inline(always)]
-fn next_of_pair(state: &mut [[u64; 2]; 4]) -> [u64; 2] {
-    // SAFETY: every x86-64 has SSE2.
-    unsafe { next_of_registers(state) }
-}
-
-#[cfg(target_arch = "x86_64")]
 #[inline]
 #[target_feature(enable = "sse2")]
-fn next_of_registers(state: &mut [[u64; 2]; 4]) -> [u64; 2] {
+fn next_of_pair(state: &mut [[u64; 2]; 4]) -> [u64; 2] {
     use std::arch::x86_64::*;
     let [s0, s1, s2, s3] = state.map(bytemuck::cast::<[u64; 2], __m128i>);
     let sum = _mm_add_epi64(s0, s3);
@@ -308,6 +262,20 @@ pub(crate) fn next_of_four(state: &mut [std::arch::x86_64::__m256i; 4]) -> std::
     let s3 = _mm256_or_si256(_mm256_slli_epi64::<45>(s3), _mm256_srli_epi64::<19>(s3));
     *state = [s0_next, s1, _mm256_xor_si256(s2, t), s3];
     _mm256_add_epi64(turned, s0)
+}
+
+/// Returns the next word of eight generators, given their state by word.
+#[cfg(target_arch = "x86_64")]
+#[inline]
+#[target_feature(enable = "avx512f")]
+pub(crate) fn next_of_eight(state: &mut [std::arch::x86_64::__m512i; 4]) -> std::arch::x86_64::__m512i {
+    use std::arch::x86_64::*;
+    let [s0, s1, s2, s3] = *state;
+    let out = _mm512_add_epi64(_mm512_rol_epi64::<23>(_mm512_add_epi64(s0, s3)), s0);
+    let (t, s2, s3) = (_mm512_slli_epi64::<17>(s1), _mm512_xor_si512(s2, s0), _mm512_xor_si512(s3, s1));
+    let (s1, s0) = (_mm512_xor_si512(s1, s2), _mm512_xor_si512(s0, s3));
+    *state = [s0, s1, _mm512_xor_si512(s2, t), _mm512_rol_epi64::<45>(s3)];
+    out
 }
 
 /// Sixteen-bit draw `j` of a block, `j < DRAWS_PER_BLOCK`.
@@ -347,56 +315,35 @@ mod tests {
     }
 
     #[test]
-    fn lane_zero_is_the_generator() {
-        let (mut lanes, mut single) = (key(3, 4).lanes(), key(3, 4).generator());
-        for _ in 0..100 {
-            assert_eq!(lanes.next_block()[0], single.next_u64());
-        }
-    }
-
-    #[test]
     fn every_lane_is_xoshiro256_plus_plus() {
         let mut lanes = key(9, 2).lanes();
-        let mut singles: Vec<_> = (0..LANES)
-            .map(|l| {
-                let mut seed = [0u8; 32];
-                for w in 0..4 {
-                    seed[8 * w..8 * w + 8].copy_from_slice(&lanes.state[w][l].to_le_bytes());
-                }
-                Xoshiro256PlusPlus::from_seed(seed)
-            })
-            .collect();
+        let single = |l: usize| {
+            Xoshiro256PlusPlus::from_seed(bytemuck::cast(lanes.state.map(|words| words[l].to_le())))
+        };
+        let mut singles: [_; LANES] = std::array::from_fn(single);
+        assert_eq!(singles[0], key(9, 2).generator());
         for _ in 0..100 {
-            let block = lanes.next_block();
-            for (l, single) in singles.iter_mut().enumerate() {
-                assert_eq!(block[l], single.next_u64());
-            }
+            assert_eq!(lanes.next_block(), singles.each_mut().map(|single| single.next_u64()));
         }
     }
 
     #[test]
     fn blocks_at_once_are_one_after_the_other() {
         let (mut at_once, mut one_by_one) = (key(2, 5).lanes(), key(2, 5).lanes());
+        #[cfg(target_arch = "x86_64")]
+        let mut by_four = at_once.clone();
         for _ in 0..100 {
-            assert_eq!(at_once.next_blocks::<2>(), [one_by_one.next_block(), one_by_one.next_block()]);
-            assert_eq!(at_once.next_blocks::<1>(), [one_by_one.next_block()]);
+            let blocks = [0; 3].map(|_| one_by_one.next_block());
+            assert_eq!(at_once.next_blocks::<2>(), blocks[..2]);
+            assert_eq!(at_once.next_blocks::<1>(), blocks[2..]);
             assert_eq!(at_once.state, one_by_one.state);
-        }
-    }
-
-    #[test]
-    #[cfg(target_arch = "x86_64")]
-    fn blocks_by_four_are_one_after_the_other() {
-        if !is_x86_feature_detected!("avx2") {
-            return;
-        }
-        let (mut by_four, mut one_by_one) = (key(2, 5).lanes(), key(2, 5).lanes());
-        for _ in 0..100 {
-            let mut blocks = [[0; LANES]; 3];
-            // SAFETY: the machine has AVX2.
-            unsafe { by_four.next_blocks_avx2(&mut blocks) };
-            assert_eq!(blocks, [one_by_one.next_block(), one_by_one.next_block(), one_by_one.next_block()]);
-            assert_eq!(by_four.state, one_by_one.state);
+            #[cfg(target_arch = "x86_64")]
+            if is_x86_feature_detected!("avx2") {
+                let mut drawn = [[0; LANES]; 3];
+                // SAFETY: the machine has AVX2.
+                unsafe { by_four.next_blocks_avx2(&mut drawn) };
+                assert_eq!((drawn, by_four.state), (blocks, one_by_one.state));
+            }
         }
     }
 
@@ -459,9 +406,6 @@ mod tests {
     #[test]
     fn streams_are_pinned() {
         let block = key(1, 0).lanes().next_block();
-        assert_eq!(block[0], key(1, 0).generator().next_u64());
-        assert_eq!(PINNED, [block[0], block[7]]);
+        assert_eq!([block[0], block[7]], [12_051_470_993_762_552_868, 8_411_913_508_911_531_535]);
     }
-
-    const PINNED: [u64; 2] = [12_051_470_993_762_552_868, 8_411_913_508_911_531_535];
 }

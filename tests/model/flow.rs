@@ -216,7 +216,7 @@ fn walk(
     let mut state = State::new(network, &supply, classes, open(network), seed, 1);
     let mut walk = Walk::new(network, &supply, &state);
     walk.run(&mut state, &mut |_| WalkControl::Continue).unwrap();
-    let (end, flow) = walk.end(&state).unwrap();
+    let (end, flow, _) = walk.end(&state).unwrap();
     (state, flow, end.into_owned())
 }
 
@@ -349,7 +349,7 @@ fn counts_and_particles_share_one_history_of_blocking() {
             let mut state = State::new(&network, &supply, classes(), open(&network), 9, 1);
             let mut walk = Walk::new(&network, &supply, &state);
             walk.run(&mut state, &mut |_| WalkControl::Continue).unwrap();
-            let (_, flow) = walk.end(&state).unwrap();
+            let (_, flow, _) = walk.end(&state).unwrap();
             (state, flow.unwrap())
         })
     };

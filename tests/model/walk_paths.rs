@@ -161,7 +161,7 @@ fn exits_of_another_network_or_blocked_set_are_not_taken() {
         let mut state = State::new(&network, &supply, classes.clone(), blocked.clone(), 7, 1);
         let mut walk = Walk::with_exits(&network, &supply, &state, known.map(Cow::Borrowed));
         walk.run(&mut state, &mut |_| WalkControl::Continue).unwrap();
-        let (_, _, exits) = walk.end_with_exits(&state).unwrap();
+        let (_, _, exits) = walk.end(&state).unwrap();
         (state.tally, state.blocked, exits.unwrap())
     };
     let (first, blocked, left) = walked(None, &open);

@@ -274,7 +274,7 @@ impl NetworkWalk {
                 (callbacks.on_event)(Event::Increment { replicate, run, increment, moving });
                 if callbacks.is_stopped() { WalkControl::Stop } else { WalkControl::Continue }
             })?;
-            let (end, flow, left) = walk.end_with_exits(&state)?;
+            let (end, flow, left) = walk.end(&state)?;
             exits = left;
             let d15f_mm = self.d15f_mm().unwrap_or(f64::NAN);
             let run_id = RunId { replicate, run, d15f_mm, pan_fraction: self.base.pan_fraction() };

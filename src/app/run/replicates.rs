@@ -196,7 +196,7 @@ pub(super) fn walk_replicate(
             return Err(RunError::Save(error));
         }
         walked?;
-        let (end, flow, left) = walk.end_with_exits(&state)?;
+        let (end, flow, left) = walk.end(&state)?;
         let d15f_mm = case.filter.gradation.d(15.0).unwrap_or(f64::NAN);
         let run_id = RunId { replicate, run, d15f_mm, pan_fraction: case.pan_by_mass_only() };
         let metrics = RunMetrics::new(&end, &state, flow.as_ref(), run_id, begun.elapsed().as_secs_f64());

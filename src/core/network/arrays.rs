@@ -46,7 +46,7 @@ impl Network {
     /// # Errors
     /// Errors state the file, the array and the allowed values.
     pub fn from_npz(bytes: &[u8], file: &str, options: &ArrayOptions) -> Result<Self, NetworkError> {
-        let whole = |problem: String| NetworkError::Whole { file: file.into(), problem };
+        let whole = |problem: String| NetworkError::whole(file, problem);
         let mut npz = Npz::open(bytes).map_err(whole)?;
         let known = npz.names().join(", ");
         let mut needed = |names: &[&'static str]| {
@@ -54,12 +54,12 @@ impl Network {
             array.ok_or_else(|| whole(format!("has no array {}; it has {known}", names.join(" or "))))
         };
         let conns = needed(CONNS)?;
-        let (conns_name, conns) = (conns.0, pairs(conns).map_err(whole)?);
-        let diameter = floats(needed(DIAMETER)?).map_err(whole)?;
+        let (conns_name, conns) = (conns.0, pairs(file, conns)?);
+        let diameter = floats(file, needed(DIAMETER)?)?;
         let [inlets, outlets] = [needed(INLETS)?, needed(OUTLETS)?];
         let mut others = |names| npz.first(names).map_err(whole);
         let conductance = match options.rule.needs_flow() {
-            true => others(CONDUCTANCE)?.map(floats).transpose().map_err(whole)?,
+            true => others(CONDUCTANCE)?.map(|array| floats(file, array)).transpose()?,
             false => None,
         };
         let coords = others(COORDS)?;
@@ -67,16 +67,16 @@ impl Network {
         let by_void = ends.into_iter().filter(|(_, array)| matches!(array.numbers, Numbers::Truth(_)));
         let by_void = by_void.chain(&coords);
         let most = by_void.max_by_key(|(_, array)| array.rows).map(|(name, array)| (*name, array.rows));
-        let voids = number_of_voids(conns_name, &conns, ends, most).map_err(whole)?;
-        let [inlets, outlets] = [inlets, outlets].map(|array| numbered(array, voids));
+        let voids = number_of_voids((file, conns_name), &conns, ends, most)?;
+        let [inlets, outlets] = [inlets, outlets].map(|array| numbered(file, array, voids));
         let diameter_mm: Vec<f64> = diameter.iter().map(|d| d * options.unit.mm()).collect();
         let columns = NetworkColumns {
             voids,
             conns: &conns,
             diameter_mm: &diameter_mm,
             conductance: conductance.as_deref(),
-            inlets: &inlets.map_err(whole)?,
-            outlets: &outlets.map_err(whole)?,
+            inlets: &inlets?,
+            outlets: &outlets?,
             rule: options.rule,
             rho: options.rho,
             unit_mm: options.unit_mm,
@@ -91,11 +91,11 @@ type Named = (&'static str, Array);
 /// Number of voids: the length of the longest array with one entry per void. Without such an array it is
 /// the number named by the constrictions, limited by their count, as every void takes memory.
 fn number_of_voids(
-    name: &str,
+    (file, name): (&str, &str),
     conns: &[[i64; 2]],
     ends: [&Named; 2],
     longest: Option<(&str, usize)>,
-) -> Result<usize, String> {
+) -> Result<usize, NetworkError> {
     let named = || conns.iter().flatten().copied().filter(|&void| void >= 0);
     let (first, last) = (named().min().unwrap_or(0), named().max().unwrap_or(0));
     let (allowed, known) = match longest {
@@ -111,54 +111,55 @@ fn number_of_voids(
         None => !ends.into_iter().any(is_first),
     };
     if first == 1 && counts_from_1 {
-        return Err(format!(
-            "{name}: its voids are numbered from 1 to {last}, and {known}; number voids from 0, in the \
-             inlets and outlets too"
-        ));
+        let problem = "number voids from 0, in the inlets and outlets too";
+        let problem = format!("its voids are numbered from 1 to {last}, and {known}; {problem}");
+        return refused(file, name, problem);
     }
     if last >= allowed as i64 {
         let row = conns.iter().position(|pair| pair.contains(&last)).unwrap_or(0);
-        return Err(format!(
-            "{name}: row {row} (counted from 0) names void {last}, and {known}; 0 to {} are allowed",
-            allowed.saturating_sub(1)
-        ));
+        let most = allowed.saturating_sub(1);
+        let problem = format!("names void {last}, and {known}; 0 to {most} are allowed");
+        return refused(file, name, format!("row {row} (counted from 0) {problem}"));
     }
     Ok(if longest.is_some() { allowed } else { last as usize + 1 })
 }
 
-fn pairs((name, array): Named) -> Result<Vec<[i64; 2]>, String> {
+fn refused<T>(file: &str, name: &str, problem: impl std::fmt::Display) -> Result<T, NetworkError> {
+    Err(NetworkError::whole(file, format!("{name}: {problem}")))
+}
+
+fn pairs(file: &str, (name, array): Named) -> Result<Vec<[i64; 2]>, NetworkError> {
     match (array.columns, array.numbers) {
         (Some(2), Numbers::Whole(all)) => Ok(all.as_chunks::<2>().0.to_vec()),
-        _ => Err(format!("{name}: n x 2 whole numbers are needed, the two voids of each constriction")),
+        _ => refused(file, name, "n x 2 whole numbers are needed, the two voids of each constriction"),
     }
 }
 
-fn floats((name, array): Named) -> Result<Vec<f64>, String> {
+fn floats(file: &str, (name, array): Named) -> Result<Vec<f64>, NetworkError> {
     match (array.columns, array.numbers) {
         (None | Some(1), Numbers::Float(all)) => Ok(all),
         (None | Some(1), Numbers::Whole(all)) => Ok(all.into_iter().map(|n| n as f64).collect()),
-        _ => Err(format!("{name}: one number for each constriction is needed")),
+        _ => refused(file, name, "one number for each constriction is needed"),
     }
 }
 
 /// Reads voids given by number, or by one truth value per void.
-fn numbered((name, array): Named, voids: usize) -> Result<Vec<u32>, String> {
-    let is_void = |&void: &i64| u32::try_from(void).ok().filter(|&void| (void as usize) < voids);
+fn numbered(file: &str, (name, array): Named, voids: usize) -> Result<Vec<u32>, NetworkError> {
+    let is_void = |&void: &i64| u32::try_from(void).is_ok_and(|void| (void as usize) < voids);
     match (array.columns, array.numbers) {
         (None | Some(1), Numbers::Truth(all)) if all.len() == voids => {
             Ok((0..).zip(all).filter_map(|(void, is)| is.then_some(void)).collect())
         }
         (None | Some(1), Numbers::Truth(all)) => {
-            Err(format!("{name}: has {} truth values, but there are {voids} voids", all.len()))
+            refused(file, name, format!("has {} truth values, but there are {voids} voids", all.len()))
         }
-        (None | Some(1), Numbers::Whole(all)) => {
-            let numbers: Option<Vec<u32>> = all.iter().map(is_void).collect();
-            numbers.ok_or_else(|| {
-                let wrong = all.iter().find(|void| is_void(void).is_none()).copied().unwrap_or_default();
-                format!("{name}: {wrong} is no void; there are {voids}, numbered from 0")
-            })
-        }
-        _ => Err(format!("{name}: numbers of voids are needed, or a truth value for each void")),
+        (None | Some(1), Numbers::Whole(all)) => match all.iter().find(|void| !is_void(void)) {
+            None => Ok(all.into_iter().map(|void| void as u32).collect()),
+            Some(wrong) => {
+                refused(file, name, format!("{wrong} is no void; there are {voids}, numbered from 0"))
+            }
+        },
+        _ => refused(file, name, "numbers of voids are needed, or a truth value for each void"),
     }
 }
 
@@ -228,10 +229,8 @@ mod tests {
         assert_eq!(read(&all, ExitRule::Area).unwrap().voids(), 65_536);
         all[0].1 = ring(65_536);
         let error = read(&all, ExitRule::Area).unwrap_err().to_string();
-        assert!(
-            error.contains("row 2 (counted from 0) names void 65536, and there are 4 constrictions"),
-            "{error}"
-        );
+        let problem = "row 2 (counted from 0) names void 65536, and there are 4 constrictions";
+        assert!(error.contains(problem), "{error}");
         let coords = Array { rows: 70_000, columns: Some(3), numbers: Numbers::Float(vec![0.0; 210_000]) };
         all.push(("pore.coords", coords));
         assert_eq!(read(&all, ExitRule::Area).unwrap().voids(), 70_000);
@@ -250,10 +249,8 @@ mod tests {
             all.extend(coords.map(|array| ("pore.coords", array)));
             read(&all, ExitRule::Flux).map(|network| network.filter_voids()).map_err(|e| e.to_string())
         };
-        assert_eq!(
-            [with(0, None), with(0, Some(coords(4))), with(1, Some(coords(9)))],
-            [Ok(4), Ok(4), Ok(9)]
-        );
+        let read = [with(0, None), with(0, Some(coords(4))), with(1, Some(coords(9)))];
+        assert_eq!(read, [Ok(4), Ok(4), Ok(9)]);
         for (add, coords, words) in [
             (0, Some(coords(3)), "names void 3, and pore.coords has 3 entries"),
             (3, Some(coords(4)), "names void 6, and pore.coords has 4 entries"),

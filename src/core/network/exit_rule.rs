@@ -28,12 +28,7 @@ impl ExitRule {
 
     /// Name of the rule in a scene.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Area => "area",
-            Self::Flux => "flux",
-            Self::AreaAlongFlow => "area-along-flow",
-            Self::Height => "height",
-        }
+        ["area", "flux", "area-along-flow", "height"][self as usize]
     }
 
     /// Tells if the rule needs the flow of water.
@@ -54,17 +49,14 @@ impl ExitRule {
     }
 }
 
-/// Marks an exit without a twin.
 pub(super) const NO_TWIN: u32 = u32::MAX;
 
-/// Exit columns of an undirected network.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Undirected {
     /// Exit of the neighbouring void through the same constriction, or [`NO_TWIN`].
     pub(super) twin: Vec<u32>,
     /// Conductance times viscosity by exit, in any consistent unit.
     pub(super) conductance: Vec<f64>,
-    /// Current weight by exit.
     pub(super) weight: Vec<f64>,
     pub(super) rule: ExitRule,
     pub(super) rho: f64,
@@ -100,4 +92,22 @@ pub(super) fn hash_column<T: Copy, const N: usize>(
 ) {
     hash.update(&(column.len() as u64).to_le_bytes());
     column.iter().for_each(|&number| hash.update(&bytes(number)));
+}
+
+/// First entry of each void with one extra entry at the end, and the place of each row among all, sorted by
+/// their voids.
+pub(super) fn in_order_of_voids(
+    voids: usize,
+    rows: impl Iterator<Item = u32> + Clone,
+) -> (Vec<u32>, Vec<u32>) {
+    let mut begin = vec![0u32; voids + 1];
+    rows.clone().for_each(|void| begin[void as usize + 1] += 1);
+    (0..voids).for_each(|void| begin[void + 1] += begin[void]);
+    let mut next = begin.clone();
+    let place = |void: u32| {
+        next[void as usize] += 1;
+        next[void as usize] - 1
+    };
+    let places = rows.map(place).collect();
+    (begin, places)
 }

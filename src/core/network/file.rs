@@ -5,6 +5,7 @@
 //! gaps. The exits of a void keep the order of their rows. Lines that begin with `#` are comments; `#
 //! shape = nx, ny, nz` marks the cubic lattice, whose exits must be the +x, +y, +z exits of that lattice.
 
+use super::exit_rule::in_order_of_voids;
 use super::{END, Network};
 use std::io::Write;
 
@@ -34,21 +35,15 @@ pub enum NetworkError {
         /// Number of diameters given.
         found: usize,
     },
-    /// Invalid diameter.
-    #[error("constriction {constriction} has diameter {value}: it must be finite and not negative")]
-    Diameter {
+    /// Invalid diameter or conductance.
+    #[error("constriction {constriction} has {quantity} {value}: it must be finite and not negative")]
+    Number {
+        /// Quantity of the constriction.
+        quantity: &'static str,
         /// Number of the constriction, counted from 0.
         constriction: usize,
         /// Value found.
-        value: f32,
-    },
-    /// Invalid conductance.
-    #[error("constriction {constriction} has conductance {value}: it must be finite and not negative")]
-    Conductance {
-        /// Number of the constriction, counted from 0.
-        constriction: usize,
-        /// Value found.
-        value: f64,
+        value: String,
     },
     /// Voids and constrictions that do not form a passable network.
     #[error("the network cannot be walked: {problem}")]
@@ -97,6 +92,22 @@ pub enum NetworkError {
     },
 }
 
+impl NetworkError {
+    /// Error of an invalid diameter, in units of the network.
+    pub(super) fn diameter(constriction: usize, value: f32) -> Self {
+        Self::Number { quantity: "diameter", constriction, value: value.to_string() }
+    }
+
+    pub(super) fn whole(file: &str, problem: impl Into<String>) -> Self {
+        Self::Whole { file: file.into(), problem: problem.into() }
+    }
+}
+
+/// Refusal of voids and constrictions that do not form a network.
+pub(super) fn unlinked<T>(problem: impl Into<String>) -> Result<T, NetworkError> {
+    Err(NetworkError::Unlinked { problem: problem.into() })
+}
+
 impl Network {
     /// Reads a network from CSV text; `file` names it in errors.
     ///
@@ -142,7 +153,7 @@ struct Rows {
 
 impl Rows {
     fn parse(bytes: &[u8], file: &str) -> Result<Self, NetworkError> {
-        let whole = |problem: &str| NetworkError::Whole { file: file.into(), problem: problem.into() };
+        let whole = |problem: &str| NetworkError::whole(file, problem);
         let text = std::str::from_utf8(bytes).map_err(|_| whole("is not UTF-8 text"))?;
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut rows = Self::default();
@@ -205,7 +216,7 @@ impl Rows {
     }
 
     fn into_network(self, file: &str, unit_mm: f64) -> Result<Network, NetworkError> {
-        let whole = |problem: String| NetworkError::Whole { file: file.into(), problem };
+        let whole = |problem: String| NetworkError::whole(file, problem);
         if self.from.is_empty() {
             return Err(whole("has no constriction".into()));
         }
@@ -213,8 +224,8 @@ impl Rows {
             return Err(whole("has no start node: add a row `start,ID,`".into()));
         }
         let inner = self.to.iter().filter(|&&to| to != END);
-        let last = self.start.iter().chain(&self.from).chain(inner).max();
-        let voids = last.map_or(0, |&id| id as usize + 1);
+        let named = self.start.iter().chain(&self.from).chain(inner).map(|&id| id as usize);
+        let voids = named.clone().max().map_or(0, |last| last + 1);
         if voids > 2 * self.from.len() + self.start.len() || self.from.len() >= END as usize {
             return Err(whole(format!(
                 "void ids run to {} but only {} rows name voids; number voids from 0 without gaps",
@@ -222,25 +233,19 @@ impl Rows {
                 self.from.len() + self.start.len()
             )));
         }
-        let mut named = vec![false; voids];
-        for &id in self.start.iter().chain(&self.from).chain(self.to.iter().filter(|&&to| to != END)) {
-            named[id as usize] = true;
-        }
-        if let Some(gap) = named.iter().position(|&n| !n) {
+        let mut is_named = vec![false; voids];
+        named.for_each(|id| is_named[id] = true);
+        if let Some(gap) = is_named.iter().position(|&is| !is) {
             return Err(whole(format!("no row names void {gap}; number voids from 0 without gaps")));
         }
         let mut is_start = vec![false; voids];
-        for &id in &self.start {
-            if std::mem::replace(&mut is_start[id as usize], true) {
-                return Err(whole(format!("void {id} is made a start node twice")));
-            }
+        if let Some(id) = self.start.iter().find(|&&id| std::mem::replace(&mut is_start[id as usize], true)) {
+            return Err(whole(format!("void {id} is made a start node twice")));
         }
         let ends = |(&from, &to)| [i64::from(from), if to == END { -1 } else { i64::from(to) }];
         let rows = self.from.iter().zip(&self.to).map(ends).zip(&self.diameter_mm);
-        let is_lattice = self.shape.is_some();
-        if let Some(rows) =
-            listed_twice(rows.map(|(ends, &mm)| (ends, [mm, 0.0])), true).filter(|_| !is_lattice)
-        {
+        let twice = listed_twice(rows.map(|(ends, &mm)| (ends, [mm, 0.0])), true);
+        if let Some(rows) = twice.filter(|_| self.shape.is_none()) {
             let [row, again] = rows.map(|row| format!("{} to {}", self.from[row], self.to[row]));
             return Err(whole(format!(
                 "the rows from {row} and from {again} are one constriction listed twice (there and back, or \
@@ -278,7 +283,7 @@ impl Network {
         start: Vec<u32>,
         unit_mm: f64,
     ) -> (Self, Vec<u32>) {
-        let (exit_begin, slots) = in_order_of_voids(voids, from);
+        let (exit_begin, slots) = in_order_of_voids(voids, from.iter().copied());
         let mut network = Self {
             exit_begin,
             target: vec![END; to.len()],
@@ -295,25 +300,6 @@ impl Network {
         network.layer = network.distances(|_| true);
         (network, slots)
     }
-}
-
-/// First exit of each void with one extra entry at the end, and the exit number of each constriction, for
-/// constrictions with these upstream voids.
-fn in_order_of_voids(voids: usize, from: &[u32]) -> (Vec<u32>, Vec<u32>) {
-    let mut exit_begin = vec![0u32; voids + 1];
-    for &from in from {
-        exit_begin[from as usize + 1] += 1;
-    }
-    for void in 0..voids {
-        exit_begin[void + 1] += exit_begin[void];
-    }
-    let mut next = exit_begin.clone();
-    let place = |&from: &u32| {
-        next[from as usize] += 1;
-        next[from as usize] - 1
-    };
-    let slots = from.iter().map(place).collect();
-    (exit_begin, slots)
 }
 
 fn parse_shape(text: &str) -> Option<[u32; 3]> {
@@ -442,10 +428,8 @@ mod tests {
         assert_eq!(with("").unwrap(), 13);
         for twice in [rows(true), rows(false)] {
             let error = with(&twice).unwrap_err().to_string();
-            assert!(
-                error.starts_with("net.csv: the rows from 0 to 1") && error.contains("listed twice"),
-                "{error}"
-            );
+            assert!(error.starts_with("net.csv: the rows from 0 to 1"), "{error}");
+            assert!(error.contains("listed twice"), "{error}");
         }
     }
 

@@ -2,12 +2,11 @@
 //!
 //! At every void inflow equals outflow, `sum over its constrictions of g (p - p_other) = 0`, with pressure
 //! 1 in the reservoir and 0 downstream of the filter. A blocked constriction keeps a fraction `rho` of its
-//! conductance. The system is symmetric and positive definite. It is solved by conjugate gradients
-//! starting from the last solution, preconditioned by an approximate factor (module `elimination`) of the
-//! open constrictions, which is kept while few more close. So a solution depends, within the required
-//! accuracy, on earlier ones. If conductances differ so much that fluxes cannot be distinguished from
-//! residuals, voids are eliminated without subtraction (module `exact`), provided the network is small
-//! enough. Module `system` defines when a flow counts as solved.
+//! conductance. The system is solved by conjugate gradients starting from the last solution, preconditioned
+//! by an approximate factor (module `elimination`) that is kept while few more constrictions close. So a
+//! solution depends, within the required accuracy, on earlier ones. If conductances differ so much that
+//! fluxes cannot be distinguished from residuals, voids are eliminated without subtraction (module `exact`).
+//! Module `system` defines when a flow counts as solved.
 
 mod elimination;
 mod exact;
@@ -179,8 +178,20 @@ impl Flow {
         blocked: &BitSlice,
         closely: bool,
     ) -> Result<Permeability, FlowError> {
+        assert_eq!(blocked.len(), self.open.len(), "one bit for each exit");
         let rho = network.undirected.as_ref().map_or(0.0, |u| u.rho);
-        self.set_blocked(network, blocked, rho);
+        if std::mem::take(&mut self.is_of_parts) {
+            // Nothing is blocked, and narrowed constrictions have their full conductance again.
+            self.kept = None;
+            self.open.iter_mut().enumerate().for_each(|(c, open)| *open = whole(network, c));
+        }
+        let mut changed = std::mem::replace(&mut self.blocked, blocked.to_bitvec());
+        changed ^= blocked;
+        let is_open_again = changed.iter_ones().any(|c| !blocked[c]);
+        self.keep_factor(network, &changed, is_open_again);
+        for c in changed.iter_ones() {
+            self.open[c] = if blocked[c] { rho * whole(network, c) } else { whole(network, c) };
+        }
         // Leaks through blocked constrictions carry no particles.
         let is_open = |passage: &Passage| !blocked[passage.exit as usize];
         self.solve_now(network, closely, rho > 0.0, is_open)
@@ -259,38 +270,26 @@ impl Flow {
     /// Sides to which each void is connected, through constrictions that conduct and satisfy `is_way`.
     fn meets(&self, is_way: impl Fn(&Passage) -> bool) -> Vec<Meets> {
         let outside = self.pressure.len() - 1;
-        let is_side =
-            |passage: &Passage| Some(passage.other) == self.reservoir || passage.other as usize == outside;
-        let ways = || {
-            self.passages.iter().filter(|passage| self.open[passage.exit as usize] > 0.0 && is_way(passage))
-        };
-        let mut together = Together::new(outside);
-        ways()
-            .filter(|passage| !is_side(passage))
-            .for_each(|passage| together.join(passage.one, passage.other));
+        let is_open = |passage: &&Passage| self.open[passage.exit as usize] > 0.0 && is_way(passage);
+        let (mut together, mut sides) = (Together::new(outside), Vec::new());
+        for passage in self.passages.iter().filter(is_open) {
+            let meets = Meets {
+                reservoir: Some(passage.other) == self.reservoir,
+                end: passage.other as usize == outside,
+            };
+            if meets == Meets::default() {
+                together.join(passage.one, passage.other);
+            } else {
+                sides.push((passage.one, meets));
+            }
+        }
         let mut of_root = vec![Meets::default(); outside];
-        for passage in ways().filter(|passage| is_side(passage)) {
-            let meets = &mut of_root[together.root(passage.one) as usize];
-            meets.reservoir |= Some(passage.other) == self.reservoir;
-            meets.end |= passage.other as usize == outside;
+        for (void, side) in sides {
+            let meets = &mut of_root[together.root(void) as usize];
+            meets.reservoir |= side.reservoir;
+            meets.end |= side.end;
         }
         (0..outside as u32).map(|void| of_root[together.root(void) as usize]).collect()
-    }
-
-    fn set_blocked(&mut self, network: &Network, blocked: &BitSlice, rho: f64) {
-        assert_eq!(blocked.len(), self.open.len(), "one bit for each exit");
-        if std::mem::take(&mut self.is_of_parts) {
-            // Nothing is blocked, and narrowed constrictions have their full conductance again.
-            self.kept = None;
-            self.open.iter_mut().enumerate().for_each(|(c, open)| *open = whole(network, c));
-        }
-        let mut changed = std::mem::replace(&mut self.blocked, blocked.to_bitvec());
-        changed ^= blocked;
-        let is_open_again = changed.iter_ones().any(|c| !blocked[c]);
-        self.keep_factor(network, &changed, is_open_again);
-        for c in changed.iter_ones() {
-            self.open[c] = if blocked[c] { rho * whole(network, c) } else { whole(network, c) };
-        }
     }
 
     /// Keeps the factor if few exits have changed since it was made and no exit has reopened.
@@ -310,7 +309,6 @@ impl Flow {
         self.passages.iter().filter(is_in).map(with_open).filter(|&(_, open)| open > 0.0)
     }
 
-    /// Finds pressures and fluxes, to this fraction of the inflow.
     fn find_pressures(&mut self, network: &Network, meets: &[Meets], within: f64) -> Result<(), FlowError> {
         let Some(reservoir) = self.reservoir else { return Ok(()) };
         let outside = meets.len() as u32;
@@ -443,7 +441,6 @@ impl Flow {
     }
 }
 
-/// Conductance of an exit when open.
 fn whole(network: &Network, exit: usize) -> f64 {
     if network.diameter[exit] == 0.0 { 0.0 } else { network.conductance(exit) }
 }

@@ -1,5 +1,6 @@
 //! Networks of the voids of a packing.
 
+use super::file::unlinked;
 use super::flow::system::{CONVERGED, FlowError, System, Together};
 use super::undirected::{Link, LinkEnd, LinkedVoids};
 use super::{ExitRule, Network, NetworkError};
@@ -29,15 +30,12 @@ impl Network {
     pub fn of_graph(graph: &VoidGraph, shape: GraphShape) -> Result<Self, NetworkError> {
         let (voids, unit) = (graph.voids() as u32, shape.unit_mm);
         let copies = shape.copies;
-        let too_many = || NetworkError::Unlinked {
-            problem: format!(
-                "{copies} copies of {voids} voids and {} constrictions are too many",
-                graph.from.len()
-            ),
-        };
         let links_in_all = (graph.from.len() as u64 + 1).checked_mul(u64::from(copies) + 1);
         if copies == 0 || links_in_all.is_none_or(|n| n >= u64::from(u32::MAX) / 2) {
-            return Err(too_many());
+            return unlinked(format!(
+                "{copies} copies of {voids} voids and {} constrictions are too many",
+                graph.from.len()
+            ));
         }
         let place = |copy: i64, void: u32| match (0..i64::from(copies)).contains(&copy) {
             true => LinkEnd::Void(copy as u32 * voids + void),
@@ -210,10 +208,8 @@ mod tests {
             let out: Vec<usize> = network.exits(void).filter(|&c| network.exit_weight(c) > 0.0).collect();
             let [only] = out[..] else { panic!("{out:?}") };
             let to = network.targets()[only];
-            assert!(
-                to == super::super::END
-                    || network.layer_of()[to as usize] == network.layer_of()[void as usize] + 1
-            );
+            let layer = network.layer_of();
+            assert!(to == super::super::END || layer[to as usize] == layer[void as usize] + 1);
         }
     }
 }

@@ -48,15 +48,6 @@ pub const END: u32 = u32::MAX;
 pub const NO_LAYER: u32 = u32::MAX;
 
 /// Voids, constrictions and start nodes, as columns.
-///
-/// ```
-/// use voidwalk_core::{Network, constrictions::find};
-/// let curve = find("cu1.5-loose")?.curve()?.in_mm(1.0)?;
-/// // Three constrictions lead on from each void of the lattice.
-/// let network = Network::cubic([10, 10, 20], &curve, 1.0, 7)?;
-/// assert_eq!((network.voids(), network.constrictions()), (2000, 6000));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Network {
     /// First exit of each void, with one extra entry at the end: the exits of void `v` are constrictions
@@ -178,19 +169,11 @@ impl Network {
     /// Finest open constriction (`f32::INFINITY` if all are closed). A base particle no coarser than it is
     /// *passive*: it cannot block anything.
     pub(crate) fn finest_open(&self, closed: impl Fn(usize) -> bool) -> f32 {
-        const TOGETHER: usize = 64;
         let mut finest = f32::INFINITY;
-        for (part, diameters) in self.diameter.chunks(TOGETHER).enumerate() {
-            // The bits of positive floats are ordered like the floats; 0 becomes the largest.
-            let order = |d: f32| d.to_bits().wrapping_sub(1);
-            if diameters.iter().fold(u32::MAX, |least, &d| least.min(order(d))) >= order(finest) {
-                continue;
-            }
-            for (c, &d) in (part * TOGETHER..).zip(diameters) {
-                // Few are finer than all before; the others need not be tested for closure.
-                if d < finest && d > 0.0 && !closed(c) {
-                    finest = d;
-                }
+        for (c, &d) in self.diameter.iter().enumerate() {
+            // Few are finer than all before; the others need not be tested for closure.
+            if d < finest && d > 0.0 && !closed(c) {
+                finest = d;
             }
         }
         finest

@@ -10,8 +10,8 @@
 //! ```
 //!
 //! s follows from q: a third of the successful moves lead downstream. Eq. (1) of the paper refers to
-//! Schuler's network, whose voids have five exits; this P(F) holds for the directed lattice of this program.
-//! It assumes that a void is never visited twice, as on lattices too wide for a particle to go round.
+//! Schuler's network, whose voids have five exits. It assumes that a void is never visited twice, as on
+//! lattices too wide for a particle to go round.
 //!
 //! On a given network ([`FirstPassage`]), with `t(e)` the void that exit `e` leads to and `p_e` the
 //! fraction of its weight,
@@ -21,10 +21,8 @@
 //! moves(v)  = sum over exits e that it fits of p_e (1 + (0 if e leads out, else moves(t(e))))
 //! ```
 //!
-//! The smallest solution of the first is the probability of leaving; the second is the mean number of
-//! completed moves, infinite if the particle may be trapped in closed loops. Both are solved by
-//! Gauss-Seidel sweeps, downstream voids first. On a lattice with periodic sides only the rows of a layer
-//! depend on each other, so tens of sweeps are enough.
+//! The smallest solution of the first is the probability of leaving; the second is infinite if the particle
+//! may be trapped in closed loops. Both are solved by Gauss-Seidel sweeps, downstream voids first.
 
 use super::{END, Network, NetworkError};
 use crate::constrictions::Curve;
@@ -177,8 +175,8 @@ impl Network {
         let mut unending: Vec<bool> = ends.iter().map(|ends| !ends).collect();
         self.upstream_of(&share, &mut unending);
         let most = (MOST_LOOKS / self.constrictions().max(1)).max(LEAST_SWEEPS);
-        let leaves = self.relax(&share, &vec![false; self.voids()], |out| f64::from(u8::from(out)), most)?;
-        let moves = self.relax(&share, &unending, |_| 1.0, most)?;
+        let leaves = self.relax(&share, &vec![false; self.voids()], [1.0, 0.0], most)?;
+        let moves = self.relax(&share, &unending, [1.0; 2], most)?;
         Ok(FirstPassage { leaves, moves })
     }
 
@@ -237,12 +235,7 @@ impl Network {
         let most = most.min(1 << 20).max(least);
         loop {
             for &void in &order {
-                let one = |c: usize| match self.target[c] {
-                    _ if share[c] == 0.0 => 0.0,
-                    END => share[c],
-                    to => share[c] * (1.0 + moves[to as usize]),
-                };
-                moves[void as usize] = self.exits(void).map(one).sum();
+                moves[void as usize] = self.mean_over_exits(void, &share, [1.0; 2], &moves);
             }
             let sum: f64 = self.start.iter().map(|&void| moves[void as usize]).sum();
             means.push(sum / self.start.len() as f64);
@@ -259,25 +252,31 @@ impl Network {
         }
     }
 
+    /// Sum over the exits of a void of `share_e (gain + x(t(e)))`, with one gain for exits that lead out,
+    /// where `x` is 0, and another for the others.
+    fn mean_over_exits(&self, void: u32, share: &[f64], [out, on]: [f64; 2], x: &[f64]) -> f64 {
+        let one = |c: usize| match self.target[c] {
+            _ if share[c] == 0.0 => 0.0,
+            END => share[c] * out,
+            to => share[c] * (on + x[to as usize]),
+        };
+        self.exits(void).map(one).sum()
+    }
+
     /// Finds, in at most this many sweeps, the smallest solution of
-    /// `x(v) = sum share_e (gain(e leads out) + x(t(e)))`; infinite where `unending`.
+    /// `x(v) = sum share_e (gain_e + x(t(e)))`; infinite where `unending`.
     fn relax(
         &self,
         share: &[f64],
         unending: &[bool],
-        gain: impl Fn(bool) -> f64,
+        gain: [f64; 2],
         most: usize,
     ) -> Result<Vec<f64>, NetworkError> {
         let mut x: Vec<f64> = unending.iter().map(|&u| if u { f64::INFINITY } else { 0.0 }).collect();
         for _ in 0..most {
             let mut change = 0f64;
             for void in (0..self.voids()).rev().filter(|&void| !unending[void]) {
-                let one = |c: usize| match self.target[c] {
-                    _ if share[c] == 0.0 => 0.0,
-                    END => share[c] * gain(true),
-                    to => share[c] * (gain(false) + x[to as usize]),
-                };
-                let new: f64 = self.exits(void as u32).map(one).sum();
+                let new = self.mean_over_exits(void as u32, share, gain, &x);
                 if new > 0.0 {
                     change = change.max((new - x[void]).abs() / new);
                 }
@@ -355,10 +354,8 @@ mod tests {
     fn a_particle_that_circles_never_leaves() {
         let network = Network::cubic_from_diameters([2, 2, 2], vec![1.0; 24], 1.0).unwrap();
         let passage = network.first_passage(0.5, |c| c % 3 == 2 && c >= 12).unwrap();
-        assert_eq!(
-            (passage.leaves[0], passage.moves[0], passage.moves[4]),
-            (0.0, f64::INFINITY, f64::INFINITY)
-        );
+        let both = [passage.leaves[0], passage.moves[0], passage.moves[4]];
+        assert_eq!(both, [0.0, f64::INFINITY, f64::INFINITY]);
         // Once everything is closed it no longer moves.
         let stuck = network.first_passage(0.5, |_| true).unwrap();
         assert_eq!((stuck.leaves[0], stuck.moves[0]), (0.0, 0.0));
@@ -378,7 +375,7 @@ mod tests {
         // With as few sweeps as on a large network, to keep the test short.
         let text = "from,to,diameter_mm\nstart,0,\n0,0,1\n0,end,0.000001\n";
         let network = Network::from_csv(text.as_bytes(), "n.csv", 1.0).unwrap();
-        let error = network.relax(&[1.0, 1e-12], &[false], |_| 1.0, 1000).unwrap_err().to_string();
+        let error = network.relax(&[1.0, 1e-12], &[false], [1.0; 2], 1000).unwrap_err().to_string();
         assert!(error.contains("after 1000 sweeps") && error.contains("way out"), "{error}");
     }
 

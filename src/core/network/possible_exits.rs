@@ -1,21 +1,20 @@
 //! Search for a lattice with a given distribution of connectivity.
 //!
 //! - Every void has six possible exits: the lattice's +x, +y, +z and the three face diagonals +x+y, +x+z,
-//!   +y+z. All lead in positive directions, so no move leads upstream, and the only cycles are the
-//!   lattice's own, around a periodic side within one layer. No diagonal leaves the last layer.
+//!   +y+z. No move leads upstream, and the only cycles are the lattice's own, around a periodic side within
+//!   one layer. No diagonal leaves the last layer.
 //! - One possible exit of one void is drawn at a time, uniformly: deleted if present, otherwise created.
 //!   The proposal is accepted if it reduces the *distance* from the target distribution: the sum over k of
-//!   | voids with connectivity up to k, minus the target |. If as many proposals in a row as there are
-//!   possible exits bring no progress, proposals that leave the distance unchanged are accepted too, until
-//!   one reduces it. A search that is still stuck restarts from another state, so that every replicate
-//!   gets a network; after [`MOST_PROPOSALS`] proposals it is completed along chains.
+//!   | voids with connectivity up to k, minus the target |. After as many proposals in a row without progress
+//!   as there are possible exits, proposals that leave the distance unchanged are accepted too, until one
+//!   reduces it. A search that is still stuck restarts from another state; after [`MOST_PROPOSALS`]
+//!   proposals it is completed along chains.
 //! - A void never loses its last entrance (the inlet of a start node counts) and keeps two exits, or one
 //!   if connectivities below 4 are wanted. Table 3 suggests two: a void that one particle can close
 //!   retains so much that voids of connectivity 4 would hold three times as much each as voids of
 //!   connectivity 5, but in the paper they hold about the same (397 and 444; see `results/paper.md`).
-//! - A remaining distance (parity, or a distribution that no such network has) is accepted if every count
-//!   is within [`TOLERANCE_PERCENT`] of all voids, or one void, of its target; otherwise the distribution
-//!   is refused.
+//! - A remaining distance is accepted if every count is within [`TOLERANCE_PERCENT`] of all voids, or one
+//!   void, of its target; otherwise the distribution is refused.
 
 use rand::Rng;
 
@@ -23,7 +22,7 @@ use super::{END, NetworkError};
 use crate::stream::{Key, Purpose, below};
 
 /// Allowed error of the percentage of each connectivity (percent of all voids).
-pub(crate) const TOLERANCE_PERCENT: f64 = 0.05;
+const TOLERANCE_PERCENT: f64 = 0.05;
 
 pub(super) const SLOTS: usize = 6;
 
@@ -68,7 +67,6 @@ pub(super) struct PossibleExits {
     kept_exits: u32,
     /// Number of voids with connectivity up to k minus the target, for each k.
     surplus: [i64; MOST + 1],
-    /// Number of proposals left.
     proposals_left: u64,
 }
 
@@ -155,14 +153,13 @@ impl PossibleExits {
         self.check(counts)
     }
 
-    /// Distance from the target distribution.
     fn distance(&self) -> i64 {
         self.surplus.iter().map(|s| s.abs()).sum()
     }
 
-    /// Draws a proposal and carries it out; returns the change of distance and the reverse step, or `None`
-    /// if the proposal is not possible.
-    fn propose(&mut self, draws: &mut impl Rng) -> Option<(i64, (u32, usize, u32, bool))> {
+    /// Draws a proposal and carries it out if it is possible and `accepts` its change of distance, which is
+    /// returned then.
+    fn propose<R: Rng>(&mut self, draws: &mut R, accepts: impl Fn(i64, &mut R) -> bool) -> Option<i64> {
         let possible = SLOTS as u64 * self.present.len() as u64;
         let drawn = below(draws.next_u64(), possible);
         let (void, slot) = ((drawn / SLOTS as u64) as u32, (drawn % SLOTS as u64) as usize);
@@ -171,7 +168,12 @@ impl PossibleExits {
         if !more && !self.spare(void, target) {
             return None;
         }
-        Some((self.toggle(void, slot, target, more), (void, slot, target, !more)))
+        let change = self.toggle(void, slot, target, more);
+        if !accepts(change, draws) {
+            self.toggle(void, slot, target, !more);
+            return None;
+        }
+        Some(change)
     }
 
     /// Accepts proposals that reduce the distance, and after many without progress also those that leave
@@ -184,12 +186,10 @@ impl PossibleExits {
         while distance > 0 && without_progress < most && self.proposals_left > 0 {
             self.proposals_left -= 1;
             without_progress += 1;
-            let Some((change, (void, slot, target, back))) = self.propose(draws) else { continue };
-            if change < 0 {
+            let worst = i64::from(without_progress > possible);
+            if let Some(change @ ..0) = self.propose(draws, |change, _| change < worst) {
                 distance += change;
                 without_progress = 0;
-            } else if change > 0 || without_progress <= possible {
-                self.toggle(void, slot, target, back);
             }
         }
     }
@@ -198,10 +198,7 @@ impl PossibleExits {
     /// free a stuck search.
     fn shake(&mut self, draws: &mut impl Rng) {
         for _ in 0..SLOTS * self.present.len() {
-            let Some((change, (void, slot, target, back))) = self.propose(draws) else { continue };
-            if change > 0 && below(draws.next_u64(), WORSE_IN) > 0 {
-                self.toggle(void, slot, target, back);
-            }
+            self.propose(draws, |change, draws| change <= 0 || below(draws.next_u64(), WORSE_IN) == 0);
         }
     }
 

@@ -1,23 +1,9 @@
 //! Reach of paths through open constrictions: the backbone, and the blocked set of one size.
 
+use super::exit_rule::in_order_of_voids;
 use super::{END, NO_LAYER, Network, WIDE};
 
-/// Voids joined to the start and to the end by paths through passable constrictions (breadth-first).
-pub(crate) struct Reachability {
-    /// True for each void that can be reached from a start node.
-    pub(crate) from_start: Vec<bool>,
-    /// True for each void from which the end can be reached.
-    pub(crate) to_end: Vec<bool>,
-}
-
 impl Network {
-    /// Follows the constrictions that `passable` admits, downstream from the start nodes and
-    /// upstream from the end.
-    pub(crate) fn reach(&self, passable: impl Fn(usize) -> bool) -> Reachability {
-        let from_start = self.distances(&passable).into_iter().map(|d| d != NO_LAYER).collect();
-        Reachability { from_start, to_end: self.leading_to_end(&passable) }
-    }
-
     /// Tells if an open path leads from a start node out of the network; otherwise no particle can leave.
     pub fn leads_out(&self) -> bool {
         self.leads_out_by(|c| self.diameter[c] > 0.0)
@@ -34,56 +20,20 @@ impl Network {
     /// Fraction of all constrictions that lie on a path from start to end through constrictions that
     /// `open` admits.
     pub(crate) fn backbone_fraction(&self, open: impl Fn(usize) -> bool) -> f64 {
-        if let Some(shape) = self.shape {
-            return self.on_paths_of_lattice(shape, open) as f64 / self.passages().max(1) as f64;
-        }
-        let reach = self.reach(&open);
-        let mut on_path = 0u64;
-        for void in (0..self.voids() as u32).filter(|&v| reach.from_start[v as usize]) {
-            let leads_out = |&c: &usize| {
+        let to_end = self.leading_to_end(&open);
+        let (mut reached, mut stack, mut on_path) = (vec![false; self.voids()], self.start.clone(), 0u64);
+        self.start.iter().for_each(|&void| reached[void as usize] = true);
+        while let Some(void) = stack.pop() {
+            for c in self.exits(void).filter(|&c| open(c)) {
                 let target = self.target[c];
-                self.diameter[c] != WIDE && open(c) && (target == END || reach.to_end[target as usize])
-            };
-            on_path += self.exits(void).filter(leads_out).count() as u64;
-        }
-        on_path as f64 / self.passages().max(1) as f64
-    }
-
-    /// Number of these constrictions on a lattice, counted layer by layer: no path returns to a layer it
-    /// has left.
-    fn on_paths_of_lattice(&self, shape: [u32; 3], open: impl Fn(usize) -> bool) -> u64 {
-        let [nx, plane, voids] = lengths(shape);
-        let open = open_exits(voids, open);
-        let mut leads_out = vec![false; voids];
-        for v in (voids - plane..voids).filter(|&v| open[v] & ALONG_Z > 0) {
-            leads_out[v] = true;
-        }
-        spread_upstream(shape, &open, &mut leads_out);
-        let (mut reached, mut stack, mut on_path) = (vec![false; voids], Vec::new(), 0);
-        self.start.iter().for_each(|&v| reached[v as usize] = true);
-        for layer in (0..voids).step_by(plane) {
-            stack.extend((layer..layer + plane).filter(|&v| reached[v]));
-            while let Some(v) = stack.pop() {
-                let to_x = if v % nx == nx - 1 { v + 1 - nx } else { v + 1 };
-                let to_y = if v - layer >= plane - nx { v + nx - plane } else { v + nx };
-                for (after, along) in [(to_x, ALONG_X), (to_y, ALONG_Y)] {
-                    if open[v] & along > 0 {
-                        on_path += u64::from(leads_out[after]);
-                        if !std::mem::replace(&mut reached[after], true) {
-                            stack.push(after);
-                        }
-                    }
-                }
-                if open[v] & ALONG_Z > 0 {
-                    // The end follows the last layer.
-                    on_path += u64::from(leads_out.get(v + plane).is_none_or(|&below| below));
-                    if let Some(below) = reached.get_mut(v + plane) {
-                        *below = true;
-                    }
+                let leads_out = target == END || to_end[target as usize];
+                on_path += u64::from(leads_out && self.diameter[c] != WIDE);
+                if target != END && !std::mem::replace(&mut reached[target as usize], true) {
+                    stack.push(target);
                 }
             }
         }
-        on_path
+        on_path as f64 / self.passages().max(1) as f64
     }
 
     /// Constrictions blocked by an unlimited supply of particles of diameter `d`, for any seed, in
@@ -157,19 +107,11 @@ impl Network {
     /// Constrictions by downstream void (`begin`, `entrances`): `entrances[begin[v] .. begin[v + 1]]` lead
     /// into void `v`, in ascending order.
     pub(crate) fn entrances(&self) -> (Vec<u32>, Vec<u32>) {
-        let inner = || self.target.iter().enumerate().filter(|&(_, &t)| t != END);
-        let mut begin = vec![0u32; self.voids() + 1];
-        for (_, &target) in inner() {
-            begin[target as usize + 1] += 1;
-        }
-        for void in 0..self.voids() {
-            begin[void + 1] += begin[void];
-        }
-        let mut next = begin.clone();
-        let mut entrances = vec![0u32; begin[self.voids()] as usize];
-        for (constriction, &target) in inner() {
-            entrances[next[target as usize] as usize] = constriction as u32;
-            next[target as usize] += 1;
+        let inner = || self.target.iter().copied().zip(0u32..).filter(|&(target, _)| target != END);
+        let (begin, slots) = in_order_of_voids(self.voids(), inner().map(|(target, _)| target));
+        let mut entrances = vec![0u32; slots.len()];
+        for (slot, (_, constriction)) in slots.into_iter().zip(inner()) {
+            entrances[slot as usize] = constriction;
         }
         (begin, entrances)
     }
@@ -180,12 +122,6 @@ const ALONG_X: u8 = 1;
 const ALONG_Y: u8 = 2;
 const ALONG_Z: u8 = 4;
 
-/// Number of voids of a lattice along x, in a layer, and in total.
-fn lengths(shape: [u32; 3]) -> [usize; 3] {
-    let [nx, ny, nz] = shape.map(|n| n as usize);
-    [nx, nx * ny, nx * ny * nz]
-}
-
 /// Bits of the open exits of each lattice void.
 fn open_exits(voids: usize, open: impl Fn(usize) -> bool) -> Vec<u8> {
     let of_void = |v| (0..3).fold(0, |bits, e| bits | u8::from(open(3 * v + e)) << e);
@@ -195,9 +131,10 @@ fn open_exits(voids: usize, open: impl Fn(usize) -> bool) -> Vec<u8> {
 /// Marks the lattice voids from which open exits lead to marked voids. Works layer by layer, as no exit
 /// leads back into a layer, so that memory access stays local.
 fn spread_upstream(shape: [u32; 3], open: &[u8], leads: &mut [bool]) {
-    let [nx, plane, voids] = lengths(shape);
+    let [nx, ny, nz] = shape.map(|n| n as usize);
+    let plane = nx * ny;
     let mut stack = Vec::new();
-    for layer in (0..voids).step_by(plane).rev() {
+    for layer in (0..plane * nz).step_by(plane).rev() {
         for v in layer..layer + plane {
             let leads_down = || open[v] & ALONG_Z > 0 && leads.get(v + plane).is_some_and(|&below| below);
             if leads[v] || leads_down() {
@@ -252,8 +189,6 @@ mod tests {
                 let those = || vec![(closed * 5 % lattice.voids()) as u32, lattice.voids() as u32 - 1];
                 let [led, expected] = [&lattice, &network].map(|network| network.leading_to(those(), open));
                 assert_eq!(led, expected, "{shape:?}");
-                let [on_path, expected] = [&lattice, &network].map(|network| network.backbone_fraction(open));
-                assert_eq!(on_path.to_bits(), expected.to_bits(), "{shape:?}");
                 let [to_end, expected_end] = [&lattice, &network].map(|network| network.leading_to_end(open));
                 assert_eq!(to_end, expected_end, "{shape:?}");
                 some += [&led, &to_end].into_iter().flatten().filter(|&&leads| leads).count();

@@ -1,12 +1,11 @@
 //! Networks whose constrictions can be passed in both directions, until a rule gives them one.
 //!
 //! A constriction between two voids is an exit of both: the two exits are *twins*, and one blocking closes
-//! both. Two other kinds lie at the faces of the filter: an *inlet* leads from the reservoir, a void of
-//! its own and the only start node, into a void; an *outlet* leaves the filter.
-//!
-//! The reservoir has the last number, so that the other voids keep theirs.
+//! both. An *inlet* leads from the reservoir, a void of its own with the last number and the only start node,
+//! into a void; an *outlet* leaves the filter.
 
-use super::exit_rule::{NO_TWIN, Undirected};
+use super::exit_rule::{NO_TWIN, Undirected, in_order_of_voids};
+use super::file::unlinked;
 use super::{END, ExitRule, Network, NetworkError};
 
 /// Default flow tolerance of a walk.
@@ -102,9 +101,7 @@ impl Network {
         }
         // Sorted by void, then by link.
         exits.sort_by_key(|&(from, _, link)| (from, link));
-        let mut begin = vec![0u32; reservoir as usize + 2];
-        exits.iter().for_each(|&(from, _, _)| begin[from as usize + 1] += 1);
-        (0..=reservoir as usize).for_each(|void| begin[void + 1] += begin[void]);
+        let (begin, _) = in_order_of_voids(reservoir as usize + 1, exits.iter().map(|&(from, ..)| from));
         let mut twin = vec![NO_TWIN; exits.len()];
         let mut first = vec![NO_TWIN; links.len()];
         for (exit, &(_, _, link)) in (0u32..).zip(&exits) {
@@ -282,7 +279,6 @@ impl Network {
         self.undirected.as_ref().map_or(&[], |u| &u.volume)
     }
 
-    /// Number of blocked constrictions, each counted once.
     pub(crate) fn blocked_count(&self, blocked: &bitvec::slice::BitSlice) -> u64 {
         match &self.undirected {
             None => blocked.count_ones() as u64,
@@ -290,20 +286,19 @@ impl Network {
         }
     }
 
-    /// Refuses a network without an open path for water.
     fn leads_through(&self) -> Result<(), NetworkError> {
-        let nowhere = |problem: &str| NetworkError::Unlinked { problem: problem.into() };
         let Some(reservoir) = self.reservoir() else { return Ok(()) };
+        let open = |c: usize| self.diameter[c] > 0.0 && self.conductance(c) > 0.0;
         if self.exits(reservoir).is_empty() {
-            return Err(nowhere("it has no inlet: no constriction leads in from the reservoir"));
+            return unlinked("it has no inlet: no constriction leads in from the reservoir");
         }
         if !self.target.contains(&END) {
-            return Err(nowhere("it has no outlet: no constriction leads out of the filter"));
+            return unlinked("it has no outlet: no constriction leads out of the filter");
         }
-        let open = |c: usize| self.diameter[c] > 0.0 && self.conductance(c) > 0.0;
-        match self.leads_out_by(open) {
-            true => Ok(()),
-            false => Err(nowhere("no open way leads from an inlet to an outlet")),
+        if self.leads_out_by(open) {
+            Ok(())
+        } else {
+            unlinked("no open way leads from an inlet to an outlet")
         }
     }
 
@@ -315,23 +310,26 @@ impl Network {
 
 fn check(links: &[Link], voids: u32) -> Result<(), NetworkError> {
     if links.len() as u64 * 2 >= u64::from(END) {
-        return Err(NetworkError::Unlinked {
-            problem: format!("{} constrictions are too many", links.len()),
-        });
+        return unlinked(format!("{} constrictions are too many", links.len()));
     }
     for (i, link) in links.iter().enumerate() {
         if !(link.diameter.is_finite() && link.diameter >= 0.0) {
-            return Err(NetworkError::Diameter { constriction: i, value: link.diameter });
+            return Err(NetworkError::diameter(i, link.diameter));
         }
         if !(link.conductance.is_finite() && link.conductance >= 0.0) {
-            return Err(NetworkError::Conductance { constriction: i, value: link.conductance });
+            return Err(NetworkError::Number {
+                quantity: "conductance",
+                constriction: i,
+                value: link.conductance.to_string(),
+            });
         }
         for end in [link.from, link.to] {
             if let LinkEnd::Void(void) = end
                 && void >= voids
             {
-                let problem = format!("constriction {i} leads to void {void}, but there are {voids} voids");
-                return Err(NetworkError::Unlinked { problem });
+                return unlinked(format!(
+                    "constriction {i} leads to void {void}, but there are {voids} voids"
+                ));
             }
         }
     }

@@ -1,28 +1,16 @@
 //! Arching: a particle that fits through a constriction may jam in it together with other arriving particles.
 //!
-//! # What is decided
 //! A particle that would pass a constriction `R` times its size (ratio of diameters) jams with the
-//! probability given by a [`Law`], by its own draw. Particles that jam in one constriction in one
-//! increment form one arch, in the order of insertion, up to the number in an arch for the `R` of the
-//! first ([`in_arch`]); the others pass (module `chunks`). Particles too fine for the law pass and never
-//! belong to an arch.
+//! probability given by a [`Law`], by its own draw. Particles that jam in one constriction in one increment
+//! form one arch, in the order of insertion, up to the number in an arch for the `R` of the first
+//! ([`in_arch`]); the others pass (module `chunks`). The constriction closes from the next increment on, even
+//! if the arch is incomplete: with few particles per increment too few arrive to complete it.
 //!
-//! The constriction closes from the next increment on, like one blocked by a coarser particle, even if the
-//! arch is incomplete: the law has decided that it is jammed, and with few particles per increment too few
-//! arrive to complete the arch.
+//! Chunks affect only the draw of a particle: the one at place `j` of chunk `c` takes draw `j` of the stream
+//! (seed, arching, run, increment, `c`), extended to 64 bits if sixteen do not decide.
 //!
-//! Jamming depends only on the particle and the constriction, and staying only on the order of insertion.
-//! So chunks affect only the draw of a particle: the one at place `j` of chunk `c` takes draw `j` of the
-//! stream (seed, arching, run, increment, `c`), extended to 64 bits if sixteen do not decide.
-//!
-//! # Concentration
-//! A law may depend on the solids fraction of the suspension that enters the filter: volume of particles
-//! divided by volume of suspension. Particles that move with the water keep this fraction in every void
-//! and at every depth, so the scene states one value for the whole walk.
-//!
-//! # Passive particles
-//! A passive particle can neither block nor arch: it is no coarser than the finest open constriction
-//! divided by [`Law::widest`].
+//! A law may depend on the concentration, the solids fraction of the suspension that enters the filter:
+//! particles that move with the water keep it in every void, so the scene states one value for the walk.
 
 use crate::schema::Leaf;
 use libm::{exp, lgamma, log, pow};
@@ -131,15 +119,6 @@ impl Law {
 
     /// Probability that a particle jams in a constriction `ratio` (at least 1) times its size, at this
     /// concentration (volume of particles divided by volume of suspension); 0 from `widest` on.
-    ///
-    /// ```
-    /// use voidwalk_core::walk::Law;
-    ///
-    /// let law = Law::named("zuriguel-2005").unwrap();
-    /// // 9900 / 2.94^6.9 = 5.80 grains pass on average.
-    /// assert!((law.probability(2.0, 0.6) - 1.0 / 6.80).abs() < 1e-3);
-    /// assert_eq!(law.probability(4.94, 0.6), 0.0);
-    /// ```
     pub fn probability(&self, ratio: f64, concentration: f64) -> f64 {
         if ratio >= self.widest { 0.0 } else { (self.probability)(ratio, concentration) }
     }
@@ -172,7 +151,7 @@ fn at_the_neck(ratio: f64, concentration: f64) -> f64 {
 }
 
 /// Number of particles in an arch over a constriction `ratio` times their size: R^2 + 1, at least 2.
-pub(crate) fn in_arch(ratio: f64) -> u32 {
+fn in_arch(ratio: f64) -> u32 {
     (ratio * ratio + 1.0).round().max(2.0) as u32
 }
 
@@ -266,7 +245,6 @@ impl Arching {
         (draw < self.by_table(ratio)).then(|| in_arch(ratio))
     }
 
-    /// Probability from the table, by linear interpolation.
     pub(super) fn by_table(&self, ratio: f64) -> f64 {
         let place = ((ratio - 1.0) / (self.law.widest - 1.0)).clamp(0.0, 1.0) * STEPS as f64;
         let step = (place as usize).min(STEPS - 1);
@@ -306,20 +284,35 @@ mod tests {
         }
     }
 
-    /// The number of particles in an arch is an integer, so the law is saw-toothed; in dense flow it rises
-    /// with R. By hand at 0.047: at 1.22 (an arch of two) 1 - e^-0.1280; at 1.23 (an arch of three) 1 -
-    /// e^-m (1 + m) with m = 0.1312.
+    /// By hand. Dense discharge, from the constants of the review: 9900 / 3.94^6.9 = 0.7704 particles pass
+    /// before a jam, 9900 / 3.44^6.9 = 1.965, 9900 / 1.94^6.9 = 102.3. In a suspension R = 2 needs 5, so four
+    /// others; at 0.2 their mean number is 0.2 * 1.5 * 8 = 2.4, and four or more have probability 1 - e^-2.4
+    /// (1 + 2.4 + 2.88 + 2.304) = 0.2213. At 0.047 an arch of two (1.22) has 1 - e^-0.1280, an arch of three
+    /// (1.23) 1 - e^-m (1 + m) with m = 0.1312: the law is saw-toothed.
     #[test]
-    fn a_suspension_is_saw_toothed_and_rises_where_it_is_dense() {
-        let chance = at_the_neck;
-        for (ratio, wanted) in [(1.22, 0.12016), (1.23, 0.007888), (1.58, 0.03223), (1.59, 0.003072)] {
-            assert!((chance(ratio, 0.047) / wanted - 1.0).abs() < 2e-3, "{ratio}: {}", chance(ratio, 0.047));
+    fn laws_are_as_published() {
+        let [dense, suspension] = ["zuriguel-2005", "marin-2018"].map(|name| Law::named(name).unwrap());
+        for (law, ratio, concentration, wanted) in [
+            (dense, 1.0, 0.0, 1.0 / 1.7704),
+            (dense, 1.5, 0.0, 1.0 / 2.965),
+            (dense, 3.0, 0.0, 1.0 / 103.3),
+            (suspension, 2.0, 0.2, 0.2213),
+            (suspension, 1.22, 0.047, 0.12016),
+            (suspension, 1.23, 0.047, 0.007888),
+            (suspension, 1.58, 0.047, 0.03219),
+            (suspension, 1.59, 0.047, 0.003072),
+        ] {
+            let probability = law.probability(ratio, concentration);
+            assert!((probability / wanted - 1.0).abs() < 3e-4, "{} {ratio}: {probability}", law.name);
         }
+        assert_eq!(suspension.probability(2.0, 0.0), 0.0);
+        assert!(suspension.probability(1.5, 0.02) < 0.01 && suspension.probability(2.9, 0.6) > 0.9);
+        // Where it is dense, it rises with R.
         for dense in [0.2, 0.6] {
-            assert!([1.23, 2.0, 2.5, 2.9].map(|ratio| chance(ratio, dense)).is_sorted_by(|a, b| a < b));
+            assert!([1.23, 2.0, 2.5, 2.9].map(|ratio| at_the_neck(ratio, dense)).is_sorted_by(|a, b| a < b));
         }
         // Below the last bit of 1 minus a sum.
-        assert_eq!(chance(2.8, 0.001), 0.0);
+        assert_eq!(at_the_neck(2.8, 0.001), 0.0);
     }
 
     /// By hand: four others are in a neck of R = 2 with probability m^4 / 24, m = 12 times the concentration.
@@ -337,27 +330,6 @@ mod tests {
             let dense = Arching::new(law, DENSEST).stops_to();
             assert!((law.widest - 0.05..=law.widest).contains(&dense), "{} {dense}", law.name);
         }
-    }
-
-    /// Values from the constants of the review, by hand: 9900 / 3.94^6.9 = 0.7704, 9900 / 3.44^6.9 =
-    /// 1.965, 9900 / 1.94^6.9 = 102.3.
-    #[test]
-    fn dense_discharge_is_as_published() {
-        let law = Law::named("zuriguel-2005").unwrap();
-        for (ratio, passed) in [(1.0, 0.7704), (1.5, 1.965), (3.0, 102.3)] {
-            let probability = law.probability(ratio, 0.0);
-            assert!(((1.0 / probability - 1.0) / passed - 1.0).abs() < 1e-3, "{ratio}: {probability}");
-        }
-    }
-
-    /// By hand: R = 2 needs 5, so four others. The mean number is 0.2 * 1.5 * 8 = 2.4, and four or more
-    /// have probability 1 - e^-2.4 (1 + 2.4 + 2.88 + 2.304) = 0.2213.
-    #[test]
-    fn a_suspension_needs_enough_at_the_neck() {
-        let law = Law::named("marin-2018").unwrap();
-        assert!((law.probability(2.0, 0.2) - 0.2213).abs() < 1e-4);
-        assert_eq!(law.probability(2.0, 0.0), 0.0);
-        assert!(law.probability(1.5, 0.02) < 0.01 && law.probability(2.9, 0.6) > 0.9);
     }
 
     /// No draw jams a particle beyond its reach, and the reach is no wider than its class (half a power of

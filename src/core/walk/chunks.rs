@@ -2,8 +2,9 @@
 //! events.
 
 use super::tally::cube;
-use super::{CHUNK, Particles, SizeClasses, SizeCounts, State};
+use super::{CHUNK, Particles, SizeClasses, SizeCounts, State, Tally};
 use crate::network::{END, Network};
+use rayon::prelude::*;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::iter;
@@ -40,71 +41,30 @@ pub(super) fn for_each(
 ) {
     let one_size = single_size.filter(|_| particles.has_one_size());
     let Particles { void, diameter, live } = particles;
-    let all = Neighbours { first: 0, void, diameter, live, events, one_size };
+    let sizes = diameter.chunks_mut(CHUNK).chain(iter::repeat_with(|| &mut [][..]));
+    let columns = (0..).zip(void.chunks_mut(CHUNK)).zip(sizes).zip(live).zip(events);
+    let columns = columns.map(|((((chunk, void), diameter), live), events)| ChunkColumns {
+        chunk,
+        void,
+        diameter,
+        live,
+        events,
+    });
+    let work = |columns: ChunkColumns| match one_size {
+        None => work(columns),
+        Some(size) => SIZES.with_borrow_mut(|diameter| {
+            diameter.clear();
+            diameter.resize(CHUNK, size);
+            work(ChunkColumns { diameter, ..columns });
+        }),
+    };
     if rayon::current_num_threads() > 1 && effort > WORTH_THREADS {
-        let (before, receiving) = all.split_at(receiving);
-        rayon::join(|| receiving.spread(&work), || before.spread(&work));
+        let mut before: Vec<ChunkColumns> = columns.collect();
+        let receiving = before.split_off(receiving.min(before.len()));
+        let spread = |part: Vec<ChunkColumns>| part.into_par_iter().with_max_len(1).for_each(work);
+        rayon::join(|| spread(receiving), || spread(before));
     } else {
-        all.in_order(&work);
-    }
-}
-
-/// Columns of adjacent chunks.
-struct Neighbours<'a> {
-    first: usize,
-    void: &'a mut [u32],
-    /// Unused if all base particles have one size.
-    diameter: &'a mut [f32],
-    live: &'a mut [u32],
-    events: &'a mut [Events],
-    one_size: Option<f32>,
-}
-
-impl Neighbours<'_> {
-    /// Splits the columns into chunks before `chunk` and the others.
-    fn split_at(self, chunk: usize) -> (Self, Self) {
-        let Self { first, void, diameter, live, events, one_size } = self;
-        let (chunk, entry) = (chunk.min(live.len()), chunk * CHUNK);
-        let (void, void_after) = void.split_at_mut(entry.min(void.len()));
-        let (diameter, diameter_after) = diameter.split_at_mut(entry.min(diameter.len()));
-        let (live, live_after) = live.split_at_mut(chunk);
-        let (events, events_after) = events.split_at_mut(chunk);
-        let before = Self { first, void, diameter, live, events, one_size };
-        let after = Self {
-            first: first + chunk,
-            void: void_after,
-            diameter: diameter_after,
-            live: live_after,
-            events: events_after,
-            one_size,
-        };
-        (before, after)
-    }
-
-    /// Spreads the work over threads, halving it down to single chunks.
-    fn spread(self, work: &(impl Fn(ChunkColumns) + Sync)) {
-        let chunks = self.live.len();
-        if chunks <= 1 {
-            return self.in_order(work);
-        }
-        let (front, back) = self.split_at(chunks / 2);
-        rayon::join(|| front.spread(work), || back.spread(work));
-    }
-
-    fn in_order(self, work: &impl Fn(ChunkColumns)) {
-        let Self { first, void, diameter, live, events, one_size } = self;
-        let sizes = diameter.chunks_mut(CHUNK).chain(iter::repeat_with(|| &mut [][..]));
-        let columns = void.chunks_mut(CHUNK).zip(sizes).zip(live).zip(events);
-        for (chunk, (((void, diameter), live), events)) in (first as u64..).zip(columns) {
-            match one_size {
-                None => work(ChunkColumns { chunk, void, diameter, live, events }),
-                Some(size) => SIZES.with_borrow_mut(|diameter| {
-                    diameter.clear();
-                    diameter.resize(CHUNK, size);
-                    work(ChunkColumns { chunk, void, diameter, live, events });
-                }),
-            }
-        }
+        columns.for_each(work);
     }
 }
 
@@ -113,16 +73,12 @@ thread_local! {
     static ERODED: RefCell<Vec<f32>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Events of one chunk in one increment.
 #[derive(Default)]
 pub(super) struct Events {
-    /// Number of particles inserted into the chunk.
-    pub(crate) inserted: u32,
-    pub(crate) inserted_mass: f64,
-    pub(crate) moves: u64,
+    /// Sums over the increment; those of the particles that moved once the chunk is done.
+    pub(crate) tally: Tally,
     /// Diameters of the particles that left, in particle order; summed and dropped once the chunk is done.
     pub(crate) eroded: Vec<f32>,
-    eroded_count: u64,
     /// Constriction and diameter of the particles that were stopped, in particle order.
     pub(crate) stopped: Vec<(u32, f32)>,
     /// Particles that jammed, in particle order; not included in the stopped or moving ones.
@@ -131,23 +87,13 @@ pub(super) struct Events {
     pub(crate) stranded: Vec<(u32, f32)>,
     /// Number of particles that wait until the flow is solved again.
     pub(crate) waiting: u64,
-    /// Number of passive particles inserted.
-    pub(crate) passive_inserted: u32,
-    passive_eroded: u64,
     sizes: Option<[SizeCounts; 2]>,
-    eroded_mass: f64,
-    largest: f32,
 }
 
 impl Events {
     /// Clears the last increment but keeps the memory.
     pub(crate) fn clear(&mut self) {
-        self.inserted = 0;
-        self.inserted_mass = 0.0;
-        self.passive_inserted = 0;
-        self.moves = 0;
-        self.waiting = 0;
-        self.eroded_count = 0;
+        (self.tally, self.waiting) = (Tally::default(), 0);
         self.stopped.clear();
         self.stranded.clear();
     }
@@ -161,36 +107,26 @@ impl Events {
 
     /// Sums over the chunk and returns the buffer; called on the thread that processed the chunk.
     pub(crate) fn sum(&mut self, classes: &SizeClasses, passive_limit: f32) {
-        self.eroded_count = self.eroded.len() as u64;
-        self.passive_eroded = self.eroded.iter().map(|&d| u64::from(d <= passive_limit)).sum();
-        self.eroded_mass = self.eroded.iter().map(|&d| cube(d)).sum();
-        self.largest = self.eroded.iter().fold(0.0, |largest, &d| if d > largest { d } else { largest });
+        let tally = &mut self.tally;
+        tally.eroded = self.eroded.len() as u64;
+        tally.retained_in_constrictions = self.stopped.len() as u64;
+        tally.retained_in_voids = self.stranded.len() as u64;
+        tally.passive_eroded = self.eroded.iter().map(|&d| u64::from(d <= passive_limit)).sum();
+        tally.eroded_mass = self.eroded.iter().map(|&d| cube(d)).sum();
+        tally.largest_eroded = self.eroded.iter().fold(0.0, |most, &d| if d > most { d } else { most });
         if !self.is_quiet() {
-            self.sum_sizes(classes);
+            let new = || [SizeCounts::new(classes), SizeCounts::new(classes)];
+            let [eroded, retained] = self.sizes.get_or_insert_with(new);
+            eroded.clear();
+            self.eroded.iter().for_each(|&d| eroded.add(classes, d));
+            retained.clear();
+            self.stopped.iter().chain(&self.stranded).for_each(|&(_, d)| retained.add(classes, d));
         }
         ERODED.set(std::mem::take(&mut self.eroded));
     }
 
-    fn sum_sizes(&mut self, classes: &SizeClasses) {
-        let new = || [SizeCounts::new(classes), SizeCounts::new(classes)];
-        let any_retained = self.retained_count() > 0;
-        let [eroded, retained] = self.sizes.get_or_insert_with(new);
-        if self.eroded_count > 0 {
-            eroded.clear();
-            self.eroded.iter().for_each(|&d| eroded.add(classes, d));
-        }
-        if any_retained {
-            retained.clear();
-            self.stopped.iter().chain(&self.stranded).for_each(|&(_, d)| retained.add(classes, d));
-        }
-    }
-
     fn is_quiet(&self) -> bool {
-        self.eroded_count == 0 && self.retained_count() == 0
-    }
-
-    fn retained_count(&self) -> usize {
-        self.stopped.len() + self.stranded.len()
+        self.tally.eroded == 0 && self.stopped.is_empty() && self.stranded.is_empty()
     }
 }
 
@@ -207,28 +143,11 @@ pub(super) fn merge(
 ) -> Vec<u32> {
     let (narrowed_before, blocked_before) = (state.changes(), state.history.len());
     for events in events.iter_mut() {
-        let tally = &mut state.tally;
-        tally.inserted += u64::from(events.inserted);
-        tally.moving += u64::from(events.inserted);
-        tally.inserted_mass += events.inserted_mass;
-        tally.passive_inserted += u64::from(events.passive_inserted);
-        tally.particle_moves = tally.particle_moves.saturating_add(events.moves);
+        state.tally.add(&events.tally);
         if !events.is_quiet() {
-            let gone = [events.eroded_count, events.stopped.len() as u64, events.stranded.len() as u64];
-            tally.eroded += gone[0];
-            tally.retained_in_constrictions += gone[1];
-            tally.retained_in_voids += gone[2];
-            tally.moving -= gone.iter().sum::<u64>();
-            tally.passive_eroded += events.passive_eroded;
-            tally.eroded_mass += events.eroded_mass;
-            tally.largest_eroded = tally.largest_eroded.max(events.largest);
             if let Some([eroded, retained]) = &events.sizes {
-                if events.eroded_count > 0 {
-                    state.eroded_sizes.merge(eroded);
-                }
-                if events.retained_count() > 0 {
-                    state.retained_sizes.merge(retained);
-                }
+                state.eroded_sizes.merge(eroded);
+                state.retained_sizes.merge(retained);
             }
             for &(constriction, diameter) in &events.stopped {
                 state.stop(network, upstream, constriction as usize, diameter);
@@ -250,7 +169,6 @@ pub(super) fn merge(
     }
 }
 
-/// Jammed particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Jam {
     /// Number of moving particles before it in its chunk.

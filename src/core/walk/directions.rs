@@ -1,20 +1,18 @@
 //! Directions of constrictions set by water: solutions of the flow, and when it is solved again.
 //!
-//! The flow is solved before the first increment, and again at the beginning of an increment once the
-//! constrictions closed since the last solution carried more of it than a tolerance. The criterion is the
-//! sum over them of flux divided by inflow: the mean number of them that a particle meets on its way
-//! ([`Network::with_flow_tolerance`]). If blocked constrictions leave openings, a constriction counts by
-//! the fraction of its conductance that it has lost. If any constriction has closed, the flow is solved
-//! after at most ten increments, which limits the waiting of particles, and once more at the end.
-//! Directions do not change between solutions, and a particle waits in its void if all exits have been
-//! blocked since the last one. The times of solution follow only from the history of changes, so a walk
-//! that continues from a checkpoint repeats the earlier solutions in the same order, to the same bits.
+//! The flow is solved before the first increment, at the beginning of an increment once the constrictions
+//! closed since the last solution carried more of it than a tolerance ([`Network::with_flow_tolerance`]), or
+//! ten increments after the last solution if any has closed, which limits the waiting of particles, and at
+//! the end. If blocked constrictions leave openings, a constriction counts by the fraction of its
+//! conductance that it has lost. Directions do not change between solutions, and a particle waits in its
+//! void if all exits have been blocked since the last one. The times of solution follow only from the
+//! history of changes, so a walk that continues from a checkpoint repeats them, to the same bits.
 
 use bitvec::slice::BitSlice;
 use bitvec::vec::BitVec;
 
 use super::State;
-use super::openings::{CONDUCTS, Narrowing, Openings, Weighed, part_kept};
+use super::openings::{CONDUCTS, Narrowing, Openings, part_kept};
 use crate::network::{ExitRule, Flow, FlowError, Network};
 
 /// Number of increments after which the flow is solved again, if any constriction has closed since.
@@ -44,20 +42,16 @@ pub struct FlowSolution {
 pub(super) struct Directions {
     flow: Flow,
     record: FlowRecord,
-    /// Flow through the clean filter.
     clean: f64,
     /// Last increment before the last solution.
     solved_at: u64,
     /// Number of blockings or narrowings in this run until then.
     changes_then: usize,
-    /// Number of changes since, and the flow that they carried, divided by the inflow.
-    since: (usize, f64),
     /// Widths of exits at that time, if blocked constrictions leave openings.
     widths_then: Vec<f32>,
     rule: ExitRule,
 }
 
-/// Blocked constrictions, and the openings if any are left.
 type Passable<'a> = (&'a BitSlice, Option<&'a Openings>);
 
 /// Constrictions at an earlier time of a run.
@@ -68,14 +62,12 @@ struct Past<'a> {
 }
 
 impl<'a> Past<'a> {
-    /// Creates the constrictions at the start of the run.
     fn begin(network: &Network, state: &'a State) -> Self {
         let mut past = Self { state, blocked: state.blocked.clone(), openings: state.openings.clone() };
         (0..state.changes()).rev().for_each(|at| past.set(network, at, false));
         past
     }
 
-    /// Makes or reverts a change of the run.
     fn set(&mut self, network: &Network, at: usize, is_done: bool) {
         match &mut self.openings {
             Some(openings) => {
@@ -113,12 +105,11 @@ impl Directions {
             clean: clean.conductance,
             solved_at: 0,
             changes_then: 0,
-            since: (0, 0.0),
             widths_then: Vec::new(),
             rule: network.exit_rule(),
         };
         let mut past = Past::begin(network, state);
-        directions.solve(network, past.passable(), 0, 0)?;
+        directions.solve(network, state, past.passable(), 0, 0)?;
         directions.flow.direct(network);
         // Exits blocked since the last solution keep their direction until the next.
         let mut so_far = 0;
@@ -128,36 +119,30 @@ impl Directions {
                 so_far += 1;
             }
             if directions.is_due(network, state, increment, so_far) {
-                directions.solve(network, past.passable(), increment - 1, so_far)?;
+                directions.solve(network, state, past.passable(), increment - 1, so_far)?;
                 directions.flow.direct(network);
             }
         }
         Ok(directions)
     }
 
-    /// Widths to which the weights of exits refer, if blocked constrictions leave openings.
-    pub(crate) fn weighed(&self) -> Weighed<'_> {
-        match self.rule {
-            ExitRule::Flux => Weighed::Solved(&self.widths_then, CONDUCTS),
-            _ => Weighed::Whole,
-        }
+    /// Widths in the last solution of the flow, if the weights of exits are its fluxes.
+    pub(crate) fn weighed(&self) -> Option<&[f32]> {
+        (self.rule == ExitRule::Flux).then_some(&self.widths_then)
     }
 
     /// Tells if the flow must be solved at the beginning of an increment, after this many changes of this
     /// run.
-    fn is_due(&mut self, network: &Network, state: &State, increment: u64, changes: usize) -> bool {
-        self.count(network, state, changes);
+    fn is_due(&self, network: &Network, state: &State, increment: u64, changes: usize) -> bool {
         let is_late = increment > self.solved_at + INCREMENTS;
-        changes > self.changes_then && (is_late || self.since.1 >= network.flow_tolerance())
+        let is_carried = || self.closed(network, state, changes) >= network.flow_tolerance();
+        changes > self.changes_then && (is_late || is_carried())
     }
 
-    /// Counts the closures since the last solution, up to this many changes of this run.
-    fn count(&mut self, network: &Network, state: &State, changes: usize) {
-        let (counted, mut carried) = self.since;
-        for at in self.changes_then + counted..changes {
-            carried += self.carried(network, state, at);
-        }
-        self.since = (changes - self.changes_then, carried);
+    /// Flow that has been closed since the last solution, up to this many changes of this run, divided by
+    /// the inflow.
+    fn closed(&self, network: &Network, state: &State, changes: usize) -> f64 {
+        (self.changes_then..changes).fold(0.0, |sum, at| sum + self.carried(network, state, at))
     }
 
     /// Fraction of the inflow that no longer passes a constriction after a change of the run.
@@ -179,10 +164,10 @@ impl Directions {
     /// Solves the flow and sets the directions of the network, if due in the increment that `state`
     /// begins; returns true if it did.
     pub(crate) fn renew(&mut self, network: &mut Network, state: &State) -> Result<bool, FlowError> {
-        let changes = state.changes();
+        let (changes, passable) = (state.changes(), (&*state.blocked, state.openings.as_ref()));
         let is_due = self.is_due(network, state, state.increment, changes);
         if is_due {
-            self.solve(network, (&state.blocked, state.openings.as_ref()), state.increment - 1, changes)?;
+            self.solve(network, state, passable, state.increment - 1, changes)?;
             self.flow.direct(network);
         }
         Ok(is_due)
@@ -190,10 +175,9 @@ impl Directions {
 
     /// Solves the flow at the end of a run and sets the directions of the network.
     pub(crate) fn end(mut self, network: &mut Network, state: &State) -> Result<FlowRecord, FlowError> {
-        let changes = state.changes();
+        let (changes, passable) = (state.changes(), (&*state.blocked, state.openings.as_ref()));
         if changes > self.changes_then {
-            self.count(network, state, changes);
-            self.solve(network, (&state.blocked, state.openings.as_ref()), state.increment, changes)?;
+            self.solve(network, state, passable, state.increment, changes)?;
         }
         self.flow.direct(network);
         Ok(self.record)
@@ -202,10 +186,12 @@ impl Directions {
     fn solve(
         &mut self,
         network: &Network,
+        state: &State,
         passable: Passable,
         increment: u64,
         changes: usize,
     ) -> Result<(), FlowError> {
+        let closed = self.closed(network, state, changes);
         let solution = match passable {
             (blocked, None) => self.flow.solve(network, blocked)?,
             (_, Some(Openings { widths, .. })) => {
@@ -218,8 +204,8 @@ impl Directions {
             }
         };
         let part = if self.clean > 0.0 { (solution.conductance / self.clean).min(1.0) } else { 0.0 };
-        self.record.solutions.push(FlowSolution { increment, k_over_k0: part, closed: self.since.1 });
-        (self.solved_at, self.changes_then, self.since) = (increment, changes, (0, 0.0));
+        self.record.solutions.push(FlowSolution { increment, k_over_k0: part, closed });
+        (self.solved_at, self.changes_then) = (increment, changes);
         Ok(())
     }
 }

@@ -48,12 +48,7 @@ impl Engine {
 
     /// Name of the engine in a scene.
     pub fn name(self) -> &'static str {
-        match self {
-            Engine::Auto => "auto",
-            Engine::Particles => "particles",
-            Engine::Counts => "counts",
-            Engine::Expected => "expected",
-        }
+        ["auto", "particles", "counts", "expected"][self as usize]
     }
 }
 
@@ -62,25 +57,6 @@ impl Engine {
 const WORTH_TWICE: u128 = 13;
 
 /// Plan of one run: an engine, and the passive part of the base.
-///
-/// ```
-/// use bitvec::vec::BitVec;
-/// use voidwalk_core::gradation::{Gradation, SizeSampler};
-/// use voidwalk_core::network::Network;
-/// use voidwalk_core::walk::{Engine, RunPlan, SizeClasses, State, Walk, WalkControl};
-///
-/// let network = Network::cubic_from_diameters([4, 4, 6], vec![1.0; 288], 1.0)?;
-/// let sampler = SizeSampler::new(&Gradation::linear_from_d0(0.2, 1.5)?, 1.0)?;
-/// let open: BitVec = BitVec::repeat(false, network.constrictions());
-/// let plan = RunPlan::new(Engine::Auto, &network, &sampler, &open, 10_000_000_000);
-/// assert_eq!(plan.engine(), Engine::Counts);
-/// let supply = plan.supply(sampler, 1_000_000_000_000, 100, 7, 1);
-/// let classes = SizeClasses::logarithmic(0.2, 0.45, 32);
-/// let mut state = State::new(&network, &supply, classes, open, 7, 1);
-/// Walk::new(&network, &supply, &state).run(&mut state, &mut |_| WalkControl::Continue)?;
-/// assert_eq!(state.tally.eroded, 1_000_000_000_000);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Clone, Debug)]
 pub struct RunPlan {
     engine: Engine,
@@ -126,13 +102,13 @@ impl RunPlan {
             Engine::Auto => Engine::Counts,
             chosen => chosen,
         };
-        let size_mm = f64::from(finest) * network.unit_mm();
+        let finest = Finest { size_mm: f64::from(finest) * network.unit_mm(), arches: arching.is_some() };
         let mut left_out = match leaves_openings {
             true => vec![Shortcut::Openings],
-            false => left_out(engine, Finest { size_mm, arches: arching.is_some() }, passive_words),
+            false => left_out(engine, finest, passive_words),
         };
-        if sampler.smallest() == sampler.largest() && (engine == Engine::Particles || passive_words < 1 << 64)
-        {
+        let keeps_sizes = engine == Engine::Particles || passive_words < 1 << 64;
+        if sampler.smallest() == sampler.largest() && keeps_sizes {
             left_out.push(Shortcut::OneSize);
         }
         if wanted == Engine::Auto && engine == Engine::Particles && on_open > 0 {
@@ -204,21 +180,17 @@ pub enum Shortcut {
 
 fn left_out(engine: Engine, finest: Finest, passive_words: u128) -> Vec<Shortcut> {
     let coarse_percent = 100.0 * (((1u128 << 64) - passive_words) as f64 / 18_446_744_073_709_551_616.0);
-    let mut left_out = Vec::new();
-    if finest.size_mm == f64::INFINITY {
-        left_out.push(Shortcut::NothingOpen);
-    } else if passive_words == 0 {
-        left_out.push(Shortcut::NonePassive(finest));
-    }
-    if engine == Engine::Particles {
-        return left_out;
-    }
-    if passive_words < 1 << 64 {
-        left_out.push(Shortcut::MostPassive(coarse_percent, finest, engine));
-    } else if finest.size_mm != f64::INFINITY {
-        left_out.push(Shortcut::AllPassive(finest, engine));
-    }
-    left_out
+    let is_open = finest.size_mm != f64::INFINITY;
+    let of_open = match is_open {
+        false => Some(Shortcut::NothingOpen),
+        true => (passive_words == 0).then_some(Shortcut::NonePassive(finest)),
+    };
+    let of_counts = match engine {
+        Engine::Particles => None,
+        _ if passive_words < 1 << 64 => Some(Shortcut::MostPassive(coarse_percent, finest, engine)),
+        _ => is_open.then_some(Shortcut::AllPassive(finest, engine)),
+    };
+    of_open.into_iter().chain(of_counts).collect()
 }
 
 /// Creates a pool of `count` threads for walks (0: one for each processor available to the program).
@@ -263,19 +235,16 @@ impl Isa {
 
     /// Name used in `VOIDWALK_ISA` and in results.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Portable => "portable",
-            Self::Avx2 => "avx2",
-            Self::Avx512 => "avx512",
-        }
+        ["portable", "avx2", "avx512"][self as usize]
     }
 
     /// Tells if this machine supports it.
     pub fn is_available(self) -> bool {
-        #[cfg(target_arch = "x86_64")]
         match self {
             Self::Portable => true,
+            #[cfg(target_arch = "x86_64")]
             Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt"),
+            #[cfg(target_arch = "x86_64")]
             Self::Avx512 => {
                 is_x86_feature_detected!("avx512f")
                     && is_x86_feature_detected!("avx512bw")
@@ -283,10 +252,8 @@ impl Isa {
                     && is_x86_feature_detected!("avx512vl")
                     && is_x86_feature_detected!("popcnt")
             }
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        {
-            self == Self::Portable
+            #[cfg(not(target_arch = "x86_64"))]
+            Self::Avx2 | Self::Avx512 => false,
         }
     }
 

@@ -31,33 +31,11 @@ pub(super) fn of_each(
     network: &Network,
     ways: Ways,
     voids: impl IntoIterator<Item = u32>,
-    look: impl FnMut(VoidExits),
-) {
-    // Chosen once for all voids.
-    match ways {
-        Ways::Unblocked(blocked) => {
-            let weight = |c| network.exit_weight(c) * f64::from(u8::from(!blocked[c]));
-            let find = |void, into: &mut _| thresholds_by(network, void, weight, into);
-            each_by(network, voids, find, look);
-        }
-        ways => {
-            let weight = |c| ways.weight(network, c);
-            let find = |void, into: &mut _| thresholds_by(network, void, weight, into);
-            each_by(network, voids, find, look);
-        }
-    }
-}
-
-#[inline(always)]
-fn each_by(
-    network: &Network,
-    voids: impl IntoIterator<Item = u32>,
-    find: impl Fn(u32, &mut Vec<u64>) -> Option<usize>,
     mut look: impl FnMut(VoidExits),
 ) {
     let mut scratch = Vec::new();
     for void in voids {
-        let last_open = find(void, &mut scratch);
+        let last_open = thresholds(network, ways, void, &mut scratch);
         let waits = last_open.is_none() && waits(network, void);
         look(VoidExits { void, thresholds: &scratch, last_open, waits });
     }
@@ -65,20 +43,11 @@ fn each_by(
 
 /// Thresholds of the exits of one void on the 64-bit scale, written into `thresholds`; returns the
 /// position of the last open exit, or `None` if all exits are closed.
+#[inline(always)]
 pub(super) fn thresholds(
     network: &Network,
     ways: Ways,
     void: u32,
-    thresholds: &mut Vec<u64>,
-) -> Option<usize> {
-    thresholds_by(network, void, |c| ways.weight(network, c), thresholds)
-}
-
-#[inline(always)]
-fn thresholds_by(
-    network: &Network,
-    void: u32,
-    weight: impl Fn(usize) -> f64,
     thresholds: &mut Vec<u64>,
 ) -> Option<usize> {
     // Branch-free, as it is unpredictable which exits are open. Weights are finite.
@@ -87,7 +56,7 @@ fn thresholds_by(
     let (mut total, mut last) = (0.0, usize::MAX);
     thresholds.resize(exits.len(), 0);
     for (threshold, c) in thresholds.iter_mut().zip(exits) {
-        let weight = weight(c);
+        let weight = ways.weight(network, c);
         total += weight;
         last = if weight > 0.0 { c - first } else { last };
         *threshold = weight.to_bits();
@@ -107,9 +76,7 @@ const TWO_TO_64: f64 = 18_446_744_073_709_551_616.0;
 #[derive(Clone)]
 pub(crate) struct ExitTable {
     pub(super) form: Form,
-    /// Instruction set that reads it.
     pub(super) isa: Isa,
-    /// Upstream void of each constriction.
     pub(super) upstream: Vec<u32>,
 }
 
@@ -121,7 +88,6 @@ pub(super) enum Form {
     General(General),
 }
 
-/// Thresholds of a general network.
 #[derive(Clone)]
 pub(super) struct General {
     /// Threshold of each constriction, and its upper sixteen bits.
@@ -150,7 +116,6 @@ pub(super) struct OpenExits<'a> {
     pub(crate) network: &'a Network,
     pub(crate) table: &'a ExitTable,
     pub(crate) ways: Ways<'a>,
-    /// Current width of each constriction.
     pub(crate) widths: &'a [f32],
     pub(crate) passive_limit: f32,
     /// Law of arching; only with a table of the general form, or one that reads widths.
@@ -161,14 +126,25 @@ impl ExitTable {
     /// Builds the table with `blocked` constrictions closed.
     #[cfg(test)]
     pub(crate) fn new(network: &Network, blocked: &BitSlice) -> Self {
-        Self::empty(network, blocked).filled(network, Ways::Unblocked(blocked))
+        let finest = network.finest_open(|c| blocked[c]);
+        Self::empty(network, Some(finest)).filled(network, Ways::Unblocked(blocked))
     }
 
-    /// Creates a table without values.
-    pub(super) fn empty(network: &Network, blocked: &BitSlice) -> Self {
-        let Some([nx, ny, _]) = network.shape() else { return Self::empty_general(network) };
-        let finest = network.finest_open(|c| blocked[c]).to_bits();
-        Self::of_form(network, Form::Lattice(Lattice::new(network.voids(), nx, nx * ny, finest)))
+    /// Creates a table without values. On a lattice, particles are compared with the finest open exit of
+    /// the void, in classes from the `finest` of all on; without it, with the width of their chosen exit.
+    pub(super) fn empty(network: &Network, finest: Option<f32>) -> Self {
+        let (voids, constrictions) = (network.voids(), network.constrictions());
+        let form = match network.shape() {
+            Some([nx, ny, _]) => Form::Lattice(Lattice::new(voids, nx, nx * ny, finest)),
+            None => Form::General(General {
+                threshold: vec![0; constrictions],
+                top: vec![0; constrictions],
+                last_open: vec![NONE; voids],
+                few: vec![FewExits::NONE; voids],
+                beyond: network.targets().iter().copied().zip(network.diameters().iter().copied()).collect(),
+            }),
+        };
+        Self { form, isa: Isa::chosen(), upstream: network.upstream() }
     }
 
     /// Recomputes the classes after many constrictions have closed, as the open ones may be coarser than
@@ -181,30 +157,9 @@ impl ExitTable {
         }
     }
 
-    /// Builds a table for particles that arch or constrictions that leave openings: each particle is
-    /// compared with the width of its chosen exit.
+    /// Builds a table for particles that arch or constrictions that leave openings.
     pub(super) fn by_widths(network: &Network, ways: Ways) -> Self {
-        let Some([nx, ny, _]) = network.shape() else {
-            return Self::empty_general(network).filled(network, ways);
-        };
-        let mut lattice = Lattice::new(network.voids(), nx, nx * ny, 0);
-        (lattice.by_widths, lattice.classed) = (true, Vec::new());
-        Self::of_form(network, Form::Lattice(lattice)).filled(network, ways)
-    }
-
-    fn empty_general(network: &Network) -> Self {
-        let general = General {
-            threshold: vec![0; network.constrictions()],
-            top: vec![0; network.constrictions()],
-            last_open: vec![NONE; network.voids()],
-            few: vec![FewExits::NONE; network.voids()],
-            beyond: network.targets().iter().zip(network.diameters()).map(|(&to, &d)| (to, d)).collect(),
-        };
-        Self::of_form(network, Form::General(general))
-    }
-
-    fn of_form(network: &Network, form: Form) -> Self {
-        Self { form, isa: Isa::chosen(), upstream: network.upstream() }
+        Self::empty(network, None).filled(network, ways)
     }
 
     fn filled(mut self, network: &Network, ways: Ways) -> Self {
@@ -229,7 +184,6 @@ impl ExitTable {
         }
     }
 
-    /// Renews all voids, on all threads.
     pub(super) fn renew(&mut self, network: &Network, ways: Ways) {
         let Form::General(general) = &mut self.form else {
             let voids = 0..network.voids() as u32;
@@ -259,30 +213,26 @@ impl General {
         GeneralPart { first_void: 0, first_exit: 0, threshold, top, last_open, few, beyond }
     }
 
-    /// Splits the table into parts that threads renew in parallel.
     fn parts(&mut self, network: &Network) -> Vec<GeneralPart<'_>> {
-        let mut parts = Vec::new();
-        let mut left = self.all();
-        while left.few.len() > PART {
-            let exits = network.exits(left.first_void + PART as u32).start - left.first_exit;
-            let GeneralPart { first_void, first_exit, threshold, top, last_open, few, beyond } = left;
-            let (threshold, threshold_after) = threshold.split_at_mut(exits);
-            let (top, top_after) = top.split_at_mut(exits);
-            let (last_open, last_open_after) = last_open.split_at_mut(PART);
-            let (few, few_after) = few.split_at_mut(PART);
-            let (beyond, beyond_after) = beyond.split_at_mut(exits);
-            parts.push(GeneralPart { first_void, first_exit, threshold, top, last_open, few, beyond });
-            left = GeneralPart {
-                first_void: first_void + PART as u32,
-                first_exit: first_exit + exits,
-                threshold: threshold_after,
-                top: top_after,
-                last_open: last_open_after,
-                few: few_after,
-                beyond: beyond_after,
-            };
+        fn front<'a, T>(column: &mut &'a mut [T], length: usize) -> &'a mut [T] {
+            column.split_off_mut(..length).expect("columns of one table")
         }
-        parts.push(left);
+        let (mut left, mut parts) = (self.all(), Vec::new());
+        while !left.few.is_empty() {
+            let voids = left.few.len().min(PART);
+            let exits = network.exits(left.first_void + voids as u32 - 1).end - left.first_exit;
+            parts.push(GeneralPart {
+                first_void: left.first_void,
+                first_exit: left.first_exit,
+                threshold: front(&mut left.threshold, exits),
+                top: front(&mut left.top, exits),
+                last_open: front(&mut left.last_open, voids),
+                few: front(&mut left.few, voids),
+                beyond: front(&mut left.beyond, exits),
+            });
+            left.first_void += voids as u32;
+            left.first_exit += exits;
+        }
         parts
     }
 }
@@ -337,28 +287,6 @@ mod tests {
         assert_eq!(thresholds_of([1.0, 1.0, 1.0], [true, true, false]), (vec![0, 0, u64::MAX], Some(2)));
         assert_eq!(thresholds_of([1.0, 1.0, 1.0], [false, true, true]), (vec![u64::MAX; 3], Some(0)));
         assert_eq!(thresholds_of([0.0, 1.0, 1.0], [false, true, true]).1, None);
-    }
-
-    /// Exits of very different widths, any of them blocked: a plain word shows if a void has no open exit.
-    #[test]
-    fn a_word_tells_whether_an_exit_is_open() {
-        let mut seen = [0; 2];
-        for widths in 0..4usize.pow(3) {
-            let diameters = [0, 1, 2].map(|exit| [0.0, 1e-4, 1.0, 1e4][widths / 4usize.pow(exit) % 4]);
-            for blocked in 0..8 {
-                let blocked = [0, 1, 2].map(|exit| blocked >> exit & 1 == 1);
-                let (thresholds, last_open) = thresholds_of(diameters, blocked);
-                let mut lattice = Lattice::new(1, 1, 1, 0);
-                lattice.set_plain(0, &thresholds, last_open);
-                assert_eq!(
-                    Lattice::has_no_exit(lattice.plain[0]),
-                    last_open.is_none(),
-                    "{diameters:?} {blocked:?}"
-                );
-                seen[usize::from(last_open.is_none())] += 1;
-            }
-        }
-        assert!(seen.iter().all(|&count| count > 100), "{seen:?}");
     }
 
     /// Once the exit with nearly all the area is blocked, the others keep their exact ratio.

@@ -20,7 +20,6 @@
 //! node) and `2 k + 1` (diameter) of (seed, insertion, run, `t`, `c`). None of this depends on threads, so
 //! results are the same to the bit for any number of them, and a walk can continue from its columns alone.
 //!
-//! # Sampling
 //! Start nodes and sizes are drawn independently, as in the paper, or spread evenly
 //! ([`Sampling::Stratified`]): the marginal distribution of each particle is the same, and replicates
 //! scatter less.
@@ -30,14 +29,11 @@
 //! `floor(2^64 c_e / c)` exceeds the 64-bit draw, otherwise the last open exit. The probability of a
 //! closed exit is exactly 0.
 //!
-//! # Arches
-//! If the scene names a law of arching, a particle that fits may jam (module `arching`), at one
-//! concentration for the whole walk. Particles that jam in one constriction in one increment form one
-//! arch: step 3 keeps as many as the arch holds (module `chunks`) and lets the others pass.
-//!
-//! # Residual openings
-//! If the scene asks for it, a blocked constriction is not closed: it leaves openings (module `openings`)
-//! that finer particles pass and that stop coarser ones. Step 3 then narrows constrictions.
+//! # Clogging
+//! If the scene names a law of arching, a particle that fits may jam (module `arching`). Particles that jam
+//! in one constriction in one increment form one arch: step 3 keeps as many as the arch holds (module
+//! `chunks`) and lets the others pass. If the scene asks for it, a blocked constriction leaves openings
+//! (module `openings`) that finer particles pass and that stop coarser ones; step 3 then narrows them.
 //!
 //! # The end
 //! A run ends when nothing moves, or when every moving particle is *trapped*: x and y are periodic, so a
@@ -45,13 +41,13 @@
 //!
 //! # Engines
 //! Passive particles may be followed as one count per void instead ([`RunPlan`], module `counts`): each
-//! increment then also inserts and splits counts, with the same open exits, before the merge. Everything else
-//! is the same code, so a [`State`] reads the same for every engine. [`Engine::Auto`] uses counts unless
-//! particles are few. It decides by numbers, never by timing, so a seed gives the same bits everywhere.
+//! increment then also inserts and splits counts, with the same open exits, before the merge.
+//! [`Engine::Auto`] uses counts unless particles are few. It decides by numbers, never by timing, so a seed
+//! gives the same bits everywhere.
 //!
 //! # Memory
 //! Particle columns take 8 bytes per particle. [`State::placed`] puts them into mapped files if they do
-//! not fit in memory; the kernels see slices either way, and the bits are the same.
+//! not fit in memory; the bits are the same.
 
 mod arching;
 mod chunks;
@@ -69,19 +65,14 @@ mod state;
 mod supply;
 mod tally;
 
-pub use arching::LAWS;
-pub use arching::{Arching, DENSEST, Law, LawName};
-pub use counts::Expected;
+pub use arching::{Arching, DENSEST, LAWS, Law, LawName};
 pub(crate) use counts::ExpectedSums;
-pub use counts::Passive;
-pub use directions::FlowRecord;
-pub use directions::FlowSolution;
-pub use engine::{Engine, Finest, RunPlan, Shortcut};
-pub use engine::{Isa, threads};
-pub(crate) use exits::ExitTable;
+pub use counts::{Expected, Passive};
+pub use directions::{FlowRecord, FlowSolution};
+pub use engine::{Engine, Finest, Isa, RunPlan, Shortcut, threads};
+use exits::ExitTable;
 pub(crate) use openings::Openings;
-pub use openings::{BlockedAs, Clogged};
-pub use openings::{Narrowing, residual_opening};
+pub use openings::{BlockedAs, Clogged, Narrowing, residual_opening};
 pub use retention::Retention;
 pub use saved::{SavedState, from_words};
 pub(crate) use state::Particles;
@@ -99,7 +90,7 @@ use bitvec::vec::BitVec;
 use crate::network::{END, FlowError, Network};
 use chunks::Events;
 use directions::Directions;
-use openings::{Ways, Weighed};
+use openings::Ways;
 
 /// Decision after an increment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -111,7 +102,7 @@ pub enum WalkControl {
 }
 
 /// Callback after each increment, for recording, progress and requests to stop.
-pub(crate) type Observer<'a> = dyn FnMut(&State) -> WalkControl + Send + 'a;
+type Observer<'a> = dyn FnMut(&State) -> WalkControl + Send + 'a;
 
 /// Run in progress: data rebuilt from network and state, never stored.
 pub struct Walk<'a> {
@@ -132,9 +123,7 @@ pub struct Walk<'a> {
 }
 
 /// Exit tables that depend only on the blocked set: computed once for the first runs of many walks, or
-/// passed from a run to the next.
-///
-/// They keep their network alive, so that no other network can reuse its address and be mistaken for it.
+/// passed from a run to the next. They keep their network alive, so that no other reuses its address.
 #[derive(Clone)]
 pub struct PlainExits {
     network: Arc<Network>,
@@ -144,7 +133,6 @@ pub struct PlainExits {
     shares: Option<counts::Shares>,
 }
 
-/// Result of a walk: its network, the decline of permeability, and its exits.
 type WalkEnd<'a> = (Cow<'a, Network>, Option<FlowRecord>, Option<PlainExits>);
 
 impl PlainExits {
@@ -162,7 +150,7 @@ impl PlainExits {
         with_shares: bool,
     ) -> (ExitTable, Option<counts::Shares>) {
         let (ways, voids) = (Ways::Unblocked(blocked), 0..network.voids() as u32);
-        let mut table = ExitTable::empty(network, blocked);
+        let mut table = ExitTable::empty(network, Some(network.finest_open(|c| blocked[c])));
         let mut shares = with_shares.then(|| counts::Shares::empty(network));
         exits::of_each(network, ways, voids, |of_void| {
             table.set(network, ways, of_void);
@@ -173,7 +161,6 @@ impl PlainExits {
         (table, shares)
     }
 
-    /// Exits and shares for a run that begins with them.
     fn again(self) -> (ExitTable, Option<counts::Shares>) {
         let Self { network, blocked, mut table, shares } = self;
         if blocked.any() {
@@ -197,9 +184,7 @@ impl<'a> Walk<'a> {
         state: &State,
         known: Option<Cow<PlainExits>>,
     ) -> Self {
-        let is_of_this =
-            |known: &Cow<PlainExits>| Arc::ptr_eq(&known.network, network) && known.blocked == state.blocked;
-        let known = known.filter(is_of_this);
+        let known = known.filter(|k| Arc::ptr_eq(&k.network, network) && k.blocked == state.blocked);
         Self { kept: Some(network), ..Self::prepare(network, supply, state, known) }
     }
 
@@ -217,8 +202,7 @@ impl<'a> Walk<'a> {
                 Err(error) => no_flow = Some(error),
             }
         }
-        let weighed = weighed(directions.as_ref());
-        let ways = state.ways(weighed);
+        let ways = state.ways(directions.as_ref().and_then(Directions::weighed));
         let (table, shares) = match (supply.arching(), &state.openings) {
             (None, None) => match known.filter(|_| !network.exit_rule().needs_flow()) {
                 Some(known) => known.into_owned().again(),
@@ -229,7 +213,7 @@ impl<'a> Walk<'a> {
             },
             _ => (ExitTable::by_widths(&network, ways), None),
         };
-        let trap = crate::walk::Search::new(&network, supply.arching());
+        let trap = Search::new(&network, supply.arching());
         let passive = counts::PassiveWalk::new(&network, supply, state, shares);
         Self {
             network,
@@ -245,31 +229,19 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Ends the walk; returns the network with its final directions and, if water sets them, the decline
-    /// of permeability.
+    /// Ends the walk; returns the network with its final directions, the decline of permeability if water
+    /// sets them, and for a walk by [`Walk::with_exits`] the exits with which the next run may begin.
     ///
     /// # Errors
     /// [`WalkError::Flow`].
-    pub fn end(self, state: &State) -> Result<(Cow<'a, Network>, Option<FlowRecord>), WalkError> {
-        let (network, record, _) = self.end_with_exits(state)?;
-        Ok((network, record))
-    }
-
-    /// Ends a walk prepared by [`Walk::with_exits`]; also returns the exits with which the next run on
-    /// this network may begin.
-    ///
-    /// # Errors
-    /// [`WalkError::Flow`].
-    pub fn end_with_exits(self, state: &State) -> Result<WalkEnd<'a>, WalkError> {
+    pub fn end(self, state: &State) -> Result<WalkEnd<'a>, WalkError> {
         let Self { mut network, kept, directions, no_flow, supply, table, passive, .. } = self;
         let error = |source| WalkError::Flow { increment: state.increment, source };
         if let Some(source) = no_flow {
             return Err(error(source));
         }
-        let record = match directions {
-            Some(directions) => Some(directions.end(network.to_mut(), state).map_err(error)?),
-            None => None,
-        };
+        let end = |directions: Directions| directions.end(network.to_mut(), state).map_err(error);
+        let record = directions.map(end).transpose()?;
         let is_plain = !network.exit_rule().needs_flow() && state.openings.is_none();
         let kept = kept.filter(|_| is_plain && supply.arching().is_none());
         let exits = kept.map(|network| PlainExits {
@@ -307,13 +279,11 @@ impl<'a> Walk<'a> {
     }
 
     fn direct(&mut self, state: &State) -> Result<(), FlowError> {
-        if let Some(error) = self.no_flow.take() {
-            return Err(error);
-        }
+        self.no_flow.take().map_or(Ok(()), Err)?;
         let Some(directions) = &mut self.directions else { return Ok(()) };
         if directions.renew(self.network.to_mut(), state)? {
             let Self { network, table, passive, directions, .. } = self;
-            let ways = state.ways(weighed(directions.as_ref()));
+            let ways = state.ways(directions.as_ref().and_then(Directions::weighed));
             let renew_passive = || {
                 let Some(passive) = passive else { return };
                 let voids = 0..network.voids() as u32;
@@ -321,21 +291,19 @@ impl<'a> Walk<'a> {
                 passive.forget_trap();
             };
             rayon::join(|| table.renew(network, ways), renew_passive);
-            self.trap = crate::walk::Search::new(&self.network, self.supply.arching());
+            self.trap = Search::new(&self.network, self.supply.arching());
             self.all_caught = false;
         }
         Ok(())
     }
 
-    /// Inserts this increment's share of the base on start nodes; then every moving particle attempts one
-    /// move through the exits open at the start of the increment.
     fn insert_and_step(&mut self, state: &mut State) {
         let Self { network, table, supply, events, passive, .. } = self;
         let mut one_by_one = |state: &mut State| kernel::step(network, table, supply, state, events);
         match passive {
             Some(passive) => {
                 passive.insert(network, supply, state);
-                passive.step_beside(network, state, one_by_one);
+                passive.step(network, state, one_by_one);
             }
             None => one_by_one(state),
         }
@@ -347,7 +315,7 @@ impl<'a> Walk<'a> {
         let closed = chunks::merge(network, events, &table.upstream, state);
         let both = closed.iter().flat_map(|&c| [Some(c as usize), network.twin(c as usize)]);
         let voids: Vec<u32> = both.flatten().map(|c| table.upstream[c]).collect();
-        let ways = state.ways(weighed(directions.as_ref()));
+        let ways = state.ways(directions.as_ref().and_then(Directions::weighed));
         exits::of_each(network, ways, voids, |of_void| {
             table.set(network, ways, of_void);
             if let Some(passive) = passive {
@@ -360,7 +328,7 @@ impl<'a> Walk<'a> {
     fn tally(&mut self, state: &mut State) -> Result<(), WalkError> {
         let inserting = state.increment < self.supply.increments();
         if !inserting && state.tally.moving > 0 && self.all_trapped(state) {
-            state.tally.trap_all_moving();
+            state.tally.trapped += std::mem::take(&mut state.tally.moving);
         }
         state.finished = !inserting && state.tally.moving == 0;
         state.tally.check(state.increment)
@@ -387,10 +355,6 @@ impl<'a> Walk<'a> {
         }
         Ok(())
     }
-}
-
-fn weighed(directions: Option<&Directions>) -> Weighed<'_> {
-    directions.map_or(Weighed::Whole, Directions::weighed)
 }
 
 /// Search for a particle that is not trapped, which remembers the last way out.
@@ -487,20 +451,12 @@ impl Search {
                 }
             }
             if closed || leads_out {
-                self.remember(start, void);
+                // The path from the start is a way out.
+                let back = |&void: &u32| (void != start).then(|| self.came_from[void as usize]);
+                std::iter::successors(Some(void), back).for_each(|void| self.way_out[void as usize] = true);
                 return false;
             }
         }
         true
-    }
-
-    /// Marks the path from `start` to `last` as a way out.
-    fn remember(&mut self, start: u32, last: u32) {
-        let mut void = last;
-        self.way_out[void as usize] = true;
-        while void != start {
-            void = self.came_from[void as usize];
-            self.way_out[void as usize] = true;
-        }
     }
 }

@@ -11,7 +11,7 @@ use bitvec::vec::BitVec;
 
 use super::{CHUNK, Supply};
 use crate::network::{END, ExitRule, Flow, Network};
-use crate::stream::{DRAWS_PER_BLOCK, Key, LANES, Purpose, draw16};
+use crate::stream::{DRAWS_PER_BLOCK, Key, LANES, Purpose, Words, draw16};
 
 /// One base particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -123,17 +123,16 @@ impl<'a> Reference<'a> {
                 continue;
             };
             let width = self.width(exit);
-            if particle.diameter > width {
-                newly_blocked.insert(exit);
-                self.stopped.push((particle, exit));
-                continue;
-            }
             let place = (particle.rank / CHUNK as u64, *place - 1);
-            if self.arches(place, exit, particle.diameter, &mut begun) {
-                newly_blocked.insert(exit);
-                self.stopped.push((particle, exit));
+            let fits = particle.diameter <= width;
+            let arches = fits && self.arches(place, exit, particle.diameter, &mut begun);
+            if arches {
                 self.arched += 1;
                 self.arched_mass += f64::from(particle.diameter).powi(3);
+            }
+            if arches || !fits {
+                newly_blocked.insert(exit);
+                self.stopped.push((particle, exit));
                 continue;
             }
             self.particle_moves += 1;
@@ -146,14 +145,10 @@ impl<'a> Reference<'a> {
         self.moving = still_moving;
         self.narrow(stopped_before);
         for exit in newly_blocked {
-            if self.blocked[exit] {
-                continue;
+            if !std::mem::replace(&mut self.blocked[exit], true) {
+                self.blocked[self.network.twin(exit).unwrap_or(exit)] = true;
+                self.history.push((self.increment, exit));
             }
-            self.blocked[exit] = true;
-            if let Some(twin) = self.network.twin(exit) {
-                self.blocked[twin] = true;
-            }
-            self.history.push((self.increment, exit));
         }
         if self.increment >= self.supply.increments() && self.moving.iter().all(|p| self.is_trapped(p)) {
             self.trapped = std::mem::take(&mut self.moving);
@@ -272,14 +267,16 @@ impl<'a> Reference<'a> {
         for rank in ranks {
             let chunk = rank / CHUNK as u64;
             let place = &mut place_in_chunk[chunk as usize];
-            let word = |w: u64| self.word(self.key(Purpose::Insertion, chunk), w);
-            let nodes = self.network.start();
+            let word = |w: u64| {
+                let block = block(self.key(Purpose::Insertion, chunk), w / LANES as u64).0;
+                block[w as usize % LANES]
+            };
+            let (nodes, words) = (self.network.start(), [word(2 * *place), word(2 * *place + 1)]);
             let (mut node, mut size) =
-                (((u128::from(word(2 * *place)) * nodes.len() as u128) >> 64) as usize, word(2 * *place + 1));
+                (((u128::from(words[0]) * nodes.len() as u128) >> 64) as usize, words[1]);
             if let Some(strata) = self.supply.strata(self.increment) {
                 let m = rank - self.supply.inserted(self.increment - 1);
-                (node, size) =
-                    (strata.node(m, word(2 * *place), nodes.len() as u64), strata.size_word(m, size));
+                (node, size) = (strata.node(m, words[0], nodes.len() as u64), strata.size_word(m, words[1]));
             }
             let diameter = self.supply.diameter(size);
             *place += 1;
@@ -287,23 +284,10 @@ impl<'a> Reference<'a> {
         }
     }
 
-    fn word(&self, key: Key, w: u64) -> u64 {
-        let mut lanes = key.lanes();
-        let mut block = lanes.next_block();
-        for _ in 0..w / LANES as u64 {
-            block = lanes.next_block();
-        }
-        block[w as usize % LANES]
-    }
-
     /// All 64 bits of the draw of the particle at `place` in its chunk.
     fn draw_of(&self, key: Key, place: u64) -> u64 {
-        let mut lanes = key.lanes();
-        let mut block = lanes.next_block();
-        for _ in 0..place / DRAWS_PER_BLOCK as u64 {
-            block = lanes.next_block();
-        }
-        lanes.extension().complete(draw16(&block, place as usize % DRAWS_PER_BLOCK), place)
+        let (block, extension) = block(key, place / DRAWS_PER_BLOCK as u64);
+        extension.complete(draw16(&block, place as usize % DRAWS_PER_BLOCK), place)
     }
 
     fn open_area(&self, exit: usize) -> f64 {
@@ -365,6 +349,15 @@ impl<'a> Reference<'a> {
         }
         true
     }
+}
+
+/// Block `index` of a stream, and the words that complete its draws.
+fn block(key: Key, index: u64) -> ([u64; LANES], Words) {
+    let mut lanes = key.lanes();
+    for _ in 0..index {
+        lanes.next_block();
+    }
+    (lanes.next_block(), lanes.extension())
 }
 
 /// Diameter of the circle inscribed between touching circles of diameters `a`, `b` and `b`.

@@ -5,6 +5,7 @@ use super::{
 };
 use crate::network::Network;
 use crate::store::checkpoint::{Checkpoint, CheckpointError, Section};
+use bitvec::field::BitField;
 use bitvec::vec::BitVec;
 use bytemuck::Pod;
 use serde::{Deserialize, Serialize};
@@ -46,51 +47,10 @@ pub struct SavedState<'a> {
     blocked: Vec<u64>,
     history_increment: Vec<u64>,
     history_constriction: Vec<u32>,
-    narrowed: Option<SavedNarrowings>,
-}
-
-struct SavedNarrowings {
-    increment: Vec<u64>,
-    constriction: Vec<u32>,
-    before: Vec<f32>,
-    after: Vec<f32>,
-}
-
-impl SavedNarrowings {
-    fn new(history: &[Narrowing]) -> Self {
-        Self {
-            increment: history.iter().map(|n| n.increment).collect(),
-            constriction: history.iter().map(|n| n.constriction).collect(),
-            before: history.iter().map(|n| n.before).collect(),
-            after: history.iter().map(|n| n.after).collect(),
-        }
-    }
-
-    fn sections(&self) -> [Section<'_>; 4] {
-        [
-            Section::new("narrowed_increment", &self.increment),
-            Section::new("narrowed_constriction", &self.constriction),
-            Section::new("narrowed_before", &self.before),
-            Section::new("narrowed_after", &self.after),
-        ]
-    }
-
-    fn read(saved: &Checkpoint, exits: usize) -> Result<Openings, CheckpointError> {
-        let increment: Vec<u64> = saved.read("narrowed_increment")?;
-        let constriction: Vec<u32> = saved.read_exact("narrowed_constriction", increment.len())?;
-        let [before, after]: [Vec<f32>; 2] = [
-            saved.read_exact("narrowed_before", increment.len())?,
-            saved.read_exact("narrowed_after", increment.len())?,
-        ];
-        let narrowing = |at: usize| Narrowing {
-            increment: increment[at],
-            constriction: constriction[at],
-            before: before[at],
-            after: after[at],
-        };
-        let history = (0..increment.len()).map(narrowing).collect();
-        Ok(Openings { widths: saved.read_exact("widths", exits)?, history })
-    }
+    narrowed_increment: Vec<u64>,
+    narrowed_constriction: Vec<u32>,
+    narrowed_before: Vec<f32>,
+    narrowed_after: Vec<f32>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -145,13 +105,17 @@ impl<'a> SavedState<'a> {
             tally: state.tally,
             constrictions: state.blocked.len(),
         };
+        let narrowed = state.openings.as_ref().map_or(&[][..], |openings| &openings.history);
         Self {
             state,
             record: serde_json::to_vec(&record).expect("numbers and words"),
             blocked: to_words(&state.blocked),
             history_increment: state.history.iter().map(|b| b.increment).collect(),
             history_constriction: state.history.iter().map(|b| b.constriction).collect(),
-            narrowed: state.openings.as_ref().map(|openings| SavedNarrowings::new(&openings.history)),
+            narrowed_increment: narrowed.iter().map(|n| n.increment).collect(),
+            narrowed_constriction: narrowed.iter().map(|n| n.constriction).collect(),
+            narrowed_before: narrowed.iter().map(|n| n.before).collect(),
+            narrowed_after: narrowed.iter().map(|n| n.after).collect(),
         }
     }
 
@@ -180,9 +144,14 @@ impl<'a> SavedState<'a> {
             Section::new("retained_number", &state.retained_sizes.number),
             Section::new("retained_mass", &state.retained_sizes.mass),
         ];
-        if let (Some(openings), Some(narrowed)) = (&state.openings, &self.narrowed) {
-            sections.push(Section::new("widths", &openings.widths));
-            sections.extend(narrowed.sections());
+        if let Some(openings) = &state.openings {
+            sections.extend([
+                Section::new("widths", &openings.widths),
+                Section::new("narrowed_increment", &self.narrowed_increment),
+                Section::new("narrowed_constriction", &self.narrowed_constriction),
+                Section::new("narrowed_before", &self.narrowed_before),
+                Section::new("narrowed_after", &self.narrowed_after),
+            ]);
         }
         if !state.retained_cubes.is_empty() {
             sections.push(Section::new("retained_cubes", &state.retained_cubes));
@@ -206,20 +175,22 @@ impl State {
     ) -> Result<(), CheckpointError> {
         let wrong = |what: &str| saved.corrupt(format!("{what} cannot belong to this run"));
         let record: Record = saved.read_record("state")?;
-        let forgery = Forgery { supply, increment: record.increment, tally: &record.tally };
         let name = |seed: u64, run: u64, kind: &PassiveKind| {
             format!("seed {seed}, run {run}, passive particles {kind:?}")
         };
-        let saved_walk = name(record.seed, record.run, &record.passive);
+        let found = name(record.seed, record.run, &record.passive);
         let expected = name(self.seed, self.run, &PassiveKind::new(&self.passive));
-        if saved_walk != expected {
-            return Err(saved.of_another_walk(&saved_walk, &expected));
+        if found != expected {
+            return Err(saved.of_another_walk(&found, &expected));
         }
         if record.constrictions != self.blocked.len() || record.passive_limit != finite(self.passive_limit) {
             return Err(saved.of_another_network());
         }
         let live: Vec<u32> = saved.read_exact("live", self.particles.live.len())?;
-        if !forgery.live_can_be(&live) {
+        // At most as many as were inserted into each.
+        let inserted = supply.inserted(record.increment);
+        let most = |chunk: usize| inserted.saturating_sub((chunk * CHUNK) as u64).min(CHUNK as u64);
+        if live.iter().enumerate().any(|(chunk, &n)| u64::from(n) > most(chunk)) {
             return Err(wrong("particles of a chunk"));
         }
         let total: usize = live.iter().map(|&n| n as usize).sum();
@@ -258,7 +229,7 @@ impl State {
             })),
         };
         let constrictions = self.blocked.len();
-        self.blocked = from_words(&saved.read_exact("blocked", words_for(constrictions))?, constrictions);
+        self.blocked = from_words(&saved.read_exact("blocked", constrictions.div_ceil(64))?, constrictions);
         let increments: Vec<u64> = saved.read("history_increment")?;
         let constrictions: Vec<u32> = saved.read_exact("history_constriction", increments.len())?;
         if constrictions.iter().any(|&c| c as usize >= self.blocked.len() || !self.blocked[c as usize]) {
@@ -267,7 +238,7 @@ impl State {
         let pair = |(&increment, &constriction)| Blocking { increment, constriction };
         self.history = increments.iter().zip(&constrictions).map(pair).collect();
         if self.openings.is_some() {
-            let openings = SavedNarrowings::read(saved, self.blocked.len())?;
+            let openings = openings(saved, self.blocked.len())?;
             let smallest = supply.sampler().smallest();
             if !openings.can_be(network, &self.blocked, record.increment, smallest) {
                 return Err(wrong("openings"));
@@ -295,8 +266,87 @@ impl State {
         {
             return Err(wrong("sums"));
         }
-        forgery.fault(self).map_or(Ok(()), |what| Err(wrong(what)))
+        self.check(supply, wrong)
     }
+
+    /// Refuses an impossible number in a restored state whose columns have the right lengths and whose
+    /// tally is consistent; `wrong` makes the error.
+    ///
+    /// Checksums protect a checkpoint from accidents, not from forgery with new checksums. A forged state may
+    /// give wrong results, but it must not index beyond a column, overflow a sum, or walk for ever.
+    fn check<E>(&self, supply: &Supply, wrong: impl Fn(&str) -> E) -> Result<(), E> {
+        let tally = &self.tally;
+        let passive = supply.passive_inserted(self.increment);
+        let inserting = self.increment < supply.increments();
+        if self.increment > MOST_INCREMENTS || self.finished != (!inserting && tally.moving == 0) {
+            return Err(wrong("increment"));
+        }
+        if u128::from(tally.inserted) != u128::from(supply.inserted(self.increment)) + u128::from(passive) {
+            return Err(wrong("number of particles"));
+        }
+        // Trapped particles stay in the columns.
+        let live: u128 = self.particles.live.iter().map(|&n| u128::from(n)).sum();
+        let still = match &self.passive {
+            Passive::OneByOne => 0,
+            Passive::Counts(moving) => sum(moving),
+            Passive::Expected(expected) => {
+                if !self.expectation_can_be(expected, passive) {
+                    return Err(wrong("expectation"));
+                }
+                u128::from(expected.sums.inserted - expected.sums.counted.at_rest)
+            }
+        };
+        if live + still != u128::from(tally.moving) + u128::from(tally.trapped) {
+            return Err(wrong("number of moving particles"));
+        }
+        let columns = [&self.retained_in_constrictions, &self.retained_in_voids];
+        let sizes = [&self.eroded_sizes, &self.retained_sizes];
+        let numbers = columns.into_iter().chain(sizes.map(|sizes| &sizes.number));
+        if numbers.into_iter().any(|column| sum(column) > u128::from(tally.inserted)) {
+            return Err(wrong("number of retained or eroded particles"));
+        }
+        let masses = sizes.into_iter().flat_map(|sizes| &sizes.mass).copied();
+        let largest = f64::from(tally.largest_eroded);
+        let mut masses = masses.chain([tally.inserted_mass, tally.eroded_mass, largest]);
+        if masses.any(|mass| !mass.is_finite()) {
+            return Err(wrong("mass"));
+        }
+        let is_past = |b: &Blocking| (1..=self.increment).contains(&b.increment);
+        if self.history.iter().all(is_past) { Ok(()) } else { Err(wrong("history")) }
+    }
+
+    /// Tells if an expectation is valid: non-negative numbers that sum to the number inserted, with their
+    /// integer counts included in the tally.
+    fn expectation_can_be(&self, expected: &Expected, inserted: u64) -> bool {
+        let (sums, counted) = (&expected.sums, &expected.sums.counted);
+        let columns = || expected.moving.iter().chain(&expected.retained);
+        let is_number = |n: &f64| n.is_finite() && *n >= 0.0;
+        let whole = columns().sum::<f64>() + sums.eroded;
+        let retained = sum(&expected.counted_retained);
+        let in_voids = self.retained_in_voids.iter();
+        columns().chain([&sums.eroded, &sums.moves]).all(is_number)
+            && sums.inserted == inserted
+            && (whole - inserted as f64).abs() <= 1.0 + ROUNDING * inserted as f64
+            && counted.eroded <= counted.at_rest
+            && counted.at_rest <= inserted
+            && counted.eroded <= self.tally.eroded
+            && counted.at_rest - counted.eroded <= self.tally.retained_in_voids
+            && retained == u128::from(counted.at_rest - counted.eroded)
+            && counted.moves == (sums.moves + 0.5).floor() as u64
+            && in_voids.zip(&expected.counted_retained).all(|(all, counted)| counted <= all)
+    }
+}
+
+/// Reads the openings of a network with this many exits.
+fn openings(saved: &Checkpoint, exits: usize) -> Result<Openings, CheckpointError> {
+    let increments: Vec<u64> = saved.read("narrowed_increment")?;
+    let constrictions: Vec<u32> = saved.read_exact("narrowed_constriction", increments.len())?;
+    let before: Vec<f32> = saved.read_exact("narrowed_before", increments.len())?;
+    let after: Vec<f32> = saved.read_exact("narrowed_after", increments.len())?;
+    let rows = increments.into_iter().zip(constrictions).zip(before.into_iter().zip(after));
+    let narrowing =
+        |((increment, constriction), (before, after))| Narrowing { increment, constriction, before, after };
+    Ok(Openings { history: rows.map(narrowing).collect(), widths: saved.read_exact("widths", exits)? })
 }
 
 /// Place of the next moving particle of a column, up to the numbers in `live`.
@@ -326,125 +376,22 @@ impl<'a> Place<'a> {
     }
 }
 
-/// Number of machine words in 64 bits.
-const IN_64: usize = (u64::BITS / usize::BITS) as usize;
-
 /// Packs bits into words, the first bit lowest in the first word; unused bits are 0.
-pub(crate) fn to_words(bits: &BitVec) -> Vec<u64> {
-    let join = |parts: &[usize]| parts.iter().rev().fold(0, |word, &part| up(word) | part as u64);
-    let mut words: Vec<u64> = bits.as_raw_slice().chunks(IN_64).map(join).collect();
-    if let (Some(last), unused @ 1..) = (words.last_mut(), words_for(bits.len()) * 64 - bits.len()) {
-        *last &= u64::MAX >> unused;
-    }
-    words
+fn to_words(bits: &BitVec) -> Vec<u64> {
+    bits.chunks(64).map(|part| part.load_le()).collect()
 }
 
 /// Unpacks `len` bits from such words; missing bits are 0.
 pub fn from_words(words: &[u64], len: usize) -> BitVec {
-    let split = |&word: &u64| (0..IN_64).map(move |part| (word >> (part as u32 * usize::BITS)) as usize);
-    let mut bits = BitVec::from_vec(words.iter().flat_map(split).collect());
-    bits.resize(len, false);
+    let mut bits = BitVec::repeat(false, len);
+    bits.chunks_mut(64).zip(words).for_each(|(part, &word)| part.store_le(word));
     bits
-}
-
-/// Number of words that hold `len` bits.
-fn words_for(len: usize) -> usize {
-    len.div_ceil(64)
-}
-
-/// Shifts a word up by one machine word.
-fn up(word: u64) -> u64 {
-    word.checked_shl(usize::BITS).unwrap_or(0)
 }
 
 /// Relative error allowed in the sum of an expectation, for rounding over very many increments.
 const ROUNDING: f64 = 1e-6;
 
-/// Number of increments that no walk reaches.
 const MOST_INCREMENTS: u64 = 1 << 62;
-
-/// Numbers of a checkpoint that a walk relies on, and the supply of that walk.
-///
-/// Checksums protect a checkpoint from accidents, not from forgery with new checksums. A forged state may
-/// give wrong results, but it must not index beyond a column, overflow a sum, or walk for ever.
-struct Forgery<'a> {
-    pub(crate) supply: &'a Supply,
-    pub(crate) increment: u64,
-    pub(crate) tally: &'a Tally,
-}
-
-impl Forgery<'_> {
-    /// Tells if chunks can hold this many moving particles: at most as many as were inserted into each.
-    pub(crate) fn live_can_be(&self, live: &[u32]) -> bool {
-        let inserted = self.supply.inserted(self.increment);
-        let into = |chunk: usize| inserted.saturating_sub((chunk * CHUNK) as u64).min(CHUNK as u64);
-        live.iter().enumerate().all(|(chunk, &n)| u64::from(n) <= into(chunk))
-    }
-
-    /// Finds an impossible number in a state whose columns have the right lengths and whose tally is
-    /// consistent.
-    pub(crate) fn fault(&self, state: &State) -> Option<&'static str> {
-        let (tally, supply) = (self.tally, self.supply);
-        let passive = supply.passive_inserted(self.increment);
-        let inserting = self.increment < supply.increments();
-        if self.increment > MOST_INCREMENTS || state.finished != (!inserting && tally.moving == 0) {
-            return Some("increment");
-        }
-        if u128::from(tally.inserted) != u128::from(supply.inserted(self.increment)) + u128::from(passive) {
-            return Some("number of particles");
-        }
-        // Trapped particles stay in the columns.
-        let live: u128 = state.particles.live.iter().map(|&n| u128::from(n)).sum();
-        let still = match &state.passive {
-            Passive::OneByOne => 0,
-            Passive::Counts(moving) => sum(moving),
-            Passive::Expected(expected) => {
-                if !self.expectation_can_be(expected, passive, state) {
-                    return Some("expectation");
-                }
-                u128::from(expected.sums.inserted - expected.sums.counted.at_rest)
-            }
-        };
-        if live + still != u128::from(tally.moving) + u128::from(tally.trapped) {
-            return Some("number of moving particles");
-        }
-        let columns = [&state.retained_in_constrictions, &state.retained_in_voids];
-        let sizes = [&state.eroded_sizes, &state.retained_sizes];
-        let numbers = columns.into_iter().chain(sizes.map(|sizes| &sizes.number));
-        if numbers.into_iter().any(|column| sum(column) > u128::from(tally.inserted)) {
-            return Some("number of retained or eroded particles");
-        }
-        let masses = sizes.into_iter().flat_map(|sizes| &sizes.mass).copied();
-        let largest = f64::from(tally.largest_eroded);
-        let mut masses = masses.chain([tally.inserted_mass, tally.eroded_mass, largest]);
-        if masses.any(|mass| !mass.is_finite()) {
-            return Some("mass");
-        }
-        let is_past = |increment: u64| (1..=self.increment).contains(&increment);
-        (!state.history.iter().all(|b| is_past(b.increment))).then_some("history")
-    }
-
-    /// Tells if an expectation is valid: non-negative numbers that sum to the number inserted, with their
-    /// integer counts included in the tally.
-    fn expectation_can_be(&self, expected: &Expected, inserted: u64, state: &State) -> bool {
-        let (sums, counted) = (&expected.sums, &expected.sums.counted);
-        let columns = || expected.moving.iter().chain(&expected.retained);
-        let is_number = |n: &f64| n.is_finite() && *n >= 0.0;
-        let whole = columns().sum::<f64>() + sums.eroded;
-        let retained = sum(&expected.counted_retained);
-        let in_voids = state.retained_in_voids.iter();
-        columns().chain([&sums.eroded, &sums.moves]).all(is_number)
-            && sums.inserted == inserted
-            && (whole - inserted as f64).abs() <= 1.0 + ROUNDING * inserted as f64
-            && counted.eroded <= counted.at_rest
-            && counted.at_rest <= inserted
-            && counted.eroded <= self.tally.eroded
-            && counted.at_rest - counted.eroded <= self.tally.retained_in_voids
-            && retained == u128::from(counted.at_rest - counted.eroded)
-            && counted.moves == (sums.moves + 0.5).floor() as u64
-            && in_voids.zip(&expected.counted_retained).all(|(all, counted)| counted <= all)
-    }
-}
 
 fn sum(column: &[u64]) -> u128 {
     column.iter().map(|&n| u128::from(n)).sum()
@@ -457,15 +404,10 @@ mod tests {
     #[test]
     fn bits_come_back_from_words_and_stand_in_them_in_order() {
         for len in [0, 1, 31, 32, 33, 63, 64, 65, 127, 128, 1000] {
-            let bits_where = |is: fn(usize) -> bool| (0..len).map(is).collect::<BitVec>();
-            for bits in [
-                bits_where(|_| false),
-                bits_where(|_| true),
-                bits_where(|i| i % 3 == 1),
-                bits_where(|i| i * i % 7 < 3),
-            ] {
+            for is_set in [|_| false, |_| true, |i| i % 3 == 1, |i| i * i % 7 < 3] as [fn(usize) -> bool; 4] {
+                let bits = (0..len).map(is_set).collect::<BitVec>();
                 let words = to_words(&bits);
-                assert_eq!(words.len(), words_for(len));
+                assert_eq!(words.len(), len.div_ceil(64));
                 for at in 0..64 * words.len() {
                     let is = words[at / 64] >> (at % 64) & 1 == 1;
                     assert_eq!(is, bits.get(at).is_some_and(|bit| *bit), "bit {at} of {len}");

@@ -1,6 +1,6 @@
 //! State of a run: columns, independent of the engine.
 
-use super::openings::{Ways, Weighed};
+use super::openings::Ways;
 use super::supply::passive_limit;
 use super::tally::cube;
 use super::{Clogged, Openings, Passive, SizeClasses, SizeCounts, Supply, Tally};
@@ -193,8 +193,8 @@ impl State {
         Key { seed: self.seed, purpose, run: self.run, increment: self.increment, chunk: 0 }
     }
 
-    /// Open exits.
-    pub(super) fn ways<'a>(&'a self, weighed: Weighed<'a>) -> Ways<'a> {
+    /// Open exits, with the widths to which their weights refer.
+    pub(super) fn ways<'a>(&'a self, weighed: Option<&'a [f32]>) -> Ways<'a> {
         match &self.openings {
             None => Ways::Unblocked(&self.blocked),
             Some(openings) => Ways::Openings(&openings.widths, weighed),

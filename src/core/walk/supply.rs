@@ -20,7 +20,6 @@ pub struct Supply {
     guide: SizeGuide,
     /// Cumulative number of particles inserted one by one; entry `t - 1` is increment `t`.
     inserted: Vec<u64>,
-    /// Particles kept as counts.
     passive: PassiveSupply,
     /// Strata of start nodes and sizes, if these are not independent.
     strata: Option<Strata>,
@@ -68,7 +67,6 @@ impl Supply {
         Self { leaves_openings, ..self }
     }
 
-    /// Tells if blocked constrictions leave openings.
     pub(crate) fn leaves_openings(&self) -> bool {
         self.leaves_openings
     }
@@ -91,38 +89,32 @@ impl Supply {
     /// number in each increment is drawn for run `run` of `seed`.
     pub fn with_passive_part(self, passive_words: u128, expected: bool, seed: u64, run: u64) -> Self {
         let increments = 1..=self.increments();
-        let share = |t| self.inserted(t) - self.inserted(t - 1);
+        let key = |increment| Key { seed, purpose: Purpose::CoarseShare, run, increment, chunk: 0 };
         let coarse: Vec<u64> = match &self.strata {
-            None => increments.map(|t| coarse_share(share(t), passive_words, seed, run, t)).collect(),
+            None => increments
+                .scan(0, |sum, t| {
+                    let share = self.inserted(t) - self.inserted(t - 1);
+                    *sum += coarse_share(share, passive_words, key(t));
+                    Some(*sum)
+                })
+                .collect(),
             Some(_) => {
-                let key = Key { seed, purpose: Purpose::CoarseShare, run, increment: 0, chunk: 0 };
-                let word = key.words().at(0);
-                let until = |t| coarse_until(self.inserted(t), (1 << 64) - passive_words, word);
-                increments.map(|t| until(t) - until(t - 1)).collect()
+                let (coarse_words, word) = ((1 << 64) - passive_words, key(0).words().at(0));
+                increments.map(|t| coarse_until(self.inserted(t), coarse_words, word)).collect()
             }
         };
-        let parts = Self::coarse_part(self.sampler.clone(), passive_words as u64, &coarse);
-        let inserted = self.inserted.iter().zip(&parts.inserted).map(|(all, coarse)| all - coarse).collect();
-        let passive = PassiveSupply { inserted, words: passive_words, expected };
-        let parts = Self { passive, arching: self.arching, leaves_openings: self.leaves_openings, ..parts };
-        match self.strata {
-            None => parts,
-            Some(_) => parts.stratified(seed, run),
-        }
+        let inserted = self.inserted.iter().zip(&coarse).map(|(all, coarse)| all - coarse).collect();
+        let (is_stratified, first_word) = (self.is_stratified(), passive_words as u64);
+        let parts = Self {
+            guide: self.sampler.guide_from(first_word),
+            first_word,
+            inserted: coarse,
+            passive: PassiveSupply { inserted, words: passive_words, expected },
+            ..self
+        };
+        if is_stratified { parts.stratified(seed, run) } else { parts }
     }
 
-    /// Creates a supply of the sizes drawn by words from `first_word` on, with `shares[t - 1]` particles
-    /// in increment `t`.
-    pub(crate) fn coarse_part(sampler: SizeSampler, first_word: u64, shares: &[u64]) -> Self {
-        let running = shares.iter().scan(0, |sum, &share| {
-            *sum += share;
-            Some(*sum)
-        });
-        let (inserted, guide) = (running.collect(), sampler.guide_from(first_word));
-        Self { guide, first_word, inserted, ..Self::new(sampler, 0, 1) }
-    }
-
-    /// Number of increments in which particles are inserted.
     pub(crate) fn increments(&self) -> u64 {
         self.inserted.len() as u64
     }
@@ -137,7 +129,6 @@ impl Supply {
         running(&self.passive.inserted, increment)
     }
 
-    /// Words below this value draw particles kept as counts.
     pub(crate) fn passive_words(&self) -> u128 {
         self.passive.words
     }
@@ -157,7 +148,6 @@ impl Supply {
         self.strata.as_ref().map(|strata| strata.increment(increment, count))
     }
 
-    /// Tells if start nodes are spread evenly.
     pub(crate) fn is_stratified(&self) -> bool {
         self.strata.is_some()
     }
@@ -178,7 +168,6 @@ impl Supply {
         self.inserted(self.increments())
     }
 
-    /// Diameter of the base particle drawn by `word`.
     #[inline]
     pub(crate) fn diameter(&self, word: u64) -> f32 {
         self.sampler.diameter(self.word(word))
@@ -196,7 +185,6 @@ impl Supply {
         self.sampler.fill_guided(&self.guide, words, out);
     }
 
-    /// Word of the sampler for a random word.
     #[inline]
     fn word(&self, word: u64) -> u64 {
         match self.first_word {
@@ -214,16 +202,13 @@ impl Supply {
 pub(super) fn passive_limit(arching: Option<&Arching>, leaves_openings: bool, finest: f32) -> f32 {
     match arching {
         _ if leaves_openings => 0.0,
-        Some(arching) => arching.law.passive_limit(finest),
-        None => finest,
+        arching => arching.map_or(finest, |arching| arching.law.passive_limit(finest)),
     }
 }
 
 fn running(sums: &[u64], increment: u64) -> u64 {
-    match (increment, sums.len()) {
-        (0, _) | (_, 0) => 0,
-        (t, increments) => sums[(t as usize).min(increments) - 1],
-    }
+    let entries = (increment as usize).min(sums.len());
+    entries.checked_sub(1).map_or(0, |last| sums[last])
 }
 
 /// Sampling of start nodes and sizes of the base particles.
@@ -246,10 +231,7 @@ impl Sampling {
 
     /// Name of the sampling in a scene.
     pub fn name(self) -> &'static str {
-        match self {
-            Sampling::Independent => "independent",
-            Sampling::Stratified => "stratified",
-        }
+        ["independent", "stratified"][self as usize]
     }
 }
 
@@ -258,9 +240,8 @@ impl Sampling {
 ///
 /// A run of `T` increments that inserts at most `K` particles in each has `T K` strata of equal probability:
 /// `K` groups of `T`, finest first. Particle `m` of increment `t` takes group `P_t(m)`, and in it stratum
-/// `Q_k(t - 1)`; `P` and `Q` are keyed permutations. So the sizes of each increment and of the whole run are
-/// stratified. The `n` particles of an increment divide the start nodes into `n` equal parts, and each takes
-/// a place in its part. No permutation is needed, as the order of particles does not affect the walk.
+/// `Q_k(t - 1)`; `P` and `Q` are keyed permutations. The `n` particles of an increment divide the start nodes
+/// into `n` equal parts, and each takes a place in its part.
 #[derive(Clone, Debug)]
 struct Strata {
     seed: u64,
@@ -287,17 +268,10 @@ impl Strata {
         }
     }
 
-    /// Strata of one increment that inserts `count` particles.
     pub(crate) fn increment(&self, increment: u64, count: u64) -> IncrementStrata<'_> {
-        let key =
-            |increment| Key { seed: self.seed, purpose: Purpose::Strata, run: self.run, increment, chunk: 0 };
-        IncrementStrata {
-            strata: self,
-            increment,
-            count,
-            groups: key(increment).words(),
-            order: key(0).words(),
-        }
+        let Self { seed, run, .. } = *self;
+        let words = |increment| Key { seed, purpose: Purpose::Strata, run, increment, chunk: 0 }.words();
+        IncrementStrata { strata: self, increment, count, groups: words(increment), order: words(0) }
     }
 }
 
@@ -381,7 +355,6 @@ impl Permutation {
         }
     }
 
-    /// Entry `element` of a shuffled list.
     fn shuffled(&self, element: u64, words: Words, base: u64) -> u64 {
         let mut list: [u64; SHUFFLED] = std::array::from_fn(|k| k as u64);
         for k in 0..=element {

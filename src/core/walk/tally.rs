@@ -48,12 +48,22 @@ fn is_zero<T: Default + PartialEq>(number: &T) -> bool {
 }
 
 impl Tally {
-    /// Counts every moving particle as trapped.
-    pub(super) fn trap_all_moving(&mut self) {
-        self.trapped += std::mem::take(&mut self.moving);
+    /// Adds the events of a chunk in an increment.
+    pub(super) fn add(&mut self, chunk: &Self) {
+        self.inserted += chunk.inserted;
+        self.inserted_mass += chunk.inserted_mass;
+        self.passive_inserted += chunk.passive_inserted;
+        self.particle_moves = self.particle_moves.saturating_add(chunk.particle_moves);
+        self.eroded += chunk.eroded;
+        self.eroded_mass += chunk.eroded_mass;
+        self.passive_eroded += chunk.passive_eroded;
+        self.largest_eroded = self.largest_eroded.max(chunk.largest_eroded);
+        self.retained_in_constrictions += chunk.retained_in_constrictions;
+        self.retained_in_voids += chunk.retained_in_voids;
+        let gone = chunk.eroded + chunk.retained_in_constrictions + chunk.retained_in_voids;
+        self.moving = self.moving + chunk.inserted - gone;
     }
 
-    /// Checks that all inserted particles are accounted for.
     pub(super) fn check(&self, increment: u64) -> Result<(), WalkError> {
         let all =
             [self.moving, self.eroded, self.retained_in_constrictions, self.retained_in_voids, self.trapped];
@@ -135,7 +145,6 @@ pub struct SizeCounts {
 }
 
 impl SizeCounts {
-    /// Creates empty counts.
     pub(crate) fn new(classes: &SizeClasses) -> Self {
         Self { number: vec![0; classes.upper.len()], mass: vec![0.0; classes.upper.len()] }
     }
@@ -152,14 +161,9 @@ impl SizeCounts {
         self.mass.fill(0.0);
     }
 
-    /// Adds the numbers and masses of `other`.
     pub(crate) fn merge(&mut self, other: &Self) {
-        for (sum, n) in self.number.iter_mut().zip(&other.number) {
-            *sum += n;
-        }
-        for (sum, m) in self.mass.iter_mut().zip(&other.mass) {
-            *sum += m;
-        }
+        self.number.iter_mut().zip(&other.number).for_each(|(sum, n)| *sum += n);
+        self.mass.iter_mut().zip(&other.mass).for_each(|(sum, mass)| *sum += mass);
     }
 }
 

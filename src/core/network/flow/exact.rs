@@ -1,13 +1,11 @@
 //! Fluxes by elimination without subtraction, for any contrast of conductances.
 //!
 //! A void is eliminated by joining each two of its neighbours by `g_j g_k / sum of g`. All numbers are
-//! positive and are only multiplied, divided and added, so each is accurate to a few roundings, however
-//! much conductances differ (Grassmann, Taksar & Heyman 1985, doi:10.1287/opre.33.5.1107). Pressures alone
-//! are not enough: across a constriction of very high conductance they differ by less than a float can
-//! hold. So pressure differences (falls) are computed instead, from the last void to the first: the fall
-//! from a void to a neighbour is the mean of the falls from all its neighbours to that neighbour, weighted
-//! by conductance. A fall times a conductance is a fraction of the total flow, so the error of a flux is
-//! at most some roundings of the total flow.
+//! positive and are only multiplied, divided and added, so each is accurate to a few roundings (Grassmann,
+//! Taksar & Heyman 1985, doi:10.1287/opre.33.5.1107). Across a constriction of very high conductance
+//! pressures differ by less than a float can hold, so differences (falls) are computed instead, from the last
+//! void to the first: the fall from a void to a neighbour is the mean of the falls from all its neighbours to
+//! that neighbour, weighted by conductance.
 
 use super::system::PAIRS;
 use std::cmp::Reverse;
@@ -124,7 +122,6 @@ impl Eliminated {
         self.rows[node] = row.iter().zip(falls).map(|(other, fall)| Neighbour { fall, ..*other }).collect();
     }
 
-    /// Pressure difference between a node and a neighbour.
     pub(super) fn fall(&self, one: u32, other: u32) -> f64 {
         let [first, second] = [one, other].map(|node| self.turn[node as usize]);
         match (first == LAST, second == LAST) {

@@ -103,9 +103,7 @@ pub(in crate::network) struct Fit {
 /// Factor reused for successive systems with the same rows.
 pub(in crate::network) struct Kept {
     factor: Factor,
-    /// Number of rounds for the system of the factor.
     pub(crate) rounds: usize,
-    /// Number of exits closed since.
     pub(crate) closed: usize,
 }
 

@@ -14,7 +14,6 @@ pub(super) struct ExpectedFlow {
     by_network: ByNetwork,
     /// Voids that retain particles, in ascending order.
     pub(crate) holding: Vec<u32>,
-    /// Total retained.
     pub(crate) rests: f64,
 }
 
@@ -145,7 +144,6 @@ struct LatticeFlow {
     across: [usize; 2],
     /// Fraction of each void that takes the first exit, and fraction of the rest that takes the second.
     shares: [Vec<f64>; 2],
-    /// Voids without an open exit, in ascending order.
     dead_ends: Vec<u32>,
     /// Outflow of the previous row along y, by void of a row.
     along_y: Vec<f64>,
@@ -458,72 +456,37 @@ mod tests {
         all
     }
 
-    /// Rows and single voids give the same bits; sums over all voids agree to rounding.
+    /// Rows and single voids give the same bits with any instruction set, for whole vectors and remainders of
+    /// eight and four; sums over all voids agree to rounding. A lattice with a single row along y may add
+    /// three numbers in a different order.
     #[test]
     fn both_steps_move_the_same() {
-        for shape in [[5, 4, 6], [8, 3, 5], [17, 2, 4], [29, 3, 4], [9, 10, 3], [1, 5, 4], [2, 2, 1]] {
+        let shapes = [
+            [[5, 4, 6], [8, 3, 5], [17, 2, 4], [29, 3, 4], [9, 10, 3], [1, 5, 4], [2, 2, 1], [13, 7, 6]],
+            [[16, 2, 3], [7, 3, 2], [3, 3, 1], [6, 1, 4], [1, 1, 5], [4, 1, 4], [12, 1, 3], [31, 1, 4]],
+        ];
+        for (at, shape) in shapes.concat().into_iter().enumerate() {
             let network = lattice(shape);
             let one_by_one = walked(&network, true, Isa::Portable);
-            for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
-                let rows = walked(&network, false, isa);
-                for ((a, held_a), (b, held_b)) in one_by_one.iter().zip(&rows) {
-                    assert_eq!(
-                        (&a.moving, &a.retained, held_a),
-                        (&b.moving, &b.retained, held_b),
-                        "{shape:?} {isa:?}"
-                    );
-                    assert_eq!(a.sums.eroded.to_bits(), b.sums.eroded.to_bits());
-                    assert!((a.sums.moves / b.sums.moves - 1.0).abs() < 1e-14);
-                }
-            }
-            let (last, held) = one_by_one.last().unwrap();
-            assert!(held.len() > 1 || shape[2] == 1, "{shape:?}: nothing came to rest");
-            let left = last.moving.iter().chain(&last.retained).sum::<f64>() + last.sums.eroded;
-            assert!((left / last.sums.inserted as f64 - 1.0).abs() < 1e-12);
-        }
-    }
-
-    /// A lattice with a single row along y may add three numbers in a different order.
-    #[test]
-    fn one_row_moves_the_same_to_rounding() {
-        for shape in [[6, 1, 4], [1, 1, 5]] {
-            let network = lattice(shape);
-            let [one_by_one, rows] = [true, false].map(|general| walked(&network, general, Isa::Portable));
-            for ((a, _), (b, _)) in one_by_one.iter().zip(&rows) {
-                for (a, b) in a.moving.iter().zip(&b.moving) {
-                    assert!((a - b).abs() <= 1e-12 * a, "{shape:?}: {a} {b}");
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn every_instruction_set_sums_to_the_same_bits() {
-        // Whole vectors and remainders of eight and four, one row, one void across, one layer.
-        for shape in
-            [[13, 7, 6], [1, 1, 5], [4, 1, 4], [12, 1, 3], [16, 2, 3], [31, 1, 4], [7, 3, 2], [3, 3, 1]]
-        {
-            let network = lattice(shape);
             let portable = walked(&network, false, Isa::Portable);
             for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
                 assert_eq!(walked(&network, false, isa), portable, "{shape:?} {isa:?}");
             }
-        }
-    }
-
-    /// Expectations are never NaN; if one were, all instruction sets would treat it alike.
-    #[test]
-    fn what_is_no_number_leaves_no_void_on_any_instruction_set() {
-        let network = lattice([13, 2, 3]);
-        let blocked: BitVec = BitVec::repeat(false, network.constrictions());
-        let shares = Shares::new(&network, Ways::Unblocked(&blocked));
-        for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
-            let mut expected = Expected::new(network.voids());
-            let mut flow = ExpectedFlow::new(&network, &shares, &expected);
-            flow.set_isa(isa);
-            expected.moving[..26].fill(f64::NAN);
-            flow.step(&network, &shares, &mut expected);
-            assert!(expected.moving.iter().all(|n| *n == 0.0), "{isa:?}");
+            for ((a, held_a), (b, held_b)) in one_by_one.iter().zip(&portable) {
+                if shape[1] == 1 {
+                    let pairs = a.moving.iter().zip(&b.moving);
+                    pairs.for_each(|(a, b)| assert!((a - b).abs() <= 1e-12 * a, "{shape:?}: {a} {b}"));
+                    continue;
+                }
+                assert_eq!((&a.moving, &a.retained, held_a), (&b.moving, &b.retained, held_b), "{shape:?}");
+                assert_eq!(a.sums.eroded.to_bits(), b.sums.eroded.to_bits());
+                assert!((a.sums.moves / b.sums.moves - 1.0).abs() < 1e-14);
+            }
+            let (last, held) = one_by_one.last().unwrap();
+            // The other lattices are small.
+            assert!(at > 6 || held.len() > 1 || shape[2] == 1, "{shape:?}: nothing came to rest");
+            let left = last.moving.iter().chain(&last.retained).sum::<f64>() + last.sums.eroded;
+            assert!((left / last.sums.inserted as f64 - 1.0).abs() < 1e-12);
         }
     }
 }

@@ -2,10 +2,8 @@
 //!
 //! The voids are divided into blocks of fixed size, each with its own stream. Workers take the next free
 //! block and add the moving particles to their own column; the columns are then added. Integer sums do not
-//! depend on order, so the result does not depend on the number of workers.
-//!
-//! A few particles in a void with three exits choose individually, with one random word for both
-//! thresholds. Larger counts are split exit by exit, with draws for many voids at once.
+//! depend on order. A few particles in a void with three exits choose individually, with one random word for
+//! both thresholds. Larger counts are split exit by exit, with draws for many voids at once.
 
 use super::binomial::{CERTAIN, Draws, FEW, FewTrials, Portable, fill, one};
 use super::passive::fraction;
@@ -33,7 +31,6 @@ const INSERTION: u64 = u64::MAX;
 /// Number of occupied blocks below which waking other threads does not pay.
 const ALONE: usize = 4;
 
-/// Result of one increment for the passive particles.
 #[derive(Debug, Default)]
 pub(super) struct Moved {
     pub(crate) moves: u64,
@@ -45,7 +42,6 @@ pub(super) struct Moved {
 
 /// Data for moving counts; rebuilt from network and counts, never stored.
 pub(super) struct Flow {
-    /// Downstream blocks of each block.
     downstream: Vec<Vec<u32>>,
     occupied: Vec<bool>,
     workers: Vec<Worker>,
@@ -153,7 +149,6 @@ impl Flow {
         self.gather(&occupied, moving)
     }
 
-    /// Adds the columns and counts of all workers.
     fn gather(&mut self, occupied: &[usize], moving: &mut [u64]) -> Moved {
         for &block in occupied {
             let end = moving.len().min((block + 1) * BLOCK);
@@ -269,7 +264,7 @@ impl Worker {
             |constriction: usize, n: u64| next[(targets[constriction] as usize).min(outside)] += n;
         let mut draws = Draws::new(key);
         // SAFETY: as the caller promises.
-        let mut few = unsafe { F::begin(&draws) };
+        let mut few = unsafe { F::load(&draws) };
         let (first, mut many, mut waiting) = (voids.start, [0; BLOCK / 64], Vec::new());
         for (word, counts) in counts[voids].chunks(64).enumerate() {
             let [occupied, crowded] = occupied_and_crowded(counts);
@@ -299,7 +294,7 @@ impl Worker {
             }
             many[word] = occupied & !shut & (crowded | !of_three);
         }
-        few.end(&mut draws);
+        few.store(&mut draws);
         batch.rows = 0;
         for (word, many) in many.into_iter().enumerate() {
             for void in bits(many).map(|bit| first + 64 * word + bit) {
@@ -323,7 +318,6 @@ fn occupied_and_crowded(counts: &[u64]) -> [u64; 2] {
     counts.iter().enumerate().map(bit).fold([0; 2], |all, one| [all[0] | one[0], all[1] | one[1]])
 }
 
-/// Positions of the ones in a word, from the lowest on.
 #[inline(always)]
 fn bits(mut word: u64) -> impl Iterator<Item = usize> {
     std::iter::from_fn(move || {

@@ -3,21 +3,20 @@
 //! A base particle no coarser than any constriction open at the start of the run is *passive*: it cannot
 //! block anything, and voids have no capacity, so it affects no other particle. Coarser particles are
 //! walked one by one as usual; their number in an increment is binomial, with the exact word limit of the
-//! sampler as its probability. Passive particles move beside them as one count per void. In each increment
-//! new ones are put on the start nodes (multinomial), and the count of each void is split over the exits
-//! open at the start of the increment (conditional binomials). Individual passive particles are not
-//! distinguished. The distribution equals that of the walk one by one, without approximation.
+//! sampler as its probability. In each increment new passive particles are put on the start nodes
+//! (multinomial), and the count of each void is split over the exits open at the start of the increment
+//! (conditional binomials). The distribution equals that of the walk one by one, without approximation.
 //!
 //! # Streams
 //! Increment `t` of run `r` draws the number of coarse particles from (seed, coarse share, `r`, `t`, 0),
 //! the start nodes of the passive ones from (seed, passive, `r`, `t`, 2^64 - 1), the splits of block `b`
 //! of voids from (seed, passive, `r`, `t`, `b`), and sizes of the passive particles eroded or retained
-//! from (seed, passive size, `r`, `t`, 0). None of this depends on threads.
+//! from (seed, passive size, `r`, `t`, 0).
 //!
 //! # Expected
 //! Engine `expected` walks the same coarse particles and moves the expectation of the passive ones, given
-//! that history: the same results without the scatter of passive particles. Integers are rounded from running
-//! sums. A run ends when the expected number of moving particles that are not trapped is below 0.5.
+//! that history. Integers are rounded from running sums. A run ends when the expected number of moving
+//! particles that are not trapped is below 0.5.
 
 mod binomial;
 mod expected;
@@ -63,8 +62,6 @@ struct Trap {
     /// Number of blocked constrictions for which this is valid.
     blocked: u64,
     leads_out: Vec<bool>,
-    /// True if all voids lead out.
-    none: bool,
 }
 
 impl<'a> PassiveWalk<'a> {
@@ -119,52 +116,43 @@ impl<'a> PassiveWalk<'a> {
         }
     }
 
-    pub(crate) fn step(&mut self, network: &Network, state: &mut State) {
-        let (key, tally) = (state.key(Purpose::Passive), &mut state.tally);
-        match (&mut self.mover, &mut state.passive) {
-            (Mover::Counts(flow), Passive::Counts(moving)) => {
-                let before = flow.moving;
-                let moved = flow.step(network, &self.shares, key, moving);
-                // Counted afresh, so that the check of the tally is meaningful.
-                tally.moving = tally.moving - before + flow.moving;
-                tally.particle_moves = tally.particle_moves.saturating_add(moved.moves);
-                self.count(moved.eroded, &moved.stranded, state);
-            }
-            (Mover::Expected(flow), Passive::Expected(expected)) => {
-                flow.step(network, &self.shares, expected);
-                self.count_expected(None, state);
-            }
-            _ => unreachable!("the mover was made for this state"),
-        }
-    }
-
-    /// Performs `one_by_one`, which neither reads nor changes passive particles, and [`Self::step`]: in
+    /// Performs `one_by_one`, which neither reads nor changes passive particles, and moves these: in
     /// parallel if both take long enough.
-    pub(crate) fn step_beside(
+    pub(crate) fn step(
         &mut self,
         network: &Network,
         state: &mut State,
         one_by_one: impl FnOnce(&mut State) + Send,
     ) {
+        const OTHER: &str = "the mover was made for this state";
         let moving: u64 = state.particles.live.iter().map(|&live| u64::from(live)).sum();
         let is_long = network.voids() >= WORTH_A_THREAD && moving >= WORTH_A_THREAD as u64;
-        match (&mut self.mover, &mut state.passive) {
-            (Mover::Expected(flow), passive @ Passive::Expected(_))
-                if is_long && rayon::current_num_threads() > 1 =>
-            {
-                let mut apart = std::mem::replace(passive, Passive::OneByOne);
-                let shares = &self.shares;
-                let step = || match &mut apart {
-                    Passive::Expected(expected) => flow.step(network, shares, expected),
-                    _ => unreachable!("it was taken from the state"),
-                };
-                rayon::join(|| one_by_one(state), step);
+        let shares = &self.shares;
+        match &mut self.mover {
+            Mover::Counts(flow) => {
+                one_by_one(state);
+                let key = state.key(Purpose::Passive);
+                let Passive::Counts(moving) = &mut state.passive else { unreachable!("{OTHER}") };
+                let before = flow.moving;
+                let moved = flow.step(network, shares, key, moving);
+                // Counted afresh, so that the check of the tally is meaningful.
+                let tally = &mut state.tally;
+                tally.moving = tally.moving - before + flow.moving;
+                tally.particle_moves = tally.particle_moves.saturating_add(moved.moves);
+                self.count(moved.eroded, &moved.stranded, state);
+            }
+            Mover::Expected(flow) => {
+                let mut apart = std::mem::replace(&mut state.passive, Passive::OneByOne);
+                let Passive::Expected(expected) = &mut apart else { unreachable!("{OTHER}") };
+                let mut step = || flow.step(network, shares, expected);
+                if is_long && rayon::current_num_threads() > 1 {
+                    rayon::join(|| one_by_one(state), step);
+                } else {
+                    one_by_one(state);
+                    step();
+                }
                 state.passive = apart;
                 self.count_expected(None, state);
-            }
-            _ => {
-                one_by_one(state);
-                self.step(network, state);
             }
         }
     }
@@ -219,7 +207,6 @@ impl<'a> PassiveWalk<'a> {
         }
     }
 
-    /// Discards the trap after exits have changed direction.
     pub(crate) fn forget_trap(&mut self) {
         self.trap = None;
     }
@@ -235,7 +222,8 @@ impl<'a> PassiveWalk<'a> {
                     return true;
                 }
                 let trap = Trap::renew(&mut self.trap, network, state);
-                return !trap.none && moving.iter().zip(&trap.leads_out).all(|(&n, &out)| n == 0 || !out);
+                // Starts with the last voids, where the last particles are.
+                return moving.iter().zip(&trap.leads_out).rev().all(|(&n, &out)| n == 0 || !out);
             }
             Passive::Expected(expected) => {
                 let trap = Trap::renew(&mut self.trap, network, state);
@@ -262,10 +250,9 @@ impl Trap {
     fn renew<'t>(known: &'t mut Option<Self>, network: &Network, state: &State) -> &'t Self {
         let blocked = state.tally.blocked;
         known.take_if(|trap| trap.blocked != blocked);
-        known.get_or_insert_with(|| {
-            let leads_out = leads_out(network, |c| !state.is_closed(network, c));
-            let none = leads_out.iter().all(|&out| out);
-            Self { blocked, leads_out, none }
+        known.get_or_insert_with(|| Self {
+            blocked,
+            leads_out: leads_out(network, |c| !state.is_closed(network, c)),
         })
     }
 }
@@ -423,7 +410,7 @@ mod tests {
         for t in 1..=increments as u64 {
             state.increment = t;
             passive.insert(&network, &supply, &mut state);
-            passive.step(&network, &mut state);
+            passive.step(&network, &mut state, |_| ());
             inserted.push(state.tally.passive_inserted);
             eroded.push(state.tally.passive_eroded);
             if let (LOOKED_AT, Passive::Counts(counts)) = (t as usize, &state.passive) {

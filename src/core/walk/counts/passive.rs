@@ -3,12 +3,12 @@
 //! The fate of a passive particle does not depend on its size, so the sizes of those eroded or retained
 //! are independent draws from the passive part of the base: the numbers by class are multinomial and drawn
 //! exactly, and the largest particle is drawn from the coarsest class that is not empty. Masses are counts
-//! times a mean mass: the mean of the passive part for the sums of a run, of the class for size curves.
+//! times a mean mass: of the passive part for the sums of a run, of the class for size curves.
 
 use super::binomial::{CERTAIN, Draws, one};
 use crate::gradation::SizeSampler;
 use crate::network::Network;
-use crate::stream::{Key, Purpose};
+use crate::stream::Key;
 use crate::walk::tally::{SizeClasses, SizeCounts};
 
 /// Moving passive particles of a run.
@@ -163,8 +163,6 @@ pub(super) struct PassiveSizes<'a> {
     sampler: &'a SizeSampler,
     /// Number of words up to the upper bound of each class; the last is the number of passive words.
     words: Vec<u128>,
-    /// Fraction of the passive words up to the upper bound of each class.
-    share: Vec<f64>,
     /// Probability that a passive particle not finer than the class is in it.
     probability: Vec<u64>,
     mean_cube: Vec<f64>,
@@ -172,7 +170,6 @@ pub(super) struct PassiveSizes<'a> {
 }
 
 impl<'a> PassiveSizes<'a> {
-    /// Creates the part of the base drawn by words below `passive_words`.
     pub(crate) fn new(sampler: &'a SizeSampler, passive_words: u128, classes: &SizeClasses) -> Self {
         let bounds = classes.upper();
         let mut words: Vec<u128> =
@@ -187,11 +184,9 @@ impl<'a> PassiveSizes<'a> {
             before = upto;
         }
         let mean_cube_of_all = sampler.part(0..passive_words).mean_cube().unwrap_or(0.0);
-        let share = words.iter().map(|&upto| upto as f64 / passive_words as f64).collect();
-        Self { sampler, words, share, probability, mean_cube, mean_cube_of_all }
+        Self { sampler, words, probability, mean_cube, mean_cube_of_all }
     }
 
-    /// Expected mass of `count` passive particles.
     pub(crate) fn mass(&self, count: u64) -> f64 {
         count as f64 * self.mean_cube_of_all
     }
@@ -224,7 +219,8 @@ impl<'a> PassiveSizes<'a> {
         }
         let all = *self.words.last().expect("at least one class");
         let (mut last_before, mut last_after) = (0, 0);
-        for (class, (&words, &share)) in self.words.iter().zip(&self.share).enumerate() {
+        for (class, &words) in self.words.iter().enumerate() {
+            let share = words as f64 / all as f64;
             let [now_before, now_after] = [before, after].map(|count| scaled(count, words, all, share));
             let (old, new) = (now_before - last_before, now_after - last_after);
             into.number[class] = into.number[class] + new - old;
@@ -233,24 +229,16 @@ impl<'a> PassiveSizes<'a> {
         }
     }
 
-    /// Median of the largest of `count` passive particles.
     pub(crate) fn median_largest(&self, count: u64) -> Option<f32> {
         let all = *self.words.last().expect("at least one class");
         self.sampler.part(0..all).largest_of(count, 1 << 63)
     }
 }
 
-/// Number of coarse particles among the `share` base particles of an increment, if `passive_words` of the
-/// sampler's words draw passive ones.
-pub(in crate::walk) fn coarse_share(
-    share: u64,
-    passive_words: u128,
-    seed: u64,
-    run: u64,
-    increment: u64,
-) -> u64 {
+/// Number of coarse particles among `share` base particles, if `passive_words` of the sampler's words draw
+/// passive ones.
+pub(in crate::walk) fn coarse_share(share: u64, passive_words: u128, key: Key) -> u64 {
     let all = 1u128 << 64;
-    let key = Key { seed, purpose: Purpose::CoarseShare, run, increment, chunk: 0 };
     one(&mut Draws::new(key), share, fraction(all - passive_words, all))
 }
 
@@ -296,6 +284,7 @@ fn scaled(count: u64, words: u128, all: u128, share: f64) -> u64 {
 mod tests {
     use super::*;
     use crate::gradation::Gradation;
+    use crate::stream::Purpose;
 
     fn draws(increment: u64) -> Draws {
         Draws::new(Key { seed: 5, purpose: Purpose::PassiveSize, run: 1, increment, chunk: 0 })

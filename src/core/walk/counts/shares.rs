@@ -22,7 +22,6 @@ pub(in crate::walk) enum Way {
     Other,
 }
 
-/// Shares of the passive particles of every void by exit.
 #[derive(Clone)]
 pub(in crate::walk) struct Shares {
     /// Probability, by constriction, that a particle which has not taken an earlier exit of its void takes
@@ -31,9 +30,7 @@ pub(in crate::walk) struct Shares {
     /// Number of exits to the next open one of the void, by constriction; no open exit is skipped.
     on: Vec<u8>,
     route: Vec<Way>,
-    /// Bit set for each void without an open exit.
     shut: Vec<u64>,
-    /// Bit set for each void with three exits.
     of_three: Vec<u64>,
     /// Upper sixteen bits of the thresholds of each void; 0 if it does not have three exits.
     tops: Vec<[u16; 2]>,
@@ -164,7 +161,6 @@ impl Shares {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::network::{ExitRule, Link, LinkEnd, LinkedVoids};
     use bitvec::vec::BitVec;
 
     fn shares_of(diameters: [f32; 3], closed: [bool; 3]) -> (Vec<u64>, bool) {
@@ -216,18 +212,9 @@ mod tests {
     fn the_next_open_exit_is_found_beyond_any_number_of_closed_ones() {
         let open = [0, 1, 256, 257, 600, 1111];
         for open in [&open[..], &open[2..], &open[4..5]] {
-            let link = |from, to| Link { from, to, diameter: 1.0, conductance: 1.0, rise: 1.0 };
-            let mut links = vec![link(LinkEnd::Void(0), LinkEnd::Outside); 1200];
-            links.push(link(LinkEnd::Outside, LinkEnd::Void(0)));
-            let voids = LinkedVoids {
-                layer: vec![0],
-                unit_mm: 1.0,
-                rule: ExitRule::Height,
-                ..LinkedVoids::default()
-            };
-            let network = Network::linked(voids, &links).unwrap();
-            let is_open = |c: usize| open.contains(&c) || c >= 1200;
-            let blocked: BitVec = (0..network.constrictions()).map(|c| !is_open(c)).collect();
+            let text = format!("from,to,diameter_mm\nstart,0,\n{}", "0,end,1\n".repeat(1200));
+            let network = Network::from_csv(text.as_bytes(), "n.csv", 1.0).unwrap();
+            let blocked: BitVec = (0..1200).map(|c| !open.contains(&c)).collect();
             let shares = Shares::new(&network, Ways::Unblocked(&blocked));
             let mut exit = shares.open_from(0);
             for (i, &is) in open.iter().enumerate() {
@@ -236,33 +223,5 @@ mod tests {
                 exit = if i + 1 < open.len() { shares.open_after(exit) } else { exit };
             }
         }
-    }
-
-    /// A void whose exits close and reopen is unchanged; its neighbours in the word of bits are unaffected.
-    #[test]
-    fn a_void_is_shut_and_opened_again() {
-        let diameters = (0..3 * 70).map(|c| 1.0 + 0.01 * c as f32).collect();
-        let network = Network::cubic_from_diameters([7, 5, 2], diameters, 1.0).unwrap();
-        let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
-        let open = Shares::new(&network, Ways::Unblocked(&blocked));
-        assert_eq!(open.shut_and_of_three(0), [0, u64::MAX]);
-        assert_eq!(open.shut_and_of_three(1), [0, 0b11_1111]);
-        let mut shares = Shares::new(&network, Ways::Unblocked(&blocked));
-        for (close, route, shut) in
-            [([2], Way::Second, 0), ([1], Way::First, 0), ([0], Way::None, 0b1_0000), ([0], Way::First, 0)]
-        {
-            for exit in close {
-                let is_closed = blocked[3 * 68 + exit];
-                blocked.set(3 * 68 + exit, !is_closed);
-            }
-            exits::of_each(&network, Ways::Unblocked(&blocked), [68], |exits| shares.set(&network, exits));
-            assert_eq!((shares.route(68), shares.shut_and_of_three(1)), (route, [shut, 0b11_1111]));
-            let tops = shares.thresholds_of_three(3 * 68).map(|t| (t >> 48) as u16);
-            assert_eq!((shares.tops(68), shares.tops(67)), (tops, open.tops(67)));
-        }
-        blocked.set(3 * 68 + 1, false);
-        blocked.set(3 * 68 + 2, false);
-        exits::of_each(&network, Ways::Unblocked(&blocked), [68], |exits| shares.set(&network, exits));
-        assert_eq!((shares.route(68), shares.tops(68)), (Way::Three, open.tops(68)));
     }
 }

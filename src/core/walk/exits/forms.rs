@@ -45,7 +45,8 @@ fn class_of(finest: f32, of_all: u32) -> u32 {
 }
 
 impl Lattice {
-    pub(crate) fn new(voids: usize, nx: u32, plane: u32, finest: u32) -> Self {
+    /// Creates a table without values; without `finest` it is read by widths.
+    pub(crate) fn new(voids: usize, nx: u32, plane: u32, finest: Option<f32>) -> Self {
         let moves = std::array::from_fn(|index| match index {
             0 | 2 => 1,
             1 | 3 => 1u32.wrapping_sub(nx),
@@ -54,7 +55,9 @@ impl Lattice {
             8..12 => 1 << 31,
             _ => plane,
         });
-        Self { plain: vec![0; voids], classed: vec![0; voids], moves, finest, by_widths: false, nx, plane }
+        let classed = vec![0; if finest.is_some() { voids } else { 0 }];
+        let (by_widths, finest) = (finest.is_none(), finest.map_or(0, f32::to_bits));
+        Self { plain: vec![0; voids], classed, moves, finest, by_widths, nx, plane }
     }
 
     pub(crate) fn set(&mut self, void: u32, thresholds: &[u64], last_open: Option<usize>, finest: f32) {
@@ -84,7 +87,6 @@ impl Lattice {
         self.plain[void as usize] = (second as u32) << 16 | (first as u32) << 2 | wraps;
     }
 
-    /// Words with or without classes.
     pub(crate) fn words<R: Reads>(&self) -> &[u32] {
         if R::CLASSED { &self.classed } else { &self.plain }
     }
@@ -92,12 +94,6 @@ impl Lattice {
     /// Mask of the bits of a word below the thresholds.
     pub(crate) const fn below<R: Reads>() -> u32 {
         if R::CLASSED { CLASS | 3 } else { 3 }
-    }
-
-    /// Tells from a plain word if no exit is open: thresholds of open exits rise.
-    #[inline(always)]
-    pub(crate) fn has_no_exit(plain: u32) -> bool {
-        plain & 0xfffc > plain >> 16
     }
 
     /// Exit picked by a draw; `None` if no exit is open, or if the bits of the word do not decide.
@@ -167,7 +163,7 @@ pub(crate) struct FewExits {
     pub(crate) is_few: bool,
 }
 
-pub(crate) const FEW_EXITS: usize = 8;
+const FEW_EXITS: usize = 8;
 
 /// Maximum number of exits counted without branches.
 const COUNTED: usize = 64;
@@ -227,14 +223,8 @@ impl FewExits {
 mod tests {
     use super::super::TWO_TO_64;
     use super::*;
-
-    /// Numbers from a linear congruential generator.
-    fn numbers(mut word: u64) -> impl FnMut() -> u64 {
-        move || {
-            word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            word >> 33
-        }
-    }
+    use crate::stream::{Key, Purpose};
+    use rand::Rng;
 
     fn thresholds_of(weight: &[f64]) -> Vec<u64> {
         let total: f64 = weight.iter().sum();
@@ -245,58 +235,29 @@ mod tests {
         sums.map(|sum| (sum / total * TWO_TO_64) as u64).collect()
     }
 
-    /// Any number of exits, some closed, and every sixteen-bit draw: the exit by definition for any other
-    /// bits, or no exit if the other bits decide.
+    /// Any number of exits, some closed, also at the end, and every sixteen-bit draw: the exit by definition
+    /// for any other bits, or no exit if the other bits decide. Voids with more exits than can be counted are
+    /// left to the slow path.
     #[test]
-    fn few_exits_are_chosen_as_by_the_definition() {
-        let mut next = numbers(1);
-        for _ in 0..300 {
-            let exits = 1 + next() % 14;
-            let weight_by = |next: u64| match next % 5 {
+    fn exits_are_chosen_as_by_the_definition() {
+        let mut draws =
+            Key { seed: 1, purpose: Purpose::Network, run: 0, increment: 0, chunk: 0 }.generator();
+        let mut next = || draws.next_u64() >> 33;
+        let few_exits = (0..300).map(|_| 0).chain([9, 40, 64, 65, 300, 3000, 65_535, 65_536]);
+        for exits in few_exits {
+            let count = if exits == 0 { 1 + next() as usize % 14 } else { exits };
+            let mut weight = |e: usize| match next() % 5 {
+                _ if exits > 0 && e + 3 > exits => 0.0,
                 0 | 1 => 0.0,
-                2 => 1e-9,
-                _ => (next % 97) as f64,
+                2 if exits == 0 => 1e-9,
+                _ => (1 + next() % 97) as f64,
             };
-            let weight: Vec<f64> = (0..exits).map(|_| weight_by(next())).collect();
+            let weight: Vec<f64> = (0..count).map(&mut weight).collect();
             let Some(last) = weight.iter().rposition(|&w| w > 0.0) else { continue };
             let thresholds = thresholds_of(&weight);
-            let few = FewExits::new(100, &thresholds, last);
-            let open = weight.iter().filter(|&&w| w > 0.0).count();
-            assert!(few.is_few || open > FEW_EXITS, "{weight:?}");
-            for draw in (0..=u16::MAX).filter(|_| few.is_few) {
-                let by = |low: u64| {
-                    let draw = u64::from(draw) << 48 | low;
-                    100 + thresholds.iter().position(|&t| draw < t).unwrap_or(last)
-                };
-                match few.chosen(draw) {
-                    Some(exit) => assert_eq!([exit; 2], [by(0), by((1 << 48) - 1)], "{weight:?} {draw}"),
-                    None => assert!(
-                        draw == u16::MAX || thresholds.iter().any(|&t| (t >> 48) as u16 == draw),
-                        "{weight:?} {draw}"
-                    ),
-                }
-            }
-        }
-    }
-
-    /// Many exits, some closed, also at the end: the exit by definition for every draw whose upper bits
-    /// decide. Other draws, and voids with more exits than can be counted, are left to the slow path.
-    #[test]
-    fn many_exits_are_chosen_as_by_looking_at_each() {
-        let mut next = numbers(5);
-        for exits in [9, 40, 64, 65, 300, 3000, 65_535, 65_536] {
-            let weight: Vec<f64> =
-                (0..exits)
-                    .map(|e| {
-                        if e + 3 > exits || next().is_multiple_of(4) { 0.0 } else { (1 + next() % 97) as f64 }
-                    })
-                    .collect();
-            let last = weight.iter().rposition(|&w| w > 0.0).unwrap();
-            let thresholds = thresholds_of(&weight);
             let few = FewExits::new(7, &thresholds, last);
-            if few.is_few {
-                continue;
-            }
+            let open = weight.iter().filter(|&&w| w > 0.0).count();
+            assert!(few.is_few || open > FEW_EXITS || last > 255, "{weight:?}");
             // Seven exits of other voids come first.
             let tops: Vec<u16> =
                 [9; 7].into_iter().chain(thresholds.iter().map(|t| (t >> 48) as u16)).collect();
@@ -306,25 +267,23 @@ mod tests {
                     let draw = u64::from(draw) << 48 | low;
                     7 + thresholds.iter().position(|&t| draw < t).unwrap_or(last)
                 };
-                match few.chosen_of(&tops, draw) {
-                    Some(exit) if exits <= 300 || draw % 61 == 0 => {
-                        assert_eq!([exit; 2], [by(0), by((1 << 48) - 1)], "{exits} {draw}");
-                        decided += 1;
+                let chosen = if few.is_few { few.chosen(draw) } else { few.chosen_of(&tops, draw) };
+                decided += usize::from(chosen.is_some());
+                match chosen {
+                    Some(exit) if count <= 300 || draw % 61 == 0 => {
+                        assert_eq!([exit; 2], [by(0), by((1 << 48) - 1)], "{count} {draw}");
                     }
-                    Some(_) => decided += 1,
-                    None => {
-                        assert!(
-                            exits > 65_535 || draw == u16::MAX || tops[7..].contains(&draw),
-                            "{exits} {draw}"
-                        )
-                    }
+                    Some(_) => {}
+                    None => assert!(
+                        count > 65_535 || draw == u16::MAX || tops[7..].contains(&draw),
+                        "{count} {draw}"
+                    ),
                 }
             }
-            let all = 1 << 16;
-            match exits {
+            match count {
                 65_536 => assert_eq!(decided, 0),
-                65_535 => assert!(decided > all / 8, "{decided}"),
-                _ => assert!(decided > all - 2 * exits, "{exits}: {decided}"),
+                65_535 => assert!(decided > (1 << 16) / 8, "{decided}"),
+                _ => assert!(decided > (1 << 16) - 2 * count, "{count}: {decided}"),
             }
         }
         assert_eq!(FewExits::NONE.chosen_of(&[], 9), None);
@@ -335,10 +294,8 @@ mod tests {
         for (last, is_few) in [(255, true), (256, false), (299, false)] {
             let thresholds: Vec<u64> = (0..300).map(|e| if e < last { 1 << 62 } else { u64::MAX }).collect();
             let few = FewExits::new(7, &thresholds, last);
-            assert_eq!(
-                (few.is_few, few.chosen(1 << 15).filter(|_| is_few)),
-                (is_few, is_few.then_some(7 + last))
-            );
+            let chosen = few.chosen(1 << 15).filter(|_| is_few);
+            assert_eq!((few.is_few, chosen), (is_few, is_few.then_some(7 + last)));
             assert_eq!(few.chosen(1), Some(7));
         }
     }

@@ -234,7 +234,7 @@ type State = [[__m256i; 2]; 4];
 #[inline]
 #[target_feature(enable = "avx2")]
 fn load_state(lanes: &Lanes) -> State {
-    lanes.state().each_ref().map(|row| {
+    lanes.state.each_ref().map(|row| {
         let halves = row.as_chunks::<4>().0;
         // SAFETY: a half of a row has four words.
         [0, 1].map(|half| unsafe { _mm256_loadu_si256(halves[half].as_ptr().cast()) })

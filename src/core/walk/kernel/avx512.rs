@@ -7,7 +7,7 @@
 
 use super::avx2;
 use super::lattice::{BLOCK, CLASS_UP, LatticeChunk, PAST_FIRST, PAST_SECOND, fits_gathers};
-use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
+use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16, next_of_eight};
 use crate::walk::Isa;
 use crate::walk::arching::{CLASS_OF_ONE, Reach};
 use crate::walk::exits::{CLASS, Lattice, Reads};
@@ -43,8 +43,8 @@ fn step_vectors<R: Reads>(mut chunk: LatticeChunk) -> usize {
     let mut kept = 0;
     for block in (0..count - count % BLOCK).step_by(DRAWS_PER_BLOCK) {
         chunk.fetch_ahead(block, DRAWS_PER_BLOCK);
-        let draws = next_block(&mut state);
-        let jam_draws = if R::JAMS { next_block(&mut jam_state) } else { zero };
+        let draws = next_of_eight(&mut state);
+        let jam_draws = if R::JAMS { next_of_eight(&mut jam_state) } else { zero };
         for (half, twice) in halves.into_iter().enumerate() {
             let begin = block + WIDTH * half;
             // SAFETY: sixteen entries from `begin` on are within both columns, which are `count` long.
@@ -125,8 +125,8 @@ fn step_vectors<R: Reads>(mut chunk: LatticeChunk) -> usize {
             kept += WIDTH - gone.count_ones() as usize;
         }
     }
-    let mut next_of_jams = || if R::JAMS { block_of(next_block(&mut jam_state)) } else { [0; LANES] };
-    chunk.step_rest::<R>(|| [block_of(next_block(&mut state)), next_of_jams()], kept)
+    let mut next_of_jams = || if R::JAMS { block_of(next_of_eight(&mut jam_state)) } else { [0; LANES] };
+    chunk.step_rest::<R>(|| [block_of(next_of_eight(&mut state)), next_of_jams()], kept)
 }
 
 /// Words of the table for sixteen voids, by [`avx2::look_up`].
@@ -185,7 +185,6 @@ fn load_reach(reach: &Reach) -> [__m512; 2] {
     [0, 1].map(|part| unsafe { _mm512_loadu_ps(parts[part].as_ptr()) })
 }
 
-/// Sixteen draws of a block, its first or second half.
 #[inline]
 #[target_feature(enable = "avx512f")]
 fn half_of(draws: __m512i, half: usize) -> __m256i {
@@ -280,22 +279,7 @@ fn note_eroded(column: &mut Vec<f32>, d: __m512i, eroded: __mmask16) {
 #[target_feature(enable = "avx512f")]
 fn load_state(lanes: &Lanes) -> [__m512i; 4] {
     // SAFETY: each row of the state has eight words.
-    lanes.state().each_ref().map(|row| unsafe { _mm512_loadu_si512(row.as_ptr().cast()) })
-}
-
-/// Works like [`Lanes::next_block`], in registers.
-#[inline]
-#[target_feature(enable = "avx512f")]
-fn next_block(state: &mut [__m512i; 4]) -> __m512i {
-    let [s0, s1, s2, s3] = *state;
-    let out = _mm512_add_epi64(_mm512_rol_epi64::<23>(_mm512_add_epi64(s0, s3)), s0);
-    let t = _mm512_slli_epi64::<17>(s1);
-    let s2 = _mm512_xor_si512(s2, s0);
-    let s3 = _mm512_xor_si512(s3, s1);
-    let s1 = _mm512_xor_si512(s1, s2);
-    let s0 = _mm512_xor_si512(s0, s3);
-    *state = [s0, s1, _mm512_xor_si512(s2, t), _mm512_rol_epi64::<45>(s3)];
-    out
+    lanes.state.each_ref().map(|row| unsafe { _mm512_loadu_si512(row.as_ptr().cast()) })
 }
 
 #[inline]

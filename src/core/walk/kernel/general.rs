@@ -2,7 +2,7 @@
 
 use super::lattice::fetch;
 use crate::network::{END, Network};
-use crate::stream::{DRAWS_PER_BLOCK, Extension, Key, LANES, Lanes, draw16};
+use crate::stream::{DRAWS_PER_BLOCK, Key, LANES, Lanes, Words, draw16};
 use crate::walk::Arching;
 use crate::walk::chunks::{Events, Jam};
 use crate::walk::exits::{General, NONE, WAIT};
@@ -10,27 +10,10 @@ use crate::walk::exits::{General, NONE, WAIT};
 /// Number of particles by which exits are prefetched ahead.
 const AHEAD: usize = 24;
 
-/// Moves the particles of one chunk, which may arch; returns the number still moving.
-pub(super) fn step(
-    network: &Network,
-    table: &General,
-    jams: Option<Jams>,
-    key: Key,
-    void: &mut [u32],
-    diameter: &mut [f32],
-    events: &mut Events,
-) -> usize {
-    // Two loops, one of them without arching.
-    match jams {
-        None => step_all(network, table, key, void, diameter, events, None),
-        jams => step_all(network, table, key, void, diameter, events, jams),
-    }
-}
-
 pub(super) struct Jams<'a> {
     arching: &'a Arching,
     lanes: Lanes,
-    extension: Extension,
+    extension: Words,
     block: [u64; LANES],
 }
 
@@ -53,21 +36,21 @@ impl<'a> Jams<'a> {
     }
 }
 
-/// Performs the step; particles that fit may jam by `jams`.
+/// Moves the particles of one chunk; those that fit may jam by `jams`. Returns the number still moving.
 #[inline(always)]
-fn step_all(
+pub(super) fn step(
     network: &Network,
     table: &General,
+    mut jams: Option<Jams>,
     key: Key,
     void: &mut [u32],
     diameter: &mut [f32],
     events: &mut Events,
-    mut jams: Option<Jams>,
 ) -> usize {
     let mut lanes = key.lanes();
     let extension = lanes.extension();
     let mut kept = 0;
-    let mut chosen = [Chosen::None; DRAWS_PER_BLOCK];
+    let mut chosen = [NONE; DRAWS_PER_BLOCK];
     for begin in (0..void.len()).step_by(DRAWS_PER_BLOCK) {
         let block = lanes.next_block();
         if let Some(jams) = &mut jams {
@@ -90,7 +73,7 @@ fn step_all(
             *chosen = match quick {
                 Some(exit) => {
                     fetch(&table.beyond, exit);
-                    Chosen::Exit(exit as u32)
+                    exit as u32
                 }
                 None => any(network, table, from, draw, j, extension),
             };
@@ -98,17 +81,17 @@ fn step_all(
         for (chosen, j) in chosen.iter().zip(particles) {
             let (from, d) = (void[j], diameter[j]);
             let exit = match *chosen {
-                Chosen::Exit(exit) => exit,
-                Chosen::None => {
+                NONE => {
                     events.stranded.push((from, d));
                     continue;
                 }
-                Chosen::Wait => {
+                WAIT => {
                     events.waiting += 1;
                     (void[kept], diameter[kept]) = (from, d);
                     kept += 1;
                     continue;
                 }
+                exit => exit,
             };
             let (target, width) = table.beyond[exit as usize];
             if d > width {
@@ -133,94 +116,15 @@ fn step_all(
     kept
 }
 
-/// Choice of a particle.
-#[derive(Clone, Copy)]
-enum Chosen {
-    /// This exit, if it fits.
-    Exit(u32),
-    None,
-    Wait,
-}
-
-/// Exit by definition, for any number of exits, with all bits of the draw if needed.
+/// Exit by definition, for any number of exits, with all bits of the draw, or [`NONE`] or [`WAIT`].
 #[cold]
 #[inline(never)]
-fn any(
-    network: &Network,
-    table: &General,
-    from: u32,
-    draw: u16,
-    index: usize,
-    extension: Extension,
-) -> Chosen {
+fn any(network: &Network, table: &General, from: u32, draw: u16, index: usize, extension: Words) -> u32 {
     let last_open = table.last_open[from as usize];
-    match last_open {
-        NONE => return Chosen::None,
-        WAIT => return Chosen::Wait,
-        _ => {}
+    if [NONE, WAIT].contains(&last_open) {
+        return last_open;
     }
-    let exits = network.exits(from);
-    let chosen = choose(&table.threshold[exits.clone()], draw, index, extension);
-    Chosen::Exit(chosen.map_or(last_open, |e| (exits.start + e) as u32))
-}
-
-/// First exit whose threshold exceeds the draw; sixteen bits decide unless they are equal.
-#[inline]
-fn choose(thresholds: &[u64], draw: u16, index: usize, extension: Extension) -> Option<usize> {
-    let is_above = |threshold: u64| {
-        let top = (threshold >> 48) as u16;
-        draw < top || (draw == top && extension.complete(draw, index as u64) < threshold)
-    };
-    if thresholds.len() <= LOOKED_AT {
-        return thresholds.iter().position(|&threshold| is_above(threshold));
-    }
-    // Thresholds rise. A reservoir has thousands of them: integers are compared without branches, and all
-    // bits of the draw are used only in a tie.
-    let passed = thresholds.partition_point(|&threshold| threshold < u64::from(draw) << 48);
-    let rest = &thresholds[passed..];
-    let first = match rest.first() {
-        Some(&threshold) if !is_above(threshold) => rest.partition_point(|&threshold| !is_above(threshold)),
-        _ => 0,
-    };
-    (first < rest.len()).then_some(passed + first)
-}
-
-/// Maximum number of exits searched linearly.
-const LOOKED_AT: usize = 16;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::stream::Purpose;
-
-    /// Thousands of exits, many closed or with equal upper bits, compared with a linear search.
-    #[test]
-    fn an_exit_of_thousands_is_found_as_by_looking_at_each() {
-        let key = Key { seed: 3, purpose: Purpose::Step, run: 1, increment: 1, chunk: 0 };
-        let extension = key.lanes().extension();
-        let mut word = 9u64;
-        let mut next = || {
-            word = word.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            word
-        };
-        let mut ties = 0;
-        for exits in [17, 100, 3000] {
-            let mut thresholds: Vec<u64> = (0..exits).map(|_| next()).collect();
-            for first in (0..exits - 5).step_by(10) {
-                // Thresholds as of closed exits, and others that differ in lower bits.
-                thresholds[first + 1] = thresholds[first];
-                thresholds[first + 2] = thresholds[first] ^ 1 << 47;
-                thresholds[first + 3] = thresholds[first] ^ 0xff << 40;
-            }
-            thresholds.sort_unstable();
-            for draw in 0..=u16::MAX {
-                let index = usize::from(draw) + exits;
-                let whole = extension.complete(draw, index as u64);
-                let by_each = thresholds.iter().position(|&threshold| whole < threshold);
-                ties += usize::from(thresholds.iter().any(|&threshold| (threshold >> 48) as u16 == draw));
-                assert_eq!(choose(&thresholds, draw, index, extension), by_each, "{exits} {draw}");
-            }
-        }
-        assert!(ties > 1000, "{ties}");
-    }
+    let (exits, draw) = (network.exits(from), extension.complete(draw, index as u64));
+    let passed = table.threshold[exits.clone()].partition_point(|&threshold| threshold <= draw);
+    if passed < exits.len() { (exits.start + passed) as u32 } else { last_open }
 }

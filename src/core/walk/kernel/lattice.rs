@@ -3,17 +3,15 @@
 //!
 //! It and the AVX2 kernel process a block of particles at a time. They predict the moves without branches
 //! and mark those that may be wrong: the draw equals a threshold in the bits of the table word, no exit is
-//! open, the particle may be coarser than the void's finest open exit, or it leaves. Those few then take
-//! the slow path ([`LatticeChunk::settle`]), one by one and in order.
+//! open, the particle may be coarser than its exit, or it leaves. Those few then take the slow path
+//! ([`LatticeChunk::settle`]), one by one and in order.
 //!
 //! The halves of a table word hold the two thresholds above other bits ([`Lattice::below`]). Compared with
 //! a draw that has ones in place of those bits, a half is no greater if and only if the draw is at least
-//! the threshold, unless the two are equal in the bits of the word. Every kernel reads the words with or
-//! without classes, whichever suit the chunk ([`reads_classes`]): both give the same bits.
+//! the threshold, unless the two are equal in the bits of the word.
 //!
-//! If particles arch or blocked constrictions leave openings, a particle is compared with the width of its
-//! chosen exit. If it may jam, its size is first multiplied by the reach of its draw ([`Arching::reach`]):
-//! a particle then no finer than the width takes the slow path, where the law decides.
+//! If a particle may jam, its size is first multiplied by the reach of its draw ([`Arching::reach`]): a
+//! particle then no finer than the width of its exit takes the slow path, where the law decides.
 
 use crate::stream::{DRAWS_PER_BLOCK, LANES, Lanes, draw16};
 use crate::walk::arching::{Arching, Reach};
@@ -36,20 +34,14 @@ pub(super) const PAST_FIRST: u32 = 4;
 pub(super) const PAST_SECOND: u32 = 8;
 
 /// Number of particles by which columns are prefetched ahead.
-const AHEAD: usize = 256;
+pub(super) const AHEAD: usize = 256;
 
-/// Number of column entries in a cache line.
 const LINE: usize = 16;
-
-/// Prefetches the first particles of a chunk before any is read.
-pub(super) fn fetch_first(void: &[u32], diameter: &[f32]) {
-    fetch_range(void, diameter, 0..AHEAD);
-}
 
 /// Prefetches a range of particles, of this chunk or the next ones: with random reads of table words in
 /// between, the processor does not prefetch them in time.
 #[inline(always)]
-fn fetch_range(void: &[u32], diameter: &[f32], range: Range<usize>) {
+pub(super) fn fetch_range(void: &[u32], diameter: &[f32], range: Range<usize>) {
     for at in range.step_by(LINE) {
         fetch(void, at);
         fetch(diameter, at);
@@ -330,13 +322,11 @@ impl<'a> LatticeChunk<'a> {
         jam.is_some()
     }
 
-    /// Stream for jamming; without jamming, the stream of the step, unused.
     pub(crate) fn jam_lanes<R: Reads>(&self) -> Lanes {
         let jams = self.jams.as_ref().filter(|_| R::JAMS);
         jams.map_or_else(|| self.lanes.clone(), |(_, lanes)| lanes.clone())
     }
 
-    /// Reach of draws, if particles jam.
     pub(crate) fn reach(&self) -> &'a Reach {
         self.jams.as_ref().expect("particles jam").0.reach()
     }
@@ -345,7 +335,8 @@ impl<'a> LatticeChunk<'a> {
     #[cold]
     pub(crate) fn undecided(&self, void: u32, index: usize, draw: u16) -> Option<u32> {
         let word = self.table.plain[void as usize];
-        if Lattice::has_no_exit(word) {
+        // Thresholds of open exits rise.
+        if word & 0xfffc > word >> 16 {
             return None;
         }
         if let Some(exit) = Lattice::pick::<Plain>(word, draw) {

@@ -13,8 +13,8 @@ mod lattice;
 use super::chunks::{ChunkColumns, Events};
 use super::exits::{Classed, Form, Jamming, OpenExits, Plain, Reads, Widths};
 use super::insert::Insertion;
-use super::openings::{Ways, Weighed};
-use super::{ExitTable, Isa, State, Supply, chunks};
+use super::openings::Ways;
+use super::{CHUNK, ExitTable, Isa, State, Supply, chunks};
 use crate::network::Network;
 use crate::stream::{Key, Lanes, Purpose};
 use general::Jams;
@@ -33,15 +33,17 @@ pub(super) fn step(
     let key = state.key(Purpose::Step);
     let insertion = Insertion::new(network, supply, table.isa, state);
     let moving: u64 = state.particles.live.iter().map(|&live| u64::from(live)).sum();
-    let effort = moving + INSERTED * insertion.share() + EMPTY_CHUNK * events.len() as u64;
-    let (size, receiving) = (supply.single_size(), insertion.first_chunk());
+    let effort = moving
+        + INSERTED * (insertion.inserted.end - insertion.inserted.start)
+        + EMPTY_CHUNK * events.len() as u64;
+    let (size, receiving) = (supply.single_size(), insertion.inserted.start as usize / CHUNK);
     let exits = OpenExits {
         network,
         table,
         ways: match &state.openings {
             None => Ways::Unblocked(&state.blocked),
             // Only lattice tables use these weights, and there is none if water sets the weights.
-            Some(openings) => Ways::Openings(&openings.widths, Weighed::Whole),
+            Some(openings) => Ways::Openings(&openings.widths, None),
         },
         widths: state.openings.as_ref().map_or(network.diameters(), |openings| &openings.widths),
         passive_limit: state.passive_limit,
@@ -59,7 +61,7 @@ pub(super) fn step(
         events.lend_buffer(moving + 16);
         let kept = step_chunk(&exits, key, &mut void[..moving], &mut diameter[..moving], events);
         let stayed = events.stopped.len() + events.stranded.len() + events.jams.len();
-        events.moves = (moving - stayed) as u64 - events.waiting;
+        events.tally.particle_moves = (moving - stayed) as u64 - events.waiting;
         events.sum(classes, exits.passive_limit);
         *live = kept as u32;
     });
@@ -81,7 +83,7 @@ fn step_chunk(
 ) -> usize {
     match &exits.table.form {
         Form::Lattice(table) => {
-            lattice::fetch_first(void, diameter);
+            lattice::fetch_range(void, diameter, 0..lattice::AHEAD);
             let isa = exits.table.isa;
             let reads = (table.by_widths, lattice::reads_classes(diameter, exits.passive_limit));
             let jams = exits.arching.map(|arching| (arching, jam_lanes(key)));
@@ -95,8 +97,12 @@ fn step_chunk(
             }
         }
         Form::General(table) => {
-            let jams = exits.arching.map(|arching| Jams::new(arching, jam_lanes(key)));
-            general::step(exits.network, table, jams, key, void, diameter, events)
+            // Two loops, one of them without arching.
+            let (network, jams) = (exits.network, exits.arching.map(|law| Jams::new(law, jam_lanes(key))));
+            match jams {
+                None => general::step(network, table, None, key, void, diameter, events),
+                jams => general::step(network, table, jams, key, void, diameter, events),
+            }
         }
     }
 }
@@ -118,27 +124,20 @@ fn step_lattice<R: Reads>(chunk: LatticeChunk, isa: Isa) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use ::rand::Rng as _;
     use bitvec::vec::BitVec;
     use proptest::prelude::*;
 
     use super::*;
-    use crate::gradation::{Gradation, SizeSampler};
     use crate::stream::{DRAWS_PER_BLOCK, LANES, draw16};
     use crate::walk::chunks::Jam;
-    use crate::walk::{Arching, Isa, LAWS, SizeClasses, exits};
+    use crate::walk::{Arching, Isa, LAWS, exits};
 
-    #[derive(Clone, Debug)]
-    struct Scene {
-        shape: [u32; 3],
-        diameters: Vec<f32>,
-        blocked: Vec<bool>,
-    }
+    type Scene = (Network, BitVec);
 
-    impl Scene {
-        fn made(&self) -> (Network, BitVec) {
-            let network = Network::cubic_from_diameters(self.shape, self.diameters.clone(), 1.0).unwrap();
-            (network, self.blocked.iter().copied().collect())
-        }
+    fn scene(shape: [u32; 3], diameters: Vec<f32>, blocked: Vec<bool>) -> Scene {
+        let network = Network::cubic_from_diameters(shape, diameters, 1.0).unwrap();
+        (network, blocked.into_iter().collect())
     }
 
     #[derive(Debug, Default, PartialEq)]
@@ -162,23 +161,21 @@ mod tests {
     type Kernel = (Isa, Reading);
 
     fn after(scene: &Scene, key: Key, (isa, reading): Kernel, void: &[u32], diameter: &[f32]) -> After {
-        let (network, blocked) = scene.made();
-        let supply = Supply::new(SizeSampler::new(&Gradation::single(1.0).unwrap(), 1.0).unwrap(), 1, 1);
-        let classes = SizeClasses::logarithmic(1.0, 1.0, 1);
-        let state = State::new(&network, &supply, classes, blocked, 1, 1);
-        let ways = Ways::Unblocked(&state.blocked);
+        let (network, blocked) = scene;
+        let ways = Ways::Unblocked(blocked);
         let mut table = match reading {
-            Reading::Plain | Reading::Classed => ExitTable::new(&network, &state.blocked),
-            Reading::Widths | Reading::Jamming(_) => ExitTable::by_widths(&network, ways),
+            Reading::Plain | Reading::Classed => ExitTable::new(network, blocked),
+            Reading::Widths | Reading::Jamming(_) => ExitTable::by_widths(network, ways),
         };
         table.isa = isa;
         let arching = arching(reading);
+        let finest = network.finest_open(|c| blocked[c]);
         let exits = OpenExits {
-            network: &network,
+            network,
             table: &table,
             ways,
             widths: network.diameters(),
-            passive_limit: arching.as_ref().map_or(state.passive_limit, |_| 0.0),
+            passive_limit: if arching.is_some() { 0.0 } else { finest },
             arching: arching.as_ref(),
         };
         let (mut void, mut diameter) = (void.to_vec(), diameter.to_vec());
@@ -225,13 +222,10 @@ mod tests {
 
     const PORTABLE: Kernel = (Isa::Portable, Reading::Plain);
 
-    /// Picks `count` values from `palette` by a linear congruential generator.
-    fn picked<T: Copy>(count: usize, palette: &[T], mut seed: u64) -> Vec<T> {
-        let next = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            palette[(seed >> 33) as usize % palette.len()]
-        };
-        std::iter::repeat_with(next).take(count).collect()
+    /// Picks `count` values from `palette`.
+    fn picked<T: Copy>(count: usize, palette: &[T], seed: u64) -> Vec<T> {
+        let mut draws = key(seed).generator();
+        (0..count).map(|_| palette[(draws.next_u64() >> 33) as usize % palette.len()]).collect()
     }
 
     proptest! {
@@ -259,11 +253,8 @@ mod tests {
             seed: u64,
         ) {
             let voids: Vec<u32> = (0..shape.iter().product()).collect();
-            let scene = Scene {
-                shape,
-                diameters: picked(3 * voids.len(), &constrictions, seed),
-                blocked: picked(3 * voids.len(), &blocked, !seed),
-            };
+            let diameters = picked(3 * voids.len(), &constrictions, seed);
+            let scene = scene(shape, diameters, picked(3 * voids.len(), &blocked, !seed));
             let (void, diameter) = (picked(count, &voids, seed ^ 1), picked(count, &sizes, seed ^ 2));
             let expected = after(&scene, key(seed), PORTABLE, &void, &diameter);
             prop_assert_eq!(&by_definition(&scene, key(seed), Reading::Plain, &void, &diameter), &expected);
@@ -286,7 +277,7 @@ mod tests {
 
     /// Performs the step by definition: all 64 bits of every draw, every diameter compared.
     fn by_definition(scene: &Scene, key: Key, reading: Reading, void: &[u32], diameter: &[f32]) -> After {
-        let (network, blocked) = scene.made();
+        let (network, blocked) = scene;
         let (mut lanes, mut block) = (key.lanes(), [0; LANES]);
         let mut after = After::default();
         let (arching, mut jam_lanes, mut jam_block) = (arching(reading), jam_lanes(key), [0; LANES]);
@@ -297,7 +288,7 @@ mod tests {
             let jam_draw = jam_lanes.extension().complete(draw16(&jam_block, j % DRAWS_PER_BLOCK), j as u64);
             let draw = lanes.extension().complete(draw16(&block, j % DRAWS_PER_BLOCK), j as u64);
             let mut thresholds = Vec::new();
-            let last_open = exits::thresholds(&network, Ways::Unblocked(&blocked), from, &mut thresholds);
+            let last_open = exits::thresholds(network, Ways::Unblocked(blocked), from, &mut thresholds);
             let Some(last_open) = last_open else {
                 after.stranded.push((from, d));
                 continue;
@@ -338,8 +329,7 @@ mod tests {
             let ratio = (share / (1.0 - share)).sqrt() as f32;
             for steps in -400i32..400 {
                 let first = f32::from_bits((ratio.to_bits() as i32 + 16 * steps) as u32);
-                let scene =
-                    Scene { shape: [1, 1, 1], diameters: vec![first, 0.0, 1.0], blocked: vec![false; 3] };
+                let scene = scene([1, 1, 1], vec![first, 0.0, 1.0], vec![false; 3]);
                 let a = f64::from(first) * f64::from(first);
                 let threshold = (a / (a + 1.0) * 2f64.powi(64)) as u64;
                 if (threshold >> 48) as u16 != draw {
@@ -369,16 +359,15 @@ mod tests {
     fn words_with_classes_are_for_chunks_with_coarse_particles() {
         let chunk = |fine: usize, coarse: usize| [vec![1.0; fine], vec![1.5; coarse]].concat();
         let reads_classes = |diameter: &[f32]| lattice::reads_classes(diameter, 1.0);
-        assert!(!reads_classes(&[]) && !reads_classes(&chunk(300, 0)) && !reads_classes(&chunk(10, 1)));
-        assert!(
-            reads_classes(&chunk(0, 2)) && reads_classes(&chunk(254, 2)) && !reads_classes(&chunk(256, 900))
-        );
+        let coarse = [(0, 0), (300, 0), (10, 1), (256, 900), (0, 2), (254, 2)];
+        let expected = [false, false, false, false, true, true];
+        assert_eq!(coarse.map(|(fine, coarse)| reads_classes(&chunk(fine, coarse))), expected);
     }
 
     /// A column from a damaged file gives an error, never a read beyond the table.
     #[test]
     fn a_void_that_does_not_exist_is_refused() {
-        let scene = Scene { shape: [2, 2, 1], diameters: vec![1.0; 12], blocked: vec![false; 12] };
+        let scene = scene([2, 2, 1], vec![1.0; 12], vec![false; 12]);
         for kernel in kernels() {
             for bad in [4, 1 << 31, u32::MAX] {
                 for place in [0, 17, 63, 64] {

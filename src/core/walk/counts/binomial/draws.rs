@@ -26,19 +26,6 @@ impl Draws {
         self.block[self.used - 1]
     }
 
-    #[cfg(target_arch = "x86_64")]
-    #[inline(always)]
-    pub(super) fn state(&self) -> &[[u64; LANES]; 4] {
-        self.lanes.state()
-    }
-
-    /// State words by lane, for update by callers that have drawn blocks in vector registers.
-    #[cfg(target_arch = "x86_64")]
-    #[inline(always)]
-    pub(super) fn state_mut(&mut self) -> &mut [[u64; LANES]; 4] {
-        self.lanes.state_mut()
-    }
-
     /// Draws a new block; remaining words of the current one are kept for [`Draws::word`].
     #[inline(always)]
     pub(super) fn block(&mut self) -> [u64; LANES] {
@@ -47,37 +34,15 @@ impl Draws {
 }
 
 /// Number of `n` uniform 64-bit words that are below each of two thresholds.
-///
-/// Sixteen bits of each word are drawn, and the other 48 if those equal the top bits of a threshold.
 #[inline(always)]
 pub(in crate::walk::counts) fn below_both(draws: &mut Draws, n: u64, thresholds: [u64; 2]) -> [u64; 2] {
-    let [first, second] = thresholds.map(|t| (t >> 48) as u16);
-    let (mut below, mut left) = ([0, 0], n);
-    while left > 0 {
-        let sixteens: [u16; DRAWS_PER_BLOCK] = bytemuck::cast(draws.block().map(u64::to_le));
-        let counted = left.min(DRAWS_PER_BLOCK as u64) as u16;
-        let (mut less, mut less_second, mut same) = (0u16, 0u16, 0u16);
-        for (j, &draw) in sixteens.iter().enumerate() {
-            let draw = u16::from_le(draw);
-            let counts = (j as u16) < counted;
-            less += u16::from(counts & (draw < first));
-            less_second += u16::from(counts & (draw < second));
-            same += u16::from(counts & ((draw == first) | (draw == second)));
-        }
-        below[0] += u64::from(less);
-        below[1] += u64::from(less_second);
-        if same > 0 {
-            complete(draws, &sixteens[..counted as usize], thresholds, &mut below);
-        }
-        left -= u64::from(counted);
-    }
-    below
+    Portable.below_both(draws, n, thresholds.map(|t| (t >> 48) as u16), || thresholds)
 }
 
 /// Adds the words below a threshold whose top sixteen bits are equal to it.
 #[cold]
 #[inline(never)]
-pub(super) fn complete(draws: &mut Draws, sixteens: &[u16], thresholds: [u64; 2], below: &mut [u64; 2]) {
+fn complete(draws: &mut Draws, sixteens: &[u16], thresholds: [u64; 2], below: &mut [u64; 2]) {
     let top = |word: u64| (word >> 48) as u16;
     for draw in sixteens.iter().map(|&draw| u16::from_le(draw)) {
         if thresholds.iter().any(|&t| draw == top(t)) {
@@ -117,36 +82,33 @@ fn ones_among(draws: &mut Draws, m: u64) -> u64 {
     u64::from(ones + (draws.word() >> (64 - left)).count_ones())
 }
 
-/// Small numbers of trials for successive voids of one stream, with the same bits as [`below_both`] for
-/// any instruction set.
-pub(in crate::walk::counts) trait FewTrials {
+/// Number of draws of a block below each threshold, and the block itself if a draw equals the top of a
+/// threshold.
+type Counted = ([u32; 2], Option<[u16; DRAWS_PER_BLOCK]>);
+
+/// Small numbers of trials for successive voids of one stream, with the same bits for any instruction set.
+///
+/// Vector code keeps the generators in registers from void to void; in memory, each void would wait for the
+/// store of the previous one.
+pub(in crate::walk::counts) trait FewTrials: Sized {
     /// Loads the current state of the stream's generators.
     ///
     /// # Safety
     /// The machine supports the instructions of this type.
-    unsafe fn begin(draws: &Draws) -> Self;
+    unsafe fn load(draws: &Draws) -> Self;
+
+    /// Counts the first `counted` draws of the next block that are below each of two thresholds with these
+    /// upper sixteen bits.
+    ///
+    /// # Safety
+    /// The machine supports the instructions of this type.
+    unsafe fn block(&mut self, draws: &mut Draws, counted: u64, tops: [u16; 2]) -> Counted;
+
+    fn store(&self, draws: &mut Draws);
 
     /// Counts how many of `n` uniform 64-bit words are below each of two thresholds with upper sixteen
-    /// bits `tops`. The full thresholds are requested only if these do not decide.
-    fn below_both(
-        &mut self,
-        draws: &mut Draws,
-        n: u64,
-        tops: [u16; 2],
-        thresholds: impl Fn() -> [u64; 2],
-    ) -> [u64; 2];
-
-    fn end(self, draws: &mut Draws);
-}
-
-pub(in crate::walk::counts) struct Portable;
-
-impl FewTrials for Portable {
-    #[inline(always)]
-    unsafe fn begin(_: &Draws) -> Self {
-        Self
-    }
-
+    /// bits `tops`. Sixteen bits of each word are drawn, and the other 48 if those equal the top bits of a
+    /// threshold; only then the full thresholds are requested.
     #[inline(always)]
     fn below_both(
         &mut self,
@@ -155,12 +117,49 @@ impl FewTrials for Portable {
         tops: [u16; 2],
         thresholds: impl Fn() -> [u64; 2],
     ) -> [u64; 2] {
-        debug_assert_eq!(tops, thresholds().map(|t| (t >> 48) as u16));
-        below_both(draws, n, thresholds())
+        let (mut below, mut left) = ([0, 0], n);
+        while left > 0 {
+            let counted = left.min(DRAWS_PER_BLOCK as u64);
+            // SAFETY: the caller of `load` promised the instructions.
+            let (less, block) = unsafe { self.block(draws, counted, tops) };
+            if let Some(block) = block {
+                self.store(draws);
+                complete(draws, &block[..counted as usize], thresholds(), &mut below);
+                // SAFETY: as above.
+                *self = unsafe { Self::load(draws) };
+            }
+            below = [below[0] + u64::from(less[0]), below[1] + u64::from(less[1])];
+            left -= counted;
+        }
+        below
+    }
+}
+
+/// Instructions that every machine has; the generators stay in the stream.
+pub(in crate::walk::counts) struct Portable;
+
+impl FewTrials for Portable {
+    #[inline(always)]
+    unsafe fn load(_: &Draws) -> Self {
+        Self
     }
 
     #[inline(always)]
-    fn end(self, _: &mut Draws) {}
+    unsafe fn block(&mut self, draws: &mut Draws, counted: u64, [first, second]: [u16; 2]) -> Counted {
+        let sixteens: [u16; DRAWS_PER_BLOCK] = bytemuck::cast(draws.block().map(u64::to_le));
+        let (mut less, mut less_second, mut same) = (0u16, 0u16, 0u16);
+        for (j, &draw) in sixteens.iter().enumerate() {
+            let draw = u16::from_le(draw);
+            let counts = (j as u16) < counted as u16;
+            less += u16::from(counts & (draw < first));
+            less_second += u16::from(counts & (draw < second));
+            same += u16::from(counts & ((draw == first) | (draw == second)));
+        }
+        ([less, less_second].map(u32::from), (same > 0).then_some(sixteens))
+    }
+
+    #[inline(always)]
+    fn store(&self, _: &mut Draws) {}
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -170,146 +169,94 @@ pub(in crate::walk::counts) use x86::{Avx2, Avx512};
 mod x86 {
     use std::arch::x86_64::*;
 
-    use super::{Draws, FewTrials, complete};
-    use crate::stream::{DRAWS_PER_BLOCK, next_of_four};
+    use super::{Counted, Draws, FewTrials};
+    use crate::stream::{DRAWS_PER_BLOCK, next_of_eight, next_of_four};
 
-    /// State words of the generators, for AVX-512.
     pub(in crate::walk::counts) struct Avx512([__m512i; 4]);
 
     /// State words of the lower and the upper four generators, for AVX2.
     pub(in crate::walk::counts) struct Avx2([[__m256i; 4]; 2]);
 
-    /// Number of draws of a block below each threshold, and the block itself if a draw equals the top of a
-    /// threshold.
-    pub(in crate::walk::counts) type Counted = ([u32; 2], Option<[u16; DRAWS_PER_BLOCK]>);
-
-    /// Generators kept in vector registers from void to void; in memory, each void would wait for the
-    /// store of the previous one.
-    trait InRegisters: Sized {
-        /// Loads the generators of `draws`.
-        ///
-        /// # Safety
-        /// The machine supports the instructions of this type.
-        unsafe fn load(draws: &Draws) -> Self;
-
-        /// Counts the first `counted` draws of the next block.
-        ///
-        /// # Safety
-        /// The machine supports the instructions of this type.
-        unsafe fn block(&mut self, counted: u64, tops: [u16; 2]) -> Counted;
-
-        fn store(&self, draws: &mut Draws);
-    }
-
-    impl<V: InRegisters> FewTrials for V {
-        #[inline(always)]
-        unsafe fn begin(draws: &Draws) -> Self {
-            // SAFETY: as the caller promises.
-            unsafe { V::load(draws) }
-        }
-
-        /// Works block by block; if a draw equals the top of a threshold, the block is completed with more
-        /// bits.
-        #[inline(always)]
-        fn below_both(
-            &mut self,
-            draws: &mut Draws,
-            n: u64,
-            tops: [u16; 2],
-            thresholds: impl Fn() -> [u64; 2],
-        ) -> [u64; 2] {
-            let (mut below, mut left) = ([0, 0], n);
-            while left > 0 {
-                let counted = left.min(DRAWS_PER_BLOCK as u64);
-                // SAFETY: the caller of `begin` promised the instructions.
-                let (less, block) = unsafe { self.block(counted, tops) };
-                if let Some(block) = block {
-                    self.store(draws);
-                    complete(draws, &block[..counted as usize], thresholds(), &mut below);
-                    // SAFETY: as above.
-                    *self = unsafe { V::load(draws) };
-                }
-                below = [below[0] + u64::from(less[0]), below[1] + u64::from(less[1])];
-                left -= counted;
-            }
-            below
-        }
-
-        #[inline(always)]
-        fn end(self, draws: &mut Draws) {
-            self.store(draws);
-        }
-    }
-
-    impl InRegisters for Avx512 {
+    impl FewTrials for Avx512 {
         #[inline(always)]
         unsafe fn load(draws: &Draws) -> Self {
             // SAFETY: each state word has eight lanes; the machine has AVX-512.
-            Self(draws.state().map(|row| unsafe { _mm512_loadu_si512(row.as_ptr().cast()) }))
+            Self(draws.lanes.state.each_ref().map(|row| unsafe { _mm512_loadu_si512(row.as_ptr().cast()) }))
         }
 
-        #[inline(always)]
-        unsafe fn block(&mut self, counted: u64, tops: [u16; 2]) -> Counted {
-            // SAFETY: as the caller promises.
-            unsafe { block_avx512(&mut self.0, counted, tops) }
+        #[inline]
+        #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
+        unsafe fn block(&mut self, _: &mut Draws, counted: u64, tops: [u16; 2]) -> Counted {
+            let block = next_of_eight(&mut self.0);
+            let mask = ((1u64 << counted) - 1) as u32;
+            let [first, second] = tops.map(|top| _mm512_set1_epi16(top as i16));
+            let less = [
+                _mm512_mask_cmplt_epu16_mask(mask, block, first).count_ones(),
+                _mm512_mask_cmplt_epu16_mask(mask, block, second).count_ones(),
+            ];
+            let same = _mm512_mask_cmpeq_epu16_mask(mask, block, first)
+                | _mm512_mask_cmpeq_epu16_mask(mask, block, second);
+            let block = (same != 0).then(|| {
+                let mut sixteens = [0; DRAWS_PER_BLOCK];
+                // SAFETY: the array is as large as the vector.
+                unsafe { _mm512_storeu_si512(sixteens.as_mut_ptr().cast(), block) };
+                sixteens
+            });
+            (less, block)
         }
 
         #[inline(always)]
         fn store(&self, draws: &mut Draws) {
-            for (row, state) in draws.state_mut().iter_mut().zip(self.0) {
+            for (row, state) in draws.lanes.state.iter_mut().zip(self.0) {
                 // SAFETY: each state word has eight lanes; the machine has AVX-512.
                 unsafe { _mm512_storeu_si512(row.as_mut_ptr().cast(), state) };
             }
         }
     }
 
-    /// Counts the first `counted` draws of the next block that are below each threshold; also returns the
-    /// block if one of them equals the top of a threshold.
-    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,popcnt")]
-    #[inline]
-    fn block_avx512(state: &mut [__m512i; 4], counted: u64, tops: [u16; 2]) -> Counted {
-        let [s0, s1, s2, s3] = *state;
-        let block = _mm512_add_epi64(_mm512_rol_epi64::<23>(_mm512_add_epi64(s0, s3)), s0);
-        let (t, s2, s3) = (_mm512_slli_epi64::<17>(s1), _mm512_xor_si512(s2, s0), _mm512_xor_si512(s3, s1));
-        let (s1, s0) = (_mm512_xor_si512(s1, s2), _mm512_xor_si512(s0, s3));
-        *state = [s0, s1, _mm512_xor_si512(s2, t), _mm512_rol_epi64::<45>(s3)];
-        let mask = ((1u64 << counted) - 1) as u32;
-        let [first, second] = tops.map(|top| _mm512_set1_epi16(top as i16));
-        let less = [
-            _mm512_mask_cmplt_epu16_mask(mask, block, first).count_ones(),
-            _mm512_mask_cmplt_epu16_mask(mask, block, second).count_ones(),
-        ];
-        let same = _mm512_mask_cmpeq_epu16_mask(mask, block, first)
-            | _mm512_mask_cmpeq_epu16_mask(mask, block, second);
-        let block = (same != 0).then(|| {
-            let mut sixteens = [0; DRAWS_PER_BLOCK];
-            // SAFETY: the array is as large as the vector.
-            unsafe { _mm512_storeu_si512(sixteens.as_mut_ptr().cast(), block) };
-            sixteens
-        });
-        (less, block)
-    }
-
-    impl InRegisters for Avx2 {
+    impl FewTrials for Avx2 {
         #[inline(always)]
         unsafe fn load(draws: &Draws) -> Self {
             let half = |half: usize| {
                 // SAFETY: four lanes from `4 half` on are within the eight; the machine has AVX2.
-                draws.state().map(|row| unsafe { _mm256_loadu_si256(row[4 * half..][..4].as_ptr().cast()) })
+                draws
+                    .lanes
+                    .state
+                    .map(|row| unsafe { _mm256_loadu_si256(row[4 * half..][..4].as_ptr().cast()) })
             };
             Self([half(0), half(1)])
         }
 
-        #[inline(always)]
-        unsafe fn block(&mut self, counted: u64, tops: [u16; 2]) -> Counted {
-            // SAFETY: as the caller promises.
-            unsafe { block_avx2(&mut self.0, counted, tops) }
+        #[inline]
+        #[target_feature(enable = "avx2,popcnt")]
+        unsafe fn block(&mut self, _: &mut Draws, counted: u64, tops: [u16; 2]) -> Counted {
+            // Unsigned numbers are compared as signed numbers after subtracting 2^15.
+            let sign = _mm256_set1_epi16(i16::MIN);
+            let counts = MASKS[counted as usize];
+            let blocks = [next_of_four(&mut self.0[0]), next_of_four(&mut self.0[1])];
+            let [low, high] = [_mm256_xor_si256(blocks[0], sign), _mm256_xor_si256(blocks[1], sign)];
+            let (mut less, mut same) = ([0; 2], 0);
+            for (less, top) in less.iter_mut().zip(tops) {
+                let top = _mm256_set1_epi16((top ^ 0x8000) as i16);
+                let below = packed(_mm256_cmpgt_epi16(top, low), _mm256_cmpgt_epi16(top, high));
+                *less = (below & counts).count_ones();
+                same |= packed(_mm256_cmpeq_epi16(top, low), _mm256_cmpeq_epi16(top, high)) & counts;
+            }
+            let block = (same != 0).then(|| {
+                let mut sixteens = [0; DRAWS_PER_BLOCK];
+                for (sixteens, block) in sixteens.chunks_exact_mut(DRAWS_PER_BLOCK / 2).zip(blocks) {
+                    // SAFETY: the array is as large as the vector.
+                    unsafe { _mm256_storeu_si256(sixteens.as_mut_ptr().cast(), block) };
+                }
+                sixteens
+            });
+            (less, block)
         }
 
         #[inline(always)]
         fn store(&self, draws: &mut Draws) {
             for (at, half) in self.0.iter().enumerate() {
-                for (row, state) in draws.state_mut().iter_mut().zip(half) {
+                for (row, state) in draws.lanes.state.iter_mut().zip(half) {
                     // SAFETY: four lanes from `4 at` on are within the eight; the machine has AVX2.
                     unsafe { _mm256_storeu_si256(row[4 * at..][..4].as_mut_ptr().cast(), *state) };
                 }
@@ -328,33 +275,6 @@ mod x86 {
         }
         masks
     };
-
-    /// Works like [`block_avx512`], in two halves.
-    #[target_feature(enable = "avx2,popcnt")]
-    #[inline]
-    fn block_avx2(state: &mut [[__m256i; 4]; 2], counted: u64, tops: [u16; 2]) -> Counted {
-        // Unsigned numbers are compared as signed numbers after subtracting 2^15.
-        let sign = _mm256_set1_epi16(i16::MIN);
-        let counts = MASKS[counted as usize];
-        let blocks = [next_of_four(&mut state[0]), next_of_four(&mut state[1])];
-        let [low, high] = [_mm256_xor_si256(blocks[0], sign), _mm256_xor_si256(blocks[1], sign)];
-        let (mut less, mut same) = ([0; 2], 0);
-        for (less, top) in less.iter_mut().zip(tops) {
-            let top = _mm256_set1_epi16((top ^ 0x8000) as i16);
-            let below = packed(_mm256_cmpgt_epi16(top, low), _mm256_cmpgt_epi16(top, high));
-            *less = (below & counts).count_ones();
-            same |= packed(_mm256_cmpeq_epi16(top, low), _mm256_cmpeq_epi16(top, high)) & counts;
-        }
-        let block = (same != 0).then(|| {
-            let mut sixteens = [0; DRAWS_PER_BLOCK];
-            for (sixteens, block) in sixteens.chunks_exact_mut(DRAWS_PER_BLOCK / 2).zip(blocks) {
-                // SAFETY: the array is as large as the vector.
-                unsafe { _mm256_storeu_si256(sixteens.as_mut_ptr().cast(), block) };
-            }
-            sixteens
-        });
-        (less, block)
-    }
 
     /// Sets a bit for each negative 16-bit lane of two halves, in turns of eight from either half.
     #[target_feature(enable = "avx2,popcnt")]

@@ -3,13 +3,9 @@
 //! The draw for a uniform `t` is the smallest `k` whose distribution function `F(k)` exceeds `t`. The
 //! second-order Cornish-Fisher expansion (E. A. Cornish and R. A. Fisher 1938, doi:10.2307/1400905), with
 //! the variance reduced by 1/12 for integers, gives the point where `F` crosses `t` to within
-//! [`Row::margin`]. Its error is less than half of that for every count and probability that [`holds`]
-//! admits, as the tests check. If the crossing is farther than the margin from the middle between two
-//! integers, the nearer integer is the draw. Otherwise, in one draw of a hundred or a thousand, `F` itself
-//! decides, summed from [`super::quantile`]. So the draw depends only on `F`, not on the expansion.
-//!
-//! Before `F` is computed, floats are only processed by `+ - * /` and `sqrt`, which round the same
-//! everywhere, in loops over eight lanes that the compiler turns into vector instructions.
+//! [`Row::margin`], which is more than twice its error. If the crossing is farther than the margin from the
+//! middle between two integers, the nearer integer is the draw. Otherwise, in one draw of a hundred or a
+//! thousand, `F` itself decides. So the draw depends only on `F`, not on the expansion.
 
 use crate::stream::LANES;
 use std::sync::OnceLock;
@@ -29,7 +25,6 @@ pub(super) fn holds(n: u64, p: u64) -> bool {
     row.holds & (n <= MOST_TRIALS) & (p != CERTAIN)
 }
 
-/// Makes one draw; `holds(n, p)` must be true.
 #[inline(always)]
 pub(super) fn draw(normal: &Normal, n: u64, p: u64, word: u64) -> u64 {
     let (rare, sure) = propose(normal, n, p, word);
@@ -87,9 +82,7 @@ struct Row {
     inverse: f64,
     root: f64,
     inverse_root: f64,
-    /// Third cumulant divided by the variance, about 1 - 2p.
     skew: f64,
-    /// Fourth cumulant divided by the variance.
     kurtosis: f64,
     holds: bool,
 }
@@ -284,7 +277,6 @@ pub(super) fn beyond(t: f64) -> f64 {
     }
 }
 
-/// Half of `ln(2 pi)`.
 const HALF_LN_TWO_PI: f64 = 0.918_938_533_204_672_8;
 
 /// `ln k! - ((k + 1/2) ln k - k + ln(2 pi) / 2)`, the error of Stirling's formula; `k` is an integer and
@@ -336,7 +328,6 @@ pub(super) fn ln_probability(n: f64, p: f64, q: f64, k: f64) -> f64 {
     exponent - HALF_LN_TWO_PI - 0.5 * libm::log(k / n * rest)
 }
 
-/// Probability 1.
 pub(in crate::walk::counts) const CERTAIN: u64 = u64::MAX;
 
 const TWO_TO_MINUS_64: f64 = 1.0 / 18_446_744_073_709_551_616.0;
