@@ -6,7 +6,7 @@ use std::path::Path;
 use maud::{Markup, html};
 
 use super::figures::{
-    Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREY, Line, ORANGE, PURPLE, Rule, VERMILLION,
+    Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREY, Mark, ORANGE, PURPLE, VERMILLION,
 };
 use super::files::{ReportError, json, rows};
 use super::names::{file_name, option_words, titled_by_file};
@@ -119,11 +119,10 @@ fn erosion(all: &Boundaries, walks: &[WalkRow]) -> Option<Drawn> {
     let ends = (x.low, x.high);
     let what = "Percent of the base eroded against D15F in both runs of every network, with the zones of no, \
                 some and continuing erosion in the model";
-    let mut figure =
-        Figure::new("Erosion against D15F", what, "", x, Axis::percent("Base eroded, by mass (%)"))
-            .sizes((760.0, 340.0), (358.0, 420.0));
+    let mut figure = Figure::new("Erosion against D15F", what, x, Axis::percent("Base eroded, by mass (%)"))
+        .sizes((760.0, 340.0), (358.0, 420.0));
     zones(&mut figure, row, d85, ends);
-    figure.add(Rule::new(Across::Y, 100.0 * all.threshold, BLACK).dash(Dash::Dashed).label("7.5 %"));
+    figure.add(Mark::rule(Across::Y, 100.0 * all.threshold, BLACK).dash(Dash::Dashed).label("7.5 %"));
     draw_runs(&mut figure, &walks, d85);
     let of_base =
         all.base.size().map_or(String::new(), |base| format!(" {}.", base_size(&base, size_unit(all))));
@@ -163,7 +162,8 @@ fn zones(figure: &mut Figure, row: &BoundaryRow, d85: f64, (left, right): (f64, 
     let continuing = row.continuing.as_ref().map(edges);
     let mut zone = |low: f64, high: f64, colour: Colour, opacity: f64, name: &str| {
         if high > low {
-            let area = Area::new(vec![(low, 0.0), (high, 0.0), (high, 100.0), (low, 100.0)], colour, opacity);
+            let area =
+                Mark::area(vec![(low, 0.0), (high, 0.0), (high, 100.0), (low, 100.0)], colour, opacity);
             figure.add(if name.is_empty() { area } else { area.label(name) });
         }
     };
@@ -192,7 +192,7 @@ fn draw_runs(figure: &mut Figure, walks: &[&WalkRow], d85: f64) {
             if points.is_empty() {
                 continue;
             }
-            let line = Line::new(points, colour).width(1.2).opacity(0.7);
+            let line = Mark::line(points, colour).width(1.2).opacity(0.7);
             figure.add(if index == 0 { line.label(name) } else { line });
         }
     }

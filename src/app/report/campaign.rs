@@ -3,7 +3,7 @@
 
 use super::cases;
 use super::cases::AtRatio;
-use super::figures::{Across, Axis, BLACK, Dash, Figure, Rule, shorten};
+use super::figures::{Across, Axis, BLACK, Dash, Figure, Mark, shorten};
 use super::files::{ReportError, json, json_of, lines, lines_of};
 use super::section::{Sections, Written};
 use super::shell::{Drawn, citation, clean, leaves_out};
@@ -57,7 +57,7 @@ fn largest_eroded(line: &LedgerLine) -> Option<Statistic> {
 fn against_ratio(
     words: [&str; 2],
     y: Axis,
-    rules: Vec<Rule>,
+    rules: Vec<Mark>,
     ledger: &[LedgerLine],
     quantity: impl Fn(&LedgerLine) -> Option<(f64, Option<(f64, f64)>)>,
 ) -> Figure {
@@ -84,10 +84,10 @@ fn by_ratio(ledger: &[LedgerLine]) -> Drawn {
     let y = Axis::percent("Base eroded in the first run, by mass (%)");
     let what =
         "Percent of the base mass eroded in the first run against D15F/D85B, one symbol per case, by class";
-    let mut rules = vec![Rule::new(Across::Y, 100.0 * THRESHOLD, BLACK).dash(Dash::Dashed).label("7.5 %")];
+    let mut rules = vec![Mark::rule(Across::Y, 100.0 * THRESHOLD, BLACK).dash(Dash::Dashed).label("7.5 %")];
     let ratios = || ledger.iter().map(|line| line.ratios.d15f_over_d85b);
     if ratios().any(|r| r < 4.0) && ratios().any(|r| r > 4.0) {
-        rules.push(Rule::new(Across::X, 4.0, BLACK).dash(Dash::Dotted).label("D15F/D85B = 4 (Terzaghi)"));
+        rules.push(Mark::rule(Across::X, 4.0, BLACK).dash(Dash::Dotted).label("D15F/D85B = 4 (Terzaghi)"));
     }
     let figure = against_ratio(["Erosion against the filter ratio", what], y, rules, ledger, |line| {
         eroded(line, 0).map(|first| (100.0 * first.mean, interval_in_percent(first)))

@@ -1,6 +1,6 @@
 //! Page of walks on given networks, without a scene.
 
-use super::figures::{Axis, BLUE, Dash, Figure, Line, VERMILLION};
+use super::figures::{Axis, BLUE, Dash, Figure, Mark, VERMILLION};
 use super::files::{ReportError, json_of, refused};
 use super::results::{
     brief, by_connectivity, eroded_table, in_words, replicates, replicates_in_words, results,
@@ -91,10 +91,9 @@ fn sizes(record: &NetworkWalkRecord) -> Drawn {
     let x = size_axis(SizeUnit::Mm, base.iter().chain(network).map(|row| row[0]));
     let what = "Percent finer against size for the base (by mass) and the constrictions (by number)";
     let y = Axis::percent("Percent finer (%)");
-    let mut figure =
-        Figure::new("Base and constrictions", what, "", x, y).sizes((720.0, 460.0), (358.0, 400.0));
-    figure.add(Line::of_rows(base, VERMILLION).width(2.6).label("base\n(by mass)"));
-    let constrictions = Line::of_rows(network, BLUE).dash(Dash::Dashed);
+    let mut figure = Figure::new("Base and constrictions", what, x, y).sizes((720.0, 460.0), (358.0, 400.0));
+    figure.add(Mark::rows(base, VERMILLION).width(2.6).label("base\n(by mass)"));
+    let constrictions = Mark::rows(network, BLUE).dash(Dash::Dashed);
     figure.add(constrictions.label("constrictions\n(by number)"));
     let caption = "Percent finer by mass of the base, and percent smaller by number of the network’s open \
                    constrictions. Base particles pass a constriction that is no smaller than they are.";

@@ -114,7 +114,7 @@ mod tests {
     fn figures_are_numbered_through_the_page_and_a_section_without_words_has_no_heading() {
         let drawn = |name| {
             let axis = || Axis::linear("x", 0.0, 1.0);
-            Drawn::new(name, Figure::new("", "", "", axis(), axis()), "")
+            Drawn::new(name, Figure::new("", "", axis(), axis()), "")
         };
         let page = Sections::new("a", "Heading", &html! {})
             .figures([drawn("one")])

@@ -272,12 +272,11 @@ mod tests {
 
     #[test]
     fn a_page_is_written_with_its_figures() {
-        use super::super::figures::{Axis, BLUE, Line};
+        use super::super::figures::{Axis, BLUE, Mark};
         use super::super::section::write_page;
         let x = Axis::linear("Increment (–)", 0.0, 10.0);
-        let mut figure =
-            Figure::new("Eroded", "Base eroded by increment", "", x, Axis::percent("Eroded (%)"));
-        figure.add(Line::new(vec![(0.0, 0.0), (10.0, 8.0)], BLUE));
+        let mut figure = Figure::new("Eroded", "Base eroded by increment", x, Axis::percent("Eroded (%)"));
+        figure.add(Mark::line(vec![(0.0, 0.0), (10.0, 8.0)], BLUE));
         let drawn = Drawn::new("eroded", figure, "One walk.");
         let main = html! { p { (clean("a name\u{202e} from outside")) } figure { (drawing(&drawn)) } };
         let page = page_with_foot(None, "Erosion", [&html! { h1 { "Erosion" } }, &main, &html! {}]);

@@ -2,8 +2,7 @@
 //! files that were read.
 
 use super::figures::{
-    Area, Axis, BLACK, BLUE, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, VERMILLION, positive_range,
-    shorten,
+    Axis, BLACK, BLUE, Dash, Figure, GREEN, GREY, Mark, ORANGE, PURPLE, VERMILLION, positive_range, shorten,
 };
 use super::names::{input_name, is_named, soil_name};
 use super::shell::{Drawn, clean, fact};
@@ -34,13 +33,13 @@ pub(crate) fn soils_figure<'a>(
     let what = format!("Percent finer by mass against size for {}", names.join(", "));
     let (x, y) = (Axis::log("Size (mm)", low, high), Axis::percent("Percent finer by mass (%)"));
     let x = if coarse_left { x.downward() } else { x };
-    let mut figure = Figure::new("Sieve curves", &what, "", x, y).sieves();
+    let mut figure = Figure::new("Sieve curves", &what, x, y).sieves();
     let colours = [BLACK, VERMILLION, BLUE, GREEN, PURPLE, ORANGE, GREY];
     let dashes = [Dash::Solid, Dash::Dashed];
     for (index, ((_, points), name)) in soils.iter().zip(&names).enumerate() {
         let dash = dashes[index / colours.len() % dashes.len()];
         let points = points.iter().map(|point| (point.size, point.percent)).collect();
-        let line = Line::new(points, colours[index % colours.len()]);
+        let line = Mark::line(points, colours[index % colours.len()]);
         figure.add(line.dash(dash).label(name));
     }
     figure.file()
@@ -211,12 +210,12 @@ impl<'a> GivenCurves<'a> {
             None => ("Gradations", "Percent finer against size for the soils that were given"),
         };
         let (x, y) = (Axis::log("Size (mm)", low, high), Axis::percent("Percent finer by mass (%)"));
-        let mut figure = Figure::new(title, what, "", x, y).sizes((720.0, 460.0), (358.0, 400.0)).sieves();
+        let mut figure = Figure::new(title, what, x, y).sizes((720.0, 460.0), (358.0, 400.0)).sieves();
         if let Some((fine, coarse)) = &sides {
             let outline = fine.iter().chain(coarse.iter().rev()).map(|&[x, y]| (x, y)).collect();
-            figure.add(Area::new(outline, GREEN, 0.15).label("band"));
-            figure.add(Line::of_rows(fine, GREEN).width(2.6).label("fine side"));
-            figure.add(Line::of_rows(coarse, BLUE).width(2.6).label("coarse side"));
+            figure.add(Mark::area(outline, GREEN, 0.15).label("band"));
+            figure.add(Mark::rows(fine, GREEN).width(2.6).label("fine side"));
+            figure.add(Mark::rows(coarse, BLUE).width(2.6).label("coarse side"));
         }
         for curve in curves.iter().take(CURVES) {
             draw(&mut figure, curve, if curves.len() == 1 { "base" } else { &curve.curve });
@@ -238,12 +237,12 @@ impl<'a> GivenCurves<'a> {
 }
 
 fn draw(figure: &mut Figure, curve: &SpecifiedCurve, name: &str) {
-    let (name, sampled) = (shorten(name, 24), Line::of_rows(&curve.gradation, VERMILLION));
+    let (name, sampled) = (shorten(name, 24), Mark::rows(&curve.gradation, VERMILLION));
     if curve.regraded.is_empty() {
         return figure.add(sampled.label(&name));
     }
     figure.add(sampled.width(1.4).dash(Dash::Dashed).label(&format!("{name},\nas sampled")));
-    figure.add(Line::of_rows(&curve.regraded, VERMILLION).label(&format!("{name},\nregraded")));
+    figure.add(Mark::rows(&curve.regraded, VERMILLION).label(&format!("{name},\nregraded")));
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use maud::{Markup, Render, html};
 
-use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, Point, Rule, Shape, positive_range};
+use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, Mark, Shape, positive_range};
 use super::files::{ReportError, json, refused};
 use super::names::{brief_name, file_notes, titled_by_file};
 use super::section::{Sections, Written};
@@ -260,13 +260,13 @@ fn limits(all: &DesignedSamples) -> Option<Drawn> {
     let (low, high) = positive_range(practice.iter().map(|(_, mm, _)| *mm));
     let y = Axis::log("D15F (mm)", low / 1.2, high * 1.2);
     let what = "Maximum D15F by practice against D85B of each sample";
-    let mut figure = Figure::new("How coarse the filter may be", what, "", x, y).names_above();
+    let mut figure = Figure::new("How coarse the filter may be", what, x, y).names_above();
     let governs = all.governing().first().and_then(|row| row.d15f_max_mm);
     if let Some(mm) = governs {
-        figure.add(Rule::new(Across::Y, mm, BLACK).dash(Dash::Dashed).label("governing sample"));
+        figure.add(Mark::rule(Across::Y, mm, BLACK).dash(Dash::Dashed).label("governing sample"));
     }
     let point = |(d85, mm, governs): &(f64, f64, bool)| {
-        Point::new(*d85, *mm, BLUE, if *governs { Shape::Square } else { Shape::Circle })
+        Mark::point(*d85, *mm, BLUE, if *governs { Shape::Square } else { Shape::Circle })
     };
     figure.add_points("limit of practice", practice.iter().map(point));
     let caption = "The strictest limit of practice of each sample. Square: the sample that governs. The \

@@ -60,11 +60,9 @@ pub(super) fn roomy(figure: &Figure, width: f64, height: f64, top: f64) -> (Fram
 }
 
 fn frame(figure: &Figure, width: f64, height: f64, top: f64) -> Frame<'_> {
-    let widest = |axis: &Axis| {
-        let texts = axis.ticks.iter().flat_map(|tick| &tick.text);
-        texts.map(|text| width_of(text, TICK_TEXT)).fold(0.0, f64::max)
-    };
-    let rows = figure.x.ticks.iter().map(|tick| tick.text.len()).max().unwrap_or(0) as f64;
+    let widest =
+        |axis: &Axis| axis.ticks.iter().map(|tick| width_of(&tick.text, TICK_TEXT)).fold(0.0, f64::max);
+    let rows = if figure.x.ticks.iter().any(|tick| !tick.text.is_empty()) { 1.0 } else { 0.0 };
     let right = width - 20.0;
     let y_lines = if figure.y.label.is_empty() {
         0
@@ -96,20 +94,12 @@ pub(super) fn grid(svg: &mut Svg, frame: &Frame<'_>) {
         }
     }
     for (tick, x) in labelled(frame.x, |tick| {
-        let wide = tick.text.iter().map(|text| width_of(text, TICK_TEXT)).fold(0.0, f64::max);
-        frame.x_at(tick.at).map(|x| (x, wide / 2.0 + 4.0))
+        frame.x_at(tick.at).map(|x| (x, width_of(&tick.text, TICK_TEXT) / 2.0 + 4.0))
     }) {
-        for (row, text) in tick.text.iter().enumerate() {
-            svg.text((x, bottom + 17.0 + row as f64 * LINE_HEIGHT), Anchor::Middle, text, "");
-        }
+        svg.text((x, bottom + 17.0), Anchor::Middle, &tick.text, "");
     }
-    for (tick, y) in
-        labelled(frame.y, |tick| frame.y_at(tick.at).map(|y| (y, LINE_HEIGHT * tick.text.len() as f64 / 2.0)))
-    {
-        let first = y + 4.5 - (tick.text.len() as f64 - 1.0) * LINE_HEIGHT / 2.0;
-        for (row, text) in tick.text.iter().enumerate() {
-            svg.text((left - 7.0, first + row as f64 * LINE_HEIGHT), Anchor::End, text, "");
-        }
+    for (tick, y) in labelled(frame.y, |tick| frame.y_at(tick.at).map(|y| (y, LINE_HEIGHT / 2.0))) {
+        svg.text((left - 7.0, y + 4.5), Anchor::End, &tick.text, "");
     }
 }
 
@@ -227,7 +217,7 @@ pub(super) fn sieves(svg: &mut Svg, frame: &Frame<'_>) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Axis, BLUE, Figure, Line, Size};
+    use super::super::{BLUE, Mark, Size};
     use super::*;
 
     #[test]
@@ -235,7 +225,7 @@ mod tests {
         let axis = Axis::log("x", 0.11, 8.5);
         let kept = |half: f64| {
             let ticks = labelled(&axis, |tick| axis.position(tick.at).map(|share| (share * 300.0, half)));
-            let mut texts: Vec<_> = ticks.into_iter().map(|(tick, _)| tick.text[0].clone()).collect();
+            let mut texts: Vec<_> = ticks.into_iter().map(|(tick, _)| tick.text.clone()).collect();
             texts.sort();
             texts
         };
@@ -252,8 +242,8 @@ mod tests {
     fn figure(low: f64, high: f64, coarse_left: bool) -> Figure {
         let x = Axis::log("Size (mm)", low, high);
         let x = if coarse_left { x.downward() } else { x };
-        let mut figure = Figure::new("Sieves", "", "", x, Axis::percent("Finer (%)")).sieves();
-        figure.add(Line::new(vec![(low, 0.0), (high, 100.0)], BLUE).label("soil"));
+        let mut figure = Figure::new("Sieves", "", x, Axis::percent("Finer (%)")).sieves();
+        figure.add(Mark::line(vec![(low, 0.0), (high, 100.0)], BLUE).label("soil"));
         figure
     }
 
