@@ -15,7 +15,7 @@ use voidwalk_practice::{InputFile, Note, SheetCover};
 pub(crate) const BETWEEN_STEPS: f64 = 0.005;
 
 /// Contents of `boundary.json`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Boundaries {
     /// Version of voidwalk.
@@ -83,7 +83,7 @@ impl Boundaries {
 }
 
 /// Properties of the base.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(crate) struct BaseStated {
     /// Name of the base.
@@ -115,7 +115,7 @@ impl BaseStated {
 }
 
 /// Boundaries of one density and thickness.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(crate) struct BoundaryRow {
     /// Density of the filter.

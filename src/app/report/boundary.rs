@@ -326,10 +326,9 @@ fn in_band(low: Option<f64>, high: Option<f64>, words: impl Fn(f64) -> String) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::boundary::BaseStated;
+    use crate::outcome::boundary::NetworkBoundaries;
     use crate::outcome::record::ModelLimit;
     use voidwalk_core::store::format::BOUNDARY;
-    use voidwalk_practice::SheetCover;
 
     fn written(all: &Boundaries, csv: &str) -> String {
         let folder = tempfile::tempdir().unwrap();
@@ -337,57 +336,24 @@ mod tests {
         std::fs::write(folder.path().join("boundary.csv"), csv).unwrap();
         let written = write_boundary(folder.path()).unwrap();
         assert!(written.page.ends_with("boundary.html"));
+        assert!(written.figures[0].ends_with("figures/boundary.svg"));
         std::fs::read_to_string(written.page).unwrap()
     }
 
     fn all(no_erosion: Option<Boundary>) -> Boundaries {
+        let row = BoundaryRow {
+            density: "<loose>".into(),
+            thickness: "60 layers".into(),
+            layers: 60,
+            no_erosion,
+            ..BoundaryRow::default()
+        };
         Boundaries {
-            version: "1".into(),
-            commit: None,
-            boundaries: vec![BoundaryRow {
-                density: "<loose>".into(),
-                thickness: "60 layers".into(),
-                layers: 60,
-                thickness_mm: None,
-                grains_per_void: Some(0.61),
-                no_erosion_notes: Vec::new(),
-                no_erosion,
-                holds_to: None,
-                continuing: None,
-                continuing_notes: Vec::new(),
-                unsteady: None,
-                not_monotone: 0,
-                networks: Vec::new(),
-                as_end: None,
-                end_of: None,
-            }],
-            base: BaseStated {
-                name: "b".into(),
-                cu: None,
-                d15_mm: None,
-                d85_mm: None,
-                d95_over_d85: None,
-                regraded_at_mm: None,
-                tail_mass_fraction: 0.0,
-                d85_as_sampled_mm: None,
-            },
-            filter: "f".into(),
-            curve_name: "c".into(),
-            filter_cu: None,
-            filter_d15_mm: None,
-            inputs: Vec::new(),
+            boundaries: vec![row],
             threshold: 0.075,
             replicates: 3,
-            seed: 1,
-            engine: "expected".into(),
-            bracket: [0.5, 100.0],
-            step: 0.005,
-            notes: Vec::new(),
             model_leaves_out: vec![ModelLimit::Supply],
-            settings: Vec::new(),
-            cover: SheetCover::default(),
-            inches: false,
-            seconds: 1.0,
+            ..Boundaries::default()
         }
     }
 
@@ -397,7 +363,6 @@ mod tests {
     /// With few networks, a percentile would lie between two of them.
     #[test]
     fn of_few_networks_the_page_has_least_and_most() {
-        use crate::outcome::boundary::NetworkBoundaries;
         let page_of = |ratios: &[f64]| {
             let networks: Vec<_> = ratios.iter().map(|ratio| Ok(*ratio)).collect();
             let mut all = all(Boundary::of(&networks, Some(0.2)));

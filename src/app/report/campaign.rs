@@ -1,10 +1,9 @@
 //! Page of a campaign, made from `campaign.json` and `ledger.jsonl` alone, with one row per case and a link
 //! to its page.
 
-use super::cases;
-use super::cases::AtRatio;
+use super::cases::{self, AtRatio};
 use super::figures::{Across, Axis, BLACK, Dash, Figure, Mark, shorten};
-use super::files::{ReportError, json, json_of, lines, lines_of};
+use super::files::{ReportError, json, json_of, lines, text};
 use super::section::{Sections, Written};
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
@@ -28,7 +27,8 @@ const DRAWN: usize = 120;
 /// error, and nothing is written then.
 pub fn write_campaign(folder: &Path) -> Result<Written, ReportError> {
     let about: Campaign = json(&folder.join(ABOUT))?;
-    let ledger: Vec<LedgerLine> = lines(&folder.join(LEDGER))?;
+    let path = folder.join(LEDGER);
+    let ledger = lines(&path, &text(&path)?)?;
     page(folder, &about, &ledger).write(folder, "report.html", &citation())
 }
 
@@ -36,7 +36,7 @@ pub fn write_campaign(folder: &Path) -> Result<Written, ReportError> {
 /// text is an error.
 pub fn campaign_page(about: &str, ledger: &str) -> Result<String, ReportError> {
     let about: Campaign = json_of(Path::new(ABOUT), about)?;
-    let ledger: Vec<LedgerLine> = lines_of(Path::new(LEDGER), ledger)?;
+    let ledger = lines(Path::new(LEDGER), ledger)?;
     // Without a folder, no case has a page of its own.
     Ok(page(Path::new(""), &about, &ledger).text(&citation()))
 }

@@ -35,13 +35,8 @@ pub(super) fn malformed(path: &Path, line: u64, message: String) -> ReportError 
     ReportError::Form { path: path.to_owned(), line, message }
 }
 
-/// Reads a file of JSON lines, such as `ledger.jsonl`.
-pub(crate) fn lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ReportError> {
-    lines_of(path, &text(path)?)
-}
-
-/// Reads JSON lines like [`lines()`], but from this text.
-pub(super) fn lines_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<Vec<T>, ReportError> {
+/// Reads JSON lines, such as those of `ledger.jsonl`; `path` names them in errors.
+pub(super) fn lines<T: DeserializeOwned>(path: &Path, text: &str) -> Result<Vec<T>, ReportError> {
     let one = |(index, line): (usize, &str)| {
         serde_json::from_str(line).map_err(|error| malformed(path, index as u64 + 1, error.to_string()))
     };

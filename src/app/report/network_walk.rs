@@ -5,11 +5,12 @@ use super::files::{ReportError, json_of, refused};
 use super::results::{
     brief, by_connectivity, eroded_table, in_words, replicates, replicates_in_words, results,
 };
+use super::run_figures;
 use super::run_figures::size_axis;
-use super::shell::{Drawn, citation, clean, drawing, fact, leaves_out, page_with_foot};
+use super::section::Sections;
+use super::shell::{Drawn, citation, clean, drawing, fact, leaves_out};
 use super::table::{counts, known};
 use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
-use super::{run_figures, shell};
 use crate::outcome::Recorded;
 use crate::outcome::record::{NetworkWalkRecord, Verdict};
 use crate::words::left_out::left_out_words;
@@ -27,16 +28,9 @@ pub fn network_walk_page(record: &str, recorded: Recorded) -> Result<String, Rep
     let (replicates, runs) = (record.replicates.len(), record.summary.len());
     let rows = RunRows::read(Path::new(""), RowSource::Memory(recorded), replicates, runs)?;
     let walks = walks(&record, &rows);
-    let figures: Vec<Drawn> = [
-        Some(sizes(&record)),
-        run_figures::eroded(&walks),
-        run_figures::layers(&walks),
-        run_figures::retained(&walks),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
-    Ok(page(&record, &walks, &figures))
+    let of_walks = [run_figures::eroded, run_figures::layers, run_figures::retained].map(|draw| draw(&walks));
+    let figures = [Some(sizes(&record))].into_iter().chain(of_walks).flatten().collect();
+    Ok(page(&record, &walks, figures))
 }
 
 /// Verdict of walks on given networks, as a fragment of a page: its numbers, a figure, the omissions of the
@@ -100,14 +94,13 @@ fn sizes(record: &NetworkWalkRecord) -> Drawn {
     Drawn::new("gradations", figure, caption)
 }
 
-fn page(record: &NetworkWalkRecord, walks: &Walks, figures: &[Drawn]) -> String {
+fn page(record: &NetworkWalkRecord, walks: &Walks, figures: Vec<Drawn>) -> String {
     let title = format!("{}: walks on a given network", record.verdict.words());
-    let header = html! {
-        h1 { "Does this base pass this network?" }
-        p.names { "Base " b { (clean(&record.base.name)) } " on a network of "
-            b { (whole(record.network.voids)) " voids" } }
+    let names = html! {
+        "Base " b { (clean(&record.base.name)) } " on a network of "
+        b { (whole(record.network.voids)) " voids" }
     };
-    let main = html! {
+    let sheets = html! {
         section.sheet {
             div.first {
                 (verdict_section(record, walks))
@@ -120,15 +113,15 @@ fn page(record: &NetworkWalkRecord, walks: &Walks, figures: &[Drawn]) -> String 
                 ul { @for note in &record.notes { li { (clean(&sentence(note, SizeUnit::Mm))) } } }
             }
         }
-        (shell::contents())
-        h2 { "Figures" }
-        @for (number, drawn) in (1..).zip(figures) { (shell::figure(number, drawn)) }
-        (results(walks))
-        (by_connectivity(walks))
-        (replicates(walks))
-        (inputs(record))
     };
-    page_with_foot(None, &title, [&header, &main, &citation()])
+    let numbers = html! { (results(walks)) (by_connectivity(walks)) (replicates(walks)) (inputs(record)) };
+    Sections::new(title, "Does this base pass this network?", &names)
+        .words(&sheets)
+        .contents()
+        .words(&html! { h2 { "Figures" } })
+        .figures(figures)
+        .words(&numbers)
+        .text(&citation())
 }
 
 /// Number of base particles, and the number that Eq. (2) requires.

@@ -77,16 +77,9 @@ fn drawn(run: &RunFolder) -> (String, Vec<Drawn>) {
     let walks = run.walks();
     let verdict = run_figures::verdict(&walks);
     let gradations = run_figures::gradations(run);
-    let figures: Vec<Drawn> = [
-        run_figures::eroded(&walks),
-        run_figures::layers(&walks),
-        run_figures::retained(&walks),
-        run.packing.as_ref().map(packing::slice),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
-
+    let of_walks = [run_figures::eroded, run_figures::layers, run_figures::retained].map(|draw| draw(&walks));
+    let slice = run.packing.as_ref().map(packing::slice);
+    let figures: Vec<Drawn> = of_walks.into_iter().chain([slice]).flatten().collect();
     let page = page(run, [&verdict, &gradations], &figures);
     (page, [verdict, gradations].into_iter().chain(figures).collect())
 }

@@ -340,49 +340,46 @@ pub(super) fn retained(walks: &Walks) -> Option<Drawn> {
 /// Half the height of a line, in percent finer.
 const HALF: f64 = 4.0;
 
-/// Rules whose limit is a D15F: the name beside the line, its colour, and its words in the caption.
-const LIMITS: [(&str, &str, Colour, &str); 3] = [
+/// Rule whose limit is a D15F: the name beside its line, its colour, and its words in the caption.
+type Limit = (&'static str, &'static str, Colour, &'static str);
+
+const LIMITS: [Limit; 3] = [
     (DESIGN, "design", GREY, "design"),
     (TESTS_NO_EROSION, "NE", GREEN, "no erosion (NE)"),
     (TESTS_CONTINUING, "CE", PURPLE, "continuing erosion (CE)"),
 ];
 
-/// Boundary: its index in [`LIMITS`], and its D15F.
-type Boundary = (usize, f64);
-
-/// Known boundaries for these soils.
-fn boundaries(decision: &Decision) -> Vec<Boundary> {
+/// Known limits for these soils, each with its D15F.
+fn boundaries(decision: &Decision) -> Vec<(Limit, f64)> {
     let limit = |id: &str| {
         let rule = decision.applied(id).filter(|rule| rule.quantity == RuleQuantity::D15F)?;
         let is_unclear = id == TESTS_CONTINUING && decision.is_beyond_unclear;
         rule.limit.filter(|limit| !is_unclear && *limit > 0.0 && limit.is_finite())
     };
-    let boundary = |(place, (id, ..)): (usize, &(&str, _, _, _))| Some((place, limit(id)?));
-    LIMITS.iter().enumerate().filter_map(boundary).collect()
+    LIMITS.into_iter().filter_map(|line| Some((line, limit(line.0)?))).collect()
 }
 
 /// Draws the 15 % line and the boundaries at it, with their names; the caption explains the line.
-fn draw(figure: &mut Figure, boundaries: &[Boundary]) {
+fn draw(figure: &mut Figure, boundaries: &[(Limit, f64)]) {
     figure.add(Mark::rule(Across::Y, 15.0, BLACK).dash(Dash::Dotted));
-    for (place, limit) in boundaries {
-        let (_, name, colour, _) = LIMITS[*place];
-        let line = Mark::line(vec![(*limit, 15.0 - HALF), (*limit, 15.0 + HALF)], colour);
+    for ((_, name, colour, _), limit) in boundaries {
+        let line = Mark::line(vec![(*limit, 15.0 - HALF), (*limit, 15.0 + HALF)], *colour);
         figure.add(line.width(3.0).stays().label(name));
     }
 }
 
 /// Names of the lines for the caption; empty without lines.
-fn caption(decision: &Decision, boundaries: &[Boundary]) -> String {
+fn caption(decision: &Decision, boundaries: &[(Limit, f64)]) -> String {
     if boundaries.is_empty() {
         return String::new();
     }
     // Design and no erosion have the same limit for a dispersive base.
     let is_one = decision.without_margin().is_some();
-    let name = |(place, ..): &Boundary| match LIMITS[*place] {
-        (DESIGN, ..) if is_one => "design and no erosion",
-        (.., name) => name,
+    let name = |(line, _): &(Limit, f64)| match line.0 {
+        DESIGN if is_one => Some("design and no erosion"),
+        TESTS_NO_EROSION if is_one => None,
+        _ => Some(line.3),
     };
-    let repeats = |(place, ..): &&Boundary| is_one && LIMITS[*place].0 == TESTS_NO_EROSION;
-    let names: Vec<&str> = boundaries.iter().filter(|line| !repeats(line)).map(name).collect();
+    let names: Vec<&str> = boundaries.iter().filter_map(name).collect();
     format!(" Short lines: D15F of {}.", names.join(", "))
 }

@@ -27,7 +27,7 @@ pub struct Figure {
     pub(super) sieves: bool,
     pub(super) wide: (f64, f64),
     pub(super) narrow: (f64, f64),
-    pub(super) sheet: Option<(f64, f64)>,
+    pub(crate) sheet: Option<(f64, f64)>,
 }
 
 impl Figure {
@@ -58,11 +58,6 @@ impl Figure {
     pub(crate) fn sheet(mut self, size: (f64, f64)) -> Figure {
         self.sheet = Some(size);
         self
-    }
-
-    /// True if it has a size of its own on the first printed sheet.
-    pub(crate) fn has_sheet(&self) -> bool {
-        self.sheet.is_some()
     }
 
     /// Makes the frame a square, as large as possible: equal axes then have equal scales.
