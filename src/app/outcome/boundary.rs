@@ -366,13 +366,6 @@ mod tests {
     }
 
     #[test]
-    fn one_network_has_a_boundary_and_no_band() {
-        let alone = Boundary::of(&[Ok(0.901)], None).unwrap();
-        assert_eq!((alone.median, alone.low, alone.high), (0.901, None, None));
-        assert_eq!(alone.cautious(), Some(0.901));
-    }
-
-    #[test]
     fn of_few_networks_least_and_most_are_shown() {
         let ratios = [4.0, 4.4, 4.8, 5.0, 6.0];
         let over =
@@ -394,8 +387,10 @@ mod tests {
         let beyond = [Ok(4.0), Ok(4.4), Err(Beyond::Above)];
         let shown = Boundary::of(&beyond, None).unwrap().with_shown_ends(&known(&beyond));
         assert_eq!((shown.low, shown.high), (Some(4.0), None));
-        let alone = Boundary::of(&[Ok(4.0)], None).unwrap().with_shown_ends(&[Some(4.0)]);
-        assert_eq!((alone.low, alone.high), (None, None));
+        // One network has a boundary and no band.
+        let alone = Boundary::of(&[Ok(4.0)], None).unwrap();
+        assert_eq!((alone.median, alone.low, alone.high, alone.cautious()), (4.0, None, None, Some(4.0)));
+        assert_eq!(alone.with_shown_ends(&[Some(4.0)]), alone);
     }
 
     #[test]

@@ -59,14 +59,9 @@ pub(crate) enum Look {
 pub(crate) type ReplicateValues = Vec<(f64, bool)>;
 
 impl StopRule {
-    /// True if the number of replicates is fixed by the scene.
-    pub(crate) fn is_unset(&self) -> bool {
-        self.target_error_pp.is_none() && self.decide_percent.is_none()
-    }
-
-    /// True if a target or a confidence level is set.
+    /// True if a target or a confidence level is set; otherwise the scene fixes the number of replicates.
     pub(crate) fn is_set(&self) -> bool {
-        !self.is_unset()
+        self.target_error_pp.is_some() || self.decide_percent.is_some()
     }
 
     /// Number of replicates at look `look`, counted from 1, if the first look is at `first`.

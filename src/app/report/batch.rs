@@ -251,18 +251,16 @@ fn curves(batch: &WalkedBatch) -> Option<Drawn> {
 /// base.
 fn limits(batch: &WalkedBatch) -> Option<Drawn> {
     // A limit belongs to the sample; filters differ only if the rules require more of one.
-    let known = |row: &&WalkedRow| row.rules.d85b_mm.is_some() && row.rules.limit_mm.is_some();
-    let rows: Vec<&WalkedRow> = batch.rows.iter().filter(known).collect();
-    let d85b = |row: &WalkedRow| row.rules.d85b_mm.unwrap_or(f64::NAN);
-    let limit = |row: &WalkedRow| row.rules.limit_mm.unwrap_or(f64::NAN);
+    let known = batch.rows.iter().filter_map(|row| Some((row.rules.d85b_mm?, row.rules.limit_mm?, row)));
+    let rows: Vec<(f64, f64, &WalkedRow)> = known.collect();
     if rows.is_empty() || batch.has_one_base() {
         return None;
     }
     let filters =
         || batch.filters.iter().take(LINES.len()).filter_map(|filter| Some((filter, filter.d15f_mm?)));
-    let (low, high) = positive_range(rows.iter().map(|row| d85b(row)));
+    let (low, high) = positive_range(rows.iter().map(|(d85b, ..)| *d85b));
     let x = Axis::log("D85B after regrading (mm)", low / 1.2, high * 1.2);
-    let all = rows.iter().map(|row| limit(row)).chain(filters().map(|(_, mm)| mm));
+    let all = rows.iter().map(|(_, limit, _)| *limit).chain(filters().map(|(_, mm)| mm));
     let (low, high) = positive_range(all);
     let y = Axis::log("Limit of D15F (mm)", low / 1.2, high * 1.2);
     let what = "Strictest limit of D15F of each sample against its D85B, with the D15F of each filter";
@@ -271,13 +269,13 @@ fn limits(batch: &WalkedBatch) -> Option<Drawn> {
         let label = format!("D15F of {}", shorten(&filter_name(batch, &filter.name), 24));
         figure.add(Mark::rule(Across::Y, mm, colour).dash(dash).label(&label));
     }
-    let point = |row: &&WalkedRow| {
+    let point = |(d85b, limit, row): &(f64, f64, &WalkedRow)| {
         let shape = if row.governs == Some(1) { Shape::Square } else { Shape::Circle };
-        let point = Mark::point(d85b(row), limit(row), BLUE, shape);
+        let point = Mark::point(*d85b, *limit, BLUE, shape);
         if row.rules.limit_at_most { point.hollow() } else { point }
     };
     let points =
-        |governs: bool| rows.iter().filter(move |row| (row.governs == Some(1)) == governs).map(point);
+        |governs: bool| rows.iter().filter(move |(.., row)| (row.governs == Some(1)) == governs).map(point);
     figure.add_points("sample", points(false));
     figure.add_points("governs a filter", points(true));
     let caption = "Strictest limit of D15F of each sample. The D15F of a filter is within the limit of \

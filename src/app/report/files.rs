@@ -58,18 +58,13 @@ pub fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<(u64, T)>, ReportErr
         };
         malformed(path, line, message)
     };
-    let headers = reader.headers().map_err(|error| form(1, error))?.clone();
-    let mut rows = Vec::new();
-    let mut record = csv::StringRecord::new();
+    reader.headers().map_err(|error| form(1, error))?;
+    let (mut records, mut rows) = (reader.deserialize(), Vec::new());
     loop {
-        let line = reader.position().line();
-        match reader.read_record(&mut record) {
-            Ok(false) => return Ok(rows),
-            Ok(true) => {
-                let row = record.deserialize(Some(&headers)).map_err(|error| form(line, error))?;
-                rows.push((line, row));
-            }
-            Err(error) => return Err(form(line, error)),
+        let line = records.reader().position().line();
+        match records.next() {
+            Some(row) => rows.push((line, row.map_err(|error| form(line, error))?)),
+            None => return Ok(rows),
         }
     }
 }

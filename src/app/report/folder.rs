@@ -11,6 +11,7 @@ use super::shell::LINE;
 use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{Classed, Manifest, Outcome, Sensitivity};
+use crate::scene::values::SheetUnits;
 use crate::verdict::RunFiles;
 use voidwalk_practice::quantity::SizeUnit;
 use voidwalk_practice::{AboutPage, Decision};
@@ -129,13 +130,6 @@ fn stand_among_its_variations(outcome: &mut Outcome) {
 struct ShownSizes {
     coarse_left: bool,
     units: Option<SheetUnits>,
-}
-
-#[derive(Deserialize, PartialEq)]
-#[serde(rename_all = "lowercase")]
-enum SheetUnits {
-    Metric,
-    Us,
 }
 
 /// Page settings in the text of a run's scene; `path` names the text in errors. A value that cannot be read

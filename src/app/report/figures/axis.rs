@@ -185,16 +185,12 @@ mod tests {
     }
 
     #[test]
-    fn a_size_axis_has_decades_and_every_minor_line() {
+    fn a_size_axis_has_every_minor_line_and_labels_decades_or_if_short_more() {
         let axis = Axis::log("Size (mm)", 0.063, 63.0);
         assert_eq!((axis.low, axis.high), (0.06, 70.0));
         assert_eq!(labels(&axis), ["0.1", "1", "10"]);
         // 0.06 to 0.09 (4), 0.1 to 0.9, 1 to 9, 10 to 70 (7)
         assert_eq!(axis.ticks.len(), 4 + 9 + 9 + 7);
-    }
-
-    #[test]
-    fn a_short_size_axis_labels_more_than_its_decades() {
         assert_eq!(labels(&Axis::log("Size (mm)", 0.11, 2.1)), ["0.1", "0.2", "0.5", "1", "2"]);
         assert_eq!(labels(&Axis::log("Size (mm)", 2.2, 5.1)), ["2", "3", "4", "5", "6"]);
     }

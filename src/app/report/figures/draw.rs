@@ -405,5 +405,7 @@ mod tests {
             assert!(drawn.contains(&format!("<title>first: {values}</title>")), "{values}: {drawn}");
         }
         assert!(drawn.contains("<title>Times the grains 1.00; Eroded (%) 20.0</title>"), "{drawn}");
+        // A narrow figure is for a screen without a pointer.
+        assert!(!figure.inline("two", Size::Narrow).contains("first: "));
     }
 }
