@@ -3,7 +3,7 @@
 use super::curves;
 use super::figure::{Across, Colour, Dash, Figure, Form, Mark, Shape, Size};
 use super::frame::{self, Frame, LINE_HEIGHT, TICK_TEXT, axis_labels, grid, roomy};
-use super::svg::{Anchor, Canvas, FONT, GAP, Rect, Svg, along, escape, short, simplify, width_of};
+use super::svg::{Canvas, FONT, GAP, Rect, Svg, along, escape, short, simplify, width_of};
 use voidwalk_practice::quantity::significant;
 
 /// Half the width of a symbol.
@@ -49,7 +49,7 @@ fn draw(figure: &Figure, size: Size, id: &str, namespace: &str) -> String {
     svg.rect(0.0, 0.0, width, height, r##"fill="#ffffff""##);
     svg.raw(&body);
     svg.raw("</svg>\n");
-    svg.finish()
+    svg.0
 }
 
 fn named(figure: &Figure) -> Vec<usize> {
@@ -133,7 +133,7 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
             }
         }
     }
-    (svg.finish(), height, homeless)
+    (svg.0, height, homeless)
 }
 
 /// Draws the parts of a curve in a group, so that a page can hide it.
@@ -147,7 +147,7 @@ fn in_group(svg: &mut Svg, class: &str, draw: impl FnOnce(&mut Svg)) {
 }
 
 /// Writes a name beside its mark, on a light background that separates it from the drawing below.
-fn name(svg: &mut Svg, lines: &[&str], area: &Rect, (at, anchor): (f64, Anchor), colour: Colour) {
+fn name(svg: &mut Svg, lines: &[&str], area: &Rect, (at, anchor): (f64, &'static str), colour: Colour) {
     let halo = r##"stroke="#ffffff" stroke-width="3" stroke-linejoin="round" paint-order="stroke""##;
     let paint = format!("fill=\"{}\" {halo}", colour.text);
     for (row, line) in lines.iter().enumerate() {
@@ -156,12 +156,12 @@ fn name(svg: &mut Svg, lines: &[&str], area: &Rect, (at, anchor): (f64, Anchor),
 }
 
 /// Text to the left of its curve ends at the curve, so that a narrower font leaves no gap.
-fn side(area: &Rect, anchors: &[(f64, f64)]) -> (f64, Anchor) {
+fn side(area: &Rect, anchors: &[(f64, f64)]) -> (f64, &'static str) {
     let nearest = anchors.iter().min_by(|a, b| distance(area, **a).total_cmp(&distance(area, **b)));
     match nearest {
-        Some((x, _)) if *x >= area.right => (area.right, Anchor::End),
-        Some((x, _)) if *x > area.left => ((area.left + area.right) / 2.0, Anchor::Middle),
-        _ => (area.left, Anchor::Start),
+        Some((x, _)) if *x >= area.right => (area.right, "end"),
+        Some((x, _)) if *x > area.left => ((area.left + area.right) / 2.0, "middle"),
+        _ => (area.left, "start"),
     }
 }
 
@@ -192,7 +192,7 @@ fn key(svg: &mut Svg, figure: &Figure, above: &[usize], width: f64, top: f64) ->
             Form::Disc(..) => {}
         }
         let paint = format!("fill=\"{}\"", mark.colour.text);
-        svg.text((left + SAMPLE + 6.0, middle + 4.5), Anchor::Start, &label, &paint);
+        svg.text((left + SAMPLE + 6.0, middle + 4.5), "start", &label, &paint);
         left += room;
     }
     if above.is_empty() { top } else { row + LINE_HEIGHT + 8.0 }

@@ -3,7 +3,7 @@
 
 use super::axis::{Axis, Tick};
 use super::figure::Figure;
-use super::svg::{Anchor, Rect, Svg, short, simplify, width_of, wrap};
+use super::svg::{Rect, Svg, short, simplify, width_of, wrap};
 
 pub(super) const TICK_TEXT: f64 = 13.0;
 pub(super) const LABEL_TEXT: f64 = 14.0;
@@ -96,10 +96,10 @@ pub(super) fn grid(svg: &mut Svg, frame: &Frame<'_>) {
     for (tick, x) in labelled(frame.x, |tick| {
         frame.x_at(tick.at).map(|x| (x, width_of(&tick.text, TICK_TEXT) / 2.0 + 4.0))
     }) {
-        svg.text((x, bottom + 17.0), Anchor::Middle, &tick.text, "");
+        svg.text((x, bottom + 17.0), "middle", &tick.text, "");
     }
     for (tick, y) in labelled(frame.y, |tick| frame.y_at(tick.at).map(|y| (y, LINE_HEIGHT / 2.0))) {
-        svg.text((left - 7.0, y + 4.5), Anchor::End, &tick.text, "");
+        svg.text((left - 7.0, y + 4.5), "end", &tick.text, "");
     }
 }
 
@@ -140,13 +140,13 @@ pub(super) fn axis_labels(svg: &mut Svg, frame: &Frame<'_>, height: f64) {
     let lines = wrap(&frame.x.label, LABEL_TEXT, right - left);
     let first = height - 12.0 - (lines.len() as f64 - 1.0) * LINE_HEIGHT;
     for (row, line) in lines.iter().enumerate() {
-        svg.text(((left + right) / 2.0, first + row as f64 * LINE_HEIGHT), Anchor::Middle, line, &size);
+        svg.text(((left + right) / 2.0, first + row as f64 * LINE_HEIGHT), "middle", line, &size);
     }
     let middle = (top + bottom) / 2.0;
     for (row, line) in wrap(&frame.y.label, LABEL_TEXT, height - top - 90.0).iter().enumerate() {
         let x = 20.0 + row as f64 * LINE_HEIGHT;
         let turned = format!("{size} transform=\"rotate(-90 {} {})\"", short(x), short(middle));
-        svg.text((x, middle), Anchor::Middle, line, &turned);
+        svg.text((x, middle), "middle", line, &turned);
     }
 }
 
@@ -190,9 +190,9 @@ pub(super) fn sieves(svg: &mut Svg, frame: &Frame<'_>) {
         }
         kept.push((x, half));
         svg.line((x, top - 5.0), (x, top), r##"stroke="#1a1a1a" stroke-width="1""##);
-        svg.text((x, top - 8.0), Anchor::Middle, name, &size);
+        svg.text((x, top - 8.0), "middle", name, &size);
     }
-    svg.text((left - 7.0, top - 8.0), Anchor::End, "US sieve", &quiet);
+    svg.text((left - 7.0, top - 8.0), "end", "US sieve", &quiet);
     for (name, finest, coarsest) in PARTS {
         for limit in [finest, coarsest] {
             if let Some(x) = at(limit).filter(inside) {
@@ -210,7 +210,7 @@ pub(super) fn sieves(svg: &mut Svg, frame: &Frame<'_>) {
         };
         let (from, to) = (one.min(other).max(left), one.max(other).min(right));
         if to - from > width_of(name, TEXT) + 6.0 {
-            svg.text(((from + to) / 2.0, top - 24.0), Anchor::Middle, name, &quiet);
+            svg.text(((from + to) / 2.0, top - 24.0), "middle", name, &quiet);
         }
     }
 }
