@@ -250,15 +250,7 @@ fn retained_layers(layers: &[LayerRow]) -> [Option<u64>; 2] {
 }
 
 fn layers(network: &Network, state: &State, id: RunId) -> Vec<LayerRow> {
-    let row = |layer| LayerRow {
-        replicate: id.replicate,
-        run: id.run,
-        layer,
-        constrictions: 0,
-        blocked: 0,
-        retained_in_constrictions: 0,
-        retained_in_voids: 0,
-    };
+    let row = |layer| LayerRow { replicate: id.replicate, run: id.run, layer, ..LayerRow::default() };
     let mut rows: Vec<LayerRow> = (0..network.layers() as u64).map(row).collect();
     for (void, &layer) in network.layer_of().iter().enumerate().filter(|&(_, &layer)| layer != NO_LAYER) {
         let row = &mut rows[layer as usize];

@@ -52,7 +52,7 @@ macro_rules! rows {
         $($(#[$what:meta])* pub $field:ident: $kind:ty,)*
     })*) => { $(
         $(#[$about])*
-        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
         #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
         pub struct $row {
             $($(#[$what])* pub $field: $kind,)*

@@ -68,9 +68,9 @@ type OfRow<'a, T, C> = Box<dyn Fn(&T) -> C + 'a>;
 
 /// Column of a file and of a page that shows it.
 struct Column<'a, T> {
-    /// Names in a file; a value with its interval has three columns there and one cell on a page.
-    names: Vec<String>,
-    cells: OfRow<'a, T, Vec<CellValue>>,
+    /// Name in a file.
+    name: String,
+    cell: OfRow<'a, T, CellValue>,
     /// Heading in a workbook, if neither the page nor the name gives one.
     heading: Option<&'static str>,
     page: Option<PageColumn<'a, T>>,
@@ -82,14 +82,14 @@ struct Column<'a, T> {
 
 /// Column as a page shows it.
 pub(crate) struct PageColumn<'a, T> {
-    /// First name of the column in a file.
+    /// Name of the column in a file.
     pub(crate) name: String,
     /// Quantity of the column with its unit.
     pub(crate) heading: Shown,
     /// Kind of the cells.
     pub(crate) kind: ColumnKind,
     /// Returns the cell of a row.
-    pub(crate) cell: Box<dyn Fn(&T) -> Shown + 'a>,
+    pub(crate) cell: OfRow<'a, T, Shown>,
 }
 
 /// Kind of the cells of a column.
@@ -111,8 +111,14 @@ impl<T> Default for Columns<'_, T> {
 
 impl<'a, T> Columns<'a, T> {
     /// Adds a column of a file; a page shows it if [`Self::page_number()`] or [`Self::page_text()`] follows.
-    pub(crate) fn column<C: TableCell>(self, name: impl Into<String>, cell: impl Fn(&T) -> C + 'a) -> Self {
-        self.with(vec![name.into()], move |row| vec![cell(row).value()])
+    pub(crate) fn column<C: TableCell>(
+        mut self,
+        name: impl Into<String>,
+        cell: impl Fn(&T) -> C + 'a,
+    ) -> Self {
+        let (name, cell) = (name.into(), Box::new(move |row: &T| cell(row).value()));
+        self.0.push(Column { name, cell, heading: None, page: None, place: 0, is_detail: false });
+        self
     }
 
     /// Adds a column of numbers of a file, with this number of decimals.
@@ -126,18 +132,15 @@ impl<'a, T> Columns<'a, T> {
     }
 
     /// Adds columns of a file for a fraction in percent and its interval; a page shows them as one column.
-    pub(crate) fn statistic(self, names: [&str; 3], value: impl Fn(&T) -> Option<Statistic> + 'a) -> Self {
-        self.with(names.map(String::from).to_vec(), move |row| {
-            let ends = value(row)
-                .map_or([None; 3], |statistic| [Some(statistic.mean), statistic.low, statistic.high]);
-            ends.map(|end| in_percent(end).value()).to_vec()
-        })
-    }
-
-    fn with(mut self, names: Vec<String>, cells: impl Fn(&T) -> Vec<CellValue> + 'a) -> Self {
-        let cells = Box::new(cells);
-        self.0.push(Column { names, cells, heading: None, page: None, place: 0, is_detail: false });
-        self
+    pub(crate) fn statistic(
+        self,
+        [mean, low, high]: [&str; 3],
+        value: impl Fn(&T) -> Option<Statistic> + Clone + 'a,
+    ) -> Self {
+        let [of_mean, of_low] = [value.clone(), value.clone()];
+        self.percent(mean, move |row| Some(of_mean(row)?.mean))
+            .percent(low, move |row| of_low(row)?.low)
+            .percent(high, move |row| value(row)?.high)
     }
 
     /// Adds a column of row names, which a page shows under this heading.
@@ -196,7 +199,7 @@ impl<'a, T> Columns<'a, T> {
     ) -> Self {
         let (heading, cell) = (heading.shown(), Box::new(move |row: &T| cell(row).shown()));
         let last = self.last();
-        last.page = Some(PageColumn { name: last.names[0].clone(), heading, kind, cell });
+        last.page = Some(PageColumn { name: last.name.clone(), heading, kind, cell });
         self
     }
 
@@ -236,7 +239,7 @@ impl<'a, T> Columns<'a, T> {
     /// Panics if there is no column of that name.
     pub(crate) fn only(mut self, names: &[&str]) -> Self {
         let column = |name: &&str| {
-            let place = self.0.iter().position(|column| column.names[0] == **name);
+            let place = self.0.iter().position(|column| column.name == **name);
             self.0.remove(place.unwrap_or_else(|| panic!("{name} is no column")))
         };
         Self(names.iter().map(column).collect())
@@ -252,9 +255,9 @@ impl<'a, T> Columns<'a, T> {
             PageColumn { name, heading, kind, cell }
         };
         let column = |column: Column<'a, T>| {
-            let Column { names, cells, heading, page, place, is_detail } = column;
-            let cells: OfRow<'a, W, Vec<CellValue>> = Box::new(move |row| cells(part(row)));
-            Column { names, cells, heading, page: page.map(shown), place, is_detail }
+            let Column { name, cell, heading, page, place, is_detail } = column;
+            let cell: OfRow<'a, W, CellValue> = Box::new(move |row| cell(part(row)));
+            Column { name, cell, heading, page: page.map(shown), place, is_detail }
         };
         Columns(self.0.into_iter().map(column).collect())
     }
@@ -275,7 +278,7 @@ impl<'a, T> Columns<'a, T> {
         T: 'r,
     {
         let mut writer = csv::Writer::from_writer(Vec::new());
-        writer.write_record(self.0.iter().flat_map(|column| column.names.clone()).map(inert)).expect(WRITTEN);
+        writer.write_record(self.0.iter().map(|column| inert(column.name.clone()))).expect(WRITTEN);
         for row in rows {
             let cells = self.values(row).map(|value| inert(value.to_string()));
             writer.write_record(cells).expect(WRITTEN);
@@ -285,18 +288,17 @@ impl<'a, T> Columns<'a, T> {
 
     /// Values of a row in a file.
     pub(crate) fn values(&self, row: &T) -> impl Iterator<Item = CellValue> {
-        self.0.iter().flat_map(|column| (column.cells)(row))
+        self.0.iter().map(|column| (column.cell)(row))
     }
 
     /// Headings in a workbook.
     pub(crate) fn headings(&self) -> Vec<String> {
-        let names = self.0.iter().flat_map(|column| column.names.iter().map(move |name| (column, name)));
-        let heading = |(column, name): (&Column<T>, &String)| match (column.heading, &column.page) {
+        let heading = |column: &Column<T>| match (column.heading, &column.page) {
             (Some(heading), _) => heading.to_owned(),
             (None, Some(page)) => page.heading.text.clone(),
-            (None, None) => name.clone(),
+            (None, None) => column.name.clone(),
         };
-        names.map(heading).collect()
+        self.0.iter().map(heading).collect()
     }
 }
 
