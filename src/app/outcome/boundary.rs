@@ -160,15 +160,6 @@ pub(crate) struct BoundaryRow {
 }
 
 impl BoundaryRow {
-    /// Density in words, with the range that it is an end of, or with its worse end.
-    pub(crate) fn name(&self) -> String {
-        match (&self.end_of, &self.as_end) {
-            (Some(range), _) => format!("{} (an end of the range of {range})", self.density),
-            (None, Some(end)) => format!("density {} (its worse end: {end})", self.density),
-            (None, None) => self.density.clone(),
-        }
-    }
-
     /// Density whose networks were searched.
     pub(crate) fn searched(&self) -> &str {
         self.as_end.as_ref().unwrap_or(&self.density)

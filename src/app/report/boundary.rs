@@ -16,7 +16,7 @@ use super::soils::input_files;
 use super::table::{Table, known};
 use crate::outcome::boundary::{Boundaries, Boundary, BoundaryRow, WalkRow};
 use crate::outcome::table::{Columns, TableCell};
-use crate::words::boundary::{drawn_of_networks, held, share_of_networks};
+use crate::words::boundary::{drawn_of_networks, held, row_name, share_of_networks};
 use crate::words::left_out::left_out_in_brief;
 use crate::words::{FOREMOST, base_size, row_note, sentence};
 use voidwalk_practice::Note;
@@ -133,7 +133,7 @@ fn erosion(all: &Boundaries, walks: &[WalkRow]) -> Option<Drawn> {
         "Base eroded against D15F: {}, {}. Each thin line is a network: blue its first run, purple its \
          second where it was walked. In the model, grey: no erosion; orange: some erosion; red: continuing \
          erosion.{blend}{of_base}",
-        row.name(),
+        row_name(row),
         row.thickness
     );
     if all.boundaries.len() > 1 {
@@ -205,7 +205,7 @@ fn columns<'a>() -> Columns<'a, BoundaryRow> {
     };
     let median = |boundary: &Option<Boundary>| boundary.as_ref().map(|boundary| ratio(boundary.median));
     Columns::default()
-        .name("density", "Density", |row: &BoundaryRow| row.name())
+        .name("density", "Density", row_name)
         .text("thickness", "Thickness, at the no-erosion boundary", move |row| {
             row.thickness.as_str().shown().below(thick(row))
         })

@@ -2,7 +2,7 @@
 
 /// Spacing of values along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Scale {
+enum Scale {
     Linear,
     Log,
 }
@@ -26,7 +26,7 @@ impl Tick {
 pub struct Axis {
     /// Measured quantity, with the unit.
     pub(crate) label: String,
-    pub(crate) scale: Scale,
+    scale: Scale,
     pub(crate) low: f64,
     pub(crate) high: f64,
     /// Grid lines, including minor ones.

@@ -6,7 +6,7 @@ use super::figure::Figure;
 use super::svg::{Rect, Svg, short, simplify, width_of, wrap};
 
 pub(super) const TICK_TEXT: f64 = 13.0;
-pub(super) const LABEL_TEXT: f64 = 14.0;
+const LABEL_TEXT: f64 = 14.0;
 pub(super) const LINE_HEIGHT: f64 = 17.0;
 /// Minimum width and height of the frame (pixels).
 const LEAST: f64 = 60.0;
