@@ -10,7 +10,7 @@ use super::run_figures::size_axis;
 use super::section::Sections;
 use super::shell::{Drawn, citation, clean, drawing, fact, leaves_out};
 use super::table::{counts, known};
-use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
+use super::walks::{RunRows, Walks, check_curve, check_results};
 use crate::outcome::Recorded;
 use crate::outcome::record::{NetworkWalkRecord, Verdict};
 use crate::words::left_out::left_out_words;
@@ -25,8 +25,7 @@ const RECORD: &str = "outcome";
 /// record, or rows that do not fit together, are errors.
 pub fn network_walk_page(record: &str, recorded: Recorded) -> Result<String, ReportError> {
     let record = checked(record)?;
-    let (replicates, runs) = (record.replicates.len(), record.summary.len());
-    let rows = RunRows::read(Path::new(""), RowSource::Memory(recorded), replicates, runs)?;
+    let rows = RunRows::read(Path::new(""), Some(recorded), &record.replicates, &record.summary)?;
     let walks = walks(&record, &rows);
     let of_walks = [run_figures::eroded, run_figures::layers, run_figures::retained].map(|draw| draw(&walks));
     let figures = [Some(sizes(&record))].into_iter().chain(of_walks).flatten().collect();
