@@ -60,7 +60,6 @@ impl<'de> Deserializer<'de> for Names<'_> {
     }
 }
 
-/// Columns of a table.
 pub(crate) struct Columns<'a, T>(Vec<Column<'a, T>>);
 
 /// Function that takes the cell of a column from a row.
@@ -95,9 +94,7 @@ pub(crate) struct PageColumn<'a, T> {
 /// Kind of the cells of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ColumnKind {
-    /// Names of the rows.
     Name,
-    /// Text.
     Text,
     /// Numbers, aligned right.
     Number,
@@ -153,7 +150,6 @@ impl<'a, T> Columns<'a, T> {
         self.column(name, cell.clone()).shown(ColumnKind::Name, heading, cell)
     }
 
-    /// Adds a column of text, which a page shows under this heading.
     pub(crate) fn text<C: TableCell>(
         self,
         name: impl Into<String>,
@@ -163,7 +159,6 @@ impl<'a, T> Columns<'a, T> {
         self.column(name, cell.clone()).page_text(heading, cell)
     }
 
-    /// Adds a column of numbers, which a page shows under this heading.
     pub(crate) fn number<C: TableCell>(
         self,
         name: impl Into<String>,
@@ -311,15 +306,10 @@ fn inert(cell: String) -> String {
 /// Content of a cell in a file.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum CellValue {
-    /// Nothing.
     Empty,
-    /// Words.
     Words(String),
-    /// A number.
     Number(f64),
-    /// A count.
     Count(u64),
-    /// Yes or no.
     Truth(bool),
 }
 
@@ -338,11 +328,9 @@ impl Display for CellValue {
 /// Cell or heading of a page.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Shown {
-    /// Text of the cell.
     pub(crate) text: String,
     /// Smaller lines below the main text.
     pub(crate) below: Vec<String>,
-    /// Emphasis of the text.
     pub(crate) emphasis: Option<Emphasis>,
 }
 

@@ -12,7 +12,6 @@ use voidwalk_core::store::{Array, make_folder, npz, write_whole};
 /// Files that were written, and columns of words that were not.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Exported {
-    /// The files.
     pub(crate) files: Vec<PathBuf>,
     /// Columns of words, as `TABLE.COLUMN`.
     pub(crate) words: Vec<String>,

@@ -9,14 +9,12 @@ use thiserror::Error;
 use voidwalk_core::store::format::from_json;
 use voidwalk_core::store::{StoreError, read_whole};
 
-/// Reads a file of text.
 pub(super) fn text(path: &Path) -> Result<String, ReportError> {
     let not_text = |_| std::io::Error::new(std::io::ErrorKind::InvalidData, "is not UTF-8 text");
     let read = read_whole(path).and_then(|bytes| String::from_utf8(bytes).map_err(not_text));
     read.map_err(|source| ReportError::Read { path: path.to_owned(), source })
 }
 
-/// Reads a file of JSON.
 pub(crate) fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
     from_json(text(path)?.as_bytes()).map_err(|error| form(path, &error))
 }
@@ -30,7 +28,6 @@ fn form(path: &Path, error: &serde_json::Error) -> ReportError {
     malformed(path, error.line().max(1) as u64, error.to_string())
 }
 
-/// Refuses a line of a file.
 pub(super) fn malformed(path: &Path, line: u64, message: String) -> ReportError {
     ReportError::Form { path: path.to_owned(), line, message }
 }
@@ -69,7 +66,6 @@ pub fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<(u64, T)>, ReportErr
     }
 }
 
-/// Refuses the value of a field in a file.
 pub(super) fn refused(path: &Path, field: &str, value: String, allowed: &str) -> ReportError {
     let (field, allowed) = (field.to_owned(), allowed.to_owned());
     ReportError::Value { path: path.to_owned(), field, value, allowed }

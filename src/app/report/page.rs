@@ -155,7 +155,6 @@ fn walk(outcome: &Outcome, walks: &Walks, verdict: &Drawn) -> Markup {
     }
 }
 
-/// Result of the rule that added replicates.
 fn stopped(stopping: &Stopping) -> String {
     let mut text = String::new();
     if let Some(percent) = stopping.decide_percent {
@@ -171,7 +170,6 @@ fn stopped(stopping: &Stopping) -> String {
     text
 }
 
-/// Meaning of the class, in a sentence.
 fn in_words(outcome: &Outcome, walks: &Walks) -> String {
     match outcome.undecided_by() {
         Some(open @ UndecidedBy::Curve) => format!("Inconclusive: {}.", undecided_by(open)),

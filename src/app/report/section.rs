@@ -9,7 +9,6 @@ use super::shell::{Drawn, contents, cover, figure, foot, model, page_with_foot};
 use voidwalk_core::store::{Together, make_folder};
 use voidwalk_practice::SheetCover;
 
-/// Page that is built from the top.
 pub(super) struct Sections {
     title: String,
     foot: Option<String>,
@@ -63,7 +62,6 @@ impl Sections {
         self
     }
 
-    /// Page as text, with this footer.
     pub(super) fn text(&self, footer: &Markup) -> String {
         let main = PreEscaped(self.main.clone());
         page_with_foot(self.foot.as_deref(), &self.title, [&self.header, &main, footer])

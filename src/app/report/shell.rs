@@ -14,7 +14,6 @@ const STYLE: &str = include_str!("page.css");
 /// prints the new hash.
 const STYLE_HASH: &str = "mDepA0nhVqGFzpjx3fdu2udUK7V6SF3ya+Kp73qFFQA=";
 
-/// Figure of a page with its caption.
 pub(crate) struct Drawn {
     /// File name without the ending; unique on the page.
     pub(crate) name: &'static str,
@@ -67,7 +66,6 @@ pub(super) fn page_with_foot(
 /// Place for the list of the headings that follow.
 const CONTENTS: &str = "<nav class=\"contents\"></nav>";
 
-/// Lists the headings that follow on the page.
 pub(super) fn contents() -> Markup {
     html! { (PreEscaped(CONTENTS)) }
 }

@@ -126,7 +126,6 @@ const RECORD: &str = "specification.json";
 /// Maximum number of curves of a base drawn with all their rows.
 const CURVES: usize = 12;
 
-/// Heading of the appendix of a specification.
 pub(super) fn curves_heading(design: &Specification) -> &'static str {
     match design.curves.len() {
         1 => "Appendix: the gradation of the base",

@@ -33,7 +33,6 @@ pub(super) struct Walks<'a> {
 }
 
 impl Walks<'_> {
-    /// Run numbers, ascending.
     pub(super) fn runs(&self) -> impl Iterator<Item = u64> + use<> {
         1..=self.summary.len() as u64
     }
@@ -42,13 +41,11 @@ impl Walks<'_> {
 /// Rows of the CSV files of walks, by run first; rows of one key are in the order of the file.
 #[derive(Default)]
 pub(super) struct RunRows {
-    /// Rows by (run, replicate).
+    /// Rows by run and replicate.
     pub(crate) series: BTreeMap<(u64, u64), Vec<SeriesRow>>,
-    /// Rows by (run, replicate).
     pub(crate) layers: BTreeMap<(u64, u64), Vec<LayerRow>>,
-    /// Rows by (run, replicate, increment).
+    /// Rows by run, replicate and increment.
     pub(crate) retained: BTreeMap<(u64, u64, u64), Vec<SizeRow>>,
-    /// Rows by (run, replicate, increment).
     pub(crate) eroded: BTreeMap<(u64, u64, u64), Vec<SizeRow>>,
 }
 

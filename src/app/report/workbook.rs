@@ -35,7 +35,6 @@ pub(crate) fn write_verdict_workbook(folder: &Path, into: &Path) -> Result<PathB
     Ok(path)
 }
 
-/// The workbook of a run, as bytes.
 pub(super) fn verdict_workbook(folder: &Path) -> Result<Vec<u8>, ReportError> {
     let run = &RunFolder::read(folder)?;
     let (outcome, decision) = (&run.outcome, &run.decision);
@@ -85,7 +84,6 @@ const DAY: (u16, u8, u8) = (2000, 1, 1);
 
 const WIDTHS: (usize, usize) = (8, 70);
 
-/// Sheet with headings and rows.
 struct Sheet {
     name: &'static str,
     headings: Vec<String>,
