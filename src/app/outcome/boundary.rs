@@ -269,7 +269,7 @@ pub(crate) struct NetworkBoundaries {
 }
 
 /// Row of `boundary.csv`: one ratio that was walked.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(crate) struct WalkRow {
     /// Density, as in `boundary.json`.

@@ -7,9 +7,7 @@
 
 use super::record::{Statistic, Verdict};
 use super::statistic::percent_interval;
-use serde::de::value::Error;
-use serde::de::{DeserializeOwned, Error as _, Visitor};
-use serde::{Deserializer, Serialize, forward_to_deserialize_any};
+use serde::Serialize;
 use std::fmt::{self, Display, Formatter};
 use voidwalk_core::text::visible;
 use voidwalk_practice::quantity::{Quantity, percent, significant, whole};
@@ -18,12 +16,10 @@ use voidwalk_practice::quantity::{Quantity, percent, significant, whole};
 const WRITTEN: &str = "memory takes rows of numbers and names";
 
 /// Writes rows as CSV, one column for each field of their type; the header is present even without rows.
-pub(crate) fn csv_of<T: Serialize + DeserializeOwned>(rows: &[T]) -> Vec<u8> {
-    let mut names: &[&str] = &[];
-    // The call stops at the names, which are all that is needed.
-    let _ = T::deserialize(Names(&mut names));
+pub(crate) fn csv_of<T: Serialize + Default>(rows: &[T]) -> Vec<u8> {
+    let fields = serde_json::to_value(T::default()).expect(WRITTEN);
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
-    writer.write_record(names).expect(WRITTEN);
+    writer.write_record(fields.as_object().into_iter().flatten().map(|(name, _)| name)).expect(WRITTEN);
     rows.iter().for_each(|row| writer.serialize(row).expect(WRITTEN));
     written(writer)
 }
@@ -32,32 +28,6 @@ pub(crate) fn csv_of<T: Serialize + DeserializeOwned>(rows: &[T]) -> Vec<u8> {
 fn written(writer: csv::Writer<Vec<u8>>) -> Vec<u8> {
     let text = String::from_utf8(writer.into_inner().expect(WRITTEN)).expect(WRITTEN);
     text.chars().map(visible).collect::<String>().into_bytes()
-}
-
-/// Reads only the names of a type's fields.
-struct Names<'a>(&'a mut &'static [&'static str]);
-
-impl<'de> Deserializer<'de> for Names<'_> {
-    type Error = Error;
-
-    fn deserialize_struct<V: Visitor<'de>>(
-        self,
-        _: &'static str,
-        fields: &'static [&'static str],
-        _: V,
-    ) -> Result<V::Value, Error> {
-        *self.0 = fields;
-        Err(Error::custom("names alone"))
-    }
-
-    fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Error> {
-        Err(Error::custom("names alone"))
-    }
-
-    forward_to_deserialize_any! {
-        bool i8 i16 i32 i64 u8 u16 u32 u64 f32 f64 char str string bytes byte_buf option unit unit_struct
-        newtype_struct seq tuple tuple_struct map enum identifier ignored_any
-    }
 }
 
 pub(crate) struct Columns<'a, T>(Vec<Column<'a, T>>);
@@ -442,8 +412,6 @@ fn in_percent(fraction: Option<f64>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use serde::Deserialize;
-
     use super::*;
 
     #[test]
@@ -455,7 +423,7 @@ mod tests {
 
     #[test]
     fn rows_have_the_names_of_their_fields_even_where_there_are_none() {
-        #[derive(Serialize, Deserialize)]
+        #[derive(Default, Serialize)]
         struct Row {
             size: u64,
             threshold: Option<f64>,
