@@ -59,9 +59,14 @@ pub(crate) enum Look {
 pub(crate) type ReplicateValues = Vec<(f64, bool)>;
 
 impl StopRule {
-    /// True if a target or a confidence level is set; otherwise the scene fixes the number of replicates.
+    /// True if the number of replicates is fixed by the scene.
+    pub(crate) fn is_unset(&self) -> bool {
+        self.target_error_pp.is_none() && self.decide_percent.is_none()
+    }
+
+    /// True if a target or a confidence level is set.
     pub(crate) fn is_set(&self) -> bool {
-        self.target_error_pp.is_some() || self.decide_percent.is_some()
+        !self.is_unset()
     }
 
     /// Number of replicates at look `look`, counted from 1, if the first look is at `first`.

@@ -247,7 +247,7 @@ impl Scene {
         if base.cu.is_some() && base.d85().is_none() {
             return Err(s.clash("base.cu needs one of base.d85_mm, base.d85_at_dc, base.d15f_over_d85b"));
         }
-        if s.has("stop.most_replicates") && !self.stop.is_set() {
+        if s.has("stop.most_replicates") && self.stop.is_unset() {
             return Err(s.clash(
                 "stop.most_replicates says nothing without stop.target_error_pp or stop.decide_percent",
             ));
