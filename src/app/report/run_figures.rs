@@ -155,7 +155,8 @@ fn eroded_at(rows: &[SeriesRow], increment: f64) -> f64 {
 
 /// Eroded mass against increment for each run: thin lines for replicates, a bold line for the mean.
 pub(super) fn eroded(walks: &Walks) -> Option<Drawn> {
-    let last = walks.rows.series.values().flatten().map(|row| row.increment).max()?;
+    let rows = || walks.rows.series.values().flatten();
+    let last = rows().map(|row| row.increment).max()?;
     // The point from which every curve stays within a thousandth of its end; the rest of a long tail is left
     // out.
     let settled = walks.rows.series.values().filter_map(|rows| {
@@ -164,8 +165,7 @@ pub(super) fn eroded(walks: &Walks) -> Option<Drawn> {
     });
     let settled = settled.max().unwrap_or(last).max((1.0 / walks.inject_share) as u64);
     let shown = if last as f64 > 1.6 * settled as f64 { (settled as f64 * 1.25) as u64 } else { last };
-    let highest =
-        100.0 * walks.rows.series.values().flatten().map(|row| row.eroded_mass_fraction).fold(0.0, f64::max);
+    let highest = 100.0 * rows().map(|row| row.eroded_mass_fraction).fold(0.0, f64::max);
     let x = Axis::linear("Increment (–)", 0.0, shown as f64);
     let y = eroded_axis("Base eroded, by mass (%)", walks, highest * 1.05);
     let what = "Percent of the base mass eroded against increment, for each run";
@@ -184,14 +184,11 @@ pub(super) fn eroded(walks: &Walks) -> Option<Drawn> {
         if all.is_empty() {
             continue;
         }
-        if all.len() > 1 {
-            for rows in all.iter().take(DRAWN) {
-                let points = |row: &SeriesRow| (row.increment as f64, row.eroded_mass_fraction * 100.0);
-                let start = std::iter::once((0.0, 0.0));
-                let stay = rows.last().map(|row| (last as f64, row.eroded_mass_fraction * 100.0));
-                let curve = start.chain(rows.iter().map(points)).chain(stay).collect();
-                figure.add(Mark::line(curve, colour).width(0.8).opacity(0.45));
-            }
+        for rows in all.iter().take(if all.len() > 1 { DRAWN } else { 0 }) {
+            let point = |row: &SeriesRow| (row.increment as f64, row.eroded_mass_fraction * 100.0);
+            let stay = rows.last().map(|row| (last as f64, point(row).1));
+            let curve = [(0.0, 0.0)].into_iter().chain(rows.iter().map(point)).chain(stay).collect();
+            figure.add(Mark::line(curve, colour).width(0.8).opacity(0.45));
         }
         let increments: BTreeSet<u64> =
             all.iter().flat_map(|rows| rows.iter().map(|row| row.increment)).collect();
@@ -263,10 +260,9 @@ pub(super) fn layers(walks: &Walks) -> Option<Drawn> {
         bold.push(Mark::line(mean, colour).width(2.4).dash(dash).label(&name));
     }
     bold.into_iter().for_each(|line| figure.add(line));
-    let mut caption =
-        "Constrictions blocked at the end of each run, by layer; the second run starts with what the \
-                       first left blocked."
-            .to_owned();
+    let mut caption = "Constrictions blocked at the end of each run, by layer; the second run starts with \
+                       what the first left blocked."
+        .to_owned();
     if walks.replicates.len() > 1 {
         caption.push_str(" Lines: mean of the replicates; shaded: from the least to the most of them.");
     }
