@@ -173,8 +173,8 @@ fn void_grids(
     tables: &Tables,
     mut write: impl FnMut(&str, &[u8]) -> Result<(), ReportError>,
 ) -> Result<(), ReportError> {
-    let grids: [(&str, fn(&Tables, Moment) -> Vec<u8>); 2] =
-        [("voids", Tables::voids_at), ("constrictions", Tables::lines_at)];
+    type Draw = fn(&Tables, Moment) -> Vec<u8>;
+    let grids: [(&str, Draw); 2] = [("voids", Tables::voids_at), ("constrictions", Tables::lines_at)];
     for (kind, grid) in grids {
         let mut sets = String::new();
         for (number, &moment) in tables.moments.iter().enumerate() {
