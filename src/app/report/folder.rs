@@ -11,7 +11,6 @@ use super::shell::LINE;
 use super::walks::{RunRows, Walks, check_curve, check_results};
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{Classed, Manifest, Outcome, Sensitivity};
-use crate::scene::values::SheetUnits;
 use crate::verdict::RunFiles;
 use voidwalk_practice::quantity::SizeUnit;
 use voidwalk_practice::{AboutPage, Decision};
@@ -123,6 +122,14 @@ fn stand_among_its_variations(outcome: &mut Outcome) {
 struct ShownSizes {
     coarse_left: bool,
     units: Option<SheetUnits>,
+}
+
+/// Units as a scene names them: pages use no scene.
+#[derive(Deserialize, PartialEq)]
+#[serde(rename_all = "lowercase")]
+enum SheetUnits {
+    Metric,
+    Us,
 }
 
 /// Page settings in the text of a run's scene; `path` names the text in errors. A value that cannot be read

@@ -9,7 +9,7 @@ mod keys;
 mod meaning;
 mod reference;
 mod tables;
-pub(crate) mod values;
+mod values;
 
 pub(crate) use keys::{About, Base, ExitKeys, Filter, NetworkKeys, PackingKeys, Record, WalkKeys};
 pub(crate) use meaning::{
