@@ -96,8 +96,8 @@ impl Svg {
         let _ = writeln!(self.0, r#"{}" {paint}/>"#, if closed { "Z" } else { "" });
     }
 
-    /// Writes text whose baseline passes through `at`, which is its `start`, `middle` or `end`; the content is
-    /// escaped here and nowhere else.
+    /// Writes text whose baseline passes through `at`, which is its `start`, `middle` or `end`; the content
+    /// is escaped here and nowhere else.
     pub(super) fn text(&mut self, at: (f64, f64), anchor: &str, content: &str, extra: &str) {
         let (x, y, content) = (short(at.0), short(at.1), escape(content));
         let _ = writeln!(self.0, r#"<text x="{x}" y="{y}" text-anchor="{anchor}" {extra}>{content}</text>"#);
