@@ -13,7 +13,7 @@ use std::time::Instant;
 use voidwalk::constrictions;
 use voidwalk::gradation::{Gradation, SizeSampler};
 use voidwalk::network::Network;
-use voidwalk::report::figures::{Axis, BLUE, Colour, Dash, Figure, GREEN, Line, Point, Shape, VERMILLION};
+use voidwalk::report::figures::{Axis, BLUE, Colour, Dash, Figure, GREEN, Mark, Shape, VERMILLION};
 use voidwalk::walk::{Engine, Isa, RunPlan, SizeClasses, State, Walk, WalkControl};
 
 const SEED: u64 = 1;
@@ -122,8 +122,8 @@ fn series(
 }
 
 fn add(figure: &mut Figure, name: &str, points: Vec<(f64, f64)>, colour: Colour, dash: Dash) {
-    points.iter().for_each(|&(x, y)| figure.add(Point::new(x, y, colour, Shape::Circle)));
-    figure.add(Line::new(points, colour).dash(dash).label(name));
+    points.iter().for_each(|&(x, y)| figure.add(Mark::point(x, y, colour, Shape::Circle)));
+    figure.add(Mark::line(points, colour).dash(dash).label(name));
 }
 
 fn figures(table: &str, prefix: &str) {
@@ -133,7 +133,6 @@ fn figures(table: &str, prefix: &str) {
     let mut figure = Figure::new(
         "Cost against the number of base particles",
         "Processor time of a first run on 40 x 40 x 60 voids, one thread, by engine",
-        "",
         Axis::log("Base particles", 1e5, 1e12),
         seconds(0.01),
     );
@@ -152,7 +151,6 @@ fn figures(table: &str, prefix: &str) {
     let mut figure = Figure::new(
         "Cost against the number of voids",
         "Processor time of a first run on cubes of 10 to 160 voids a side, one thread",
-        "",
         Axis::log("Voids", 1e3, 4.1e6),
         seconds(0.002),
     );

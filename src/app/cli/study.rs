@@ -15,7 +15,7 @@ use crate::scene::{About, Scene};
 use crate::study::boundary::{self, BoundaryOptions};
 use crate::study::percolation::{self, PercolationOptions, PercolationPlan};
 use crate::study::specified::{SpecifyOptions, specify, specify_each};
-use crate::words::boundary::{held, over_networks};
+use crate::words::boundary::{held, over_networks, row_name};
 use crate::words::designed::{columns, lines};
 use crate::words::left_out::left_out_line;
 use crate::words::products::{products, to_be_checked};
@@ -143,7 +143,7 @@ fn of_row(row: &BoundaryRow, unit: SizeUnit) -> Vec<String> {
     let boundaries =
         row.shown().into_iter().zip([words(&row.no_erosion_notes), words(&row.continuing_notes)]);
     let networks = row.networks.len() as u64;
-    let mut lines = vec![format!("{}, {}, in the model:", row.name(), row.thickness)];
+    let mut lines = vec![format!("{}, {}, in the model:", row_name(row), row.thickness)];
     // The boundary of no erosion is given as a limit.
     let sizes: [fn(f64) -> String; 2] =
         [|mm| significant(mm).role(NumberRole::Greatest).number(), |mm| format!("{mm:.3}")];

@@ -15,7 +15,7 @@ use voidwalk_practice::{InputFile, Note, SheetCover};
 pub(crate) const BETWEEN_STEPS: f64 = 0.005;
 
 /// Contents of `boundary.json`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Boundaries {
     /// Version of voidwalk.
@@ -83,7 +83,7 @@ impl Boundaries {
 }
 
 /// Properties of the base.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(crate) struct BaseStated {
     /// Name of the base.
@@ -115,7 +115,7 @@ impl BaseStated {
 }
 
 /// Boundaries of one density and thickness.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(crate) struct BoundaryRow {
     /// Density of the filter.
@@ -160,15 +160,6 @@ pub(crate) struct BoundaryRow {
 }
 
 impl BoundaryRow {
-    /// Density in words, with the range that it is an end of, or with its worse end.
-    pub(crate) fn name(&self) -> String {
-        match (&self.end_of, &self.as_end) {
-            (Some(range), _) => format!("{} (an end of the range of {range})", self.density),
-            (None, Some(end)) => format!("density {} (its worse end: {end})", self.density),
-            (None, None) => self.density.clone(),
-        }
-    }
-
     /// Density whose networks were searched.
     pub(crate) fn searched(&self) -> &str {
         self.as_end.as_ref().unwrap_or(&self.density)
@@ -278,7 +269,7 @@ pub(crate) struct NetworkBoundaries {
 }
 
 /// Row of `boundary.csv`: one ratio that was walked.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub(crate) struct WalkRow {
     /// Density, as in `boundary.json`.
@@ -366,13 +357,6 @@ mod tests {
     }
 
     #[test]
-    fn one_network_has_a_boundary_and_no_band() {
-        let alone = Boundary::of(&[Ok(0.901)], None).unwrap();
-        assert_eq!((alone.median, alone.low, alone.high), (0.901, None, None));
-        assert_eq!(alone.cautious(), Some(0.901));
-    }
-
-    #[test]
     fn of_few_networks_least_and_most_are_shown() {
         let ratios = [4.0, 4.4, 4.8, 5.0, 6.0];
         let over =
@@ -394,8 +378,10 @@ mod tests {
         let beyond = [Ok(4.0), Ok(4.4), Err(Beyond::Above)];
         let shown = Boundary::of(&beyond, None).unwrap().with_shown_ends(&known(&beyond));
         assert_eq!((shown.low, shown.high), (Some(4.0), None));
-        let alone = Boundary::of(&[Ok(4.0)], None).unwrap().with_shown_ends(&[Some(4.0)]);
-        assert_eq!((alone.low, alone.high), (None, None));
+        // One network has a boundary and no band.
+        let alone = Boundary::of(&[Ok(4.0)], None).unwrap();
+        assert_eq!((alone.median, alone.low, alone.high, alone.cautious()), (4.0, None, None, Some(4.0)));
+        assert_eq!(alone.with_shown_ends(&[Some(4.0)]), alone);
     }
 
     #[test]

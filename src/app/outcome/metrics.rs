@@ -149,7 +149,6 @@ impl RunMetrics {
 }
 
 impl Recorded {
-    /// Rows of a finished run.
     pub(crate) fn new(
         network: &Network,
         state: &State,

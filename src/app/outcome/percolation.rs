@@ -21,7 +21,7 @@ use super::statistic::{Straight, log_log_slope};
 use serde::{Deserialize, Serialize};
 
 /// Threshold of the infinite lattice: directed bond percolation on the simple cubic lattice.
-pub(crate) const INFINITE_LATTICE: f64 = 0.38222;
+const INFINITE_LATTICE: f64 = 0.38222;
 
 /// Exponent of the correlation length along the flow, directed percolation in 2 + 1 dimensions (Hinrichsen
 /// 2000).
@@ -121,16 +121,15 @@ impl PercolationStudy {
     /// Combines the thresholds of each lattice: `(voids along x and y, and layers; one threshold for each
     /// realisation)`, cubes by ascending size.
     pub(crate) fn new(seed: u64, thresholds: &[([u32; 3], Vec<f64>)], seconds: f64) -> Self {
-        let (cubes, boxes): (Vec<_>, Vec<_>) = thresholds.iter().partition(|(shape, _)| is_cube(*shape));
-        let of_size = |(shape, all): &&([u32; 3], Vec<f64>)| {
-            let (threshold, sd_error) = of_lattice(all);
-            SizeThreshold { size: u64::from(shape[0]), threshold, sd_error }
-        };
-        let of_box = |(shape, all): &&([u32; 3], Vec<f64>)| {
-            let (threshold, sd_error) = of_lattice(all);
-            BoxThreshold { shape: *shape, threshold, sd_error }
-        };
-        let sizes: Vec<SizeThreshold> = cubes.iter().map(of_size).collect();
+        let (mut sizes, mut boxes) = (Vec::new(), Vec::new());
+        for (shape, all) in thresholds {
+            let threshold = Statistic::of_fraction(all);
+            let sd_error = threshold.sd.map(|sd| sd / (2.0 * (all.len() as f64 - 1.0)).sqrt());
+            match is_cube(*shape) {
+                true => sizes.push(SizeThreshold { size: u64::from(shape[0]), threshold, sd_error }),
+                false => boxes.push(BoxThreshold { shape: *shape, threshold, sd_error }),
+            }
+        }
         let realisations = thresholds.first().map_or(0, |(_, all)| all.len() as u64);
         let points: Vec<Point> = sizes.iter().filter_map(|s| Point::new(s, realisations)).collect();
         let enough = points.len() >= 2;
@@ -140,10 +139,9 @@ impl PercolationStudy {
             realisations,
             one_length: enough.then(|| one_length(&points)),
             many_starts: if points.len() >= 4 { many_starts(&points) } else { None },
-            sd_exponent: enough
-                .then(|| log_log_slope(&points.iter().map(|p| (p.size, p.sd)).collect::<Vec<_>>())),
+            sd_exponent: enough.then(|| log_log_slope(points.iter().map(|p| (p.size, p.sd)))),
             sizes,
-            boxes: boxes.iter().map(of_box).collect(),
+            boxes,
             infinite_lattice: INFINITE_LATTICE,
             seconds,
         }
@@ -152,11 +150,8 @@ impl PercolationStudy {
     /// All lattices, cubes first: name, threshold, and standard error of the standard deviation.
     pub(crate) fn lattices(&self) -> impl Iterator<Item = (String, &Statistic, Option<f64>)> {
         let cubes = self.sizes.iter().map(|cube| (cube.size.to_string(), &cube.threshold, cube.sd_error));
-        cubes.chain(
-            self.boxes
-                .iter()
-                .map(|lattice| (lattice_name(lattice.shape), &lattice.threshold, lattice.sd_error)),
-        )
+        let boxes = self.boxes.iter();
+        cubes.chain(boxes.map(|other| (lattice_name(other.shape), &other.threshold, other.sd_error)))
     }
 }
 
@@ -169,13 +164,6 @@ pub(crate) fn lattice_name(shape: [u32; 3]) -> String {
 /// True if a lattice has the same length along x, y and z.
 pub(crate) fn is_cube(shape: [u32; 3]) -> bool {
     shape == [shape[0]; 3]
-}
-
-/// Threshold over the realisations, and the standard error of its standard deviation.
-fn of_lattice(all: &[f64]) -> (Statistic, Option<f64>) {
-    let threshold = Statistic::of_fraction(all);
-    let sd_error = threshold.sd.map(|sd| sd / (2.0 * (all.len() as f64 - 1.0)).sqrt());
-    (threshold, sd_error)
 }
 
 /// Data point of a fit: one size.

@@ -241,11 +241,7 @@ mod tests {
         assert_eq!(below_by_interval(&ten, &[false; 10]), Some(false));
     }
 
-    fn range(verdict: Verdict, end: Verdict) -> CurveRange {
-        range_with(verdict, &[(1.02, end)], false)
-    }
-
-    fn range_with(verdict: Verdict, ends: &[(f64, Verdict)], worst_counts: bool) -> CurveRange {
+    fn range(verdict: Verdict, ends: &[(f64, Verdict)], worst_counts: bool) -> CurveRange {
         let (sd, low, high) = (Some(0.01), |mean: f64| Some(mean - 0.01), |mean: f64| Some(mean + 0.01));
         let statistic = |mean: f64| Statistic { mean, sd, low: low(mean), high: high(mean) };
         let end = |&(dc50_factor, verdict): &(f64, Verdict)| {
@@ -259,12 +255,12 @@ mod tests {
 
     #[test]
     fn a_range_supports_what_its_curves_agree_on() {
-        let agreed = range(Verdict::None, Verdict::None);
+        let agreed = range(Verdict::None, &[(1.02, Verdict::None)], false);
         assert_eq!(agreed.whole(), Verdict::None);
         for (actual, wanted) in agreed.eroded_mass_fraction.iter().flatten().zip([0.04, 0.10, 0.01, 0.05]) {
             assert!((actual - wanted).abs() < 1e-12, "{agreed:?}");
         }
-        let open = range(Verdict::None, Verdict::Some);
+        let open = range(Verdict::None, &[(1.02, Verdict::Some)], false);
         assert_eq!(open.whole(), Verdict::Undecided);
         assert_eq!(CurveRange::new(Verdict::None, &[], Vec::new(), false, None), None);
     }
@@ -272,7 +268,7 @@ mod tests {
     #[test]
     fn of_a_filter_from_the_library_the_worst_class_counts() {
         use Verdict::{Continuing, None, Some, Undecided};
-        let whole = |curve, coarse, fine| range_with(curve, &[(1.03, coarse), (0.8, fine)], true).whole();
+        let whole = |curve, coarse, fine| range(curve, &[(1.03, coarse), (0.8, fine)], true).whole();
         assert_eq!(whole(None, None, None), None);
         assert_eq!(whole(Some, Some, None), Some);
         assert_eq!(whole(None, Some, None), Some);
@@ -283,7 +279,7 @@ mod tests {
         assert_eq!(whole(None, Undecided, None), Undecided);
         assert_eq!(whole(Continuing, Undecided, None), Continuing);
         // At another level other intervals determine the open classes.
-        let mut range = range_with(Undecided, &[(1.03, Some), (0.8, Undecided)], true);
+        let mut range = range(Undecided, &[(1.03, Some), (0.8, Undecided)], true);
         for (worst, expected) in [(Some, Some), (Continuing, Undecided)] {
             range.could_be = std::option::Option::Some(worst);
             assert_eq!(range.whole(), expected);

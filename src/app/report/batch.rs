@@ -6,8 +6,8 @@ use maud::{Markup, Render, html};
 
 use super::cases;
 use super::figures::{
-    Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, Line, ORANGE, PURPLE, Point, Rule, Shape,
-    VERMILLION, positive_range, shorten,
+    Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, Mark, ORANGE, PURPLE, Shape, VERMILLION,
+    positive_range, shorten,
 };
 use super::files::{ReportError, json, refused};
 use super::names::{brief_name, file_notes, is_named, soil_name, titled, told_apart};
@@ -225,21 +225,21 @@ fn curves(batch: &WalkedBatch) -> Option<Drawn> {
     let x = size_axis(SizeUnit::Mm, sizes.chain(marks().map(|((mm, _), ..)| mm)));
     let what = "Percent finer by mass against size of the base as sampled and of every filter, with the \
                 limits of D15F";
-    let mut figure = Figure::new("Gradations", what, "", x, Axis::percent("Percent finer (%)"))
+    let mut figure = Figure::new("Gradations", what, x, Axis::percent("Percent finer (%)"))
         .sizes((720.0, 460.0), (358.0, 400.0))
         .sheet((680.0, 350.0))
         .sieves();
-    figure.add(Rule::new(Across::Y, 15.0, BLACK).dash(Dash::Dotted));
+    figure.add(Mark::rule(Across::Y, 15.0, BLACK).dash(Dash::Dotted));
     for ((mm, is_at_most), name, colour) in marks() {
-        let line = Line::new(vec![(mm, 11.0), (mm, 19.0)], colour);
+        let line = Mark::line(vec![(mm, 11.0), (mm, 19.0)], colour);
         let at_most = if is_at_most { " at most" } else { "" };
         figure.add(line.width(3.0).stays().label(&format!("{name}{at_most}")));
     }
-    figure.add(Line::of_rows(&batch.base, VERMILLION).width(2.6).label("base, as sampled"));
+    figure.add(Mark::rows(&batch.base, VERMILLION).width(2.6).label("base, as sampled"));
     for (filter, (colour, dash)) in batch.filters.iter().zip(LINES.iter().cycle()) {
         let label = shorten(&filter_name(batch, &filter.name), 24);
         for rows in &filter.gradations {
-            figure.add(Line::of_rows(rows, *colour).width(2.0).dash(*dash).label(&label));
+            figure.add(Mark::rows(rows, *colour).width(2.0).dash(*dash).label(&label));
         }
     }
     let caption = "Gradations by mass. Short lines: the maximum D15F that retains the base (limit), and the \
@@ -251,33 +251,31 @@ fn curves(batch: &WalkedBatch) -> Option<Drawn> {
 /// base.
 fn limits(batch: &WalkedBatch) -> Option<Drawn> {
     // A limit belongs to the sample; filters differ only if the rules require more of one.
-    let known = |row: &&WalkedRow| row.rules.d85b_mm.is_some() && row.rules.limit_mm.is_some();
-    let rows: Vec<&WalkedRow> = batch.rows.iter().filter(known).collect();
-    let d85b = |row: &WalkedRow| row.rules.d85b_mm.unwrap_or(f64::NAN);
-    let limit = |row: &WalkedRow| row.rules.limit_mm.unwrap_or(f64::NAN);
+    let known = batch.rows.iter().filter_map(|row| Some((row.rules.d85b_mm?, row.rules.limit_mm?, row)));
+    let rows: Vec<(f64, f64, &WalkedRow)> = known.collect();
     if rows.is_empty() || batch.has_one_base() {
         return None;
     }
     let filters =
         || batch.filters.iter().take(LINES.len()).filter_map(|filter| Some((filter, filter.d15f_mm?)));
-    let (low, high) = positive_range(rows.iter().map(|row| d85b(row)));
+    let (low, high) = positive_range(rows.iter().map(|(d85b, ..)| *d85b));
     let x = Axis::log("D85B after regrading (mm)", low / 1.2, high * 1.2);
-    let all = rows.iter().map(|row| limit(row)).chain(filters().map(|(_, mm)| mm));
+    let all = rows.iter().map(|(_, limit, _)| *limit).chain(filters().map(|(_, mm)| mm));
     let (low, high) = positive_range(all);
     let y = Axis::log("Limit of D15F (mm)", low / 1.2, high * 1.2);
     let what = "Strictest limit of D15F of each sample against its D85B, with the D15F of each filter";
-    let mut figure = Figure::new("Limits of the samples", what, "", x, y).names_above();
+    let mut figure = Figure::new("Limits of the samples", what, x, y).names_above();
     for ((filter, mm), (colour, dash)) in filters().zip(LINES) {
         let label = format!("D15F of {}", shorten(&filter_name(batch, &filter.name), 24));
-        figure.add(Rule::new(Across::Y, mm, colour).dash(dash).label(&label));
+        figure.add(Mark::rule(Across::Y, mm, colour).dash(dash).label(&label));
     }
-    let point = |row: &&WalkedRow| {
+    let point = |(d85b, limit, row): &(f64, f64, &WalkedRow)| {
         let shape = if row.governs == Some(1) { Shape::Square } else { Shape::Circle };
-        let point = Point::new(d85b(row), limit(row), BLUE, shape);
+        let point = Mark::point(*d85b, *limit, BLUE, shape);
         if row.rules.limit_at_most { point.hollow() } else { point }
     };
     let points =
-        |governs: bool| rows.iter().filter(move |row| (row.governs == Some(1)) == governs).map(point);
+        |governs: bool| rows.iter().filter(move |(.., row)| (row.governs == Some(1)) == governs).map(point);
     figure.add_points("sample", points(false));
     figure.add_points("governs a filter", points(true));
     let caption = "Strictest limit of D15F of each sample. The D15F of a filter is within the limit of \
@@ -309,8 +307,8 @@ fn eroded(batch: &WalkedBatch) -> Option<Drawn> {
     let y = Axis::percent("Base eroded in the first run, by mass (%)");
     let limit = format!("{} %", 100.0 * batch.threshold);
     let rules = vec![
-        Rule::new(Across::Y, 100.0 * batch.threshold, BLACK).dash(Dash::Dashed).label(&limit),
-        Rule::new(Across::X, 1.0, BLACK).dash(Dash::Dotted).label("limit by practice"),
+        Mark::rule(Across::Y, 100.0 * batch.threshold, BLACK).dash(Dash::Dashed).label(&limit),
+        Mark::rule(Across::X, 1.0, BLACK).dash(Dash::Dotted).label("limit by practice"),
     ];
     let what = "Percent of the base mass eroded in the first run against D15F over its limit, by class";
     let figure = cases::against_ratio(["Rules and walk", what], (x, y), rules, &symbols);

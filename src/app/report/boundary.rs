@@ -6,7 +6,7 @@ use std::path::Path;
 use maud::{Markup, html};
 
 use super::figures::{
-    Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREY, Line, ORANGE, PURPLE, Rule, VERMILLION,
+    Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREY, Mark, ORANGE, PURPLE, VERMILLION, positive_range,
 };
 use super::files::{ReportError, json, rows};
 use super::names::{file_name, option_words, titled_by_file};
@@ -16,7 +16,7 @@ use super::soils::input_files;
 use super::table::{Table, known};
 use crate::outcome::boundary::{Boundaries, Boundary, BoundaryRow, WalkRow};
 use crate::outcome::table::{Columns, TableCell};
-use crate::words::boundary::{drawn_of_networks, held, share_of_networks};
+use crate::words::boundary::{drawn_of_networks, held, row_name, share_of_networks};
 use crate::words::left_out::left_out_in_brief;
 use crate::words::{FOREMOST, base_size, row_note, sentence};
 use voidwalk_practice::Note;
@@ -110,20 +110,18 @@ fn erosion(all: &Boundaries, walks: &[WalkRow]) -> Option<Drawn> {
     };
     let shown = walks.iter().map(|walk| walk.d15f_over_d85b * d85);
     let shown: Vec<f64> = shown.filter(|at| *at > 0.0 && at.is_finite()).collect();
-    let low = shown.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = shown.iter().copied().fold(0.0, f64::max);
-    if low > high {
+    if shown.is_empty() {
         return None;
     }
+    let (low, high) = positive_range(shown.into_iter());
     let x = Axis::log(axis, low, if high > low { high } else { 2.0 * low });
     let ends = (x.low, x.high);
     let what = "Percent of the base eroded against D15F in both runs of every network, with the zones of no, \
                 some and continuing erosion in the model";
-    let mut figure =
-        Figure::new("Erosion against D15F", what, "", x, Axis::percent("Base eroded, by mass (%)"))
-            .sizes((760.0, 340.0), (358.0, 420.0));
+    let mut figure = Figure::new("Erosion against D15F", what, x, Axis::percent("Base eroded, by mass (%)"))
+        .sizes((760.0, 340.0), (358.0, 420.0));
     zones(&mut figure, row, d85, ends);
-    figure.add(Rule::new(Across::Y, 100.0 * all.threshold, BLACK).dash(Dash::Dashed).label("7.5 %"));
+    figure.add(Mark::rule(Across::Y, 100.0 * all.threshold, BLACK).dash(Dash::Dashed).label("7.5 %"));
     draw_runs(&mut figure, &walks, d85);
     let of_base =
         all.base.size().map_or(String::new(), |base| format!(" {}.", base_size(&base, size_unit(all))));
@@ -135,7 +133,7 @@ fn erosion(all: &Boundaries, walks: &[WalkRow]) -> Option<Drawn> {
         "Base eroded against D15F: {}, {}. Each thin line is a network: blue its first run, purple its \
          second where it was walked. In the model, grey: no erosion; orange: some erosion; red: continuing \
          erosion.{blend}{of_base}",
-        row.name(),
+        row_name(row),
         row.thickness
     );
     if all.boundaries.len() > 1 {
@@ -163,7 +161,8 @@ fn zones(figure: &mut Figure, row: &BoundaryRow, d85: f64, (left, right): (f64, 
     let continuing = row.continuing.as_ref().map(edges);
     let mut zone = |low: f64, high: f64, colour: Colour, opacity: f64, name: &str| {
         if high > low {
-            let area = Area::new(vec![(low, 0.0), (high, 0.0), (high, 100.0), (low, 100.0)], colour, opacity);
+            let area =
+                Mark::area(vec![(low, 0.0), (high, 0.0), (high, 100.0), (low, 100.0)], colour, opacity);
             figure.add(if name.is_empty() { area } else { area.label(name) });
         }
     };
@@ -192,7 +191,7 @@ fn draw_runs(figure: &mut Figure, walks: &[&WalkRow], d85: f64) {
             if points.is_empty() {
                 continue;
             }
-            let line = Line::new(points, colour).width(1.2).opacity(0.7);
+            let line = Mark::line(points, colour).width(1.2).opacity(0.7);
             figure.add(if index == 0 { line.label(name) } else { line });
         }
     }
@@ -206,7 +205,7 @@ fn columns<'a>() -> Columns<'a, BoundaryRow> {
     };
     let median = |boundary: &Option<Boundary>| boundary.as_ref().map(|boundary| ratio(boundary.median));
     Columns::default()
-        .name("density", "Density", |row: &BoundaryRow| row.name())
+        .name("density", "Density", row_name)
         .text("thickness", "Thickness, at the no-erosion boundary", move |row| {
             row.thickness.as_str().shown().below(thick(row))
         })
@@ -326,10 +325,9 @@ fn in_band(low: Option<f64>, high: Option<f64>, words: impl Fn(f64) -> String) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::outcome::boundary::BaseStated;
+    use crate::outcome::boundary::NetworkBoundaries;
     use crate::outcome::record::ModelLimit;
     use voidwalk_core::store::format::BOUNDARY;
-    use voidwalk_practice::SheetCover;
 
     fn written(all: &Boundaries, csv: &str) -> String {
         let folder = tempfile::tempdir().unwrap();
@@ -337,57 +335,24 @@ mod tests {
         std::fs::write(folder.path().join("boundary.csv"), csv).unwrap();
         let written = write_boundary(folder.path()).unwrap();
         assert!(written.page.ends_with("boundary.html"));
+        assert!(written.figures[0].ends_with("figures/boundary.svg"));
         std::fs::read_to_string(written.page).unwrap()
     }
 
     fn all(no_erosion: Option<Boundary>) -> Boundaries {
+        let row = BoundaryRow {
+            density: "<loose>".into(),
+            thickness: "60 layers".into(),
+            layers: 60,
+            no_erosion,
+            ..BoundaryRow::default()
+        };
         Boundaries {
-            version: "1".into(),
-            commit: None,
-            boundaries: vec![BoundaryRow {
-                density: "<loose>".into(),
-                thickness: "60 layers".into(),
-                layers: 60,
-                thickness_mm: None,
-                grains_per_void: Some(0.61),
-                no_erosion_notes: Vec::new(),
-                no_erosion,
-                holds_to: None,
-                continuing: None,
-                continuing_notes: Vec::new(),
-                unsteady: None,
-                not_monotone: 0,
-                networks: Vec::new(),
-                as_end: None,
-                end_of: None,
-            }],
-            base: BaseStated {
-                name: "b".into(),
-                cu: None,
-                d15_mm: None,
-                d85_mm: None,
-                d95_over_d85: None,
-                regraded_at_mm: None,
-                tail_mass_fraction: 0.0,
-                d85_as_sampled_mm: None,
-            },
-            filter: "f".into(),
-            curve_name: "c".into(),
-            filter_cu: None,
-            filter_d15_mm: None,
-            inputs: Vec::new(),
+            boundaries: vec![row],
             threshold: 0.075,
             replicates: 3,
-            seed: 1,
-            engine: "expected".into(),
-            bracket: [0.5, 100.0],
-            step: 0.005,
-            notes: Vec::new(),
             model_leaves_out: vec![ModelLimit::Supply],
-            settings: Vec::new(),
-            cover: SheetCover::default(),
-            inches: false,
-            seconds: 1.0,
+            ..Boundaries::default()
         }
     }
 
@@ -397,7 +362,6 @@ mod tests {
     /// With few networks, a percentile would lie between two of them.
     #[test]
     fn of_few_networks_the_page_has_least_and_most() {
-        use crate::outcome::boundary::NetworkBoundaries;
         let page_of = |ratios: &[f64]| {
             let networks: Vec<_> = ratios.iter().map(|ratio| Ok(*ratio)).collect();
             let mut all = all(Boundary::of(&networks, Some(0.2)));
@@ -409,20 +373,19 @@ mod tests {
             written(&all, CSV)
         };
         let few = page_of(&[4.0, 4.4, 6.0]);
-        assert!(few.contains("(4.00 to 6.00)"), "{few}");
-        assert!(
-            few.contains("median of 3 networks (in brackets least and most); below it the D15F"),
-            "{few}"
-        );
-        assert!(few.contains("blend over the interpolated 5 to 95 % range of the networks."), "{few}");
+        for text in [
+            "(4.00 to 6.00)",
+            "median of 3 networks (in brackets least and most); below it the D15F",
+            "blend over the interpolated 5 to 95 % range of the networks.",
+        ] {
+            assert!(few.contains(text), "{text}: {few}");
+        }
         let one = page_of(&[4.4]);
         assert!(one.contains(", of one network; below it the D15F"), "{one}");
         assert!(!one.contains("least and most") && !one.contains("5 to 95 %"), "{one}");
         let many = page_of(&[4.0, 4.4, 4.8, 5.2].repeat(5));
-        assert!(
-            many.contains("median of 20 networks (in brackets 5 to 95 % range); below it the D15F"),
-            "{many}"
-        );
+        let text = "median of 20 networks (in brackets 5 to 95 % range); below it the D15F";
+        assert!(many.contains(text), "{many}");
     }
 
     /// The model's line has no colour, no zone of its figure is green, whatever it says, and names are inert.
@@ -436,10 +399,8 @@ mod tests {
             assert!(page.contains("<b>Model (research)</b>: "), "{page}");
             assert!(!page.contains("#009E73\"") && !page.contains(">Limit: "), "{page}");
             assert!(page.contains("&lt;loose&gt;") && !page.contains("<loose>"));
-            assert!(
-                page.contains("default-src 'none'")
-                    && page.contains("The model leaves out: a limit to what enters")
-            );
+            assert!(page.contains("default-src 'none'"));
+            assert!(page.contains("The model leaves out: a limit to what enters"));
         }
     }
 

@@ -1,10 +1,9 @@
 //! Page of a campaign, made from `campaign.json` and `ledger.jsonl` alone, with one row per case and a link
 //! to its page.
 
-use super::cases;
-use super::cases::AtRatio;
-use super::figures::{Across, Axis, BLACK, Dash, Figure, Rule, shorten};
-use super::files::{ReportError, json, json_of, lines, lines_of};
+use super::cases::{self, AtRatio};
+use super::figures::{Across, Axis, BLACK, Dash, Figure, Mark, shorten};
+use super::files::{ReportError, json, json_of, lines, text};
 use super::section::{Sections, Written};
 use super::shell::{Drawn, citation, clean, leaves_out};
 use super::table::Table;
@@ -28,7 +27,8 @@ const DRAWN: usize = 120;
 /// error, and nothing is written then.
 pub fn write_campaign(folder: &Path) -> Result<Written, ReportError> {
     let about: Campaign = json(&folder.join(ABOUT))?;
-    let ledger: Vec<LedgerLine> = lines(&folder.join(LEDGER))?;
+    let path = folder.join(LEDGER);
+    let ledger = lines(&path, &text(&path)?)?;
     page(folder, &about, &ledger).write(folder, "report.html", &citation())
 }
 
@@ -36,7 +36,7 @@ pub fn write_campaign(folder: &Path) -> Result<Written, ReportError> {
 /// text is an error.
 pub fn campaign_page(about: &str, ledger: &str) -> Result<String, ReportError> {
     let about: Campaign = json_of(Path::new(ABOUT), about)?;
-    let ledger: Vec<LedgerLine> = lines_of(Path::new(LEDGER), ledger)?;
+    let ledger = lines(Path::new(LEDGER), ledger)?;
     // Without a folder, no case has a page of its own.
     Ok(page(Path::new(""), &about, &ledger).text(&citation()))
 }
@@ -57,7 +57,7 @@ fn largest_eroded(line: &LedgerLine) -> Option<Statistic> {
 fn against_ratio(
     words: [&str; 2],
     y: Axis,
-    rules: Vec<Rule>,
+    rules: Vec<Mark>,
     ledger: &[LedgerLine],
     quantity: impl Fn(&LedgerLine) -> Option<(f64, Option<(f64, f64)>)>,
 ) -> Figure {
@@ -84,10 +84,10 @@ fn by_ratio(ledger: &[LedgerLine]) -> Drawn {
     let y = Axis::percent("Base eroded in the first run, by mass (%)");
     let what =
         "Percent of the base mass eroded in the first run against D15F/D85B, one symbol per case, by class";
-    let mut rules = vec![Rule::new(Across::Y, 100.0 * THRESHOLD, BLACK).dash(Dash::Dashed).label("7.5 %")];
+    let mut rules = vec![Mark::rule(Across::Y, 100.0 * THRESHOLD, BLACK).dash(Dash::Dashed).label("7.5 %")];
     let ratios = || ledger.iter().map(|line| line.ratios.d15f_over_d85b);
     if ratios().any(|r| r < 4.0) && ratios().any(|r| r > 4.0) {
-        rules.push(Rule::new(Across::X, 4.0, BLACK).dash(Dash::Dotted).label("D15F/D85B = 4 (Terzaghi)"));
+        rules.push(Mark::rule(Across::X, 4.0, BLACK).dash(Dash::Dotted).label("D15F/D85B = 4 (Terzaghi)"));
     }
     let figure = against_ratio(["Erosion against the filter ratio", what], y, rules, ledger, |line| {
         eroded(line, 0).map(|first| (100.0 * first.mean, interval_in_percent(first)))

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use maud::{Markup, html};
 
-use super::figures::{Across, Axis, BLACK, BLUE, Colour, Dash, Figure, PURPLE, Point, Rule, Shape, shorten};
+use super::figures::{Across, Axis, BLACK, BLUE, Colour, Dash, Figure, Mark, PURPLE, Shape, shorten};
 use super::run_figures::{run_name, verdict_colour};
 use crate::outcome::record::{Statistic, Verdict};
 use crate::outcome::statistic::interval_in_percent;
@@ -30,14 +30,14 @@ pub(super) struct AtRatio {
 pub(super) fn against_ratio(
     [title, what]: [&str; 2],
     (x, y): (Axis, Axis),
-    rules: Vec<Rule>,
+    rules: Vec<Mark>,
     cases: &[AtRatio],
 ) -> Figure {
-    let mut figure = Figure::new(title, what, "", x, y).names_above();
+    let mut figure = Figure::new(title, what, x, y).names_above();
     rules.into_iter().for_each(|rule| figure.add(rule));
     for (class, shape) in Verdict::ALL.into_iter().zip(SHAPES) {
         let point = |case: &AtRatio, colour: Colour| {
-            let point = Point::new(case.ratio, case.value, colour, shape).y_interval(case.interval);
+            let point = Mark::point(case.ratio, case.value, colour, shape).y_interval(case.interval);
             if case.is_bound { point.hollow() } else { point }
         };
         // Green for "no erosion" would mean that the filter is good.
@@ -66,15 +66,15 @@ pub(super) fn both_runs(cases: &[(&str, [Option<&Statistic>; 2])], threshold: f6
     let x = Axis::percent("Base eroded, by mass (%)");
     let what =
         "Percent of the base mass eroded in the first and second run of each case, with 95 % intervals";
-    let mut figure = Figure::new("Both runs of each case", what, "", x, y)
+    let mut figure = Figure::new("Both runs of each case", what, x, y)
         .sizes((720.0, height), (358.0, height))
         .names_above();
     let limit = 100.0 * threshold;
-    figure.add(Rule::new(Across::X, limit, BLACK).dash(Dash::Dashed).label(&format!("{limit} %")));
+    figure.add(Mark::rule(Across::X, limit, BLACK).dash(Dash::Dashed).label(&format!("{limit} %")));
     for (run, colour, shape) in [(0, BLUE, Shape::Circle), (1, PURPLE, Shape::Square)] {
         let points = (1..).zip(cases).filter_map(|(row, (_, runs)): (u32, _)| {
             let statistic = runs[run]?;
-            let point = Point::new(100.0 * statistic.mean, f64::from(row), colour, shape);
+            let point = Mark::point(100.0 * statistic.mean, f64::from(row), colour, shape);
             Some(point.x_interval(interval_in_percent(statistic)))
         });
         figure.add_points(run_name(run as u64 + 1), points);

@@ -12,7 +12,6 @@ use voidwalk_core::store::{Array, make_folder, npz, write_whole};
 /// Files that were written, and columns of words that were not.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Exported {
-    /// The files.
     pub(crate) files: Vec<PathBuf>,
     /// Columns of words, as `TABLE.COLUMN`.
     pub(crate) words: Vec<String>,
@@ -138,10 +137,7 @@ fn layers(path: &Path) -> Result<Vec<u8>, ReportError> {
     let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let points: Vec<[f64; 3]> =
         (0..=count).flat_map(|layer| square.map(|[x, y]| [x, y, 0.0 - layer as f64])).collect();
-    // The lower corners come first, as VTK requires.
-    let corners: Vec<i64> =
-        (0..count as i64).flat_map(|layer| [4, 5, 6, 7, 0, 1, 2, 3].map(|c| 4 * layer + c)).collect();
-    Ok(Grid { points: &points, kind: CellKind::Hexahedron, corners: &corners, columns: &columns }.file())
+    Ok(grid(CellKind::Block, &points, &columns))
 }
 
 /// Grains of a packing; `None` if the table has no grains.
@@ -152,9 +148,8 @@ fn grains(table: &Table) -> Option<Vec<u8>> {
     };
     let [x, y, z] = [column("x_mm")?, column("y_mm")?, column("z_mm")?];
     let points: Vec<[f64; 3]> = (0..x.len()).map(|grain| [x[grain], y[grain], z[grain]]).collect();
-    let corners: Vec<i64> = (0..x.len() as i64).collect();
     let columns = [("diameter_mm".to_owned(), column("diameter_mm")?)];
-    Some(Grid { points: &points, kind: CellKind::Vertex, corners: &corners, columns: &columns }.file())
+    Some(grid(CellKind::Vertex, &points, &columns))
 }
 
 /// Moment: a run, and the number of increments done.
@@ -178,7 +173,9 @@ fn void_grids(
     tables: &Tables,
     mut write: impl FnMut(&str, &[u8]) -> Result<(), ReportError>,
 ) -> Result<(), ReportError> {
-    for (kind, grid) in GRIDS {
+    type Draw = fn(&Tables, Moment) -> Vec<u8>;
+    let grids: [(&str, Draw); 2] = [("voids", Tables::voids_at), ("constrictions", Tables::lines_at)];
+    for (kind, grid) in grids {
         let mut sets = String::new();
         for (number, &moment) in tables.moments.iter().enumerate() {
             let name = format!("{kind}_{number:04}.vtu");
@@ -194,10 +191,6 @@ fn void_grids(
     }
     Ok(())
 }
-
-type Draw = fn(&Tables, Moment) -> Vec<u8>;
-
-const GRIDS: [(&str, Draw); 2] = [("voids", Tables::voids_at), ("constrictions", Tables::lines_at)];
 
 impl Tables {
     fn read(folder: &Path) -> Result<Self, ReportError> {
@@ -259,8 +252,7 @@ impl Tables {
             ("retained_in_constrictions_in_this_run".to_owned(), in_constrictions),
             ("retained_in_voids_in_this_run".to_owned(), in_voids),
         ];
-        let corners: Vec<i64> = (0..self.voids.len() as i64).collect();
-        Grid { points: &self.voids, kind: CellKind::Vertex, corners: &corners, columns: &columns }.file()
+        grid(CellKind::Vertex, &self.voids, &columns)
     }
 
     fn lines_at(&self, moment: Moment) -> Vec<u8> {
@@ -273,7 +265,6 @@ impl Tables {
             }
         };
         let points: Vec<[f64; 3]> = self.constrictions.iter().flat_map(ends).collect();
-        let corners: Vec<i64> = (0..points.len() as i64).collect();
         let column = |name: &str, value: &dyn Fn(&ConstrictionRow) -> f64| {
             (name.to_owned(), self.constrictions.iter().map(value).collect::<Vec<f64>>())
         };
@@ -286,78 +277,68 @@ impl Tables {
             // An open constriction has -1.
             column("blocked_at", &|row| blocked_at(row).map_or(-1.0, |&at| self.time_of(at) as f64)),
         ];
-        Grid { points: &points, kind: CellKind::Line, corners: &corners, columns: &columns }.file()
+        grid(CellKind::Line, &points, &columns)
     }
 }
 
 /// Kind of a grid's cells.
 #[derive(Clone, Copy)]
 enum CellKind {
+    /// A cell for each point.
     Vertex,
+    /// A cell between each two points.
     Line,
-    Hexahedron,
+    /// A block between each four points and the next four, which lie below them.
+    Block,
 }
 
-impl CellKind {
-    /// VTK's number of the kind, and the number of corners of a cell.
-    fn number_and_corners(self) -> (u8, usize) {
-        match self {
-            Self::Vertex => (1, 1),
-            Self::Line => (3, 2),
-            Self::Hexahedron => (12, 8),
+/// File of points, cells between them, and named numbers for each cell: a header with the offset of each
+/// array, then the arrays, each after its length in bytes.
+fn grid(kind: CellKind, points: &[[f64; 3]], columns: &[(String, Vec<f64>)]) -> Vec<u8> {
+    let count = points.len() as i64;
+    // VTK's number of the kind, the number of corners of a cell, and the corners, cell by cell.
+    let (number, corners, joined): (u8, usize, Vec<i64>) = match kind {
+        CellKind::Vertex => (1, 1, (0..count).collect()),
+        CellKind::Line => (3, 2, (0..count).collect()),
+        // The lower corners come first, as VTK requires.
+        CellKind::Block => {
+            let block = |layer| [4, 5, 6, 7, 0, 1, 2, 3].map(|corner| 4 * layer + corner);
+            (12, 8, (0..count / 4 - 1).flat_map(block).collect())
         }
-    }
-}
-
-/// Points, cells between them, and named numbers for each cell.
-struct Grid<'a> {
-    points: &'a [[f64; 3]],
-    kind: CellKind,
-    /// Points of the cells, cell by cell.
-    corners: &'a [i64],
-    columns: &'a [(String, Vec<f64>)],
-}
-
-impl Grid<'_> {
-    /// The file: a header with the offset of each array, then the arrays, each after its length in bytes.
-    fn file(&self) -> Vec<u8> {
-        let (number, corners) = self.kind.number_and_corners();
-        let cells = self.corners.len() / corners;
-        let (mut head, mut data) = (String::new(), Vec::new());
-        // Writing to a string cannot fail.
-        let _ = write!(
+    };
+    let cells = joined.len() / corners;
+    let (mut head, mut data) = (String::new(), Vec::new());
+    // Writing to a string cannot fail.
+    let _ = write!(
+        head,
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
+         byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece \
+         NumberOfPoints=\"{count}\" NumberOfCells=\"{cells}\">\n<Points>\n"
+    );
+    let mut array = |head: &mut String, kind: &str, name: &str, more: &str, bytes: Vec<u8>| {
+        let offset = data.len();
+        let _ = writeln!(
             head,
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
-             byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece \
-             NumberOfPoints=\"{}\" \
-             NumberOfCells=\"{cells}\">\n<Points>\n",
-            self.points.len()
+            "<DataArray type=\"{kind}\" Name=\"{name}\"{more} format=\"appended\" offset=\"{offset}\"/>"
         );
-        let mut array = |head: &mut String, kind: &str, name: &str, more: &str, bytes: Vec<u8>| {
-            let offset = data.len();
-            let _ = writeln!(
-                head,
-                "<DataArray type=\"{kind}\" Name=\"{name}\"{more} format=\"appended\" offset=\"{offset}\"/>"
-            );
-            data.extend((bytes.len() as u64).to_le_bytes());
-            data.extend(bytes);
-        };
-        let floats = |all: &mut dyn Iterator<Item = f64>| all.flat_map(f64::to_le_bytes).collect::<Vec<u8>>();
-        let whole = |all: &mut dyn Iterator<Item = i64>| all.flat_map(i64::to_le_bytes).collect::<Vec<u8>>();
-        let points = floats(&mut self.points.iter().flatten().copied());
-        array(&mut head, "Float64", "points", " NumberOfComponents=\"3\"", points);
-        head.push_str("</Points>\n<Cells>\n");
-        array(&mut head, "Int64", "connectivity", "", whole(&mut self.corners.iter().copied()));
-        let ends = whole(&mut (1..=cells).map(|cell| (cell * corners) as i64));
-        array(&mut head, "Int64", "offsets", "", ends);
-        array(&mut head, "UInt8", "types", "", vec![number; cells]);
-        head.push_str("</Cells>\n<CellData>\n");
-        for (name, column) in self.columns {
-            array(&mut head, "Float64", name, "", floats(&mut column.iter().copied()));
-        }
-        head.push_str("</CellData>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
-        [head.as_bytes(), &data, b"\n</AppendedData>\n</VTKFile>\n"].concat()
+        data.extend((bytes.len() as u64).to_le_bytes());
+        data.extend(bytes);
+    };
+    let floats = |all: &mut dyn Iterator<Item = f64>| all.flat_map(f64::to_le_bytes).collect::<Vec<u8>>();
+    let whole = |all: &mut dyn Iterator<Item = i64>| all.flat_map(i64::to_le_bytes).collect::<Vec<u8>>();
+    let points = floats(&mut points.iter().flatten().copied());
+    array(&mut head, "Float64", "points", " NumberOfComponents=\"3\"", points);
+    head.push_str("</Points>\n<Cells>\n");
+    array(&mut head, "Int64", "connectivity", "", whole(&mut joined.iter().copied()));
+    let ends = whole(&mut (1..=cells).map(|cell| (cell * corners) as i64));
+    array(&mut head, "Int64", "offsets", "", ends);
+    array(&mut head, "UInt8", "types", "", vec![number; cells]);
+    head.push_str("</Cells>\n<CellData>\n");
+    for (name, column) in columns {
+        array(&mut head, "Float64", name, "", floats(&mut column.iter().copied()));
     }
+    head.push_str("</CellData>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_");
+    [head.as_bytes(), &data, b"\n</AppendedData>\n</VTKFile>\n"].concat()
 }
 
 #[cfg(test)]
@@ -392,8 +373,7 @@ mod tests {
     fn every_array_stands_where_the_head_says() {
         let columns = [("size".to_owned(), vec![0.5, 0.25])];
         let points = [[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]];
-        let grid = Grid { points: &points, kind: CellKind::Vertex, corners: &[0, 1], columns: &columns };
-        let file = grid.file();
+        let file = grid(CellKind::Vertex, &points, &columns);
         let begin = file.windows(2).position(|pair| pair == b"\n_").unwrap() + 2;
         let head = String::from_utf8(file[..begin].to_vec()).unwrap();
         let at = |name: &str| -> usize {

@@ -9,14 +9,12 @@ use thiserror::Error;
 use voidwalk_core::store::format::from_json;
 use voidwalk_core::store::{StoreError, read_whole};
 
-/// Reads a file of text.
 pub(super) fn text(path: &Path) -> Result<String, ReportError> {
     let not_text = |_| std::io::Error::new(std::io::ErrorKind::InvalidData, "is not UTF-8 text");
     let read = read_whole(path).and_then(|bytes| String::from_utf8(bytes).map_err(not_text));
     read.map_err(|source| ReportError::Read { path: path.to_owned(), source })
 }
 
-/// Reads a file of JSON.
 pub(crate) fn json<T: DeserializeOwned>(path: &Path) -> Result<T, ReportError> {
     from_json(text(path)?.as_bytes()).map_err(|error| form(path, &error))
 }
@@ -30,18 +28,12 @@ fn form(path: &Path, error: &serde_json::Error) -> ReportError {
     malformed(path, error.line().max(1) as u64, error.to_string())
 }
 
-/// Refuses a line of a file.
 pub(super) fn malformed(path: &Path, line: u64, message: String) -> ReportError {
     ReportError::Form { path: path.to_owned(), line, message }
 }
 
-/// Reads a file of JSON lines, such as `ledger.jsonl`.
-pub(crate) fn lines<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, ReportError> {
-    lines_of(path, &text(path)?)
-}
-
-/// Reads JSON lines like [`lines()`], but from this text.
-pub(super) fn lines_of<T: DeserializeOwned>(path: &Path, text: &str) -> Result<Vec<T>, ReportError> {
+/// Reads JSON lines, such as those of `ledger.jsonl`; `path` names them in errors.
+pub(super) fn lines<T: DeserializeOwned>(path: &Path, text: &str) -> Result<Vec<T>, ReportError> {
     let one = |(index, line): (usize, &str)| {
         serde_json::from_slice(line.as_bytes())
             .map_err(|error| malformed(path, index as u64 + 1, error.to_string()))
@@ -64,23 +56,17 @@ pub fn rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<(u64, T)>, ReportErr
         };
         malformed(path, line, message)
     };
-    let headers = reader.headers().map_err(|error| form(1, error))?.clone();
-    let mut rows = Vec::new();
-    let mut record = csv::StringRecord::new();
+    reader.headers().map_err(|error| form(1, error))?;
+    let (mut records, mut rows) = (reader.deserialize(), Vec::new());
     loop {
-        let line = reader.position().line();
-        match reader.read_record(&mut record) {
-            Ok(false) => return Ok(rows),
-            Ok(true) => {
-                let row = record.deserialize(Some(&headers)).map_err(|error| form(line, error))?;
-                rows.push((line, row));
-            }
-            Err(error) => return Err(form(line, error)),
+        let line = records.reader().position().line();
+        match records.next() {
+            Some(row) => rows.push((line, row.map_err(|error| form(line, error))?)),
+            None => return Ok(rows),
         }
     }
 }
 
-/// Refuses the value of a field in a file.
 pub(super) fn refused(path: &Path, field: &str, value: String, allowed: &str) -> ReportError {
     let (field, allowed) = (field.to_owned(), allowed.to_owned());
     ReportError::Value { path: path.to_owned(), field, value, allowed }

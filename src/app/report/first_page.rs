@@ -42,7 +42,7 @@ pub(super) const QUESTION: &str = "Will this filter hold this soil?";
 pub(super) fn answer(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> Markup {
     let notes = outcome.notes.len();
     html! {
-        section.verdict.(colour(decision.headline)) {
+        section.verdict.(colour_of(decision.headline)) {
             @for (line, words) in first_lines(outcome, decision, unit) {
                 p.practice { b { (line.name()) } ": " (unbroken(&words)) "." }
                 @if line == FirstLine::Practice && let Some(alone) = judged_alone(outcome, decision) {
@@ -59,7 +59,7 @@ pub(super) fn answer(outcome: &Outcome, decision: &Decision, unit: SizeUnit) -> 
 }
 
 /// Colour of an answer, by practice; neutral without practice.
-fn colour(headline: Option<Headline>) -> &'static str {
+pub(crate) fn colour_of(headline: Option<Headline>) -> &'static str {
     let Some(headline) = headline else { return "neutral" };
     match (headline, headline.class()) {
         (Headline::Meets, _) => "none",
@@ -69,23 +69,17 @@ fn colour(headline: Option<Headline>) -> &'static str {
     }
 }
 
-/// The colour of the answer to a pair.
-pub(crate) fn colour_of(outcome: &Outcome) -> &'static str {
-    colour(outcome.headline)
-}
-
 /// Sizes of both soils as a table: the base as sampled and, if it is regraded, as regraded.
 pub(super) fn sizes(outcome: &Outcome, unit: SizeUnit) -> Markup {
     let (filter, base) = (&outcome.inputs.filter, &outcome.inputs.base);
-    let mut soils = vec![SizedSoil::new("Filter", &filter.gradation)];
+    let filter: SizedSoil = ("Filter".into(), &filter.gradation);
     match &base.as_sampled {
-        Some(sampled) => soils.extend([
-            SizedSoil::new("Base, sampled", &sampled.gradation),
-            SizedSoil::new("regraded", &base.gradation),
-        ]),
-        None => soils.push(SizedSoil::new("Base", &base.gradation)),
+        Some(sampled) => {
+            let sampled: SizedSoil = ("Base, sampled".into(), &sampled.gradation);
+            of_few(&[filter, sampled, ("regraded".into(), &base.gradation)], unit)
+        }
+        None => of_few(&[filter, ("Base".into(), &base.gradation)], unit),
     }
-    of_few(&soils, unit)
 }
 
 /// Rules of practice that decide or are not met, and the number of the others.

@@ -8,7 +8,7 @@ use serde::de::DeserializeOwned;
 use super::figures::shorten;
 use super::files::{ReportError, json, malformed, text};
 use super::shell::LINE;
-use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
+use super::walks::{RunRows, Walks, check_curve, check_results};
 use crate::outcome::packing::PackingRecord;
 use crate::outcome::record::{Classed, Manifest, Outcome, Sensitivity};
 use crate::verdict::RunFiles;
@@ -32,12 +32,12 @@ impl RunFolder {
     pub(super) fn read(folder: &Path) -> Result<RunFolder, ReportError> {
         let path = folder.join(OUTCOME);
         let outcome = checked(&path, json(&path)?)?;
-        let rows = rows_of(&outcome, folder, RowSource::Folder(folder))?;
-        let manifest: Manifest = json(&folder.join(MANIFEST))?;
-        let path = folder.join(SCENE);
+        let rows = RunRows::read(folder, None, &outcome.replicates, &outcome.summary)?;
+        let manifest: Manifest = json(&folder.join("manifest.json"))?;
+        let path = folder.join("scene.toml");
         let scene = text(&path)?;
         let about = about_page(&path, &scene, &outcome)?;
-        let packing = packing(&folder.join(PACKING), &manifest)?;
+        let packing = packing(&folder.join("inputs/packing.json"), &manifest)?;
         let decision = outcome.decision();
         Ok(RunFolder { packing, outcome, decision, manifest, scene, about, rows })
     }
@@ -46,7 +46,7 @@ impl RunFolder {
     pub(super) fn from_files(folder: &Path, files: RunFiles) -> Result<RunFolder, ReportError> {
         let RunFiles { outcome, decision, manifest, scene, about, packing, recorded } = files;
         let outcome = checked(&folder.join(OUTCOME), outcome)?;
-        let rows = rows_of(&outcome, folder, RowSource::Memory(recorded))?;
+        let rows = RunRows::read(folder, Some(recorded), &outcome.replicates, &outcome.summary)?;
         Ok(RunFolder { packing, outcome, decision, manifest, scene, about, rows })
     }
 
@@ -72,13 +72,6 @@ pub(super) fn walks<'a>(outcome: &'a Outcome, rows: &'a RunRows) -> Walks<'a> {
 }
 
 const OUTCOME: &str = "outcome.json";
-const MANIFEST: &str = "manifest.json";
-const SCENE: &str = "scene.toml";
-const PACKING: &str = "inputs/packing.json";
-
-fn rows_of(outcome: &Outcome, folder: &Path, source: RowSource) -> Result<RunRows, ReportError> {
-    RunRows::read(folder, source, outcome.replicates.len(), outcome.summary.len())
-}
 
 /// Outcome as it is shown; `path` names it in errors.
 pub(super) fn checked(path: &Path, mut outcome: Outcome) -> Result<Outcome, ReportError> {
@@ -131,6 +124,7 @@ struct ShownSizes {
     units: Option<SheetUnits>,
 }
 
+/// Units as a scene names them: pages use no scene.
 #[derive(Deserialize, PartialEq)]
 #[serde(rename_all = "lowercase")]
 enum SheetUnits {

@@ -1,10 +1,8 @@
 //! Report: one page and its figures, made from a finished run folder alone.
 //!
-//! [`write()`] reads the files of a run and walks nothing; the other `write_` functions read other folders.
-//! They write `figures/*.svg`, each a separate file, and the page. `write_walked()` writes the page of a
-//! run that was just walked, from the contents of its files. [`run_page()`] and [`network_walk_page()`]
-//! return pages of walks in memory as text; [`run_brief()`] and [`network_walk_brief()`] return the verdict
-//! alone, for a notebook.
+//! The `write` functions write `figures/*.svg` and the page of a folder. [`run_page()`] and
+//! [`network_walk_page()`] return pages of walks in memory as text; [`run_brief()`] and
+//! [`network_walk_brief()`] return the verdict alone, for a notebook.
 //!
 //! A page is self-contained. Its content security policy forbids every script and every fetch and names its
 //! one style by hash; figures are SVG elements without a style. Names come from users and are treated as
@@ -55,7 +53,6 @@ pub(crate) use page::write_walked;
 pub use page::{run_brief, run_page, write};
 pub(crate) use percolation::write_percolation;
 pub(crate) use soils::soils_figure;
-pub(crate) use specification::write_designs;
-pub(crate) use specification::write_specification;
+pub(crate) use specification::{write_designs, write_specification};
 #[cfg(feature = "xlsx")]
 pub(crate) use workbook::{soil_template, write_verdict_workbook};

@@ -1,15 +1,16 @@
 //! Page of walks on given networks, without a scene.
 
-use super::figures::{Axis, BLUE, Dash, Figure, Line, VERMILLION};
+use super::figures::{Axis, BLUE, Dash, Figure, Mark, VERMILLION};
 use super::files::{ReportError, json_of, refused};
 use super::results::{
     brief, by_connectivity, eroded_table, in_words, replicates, replicates_in_words, results,
 };
+use super::run_figures;
 use super::run_figures::size_axis;
-use super::shell::{Drawn, citation, clean, drawing, fact, leaves_out, page_with_foot};
+use super::section::Sections;
+use super::shell::{Drawn, citation, clean, drawing, fact, leaves_out};
 use super::table::{counts, known};
-use super::walks::{RowSource, RunRows, Walks, check_curve, check_results};
-use super::{run_figures, shell};
+use super::walks::{RunRows, Walks, check_curve, check_results};
 use crate::outcome::Recorded;
 use crate::outcome::record::{NetworkWalkRecord, Verdict};
 use crate::words::left_out::left_out_words;
@@ -24,19 +25,11 @@ const RECORD: &str = "outcome";
 /// record, or rows that do not fit together, are errors.
 pub fn network_walk_page(record: &str, recorded: Recorded) -> Result<String, ReportError> {
     let record = checked(record)?;
-    let (replicates, runs) = (record.replicates.len(), record.summary.len());
-    let rows = RunRows::read(Path::new(""), RowSource::Memory(recorded), replicates, runs)?;
+    let rows = RunRows::read(Path::new(""), Some(recorded), &record.replicates, &record.summary)?;
     let walks = walks(&record, &rows);
-    let figures: Vec<Drawn> = [
-        Some(sizes(&record)),
-        run_figures::eroded(&walks),
-        run_figures::layers(&walks),
-        run_figures::retained(&walks),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
-    Ok(page(&record, &walks, &figures))
+    let of_walks = [run_figures::eroded, run_figures::layers, run_figures::retained].map(|draw| draw(&walks));
+    let figures = [Some(sizes(&record))].into_iter().chain(of_walks).flatten().collect();
+    Ok(page(&record, &walks, figures))
 }
 
 /// Verdict of walks on given networks, as a fragment of a page: its numbers, a figure, the omissions of the
@@ -91,24 +84,22 @@ fn sizes(record: &NetworkWalkRecord) -> Drawn {
     let x = size_axis(SizeUnit::Mm, base.iter().chain(network).map(|row| row[0]));
     let what = "Percent finer against size for the base (by mass) and the constrictions (by number)";
     let y = Axis::percent("Percent finer (%)");
-    let mut figure =
-        Figure::new("Base and constrictions", what, "", x, y).sizes((720.0, 460.0), (358.0, 400.0));
-    figure.add(Line::of_rows(base, VERMILLION).width(2.6).label("base\n(by mass)"));
-    let constrictions = Line::of_rows(network, BLUE).dash(Dash::Dashed);
+    let mut figure = Figure::new("Base and constrictions", what, x, y).sizes((720.0, 460.0), (358.0, 400.0));
+    figure.add(Mark::rows(base, VERMILLION).width(2.6).label("base\n(by mass)"));
+    let constrictions = Mark::rows(network, BLUE).dash(Dash::Dashed);
     figure.add(constrictions.label("constrictions\n(by number)"));
     let caption = "Percent finer by mass of the base, and percent smaller by number of the network’s open \
                    constrictions. Base particles pass a constriction that is no smaller than they are.";
     Drawn::new("gradations", figure, caption)
 }
 
-fn page(record: &NetworkWalkRecord, walks: &Walks, figures: &[Drawn]) -> String {
+fn page(record: &NetworkWalkRecord, walks: &Walks, figures: Vec<Drawn>) -> String {
     let title = format!("{}: walks on a given network", record.verdict.words());
-    let header = html! {
-        h1 { "Does this base pass this network?" }
-        p.names { "Base " b { (clean(&record.base.name)) } " on a network of "
-            b { (whole(record.network.voids)) " voids" } }
+    let names = html! {
+        "Base " b { (clean(&record.base.name)) } " on a network of "
+        b { (whole(record.network.voids)) " voids" }
     };
-    let main = html! {
+    let sheets = html! {
         section.sheet {
             div.first {
                 (verdict_section(record, walks))
@@ -121,15 +112,15 @@ fn page(record: &NetworkWalkRecord, walks: &Walks, figures: &[Drawn]) -> String 
                 ul { @for note in &record.notes { li { (clean(&sentence(note, SizeUnit::Mm))) } } }
             }
         }
-        (shell::contents())
-        h2 { "Figures" }
-        @for (number, drawn) in (1..).zip(figures) { (shell::figure(number, drawn)) }
-        (results(walks))
-        (by_connectivity(walks))
-        (replicates(walks))
-        (inputs(record))
     };
-    page_with_foot(None, &title, [&header, &main, &citation()])
+    let numbers = html! { (results(walks)) (by_connectivity(walks)) (replicates(walks)) (inputs(record)) };
+    Sections::new(title, "Does this base pass this network?", &names)
+        .words(&sheets)
+        .contents()
+        .words(&html! { h2 { "Figures" } })
+        .figures(figures)
+        .words(&numbers)
+        .text(&citation())
 }
 
 /// Number of base particles, and the number that Eq. (2) requires.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use maud::{Markup, Render, html};
 
-use super::figures::{Axis, BLUE, Dash, Disc, Figure, GREY, Line, Point, Shape, VERMILLION, ramp};
+use super::figures::{Axis, BLUE, Dash, Figure, GREY, Mark, Shape, VERMILLION, ramp};
 use super::files::{ReportError, json, rows};
 use super::section::{Sections, Written};
 use super::shell::{Drawn, citation, clean, fact};
@@ -49,20 +49,23 @@ fn curves(packed: &Packed) -> Drawn {
     let x = Axis::log("Diameter (mm)", low, high);
     let what = "Percent finer against size: the grains by mass, the constrictions by number";
     let mut figure =
-        Figure::new("Gradation and constriction curve", what, "", x, Axis::percent("Percent finer (%)"));
-    figure.add(Line::of_rows(gradation, BLUE).width(2.5).label("grains, by mass"));
+        Figure::new("Gradation and constriction curve", what, x, Axis::percent("Percent finer (%)"));
+    figure.add(Mark::rows(gradation, BLUE).width(2.5).label("grains, by mass"));
     figure.add(
-        Line::new(constrictions, VERMILLION).width(2.5).dash(Dash::Dashed).label("constrictions,\nby number"),
+        Mark::line(constrictions, VERMILLION)
+            .width(2.5)
+            .dash(Dash::Dashed)
+            .label("constrictions,\nby number"),
     );
     for (rows, name) in
         packed.record.inscribed.iter().zip(["inscribed circles, dense", "inscribed circles, loose"])
     {
-        figure.add(Line::of_rows(rows, GREY).width(1.2).dash(Dash::Dotted).label(name));
+        figure.add(Mark::rows(rows, GREY).width(1.2).dash(Dash::Dotted).label(name));
     }
     for percent in [5.0, 50.0] {
         if let Some(d) = dc(&packed.summary, percent) {
             let label = format!("Dc{percent} = {} mm", significant(d));
-            figure.add(Point::new(d, percent, VERMILLION, Shape::Circle).label(&label));
+            figure.add(Mark::point(d, percent, VERMILLION, Shape::Circle).label(&label));
         }
     }
     let caption = format!(
@@ -81,7 +84,7 @@ pub(super) fn slice(record: &PackingRecord) -> Drawn {
     let axis = |label| Axis::linear(label, 0.0, edge).within(0.0, edge);
     let what =
         "Grains cut by the plane through the middle of the periodic cell; the darker, the larger the grain";
-    let mut figure = Figure::new("A slice through the packing", what, "", axis("x (mm)"), axis("y (mm)"))
+    let mut figure = Figure::new("A slice through the packing", what, axis("x (mm)"), axis("y (mm)"))
         .sizes((720.0, 690.0), (358.0, 360.0))
         .square();
     let sizes = || record.gradation.iter().map(|row| row[0]);
@@ -89,7 +92,7 @@ pub(super) fn slice(record: &PackingRecord) -> Drawn {
     for &[x, y, cut, grain] in &record.slice {
         let share = if high > low { libm::log(grain / low) / libm::log(high / low) } else { 0.5 };
         let shade = (share * SHADES as f64).clamp(0.0, SHADES as f64 - 1.0) as usize;
-        figure.add(Disc { centre: (x, y), diameter: cut, colour: ramp(shade, SHADES) });
+        figure.add(Mark::disc((x, y), cut, ramp(shade, SHADES)));
     }
     let caption = format!(
         "The plane z = {} mm through the middle of the periodic cell. A circle is the cut of a grain, not \
@@ -110,12 +113,12 @@ fn connectivity(packed: &Packed) -> Drawn {
     let y = Axis::linear("Voids (%)", 0.0, highest);
     let what = "Percent of the voids against the number of their constrictions";
     let mut figure =
-        Figure::new("Connectivity of the voids", what, "", x, y).sizes((720.0, 320.0), (358.0, 300.0));
+        Figure::new("Connectivity of the voids", what, x, y).sizes((720.0, 320.0), (358.0, 300.0));
     let points: Vec<(f64, f64)> =
         counts.iter().take(last + 1).enumerate().map(|(k, &n)| (k as f64, share(n))).collect();
-    figure.add(Line::new(points.clone(), GREY).width(1.0));
+    figure.add(Mark::line(points.clone(), GREY).width(1.0));
     for (k, percent) in points {
-        figure.add(Point::new(k, percent, BLUE, Shape::Circle));
+        figure.add(Mark::point(k, percent, BLUE, Shape::Circle));
     }
     let caption = format!(
         "Number of constrictions of a void; {} on average.",

@@ -77,16 +77,9 @@ fn drawn(run: &RunFolder) -> (String, Vec<Drawn>) {
     let walks = run.walks();
     let verdict = run_figures::verdict(&walks);
     let gradations = run_figures::gradations(run);
-    let figures: Vec<Drawn> = [
-        run_figures::eroded(&walks),
-        run_figures::layers(&walks),
-        run_figures::retained(&walks),
-        run.packing.as_ref().map(packing::slice),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
-
+    let of_walks = [run_figures::eroded, run_figures::layers, run_figures::retained].map(|draw| draw(&walks));
+    let slice = run.packing.as_ref().map(packing::slice);
+    let figures: Vec<Drawn> = of_walks.into_iter().chain([slice]).flatten().collect();
     let page = page(run, [&verdict, &gradations], &figures);
     (page, [verdict, gradations].into_iter().chain(figures).collect())
 }
@@ -162,7 +155,6 @@ fn walk(outcome: &Outcome, walks: &Walks, verdict: &Drawn) -> Markup {
     }
 }
 
-/// Result of the rule that added replicates.
 fn stopped(stopping: &Stopping) -> String {
     let mut text = String::new();
     if let Some(percent) = stopping.decide_percent {
@@ -178,7 +170,6 @@ fn stopped(stopping: &Stopping) -> String {
     text
 }
 
-/// Meaning of the class, in a sentence.
 fn in_words(outcome: &Outcome, walks: &Walks) -> String {
     match outcome.undecided_by() {
         Some(open @ UndecidedBy::Curve) => format!("Inconclusive: {}.", undecided_by(open)),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use maud::{Markup, Render, html};
 
-use super::figures::{Across, Axis, BLUE, Dash, Figure, GREY, Line, PURPLE, Point, Rule, Shape, Tick};
+use super::figures::{Across, Axis, BLUE, Dash, Figure, GREY, Mark, PURPLE, Shape, Tick};
 use super::files::{ReportError, json};
 use super::section::{Sections, Written};
 use super::shell::Drawn;
@@ -94,10 +94,10 @@ fn percolation_spread(study: &PercolationStudy) -> Drawn {
     let x = Axis::linear("Size of the lattice, L (voids along each side)", 0.0, widest);
     let y = Axis::linear("Standard deviation of the threshold (–)", lowest, highest);
     let what = "Standard deviation of the percolation threshold against the size of the lattice";
-    let mut figure = Figure::new("Scatter of the percolation threshold", what, "", x, y);
-    figure.add(Line::new(rows.iter().map(|size| (size.size as f64, sd(size))).collect(), BLUE).width(1.5));
+    let mut figure = Figure::new("Scatter of the percolation threshold", what, x, y);
+    figure.add(Mark::line(rows.iter().map(|size| (size.size as f64, sd(size))).collect(), BLUE).width(1.5));
     for size in rows {
-        let point = Point::new(size.size as f64, sd(size), BLUE, Shape::Circle);
+        let point = Mark::point(size.size as f64, sd(size), BLUE, Shape::Circle);
         figure.add(point.y_interval(Some(ends(size))));
     }
     let caption = "Standard deviation of the percolation threshold over the realisations, as in Fig. 6 of \
@@ -118,16 +118,16 @@ fn threshold(study: &PercolationStudy) -> Drawn {
         0.0,
         widest,
     );
-    let sizes = study.sizes.iter().map(|s| Tick::new(at(s.size as f64), &[&s.size.to_string()]));
-    x = x.with_ticks(std::iter::once(Tick::new(0.0, &["∞"])).chain(sizes).collect());
+    let sizes = study.sizes.iter().map(|s| Tick::new(at(s.size as f64), s.size.to_string()));
+    x = x.with_ticks(std::iter::once(Tick::new(0.0, "∞")).chain(sizes).collect());
     let y = Axis::linear("Mean threshold (–)", lowest - room, highest + room);
     let what = "Mean percolation threshold against the size of the lattice, with the fitted relations";
-    let mut figure = Figure::new("Percolation threshold against size", what, "", x, y);
+    let mut figure = Figure::new("Percolation threshold against size", what, x, y);
     let known = format!("known, {}", study.infinite_lattice);
-    figure.add(Rule::new(Across::Y, study.infinite_lattice, GREY).dash(Dash::Dashed).label(&known));
+    figure.add(Mark::rule(Across::Y, study.infinite_lattice, GREY).dash(Dash::Dashed).label(&known));
     if let Some(fit) = &study.one_length {
         let ends = [0.0, widest].map(|x| (x, fit.threshold - fit.amplitude * x));
-        figure.add(Line::new(ends.to_vec(), BLUE).label("one length"));
+        figure.add(Mark::line(ends.to_vec(), BLUE).label("one length"));
     }
     if let Some(fit) = &study.many_starts {
         // Fixed-point iteration for d, which gives L: y = b + c ln(L d^(nu / z)) with y = L d^nu; it
@@ -145,12 +145,12 @@ fn threshold(study: &PercolationStudy) -> Drawn {
             (at(size(d)), fit.threshold - d)
         };
         let curve = (0..=60).map(at_step).collect();
-        figure.add(Line::new(curve, PURPLE).dash(Dash::Dashed).label("many starts"));
+        figure.add(Mark::line(curve, PURPLE).dash(Dash::Dashed).label("many starts"));
     }
     for size in &study.sizes {
         let bar = size.threshold.low.zip(size.threshold.high);
         figure
-            .add(Point::new(at(size.size as f64), size.threshold.mean, BLUE, Shape::Circle).y_interval(bar));
+            .add(Mark::point(at(size.size as f64), size.threshold.mean, BLUE, Shape::Circle).y_interval(bar));
     }
     let caption = "Mean threshold of each size, and the two relations fitted to them. Bars: 95 % intervals \
                    of the mean.";

@@ -29,7 +29,6 @@ fn run_heading(run: u64) -> Shown {
     capital(run_name(run)).shown().emphasised(Emphasis::Run(run))
 }
 
-/// Means over the replicates.
 pub(super) fn results(walks: &Walks) -> Markup {
     type Row<'a> = (&'static str, &'a dyn Fn(&RunSummary) -> Shown);
     let eroded = |mm: Option<f64>| mm.map_or("nothing eroded".shown(), |mm| length(mm, walks.unit).shown());
@@ -78,7 +77,6 @@ pub(super) fn results(walks: &Walks) -> Markup {
     }
 }
 
-/// Each replicate, collapsed.
 pub(super) fn replicates(walks: &Walks) -> Markup {
     let unit = walks.unit.short();
     let listed = walks.replicates.len().min(LISTED);
@@ -339,7 +337,6 @@ fn eroded_columns<'a>() -> Columns<'a, RunSummary> {
         })
 }
 
-/// Meaning of the class, in a sentence.
 pub(super) fn in_words(walks: &Walks) -> String {
     words::meaning(walks.verdict, walks.summary, walks.threshold)
 }

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::figures::{
-    Across, Area, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, Point, Rule,
-    Shape, VERMILLION, positive_range, ramp, shorten,
+    Across, Axis, BLACK, BLUE, Colour, Dash, Figure, GREEN, GREY, Mark, ORANGE, PURPLE, Shape, VERMILLION,
+    positive_range, ramp, shorten,
 };
 use super::folder::RunFolder;
 use super::names::{is_named, soil_name};
@@ -48,9 +48,11 @@ fn upper(statistic: &Statistic) -> f64 {
     interval(statistic).map_or(statistic.mean, |(_, high)| high)
 }
 
-fn threshold_rule(walks: &Walks, across: Across) -> Rule {
+fn threshold_rule(walks: &Walks, across: Across) -> Mark {
     let limit = walks.threshold;
-    Rule::new(across, limit * 100.0, BLACK).dash(Dash::Dashed).label(&percent(limit).in_digits(3).to_string())
+    Mark::rule(across, limit * 100.0, BLACK)
+        .dash(Dash::Dashed)
+        .label(&percent(limit).in_digits(3).to_string())
 }
 
 /// Axis from 0 that includes these percentages and the threshold, and reaches at least 10 %.
@@ -68,12 +70,12 @@ pub(super) fn verdict(walks: &Walks) -> Drawn {
     let height = 84.0 + 48.0 * summary.len() as f64;
     let what = "Mean and 95 % interval of the eroded mass in each run, against the threshold";
     let mut figure =
-        Figure::new("Base eroded in each run", what, "", x, y).sizes((540.0, height), (330.0, height));
+        Figure::new("Base eroded in each run", what, x, y).sizes((540.0, height), (330.0, height));
     figure.add(threshold_rule(walks, Across::X));
     for run in summary {
         let statistic = &run.eroded_mass_fraction;
         let (colour, shape, _) = run_look(run.run);
-        let point = Point::new(statistic.mean * 100.0, run.run as f64, colour, shape);
+        let point = Mark::point(statistic.mean * 100.0, run.run as f64, colour, shape);
         figure.add(
             point.x_interval(interval_in_percent(statistic)).label(&percent(statistic.mean).to_string()),
         );
@@ -103,7 +105,7 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
         length(filter.d15_mm, unit),
         d85b,
     );
-    let mut figure = Figure::new("Gradations and constriction curve", &what, "", x, y)
+    let mut figure = Figure::new("Gradations and constriction curve", &what, x, y)
         .sizes((720.0, 460.0), (358.0, 400.0))
         .sheet((680.0, 350.0));
     if !inputs.scale_free {
@@ -120,15 +122,15 @@ pub(super) fn gradations(folder: &RunFolder) -> Drawn {
         _ => name("base", &base.name),
     };
     if let Some(before) = sampled {
-        let line = Line::of_rows(&before.gradation, VERMILLION).width(1.4).dash(Dash::Dashed);
+        let line = Mark::rows(&before.gradation, VERMILLION).width(1.4).dash(Dash::Dashed);
         figure.add(line.label("base as sampled,\nnot walked"));
     }
-    figure.add(Line::of_rows(&base.gradation, VERMILLION).width(2.6).label(&walked));
-    let constrictions = Line::of_rows(&filter.constrictions, BLUE).dash(Dash::Dashed);
+    figure.add(Mark::rows(&base.gradation, VERMILLION).width(2.6).label(&walked));
+    let constrictions = Mark::rows(&filter.constrictions, BLUE).dash(Dash::Dashed);
     figure.add(constrictions.label("constrictions\n(by number)"));
-    figure.add(Line::of_rows(&filter.gradation, BLACK).width(2.6).label(&name("filter", &filter.name)));
+    figure.add(Mark::rows(&filter.gradation, BLACK).width(2.6).label(&name("filter", &filter.name)));
     let mark = |at: f64, percent: f64, colour, shape, text: &str| {
-        Point::new(at, percent, colour, shape).dropped().label(text)
+        Mark::point(at, percent, colour, shape).dropped().label(text)
     };
     figure.add(mark(filter.d15_mm, 15.0, BLACK, Shape::Circle, "D15F"));
     figure.add(mark(base.d85_mm, 85.0, VERMILLION, Shape::Square, "D85B"));
@@ -153,7 +155,8 @@ fn eroded_at(rows: &[SeriesRow], increment: f64) -> f64 {
 
 /// Eroded mass against increment for each run: thin lines for replicates, a bold line for the mean.
 pub(super) fn eroded(walks: &Walks) -> Option<Drawn> {
-    let last = walks.rows.series.values().flatten().map(|row| row.increment).max()?;
+    let rows = || walks.rows.series.values().flatten();
+    let last = rows().map(|row| row.increment).max()?;
     // The point from which every curve stays within a thousandth of its end; the rest of a long tail is left
     // out.
     let settled = walks.rows.series.values().filter_map(|rows| {
@@ -162,15 +165,14 @@ pub(super) fn eroded(walks: &Walks) -> Option<Drawn> {
     });
     let settled = settled.max().unwrap_or(last).max((1.0 / walks.inject_share) as u64);
     let shown = if last as f64 > 1.6 * settled as f64 { (settled as f64 * 1.25) as u64 } else { last };
-    let highest =
-        100.0 * walks.rows.series.values().flatten().map(|row| row.eroded_mass_fraction).fold(0.0, f64::max);
+    let highest = 100.0 * rows().map(|row| row.eroded_mass_fraction).fold(0.0, f64::max);
     let x = Axis::linear("Increment (–)", 0.0, shown as f64);
     let y = eroded_axis("Base eroded, by mass (%)", walks, highest * 1.05);
     let what = "Percent of the base mass eroded against increment, for each run";
-    let mut figure = Figure::new("Progress of erosion", what, "", x, y);
+    let mut figure = Figure::new("Progress of erosion", what, x, y);
     let end = libm::ceil(1.0 / walks.inject_share);
     if end < shown as f64 {
-        figure.add(Rule::new(Across::X, end, GREY).dash(Dash::Dotted).label("all base inserted"));
+        figure.add(Mark::rule(Across::X, end, GREY).dash(Dash::Dotted).label("all base inserted"));
     }
     figure.add(threshold_rule(walks, Across::Y));
     let replicates = walks.replicates.len();
@@ -182,14 +184,11 @@ pub(super) fn eroded(walks: &Walks) -> Option<Drawn> {
         if all.is_empty() {
             continue;
         }
-        if all.len() > 1 {
-            for rows in all.iter().take(DRAWN) {
-                let points = |row: &SeriesRow| (row.increment as f64, row.eroded_mass_fraction * 100.0);
-                let start = std::iter::once((0.0, 0.0));
-                let stay = rows.last().map(|row| (last as f64, row.eroded_mass_fraction * 100.0));
-                let curve = start.chain(rows.iter().map(points)).chain(stay).collect();
-                figure.add(Line::new(curve, colour).width(0.8).opacity(0.45));
-            }
+        for rows in all.iter().take(if all.len() > 1 { DRAWN } else { 0 }) {
+            let point = |row: &SeriesRow| (row.increment as f64, row.eroded_mass_fraction * 100.0);
+            let stay = rows.last().map(|row| (last as f64, point(row).1));
+            let curve = [(0.0, 0.0)].into_iter().chain(rows.iter().map(point)).chain(stay).collect();
+            figure.add(Mark::line(curve, colour).width(0.8).opacity(0.45));
         }
         let increments: BTreeSet<u64> =
             all.iter().flat_map(|rows| rows.iter().map(|row| row.increment)).collect();
@@ -200,7 +199,7 @@ pub(super) fn eroded(walks: &Walks) -> Option<Drawn> {
         for at in increments.iter().step_by(stride).chain(increments.last()).map(|at| *at as f64) {
             mean.push((at, all.iter().map(|rows| eroded_at(rows, at)).sum::<f64>() / all.len() as f64));
         }
-        bold.push(Line::new(mean, colour).width(3.0).dash(dash).label(run_name(run)));
+        bold.push(Mark::line(mean, colour).width(3.0).dash(dash).label(run_name(run)));
     }
     bold.into_iter().for_each(|line| figure.add(line));
     let mut caption = "Base eroded, in percent of the mass that a run inserts, against increment (an \
@@ -236,7 +235,7 @@ pub(super) fn layers(walks: &Walks) -> Option<Drawn> {
     y.ticks.retain(|tick| tick.at == libm::floor(tick.at));
     let what =
         "Share of the constrictions of each layer that are blocked at the end of each run, depth downward";
-    let mut figure = Figure::new("Blocked constrictions by layer", what, "", x, y)
+    let mut figure = Figure::new("Blocked constrictions by layer", what, x, y)
         .sizes((720.0, 460.0), (358.0, 420.0))
         .names_above();
     let mut bold = Vec::new();
@@ -254,17 +253,16 @@ pub(super) fn layers(walks: &Walks) -> Option<Drawn> {
         let least = at(|shares| shares.iter().copied().fold(f64::MAX, f64::min));
         let most: Vec<_> = at(|shares| shares.iter().copied().fold(0.0, f64::max)).collect();
         if walks.replicates.len() > 1 {
-            figure.add(Area::new(least.chain(most.into_iter().rev()).collect(), colour, 0.22));
+            figure.add(Mark::area(least.chain(most.into_iter().rev()).collect(), colour, 0.22));
         }
         let mean = at(|shares| shares.iter().sum::<f64>() / shares.len() as f64).collect();
         let name = format!("after the {}", run_name(run));
-        bold.push(Line::new(mean, colour).width(2.4).dash(dash).label(&name));
+        bold.push(Mark::line(mean, colour).width(2.4).dash(dash).label(&name));
     }
     bold.into_iter().for_each(|line| figure.add(line));
-    let mut caption =
-        "Constrictions blocked at the end of each run, by layer; the second run starts with what the \
-                       first left blocked."
-            .to_owned();
+    let mut caption = "Constrictions blocked at the end of each run, by layer; the second run starts with \
+                       what the first left blocked."
+        .to_owned();
     if walks.replicates.len() > 1 {
         caption.push_str(" Lines: mean of the replicates; shaded: from the least to the most of them.");
     }
@@ -300,19 +298,19 @@ pub(super) fn retained(walks: &Walks) -> Option<Drawn> {
     let x = size_axis(walks.unit, drawn.chain(base.iter().map(|row| row[0])));
     let y = Axis::percent("Percent finer by mass (%)");
     let what = "Size curves of the base, of what is retained after some increments, and of what is eroded";
-    let mut figure = Figure::new("What is retained and what is eroded", what, "", x, y)
+    let mut figure = Figure::new("What is retained and what is eroded", what, x, y)
         .names_above()
         .sizes((720.0, 460.0), (358.0, 480.0));
     let curve =
         |rows: &[SizeRow]| rows.iter().map(|row| (row.diameter_mm, row.percent_finer_by_mass)).collect();
-    figure.add(Line::of_rows(base, VERMILLION).width(2.6).label("base"));
+    figure.add(Mark::rows(base, VERMILLION).width(2.6).label("base"));
     for (index, (increment, rows)) in chosen.iter().enumerate() {
         let end = if index + 1 == chosen.len() { ", the end" } else { "" };
         let label = format!("retained, increment {}{end}", whole(*increment));
-        figure.add(Line::new(curve(rows), ramp(index, chosen.len())).width(1.8).label(&label));
+        figure.add(Mark::line(curve(rows), ramp(index, chosen.len())).width(1.8).label(&label));
     }
     if let Some(rows) = gone {
-        figure.add(Line::new(curve(rows), BLACK).dash(Dash::Dashed).label("eroded, the end"));
+        figure.add(Mark::line(curve(rows), BLACK).dash(Dash::Dashed).label("eroded, the end"));
     }
     let replicate = if walks.replicates.len() > 1 { " of the first replicate" } else { "" };
     let mut caption = format!(
@@ -338,49 +336,46 @@ pub(super) fn retained(walks: &Walks) -> Option<Drawn> {
 /// Half the height of a line, in percent finer.
 const HALF: f64 = 4.0;
 
-/// Rules whose limit is a D15F: the name beside the line, its colour, and its words in the caption.
-const LIMITS: [(&str, &str, Colour, &str); 3] = [
+/// Rule whose limit is a D15F: the name beside its line, its colour, and its words in the caption.
+type Limit = (&'static str, &'static str, Colour, &'static str);
+
+const LIMITS: [Limit; 3] = [
     (DESIGN, "design", GREY, "design"),
     (TESTS_NO_EROSION, "NE", GREEN, "no erosion (NE)"),
     (TESTS_CONTINUING, "CE", PURPLE, "continuing erosion (CE)"),
 ];
 
-/// Boundary: its index in [`LIMITS`], and its D15F.
-type Boundary = (usize, f64);
-
-/// Known boundaries for these soils.
-fn boundaries(decision: &Decision) -> Vec<Boundary> {
+/// Known limits for these soils, each with its D15F.
+fn boundaries(decision: &Decision) -> Vec<(Limit, f64)> {
     let limit = |id: &str| {
         let rule = decision.applied(id).filter(|rule| rule.quantity == RuleQuantity::D15F)?;
         let is_unclear = id == TESTS_CONTINUING && decision.is_beyond_unclear;
         rule.limit.filter(|limit| !is_unclear && *limit > 0.0 && limit.is_finite())
     };
-    let boundary = |(place, (id, ..)): (usize, &(&str, _, _, _))| Some((place, limit(id)?));
-    LIMITS.iter().enumerate().filter_map(boundary).collect()
+    LIMITS.into_iter().filter_map(|line| Some((line, limit(line.0)?))).collect()
 }
 
 /// Draws the 15 % line and the boundaries at it, with their names; the caption explains the line.
-fn draw(figure: &mut Figure, boundaries: &[Boundary]) {
-    figure.add(Rule::new(Across::Y, 15.0, BLACK).dash(Dash::Dotted));
-    for (place, limit) in boundaries {
-        let (_, name, colour, _) = LIMITS[*place];
-        let line = Line::new(vec![(*limit, 15.0 - HALF), (*limit, 15.0 + HALF)], colour);
+fn draw(figure: &mut Figure, boundaries: &[(Limit, f64)]) {
+    figure.add(Mark::rule(Across::Y, 15.0, BLACK).dash(Dash::Dotted));
+    for ((_, name, colour, _), limit) in boundaries {
+        let line = Mark::line(vec![(*limit, 15.0 - HALF), (*limit, 15.0 + HALF)], *colour);
         figure.add(line.width(3.0).stays().label(name));
     }
 }
 
 /// Names of the lines for the caption; empty without lines.
-fn caption(decision: &Decision, boundaries: &[Boundary]) -> String {
+fn caption(decision: &Decision, boundaries: &[(Limit, f64)]) -> String {
     if boundaries.is_empty() {
         return String::new();
     }
     // Design and no erosion have the same limit for a dispersive base.
     let is_one = decision.without_margin().is_some();
-    let name = |(place, ..): &Boundary| match LIMITS[*place] {
-        (DESIGN, ..) if is_one => "design and no erosion",
-        (.., name) => name,
+    let name = |(line, _): &(Limit, f64)| match line.0 {
+        DESIGN if is_one => Some("design and no erosion"),
+        TESTS_NO_EROSION if is_one => None,
+        _ => Some(line.3),
     };
-    let repeats = |(place, ..): &&Boundary| is_one && LIMITS[*place].0 == TESTS_NO_EROSION;
-    let names: Vec<&str> = boundaries.iter().filter(|line| !repeats(line)).map(name).collect();
+    let names: Vec<&str> = boundaries.iter().filter_map(name).collect();
     format!(" Short lines: D15F of {}.", names.join(", "))
 }

@@ -9,7 +9,6 @@ use super::shell::{Drawn, contents, cover, figure, foot, model, page_with_foot};
 use voidwalk_core::store::{Together, make_folder};
 use voidwalk_practice::SheetCover;
 
-/// Page that is built from the top.
 pub(super) struct Sections {
     title: String,
     foot: Option<String>,
@@ -63,7 +62,6 @@ impl Sections {
         self
     }
 
-    /// Page as text, with this footer.
     pub(super) fn text(&self, footer: &Markup) -> String {
         let main = PreEscaped(self.main.clone());
         page_with_foot(self.foot.as_deref(), &self.title, [&self.header, &main, footer])
@@ -114,7 +112,7 @@ mod tests {
     fn figures_are_numbered_through_the_page_and_a_section_without_words_has_no_heading() {
         let drawn = |name| {
             let axis = || Axis::linear("x", 0.0, 1.0);
-            Drawn::new(name, Figure::new("", "", "", axis(), axis()), "")
+            Drawn::new(name, Figure::new("", "", axis(), axis()), "")
         };
         let page = Sections::new("a", "Heading", &html! {})
             .figures([drawn("one")])

@@ -14,7 +14,6 @@ const STYLE: &str = include_str!("page.css");
 /// prints the new hash.
 const STYLE_HASH: &str = "mDepA0nhVqGFzpjx3fdu2udUK7V6SF3ya+Kp73qFFQA=";
 
-/// Figure of a page with its caption.
 pub(crate) struct Drawn {
     /// File name without the ending; unique on the page.
     pub(crate) name: &'static str,
@@ -67,7 +66,6 @@ pub(super) fn page_with_foot(
 /// Place for the list of the headings that follow.
 const CONTENTS: &str = "<nav class=\"contents\"></nav>";
 
-/// Lists the headings that follow on the page.
 pub(super) fn contents() -> Markup {
     html! { (PreEscaped(CONTENTS)) }
 }
@@ -113,13 +111,10 @@ pub(super) fn unbroken(text: &str) -> String {
 
 /// Figure as an element of the page, in all its sizes; the style shows the size that fits.
 pub(crate) fn drawing(drawn: &Drawn) -> Markup {
-    let wide = drawn.figure.inline(&format!("{}-wide", drawn.name), Size::Wide);
-    let narrow = drawn.figure.inline(&format!("{}-narrow", drawn.name), Size::Narrow);
-    let sheet =
-        drawn.figure.has_sheet().then(|| drawn.figure.inline(&format!("{}-sheet", drawn.name), Size::Sheet));
+    let inline = |size, name| PreEscaped(drawn.figure.inline(&format!("{}-{name}", drawn.name), size));
     html! {
-        div.wide { (PreEscaped(wide)) } div.narrow { (PreEscaped(narrow)) }
-        @if let Some(sheet) = sheet { div.paper { (PreEscaped(sheet)) } }
+        div.wide { (inline(Size::Wide, "wide")) } div.narrow { (inline(Size::Narrow, "narrow")) }
+        @if drawn.figure.sheet.is_some() { div.paper { (inline(Size::Sheet, "sheet")) } }
     }
 }
 
@@ -271,35 +266,13 @@ mod tests {
     }
 
     #[test]
-    fn a_page_is_written_with_its_figures() {
-        use super::super::figures::{Axis, BLUE, Line};
-        use super::super::section::write_page;
-        let x = Axis::linear("Increment (–)", 0.0, 10.0);
-        let mut figure =
-            Figure::new("Eroded", "Base eroded by increment", "", x, Axis::percent("Eroded (%)"));
-        figure.add(Line::new(vec![(0.0, 0.0), (10.0, 8.0)], BLUE));
-        let drawn = Drawn::new("eroded", figure, "One walk.");
-        let main = html! { p { (clean("a name\u{202e} from outside")) } figure { (drawing(&drawn)) } };
-        let page = page_with_foot(None, "Erosion", [&html! { h1 { "Erosion" } }, &main, &html! {}]);
-        let folder = tempfile::tempdir().unwrap();
-        let written = write_page(folder.path(), "report.html", &[drawn], &page).unwrap();
-        assert!(written.page.ends_with("report.html") && written.figures[0].ends_with("figures/eroded.svg"));
-    }
-
-    #[test]
-    fn the_policy_names_the_style_by_its_hash() {
-        let page = page_with_foot(None, "A page", [&html! {}; 3]);
-        let (_, style) = page.split_once("<style>").unwrap();
-        let (style, _) = style.split_once("</style>").unwrap();
-        assert!(style == STYLE && page.contains(&format!("style-src 'sha256-{STYLE_HASH}'")));
-    }
-
-    #[test]
-    fn every_printed_page_has_a_foot() {
+    fn every_page_names_its_style_by_its_hash_and_has_a_foot() {
         let page_with = |foot| page_with_foot(foot, "A page", [&html! {}; 3]);
         let page = page_with(Some("D-114 \"<b>"));
         assert!(page.contains("<html lang=\"en\" data-foot=\"D-114 &quot;&lt;b&gt;\">"), "{page}");
         assert!(page_with(None).contains("<html lang=\"en\"><head>"));
+        assert!(page.contains(&format!("<style>{STYLE}</style>")), "{page}");
+        assert!(page.contains(&format!("style-src 'sha256-{STYLE_HASH}'")), "{page}");
         for part in ["--foot:attr(data-foot)", "content:var(--foot)", "counter(page) \" of \" counter(pages)"]
         {
             assert!(STYLE.contains(part), "{part}");
@@ -318,15 +291,6 @@ mod tests {
     }
 
     #[test]
-    fn a_program_is_named_with_the_commit_that_it_was_built_from() {
-        assert_eq!(
-            program("1.0", Some("0123456789abcdef")),
-            format!("1.0 ({})", shorten("0123456789abcdef", 12))
-        );
-        assert_eq!(program("1.0", None), "1.0");
-    }
-
-    #[test]
     fn every_field_stands_once_and_what_is_not_said_is_a_blank_line() {
         let text = |text: &str| Some(text.to_owned());
         let sheet = SheetCover {
@@ -339,6 +303,8 @@ mod tests {
             revision: text("A"),
             date: text("2026-11-25"),
         };
+        let named = program("1.0", Some("0123456789abcdef"));
+        assert_eq!([named, program("1.0", None)], ["1.0 (0123456789a…)", "1.0"]);
         let page = cover(&sheet, "1.0", Some(7)).into_string();
         for fact in ["Dam &lt;1&gt;", "D-2031", "Chimney filter", "Water Board", ">A<"] {
             assert_eq!(page.matches(fact).count(), 1, "{fact}: {page}");

@@ -2,8 +2,7 @@
 //! files that were read.
 
 use super::figures::{
-    Area, Axis, BLACK, BLUE, Dash, Figure, GREEN, GREY, Line, ORANGE, PURPLE, VERMILLION, positive_range,
-    shorten,
+    Axis, BLACK, BLUE, Dash, Figure, GREEN, GREY, Mark, ORANGE, PURPLE, VERMILLION, positive_range, shorten,
 };
 use super::names::{input_name, is_named, soil_name};
 use super::shell::{Drawn, clean, fact};
@@ -34,13 +33,13 @@ pub(crate) fn soils_figure<'a>(
     let what = format!("Percent finer by mass against size for {}", names.join(", "));
     let (x, y) = (Axis::log("Size (mm)", low, high), Axis::percent("Percent finer by mass (%)"));
     let x = if coarse_left { x.downward() } else { x };
-    let mut figure = Figure::new("Sieve curves", &what, "", x, y).sieves();
+    let mut figure = Figure::new("Sieve curves", &what, x, y).sieves();
     let colours = [BLACK, VERMILLION, BLUE, GREEN, PURPLE, ORANGE, GREY];
     let dashes = [Dash::Solid, Dash::Dashed];
     for (index, ((_, points), name)) in soils.iter().zip(&names).enumerate() {
         let dash = dashes[index / colours.len() % dashes.len()];
         let points = points.iter().map(|point| (point.size, point.percent)).collect();
-        let line = Line::new(points, colours[index % colours.len()]);
+        let line = Mark::line(points, colours[index % colours.len()]);
         figure.add(line.dash(dash).label(name));
     }
     figure.file()
@@ -127,123 +126,117 @@ const RECORD: &str = "specification.json";
 /// Maximum number of curves of a base drawn with all their rows.
 const CURVES: usize = 12;
 
-/// Curves of the base of a specification, drawn as gradations with the band, if any, and in an appendix.
-pub(super) struct GivenCurves<'a>(pub &'a Specification);
-
-impl<'a> GivenCurves<'a> {
-    pub(super) fn heading(&self) -> &'static str {
-        match self.0.curves.len() {
-            1 => "Appendix: the gradation of the base",
-            _ => "Appendix: the gradations",
-        }
-    }
-
-    /// Sizes and gradations of every known soil; empty without one.
-    pub(super) fn appendix(&self) -> Markup {
-        let (curves, unit) = (&self.0.curves, SizeUnit::of(false, self.0.inches));
-        if curves.is_empty() {
-            return html! {};
-        }
-        html! {
-            p.small {
-                "Percent finer by mass, as sampled"
-                @if curves.iter().any(|curve| !curve.regraded.is_empty()) {
-                    " and as regraded for the rules of practice"
-                }
-                "; " (BETWEEN)
-            }
-            @if curves.len() > 1 { (of_many(&self.sized())) } @else { (of_few(&self.sized(), unit)) }
-            (gradations(&self.tabled(), unit, RECORD))
-            @if curves.len() > CURVES {
-                p.small { "The other " (curves.len() - CURVES) " curves are in " (RECORD) "." }
-            }
-        }
-    }
-
-    fn sized(&self) -> Vec<SizedSoil<'a>> {
-        let several = self.0.curves.len() > 1;
-        let mut soils = Vec::new();
-        for curve in &self.0.curves {
-            let (sampled, regraded) = match (several, curve.regraded.is_empty()) {
-                (false, true) => ("Base".into(), String::new()),
-                (false, false) => ("Base, sampled".into(), "regraded".into()),
-                (true, _) => (curve.curve.clone(), format!("{}, regraded", curve.curve)),
-            };
-            soils.push(SizedSoil::new(sampled, &curve.gradation));
-            if !curve.regraded.is_empty() {
-                soils.push(SizedSoil::new(regraded, &curve.regraded));
-            }
-        }
-        soils
-    }
-
-    fn tabled(&self) -> Vec<TabledSoil<'a>> {
-        let several = self.0.curves.len() > 1;
-        let mut soils = Vec::new();
-        for curve in self.0.curves.iter().take(CURVES) {
-            let name = if several || is_named("base", &curve.curve) { &*curve.curve } else { "" };
-            soils.push(TabledSoil { kind: "Base, as sampled", name, rows: &curve.gradation });
-            if !curve.regraded.is_empty() {
-                soils.push(TabledSoil { kind: "Base, regraded", name, rows: &curve.regraded });
-            }
-        }
-        soils
-    }
-
-    /// The first curves on a gradation chart, with both sides of the band, whose D15F is in `words`; `None`
-    /// without anything to draw.
-    pub(super) fn figure(&self, words: Option<&str>) -> Option<Drawn> {
-        let (curves, band) = (&self.0.curves, self.0.band.as_ref());
-        let sides = band.map(|band| (band.drawn_fine_side(), &band.coarse_side));
-        let bases =
-            curves.iter().take(CURVES).flat_map(|curve| curve.gradation.iter().chain(&curve.regraded));
-        let of_sides = sides.iter().flat_map(|(fine, coarse)| fine.iter().chain(*coarse));
-        let sizes: Vec<f64> = bases.chain(of_sides).map(|row| row[0]).collect();
-        if sizes.is_empty() {
-            return None;
-        }
-        let (low, high) = positive_range(sizes.into_iter());
-        let (title, what) = match band {
-            Some(_) => (
-                "Band of the filter",
-                "Percent finer against size for the base and for both sides of the band of the filter",
-            ),
-            None => ("Gradations", "Percent finer against size for the soils that were given"),
-        };
-        let (x, y) = (Axis::log("Size (mm)", low, high), Axis::percent("Percent finer by mass (%)"));
-        let mut figure = Figure::new(title, what, "", x, y).sizes((720.0, 460.0), (358.0, 400.0)).sieves();
-        if let Some((fine, coarse)) = &sides {
-            let outline = fine.iter().chain(coarse.iter().rev()).map(|&[x, y]| (x, y)).collect();
-            figure.add(Area::new(outline, GREEN, 0.15).label("band"));
-            figure.add(Line::of_rows(fine, GREEN).width(2.6).label("fine side"));
-            figure.add(Line::of_rows(coarse, BLUE).width(2.6).label("coarse side"));
-        }
-        for curve in curves.iter().take(CURVES) {
-            draw(&mut figure, curve, if curves.len() == 1 { "base" } else { &curve.curve });
-        }
-        let mut caption = match band {
-            Some(_) => format!(
-                "The band of the filter for this base, as its limits at the sieves have it{}. Its control \
-                 points are joined by straight lines; above 60 % finer both sides go on straight, and below \
-                 its D5 the fine side runs level: no more than 5 % may be finer.",
-                words.map_or(String::new(), |words| format!(": {words}"))
-            ),
-            None => "Gradations by mass. There is no band to draw.".to_owned(),
-        };
-        if curves.len() > CURVES {
-            caption += &format!(" {} more curves of the base are not drawn.", curves.len() - CURVES);
-        }
-        Some(Drawn::new("specification", figure, caption))
+pub(super) fn curves_heading(design: &Specification) -> &'static str {
+    match design.curves.len() {
+        1 => "Appendix: the gradation of the base",
+        _ => "Appendix: the gradations",
     }
 }
 
+/// Sizes and gradations of every known soil; empty without one.
+pub(super) fn curves_appendix(design: &Specification) -> Markup {
+    let (curves, unit) = (&design.curves, SizeUnit::of(false, design.inches));
+    if curves.is_empty() {
+        return html! {};
+    }
+    html! {
+        p.small {
+            "Percent finer by mass, as sampled"
+            @if curves.iter().any(|curve| !curve.regraded.is_empty()) {
+                " and as regraded for the rules of practice"
+            }
+            "; " (BETWEEN)
+        }
+        @if curves.len() > 1 { (of_many(&sized(design))) } @else { (of_few(&sized(design), unit)) }
+        (gradations(&tabled(design), unit, RECORD))
+        @if curves.len() > CURVES {
+            p.small { "The other " (curves.len() - CURVES) " curves are in " (RECORD) "." }
+        }
+    }
+}
+
+fn sized(design: &Specification) -> Vec<SizedSoil<'_>> {
+    let several = design.curves.len() > 1;
+    let mut soils = Vec::new();
+    for curve in &design.curves {
+        let (sampled, regraded) = match (several, curve.regraded.is_empty()) {
+            (false, true) => ("Base".into(), String::new()),
+            (false, false) => ("Base, sampled".into(), "regraded".into()),
+            (true, _) => (curve.curve.clone(), format!("{}, regraded", curve.curve)),
+        };
+        soils.push((sampled, &*curve.gradation));
+        if !curve.regraded.is_empty() {
+            soils.push((regraded, &*curve.regraded));
+        }
+    }
+    soils
+}
+
+fn tabled(design: &Specification) -> Vec<TabledSoil<'_>> {
+    let several = design.curves.len() > 1;
+    let mut soils = Vec::new();
+    for curve in design.curves.iter().take(CURVES) {
+        let name = if several || is_named("base", &curve.curve) { &*curve.curve } else { "" };
+        soils.push(TabledSoil { kind: "Base, as sampled", name, rows: &curve.gradation });
+        if !curve.regraded.is_empty() {
+            soils.push(TabledSoil { kind: "Base, regraded", name, rows: &curve.regraded });
+        }
+    }
+    soils
+}
+
+/// The first curves on a gradation chart, with both sides of the band, whose D15F is in `words`; `None`
+/// without anything to draw.
+pub(super) fn curves_figure(design: &Specification, words: Option<&str>) -> Option<Drawn> {
+    let (curves, band) = (&design.curves, design.band.as_ref());
+    let sides = band.map(|band| (band.drawn_fine_side(), &band.coarse_side));
+    let bases = curves.iter().take(CURVES).flat_map(|curve| curve.gradation.iter().chain(&curve.regraded));
+    let of_sides = sides.iter().flat_map(|(fine, coarse)| fine.iter().chain(*coarse));
+    let sizes: Vec<f64> = bases.chain(of_sides).map(|row| row[0]).collect();
+    if sizes.is_empty() {
+        return None;
+    }
+    let (low, high) = positive_range(sizes.into_iter());
+    let (title, what) = match band {
+        Some(_) => (
+            "Band of the filter",
+            "Percent finer against size for the base and for both sides of the band of the filter",
+        ),
+        None => ("Gradations", "Percent finer against size for the soils that were given"),
+    };
+    let (x, y) = (Axis::log("Size (mm)", low, high), Axis::percent("Percent finer by mass (%)"));
+    let mut figure = Figure::new(title, what, x, y).sizes((720.0, 460.0), (358.0, 400.0)).sieves();
+    if let Some((fine, coarse)) = &sides {
+        let outline = fine.iter().chain(coarse.iter().rev()).map(|&[x, y]| (x, y)).collect();
+        figure.add(Mark::area(outline, GREEN, 0.15).label("band"));
+        figure.add(Mark::rows(fine, GREEN).width(2.6).label("fine side"));
+        figure.add(Mark::rows(coarse, BLUE).width(2.6).label("coarse side"));
+    }
+    for curve in curves.iter().take(CURVES) {
+        draw(&mut figure, curve, if curves.len() == 1 { "base" } else { &curve.curve });
+    }
+    let mut caption = match band {
+        Some(_) => format!(
+            "The band of the filter for this base, as its limits at the sieves have it{}. Its control \
+             points are joined by straight lines; above 60 % finer both sides go on straight, and below \
+             its D5 the fine side runs level: no more than 5 % may be finer.",
+            words.map_or(String::new(), |words| format!(": {words}"))
+        ),
+        None => "Gradations by mass. There is no band to draw.".to_owned(),
+    };
+    if curves.len() > CURVES {
+        caption += &format!(" {} more curves of the base are not drawn.", curves.len() - CURVES);
+    }
+    Some(Drawn::new("specification", figure, caption))
+}
+
 fn draw(figure: &mut Figure, curve: &SpecifiedCurve, name: &str) {
-    let (name, sampled) = (shorten(name, 24), Line::of_rows(&curve.gradation, VERMILLION));
+    let (name, sampled) = (shorten(name, 24), Mark::rows(&curve.gradation, VERMILLION));
     if curve.regraded.is_empty() {
         return figure.add(sampled.label(&name));
     }
     figure.add(sampled.width(1.4).dash(Dash::Dashed).label(&format!("{name},\nas sampled")));
-    figure.add(Line::of_rows(&curve.regraded, VERMILLION).label(&format!("{name},\nregraded")));
+    figure.add(Mark::rows(&curve.regraded, VERMILLION).label(&format!("{name},\nregraded")));
 }
 
 #[cfg(test)]

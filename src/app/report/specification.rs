@@ -4,12 +4,12 @@ use std::path::Path;
 
 use maud::{Markup, Render, html};
 
-use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, Point, Rule, Shape, positive_range};
+use super::figures::{Across, Axis, BLACK, BLUE, Dash, Figure, Mark, Shape, positive_range};
 use super::files::{ReportError, json, refused};
 use super::names::{brief_name, file_notes, titled_by_file};
 use super::section::{Sections, Written};
 use super::shell::{Drawn, clean, program, unbroken};
-use super::soils::{GivenCurves, input_files};
+use super::soils::{curves_appendix, curves_figure, curves_heading, input_files};
 use super::table::{SizedSoil, Table, known, of_many};
 use crate::outcome::table::{Columns, Emphasis, Shown, TableCell};
 use crate::words::products::{columns, product as product_result, products as products_line, to_be_checked};
@@ -38,7 +38,6 @@ pub(crate) fn write_specification(folder: &Path) -> Result<Written, ReportError>
     };
     #[cfg(feature = "xlsx")]
     super::workbook::write_specification_workbook(folder, &design)?;
-    let curves = GivenCurves(&design);
     let more = design.notes.iter().skip(WARNINGS).map(|row| row_note(row, unit(&design)));
     let more =
         html! { @if design.notes.len() > WARNINGS { ul { @for note in more { li { (clean(&note)) } } } } };
@@ -49,12 +48,12 @@ pub(crate) fn write_specification(folder: &Path) -> Result<Written, ReportError>
     let page = Sections::new(title, title, &names)
         .cover(&design.cover, &program(&design.version, design.commit.as_deref()), None)
         .words(&html! { section.sheet { (answer(&design)) } })
-        .figures(curves.figure(band(&design, unit(&design)).as_deref()));
+        .figures(curves_figure(&design, band(&design, unit(&design)).as_deref()));
     page.section("More warnings", &more)
         .section("Limits sieve by sieve", &sieve_limits(&design))
         .section("Standard products", &products(&design))
         .section("Step by step", &steps(&design))
-        .section(curves.heading(), &curves.appendix())
+        .section(curves_heading(&design), &curves_appendix(&design))
         .section("How this was made", &made)
         .write(folder, "specification.html", &footer)
 }
@@ -217,9 +216,9 @@ pub(crate) fn write_designs(folder: &Path) -> Result<Written, ReportError> {
 fn appendix(all: &DesignedSamples) -> Markup {
     let mut soils: Vec<SizedSoil> = Vec::new();
     for row in all.rows.iter().take(LISTED).filter(|row| !row.gradation.is_empty()) {
-        soils.push(SizedSoil::new(brief_name(&row.sample), &row.gradation));
+        soils.push((brief_name(&row.sample), &row.gradation));
         if !row.regraded.is_empty() {
-            soils.push(SizedSoil::new(format!("{}, regraded", brief_name(&row.sample)), &row.regraded));
+            soils.push((format!("{}, regraded", brief_name(&row.sample)), &row.regraded));
         }
     }
     if soils.is_empty() {
@@ -260,13 +259,13 @@ fn limits(all: &DesignedSamples) -> Option<Drawn> {
     let (low, high) = positive_range(practice.iter().map(|(_, mm, _)| *mm));
     let y = Axis::log("D15F (mm)", low / 1.2, high * 1.2);
     let what = "Maximum D15F by practice against D85B of each sample";
-    let mut figure = Figure::new("How coarse the filter may be", what, "", x, y).names_above();
+    let mut figure = Figure::new("How coarse the filter may be", what, x, y).names_above();
     let governs = all.governing().first().and_then(|row| row.d15f_max_mm);
     if let Some(mm) = governs {
-        figure.add(Rule::new(Across::Y, mm, BLACK).dash(Dash::Dashed).label("governing sample"));
+        figure.add(Mark::rule(Across::Y, mm, BLACK).dash(Dash::Dashed).label("governing sample"));
     }
     let point = |(d85, mm, governs): &(f64, f64, bool)| {
-        Point::new(*d85, *mm, BLUE, if *governs { Shape::Square } else { Shape::Circle })
+        Mark::point(*d85, *mm, BLUE, if *governs { Shape::Square } else { Shape::Circle })
     };
     figure.add_points("limit of practice", practice.iter().map(point));
     let caption = "The strictest limit of practice of each sample. Square: the sample that governs. The \

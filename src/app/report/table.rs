@@ -4,28 +4,35 @@
 use super::shell::clean;
 use crate::outcome::table::{ColumnKind, Columns, Emphasis, PageColumn, Shown};
 use maud::{Markup, Render, html};
-use std::collections::BTreeMap;
 use std::fmt::Display;
 use voidwalk_practice::page::sizes_of;
 use voidwalk_practice::quantity::{SizeUnit, whole};
 
-/// Markup that a page shows in the cells of a column instead of its description.
-type Decoration<'a, T> = Box<dyn Fn(&T) -> Markup + 'a>;
-
 /// Table that scrolls by itself if the page is too narrow for it.
 pub(super) struct Table<'a, T> {
     rows: Vec<&'a T>,
-    columns: Vec<PageColumn<'a, T>>,
-    /// Decorations by the positions of their columns.
-    decorations: BTreeMap<usize, Decoration<'a, T>>,
+    columns: Vec<TableColumn<'a, T>>,
     class: Option<&'static str>,
     more: Markup,
 }
 
-impl<'a, T> Table<'a, T> {
+struct TableColumn<'a, T> {
+    name: String,
+    heading: Markup,
+    kind: ColumnKind,
+    cell: Box<dyn Fn(&T) -> Markup + 'a>,
+    /// True if the page shows other cells than those of the description.
+    is_decorated: bool,
+}
+
+impl<'a, T: 'a> Table<'a, T> {
     pub(super) fn new(rows: impl IntoIterator<Item = &'a T>, columns: Columns<'a, T>) -> Self {
-        let (rows, columns) = (rows.into_iter().collect(), columns.of_page().collect());
-        Self { rows, columns, decorations: BTreeMap::new(), class: None, more: html! {} }
+        let column = |PageColumn { name, heading, kind, cell }: PageColumn<'a, T>| {
+            let cell = Box::new(move |row: &T| markup(&cell(row)));
+            TableColumn { name, heading: markup(&heading), kind, cell, is_decorated: false }
+        };
+        let columns = columns.of_page().map(column).collect();
+        Self { rows: rows.into_iter().collect(), columns, class: None, more: html! {} }
     }
 
     pub(super) fn class(self, class: &'static str) -> Self {
@@ -40,27 +47,18 @@ impl<'a, T> Table<'a, T> {
     /// Shows this in the cells of the first column with this name; a factor of a campaign may have the name
     /// of another column.
     pub(super) fn showing(mut self, name: &str, cell: impl Fn(&T) -> Markup + 'a) -> Self {
-        let place = self.columns.iter().position(|column| column.name == name);
-        self.decorations.insert(place.unwrap_or_else(|| panic!("{name} is no column")), Box::new(cell));
+        let column = self.columns.iter_mut().find(|column| column.name == name);
+        let column = column.unwrap_or_else(|| panic!("{name} is no column"));
+        (column.cell, column.is_decorated) = (Box::new(cell), true);
         self
     }
 
-    fn cell(&self, place: usize, row: &T) -> Markup {
-        match self.decorations.get(&place) {
-            Some(cell) => cell(row),
-            None => markup(&(self.columns[place].cell)(row)),
-        }
-    }
-
-    /// Columns with their positions, without text columns that are empty in every row.
-    fn filled(&self) -> Vec<(usize, &PageColumn<'a, T>)> {
-        let is_filled = |(place, column): &(usize, &PageColumn<T>)| {
-            column.kind != ColumnKind::Text
-                || self.decorations.contains_key(place)
-                || self.rows.is_empty()
-                || self.rows.iter().any(|row| (column.cell)(row) != Shown::default())
-        };
-        self.columns.iter().enumerate().filter(is_filled).collect()
+    /// True unless it is a column of text that is empty in every row.
+    fn is_shown(&self, column: &TableColumn<T>) -> bool {
+        column.kind != ColumnKind::Text
+            || column.is_decorated
+            || self.rows.is_empty()
+            || self.rows.iter().any(|row| !(column.cell)(row).0.is_empty())
     }
 }
 
@@ -88,20 +86,20 @@ fn look(emphasis: Emphasis) -> (String, &'static str) {
     }
 }
 
-impl<T> Render for Table<'_, T> {
+impl<'a, T: 'a> Render for Table<'a, T> {
     fn render(&self) -> Markup {
-        let columns = self.filled();
+        let columns: Vec<_> = self.columns.iter().filter(|column| self.is_shown(column)).collect();
         html! {
             div.scroll { table class=[self.class] {
-                thead { tr { @for (_, column) in &columns { @match column.kind {
-                    ColumnKind::Number => th.n { (markup(&column.heading)) },
-                    _ => th { (markup(&column.heading)) },
+                thead { tr { @for column in &columns { @match column.kind {
+                    ColumnKind::Number => th.n { (column.heading) },
+                    _ => th { (column.heading) },
                 } } } }
                 tbody {
-                    @for row in &self.rows { tr { @for (place, column) in &columns { @match column.kind {
-                        ColumnKind::Name => th { (self.cell(*place, row)) },
-                        ColumnKind::Text => td { (self.cell(*place, row)) },
-                        ColumnKind::Number => td.n { (self.cell(*place, row)) },
+                    @for row in &self.rows { tr { @for column in &columns { @match column.kind {
+                        ColumnKind::Name => th { ((column.cell)(row)) },
+                        ColumnKind::Text => td { ((column.cell)(row)) },
+                        ColumnKind::Number => td.n { ((column.cell)(row)) },
                     } } } }
                     (self.more)
                 }
@@ -111,19 +109,7 @@ impl<T> Render for Table<'_, T> {
 }
 
 /// Soil: its name in the table, and its rows of size and percent finer by mass.
-pub(super) struct SizedSoil<'a> {
-    name: String,
-    rows: &'a [[f64; 2]],
-}
-
-impl<'a> SizedSoil<'a> {
-    pub(super) fn new(name: impl Into<String>, rows: &'a [[f64; 2]]) -> Self {
-        Self { name: name.into(), rows }
-    }
-}
-
-/// Name of a soil, and its sizes by their names.
-type SoilRow<'a> = (&'a String, Vec<(&'static str, Option<String>)>);
+pub(super) type SizedSoil<'a> = (String, &'a [[f64; 2]]);
 
 fn note(unit: SizeUnit) -> Markup {
     html! { p.small {
@@ -136,20 +122,21 @@ fn note(unit: SizeUnit) -> Markup {
 
 /// Sizes of a few soils, one column each.
 pub(super) fn of_few(soils: &[SizedSoil], unit: SizeUnit) -> Markup {
-    let sizes: Vec<_> = soils.iter().map(|soil| sizes_of(soil.rows, unit)).collect();
+    let sizes: Vec<_> = soils.iter().map(|(_, rows)| sizes_of(rows, unit)).collect();
     let rows: Vec<usize> = (0..sizes.first().map_or(0, Vec::len)).collect();
     let mut columns = Columns::default().name("size", unit.name(), |row: &usize| sizes[0][*row].0);
-    for (at, (soil, sizes)) in soils.iter().zip(&sizes).enumerate() {
-        columns = columns.number(format!("soil_{at}"), &*soil.name, |row| sizes[*row].1.clone());
+    for (at, ((soil, _), sizes)) in soils.iter().zip(&sizes).enumerate() {
+        columns = columns.number(format!("soil_{at}"), soil, |row| sizes[*row].1.clone());
     }
     html! { div.sizes { (Table::new(&rows, columns)) (note(unit)) } }
 }
 
 /// Sizes of many soils, one row each, in mm.
 pub(super) fn of_many(soils: &[SizedSoil]) -> Markup {
-    let sizes: Vec<_> = soils.iter().map(|soil| (&soil.name, sizes_of(soil.rows, SizeUnit::Mm))).collect();
+    type Row<'a> = (&'a String, Vec<(&'static str, Option<String>)>);
+    let sizes: Vec<Row> = soils.iter().map(|(name, rows)| (name, sizes_of(rows, SizeUnit::Mm))).collect();
     let Some((_, first)) = sizes.first() else { return html! {} };
-    let mut columns = Columns::default().name("soil", "Soil", |row: &SoilRow| row.0.clone());
+    let mut columns = Columns::default().name("soil", "Soil", |row: &Row| row.0.clone());
     for (at, (name, _)) in first.iter().enumerate() {
         let heading = if name.starts_with('D') { format!("{name}, mm") } else { (*name).into() };
         columns = columns.number(format!("size_{at}"), heading, move |(_, sizes)| sizes[at].1.clone());

@@ -1,6 +1,7 @@
 //! Data for the figures and tables of walks, from a scene or on given networks.
 
 use std::collections::BTreeMap;
+use std::mem::take;
 use std::path::Path;
 
 use serde::de::DeserializeOwned;
@@ -32,7 +33,6 @@ pub(super) struct Walks<'a> {
 }
 
 impl Walks<'_> {
-    /// Run numbers, ascending.
     pub(super) fn runs(&self) -> impl Iterator<Item = u64> + use<> {
         1..=self.summary.len() as u64
     }
@@ -41,58 +41,42 @@ impl Walks<'_> {
 /// Rows of the CSV files of walks, by run first; rows of one key are in the order of the file.
 #[derive(Default)]
 pub(super) struct RunRows {
-    /// Rows by (run, replicate).
+    /// Rows by run and replicate.
     pub(crate) series: BTreeMap<(u64, u64), Vec<SeriesRow>>,
-    /// Rows by (run, replicate).
     pub(crate) layers: BTreeMap<(u64, u64), Vec<LayerRow>>,
-    /// Rows by (run, replicate, increment).
+    /// Rows by run, replicate and increment.
     pub(crate) retained: BTreeMap<(u64, u64, u64), Vec<SizeRow>>,
-    /// Rows by (run, replicate, increment).
     pub(crate) eroded: BTreeMap<(u64, u64, u64), Vec<SizeRow>>,
 }
 
 type Numbered<T> = Vec<(u64, T)>;
 
-/// Source of the rows of a run: its files, or the contents that they would have.
-pub(super) enum RowSource<'a> {
-    Folder(&'a Path),
-    Memory(Recorded),
-}
-
-impl RowSource<'_> {
-    fn rows<T: DeserializeOwned>(
-        &mut self,
-        name: &str,
-        table: fn(&mut Recorded) -> &mut Vec<T>,
-    ) -> Result<Numbered<T>, ReportError> {
-        match self {
-            RowSource::Folder(folder) => rows(&folder.join(name)),
-            // Line 1 of a file is its header.
-            RowSource::Memory(recorded) => Ok((2..).zip(std::mem::take(table(recorded))).collect()),
-        }
+/// Rows of a table: those recorded, or else those of its file.
+fn numbered<T: DeserializeOwned>(path: &Path, recorded: Option<Vec<T>>) -> Result<Numbered<T>, ReportError> {
+    match recorded {
+        // Line 1 of a file is its header.
+        Some(recorded) => Ok((2..).zip(recorded).collect()),
+        None => rows(path),
     }
 }
 
-const SERIES: &str = "series.csv";
-const LAYERS: &str = "layers.csv";
-const RETAINED: &str = "retained.csv";
-const ERODED: &str = "eroded.csv";
-
 impl RunRows {
-    /// Sorts the rows of the expected replicates and runs, and refuses rows that do not fit together; errors
-    /// name a file of `folder`.
+    /// Sorts the rows of the expected replicates and runs, which are read from `folder` unless they were
+    /// recorded, and refuses rows that do not fit together; errors name a file of `folder`.
     pub(super) fn read(
         folder: &Path,
-        mut source: RowSource,
-        replicates: usize,
-        runs: usize,
+        mut recorded: Option<Recorded>,
+        replicates: &[Replicate],
+        summary: &[RunSummary],
     ) -> Result<Self, ReportError> {
-        let series = source.rows(SERIES, |recorded| &mut recorded.series)?;
-        let layers = source.rows(LAYERS, |recorded| &mut recorded.layers)?;
-        let retained = source.rows(RETAINED, |recorded| &mut recorded.retained)?;
-        let eroded = source.rows(ERODED, |recorded| &mut recorded.eroded)?;
+        let files = ["series.csv", "layers.csv", "retained.csv", "eroded.csv"];
+        let [of_series, of_layers, of_retained, of_eroded] = files.map(|name| folder.join(name));
+        let series = numbered(&of_series, recorded.as_mut().map(|all| take(&mut all.series)))?;
+        let layers = numbered(&of_layers, recorded.as_mut().map(|all| take(&mut all.layers)))?;
+        let retained = numbered(&of_retained, recorded.as_mut().map(|all| take(&mut all.retained)))?;
+        let eroded = numbered(&of_eroded, recorded.as_mut().map(|all| take(&mut all.eroded)))?;
         let known = |replicate: u64, run: u64| {
-            let (replicates, runs) = (replicates as u64, runs as u64);
+            let (replicates, runs) = (replicates.len() as u64, summary.len() as u64);
             match (1..=replicates).contains(&replicate) && (1..=runs).contains(&run) {
                 true => Ok(()),
                 false => Err(format!(
@@ -101,9 +85,9 @@ impl RunRows {
                 )),
             }
         };
-        let curves = |name: &str, rows: Numbered<SizeRow>| {
+        let curves = |path: &Path, rows: Numbered<SizeRow>| {
             let key = |row: &SizeRow| (row.run, row.replicate, row.increment);
-            sorted(&folder.join(name), rows, key, |row, _| {
+            sorted(path, rows, key, |row, _| {
                 known(row.replicate, row.run)?;
                 in_range("diameter_mm", row.diameter_mm, f64::MAX)?;
                 in_range("percent_finer_by_mass", row.percent_finer_by_mass, 100.0)?;
@@ -111,7 +95,7 @@ impl RunRows {
             })
         };
         let key = |row: &SeriesRow| (row.run, row.replicate);
-        let series = sorted(&folder.join(SERIES), series, key, |row, last| {
+        let series = sorted(&of_series, series, key, |row, last| {
             known(row.replicate, row.run)?;
             in_range("eroded_mass_fraction", row.eroded_mass_fraction, 1.0)?;
             let at = row.increment;
@@ -121,7 +105,7 @@ impl RunRows {
             }
         })?;
         let key = |row: &LayerRow| (row.run, row.replicate);
-        let layers = sorted(&folder.join(LAYERS), layers, key, |row, _| {
+        let layers = sorted(&of_layers, layers, key, |row, _| {
             known(row.replicate, row.run)?;
             let (blocked, all) = (row.blocked, row.constrictions);
             match blocked <= all {
@@ -129,7 +113,12 @@ impl RunRows {
                 false => Err(format!("blocked is {blocked}, allowed: at most constrictions, {all}")),
             }
         })?;
-        Ok(Self { series, layers, retained: curves(RETAINED, retained)?, eroded: curves(ERODED, eroded)? })
+        Ok(Self {
+            series,
+            layers,
+            retained: curves(&of_retained, retained)?,
+            eroded: curves(&of_eroded, eroded)?,
+        })
     }
 }
 

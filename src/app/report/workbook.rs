@@ -35,28 +35,37 @@ pub(crate) fn write_verdict_workbook(folder: &Path, into: &Path) -> Result<PathB
     Ok(path)
 }
 
-/// The workbook of a run, as bytes.
 pub(super) fn verdict_workbook(folder: &Path) -> Result<Vec<u8>, ReportError> {
-    bytes(&folder.join(VERDICT), "voidwalk: verdict", &verdict_sheets(&RunFolder::read(folder)?))
+    let run = &RunFolder::read(folder)?;
+    let (outcome, decision) = (&run.outcome, &run.decision);
+    let sheets = [
+        verdict(outcome, decision),
+        inputs(outcome),
+        rules(decision),
+        runs(outcome),
+        gradations(outcome),
+        provenance(run),
+    ];
+    bytes(&folder.join(VERDICT), "voidwalk: verdict", &sheets)
 }
 
 /// Writes `specification.xlsx` into a folder: steps, limits, band, products, and the base. Writes nothing if
 /// the clock is before 1970.
-pub(super) fn write_specification_workbook(
-    folder: &Path,
-    specification: &Specification,
-) -> Result<(), ReportError> {
+pub(super) fn write_specification_workbook(folder: &Path, design: &Specification) -> Result<(), ReportError> {
     if is_before_1970() {
         return Ok(());
     }
-    let (path, sheets) = (folder.join(SPECIFICATION), specification_sheets(specification));
+    let path = folder.join(SPECIFICATION);
+    let sheets =
+        [summary(design), limits(design), band(design), products(design), steps(design), base(design)];
     Ok(write_whole(&path, &bytes(&path, "voidwalk: specification of a filter", &sheets)?)?)
 }
 
 /// Workbook to fill in, with one column per soil, for [`voidwalk_sheets::soils_in_file`], as bytes. A clock
 /// before 1970 is an error.
 pub(crate) fn soil_template() -> Result<Vec<u8>, ReportError> {
-    bytes(Path::new("template"), "voidwalk: sieve tables", &template_sheets())
+    let sheets = [soil("Base", &BASE), soil("Filter", &FILTER), how()];
+    bytes(Path::new("template"), "voidwalk: sieve tables", &sheets)
 }
 
 /// Workbook as bytes; `path` names it in errors.
@@ -75,7 +84,6 @@ const DAY: (u16, u8, u8) = (2000, 1, 1);
 
 const WIDTHS: (usize, usize) = (8, 70);
 
-/// Sheet with headings and rows.
 struct Sheet {
     name: &'static str,
     headings: Vec<String>,
@@ -182,18 +190,6 @@ fn workbook(title: &str, sheets: &[Sheet]) -> Result<Vec<u8>, XlsxError> {
         return Err(XlsxError::ParameterError(NO_THREADS.into()));
     }
     book.save_to_buffer()
-}
-
-fn verdict_sheets(run: &RunFolder) -> Vec<Sheet> {
-    let (outcome, decision) = (&run.outcome, &run.decision);
-    vec![
-        verdict(outcome, decision),
-        inputs(outcome),
-        rules(decision),
-        runs(outcome),
-        gradations(outcome),
-        provenance(run),
-    ]
 }
 
 fn unit(outcome: &Outcome) -> &'static str {
@@ -325,8 +321,7 @@ fn gradations(outcome: &Outcome) -> Sheet {
 }
 
 fn provenance(run: &RunFolder) -> Sheet {
-    let mut sheet = Sheet::items("Provenance");
-    let manifest = &run.manifest;
+    let (mut sheet, manifest) = (Sheet::items("Provenance"), &run.manifest);
     for (name, value) in [
         ("voidwalk", Some(&manifest.version)),
         ("Commit", manifest.commit.as_ref()),
@@ -353,10 +348,6 @@ const CAUTIONS: [(&str, &str); 3] = [
     ("Segregation", "Segregation is not checked: the maximum D90F is still to be set (see its step)."),
     ("Use", "It does not replace a filter test or a designer’s judgement."),
 ];
-
-fn specification_sheets(design: &Specification) -> Vec<Sheet> {
-    vec![summary(design), limits(design), band(design), products(design), steps(design), base(design)]
-}
 
 fn summary(design: &Specification) -> Sheet {
     let d15 = design.band.as_ref().map(|band| band.d15_mm());
@@ -429,11 +420,6 @@ fn base(design: &Specification) -> Sheet {
     Sheet::new("Base", &columns, &rows.collect::<Vec<_>>())
 }
 
-/// Sheets of the workbook, starting with the soils.
-fn template_sheets() -> Vec<Sheet> {
-    vec![soil("Base", &BASE), soil("Filter", &FILTER), how()]
-}
-
 /// Percent finer of an example at the US sieves, coarsest first.
 type Example = [f64; 14];
 
@@ -499,6 +485,7 @@ mod tests {
     /// A further sample takes one column, as the last sheet says.
     #[test]
     fn a_template_with_a_further_sample_is_read_as_it_says() {
+        assert!(soil_template().unwrap().starts_with(b"PK"), "a zip");
         let columns = template_columns().column("Sample 2 (% finer)", |row| row.1);
         let filled = Sheet::new("Base", &columns, &rows(&BASE));
         let root = tempfile::tempdir().unwrap();
@@ -510,10 +497,5 @@ mod tests {
         assert_eq!(soils[0].points, soils[1].points);
         // Of the sieves that everything passes, only the finest becomes a row.
         assert_eq!((soils[0].points.len(), soils[0].points[0].row()), (8, [0.075, 38.0]));
-    }
-
-    #[test]
-    fn a_template_is_a_zip() {
-        assert!(soil_template().unwrap().starts_with(b"PK"));
     }
 }

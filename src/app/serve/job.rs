@@ -228,7 +228,7 @@ fn of_run(outcome: &Outcome, decision: &Decision) -> Value {
     json!({
         "lines": lines.iter().map(|(line, words)| (line.name(), words)).collect::<Vec<_>>(),
         "model": outcome.model.class.words(),
-        "colour": colour_of(outcome),
+        "colour": colour_of(outcome.headline),
         "notes": outcome.notes.iter().map(|note| sentence(note, unit)).collect::<Vec<_>>(),
         "replicates": outcome.replicates.len(),
         "runs": outcome.summary.iter().map(|run| run.eroded_mass_fraction).collect::<Vec<_>>(),

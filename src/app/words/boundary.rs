@@ -1,6 +1,6 @@
 //! Words of every face for boundaries of the model.
 
-use crate::outcome::boundary::{Boundaries, are_few};
+use crate::outcome::boundary::{Boundaries, BoundaryRow, are_few};
 use voidwalk_practice::quantity::{NumberRole, SizeUnit, greatest_length, significant};
 
 /// Range of networks that is shown: for few networks the minimum and maximum.
@@ -19,6 +19,15 @@ pub(crate) fn over_networks(ends: &str, networks: u64) -> String {
 /// Range of networks drawn in figures; with few networks it is read between two of them.
 pub(crate) fn drawn_of_networks(networks: u64) -> &'static str {
     if are_few(networks) { "interpolated 5 to 95 % range" } else { "5 to 95 % range" }
+}
+
+/// Density of a row, with the range that it is an end of, or with its worse end.
+pub(crate) fn row_name(row: &BoundaryRow) -> String {
+    match (&row.end_of, &row.as_end) {
+        (Some(range), _) => format!("{} (an end of the range of {range})", row.density),
+        (None, Some(end)) => format!("density {} (its worse end: {end})", row.density),
+        (None, None) => row.density.clone(),
+    }
 }
 
 /// Lowest D15F/D85B that nearly all networks hold, and its D15F if the base has sizes in mm.

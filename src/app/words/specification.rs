@@ -4,7 +4,7 @@ use super::answer::capital;
 use super::practice::{beside_dispersive, dispersive_limit, test};
 use super::rule::{regrade_reason, rule_notes};
 use crate::outcome::table::{Columns, Shown, TableCell};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use voidwalk_core::gradation::{FEW_FINES, FINES_MM, GAP_PERCENT};
 use voidwalk_practice::design::products::LEAST_CU;
 use voidwalk_practice::design::size_band::{D15_OVER_D10, SieveLimit, SizeBand};
@@ -295,7 +295,7 @@ pub(crate) fn limit_columns<'a>() -> Columns<'a, SieveLimit> {
 }
 
 /// Row of `specification_steps.csv`: one number of a step.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub(crate) struct StepRow {
     pub(crate) step: u64,
     pub(crate) does: String,

@@ -34,7 +34,7 @@ pub struct BandSize {
 }
 
 /// Limits of a delivery at a sieve. A row of `specification.csv`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schemas", derive(schemars::JsonSchema))]
 pub struct SieveLimit {
     /// Name of the sieve.

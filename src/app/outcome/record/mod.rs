@@ -20,12 +20,12 @@ pub(crate) use super::number_rows::{
     BlockedRow, ConstrictionRow, FlowRow, LayerRow, RetainedRow, SeriesRow, SizeRow, VoidRow,
 };
 pub(crate) use answer::ShortOf;
-pub use answer::{Classed, Model, OfThickness, Sensitivity, Stopping};
-pub use answer::{CurveEnd, CurveRange};
-pub use answer::{Statistic, Verdict};
-pub use inputs::SampledBase;
+pub use answer::{
+    Classed, CurveEnd, CurveRange, Model, OfThickness, Sensitivity, Statistic, Stopping, Verdict,
+};
 pub use inputs::{
     BaseRecord, ConstrictionsRecord, CurveOrigin, FilterRecord, Inputs, NetworkKind, NetworkRecord, Ratios,
+    SampledBase,
 };
 pub(crate) use inputs::{BaseSize, NetworkSummary};
 

@@ -2,7 +2,7 @@
 
 /// Spacing of values along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Scale {
+enum Scale {
     Linear,
     Log,
 }
@@ -11,15 +11,14 @@ pub(crate) enum Scale {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tick {
     pub(crate) at: f64,
-    /// Label, one entry per line.
-    pub(crate) text: Vec<String>,
+    pub(crate) text: String,
     /// Rank of the label: if two labels overlap, the one of lower rank is kept.
     pub(crate) rank: u8,
 }
 
 impl Tick {
-    pub(crate) fn new(at: f64, text: &[&str]) -> Tick {
-        Tick { at, text: text.iter().map(|line| (*line).to_owned()).collect(), rank: 0 }
+    pub(crate) fn new(at: f64, text: impl Into<String>) -> Tick {
+        Tick { at, text: text.into(), rank: 0 }
     }
 }
 
@@ -27,7 +26,7 @@ impl Tick {
 pub struct Axis {
     /// Measured quantity, with the unit.
     pub(crate) label: String,
-    pub(crate) scale: Scale,
+    scale: Scale,
     pub(crate) low: f64,
     pub(crate) high: f64,
     /// Grid lines, including minor ones.
@@ -46,7 +45,7 @@ impl Axis {
         let mut ticks = Vec::new();
         for half in first as i64..=last as i64 {
             let at = half as f64 * 0.5 * step;
-            let text = if half % 2 == 0 { vec![format!("{at:.decimals$}")] } else { Vec::new() };
+            let text = if half % 2 == 0 { format!("{at:.decimals$}") } else { String::new() };
             ticks.push(Tick { at, text, rank: u8::from(half % 2 != 0) });
         }
         let (low, high) = (first * 0.5 * step, last * 0.5 * step);
@@ -58,7 +57,7 @@ impl Axis {
         let ticks = (0..=10u8)
             .map(|ten| Tick {
                 at: f64::from(ten) * 10.0,
-                text: vec![(u32::from(ten) * 10).to_string()],
+                text: (u32::from(ten) * 10).to_string(),
                 rank: ten % 2,
             })
             .collect();
@@ -91,7 +90,7 @@ impl Axis {
                 } else {
                     2
                 };
-                let text = if rank <= most { vec![decade_label(digit, exponent)] } else { Vec::new() };
+                let text = if rank <= most { decade_label(digit, exponent) } else { String::new() };
                 ticks.push(Tick { at, text, rank });
             }
         }
@@ -118,7 +117,7 @@ impl Axis {
     /// Downward axis of named rows, counted from 1.
     pub(crate) fn rows(names: impl IntoIterator<Item = String>) -> Axis {
         let ticks: Vec<Tick> =
-            (1..).zip(names).map(|(row, name): (u32, _)| Tick::new(f64::from(row), &[&name])).collect();
+            (1..).zip(names).map(|(row, name): (u32, _)| Tick::new(f64::from(row), name)).collect();
         let high = ticks.len() as f64 + 0.7;
         Axis::linear("", 0.0, 1.0).with_ticks(ticks).downward().within(0.3, high)
     }
@@ -182,20 +181,16 @@ mod tests {
     use super::*;
 
     fn labels(axis: &Axis) -> Vec<String> {
-        axis.ticks.iter().filter_map(|tick| tick.text.first().cloned()).collect()
+        axis.ticks.iter().map(|tick| tick.text.clone()).filter(|text| !text.is_empty()).collect()
     }
 
     #[test]
-    fn a_size_axis_has_decades_and_every_minor_line() {
+    fn a_size_axis_has_every_minor_line_and_labels_decades_or_if_short_more() {
         let axis = Axis::log("Size (mm)", 0.063, 63.0);
         assert_eq!((axis.low, axis.high), (0.06, 70.0));
         assert_eq!(labels(&axis), ["0.1", "1", "10"]);
         // 0.06 to 0.09 (4), 0.1 to 0.9, 1 to 9, 10 to 70 (7)
         assert_eq!(axis.ticks.len(), 4 + 9 + 9 + 7);
-    }
-
-    #[test]
-    fn a_short_size_axis_labels_more_than_its_decades() {
         assert_eq!(labels(&Axis::log("Size (mm)", 0.11, 2.1)), ["0.1", "0.2", "0.5", "1", "2"]);
         assert_eq!(labels(&Axis::log("Size (mm)", 2.2, 5.1)), ["2", "3", "4", "5", "6"]);
     }

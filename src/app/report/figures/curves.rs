@@ -2,7 +2,7 @@
 //! has that colour. Rules, limits and named areas stay: a threshold, or the range in which a verdict holds,
 //! cannot be hidden.
 
-use super::figure::{Colour, Figure, Mark};
+use super::figure::{Colour, Figure, Form, Mark};
 
 /// Maximum number of curves that the style of a page can hide; a figure with more hides none.
 const MOST: usize = 16;
@@ -34,13 +34,13 @@ pub(super) fn classes(figure: &Figure) -> Vec<String> {
 
 fn curve_of(figure: &Figure, mark: &Mark) -> Option<String> {
     let (label, colour) = look(mark)?;
-    let line = || only_name(figure, colour, |mark| matches!(mark, Mark::Line(_)));
+    let line = || only_name(figure, colour, |mark| matches!(mark.form, Form::Line(_)));
     let any = || only_name(figure, colour, |_| true);
-    match (mark, label) {
+    match (&mark.form, label) {
         // A value marked on a line is hidden with the line.
-        (Mark::Point(_), Some(name)) => line().or(Some(name)),
+        (Form::Point(..), Some(name)) => line().or(Some(name)),
         (_, Some(name)) => Some(name),
-        (Mark::Area(_), None) => line(),
+        (Form::Area(_), None) => line(),
         (_, None) => line().or_else(any),
     }
 }
@@ -55,41 +55,41 @@ fn only_name(figure: &Figure, colour: Colour, is_meant: fn(&Mark) -> bool) -> Op
 
 /// Name and colour of a mark that can be hidden.
 fn look(mark: &Mark) -> Option<(Option<String>, Colour)> {
-    let (label, colour) = match mark {
-        Mark::Line(line) if !line.stays => (&line.label, line.colour),
-        Mark::Area(area) if area.label.is_none() => (&None, area.colour),
-        Mark::Point(point) => (&point.label, point.colour),
-        _ => return None,
+    let can_be_hidden = match mark.form {
+        Form::Line(_) => !mark.stays,
+        Form::Area(_) => mark.label.is_none(),
+        Form::Point(..) => true,
+        Form::Rule(..) | Form::Disc(..) => false,
     };
-    Some((label.as_ref().map(|label| label.replace('\n', " ")), colour))
+    can_be_hidden.then(|| (mark.label.as_ref().map(|label| label.replace('\n', " ")), mark.colour))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Across, Area, Axis, BLACK, BLUE, GREEN, GREY, Line, Point, Rule, Shape, Size};
+    use super::super::{Across, Axis, BLACK, BLUE, GREEN, GREY, Shape, Size};
     use super::*;
 
     fn figure() -> Figure {
         let axis = || Axis::linear("x", 0.0, 10.0);
-        Figure::new("t", "d", "", axis(), axis())
+        Figure::new("t", "d", axis(), axis())
     }
 
-    fn line(colour: Colour) -> Line {
-        Line::new(vec![(0.0, 0.0), (9.0, 9.0)], colour)
+    fn line(colour: Colour) -> Mark {
+        Mark::line(vec![(0.0, 0.0), (9.0, 9.0)], colour)
     }
 
     #[test]
     fn what_is_drawn_in_a_curves_colour_goes_with_it_and_a_threshold_stays() {
         let mut figure = figure();
         figure.add(line(BLUE).width(0.8));
-        figure.add(Area::new(vec![(0.0, 0.0), (9.0, 9.0), (9.0, 0.0)], GREEN, 0.2));
-        figure.add(Rule::new(Across::Y, 7.5, BLUE).label("7.5 %"));
+        figure.add(Mark::area(vec![(0.0, 0.0), (9.0, 9.0), (9.0, 0.0)], GREEN, 0.2));
+        figure.add(Mark::rule(Across::Y, 7.5, BLUE).label("7.5 %"));
         figure.add(line(BLUE).label("first\nrun"));
         figure.add(line(GREEN).label("second run"));
-        figure.add(Point::new(1.0, 1.0, GREEN, Shape::Circle).label("D15"));
+        figure.add(Mark::point(1.0, 1.0, GREEN, Shape::Circle).label("D15"));
         figure.add(line(GREY));
         figure.add(line(BLACK).stays().label("limit"));
-        figure.add(Area::new(vec![(0.0, 0.0), (9.0, 0.0), (9.0, 9.0)], GREEN, 0.1).label("no erosion"));
+        figure.add(Mark::area(vec![(0.0, 0.0), (9.0, 0.0), (9.0, 9.0)], GREEN, 0.1).label("no erosion"));
         assert_eq!(figure.curves(), ["first run", "second run"]);
         let (one, two) = (r#" class="curve-1""#, r#" class="curve-2""#);
         assert_eq!(classes(&figure), [one, two, "", one, two, two, "", "", ""]);

@@ -1,9 +1,9 @@
 //! Draws a [`Figure`] as SVG: marks, and their names if there is room.
 
 use super::curves;
-use super::figure::{Across, Colour, Dash, Figure, Line, Mark, Point, Shape, Size};
-use super::frame::{self, Frame, LABEL_TEXT, LINE_HEIGHT, TICK_TEXT, axis_labels, grid, roomy};
-use super::svg::{Anchor, Canvas, FONT, GAP, Rect, Svg, along, escape, short, simplify, width_of, wrap};
+use super::figure::{Across, Colour, Dash, Figure, Form, Mark, Shape, Size};
+use super::frame::{self, Frame, LINE_HEIGHT, TICK_TEXT, axis_labels, grid, roomy};
+use super::svg::{Canvas, FONT, GAP, Rect, Svg, along, escape, short, simplify, width_of};
 use voidwalk_practice::quantity::significant;
 
 /// Half the width of a symbol.
@@ -49,37 +49,18 @@ fn draw(figure: &Figure, size: Size, id: &str, namespace: &str) -> String {
     svg.rect(0.0, 0.0, width, height, r##"fill="#ffffff""##);
     svg.raw(&body);
     svg.raw("</svg>\n");
-    svg.finish()
+    svg.0
 }
 
 fn named(figure: &Figure) -> Vec<usize> {
-    (0..figure.marks.len()).filter(|&index| label_of(&figure.marks[index]).is_some()).collect()
-}
-
-fn label_of(mark: &Mark) -> Option<(&str, Colour)> {
-    let (label, colour) = match mark {
-        Mark::Line(line) => (&line.label, line.colour),
-        Mark::Point(point) => (&point.label, point.colour),
-        Mark::Rule(rule) => (&rule.label, rule.colour),
-        Mark::Area(area) => (&area.label, area.colour),
-        Mark::Disc(_) => return None,
-    };
-    label.as_deref().map(|label| (label, colour))
+    (0..figure.marks.len()).filter(|&index| figure.marks[index].label.is_some()).collect()
 }
 
 /// Content of the element, its height, and the marks without room for a name. Names of the marks in `above`
 /// are placed above the frame.
 fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> (String, f64, Vec<usize>) {
     let mut svg = Svg::default();
-    let mut top = 12.0;
-    if !figure.heading.is_empty() {
-        for line in wrap(&figure.heading, LABEL_TEXT * 1.08, width - 24.0) {
-            svg.text((12.0, top + 12.0), Anchor::Start, &line, r#"font-weight="bold" font-size="14""#);
-            top += LINE_HEIGHT + 1.0;
-        }
-        top += 6.0;
-    }
-    top = key(&mut svg, figure, above, width, top);
+    let mut top = key(&mut svg, figure, above, width, 12.0);
     if figure.sieves {
         top += frame::HEIGHT;
     }
@@ -111,11 +92,11 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
     }
     let mut symbols = Vec::new();
     for (index, mark) in figure.marks.iter().enumerate() {
-        if let Mark::Point(point) = mark {
-            let title = is_pointed_at.then(|| title(figure, point.label.as_deref(), point.at));
+        if let Form::Point(at, shape) = mark.form {
+            let title = is_pointed_at.then(|| title(figure, mark.label.as_deref(), at));
             in_group(&mut svg, &classes[index], |svg| {
                 title.iter().for_each(|title| svg.raw(&format!("<g>{title}\n")));
-                symbols.extend(draw_point(svg, &mut canvas, &frame, point, index));
+                symbols.extend(draw_point(svg, &mut canvas, &frame, (at, shape, mark), index));
                 title.iter().for_each(|_| svg.raw("</g>\n"));
             });
         }
@@ -124,19 +105,19 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
     // Points come first, because they have only one anchor.
     let mut order = named(figure);
     order.retain(|index| !above.contains(index));
-    order.sort_by_key(|&index| !matches!(figure.marks[index], Mark::Point(_)));
+    order.sort_by_key(|&index| !matches!(figure.marks[index].form, Form::Point(..)));
     let mut homeless = Vec::new();
     for index in order {
         let mark = &figure.marks[index];
-        let Some((label, colour)) = label_of(mark) else { continue };
+        let Some(label) = &mark.label else { continue };
         let mut anchors = anchors(&frame, mark);
         if anchors.is_empty() {
             continue;
         }
         let lines: Vec<&str> = label.lines().collect();
         let wide = lines.iter().map(|line| width_of(line, TICK_TEXT)).fold(0.0, f64::max);
-        if let Mark::Area(area) = mark {
-            let (left, right) = reach(&frame, &area.outline);
+        if let Form::Area(outline) = &mark.form {
+            let (left, right) = reach(&frame, outline);
             if right - left < wide + 6.0 {
                 homeless.push(index);
                 continue;
@@ -148,11 +129,11 @@ fn body(figure: &Figure, width: f64, height: f64, id: &str, above: &[usize]) -> 
             None => homeless.push(index),
             Some(area) => {
                 let place = side(&area, &anchors);
-                in_group(&mut svg, &classes[index], |svg| name(svg, &lines, &area, place, colour));
+                in_group(&mut svg, &classes[index], |svg| name(svg, &lines, &area, place, mark.colour));
             }
         }
     }
-    (svg.finish(), height, homeless)
+    (svg.0, height, homeless)
 }
 
 /// Draws the parts of a curve in a group, so that a page can hide it.
@@ -166,7 +147,7 @@ fn in_group(svg: &mut Svg, class: &str, draw: impl FnOnce(&mut Svg)) {
 }
 
 /// Writes a name beside its mark, on a light background that separates it from the drawing below.
-fn name(svg: &mut Svg, lines: &[&str], area: &Rect, (at, anchor): (f64, Anchor), colour: Colour) {
+fn name(svg: &mut Svg, lines: &[&str], area: &Rect, (at, anchor): (f64, &'static str), colour: Colour) {
     let halo = r##"stroke="#ffffff" stroke-width="3" stroke-linejoin="round" paint-order="stroke""##;
     let paint = format!("fill=\"{}\" {halo}", colour.text);
     for (row, line) in lines.iter().enumerate() {
@@ -175,12 +156,12 @@ fn name(svg: &mut Svg, lines: &[&str], area: &Rect, (at, anchor): (f64, Anchor),
 }
 
 /// Text to the left of its curve ends at the curve, so that a narrower font leaves no gap.
-fn side(area: &Rect, anchors: &[(f64, f64)]) -> (f64, Anchor) {
+fn side(area: &Rect, anchors: &[(f64, f64)]) -> (f64, &'static str) {
     let nearest = anchors.iter().min_by(|a, b| distance(area, **a).total_cmp(&distance(area, **b)));
     match nearest {
-        Some((x, _)) if *x >= area.right => (area.right, Anchor::End),
-        Some((x, _)) if *x > area.left => ((area.left + area.right) / 2.0, Anchor::Middle),
-        _ => (area.left, Anchor::Start),
+        Some((x, _)) if *x >= area.right => (area.right, "end"),
+        Some((x, _)) if *x > area.left => ((area.left + area.right) / 2.0, "middle"),
+        _ => (area.left, "start"),
     }
 }
 
@@ -194,70 +175,61 @@ fn distance(rect: &Rect, point: (f64, f64)) -> f64 {
 fn key(svg: &mut Svg, figure: &Figure, above: &[usize], width: f64, top: f64) -> f64 {
     const SAMPLE: f64 = 26.0;
     let (mut left, mut row) = (14.0, top);
-    for &index in above {
-        let Some((label, colour)) = label_of(&figure.marks[index]) else { continue };
+    for mark in above.iter().map(|&index| &figure.marks[index]) {
+        let Some(label) = &mark.label else { continue };
         let label = label.replace('\n', " ");
         let room = SAMPLE + 6.0 + width_of(&label, TICK_TEXT) + 18.0;
         if left > 14.0 && left + room - 18.0 > width - 8.0 {
             (left, row) = (14.0, row + LINE_HEIGHT + 2.0);
         }
         let middle = row + 8.0;
-        match &figure.marks[index] {
-            Mark::Point(point) => symbol(svg, (left + SAMPLE / 2.0, middle), point),
-            Mark::Line(line) => svg.line((left, middle), (left + SAMPLE, middle), &stroke(line)),
-            Mark::Rule(rule) => {
-                let line = Line::new(Vec::new(), rule.colour).width(1.5).dash(rule.dash);
-                svg.line((left, middle), (left + SAMPLE, middle), &stroke(&line));
+        match mark.form {
+            Form::Point(_, shape) => symbol(svg, (left + SAMPLE / 2.0, middle), shape, mark),
+            Form::Line(_) | Form::Rule(..) => {
+                svg.line((left, middle), (left + SAMPLE, middle), &stroke(mark));
             }
-            Mark::Area(area) => {
-                let paint = format!("fill=\"{}\" fill-opacity=\"{}\"", area.colour.line, short(area.opacity));
-                svg.rect(left, middle - 6.0, SAMPLE, 12.0, &paint);
-            }
-            Mark::Disc(_) => {}
+            Form::Area(_) => svg.rect(left, middle - 6.0, SAMPLE, 12.0, &shade(mark)),
+            Form::Disc(..) => {}
         }
-        let paint = format!("fill=\"{}\"", colour.text);
-        svg.text((left + SAMPLE + 6.0, middle + 4.5), Anchor::Start, &label, &paint);
+        let paint = format!("fill=\"{}\"", mark.colour.text);
+        svg.text((left + SAMPLE + 6.0, middle + 4.5), "start", &label, &paint);
         left += room;
     }
     if above.is_empty() { top } else { row + LINE_HEIGHT + 8.0 }
 }
 
 fn draw_mark(svg: &mut Svg, canvas: &mut Canvas, frame: &Frame<'_>, mark: &Mark, index: usize) {
-    match mark {
-        Mark::Area(area) => {
-            let paint = format!("fill=\"{}\" fill-opacity=\"{}\"", area.colour.line, short(area.opacity));
-            svg.path(&frame.path(&area.outline), true, &paint);
-        }
-        Mark::Line(line) => {
-            let path = frame.path(&line.points);
+    match &mark.form {
+        Form::Area(outline) => svg.path(&frame.path(outline), true, &shade(mark)),
+        Form::Line(points) => {
+            let path = frame.path(points);
             match path.as_slice() {
                 [] => {}
-                [(x, y)] => symbol(svg, (*x, *y), &Point::new(0.0, 0.0, line.colour, Shape::Circle)),
-                _ => svg.path(&path, false, &format!("fill=\"none\" {}", stroke(line))),
+                [at] => symbol(svg, *at, Shape::Circle, mark),
+                _ => svg.path(&path, false, &format!("fill=\"none\" {}", stroke(mark))),
             }
             canvas.draw(&frame.seen(&path), index);
         }
-        Mark::Rule(rule) => {
+        Form::Rule(across, at) => {
             let Rect { left, top, right, bottom } = frame.area;
-            let ends = match rule.across {
-                Across::X => frame.x_at(rule.at).map(|x| ((x, top), (x, bottom))),
-                Across::Y => frame.y_at(rule.at).map(|y| ((left, y), (right, y))),
+            let ends = match across {
+                Across::X => frame.x_at(*at).map(|x| ((x, top), (x, bottom))),
+                Across::Y => frame.y_at(*at).map(|y| ((left, y), (right, y))),
             };
             if let Some((from, to)) = ends {
-                let line = Line::new(Vec::new(), rule.colour).width(1.5).dash(rule.dash);
-                svg.line(from, to, &stroke(&line));
+                svg.line(from, to, &stroke(mark));
                 canvas.draw(&[from, to], index);
             }
         }
-        Mark::Disc(disc) => {
-            let edge = frame.x_at(disc.centre.0 + disc.diameter);
-            if let (Some((x, y)), Some(edge)) = (frame.at(disc.centre), edge) {
-                svg.circle((x, y), 0.5 * (edge - x).abs(), &format!("fill=\"{}\"", disc.colour.line));
+        Form::Disc(centre, diameter) => {
+            let edge = frame.x_at(centre.0 + diameter);
+            if let (Some((x, y)), Some(edge)) = (frame.at(*centre), edge) {
+                svg.circle((x, y), 0.5 * (edge - x).abs(), &format!("fill=\"{}\"", mark.colour.line));
             }
         }
-        Mark::Point(point) => {
-            if let (true, Some((x, y))) = (point.drop, frame.at(point.at)) {
-                let line = Line::new(Vec::new(), point.colour).width(1.3).dash(Dash::Dotted);
+        Form::Point(at, _) => {
+            if let (true, Some((x, y))) = (mark.drop, frame.at(*at)) {
+                let line = Mark::line(Vec::new(), mark.colour).width(1.3).dash(Dash::Dotted);
                 svg.line((x, y), (x, frame.area.bottom), &stroke(&line));
                 canvas.draw(&[(x, y), (x, frame.area.bottom)], index);
             }
@@ -270,15 +242,15 @@ fn draw_point(
     svg: &mut Svg,
     canvas: &mut Canvas,
     frame: &Frame<'_>,
-    point: &Point,
+    (at, shape, mark): ((f64, f64), Shape, &Mark),
     index: usize,
 ) -> Option<Rect> {
-    let (x, y) = frame.at(point.at)?;
+    let (x, y) = frame.at(at)?;
     let area = &frame.area;
     if !area.grown(0.5).reaches((x, y)) {
         return None;
     }
-    let paint = format!("stroke=\"{}\" stroke-width=\"1.8\"", point.colour.line);
+    let paint = format!("stroke=\"{}\" stroke-width=\"1.8\"", mark.colour.line);
     let mut bar = |from: (f64, f64), to: (f64, f64), cap: (f64, f64)| {
         svg.line(from, to, &paint);
         for end in [from, to] {
@@ -286,26 +258,26 @@ fn draw_point(
         }
         canvas.draw(&[from, to], index);
     };
-    if let Some((low, high)) = point.x_interval
+    if let Some((low, high)) = mark.x_interval
         && let (Some(low), Some(high)) = (frame.x_at(low), frame.x_at(high))
     {
         bar((low.clamp(area.left, area.right), y), (high.clamp(area.left, area.right), y), (0.0, 5.0));
     }
-    if let Some((low, high)) = point.y_interval
+    if let Some((low, high)) = mark.y_interval
         && let (Some(low), Some(high)) = (frame.y_at(low), frame.y_at(high))
     {
         bar((x, low.clamp(area.top, area.bottom)), (x, high.clamp(area.top, area.bottom)), (5.0, 0.0));
     }
-    symbol(svg, (x, y), point);
+    symbol(svg, (x, y), shape, mark);
     let reach = SYMBOL + 1.0;
     Some(Rect { left: x - reach, top: y - reach, right: x + reach, bottom: y + reach })
 }
 
-fn symbol(svg: &mut Svg, (x, y): (f64, f64), point: &Point) {
-    let fill = if point.filled { point.colour.line } else { "#ffffff" };
-    let paint = format!("fill=\"{fill}\" stroke=\"{}\" stroke-width=\"1.8\"", point.colour.line);
+fn symbol(svg: &mut Svg, (x, y): (f64, f64), shape: Shape, mark: &Mark) {
+    let fill = if mark.filled { mark.colour.line } else { "#ffffff" };
+    let paint = format!("fill=\"{fill}\" stroke=\"{}\" stroke-width=\"1.8\"", mark.colour.line);
     let r = SYMBOL;
-    match point.shape {
+    match shape {
         Shape::Circle => svg.circle((x, y), r, &paint),
         Shape::Square => svg.rect(x - r + 0.5, y - r + 0.5, 2.0 * r - 1.0, 2.0 * r - 1.0, &paint),
         Shape::Diamond => {
@@ -317,16 +289,19 @@ fn symbol(svg: &mut Svg, (x, y): (f64, f64), point: &Point) {
     }
 }
 
-fn stroke(line: &Line) -> String {
+fn shade(area: &Mark) -> String {
+    format!("fill=\"{}\" fill-opacity=\"{}\"", area.colour.line, short(area.opacity))
+}
+
+fn stroke(line: &Mark) -> String {
     let dashes = match line.dash {
         Dash::Solid => "",
         Dash::Dashed => r#" stroke-dasharray="7 4""#,
         Dash::Dotted => r#" stroke-dasharray="1.5 3.5""#,
     };
-    let opacity = if line.opacity < 1.0 {
-        format!(" stroke-opacity=\"{}\"", short(line.opacity))
-    } else {
-        String::new()
+    let opacity = match line.opacity < 1.0 {
+        true => format!(" stroke-opacity=\"{}\"", short(line.opacity)),
+        false => String::new(),
     };
     format!("stroke=\"{}\" stroke-width=\"{}\"{dashes}{opacity}", line.colour.line, short(line.width))
 }
@@ -334,27 +309,27 @@ fn stroke(line: &Line) -> String {
 /// Positions for the name of a mark, in order of preference.
 fn anchors(frame: &Frame<'_>, mark: &Mark) -> Vec<(f64, f64)> {
     let Rect { left, top, right, bottom } = frame.area;
-    match mark {
-        Mark::Point(point) => frame.at(point.at).into_iter().collect(),
-        Mark::Disc(_) => Vec::new(),
-        Mark::Rule(rule) => [0.97, 0.85, 0.7, 0.5, 0.3, 0.15, 0.03]
+    match &mark.form {
+        Form::Point(at, _) => frame.at(*at).into_iter().collect(),
+        Form::Disc(..) => Vec::new(),
+        Form::Rule(across, at) => [0.97, 0.85, 0.7, 0.5, 0.3, 0.15, 0.03]
             .into_iter()
-            .filter_map(|share| match rule.across {
-                Across::X => frame.x_at(rule.at).map(|x| (x, bottom - share * (bottom - top))),
-                Across::Y => frame.y_at(rule.at).map(|y| (left + share * (right - left), y)),
+            .filter_map(|share| match across {
+                Across::X => frame.x_at(*at).map(|x| (x, bottom - share * (bottom - top))),
+                Across::Y => frame.y_at(*at).map(|y| (left + share * (right - left), y)),
             })
             .collect(),
-        Mark::Line(line) => {
-            let path = frame.path(&line.points);
+        Form::Line(points) => {
+            let path = frame.path(points);
             [0.62, 0.7, 0.54, 0.78, 0.46, 0.86, 0.38, 0.92, 0.3, 0.22, 0.97, 0.14, 0.06]
                 .into_iter()
                 .filter_map(|share| along(&path, share))
                 .filter(|point| frame.area.reaches(*point))
                 .collect()
         }
-        Mark::Area(area) => {
-            let path = frame.seen(&frame.path(&area.outline));
-            let (left, right) = reach(frame, &area.outline);
+        Form::Area(outline) => {
+            let path = frame.seen(&frame.path(outline));
+            let (left, right) = reach(frame, outline);
             let highest = path.iter().map(|(_, y)| *y).fold(f64::MAX, f64::min);
             if path.is_empty() { Vec::new() } else { vec![((left + right) / 2.0, highest)] }
         }
@@ -388,11 +363,10 @@ fn title(figure: &Figure, label: Option<&str>, (x, y): (f64, f64)) -> String {
 /// Draws the spots with tooltips, those of each mark in a group of its class.
 fn spots(svg: &mut Svg, figure: &Figure, classes: &[String], frame: &Frame<'_>) {
     for (mark, class) in figure.marks.iter().zip(classes) {
-        let Mark::Line(line) = mark else { continue };
-        let Some(label) = line.label.as_deref() else { continue };
+        let (Form::Line(points), Some(label)) = (&mark.form, mark.label.as_deref()) else { continue };
         let drawn =
             |&point: &(f64, f64)| Some((point, frame.at(point).filter(|pixel| frame.area.reaches(*pixel))?));
-        let seen: Vec<((f64, f64), (f64, f64))> = line.points.iter().filter_map(drawn).collect();
+        let seen: Vec<((f64, f64), (f64, f64))> = points.iter().filter_map(drawn).collect();
         let few = simplify(seen.iter().map(|(_, pixel)| *pixel)).len().clamp(2, SPOTS);
         let stride = seen.len().div_ceil(few).max(1);
         let mut last: Option<(f64, f64)> = None;
@@ -415,21 +389,23 @@ fn spots(svg: &mut Svg, figure: &Figure, classes: &[String], frame: &Frame<'_>) 
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Axis, BLUE, Line, Point, Shape, Size};
+    use super::super::{Axis, BLUE};
     use super::*;
 
     /// The first line of the axis label gives the words.
     #[test]
     fn a_pointer_shows_the_place_of_a_mark() {
         let x = Axis::log("Times the grains; below, grains per void", 0.5, 2.0);
-        let mut figure = Figure::new("title", "what", "", x, Axis::linear("Eroded (%)", 0.0, 100.0));
-        let line = Line::new(vec![(1.0, 20.0), (2.0, 60.0)], BLUE);
+        let mut figure = Figure::new("title", "what", x, Axis::linear("Eroded (%)", 0.0, 100.0));
+        let line = Mark::line(vec![(1.0, 20.0), (2.0, 60.0)], BLUE);
         figure.add(line.label("first"));
-        figure.add(Point::new(1.0, 20.0, BLUE, Shape::Circle));
+        figure.add(Mark::point(1.0, 20.0, BLUE, Shape::Circle));
         let drawn = figure.inline("one", Size::Wide);
         for values in ["Times the grains 1.00; Eroded (%) 20.0", "Times the grains 2.00; Eroded (%) 60.0"] {
             assert!(drawn.contains(&format!("<title>first: {values}</title>")), "{values}: {drawn}");
         }
         assert!(drawn.contains("<title>Times the grains 1.00; Eroded (%) 20.0</title>"), "{drawn}");
+        // A narrow figure is for a screen without a pointer.
+        assert!(!figure.inline("two", Size::Narrow).contains("first: "));
     }
 }

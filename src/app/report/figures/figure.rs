@@ -18,7 +18,6 @@ pub(crate) enum Size {
 pub struct Figure {
     pub(super) title: String,
     pub(super) description: String,
-    pub(super) heading: String,
     pub(super) x: Axis,
     pub(super) y: Axis,
     pub(super) marks: Vec<Mark>,
@@ -28,17 +27,15 @@ pub struct Figure {
     pub(super) sieves: bool,
     pub(super) wide: (f64, f64),
     pub(super) narrow: (f64, f64),
-    pub(super) sheet: Option<(f64, f64)>,
+    pub(crate) sheet: Option<(f64, f64)>,
 }
 
 impl Figure {
-    /// Empty figure. `title` and `description` are for readers who cannot see it; `heading`, which may be
-    /// empty, is drawn above the frame.
-    pub fn new(title: &str, description: &str, heading: &str, x: Axis, y: Axis) -> Figure {
+    /// Empty figure. `title` and `description` are for readers who cannot see it.
+    pub fn new(title: &str, description: &str, x: Axis, y: Axis) -> Figure {
         Figure {
             title: title.to_owned(),
             description: description.to_owned(),
-            heading: heading.to_owned(),
             x,
             y,
             marks: Vec::new(),
@@ -63,11 +60,6 @@ impl Figure {
         self
     }
 
-    /// True if it has a size of its own on the first printed sheet.
-    pub(crate) fn has_sheet(&self) -> bool {
-        self.sheet.is_some()
-    }
-
     /// Makes the frame a square, as large as possible: equal axes then have equal scales.
     pub(crate) fn square(mut self) -> Figure {
         self.square = true;
@@ -86,12 +78,12 @@ impl Figure {
     }
 
     /// Draws a mark on top of the existing ones.
-    pub fn add(&mut self, mark: impl Into<Mark>) {
-        self.marks.push(mark.into());
+    pub fn add(&mut self, mark: Mark) {
+        self.marks.push(mark);
     }
 
     /// Draws symbols of one kind; the first carries the name of all.
-    pub(crate) fn add_points(&mut self, name: &str, points: impl IntoIterator<Item = Point>) {
+    pub(crate) fn add_points(&mut self, name: &str, points: impl IntoIterator<Item = Mark>) {
         for (index, point) in points.into_iter().enumerate() {
             self.add(if index == 0 { point.label(name) } else { point });
         }
@@ -110,68 +102,6 @@ pub enum Dash {
     Dotted,
 }
 
-/// Line through points.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Line {
-    pub(super) points: Vec<(f64, f64)>,
-    pub(super) colour: Colour,
-    pub(super) width: f64,
-    pub(super) dash: Dash,
-    pub(super) opacity: f64,
-    pub(super) stays: bool,
-    pub(super) label: Option<String>,
-}
-
-impl Line {
-    /// Solid line, 2 pixels wide.
-    pub fn new(points: Vec<(f64, f64)>, colour: Colour) -> Line {
-        let (width, dash, opacity) = (2.0, Dash::Solid, 1.0);
-        Line { points, colour, width, dash, opacity, stays: false, label: None }
-    }
-
-    /// Solid line through rows of records: x, y.
-    pub(crate) fn of_rows(rows: &[[f64; 2]], colour: Colour) -> Line {
-        Line::new(rows.iter().map(|&[x, y]| (x, y)).collect(), colour)
-    }
-
-    /// Sets the width in pixels.
-    pub(crate) fn width(mut self, width: f64) -> Line {
-        self.width = width;
-        self
-    }
-
-    pub fn dash(mut self, dash: Dash) -> Line {
-        self.dash = dash;
-        self
-    }
-
-    /// Sets the opacity: 1 is opaque.
-    pub(crate) fn opacity(mut self, opacity: f64) -> Line {
-        self.opacity = opacity;
-        self
-    }
-
-    /// Marks the line as a limit, which a reader of a page cannot hide.
-    pub(crate) fn stays(mut self) -> Line {
-        self.stays = true;
-        self
-    }
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub struct Area {
-    pub(super) outline: Vec<(f64, f64)>,
-    pub(super) colour: Colour,
-    pub(super) opacity: f64,
-    pub(super) label: Option<String>,
-}
-
-impl Area {
-    pub(crate) fn new(outline: Vec<(f64, f64)>, colour: Colour, opacity: f64) -> Area {
-        Area { outline, colour, opacity, label: None }
-    }
-}
-
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     Circle,
@@ -180,50 +110,7 @@ pub enum Shape {
     Triangle,
 }
 
-/// Symbol with optional error bars and an optional name.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Point {
-    pub(super) at: (f64, f64),
-    pub(super) colour: Colour,
-    pub(super) shape: Shape,
-    pub(super) filled: bool,
-    pub(super) x_interval: Option<(f64, f64)>,
-    pub(super) y_interval: Option<(f64, f64)>,
-    pub(super) drop: bool,
-    pub(super) label: Option<String>,
-}
-
-impl Point {
-    pub fn new(x: f64, y: f64, colour: Colour, shape: Shape) -> Point {
-        let (x_interval, y_interval) = (None, None);
-        Point { at: (x, y), colour, shape, filled: true, x_interval, y_interval, drop: false, label: None }
-    }
-
-    pub(crate) fn hollow(mut self) -> Point {
-        self.filled = false;
-        self
-    }
-
-    /// Adds a bar along x from low to high.
-    pub(crate) fn x_interval(mut self, interval: Option<(f64, f64)>) -> Point {
-        self.x_interval = interval;
-        self
-    }
-
-    /// Adds a bar along y from low to high.
-    pub(crate) fn y_interval(mut self, interval: Option<(f64, f64)>) -> Point {
-        self.y_interval = interval;
-        self
-    }
-
-    /// Adds a dotted line down to the x axis, where its value can be read.
-    pub(crate) fn dropped(mut self) -> Point {
-        self.drop = true;
-        self
-    }
-}
-
-/// Axis that a [`Rule`] crosses.
+/// Axis that a rule crosses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Across {
     /// At one x, vertical.
@@ -232,68 +119,119 @@ pub(crate) enum Across {
     Y,
 }
 
-/// Straight line at one value, from edge to edge.
+/// Mark between the axes. Its drawing ignores properties that its form does not have.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rule {
-    pub(super) across: Across,
-    pub(super) at: f64,
+pub struct Mark {
+    pub(super) form: Form,
     pub(super) colour: Colour,
-    pub(super) dash: Dash,
     pub(super) label: Option<String>,
+    /// Width of a line (pixels).
+    pub(super) width: f64,
+    pub(super) dash: Dash,
+    /// Opacity of a line or an area: 1 is opaque.
+    pub(super) opacity: f64,
+    /// True for a line that is a limit, which a reader of a page cannot hide.
+    pub(super) stays: bool,
+    pub(super) filled: bool,
+    /// Bars of a point, from low to high.
+    pub(super) x_interval: Option<(f64, f64)>,
+    pub(super) y_interval: Option<(f64, f64)>,
+    /// True for a point with a dotted line down to the x axis, where its value can be read.
+    pub(super) drop: bool,
 }
 
-impl Rule {
-    pub(crate) fn new(across: Across, at: f64, colour: Colour) -> Rule {
-        Rule { across, at, colour, dash: Dash::Solid, label: None }
-    }
-
-    pub(crate) fn dash(mut self, dash: Dash) -> Rule {
-        self.dash = dash;
-        self
-    }
-}
-
-/// Circle to scale; its diameter is a length on the x axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Disc {
-    pub(crate) centre: (f64, f64),
-    pub(crate) diameter: f64,
-    pub(crate) colour: Colour,
-}
-
-/// Mark that is drawn between the axes.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Mark {
-    Line(Line),
-    Area(Area),
-    Point(Point),
-    Rule(Rule),
-    Disc(Disc),
+pub(super) enum Form {
+    Line(Vec<(f64, f64)>),
+    /// Area with this outline.
+    Area(Vec<(f64, f64)>),
+    Point((f64, f64), Shape),
+    /// Straight line at one value, from edge to edge.
+    Rule(Across, f64),
+    /// Circle to scale at its centre; its diameter is a length on the x axis.
+    Disc((f64, f64), f64),
 }
 
-macro_rules! marks {
-    ($($kind:ident),*) => { $(
-        impl From<$kind> for Mark {
-            fn from(mark: $kind) -> Mark {
-                Mark::$kind(mark)
-            }
+impl Mark {
+    fn new(form: Form, colour: Colour) -> Mark {
+        Mark {
+            form,
+            colour,
+            label: None,
+            width: 2.0,
+            dash: Dash::Solid,
+            opacity: 1.0,
+            stays: false,
+            filled: true,
+            x_interval: None,
+            y_interval: None,
+            drop: false,
         }
-    )* };
-}
-marks!(Line, Area, Point, Rule, Disc);
+    }
 
-macro_rules! labels {
-    ($($kind:ident),*) => { $(
-        impl $kind {
-            /// Sets the name, which an area has at its upper edge.
-            pub fn label(mut self, label: &str) -> $kind {
-                self.label = Some(label.to_owned());
-                self
-            }
-        }
-    )* };
+    /// Solid line through points, 2 pixels wide.
+    pub fn line(points: Vec<(f64, f64)>, colour: Colour) -> Mark {
+        Mark::new(Form::Line(points), colour)
+    }
+
+    /// Line through rows of records: x, y.
+    pub(crate) fn rows(rows: &[[f64; 2]], colour: Colour) -> Mark {
+        Mark::line(rows.iter().map(|&[x, y]| (x, y)).collect(), colour)
+    }
+
+    pub(crate) fn area(outline: Vec<(f64, f64)>, colour: Colour, opacity: f64) -> Mark {
+        Mark::new(Form::Area(outline), colour).opacity(opacity)
+    }
+
+    pub fn point(x: f64, y: f64, colour: Colour, shape: Shape) -> Mark {
+        Mark::new(Form::Point((x, y), shape), colour)
+    }
+
+    pub(crate) fn rule(across: Across, at: f64, colour: Colour) -> Mark {
+        Mark::new(Form::Rule(across, at), colour).width(1.5)
+    }
+
+    pub(crate) fn disc(centre: (f64, f64), diameter: f64, colour: Colour) -> Mark {
+        Mark::new(Form::Disc(centre, diameter), colour)
+    }
+
+    /// Sets the name, which an area has at its upper edge.
+    pub fn label(self, label: &str) -> Mark {
+        Mark { label: Some(label.to_owned()), ..self }
+    }
+
+    pub(crate) fn width(self, width: f64) -> Mark {
+        Mark { width, ..self }
+    }
+
+    pub fn dash(self, dash: Dash) -> Mark {
+        Mark { dash, ..self }
+    }
+
+    pub(crate) fn opacity(self, opacity: f64) -> Mark {
+        Mark { opacity, ..self }
+    }
+
+    pub(crate) fn stays(self) -> Mark {
+        Mark { stays: true, ..self }
+    }
+
+    pub(crate) fn hollow(self) -> Mark {
+        Mark { filled: false, ..self }
+    }
+
+    pub(crate) fn x_interval(self, x_interval: Option<(f64, f64)>) -> Mark {
+        Mark { x_interval, ..self }
+    }
+
+    pub(crate) fn y_interval(self, y_interval: Option<(f64, f64)>) -> Mark {
+        Mark { y_interval, ..self }
+    }
+
+    pub(crate) fn dropped(self) -> Mark {
+        Mark { drop: true, ..self }
+    }
 }
-labels!(Line, Area, Point, Rule);
 
 /// Colour for lines, and a darker one for text that names them on white.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

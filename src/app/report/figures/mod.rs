@@ -15,8 +15,8 @@ mod svg;
 
 pub use axis::Axis;
 pub(crate) use axis::{Tick, positive_range};
-pub(crate) use figure::{Across, Area, BLACK, Disc, GREY, ORANGE, PURPLE, Rule, Size, ramp};
-pub use figure::{BLUE, Colour, Dash, Figure, GREEN, Line, Point, Shape, VERMILLION};
+pub(crate) use figure::{Across, BLACK, GREY, ORANGE, PURPLE, Size, ramp};
+pub use figure::{BLUE, Colour, Dash, Figure, GREEN, Mark, Shape, VERMILLION};
 pub(crate) use voidwalk_core::text::shorten;
 
 #[cfg(test)]
@@ -25,13 +25,13 @@ mod tests {
 
     fn figure() -> Figure {
         let x = Axis::log("Size (mm)", 0.1, 10.0);
-        let mut figure = Figure::new("A <b>", "of \"two\" & more", "", x, Axis::percent("Finer (%)"));
+        let mut figure = Figure::new("A <b>", "of \"two\" & more", x, Axis::percent("Finer (%)"));
         figure.add(
-            Line::new(vec![(0.1, 0.0), (1.0, 50.0), (10.0, 100.0)], BLUE).label("<script>alert(1)</script>"),
+            Mark::line(vec![(0.1, 0.0), (1.0, 50.0), (10.0, 100.0)], BLUE).label("<script>alert(1)</script>"),
         );
-        figure.add(Point::new(1.0, 50.0, BLACK, Shape::Circle).dropped().label("D50 = 1 mm"));
-        figure.add(Rule::new(Across::Y, 85.0, GREY).dash(Dash::Dashed).label("85 %"));
-        figure.add(Area::new(vec![(0.1, 0.0), (1.0, 10.0), (1.0, 0.0)], GREEN, 0.2));
+        figure.add(Mark::point(1.0, 50.0, BLACK, Shape::Circle).dropped().label("D50 = 1 mm"));
+        figure.add(Mark::rule(Across::Y, 85.0, GREY).dash(Dash::Dashed).label("85 %"));
+        figure.add(Mark::area(vec![(0.1, 0.0), (1.0, 10.0), (1.0, 0.0)], GREEN, 0.2));
         figure
     }
 
@@ -63,8 +63,8 @@ mod tests {
     #[test]
     fn what_has_no_place_on_the_axes_leaves_no_trace() {
         let mut figure = figure();
-        figure.add(Line::new(vec![(0.0, 1.0), (f64::NAN, 2.0)], GREEN).label("nowhere"));
-        figure.add(Point::new(-1.0, 5.0, GREEN, Shape::Square));
+        figure.add(Mark::line(vec![(0.0, 1.0), (f64::NAN, 2.0)], GREEN).label("nowhere"));
+        figure.add(Mark::point(-1.0, 5.0, GREEN, Shape::Square));
         let text = figure.file();
         assert!(!text.contains("NaN") && !text.contains("inf"));
     }
@@ -73,8 +73,8 @@ mod tests {
     fn a_hundred_thousand_points_become_few() {
         let points =
             (0..100_000).map(|i| (f64::from(i), 50.0 + 50.0 * libm::sin(f64::from(i) * 1e-4))).collect();
-        let mut figure = Figure::new("", "", "", Axis::linear("x", 0.0, 1e5), Axis::percent("y"));
-        figure.add(Line::new(points, BLUE));
+        let mut figure = Figure::new("", "", Axis::linear("x", 0.0, 1e5), Axis::percent("y"));
+        figure.add(Mark::line(points, BLUE));
         assert!(figure.file().len() < 20_000);
     }
 
@@ -93,15 +93,15 @@ mod tests {
         ) {
             let label = names.join(" ");
             let mut figure =
-                Figure::new(&label, "", &label, Axis::linear(&label, 0.0, 9.0), Axis::rows(names.clone()));
+                Figure::new(&label, "", Axis::linear(&label, 0.0, 9.0), Axis::rows(names.clone()));
             for (row, name) in names.iter().enumerate() {
                 let at = row as f64;
                 let interval = Some((low, low + 5.0));
-                figure.add(Line::new(vec![(at, low), (at + 1.0, at)], BLUE).label(name));
-                let point = Point::new(at, at, BLACK, Shape::Circle).label(name);
+                figure.add(Mark::line(vec![(at, low), (at + 1.0, at)], BLUE).label(name));
+                let point = Mark::point(at, at, BLACK, Shape::Circle).label(name);
                 figure.add(point.x_interval(interval).y_interval(interval));
-                figure.add(Rule::new(Across::X, at, GREY).label(name));
-                figure.add(Area::new(vec![(at, 0.0), (low, at), (at, at)], GREEN, 0.2).label(name));
+                figure.add(Mark::rule(Across::X, at, GREY).label(name));
+                figure.add(Mark::area(vec![(at, 0.0), (low, at), (at, at)], GREEN, 0.2).label(name));
             }
             let mut figure = figure.sizes((width, height), (width, height));
             if above {

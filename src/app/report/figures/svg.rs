@@ -8,24 +8,6 @@ use voidwalk_core::text::visible;
 /// Generic families only, so that a figure looks the same as a file and in a page, and fetches nothing.
 pub(super) const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 
-/// Alignment of a text with its anchor: centred on it, before it or after it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Anchor {
-    Start,
-    Middle,
-    End,
-}
-
-impl Anchor {
-    fn word(self) -> &'static str {
-        match self {
-            Anchor::Start => "start",
-            Anchor::Middle => "middle",
-            Anchor::End => "end",
-        }
-    }
-}
-
 /// Characters in a form that XML can hold: markup escaped, hidden ones replaced.
 pub(crate) fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
@@ -83,23 +65,21 @@ pub(super) fn short(value: f64) -> String {
 /// Sequence of elements. Only presentation attributes are written, never a `style`: a strict content security
 /// policy accepts them.
 #[derive(Default)]
-pub(super) struct Svg {
-    text: String,
-}
+pub(super) struct Svg(pub(super) String);
 
 impl Svg {
     pub(super) fn raw(&mut self, text: &str) {
-        self.text.push_str(text);
+        self.0 += text;
     }
 
     pub(super) fn line(&mut self, from: (f64, f64), to: (f64, f64), paint: &str) {
         let (x1, y1, x2, y2) = (short(from.0), short(from.1), short(to.0), short(to.1));
-        let _ = writeln!(self.text, r#"<path d="M{x1} {y1}L{x2} {y2}" fill="none" {paint}/>"#);
+        let _ = writeln!(self.0, r#"<path d="M{x1} {y1}L{x2} {y2}" fill="none" {paint}/>"#);
     }
 
     pub(super) fn rect(&mut self, left: f64, top: f64, width: f64, height: f64, paint: &str) {
         let (x, y, w, h) = (short(left), short(top), short(width), short(height));
-        let _ = writeln!(self.text, r#"<rect x="{x}" y="{y}" width="{w}" height="{h}" {paint}/>"#);
+        let _ = writeln!(self.0, r#"<rect x="{x}" y="{y}" width="{w}" height="{h}" {paint}/>"#);
     }
 
     pub(super) fn circle(&mut self, (x, y): (f64, f64), radius: f64, paint: &str) {
@@ -109,22 +89,18 @@ impl Svg {
 
     pub(super) fn path(&mut self, points: &[(f64, f64)], closed: bool, paint: &str) {
         let Some((first, rest)) = points.split_first() else { return };
-        let _ = write!(self.text, r#"<path d="M{} {}"#, short(first.0), short(first.1));
+        let _ = write!(self.0, r#"<path d="M{} {}"#, short(first.0), short(first.1));
         for point in rest {
-            let _ = write!(self.text, "L{} {}", short(point.0), short(point.1));
+            let _ = write!(self.0, "L{} {}", short(point.0), short(point.1));
         }
-        let _ = writeln!(self.text, r#"{}" {paint}/>"#, if closed { "Z" } else { "" });
+        let _ = writeln!(self.0, r#"{}" {paint}/>"#, if closed { "Z" } else { "" });
     }
 
-    /// Writes text whose baseline passes through `at`; the content is escaped here and nowhere else.
-    pub(super) fn text(&mut self, at: (f64, f64), anchor: Anchor, content: &str, extra: &str) {
-        let (x, y, anchor, content) = (short(at.0), short(at.1), anchor.word(), escape(content));
-        let _ =
-            writeln!(self.text, r#"<text x="{x}" y="{y}" text-anchor="{anchor}" {extra}>{content}</text>"#);
-    }
-
-    pub(super) fn finish(self) -> String {
-        self.text
+    /// Writes text whose baseline passes through `at`, which is its `start`, `middle` or `end`; the content
+    /// is escaped here and nowhere else.
+    pub(super) fn text(&mut self, at: (f64, f64), anchor: &str, content: &str, extra: &str) {
+        let (x, y, content) = (short(at.0), short(at.1), escape(content));
+        let _ = writeln!(self.0, r#"<text x="{x}" y="{y}" text-anchor="{anchor}" {extra}>{content}</text>"#);
     }
 }
 
@@ -220,10 +196,7 @@ impl Rect {
     }
 
     fn within(&self, frame: &Rect) -> bool {
-        self.left >= frame.left
-            && self.right <= frame.right
-            && self.top >= frame.top
-            && self.bottom <= frame.bottom
+        frame.reaches((self.left, self.top)) && frame.reaches((self.right, self.bottom))
     }
 
     pub(super) fn grown(&self, by: f64) -> Rect {
