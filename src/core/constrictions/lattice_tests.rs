@@ -263,7 +263,7 @@ fn grains_that_cannot_be_a_packing_are_refused() {
 #[test]
 fn what_is_written_can_be_read() {
     let measured = measure(&lattices()[0].periodic(1.0, 1e-6, 0));
-    let summary = serde_json::to_value(measured.summary().unwrap()).unwrap();
+    let summary = serde_json::to_value(measured.summary(Vec::new()).unwrap()).unwrap();
     assert_eq!((&summary["grains"], &summary["voids"]), (&120.into(), &120.into()));
     assert_eq!(summary["connectivity"].as_array().unwrap().len(), 7);
     assert!((summary["dc_mm"]["1.5"].as_f64().unwrap() - 0.414).abs() < 0.01);

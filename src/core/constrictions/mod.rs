@@ -23,7 +23,7 @@ pub use graph::VoidGraph;
 pub use inscribed::inscribed;
 pub use library::{FromLibrary, from_library};
 pub use shipped::{ShippedFilter, find, shipped};
-pub use summary::Summary;
+pub use summary::{Doubt, Summary};
 pub use triangulation::{Triangulation, TriangulationError};
 
 use crate::packing::Packing;

@@ -63,11 +63,11 @@ pub struct Summary {
 }
 
 impl Constrictions {
-    /// Computes all results.
+    /// Computes all results; `warnings` are the doubts in words.
     ///
     /// # Errors
     /// Errors of [`Constrictions::curve`].
-    pub fn summary(&self) -> Result<Summary, CurveError> {
+    pub fn summary(&self, warnings: Vec<String>) -> Result<Summary, CurveError> {
         let curve = self.curve()?;
         let dc = |percent: f64| curve.dc(percent).map(|d| (percent.to_string(), d.into()));
         Ok(Summary {
@@ -88,7 +88,7 @@ impl Constrictions {
             closed_facets: self.closed,
             hidden_grains: self.hidden.clone(),
             duplicate_grains: self.duplicates.clone(),
-            warnings: self.doubts(),
+            warnings,
             k_over_d32_squared: None,
             kozeny_carman_over_d32_squared: None,
         })
@@ -158,38 +158,45 @@ impl Constrictions {
     }
 
     /// Reasons to doubt that the grains are a packing.
-    pub fn doubts(&self) -> Vec<String> {
-        let (ratio, is_periodic) = (self.void_ratio, self.region == Region::Everything);
-        let rest = "grains that rest on each other hardly leave";
-        let other = if is_periodic { "the cell" } else { "their centres" };
-        let loose = match is_periodic {
-            true => "the cell may be too large, or in another unit than the grains",
-            false => "they may not touch, or diameters may be in another unit than centres",
-        };
-        let mut doubts = Vec::new();
-        if ratio > LOOSEST {
-            doubts.push(format!("the void ratio is {ratio:.4}, and {rest} more than {LOOSEST}: {loose}"));
-        }
-        if ratio < DENSEST {
-            doubts.push(format!(
-                "the void ratio is {ratio:.4}, and {rest} less than {DENSEST}: they overlap, or diameters \
-                 are in another unit than {other}"
-            ));
-        }
-        if let Some([one, other]) = self.near.first() {
-            doubts.push(format!(
-                "{} pairs of grains lie nearer than a quarter of the smaller diameter, the first of them \
-                 grains {one} and {other} (counted from 0): they may be one grain given twice",
-                self.near.len()
-            ));
-        }
-        if let Some(first) = self.hidden.first() {
-            doubts.push(format!(
-                "{} grains lie inside others and take no part, the first of them grain {first} (counted \
-                 from 0)",
-                self.hidden.len()
-            ));
-        }
-        doubts
+    pub fn doubts(&self) -> Vec<Doubt> {
+        let (void_ratio, is_periodic) = (self.void_ratio, self.region == Region::Everything);
+        let loose = Doubt::Loose { void_ratio, most: LOOSEST, is_periodic };
+        let dense = Doubt::Dense { void_ratio, least: DENSEST, is_periodic };
+        [
+            (void_ratio > LOOSEST).then_some(loose),
+            (void_ratio < DENSEST).then_some(dense),
+            self.near.first().map(|&first| Doubt::Near(self.near.len(), first)),
+            self.hidden.first().map(|&first| Doubt::Hidden(self.hidden.len(), first)),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
     }
+}
+
+/// Reasons to doubt that grains are a packing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Doubt {
+    /// More voids than grains that rest on each other leave.
+    Loose {
+        /// Volume of voids over volume of grains.
+        void_ratio: f64,
+        /// Maximum for grains that rest on each other.
+        most: f64,
+        /// True for grains in a periodic cell.
+        is_periodic: bool,
+    },
+    /// Fewer voids than grains that rest on each other leave.
+    Dense {
+        /// Volume of voids over volume of grains.
+        void_ratio: f64,
+        /// Minimum for grains that rest on each other.
+        least: f64,
+        /// True for grains in a periodic cell.
+        is_periodic: bool,
+    },
+    /// Pairs of grains nearer than a quarter of the smaller diameter: their number, and the first pair.
+    Near(usize, [u32; 2]),
+    /// Grains inside others, which take no part: their number, and the first, counted from 0.
+    Hidden(usize, u32),
 }

@@ -3,17 +3,14 @@
 use super::motion::LONGEST_MOVE;
 use super::settings::{Contact, PackingError, Settings, critical_step, stability};
 use super::state::{Compression, Energy};
-use super::{Cell, Packing, draw, random_start};
+use super::{Cell, Packing, draw, random_start, uniform};
 use crate::gradation::Gradation;
-use crate::stream::{Key, Purpose, unit};
-use rand::Rng;
 use std::f64::consts::PI;
 
 const STIFFNESS: f64 = 1e4;
 
 fn packing(edge: f64, grains: &[[f64; 4]]) -> Packing {
-    let column = |a: usize| grains.iter().map(|g| g[a]).collect();
-    Packing { cell: Cell::Periodic([edge; 3]), x: column(0), y: column(1), z: column(2), diameter: column(3) }
+    Packing::from_grains(Cell::Periodic([edge; 3]), grains.iter().copied())
 }
 
 fn compression(edge: f64, grains: &[[f64; 4]], settings: &Settings) -> Compression {
@@ -347,14 +344,9 @@ fn coincident_centres_are_named() {
     assert!(error.to_string().contains("1 and 3"));
 }
 
-fn random(seed: u64) -> impl FnMut() -> f64 {
-    let mut generator = Key { seed, purpose: Purpose::Packing, run: 9, increment: 0, chunk: 0 }.generator();
-    move || unit(generator.next_u64())
-}
-
 #[test]
 fn an_overlapping_start_relaxes_at_a_capped_speed() {
-    let mut u = random(1);
+    let mut u = uniform(1, 9);
     let grains: Vec<[f64; 4]> =
         (0..200).map(|_| [6.0 * u(), 6.0 * u(), 6.0 * u(), 1.0 + 0.2 * u()]).collect();
     let settings = Settings { drag: 0.5, friction: 0.0, ..Settings::default() };
@@ -377,7 +369,7 @@ fn an_overlapping_start_relaxes_at_a_capped_speed() {
 
 /// A gas: grains without overlap, at a given packing fraction, with random velocities and spins.
 fn gas(n: usize, ratio: f64, fraction: f64, speed: f64, settings: &Settings) -> Compression {
-    let mut u = random(7);
+    let mut u = uniform(7, 9);
     let diameter: Vec<f64> =
         (0..n).map(|i| if i < n.div_ceil(20) { ratio } else { 1.0 + 0.1 * u() }).collect();
     let settings = Settings { start_fraction: fraction, ..settings.clone() };

@@ -42,7 +42,7 @@ mod state;
 mod tables;
 mod vtk;
 
-pub use fields::{ImportError, LengthUnit, PACKING_FILE_LIMIT_BYTES};
+pub use fields::{ImportError, LengthUnit, PACKING_FILE_LIMIT_BYTES, ReadingNote};
 pub use import::{CellOption, ReadOptions};
 pub use protocol::{CompressionProgress, PackReport, compress};
 pub use settings::{PackingError, Settings, is_wide};
@@ -93,6 +93,18 @@ pub struct Packing {
 }
 
 impl Packing {
+    /// Makes a packing from the x, y, z and diameter of each grain (mm).
+    pub fn from_grains(cell: Cell, grains: impl IntoIterator<Item = [f64; 4]>) -> Self {
+        let mut packing = Self { cell, x: vec![], y: vec![], z: vec![], diameter: vec![] };
+        for [x, y, z, diameter] in grains {
+            packing.x.push(x);
+            packing.y.push(y);
+            packing.z.push(z);
+            packing.diameter.push(diameter);
+        }
+        packing
+    }
+
     /// Multiplies every length of the packing by `factor`.
     pub fn scaled(mut self, factor: f64) -> Self {
         let columns = [&mut self.x, &mut self.y, &mut self.z, &mut self.diameter];
@@ -102,9 +114,7 @@ impl Packing {
         }
         self
     }
-}
 
-impl Packing {
     /// Writes this packing as CSV: cell, header, a row per grain. [`Packing::parse`] restores the same bits.
     pub fn to_csv(&self) -> String {
         let mut text = match self.cell {
@@ -172,17 +182,19 @@ pub(crate) fn vtp_points(points: &[[f64; 3]], columns: &[(&str, &[f64])]) -> Str
 /// assert!(diameter_mm[0] <= 2.25 && diameter_mm[999] >= 1.0);
 /// ```
 pub fn draw(gradation: &Gradation, grains: usize, seed: u64) -> Vec<f64> {
-    let mut generator = stream(seed, 0);
+    let mut random = uniform(seed, 0);
     let mut diameter: Vec<f64> = (0..grains)
-        .map(|i| 100.0 * (i as f64 + unit(generator.next_u64())) / grains as f64)
+        .map(|i| 100.0 * (i as f64 + random()) / grains as f64)
         .filter_map(|percent| gradation.d_by_number(percent))
         .collect();
     diameter.sort_by(|a, b| b.total_cmp(a));
     diameter
 }
 
-fn stream(seed: u64, chunk: u64) -> impl Rng {
-    Key { seed, purpose: Purpose::Packing, run: 0, increment: 0, chunk }.generator()
+/// Random numbers from 0 to below 1.
+pub(crate) fn uniform(seed: u64, chunk: u64) -> impl FnMut() -> f64 {
+    let mut generator = Key { seed, purpose: Purpose::Packing, run: 0, increment: 0, chunk }.generator();
+    move || unit(generator.next_u64())
 }
 
 /// Places these grains (mm, any order) at random without overlap, at the packing fraction of the
@@ -218,15 +230,11 @@ pub fn tall_start(diameter_mm: &[f64], aspect: f64, settings: &Settings) -> Resu
     if cell < 4.0 * radius[0] {
         return Err(PackingError::NarrowCell { cell_mm: cell * unit_mm, largest_mm: diameter[0] });
     }
-    let centre = place(&radius, cell, aspect, &mut stream(settings.seed, 1))?;
+    let centre = place(&radius, cell, aspect, uniform(settings.seed, 1))?;
     let edge = cell * unit_mm;
-    Ok(Packing {
-        cell: Cell::Periodic([edge, edge, edge * aspect.height()]),
-        x: centre.iter().map(|c| c[0] * edge).collect(),
-        y: centre.iter().map(|c| c[1] * edge).collect(),
-        z: centre.iter().map(|c| c[2] * edge).collect(),
-        diameter,
-    })
+    let cell = Cell::Periodic([edge, edge, edge * aspect.height()]);
+    let grains = centre.iter().zip(diameter).map(|(c, d)| [c[0] * edge, c[1] * edge, c[2] * edge, d]);
+    Ok(Packing::from_grains(cell, grains))
 }
 
 /// Maximum number of tries per grain before the placement fails.
@@ -248,7 +256,7 @@ fn place(
     radius: &[f64],
     cell: f64,
     aspect: Aspect,
-    generator: &mut impl Rng,
+    mut random: impl FnMut() -> f64,
 ) -> Result<Vec<[f64; 3]>, PackingError> {
     let mut centre: Vec<[f64; 3]> = Vec::with_capacity(radius.len());
     let mut grids: Vec<Grid> = Vec::new();
@@ -262,8 +270,7 @@ fn place(
         }
         let mut tries = 0;
         let s = loop {
-            let [x, y, z] = [(); 3].map(|()| unit(generator.next_u64()));
-            let s = [x, y, z * aspect.height()];
+            let s = [random(), random(), random() * aspect.height()];
             if grids.iter().all(|grid| grid.is_clear(s, r, cell, aspect)) {
                 break s;
             }
@@ -314,21 +321,18 @@ mod tests {
 
     #[test]
     fn no_two_grains_overlap() {
-        for height in [1.0, 1.7, 6.0] {
-            none_overlap(Aspect::new(height));
-        }
-        let full = place(&[1.0, 1.0], 2.0, Aspect::new(1.0), &mut stream(5, 2));
+        [1.0, 1.7, 6.0].map(|height| none_overlap(Aspect::new(height)));
+        let full = place(&[1.0, 1.0], 2.0, Aspect::new(1.0), uniform(5, 2));
         assert!(matches!(full, Err(PackingError::Placement { grain: 1, .. })));
     }
 
     fn none_overlap(aspect: Aspect) {
-        let mut generator = stream(5, 1);
-        let mut radius: Vec<f64> =
-            (0..600).map(|_| 0.5 * libm::pow(20.0, unit(generator.next_u64()))).collect();
+        let mut random = uniform(5, 1);
+        let mut radius: Vec<f64> = (0..600).map(|_| 0.5 * libm::pow(20.0, random())).collect();
         radius.sort_by(|a, b| b.total_cmp(a));
         let volume: f64 = radius.iter().map(|r| 4.18879 * r * r * r).sum();
         let cell = libm::cbrt(volume / 0.35 / aspect.height());
-        let centre = place(&radius, cell, aspect, &mut generator).unwrap();
+        let centre = place(&radius, cell, aspect, random).unwrap();
         for i in 0..radius.len() {
             for j in 0..i {
                 let apart = aspect.square(&centre[j], &centre[i]).sqrt() * cell;

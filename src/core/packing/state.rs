@@ -4,7 +4,7 @@
 //! Length: the smallest diameter. Stress: the target pressure. Density: the grains' density. So the unit of
 //! time is `smallest diameter * sqrt(density / pressure)` and a strain rate of 1e-3 is an inertial number of
 //! 1e-3 for the smallest grains.
-//!
+
 use super::contact::{Law, Work};
 use super::neighbours::{Aspect, GrainChunk, Memory, Reach, chunk_bounds, nearest};
 use super::settings::{PackingError, Settings, WIDE, critical_step, is_wide, mass};
@@ -13,10 +13,11 @@ use crate::gradation::Gradation;
 use std::f64::consts::PI;
 
 /// Stages of a compression.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stage {
     /// The cell shrinks at a constant rate.
+    #[default]
     Squeeze,
     /// The servo holds the pressure, with the friction of the compression.
     Compress,
@@ -81,7 +82,7 @@ pub(crate) struct HoldState {
 }
 
 /// State of a compression, except its columns, as it is stored.
-#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Moment {
     pub(crate) settings: u64,
@@ -149,31 +150,16 @@ impl Moment {
         Self {
             settings: settings.fingerprint(),
             grains,
-            close_pairs: 0,
-            stage: Stage::Squeeze,
-            steps: 0,
-            time: 0.0,
-            step: 0.0,
             unit_mm,
             cell,
             aspect: aspect.height(),
-            strain_rate: 0.0,
             friction: settings.friction,
-            makes_heavier: false,
-            listed_at: 0,
             listed_cell: cell,
             reach: settings.reach,
-            picked_at: 0,
             picked_cell: cell,
             close: Reach { relative: 0.1 * settings.reach.relative, absolute: 0.1 * settings.reach.absolute },
             moved: f64::INFINITY,
-            contacts: 0,
-            pressure: 0.0,
-            stiffest: 0.0,
-            twice_kinetic: 0.0,
-            unbalanced: 0.0,
-            mean_normal: 0.0,
-            hold: HoldState::default(),
+            ..Self::default()
         }
     }
 }
@@ -336,7 +322,7 @@ impl Compression {
         self.cell_volume() / self.grain_volume() - 1.0
     }
 
-    pub(super) fn cell_volume(&self) -> f64 {
+    fn cell_volume(&self) -> f64 {
         self.now.cell * self.now.cell * self.now.cell * self.aspect.height()
     }
 
@@ -362,25 +348,22 @@ impl Compression {
 
     /// Grains in their present state, in their original order.
     pub fn packing(&self) -> Packing {
-        let n = self.rank.len();
-        let edge = self.now.cell * self.now.unit_mm;
-        let height = self.aspect.height();
-        let cell = Cell::Periodic([edge, edge, edge * height]);
-        let [x, y, z, diameter] = std::array::from_fn(|_| vec![0.0; n]);
-        let mut packing = Packing { cell, x, y, z, diameter };
-        for (p, &r) in self.position.iter().zip(&self.rank) {
-            let i = self.origin[r as usize] as usize;
+        let (edge, height) = (self.now.cell * self.now.unit_mm, self.aspect.height());
+        let mut grains = vec![[0.0; 4]; self.rank.len()];
+        for ([x, y, z, radius], &r) in self.position.iter().zip(&self.rank) {
             let wrapped = |s: f64, length: f64| (s - length * libm::floor(s / length)) * edge;
-            packing.x[i] = wrapped(p[0], 1.0);
-            packing.y[i] = wrapped(p[1], 1.0);
-            packing.z[i] = wrapped(p[2], height);
-            packing.diameter[i] = 2.0 * p[3] * self.now.unit_mm;
+            grains[self.origin[r as usize] as usize] = [
+                wrapped(*x, 1.0),
+                wrapped(*y, 1.0),
+                wrapped(*z, height),
+                2.0 * radius * self.now.unit_mm,
+            ];
         }
-        packing
+        Packing::from_grains(Cell::Periodic([edge, edge, edge * height]), grains)
     }
 
     /// Calls `visit` with the grains, distance, overlap and tangential memory of every contact.
-    pub(super) fn for_each_contact(&self, mut visit: impl FnMut(usize, usize, f64, f64, &Memory)) {
+    fn for_each_contact(&self, mut visit: impl FnMut(usize, usize, f64, f64, &Memory)) {
         for chunk in &self.chunks {
             for (&[i, j], memory) in chunk.close.iter().zip(&chunk.memory) {
                 let (i, j) = (i as usize, j as usize);
