@@ -365,24 +365,16 @@ fn power_centre(corners: &[GrainPoint; 4]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::packing::Cell;
-    use crate::stream::{Key, Purpose, unit};
-    use rand::Rng;
+    use crate::packing::{Cell, uniform};
 
     /// Grains of several sizes on a disturbed lattice.
     fn packing() -> Packing {
-        let mut rng = Key { seed: 3, purpose: Purpose::Packing, run: 0, increment: 0, chunk: 0 }.generator();
-        let mut random = || unit(rng.next_u64());
-        let n = 6usize;
-        let mut packing =
-            Packing { cell: Cell::Periodic([6.0; 3]), x: vec![], y: vec![], z: vec![], diameter: vec![] };
-        for i in 0..n * n * n {
-            packing.x.push((i % n) as f64 + 0.06 * random());
-            packing.y.push((i / n % n) as f64 + 0.06 * random());
-            packing.z.push((i / n / n) as f64 + 0.06 * random());
-            packing.diameter.push(0.9 + 0.1 * random());
-        }
-        packing
+        let mut u = uniform(3, 0);
+        let grains = (0..216).map(|i| {
+            let [x, y, z] = [i, i / 6, i / 36].map(|i| f64::from(i % 6) + 0.06 * u());
+            [x, y, z, 0.9 + 0.1 * u()]
+        });
+        Packing::from_grains(Cell::Periodic([6.0; 3]), grains)
     }
 
     /// Bipyramids fill the voids, and their solid angles cover every grain exactly once.

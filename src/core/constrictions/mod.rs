@@ -138,20 +138,13 @@ pub enum ConstrictionsError {
          less (merge_overlap = {1} now), or take more grains"
     )]
     Endless(u32, f64),
-    /// Grains lie inside others: grains side by side appear so in a cell of the wrong size or unit.
+    /// Grains inside others, as grains side by side appear to be in a cell of the wrong size or unit: their
+    /// number, the number of all grains, and the first of them.
     #[error(
-        "the grains do not fit their cell: {hidden} of {grains} lie inside others, the first of them grain \
-         {first} (counted from 0). The cell is too small, or in another unit than the grains, or grains \
-         occur twice in the file"
+        "the grains do not fit their cell: {0} of {1} lie inside others, the first of them grain {2} (counted \
+         from 0). The cell is too small, or in another unit than the grains, or grains occur twice in the file"
     )]
-    Hidden {
-        /// Grains inside others.
-        hidden: usize,
-        /// All grains.
-        grains: usize,
-        /// The first grain inside another.
-        first: u32,
-    },
+    Hidden(usize, usize, u32),
     /// Grains that occur twice: the number of such pairs, and the first pair.
     #[error(
         "{0} pairs of grains have the same centre, the first of them grains {one} and {other} (counted from \
@@ -341,11 +334,6 @@ impl Constrictions {
             measured.downstream.push(high);
         }
         measured
-    }
-
-    /// Number of grains used for statistics.
-    pub(crate) fn grains(&self) -> usize {
-        self.grains
     }
 
     /// Number of voids used for statistics.

@@ -71,7 +71,7 @@ impl Constrictions {
         let curve = self.curve()?;
         let dc = |percent: f64| curve.dc(percent).map(|d| (percent.to_string(), d.into()));
         Ok(Summary {
-            grains: self.grains(),
+            grains: self.grains,
             voids: self.voids(),
             grains_per_void: self.grains_per_void(),
             tetrahedra: self.tetrahedra,
@@ -144,11 +144,10 @@ impl Constrictions {
     /// [`ConstrictionsError::Full`].
     pub fn check(&self) -> Result<(), ConstrictionsError> {
         match (self.hidden.first(), self.duplicates.first()) {
-            (Some(&first), _) if self.region == Region::Everything => Err(ConstrictionsError::Hidden {
-                hidden: self.hidden.len(),
-                grains: self.grains + self.hidden.len(),
-                first,
-            }),
+            (Some(&first), _) if self.region == Region::Everything => {
+                let hidden = self.hidden.len();
+                Err(ConstrictionsError::Hidden(hidden, self.grains + hidden, first))
+            }
             (_, Some(&first)) => Err(ConstrictionsError::Twice(self.duplicates.len(), first)),
             _ if !self.is_surrounded => Err(ConstrictionsError::Outside),
             // The ratio is NaN if the region holds no tetrahedron.

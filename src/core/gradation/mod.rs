@@ -31,19 +31,16 @@ mod stability;
 mod supply;
 mod table;
 
-pub use error::NumberError;
-pub use error::{GradationError, Position, TableError, letters, shortened};
+pub use error::{GradationError, NumberError, Position, TableError, letters, shortened};
 pub use regrade::{BROAD_CU, FEW_FINES, GAP_PERCENT, Gap, RegradeCause, RegradeReason, Regraded};
 pub(crate) use sampler::SizeGuide;
-pub use sampler::SizeRange;
-pub use sampler::SizeSampler;
-pub use sieve::Gradation;
-pub use sieve::from_rows;
-pub use sieve::{CurvePoint, FIELDS, FINES_MM, GRAVEL_MM};
-pub use sieve::{End, Step};
+pub use sampler::{SizeRange, SizeSampler};
+pub use sieve::{CurvePoint, End, FIELDS, FINES_MM, GRAVEL_MM, Gradation, Step, from_rows};
 pub use sieve::{TIE, USUAL_STEP, WIDE_STEP};
 pub use stability::{KEZDI_RANGE, ShapeIndex, SoilSplit, WIDE_LOOSE_PERCENT};
 pub use supply::{BaseSupply, base_particles};
-pub use table::{Comma, FILE_LIMIT_BYTES, Row, allowed_percent, allowed_size};
+pub use table::{
+    Comma, FILE_LIMIT_BYTES, Row, allowed_percent, allowed_size, bytes_of, comma, number, percent_is_allowed,
+    size_is_allowed,
+};
 pub(crate) use table::{Direction, Table, check_size, rising};
-pub use table::{bytes_of, comma, number, percent_is_allowed, size_is_allowed};

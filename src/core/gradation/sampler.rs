@@ -44,17 +44,6 @@ impl Segment {
         root_within(self.y_at(v), [self.a, self.b])
     }
 
-    /// `v` at the diameter `d`, not rounded to f32.
-    fn v_at(&self, d: f64) -> f64 {
-        if d >= self.b {
-            self.v_b
-        } else if d < self.a || self.slope == 0.0 {
-            self.v_a
-        } else {
-            (self.v_b + (1.0 / (d * d * d) - self.y_b) / self.slope).clamp(self.v_b, self.v_a)
-        }
-    }
-
     /// `D^-3` at `v`.
     #[inline(always)]
     fn y_at(&self, v: f64) -> f64 {
@@ -331,55 +320,12 @@ impl SizeRange<'_> {
 
     /// Mean of the cubed diameter; `None` if the range is empty.
     pub fn mean_cube(&self) -> Option<f64> {
-        let width = self.number_fraction();
-        (width > 0.0).then(|| self.cubes(0.0) / width)
-    }
-
-    /// Fraction of this range's particles, 0 to 1, no coarser than `d`; `None` if the range is empty.
-    pub fn finer_by_number(&self, d: f64) -> Option<f64> {
-        let width = self.number_fraction();
-        (width > 0.0).then(|| ((self.v_fine - self.v_at(d)) / width).clamp(0.0, 1.0))
-    }
-
-    /// Fraction of this range's mass, 0 to 1, no coarser than `d`; `None` if the range is empty.
-    pub fn finer_by_mass(&self, d: f64) -> Option<f64> {
-        let all = self.cubes(0.0);
-        (all > 0.0).then(|| (self.cubes(self.v_at(d)) / all).clamp(0.0, 1.0))
-    }
-
-    /// Diameter that `share` (0 to 1) of this range's particles do not exceed; `None` if the range is
-    /// empty or `share` is outside 0 to 1.
-    pub fn d_by_number(&self, share: f64) -> Option<f64> {
-        if self.words.is_empty() || !(0.0..=1.0).contains(&share) {
-            return None;
-        }
-        let v = (self.v_fine - share * (self.v_fine - self.v_coarse)).max(self.v_coarse);
-        let segment = self.sampler.segments[self.sampler.segment(0, v)];
-        Some((1.0 / libm::cbrt(segment.y_at(v))).clamp(segment.a, segment.b))
-    }
-
-    /// Diameter that `share` (0 to 1) of this range's mass does not exceed; `None` if the range is empty
-    /// or `share` is outside 0 to 1.
-    pub fn d_by_mass(&self, share: f64) -> Option<f64> {
-        if self.words.is_empty() || !(0.0..=1.0).contains(&share) {
-            return None;
-        }
-        let mut left = share * self.cubes(0.0);
-        let mut size = None;
-        for segment in &self.sampler.segments {
-            let (low, high) = (segment.v_b.max(self.v_coarse), segment.v_a.min(self.v_fine));
-            if low > high {
-                continue;
-            }
-            let mass = segment.cubes(low, high);
-            let y = segment.y_at(high) * libm::exp(-left.clamp(0.0, mass) * segment.slope);
-            size = Some((1.0 / libm::cbrt(y)).clamp(segment.a, segment.b));
-            if left <= mass {
-                break;
-            }
-            left -= mass;
-        }
-        size
+        let one = |s: &Segment| {
+            let (low, high) = (s.v_b.max(self.v_coarse), s.v_a.min(self.v_fine));
+            if low < high { s.cubes(low, high) } else { 0.0 }
+        };
+        let (width, all): (f64, f64) = (self.number_fraction(), self.sampler.segments.iter().map(one).sum());
+        (width > 0.0).then(|| all / width)
     }
 
     /// Draws the largest diameter among `count` particles of this range; `None` if there are no particles.
@@ -393,24 +339,6 @@ impl SizeRange<'_> {
         let width = self.words.end - self.words.start;
         let below = ((gap * width as f64) as u128).min(width - 1);
         Some(self.sampler.diameter((self.words.end - 1 - below) as u64))
-    }
-
-    /// `v` at `d`, clamped to this range.
-    fn v_at(&self, d: f64) -> f64 {
-        let segments = &self.sampler.segments;
-        let i = segments.partition_point(|s| s.b <= d);
-        let v = segments.get(i).map_or(0.0, |s| s.v_at(d));
-        v.clamp(self.v_coarse, self.v_fine)
-    }
-
-    /// Integral of `D^3` over this range from its finest particle up to `v`.
-    fn cubes(&self, v: f64) -> f64 {
-        let coarse = v.max(self.v_coarse);
-        let one = |s: &Segment| {
-            let (low, high) = (s.v_b.max(coarse), s.v_a.min(self.v_fine));
-            if low < high { s.cubes(low, high) } else { 0.0 }
-        };
-        self.sampler.segments.iter().map(one).sum()
     }
 }
 

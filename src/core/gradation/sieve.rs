@@ -89,8 +89,7 @@ impl Gradation {
     /// # Errors
     /// Rows that are not a sieve curve; the line is the point's number in the list.
     pub fn from_points(points: &[(f64, f64)], d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
-        let rows = points.iter().enumerate().map(|(i, &(size, percent))| Row { line: i + 1, size, percent });
-        from_rows("points", Row::checked("points", rows.collect(), FIELDS)?, d0_mm)
+        from_rows("points", Row::listed(points.iter().copied(), FIELDS)?, d0_mm)
     }
 
     /// Makes a curve given as straight lines between these points, not by sieves: nothing is uncertain

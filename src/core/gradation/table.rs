@@ -28,29 +28,39 @@ pub struct Row {
 }
 
 impl Row {
-    /// Makes `rows` from a list instead of a file, and checks the values.
-    pub(crate) fn checked(
+    /// Makes a row from the texts and numbers of its size and percent.
+    ///
+    /// # Errors
+    /// A text that is not a number, or a number that is not allowed.
+    fn checked(
         file: &str,
-        mut rows: Vec<Row>,
-        [size_field, percent_field]: [&'static str; 2],
+        line: usize,
+        fields: [&'static str; 2],
+        texts: [&str; 2],
+        [size, percent]: [Option<f64>; 2],
+    ) -> Result<Row, TableError> {
+        let refused = |at: usize, allowed| TableError::refused(file, line, fields[at], texts[at], allowed);
+        let size = size.filter(|&v| size_is_allowed(v)).ok_or_else(|| refused(0, allowed_size()))?;
+        let percent = percent.filter(|&v| percent_is_allowed(v));
+        let percent = percent.ok_or_else(|| refused(1, allowed_percent()))?;
+        // Minus zero is zero.
+        Ok(Row { line, size, percent: percent + 0.0 })
+    }
+
+    /// Makes rows from a list instead of a file.
+    ///
+    /// # Errors
+    /// A number that is not allowed; the line is its number in the list.
+    pub(crate) fn listed(
+        points: impl Iterator<Item = (f64, f64)>,
+        fields: [&'static str; 2],
     ) -> Result<Vec<Row>, TableError> {
-        for row in &mut rows {
-            if !size_is_allowed(row.size) {
-                return Err(TableError::refused(file, row.line, size_field, row.size, allowed_size()));
-            }
-            if !percent_is_allowed(row.percent) {
-                return Err(TableError::refused(
-                    file,
-                    row.line,
-                    percent_field,
-                    row.percent,
-                    allowed_percent(),
-                ));
-            }
-            // Minus zero is zero.
-            row.percent += 0.0;
-        }
-        Ok(rows)
+        let row = |(line, (size, percent)): (usize, (f64, f64))| {
+            let texts = [size.to_string(), percent.to_string()];
+            let texts = texts.each_ref().map(String::as_str);
+            Row::checked("points", line, fields, texts, [Some(size), Some(percent)])
+        };
+        (1..).zip(points).map(row).collect()
     }
 }
 
@@ -168,28 +178,13 @@ impl Table {
     }
 
     /// Reads the rows as numbers, with the size in column `size_column` and the percent in the other.
-    pub(crate) fn rows(
-        &self,
-        size_column: usize,
-        size_field: &'static str,
-        percent_field: &'static str,
-    ) -> Result<Vec<Row>, TableError> {
-        let refused = |line, field, value: &str, allowed: String| {
-            TableError::refused(&self.file, line, field, shortened(value), allowed)
+    pub(crate) fn rows(&self, size_column: usize, names: [&'static str; 2]) -> Result<Vec<Row>, TableError> {
+        let row = |(line, fields): &(usize, [String; 2])| {
+            let texts = [size_column, 1 - size_column].map(|column| shortened(&fields[column]));
+            let numbers = [size_column, 1 - size_column].map(|column| number(&fields[column]));
+            Row::checked(&self.file, *line, names, texts.each_ref().map(String::as_str), numbers)
         };
-        let mut rows = Vec::new();
-        for (line, fields) in &self.rows {
-            let text = &fields[size_column];
-            let size = number(text)
-                .filter(|&v| size_is_allowed(v))
-                .ok_or_else(|| refused(*line, size_field, text, allowed_size()))?;
-            let text = &fields[1 - size_column];
-            let percent = number(text)
-                .filter(|&v| percent_is_allowed(v))
-                .ok_or_else(|| refused(*line, percent_field, text, allowed_percent()))?;
-            rows.push(Row { line: *line, size, percent: percent + 0.0 });
-        }
-        Ok(rows)
+        self.rows.iter().map(row).collect()
     }
 }
 

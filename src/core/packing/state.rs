@@ -352,12 +352,8 @@ impl Compression {
         let mut grains = vec![[0.0; 4]; self.rank.len()];
         for ([x, y, z, radius], &r) in self.position.iter().zip(&self.rank) {
             let wrapped = |s: f64, length: f64| (s - length * libm::floor(s / length)) * edge;
-            grains[self.origin[r as usize] as usize] = [
-                wrapped(*x, 1.0),
-                wrapped(*y, 1.0),
-                wrapped(*z, height),
-                2.0 * radius * self.now.unit_mm,
-            ];
+            grains[self.origin[r as usize] as usize] =
+                [wrapped(*x, 1.0), wrapped(*y, 1.0), wrapped(*z, height), 2.0 * radius * self.now.unit_mm];
         }
         Packing::from_grains(Cell::Periodic([edge, edge, edge * height]), grains)
     }

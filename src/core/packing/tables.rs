@@ -148,8 +148,7 @@ pub(super) fn csv(text: &str) -> Result<FileGrains, Problem> {
         return Err(ended(1, "the header x_mm,y_mm,z_mm,diameter_mm"));
     };
     let delimiter = [',', ';', '\t'].into_iter().max_by_key(|&d| header.matches(d).count()).unwrap_or(',');
-    let Some(Header { places, unit, factor, radii }) = Header::read((header_line, header), delimiter)?
-    else {
+    let Some(Header { places, unit, factor, radii }) = Header::read((header_line, header), delimiter)? else {
         let looks_like = format!("line {header_line} is \"{}\"", shortened(header.trim()));
         return Err(Problem::Unknown(looks_like));
     };
@@ -216,10 +215,7 @@ const UNITS: [(&str, LengthUnit); 4] =
 const REDUCED: &str = "lj";
 
 /// Reads the units of a dump, given once or before every frame: the name, and its unit of length.
-fn unit(
-    text: &str,
-    given: Option<LengthUnit>,
-) -> Result<Option<(&'static str, LengthUnit)>, Problem> {
+fn unit(text: &str, given: Option<LengthUnit>) -> Result<Option<(&'static str, LengthUnit)>, Problem> {
     let mut named: Option<(&str, LengthUnit)> = None;
     for (at, item) in text.match_indices("ITEM: UNITS") {
         let line = 2 + text[..at].matches('\n').count();

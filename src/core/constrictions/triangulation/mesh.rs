@@ -185,10 +185,10 @@ fn check(packing: &Packing) -> Result<(usize, f64), TriangulationError> {
     let columns = [("x", &packing.x), ("y", &packing.y), ("z", &packing.z)];
     for (name, column) in columns {
         if column.len() != grains {
-            return Err(TriangulationError::Columns { column: name, rows: column.len(), grains });
+            return Err(TriangulationError::Columns(name, column.len(), grains));
         }
         if let Some(grain) = column.iter().position(|value| !value.is_finite()) {
-            return Err(TriangulationError::Centre { grain, column: name, value: column[grain] });
+            return Err(TriangulationError::Centre(grain, name, column[grain]));
         }
     }
     if let Some(grain) = packing.diameter.iter().position(|d| !(d.is_finite() && *d > 0.0)) {
@@ -205,7 +205,7 @@ fn check(packing: &Packing) -> Result<(usize, f64), TriangulationError> {
         for (axis, length_mm) in ["x", "y", "z"].into_iter().zip(lengths) {
             // This form refuses NaN as well.
             if !(length_mm.is_finite() && length_mm >= 2.0 * largest_mm) {
-                return Err(TriangulationError::Narrow { axis, length_mm, largest_mm });
+                return Err(TriangulationError::Narrow(length_mm, axis, largest_mm));
             }
         }
     }
@@ -221,45 +221,21 @@ pub enum TriangulationError {
     /// More grains than a corner can name.
     #[error("{0} grains: at most 67108863 can be triangulated")]
     TooMany(usize),
-    /// Columns of different lengths.
-    #[error("column {column} has {rows} rows, but there are {grains} diameters")]
-    Columns {
-        /// Name of the column.
-        column: &'static str,
-        /// Its rows.
-        rows: usize,
-        /// Rows of the diameter column.
-        grains: usize,
-    },
-    /// A coordinate that is not finite.
-    #[error("grain {grain}: {column} = {value} mm, but a centre must be finite")]
-    Centre {
-        /// Index of the grain, from 0.
-        grain: usize,
-        /// Name of the column.
-        column: &'static str,
-        /// Value of the column.
-        value: f64,
-    },
+    /// Columns of different lengths: a column, its rows, and those of the diameters.
+    #[error("column {0} has {1} rows, but there are {2} diameters")]
+    Columns(&'static str, usize, usize),
+    /// A coordinate that is not finite: the grain, from 0; the column; the value.
+    #[error("grain {0}: {1} = {2} mm, but a centre must be finite")]
+    Centre(usize, &'static str, f64),
     /// A diameter that is not a size.
     #[error("grain {0}: diameter = {1} mm, but it must be finite and above 0")]
     Diameter(usize, f64),
     /// Lengths (mm) so large or so small that their products exceed the range of f64.
     #[error("the largest length is {0} mm, but it must lie between 1e-250 and 1e250")]
     Extent(f64),
-    /// A cell in which a grain meets its own image.
-    #[error(
-        "the cell is {length_mm} mm along {axis}, but it must be at least twice the largest grain \
-         ({largest_mm} mm)"
-    )]
-    Narrow {
-        /// Axis of the cell.
-        axis: &'static str,
-        /// Its length.
-        length_mm: f64,
-        /// The largest diameter.
-        largest_mm: f64,
-    },
+    /// A cell in which a grain meets its own image: its length (mm), along an axis, and the largest diameter.
+    #[error("the cell is {0} mm along {1}, but it must be at least twice the largest grain ({2} mm)")]
+    Narrow(f64, &'static str, f64),
     /// Free grains whose centres lie in one plane.
     #[error("the centres of all {0} grains lie in one plane: there is nothing to triangulate")]
     Coplanar(usize),

@@ -230,8 +230,7 @@ impl Declared {
     }
 
     fn values(&self, form: &Form<'_>) -> Result<Vec<f64>, Problem> {
-        let broken =
-            |expected: &str| ended(self.line, format!("{expected} of the array {}", self.name));
+        let broken = |expected: &str| ended(self.line, format!("{expected} of the array {}", self.name));
         let words = self.text.split_ascii_whitespace();
         let bytes = match (&self.place, &form.appended) {
             (Place::Text, _) => {
@@ -276,32 +275,32 @@ impl Coded<'_> {
 
     /// Reads the bytes of an array after its header, unpacked.
     fn block(&self, form: &Form<'_>) -> Option<Vec<u8>> {
-    let word = form.header.bytes();
-    let whole = |bytes: &[u8]| form.header.one(bytes, form.is_big_endian) as usize;
-    let first = whole(&self.run(0, word)?.0);
-    if !form.is_zlib {
-        let (mut all, _) = self.run(0, word.checked_add(first)?)?;
-        all.drain(..word);
-        return Some(all);
-    }
-    // Number of blocks, unpacked size of each, that of the last if it is shorter, and packed size of each.
-    let (header, begin) = self.run(0, first.checked_add(3)?.checked_mul(word)?)?;
-    let sizes: Vec<usize> = header.chunks_exact(word).map(whole).collect();
-    let (full, last) = (sizes[1], sizes[2]);
-    let packed: usize = sizes[3..].iter().try_fold(0usize, |sum, size| sum.checked_add(*size))?;
-    let (packed, _) = self.run(begin, packed)?;
-    let (mut at, mut bytes) = (0usize, Vec::new());
-    for (k, size) in sizes[3..].iter().enumerate() {
-        let unpacked = if k + 1 == first && last > 0 { last } else { full };
-        let end = at.checked_add(*size)?;
-        let begun = bytes.len();
-        let block = flate2::read::ZlibDecoder::new(packed.get(at..end)?);
-        block.take(unpacked.min(LARGEST_BLOCK) as u64 + 1).read_to_end(&mut bytes).ok()?;
-        if bytes.len() - begun != unpacked || bytes.len() as u64 > PACKING_FILE_LIMIT_BYTES {
-            return None;
+        let word = form.header.bytes();
+        let whole = |bytes: &[u8]| form.header.one(bytes, form.is_big_endian) as usize;
+        let first = whole(&self.run(0, word)?.0);
+        if !form.is_zlib {
+            let (mut all, _) = self.run(0, word.checked_add(first)?)?;
+            all.drain(..word);
+            return Some(all);
         }
-        at = end;
-    }
-    Some(bytes)
+        // Number of blocks, unpacked size of each, that of the last if it is shorter, and packed size of each.
+        let (header, begin) = self.run(0, first.checked_add(3)?.checked_mul(word)?)?;
+        let sizes: Vec<usize> = header.chunks_exact(word).map(whole).collect();
+        let (full, last) = (sizes[1], sizes[2]);
+        let packed: usize = sizes[3..].iter().try_fold(0usize, |sum, size| sum.checked_add(*size))?;
+        let (packed, _) = self.run(begin, packed)?;
+        let (mut at, mut bytes) = (0usize, Vec::new());
+        for (k, size) in sizes[3..].iter().enumerate() {
+            let unpacked = if k + 1 == first && last > 0 { last } else { full };
+            let end = at.checked_add(*size)?;
+            let begun = bytes.len();
+            let block = flate2::read::ZlibDecoder::new(packed.get(at..end)?);
+            block.take(unpacked.min(LARGEST_BLOCK) as u64 + 1).read_to_end(&mut bytes).ok()?;
+            if bytes.len() - begun != unpacked || bytes.len() as u64 > PACKING_FILE_LIMIT_BYTES {
+                return None;
+            }
+            at = end;
+        }
+        Some(bytes)
     }
 }
