@@ -47,10 +47,14 @@ pub fn pack<'py>(
             settings.check()?;
             let start = random_start(&draw(gradation, settings.grains, settings.seed), &settings)?;
             let mut compression = Compression::new(&start, &settings)?;
-            let report = compression.run_reporting(STEPS, |at| {
-                (callbacks.run.on_event)(Event::Packing(at));
-                !callbacks.run.is_stopped()
-            });
+            let report = compression.run_until(
+                STEPS,
+                || false,
+                |at| {
+                    (callbacks.run.on_event)(Event::Packing(at));
+                    !callbacks.run.is_stopped()
+                },
+            );
             Ok((compression.packing(), report?))
         };
         let packed: Result<_, PackingError> = pool(threads)?.install(|| on(callbacks));

@@ -226,6 +226,7 @@ fn compress(
     loop {
         let since = Instant::now();
         let run = compression.run_until(
+            1000,
             || callbacks.is_stopped(),
             |progress| {
                 (callbacks.on_event)(Event::Packing(progress));

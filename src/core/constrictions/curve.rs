@@ -268,7 +268,6 @@ impl Curve {
 /// A segment of a curve, linear in percent against diameter.
 #[derive(Clone, Copy, Default)]
 struct Part {
-    /// Percent at the two ends.
     percent: [f64; 2],
     diameter: [f64; 2],
 }

@@ -103,7 +103,6 @@ pub(super) fn disc(t: &Triangulation, tetrahedron: usize, corner: usize) -> Cons
     place(largest(&sections, &others, &first), true)
 }
 
-/// Tells if a circle reaches into a tangent one.
 fn cuts(disc: &Tangent<2>, other: &[f64; 3]) -> bool {
     let (x, y) = (other[0] - disc.centre[0], other[1] - disc.centre[1]);
     (x * x + y * y).sqrt() < other[2] + disc.radius * (1.0 - CONTACT)
@@ -229,7 +228,6 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Three circles that touch each other.
     fn touching(r: [f64; 3]) -> [[f64; 3]; 3] {
         let (ab, ac, bc) = (r[0] + r[1], r[0] + r[2], r[1] + r[2]);
         let x = (ab * ab + (r[0] - r[1]) * (ac + bc)) / (2.0 * ab);

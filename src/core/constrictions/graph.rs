@@ -32,12 +32,8 @@ const LEAST_WAY: f64 = 0.05;
 /// use voidwalk_core::constrictions::VoidGraph;
 /// use voidwalk_core::packing::{Cell, Packing};
 /// // Simple cubic: 3 x 3 x 3 touching grains of 1 mm.
-/// let along = |stride: usize| (0..27).map(|i| (i / stride % 3) as f64).collect();
-/// let packing = Packing {
-///     cell: Cell::Periodic([3.0; 3]),
-///     x: along(1), y: along(3), z: along(9),
-///     diameter: vec![1.0; 27],
-/// };
+/// let grains = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9, 1].map(f64::from));
+/// let packing = Packing::from_grains(Cell::Periodic([3.0; 3]), grains);
 /// let (_, graph) = VoidGraph::measure(&packing, 0.1)?;
 /// assert_eq!((graph.voids(), graph.from.len()), (27, 81));
 /// // A cube's window, with the hydraulic radius of the cube: volume of water over surface of grains.
@@ -64,7 +60,6 @@ pub struct VoidGraph {
     pub point_mm: Vec<[f64; 3]>,
     /// Volume outside the grains (mm3) by void.
     pub volume_mm3: Vec<f64>,
-    /// Number of grains that are not hidden.
     pub(crate) grains: usize,
     /// Sum of their diameters cubed (mm3).
     pub cubes_mm3: f64,
@@ -110,18 +105,15 @@ impl VoidGraph {
             return Err(ConstrictionsError::Endless(void as u32, voids.merge_overlap));
         }
         let unit = t.unit_mm();
-        let smallest = t.spheres().iter().map(|s| s[3]).fold(f64::INFINITY, f64::min);
+        let smallest = t.least_radius();
         let points = void_points(t, voids);
         let folds: Vec<Shift> = points.iter().map(|p| fold(p, &cell)).collect();
         let centres = power_centres(t, voids);
         let (mut grains, mut squares, mut cubes) = (0, 0.0, 0.0);
-        for (grain, s) in (0u32..).zip(t.spheres()) {
-            if t.hidden().binary_search(&grain).is_err() {
-                let d = 2.0 * s[3] * unit;
-                grains += 1;
-                squares += d * d;
-                cubes += d * d * d;
-            }
+        for d in t.visible().map(|s| 2.0 * s[3] * unit) {
+            grains += 1;
+            squares += d * d;
+            cubes += d * d * d;
         }
         let cell_mm = cell.map(|l| l * unit);
         let [x, y, z] = cell_mm;
@@ -256,7 +248,6 @@ fn volumes(t: &Triangulation, voids: &Voids) -> Vec<f64> {
     volumes
 }
 
-/// Volume of a tetrahedron outside its grains.
 fn water(c: &[GrainPoint; 4]) -> f64 {
     let six = six_volume(&edges(c, 0));
     let solid: f64 = (0..4).map(|a| solid_angle(&edges(c, a), six) * c[a][3] * c[a][3] * c[a][3] / 3.0).sum();
@@ -265,9 +256,7 @@ fn water(c: &[GrainPoint; 4]) -> f64 {
 
 /// Water and grains in the bipyramid of a facet, in grid units.
 struct Throat {
-    /// Volume of water.
     volume: f64,
-    /// Surface of grains.
     surface: f64,
     /// Area of the facet outside its grains.
     area: f64,

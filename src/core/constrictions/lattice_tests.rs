@@ -42,7 +42,6 @@ fn lattices() -> Vec<Lattice> {
     ]
 }
 
-/// Measures a packing at the usual overlap.
 fn measure(packing: &Packing) -> Constrictions {
     Constrictions::measure(packing, 0.1).unwrap()
 }

@@ -69,12 +69,8 @@ pub enum Facets {
 /// use voidwalk_core::constrictions::Constrictions;
 /// use voidwalk_core::packing::{Cell, Packing};
 /// // Simple cubic: 3 x 3 x 3 touching grains of 1 mm.
-/// let along = |stride: usize| (0..27).map(|i| (i / stride % 3) as f64).collect();
-/// let packing = Packing {
-///     cell: Cell::Periodic([3.0; 3]),
-///     x: along(1), y: along(3), z: along(9),
-///     diameter: vec![1.0; 27],
-/// };
+/// let grains = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9, 1].map(f64::from));
+/// let packing = Packing::from_grains(Cell::Periodic([3.0; 3]), grains);
 /// let measured = Constrictions::measure(&packing, 0.1)?;
 /// assert_eq!((measured.voids(), measured.constrictions()), (27, 81));
 /// assert!((measured.diameter_mm[0] - 0.414_214).abs() < 1e-6);
@@ -99,7 +95,6 @@ pub struct Constrictions {
     pub(crate) closed: usize,
     /// Number of constrictions whose disc was made smaller by a fourth grain.
     pub(crate) cut: usize,
-    /// Number of tetrahedra.
     pub(crate) tetrahedra: usize,
     /// Grains inside others, ascending; they are ignored.
     pub(crate) hidden: Vec<u32>,
@@ -109,17 +104,12 @@ pub struct Constrictions {
     pub(crate) near: Vec<[u32; 2]>,
     /// Volume of voids over volume of grains (overlaps counted twice).
     pub(crate) void_ratio: f64,
-    /// Smallest grain (mm).
     pub(crate) d0_mm: f64,
-    /// Overlap from which two tetrahedra share a void.
     pub(crate) merge_overlap: f64,
-    /// Selection of the facets between voids.
     pub(crate) counted: Facets,
-    /// Region for statistics.
     region: Region,
     /// Number of grains in the region, without hidden ones.
     grains: usize,
-    /// True if a grain is surrounded by others.
     is_surrounded: bool,
 }
 
@@ -287,14 +277,10 @@ impl Constrictions {
                 _ => {}
             }
         }
-        let mut is_hidden = vec![false; t.grains()];
-        t.hidden().iter().for_each(|&g| is_hidden[g as usize] = true);
-        let visible = || t.spheres().iter().zip(&is_hidden).filter(|(_, hidden)| !**hidden).map(|(s, _)| s);
         let region = Region::new(t);
-        let smallest = t.spheres().iter().map(|s| s[3]).fold(f64::INFINITY, f64::min);
         let void_ratio = match t.cell() {
             Some([x, y, z]) => {
-                let solid: f64 = visible().map(|s| ball(s[3])).sum();
+                let solid: f64 = t.visible().map(|s| ball(s[3])).sum();
                 (x * y * z - solid) / solid
             }
             None => void_ratio_within(t, &region),
@@ -314,10 +300,10 @@ impl Constrictions {
             near: nearer(NEAR, t, Vec::new()),
             is_surrounded: is_surrounded(t),
             void_ratio,
-            d0_mm: 2.0 * smallest * unit_mm,
+            d0_mm: 2.0 * t.least_radius() * unit_mm,
             merge_overlap: voids.merge_overlap,
             counted: passages.counted,
-            grains: visible().filter(|s| region.holds(&t.inside_mm([s[0], s[1], s[2]]))).count(),
+            grains: t.visible().filter(|s| region.holds(&t.inside_mm([s[0], s[1], s[2]]))).count(),
             region,
         };
         for passage in &passages.open {

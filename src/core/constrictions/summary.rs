@@ -174,26 +174,13 @@ impl Constrictions {
 }
 
 /// Reasons to doubt that grains are a packing.
+#[allow(missing_docs)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Doubt {
     /// More voids than grains that rest on each other leave.
-    Loose {
-        /// Volume of voids over volume of grains.
-        void_ratio: f64,
-        /// Maximum for grains that rest on each other.
-        most: f64,
-        /// True for grains in a periodic cell.
-        is_periodic: bool,
-    },
+    Loose { void_ratio: f64, most: f64, is_periodic: bool },
     /// Fewer voids than grains that rest on each other leave.
-    Dense {
-        /// Volume of voids over volume of grains.
-        void_ratio: f64,
-        /// Minimum for grains that rest on each other.
-        least: f64,
-        /// True for grains in a periodic cell.
-        is_periodic: bool,
-    },
+    Dense { void_ratio: f64, least: f64, is_periodic: bool },
     /// Pairs of grains nearer than a quarter of the smaller diameter: their number, and the first pair.
     Near(usize, [u32; 2]),
     /// Grains inside others, which take no part: their number, and the first, counted from 0.

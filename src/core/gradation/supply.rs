@@ -96,14 +96,8 @@ impl Gradation {
     /// Fraction by number, 0 to 1, of the particles of known size that are coarser than `low_mm` and no
     /// coarser than `high_mm`.
     pub fn number_fraction_in(&self, low_mm: f64, high_mm: f64) -> f64 {
-        (self.number_in(low_mm, high_mm) / self.particles_per_unit_volume()).min(1.0)
-    }
-
-    /// Particles per mm3 of solid in `low_mm < D <= high_mm`.
-    fn number_in(&self, low_mm: f64, high_mm: f64) -> f64 {
         if self.size_mm.len() == 1 {
-            let inside = low_mm < self.size_mm[0] && self.size_mm[0] <= high_mm;
-            return if inside { self.number[0] } else { 0.0 };
+            return f64::from(u8::from(low_mm < self.size_mm[0] && self.size_mm[0] <= high_mm));
         }
         let mut number = 0.0;
         for (i, &whole) in self.log_ratio.iter().enumerate() {
@@ -120,7 +114,7 @@ impl Gradation {
                 number += count(from, l, if whole > 0.0 { (m * (l / whole)).min(m) } else { m });
             }
         }
-        number
+        (number / self.particles_per_unit_volume()).min(1.0)
     }
 
     /// Fraction, 0 to 1, of the surface of the particles of known size that belongs to those coarser

@@ -64,7 +64,6 @@ impl Row {
     }
 }
 
-/// A table as text: its header and its rows of two fields.
 #[derive(Debug)]
 pub(crate) struct Table {
     /// File as the user named it.
@@ -75,7 +74,6 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// Reads the table in the file at `path`.
     pub(crate) fn open(path: &Path) -> Result<Table, TableError> {
         Table::parse(&path.display().to_string(), &bytes_of(path)?)
     }
@@ -172,7 +170,6 @@ impl Table {
         }
     }
 
-    /// Line of the first row of numbers.
     pub(crate) fn first_line(&self) -> usize {
         self.rows.first().map_or(1, |(line, _)| *line)
     }

@@ -43,6 +43,11 @@ fn elastic(contact: Contact) -> Settings {
     }
 }
 
+/// Elastic Hertz contacts with this friction.
+fn rough(friction: f64) -> Settings {
+    Settings { friction, final_friction: friction, ..elastic(Contact::Hertz) }
+}
+
 /// Takes steps without servo and protocol.
 fn free(c: &mut Compression, steps: u64) {
     for _ in 0..steps {
@@ -158,13 +163,7 @@ fn hertz_contact_time() {
 /// ends in rolling without sliding. The friction force never exceeds its limit.
 #[test]
 fn coulomb_limit_holds_for_spring_and_damping_together() {
-    let settings = Settings {
-        friction: 0.4,
-        final_friction: 0.4,
-        restitution: 0.6,
-        clip_tension: true,
-        ..elastic(Contact::Hertz)
-    };
+    let settings = Settings { restitution: 0.6, clip_tension: true, ..rough(0.4) };
     let mut c = compression(12.0, &[[3.0, 6.0, 6.0, 3.0], [4.99, 6.0, 6.0, 1.0]], &settings);
     let large = place(&c, 0);
     c.spin[large][2] = 3.0;
@@ -333,7 +332,7 @@ fn one_grain_touches_nothing() {
     free(&mut c, 100);
     assert_eq!((c.now.contacts, c.velocity[0][0]), (0, 0.0));
     let narrow = Compression::new(&packing(1.99, &[[0.1, 0.1, 0.1, 1.0]]), &settings);
-    assert_eq!(narrow.unwrap_err(), PackingError::NarrowCell { cell_mm: 1.99, largest_mm: 1.0 });
+    assert_eq!(narrow.unwrap_err(), PackingError::NarrowCell(1.99, 1.0));
 }
 
 #[test]
@@ -428,13 +427,7 @@ fn undamped_gas_keeps_energy_and_momentum() {
 fn friction_makes_no_energy_at_any_size_ratio() {
     for ratio in [1.0, 10.0, 36.0, 100.0] {
         for mass_exponent in [0.0, 1.0] {
-            let settings = Settings {
-                friction: 0.5,
-                final_friction: 0.5,
-                step_fraction: 0.1,
-                mass_exponent,
-                ..elastic(Contact::Hertz)
-            };
+            let settings = Settings { step_fraction: 0.1, mass_exponent, ..rough(0.5) };
             let mut c = gas(40, ratio, 0.1, 0.5, &settings);
             c.settings.step = Some(c.now.step);
             let mut least = flying(&mut c).kinetic;
@@ -460,13 +453,7 @@ fn friction_makes_no_energy_at_any_size_ratio() {
 #[test]
 fn a_small_grain_between_large_ones_is_expelled() {
     for ratio in [4.0, 10.0, 36.0, 100.0] {
-        let settings = Settings {
-            friction: 0.05,
-            final_friction: 0.05,
-            mass_exponent: 0.0,
-            step_fraction: 0.1,
-            ..elastic(Contact::Hertz)
-        };
+        let settings = Settings { mass_exponent: 0.0, step_fraction: 0.1, ..rough(0.05) };
         // The small grain touches both, so far from their axis that friction cannot hold it.
         let big: f64 = 0.5 * ratio;
         let half = big + 0.25;

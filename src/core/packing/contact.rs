@@ -36,7 +36,6 @@
 use super::neighbours::{Aspect, GrainChunk, Reach, nearest};
 use multiversion::multiversion;
 
-/// Number of contacts computed together.
 const BLOCK: usize = 64;
 
 /// Contact parameters in reduced units.
@@ -60,14 +59,12 @@ pub(super) struct Law {
 pub(super) struct Now {
     pub(crate) cell: f64,
     pub(crate) aspect: Aspect,
-    /// Relative growth of the cell per unit of time.
     pub(crate) strain_rate: f64,
     pub(crate) step: f64,
     /// Reach for a new pick of the close pairs, if one is due.
     pub(crate) pick: Option<Reach>,
 }
 
-/// Grains as read by the contact pass.
 #[derive(Clone, Copy)]
 pub(super) struct Grains<'a> {
     /// Position in units of the cell; radius.
@@ -89,21 +86,11 @@ pub(super) struct Outbox {
     pub(crate) torque: Vec<[f64; 4]>,
 }
 
-impl Outbox {
-    fn clear(&mut self) {
-        self.grain.clear();
-        self.force.clear();
-        self.torque.clear();
-    }
-}
-
-/// Results of the contact pass of a chunk.
 #[derive(Clone, Debug)]
 pub(super) struct Work {
     block: Box<Block>,
     /// Indices of the close pairs that touch.
     hits: Vec<u32>,
-    /// Forces for the other chunks, by chunk.
     pub(crate) outbox: Vec<Outbox>,
     /// Sum of normal force times distance of the centres.
     pub(crate) virial: f64,
@@ -124,7 +111,6 @@ impl Work {
     }
 }
 
-/// One value per pair of a block.
 type Lanes = [f64; BLOCK];
 
 /// A block of close pairs as columns, so that the law is computed for many of them side by side.
@@ -204,7 +190,9 @@ fn sweep<const FRICTION: bool, const HERTZ: bool>(
     torque: &mut [[f64; 4]],
 ) {
     for outbox in &mut work.outbox {
-        outbox.clear();
+        outbox.grain.clear();
+        outbox.force.clear();
+        outbox.torque.clear();
     }
     (work.virial, work.normal, work.contacts) = (0.0, 0.0, 0);
     force.fill([0.0; 4]);
@@ -333,7 +321,6 @@ fn block<const FRICTION: bool, const HERTZ: bool>(
     }
 }
 
-/// Computes the law for `lanes` pairs side by side.
 #[inline(always)]
 fn compute<const FRICTION: bool, const HERTZ: bool>(b: &mut Block, lanes: usize, law: &Law, now: &Now) {
     let floor = if law.clip { 0.0 } else { f64::NEG_INFINITY };

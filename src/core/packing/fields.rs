@@ -88,7 +88,6 @@ pub(super) fn numbered(text: &str) -> impl Iterator<Item = Line<'_>> + Clone {
     text.lines().enumerate().map(|(i, line)| (i + 1, line)).filter(|(_, line)| !line.trim().is_empty())
 }
 
-/// Decodes bytes as text.
 pub(super) fn in_utf8(content: &[u8]) -> Result<&str, Problem> {
     std::str::from_utf8(content).map_err(|error| {
         let good = error.valid_up_to();
@@ -105,7 +104,6 @@ pub(super) fn refused(line: usize, field: &'static str, value: &str, allowed: im
     Problem::Value { line, field, value: shortened(value), allowed: allowed.into() }
 }
 
-/// Allowed range of a number.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Kind {
     Finite,
@@ -140,7 +138,6 @@ pub(super) fn bounds(
 /// Names of the four columns in messages.
 pub(super) const NAMES: [&str; 4] = ["x", "y", "z", "diameter"];
 
-/// Grains as given by a file.
 pub(super) struct FileGrains {
     /// x, y, z and diameter of each grain, in the file's unit.
     pub(super) grains: Vec<[f64; 4]>,
@@ -152,31 +149,20 @@ pub(super) struct FileGrains {
 }
 
 /// Choices that were made in reading a packing file.
+#[allow(missing_docs)]
 #[derive(Clone, Debug, PartialEq)]
 pub enum ReadingNote {
-    /// The last of several frames was taken.
-    Frame {
-        /// Number of frames.
-        frames: usize,
-        /// Name of what a later, empty frame lacks, if there is one: atoms or grains.
-        lacking: Option<&'static str>,
-        /// Name of the frame's time, and its text.
-        time: (&'static str, String),
-    },
-    /// The coordinates have no unit, and were taken in the unit that the name of an array ends with.
-    Array {
-        /// The array.
-        name: String,
-        /// Its unit.
-        unit: LengthUnit,
-    },
+    /// The last of several frames was taken: `lacking` names what later, empty frames lack (atoms or grains),
+    /// and `time` is the name and the text of its time.
+    Frame { frames: usize, lacking: Option<&'static str>, time: (&'static str, String) },
+    /// The coordinates have no unit, and were taken in the unit that the name of this array ends with.
+    Array { name: String, unit: LengthUnit },
     /// Lengths were converted to mm from this unit.
     Unit(LengthUnit),
 }
 
 /// Boundaries according to a file.
 pub(super) enum FileCell {
-    /// A complete cell.
     Known(Cell),
     /// Bounds of the grains, not known to be periodic.
     Bounds([[f64; 2]; 3]),
@@ -244,7 +230,6 @@ impl LengthUnit {
         self.described().1
     }
 
-    /// Length of the unit (mm).
     pub(crate) fn mm(self) -> f64 {
         self.described().2
     }

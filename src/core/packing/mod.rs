@@ -68,13 +68,8 @@ pub enum Cell {
 ///
 /// ```
 /// use voidwalk_core::packing::{Cell, Packing};
-/// let packing = Packing {
-///     cell: Cell::Periodic([2.0; 3]),
-///     x: vec![0.0, 1.0],
-///     y: vec![0.0, 1.0],
-///     z: vec![0.0, 1.0],
-///     diameter: vec![1.0, 0.7],
-/// };
+/// let grains = [[0.0, 0.0, 0.0, 1.0], [1.0, 1.0, 1.0, 0.7]];
+/// let packing = Packing::from_grains(Cell::Periodic([2.0; 3]), grains);
 /// assert_eq!(Packing::parse("grains.csv", packing.to_csv().as_bytes())?, packing);
 /// # Ok::<(), voidwalk_core::packing::ImportError>(())
 /// ```
@@ -228,7 +223,7 @@ pub fn tall_start(diameter_mm: &[f64], aspect: f64, settings: &Settings) -> Resu
     let volume = radius.iter().map(|r| r * r * r).sum::<f64>() * (4.0 / 3.0 * PI);
     let cell = libm::cbrt(volume / settings.start_fraction / aspect.height());
     if cell < 4.0 * radius[0] {
-        return Err(PackingError::NarrowCell { cell_mm: cell * unit_mm, largest_mm: diameter[0] });
+        return Err(PackingError::NarrowCell(cell * unit_mm, diameter[0]));
     }
     let centre = place(&radius, cell, aspect, uniform(settings.seed, 1))?;
     let edge = cell * unit_mm;
@@ -278,7 +273,7 @@ fn place(
             if tries == TRIES {
                 let volume = radius.iter().map(|r| r * r * r).sum::<f64>() * (4.0 / 3.0) * PI;
                 let fraction = volume / (cell * cell * cell * aspect.height());
-                return Err(PackingError::Placement { grain: i, grains: radius.len(), fraction });
+                return Err(PackingError::Placement(i, radius.len(), fraction));
             }
         };
         let grid = grids.last_mut().expect("pushed above");
@@ -323,7 +318,7 @@ mod tests {
     fn no_two_grains_overlap() {
         [1.0, 1.7, 6.0].map(|height| none_overlap(Aspect::new(height)));
         let full = place(&[1.0, 1.0], 2.0, Aspect::new(1.0), uniform(5, 2));
-        assert!(matches!(full, Err(PackingError::Placement { grain: 1, .. })));
+        assert!(matches!(full, Err(PackingError::Placement(1, ..))));
     }
 
     fn none_overlap(aspect: Aspect) {

@@ -29,7 +29,6 @@ use rayon::prelude::*;
 /// start comes near it.
 pub(super) const LONGEST_MOVE: f64 = 0.02;
 
-/// Number of steps between two checks of the time step.
 const STEP_CHECK: u64 = 16;
 
 /// Fraction of the critical step at which the step is checked without waiting.
@@ -180,7 +179,7 @@ impl Compression {
         let critical = self.critical_step();
         match self.settings.step {
             Some(step) if step >= critical => {
-                Err(PackingError::Step { step, critical, cause: "the stiffness of a grain's contacts" })
+                Err(PackingError::Step(step, critical, "the stiffness of a grain's contacts"))
             }
             Some(_) => Ok(()),
             None => {
@@ -191,7 +190,6 @@ impl Compression {
         }
     }
 
-    /// Largest stable time step for the contacts of the last step.
     pub(super) fn critical_step(&self) -> f64 {
         self.critical(self.now.stiffest)
     }
@@ -271,7 +269,6 @@ impl Compression {
     }
 }
 
-/// Cuts a column at the bounds of the chunks.
 pub(super) fn split<T>(mut column: &mut [T]) -> Vec<&mut [T]> {
     let bounds = chunk_bounds(column.len());
     let mut parts = Vec::with_capacity(bounds.len());
@@ -283,7 +280,6 @@ pub(super) fn split<T>(mut column: &mut [T]) -> Vec<&mut [T]> {
     parts
 }
 
-/// Parameters of a step for the grains of a chunk.
 struct StepRule {
     step: f64,
     per_cell: f64,
@@ -296,7 +292,6 @@ struct StepRule {
     least_mass: f64,
 }
 
-/// Sums over the grains of a chunk.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     moved: f64,
@@ -307,7 +302,6 @@ struct Sums {
     unbalanced: f64,
 }
 
-/// The grains of a chunk during a step.
 struct ChunkInStep<'a> {
     chunk: usize,
     first: usize,

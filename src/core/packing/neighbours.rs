@@ -41,12 +41,10 @@ impl Aspect {
     /// Maximum ratio of height to width.
     pub(crate) const TALLEST: f64 = 100.0;
 
-    /// Makes the aspect of a cell that is `height` times as tall as wide.
     pub(crate) fn new(height: f64) -> Self {
         Self { height, per_height: 1.0 / height }
     }
 
-    /// Ratio of height to width.
     pub(crate) fn height(self) -> f64 {
         self.height
     }
@@ -70,7 +68,6 @@ impl Aspect {
         (across as f64 * self.height) as usize
     }
 
-    /// Moves a position into the cell.
     pub(crate) fn wrapped(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let inside = |s: f64, length: f64| {
             let s = s - length * libm::floor(s / length);
@@ -91,7 +88,6 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// No reach beyond contact.
     pub(super) const CONTACT: Self = Self { relative: 0.0, absolute: 0.0 };
 
     /// Distance within which two grains count if their radii sum to `radii`.
@@ -135,7 +131,6 @@ pub(super) struct GrainChunk {
 }
 
 impl GrainChunk {
-    /// The pairs listed by grain `i` of this chunk.
     #[inline(always)]
     pub(crate) fn pairs(&self, i: usize) -> std::ops::Range<usize> {
         self.start[i - self.first] as usize..self.start[i - self.first + 1] as usize
@@ -330,7 +325,6 @@ pub(super) struct Remembered {
 }
 
 impl Remembered {
-    /// Collects the memory of each close pair.
     pub(crate) fn collect(chunks: &[GrainChunk], rank: &[u32]) -> Self {
         let contacts = || {
             let pairs = chunks.iter().flat_map(|chunk| chunk.close.iter().zip(&chunk.memory));

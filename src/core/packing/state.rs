@@ -71,9 +71,8 @@ pub(crate) struct HoldState {
     /// grains are given a larger mass.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub(crate) saved: f64,
-    /// Mean coordination number at that step.
+    /// Mean coordination number and void ratio at that step.
     pub(crate) coordination: f64,
-    /// Void ratio at that step.
     pub(crate) void_ratio: f64,
     /// True once the pressure has been near its target; the drag is then raised.
     pub(crate) braking: bool,
@@ -95,12 +94,10 @@ pub(super) struct Moment {
     pub(crate) step: f64,
     /// Smallest diameter (mm): the unit of length.
     pub(crate) unit_mm: f64,
-    /// Width of the cell.
     pub(crate) cell: f64,
     /// Fixed ratio of height to width of the cell; omitted for a cube.
     #[serde(default = "cube", skip_serializing_if = "is_cube")]
     pub(crate) aspect: f64,
-    /// Relative growth of the cell per unit of time.
     pub(crate) strain_rate: f64,
     pub(crate) friction: f64,
     /// True if crowded grains are given a larger mass.
@@ -127,7 +124,6 @@ pub(super) struct Moment {
     pub(crate) twice_kinetic: f64,
     /// Sum of the squared unbalanced forces.
     pub(crate) unbalanced: f64,
-    /// Mean normal force of the contacts.
     pub(crate) mean_normal: f64,
     pub(crate) hold: HoldState,
 }
@@ -222,7 +218,7 @@ impl Compression {
         for (column, values) in [("x", &packing.x), ("y", &packing.y), ("z", &packing.z)] {
             if let Some(grain) = values.iter().position(|v| !v.is_finite()) {
                 let value = values[grain];
-                return Err(PackingError::Grain { grain, column, value, allowed: "a finite number" });
+                return Err(PackingError::Grain(grain, column, value, "a finite number"));
             }
         }
         PackingError::unless_sizes(&packing.diameter)?;
@@ -233,7 +229,7 @@ impl Compression {
         let unit_mm = packing.diameter[origin[n - 1] as usize];
         let largest_mm = packing.diameter[origin[0] as usize];
         if cell_mm < 2.0 * largest_mm {
-            return Err(PackingError::NarrowCell { cell_mm, largest_mm });
+            return Err(PackingError::NarrowCell(cell_mm, largest_mm));
         }
         let placed = |&i: &u32| {
             let i = i as usize;
@@ -255,7 +251,7 @@ impl Compression {
             && step >= this.loose_step
         {
             let (critical, cause) = critical_step(&this.position, &this.velocity, settings);
-            return Err(PackingError::Step { step, critical, cause });
+            return Err(PackingError::Step(step, critical, cause));
         }
         this.now.step = settings.step.unwrap_or(settings.step_fraction * this.loose_step);
         this.relist();
@@ -334,7 +330,6 @@ impl Compression {
         cubes.iter().sum::<f64>() * (4.0 / 3.0 * PI)
     }
 
-    /// Tells if crowded grains are given a larger mass.
     pub(super) fn makes_heavier(&self) -> bool {
         self.is_wide && self.settings.step.is_none()
     }

@@ -153,9 +153,8 @@ pub(super) fn csv(text: &str) -> Result<FileGrains, Problem> {
         return Err(Problem::Unknown(looks_like));
     };
     let width = header.split(delimiter).count();
-    let (mut grains, mut last) = (Vec::new(), header_line);
+    let mut grains = Vec::new();
     for (line, row) in rows {
-        last = line;
         let fields: Vec<&str> = row.split(delimiter).collect();
         if let Some(missing) = places.iter().position(|&place| place >= fields.len()) {
             let allowed = format!("{width} fields, as in the header");
@@ -173,7 +172,7 @@ pub(super) fn csv(text: &str) -> Result<FileGrains, Problem> {
         grains.push(read);
     }
     if grains.is_empty() {
-        return Err(ended(last, "at least one grain"));
+        return Err(ended(header_line, "at least one grain"));
     }
     // If the columns name no unit, they have that of the cell's line.
     let unit = unit.or(matches!(cell, FileCell::Known(Cell::Periodic(_))).then_some(LengthUnit::Mm));
@@ -295,7 +294,6 @@ pub(super) fn dump(text: &str, given: Option<LengthUnit>) -> Result<FileGrains, 
     Err(ended(last, "ITEM: ATOMS"))
 }
 
-/// First words of a frame.
 const FRAME: &str = "ITEM: TIMESTEP";
 
 /// Tells if a frame declares no atoms.
@@ -410,9 +408,8 @@ pub(super) fn yade(text: &str) -> Result<FileGrains, Problem> {
         let allowed = "x, y, z and r among the columns, as #format x_y_z_r";
         return Err(refused(line, "format", first, allowed));
     };
-    let (mut grains, mut last) = (Vec::new(), line);
+    let mut grains = Vec::new();
     for (line, row) in lines.filter(|(_, line)| !line.starts_with('#')) {
-        last = line;
         let fields: Vec<&str> = row.split_whitespace().collect();
         // The last column may be a vector or a list of several words.
         if fields.len() < names.len() {
@@ -421,7 +418,7 @@ pub(super) fn yade(text: &str) -> Result<FileGrains, Problem> {
         grains.push(grain(line, &fields, [x, y, z, r], 2.0)?);
     }
     if grains.is_empty() {
-        return Err(ended(last, "at least one sphere"));
+        return Err(ended(line, "at least one sphere"));
     }
     Ok(FileGrains { grains, unit: None, cell: FileCell::Unsaid, line, note: None })
 }

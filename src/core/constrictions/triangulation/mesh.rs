@@ -19,19 +19,16 @@ use crate::packing::{Cell, Packing};
 /// Centre x, y, z and radius in grid units: integers, exact in f64.
 pub(crate) type GrainPoint = [f64; 4];
 
-/// Vector from one point to another.
 #[inline(always)]
 pub(crate) fn offset(from: &[f64], to: &[f64]) -> [f64; 3] {
     [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
 }
 
-/// Inner product.
 #[inline(always)]
 pub(crate) fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Cross product.
 #[inline(always)]
 pub(crate) fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
@@ -111,7 +108,6 @@ impl Points {
         Ok(Self { unit_mm, origin_mm, ..Self::of(at.collect(), cell) })
     }
 
-    /// Makes points that are already on a grid.
     pub(super) fn of(at: Vec<GrainPoint>, cell: Option<[f64; 3]>) -> Self {
         let period = cell.unwrap_or([0.0; 3]);
         let along = |bits: usize, axis: usize| ((bits >> (2 * axis)) & 3) as f64 * period[axis];
@@ -293,7 +289,6 @@ pub(super) fn grain(corner: Corner) -> u32 {
     corner & MOST_GRAINS as u32
 }
 
-/// Shift of a corner's image.
 #[inline(always)]
 pub(super) fn image(corner: Corner) -> Shift {
     let bits = corner >> GRAIN_BITS;

@@ -18,14 +18,12 @@ pub(crate) struct Points {
     pub(crate) arrays: Vec<PointArray>,
 }
 
-/// One array of numbers.
 pub(crate) struct PointArray {
     pub(crate) line: usize,
     pub(crate) name: String,
     pub(crate) values: Vec<f64>,
 }
 
-/// Turns the points into grains.
 pub(crate) fn grains(points: Points) -> Result<FileGrains, Problem> {
     let named = |called: &[&str]| -> Vec<(&PointArray, Named)> {
         let all = points.arrays.iter().map(|array| (array, Named::of(&array.name)));
@@ -89,7 +87,6 @@ impl Number {
     pub(crate) const U32: Self = Self(NumberForm::Unsigned, 4);
     pub(crate) const U64: Self = Self(NumberForm::Unsigned, 8);
 
-    /// Size in bytes.
     pub(crate) fn bytes(self) -> usize {
         self.1
     }
@@ -114,7 +111,6 @@ impl Number {
     }
 }
 
-/// Reads the grains of a file that begins with `# vtk DataFile`.
 pub(crate) fn legacy(content: &[u8]) -> Result<FileGrains, Problem> {
     let mut cursor = Cursor { content, at: 0, line: 0, is_binary: false };
     let heading = [cursor.raw_line(), cursor.raw_line()];
@@ -180,7 +176,6 @@ pub(crate) fn legacy(content: &[u8]) -> Result<FileGrains, Problem> {
     grains(Points { line, places, arrays })
 }
 
-/// A position in the file.
 struct Cursor<'a> {
     content: &'a [u8],
     at: usize,
@@ -198,7 +193,6 @@ impl<'a> Cursor<'a> {
         ended(self.line, expected)
     }
 
-    /// Reads the next line, without its end.
     fn raw_line(&mut self) -> Option<String> {
         let rest = self.content.get(self.at..).filter(|rest| !rest.is_empty())?;
         let length = rest.iter().position(|&byte| byte == b'\n').unwrap_or(rest.len());
@@ -275,7 +269,6 @@ impl<'a> Cursor<'a> {
         Ok(())
     }
 
-    /// Reads `tuples` tuples of numbers.
     fn numbers(&mut self, tuples: &str, components: usize, kind: &str) -> Result<Vec<f64>, Problem> {
         let count = self.count(tuples)?.checked_mul(components);
         let left = self.content.len() - self.at;
@@ -298,7 +291,6 @@ impl<'a> Cursor<'a> {
         (0..count).map(|_| self.number()).collect()
     }
 
-    /// Reads the next number in text.
     fn number(&mut self) -> Result<f64, Problem> {
         let rest = &self.content[self.at..];
         let begin = rest.iter().position(|byte| !byte.is_ascii_whitespace()).unwrap_or(rest.len());

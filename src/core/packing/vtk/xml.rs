@@ -9,13 +9,11 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use std::io::Read;
 
-/// Accepted types of files.
 const TYPES: [&str; 2] = ["PolyData", "UnstructuredGrid"];
 
 /// Maximum unpacked size of a block of compressed numbers.
 const LARGEST_BLOCK: usize = 1 << 28;
 
-/// Reads the grains of a VTK file in XML.
 pub(crate) fn xml(content: &[u8]) -> Result<FileGrains, Problem> {
     let (head, appended) = split(content)?;
     let line_ends =
@@ -138,7 +136,6 @@ fn split(content: &[u8]) -> Result<(&str, Option<Coded<'_>>), Problem> {
     Ok((head, Some(Coded { is_raw, content: &tag[data + 1..] })))
 }
 
-/// Encoding of the numbers in a file.
 struct Form<'a> {
     line: usize,
     is_big_endian: bool,
@@ -185,7 +182,6 @@ fn attribute(element: &BytesStart<'_>, name: &str) -> Option<String> {
     Some(quick_xml::escape::unescape(&entry.value).ok()?.into_owned())
 }
 
-/// An array with its attributes and its text.
 struct Declared {
     line: usize,
     name: String,
@@ -195,7 +191,6 @@ struct Declared {
     text: String,
 }
 
-/// Location of an array's numbers.
 enum Place {
     Text,
     Base64,
