@@ -393,16 +393,6 @@ mod tests {
             let case = Predicted::new(&library, &packing, f64::NAN);
             let band = ERRORS.iter().position(|error| case.distance < error.up_to).unwrap();
             let LibraryError { curve, grains, .. } = &ERRORS[band];
-            println!(
-                "density {}, nearest shape at {:.2}: curve {:.1} % (states {:.0}), grains per void {:+.1} % \
-                 (states {:.0})",
-                case.density,
-                case.distance,
-                100.0 * case.of_curve(),
-                100.0 * curve,
-                100.0 * case.of_grains(),
-                100.0 * grains
-            );
             let is_beyond = [true, case.of_curve() > *curve, case.of_grains().abs() > *grains];
             beyond[band].iter_mut().zip(is_beyond).for_each(|(count, is)| *count += usize::from(is));
         }
@@ -416,7 +406,6 @@ mod tests {
         const BEFORE: usize = 126;
         let broad = left_out(|shape| shape >= BEFORE);
         let most = broad.iter().map(Predicted::of_curve).fold(0.0, f64::max);
-        println!("{} broad packings by the others: Dc5 to Dc95 within {:.2} %", broad.len(), 100.0 * most);
         assert!(broad.len() == 39 && most < 0.02, "{most}");
     }
 

@@ -40,7 +40,7 @@ impl Segment {
     /// finer than the returned f32.
     #[inline(always)]
     fn diameter(&self, v: f64) -> f32 {
-        root_within(self.y_at(v), [self.a, self.b])
+        within(inverse_cube_root(coarse(self.y_at(v))), [self.a, self.b])
     }
 
     /// `D^-3` at `v`.
@@ -57,13 +57,7 @@ impl Segment {
     }
 }
 
-/// Computes `y^(-1/3)` from 40 bits of the mantissa of `y`, clamped to `a` and `b`.
-#[inline(always)]
-fn root_within(y: f64, bounds: [f64; 2]) -> f32 {
-    within(inverse_cube_root(coarse(y)), bounds)
-}
-
-/// Applies [`root_within`] to each number, with bounds `least` and `most`.
+/// Computes `y^(-1/3)` from 40 bits of the mantissa of each number, clamped to `least` and `most`.
 #[inline(always)]
 fn roots_within(
     mut y: [f64; AT_ONCE],

@@ -109,7 +109,13 @@ impl Table {
             let heading = std::mem::take(&mut first) && fields.iter().all(|f| number(f).is_none());
             let count = fields.len();
             let Ok(fields) = <[String; 2]>::try_from(fields) else {
-                return Err(table.not_two_fields(line, count, content, delimiter));
+                let allowed = if count > 2 && delimiter == ',' {
+                    "two columns (with decimal commas, a semicolon or a tab between them)"
+                } else {
+                    "two columns, with a comma, a semicolon or a tab between them"
+                };
+                let (file, value) = (table.file, shortened(content.trim()));
+                return Err(TableError::Fields { file, line, found: count, value, allowed });
             };
             if heading && fields.iter().all(|f| !f.is_empty()) {
                 table.header = Some((line, fields));
@@ -124,40 +130,27 @@ impl Table {
         Ok(table)
     }
 
-    fn not_two_fields(&self, line: usize, found: usize, content: &str, delimiter: char) -> TableError {
-        let allowed = if found > 2 && delimiter == ',' {
-            "two columns (with decimal commas, a semicolon or a tab between them)"
-        } else {
-            "two columns, with a comma, a semicolon or a tab between them"
-        };
-        TableError::Fields { file: self.file.clone(), line, found, value: shortened(content.trim()), allowed }
-    }
-
     /// Refuses ambiguous commas: a file with both `.` and `,` inside numbers has thousands separators or
     /// a mistake; one with commas between its columns may have them in `"1,180"`.
     fn check_decimal_signs(&self, delimiter: char) -> Result<(), TableError> {
-        let is = |wanted: Comma| {
-            let of_row = move |(line, fields): &(usize, [String; 2])| {
-                let field = fields.iter().find(|f| number(f).is_some() && comma(f) == Some(wanted));
-                field.map(|f| (*line, f.clone()))
-            };
-            self.rows.iter().find_map(of_row)
+        let first = |is_such: &dyn Fn(&str) -> bool| {
+            self.rows.iter().find_map(|(line, fields)| {
+                let field = fields.iter().find(|field| number(field).is_some() && is_such(field));
+                field.map(|field| (*line, field))
+            })
         };
+        let first_comma = |wanted: Comma| first(&|field| comma(field) == Some(wanted));
         if delimiter == ','
-            && is(Comma::Decimal).is_none()
-            && let Some((line, value)) = is(Comma::Either)
+            && first_comma(Comma::Decimal).is_none()
+            && let Some((line, value)) = first_comma(Comma::Either)
         {
             let (as_decimal, as_thousands) = (value.replace(',', "."), value.replace(',', ""));
             let allowed = format!(
                 "{as_decimal} or {as_thousands}: here the comma may be a decimal sign or separate thousands"
             );
-            return Err(TableError::refused(&self.file, line, "number", shortened(&value), allowed));
+            return Err(TableError::refused(&self.file, line, "number", shortened(value), allowed));
         }
-        let with = |sign: char| {
-            self.rows.iter().find_map(|(line, fields)| {
-                fields.iter().find(|f| f.contains(sign) && number(f).is_some()).map(|f| (*line, f))
-            })
-        };
+        let with = |sign: char| first(&|field| field.contains(sign));
         match (with('.'), with(',')) {
             (Some((dot_line, _)), Some((line, value))) => {
                 let allowed = format!(

@@ -28,7 +28,7 @@ fn expected() -> Packing {
     Packing::from_grains(Cell::Periodic([2.0, 3.0, 4.0]), grains)
 }
 
-fn frame(frames: usize, lacking: Option<&'static str>, name: &'static str, time: &str) -> ReadingNote {
+fn last_frame(frames: usize, lacking: Option<&'static str>, name: &'static str, time: &str) -> ReadingNote {
     ReadingNote::Frame { frames, lacking, time: (name, time.into()) }
 }
 
@@ -86,7 +86,7 @@ fn a_dump_says_which_frame_and_which_units_were_taken() {
             assert_eq!(packing.diameter, [scale, 0.75 * scale], "{text}");
             assert_eq!(packing.x, [0.5 * scale, 1.5 * scale]);
             assert_eq!(packing.cell, Cell::Periodic([2.0 * scale, 3.0 * scale, 4.0 * scale]));
-            assert_eq!(notes, [frame(2, None, "timestep", "0"), ReadingNote::Unit(unit)]);
+            assert_eq!(notes, [last_frame(2, None, "timestep", "0"), ReadingNote::Unit(unit)]);
         }
     }
     // LIGGGHTS does not name its unit, nor does LAMMPS by default.
@@ -248,7 +248,7 @@ fn files_of_other_programs_are_read_when_unit_and_cell_are_said() {
     assert!(lengths.iter().zip([2.0, 3.0, 4.0]).all(|(a, b)| (a - b).abs() < 1e-12));
     close(&moved, [1.0, 0.0, -1.0], "bounds");
     let (_, notes) = Packing::parse_as("f", mercury.as_bytes(), &options("none")).unwrap();
-    assert_eq!(notes[0], frame(2, None, "time", "1.5"));
+    assert_eq!(notes[0], last_frame(2, None, "time", "1.5"));
     // A unit in the names is as good as one given by the user.
     let named = paraview.replace("Points:0", "x (m)").replace("Points:1", "y (m)").replace("Points:2", "z_m");
     let named =
@@ -295,7 +295,7 @@ fn the_last_frame_with_grains_is_taken() {
     ] {
         let (packing, notes) = Packing::parse_as("f", text.as_bytes(), &options).unwrap();
         assert_eq!(packing, alone);
-        assert_eq!(notes[0], frame(frames, lacking, "time", "1.5"));
+        assert_eq!(notes[0], last_frame(frames, lacking, "time", "1.5"));
     }
     let empty = DUMP.replace("ATOMS\n2", "ATOMS\n0").replace("TIMESTEP\n0", "TIMESTEP\n9");
     let empty = format!("{}\n", &empty[..empty.rfind("ITEM: ATOMS").unwrap() + 11]);
@@ -304,7 +304,7 @@ fn the_last_frame_with_grains_is_taken() {
     {
         let (packing, notes) = Packing::parse_as("f", text.as_bytes(), &MM).unwrap();
         assert_eq!(Ok(packing), parsed(DUMP));
-        assert_eq!(notes[0], frame(frames, lacking, "timestep", "0"));
+        assert_eq!(notes[0], last_frame(frames, lacking, "timestep", "0"));
     }
     assert!(parsed(&empty).is_err());
 }

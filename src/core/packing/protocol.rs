@@ -50,7 +50,6 @@ pub struct CompressionProgress {
     pub coordination: f64,
     /// Root mean square unbalanced force over the mean contact force.
     pub unbalanced: f64,
-    pub(crate) step: f64,
 }
 
 /// Result of a compression.
@@ -206,7 +205,6 @@ impl Compression {
             pressure: self.now.pressure,
             coordination: self.coordination(),
             unbalanced: self.unbalanced_ratio(),
-            step: self.now.step,
         }
     }
 
