@@ -141,7 +141,7 @@ impl VoidGraph {
             let by = voids.shift[i].plus(across).minus(voids.shift[u]);
             let path = offset(&points[a], &moved(&points[b], &t.displacement(by)));
             let length = dot(&path, &path).sqrt().max(LEAST_WAY * 2.0 * smallest);
-            let throat = Throat::new(t, (i, k), (u, across), &centres);
+            let throat = Throat::new(t, (i, k), &centres);
             let conductance = throat.conductance(length) * unit * unit * unit;
             match graph.conductance_mm3.get_mut(passage.constriction) {
                 Some(sum) => *sum += conductance,
@@ -263,14 +263,9 @@ struct Throat {
 }
 
 impl Throat {
-    /// Makes the throat of facet `k` of tetrahedron `i` from the shifted tetrahedron across it and the
-    /// power centres.
-    fn new(
-        t: &Triangulation,
-        (i, k): (usize, usize),
-        (u, across): (usize, Shift),
-        centres: &[[f64; 3]],
-    ) -> Self {
+    /// Makes the throat of the facet opposite corner `k` of tetrahedron `i`, from the power centres.
+    fn new(t: &Triangulation, (i, k): (usize, usize), centres: &[[f64; 3]]) -> Self {
+        let (u, _, across) = t.across(i, k).expect("a facet between two tetrahedra");
         let corners = t.stored(i);
         let (facet, inside) = (facet(&corners, k), &corners[k]);
         let here = half(&facet, inside, &centres[i]);
@@ -374,8 +369,7 @@ mod tests {
         let centres = power_centres(&t, &Voids::merge(&t, 0.1));
         let (mut volume, mut surface) = (0.0, 0.0);
         for (i, k) in (0..t.tetrahedra()).flat_map(|i| (0..4).map(move |k| (i, k))) {
-            let (u, _, across) = t.across(i, k).unwrap();
-            let throat = Throat::new(&t, (i, k), (u, across), &centres);
+            let throat = Throat::new(&t, (i, k), &centres);
             // Both sides of a facet count it.
             volume += 0.5 * throat.volume;
             surface += 0.5 * throat.surface;

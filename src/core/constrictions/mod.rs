@@ -175,6 +175,8 @@ struct Passages {
     voids: Voids,
     counted: Facets,
     open: Vec<Passage>,
+    /// Diameter and centre (mm) of each constriction.
+    constrictions: Vec<(f64, [f64; 3])>,
     /// Number of facets closed by grains.
     closed: usize,
 }
@@ -207,7 +209,6 @@ impl Passages {
         let discs: Vec<ConstrictionDisc> =
             facets.par_iter().with_min_len(256).map(|&(i, k)| disc(t, i, k)).collect();
         let (mut open, mut closed) = (Vec::new(), 0);
-        // Diameter and centre (mm) of each constriction.
         let mut constrictions: Vec<(f64, [f64; 3])> = Vec::new();
         let mut between: HashMap<(u32, u32), Vec<usize>> = HashMap::new();
         for (facet, disc) in facets.into_iter().zip(discs) {
@@ -233,7 +234,7 @@ impl Passages {
             };
             open.push(Passage { facet, across: (u, shift), constriction, disc });
         }
-        Ok(Self { voids, counted, open, closed })
+        Ok(Self { voids, counted, open, constrictions, closed })
     }
 }
 
@@ -285,9 +286,10 @@ impl Constrictions {
             }
             None => void_ratio_within(t, &region),
         };
+        let (diameter_mm, centre_mm) = passages.constrictions.iter().copied().unzip();
         let mut measured = Self {
-            diameter_mm: Vec::new(),
-            centre_mm: Vec::new(),
+            diameter_mm,
+            centre_mm,
             upstream: Vec::new(),
             downstream: Vec::new(),
             void_diameter_mm,
@@ -307,14 +309,12 @@ impl Constrictions {
             region,
         };
         for passage in &passages.open {
-            if passage.constriction < measured.diameter_mm.len() {
+            if passage.constriction < measured.upstream.len() {
                 continue;
             }
             let (i, k) = passage.facet;
             let (a, b) = (voids.by_tetrahedron[i], voids.by_tetrahedron[passage.across.0]);
             measured.cut += usize::from(passage.disc.cut);
-            measured.diameter_mm.push(2.0 * passage.disc.radius * unit_mm);
-            measured.centre_mm.push(t.inside_mm(passage.disc.centre));
             let (low, high) = if leads_up(&t.stored(i), k) { (a, b) } else { (b, a) };
             measured.upstream.push(low);
             measured.downstream.push(high);

@@ -3,11 +3,8 @@
 //! - [`Gradation`] is a sieve curve, percent finer by mass, linear in percent against ln(size) between
 //!   its points. "Linear" in the paper is one such straight line: `D_x = D_0 Cu^(x / 50)`, so
 //!   `D_60 / D_10 = Cu` and `D_100 / D_0 = Cu^2`.
-//! - [`SizeSampler`] draws diameters from it by number.
-//! - [`Gradation::kenney_lau`] and [`Gradation::kezdi`] tell if a soil retains its own fines, as do
-//!   [`Gradation::li_fannin`] and [`Gradation::uniformity_factors`]; [`Gradation::gap`] finds missing
-//!   sizes; [`Gradation::regraded`] regrades a base by filter practice.
-//! - [`base_particles`] is Eq. (2) of the paper: the number of base particles inserted in a test.
+//! - [`SizeSampler`] draws diameters from it by number; [`base_particles`] is Eq. (2) of the paper.
+//! - `stability` tells if a soil retains its own fines, `regrade` regrades a base by filter practice.
 //!
 //! # By mass and by number
 //! Between two points of a curve the mass is spread evenly over ln(D), so the number of particles

@@ -1,15 +1,8 @@
 //! Reads packings from files of this program and of others.
 //!
-//! # Formats
-//! - text ([`tables`](super::tables)): CSV, as saved by this program, spreadsheets and ParaView (MFIX
-//!   and other programs write points for it); dumps of LAMMPS and LIGGGHTS; Yade's `export.text`;
-//!   MercuryDPM's `.data`;
-//! - VTK points with a diameter or radius, as written by LIGGGHTS, Yade, MercuryDPM and ParaView
-//!   ([`vtk`](super::vtk)).
-//!
-//! Each may be compressed by gzip. The first line determines the format, not the file's name. The unit
-//! of length and the boundaries are never guessed: if a file does not give them, [`ReadOptions`] must,
-//! or the file is refused.
+//! Text ([`tables`](super::tables)) or VTK ([`vtk`](super::vtk)), possibly compressed by gzip. The first line
+//! determines the format, not the file's name. The unit of length and the boundaries are never guessed: if
+//! a file does not give them, [`ReadOptions`] must, or the file is refused.
 
 use super::fields::{
     FileCell, FileGrains, ImportError, LengthUnit, PACKING_FILE_LIMIT_BYTES, Problem, ReadingNote, in_utf8,

@@ -31,8 +31,7 @@ const KINETIC: f64 = 1e-2;
 const COORDINATION: f64 = 0.05;
 
 /// Maximum change of the void ratio during a hold: a quarter of the 0.002 by which it differs between
-/// two seeds or with half the rate. A wide gradation with high friction creeps on as the logarithm of
-/// time, so some rate has to count as rest.
+/// two seeds or with half the rate.
 const VOID_RATIO: f64 = 5e-4;
 
 /// Progress of a running compression.
