@@ -35,7 +35,6 @@ pub(super) enum Insphere {
     Flat,
 }
 
-/// The void of each tetrahedron.
 pub(super) struct Voids {
     /// Void by tetrahedron, numbered in the order of their first tetrahedra.
     pub(super) by_tetrahedron: Vec<u32>,

@@ -85,7 +85,6 @@ impl Class {
         symbol + &self.with()
     }
 
-    /// Makes the name and symbol.
     fn name(&self) -> String {
         if self.fines >= 50.0 {
             let scope = if self.has_cobbles { " of the part finer than 75 mm" } else { "" };

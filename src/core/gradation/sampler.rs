@@ -341,7 +341,7 @@ const MAGIC: u64 = 0x553e_f0ff;
 
 /// `x^(-1/3)` for a positive normal `x`, within 2 units in the last place.
 #[inline(always)]
-pub(crate) fn inverse_cube_root(x: f64) -> f64 {
+fn inverse_cube_root(x: f64) -> f64 {
     inverse_cube_roots(&[x])[0]
 }
 

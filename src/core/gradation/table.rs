@@ -66,7 +66,6 @@ impl Row {
 
 #[derive(Debug)]
 pub(crate) struct Table {
-    /// File as the user named it.
     pub(crate) file: String,
     /// Line and the two fields of the header.
     pub(crate) header: Option<(usize, [String; 2])>,
@@ -194,12 +193,10 @@ pub fn bytes_of(path: &Path) -> Result<Vec<u8>, TableError> {
     }
 }
 
-/// Refuses a `value` that is not allowed as a size.
 pub(crate) fn check_size(name: &'static str, value: f64) -> Result<(), NumberError> {
     NumberError::unless(size_is_allowed(value), name, value, allowed_size)
 }
 
-/// Refuses a `value` that is not allowed as a percentage.
 pub(super) fn check_percent(name: &'static str, value: f64) -> Result<(), NumberError> {
     NumberError::unless(percent_is_allowed(value), name, value, allowed_percent)
 }

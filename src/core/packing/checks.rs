@@ -43,7 +43,6 @@ fn elastic(contact: Contact) -> Settings {
     }
 }
 
-/// Elastic Hertz contacts with this friction.
 fn rough(friction: f64) -> Settings {
     Settings { friction, final_friction: friction, ..elastic(Contact::Hertz) }
 }

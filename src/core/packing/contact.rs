@@ -112,7 +112,7 @@ impl Work {
 type Lanes = [f64; BLOCK];
 
 /// A block of close pairs as columns, so that the law is computed for many of them side by side.
-#[derive(Clone, Copy, Debug, Zeroable)]
+#[derive(Clone, Debug, Zeroable)]
 struct Block {
     /// Separation from the larger to the smaller grain along x, y, z, in units of the cell.
     gap: [Lanes; 3],

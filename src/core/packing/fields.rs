@@ -11,13 +11,11 @@ use std::str::FromStr;
 /// Maximum size of a packing file and of the content of a compressed one, in bytes.
 pub const PACKING_FILE_LIMIT_BYTES: u64 = 4 << 30;
 
-/// Accepted formats, in words.
 const KNOWN: &str = "CSV with columns as x_mm, y_mm, z_mm and diameter_mm (or Points:0, Points:1, Points:2 \
                      and Diameter of ParaView and MFIX; radius will do), text dumps of LAMMPS and LIGGGHTS, \
                      Yade's export.text, MercuryDPM's .data, and points of VTK with a diameter or radius \
                      (.vtk, .vtp, .vtu); each also packed by gzip";
 
-/// Usual units of other programs.
 const UNITS_OF_PROGRAMS: &str = " (LIGGGHTS, Yade, MercuryDPM and MFIX mostly use metres; LAMMPS states it \
                                  after `dump_modify ID units yes`)";
 
@@ -25,7 +23,6 @@ const UNITS_OF_PROGRAMS: &str = " (LIGGGHTS, Yade, MercuryDPM and MFIX mostly us
 #[derive(Debug, thiserror::Error)]
 #[error("{file}{problem}")]
 pub struct ImportError {
-    /// File as the user named it.
     pub(super) file: String,
     pub(super) problem: Problem,
 }
@@ -88,11 +85,15 @@ pub(super) fn numbered(text: &str) -> impl Iterator<Item = Line<'_>> + Clone {
     text.lines().enumerate().map(|(i, line)| (i + 1, line)).filter(|(_, line)| !line.trim().is_empty())
 }
 
+/// Number of line ends, in text or in binary numbers.
+pub(super) fn line_ends(bytes: &[u8]) -> usize {
+    bytes.iter().filter(|&&byte| byte == b'\n').count()
+}
+
 pub(super) fn in_utf8(content: &[u8]) -> Result<&str, Problem> {
     std::str::from_utf8(content).map_err(|error| {
         let good = error.valid_up_to();
-        let line = 1 + content[..good].iter().filter(|&&b| b == b'\n').count();
-        Problem::Encoding { line, byte: content[good] }
+        Problem::Encoding { line: 1 + line_ends(&content[..good]), byte: content[good] }
     })
 }
 
@@ -168,7 +169,6 @@ pub(super) enum FileCell {
     Bounds([[f64; 2]; 3]),
     /// Periodic along some axes only, which no packing here supports.
     Mixed,
-    /// Not given.
     Unsaid,
 }
 
@@ -188,19 +188,15 @@ pub(super) fn grain(
     Ok(grain)
 }
 
-/// A unit of length.
+/// A unit of length, from a metre to a nanometre.
+#[allow(missing_docs)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LengthUnit {
-    /// Metres.
     M,
-    /// Centimetres.
     Cm,
-    /// Millimetres.
     Mm,
-    /// Micrometres.
     Um,
-    /// Nanometres.
     Nm,
 }
 

@@ -272,7 +272,6 @@ fn check_fit(packing: &Packing, by_hand: bool) -> Result<(), Problem> {
 /// Fraction of a cell's length by which rounding in a file may change it.
 const ROUNDING: f64 = 1e-6;
 
-/// Converts all lengths to mm.
 fn convert(packing: &mut Packing, unit: LengthUnit, line: usize) -> Result<(), Problem> {
     let Packing { cell, x, y, z, diameter } = packing;
     let lengths = match cell {

@@ -196,7 +196,6 @@ impl Compression {
         if stiffest > 0.0 { 2.0 / (stability(&self.law) * stiffest).sqrt() } else { f64::INFINITY }
     }
 
-    /// Step adapted to the critical step.
     fn followed(&self, stiffest: f64) -> f64 {
         let part = self.settings.step_fraction.min(damped_part(&self.law));
         part * self.critical(stiffest).min(2.0 * self.loose_step)

@@ -178,7 +178,7 @@ impl PackingError {
 
 impl Settings {
     /// Shear modulus of the grains over the pressure, reduced by the stiffness ratio.
-    pub(super) fn shear(&self) -> f64 {
+    fn shear(&self) -> f64 {
         self.shear_modulus_gpa * self.stiffness_ratio * 1e6 / self.pressure_kpa
     }
 

@@ -34,12 +34,10 @@ pub(crate) fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Facet opposite a corner of a tetrahedron.
 pub(crate) fn facet(corners: &[GrainPoint; 4], corner: usize) -> [GrainPoint; 3] {
     [1, 2, 3].map(|k| corners[(corner + k) % 4])
 }
 
-/// Edges of a tetrahedron from a corner to the others.
 pub(crate) fn edges(corners: &[GrainPoint; 4], corner: usize) -> [[f64; 3]; 3] {
     facet(corners, corner).map(|other| offset(&corners[corner], &other))
 }
@@ -76,7 +74,6 @@ pub(super) struct Points {
 }
 
 impl Points {
-    /// Checks a packing and places it on the grid.
     pub(super) fn new(packing: &Packing) -> Result<Self, TriangulationError> {
         let columns = [&packing.x, &packing.y, &packing.z];
         let (grains, largest_mm) = check(packing)?;
@@ -146,7 +143,6 @@ impl Points {
         [point(a), point(b), point(c), point(d)]
     }
 
-    /// Tells if the centres lie in one plane, or on one line.
     pub(super) fn is_flat(&self) -> bool {
         let from = self.at[0];
         let offsets: Vec<[f64; 3]> = self.at.iter().map(|p| offset(&from, p)).collect();
@@ -315,7 +311,6 @@ pub(super) struct Mesh {
 }
 
 impl Mesh {
-    /// Adds a tetrahedron without neighbours.
     pub(super) fn push(&mut self, corners: [Corner; 4]) -> u32 {
         self.corners.push(corners);
         self.neighbours.push([NONE; 4]);

@@ -54,7 +54,7 @@ impl Triangulation {
     }
 
     /// Triangulates like [`Triangulation::new`], with the sizes of the first samples to be tried.
-    pub(super) fn with_samples(packing: &Packing, samples: &[usize]) -> Result<Self, TriangulationError> {
+    fn with_samples(packing: &Packing, samples: &[usize]) -> Result<Self, TriangulationError> {
         let points = Points::new(packing)?;
         let grains = points.at.len();
         let identity: Vec<u32> = (0..grains as u32).collect();
@@ -148,7 +148,6 @@ impl Triangulation {
         std::array::from_fn(|axis| p[axis] * self.points.unit_mm + self.points.origin_mm[axis])
     }
 
-    /// Converts a point to mm and moves it into the cell.
     pub(super) fn inside_mm(&self, p: [f64; 3]) -> [f64; 3] {
         self.in_mm(match self.points.cell {
             Some(cell) => {
@@ -277,7 +276,6 @@ struct Images {
 }
 
 impl Images {
-    /// Grain and shift of the corners of a tetrahedron.
     fn corners(&self, mesh: &Mesh, t: u32) -> [(u32, Shift); 4] {
         mesh.corners[t as usize].map(|c| (self.grain[grain(c) as usize], self.shift[grain(c) as usize]))
     }

@@ -128,7 +128,6 @@ mod tests {
         Packing { cell, x, y, z, diameter: column(sizes[0], sizes[1]) }
     }
 
-    /// Determinant by cofactors: slow and obvious.
     fn determinant(m: &[Vec<BigInt>]) -> BigInt {
         if m.is_empty() {
             return BigInt::from(1);
@@ -147,7 +146,6 @@ mod tests {
         sum
     }
 
-    /// Lexicographic rank of each point.
     fn ranks(points: &[[i64; 4]]) -> Vec<usize> {
         let mut order: Vec<usize> = (0..points.len()).collect();
         order.sort_by_key(|&i| (points[i][0], points[i][1], points[i][2], i));

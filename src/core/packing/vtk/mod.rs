@@ -6,7 +6,7 @@
 
 pub(super) mod xml;
 
-use crate::packing::fields::{FileCell, FileGrains, NAMES, Problem, ReadingNote, ended, refused};
+use crate::packing::fields::{FileCell, FileGrains, NAMES, Problem, ReadingNote, ended, line_ends, refused};
 use crate::packing::tables::{DIAMETER, Named, RADIUS};
 
 /// Points of a file and their numbers.
@@ -285,7 +285,7 @@ impl<'a> Cursor<'a> {
             let Some(bytes) = end else { return Err(self.ended(&format!("{count} numbers of type {kind}"))) };
             let run = &self.content[self.at..self.at + bytes];
             self.at += bytes;
-            self.line += run.iter().filter(|&&byte| byte == b'\n').count();
+            self.line += line_ends(run);
             return Ok(number.all(run, true));
         }
         (0..count).map(|_| self.number()).collect()
@@ -296,7 +296,7 @@ impl<'a> Cursor<'a> {
         let begin = rest.iter().position(|byte| !byte.is_ascii_whitespace()).unwrap_or(rest.len());
         let word = &rest[begin..];
         let length = word.iter().position(u8::is_ascii_whitespace).unwrap_or(word.len());
-        self.line += rest[..begin].iter().filter(|&&byte| byte == b'\n').count();
+        self.line += line_ends(&rest[..begin]);
         self.at += begin + length;
         let text = String::from_utf8_lossy(&word[..length]);
         if text.is_empty() {

@@ -2,7 +2,9 @@
 //! or raw; compressed by zlib or not.
 
 use super::{NUMBERS, Number, PointArray, Points, grains};
-use crate::packing::fields::{FileGrains, PACKING_FILE_LIMIT_BYTES, Problem, ended, in_utf8, refused};
+use crate::packing::fields::{
+    FileGrains, PACKING_FILE_LIMIT_BYTES, Problem, ended, in_utf8, line_ends, refused,
+};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use quick_xml::Reader;
@@ -16,8 +18,6 @@ const LARGEST_BLOCK: usize = 1 << 28;
 
 pub(crate) fn xml(content: &[u8]) -> Result<FileGrains, Problem> {
     let (head, appended) = split(content)?;
-    let line_ends =
-        |part: std::ops::Range<usize>| head.as_bytes()[part].iter().filter(|&&byte| byte == b'\n').count();
     let mut reader = Reader::from_str(head);
     reader.config_mut().expand_empty_elements = true;
     // A file with appended data is cut before the end of its XML.
@@ -32,7 +32,7 @@ pub(crate) fn xml(content: &[u8]) -> Result<FileGrains, Problem> {
     let mut at = 0;
     loop {
         let before = std::mem::replace(&mut at, reader.buffer_position() as usize);
-        form.line += line_ends(before..at);
+        form.line += line_ends(&head.as_bytes()[before..at]);
         let event = match reader.read_event() {
             Ok(event) => event,
             // The XML is cut off where the appended numbers begin.
@@ -50,9 +50,7 @@ pub(crate) fn xml(content: &[u8]) -> Result<FileGrains, Problem> {
                     point_count =
                         more.ok_or_else(|| form.refused("NumberOfPoints", &count, "a whole number"))?;
                 }
-                "Points" => {
-                    (room, points.line) = (Some(Room::Places), form.line);
-                }
+                "Points" => (room, points.line) = (Some(Room::Places), form.line),
                 "PointData" => room = Some(Room::Numbers),
                 "DataArray" if room.is_some() => (open, within) = (Some(Declared::read(&e, &form)?), 0),
                 _ if open.is_some() => within += 1,
@@ -122,7 +120,7 @@ fn split(content: &[u8]) -> Result<(&str, Option<Coded<'_>>), Problem> {
     let end = appended_at.unwrap_or(content.len());
     let head = in_utf8(&content[..end])?;
     let Some(begin) = appended_at else { return Ok((head, None)) };
-    let line = 1 + head.bytes().filter(|&byte| byte == b'\n').count();
+    let line = 1 + line_ends(head.as_bytes());
     let tag = &content[begin..];
     let marks = |mark: u8, from: usize| tag[from..].iter().position(|&byte| byte == mark).map(|at| from + at);
     let Some((close, data)) = marks(b'>', 0).and_then(|close| Some((close, marks(b'_', close)?))) else {
