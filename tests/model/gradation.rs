@@ -280,9 +280,15 @@ fn parts_add_up_to_the_whole() {
             // f32 moved the limit by up to 6e-8 of itself.
             let limit = g.d_by_number(70.0).unwrap();
             close(fine.mean_cube().unwrap(), 8.0 * mean_cube_to(limit), 1e-6);
+            for share in [0.0, 0.01, 0.4, 0.99, 1.0] {
+                let d = |percent| 2.0 * g.d_by_number(percent).unwrap();
+                close(whole.d_by_number(share).unwrap(), d(100.0 * share), 1e-6);
+                close(fine.d_by_number(share).unwrap(), d(70.0 * share), 1e-6);
+            }
         }
         let none = sampler.part(5..5);
         assert_eq!((none.mean_cube(), none.largest_of(3, 1), whole.largest_of(0, 1)), (None, None, None));
+        assert_eq!((none.d_by_number(0.5), whole.d_by_number(1.5)), (None, None));
     }
 }
 

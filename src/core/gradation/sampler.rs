@@ -319,6 +319,17 @@ impl SizeRange<'_> {
         (width > 0.0).then(|| all / width)
     }
 
+    /// Diameter that `share` (0 to 1) of this range's particles do not exceed; `None` if the range is
+    /// empty or `share` is outside 0 to 1.
+    pub fn d_by_number(&self, share: f64) -> Option<f64> {
+        if self.words.is_empty() || !(0.0..=1.0).contains(&share) {
+            return None;
+        }
+        let v = (self.v_fine - share * (self.v_fine - self.v_coarse)).max(self.v_coarse);
+        let segment = self.sampler.segments[self.sampler.segment(0, v)];
+        Some((1.0 / libm::cbrt(segment.y_at(v))).clamp(segment.a, segment.b))
+    }
+
     /// Draws the largest diameter among `count` particles of this range; `None` if there are no particles.
     ///
     /// The largest of `n` uniform draws has the distribution of `u^(1/n)`.

@@ -316,7 +316,9 @@ mod tests {
 
     #[test]
     fn no_two_grains_overlap() {
-        [1.0, 1.7, 6.0].map(|height| none_overlap(Aspect::new(height)));
+        for height in [1.0, 1.7, 6.0] {
+            none_overlap(Aspect::new(height));
+        }
         let full = place(&[1.0, 1.0], 2.0, Aspect::new(1.0), uniform(5, 2));
         assert!(matches!(full, Err(PackingError::Placement(1, ..))));
     }

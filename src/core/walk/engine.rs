@@ -316,7 +316,7 @@ mod tests {
         let base = Gradation::linear_from_d0(0.2, 1.5).unwrap();
         let sampler = SizeSampler::new(&base, 1.0).unwrap();
         let mut diameters = vec![1.0; 288];
-        diameters[7] = sampler.diameter(1 << 63);
+        diameters[7] = sampler.part(0..1 << 64).d_by_number(0.5).unwrap() as f32;
         let network = Network::cubic_from_diameters([4, 4, 6], diameters, 1.0).unwrap();
         let open: BitVec = BitVec::repeat(false, network.constrictions());
         let engine = |share| RunPlan::new(Engine::Auto, &network, &sampler, &open, share).engine();
