@@ -12,6 +12,7 @@
 //! and solid angles are signed: a power centre on the far side of a facet counts as negative. So the
 //! sums over all facets are exactly the volume of the voids and the surface of the grains.
 
+use super::discs::solver;
 use super::triangulation::{GrainPoint, Shift, Triangulation, cross, dot, edges, facet, offset, six_volume};
 use super::voids::{Insphere, Voids, solid_angle};
 use super::{Constrictions, ConstrictionsError, Facets, Passages};
@@ -339,11 +340,7 @@ fn power_centre(corners: &[GrainPoint; 4]) -> [f64; 3] {
         let delta = others[k][3] - origin[3];
         0.5 * (dot(&d[k], &d[k]) - delta * (others[k][3] + origin[3]))
     });
-    let normals = [cross(&d[1], &d[2]), cross(&d[2], &d[0]), cross(&d[0], &d[1])];
-    let volume = dot(&d[0], &normals[0]);
-    std::array::from_fn(|axis| {
-        origin[axis] + (0..3).map(|k| right[k] * normals[k][axis]).sum::<f64>() / volume
-    })
+    moved(&[origin[0], origin[1], origin[2]], &solver(&d)(right))
 }
 
 #[cfg(test)]
