@@ -27,15 +27,15 @@ pub fn doubt(doubt: &Doubt) -> String {
                 false => "they may not touch, or diameters may be in another unit than centres",
             };
             format!(
-                "the void ratio is {void_ratio:.4}, and grains that rest on each other hardly leave more than \
-                 {most}: {loose}"
+                "the void ratio is {void_ratio:.4}, and grains that rest on each other hardly leave more \
+                 than {most}: {loose}"
             )
         }
         Doubt::Dense { void_ratio, least, is_periodic } => {
             let other = if is_periodic { "the cell" } else { "their centres" };
             format!(
-                "the void ratio is {void_ratio:.4}, and grains that rest on each other hardly leave less than \
-                 {least}: they overlap, or diameters are in another unit than {other}"
+                "the void ratio is {void_ratio:.4}, and grains that rest on each other hardly leave less \
+                 than {least}: they overlap, or diameters are in another unit than {other}"
             )
         }
         Doubt::Near(pairs, [one, other]) => format!(

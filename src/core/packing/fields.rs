@@ -59,8 +59,8 @@ pub(super) enum Problem {
     )]
     Spread { axis: &'static str, spread: f64, length: f64 },
     #[error(
-        ": the grains do not fit their cell: the grains have {0:.3} times the volume of the cell, {x} x {y} x \
-         {z}, and leave no voids. A cell is given in the file's unit; or are radii read as diameters?",
+        ": the grains do not fit their cell: the grains have {0:.3} times the volume of the cell, {x} x {y} \
+         x {z}, and leave no voids. A cell is given in the file's unit; or are radii read as diameters?",
         x = .1[0], y = .1[1], z = .1[2]
     )]
     Full(f64, [f64; 3]),

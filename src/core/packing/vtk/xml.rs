@@ -276,7 +276,7 @@ impl Coded<'_> {
             all.drain(..word);
             return Some(all);
         }
-        // Number of blocks, unpacked size of each, that of the last if it is shorter, and packed size of each.
+        // Number of blocks, unpacked size of each and of the last if it is shorter, packed size of each.
         let (header, begin) = self.run(0, first.checked_add(3)?.checked_mul(word)?)?;
         let sizes: Vec<usize> = header.chunks_exact(word).map(whole).collect();
         let (full, last) = (sizes[1], sizes[2]);
