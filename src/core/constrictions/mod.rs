@@ -132,8 +132,8 @@ pub enum ConstrictionsError {
     /// number, the number of all grains, and the first of them.
     #[error(
         "the grains do not fit their cell: {0} of {1} lie inside others, the first of them grain {2} \
-         (counted from 0). The cell is too small, or in another unit than the grains, or grains occur twice in \
-         the file"
+         (counted from 0). The cell is too small, or in another unit than the grains, or grains occur twice \
+         in the file"
     )]
     Hidden(usize, usize, u32),
     /// Grains that occur twice: the number of such pairs, and the first pair.
