@@ -131,12 +131,15 @@ mod tests {
         Gradation::from_points(points, None).unwrap()
     }
 
+    /// Points of a soil, and its group.
+    type Case<'a> = (&'a [(f64, f64)], Option<&'a str>);
+
     #[test]
     fn groups_are_those_of_the_standard() {
         let well = [(0.075, 3.0), (0.2, 10.0), (0.7, 30.0), (2.0, 60.0), (9.5, 100.0)];
         let wide = [(1.0, 2.0), (2.0, 10.0), (7.0, 30.0), (20.0, 60.0), (60.0, 100.0)];
         let dual = [(0.075, 8.0), (0.15, 10.0), (0.3, 30.0), (0.6, 60.0), (2.0, 100.0)];
-        let cases: [(&[(f64, f64)], Option<&str>); 17] = [
+        let cases: [Case<'_>; 17] = [
             (&well, Some("SW, with gravel")),
             (&[(0.5, 0.0), (1.0, 100.0)], Some("SP")),
             (&[(5.0, 0.0), (10.0, 100.0)], Some("GP")),
