@@ -9,6 +9,7 @@ use voidwalk::constrictions::{Constrictions, ConstrictionsError, Facets, Triangu
 use voidwalk::packing::{Compression, Packing, PackingError, ReadOptions, Settings, draw, random_start};
 use voidwalk::run::machine::threads as pool;
 use voidwalk::run::{Event, RunError};
+use voidwalk::words::{doubt, reading};
 
 use crate::arrays::{Grains, of_packing, of_rows};
 use crate::problem::refused;
@@ -46,10 +47,14 @@ pub fn pack<'py>(
             settings.check()?;
             let start = random_start(&draw(gradation, settings.grains, settings.seed), &settings)?;
             let mut compression = Compression::new(&start, &settings)?;
-            let report = compression.run_reporting(STEPS, |at| {
-                (callbacks.run.on_event)(Event::Packing(at));
-                !callbacks.run.is_stopped()
-            });
+            let report = compression.run_until(
+                STEPS,
+                || false,
+                |at| {
+                    (callbacks.run.on_event)(Event::Packing(at));
+                    !callbacks.run.is_stopped()
+                },
+            );
             Ok((compression.packing(), report?))
         };
         let packed: Result<_, PackingError> = pool(threads)?.install(|| on(callbacks));
@@ -81,7 +86,9 @@ pub fn read_packing<'py>(
         unit: unit.map(str::parse).transpose().map_err(|e: String| refused(format!("unit: {e}")))?,
         cell: cell.map(str::parse).transpose().map_err(|e: String| refused(format!("cell: {e}")))?,
     };
+    let name = path.display().to_string();
     let (packing, notes) = py.detach(|| Packing::read_as(path, &options)).map_err(refused)?;
+    let notes = notes.iter().map(|note| reading(note, &name)).collect();
     Ok((of_packing(py, packing)?, notes))
 }
 
@@ -106,7 +113,9 @@ pub fn measure<'py>(
             // Grains without a cell, and voids that run through it, have no graph; nor do only some facets.
             let graph = VoidGraph::of(&t, merge_overlap).ok().filter(|_| facets == Facets::All);
             let curve = constrictions.curve().map_err(RunError::refused)?;
-            let summary = serde_json::to_string(&constrictions.summary().map_err(RunError::refused)?)?;
+            let doubts = constrictions.doubts().iter().map(doubt).collect();
+            let summary = constrictions.summary(doubts).map_err(RunError::refused)?;
+            let summary = serde_json::to_string(&summary)?;
             Ok((constrictions, graph, curve, summary))
         })
     })?;

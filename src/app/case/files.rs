@@ -3,6 +3,7 @@
 use super::error::CaseError;
 use super::packed_filter::{GRAINS, Input, PackedError, PackedFilter, RECORD};
 use crate::scene::{BUILT_IN_NAME, CurveSource, Scene, SceneError};
+use crate::words;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -185,7 +186,7 @@ impl Files {
         let read = Packing::parse_as(&name, bytes, &options);
         let (packing, notes) = read.map_err(PackedError::from)?;
         if let Some(input) = self.inputs.last_mut() {
-            input.notes = notes;
+            input.notes = notes.iter().map(|note| words::reading(note, &name)).collect();
         }
         Ok((name, packing))
     }

@@ -8,6 +8,7 @@ use super::packed_filter::{GUESSED_GRAINS_PER_VOID, PackedFilter};
 use crate::scene::{
     Amount, BaseGradation, D85, Extent, FilterGradation, LibraryDensity, NetworkSource, Scene, USUAL_LAYERS,
 };
+use crate::words;
 use std::path::PathBuf;
 use std::sync::Arc;
 use voidwalk_core::constrictions::{
@@ -280,7 +281,7 @@ impl GraphPacking {
         let (constrictions, graph) = VoidGraph::measure(&packing, merge_overlap)
             .map_err(|error| scene.clash(format!("{name}: {error}")))?;
         if let (Some(_), Some(input)) = (file, files.inputs.last_mut()) {
-            input.notes.extend(constrictions.doubts());
+            input.notes.extend(constrictions.doubts().iter().map(words::doubt));
         }
         let gradation = of_grains(&packing)?;
         Ok(Some(Self { graph, curve: constrictions.curve()?, gradation }))

@@ -18,6 +18,7 @@ use super::results::json;
 use crate::case::{CaseError, GRAINS, PackedFilter, PackingPlan, RECORD};
 use crate::outcome::packing::PackingRecord;
 use crate::scene::PackingSpec;
+use crate::words;
 use voidwalk_core::constrictions::{
     Constrictions, CurveError, Facets, Summary, Triangulation, VoidGraph, inscribed,
 };
@@ -164,7 +165,8 @@ fn make(
     let grains = packing.to_csv();
     folder.write(GRAINS, grains.as_bytes())?;
     folder.write("grains.vtp", packing.to_vtp().as_bytes())?;
-    for (name, text) in constrictions.files(&constrictions.summary()?)? {
+    let doubts = constrictions.doubts().iter().map(words::doubt).collect();
+    for (name, text) in constrictions.files(&constrictions.summary(doubts)?)? {
         folder.write(name, text.as_bytes())?;
     }
     let seconds = seconds_before + begun.elapsed().as_secs_f64();
@@ -206,6 +208,7 @@ fn compress(
     loop {
         let since = Instant::now();
         let run = compression.run_until(
+            1000,
             || callbacks.is_stopped(),
             |progress| {
                 (callbacks.on_event)(Event::Packing(progress));
@@ -364,6 +367,7 @@ pub(crate) fn measure_constrictions(
 impl ConstrictionsOptions {
     fn measure(&self, packing: &Path, callbacks: &Callbacks) -> Result<Summary, RunError> {
         let file = shown(packing);
+        let name = packing.display().to_string();
         let (packing, notes) = Packing::read_as(packing, &self.read)?;
         let refused = |error: &dyn std::error::Error| RunError::Refused(format!("{file}: {error}"));
         let t = Triangulation::new(&packing).map_err(|error| refused(&error))?;
@@ -375,7 +379,8 @@ impl ConstrictionsOptions {
         // In grains without a cell, constrictions near the outside do not count for the curve.
         let whole =
             |summary: &Summary| summary.grains_per_void.is_finite() && summary.mean_connectivity.is_finite();
-        let mut summary = constrictions.summary().ok().filter(whole).ok_or_else(|| {
+        let doubts = constrictions.doubts().iter().map(words::doubt).collect();
+        let mut summary = constrictions.summary(doubts).ok().filter(whole).ok_or_else(|| {
             RunError::Refused(format!(
                 "{file}: {} grains are too few: no constriction lies between two voids inside the packing. \
                  At least 5 grains that do not lie in one plane are needed for one, some thousands for a \
@@ -383,7 +388,7 @@ impl ConstrictionsOptions {
                 packing.diameter.len()
             ))
         })?;
-        notes.iter().for_each(|note| (callbacks.warn)(&format!("{file}: {note}")));
+        notes.iter().for_each(|note| (callbacks.warn)(&format!("{file}: {}", words::reading(note, &name))));
         if let Some(graph) = &graph {
             let square = graph.d32_mm * graph.d32_mm;
             let k = permeability_mm2(graph, 2).map_err(|error| refused(&error))?;

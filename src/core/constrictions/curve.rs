@@ -48,16 +48,9 @@ pub enum CurveError {
          between two; more grains of the sizes that carry the filter are needed"
     )]
     NoConstriction(usize, usize),
-    /// No filter with this name is shipped.
-    #[error("no shipped filter is called \"{name}\"; the nearest is \"{nearest}\" (shipped: {all})")]
-    UnknownFilter {
-        /// Requested name.
-        name: String,
-        /// Shipped name that is most similar.
-        nearest: String,
-        /// All shipped names.
-        all: String,
-    },
+    /// A name of no shipped filter, the most similar name, and all names.
+    #[error("no shipped filter is called \"{0}\"; the nearest is \"{1}\" (shipped: {2})")]
+    UnknownFilter(String, String, String),
 }
 
 const PERCENT: &str = "percent_smaller";
@@ -92,12 +85,8 @@ impl Curve {
     /// # Errors
     /// Errors of [`Curve::from_csv`]; the line is the point's number in the list.
     pub fn from_points(points: &[(f64, f64)], unit: CurveUnit) -> Result<Curve, CurveError> {
-        let rows: Vec<Row> = points
-            .iter()
-            .enumerate()
-            .map(|(i, &(percent, size))| Row { line: i + 1, size, percent })
-            .collect();
-        Curve::from_rows("points", Row::checked("points", rows, [unit.field(), PERCENT])?, unit)
+        let points = points.iter().map(|&(percent, size)| (size, percent));
+        Curve::from_rows("points", Row::listed(points, [unit.field(), PERCENT])?, unit)
     }
 
     /// Reads a curve from a CSV file with the columns `percent_smaller` and `diameter_mm` or
@@ -134,7 +123,7 @@ impl Curve {
             [(0, CurveUnit::Mm), (1, CurveUnit::Mm), (0, CurveUnit::D0f), (1, CurveUnit::D0f)]
         {
             if names[size_column] == unit.field() && names[1 - size_column] == PERCENT {
-                let rows = table.rows(size_column, unit.field(), PERCENT)?;
+                let rows = table.rows(size_column, [unit.field(), PERCENT])?;
                 return Curve::from_rows(&table.file, rows, unit);
             }
         }
@@ -279,7 +268,6 @@ impl Curve {
 /// A segment of a curve, linear in percent against diameter.
 #[derive(Clone, Copy, Default)]
 struct Part {
-    /// Percent at the two ends.
     percent: [f64; 2],
     diameter: [f64; 2],
 }

@@ -103,7 +103,6 @@ pub(super) fn disc(t: &Triangulation, tetrahedron: usize, corner: usize) -> Cons
     place(largest(&sections, &others, &first), true)
 }
 
-/// Tells if a circle reaches into a tangent one.
 fn cuts(disc: &Tangent<2>, other: &[f64; 3]) -> bool {
     let (x, y) = (other[0] - disc.centre[0], other[1] - disc.centre[1]);
     (x * x + y * y).sqrt() < other[2] + disc.radius * (1.0 - CONTACT)
@@ -183,6 +182,13 @@ fn distance<const N: usize>(a: &[f64; N], b: &[f64; N]) -> Option<f64> {
     (s.is_finite() && s > 0.0).then_some(s)
 }
 
+/// Makes a function that solves `d[k].x = right[k]` for `x`.
+pub(super) fn solver(d: &[[f64; 3]; 3]) -> impl Fn([f64; 3]) -> [f64; 3] {
+    let normals = [cross(&d[1], &d[2]), cross(&d[2], &d[0]), cross(&d[0], &d[1])];
+    let volume = dot(&d[0], &normals[0]);
+    move |right| std::array::from_fn(|axis| (0..3).map(|k| right[k] * normals[k][axis]).sum::<f64>() / volume)
+}
+
 /// Finds the sphere that touches four grains (centre and radius of each); `None` if there is no room.
 pub(super) fn sphere(grains: &[[f64; 4]; 4]) -> Option<Tangent<3>> {
     let first = least(grains.map(|g| g[3]));
@@ -190,11 +196,7 @@ pub(super) fn sphere(grains: &[[f64; 4]; 4]) -> Option<Tangent<3>> {
     let others = [1, 2, 3].map(|k| grains[(first + k) % 4]);
     let d = others.map(|g| offset(&origin, &g));
     let delta = others.map(|g| g[3] - origin[3]);
-    let normals = [cross(&d[1], &d[2]), cross(&d[2], &d[0]), cross(&d[0], &d[1])];
-    let volume = dot(&d[0], &normals[0]);
-    let solve = |right: [f64; 3]| -> [f64; 3] {
-        std::array::from_fn(|axis| (0..3).map(|k| right[k] * normals[k][axis]).sum::<f64>() / volume)
-    };
+    let solve = solver(&d);
     let a = solve(std::array::from_fn(|k| half_power(&d[k], delta[k])));
     let b = solve(delta.map(|delta| -delta));
     let s = distance(&a, &b)?;
@@ -229,7 +231,6 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Three circles that touch each other.
     fn touching(r: [f64; 3]) -> [[f64; 3]; 3] {
         let (ab, ac, bc) = (r[0] + r[1], r[0] + r[2], r[1] + r[2]);
         let x = (ab * ab + (r[0] - r[1]) * (ac + bc)) / (2.0 * ab);

@@ -12,6 +12,7 @@
 //! and solid angles are signed: a power centre on the far side of a facet counts as negative. So the
 //! sums over all facets are exactly the volume of the voids and the surface of the grains.
 
+use super::discs::solver;
 use super::triangulation::{GrainPoint, Shift, Triangulation, cross, dot, edges, facet, offset, six_volume};
 use super::voids::{Insphere, Voids, solid_angle};
 use super::{Constrictions, ConstrictionsError, Facets, Passages};
@@ -32,12 +33,8 @@ const LEAST_WAY: f64 = 0.05;
 /// use voidwalk_core::constrictions::VoidGraph;
 /// use voidwalk_core::packing::{Cell, Packing};
 /// // Simple cubic: 3 x 3 x 3 touching grains of 1 mm.
-/// let along = |stride: usize| (0..27).map(|i| (i / stride % 3) as f64).collect();
-/// let packing = Packing {
-///     cell: Cell::Periodic([3.0; 3]),
-///     x: along(1), y: along(3), z: along(9),
-///     diameter: vec![1.0; 27],
-/// };
+/// let grains = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9, 1].map(f64::from));
+/// let packing = Packing::from_grains(Cell::Periodic([3.0; 3]), grains);
 /// let (_, graph) = VoidGraph::measure(&packing, 0.1)?;
 /// assert_eq!((graph.voids(), graph.from.len()), (27, 81));
 /// // A cube's window, with the hydraulic radius of the cube: volume of water over surface of grains.
@@ -64,7 +61,6 @@ pub struct VoidGraph {
     pub point_mm: Vec<[f64; 3]>,
     /// Volume outside the grains (mm3) by void.
     pub volume_mm3: Vec<f64>,
-    /// Number of grains that are not hidden.
     pub(crate) grains: usize,
     /// Sum of their diameters cubed (mm3).
     pub cubes_mm3: f64,
@@ -110,18 +106,15 @@ impl VoidGraph {
             return Err(ConstrictionsError::Endless(void as u32, voids.merge_overlap));
         }
         let unit = t.unit_mm();
-        let smallest = t.spheres().iter().map(|s| s[3]).fold(f64::INFINITY, f64::min);
+        let smallest = t.least_radius();
         let points = void_points(t, voids);
         let folds: Vec<Shift> = points.iter().map(|p| fold(p, &cell)).collect();
         let centres = power_centres(t, voids);
         let (mut grains, mut squares, mut cubes) = (0, 0.0, 0.0);
-        for (grain, s) in (0u32..).zip(t.spheres()) {
-            if t.hidden().binary_search(&grain).is_err() {
-                let d = 2.0 * s[3] * unit;
-                grains += 1;
-                squares += d * d;
-                cubes += d * d * d;
-            }
+        for d in t.visible().map(|s| 2.0 * s[3] * unit) {
+            grains += 1;
+            squares += d * d;
+            cubes += d * d * d;
         }
         let cell_mm = cell.map(|l| l * unit);
         let [x, y, z] = cell_mm;
@@ -149,7 +142,7 @@ impl VoidGraph {
             let by = voids.shift[i].plus(across).minus(voids.shift[u]);
             let path = offset(&points[a], &moved(&points[b], &t.displacement(by)));
             let length = dot(&path, &path).sqrt().max(LEAST_WAY * 2.0 * smallest);
-            let throat = Throat::new(t, (i, k), (u, across), &centres);
+            let throat = Throat::new(t, (i, k), &centres);
             let conductance = throat.conductance(length) * unit * unit * unit;
             match graph.conductance_mm3.get_mut(passage.constriction) {
                 Some(sum) => *sum += conductance,
@@ -256,7 +249,6 @@ fn volumes(t: &Triangulation, voids: &Voids) -> Vec<f64> {
     volumes
 }
 
-/// Volume of a tetrahedron outside its grains.
 fn water(c: &[GrainPoint; 4]) -> f64 {
     let six = six_volume(&edges(c, 0));
     let solid: f64 = (0..4).map(|a| solid_angle(&edges(c, a), six) * c[a][3] * c[a][3] * c[a][3] / 3.0).sum();
@@ -265,23 +257,16 @@ fn water(c: &[GrainPoint; 4]) -> f64 {
 
 /// Water and grains in the bipyramid of a facet, in grid units.
 struct Throat {
-    /// Volume of water.
     volume: f64,
-    /// Surface of grains.
     surface: f64,
     /// Area of the facet outside its grains.
     area: f64,
 }
 
 impl Throat {
-    /// Makes the throat of facet `k` of tetrahedron `i` from the shifted tetrahedron across it and the
-    /// power centres.
-    fn new(
-        t: &Triangulation,
-        (i, k): (usize, usize),
-        (u, across): (usize, Shift),
-        centres: &[[f64; 3]],
-    ) -> Self {
+    /// Makes the throat of the facet opposite corner `k` of tetrahedron `i`, from the power centres.
+    fn new(t: &Triangulation, (i, k): (usize, usize), centres: &[[f64; 3]]) -> Self {
+        let (u, _, across) = t.across(i, k).expect("a facet between two tetrahedra");
         let corners = t.stored(i);
         let (facet, inside) = (facet(&corners, k), &corners[k]);
         let here = half(&facet, inside, &centres[i]);
@@ -355,34 +340,22 @@ fn power_centre(corners: &[GrainPoint; 4]) -> [f64; 3] {
         let delta = others[k][3] - origin[3];
         0.5 * (dot(&d[k], &d[k]) - delta * (others[k][3] + origin[3]))
     });
-    let normals = [cross(&d[1], &d[2]), cross(&d[2], &d[0]), cross(&d[0], &d[1])];
-    let volume = dot(&d[0], &normals[0]);
-    std::array::from_fn(|axis| {
-        origin[axis] + (0..3).map(|k| right[k] * normals[k][axis]).sum::<f64>() / volume
-    })
+    moved(&[origin[0], origin[1], origin[2]], &solver(&d)(right))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::packing::Cell;
-    use crate::stream::{Key, Purpose, unit};
-    use rand::Rng;
+    use crate::packing::{Cell, uniform};
 
     /// Grains of several sizes on a disturbed lattice.
     fn packing() -> Packing {
-        let mut rng = Key { seed: 3, purpose: Purpose::Packing, run: 0, increment: 0, chunk: 0 }.generator();
-        let mut random = || unit(rng.next_u64());
-        let n = 6usize;
-        let mut packing =
-            Packing { cell: Cell::Periodic([6.0; 3]), x: vec![], y: vec![], z: vec![], diameter: vec![] };
-        for i in 0..n * n * n {
-            packing.x.push((i % n) as f64 + 0.06 * random());
-            packing.y.push((i / n % n) as f64 + 0.06 * random());
-            packing.z.push((i / n / n) as f64 + 0.06 * random());
-            packing.diameter.push(0.9 + 0.1 * random());
-        }
-        packing
+        let mut u = uniform(3, 0);
+        let grains = (0..216).map(|i| {
+            let [x, y, z] = [i, i / 6, i / 36].map(|i| f64::from(i % 6) + 0.06 * u());
+            [x, y, z, 0.9 + 0.1 * u()]
+        });
+        Packing::from_grains(Cell::Periodic([6.0; 3]), grains)
     }
 
     /// Bipyramids fill the voids, and their solid angles cover every grain exactly once.
@@ -393,8 +366,7 @@ mod tests {
         let centres = power_centres(&t, &Voids::merge(&t, 0.1));
         let (mut volume, mut surface) = (0.0, 0.0);
         for (i, k) in (0..t.tetrahedra()).flat_map(|i| (0..4).map(move |k| (i, k))) {
-            let (u, _, across) = t.across(i, k).unwrap();
-            let throat = Throat::new(&t, (i, k), (u, across), &centres);
+            let throat = Throat::new(&t, (i, k), &centres);
             // Both sides of a facet count it.
             volume += 0.5 * throat.volume;
             surface += 0.5 * throat.surface;

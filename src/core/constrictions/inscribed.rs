@@ -226,6 +226,9 @@ mod tests {
     #[test]
     fn a_ring_touches_and_its_area_is_largest() {
         assert!((between_three([1.0, 1.0, 10.0]) - 0.233_052).abs() < 1e-6);
+        // Equal grains: `2 / sqrt(3) - 1` between three, `sqrt(2) - 1` between four.
+        assert!((between_three([1.0; 3]) - 0.154_700_538).abs() < 1e-9);
+        assert!((between_four([1.0; 4]) - 0.414_213_562).abs() < 1e-6);
         for radius in [[1.0, 2.0, 1.5, 3.0], [1.0, 1.0, 4.0, 1.0], [2.0, 1.0, 1.0, 8.0]] {
             let circle = between_four(radius);
             let smallest = radius.iter().fold(f64::MAX, |m: f64, &r| m.min(r));
@@ -246,12 +249,5 @@ mod tests {
             assert!(dc(0.0, percent) > dc(0.5, percent) && dc(0.5, percent) > dc(1.0, percent));
         }
         assert!(dc(1.0, 0.0) >= 0.154_700 && dc(1.0, 100.0) <= 2.25 * 0.154_701);
-    }
-
-    /// Equal grains: `2 / sqrt(3) - 1` between three, `sqrt(2) - 1` between four.
-    #[test]
-    fn known_circles() {
-        assert!((between_three([1.0; 3]) - 0.154_700_538).abs() < 1e-9);
-        assert!((between_four([1.0; 4]) - 0.414_213_562).abs() < 1e-6);
     }
 }

@@ -1,9 +1,7 @@
 //! Lattices, exact and disturbed: known sizes and counts.
 
 use super::{Constrictions, ConstrictionsError, Facets, Triangulation, TriangulationError};
-use crate::packing::{Cell, Packing};
-use crate::stream::{Key, Purpose, unit};
-use rand::Rng;
+use crate::packing::{Cell, Packing, uniform};
 
 /// Grains of a lattice: a basis in a box of given lengths, repeated, all of the same diameter.
 struct Lattice {
@@ -44,7 +42,6 @@ fn lattices() -> Vec<Lattice> {
     ]
 }
 
-/// Measures a packing at the usual overlap.
 fn measure(packing: &Packing) -> Constrictions {
     Constrictions::measure(packing, 0.1).unwrap()
 }
@@ -64,16 +61,14 @@ impl Lattice {
     }
 
     fn centres(&self, jitter: f64) -> [Vec<f64>; 3] {
-        let mut rng =
-            Key { seed: 5, purpose: Purpose::Packing, run: 1, increment: 0, chunk: self.per_grain as u64 }
-                .generator();
+        let mut u = uniform(5, self.per_grain as u64);
         let mut columns = [Vec::new(), Vec::new(), Vec::new()];
         for i in 0..self.repeat[0] {
             for j in 0..self.repeat[1] {
                 for k in 0..self.repeat[2] {
                     for p in &self.basis {
                         for (axis, n) in [i, j, k].into_iter().enumerate() {
-                            let moved = jitter * (2.0 * unit(rng.next_u64()) - 1.0);
+                            let moved = jitter * (2.0 * u() - 1.0);
                             columns[axis].push(p[axis] + n as f64 * self.lengths[axis] + moved);
                         }
                     }
@@ -190,7 +185,7 @@ fn a_free_block_has_the_void_ratio_of_its_middle() {
     let measured = measure(&block);
     let ratio = measured.void_ratio;
     assert!((ratio - (6.0 / std::f64::consts::PI - 1.0)).abs() < 1e-9, "{ratio}");
-    assert_eq!((measured.grains(), measured.voids()), (2 * 3 * 4, 3 * 4 * 5));
+    assert_eq!((measured.grains, measured.voids()), (2 * 3 * 4, 3 * 4 * 5));
 }
 
 #[test]
@@ -212,10 +207,9 @@ fn grains_that_cannot_be_a_packing_are_refused() {
     assert_eq!([1.0, 0.9, 1.2, 1.26].map(doubts), [(true, 0), (true, 1), (true, 1), (false, 1)]);
     let again = |by: f64| {
         move |p: &mut Packing| {
-            p.x.push(p.x[20] + by);
-            p.y.push(p.y[20]);
-            p.z.push(p.z[20]);
-            p.diameter.push(p.diameter[20]);
+            for (column, by) in [(&mut p.x, by), (&mut p.y, 0.0), (&mut p.z, 0.0), (&mut p.diameter, 0.0)] {
+                column.push(column[20] + by);
+            }
         }
     };
     for by in [0.0, 1e-9, 1e-5] {
@@ -234,15 +228,12 @@ fn grains_that_cannot_be_a_packing_are_refused() {
         [(2, 0.0, 0.0), (2, 0.4, 0.0), (2, 0.0, 0.1), (2, 0.4, 0.1), (3, 0.0, 0.1), (3, 0.4, 0.0)]
     {
         let layer = measured(&|p: &mut Packing| {
-            *p = Packing { cell: Cell::Free, x: vec![], y: vec![], z: vec![], diameter: vec![] };
-            for at in 0..144 * layers {
+            let grains = (0..144 * layers).map(|at| {
                 let (i, j, k) = ((at % 12) as f64, (at / 12 % 12) as f64, (at / 144) as f64);
                 let x = i + 0.5 * k;
-                p.x.push(x);
-                p.y.push(0.866 * j + 0.3 * k);
-                p.z.push(0.8 * k + tilt * x + rough * (at * 7 % 5) as f64 / 5.0);
-                p.diameter.push(1.0);
-            }
+                [x, 0.866 * j + 0.3 * k, 0.8 * k + tilt * x + rough * (at * 7 % 5) as f64 / 5.0, 1.0]
+            });
+            *p = Packing::from_grains(Cell::Free, grains);
         });
         let refused = matches!(layer.unwrap().check(), Err(ConstrictionsError::Outside));
         assert_eq!(refused, layers == 2, "{layers} {tilt} {rough}");
@@ -263,7 +254,7 @@ fn grains_that_cannot_be_a_packing_are_refused() {
 #[test]
 fn what_is_written_can_be_read() {
     let measured = measure(&lattices()[0].periodic(1.0, 1e-6, 0));
-    let summary = serde_json::to_value(measured.summary().unwrap()).unwrap();
+    let summary = serde_json::to_value(measured.summary(Vec::new()).unwrap()).unwrap();
     assert_eq!((&summary["grains"], &summary["voids"]), (&120.into(), &120.into()));
     assert_eq!(summary["connectivity"].as_array().unwrap().len(), 7);
     assert!((summary["dc_mm"]["1.5"].as_f64().unwrap() - 0.414).abs() < 0.01);

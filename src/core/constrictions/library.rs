@@ -82,7 +82,6 @@ pub fn from_library(gradation: &Gradation, relative_density: f64) -> Result<Opti
     LIBRARY.get_or_init(|| Library::fitted(packings(TABLE))).filter(gradation, relative_density)
 }
 
-/// A packing of the library.
 struct Shipped {
     place: [f64; PLACE],
     /// Logarithms of the curve's percentiles over `S50`, of grains per void, and of the void ratio.
@@ -108,7 +107,6 @@ fn packings(table: &str) -> Vec<Shipped> {
     .collect()
 }
 
-/// The library with its fitted model.
 struct Library {
     places: Vec<[f64; PLACE]>,
     /// Coefficients of the trend, for each measured number.
@@ -127,10 +125,9 @@ impl Library {
             })
             .collect();
         let root = root_of(covariance);
-        let solved = |column: Vec<f64>| back(&root, forward(&root, column));
         let terms: Vec<[f64; TREND]> = places.iter().map(terms).collect();
         let by_term: Vec<Vec<f64>> =
-            (0..TREND).map(|t| solved(terms.iter().map(|row| row[t]).collect())).collect();
+            (0..TREND).map(|t| solve(&root, terms.iter().map(|row| row[t]).collect())).collect();
         let normal: Vec<Vec<f64>> = (0..TREND)
             .map(|t| {
                 (0..=t).map(|u| column(&terms, t, &by_term[u]) + if t == u { RIDGE } else { 0.0 }).collect()
@@ -141,13 +138,13 @@ impl Library {
         for k in 0..packings.first().map_or(0, |packing| packing.measured.len()) {
             let mut values: Vec<f64> = packings.iter().map(|packing| packing.measured[k]).collect();
             let right = by_term.iter().map(|solution| product(solution, &values)).collect();
-            let factors = back(&normal, forward(&normal, right));
+            let factors = solve(&normal, right);
             let factors: [f64; TREND] = std::array::from_fn(|t| factors[t]);
             for (value, terms) in values.iter_mut().zip(&terms) {
                 *value -= product(terms, &factors);
             }
             trend.push(factors);
-            weights.push(solved(values));
+            weights.push(solve(&root, values));
         }
         Self { places, trend, weights }
     }
@@ -270,12 +267,8 @@ fn eliminate(columns: &[Vec<f64>], rows: &[Vec<f64>], right: &mut [f64]) {
     }
 }
 
-fn forward(root: &Root, mut right: Vec<f64>) -> Vec<f64> {
+fn solve(root: &Root, mut right: Vec<f64>) -> Vec<f64> {
     eliminate(&root.columns, &root.rows, &mut right);
-    right
-}
-
-fn back(root: &Root, mut right: Vec<f64>) -> Vec<f64> {
     for (i, row) in root.rows.iter().enumerate().rev() {
         right[i] /= row[i];
         let known = right[i];
@@ -292,7 +285,6 @@ mod tests {
     struct Predicted {
         cu: f64,
         density: f64,
-        /// Distance to the nearest shape.
         distance: f64,
         /// Relative errors of the percentiles, grains per void and void ratio.
         errors: Vec<f64>,
@@ -401,16 +393,6 @@ mod tests {
             let case = Predicted::new(&library, &packing, f64::NAN);
             let band = ERRORS.iter().position(|error| case.distance < error.up_to).unwrap();
             let LibraryError { curve, grains, .. } = &ERRORS[band];
-            println!(
-                "density {}, nearest shape at {:.2}: curve {:.1} % (states {:.0}), grains per void {:+.1} % \
-                 (states {:.0})",
-                case.density,
-                case.distance,
-                100.0 * case.of_curve(),
-                100.0 * curve,
-                100.0 * case.of_grains(),
-                100.0 * grains
-            );
             let is_beyond = [true, case.of_curve() > *curve, case.of_grains().abs() > *grains];
             beyond[band].iter_mut().zip(is_beyond).for_each(|(count, is)| *count += usize::from(is));
         }
@@ -424,7 +406,6 @@ mod tests {
         const BEFORE: usize = 126;
         let broad = left_out(|shape| shape >= BEFORE);
         let most = broad.iter().map(Predicted::of_curve).fold(0.0, f64::max);
-        println!("{} broad packings by the others: Dc5 to Dc95 within {:.2} %", broad.len(), 100.0 * most);
         assert!(broad.len() == 39 && most < 0.02, "{most}");
     }
 

@@ -23,7 +23,7 @@ pub use graph::VoidGraph;
 pub use inscribed::inscribed;
 pub use library::{FromLibrary, from_library};
 pub use shipped::{ShippedFilter, find, shipped};
-pub use summary::Summary;
+pub use summary::{Doubt, Summary};
 pub use triangulation::{Triangulation, TriangulationError};
 
 use crate::packing::Packing;
@@ -69,12 +69,8 @@ pub enum Facets {
 /// use voidwalk_core::constrictions::Constrictions;
 /// use voidwalk_core::packing::{Cell, Packing};
 /// // Simple cubic: 3 x 3 x 3 touching grains of 1 mm.
-/// let along = |stride: usize| (0..27).map(|i| (i / stride % 3) as f64).collect();
-/// let packing = Packing {
-///     cell: Cell::Periodic([3.0; 3]),
-///     x: along(1), y: along(3), z: along(9),
-///     diameter: vec![1.0; 27],
-/// };
+/// let grains = (0..27).map(|i| [i % 3, i / 3 % 3, i / 9, 1].map(f64::from));
+/// let packing = Packing::from_grains(Cell::Periodic([3.0; 3]), grains);
 /// let measured = Constrictions::measure(&packing, 0.1)?;
 /// assert_eq!((measured.voids(), measured.constrictions()), (27, 81));
 /// assert!((measured.diameter_mm[0] - 0.414_214).abs() < 1e-6);
@@ -99,7 +95,6 @@ pub struct Constrictions {
     pub(crate) closed: usize,
     /// Number of constrictions whose disc was made smaller by a fourth grain.
     pub(crate) cut: usize,
-    /// Number of tetrahedra.
     pub(crate) tetrahedra: usize,
     /// Grains inside others, ascending; they are ignored.
     pub(crate) hidden: Vec<u32>,
@@ -109,17 +104,12 @@ pub struct Constrictions {
     pub(crate) near: Vec<[u32; 2]>,
     /// Volume of voids over volume of grains (overlaps counted twice).
     pub(crate) void_ratio: f64,
-    /// Smallest grain (mm).
     pub(crate) d0_mm: f64,
-    /// Overlap from which two tetrahedra share a void.
     pub(crate) merge_overlap: f64,
-    /// Selection of the facets between voids.
     pub(crate) counted: Facets,
-    /// Region for statistics.
     region: Region,
     /// Number of grains in the region, without hidden ones.
     grains: usize,
-    /// True if a grain is surrounded by others.
     is_surrounded: bool,
 }
 
@@ -138,20 +128,14 @@ pub enum ConstrictionsError {
          less (merge_overlap = {1} now), or take more grains"
     )]
     Endless(u32, f64),
-    /// Grains lie inside others: grains side by side appear so in a cell of the wrong size or unit.
+    /// Grains inside others, as grains side by side appear to be in a cell of the wrong size or unit: their
+    /// number, the number of all grains, and the first of them.
     #[error(
-        "the grains do not fit their cell: {hidden} of {grains} lie inside others, the first of them grain \
-         {first} (counted from 0). The cell is too small, or in another unit than the grains, or grains \
-         occur twice in the file"
+        "the grains do not fit their cell: {0} of {1} lie inside others, the first of them grain {2} \
+         (counted from 0). The cell is too small, or in another unit than the grains, or grains occur twice \
+         in the file"
     )]
-    Hidden {
-        /// Grains inside others.
-        hidden: usize,
-        /// All grains.
-        grains: usize,
-        /// The first grain inside another.
-        first: u32,
-    },
+    Hidden(usize, usize, u32),
     /// Grains that occur twice: the number of such pairs, and the first pair.
     #[error(
         "{0} pairs of grains have the same centre, the first of them grains {one} and {other} (counted from \
@@ -192,6 +176,8 @@ struct Passages {
     voids: Voids,
     counted: Facets,
     open: Vec<Passage>,
+    /// Diameter and centre (mm) of each constriction.
+    constrictions: Vec<(f64, [f64; 3])>,
     /// Number of facets closed by grains.
     closed: usize,
 }
@@ -224,7 +210,6 @@ impl Passages {
         let discs: Vec<ConstrictionDisc> =
             facets.par_iter().with_min_len(256).map(|&(i, k)| disc(t, i, k)).collect();
         let (mut open, mut closed) = (Vec::new(), 0);
-        // Diameter and centre (mm) of each constriction.
         let mut constrictions: Vec<(f64, [f64; 3])> = Vec::new();
         let mut between: HashMap<(u32, u32), Vec<usize>> = HashMap::new();
         for (facet, disc) in facets.into_iter().zip(discs) {
@@ -250,7 +235,7 @@ impl Passages {
             };
             open.push(Passage { facet, across: (u, shift), constriction, disc });
         }
-        Ok(Self { voids, counted, open, closed })
+        Ok(Self { voids, counted, open, constrictions, closed })
     }
 }
 
@@ -294,21 +279,18 @@ impl Constrictions {
                 _ => {}
             }
         }
-        let mut is_hidden = vec![false; t.grains()];
-        t.hidden().iter().for_each(|&g| is_hidden[g as usize] = true);
-        let visible = || t.spheres().iter().zip(&is_hidden).filter(|(_, hidden)| !**hidden).map(|(s, _)| s);
         let region = Region::new(t);
-        let smallest = t.spheres().iter().map(|s| s[3]).fold(f64::INFINITY, f64::min);
         let void_ratio = match t.cell() {
             Some([x, y, z]) => {
-                let solid: f64 = visible().map(|s| ball(s[3])).sum();
+                let solid: f64 = t.visible().map(|s| ball(s[3])).sum();
                 (x * y * z - solid) / solid
             }
             None => void_ratio_within(t, &region),
         };
+        let (diameter_mm, centre_mm) = passages.constrictions.iter().copied().unzip();
         let mut measured = Self {
-            diameter_mm: Vec::new(),
-            centre_mm: Vec::new(),
+            diameter_mm,
+            centre_mm,
             upstream: Vec::new(),
             downstream: Vec::new(),
             void_diameter_mm,
@@ -321,31 +303,24 @@ impl Constrictions {
             near: nearer(NEAR, t, Vec::new()),
             is_surrounded: is_surrounded(t),
             void_ratio,
-            d0_mm: 2.0 * smallest * unit_mm,
+            d0_mm: 2.0 * t.least_radius() * unit_mm,
             merge_overlap: voids.merge_overlap,
             counted: passages.counted,
-            grains: visible().filter(|s| region.holds(&t.inside_mm([s[0], s[1], s[2]]))).count(),
+            grains: t.visible().filter(|s| region.holds(&t.inside_mm([s[0], s[1], s[2]]))).count(),
             region,
         };
         for passage in &passages.open {
-            if passage.constriction < measured.diameter_mm.len() {
+            if passage.constriction < measured.upstream.len() {
                 continue;
             }
             let (i, k) = passage.facet;
             let (a, b) = (voids.by_tetrahedron[i], voids.by_tetrahedron[passage.across.0]);
             measured.cut += usize::from(passage.disc.cut);
-            measured.diameter_mm.push(2.0 * passage.disc.radius * unit_mm);
-            measured.centre_mm.push(t.inside_mm(passage.disc.centre));
             let (low, high) = if leads_up(&t.stored(i), k) { (a, b) } else { (b, a) };
             measured.upstream.push(low);
             measured.downstream.push(high);
         }
         measured
-    }
-
-    /// Number of grains used for statistics.
-    pub(crate) fn grains(&self) -> usize {
-        self.grains
     }
 
     /// Number of voids used for statistics.

@@ -92,11 +92,10 @@ pub fn shipped() -> &'static [ShippedFilter] {
 /// # Ok::<(), voidwalk_core::constrictions::CurveError>(())
 /// ```
 pub fn find(name: &str) -> Result<&'static ShippedFilter, CurveError> {
-    let names = || shipped().iter().map(|f| f.name.as_str());
-    shipped().iter().find(|f| f.name == name).ok_or_else(|| CurveError::UnknownFilter {
-        name: name.into(),
-        nearest: nearest(name, names()).unwrap_or_default().into(),
-        all: names().collect::<Vec<_>>().join(", "),
+    shipped().iter().find(|filter| filter.name == name).ok_or_else(|| {
+        let all: Vec<&str> = shipped().iter().map(|filter| filter.name.as_str()).collect();
+        let nearest = nearest(name, all.iter().copied()).unwrap_or_default();
+        CurveError::UnknownFilter(name.into(), nearest.into(), all.join(", "))
     })
 }
 

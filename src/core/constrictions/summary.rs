@@ -63,15 +63,15 @@ pub struct Summary {
 }
 
 impl Constrictions {
-    /// Computes all results.
+    /// Computes all results; `warnings` are the doubts in words.
     ///
     /// # Errors
     /// Errors of [`Constrictions::curve`].
-    pub fn summary(&self) -> Result<Summary, CurveError> {
+    pub fn summary(&self, warnings: Vec<String>) -> Result<Summary, CurveError> {
         let curve = self.curve()?;
         let dc = |percent: f64| curve.dc(percent).map(|d| (percent.to_string(), d.into()));
         Ok(Summary {
-            grains: self.grains(),
+            grains: self.grains,
             voids: self.voids(),
             grains_per_void: self.grains_per_void(),
             tetrahedra: self.tetrahedra,
@@ -88,7 +88,7 @@ impl Constrictions {
             closed_facets: self.closed,
             hidden_grains: self.hidden.clone(),
             duplicate_grains: self.duplicates.clone(),
-            warnings: self.doubts(),
+            warnings,
             k_over_d32_squared: None,
             kozeny_carman_over_d32_squared: None,
         })
@@ -144,11 +144,10 @@ impl Constrictions {
     /// [`ConstrictionsError::Full`].
     pub fn check(&self) -> Result<(), ConstrictionsError> {
         match (self.hidden.first(), self.duplicates.first()) {
-            (Some(&first), _) if self.region == Region::Everything => Err(ConstrictionsError::Hidden {
-                hidden: self.hidden.len(),
-                grains: self.grains + self.hidden.len(),
-                first,
-            }),
+            (Some(&first), _) if self.region == Region::Everything => {
+                let hidden = self.hidden.len();
+                Err(ConstrictionsError::Hidden(hidden, self.grains + hidden, first))
+            }
             (_, Some(&first)) => Err(ConstrictionsError::Twice(self.duplicates.len(), first)),
             _ if !self.is_surrounded => Err(ConstrictionsError::Outside),
             // The ratio is NaN if the region holds no tetrahedron.
@@ -158,38 +157,32 @@ impl Constrictions {
     }
 
     /// Reasons to doubt that the grains are a packing.
-    pub fn doubts(&self) -> Vec<String> {
-        let (ratio, is_periodic) = (self.void_ratio, self.region == Region::Everything);
-        let rest = "grains that rest on each other hardly leave";
-        let other = if is_periodic { "the cell" } else { "their centres" };
-        let loose = match is_periodic {
-            true => "the cell may be too large, or in another unit than the grains",
-            false => "they may not touch, or diameters may be in another unit than centres",
-        };
-        let mut doubts = Vec::new();
-        if ratio > LOOSEST {
-            doubts.push(format!("the void ratio is {ratio:.4}, and {rest} more than {LOOSEST}: {loose}"));
-        }
-        if ratio < DENSEST {
-            doubts.push(format!(
-                "the void ratio is {ratio:.4}, and {rest} less than {DENSEST}: they overlap, or diameters \
-                 are in another unit than {other}"
-            ));
-        }
-        if let Some([one, other]) = self.near.first() {
-            doubts.push(format!(
-                "{} pairs of grains lie nearer than a quarter of the smaller diameter, the first of them \
-                 grains {one} and {other} (counted from 0): they may be one grain given twice",
-                self.near.len()
-            ));
-        }
-        if let Some(first) = self.hidden.first() {
-            doubts.push(format!(
-                "{} grains lie inside others and take no part, the first of them grain {first} (counted \
-                 from 0)",
-                self.hidden.len()
-            ));
-        }
-        doubts
+    pub fn doubts(&self) -> Vec<Doubt> {
+        let (void_ratio, is_periodic) = (self.void_ratio, self.region == Region::Everything);
+        let loose = Doubt::Loose { void_ratio, most: LOOSEST, is_periodic };
+        let dense = Doubt::Dense { void_ratio, least: DENSEST, is_periodic };
+        [
+            (void_ratio > LOOSEST).then_some(loose),
+            (void_ratio < DENSEST).then_some(dense),
+            self.near.first().map(|&first| Doubt::Near(self.near.len(), first)),
+            self.hidden.first().map(|&first| Doubt::Hidden(self.hidden.len(), first)),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
     }
+}
+
+/// Reasons to doubt that grains are a packing.
+#[allow(missing_docs)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Doubt {
+    /// More voids than grains that rest on each other leave.
+    Loose { void_ratio: f64, most: f64, is_periodic: bool },
+    /// Fewer voids than grains that rest on each other leave.
+    Dense { void_ratio: f64, least: f64, is_periodic: bool },
+    /// Pairs of grains nearer than a quarter of the smaller diameter: their number, and the first pair.
+    Near(usize, [u32; 2]),
+    /// Grains inside others, which take no part: their number, and the first, counted from 0.
+    Hidden(usize, u32),
 }

@@ -35,7 +35,6 @@ pub(super) enum Insphere {
     Flat,
 }
 
-/// The void of each tetrahedron.
 pub(super) struct Voids {
     /// Void by tetrahedron, numbered in the order of their first tetrahedra.
     pub(super) by_tetrahedron: Vec<u32>,
@@ -44,11 +43,8 @@ pub(super) struct Voids {
     pub(super) shift: Vec<Shift>,
     /// True for each void that meets an image of itself, and so extends through the whole periodic cell.
     pub(super) endless: Vec<bool>,
-    /// Number of voids.
     pub(super) count: usize,
-    /// Insphere by tetrahedron.
     pub(super) inspheres: Vec<Insphere>,
-    /// Overlap from which two tetrahedra share a void.
     pub(super) merge_overlap: f64,
 }
 

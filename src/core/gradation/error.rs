@@ -40,130 +40,53 @@ pub fn letters(column: u32) -> String {
 }
 
 /// A two-column table that cannot be used.
+///
+/// `file` and `folder` are as the user named them, `line` counts from 1, `value` is shortened, `is` describes
+/// the kind of the file, and `header` tells if there is one.
+#[allow(missing_docs)]
 #[derive(Debug, thiserror::Error)]
 pub enum TableError {
     /// The file cannot be opened or read.
     #[error("{file}: cannot be read: {source}")]
-    Read {
-        /// File as the user named it.
-        file: String,
-        /// Error of the system.
-        source: std::io::Error,
-    },
+    Read { file: String, source: std::io::Error },
     /// A folder in place of a file.
     #[error("{file} is a folder; allowed: a CSV file of two columns")]
-    Folder {
-        /// Folder as the user named it.
-        file: String,
-    },
+    Folder { file: String },
     /// A folder without a table.
     #[error("{folder} has no table in it; allowed: files of .{endings}")]
-    NoTables {
-        /// Folder as the user named it.
-        folder: String,
-        /// Endings of the accepted files.
-        endings: String,
-    },
+    NoTables { folder: String, endings: String },
     /// A file that is larger than the limit.
     #[error("{file} is larger than {}; allowed: a CSV file of two columns up to that size", in_mb(*.limit))]
-    TooLarge {
-        /// File as the user named it.
-        file: String,
-        /// Maximum size of a file.
-        limit: u64,
-    },
+    TooLarge { file: String, limit: u64 },
     /// Bytes that are not UTF-8 text.
     #[error("{file}, line {line}: byte 0x{byte:02X} is not UTF-8 text; allowed: a CSV file saved as UTF-8")]
-    Encoding {
-        /// File as the user named it.
-        file: String,
-        /// Line, counted from 1.
-        line: usize,
-        /// First invalid byte.
-        byte: u8,
-    },
+    Encoding { file: String, line: usize, byte: u8 },
     /// A file of another kind.
     #[error("{file} is {is}; allowed: a table as CSV, .xlsx, .ods or AGS4")]
-    Format {
-        /// File as the user named it.
-        file: String,
-        /// Description of its actual type.
-        is: String,
-    },
+    Format { file: String, is: String },
     /// A refused workbook.
     #[error("{file}: this workbook cannot be read: {why}; allowed: .xlsx or .ods, small and without macros")]
-    Workbook {
-        /// File as the user named it.
-        file: String,
-        /// Reason.
-        why: String,
-    },
+    Workbook { file: String, why: String },
     /// Several soils, and no name to choose one.
     #[error("{file} holds several soils: {soils}; name one of them, as in {}",
             quoted(&format!("{file}#{first}")))]
-    SeveralSoils {
-        /// File as the user named it.
-        file: String,
-        /// Names of the soils.
-        soils: String,
-        /// First name.
-        first: String,
-    },
+    SeveralSoils { file: String, soils: String, first: String },
     /// A soil name that is not in the file.
     #[error("{file} holds no soil called \"{name}\"; it holds {soils}")]
-    NoSuchSoil {
-        /// File as the user named it.
-        file: String,
-        /// Requested name.
-        name: String,
-        /// Names of the soils in the file.
-        soils: String,
-    },
+    NoSuchSoil { file: String, name: String, soils: String },
     /// A table without a row of numbers.
     #[error("{file} has no row of numbers{}; allowed: at least one row of two numbers",
             if *.header { " below its header" } else { "" })]
-    NoRows {
-        /// File as the user named it.
-        file: String,
-        /// True if there is a header.
-        header: bool,
-    },
+    NoRows { file: String, header: bool },
     /// A row without exactly two fields.
     #[error("{file}, line {line}: {found} field(s) in \"{value}\"; allowed: {allowed}")]
-    Fields {
-        /// File as the user named it.
-        file: String,
-        /// Line, counted from 1.
-        line: usize,
-        /// Number of fields found.
-        found: usize,
-        /// The row, shortened.
-        value: String,
-        /// Allowed form of a row.
-        allowed: &'static str,
-    },
+    Fields { file: String, line: usize, found: usize, value: String, allowed: &'static str },
     /// A header that names the wrong columns.
     #[error("{file}, line {line}, header: \"{value}\" is not allowed; allowed: {allowed}")]
-    Header {
-        /// File as the user named it.
-        file: String,
-        /// Line, counted from 1.
-        line: usize,
-        /// The header, shortened.
-        value: String,
-        /// Allowed headers.
-        allowed: String,
-    },
+    Header { file: String, line: usize, value: String, allowed: String },
     /// A value that is not allowed at its place.
     #[error("{at}: \"{value}\" is not allowed; allowed: {allowed}")]
-    Value {
-        /// Place of the value.
-        at: Position,
-        /// The value, shortened.
-        value: String,
-        /// Allowed values.
-        allowed: String,
-    },
+    Value { at: Position, value: String, allowed: String },
 }
 
 impl TableError {
@@ -216,11 +139,8 @@ pub enum GradationError {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{name} = {value:?} is not allowed; allowed: {allowed}")]
 pub struct NumberError {
-    /// Name of the number.
     pub(crate) name: &'static str,
-    /// The number.
     pub(crate) value: f64,
-    /// Allowed values.
     pub(crate) allowed: String,
 }
 
@@ -229,7 +149,6 @@ impl NumberError {
         NumberError { name, value, allowed: allowed.into() }
     }
 
-    /// Refuses a `value` that is not allowed.
     pub(crate) fn unless(
         is_right: bool,
         name: &'static str,
@@ -239,7 +158,6 @@ impl NumberError {
         if is_right { Ok(()) } else { Err(NumberError::new(name, value, allowed())) }
     }
 
-    /// Refuses a `value` that is not positive and finite.
     pub(crate) fn unless_positive(name: &'static str, value: f64) -> Result<(), NumberError> {
         let is_right = value > 0.0 && value.is_finite();
         NumberError::unless(is_right, name, value, || "a positive finite number".into())

@@ -15,62 +15,15 @@ const BOULDERS_MM: f64 = 300.0;
 /// Minimum percentage of gravel in a sand "with gravel", and of sand in a gravel "with sand".
 const WITH_OTHER: f64 = 15.0;
 
-/// A group. Above 12 % of fines it depends on their plasticity, and the shape is not needed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Group {
-    FineGrained,
-    ManyFines { is_gravel: bool, has_other: bool },
-    FewFines { is_gravel: bool, is_well_graded: bool, has_fines: bool, has_other: bool },
-}
-
-impl Group {
-    /// Finds the group of a soil from its percentages of fines and gravel, and its Cu and Cc.
-    fn classify(fines: f64, gravel: f64, shape: Option<(f64, f64)>) -> Option<Self> {
-        if fines >= 50.0 {
-            return Some(Self::FineGrained);
-        }
-        let is_gravel = gravel > (100.0 - fines) / 2.0;
-        // A sand with gravel, or a gravel with sand.
-        let other = if is_gravel { 100.0 - fines - gravel } else { gravel };
-        let has_other = other >= WITH_OTHER;
-        if fines > 12.0 {
-            return Some(Self::ManyFines { is_gravel, has_other });
-        }
-        let (cu, cc) = shape?;
-        let least_cu = if is_gravel { 4.0 } else { 6.0 };
-        let is_well_graded = cu >= least_cu && (1.0..=3.0).contains(&cc);
-        Some(Self::FewFines { is_gravel, is_well_graded, has_fines: fines >= 5.0, has_other })
-    }
-
-    /// Returns the symbol, or both possible symbols if the plasticity of the fines decides.
-    fn symbol(self) -> String {
-        match self {
-            Self::FineGrained => "fine-grained".into(),
-            Self::ManyFines { is_gravel: true, .. } => "GM or GC".into(),
-            Self::ManyFines { .. } => "SM or SC".into(),
-            Self::FewFines { is_gravel, is_well_graded, has_fines, .. } => {
-                let kind = if is_gravel { 'G' } else { 'S' };
-                let clean = format!("{kind}{}", if is_well_graded { 'W' } else { 'P' });
-                if has_fines { format!("{clean}-{kind}M or {clean}-{kind}C") } else { clean }
-            }
-        }
-    }
-
-    /// Returns sand or gravel if the soil has enough of the one that its name omits.
-    fn other(self) -> Option<&'static str> {
-        match self {
-            Self::ManyFines { is_gravel, has_other: true }
-            | Self::FewFines { is_gravel, has_other: true, .. } => {
-                Some(if is_gravel { "sand" } else { "gravel" })
-            }
-            _ => None,
-        }
-    }
-}
-
 /// Classification of a soil by the standard: the group of its fraction finer than 75 mm, and the rest.
 struct Class {
-    group: Group,
+    /// Percent of fines; above 12 % the group depends on their plasticity, from 50 % on they alone count.
+    fines: f64,
+    is_gravel: bool,
+    /// True for well-graded soils; not needed above 12 % of fines.
+    is_well_graded: bool,
+    /// True for sands with gravel, and gravels with sand.
+    has_other: bool,
     has_cobbles: bool,
     has_boulders: bool,
 }
@@ -89,15 +42,29 @@ impl Class {
             return None;
         }
         let gravel = 100.0 - part.percent_finer_by_mass(GRAVEL_MM);
-        let group = Group::classify(fines, gravel, part.cu().zip(part.cc()))?;
-        Some(Self { group, has_cobbles, has_boulders: soil.largest_mm() > BOULDERS_MM })
+        let class = Self::fine(fines, gravel, part.cu().zip(part.cc()))?;
+        Some(Self { has_cobbles, has_boulders: soil.largest_mm() > BOULDERS_MM, ..class })
+    }
+
+    /// Classifies a soil without cobbles from its percentages of fines and gravel, and its Cu and Cc.
+    fn fine(fines: f64, gravel: f64, shape: Option<(f64, f64)>) -> Option<Self> {
+        let is_gravel = gravel > (100.0 - fines) / 2.0;
+        let other = if is_gravel { 100.0 - fines - gravel } else { gravel };
+        let least_cu = if is_gravel { 4.0 } else { 6.0 };
+        let is_well_graded = match shape {
+            Some((cu, cc)) => cu >= least_cu && (1.0..=3.0).contains(&cc),
+            None if fines > 12.0 => false,
+            None => return None,
+        };
+        let has_other = fines < 50.0 && other >= WITH_OTHER;
+        Some(Self { fines, is_gravel, is_well_graded, has_other, has_cobbles: false, has_boulders: false })
     }
 
     /// Makes a suffix such as `, with gravel and cobbles`.
     fn with(&self) -> String {
-        let cobbles = self.has_cobbles.then_some("cobbles");
-        let boulders = self.has_boulders.then_some("boulders");
-        let all: Vec<&str> = [self.group.other(), cobbles, boulders].into_iter().flatten().collect();
+        let other = if self.is_gravel { "sand" } else { "gravel" };
+        let all = [(self.has_other, other), (self.has_cobbles, "cobbles"), (self.has_boulders, "boulders")];
+        let all: Vec<&str> = all.into_iter().filter(|(has, _)| *has).map(|(_, name)| name).collect();
         match all.split_last() {
             None => String::new(),
             Some((last, [])) => format!(", with {last}"),
@@ -105,30 +72,40 @@ impl Class {
         }
     }
 
+    /// Makes the symbol, or both possible symbols if the plasticity of the fines decides.
     fn symbol(&self) -> String {
-        format!("{}{}", self.group.symbol(), self.with())
+        let kind = if self.is_gravel { 'G' } else { 'S' };
+        let grade = if self.is_well_graded { 'W' } else { 'P' };
+        let symbol = match self.fines {
+            50.0.. => "fine-grained".into(),
+            fines if fines > 12.0 => format!("{kind}M or {kind}C"),
+            5.0.. => format!("{kind}{grade}-{kind}M or {kind}{grade}-{kind}C"),
+            _ => format!("{kind}{grade}"),
+        };
+        symbol + &self.with()
     }
 
-    /// Returns the name and symbol.
-    fn in_words(&self) -> String {
-        let noun = |is_gravel| if is_gravel { "gravel" } else { "sand" };
-        let part = if self.has_cobbles { " in the part finer than 75 mm" } else { "" };
-        let name = match self.group {
-            Group::FineGrained => {
-                let scope = if self.has_cobbles { " of the part finer than 75 mm" } else { "" };
-                let with = self.with();
-                return format!(
-                    "fine-grained soil (half or more{scope} is finer than 0.075 mm): silt or clay{with}"
-                );
-            }
-            Group::ManyFines { is_gravel, .. } => format!("{} with more than 12 % fines", noun(is_gravel)),
-            Group::FewFines { is_gravel, is_well_graded, has_fines, .. } => {
-                let word = if is_well_graded { "well-graded" } else { "poorly graded" };
-                let fines = if has_fines { " with silt or clay" } else { "" };
-                format!("{word} {}{fines}", noun(is_gravel))
-            }
+    fn name(&self) -> String {
+        if self.fines >= 50.0 {
+            let scope = if self.has_cobbles { " of the part finer than 75 mm" } else { "" };
+            let with = self.with();
+            return format!(
+                "fine-grained soil (half or more{scope} is finer than 0.075 mm): silt or clay{with}"
+            );
+        }
+        let grade = match self.is_well_graded {
+            _ if self.fines > 12.0 => "",
+            true => "well-graded ",
+            false => "poorly graded ",
         };
-        format!("{name}{part}: {}", self.symbol())
+        let soil = if self.is_gravel { "gravel" } else { "sand" };
+        let fines = match self.fines {
+            fines if fines > 12.0 => " with more than 12 % fines",
+            5.0.. => " with silt or clay",
+            _ => "",
+        };
+        let part = if self.has_cobbles { " in the part finer than 75 mm" } else { "" };
+        format!("{grade}{soil}{fines}{part}: {}", self.symbol())
     }
 }
 
@@ -142,7 +119,7 @@ impl Gradation {
 
     /// Returns the name of the soil and its group symbol.
     pub fn group_in_words(&self) -> Option<String> {
-        Class::classify(self).map(|class| class.in_words())
+        Class::classify(self).map(|class| class.name())
     }
 }
 
@@ -154,49 +131,40 @@ mod tests {
         Gradation::from_points(points, None).unwrap()
     }
 
-    fn group(points: &[(f64, f64)]) -> Option<String> {
-        soil(points).group()
-    }
+    /// Points of a soil, and its group.
+    type Case<'a> = (&'a [(f64, f64)], Option<&'a str>);
 
     #[test]
     fn groups_are_those_of_the_standard() {
         let well = [(0.075, 3.0), (0.2, 10.0), (0.7, 30.0), (2.0, 60.0), (9.5, 100.0)];
-        assert_eq!(group(&well).as_deref(), Some("SW, with gravel"));
-        assert_eq!(group(&[(0.5, 0.0), (1.0, 100.0)]).as_deref(), Some("SP"));
-        assert_eq!(group(&[(5.0, 0.0), (10.0, 100.0)]).as_deref(), Some("GP"));
         let wide = [(1.0, 2.0), (2.0, 10.0), (7.0, 30.0), (20.0, 60.0), (60.0, 100.0)];
-        assert_eq!(group(&wide).as_deref(), Some("GW, with sand"));
         let dual = [(0.075, 8.0), (0.15, 10.0), (0.3, 30.0), (0.6, 60.0), (2.0, 100.0)];
-        assert_eq!(group(&dual).as_deref(), Some("SP-SM or SP-SC"));
-        assert_eq!(group(&[(0.075, 22.0), (0.3, 85.0), (0.6, 100.0)]).as_deref(), Some("SM or SC"));
-        // Exactly half of the fraction coarser than No. 200 is gravel.
-        assert_eq!(
-            group(&[(0.075, 20.0), (4.75, 60.0), (19.0, 100.0)]).as_deref(),
-            Some("SM or SC, with gravel")
-        );
-        let gravel = group(&[(0.075, 20.0), (4.75, 59.0), (19.0, 100.0)]);
-        assert_eq!(gravel.as_deref(), Some("GM or GC, with sand"));
-        for (finer, name) in [(85.0, "SM or SC, with gravel"), (85.1, "SM or SC")] {
-            let sand = [(0.075, 20.0), (4.75, finer), (19.0, 100.0)];
-            assert_eq!(group(&sand).as_deref(), Some(name));
+        let cases: [Case<'_>; 17] = [
+            (&well, Some("SW, with gravel")),
+            (&[(0.5, 0.0), (1.0, 100.0)], Some("SP")),
+            (&[(5.0, 0.0), (10.0, 100.0)], Some("GP")),
+            (&wide, Some("GW, with sand")),
+            (&dual, Some("SP-SM or SP-SC")),
+            (&[(0.075, 22.0), (0.3, 85.0), (0.6, 100.0)], Some("SM or SC")),
+            // Exactly half of the fraction coarser than No. 200 is gravel.
+            (&[(0.075, 20.0), (4.75, 60.0), (19.0, 100.0)], Some("SM or SC, with gravel")),
+            (&[(0.075, 20.0), (4.75, 59.0), (19.0, 100.0)], Some("GM or GC, with sand")),
+            // Sand or gravel beside the other is named from 15 %, for every group.
+            (&[(0.075, 20.0), (4.75, 85.0), (19.0, 100.0)], Some("SM or SC, with gravel")),
+            (&[(0.075, 20.0), (4.75, 85.1), (19.0, 100.0)], Some("SM or SC")),
+            (&[(0.075, 7.0), (0.3, 30.0), (4.75, 85.0), (19.0, 100.0)], Some("SP-SM or SP-SC, with gravel")),
+            (&[(0.075, 7.0), (0.3, 30.0), (4.75, 85.1), (19.0, 100.0)], Some("SP-SM or SP-SC")),
+            (&[(0.075, 3.0), (4.75, 18.0), (19.0, 100.0)], Some("GP, with sand")),
+            (&[(0.075, 3.0), (4.75, 17.9), (19.0, 100.0)], Some("GP")),
+            (&[(0.01, 0.0), (0.075, 50.0), (0.3, 100.0)], Some("fine-grained")),
+            // The fines were not sieved; this does not matter if there are few.
+            (&[(0.3, 25.0), (1.0, 100.0)], None),
+            (&[(0.3, 4.0), (1.0, 100.0)], Some("SP")),
+        ];
+        for (points, symbol) in cases {
+            assert_eq!(soil(points).group().as_deref(), symbol, "{points:?}");
         }
-        assert_eq!(group(&[(0.01, 0.0), (0.075, 50.0), (0.3, 100.0)]).as_deref(), Some("fine-grained"));
-        // The fines were not sieved; this does not matter if there are few.
-        assert_eq!(group(&[(0.3, 25.0), (1.0, 100.0)]), None);
-        assert_eq!(group(&[(0.3, 4.0), (1.0, 100.0)]).as_deref(), Some("SP"));
-        assert_eq!(group(&[(5.0, 5.0), (10.0, 100.0)]), None);
-    }
-
-    #[test]
-    fn sand_or_gravel_beside_the_other_is_named_from_15_percent_for_every_group() {
-        for (finer, name) in [(85.0, "SP-SM or SP-SC, with gravel"), (85.1, "SP-SM or SP-SC")] {
-            let sand = [(0.075, 7.0), (0.3, 30.0), (4.75, finer), (19.0, 100.0)];
-            assert_eq!(group(&sand).as_deref(), Some(name));
-        }
-        for (finer, name) in [(18.0, "GP, with sand"), (17.9, "GP")] {
-            let gravel = [(0.075, 3.0), (4.75, finer), (19.0, 100.0)];
-            assert_eq!(group(&gravel).as_deref(), Some(name));
-        }
+        assert_eq!(soil(&[(5.0, 5.0), (10.0, 100.0)]).group(), None);
     }
 
     /// The whole is a gravel, the classified fraction a sand.
@@ -236,9 +204,7 @@ mod tests {
             (2.0, 10.0, None, None),
             (50.0, 0.0, None, Some("fine-grained soil (half or more is finer than 0.075 mm): silt or clay")),
         ] {
-            let group = Group::classify(fines, gravel, shape);
-            let class = group.map(|group| Class { group, has_cobbles: false, has_boulders: false });
-            assert_eq!(class.map(|class| class.in_words()).as_deref(), expected);
+            assert_eq!(Class::fine(fines, gravel, shape).map(|class| class.name()).as_deref(), expected);
         }
     }
 }

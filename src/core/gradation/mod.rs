@@ -3,11 +3,8 @@
 //! - [`Gradation`] is a sieve curve, percent finer by mass, linear in percent against ln(size) between
 //!   its points. "Linear" in the paper is one such straight line: `D_x = D_0 Cu^(x / 50)`, so
 //!   `D_60 / D_10 = Cu` and `D_100 / D_0 = Cu^2`.
-//! - [`SizeSampler`] draws diameters from it by number.
-//! - [`Gradation::kenney_lau`] and [`Gradation::kezdi`] tell if a soil retains its own fines, as do
-//!   [`Gradation::li_fannin`] and [`Gradation::uniformity_factors`]; [`Gradation::gap`] finds missing
-//!   sizes; [`Gradation::regraded`] regrades a base by filter practice.
-//! - [`base_particles`] is Eq. (2) of the paper: the number of base particles inserted in a test.
+//! - [`SizeSampler`] draws diameters from it by number; [`base_particles`] is Eq. (2) of the paper.
+//! - `stability` tells if a soil retains its own fines, `regrade` regrades a base by filter practice.
 //!
 //! # By mass and by number
 //! Between two points of a curve the mass is spread evenly over ln(D), so the number of particles
@@ -31,19 +28,16 @@ mod stability;
 mod supply;
 mod table;
 
-pub use error::NumberError;
-pub use error::{GradationError, Position, TableError, letters, shortened};
+pub use error::{GradationError, NumberError, Position, TableError, letters, shortened};
 pub use regrade::{BROAD_CU, FEW_FINES, GAP_PERCENT, Gap, RegradeCause, RegradeReason, Regraded};
 pub(crate) use sampler::SizeGuide;
-pub use sampler::SizeRange;
-pub use sampler::SizeSampler;
-pub use sieve::Gradation;
-pub use sieve::from_rows;
-pub use sieve::{CurvePoint, FIELDS, FINES_MM, GRAVEL_MM};
-pub use sieve::{End, Step};
+pub use sampler::{SizeRange, SizeSampler};
+pub use sieve::{CurvePoint, End, FIELDS, FINES_MM, GRAVEL_MM, Gradation, Step, from_rows};
 pub use sieve::{TIE, USUAL_STEP, WIDE_STEP};
 pub use stability::{KEZDI_RANGE, ShapeIndex, SoilSplit, WIDE_LOOSE_PERCENT};
 pub use supply::{BaseSupply, base_particles};
-pub use table::{Comma, FILE_LIMIT_BYTES, Row, allowed_percent, allowed_size};
+pub use table::{
+    Comma, FILE_LIMIT_BYTES, Row, allowed_percent, allowed_size, bytes_of, comma, number, percent_is_allowed,
+    size_is_allowed,
+};
 pub(crate) use table::{Direction, Table, check_size, rising};
-pub use table::{bytes_of, comma, number, percent_is_allowed, size_is_allowed};

@@ -137,7 +137,7 @@ impl Gradation {
     /// D2487, or 4, the limit of gravels; `None` if D10 is not known. The manual also requires Cc of 1
     /// to 3 and leaves the decision to the engineer; a soil of that Cu whose Cc is outside has more of
     /// one size and is no narrower.
-    pub(crate) fn is_broad(&self) -> Option<bool> {
+    fn is_broad(&self) -> Option<bool> {
         let coarse = 100.0 - self.percent_finer_by_mass(FINES_MM);
         let gravel = 100.0 - self.percent_finer_by_mass(GRAVEL_MM);
         let least_cu = if gravel > coarse / 2.0 { 4.0 } else { 6.0 };

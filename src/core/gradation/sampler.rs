@@ -4,7 +4,6 @@ use super::{Gradation, GradationError, NumberError};
 use crate::stream::unit;
 use std::ops::Range;
 
-/// Number of 64-bit words: 2^64.
 const ALL_WORDS: u128 = 1 << 64;
 
 /// Base-2 logarithm of the maximum number of buckets of a guide.
@@ -41,18 +40,7 @@ impl Segment {
     /// finer than the returned f32.
     #[inline(always)]
     fn diameter(&self, v: f64) -> f32 {
-        root_within(self.y_at(v), [self.a, self.b])
-    }
-
-    /// `v` at the diameter `d`, not rounded to f32.
-    fn v_at(&self, d: f64) -> f64 {
-        if d >= self.b {
-            self.v_b
-        } else if d < self.a || self.slope == 0.0 {
-            self.v_a
-        } else {
-            (self.v_b + (1.0 / (d * d * d) - self.y_b) / self.slope).clamp(self.v_b, self.v_a)
-        }
+        within(inverse_cube_root(coarse(self.y_at(v))), [self.a, self.b])
     }
 
     /// `D^-3` at `v`.
@@ -69,13 +57,7 @@ impl Segment {
     }
 }
 
-/// Computes `y^(-1/3)` from 40 bits of the mantissa of `y`, clamped to `a` and `b`.
-#[inline(always)]
-fn root_within(y: f64, bounds: [f64; 2]) -> f32 {
-    within(inverse_cube_root(coarse(y)), bounds)
-}
-
-/// Applies [`root_within`] to each number, with bounds `least` and `most`.
+/// Computes `y^(-1/3)` from 40 bits of the mantissa of each number, clamped to `least` and `most`.
 #[inline(always)]
 fn roots_within(
     mut y: [f64; AT_ONCE],
@@ -89,13 +71,11 @@ fn roots_within(
     }
 }
 
-/// Keeps 40 bits of the mantissa.
 #[inline(always)]
 fn coarse(y: f64) -> f64 {
     f64::from_bits(y.to_bits() & COARSE)
 }
 
-/// Clamps to the range from `a` to `b`.
 #[inline(always)]
 fn within(d: f64, [a, b]: [f64; 2]) -> f32 {
     let d = if d > a { d } else { a };
@@ -331,20 +311,12 @@ impl SizeRange<'_> {
 
     /// Mean of the cubed diameter; `None` if the range is empty.
     pub fn mean_cube(&self) -> Option<f64> {
-        let width = self.number_fraction();
-        (width > 0.0).then(|| self.cubes(0.0) / width)
-    }
-
-    /// Fraction of this range's particles, 0 to 1, no coarser than `d`; `None` if the range is empty.
-    pub fn finer_by_number(&self, d: f64) -> Option<f64> {
-        let width = self.number_fraction();
-        (width > 0.0).then(|| ((self.v_fine - self.v_at(d)) / width).clamp(0.0, 1.0))
-    }
-
-    /// Fraction of this range's mass, 0 to 1, no coarser than `d`; `None` if the range is empty.
-    pub fn finer_by_mass(&self, d: f64) -> Option<f64> {
-        let all = self.cubes(0.0);
-        (all > 0.0).then(|| (self.cubes(self.v_at(d)) / all).clamp(0.0, 1.0))
+        let one = |s: &Segment| {
+            let (low, high) = (s.v_b.max(self.v_coarse), s.v_a.min(self.v_fine));
+            if low < high { s.cubes(low, high) } else { 0.0 }
+        };
+        let (width, all): (f64, f64) = (self.number_fraction(), self.sampler.segments.iter().map(one).sum());
+        (width > 0.0).then(|| all / width)
     }
 
     /// Diameter that `share` (0 to 1) of this range's particles do not exceed; `None` if the range is
@@ -356,30 +328,6 @@ impl SizeRange<'_> {
         let v = (self.v_fine - share * (self.v_fine - self.v_coarse)).max(self.v_coarse);
         let segment = self.sampler.segments[self.sampler.segment(0, v)];
         Some((1.0 / libm::cbrt(segment.y_at(v))).clamp(segment.a, segment.b))
-    }
-
-    /// Diameter that `share` (0 to 1) of this range's mass does not exceed; `None` if the range is empty
-    /// or `share` is outside 0 to 1.
-    pub fn d_by_mass(&self, share: f64) -> Option<f64> {
-        if self.words.is_empty() || !(0.0..=1.0).contains(&share) {
-            return None;
-        }
-        let mut left = share * self.cubes(0.0);
-        let mut size = None;
-        for segment in &self.sampler.segments {
-            let (low, high) = (segment.v_b.max(self.v_coarse), segment.v_a.min(self.v_fine));
-            if low > high {
-                continue;
-            }
-            let mass = segment.cubes(low, high);
-            let y = segment.y_at(high) * libm::exp(-left.clamp(0.0, mass) * segment.slope);
-            size = Some((1.0 / libm::cbrt(y)).clamp(segment.a, segment.b));
-            if left <= mass {
-                break;
-            }
-            left -= mass;
-        }
-        size
     }
 
     /// Draws the largest diameter among `count` particles of this range; `None` if there are no particles.
@@ -394,24 +342,6 @@ impl SizeRange<'_> {
         let below = ((gap * width as f64) as u128).min(width - 1);
         Some(self.sampler.diameter((self.words.end - 1 - below) as u64))
     }
-
-    /// `v` at `d`, clamped to this range.
-    fn v_at(&self, d: f64) -> f64 {
-        let segments = &self.sampler.segments;
-        let i = segments.partition_point(|s| s.b <= d);
-        let v = segments.get(i).map_or(0.0, |s| s.v_at(d));
-        v.clamp(self.v_coarse, self.v_fine)
-    }
-
-    /// Integral of `D^3` over this range from its finest particle up to `v`.
-    fn cubes(&self, v: f64) -> f64 {
-        let coarse = v.max(self.v_coarse);
-        let one = |s: &Segment| {
-            let (low, high) = (s.v_b.max(coarse), s.v_a.min(self.v_fine));
-            if low < high { s.cubes(low, high) } else { 0.0 }
-        };
-        self.sampler.segments.iter().map(one).sum()
-    }
 }
 
 /// Top half of the bits of the start value at x = 1, in units of the exponent's lowest bit / 2^20.
@@ -422,7 +352,7 @@ const MAGIC: u64 = 0x553e_f0ff;
 
 /// `x^(-1/3)` for a positive normal `x`, within 2 units in the last place.
 #[inline(always)]
-pub(crate) fn inverse_cube_root(x: f64) -> f64 {
+fn inverse_cube_root(x: f64) -> f64 {
     inverse_cube_roots(&[x])[0]
 }
 
@@ -517,13 +447,5 @@ mod tests {
         }
         assert!(worst <= 2.0, "{worst}");
         assert!(worst > 0.4, "the reference must see rounding: {worst}");
-    }
-
-    #[test]
-    fn known_roots() {
-        for (x, root) in [(1.0, 1.0), (8.0, 0.5), (0.125, 2.0), (1e-72, 1e24), (1e72, 1e-24)] {
-            let computed = inverse_cube_root(x);
-            assert!((computed / root - 1.0f64).abs() < 1e-15, "{x} {computed}");
-        }
     }
 }

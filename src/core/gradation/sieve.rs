@@ -89,8 +89,7 @@ impl Gradation {
     /// # Errors
     /// Rows that are not a sieve curve; the line is the point's number in the list.
     pub fn from_points(points: &[(f64, f64)], d0_mm: Option<f64>) -> Result<Gradation, GradationError> {
-        let rows = points.iter().enumerate().map(|(i, &(size, percent))| Row { line: i + 1, size, percent });
-        from_rows("points", Row::checked("points", rows.collect(), FIELDS)?, d0_mm)
+        from_rows("points", Row::listed(points.iter().copied(), FIELDS)?, d0_mm)
     }
 
     /// Makes a curve given as straight lines between these points, not by sieves: nothing is uncertain
@@ -289,7 +288,6 @@ pub(super) fn count(a: f64, l: f64, m: f64) -> f64 {
     2.0 * m / (PI * (a * a * a)) * shape(l)
 }
 
-/// Numbers of particles finer than each point, per mm3 of solid.
 fn cumulative(size_mm: &[f64], percent: &[f64], log_ratio: &[f64]) -> Vec<f64> {
     if let [d] = size_mm {
         return vec![6.0 / (PI * (d * d * d))];
@@ -409,7 +407,6 @@ impl Gradation {
         at_once.chain(parts.map(|percent| ends.map(|end| (end, percent)).to_vec())).collect()
     }
 
-    /// Percent finer at each of the two sieves of a step.
     fn percents(&self, step: &Step) -> [f64; 2] {
         [self.percent[step.segment], self.percent[step.segment + 1]]
     }

@@ -299,16 +299,9 @@ mod tests {
     #[test]
     fn ends_of_a_curve_raise_no_alarm() {
         let clean = points(&[(0.075, 0.5), (0.3, 2.0), (0.6, 10.0), (1.2, 40.0), (4.0, 100.0)]);
-        let c33 = points(&[
-            (0.075, 1.5),
-            (0.15, 5.0),
-            (0.3, 17.5),
-            (0.6, 37.5),
-            (1.18, 67.5),
-            (2.36, 90.0),
-            (4.75, 97.5),
-            (9.5, 100.0),
-        ]);
+        let sizes = [0.075, 0.15, 0.3, 0.6, 1.18, 2.36, 4.75, 9.5];
+        let percents = [1.5, 5.0, 17.5, 37.5, 67.5, 90.0, 97.5, 100.0];
+        let c33 = points(&sizes.into_iter().zip(percents).collect::<Vec<_>>());
         assert!(clean.d(15.5).unwrap() / clean.d(0.5).unwrap() > 4.0);
         assert!(c33.d(100.0).unwrap() / c33.d(85.0).unwrap() > 4.0);
         for soil in [clean, c33] {

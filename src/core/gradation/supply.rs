@@ -96,14 +96,8 @@ impl Gradation {
     /// Fraction by number, 0 to 1, of the particles of known size that are coarser than `low_mm` and no
     /// coarser than `high_mm`.
     pub fn number_fraction_in(&self, low_mm: f64, high_mm: f64) -> f64 {
-        (self.number_in(low_mm, high_mm) / self.particles_per_unit_volume()).min(1.0)
-    }
-
-    /// Particles per mm3 of solid in `low_mm < D <= high_mm`.
-    fn number_in(&self, low_mm: f64, high_mm: f64) -> f64 {
         if self.size_mm.len() == 1 {
-            let inside = low_mm < self.size_mm[0] && self.size_mm[0] <= high_mm;
-            return if inside { self.number[0] } else { 0.0 };
+            return f64::from(u8::from(low_mm < self.size_mm[0] && self.size_mm[0] <= high_mm));
         }
         let mut number = 0.0;
         for (i, &whole) in self.log_ratio.iter().enumerate() {
@@ -120,7 +114,7 @@ impl Gradation {
                 number += count(from, l, if whole > 0.0 { (m * (l / whole)).min(m) } else { m });
             }
         }
-        number
+        (number / self.particles_per_unit_volume()).min(1.0)
     }
 
     /// Fraction, 0 to 1, of the surface of the particles of known size that belongs to those coarser
@@ -195,21 +189,15 @@ mod tests {
     fn what_cannot_be_counted_is_refused() {
         let g = Gradation::single(1.0).unwrap();
         let dust = Gradation::single(1e-9).unwrap();
-        for (ratio, grains, voids, base, text) in [
-            (0.0, 1.0, 1, &g, "mass_ratio = 0.0 is not allowed; allowed: a positive finite number"),
-            (f64::NAN, 1.0, 1, &g, "mass_ratio = NaN is not allowed; allowed: a positive finite number"),
-            (
-                1.0,
-                f64::INFINITY,
-                1,
-                &g,
-                "grains_per_void = inf is not allowed; allowed: a positive finite number",
-            ),
-            (1.0, 1.0, 0, &g, "voids = 0.0 is not allowed; allowed: at least one void"),
-            (1.0, 1.0, 1, &dust, "n_base = 9.999999999999999e26 is not allowed; allowed: less than 2^64"),
+        for (ratio, grains, voids, base, value, allowed) in [
+            (0.0, 1.0, 1, &g, "mass_ratio = 0.0", "a positive finite number"),
+            (f64::NAN, 1.0, 1, &g, "mass_ratio = NaN", "a positive finite number"),
+            (1.0, f64::INFINITY, 1, &g, "grains_per_void = inf", "a positive finite number"),
+            (1.0, 1.0, 0, &g, "voids = 0.0", "at least one void"),
+            (1.0, 1.0, 1, &dust, "n_base = 9.999999999999999e26", "less than 2^64"),
         ] {
             let error = base_particles(ratio, grains, voids, base, &g, None).unwrap_err();
-            assert_eq!(error.to_string(), text);
+            assert_eq!(error.to_string(), format!("{value} is not allowed; allowed: {allowed}"));
         }
         assert_eq!(base_particles(1e-30, 1.0, 1, &g, &g, None).unwrap().n_base, 0);
     }

@@ -28,36 +28,44 @@ pub struct Row {
 }
 
 impl Row {
-    /// Makes `rows` from a list instead of a file, and checks the values.
-    pub(crate) fn checked(
+    /// Makes a row from the texts and numbers of its size and percent.
+    ///
+    /// # Errors
+    /// A text that is not a number, or a number that is not allowed.
+    fn checked(
         file: &str,
-        mut rows: Vec<Row>,
-        [size_field, percent_field]: [&'static str; 2],
+        line: usize,
+        fields: [&'static str; 2],
+        texts: [&str; 2],
+        [size, percent]: [Option<f64>; 2],
+    ) -> Result<Row, TableError> {
+        let refused = |at: usize, allowed| TableError::refused(file, line, fields[at], texts[at], allowed);
+        let size = size.filter(|&v| size_is_allowed(v)).ok_or_else(|| refused(0, allowed_size()))?;
+        let percent = percent.filter(|&v| percent_is_allowed(v));
+        let percent = percent.ok_or_else(|| refused(1, allowed_percent()))?;
+        // Minus zero is zero.
+        Ok(Row { line, size, percent: percent + 0.0 })
+    }
+
+    /// Makes rows from a list instead of a file.
+    ///
+    /// # Errors
+    /// A number that is not allowed; the line is its number in the list.
+    pub(crate) fn listed(
+        points: impl Iterator<Item = (f64, f64)>,
+        fields: [&'static str; 2],
     ) -> Result<Vec<Row>, TableError> {
-        for row in &mut rows {
-            if !size_is_allowed(row.size) {
-                return Err(TableError::refused(file, row.line, size_field, row.size, allowed_size()));
-            }
-            if !percent_is_allowed(row.percent) {
-                return Err(TableError::refused(
-                    file,
-                    row.line,
-                    percent_field,
-                    row.percent,
-                    allowed_percent(),
-                ));
-            }
-            // Minus zero is zero.
-            row.percent += 0.0;
-        }
-        Ok(rows)
+        let row = |(line, (size, percent)): (usize, (f64, f64))| {
+            let texts = [size.to_string(), percent.to_string()];
+            let texts = texts.each_ref().map(String::as_str);
+            Row::checked("points", line, fields, texts, [Some(size), Some(percent)])
+        };
+        (1..).zip(points).map(row).collect()
     }
 }
 
-/// A table as text: its header and its rows of two fields.
 #[derive(Debug)]
 pub(crate) struct Table {
-    /// File as the user named it.
     pub(crate) file: String,
     /// Line and the two fields of the header.
     pub(crate) header: Option<(usize, [String; 2])>,
@@ -65,7 +73,6 @@ pub(crate) struct Table {
 }
 
 impl Table {
-    /// Reads the table in the file at `path`.
     pub(crate) fn open(path: &Path) -> Result<Table, TableError> {
         Table::parse(&path.display().to_string(), &bytes_of(path)?)
     }
@@ -101,7 +108,13 @@ impl Table {
             let heading = std::mem::take(&mut first) && fields.iter().all(|f| number(f).is_none());
             let count = fields.len();
             let Ok(fields) = <[String; 2]>::try_from(fields) else {
-                return Err(table.not_two_fields(line, count, content, delimiter));
+                let allowed = if count > 2 && delimiter == ',' {
+                    "two columns (with decimal commas, a semicolon or a tab between them)"
+                } else {
+                    "two columns, with a comma, a semicolon or a tab between them"
+                };
+                let (file, value) = (table.file, shortened(content.trim()));
+                return Err(TableError::Fields { file, line, found: count, value, allowed });
             };
             if heading && fields.iter().all(|f| !f.is_empty()) {
                 table.header = Some((line, fields));
@@ -116,40 +129,27 @@ impl Table {
         Ok(table)
     }
 
-    fn not_two_fields(&self, line: usize, found: usize, content: &str, delimiter: char) -> TableError {
-        let allowed = if found > 2 && delimiter == ',' {
-            "two columns (with decimal commas, a semicolon or a tab between them)"
-        } else {
-            "two columns, with a comma, a semicolon or a tab between them"
-        };
-        TableError::Fields { file: self.file.clone(), line, found, value: shortened(content.trim()), allowed }
-    }
-
     /// Refuses ambiguous commas: a file with both `.` and `,` inside numbers has thousands separators or
     /// a mistake; one with commas between its columns may have them in `"1,180"`.
     fn check_decimal_signs(&self, delimiter: char) -> Result<(), TableError> {
-        let is = |wanted: Comma| {
-            let of_row = move |(line, fields): &(usize, [String; 2])| {
-                let field = fields.iter().find(|f| number(f).is_some() && comma(f) == Some(wanted));
-                field.map(|f| (*line, f.clone()))
-            };
-            self.rows.iter().find_map(of_row)
+        let first = |is_such: &dyn Fn(&str) -> bool| {
+            self.rows.iter().find_map(|(line, fields)| {
+                let field = fields.iter().find(|field| number(field).is_some() && is_such(field));
+                field.map(|field| (*line, field))
+            })
         };
+        let first_comma = |wanted: Comma| first(&|field| comma(field) == Some(wanted));
         if delimiter == ','
-            && is(Comma::Decimal).is_none()
-            && let Some((line, value)) = is(Comma::Either)
+            && first_comma(Comma::Decimal).is_none()
+            && let Some((line, value)) = first_comma(Comma::Either)
         {
             let (as_decimal, as_thousands) = (value.replace(',', "."), value.replace(',', ""));
             let allowed = format!(
                 "{as_decimal} or {as_thousands}: here the comma may be a decimal sign or separate thousands"
             );
-            return Err(TableError::refused(&self.file, line, "number", shortened(&value), allowed));
+            return Err(TableError::refused(&self.file, line, "number", shortened(value), allowed));
         }
-        let with = |sign: char| {
-            self.rows.iter().find_map(|(line, fields)| {
-                fields.iter().find(|f| f.contains(sign) && number(f).is_some()).map(|f| (*line, f))
-            })
-        };
+        let with = |sign: char| first(&|field| field.contains(sign));
         match (with('.'), with(',')) {
             (Some((dot_line, _)), Some((line, value))) => {
                 let allowed = format!(
@@ -162,34 +162,18 @@ impl Table {
         }
     }
 
-    /// Line of the first row of numbers.
     pub(crate) fn first_line(&self) -> usize {
         self.rows.first().map_or(1, |(line, _)| *line)
     }
 
     /// Reads the rows as numbers, with the size in column `size_column` and the percent in the other.
-    pub(crate) fn rows(
-        &self,
-        size_column: usize,
-        size_field: &'static str,
-        percent_field: &'static str,
-    ) -> Result<Vec<Row>, TableError> {
-        let refused = |line, field, value: &str, allowed: String| {
-            TableError::refused(&self.file, line, field, shortened(value), allowed)
+    pub(crate) fn rows(&self, size_column: usize, names: [&'static str; 2]) -> Result<Vec<Row>, TableError> {
+        let row = |(line, fields): &(usize, [String; 2])| {
+            let texts = [size_column, 1 - size_column].map(|column| shortened(&fields[column]));
+            let numbers = [size_column, 1 - size_column].map(|column| number(&fields[column]));
+            Row::checked(&self.file, *line, names, texts.each_ref().map(String::as_str), numbers)
         };
-        let mut rows = Vec::new();
-        for (line, fields) in &self.rows {
-            let text = &fields[size_column];
-            let size = number(text)
-                .filter(|&v| size_is_allowed(v))
-                .ok_or_else(|| refused(*line, size_field, text, allowed_size()))?;
-            let text = &fields[1 - size_column];
-            let percent = number(text)
-                .filter(|&v| percent_is_allowed(v))
-                .ok_or_else(|| refused(*line, percent_field, text, allowed_percent()))?;
-            rows.push(Row { line: *line, size, percent: percent + 0.0 });
-        }
-        Ok(rows)
+        self.rows.iter().map(row).collect()
     }
 }
 
@@ -209,12 +193,10 @@ pub fn bytes_of(path: &Path) -> Result<Vec<u8>, TableError> {
     }
 }
 
-/// Refuses a `value` that is not allowed as a size.
 pub(crate) fn check_size(name: &'static str, value: f64) -> Result<(), NumberError> {
     NumberError::unless(size_is_allowed(value), name, value, allowed_size)
 }
 
-/// Refuses a `value` that is not allowed as a percentage.
 pub(super) fn check_percent(name: &'static str, value: f64) -> Result<(), NumberError> {
     NumberError::unless(percent_is_allowed(value), name, value, allowed_percent)
 }

@@ -3,17 +3,14 @@
 use super::motion::LONGEST_MOVE;
 use super::settings::{Contact, PackingError, Settings, critical_step, stability};
 use super::state::{Compression, Energy};
-use super::{Cell, Packing, draw, random_start};
+use super::{Cell, Packing, draw, random_start, uniform};
 use crate::gradation::Gradation;
-use crate::stream::{Key, Purpose, unit};
-use rand::Rng;
 use std::f64::consts::PI;
 
 const STIFFNESS: f64 = 1e4;
 
 fn packing(edge: f64, grains: &[[f64; 4]]) -> Packing {
-    let column = |a: usize| grains.iter().map(|g| g[a]).collect();
-    Packing { cell: Cell::Periodic([edge; 3]), x: column(0), y: column(1), z: column(2), diameter: column(3) }
+    Packing::from_grains(Cell::Periodic([edge; 3]), grains.iter().copied())
 }
 
 fn compression(edge: f64, grains: &[[f64; 4]], settings: &Settings) -> Compression {
@@ -44,6 +41,10 @@ fn elastic(contact: Contact) -> Settings {
         stiffness_ratio: 1e-2,
         ..Settings::default()
     }
+}
+
+fn rough(friction: f64) -> Settings {
+    Settings { friction, final_friction: friction, ..elastic(Contact::Hertz) }
 }
 
 /// Takes steps without servo and protocol.
@@ -161,13 +162,7 @@ fn hertz_contact_time() {
 /// ends in rolling without sliding. The friction force never exceeds its limit.
 #[test]
 fn coulomb_limit_holds_for_spring_and_damping_together() {
-    let settings = Settings {
-        friction: 0.4,
-        final_friction: 0.4,
-        restitution: 0.6,
-        clip_tension: true,
-        ..elastic(Contact::Hertz)
-    };
+    let settings = Settings { restitution: 0.6, clip_tension: true, ..rough(0.4) };
     let mut c = compression(12.0, &[[3.0, 6.0, 6.0, 3.0], [4.99, 6.0, 6.0, 1.0]], &settings);
     let large = place(&c, 0);
     c.spin[large][2] = 3.0;
@@ -336,7 +331,7 @@ fn one_grain_touches_nothing() {
     free(&mut c, 100);
     assert_eq!((c.now.contacts, c.velocity[0][0]), (0, 0.0));
     let narrow = Compression::new(&packing(1.99, &[[0.1, 0.1, 0.1, 1.0]]), &settings);
-    assert_eq!(narrow.unwrap_err(), PackingError::NarrowCell { cell_mm: 1.99, largest_mm: 1.0 });
+    assert_eq!(narrow.unwrap_err(), PackingError::NarrowCell(1.99, 1.0));
 }
 
 #[test]
@@ -347,14 +342,9 @@ fn coincident_centres_are_named() {
     assert!(error.to_string().contains("1 and 3"));
 }
 
-fn random(seed: u64) -> impl FnMut() -> f64 {
-    let mut generator = Key { seed, purpose: Purpose::Packing, run: 9, increment: 0, chunk: 0 }.generator();
-    move || unit(generator.next_u64())
-}
-
 #[test]
 fn an_overlapping_start_relaxes_at_a_capped_speed() {
-    let mut u = random(1);
+    let mut u = uniform(1, 9);
     let grains: Vec<[f64; 4]> =
         (0..200).map(|_| [6.0 * u(), 6.0 * u(), 6.0 * u(), 1.0 + 0.2 * u()]).collect();
     let settings = Settings { drag: 0.5, friction: 0.0, ..Settings::default() };
@@ -377,7 +367,7 @@ fn an_overlapping_start_relaxes_at_a_capped_speed() {
 
 /// A gas: grains without overlap, at a given packing fraction, with random velocities and spins.
 fn gas(n: usize, ratio: f64, fraction: f64, speed: f64, settings: &Settings) -> Compression {
-    let mut u = random(7);
+    let mut u = uniform(7, 9);
     let diameter: Vec<f64> =
         (0..n).map(|i| if i < n.div_ceil(20) { ratio } else { 1.0 + 0.1 * u() }).collect();
     let settings = Settings { start_fraction: fraction, ..settings.clone() };
@@ -436,13 +426,7 @@ fn undamped_gas_keeps_energy_and_momentum() {
 fn friction_makes_no_energy_at_any_size_ratio() {
     for ratio in [1.0, 10.0, 36.0, 100.0] {
         for mass_exponent in [0.0, 1.0] {
-            let settings = Settings {
-                friction: 0.5,
-                final_friction: 0.5,
-                step_fraction: 0.1,
-                mass_exponent,
-                ..elastic(Contact::Hertz)
-            };
+            let settings = Settings { step_fraction: 0.1, mass_exponent, ..rough(0.5) };
             let mut c = gas(40, ratio, 0.1, 0.5, &settings);
             c.settings.step = Some(c.now.step);
             let mut least = flying(&mut c).kinetic;
@@ -468,13 +452,7 @@ fn friction_makes_no_energy_at_any_size_ratio() {
 #[test]
 fn a_small_grain_between_large_ones_is_expelled() {
     for ratio in [4.0, 10.0, 36.0, 100.0] {
-        let settings = Settings {
-            friction: 0.05,
-            final_friction: 0.05,
-            mass_exponent: 0.0,
-            step_fraction: 0.1,
-            ..elastic(Contact::Hertz)
-        };
+        let settings = Settings { mass_exponent: 0.0, step_fraction: 0.1, ..rough(0.05) };
         // The small grain touches both, so far from their axis that friction cannot hold it.
         let big: f64 = 0.5 * ratio;
         let half = big + 0.25;

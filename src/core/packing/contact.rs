@@ -34,9 +34,9 @@
 //! vector unit.
 
 use super::neighbours::{Aspect, GrainChunk, Reach, nearest};
+use bytemuck::Zeroable;
 use multiversion::multiversion;
 
-/// Number of contacts computed together.
 const BLOCK: usize = 64;
 
 /// Contact parameters in reduced units.
@@ -55,21 +55,9 @@ pub(super) struct Law {
     pub(crate) clip: bool,
 }
 
-/// Input of one step, except the grains.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Now {
-    pub(crate) cell: f64,
-    pub(crate) aspect: Aspect,
-    /// Relative growth of the cell per unit of time.
-    pub(crate) strain_rate: f64,
-    pub(crate) step: f64,
-    /// Reach for a new pick of the close pairs, if one is due.
-    pub(crate) pick: Option<Reach>,
-}
-
-/// Grains as read by the contact pass.
+/// Input of one step.
 #[derive(Clone, Copy)]
-pub(super) struct Grains<'a> {
+pub(super) struct Now<'a> {
     /// Position in units of the cell; radius.
     pub(crate) position: &'a [[f64; 4]],
     /// Velocity relative to the deforming cell; mass.
@@ -77,6 +65,13 @@ pub(super) struct Grains<'a> {
     /// Angular velocity; unused.
     pub(crate) spin: &'a [[f64; 4]],
     pub(crate) chunk: &'a [u16],
+    pub(crate) law: Law,
+    pub(crate) cell: f64,
+    pub(crate) aspect: Aspect,
+    pub(crate) strain_rate: f64,
+    pub(crate) step: f64,
+    /// Reach for a new pick of the close pairs, if one is due.
+    pub(crate) pick: Option<Reach>,
 }
 
 /// Forces for the grains of another chunk.
@@ -89,21 +84,11 @@ pub(super) struct Outbox {
     pub(crate) torque: Vec<[f64; 4]>,
 }
 
-impl Outbox {
-    fn clear(&mut self) {
-        self.grain.clear();
-        self.force.clear();
-        self.torque.clear();
-    }
-}
-
-/// Results of the contact pass of a chunk.
 #[derive(Clone, Debug)]
 pub(super) struct Work {
     block: Box<Block>,
     /// Indices of the close pairs that touch.
     hits: Vec<u32>,
-    /// Forces for the other chunks, by chunk.
     pub(crate) outbox: Vec<Outbox>,
     /// Sum of normal force times distance of the centres.
     pub(crate) virial: f64,
@@ -114,7 +99,7 @@ pub(super) struct Work {
 impl Work {
     pub(crate) fn new(chunks: usize) -> Self {
         Self {
-            block: Box::default(),
+            block: Box::new(Block::zeroed()),
             hits: Vec::new(),
             outbox: vec![Outbox::default(); chunks],
             virial: 0.0,
@@ -124,11 +109,10 @@ impl Work {
     }
 }
 
-/// One value per pair of a block.
 type Lanes = [f64; BLOCK];
 
 /// A block of close pairs as columns, so that the law is computed for many of them side by side.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Zeroable)]
 struct Block {
     /// Separation from the larger to the smaller grain along x, y, z, in units of the cell.
     gap: [Lanes; 3],
@@ -153,25 +137,6 @@ struct Block {
     virial: Lanes,
 }
 
-impl Default for Block {
-    fn default() -> Self {
-        let lanes = [1.0; BLOCK];
-        Self {
-            gap: [lanes; 3],
-            motion: [lanes; 3],
-            spin: [lanes; 3],
-            radius: [lanes; 2],
-            mass: [lanes; 2],
-            spring: [lanes; 4],
-            force: [lanes; 3],
-            torque: [lanes; 3],
-            stiffness: lanes,
-            normal: lanes,
-            virial: lanes,
-        }
-    }
-}
-
 /// Adds the forces and torques from the pairs that `chunk` lists: those on its own grains to `force` and
 /// `torque`, those on others to the outboxes. The fourth entry of a force sums normal stiffness; the
 /// fourth entry of a torque is zero.
@@ -179,17 +144,15 @@ impl Default for Block {
 pub(super) fn pass(
     chunk: &mut GrainChunk,
     work: &mut Work,
-    grains: Grains<'_>,
-    law: &Law,
-    now: &Now,
+    now: &Now<'_>,
     force: &mut [[f64; 4]],
     torque: &mut [[f64; 4]],
 ) {
-    match (law.friction > 0.0, law.hertz) {
-        (true, true) => sweep::<true, true>(chunk, work, grains, law, now, force, torque),
-        (true, false) => sweep::<true, false>(chunk, work, grains, law, now, force, torque),
-        (false, true) => sweep::<false, true>(chunk, work, grains, law, now, force, torque),
-        (false, false) => sweep::<false, false>(chunk, work, grains, law, now, force, torque),
+    match (now.law.friction > 0.0, now.law.hertz) {
+        (true, true) => sweep::<true, true>(chunk, work, now, force, torque),
+        (true, false) => sweep::<true, false>(chunk, work, now, force, torque),
+        (false, true) => sweep::<false, true>(chunk, work, now, force, torque),
+        (false, false) => sweep::<false, false>(chunk, work, now, force, torque),
     }
 }
 
@@ -197,14 +160,14 @@ pub(super) fn pass(
 fn sweep<const FRICTION: bool, const HERTZ: bool>(
     chunk: &mut GrainChunk,
     work: &mut Work,
-    grains: Grains<'_>,
-    law: &Law,
-    now: &Now,
+    now: &Now<'_>,
     force: &mut [[f64; 4]],
     torque: &mut [[f64; 4]],
 ) {
     for outbox in &mut work.outbox {
-        outbox.clear();
+        outbox.grain.clear();
+        outbox.force.clear();
+        outbox.torque.clear();
     }
     (work.virial, work.normal, work.contacts) = (0.0, 0.0, 0);
     force.fill([0.0; 4]);
@@ -212,19 +175,20 @@ fn sweep<const FRICTION: bool, const HERTZ: bool>(
         torque.fill([0.0; 4]);
     }
     if let Some(reach) = now.pick {
-        chunk.pick(grains.position, now.cell, now.aspect, reach);
+        chunk.pick(now.position, now.cell, now.aspect, reach);
     }
     let mut hits = std::mem::take(&mut work.hits);
-    touching(chunk, grains.position, now, &mut hits);
+    touching(chunk, now, &mut hits);
     for hits in hits.chunks(BLOCK) {
-        block::<FRICTION, HERTZ>(chunk, work, hits, grains, law, now, force, torque);
+        block::<FRICTION, HERTZ>(chunk, work, hits, now, force, torque);
     }
     work.hits = hits;
 }
 
 /// Collects the touching close pairs in `hits`, in list order; the others lose their memory.
 #[inline(always)]
-fn touching(chunk: &mut GrainChunk, position: &[[f64; 4]], now: &Now, hits: &mut Vec<u32>) {
+fn touching(chunk: &mut GrainChunk, now: &Now<'_>, hits: &mut Vec<u32>) {
+    let position = now.position;
     hits.clear();
     let (mut gap, mut sum) = ([[0.0; BLOCK]; 3], [0.0; BLOCK]);
     let mut touching = [0u32; BLOCK];
@@ -255,28 +219,26 @@ fn touching(chunk: &mut GrainChunk, position: &[[f64; 4]], now: &Now, hits: &mut
 
 /// Separation to the nearest image, from a difference in units of the cell's width, and the distance.
 #[inline(always)]
-fn distance([x, y, z]: [f64; 3], now: &Now) -> ([f64; 3], f64) {
+fn distance([x, y, z]: [f64; 3], now: &Now<'_>) -> ([f64; 3], f64) {
     let [x, y, z] = [nearest(x) * now.cell, nearest(y) * now.cell, now.aspect.nearest(z) * now.cell];
     ([x, y, z], (x * x + y * y + z * z).sqrt())
 }
 
 #[inline(always)]
-#[allow(clippy::too_many_arguments)]
 fn block<const FRICTION: bool, const HERTZ: bool>(
     chunk: &mut GrainChunk,
     work: &mut Work,
     hits: &[u32],
-    grains: Grains<'_>,
-    law: &Law,
-    now: &Now,
+    now: &Now<'_>,
     force: &mut [[f64; 4]],
     torque: &mut [[f64; 4]],
 ) {
+    let Now { position, velocity, spin, chunk: chunk_of, .. } = *now;
     let b = &mut *work.block;
     for (k, &hit) in hits.iter().enumerate().take(BLOCK) {
         let [i, j] = chunk.close[hit as usize].map(|grain| grain as usize);
-        let (p, q) = (grains.position[i], grains.position[j]);
-        let (u, v) = (grains.velocity[i], grains.velocity[j]);
+        let (p, q) = (position[i], position[j]);
+        let (u, v) = (velocity[i], velocity[j]);
         for a in 0..3 {
             b.gap[a][k] = q[a] - p[a];
             b.motion[a][k] = v[a] - u[a];
@@ -285,7 +247,7 @@ fn block<const FRICTION: bool, const HERTZ: bool>(
         (b.mass[0][k], b.mass[1][k]) = (u[3], v[3]);
         if FRICTION {
             let spring = chunk.memory[hit as usize];
-            let (w, o) = (grains.spin[i], grains.spin[j]);
+            let (w, o) = (spin[i], spin[j]);
             let (ri, rj) = (p[3], q[3]);
             for a in 0..3 {
                 b.spin[a][k] = ri * w[a] + rj * o[a];
@@ -295,7 +257,7 @@ fn block<const FRICTION: bool, const HERTZ: bool>(
         }
     }
     let lanes = hits.len().min(BLOCK);
-    compute::<FRICTION, HERTZ>(b, lanes.next_multiple_of(8), law, now);
+    compute::<FRICTION, HERTZ>(b, lanes.next_multiple_of(8), now);
     let (first, count) = (chunk.first, chunk.last - chunk.first);
     for (k, &hit) in hits.iter().enumerate().take(BLOCK) {
         let [i, j] = chunk.close[hit as usize];
@@ -323,7 +285,7 @@ fn block<const FRICTION: bool, const HERTZ: bool>(
             }
         } else {
             let j = j.wrapping_add(first);
-            let outbox = &mut work.outbox[usize::from(grains.chunk[j])];
+            let outbox = &mut work.outbox[usize::from(chunk_of[j])];
             outbox.grain.push(j as u32);
             outbox.force.push([-f[0], -f[1], -f[2], kn]);
             if FRICTION {
@@ -333,9 +295,9 @@ fn block<const FRICTION: bool, const HERTZ: bool>(
     }
 }
 
-/// Computes the law for `lanes` pairs side by side.
 #[inline(always)]
-fn compute<const FRICTION: bool, const HERTZ: bool>(b: &mut Block, lanes: usize, law: &Law, now: &Now) {
+fn compute<const FRICTION: bool, const HERTZ: bool>(b: &mut Block, lanes: usize, now: &Now<'_>) {
+    let law = &now.law;
     let floor = if law.clip { 0.0 } else { f64::NEG_INFINITY };
     let tangential_damping = law.damping * law.tangential.sqrt();
     for k in 0..lanes.min(BLOCK) {

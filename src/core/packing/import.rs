@@ -1,18 +1,12 @@
 //! Reads packings from files of this program and of others.
 //!
-//! # Formats
-//! - text ([`tables`](super::tables)): CSV, as saved by this program, spreadsheets and ParaView (MFIX
-//!   and other programs write points for it); dumps of LAMMPS and LIGGGHTS; Yade's `export.text`;
-//!   MercuryDPM's `.data`;
-//! - VTK points with a diameter or radius, as written by LIGGGHTS, Yade, MercuryDPM and ParaView
-//!   ([`vtk`](super::vtk)).
-//!
-//! Each may be compressed by gzip. The first line determines the format, not the file's name. The unit
-//! of length and the boundaries are never guessed: if a file does not give them, [`ReadOptions`] must,
-//! or the file is refused.
+//! Text ([`tables`](super::tables)) or VTK ([`vtk`](super::vtk)), possibly compressed by gzip. The first line
+//! determines the format, not the file's name. The unit of length and the boundaries are never guessed: if
+//! a file does not give them, [`ReadOptions`] must, or the file is refused.
 
 use super::fields::{
-    FileCell, FileGrains, ImportError, LengthUnit, PACKING_FILE_LIMIT_BYTES, in_utf8, refused,
+    FileCell, FileGrains, ImportError, LengthUnit, PACKING_FILE_LIMIT_BYTES, Problem, ReadingNote, in_utf8,
+    refused,
 };
 use super::tables::{csv, dump, is_mercury, mercury, yade};
 use super::vtk::{legacy, xml};
@@ -95,7 +89,7 @@ impl Packing {
         Ok(Self::read_as(path, &ReadOptions::default())?.0)
     }
 
-    /// Reads a packing, with notes to the user on how it was read: the frame, the unit.
+    /// Reads a packing, with notes on how it was read.
     ///
     /// # Errors
     /// A file that cannot be read, is a folder, is too large or is not text; a file of an unknown
@@ -104,19 +98,11 @@ impl Packing {
     pub fn read_as(
         path: impl AsRef<Path>,
         options: &ReadOptions,
-    ) -> Result<(Packing, Vec<String>), ImportError> {
-        let path = path.as_ref();
-        let file = path.display().to_string();
-        let failed = |source| ImportError::Read { file: file.clone(), source };
-        if std::fs::metadata(path).map_err(failed)?.is_dir() {
-            return Err(ImportError::Folder(file));
-        }
-        match read_regular(path, PACKING_FILE_LIMIT_BYTES).map_err(failed)? {
-            Some(bytes) => Self::parse_as(&file, &bytes, options),
-            None if std::fs::metadata(path).is_ok_and(|meta| !meta.is_file()) => {
-                Err(failed(std::io::Error::other("is not a regular file")))
-            }
-            None => Err(ImportError::TooLarge(file)),
+    ) -> Result<(Packing, Vec<ReadingNote>), ImportError> {
+        let file = path.as_ref().display().to_string();
+        match bytes_of(path.as_ref()) {
+            Ok(bytes) => Self::parse_as(&file, &bytes, options),
+            Err(problem) => Err(ImportError { file, problem }),
         }
     }
 
@@ -148,52 +134,62 @@ impl Packing {
         name: &str,
         content: &[u8],
         options: &ReadOptions,
-    ) -> Result<(Packing, Vec<String>), ImportError> {
-        if content.starts_with(GZIP) {
-            return Self::parse_as(name, &unpacked(name, content)?, options);
+    ) -> Result<(Packing, Vec<ReadingNote>), ImportError> {
+        let read = grains_of(content, options.unit).and_then(|grains| complete(grains, options));
+        read.map_err(|problem| ImportError { file: name.into(), problem })
+    }
+}
+
+fn bytes_of(path: &Path) -> Result<Vec<u8>, Problem> {
+    if std::fs::metadata(path)?.is_dir() {
+        return Err(Problem::Folder);
+    }
+    match read_regular(path, PACKING_FILE_LIMIT_BYTES)? {
+        Some(bytes) => Ok(bytes),
+        None if std::fs::metadata(path).is_ok_and(|meta| !meta.is_file()) => {
+            Err(std::io::Error::other("is not a regular file").into())
         }
-        if let Some((_, what)) = NOT_TEXT.iter().find(|(begin, _)| content.starts_with(begin)) {
-            return Err(ImportError::Unknown(name.into(), (*what).into()));
-        }
-        // These two may contain binary numbers.
-        if content.starts_with(b"# vtk DataFile") {
-            return complete(name, legacy(name, content)?, options);
-        }
-        if is_vtk_in_xml(content) {
-            return complete(name, xml::xml(name, content)?, options);
-        }
-        let text = in_utf8(name, content)?;
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let start = text.trim_start();
-        let grains = if start.starts_with("ITEM:") {
-            dump(name, text, options.unit)?
-        } else if start.starts_with("#format") {
-            yade(name, text)?
-        } else if is_mercury(text) {
-            mercury(name, text)?
-        } else {
-            csv(name, text)?
-        };
-        complete(name, grains, options)
+        None => Err(Problem::TooLarge),
+    }
+}
+
+/// Reads the grains in the format given by the first bytes; `unit` is the user's.
+fn grains_of(content: &[u8], unit: Option<LengthUnit>) -> Result<FileGrains, Problem> {
+    if content.starts_with(GZIP) {
+        return grains_of(&unpacked(content)?, unit);
+    }
+    if let Some((_, kind)) = NOT_TEXT.iter().find(|(begin, _)| content.starts_with(begin)) {
+        return Err(Problem::Unknown((*kind).into()));
+    }
+    // These two may contain binary numbers.
+    if content.starts_with(b"# vtk DataFile") {
+        return legacy(content);
+    }
+    if is_vtk_in_xml(content) {
+        return xml::xml(content);
+    }
+    let text = in_utf8(content)?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    match text.trim_start() {
+        start if start.starts_with("ITEM:") => dump(text, unit),
+        start if start.starts_with("#format") => yade(text),
+        _ if is_mercury(text) => mercury(text),
+        _ => csv(text),
     }
 }
 
 const GZIP: &[u8] = b"\x1f\x8b";
 
 /// Unpacks the content of a gzip file once: nothing inside it is unpacked again.
-fn unpacked(name: &str, content: &[u8]) -> Result<Vec<u8>, ImportError> {
+fn unpacked(content: &[u8]) -> Result<Vec<u8>, Problem> {
     let (mut bytes, limit) = (Vec::new(), PACKING_FILE_LIMIT_BYTES);
     let read = flate2::read::MultiGzDecoder::new(content).take(limit + 1).read_to_end(&mut bytes);
-    read.map_err(|error| {
-        let source = std::io::Error::other(format!("its gzip is broken: {error}"));
-        ImportError::Read { file: name.into(), source }
-    })?;
+    read.map_err(|error| std::io::Error::other(format!("its gzip is broken: {error}")))?;
     if bytes.len() as u64 > limit {
-        return Err(ImportError::TooLarge(name.into()));
+        return Err(Problem::TooLarge);
     }
     if bytes.starts_with(GZIP) {
-        let looks_like = "packed twice (gzip): unpack it first".into();
-        return Err(ImportError::Unknown(name.into(), looks_like));
+        return Err(Problem::Unknown("packed twice (gzip): unpack it first".into()));
     }
     Ok(bytes)
 }
@@ -212,55 +208,45 @@ const NOT_TEXT: [(&[u8], &str); 2] = [
 ];
 
 /// Makes the packing (mm) from the file and from `options`; if both give a value, the file's is used.
-fn complete(
-    file: &str,
-    grains: FileGrains,
-    options: &ReadOptions,
-) -> Result<(Packing, Vec<String>), ImportError> {
-    let FileGrains { grains, unit, cell, line, mut notes } = grains;
-    let [mut x, mut y, mut z, diameter] =
-        std::array::from_fn(|axis| grains.iter().map(|grain| grain[axis]).collect::<Vec<f64>>());
+fn complete(grains: FileGrains, options: &ReadOptions) -> Result<(Packing, Vec<ReadingNote>), Problem> {
+    let FileGrains { mut grains, unit, cell, line, note } = grains;
     let unit = match (unit, options.unit) {
         (Some(from_file), Some(given)) if from_file != given => {
             let allowed = format!("{}: the file states the unit of its lengths", from_file.name());
-            return Err(refused(file, line, "unit", given.name(), allowed));
+            return Err(refused(line, "unit", given.name(), allowed));
         }
-        (Some(from_file), _) => from_file,
-        (None, Some(given)) => given,
-        (None, None) => return Err(ImportError::NoUnit(file.into())),
+        (from_file, given) => from_file.or(given).ok_or(Problem::NoUnit)?,
     };
     let cell = match (cell, options.cell) {
         (FileCell::Known(cell), None) => cell,
         (FileCell::Known(_), Some(_)) => {
             let allowed = "nothing: the file states its boundaries";
-            return Err(refused(file, line, "cell", "as it was given", allowed));
+            return Err(refused(line, "cell", "as it was given", allowed));
         }
         (_, Some(CellOption::None)) => Cell::Free,
-        (FileCell::Mixed, _) => return Err(ImportError::Mixed(file.into())),
+        (FileCell::Mixed, _) => return Err(Problem::Mixed),
         (_, Some(CellOption::Lengths(lengths))) => Cell::Periodic(lengths),
         (FileCell::Bounds(bounds), Some(CellOption::Bounds)) => {
-            for (column, [low, _]) in [&mut x, &mut y, &mut z].into_iter().zip(bounds) {
-                column.iter_mut().for_each(|at| *at -= low);
+            for grain in &mut grains {
+                grain.iter_mut().zip(bounds).for_each(|(at, [low, _])| *at -= low);
             }
             Cell::Periodic(bounds.map(|[low, high]| high - low))
         }
         (FileCell::Unsaid, Some(CellOption::Bounds)) => {
             let allowed = "none, or Lx,Ly,Lz: the file gives no bounds";
-            return Err(refused(file, line, "cell", "bounds", allowed));
+            return Err(refused(line, "cell", "bounds", allowed));
         }
-        (cell, None) => {
-            let bounds = match cell {
-                FileCell::Bounds(_) => ", or bounds for one between those in the file",
-                _ => "",
-            };
-            return Err(ImportError::NoCell(file.into(), bounds));
+        (FileCell::Bounds(_), None) => {
+            return Err(Problem::NoCell(", or bounds for one between those in the file"));
         }
+        (FileCell::Unsaid, None) => return Err(Problem::NoCell("")),
     };
-    let mut packing = Packing { cell, x, y, z, diameter };
-    fits(file, &packing, matches!(options.cell, Some(CellOption::Lengths(_))))?;
+    let mut packing = Packing::from_grains(cell, grains);
+    check_fit(&packing, matches!(options.cell, Some(CellOption::Lengths(_))))?;
+    let mut notes = Vec::from_iter(note);
     if unit != LengthUnit::Mm {
-        into_mm(&mut packing, unit, (file, line))?;
-        notes.push(format!("lengths are in {}, converted to mm", unit.words()));
+        convert(&mut packing, unit, line)?;
+        notes.push(ReadingNote::Unit(unit));
     }
     Ok((packing, notes))
 }
@@ -268,50 +254,36 @@ fn complete(
 /// Refuses grains that do not fit their cell: a wrong cell would give constrictions that are too fine,
 /// so a filter that seems to retain more. Programs may leave grains outside a cell that they wrote, but
 /// a cell given by hand has no other confirmation.
-fn fits(file: &str, packing: &Packing, by_hand: bool) -> Result<(), ImportError> {
+fn check_fit(packing: &Packing, by_hand: bool) -> Result<(), Problem> {
     let Cell::Periodic(lengths) = packing.cell else { return Ok(()) };
-    let misfit = |problem| Err(ImportError::Misfit(file.into(), problem));
     let columns = [("x", &packing.x), ("y", &packing.y), ("z", &packing.z)];
     for ((axis, column), length) in columns.into_iter().zip(lengths) {
         let low = column.iter().copied().fold(f64::INFINITY, f64::min);
         let high = column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if by_hand && high - low > length * (1.0 + ROUNDING) {
-            return misfit(format!(
-                "the centres spread over {} along {axis}, and the cell is {length} long there. A cell is \
-                 given in the file's unit; grains that have crossed it must be brought back into it",
-                high - low
-            ));
+            return Err(Problem::Spread { axis, spread: high - low, length });
         }
     }
     let solid: f64 = packing.diameter.iter().map(|d| std::f64::consts::FRAC_PI_6 * d * d * d).sum();
     let whole: f64 = lengths.iter().product();
-    if solid >= whole {
-        let [x, y, z] = lengths;
-        return misfit(format!(
-            "the grains have {:.3} times the volume of the cell, {x} x {y} x {z}, and leave no voids. A cell \
-             is given in the file's unit; or are radii read as diameters?",
-            solid / whole
-        ));
-    }
-    Ok(())
+    if solid >= whole { Err(Problem::Full(solid / whole, lengths)) } else { Ok(()) }
 }
 
 /// Fraction of a cell's length by which rounding in a file may change it.
 const ROUNDING: f64 = 1e-6;
 
-fn into_mm(packing: &mut Packing, unit: LengthUnit, (file, line): (&str, usize)) -> Result<(), ImportError> {
+fn convert(packing: &mut Packing, unit: LengthUnit, line: usize) -> Result<(), Problem> {
     let Packing { cell, x, y, z, diameter } = packing;
     let lengths = match cell {
         Cell::Periodic(lengths) => lengths.as_mut_slice(),
         Cell::Free => &mut [],
     };
-    let all = [x, y, z, diameter].into_iter().flatten().chain(lengths);
-    for length in all {
+    for length in [x, y, z, diameter].into_iter().flatten().chain(lengths) {
         let given = *length;
         *length *= unit.mm();
         if !length.is_finite() || (*length == 0.0) != (given == 0.0) {
             let allowed = format!("lengths in {} that are finite numbers in mm", unit.words());
-            return Err(refused(file, line, "units", &given.to_string(), allowed));
+            return Err(refused(line, "units", &given.to_string(), allowed));
         }
     }
     Ok(())

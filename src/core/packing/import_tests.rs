@@ -1,6 +1,6 @@
 //! Packing files: every accepted form, every refusal with its words, and no panic.
 
-use super::{Cell, CellOption, LengthUnit, Packing, ReadOptions};
+use super::{Cell, CellOption, LengthUnit, Packing, ReadOptions, ReadingNote};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use proptest::prelude::*;
@@ -24,13 +24,12 @@ fn parsed_as(text: &str, options: &ReadOptions) -> Result<Packing, String> {
 }
 
 fn expected() -> Packing {
-    Packing {
-        cell: Cell::Periodic([2.0, 3.0, 4.0]),
-        x: vec![0.5, 1.5],
-        y: vec![1.0, 2.5],
-        z: vec![2.0, 3.25],
-        diameter: vec![1.0, 0.75],
-    }
+    let grains = [[0.5, 1.0, 2.0, 1.0], [1.5, 2.5, 3.25, 0.75]];
+    Packing::from_grains(Cell::Periodic([2.0, 3.0, 4.0]), grains)
+}
+
+fn last_frame(frames: usize, lacking: Option<&'static str>, name: &'static str, time: &str) -> ReadingNote {
+    ReadingNote::Frame { frames, lacking, time: (name, time.into()) }
 }
 
 /// Expects an error that contains `message`, where `|` separates a value from what is allowed.
@@ -73,11 +72,11 @@ fn a_dump_says_which_frame_and_which_units_were_taken() {
         std::fs::write(&path, text).unwrap();
         Packing::read_as(&path, &ReadOptions::default())
     };
-    for (name, scale, words) in [
-        ("si", 1e3, "metres"),
-        ("cgs", 10.0, "centimetres"),
-        ("micro", 1e-3, "micrometres"),
-        ("nano", 1e-6, "nanometres"),
+    for (name, scale, unit) in [
+        ("si", 1e3, LengthUnit::M),
+        ("cgs", 10.0, LengthUnit::Cm),
+        ("micro", 1e-3, LengthUnit::Um),
+        ("nano", 1e-6, LengthUnit::Nm),
     ] {
         let first = DUMP.replace("0.375", "9").replace("TIMESTEP\n0", "TIMESTEP\n-1");
         for text in
@@ -87,9 +86,7 @@ fn a_dump_says_which_frame_and_which_units_were_taken() {
             assert_eq!(packing.diameter, [scale, 0.75 * scale], "{text}");
             assert_eq!(packing.x, [0.5 * scale, 1.5 * scale]);
             assert_eq!(packing.cell, Cell::Periodic([2.0 * scale, 3.0 * scale, 4.0 * scale]));
-            // The user names the unit.
-            let lengths = format!("lengths are in {words}, converted to mm");
-            assert_eq!(notes, ["holds 2 frames: the last one, timestep 0, is taken", lengths.as_str()]);
+            assert_eq!(notes, [last_frame(2, None, "timestep", "0"), ReadingNote::Unit(unit)]);
         }
     }
     // LIGGGHTS does not name its unit, nor does LAMMPS by default.
@@ -251,7 +248,7 @@ fn files_of_other_programs_are_read_when_unit_and_cell_are_said() {
     assert!(lengths.iter().zip([2.0, 3.0, 4.0]).all(|(a, b)| (a - b).abs() < 1e-12));
     close(&moved, [1.0, 0.0, -1.0], "bounds");
     let (_, notes) = Packing::parse_as("f", mercury.as_bytes(), &options("none")).unwrap();
-    assert!(notes[0].contains("holds 2 frames: the last one, time 1.5, is taken"), "{notes:?}");
+    assert_eq!(notes[0], last_frame(2, None, "time", "1.5"));
     // A unit in the names is as good as one given by the user.
     let named = paraview.replace("Points:0", "x (m)").replace("Points:1", "y (m)").replace("Points:2", "z_m");
     let named =
@@ -291,18 +288,23 @@ fn the_last_frame_with_grains_is_taken() {
     let options = ReadOptions { unit: Some(LengthUnit::M), cell: Some(CellOption::None) };
     let (empty, full) = ("0 2 0 0 0 1 1 1\n", "1 1.5 0 0 0 1 1 1\n.5 .5 .5 0 0 0 .1 0 0 0 0 0 0 0\n");
     let alone = parsed_as(full, &options).unwrap();
-    for text in [format!("{empty}{full}"), format!("{full}{empty}"), format!("{empty}{full}{empty}{empty}")] {
+    for (text, frames, lacking) in [
+        (format!("{empty}{full}"), 2, None),
+        (format!("{full}{empty}"), 2, Some("grains")),
+        (format!("{empty}{full}{empty}{empty}"), 4, Some("grains")),
+    ] {
         let (packing, notes) = Packing::parse_as("f", text.as_bytes(), &options).unwrap();
         assert_eq!(packing, alone);
-        assert!(notes[0].contains("time 1.5"), "{notes:?}");
-        assert_eq!(notes[0].contains("with grains"), text.ends_with(empty), "{notes:?}");
+        assert_eq!(notes[0], last_frame(frames, lacking, "time", "1.5"));
     }
     let empty = DUMP.replace("ATOMS\n2", "ATOMS\n0").replace("TIMESTEP\n0", "TIMESTEP\n9");
     let empty = format!("{}\n", &empty[..empty.rfind("ITEM: ATOMS").unwrap() + 11]);
-    for text in [format!("{empty}{DUMP}"), format!("{DUMP}{empty}{empty}")] {
+    for (text, frames, lacking) in
+        [(format!("{empty}{DUMP}"), 2, None), (format!("{DUMP}{empty}{empty}"), 3, Some("atoms"))]
+    {
         let (packing, notes) = Packing::parse_as("f", text.as_bytes(), &MM).unwrap();
         assert_eq!(Ok(packing), parsed(DUMP));
-        assert!(notes[0].contains("timestep 0"), "{notes:?}");
+        assert_eq!(notes[0], last_frame(frames, lacking, "timestep", "0"));
     }
     assert!(parsed(&empty).is_err());
 }

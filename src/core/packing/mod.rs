@@ -42,7 +42,7 @@ mod state;
 mod tables;
 mod vtk;
 
-pub use fields::{ImportError, LengthUnit, PACKING_FILE_LIMIT_BYTES};
+pub use fields::{ImportError, LengthUnit, PACKING_FILE_LIMIT_BYTES, ReadingNote};
 pub use import::{CellOption, ReadOptions};
 pub use protocol::{CompressionProgress, PackReport, compress};
 pub use settings::{PackingError, Settings, is_wide};
@@ -68,13 +68,8 @@ pub enum Cell {
 ///
 /// ```
 /// use voidwalk_core::packing::{Cell, Packing};
-/// let packing = Packing {
-///     cell: Cell::Periodic([2.0; 3]),
-///     x: vec![0.0, 1.0],
-///     y: vec![0.0, 1.0],
-///     z: vec![0.0, 1.0],
-///     diameter: vec![1.0, 0.7],
-/// };
+/// let grains = [[0.0, 0.0, 0.0, 1.0], [1.0, 1.0, 1.0, 0.7]];
+/// let packing = Packing::from_grains(Cell::Periodic([2.0; 3]), grains);
 /// assert_eq!(Packing::parse("grains.csv", packing.to_csv().as_bytes())?, packing);
 /// # Ok::<(), voidwalk_core::packing::ImportError>(())
 /// ```
@@ -93,6 +88,18 @@ pub struct Packing {
 }
 
 impl Packing {
+    /// Makes a packing from the x, y, z and diameter of each grain (mm).
+    pub fn from_grains(cell: Cell, grains: impl IntoIterator<Item = [f64; 4]>) -> Self {
+        let mut packing = Self { cell, x: vec![], y: vec![], z: vec![], diameter: vec![] };
+        for [x, y, z, diameter] in grains {
+            packing.x.push(x);
+            packing.y.push(y);
+            packing.z.push(z);
+            packing.diameter.push(diameter);
+        }
+        packing
+    }
+
     /// Multiplies every length of the packing by `factor`.
     pub fn scaled(mut self, factor: f64) -> Self {
         let columns = [&mut self.x, &mut self.y, &mut self.z, &mut self.diameter];
@@ -102,9 +109,7 @@ impl Packing {
         }
         self
     }
-}
 
-impl Packing {
     /// Writes this packing as CSV: cell, header, a row per grain. [`Packing::parse`] restores the same bits.
     pub fn to_csv(&self) -> String {
         let mut text = match self.cell {
@@ -172,17 +177,19 @@ pub(crate) fn vtp_points(points: &[[f64; 3]], columns: &[(&str, &[f64])]) -> Str
 /// assert!(diameter_mm[0] <= 2.25 && diameter_mm[999] >= 1.0);
 /// ```
 pub fn draw(gradation: &Gradation, grains: usize, seed: u64) -> Vec<f64> {
-    let mut generator = stream(seed, 0);
+    let mut random = uniform(seed, 0);
     let mut diameter: Vec<f64> = (0..grains)
-        .map(|i| 100.0 * (i as f64 + unit(generator.next_u64())) / grains as f64)
+        .map(|i| 100.0 * (i as f64 + random()) / grains as f64)
         .filter_map(|percent| gradation.d_by_number(percent))
         .collect();
     diameter.sort_by(|a, b| b.total_cmp(a));
     diameter
 }
 
-fn stream(seed: u64, chunk: u64) -> impl Rng {
-    Key { seed, purpose: Purpose::Packing, run: 0, increment: 0, chunk }.generator()
+/// Random numbers from 0 to below 1.
+pub(crate) fn uniform(seed: u64, chunk: u64) -> impl FnMut() -> f64 {
+    let mut generator = Key { seed, purpose: Purpose::Packing, run: 0, increment: 0, chunk }.generator();
+    move || unit(generator.next_u64())
 }
 
 /// Places these grains (mm, any order) at random without overlap, at the packing fraction of the
@@ -216,17 +223,13 @@ pub fn tall_start(diameter_mm: &[f64], aspect: f64, settings: &Settings) -> Resu
     let volume = radius.iter().map(|r| r * r * r).sum::<f64>() * (4.0 / 3.0 * PI);
     let cell = libm::cbrt(volume / settings.start_fraction / aspect.height());
     if cell < 4.0 * radius[0] {
-        return Err(PackingError::NarrowCell { cell_mm: cell * unit_mm, largest_mm: diameter[0] });
+        return Err(PackingError::NarrowCell(cell * unit_mm, diameter[0]));
     }
-    let centre = place(&radius, cell, aspect, &mut stream(settings.seed, 1))?;
+    let centre = place(&radius, cell, aspect, uniform(settings.seed, 1))?;
     let edge = cell * unit_mm;
-    Ok(Packing {
-        cell: Cell::Periodic([edge, edge, edge * aspect.height()]),
-        x: centre.iter().map(|c| c[0] * edge).collect(),
-        y: centre.iter().map(|c| c[1] * edge).collect(),
-        z: centre.iter().map(|c| c[2] * edge).collect(),
-        diameter,
-    })
+    let cell = Cell::Periodic([edge, edge, edge * aspect.height()]);
+    let grains = centre.iter().zip(diameter).map(|(c, d)| [c[0] * edge, c[1] * edge, c[2] * edge, d]);
+    Ok(Packing::from_grains(cell, grains))
 }
 
 /// Maximum number of tries per grain before the placement fails.
@@ -248,7 +251,7 @@ fn place(
     radius: &[f64],
     cell: f64,
     aspect: Aspect,
-    generator: &mut impl Rng,
+    mut random: impl FnMut() -> f64,
 ) -> Result<Vec<[f64; 3]>, PackingError> {
     let mut centre: Vec<[f64; 3]> = Vec::with_capacity(radius.len());
     let mut grids: Vec<Grid> = Vec::new();
@@ -262,8 +265,7 @@ fn place(
         }
         let mut tries = 0;
         let s = loop {
-            let [x, y, z] = [(); 3].map(|()| unit(generator.next_u64()));
-            let s = [x, y, z * aspect.height()];
+            let s = [random(), random(), random() * aspect.height()];
             if grids.iter().all(|grid| grid.is_clear(s, r, cell, aspect)) {
                 break s;
             }
@@ -271,7 +273,7 @@ fn place(
             if tries == TRIES {
                 let volume = radius.iter().map(|r| r * r * r).sum::<f64>() * (4.0 / 3.0) * PI;
                 let fraction = volume / (cell * cell * cell * aspect.height());
-                return Err(PackingError::Placement { grain: i, grains: radius.len(), fraction });
+                return Err(PackingError::Placement(i, radius.len(), fraction));
             }
         };
         let grid = grids.last_mut().expect("pushed above");
@@ -317,18 +319,17 @@ mod tests {
         for height in [1.0, 1.7, 6.0] {
             none_overlap(Aspect::new(height));
         }
-        let full = place(&[1.0, 1.0], 2.0, Aspect::new(1.0), &mut stream(5, 2));
-        assert!(matches!(full, Err(PackingError::Placement { grain: 1, .. })));
+        let full = place(&[1.0, 1.0], 2.0, Aspect::new(1.0), uniform(5, 2));
+        assert!(matches!(full, Err(PackingError::Placement(1, ..))));
     }
 
     fn none_overlap(aspect: Aspect) {
-        let mut generator = stream(5, 1);
-        let mut radius: Vec<f64> =
-            (0..600).map(|_| 0.5 * libm::pow(20.0, unit(generator.next_u64()))).collect();
+        let mut random = uniform(5, 1);
+        let mut radius: Vec<f64> = (0..600).map(|_| 0.5 * libm::pow(20.0, random())).collect();
         radius.sort_by(|a, b| b.total_cmp(a));
         let volume: f64 = radius.iter().map(|r| 4.18879 * r * r * r).sum();
         let cell = libm::cbrt(volume / 0.35 / aspect.height());
-        let centre = place(&radius, cell, aspect, &mut generator).unwrap();
+        let centre = place(&radius, cell, aspect, random).unwrap();
         for i in 0..radius.len() {
             for j in 0..i {
                 let apart = aspect.square(&centre[j], &centre[i]).sqrt() * cell;

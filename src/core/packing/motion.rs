@@ -6,9 +6,8 @@
 //! the last half step's velocities, kick, drift, and the cell deforms at the servo's strain rate.
 //!
 //! # Masses
-//! A grain of diameter `D` has the mass `pi/6 D^(3 - mass_exponent)`. With the true masses (0) the
-//! smallest grains set the time step, and the largest need `Dmax/Dmin` times as many steps to move as
-//! the smallest. Masses do not matter in a packing at rest.
+//! A grain of diameter `D` has the mass `pi/6 D^(3 - mass_exponent)`: masses do not matter at rest, and with
+//! the true ones (0) the smallest grains set the time step.
 //!
 //! If the largest grain is at least 20 times as wide as the smallest, a few small grains between large ones
 //! have such stiff contacts that they would set the step for all. Each grain is then moved with a mass of
@@ -18,7 +17,7 @@
 //! its restitution differs. With a fixed step no grain gets a larger mass. A stage still takes as much time
 //! as with the own masses: a hold is counted in the steps that the own masses would have taken.
 
-use super::contact::{Grains, Now, Work, pass};
+use super::contact::{Now, Work, pass};
 use super::neighbours::{GrainChunk, Reach, Remembered, chunk_bounds, list, morton};
 use super::settings::{PackingError, damped_part, heavier_mass_by_stiffness, stability};
 use super::state::Compression;
@@ -29,7 +28,6 @@ use rayon::prelude::*;
 /// start comes near it.
 pub(super) const LONGEST_MOVE: f64 = 0.02;
 
-/// Number of steps between two checks of the time step.
 const STEP_CHECK: u64 = 16;
 
 /// Fraction of the critical step at which the step is checked without waiting.
@@ -69,6 +67,11 @@ impl Compression {
         let pick = self.renew();
         self.now.steps += 1;
         let now = Now {
+            position: &self.position,
+            velocity: &self.velocity,
+            spin: &self.spin,
+            chunk: &self.chunk_of,
+            law: self.law,
             cell: self.now.cell,
             aspect: self.aspect,
             strain_rate: self.now.strain_rate,
@@ -76,17 +79,10 @@ impl Compression {
             pick,
         };
         let parallel = rayon::current_num_threads() > 1 && self.chunks.len() > 1;
-        let grains = Grains {
-            position: &self.position,
-            velocity: &self.velocity,
-            spin: &self.spin,
-            chunk: &self.chunk_of,
-        };
-        let law = &self.law;
         let (force, torque) = (split(&mut self.force), split(&mut self.torque));
         let tasks = self.chunks.iter_mut().zip(&mut self.work).zip(force.into_iter().zip(torque));
         let one = |((chunk, work), (force, torque)): ((&mut GrainChunk, &mut Work), (&mut [_], &mut [_]))| {
-            pass(chunk, work, grains, law, &now, force, torque);
+            pass(chunk, work, &now, force, torque);
         };
         if parallel {
             tasks.collect::<Vec<_>>().into_par_iter().for_each(one);
@@ -135,15 +131,14 @@ impl Compression {
         };
         let (work, picked) = (&self.work, &self.picked);
         let bounds = chunk_bounds(self.position.len());
-        let mut parts: Vec<ChunkInStep<'_>> = split(&mut self.position)
-            .into_iter()
-            .zip(split(&mut self.velocity))
-            .zip(split(&mut self.spin))
-            .zip(split(&mut self.force).into_iter().zip(split(&mut self.torque)))
-            .zip(bounds)
-            .enumerate()
-            .map(|(c, ((((position, velocity), spin), (force, torque)), (first, last)))| ChunkInStep {
-                chunk: c,
+        let columns =
+            [&mut self.position, &mut self.velocity, &mut self.spin, &mut self.force, &mut self.torque];
+        let mut columns = columns.map(|column| split(column).into_iter());
+        let part = |(chunk, (first, last)): (usize, (usize, usize))| {
+            let [position, velocity, spin, force, torque] =
+                columns.each_mut().map(|column| column.next().expect("a part for each chunk"));
+            ChunkInStep {
+                chunk,
                 first,
                 position,
                 velocity,
@@ -151,8 +146,9 @@ impl Compression {
                 force,
                 torque,
                 picked: &picked[first..last],
-            })
-            .collect();
+            }
+        };
+        let mut parts: Vec<ChunkInStep<'_>> = bounds.into_iter().enumerate().map(part).collect();
         let sums: Vec<Sums> = if parallel {
             parts.par_iter_mut().map(|part| advance(part, work, &rule)).collect()
         } else {
@@ -180,7 +176,7 @@ impl Compression {
         let critical = self.critical_step();
         match self.settings.step {
             Some(step) if step >= critical => {
-                Err(PackingError::Step { step, critical, cause: "the stiffness of a grain's contacts" })
+                Err(PackingError::Step(step, critical, "the stiffness of a grain's contacts"))
             }
             Some(_) => Ok(()),
             None => {
@@ -191,7 +187,6 @@ impl Compression {
         }
     }
 
-    /// Largest stable time step for the contacts of the last step.
     pub(super) fn critical_step(&self) -> f64 {
         self.critical(self.now.stiffest)
     }
@@ -201,7 +196,6 @@ impl Compression {
         if stiffest > 0.0 { 2.0 / (stability(&self.law) * stiffest).sqrt() } else { f64::INFINITY }
     }
 
-    /// Step adapted to the critical step.
     fn followed(&self, stiffest: f64) -> f64 {
         let part = self.settings.step_fraction.min(damped_part(&self.law));
         part * self.critical(stiffest).min(2.0 * self.loose_step)
@@ -271,7 +265,6 @@ impl Compression {
     }
 }
 
-/// Cuts a column at the bounds of the chunks.
 pub(super) fn split<T>(mut column: &mut [T]) -> Vec<&mut [T]> {
     let bounds = chunk_bounds(column.len());
     let mut parts = Vec::with_capacity(bounds.len());
@@ -283,7 +276,6 @@ pub(super) fn split<T>(mut column: &mut [T]) -> Vec<&mut [T]> {
     parts
 }
 
-/// Parameters of a step for the grains of a chunk.
 struct StepRule {
     step: f64,
     per_cell: f64,
@@ -296,7 +288,6 @@ struct StepRule {
     least_mass: f64,
 }
 
-/// Sums over the grains of a chunk.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     moved: f64,
@@ -307,7 +298,6 @@ struct Sums {
     unbalanced: f64,
 }
 
-/// The grains of a chunk during a step.
 struct ChunkInStep<'a> {
     chunk: usize,
     first: usize,

@@ -41,12 +41,10 @@ impl Aspect {
     /// Maximum ratio of height to width.
     pub(crate) const TALLEST: f64 = 100.0;
 
-    /// Makes the aspect of a cell that is `height` times as tall as wide.
     pub(crate) fn new(height: f64) -> Self {
         Self { height, per_height: 1.0 / height }
     }
 
-    /// Ratio of height to width.
     pub(crate) fn height(self) -> f64 {
         self.height
     }
@@ -70,7 +68,6 @@ impl Aspect {
         (across as f64 * self.height) as usize
     }
 
-    /// Moves a position into the cell.
     pub(crate) fn wrapped(self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let inside = |s: f64, length: f64| {
             let s = s - length * libm::floor(s / length);
@@ -81,7 +78,7 @@ impl Aspect {
 }
 
 /// Reach of the lists beyond contact.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reach {
     /// Fraction of the sum of the radii.
@@ -91,7 +88,6 @@ pub struct Reach {
 }
 
 impl Reach {
-    /// No reach beyond contact.
     pub(super) const CONTACT: Self = Self { relative: 0.0, absolute: 0.0 };
 
     /// Distance within which two grains count if their radii sum to `radii`.
@@ -135,7 +131,6 @@ pub(super) struct GrainChunk {
 }
 
 impl GrainChunk {
-    /// The pairs listed by grain `i` of this chunk.
     #[inline(always)]
     pub(crate) fn pairs(&self, i: usize) -> std::ops::Range<usize> {
         self.start[i - self.first] as usize..self.start[i - self.first + 1] as usize
@@ -330,7 +325,6 @@ pub(super) struct Remembered {
 }
 
 impl Remembered {
-    /// Collects the memory of each close pair.
     pub(crate) fn collect(chunks: &[GrainChunk], rank: &[u32]) -> Self {
         let contacts = || {
             let pairs = chunks.iter().flat_map(|chunk| chunk.close.iter().zip(&chunk.memory));
@@ -381,16 +375,8 @@ pub(super) fn morton(s: [f64; 3]) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stream::{Key, Purpose, unit};
-    use rand::Rng;
+    use crate::packing::uniform;
     use std::collections::BTreeSet;
-
-    fn random(grains: usize, ratio: f64, seed: u64) -> Vec<[f64; 4]> {
-        let mut generator =
-            Key { seed, purpose: Purpose::Packing, run: 0, increment: 0, chunk: 0 }.generator();
-        let mut u = || unit(generator.next_u64());
-        (0..grains).map(|_| [u(), u(), u(), libm::pow(ratio, u())]).collect()
-    }
 
     /// The lists equal a search of all pairs, for size ratios up to 100 and cells from two largest
     /// grains wide.
@@ -401,8 +387,9 @@ mod tests {
         let tall = [(1.5, 6.0, 7.0), (10.0, 25.0, 2.5), (36.0, 80.0, 1.3)];
         for (seed, (ratio, cell, height)) in cubes.iter().chain(&tall).enumerate() {
             let aspect = Aspect::new(*height);
-            let mut position = random(400, *ratio, seed as u64);
-            position.iter_mut().for_each(|p| p[2] *= height);
+            let mut u = uniform(seed as u64, 0);
+            let mut position: Vec<[f64; 4]> =
+                (0..400).map(|_| [u(), u(), u() * height, libm::pow(*ratio, u())]).collect();
             position.sort_by(|a, b| b[3].total_cmp(&a[3]));
             let rank: Vec<u32> = (0..400).collect();
             let reach = Reach { relative: 0.01, absolute: 0.3 };

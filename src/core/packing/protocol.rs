@@ -12,7 +12,6 @@ use xxhash_rust::xxh3::xxh3_64;
 const MAGIC: [u8; 8] = *b"vwpacked";
 const VERSION: u64 = 1;
 
-/// Steps between two checks of the state.
 const CHECK: u64 = 100;
 
 /// Allowed relative deviation of the pressure from its target.
@@ -32,8 +31,7 @@ const KINETIC: f64 = 1e-2;
 const COORDINATION: f64 = 0.05;
 
 /// Maximum change of the void ratio during a hold: a quarter of the 0.002 by which it differs between
-/// two seeds or with half the rate. A wide gradation with high friction creeps on as the logarithm of
-/// time, so some rate has to count as rest.
+/// two seeds or with half the rate.
 const VOID_RATIO: f64 = 5e-4;
 
 /// Progress of a running compression.
@@ -51,8 +49,6 @@ pub struct CompressionProgress {
     pub coordination: f64,
     /// Root mean square unbalanced force over the mean contact force.
     pub unbalanced: f64,
-    /// Time step, reduced units.
-    pub(crate) step: f64,
 }
 
 /// Result of a compression.
@@ -92,6 +88,10 @@ pub fn compress(
     let mut compression = Compression::new(&start, settings)?.of_gradation(gradation);
     let report = compression.run(progress)?;
     Ok((compression.packing(), report))
+}
+
+fn require(holds: bool, problem: &'static str) -> Result<(), PackingError> {
+    if holds { Ok(()) } else { Err(PackingError::State(problem)) }
 }
 
 impl Compression {
@@ -196,8 +196,7 @@ impl Compression {
         (0.635 + 0.08 * libm::log(uniformity) - 0.15 * self.settings.friction.min(0.4)).min(0.85)
     }
 
-    /// Progress of the compression.
-    pub(crate) fn progress(&self) -> CompressionProgress {
+    fn progress(&self) -> CompressionProgress {
         CompressionProgress {
             stage: self.now.stage,
             steps: self.now.steps,
@@ -205,7 +204,6 @@ impl Compression {
             pressure: self.now.pressure,
             coordination: self.coordination(),
             unbalanced: self.unbalanced_ratio(),
-            step: self.now.step,
         }
     }
 
@@ -217,30 +215,12 @@ impl Compression {
         &mut self,
         progress: impl FnMut(&CompressionProgress) -> bool,
     ) -> Result<PackReport, PackingError> {
-        self.run_until(|| false, progress)
+        self.run_until(1000, || false, progress)
     }
 
-    /// Runs like [`Compression::run`], to the same bits, but calls `is_stopped` once per million grain
-    /// steps.
+    /// Runs like [`Compression::run`], to the same bits, but reports every `every` steps, and calls
+    /// `is_stopped` once per million grain steps.
     pub fn run_until(
-        &mut self,
-        is_stopped: impl Fn() -> bool,
-        progress: impl FnMut(&CompressionProgress) -> bool,
-    ) -> Result<PackReport, PackingError> {
-        self.run_asking(1000, is_stopped, progress)
-    }
-
-    /// Runs like [`Compression::run`], to the same bits, but reports every `every` steps, so that it can
-    /// be stopped sooner or later.
-    pub fn run_reporting(
-        &mut self,
-        every: u64,
-        progress: impl FnMut(&CompressionProgress) -> bool,
-    ) -> Result<PackReport, PackingError> {
-        self.run_asking(every.max(1), || false, progress)
-    }
-
-    fn run_asking(
         &mut self,
         every: u64,
         is_stopped: impl Fn() -> bool,
@@ -249,7 +229,7 @@ impl Compression {
         let at_once = (1_000_000 / self.position.len().max(1) as u64).max(1);
         while self.now.stage != Stage::Done {
             // After a stop between two reports, the run continues to the next.
-            let report = (self.now.steps / every + 1) * every;
+            let report = (self.now.steps / every.max(1) + 1) * every.max(1);
             while self.now.stage != Stage::Done && self.now.steps < report {
                 self.advance(at_once.min(report - self.now.steps))?;
                 if self.now.stage != Stage::Done && is_stopped() {
@@ -260,11 +240,8 @@ impl Compression {
                 return Err(PackingError::Stopped(self.now.steps));
             }
             if self.now.stage != Stage::Done && self.now.steps >= self.settings.max_steps {
-                return Err(PackingError::Unsettled {
-                    steps: self.now.steps,
-                    pressure: self.now.pressure,
-                    kinetic_ratio: self.measure().kinetic_ratio,
-                });
+                let (steps, pressure) = (self.now.steps, self.now.pressure);
+                return Err(PackingError::Unsettled(steps, pressure, self.measure().kinetic_ratio));
             }
         }
         let after = self.measure();
@@ -324,38 +301,27 @@ impl Compression {
         settings.check()?;
         const EARLY: PackingError = PackingError::State("it ends early");
         let (body, sum) = bytes.split_last_chunk::<8>().ok_or(EARLY)?;
-        if xxh3_64(body) != u64::from_le_bytes(*sum) {
-            return Err(PackingError::State("its checksum is wrong"));
-        }
+        require(xxh3_64(body) == u64::from_le_bytes(*sum), "its checksum is wrong")?;
         let (magic, body) = body.split_first_chunk::<8>().ok_or(EARLY)?;
-        if *magic != MAGIC {
-            return Err(PackingError::State("it is not a compression"));
-        }
+        require(*magic == MAGIC, "it is not a compression")?;
         let (version, body) = body.split_first_chunk::<8>().ok_or(EARLY)?;
-        if u64::from_le_bytes(*version) != VERSION {
-            return Err(PackingError::State("it has another version"));
-        }
+        require(u64::from_le_bytes(*version) == VERSION, "it has another version")?;
         let (length, body) = body.split_first_chunk::<8>().ok_or(EARLY)?;
         let length = usize::try_from(u64::from_le_bytes(*length)).unwrap_or(usize::MAX);
         let (record, columns) = body.split_at_checked(length).ok_or(EARLY)?;
         let now: Moment =
             serde_json::from_slice(record).map_err(|_| PackingError::State("its record cannot be read"))?;
-        if now.settings != settings.fingerprint() {
-            return Err(PackingError::State("it was made with other settings"));
-        }
+        require(now.settings == settings.fingerprint(), "it was made with other settings")?;
         let n = now.grains;
-        if n == 0 || columns.len() as u128 != 168 * n as u128 + 32 * now.close_pairs as u128 {
-            return Err(PackingError::State("its columns have another length"));
-        }
+        let length = 168 * n as u128 + 32 * now.close_pairs as u128;
+        require(n > 0 && columns.len() as u128 == length, "its columns have another length")?;
+        require((1.0..=1.001 * Aspect::TALLEST).contains(&now.aspect), "its cell is invalid")?;
         let (rank, rest) = columns.split_at(4 * n);
         let (origin, rest) = rest.split_at(4 * n);
         let mut rows = rest.chunks(32 * n).map(bytemuck::pod_collect_to_vec::<u8, [f64; 4]>);
         let mut row = || rows.next().unwrap_or_default();
         let (position, velocity) = (row(), row());
         let origin = bytemuck::pod_collect_to_vec(origin);
-        if !(1.0..=1.001 * Aspect::TALLEST).contains(&now.aspect) {
-            return Err(PackingError::State("its cell is invalid"));
-        }
         let makes_heavier = now.makes_heavier;
         let mut this = Self::blank(settings, now, position, velocity, origin);
         this.is_wide = makes_heavier;
@@ -372,9 +338,7 @@ impl Compression {
             chunk.memory.copy_from_slice(part.ok_or(PackingError::State("memory is missing"))?);
             taken += chunk.close.len();
         }
-        if taken != memory.len() {
-            return Err(PackingError::State("memory is left over"));
-        }
+        require(taken == memory.len(), "memory is left over")?;
         Ok(this)
     }
 }

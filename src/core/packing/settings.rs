@@ -113,46 +113,22 @@ fn friction() -> Allowed<f64> {
 const MOST_OVERLAP_PERCENT: f64 = 3.0;
 
 /// Reasons why no packing could be made.
+#[allow(missing_docs)]
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PackingError {
     /// A setting is out of range.
     #[error("{field} = {value} is not allowed: {allowed}")]
-    Setting {
-        /// Name of the setting.
-        field: &'static str,
-        /// Its value.
-        value: String,
-        /// Allowed values.
-        allowed: String,
-    },
-    /// The grains are so soft that their overlaps mean nothing.
+    Setting { field: &'static str, value: String, allowed: String },
+    /// Grains so soft that their overlaps mean nothing, and the minimum allowed ratio of stiffness.
     #[error(
         "stiffness_ratio = {value} is not allowed: under the pressure of {pressure_kpa} kPa grains would \
          overlap by about {overlap_percent:.2} % of their size; allowed: at least {least:.1e}, where they \
          overlap by {MOST_OVERLAP_PERCENT} %"
     )]
-    Soft {
-        /// Requested ratio.
-        value: f64,
-        /// Target pressure.
-        pressure_kpa: f64,
-        /// Overlap of two grains under that pressure (% of the diameter).
-        overlap_percent: f64,
-        /// Minimum allowed ratio.
-        least: f64,
-    },
-    /// An invalid grain.
-    #[error("grain {grain}: {column} = {value} is not allowed: {allowed}")]
-    Grain {
-        /// Index of the grain, counted from 0.
-        grain: usize,
-        /// Name of the invalid column.
-        column: &'static str,
-        /// The value.
-        value: f64,
-        /// Allowed values.
-        allowed: &'static str,
-    },
+    Soft { value: f64, pressure_kpa: f64, overlap_percent: f64, least: f64 },
+    /// An invalid grain, counted from 0: a column, its value, and the allowed values.
+    #[error("grain {0}: {1} = {2} is not allowed: {3}")]
+    Grain(usize, &'static str, f64, &'static str),
     /// Columns of different length, or without grains.
     #[error(
         "grain columns x, y, z, diameter have {0:?} entries: they must have the same number, at least one"
@@ -164,56 +140,24 @@ pub enum PackingError {
     /// A cell too flat or too tall.
     #[error("a cell {0} times as tall as wide: allowed: a number from 1 to 100")]
     Aspect(f64),
-    /// A grain would touch itself, or another grain twice.
+    /// A cell (mm) in which the largest grain (mm) would touch itself, or another grain twice.
     #[error(
-        "the cell is {cell_mm} mm wide, narrower than two of the largest grain ({largest_mm} mm): use more \
-         grains or a narrower gradation"
+        "the cell is {0} mm wide, narrower than two of the largest grain ({1} mm): use more grains or a \
+         narrower gradation"
     )]
-    NarrowCell {
-        /// Edge of the cell (mm).
-        cell_mm: f64,
-        /// Diameter of the largest grain (mm).
-        largest_mm: f64,
-    },
+    NarrowCell(f64, f64),
     /// Two grains with the same centre: there is no direction in which to push them apart.
     #[error("grains {0} and {1} have the same centre")]
     Coincident(usize, usize),
-    /// A time step that cannot be stable.
-    #[error(
-        "time step {step:e} (reduced units) is not below the critical time step {critical:e}, which is set \
-         by {cause}"
-    )]
-    Step {
-        /// Requested step.
-        step: f64,
-        /// The critical step.
-        critical: f64,
-        /// Cause of the limit.
-        cause: &'static str,
-    },
-    /// No room for a grain.
-    #[error("no room for grain {grain} of {grains} at packing fraction {fraction}: start looser")]
-    Placement {
-        /// Rank of the grain, from the largest.
-        grain: usize,
-        /// Number of grains.
-        grains: usize,
-        /// Packing fraction tried.
-        fraction: f64,
-    },
-    /// The stage did not settle.
-    #[error(
-        "not settled after {steps} steps: pressure {pressure} of the target, kinetic by elastic energy \
-         {kinetic_ratio:e}"
-    )]
-    Unsettled {
-        /// Number of steps done.
-        steps: u64,
-        /// Pressure over its target.
-        pressure: f64,
-        /// Ratio of kinetic to elastic energy.
-        kinetic_ratio: f64,
-    },
+    /// A time step that cannot be stable, the critical step, and its cause.
+    #[error("time step {0:e} (reduced units) is not below the critical time step {1:e}, which is set by {2}")]
+    Step(f64, f64, &'static str),
+    /// No room for a grain, by rank from the largest, of so many, at this packing fraction.
+    #[error("no room for grain {0} of {1} at packing fraction {2}: start looser")]
+    Placement(usize, usize, f64),
+    /// A stage that did not settle: steps, pressure over its target, ratio of kinetic to elastic energy.
+    #[error("not settled after {0} steps: pressure {1} of the target, kinetic by elastic energy {2:e}")]
+    Unsettled(u64, f64, f64),
     /// The progress callback asked to stop.
     #[error("stopped after {0} steps")]
     Stopped(u64),
@@ -227,21 +171,17 @@ impl PackingError {
     pub(super) fn unless_sizes(diameter: &[f64]) -> Result<(), Self> {
         match diameter.iter().position(|d| !(*d > 0.0 && *d < f64::INFINITY)) {
             None => Ok(()),
-            Some(grain) => {
-                let (value, allowed) = (diameter[grain], "a positive number");
-                Err(Self::Grain { grain, column: "diameter", value, allowed })
-            }
+            Some(grain) => Err(Self::Grain(grain, "diameter", diameter[grain], "a positive number")),
         }
     }
 }
 
 impl Settings {
     /// Shear modulus of the grains over the pressure, reduced by the stiffness ratio.
-    pub(super) fn shear(&self) -> f64 {
+    fn shear(&self) -> f64 {
         self.shear_modulus_gpa * self.stiffness_ratio * 1e6 / self.pressure_kpa
     }
 
-    /// Hash of the settings, to recognise them.
     pub(super) fn fingerprint(&self) -> u64 {
         xxhash_rust::xxh3::xxh3_64(format!("{self:?}").as_bytes())
     }
@@ -298,7 +238,6 @@ impl Settings {
     }
 }
 
-/// Mass of a grain in reduced units.
 pub(super) fn mass(radius: f64, exponent: f64) -> f64 {
     let d = 2.0 * radius;
     let cube = PI / 6.0 * d * d * d;
@@ -362,29 +301,24 @@ pub(super) fn critical_step(
     let mut least = (f64::INFINITY, "");
     for (p, v) in position.iter().zip(velocity) {
         let (radius, mass) = (p[3], v[3]);
-        let kn = if law.hertz {
+        let (kn, rayleigh) = if law.hertz {
             // Force p D^2 on a contact of two such grains.
             let force = 4.0 * radius * radius;
             let root = (0.5 * radius).sqrt();
             let loaded = 1.5 * force / (law.stiffness * root);
             let overlap = libm::cbrt(loaded * loaded);
             let density = mass / (4.0 / 3.0 * PI * radius * radius * radius);
-            let rayleigh =
-                PI * radius * (density / shear).sqrt() / (0.1631 * settings.poisson_ratio + 0.8766);
-            if rayleigh < least.0 {
-                least = (rayleigh, "the Rayleigh wave across a grain");
-            }
-            law.stiffness * root * overlap.sqrt()
+            let factor = 0.1631 * settings.poisson_ratio + 0.8766;
+            (law.stiffness * root * overlap.sqrt(), PI * radius * (density / shear).sqrt() / factor)
         } else {
-            law.stiffness
+            (law.stiffness, f64::INFINITY)
         };
-        let contact = PI / (2.0 * kn / mass).sqrt();
-        if contact < least.0 {
-            least = (contact, "the duration of a contact");
-        }
-        let crowded = 2.0 / (stability(&law) * 6.0 * kn / mass).sqrt();
-        if crowded < least.0 {
-            least = (crowded, "a grain with six contacts");
+        for limit in [
+            (rayleigh, "the Rayleigh wave across a grain"),
+            (PI / (2.0 * kn / mass).sqrt(), "the duration of a contact"),
+            (2.0 / (stability(&law) * 6.0 * kn / mass).sqrt(), "a grain with six contacts"),
+        ] {
+            least = if limit.0 < least.0 { limit } else { least };
         }
     }
     least

@@ -4,7 +4,7 @@
 //! Length: the smallest diameter. Stress: the target pressure. Density: the grains' density. So the unit of
 //! time is `smallest diameter * sqrt(density / pressure)` and a strain rate of 1e-3 is an inertial number of
 //! 1e-3 for the smallest grains.
-//!
+
 use super::contact::{Law, Work};
 use super::neighbours::{Aspect, GrainChunk, Memory, Reach, chunk_bounds, nearest};
 use super::settings::{PackingError, Settings, WIDE, critical_step, is_wide, mass};
@@ -13,10 +13,11 @@ use crate::gradation::Gradation;
 use std::f64::consts::PI;
 
 /// Stages of a compression.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Stage {
     /// The cell shrinks at a constant rate.
+    #[default]
     Squeeze,
     /// The servo holds the pressure, with the friction of the compression.
     Compress,
@@ -70,9 +71,8 @@ pub(crate) struct HoldState {
     /// grains are given a larger mass.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub(crate) saved: f64,
-    /// Mean coordination number at that step.
+    /// Mean coordination number and void ratio at that step.
     pub(crate) coordination: f64,
-    /// Void ratio at that step.
     pub(crate) void_ratio: f64,
     /// True once the pressure has been near its target; the drag is then raised.
     pub(crate) braking: bool,
@@ -81,7 +81,7 @@ pub(crate) struct HoldState {
 }
 
 /// State of a compression, except its columns, as it is stored.
-#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Moment {
     pub(crate) settings: u64,
@@ -94,12 +94,10 @@ pub(super) struct Moment {
     pub(crate) step: f64,
     /// Smallest diameter (mm): the unit of length.
     pub(crate) unit_mm: f64,
-    /// Width of the cell.
     pub(crate) cell: f64,
     /// Fixed ratio of height to width of the cell; omitted for a cube.
     #[serde(default = "cube", skip_serializing_if = "is_cube")]
     pub(crate) aspect: f64,
-    /// Relative growth of the cell per unit of time.
     pub(crate) strain_rate: f64,
     pub(crate) friction: f64,
     /// True if crowded grains are given a larger mass.
@@ -126,7 +124,6 @@ pub(super) struct Moment {
     pub(crate) twice_kinetic: f64,
     /// Sum of the squared unbalanced forces.
     pub(crate) unbalanced: f64,
-    /// Mean normal force of the contacts.
     pub(crate) mean_normal: f64,
     pub(crate) hold: HoldState,
 }
@@ -149,31 +146,16 @@ impl Moment {
         Self {
             settings: settings.fingerprint(),
             grains,
-            close_pairs: 0,
-            stage: Stage::Squeeze,
-            steps: 0,
-            time: 0.0,
-            step: 0.0,
             unit_mm,
             cell,
             aspect: aspect.height(),
-            strain_rate: 0.0,
             friction: settings.friction,
-            makes_heavier: false,
-            listed_at: 0,
             listed_cell: cell,
             reach: settings.reach,
-            picked_at: 0,
             picked_cell: cell,
             close: Reach { relative: 0.1 * settings.reach.relative, absolute: 0.1 * settings.reach.absolute },
             moved: f64::INFINITY,
-            contacts: 0,
-            pressure: 0.0,
-            stiffest: 0.0,
-            twice_kinetic: 0.0,
-            unbalanced: 0.0,
-            mean_normal: 0.0,
-            hold: HoldState::default(),
+            ..Self::default()
         }
     }
 }
@@ -236,7 +218,7 @@ impl Compression {
         for (column, values) in [("x", &packing.x), ("y", &packing.y), ("z", &packing.z)] {
             if let Some(grain) = values.iter().position(|v| !v.is_finite()) {
                 let value = values[grain];
-                return Err(PackingError::Grain { grain, column, value, allowed: "a finite number" });
+                return Err(PackingError::Grain(grain, column, value, "a finite number"));
             }
         }
         PackingError::unless_sizes(&packing.diameter)?;
@@ -247,7 +229,7 @@ impl Compression {
         let unit_mm = packing.diameter[origin[n - 1] as usize];
         let largest_mm = packing.diameter[origin[0] as usize];
         if cell_mm < 2.0 * largest_mm {
-            return Err(PackingError::NarrowCell { cell_mm, largest_mm });
+            return Err(PackingError::NarrowCell(cell_mm, largest_mm));
         }
         let placed = |&i: &u32| {
             let i = i as usize;
@@ -269,7 +251,7 @@ impl Compression {
             && step >= this.loose_step
         {
             let (critical, cause) = critical_step(&this.position, &this.velocity, settings);
-            return Err(PackingError::Step { step, critical, cause });
+            return Err(PackingError::Step(step, critical, cause));
         }
         this.now.step = settings.step.unwrap_or(settings.step_fraction * this.loose_step);
         this.relist();
@@ -336,7 +318,7 @@ impl Compression {
         self.cell_volume() / self.grain_volume() - 1.0
     }
 
-    pub(super) fn cell_volume(&self) -> f64 {
+    fn cell_volume(&self) -> f64 {
         self.now.cell * self.now.cell * self.now.cell * self.aspect.height()
     }
 
@@ -348,7 +330,6 @@ impl Compression {
         cubes.iter().sum::<f64>() * (4.0 / 3.0 * PI)
     }
 
-    /// Tells if crowded grains are given a larger mass.
     pub(super) fn makes_heavier(&self) -> bool {
         self.is_wide && self.settings.step.is_none()
     }
@@ -362,25 +343,18 @@ impl Compression {
 
     /// Grains in their present state, in their original order.
     pub fn packing(&self) -> Packing {
-        let n = self.rank.len();
-        let edge = self.now.cell * self.now.unit_mm;
-        let height = self.aspect.height();
-        let cell = Cell::Periodic([edge, edge, edge * height]);
-        let [x, y, z, diameter] = std::array::from_fn(|_| vec![0.0; n]);
-        let mut packing = Packing { cell, x, y, z, diameter };
-        for (p, &r) in self.position.iter().zip(&self.rank) {
-            let i = self.origin[r as usize] as usize;
+        let (edge, height) = (self.now.cell * self.now.unit_mm, self.aspect.height());
+        let mut grains = vec![[0.0; 4]; self.rank.len()];
+        for ([x, y, z, radius], &r) in self.position.iter().zip(&self.rank) {
             let wrapped = |s: f64, length: f64| (s - length * libm::floor(s / length)) * edge;
-            packing.x[i] = wrapped(p[0], 1.0);
-            packing.y[i] = wrapped(p[1], 1.0);
-            packing.z[i] = wrapped(p[2], height);
-            packing.diameter[i] = 2.0 * p[3] * self.now.unit_mm;
+            grains[self.origin[r as usize] as usize] =
+                [wrapped(*x, 1.0), wrapped(*y, 1.0), wrapped(*z, height), 2.0 * radius * self.now.unit_mm];
         }
-        packing
+        Packing::from_grains(Cell::Periodic([edge, edge, edge * height]), grains)
     }
 
     /// Calls `visit` with the grains, distance, overlap and tangential memory of every contact.
-    pub(super) fn for_each_contact(&self, mut visit: impl FnMut(usize, usize, f64, f64, &Memory)) {
+    fn for_each_contact(&self, mut visit: impl FnMut(usize, usize, f64, f64, &Memory)) {
         for chunk in &self.chunks {
             for (&[i, j], memory) in chunk.close.iter().zip(&chunk.memory) {
                 let (i, j) = (i as usize, j as usize);

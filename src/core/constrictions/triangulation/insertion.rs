@@ -38,7 +38,6 @@ struct Stand {
     apex: usize,
     /// The tetrahedron outside, and its corner opposite the facet.
     outside: u32,
-    /// Its translate.
     translate: Shift,
 }
 
@@ -55,7 +54,6 @@ impl Edge {
     const UNUSED: Self = Self { insertion: 0, ends: [(0, Shift::ZERO); 2], tetrahedron: 0, facet: 0 };
 }
 
-/// A triangulation under construction.
 pub(super) struct Builder<'a> {
     pub(super) mesh: Mesh,
     points: &'a Points,
@@ -356,7 +354,6 @@ fn spanning(at: &[GrainPoint], order: &[u32]) -> Option<[usize; 4]> {
     Some(chosen)
 }
 
-/// Order of insertion for a free triangulation.
 pub(super) fn free_order(at: &[GrainPoint]) -> Vec<u32> {
     let values = |axis: usize| at.iter().map(move |p| p[axis]);
     let low: [f64; 3] = std::array::from_fn(|axis| values(axis).fold(f64::INFINITY, f64::min));
@@ -365,7 +362,6 @@ pub(super) fn free_order(at: &[GrainPoint]) -> Vec<u32> {
     levels(&sorted(at, low, extent), (at.len() / 64).max(1))
 }
 
-/// Bits per axis of a position on the curve.
 const BITS: u32 = 16;
 
 /// Approximate growth of the number of grains from one level to the next.

@@ -19,30 +19,25 @@ use crate::packing::{Cell, Packing};
 /// Centre x, y, z and radius in grid units: integers, exact in f64.
 pub(crate) type GrainPoint = [f64; 4];
 
-/// Vector from one point to another.
 #[inline(always)]
 pub(crate) fn offset(from: &[f64], to: &[f64]) -> [f64; 3] {
     [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
 }
 
-/// Inner product.
 #[inline(always)]
 pub(crate) fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Cross product.
 #[inline(always)]
 pub(crate) fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Facet opposite a corner of a tetrahedron.
 pub(crate) fn facet(corners: &[GrainPoint; 4], corner: usize) -> [GrainPoint; 3] {
     [1, 2, 3].map(|k| corners[(corner + k) % 4])
 }
 
-/// Edges of a tetrahedron from a corner to the others.
 pub(crate) fn edges(corners: &[GrainPoint; 4], corner: usize) -> [[f64; 3]; 3] {
     facet(corners, corner).map(|other| offset(&corners[corner], &other))
 }
@@ -79,7 +74,6 @@ pub(super) struct Points {
 }
 
 impl Points {
-    /// Checks a packing and places it on the grid.
     pub(super) fn new(packing: &Packing) -> Result<Self, TriangulationError> {
         let columns = [&packing.x, &packing.y, &packing.z];
         let (grains, largest_mm) = check(packing)?;
@@ -111,7 +105,6 @@ impl Points {
         Ok(Self { unit_mm, origin_mm, ..Self::of(at.collect(), cell) })
     }
 
-    /// Makes points that are already on a grid.
     pub(super) fn of(at: Vec<GrainPoint>, cell: Option<[f64; 3]>) -> Self {
         let period = cell.unwrap_or([0.0; 3]);
         let along = |bits: usize, axis: usize| ((bits >> (2 * axis)) & 3) as f64 * period[axis];
@@ -150,7 +143,6 @@ impl Points {
         [point(a), point(b), point(c), point(d)]
     }
 
-    /// Tells if the centres lie in one plane, or on one line.
     pub(super) fn is_flat(&self) -> bool {
         let from = self.at[0];
         let offsets: Vec<[f64; 3]> = self.at.iter().map(|p| offset(&from, p)).collect();
@@ -185,10 +177,10 @@ fn check(packing: &Packing) -> Result<(usize, f64), TriangulationError> {
     let columns = [("x", &packing.x), ("y", &packing.y), ("z", &packing.z)];
     for (name, column) in columns {
         if column.len() != grains {
-            return Err(TriangulationError::Columns { column: name, rows: column.len(), grains });
+            return Err(TriangulationError::Columns(name, column.len(), grains));
         }
         if let Some(grain) = column.iter().position(|value| !value.is_finite()) {
-            return Err(TriangulationError::Centre { grain, column: name, value: column[grain] });
+            return Err(TriangulationError::Centre(grain, name, column[grain]));
         }
     }
     if let Some(grain) = packing.diameter.iter().position(|d| !(d.is_finite() && *d > 0.0)) {
@@ -205,7 +197,7 @@ fn check(packing: &Packing) -> Result<(usize, f64), TriangulationError> {
         for (axis, length_mm) in ["x", "y", "z"].into_iter().zip(lengths) {
             // This form refuses NaN as well.
             if !(length_mm.is_finite() && length_mm >= 2.0 * largest_mm) {
-                return Err(TriangulationError::Narrow { axis, length_mm, largest_mm });
+                return Err(TriangulationError::Narrow(length_mm, axis, largest_mm));
             }
         }
     }
@@ -221,45 +213,21 @@ pub enum TriangulationError {
     /// More grains than a corner can name.
     #[error("{0} grains: at most 67108863 can be triangulated")]
     TooMany(usize),
-    /// Columns of different lengths.
-    #[error("column {column} has {rows} rows, but there are {grains} diameters")]
-    Columns {
-        /// Name of the column.
-        column: &'static str,
-        /// Its rows.
-        rows: usize,
-        /// Rows of the diameter column.
-        grains: usize,
-    },
-    /// A coordinate that is not finite.
-    #[error("grain {grain}: {column} = {value} mm, but a centre must be finite")]
-    Centre {
-        /// Index of the grain, from 0.
-        grain: usize,
-        /// Name of the column.
-        column: &'static str,
-        /// Value of the column.
-        value: f64,
-    },
+    /// Columns of different lengths: a column, its rows, and those of the diameters.
+    #[error("column {0} has {1} rows, but there are {2} diameters")]
+    Columns(&'static str, usize, usize),
+    /// A coordinate that is not finite: the grain, from 0; the column; the value.
+    #[error("grain {0}: {1} = {2} mm, but a centre must be finite")]
+    Centre(usize, &'static str, f64),
     /// A diameter that is not a size.
     #[error("grain {0}: diameter = {1} mm, but it must be finite and above 0")]
     Diameter(usize, f64),
     /// Lengths (mm) so large or so small that their products exceed the range of f64.
     #[error("the largest length is {0} mm, but it must lie between 1e-250 and 1e250")]
     Extent(f64),
-    /// A cell in which a grain meets its own image.
-    #[error(
-        "the cell is {length_mm} mm along {axis}, but it must be at least twice the largest grain \
-         ({largest_mm} mm)"
-    )]
-    Narrow {
-        /// Axis of the cell.
-        axis: &'static str,
-        /// Its length.
-        length_mm: f64,
-        /// The largest diameter.
-        largest_mm: f64,
-    },
+    /// A cell in which a grain meets its own image: its length (mm), along an axis, and the largest diameter.
+    #[error("the cell is {0} mm along {1}, but it must be at least twice the largest grain ({2} mm)")]
+    Narrow(f64, &'static str, f64),
     /// Free grains whose centres lie in one plane.
     #[error("the centres of all {0} grains lie in one plane: there is nothing to triangulate")]
     Coplanar(usize),
@@ -317,7 +285,6 @@ pub(super) fn grain(corner: Corner) -> u32 {
     corner & MOST_GRAINS as u32
 }
 
-/// Shift of a corner's image.
 #[inline(always)]
 pub(super) fn image(corner: Corner) -> Shift {
     let bits = corner >> GRAIN_BITS;
@@ -344,7 +311,6 @@ pub(super) struct Mesh {
 }
 
 impl Mesh {
-    /// Adds a tetrahedron without neighbours.
     pub(super) fn push(&mut self, corners: [Corner; 4]) -> u32 {
         self.corners.push(corners);
         self.neighbours.push([NONE; 4]);

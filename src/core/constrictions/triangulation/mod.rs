@@ -54,7 +54,7 @@ impl Triangulation {
     }
 
     /// Triangulates like [`Triangulation::new`], with the sizes of the first samples to be tried.
-    pub(super) fn with_samples(packing: &Packing, samples: &[usize]) -> Result<Self, TriangulationError> {
+    fn with_samples(packing: &Packing, samples: &[usize]) -> Result<Self, TriangulationError> {
         let points = Points::new(packing)?;
         let grains = points.at.len();
         let identity: Vec<u32> = (0..grains as u32).collect();
@@ -101,12 +101,22 @@ impl Triangulation {
         &self.hidden
     }
 
+    /// Centre and radius of the grains that are not hidden, in grid units.
+    pub(super) fn visible(&self) -> impl Iterator<Item = &GrainPoint> {
+        let all = self.points.at.iter().zip(0u32..);
+        all.filter(|(_, grain)| self.hidden.binary_search(grain).is_err()).map(|(sphere, _)| sphere)
+    }
+
+    /// Radius of the smallest grain, in grid units.
+    pub(super) fn least_radius(&self) -> f64 {
+        self.points.at.iter().map(|s| s[3]).fold(f64::INFINITY, f64::min)
+    }
+
     /// Pairs of a hidden grain and another with the same centre.
     pub(crate) fn duplicates(&self) -> &[[u32; 2]] {
         &self.duplicates
     }
 
-    /// Length of a grid unit (mm), a power of two.
     pub(super) fn unit_mm(&self) -> f64 {
         self.points.unit_mm
     }
@@ -130,17 +140,14 @@ impl Triangulation {
         (across != NONE).then_some(((across / 4) as usize, (across % 4) as usize, shift))
     }
 
-    /// Displacement by whole cells, in grid units.
     pub(super) fn displacement(&self, shift: Shift) -> [f64; 3] {
         self.points.displacement(shift)
     }
 
-    /// Converts a point to mm.
     pub(super) fn in_mm(&self, p: [f64; 3]) -> [f64; 3] {
         std::array::from_fn(|axis| p[axis] * self.points.unit_mm + self.points.origin_mm[axis])
     }
 
-    /// Converts a point to mm and moves it into the cell.
     pub(super) fn inside_mm(&self, p: [f64; 3]) -> [f64; 3] {
         self.in_mm(match self.points.cell {
             Some(cell) => {
@@ -171,7 +178,6 @@ impl Triangulation {
         self.points.corners::<true>(&self.mesh.corners[tetrahedron], shift)
     }
 
-    /// Corners of a stored tetrahedron, in grid units.
     pub(super) fn stored(&self, tetrahedron: usize) -> [GrainPoint; 4] {
         self.at(tetrahedron, Shift::ZERO)
     }
@@ -263,7 +269,6 @@ fn of_images(points: &Points, cell: [f64; 3], sample: &[u32]) -> Option<Mesh> {
     })
 }
 
-/// Images of grains as columns.
 #[derive(Default)]
 struct Images {
     grain: Vec<u32>,
@@ -271,7 +276,6 @@ struct Images {
 }
 
 impl Images {
-    /// Grain and shift of the corners of a tetrahedron.
     fn corners(&self, mesh: &Mesh, t: u32) -> [(u32, Shift); 4] {
         mesh.corners[t as usize].map(|c| (self.grain[grain(c) as usize], self.shift[grain(c) as usize]))
     }
@@ -334,7 +338,6 @@ fn six_volumes(mesh: &Mesh, points: &Points) -> Result<Wide, usize> {
     Ok(sum)
 }
 
-/// Six times the volume of the cell, exactly.
 fn six_cells(cell: [f64; 3]) -> Wide {
     let [x, y, z] = cell.map(|length| Wide::from(length as i128));
     Wide::from(6) * x * y * z

@@ -33,7 +33,6 @@ const MINOR_BOUND: f64 = 32.0 * U;
 /// 6), and their sum: 4 (24 + 28 + 6) + 54 = 286; 320 covers the bound's own rounding.
 const POWER_BOUND: f64 = 320.0 * U;
 
-/// Differences corner - p.
 #[inline(always)]
 fn differences(corners: &[GrainPoint; 4], p: &GrainPoint) -> [[f64; 3]; 4] {
     [offset(p, &corners[0]), offset(p, &corners[1]), offset(p, &corners[2]), offset(p, &corners[3])]
@@ -61,7 +60,6 @@ fn minors(d: &[[f64; 3]; 4]) -> [f64; 4] {
     minors_of(|i, j| d[i][0] * d[j][1] - d[j][0] * d[i][1], [d[0][2], d[1][2], d[2][2], d[3][2]])
 }
 
-/// Product over the axes of the largest difference.
 #[inline(always)]
 fn magnitude(d: &[[f64; 3]; 4]) -> f64 {
     let largest =
@@ -199,7 +197,6 @@ pub(super) struct Wide([u64; LIMBS]);
 impl Wide {
     pub(super) const ZERO: Self = Self([0; LIMBS]);
 
-    /// Sign: -1, 0 or 1.
     pub(super) fn sign(self) -> i32 {
         if self.0[LIMBS - 1] >> 63 == 1 { -1 } else { i32::from(self != Self::ZERO) }
     }

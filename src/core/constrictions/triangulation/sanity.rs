@@ -20,22 +20,9 @@ pub enum SanityError {
     /// A corner across a facet that should have removed the tetrahedron.
     #[error("across facet {1} of tetrahedron {0} lies a grain inside its power sphere")]
     Irregular(usize, usize),
-    /// A violation of Euler's relation.
-    #[error(
-        "{vertices} vertices - {edges} edges + {facets} facets - {tetrahedra} tetrahedra is not {expected}"
-    )]
-    Euler {
-        /// Number of grains that are corners.
-        vertices: usize,
-        /// Number of edges.
-        edges: usize,
-        /// Number of facets.
-        facets: usize,
-        /// Number of tetrahedra.
-        tetrahedra: usize,
-        /// 0 on the torus, 1 in space.
-        expected: i64,
-    },
+    /// A violation of Euler's relation: vertices, edges, facets and tetrahedra; 0 on the torus, 1 in space.
+    #[error("{0} vertices - {1} edges + {2} facets - {3} tetrahedra is not {4}")]
+    Euler(usize, usize, usize, usize, i64),
 }
 
 impl Triangulation {
@@ -70,7 +57,7 @@ impl Triangulation {
         let (edges, tetrahedra) = (edges(mesh), self.tetrahedra());
         let expected = i64::from(self.cell().is_none());
         if vertices as i64 - edges as i64 + facets as i64 - tetrahedra as i64 != expected {
-            return Err(SanityError::Euler { vertices, edges, facets, tetrahedra, expected });
+            return Err(SanityError::Euler(vertices, edges, facets, tetrahedra, expected));
         }
         Ok(())
     }
@@ -127,27 +114,20 @@ fn edges(mesh: &Mesh) -> usize {
 mod tests {
     use super::*;
     use crate::constrictions::TriangulationError;
+    use crate::packing::uniform;
     use crate::packing::{Cell, Packing};
-    use crate::stream::{Key, Purpose, unit};
     use num_bigint::{BigInt, Sign};
-    use rand::Rng;
     use std::collections::BTreeSet;
-
-    fn key(chunk: u64) -> impl Rng {
-        Key { seed: 20_261_121, purpose: Purpose::Packing, run: 0, increment: 0, chunk }.generator()
-    }
 
     /// Makes random grains, with any overlap, with diameters between two sizes.
     fn random(grains: usize, cell: Cell, extent: [f64; 3], sizes: [f64; 2], chunk: u64) -> Packing {
-        let mut rng = key(chunk);
-        let mut column = |low: f64, high: f64| -> Vec<f64> {
-            (0..grains).map(|_| low + (high - low) * unit(rng.next_u64())).collect()
-        };
+        let mut u = uniform(20_261_121, chunk);
+        let mut column =
+            |low: f64, high: f64| -> Vec<f64> { (0..grains).map(|_| low + (high - low) * u()).collect() };
         let [x, y, z] = extent.map(|length| column(0.0, length));
         Packing { cell, x, y, z, diameter: column(sizes[0], sizes[1]) }
     }
 
-    /// Determinant by cofactors: slow and obvious.
     fn determinant(m: &[Vec<BigInt>]) -> BigInt {
         if m.is_empty() {
             return BigInt::from(1);
@@ -166,7 +146,6 @@ mod tests {
         sum
     }
 
-    /// Lexicographic rank of each point.
     fn ranks(points: &[[i64; 4]]) -> Vec<usize> {
         let mut order: Vec<usize> = (0..points.len()).collect();
         order.sort_by_key(|&i| (points[i][0], points[i][1], points[i][2], i));
@@ -267,9 +246,8 @@ mod tests {
     }
 
     fn integers(points: &[[i64; 4]]) -> Packing {
-        let column = |axis: usize| points.iter().map(|p| p[axis] as f64).collect();
-        let diameter = points.iter().map(|p| 2.0 * p[3] as f64).collect();
-        Packing { cell: Cell::Free, x: column(0), y: column(1), z: column(2), diameter }
+        let grains = points.iter().map(|p| p.map(|v| v as f64)).map(|[x, y, z, r]| [x, y, z, 2.0 * r]);
+        Packing::from_grains(Cell::Free, grains)
     }
 
     /// Ten thousand sets of five to eight grains: a third on a grid of 4 x 4 x 4 (only ties, duplicates
@@ -278,12 +256,12 @@ mod tests {
     fn small_sets_agree_with_brute_force() {
         let mut flat = 0;
         for set in 0..10_000u64 {
-            let mut rng = key(set);
+            let mut u = uniform(20_261_121, set);
             let grains = 5 + (set % 4) as usize;
             let (range, radius) = [(4, 2), (32, 12), (1 << 40, 1 << 38)][(set % 3) as usize];
             let points: Vec<[i64; 4]> = (0..grains)
                 .map(|_| {
-                    let mut below = |n: u64| (rng.next_u64() % n) as i64;
+                    let mut below = |n: u64| (u() * n as f64) as i64;
                     [below(range), below(range), below(range), 1 + below(radius)]
                 })
                 .collect();
@@ -330,14 +308,9 @@ mod tests {
     /// The torus and the images give the same tetrahedra, ties included.
     #[test]
     fn the_torus_agrees_with_images() {
-        let lattice = |i: usize, stride: usize| (i / stride % 12) as f64;
-        let cubic = Packing {
-            cell: Cell::Periodic([12.0; 3]),
-            x: (0..1728).map(|i| lattice(i, 1)).collect(),
-            y: (0..1728).map(|i| lattice(i, 12)).collect(),
-            z: (0..1728).map(|i| lattice(i, 144)).collect(),
-            diameter: vec![1.0; 1728],
-        };
+        let centre = |i: usize| [i, i / 12, i / 144].map(|i| (i % 12) as f64);
+        let grains = (0..1728).map(centre).map(|[x, y, z]| [x, y, z, 1.0]);
+        let cubic = Packing::from_grains(Cell::Periodic([12.0; 3]), grains);
         let loose = random(1_500, Cell::Periodic([8.0; 3]), [8.0; 3], [0.2, 1.0], 7);
         for packing in [cubic, loose] {
             let by_images = Triangulation::with_samples(&packing, &[]).unwrap();

@@ -6,7 +6,7 @@
 
 pub(super) mod xml;
 
-use crate::packing::fields::{FileCell, FileGrains, ImportError, LengthUnit, NAMES, ended, refused};
+use crate::packing::fields::{FileCell, FileGrains, NAMES, Problem, ReadingNote, ended, line_ends, refused};
 use crate::packing::tables::{DIAMETER, Named, RADIUS};
 
 /// Points of a file and their numbers.
@@ -18,15 +18,13 @@ pub(crate) struct Points {
     pub(crate) arrays: Vec<PointArray>,
 }
 
-/// One array of numbers.
 pub(crate) struct PointArray {
     pub(crate) line: usize,
     pub(crate) name: String,
     pub(crate) values: Vec<f64>,
 }
 
-/// Turns the points into grains.
-pub(crate) fn grains(file: &str, points: Points) -> Result<FileGrains, ImportError> {
+pub(crate) fn grains(points: Points) -> Result<FileGrains, Problem> {
     let named = |called: &[&str]| -> Vec<(&PointArray, Named)> {
         let all = points.arrays.iter().map(|array| (array, Named::of(&array.name)));
         all.filter(|(_, named)| called.contains(&named.name.as_str())).collect()
@@ -38,70 +36,59 @@ pub(crate) fn grains(file: &str, points: Points) -> Result<FileGrains, ImportErr
     let (Some((size, name)), true) = (sizes.pop(), sizes.is_empty()) else {
         let names: Vec<&str> = points.arrays.iter().map(|array| array.name.as_str()).collect();
         let allowed = "points with one array called diameter or radius";
-        return Err(refused(file, points.line, "arrays of the points", &names.join(", "), allowed));
+        return Err(refused(points.line, "arrays of the points", &names.join(", "), allowed));
     };
     let count = points.places.len() / 3;
     if size.values.len() != count {
         let allowed = format!("{count} numbers, one for each point");
-        return Err(refused(file, size.line, NAMES[3], &format!("{} numbers", size.values.len()), allowed));
+        return Err(refused(size.line, NAMES[3], &format!("{} numbers", size.values.len()), allowed));
     }
     if count == 0 {
-        return Err(ended(file, points.line, "at least one point"));
+        return Err(ended(points.line, "at least one point"));
     }
     if let Some((at, value)) = points.places.iter().enumerate().find(|(_, value)| !value.is_finite()) {
-        return Err(refused(file, points.line, NAMES[at % 3], &value.to_string(), "a finite number"));
+        return Err(refused(points.line, NAMES[at % 3], &value.to_string(), "a finite number"));
     }
     if let Some(value) = size.values.iter().find(|value| !(value.is_finite() && **value > 0.0)) {
-        return Err(refused(file, size.line, NAMES[3], &value.to_string(), "a finite number above 0"));
+        return Err(refused(size.line, NAMES[3], &value.to_string(), "a finite number above 0"));
     }
     let places = points.places.chunks_exact(3).zip(&size.values);
     let grains = places.map(|(p, value)| [p[0], p[1], p[2], factor * value]).collect();
-    let of_unit = |unit: LengthUnit| {
-        let (array, unit) = (&size.name, unit.words());
-        format!("{file}: the array {array} is in {unit}, and the coordinates are taken to be too")
-    };
-    let notes = name.unit.map(of_unit).into_iter().collect();
-    Ok(FileGrains { grains, unit: name.unit, cell: FileCell::Unsaid, line: points.line, notes })
+    let note = name.unit.map(|unit| ReadingNote::Array { name: size.name.clone(), unit });
+    Ok(FileGrains { grains, unit: name.unit, cell: FileCell::Unsaid, line: points.line, note })
 }
 
-/// Type of the numbers of an array.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Number {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    I64,
-    U64,
-    F32,
-    F64,
+/// Type of the numbers of an array: its form, and its size in bytes.
+#[derive(Clone, Copy)]
+pub(crate) struct Number(NumberForm, usize);
+
+#[derive(Clone, Copy)]
+enum NumberForm {
+    Signed,
+    Unsigned,
+    Float,
 }
 
-/// Number types with their names in XML and in the formats before XML.
-const NUMBERS: [(Number, &str, &[&str]); 10] = [
-    (Number::I8, "Int8", &["char"]),
-    (Number::U8, "UInt8", &["unsigned_char"]),
-    (Number::I16, "Int16", &["short"]),
-    (Number::U16, "UInt16", &["unsigned_short"]),
-    (Number::I32, "Int32", &["int", "vtkIdType"]),
-    (Number::U32, "UInt32", &["unsigned_int"]),
-    (Number::I64, "Int64", &["long", "vtktypeint64"]),
-    (Number::U64, "UInt64", &["unsigned_long", "vtktypeuint64"]),
-    (Number::F32, "Float32", &["float"]),
-    (Number::F64, "Float64", &["double"]),
+/// Names of the number types in XML and in the formats before XML.
+const NUMBERS: [(&str, &[&str], Number); 10] = [
+    ("Int8", &["char"], Number(NumberForm::Signed, 1)),
+    ("UInt8", &["unsigned_char"], Number(NumberForm::Unsigned, 1)),
+    ("Int16", &["short"], Number(NumberForm::Signed, 2)),
+    ("UInt16", &["unsigned_short"], Number(NumberForm::Unsigned, 2)),
+    ("Int32", &["int", "vtkIdType"], Number(NumberForm::Signed, 4)),
+    ("UInt32", &["unsigned_int"], Number::U32),
+    ("Int64", &["long", "vtktypeint64"], Number(NumberForm::Signed, 8)),
+    ("UInt64", &["unsigned_long", "vtktypeuint64"], Number::U64),
+    ("Float32", &["float"], Number(NumberForm::Float, 4)),
+    ("Float64", &["double"], Number(NumberForm::Float, 8)),
 ];
 
 impl Number {
-    /// Size in bytes.
+    pub(crate) const U32: Self = Self(NumberForm::Unsigned, 4);
+    pub(crate) const U64: Self = Self(NumberForm::Unsigned, 8);
+
     pub(crate) fn bytes(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::I64 | Self::U64 | Self::F64 => 8,
-        }
+        self.1
     }
 
     /// Reads all numbers in a run of bytes; an incomplete rest is ignored.
@@ -114,22 +101,18 @@ impl Number {
         for (k, slot) in little.iter_mut().take(bytes.len()).enumerate() {
             *slot = if is_big_endian { bytes[bytes.len() - 1 - k] } else { bytes[k] };
         }
-        let whole = u64::from_le_bytes(little);
+        let (whole, unused) = (u64::from_le_bytes(little), 64 - 8 * self.bytes());
         match self {
-            Self::I8 => f64::from(whole as i8),
-            Self::U8 | Self::U16 | Self::U32 | Self::U64 => whole as f64,
-            Self::I16 => f64::from(whole as i16),
-            Self::I32 => f64::from(whole as i32),
-            Self::I64 => whole as i64 as f64,
-            Self::F32 => f64::from(f32::from_bits(whole as u32)),
-            Self::F64 => f64::from_bits(whole),
+            Self(NumberForm::Unsigned, _) => whole as f64,
+            Self(NumberForm::Signed, _) => ((whole << unused) as i64 >> unused) as f64,
+            Self(NumberForm::Float, 4) => f64::from(f32::from_bits(whole as u32)),
+            Self(NumberForm::Float, _) => f64::from_bits(whole),
         }
     }
 }
 
-/// Reads the grains of a file that begins with `# vtk DataFile`.
-pub(crate) fn legacy(file: &str, content: &[u8]) -> Result<FileGrains, ImportError> {
-    let mut cursor = Cursor { file, content, at: 0, line: 0, is_binary: false };
+pub(crate) fn legacy(content: &[u8]) -> Result<FileGrains, Problem> {
+    let mut cursor = Cursor { content, at: 0, line: 0, is_binary: false };
     let heading = [cursor.raw_line(), cursor.raw_line()];
     if heading.iter().any(Option::is_none) {
         return Err(cursor.ended("a title, ASCII or BINARY, and DATASET"));
@@ -190,12 +173,10 @@ pub(crate) fn legacy(file: &str, content: &[u8]) -> Result<FileGrains, ImportErr
         }
     }
     let (line, places) = points.ok_or_else(|| cursor.ended("POINTS"))?;
-    grains(file, Points { line, places, arrays })
+    grains(Points { line, places, arrays })
 }
 
-/// A position in the file.
 struct Cursor<'a> {
-    file: &'a str,
     content: &'a [u8],
     at: usize,
     /// Line number, by counting line ends even in a binary file.
@@ -204,15 +185,14 @@ struct Cursor<'a> {
 }
 
 impl<'a> Cursor<'a> {
-    fn refused(&self, field: &'static str, value: &str, allowed: &str) -> ImportError {
-        refused(self.file, self.line, field, value, allowed)
+    fn refused(&self, field: &'static str, value: &str, allowed: &str) -> Problem {
+        refused(self.line, field, value, allowed)
     }
 
-    fn ended(&self, expected: &str) -> ImportError {
-        ended(self.file, self.line, expected)
+    fn ended(&self, expected: &str) -> Problem {
+        ended(self.line, expected)
     }
 
-    /// Reads the next line, without its end.
     fn raw_line(&mut self) -> Option<String> {
         let rest = self.content.get(self.at..).filter(|rest| !rest.is_empty())?;
         let length = rest.iter().position(|&byte| byte == b'\n').unwrap_or(rest.len());
@@ -231,7 +211,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    fn words(&mut self) -> Result<Vec<String>, ImportError> {
+    fn words(&mut self) -> Result<Vec<String>, Problem> {
         self.next_words().ok_or_else(|| self.ended("further lines"))
     }
 
@@ -255,7 +235,7 @@ impl<'a> Cursor<'a> {
         while self.raw_line().is_some_and(|line| !line.is_empty()) {}
     }
 
-    fn count(&self, text: &str) -> Result<usize, ImportError> {
+    fn count(&self, text: &str) -> Result<usize, Problem> {
         text.parse().map_err(|_| self.refused("number", text, "a whole number"))
     }
 
@@ -265,7 +245,7 @@ impl<'a> Cursor<'a> {
         points: Option<&(usize, Vec<f64>)>,
         components: &str,
         kind: &str,
-    ) -> Result<PointArray, ImportError> {
+    ) -> Result<PointArray, Problem> {
         let line = self.line;
         let Some((_, places)) = points else { return Err(self.refused("section", name, "POINTS first")) };
         let tuples = (places.len() / 3).to_string();
@@ -276,7 +256,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Skips the lists of the points of each cell: since VTK 9 as offsets and points.
-    fn cells(&mut self, count: &str, size: &str) -> Result<(), ImportError> {
+    fn cells(&mut self, count: &str, size: &str) -> Result<(), Problem> {
         let before = (self.at, self.line);
         for (place, count) in [count, size].into_iter().enumerate() {
             let words = self.words()?;
@@ -289,15 +269,14 @@ impl<'a> Cursor<'a> {
         Ok(())
     }
 
-    /// Reads `tuples` tuples of numbers.
-    fn numbers(&mut self, tuples: &str, components: usize, kind: &str) -> Result<Vec<f64>, ImportError> {
+    fn numbers(&mut self, tuples: &str, components: usize, kind: &str) -> Result<Vec<f64>, Problem> {
         let count = self.count(tuples)?.checked_mul(components);
         let left = self.content.len() - self.at;
         // A number takes at least one byte, so a file can never ask for more memory than its own size.
         let Some(count) = count.filter(|&count| count <= left) else {
             return Err(self.ended(&format!("{tuples} times {components} numbers")));
         };
-        let Some(&(number, ..)) = NUMBERS.iter().find(|(_, _, names)| names.contains(&kind)) else {
+        let Some(&(.., number)) = NUMBERS.iter().find(|(_, names, _)| names.contains(&kind)) else {
             let allowed = "a number's type, as float, double, int or vtktypeint64";
             return Err(self.refused("type", kind, allowed));
         };
@@ -306,24 +285,23 @@ impl<'a> Cursor<'a> {
             let Some(bytes) = end else { return Err(self.ended(&format!("{count} numbers of type {kind}"))) };
             let run = &self.content[self.at..self.at + bytes];
             self.at += bytes;
-            self.line += run.iter().filter(|&&byte| byte == b'\n').count();
+            self.line += line_ends(run);
             return Ok(number.all(run, true));
         }
         (0..count).map(|_| self.number()).collect()
     }
 
-    /// Reads the next number in text.
-    fn number(&mut self) -> Result<f64, ImportError> {
+    fn number(&mut self) -> Result<f64, Problem> {
         let rest = &self.content[self.at..];
         let begin = rest.iter().position(|byte| !byte.is_ascii_whitespace()).unwrap_or(rest.len());
         let word = &rest[begin..];
         let length = word.iter().position(u8::is_ascii_whitespace).unwrap_or(word.len());
-        self.line += rest[..begin].iter().filter(|&&byte| byte == b'\n').count();
+        self.line += line_ends(&rest[..begin]);
         self.at += begin + length;
         let text = String::from_utf8_lossy(&word[..length]);
         if text.is_empty() {
             return Err(self.ended("further numbers"));
         }
-        text.parse().map_err(|_| refused(self.file, self.line + 1, "number", &text, "a number"))
+        text.parse().map_err(|_| refused(self.line + 1, "number", &text, "a number"))
     }
 }
