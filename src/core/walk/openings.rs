@@ -313,5 +313,24 @@ mod tests {
         openings.stop(&network, 1, 1.25);
         assert_eq!(openings.end_increment(9, 2), [1]);
         assert_eq!((openings.history[2].before, openings.history[2].after), (left(2.0), left(1.25)));
+        let blocked: BitVec = [false, true, false, false, true, false].into_iter().collect();
+        let can_be = |openings: &Openings| openings.can_be(&network, &blocked, 9, 1.25);
+        assert!(can_be(&openings));
+        assert!(!openings.can_be(&network, &blocked, 8, 1.25));
+        assert!(!openings.can_be(&network, &BitVec::repeat(false, 6), 9, 1.25));
+        // No particle was that fine.
+        assert!(!openings.can_be(&network, &blocked, 9, 1.3));
+        let forgeries: [fn(&mut Openings); 5] = [
+            |o| o.widths[0] = 1.5,
+            |o| o.widths[1] = o.history[0].after,
+            |o| o.history[2].before = 1.0,
+            |o| o.history[2].increment = 7,
+            |o| o.history.swap(0, 1),
+        ];
+        for (at, forge) in forgeries.into_iter().enumerate() {
+            let mut forged = openings.clone();
+            forge(&mut forged);
+            assert!(!can_be(&forged), "{at}");
+        }
     }
 }
