@@ -280,10 +280,11 @@ fn parts_add_up_to_the_whole() {
             // f32 moved the limit by up to 6e-8 of itself.
             let limit = g.d_by_number(70.0).unwrap();
             close(fine.mean_cube().unwrap(), 8.0 * mean_cube_to(limit), 1e-6);
-            for share in [0.0, 0.01, 0.4, 0.99, 1.0] {
-                let d = |percent| 2.0 * g.d_by_number(percent).unwrap();
-                close(whole.d_by_number(share).unwrap(), d(100.0 * share), 1e-6);
-                close(fine.d_by_number(share).unwrap(), d(70.0 * share), 1e-6);
+            for (part, finer) in [(&fine, 0.0), (&coarse, fine.number_fraction()), (&whole, 0.0)] {
+                for share in [0.0, 0.01, 0.4, 0.99, 1.0] {
+                    let up_to = g.number_fraction_in(0.0, part.d_by_number(share).unwrap() / 2.0);
+                    assert!(((up_to - finer) / part.number_fraction() - share).abs() < 1e-7, "{share}");
+                }
             }
         }
         let none = sampler.part(5..5);

@@ -176,6 +176,24 @@ mod tests {
         assert_eq!(network.blocked_by_one_size(1.0), Vec::<u32>::new());
     }
 
+    /// Number of open constrictions whose void is reached from the start and whose target leads to the end,
+    /// after as many rounds over all of them as there are voids.
+    fn on_paths(network: &Network, open: impl Fn(usize) -> bool) -> usize {
+        let (upstream, targets) = (network.upstream(), network.targets());
+        let [mut reached, mut leads_out] = [(); 2].map(|()| vec![false; network.voids()]);
+        network.start().iter().for_each(|&void| reached[void as usize] = true);
+        let ends = |c: usize| (upstream[c] as usize, (targets[c] != END).then_some(targets[c] as usize));
+        for _ in 0..network.voids() {
+            for (from, to) in (0..targets.len()).filter(|&c| open(c)).map(ends) {
+                leads_out[from] |= to.is_none_or(|to| leads_out[to]);
+                to.into_iter().for_each(|to| reached[to] |= reached[from]);
+            }
+        }
+        let is_on_path =
+            |(from, to): &(usize, Option<usize>)| reached[*from] && to.is_none_or(|to| leads_out[to]);
+        (0..targets.len()).filter(|&c| open(c)).map(ends).filter(is_on_path).count()
+    }
+
     /// Upstream voids are computed on a lattice and looked up in other networks.
     #[test]
     fn as_many_voids_lead_on_in_a_lattice_as_in_the_network_that_it_is() {
@@ -191,6 +209,12 @@ mod tests {
                 assert_eq!(led, expected, "{shape:?}");
                 let [to_end, expected_end] = [&lattice, &network].map(|network| network.leading_to_end(open));
                 assert_eq!(to_end, expected_end, "{shape:?}");
+                let expected = on_paths(&network, open) as f64 / count as f64;
+                assert_eq!(
+                    [&lattice, &network].map(|n| n.backbone_fraction(open)),
+                    [expected; 2],
+                    "{shape:?}"
+                );
                 some += [&led, &to_end].into_iter().flatten().filter(|&&leads| leads).count();
             }
             assert!(some > 7, "{shape:?}: nothing led anywhere");

@@ -489,4 +489,20 @@ mod tests {
             assert!((left / last.sums.inserted as f64 - 1.0).abs() < 1e-12);
         }
     }
+
+    /// Expectations are never NaN; if one were, all instruction sets would treat it alike.
+    #[test]
+    fn what_is_no_number_leaves_no_void_on_any_instruction_set() {
+        let network = lattice([13, 2, 3]);
+        let blocked: BitVec = BitVec::repeat(false, network.constrictions());
+        let shares = Shares::new(&network, Ways::Unblocked(&blocked));
+        for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
+            let mut expected = Expected::new(network.voids());
+            let mut flow = ExpectedFlow::new(&network, &shares, &expected);
+            flow.set_isa(isa);
+            expected.moving[..26].fill(f64::NAN);
+            flow.step(&network, &shares, &mut expected);
+            assert!(expected.moving.iter().all(|n| *n == 0.0), "{isa:?}");
+        }
+    }
 }

@@ -224,4 +224,32 @@ mod tests {
             }
         }
     }
+
+    /// A void whose exits close and reopen is unchanged; its neighbours in the word of bits are unaffected.
+    #[test]
+    fn a_void_is_shut_and_opened_again() {
+        let diameters = (0..3 * 70).map(|c| 1.0 + 0.01 * c as f32).collect();
+        let network = Network::cubic_from_diameters([7, 5, 2], diameters, 1.0).unwrap();
+        let mut blocked: BitVec = BitVec::repeat(false, network.constrictions());
+        let open = Shares::new(&network, Ways::Unblocked(&blocked));
+        assert_eq!(open.shut_and_of_three(0), [0, u64::MAX]);
+        assert_eq!(open.shut_and_of_three(1), [0, 0b11_1111]);
+        let mut shares = Shares::new(&network, Ways::Unblocked(&blocked));
+        for (close, route, shut) in
+            [([2], Way::Second, 0), ([1], Way::First, 0), ([0], Way::None, 0b1_0000), ([0], Way::First, 0)]
+        {
+            for exit in close {
+                let is_closed = blocked[3 * 68 + exit];
+                blocked.set(3 * 68 + exit, !is_closed);
+            }
+            exits::of_each(&network, Ways::Unblocked(&blocked), [68], |exits| shares.set(&network, exits));
+            assert_eq!((shares.route(68), shares.shut_and_of_three(1)), (route, [shut, 0b11_1111]));
+            let tops = shares.thresholds_of_three(3 * 68).map(|t| (t >> 48) as u16);
+            assert_eq!((shares.tops(68), shares.tops(67)), (tops, open.tops(67)));
+        }
+        blocked.set(3 * 68 + 1, false);
+        blocked.set(3 * 68 + 2, false);
+        exits::of_each(&network, Ways::Unblocked(&blocked), [68], |exits| shares.set(&network, exits));
+        assert_eq!((shares.route(68), shares.tops(68)), (Way::Three, open.tops(68)));
+    }
 }

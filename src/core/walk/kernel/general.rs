@@ -128,3 +128,37 @@ fn any(network: &Network, table: &General, from: u32, draw: u16, index: usize, e
     let passed = table.threshold[exits.clone()].partition_point(|&threshold| threshold <= draw);
     if passed < exits.len() { (exits.start + passed) as u32 } else { last_open }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stream::Purpose;
+    use crate::walk::ExitTable;
+    use crate::walk::exits::Form;
+    use bitvec::vec::BitVec;
+
+    /// Thousands of exits, many of them closed or with equal upper bits, compared with a linear search.
+    #[test]
+    fn an_exit_of_thousands_is_found_as_by_looking_at_each() {
+        let key = Key { seed: 3, purpose: Purpose::Step, run: 1, increment: 1, chunk: 0 };
+        let extension = key.lanes().extension();
+        for exits in [17, 100, 3000] {
+            let rows: String =
+                (0..exits).map(|e| format!("0,end,{}\n", 0.01 + 0.1 * (e % 7) as f64)).collect();
+            let text = format!("from,to,diameter_mm\nstart,0,\n{rows}");
+            let network = Network::from_csv(text.as_bytes(), "n.csv", 1.0).unwrap();
+            let blocked: BitVec = (0..exits).map(|e| e % 3 == 0).collect();
+            let Form::General(table) = ExitTable::new(&network, &blocked).form else { panic!("no lattice") };
+            let mut ties = 0;
+            for draw in 0..=u16::MAX {
+                let index = usize::from(draw) + exits;
+                let whole = extension.complete(draw, index as u64);
+                let by_each = table.threshold.iter().position(|&threshold| whole < threshold);
+                let expected = by_each.map_or(table.last_open[0], |exit| exit as u32);
+                assert_eq!(any(&network, &table, 0, draw, index, extension), expected, "{exits} {draw}");
+                ties += table.top.iter().filter(|&&top| top == draw).count();
+            }
+            assert!(ties > exits / 2, "{ties}");
+        }
+    }
+}

@@ -335,6 +335,27 @@ mod tests {
         }
     }
 
+    /// The test above detects one success too many, an error of one in n, and a small error in the
+    /// probability.
+    #[test]
+    fn planted_faults_are_caught() {
+        let mut words = draws(1000);
+        let mut caught = |n: u64, p: f64, fault: &dyn Fn(&mut Draws, u64, u64) -> u64| {
+            let sample: Vec<u64> = (0..SAMPLE).map(|_| fault(&mut words, n, fraction(p)).min(n)).collect();
+            z_score(n, fraction(p), &sample) > 4.0
+        };
+        for (n, p) in [(7, 0.4), (32, 0.25), (FEW, 0.4), (150, 0.5), (200, 0.03), (FEW_RARE, 0.004)] {
+            assert!(!caught(n, p, &one), "{n} {p}");
+            assert!(caught(n, p, &|w, n, p| one(w, n, p) + 1), "one too many: {n} {p}");
+        }
+        // One trial too few shifts the mean by p, which 20,000 draws detect up to n of about 50.
+        assert!(caught(7, 0.4, &|w, n, p| one(w, n - 1, p)));
+        assert!(caught(33, 0.7, &|w, n, p| one(w, n - 1, p)));
+        // One too many would be 3 % of a standard deviation for n = 3750; for n = 500 it is detected.
+        assert!(caught(500, 0.3, &|w, n, p| one(w, n, p) + 1));
+        assert!(caught(1_000_000_000_000, 0.3, &|w, n, p| one(w, n, p - (1 << 45))));
+    }
+
     /// Impossible and certain outcomes do not depend on draws.
     #[test]
     fn never_and_always_are_exact() {
