@@ -42,7 +42,8 @@ const GOLDEN_32: u32 = 0x9e37_79b9;
 
 const TURNS: u32 = 6;
 
-/// Maximum number of sums counted without branches.
+/// Maximum number of sums counted without branches; it covers all stars with a number of arms known in
+/// advance.
 const COUNTED: usize = 16;
 
 impl Factor {
@@ -63,16 +64,43 @@ impl Factor {
     }
 
     fn eliminate(&mut self, rest: &mut Rest, places: Range<u32>) {
-        let (mut meeting, mut sums) = (Meeting::new(self.row.len()), Vec::new());
+        let mut meeting = Meeting::new(self.row.len());
         for place in places {
             let ground = rest.take(place, &mut meeting);
-            meeting.neighbours.sort_by_key(|&(_, conductance)| rising(conductance));
-            sums.resize(meeting.neighbours.len(), 0.0);
-            self.give_way(rest, place, ground, &meeting.neighbours, &mut sums);
+            let neighbours = &mut meeting.neighbours[..];
+            // Most places have few neighbours; loops of known length are predictable.
+            macro_rules! of_number {
+                ($($few:literal)*) => {
+                    match neighbours.len() {
+                        $($few => self.take_few::<$few>(rest, place, ground, neighbours),)*
+                        _ => self.take_many(rest, place, ground, neighbours),
+                    }
+                };
+            }
+            of_number!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16);
         }
     }
 
+    #[inline(always)]
+    fn take_few<const N: usize>(
+        &mut self,
+        rest: &mut Rest,
+        place: u32,
+        ground: f64,
+        neighbours: &[(u32, f64)],
+    ) {
+        let neighbours: &[(u32, f64); N] = neighbours.try_into().expect("so many were found");
+        self.give_way(rest, place, ground, &sorted(neighbours), &mut [0.0; N]);
+    }
+
+    #[inline(never)]
+    fn take_many(&mut self, rest: &mut Rest, place: u32, ground: f64, neighbours: &mut [(u32, f64)]) {
+        neighbours.sort_by_key(|&(_, conductance)| rising(conductance));
+        self.give_way(rest, place, ground, neighbours, &mut vec![0.0; neighbours.len()]);
+    }
+
     /// Replaces a place by a tree that joins its sorted neighbours; `sums` has one entry per neighbour.
+    #[inline(always)]
     fn give_way(&mut self, rest: &mut Rest, place: u32, ground: f64, met: &[(u32, f64)], sums: &mut [f64]) {
         let mut all = 0.0;
         for (sum, &(_, conductance)) in sums.iter_mut().zip(met) {
@@ -122,6 +150,18 @@ impl Factor {
 fn rising(conductance: f64) -> u64 {
     // The bits of non-negative floats are ordered like the floats.
     conductance.to_bits() >> 32
+}
+
+/// Sorts neighbours by rising conductance; conductances with equal keys keep their order.
+#[inline(always)]
+fn sorted<const N: usize>(neighbours: &[(u32, f64); N]) -> [(u32, f64); N] {
+    // Compared as floats, which is fast on all processors; no two keys are equal.
+    let key: [f64; N] = std::array::from_fn(|i| f64::from_bits(rising(neighbours[i].1) << 32 | i as u64));
+    let mut sorted = [(0, 0.0); N];
+    for i in 0..N {
+        sorted[key.iter().map(|&key_of| usize::from(key_of < key[i])).sum::<usize>()] = neighbours[i];
+    }
+    sorted
 }
 
 /// Number of these rising sums that do not exceed `share`.
