@@ -31,11 +31,33 @@ pub(super) fn of_each(
     network: &Network,
     ways: Ways,
     voids: impl IntoIterator<Item = u32>,
+    look: impl FnMut(VoidExits),
+) {
+    // Chosen once for all voids.
+    match ways {
+        Ways::Unblocked(blocked) => {
+            let weight = |c| network.exit_weight(c) * f64::from(u8::from(!blocked[c]));
+            let find = |void, into: &mut _| thresholds_by(network, void, weight, into);
+            each_by(network, voids, find, look);
+        }
+        ways => {
+            let weight = |c| ways.weight(network, c);
+            let find = |void, into: &mut _| thresholds_by(network, void, weight, into);
+            each_by(network, voids, find, look);
+        }
+    }
+}
+
+#[inline(always)]
+fn each_by(
+    network: &Network,
+    voids: impl IntoIterator<Item = u32>,
+    find: impl Fn(u32, &mut Vec<u64>) -> Option<usize>,
     mut look: impl FnMut(VoidExits),
 ) {
     let mut scratch = Vec::new();
     for void in voids {
-        let last_open = thresholds(network, ways, void, &mut scratch);
+        let last_open = find(void, &mut scratch);
         let waits = last_open.is_none() && waits(network, void);
         look(VoidExits { void, thresholds: &scratch, last_open, waits });
     }
@@ -43,11 +65,20 @@ pub(super) fn of_each(
 
 /// Thresholds of the exits of one void on the 64-bit scale, written into `thresholds`; returns the
 /// position of the last open exit, or `None` if all exits are closed.
-#[inline(always)]
 pub(super) fn thresholds(
     network: &Network,
     ways: Ways,
     void: u32,
+    thresholds: &mut Vec<u64>,
+) -> Option<usize> {
+    thresholds_by(network, void, |c| ways.weight(network, c), thresholds)
+}
+
+#[inline(always)]
+fn thresholds_by(
+    network: &Network,
+    void: u32,
+    weight: impl Fn(usize) -> f64,
     thresholds: &mut Vec<u64>,
 ) -> Option<usize> {
     // Branch-free, as it is unpredictable which exits are open. Weights are finite.
@@ -56,7 +87,7 @@ pub(super) fn thresholds(
     let (mut total, mut last) = (0.0, usize::MAX);
     thresholds.resize(exits.len(), 0);
     for (threshold, c) in thresholds.iter_mut().zip(exits) {
-        let weight = ways.weight(network, c);
+        let weight = weight(c);
         total += weight;
         last = if weight > 0.0 { c - first } else { last };
         *threshold = weight.to_bits();

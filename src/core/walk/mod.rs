@@ -150,7 +150,8 @@ impl PlainExits {
         with_shares: bool,
     ) -> (ExitTable, Option<counts::Shares>) {
         let (ways, voids) = (Ways::Unblocked(blocked), 0..network.voids() as u32);
-        let mut table = ExitTable::empty(network, Some(network.finest_open(|c| blocked[c])));
+        let finest = network.shape().map(|_| network.finest_open(|c| blocked[c]));
+        let mut table = ExitTable::empty(network, finest);
         let mut shares = with_shares.then(|| counts::Shares::empty(network));
         exits::of_each(network, ways, voids, |of_void| {
             table.set(network, ways, of_void);
@@ -279,7 +280,9 @@ impl<'a> Walk<'a> {
     }
 
     fn direct(&mut self, state: &State) -> Result<(), FlowError> {
-        self.no_flow.take().map_or(Ok(()), Err)?;
+        if let Some(error) = self.no_flow.take() {
+            return Err(error);
+        }
         let Some(directions) = &mut self.directions else { return Ok(()) };
         if directions.renew(self.network.to_mut(), state)? {
             let Self { network, table, passive, directions, .. } = self;
