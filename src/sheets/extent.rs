@@ -27,6 +27,8 @@ pub(super) struct Extent<'a> {
     /// Rows below the table, which are ignored.
     pub(super) below: Vec<Below>,
     pub(super) notes: Vec<String>,
+    /// First column of a soil.
+    first_value: usize,
 }
 
 /// A column of a table that is read as a soil, and the notes on it.
@@ -53,7 +55,9 @@ impl<'a> Extent<'a> {
     pub(super) fn of(grid: &'a Grid, layout: &'a Layout) -> Result<Extent<'a>, TableError> {
         const MOST_BELOW: usize = 4;
         let rows = &grid.rows[layout.first..];
-        let mut extent = Extent { grid, layout, table: Vec::new(), below: Vec::new(), notes: Vec::new() };
+        let first_value = layout.soils.iter().map(|soil| soil.column).min().unwrap_or(0);
+        let (table, below, notes) = (Vec::new(), Vec::new(), Vec::new());
+        let mut extent = Extent { grid, layout, table, below, notes, first_value };
         let end = extent.end(rows);
         let last =
             rows[..end].iter().rposition(|row| row.filled().any(|c| is_value(row.cell(c)))).unwrap_or(0);
@@ -64,10 +68,13 @@ impl<'a> Extent<'a> {
             if let Some(column) = whole_row(row, index < last).or_else(below) {
                 return Err(refused_row(grid, row, column));
             }
-            match is_text(row) && (row.filled().count() == 1 || index > last) {
-                _ if repeats_headings(row, layout) => {}
-                true => remarks.push(row.line),
-                false => extent.table.push(row),
+            if repeats_headings(row, layout) {
+                continue;
+            }
+            if is_text(row) && (row.filled().count() == 1 || index > last) {
+                remarks.push(row.line);
+            } else {
+                extent.table.push(row);
             }
         }
         for row in &rows[end..] {
@@ -176,8 +183,7 @@ impl<'a> Extent<'a> {
         if !sizes.into_iter().flatten().all(is_free) {
             return None;
         }
-        let first_value = layout.soils.iter().map(|soil| soil.column).min().unwrap_or(0);
-        let before = first_value.max(layout.size + 1);
+        let before = self.first_value.max(layout.size + 1);
         row.filled().take_while(|&c| c < before || of_size(c)).find(|&c| is_words(row.cell(c)))
     }
 }

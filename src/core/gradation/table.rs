@@ -28,7 +28,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// Makes a row from the texts and numbers of its size and percent.
+    /// Makes a row from the numbers of its size and percent; `text` gives their texts for a refusal.
     ///
     /// # Errors
     /// A text that is not a number, or a number that is not allowed.
@@ -36,10 +36,10 @@ impl Row {
         file: &str,
         line: usize,
         fields: [&'static str; 2],
-        texts: [&str; 2],
+        text: impl Fn(usize) -> String,
         [size, percent]: [Option<f64>; 2],
     ) -> Result<Row, TableError> {
-        let refused = |at: usize, allowed| TableError::refused(file, line, fields[at], texts[at], allowed);
+        let refused = |at: usize, allowed| TableError::refused(file, line, fields[at], text(at), allowed);
         let size = size.filter(|&v| size_is_allowed(v)).ok_or_else(|| refused(0, allowed_size()))?;
         let percent = percent.filter(|&v| percent_is_allowed(v));
         let percent = percent.ok_or_else(|| refused(1, allowed_percent()))?;
@@ -56,9 +56,8 @@ impl Row {
         fields: [&'static str; 2],
     ) -> Result<Vec<Row>, TableError> {
         let row = |(line, (size, percent)): (usize, (f64, f64))| {
-            let texts = [size.to_string(), percent.to_string()];
-            let texts = texts.each_ref().map(String::as_str);
-            Row::checked("points", line, fields, texts, [Some(size), Some(percent)])
+            let text = |at: usize| [size, percent][at].to_string();
+            Row::checked("points", line, fields, text, [Some(size), Some(percent)])
         };
         (1..).zip(points).map(row).collect()
     }
@@ -169,9 +168,9 @@ impl Table {
     /// Reads the rows as numbers, with the size in column `size_column` and the percent in the other.
     pub(crate) fn rows(&self, size_column: usize, names: [&'static str; 2]) -> Result<Vec<Row>, TableError> {
         let row = |(line, fields): &(usize, [String; 2])| {
-            let texts = [size_column, 1 - size_column].map(|column| shortened(&fields[column]));
-            let numbers = [size_column, 1 - size_column].map(|column| number(&fields[column]));
-            Row::checked(&self.file, *line, names, texts.each_ref().map(String::as_str), numbers)
+            let cells = [size_column, 1 - size_column].map(|column| &fields[column]);
+            let numbers = cells.map(|cell| number(cell));
+            Row::checked(&self.file, *line, names, |at| shortened(cells[at]), numbers)
         };
         self.rows.iter().map(row).collect()
     }
