@@ -1,10 +1,18 @@
 //! Words of laboratories in many languages, in lower case.
 
-use std::collections::HashSet;
 use std::sync::OnceLock;
 
-/// Words with one meaning: whole words, beginnings of words, and parts of words of languages without spaces.
-type Sorted = (HashSet<&'static str>, Vec<&'static str>, Vec<&'static str>);
+/// Number of groups of words by the low bits of their first byte, which differ between small letters, so
+/// that a word is compared with few others.
+const GROUPS: usize = 32;
+
+#[derive(Default)]
+struct Sorted {
+    whole: [Vec<&'static str>; GROUPS],
+    beginnings: [Vec<&'static str>; GROUPS],
+    /// Parts of words of languages without spaces, and of long words.
+    parts: Vec<&'static str>,
+}
 
 /// A list of words with one meaning, as `word|beginning*|*part*`; sorted when first used.
 pub(super) struct Words(&'static str, OnceLock<Sorted>);
@@ -15,25 +23,31 @@ impl Words {
     }
 
     pub(super) fn has(&self, word: &str) -> bool {
-        let (whole, beginnings, parts) = self.1.get_or_init(|| {
+        let sorted = self.1.get_or_init(|| {
             let mut sorted = Sorted::default();
             for word in self.0.split('|') {
                 match word.strip_suffix('*').map(|start| (start, start.strip_prefix('*'))) {
-                    Some((_, Some(part))) => sorted.2.push(part),
-                    Some((beginning, None)) => sorted.1.push(beginning),
-                    None => drop(sorted.0.insert(word)),
+                    Some((_, Some(part))) => sorted.parts.push(part),
+                    Some((beginning, None)) => sorted.beginnings[group(beginning)].push(beginning),
+                    None => sorted.whole[group(word)].push(word),
                 }
             }
             sorted
         });
-        whole.contains(word)
-            || beginnings.iter().any(|beginning| word.starts_with(beginning))
-            || parts.iter().any(|part| word.contains(part))
+        let (group, is_ascii) = (group(word), word.is_ascii());
+        sorted.whole[group].contains(&word)
+            || sorted.beginnings[group].iter().any(|beginning| word.starts_with(beginning))
+            // Most words are English and most parts are not.
+            || sorted.parts.iter().any(|part| (!is_ascii || part.is_ascii()) && word.contains(part))
     }
 
     pub(super) fn any(&self, words: &[String]) -> bool {
         words.iter().any(|word| self.has(word))
     }
+}
+
+fn group(word: &str) -> usize {
+    usize::from(word.bytes().next().unwrap_or(0)) % GROUPS
 }
 
 pub(super) static RETAINED: Words = Words::of(
