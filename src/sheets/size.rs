@@ -1,34 +1,69 @@
 //! A cell that names an opening: a number, a number with its unit, a US sieve, the pan.
 
 use super::languages::{PAN, TOTAL, Words};
-use std::str::FromStr;
-use std::sync::LazyLock;
 use voidwalk_core::gradation::number;
 use voidwalk_core::schema::length::fraction;
 
 /// US sieves by number, and their openings in mm (ASTM E11).
-static BY_NUMBER: LazyLock<Vec<(String, f64)>> = LazyLock::new(|| {
-    pairs(
-        "3 1/2=5.6|3.5=5.6|4=4.75|5=4|6=3.35|7=2.8|8=2.36|10=2|12=1.7|14=1.4|16=1.18|18=1|20=0.85|\
-         25=0.71|30=0.6|35=0.5|40=0.425|45=0.355|50=0.3|60=0.25|70=0.212|80=0.18|100=0.15|120=0.125|\
-         140=0.106|170=0.09|200=0.075|230=0.063|270=0.053|325=0.045|400=0.038|450=0.032|500=0.025|\
-         635=0.02",
-    )
-});
+const BY_NUMBER: [(&str, f64); 34] = [
+    ("3 1/2", 5.6),
+    ("3.5", 5.6),
+    ("4", 4.75),
+    ("5", 4.0),
+    ("6", 3.35),
+    ("7", 2.8),
+    ("8", 2.36),
+    ("10", 2.0),
+    ("12", 1.7),
+    ("14", 1.4),
+    ("16", 1.18),
+    ("18", 1.0),
+    ("20", 0.85),
+    ("25", 0.71),
+    ("30", 0.6),
+    ("35", 0.5),
+    ("40", 0.425),
+    ("45", 0.355),
+    ("50", 0.3),
+    ("60", 0.25),
+    ("70", 0.212),
+    ("80", 0.18),
+    ("100", 0.15),
+    ("120", 0.125),
+    ("140", 0.106),
+    ("170", 0.09),
+    ("200", 0.075),
+    ("230", 0.063),
+    ("270", 0.053),
+    ("325", 0.045),
+    ("400", 0.038),
+    ("450", 0.032),
+    ("500", 0.025),
+    ("635", 0.02),
+];
 
 /// US sieves by inches, and their openings in mm (ASTM E11).
-static BY_INCHES: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| {
-    pairs(
-        "5=125|4=100|3.5=90|3=75|2.5=63|2=50|1.75=45|1.5=37.5|1.25=31.5|1=25|0.875=22.4|0.75=19|0.625=16|\
-         0.5=12.5|0.4375=11.2|0.375=9.5|0.3125=8|0.25=6.3|12=300",
-    )
-});
-
-fn pairs<T: FromStr>(list: &str) -> Vec<(T, f64)> {
-    let pair =
-        |pair: &str| pair.split_once('=').and_then(|(name, mm)| Some((name.parse().ok()?, mm.parse().ok()?)));
-    list.split('|').map(|text| pair(text).expect("a name and an opening")).collect()
-}
+const BY_INCHES: [(f64, f64); 19] = [
+    (5.0, 125.0),
+    (4.0, 100.0),
+    (3.5, 90.0),
+    (3.0, 75.0),
+    (2.5, 63.0),
+    (2.0, 50.0),
+    (1.75, 45.0),
+    (1.5, 37.5),
+    (1.25, 31.5),
+    (1.0, 25.0),
+    (0.875, 22.4),
+    (0.75, 19.0),
+    (0.625, 16.0),
+    (0.5, 12.5),
+    (0.4375, 11.2),
+    (0.375, 9.5),
+    (0.3125, 8.0),
+    (0.25, 6.3),
+    (12.0, 300.0),
+];
 
 /// Unit of numbers without one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -180,14 +215,24 @@ const LONGEST_NAME: usize = 32;
 
 /// `9.5 mm`, also within `No. 4 (4.75 mm)`, if both names belong to one sieve; `75 um`.
 fn metric(text: &str) -> Option<f64> {
-    static UNITS: LazyLock<Vec<(String, f64)>> = LazyLock::new(|| {
-        pairs(
-            "mm=1|мм=1|мкм=1000|millimet=1|um=1000|µm=1000|μm=1000|micron=1000|micromet=1000|\
-             mikrom=1000|mym=1000|µ=1000|μ=1000|cm=0.1",
-        )
-    });
+    const UNITS: [(&str, f64); 14] = [
+        ("mm", 1.0),
+        ("мм", 1.0),
+        ("мкм", 1e3),
+        ("millimet", 1.0),
+        ("um", 1e3),
+        ("µm", 1e3),
+        ("μm", 1e3),
+        ("micron", 1e3),
+        ("micromet", 1e3),
+        ("mikrom", 1e3),
+        ("mym", 1e3),
+        ("µ", 1e3),
+        ("μ", 1e3),
+        ("cm", 0.1),
+    ];
     UNITS.iter().find_map(|(unit, per_mm)| {
-        let (before, after) = text.split_once(unit.as_str())?;
+        let (before, after) = text.split_once(unit)?;
         let digits_from = before.trim_end().rfind(|c: char| !(c.is_ascii_digit() || ".,".contains(c)));
         let from = digits_from.map_or(0, |at| at + before[at..].chars().next().map_or(1, char::len_utf8));
         let lead = before[..from].trim();
@@ -275,7 +320,7 @@ pub fn us_sieve(mm: f64) -> Option<String> {
 
 /// Opening (mm) of the US sieve with this number.
 pub(super) fn us_sieve_number(text: &str) -> Option<f64> {
-    BY_NUMBER.iter().find(|(name, _)| name == text).map(|(_, mm)| *mm)
+    BY_NUMBER.iter().find(|(name, _)| *name == text).map(|(_, mm)| *mm)
 }
 
 /// Opening (mm) of a sieve named by inches: the standard opening if the series has one.
@@ -377,12 +422,11 @@ mod tests {
         for text in all.split('|') {
             assert_eq!(opening(text), None, "{text}");
         }
-        assert_eq!([BY_INCHES.len(), BY_NUMBER.len()], [19, 34]);
-        for &(inches, mm) in BY_INCHES.iter() {
+        for (inches, mm) in BY_INCHES {
             let name = us_sieve(mm).unwrap();
             assert_eq!(opening(&name), Some((Opening::Mm(mm), Form::Inches)), "{name}: {inches}");
         }
-        for &(_, mm) in BY_NUMBER.iter() {
+        for (_, mm) in BY_NUMBER {
             assert_eq!(opening(&us_sieve(mm).unwrap()), Some((Opening::Mm(mm), Form::UsNumber)), "{mm}");
         }
         assert_eq!(us_sieve(7.0), None);

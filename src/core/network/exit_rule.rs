@@ -28,7 +28,12 @@ impl ExitRule {
 
     /// Name of the rule in a scene.
     pub fn name(self) -> &'static str {
-        ["area", "flux", "area-along-flow", "height"][self as usize]
+        match self {
+            Self::Area => "area",
+            Self::Flux => "flux",
+            Self::AreaAlongFlow => "area-along-flow",
+            Self::Height => "height",
+        }
     }
 
     /// Tells if the rule needs the flow of water.

@@ -48,7 +48,12 @@ impl Engine {
 
     /// Name of the engine in a scene.
     pub fn name(self) -> &'static str {
-        ["auto", "particles", "counts", "expected"][self as usize]
+        match self {
+            Self::Auto => "auto",
+            Self::Particles => "particles",
+            Self::Counts => "counts",
+            Self::Expected => "expected",
+        }
     }
 }
 
@@ -181,16 +186,16 @@ pub enum Shortcut {
 fn left_out(engine: Engine, finest: Finest, passive_words: u128) -> Vec<Shortcut> {
     let coarse_percent = 100.0 * (((1u128 << 64) - passive_words) as f64 / 18_446_744_073_709_551_616.0);
     let is_open = finest.size_mm != f64::INFINITY;
-    let of_open = match is_open {
+    let none_passive = match is_open {
         false => Some(Shortcut::NothingOpen),
         true => (passive_words == 0).then_some(Shortcut::NonePassive(finest)),
     };
-    let of_counts = match engine {
+    let by_counts = match engine {
         Engine::Particles => None,
         _ if passive_words < 1 << 64 => Some(Shortcut::MostPassive(coarse_percent, finest, engine)),
         _ => is_open.then_some(Shortcut::AllPassive(finest, engine)),
     };
-    of_open.into_iter().chain(of_counts).collect()
+    none_passive.into_iter().chain(by_counts).collect()
 }
 
 /// Creates a pool of `count` threads for walks (0: one for each processor available to the program).
@@ -235,7 +240,11 @@ impl Isa {
 
     /// Name used in `VOIDWALK_ISA` and in results.
     pub fn name(self) -> &'static str {
-        ["portable", "avx2", "avx512"][self as usize]
+        match self {
+            Self::Portable => "portable",
+            Self::Avx2 => "avx2",
+            Self::Avx512 => "avx512",
+        }
     }
 
     /// Tells if this machine supports it.

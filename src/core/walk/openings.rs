@@ -71,7 +71,10 @@ impl BlockedAs {
 
     /// Name of the choice in a scene.
     pub fn name(self) -> &'static str {
-        ["closed", "open"][self as usize]
+        match self {
+            Self::Closed => "closed",
+            Self::Open => "open",
+        }
     }
 }
 

@@ -231,7 +231,10 @@ impl Sampling {
 
     /// Name of the sampling in a scene.
     pub fn name(self) -> &'static str {
-        ["independent", "stratified"][self as usize]
+        match self {
+            Self::Independent => "independent",
+            Self::Stratified => "stratified",
+        }
     }
 }
 
@@ -241,7 +244,8 @@ impl Sampling {
 /// A run of `T` increments that inserts at most `K` particles in each has `T K` strata of equal probability:
 /// `K` groups of `T`, finest first. Particle `m` of increment `t` takes group `P_t(m)`, and in it stratum
 /// `Q_k(t - 1)`; `P` and `Q` are keyed permutations. The `n` particles of an increment divide the start nodes
-/// into `n` equal parts, and each takes a place in its part.
+/// into `n` equal parts, and each takes a place in its part. Nodes need no permutation, as the order of
+/// particles does not affect the walk.
 #[derive(Clone, Debug)]
 struct Strata {
     seed: u64,
