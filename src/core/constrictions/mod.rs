@@ -114,6 +114,7 @@ pub struct Constrictions {
 }
 
 /// Reasons why a packing's constrictions cannot be measured.
+#[allow(missing_docs)]
 #[derive(Clone, Debug, thiserror::Error, PartialEq)]
 pub enum ConstrictionsError {
     /// The packing has no triangulation.
@@ -128,14 +129,13 @@ pub enum ConstrictionsError {
          less (merge_overlap = {1} now), or take more grains"
     )]
     Endless(u32, f64),
-    /// Grains inside others, as grains side by side appear to be in a cell of the wrong size or unit: their
-    /// number, the number of all grains, and the first of them.
+    /// Grains inside others, as grains side by side appear to be in a cell of the wrong size or unit.
     #[error(
-        "the grains do not fit their cell: {0} of {1} lie inside others, the first of them grain {2} \
-         (counted from 0). The cell is too small, or in another unit than the grains, or grains occur twice \
-         in the file"
+        "the grains do not fit their cell: {hidden} of {grains} lie inside others, the first of them grain \
+         {first} (counted from 0). The cell is too small, or in another unit than the grains, or grains \
+         occur twice in the file"
     )]
-    Hidden(usize, usize, u32),
+    Hidden { hidden: usize, grains: usize, first: u32 },
     /// Grains that occur twice: the number of such pairs, and the first pair.
     #[error(
         "{0} pairs of grains have the same centre, the first of them grains {one} and {other} (counted from \

@@ -145,8 +145,8 @@ impl Constrictions {
     pub fn check(&self) -> Result<(), ConstrictionsError> {
         match (self.hidden.first(), self.duplicates.first()) {
             (Some(&first), _) if self.region == Region::Everything => {
-                let hidden = self.hidden.len();
-                Err(ConstrictionsError::Hidden(hidden, self.grains + hidden, first))
+                let (hidden, grains) = (self.hidden.len(), self.grains + self.hidden.len());
+                Err(ConstrictionsError::Hidden { hidden, grains, first })
             }
             (_, Some(&first)) => Err(ConstrictionsError::Twice(self.duplicates.len(), first)),
             _ if !self.is_surrounded => Err(ConstrictionsError::Outside),

@@ -331,7 +331,7 @@ fn one_grain_touches_nothing() {
     free(&mut c, 100);
     assert_eq!((c.now.contacts, c.velocity[0][0]), (0, 0.0));
     let narrow = Compression::new(&packing(1.99, &[[0.1, 0.1, 0.1, 1.0]]), &settings);
-    assert_eq!(narrow.unwrap_err(), PackingError::NarrowCell(1.99, 1.0));
+    assert_eq!(narrow.unwrap_err(), PackingError::NarrowCell { cell_mm: 1.99, largest_mm: 1.0 });
 }
 
 #[test]

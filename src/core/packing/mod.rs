@@ -90,7 +90,9 @@ pub struct Packing {
 impl Packing {
     /// Makes a packing from the x, y, z and diameter of each grain (mm).
     pub fn from_grains(cell: Cell, grains: impl IntoIterator<Item = [f64; 4]>) -> Self {
-        let mut packing = Self { cell, x: vec![], y: vec![], z: vec![], diameter: vec![] };
+        let grains = grains.into_iter();
+        let column = || Vec::with_capacity(grains.size_hint().0);
+        let mut packing = Self { cell, x: column(), y: column(), z: column(), diameter: column() };
         for [x, y, z, diameter] in grains {
             packing.x.push(x);
             packing.y.push(y);
@@ -223,7 +225,7 @@ pub fn tall_start(diameter_mm: &[f64], aspect: f64, settings: &Settings) -> Resu
     let volume = radius.iter().map(|r| r * r * r).sum::<f64>() * (4.0 / 3.0 * PI);
     let cell = libm::cbrt(volume / settings.start_fraction / aspect.height());
     if cell < 4.0 * radius[0] {
-        return Err(PackingError::NarrowCell(cell * unit_mm, diameter[0]));
+        return Err(PackingError::NarrowCell { cell_mm: cell * unit_mm, largest_mm: diameter[0] });
     }
     let centre = place(&radius, cell, aspect, uniform(settings.seed, 1))?;
     let edge = cell * unit_mm;
@@ -273,7 +275,7 @@ fn place(
             if tries == TRIES {
                 let volume = radius.iter().map(|r| r * r * r).sum::<f64>() * (4.0 / 3.0) * PI;
                 let fraction = volume / (cell * cell * cell * aspect.height());
-                return Err(PackingError::Placement(i, radius.len(), fraction));
+                return Err(PackingError::Placement { grain: i, grains: radius.len(), fraction });
             }
         };
         let grid = grids.last_mut().expect("pushed above");
@@ -320,7 +322,7 @@ mod tests {
             none_overlap(Aspect::new(height));
         }
         let full = place(&[1.0, 1.0], 2.0, Aspect::new(1.0), uniform(5, 2));
-        assert!(matches!(full, Err(PackingError::Placement(1, ..))));
+        assert!(matches!(full, Err(PackingError::Placement { grain: 1, .. })));
     }
 
     fn none_overlap(aspect: Aspect) {

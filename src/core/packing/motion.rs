@@ -176,7 +176,8 @@ impl Compression {
         let critical = self.critical_step();
         match self.settings.step {
             Some(step) if step >= critical => {
-                Err(PackingError::Step(step, critical, "the stiffness of a grain's contacts"))
+                let cause = "the stiffness of a grain's contacts";
+                Err(PackingError::Step { step, critical, cause })
             }
             Some(_) => Ok(()),
             None => {

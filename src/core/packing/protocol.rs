@@ -241,7 +241,8 @@ impl Compression {
             }
             if self.now.stage != Stage::Done && self.now.steps >= self.settings.max_steps {
                 let (steps, pressure) = (self.now.steps, self.now.pressure);
-                return Err(PackingError::Unsettled(steps, pressure, self.measure().kinetic_ratio));
+                let kinetic_ratio = self.measure().kinetic_ratio;
+                return Err(PackingError::Unsettled { steps, pressure, kinetic_ratio });
             }
         }
         let after = self.measure();

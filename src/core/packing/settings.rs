@@ -140,24 +140,30 @@ pub enum PackingError {
     /// A cell too flat or too tall.
     #[error("a cell {0} times as tall as wide: allowed: a number from 1 to 100")]
     Aspect(f64),
-    /// A cell (mm) in which the largest grain (mm) would touch itself, or another grain twice.
+    /// A cell in which the largest grain would touch itself, or another grain twice.
     #[error(
-        "the cell is {0} mm wide, narrower than two of the largest grain ({1} mm): use more grains or a \
-         narrower gradation"
+        "the cell is {cell_mm} mm wide, narrower than two of the largest grain ({largest_mm} mm): use more \
+         grains or a narrower gradation"
     )]
-    NarrowCell(f64, f64),
+    NarrowCell { cell_mm: f64, largest_mm: f64 },
     /// Two grains with the same centre: there is no direction in which to push them apart.
     #[error("grains {0} and {1} have the same centre")]
     Coincident(usize, usize),
     /// A time step that cannot be stable, the critical step, and its cause.
-    #[error("time step {0:e} (reduced units) is not below the critical time step {1:e}, which is set by {2}")]
-    Step(f64, f64, &'static str),
-    /// No room for a grain, by rank from the largest, of so many, at this packing fraction.
-    #[error("no room for grain {0} of {1} at packing fraction {2}: start looser")]
-    Placement(usize, usize, f64),
-    /// A stage that did not settle: steps, pressure over its target, ratio of kinetic to elastic energy.
-    #[error("not settled after {0} steps: pressure {1} of the target, kinetic by elastic energy {2:e}")]
-    Unsettled(u64, f64, f64),
+    #[error(
+        "time step {step:e} (reduced units) is not below the critical time step {critical:e}, which is set \
+         by {cause}"
+    )]
+    Step { step: f64, critical: f64, cause: &'static str },
+    /// No room for a grain, by rank from the largest.
+    #[error("no room for grain {grain} of {grains} at packing fraction {fraction}: start looser")]
+    Placement { grain: usize, grains: usize, fraction: f64 },
+    /// A stage that did not settle: pressure over its target, ratio of kinetic to elastic energy.
+    #[error(
+        "not settled after {steps} steps: pressure {pressure} of the target, kinetic by elastic energy \
+         {kinetic_ratio:e}"
+    )]
+    Unsettled { steps: u64, pressure: f64, kinetic_ratio: f64 },
     /// The progress callback asked to stop.
     #[error("stopped after {0} steps")]
     Stopped(u64),

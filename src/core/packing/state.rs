@@ -229,7 +229,7 @@ impl Compression {
         let unit_mm = packing.diameter[origin[n - 1] as usize];
         let largest_mm = packing.diameter[origin[0] as usize];
         if cell_mm < 2.0 * largest_mm {
-            return Err(PackingError::NarrowCell(cell_mm, largest_mm));
+            return Err(PackingError::NarrowCell { cell_mm, largest_mm });
         }
         let placed = |&i: &u32| {
             let i = i as usize;
@@ -251,7 +251,7 @@ impl Compression {
             && step >= this.loose_step
         {
             let (critical, cause) = critical_step(&this.position, &this.velocity, settings);
-            return Err(PackingError::Step(step, critical, cause));
+            return Err(PackingError::Step { step, critical, cause });
         }
         this.now.step = settings.step.unwrap_or(settings.step_fraction * this.loose_step);
         this.relist();

@@ -20,9 +20,11 @@ pub enum SanityError {
     /// A corner across a facet that should have removed the tetrahedron.
     #[error("across facet {1} of tetrahedron {0} lies a grain inside its power sphere")]
     Irregular(usize, usize),
-    /// A violation of Euler's relation: vertices, edges, facets and tetrahedra; 0 on the torus, 1 in space.
-    #[error("{0} vertices - {1} edges + {2} facets - {3} tetrahedra is not {4}")]
-    Euler(usize, usize, usize, usize, i64),
+    /// A violation of Euler's relation; expected are 0 on the torus and 1 in space.
+    #[error(
+        "{vertices} vertices - {edges} edges + {facets} facets - {tetrahedra} tetrahedra is not {expected}"
+    )]
+    Euler { vertices: usize, edges: usize, facets: usize, tetrahedra: usize, expected: i64 },
 }
 
 impl Triangulation {
@@ -57,7 +59,7 @@ impl Triangulation {
         let (edges, tetrahedra) = (edges(mesh), self.tetrahedra());
         let expected = i64::from(self.cell().is_none());
         if vertices as i64 - edges as i64 + facets as i64 - tetrahedra as i64 != expected {
-            return Err(SanityError::Euler(vertices, edges, facets, tetrahedra, expected));
+            return Err(SanityError::Euler { vertices, edges, facets, tetrahedra, expected });
         }
         Ok(())
     }
