@@ -14,7 +14,7 @@ use voidwalk_core::gradation::{FIELDS, Row, TableError};
 use voidwalk_core::text::plain;
 
 /// Refuses to count soils whose names say that they are not samples, such as the mean of others.
-pub(super) fn refuse_none<'a>(
+pub(super) fn refuse_unless_samples<'a>(
     file: &Path,
     names: impl Iterator<Item = &'a str>,
     is_none: fn(&str) -> bool,

@@ -268,7 +268,7 @@ fn soils_of_file(path: &Path) -> Result<Vec<Soil>, GradationError> {
 /// Reads the soils of a file as samples; the mean of others is refused with a question.
 fn samples_of_file(path: &Path) -> Result<Vec<Soil>, GradationError> {
     let soils = soils_of_file(path)?;
-    names::refuse_none(path, soils.iter().map(Soil::name), says_mean, "means")?;
+    names::refuse_unless_samples(path, soils.iter().map(Soil::name), says_mean, "means")?;
     Ok(soils)
 }
 
@@ -352,7 +352,12 @@ const ENDINGS: [&str; 5] = ["csv", "txt", "xlsx", "ods", "ags"];
 pub fn samples_in(path: &Path) -> Result<Vec<SoilSample>, GradationError> {
     in_files(path, &|file| {
         let curves = curves_in_file(file, None)?;
-        names::refuse_none(file, curves.iter().map(|(name, _)| name.as_str()), says_limit, "limits")?;
+        names::refuse_unless_samples(
+            file,
+            curves.iter().map(|(name, _)| name.as_str()),
+            says_limit,
+            "limits",
+        )?;
         Ok(curves)
     })
 }

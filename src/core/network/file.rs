@@ -239,8 +239,10 @@ impl Rows {
             return Err(whole(format!("no row names void {gap}; number voids from 0 without gaps")));
         }
         let mut is_start = vec![false; voids];
-        if let Some(id) = self.start.iter().find(|&&id| std::mem::replace(&mut is_start[id as usize], true)) {
-            return Err(whole(format!("void {id} is made a start node twice")));
+        for &id in &self.start {
+            if std::mem::replace(&mut is_start[id as usize], true) {
+                return Err(whole(format!("void {id} is made a start node twice")));
+            }
         }
         let ends = |(&from, &to)| [i64::from(from), if to == END { -1 } else { i64::from(to) }];
         let rows = self.from.iter().zip(&self.to).map(ends).zip(&self.diameter_mm);

@@ -256,6 +256,7 @@ fn block<const FRICTION: bool, const HERTZ: bool>(
             b.spring[3][k] = spring[3];
         }
     }
+    // Lanes without a pair are zero or hold an earlier one; their result is never read.
     let lanes = hits.len().min(BLOCK);
     compute::<FRICTION, HERTZ>(b, lanes.next_multiple_of(8), now);
     let (first, count) = (chunk.first, chunk.last - chunk.first);

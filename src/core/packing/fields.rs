@@ -20,11 +20,23 @@ const UNITS_OF_PROGRAMS: &str = " (LIGGGHTS, Yade, MercuryDPM and MFIX mostly us
                                  after `dump_modify ID units yes`)";
 
 /// A packing file that cannot be used.
-#[derive(Debug, thiserror::Error)]
-#[error("{file}{problem}")]
+#[derive(Debug)]
 pub struct ImportError {
     pub(super) file: String,
     pub(super) problem: Problem,
+}
+
+impl std::fmt::Display for ImportError {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        write!(f, "{}{}", self.file, self.problem)
+    }
+}
+
+impl std::error::Error for ImportError {
+    /// Error of the system, if the file cannot be read.
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.problem.source()
+    }
 }
 
 /// Reasons why a packing file cannot be used, as they follow its name in a message; lines count from 1.

@@ -176,8 +176,10 @@ fn bad_files_are_refused_with_their_place() {
     assert!(binary.contains("f, line 2: byte 0xFF"), "{binary}");
     let folder = Packing::read(std::env::temp_dir()).unwrap_err().to_string();
     assert!(folder.contains("is a folder"), "{folder}");
-    let none = Packing::read("no/such/file").unwrap_err().to_string();
-    assert!(none.starts_with("no/such/file: cannot be read"), "{none}");
+    let none = Packing::read("no/such/file").unwrap_err();
+    assert!(none.to_string().starts_with("no/such/file: cannot be read"), "{none}");
+    let cause = std::error::Error::source(&none).and_then(|cause| cause.downcast_ref::<std::io::Error>());
+    assert_eq!(cause.map(std::io::Error::kind), Some(std::io::ErrorKind::NotFound));
 }
 
 proptest! {

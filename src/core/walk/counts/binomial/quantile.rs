@@ -3,9 +3,11 @@
 //! The draw for a uniform `t` is the smallest `k` whose distribution function `F(k)` exceeds `t`. The
 //! second-order Cornish-Fisher expansion (E. A. Cornish and R. A. Fisher 1938, doi:10.2307/1400905), with
 //! the variance reduced by 1/12 for integers, gives the point where `F` crosses `t` to within
-//! [`Row::margin`], which is more than twice its error. If the crossing is farther than the margin from the
-//! middle between two integers, the nearer integer is the draw. Otherwise, in one draw of a hundred or a
-//! thousand, `F` itself decides. So the draw depends only on `F`, not on the expansion.
+//! [`Row::margin`], which is more than twice its error; the tests check this for all that [`holds`] admits.
+//! If the crossing is farther than the margin from the middle between two integers, the nearer integer is
+//! the draw. Otherwise, in one draw of a hundred or a thousand, `F` itself decides. So the draw depends only
+//! on `F`, not on the expansion. Before `F`, only `+ - * /` and `sqrt` are used, which round the same
+//! everywhere.
 
 use crate::stream::LANES;
 use std::sync::OnceLock;
