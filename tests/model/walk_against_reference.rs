@@ -144,6 +144,7 @@ proptest! {
         edges in prop::collection::vec((0u32..8, 0u32..9, 0usize..4), 1..30),
         n in 1u64..400,
         law in law(),
+        evenly: bool,
         open: bool,
         seed: u64,
     ) {
@@ -159,6 +160,7 @@ proptest! {
         let network = Network::from_csv(text.as_bytes(), "graph.csv", 1.0).unwrap();
         let base = Gradation::linear_from_d0(0.7, 1.6).unwrap();
         let supply = Supply::new(SizeSampler::new(&base, 1.0).unwrap(), n, 10).arching_by(law).leaving_openings(open);
+        let supply = if evenly { supply.stratified(seed, 1) } else { supply };
         compare(&network, &supply, Clogged::none(&network), seed, 1);
     }
 }
