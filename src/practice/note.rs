@@ -2,8 +2,8 @@
 //!
 //! A row makes a variant of [`Note`]. A name ending in `_mm`, `_percent` or `_pp` (percentage points) has
 //! that unit. A name beginning with `least_` or `most_` is a minimum or maximum, one with `over_` a lower
-//! bound, and a whole number is a count. No sentence depends on another note. Only faces fill in the
-//! sentences and read them.
+//! bound, and a whole number is a count: `{n:replicate}` and `{n:copy|copies}` give it its noun. No sentence
+//! depends on another note. Only faces fill in the sentences and read them.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,7 +23,8 @@ pub struct Entry {
 /// Several names in a note.
 type NameList = Vec<String>;
 
-/// A note as files have it. One form for all notes compiles in a tenth of the time that a form for each takes.
+/// A note as files have it. One form for all notes compiles in a tenth of the time that a form for each
+/// takes.
 #[derive(Serialize, Deserialize)]
 struct Record {
     id: String,
@@ -125,7 +126,10 @@ macro_rules! notes {
                 let numbers = match note {
                     $(Note::$name { $($number),* } => vec![$((stringify!($number), value($number))),*],)*
                 };
-                Self { id, numbers: numbers.into_iter().map(|(name, value)| (name.to_owned(), value)).collect() }
+                Self {
+                    id,
+                    numbers: numbers.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
+                }
             }
         }
 

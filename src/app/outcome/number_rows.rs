@@ -1,4 +1,8 @@
 //! Rows of numbers whose columns are the fields of their type: CSV, npz and Python use the same names.
+//!
+//! `metrics` and `recorder` fill them. A further column has `#[serde(default)]`, as pages and exports read
+//! files of older runs, and checkpoints hold rows. The name of a fraction, size or other float ends as in
+//! `UNITS` of the tests. `tests/commands/scene.rs` has the headers, `src/docs/files.md` their meaning.
 
 /// Column of a table of numbers.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,5 +1,14 @@
 //! Rules by which a particle chooses among the open exits of its void, and the exit columns of undirected
 //! networks.
+//!
+//! A rule for undirected networks is a variant of [`ExitRule`] with its name, need of flow and weight. Other
+//! places that know rules: `linked_numbered` sets the weights of a rule without water, and `columns` takes or
+//! refuses it for arrays. `weight` (`walk/openings.rs`) and `Reference::open_area` have the power of its
+//! width by which an opening counts: 2 for an area, and for a flux that of a conductance, relative to the
+//! last solution of the flow (`Directions::weighed`).
+//!
+//! Directed networks know area alone: `Network::exit_weight`, `passage` and `Reference::open_area` have its
+//! formula. A further rule of theirs is a field of `Network`, and part of its fingerprint.
 
 use crate::schema::Leaf;
 use serde::{Deserialize, Serialize};

@@ -224,6 +224,11 @@ pub fn threads(count: usize, pinned: bool) -> Result<ThreadPool, ThreadPoolBuild
 }
 
 /// Instruction sets with a version of the step; all give the same bits.
+///
+/// A further one needs a variant in `ALL`, `name` and `is_available`, a file in `walk/kernel`, and its arm
+/// in `step_lattice` (`walk/kernel/mod.rs`). `walk/insert.rs`, `counts/flow.rs` and `counts/expected.rs`
+/// also choose by it, and take the portable version if they have none for it. Tests run all of `ALL` that
+/// the machine has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Isa {
     /// Instructions that every machine has.
