@@ -4,6 +4,7 @@
 use super::error::CaseError;
 use super::files::Files;
 use super::library_filter::{LibraryFilter, OtherCurve, curve_ends};
+use super::network::set_layers_of_thickness;
 use super::packed_filter::{GUESSED_GRAINS_PER_VOID, PackedFilter};
 use crate::scene::{
     Amount, BaseGradation, D85, Extent, FilterGradation, LibraryDensity, NetworkSource, Scene, USUAL_LAYERS,
@@ -45,9 +46,10 @@ pub struct CaseFilter {
 
 impl CaseFilter {
     /// Reads the filter that a scene states, and the network of its replicates if they all walk one; `packed`
-    /// and `measured` are its packing and that packing's voids, if they already exist.
+    /// and `measured` are its packing and that packing's voids, if they already exist. Sets the layers of a
+    /// thickness before the curve is built, so that the thickness is refused first.
     pub(super) fn read(
-        scene: &Scene,
+        scene: &mut Scene,
         packed: Option<PackedFilter>,
         measured: Option<Arc<GraphPacking>>,
         files: &mut Files,
@@ -87,6 +89,7 @@ impl CaseFilter {
             (None, None) => stated,
         };
         let fixed = FixedNetwork::read(scene, &gradation, graph.as_ref(), files)?;
+        set_layers_of_thickness(scene, &gradation)?;
         let unit_mm = gradation.smallest_mm();
         let curve = match (fixed.as_ref().filter(|fixed| fixed.packing.is_none()), stated) {
             (Some(fixed), _) => fixed.curve()?,

@@ -34,6 +34,8 @@ pub(crate) enum JobState {
     Stopped,
     Done,
     Refused,
+    /// Also an unknown word in `job.json`.
+    #[serde(other)]
     Failed,
 }
 
