@@ -4,7 +4,6 @@
 use super::error::CaseError;
 use super::files::Files;
 use super::library_filter::{LibraryFilter, OtherCurve, curve_ends};
-use super::network::set_layers_of_thickness;
 use super::packed_filter::{GUESSED_GRAINS_PER_VOID, PackedFilter};
 use crate::scene::{
     Amount, BaseGradation, D85, Extent, FilterGradation, LibraryDensity, NetworkSource, Scene, USUAL_LAYERS,
@@ -197,6 +196,26 @@ fn gradation(
         }
         (FilterGradation::Sieve(path, d0_mm), _) => files.sieve(path, *d0_mm, "filter.sieve", &scene.name),
     }
+}
+
+/// Sets the number of layers of a lattice from the scene's thickness and this filter.
+fn set_layers_of_thickness(scene: &mut Scene, filter: &Gradation) -> Result<(), CaseError> {
+    let (NetworkSource::Cubic(_), extent) = (scene.network.source(), scene.network.extent()) else {
+        return Ok(());
+    };
+    let unit_mm = filter.smallest_mm();
+    let Some(mm) = extent.thickness_mm(filter.d(50.0).unwrap_or(unit_mm)) else { return Ok(()) };
+    let layer = filter.d_by_number(50.0).unwrap_or(unit_mm);
+    let layers = (mm / layer).round();
+    if layers < 1.0 {
+        let problem = format!(
+            "the network is to be {mm:.4} mm thick, but one layer of voids, D50F by number, is {layer:.4} \
+             mm: allowed: half a layer or more (network.thickness_mm, network.thickness_d50f)"
+        );
+        return Err(scene.clash(problem).into());
+    }
+    scene.network.set_layers(layers.min(f64::from(u32::MAX)) as u64);
+    Ok(())
 }
 
 /// Network that all replicates walk.
