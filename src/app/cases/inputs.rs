@@ -19,8 +19,8 @@ pub(crate) struct InputSoils {
 
 impl InputSoils {
     /// Reads soils by [`samples_in`](voidwalk_sheets::samples_in), every sample in files and folders, or by
-    /// [`envelope_in`](voidwalk_sheets::envelope_in), every curve in files. Errors: a file that cannot be read
-    /// as a table; a soil that is named twice; for an envelope a folder.
+    /// [`envelope_in`](voidwalk_sheets::envelope_in), every curve in files. Errors: a file that cannot be
+    /// read as a table; a soil that is named twice; for an envelope a folder.
     pub(crate) fn read(
         paths: &[PathBuf],
         soils_in: fn(&Path) -> Result<Vec<SoilSample>, GradationError>,

@@ -300,8 +300,8 @@ const BETWEEN_CASES: Duration = Duration::from_secs(2);
 /// Time without a message after which the progress of a case is reported.
 const BETWEEN_RUNS: Duration = Duration::from_secs(5);
 
-/// Runs cases that are shown on stderr; with `every_event`, each of their events gets a line, as in the log of
-/// a job.
+/// Runs cases that are shown on stderr; with `every_event`, each of their events gets a line, as in the log
+/// of a job.
 pub(crate) fn followed_cases<T>(
     quiet: bool,
     every_event: bool,

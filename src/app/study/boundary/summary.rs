@@ -351,8 +351,8 @@ mod tests {
     use super::*;
     use crate::study::boundary::search::Ended;
 
-    /// Network whose first run erodes these percentages at ratios 1, 2 and so on, and whose second run goes up
-    /// and down.
+    /// Network whose first run erodes these percentages at ratios 1, 2 and so on, and whose second run goes
+    /// up and down.
     fn network(first: &[f64]) -> Done {
         let second = [0.0, 0.08, 0.01, 0.02].map(Some);
         let walks = (1u32..).zip(first).zip(second);
