@@ -100,9 +100,9 @@ pub const RULES: &[FilterRule] = &[
         ..pair(
             retention::sherard_dunnigan,
             "Sherard & Dunnigan (1989), as given by Fell et al., Geotechnical Engineering of Dams, Table \
-                 9.2, with its note (b) on dispersive soils; the 0.2 mm: Sherard et al. (1984), as given by \
-                 Messerklinger, 18th International Conference on Soil Mechanics and Geotechnical Engineering \
-                 (2013), p. 3315",
+             9.2, with its note (b) on dispersive soils; the 0.2 mm: Sherard et al. (1984), as given by \
+             Messerklinger, 18th International Conference on Soil Mechanics and Geotechnical Engineering \
+             (2013), p. 3315",
         )
     },
     FilterRule {
@@ -126,8 +126,8 @@ pub const RULES: &[FilterRule] = &[
         ..pair(
             retention::continuing,
             "Foster & Fell (2001), as given by Fell et al., Geotechnical Engineering of Dams, section \
-                 9.3.2; regraded base: U.S. Army Corps of Engineers, Filter Evaluation manual \
-                 (RMC-CPD-2023-04), chapter Foster and Fell",
+             9.3.2; regraded base: U.S. Army Corps of Engineers, Filter Evaluation manual \
+             (RMC-CPD-2023-04), chapter Foster and Fell",
         )
     },
     FilterRule {
@@ -153,7 +153,7 @@ pub const RULES: &[FilterRule] = &[
         ..pair(
             retention::constricted,
             "U.S. Army Corps of Engineers, Filter Evaluation manual (RMC-CPD-2023-04), chapter \
-                 Constricted Exit, after Fell and Foster",
+             Constricted Exit, after Fell and Foster",
         )
     },
     FilterRule {
@@ -167,7 +167,7 @@ pub const RULES: &[FilterRule] = &[
         ..pair(
             |inputs| drainage::permeability(inputs, 5.0),
             "U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Permeability, which cites \
-                 USBR (2011) and NRCS (2017)",
+             USBR (2011) and NRCS (2017)",
         )
     },
     FilterRule {
@@ -181,7 +181,7 @@ pub const RULES: &[FilterRule] = &[
         ..pair(
             |inputs| drainage::permeability(inputs, 3.0),
             "U.S. Army Corps of Engineers, Filter Evaluation manual, chapter Permeability, which cites \
-                 EM 1110-2-1901 (2005)",
+             EM 1110-2-1901 (2005)",
         )
     },
     FilterRule {
@@ -257,7 +257,7 @@ pub const RULES: &[FilterRule] = &[
         ..stable(
             stability::burenkova,
             "U.S. Army Corps of Engineers, Internal Instability Toolbox manual (RMC-CPD-2023-10), \
-                 chapter Burenkova Method",
+             chapter Burenkova Method",
         )
     },
     FilterRule {
@@ -271,7 +271,7 @@ pub const RULES: &[FilterRule] = &[
         ..stable(
             stability::wan_fell,
             "U.S. Army Corps of Engineers, Internal Instability Toolbox manual (RMC-CPD-2023-10), \
-                 chapter Modified Burenkova Method",
+             chapter Modified Burenkova Method",
         )
     },
     FilterRule {
